@@ -143,7 +143,7 @@ def show(
         about, answer = scene_record(scene), results(scene)
     struck = about if blow else {name: value for name, value in about.items() if name in ("cue", "effects")}
     record = whole_record(file, notes, scene, answer, blow=blow, scene=struck)
-    lines = [*head_lines(file, about, scene.effects, notes), "", *sheets(answer, about)]
+    lines = [head_line(file, about), "", *sheets(answer, about), "", *basis_lines(scene.effects, notes)]
     tell(options["as_json"], record, lines, page, f"{file.name}: {click.get_current_context().info_name}")
     return record
 
@@ -156,9 +156,12 @@ def whole_record(
     return said | more | record | {"units": UNITS | record.get("units", {})}
 
 
-def head_lines(file: Path, about: dict[str, Any], effects: Sequence[Any], notes: Sequence[str]) -> list[str]:
-    """What stands above a command's tables: the file and its cue, the effects, and what was assumed."""
-    lines = [f"{file.name}: {cue_line(plain(about['cue']))}"]
-    if effects:
-        lines.append(f"effects: {', '.join(map(effect_words, effects))}")
-    return [*lines, *assumed_lines(notes)]
+def head_line(file: Path, about: dict[str, Any]) -> str:
+    """The line above a command's tables: the file and its cue."""
+    return f"{file.name}: {cue_line(plain(about['cue']))}"
+
+
+def basis_lines(effects: Sequence[Any], notes: Sequence[str]) -> list[str]:
+    """The lines below a command's tables: the effects, and the assumptions."""
+    acting = [f"effects: {', '.join(map(effect_words, effects))}"] if effects else []
+    return [*acting, *assumed_lines(notes)]

@@ -115,7 +115,7 @@ def _write_page(file: Path, output: Path, options: dict[str, Any], *, check: boo
 def improve(file: Path, take: int | None, output: Path | None, force: bool, **options: Any) -> None:
     """List design changes a maker can make, with squirt, stiffness, weight and first natural frequency of each.
 
-    Each change is applied on its own and computed with the full model. Rows are sorted by squirt, lowest first.
+    Each change is applied on its own and computed by the coupled strike. Rows are sorted by squirt, lowest first.
     """
     drawing = output is not None and output.suffix == ".toml"
     if (take is not None) != drawing:
@@ -185,7 +185,7 @@ def end_mass(file: Path, paper: bool, **options: Any) -> None:
     help="Export the end mass for this simulator; -o FILE.json writes its input file.",
 )
 def strike(file: Path, simulator: str | None, **options: Any) -> None:
-    """Compute squirt, ball speed, spin and pivot length of one stroke, by the full model and by simpler ones.
+    """Compute squirt, ball speed, spin and pivot length of one stroke, by the coupled strike and by lumped models.
 
     The numerical error target is the rtol of the file's [accuracy] table, if it has one.
     """

@@ -92,8 +92,8 @@ page_option = output_option(".html", ".json")
 
 
 def assumed_lines(notes: Sequence[str]) -> list[str]:
-    """What was assumed, in a line; none where nothing was."""
-    return [f"assumed: {'; '.join(notes)}"] if notes else []
+    """The assumptions, one a line, each with its option; none where nothing was assumed."""
+    return ["assumed:", *(f"  {note}" for note in notes)] if notes else []
 
 
 def print_json(record: Any) -> None:

@@ -357,7 +357,7 @@ DEFINITIONS: dict[str, Definition] = {
         Definition(
             "stick",
             "stick, small offsets",
-            "the inertia across the cue that the ball feels in the coupled strike as the offset goes to zero",
+            "transverse inertia of the cue at the tip in the coupled strike, in the limit of small offsets",
             "(K - 1)/J - c = 1/m_e, J the impulse across the cue that makes the tip follow V(t) = K P(t) - 1",
             stick,
             strikes=_couples,
@@ -367,7 +367,7 @@ DEFINITIONS: dict[str, Definition] = {
         Definition(
             "offset",
             "stick",
-            "the inertia across the cue that the ball feels at this offset in a coupled strike whose tip never slips",
+            "transverse inertia of the cue at the tip in a coupled strike at this offset whose tip never slips",
             "as stick, with the K and T of the contact at this offset",
             stick_at_offset,
             at_offset=True,
@@ -377,7 +377,7 @@ DEFINITIONS: dict[str, Definition] = {
         Definition(
             "velocity",
             "velocity",
-            "impulse over final velocity of a tip that is moved like (1 - cos(pi t/T))/2",
+            "impulse over final velocity, for a prescribed tip velocity (1 - cos(pi t/T))/2",
             "m_e = integral of F dt over 0..T, F the force that gives the tip that velocity",
             velocity,
             smooth=True,
@@ -385,7 +385,7 @@ DEFINITIONS: dict[str, Definition] = {
         Definition(
             "force",
             "force",
-            "impulse over final velocity of a tip that is pushed by a half sine of length T",
+            "impulse over final velocity, for a prescribed half-sine force of duration T",
             "m_e = (2 T/pi)/(integral of h(T - t) sin(pi t/T) dt over 0..T)",
             force,
             smooth=True,

@@ -37,7 +37,7 @@ def advice_notes(record: Record) -> list[str]:
     warning = grip_warning(record["grip"])
     return [
         *([warning] if warning else []),
-        f"Each change on its own, full model at b/R {record['offset']:.4g}; this cue: "
+        f"Each change on its own, by the coupled strike at b/R {record['offset']:.4g}; this cue: "
         f"{with_unit(record['own']['squirt'], 'rad', decimals=2)}. ±: uncertainty of the change (1σ): model, "
         "unmeasured wood and tip, and 1 %. Worthwhile: squirt falls by more than its uncertainty; within uncertainty: "
         "the change is smaller than its uncertainty.",

@@ -20,7 +20,7 @@ def assumptions(scene: Record) -> str:
     return ", ".join(
         [
             f"ball {grams(ball['mass'])}, {with_unit(2 * ball['radius'], 'm')}",
-            f"head-on contact time {_milliseconds(tip['contact_time'])}",
+            f"head-on contact time {_milliseconds(tip['contact_time'])} (rigid cue)",
             f"e {tip['restitution']:g}",
             f"mu {tip['friction']:g}".replace("inf", "∞"),
             f"stroke {stroke['speed']:g} m/s",

@@ -109,7 +109,7 @@ def strike_sheet(record: Record, scene: Record) -> Sheet:
             f"coupled: vibrating shaft in time{exact}; two-part and A.31: two masses, with the end mass of a "
             f"tip that sticks ({offset_words(scene)}; `cuefem end-mass`)",
             *([f"natural pivot length: {PIVOT}"] if pivots else []),
-            "grip, {}: {}".format(*GRIPS[coupled["grip"]]),
+            *([] if missed else [f"contact: {GRIPS[coupled['grip']][1]}"]),
             *_on_speed(record, scene),
             OFF,
             *model_notes(scene, record, "/kg"),

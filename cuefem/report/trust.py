@@ -5,10 +5,10 @@ from __future__ import annotations
 from cuefem.scene import Scene
 
 LAW = (
-    "The tip is modelled as elastic leather of given height, dome and E. Its compliance is that of the elastic solid to "
-    "0.3 % (95 % of contacts; at worst 1.1 %); the model has not been tested on real tips. Computed squirt changes by "
-    "6 % from soft to hard leather; players find no difference, to ±5 % at best. Do not choose a tip's hardness by this "
-    "number."
+    "The tip is modelled as elastic leather of given height, dome and E. Its compliance is that of the elastic solid "
+    "to 0.3 % (95 % of contacts; at worst 1.1 %); the model has not been tested on real tips. Computed squirt changes "
+    "by 6 % from soft to hard leather; players find no difference, to ±5 % at best. Do not choose a tip's hardness by "
+    "this number."
 )
 SPRING = (
     "The tip is modelled as a linear spring with the given contact time. No real tip was measured for it, and squirt "

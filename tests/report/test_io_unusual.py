@@ -49,19 +49,19 @@ def test_no_false_alarm(path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "line"),
     [
-        ("28.575 mm", "57.15 mm", "ball radius 57.15 mm; 26 to 31 is usual: is that the diameter?"),
-        ("9.5 mm", "9.5 m", "dome radius 9500 mm; 9 to 10.6 is usual, a dime's or a nickel's"),
-        ("offset = 0.3", 'speed = "200 m/s"', "stroke speed 200 m/s; 0.5 to 12 is usual"),
-        ("[ball]", '[ball]\nmass = "170 kg"', "ball mass 170000 g; 140 to 210 is usual"),
+        ("28.575 mm", "57.15 mm", "ball radius 57.15 mm; expected 26 to 31 mm; is this the diameter?"),
+        ("9.5 mm", "9.5 m", "dome radius 9500 mm; expected 9 to 10.6 mm"),
+        ("offset = 0.3", 'speed = "200 m/s"', "stroke speed 200 m/s; expected 0.5 to 12 m/s"),
+        ("[ball]", '[ball]\nmass = "170 kg"', "ball mass 170000 g; expected 140 to 210 g"),
         ("420 g", "15 kg", "mass of the whole cue 15.09"),
-        ("12.7 mm", "0.0127 mm", "segments[0].tip_diameter 0.0127 mm; check the unit of the diameters"),
+        ("12.7 mm", "0.0127 mm", "segments[0].tip_diameter 0.0127 mm; expected 8.5 to 14 mm"),
         ("12.8 mm", "128 mm", "the diameter jumps from 12.7 to 128 mm between segments[0] and segments[1]"),
         ("12.8 mm", "8.1 mm", "the diameter jumps from 12.7 to 8.1 mm between segments[0] and segments[1]"),
         ("400 mm", "400 m", "drawn length 400325 mm; check the unit of the lengths"),
         (
             '"14 mm", mat',
             '"14 mm", butt_bore = "3 mm", mat',
-            "the bore of segments[1] comes to a point; is tip_bore left",
+            "the bore of segments[1] tapers to zero; is tip_bore",
         ),
     ],
 )
@@ -74,7 +74,7 @@ def test_a_slip_is_remarked(tmp_path: Path, old: str, new: str, line: str) -> No
     assert any(said.startswith(line) for said in remarks(tmp_path / "scene.toml"))
 
 
-LEFT_OUT = "; 400 to 700 is usual: is what is behind the shaft left out (--body-mass, or body_mass in a drawing)?"
+LEFT_OUT = "; expected 400 to 700 g"
 
 
 def test_a_shaft_without_the_rest_of_its_cue_is_remarked_where_it_is_struck(tmp_path: Path) -> None:
@@ -83,10 +83,10 @@ def test_a_shaft_without_the_rest_of_its_cue_is_remarked_where_it_is_struck(tmp_
     light = cf.load(shaft)
     assert isinstance(light, cf.Cue)
     (line,) = unusual(cf.Scene(light))
-    assert line == f"mass of the whole cue {1e3 * light.mass:.6g} g{LEFT_OUT}"
+    assert line.startswith(f"mass of the whole cue {1e3 * light.mass:.6g} g{LEFT_OUT}")
     status, out, err = call("strike", shaft, "--json")
     assert (status, err.splitlines()) == (0, [f"unusual: {json.loads(out)['unusual'][0]}"])
-    assert err.strip().endswith(LEFT_OUT)
+    assert LEFT_OUT in err
     assert call("strike", shaft, "--body-mass", "15 oz")[2] == ""
     assert call("modes", shaft)[2] == ""  # how it rings does not depend on it
 
@@ -100,5 +100,5 @@ def test_a_solid_rod_of_carbon_is_remarked(tmp_path: Path) -> None:
         assert status == 0
         (line,) = err.splitlines()
         assert line.startswith("unusual: a solid rod as stiff as carbon fibre, drawn mass 2")
-        assert line.endswith("g; such shafts are tubes: a bore is drawn in a .toml (`cuefem guide files`)")
+        assert "--bore" in line
     assert call("modes", shaft, "--material", "steel")[2] == ""

@@ -77,7 +77,7 @@ def test_command_ends_with_a_summary_and_writes_it_as_a_page(tmp_path: Path) -> 
     text = page.read_text(encoding="utf-8")
     assert (text.count("<table"), re.findall('(?:href|src)="([^"]*)"', text)) == (4, ["data:,"])
     none = written(tmp_path, STUDY.replace('low = "0 mm"\nhigh = "15 mm"', 'low = "13 mm"\nhigh = "14 mm"'))
-    command_refuses("needs a design with an answer", "study", none, "-o", tmp_path / "none.toml")
+    command_refuses("has no design to write", "study", none, "-o", tmp_path / "none.toml")
 
 
 def test_result_has_designs_responses_units_best_and_spread(tmp_path: Path) -> None:
@@ -109,7 +109,7 @@ def test_columns_and_responses_are_named_in_words() -> None:
     assert {name: column_label(name) for name in LABELS} == LABELS
     names = ("end_mass", "squirt(-0.25)", "frequency(2)", "end_mass_force")
     said = [Response.of(name).label for name in names]
-    assert said == ["end mass", "squirt at b/R -0.25", "tone 2", "end mass, force"]
+    assert said == ["end mass", "squirt at b/R -0.25", "natural frequency 2", "end mass, force"]
     every = [
         Response(name, x).label
         for name, of in asked().items()

@@ -53,7 +53,7 @@ def test_of_a_cue_beside_itself_only_the_floor_is_left() -> None:
 def test_of_two_pieces_of_wood_the_root_of_two_of_each_input_is_left() -> None:
     record = comparison_record(TWIN)
     two = record["differences"]["b"]
-    assert "cannot be told apart" in comparison_sentences(record)[0]
+    assert "not distinct" in comparison_sentences(record)[0]
     assert not any(each["distinct"] for each in two.values())
     heavier = varied(SCENE, {"rho": main_material(SCENE.shaft).rho * math.exp(0.1)})
     assert two["shaft_mass"]["error"] > 0.9 * (heavier.shaft.shaft_mass / SCENE.shaft.shaft_mass - 1)
@@ -105,13 +105,13 @@ def test_a_miscue_is_not_compared() -> None:
     ("arguments", "words"),
     [
         (["cue.toml"], "needs another FILE"),
-        (["cue.toml", "--speed", "3 m/s"], "compares with measurements"),
-        (["cue.toml", "cue.toml", "--shaft-mass", "112 g"], "must stand in each cue's file"),
+        (["cue.toml", "--speed", "3 m/s"], "need two or more files"),
+        (["cue.toml", "cue.toml", "--shaft-mass", "112 g"], "must be set in each cue's file"),
         (["cue.toml", "cue.toml", "--estimate"], "takes one FOLDER"),
         (["cue.toml"] * 6, "at most 5 cues"),
         (["cue.toml", "lumped.toml"], "LumpedCue"),
         (["cue.toml", "ash.toml", "--same-shaft"], "must be of one wood"),
-        (["cue.toml", "lumped.toml", "./cue.toml"], "another file"),
+        (["cue.toml", "lumped.toml", "./cue.toml"], "given twice"),
         (["nowhere"], "got no folder"),
     ],
 )

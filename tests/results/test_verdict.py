@@ -79,7 +79,7 @@ def test_the_scale_is_in_order_and_compares_every_cue_with_plain_maple() -> None
         less = 1 - among[name]["squirt"] / among["plain maple"]["squirt"]
         assert beside[name] == f"{100 * less:.0f} % less than plain maple"
     assert beside["plain maple"] == ""
-    assert "ready pool cues" in standing(RECORD)[1]
+    assert "Reference pool cues" in standing(RECORD)[1]
 
 
 @pytest.mark.parametrize(

@@ -104,19 +104,19 @@ def test_check_and_report_say_how_far_beam_theory_is_off() -> None:
     scene = replace(SCENE, cue=short, effects=(cf.AxialWaves(), cf.PointMass(0.0, 1e-3)))
     record = model_error_record(scene, list)
     rows = {row["quantity"]: row for row in record["rows"]}
-    assert list(rows)[:6] == [f"tone {k}" for k in range(1, 7)]
+    assert list(rows)[:6] == [f"natural frequency {k}" for k in range(1, 7)]
     for row in rows.values():
         assert row["mesh_error"] < 1e-2
         assert row["difference"] == pytest.approx(row["beam"] / row["solid"] - 1, abs=1e-15)
     laden = cf.modes(short, 1, effects=scene.effects).frequencies[0]
-    assert rows["tone 1"]["beam"] == pytest.approx(laden, rel=1e-6)
-    assert 0 < abs(rows["tone 1"]["solid"] / laden - 1) < 0.1
-    assert record["sentence"].startswith("For this shaft beam theory is off by ")
+    assert rows["natural frequency 1"]["beam"] == pytest.approx(laden, rel=1e-6)
+    assert 0 < abs(rows["natural frequency 1"]["solid"] / laden - 1) < 0.1
+    assert record["sentence"].startswith("Error of the beam model for this shaft: ")
     assert record["left_out"] == ["AxialWaves"]
     sheet = model_error_sheet(record)
     assert [row[0].removesuffix(" *") for row in sheet.rows[:-1]] == list(rows)
     assert abs(record["scikit_fem"]["difference"]) < 1e-9
-    assert sheet.rows[-1][0] == "tone 1, same beam by scikit-fem"
+    assert sheet.rows[-1][0] == "natural frequency 1, same beam by scikit-fem"
     assert "AxialWaves" in sheet.notes[-1]
 
 
