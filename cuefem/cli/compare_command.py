@@ -25,7 +25,7 @@ from cuefem.results.comparison import comparison_record, struck_alike
 from cuefem.results.quantities import UNITS
 
 MOST_CUES = 5
-STRUCK = ("ball ", "stroke ", "offset ")  # what is assumed of ball and stroke, which are the first cue's
+STRUCK = ("ball ", "cue speed ", "offset ")  # what is assumed of ball and stroke, which are the first cue's
 
 
 @command()
@@ -97,7 +97,7 @@ def _side_by_side(files: Sequence[Path], options: dict[str, Any], output: Path |
     if output is not None and output.suffix == ".html":
         things += comparison_figures(scenes, record)
     title = f"{', '.join([*scenes][:-1])} and {[*scenes][-1]}"
-    tell(options["as_json"], about | record | {"units": UNITS}, [*things, *assumed_lines(notes)], output, title)
+    tell(options["as_json"], about | record | {"units": UNITS}, [*things, "", *assumed_lines(notes)], output, title)
 
 
 def _names(files: Sequence[Path]) -> list[str]:
@@ -123,4 +123,4 @@ def _with_measurements(folder: Path, output: Path | None, *, as_json: bool, esti
             record = compare_record(cue, rows, zeros(cue, rows))
             sheets = compare_sheets(record)
     whole = whole_record(folder, notes, cue.scene, record)
-    tell(as_json, whole, [cue.name, *assumed_lines(notes), "", *sheets], output)
+    tell(as_json, whole, [cue.name, "", *sheets, "", *assumed_lines(notes)], output)

@@ -94,7 +94,7 @@ def study(
             f"{len(result.rows)} designs in {kept.path}" + (f", {before} of them from before" if before else "")
         )
     record |= study_record(result)
-    title, things = f"{file.name}: {result.kind}", [*assumed_lines(notes), *study_sheets(result)]
+    title, things = f"{file.name}: {result.kind}", [*study_sheets(result), "", *assumed_lines(notes)]
     for path in output:
         _write(path, result, record, things, title)
     tell(as_json, record, [title, *stored, *things, *(f"wrote {path}" for path in output)])

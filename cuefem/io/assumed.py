@@ -16,9 +16,9 @@ from cuefem.parameters.parts import Layout
 from cuefem.scene import DEFAULT_CONTACT_TIME, Ball, Stroke, Tip
 from cuefem.scene.default_scene import DEFAULT_GAME, GAMES, KIM, usual_tip
 
-BEGINS = f'the drawing begins at the ferrule, and the tip is put in front (--begins "{LEATHER}" if it has the leather)'
+BEGINS = f'the front of the drawing is the ferrule; the tip is added in front (--begins "{LEATHER}" if it is leather)'
 ON_TENON = f"the ferrule sits on a tenon of the shaft's wood, {TENON:g} of its width"
-BORED_FERRULE = "the ferrule is bored as the shaft there, without a tenon"
+BORED_FERRULE = "the ferrule has the bore of the shaft, without a tenon"
 
 
 def assumed(
@@ -31,7 +31,7 @@ def assumed(
     """
     tables = read_tables(path) if path.suffix.lower() == ".toml" else {}
     if "cue" not in tables:
-        return _profile(path, options, " (choose with --material)", cue)
+        return _profile(path, options, " (--material)", cue)
     named = tables["cue"]
     shaft = _profile(path.parent / named, options, cue=cue) if isinstance(named, str) else []
     return [*shaft, *(assumed_blow(tables, options, offered=offered) if blow else [])]
@@ -41,7 +41,7 @@ def assumed_drawing(path: Path, cue: Cue) -> list[str]:
     """What a drawing that other files stand beside cannot say: its material, and what is behind the shaft."""
     if path.suffix.lower() not in SHAPES:
         return []
-    return [*_profile(path, ("body_mass",), cue=cue), "no mass behind the shaft (a cue.toml can have body_mass)"]
+    return [*_profile(path, ("body_mass",), cue=cue), "no mass behind the shaft (body_mass in a cue.toml)"]
 
 
 def _profile(path: Path, options: Collection[str], choose: str = "", cue: Cue | None = None) -> list[str]:
@@ -50,7 +50,7 @@ def _profile(path: Path, options: Collection[str], choose: str = "", cue: Cue | 
         return []
     lengths = path.suffix.lower() in SURFACES and "length_unit" not in options
     profile = None if path.suffix.lower() in SURFACES else read_profile(path, DEFAULT_UNIT, checked=False)
-    unit = f"lengths in {DEFAULT_UNIT}{choose and ' (--length-unit gives another)'}"
+    unit = f"lengths in {DEFAULT_UNIT}{choose and ' (--length-unit)'}"
     return [
         *([unit] if lengths else []),
         *(_fit(path) if profile is None else profile.notes),
@@ -59,7 +59,7 @@ def _profile(path: Path, options: Collection[str], choose: str = "", cue: Cue | 
             if "material" in options or (profile is not None and profile.named)
             else [f"material {DEFAULT_MATERIAL}{choose}"]
         ),
-        *([] if "body_mass" in options else ["no mass behind the shaft (--body-mass gives it)"]),
+        *([] if "body_mass" in options else ["no mass behind the shaft (--body-mass)"]),
         *_parts(profile, options, choose, cue),
     ]
 
@@ -98,7 +98,7 @@ def _fit(path: Path) -> list[str]:
     count = len(surface.pieces)
     return [
         f"{count} conical segment{'s' if count > 1 else ''}, diameters within {max(fit, 1e-9):.0e} of the widest",
-        f"facets round (their corners lie up to {corners:.0e} of the widest diameter further out)",
+        f"facets taken as round (corners up to {corners:.0e} of the widest diameter further out)",
         "the thinner end is the tip",
     ]
 
@@ -111,26 +111,26 @@ def assumed_usual(
     ball, tip = known.ball, usual_tip(cue, game)
     drawn = f"{1e3 * cue.leather:.4g} mm"
     height = (
-        f"the drawn leather, {drawn}, taken as a leather tip of that height"
+        f"leather tip of the drawn height, {drawn}"
         if cue.leather
-        else f"a leather tip {1e3 * tip.height:g} mm high, put on what is drawn"
+        else f"leather tip {1e3 * tip.height:g} mm high, added in front of the drawing"
     )
     if cue.leather and "tip_height" in options:
-        height = f"the drawn leather, {drawn}, left out: the leather tip stands in its place"
+        height = f"the leather tip replaces the drawn leather, {drawn}"
     sizes = f"{1e3 * ball.mass:g} g, {2e3 * ball.radius:g} mm"
-    butt = f", with a butt to {1e3 * known.cue_length:g} mm, {1e3 * known.butt_diameter:g} mm wide, for axial waves"
+    butt = f", butt to {1e3 * known.cue_length:g} mm, {1e3 * known.butt_diameter:g} mm wide, for axial waves"
     said = (
-        (False, f"a usual stroke of {game}{butt if blow and cue.body_mass else ''}{_option('game', offered)}"),
+        (False, f"default stroke of {game}{butt if blow and cue.body_mass else ''}{_option('game', offered)}"),
         (not blow, f"ball {sizes}"),
         (not cue.leather and "tip_height" in options, f"{height}{_option('tip_height', offered)}"),
-        ("dome" in options, f"its dome {1e3 * tip.dome_radius:g} mm{_option('dome', offered)}"),
+        ("dome" in options, f"tip radius (dome) {1e3 * tip.dome_radius:g} mm{_option('dome', offered)}"),
         (
             "leather" in options,
-            f"its leather {known.leather}, E {1e-6 * tip.E:g} MPa{_option('leather', offered)}",
+            f"tip hardness {known.leather}, E {1e-6 * tip.E:g} MPa{_option('leather', offered)}",
         ),
-        (not blow or "restitution" in options, f"e {known.bounce}{_option('restitution', offered)}"),
-        (not blow or "friction" in options, f"mu {known.friction:g}{_option('friction', offered)}"),
-        (not blow or "speed" in options, f"stroke {known.speed:g} m/s{_option('speed', offered)}"),
+        (not blow or "restitution" in options, f"restitution {known.bounce}{_option('restitution', offered)}"),
+        (not blow or "friction" in options, f"friction {known.friction:g}{_option('friction', offered)}"),
+        (not blow or "speed" in options, f"cue speed {known.speed:g} m/s{_option('speed', offered)}"),
         (not blow or "offset" in options, f"offset b/R {known.offset:g}{_option('offset', offered)}"),
     )
     return [words for told, words in said if not told]
@@ -153,18 +153,18 @@ def assumed_blow(tables: dict[str, Any], options: Collection[str], *, offered: C
         bounce = known.bounce if usual or AxialWaves in kinds else f"{known.restitution:g}"
     sizes = {"ball.mass": f"{1e3 * ball.mass:g} g", "ball.radius": f"{2e3 * ball.radius:g} mm"}
     said = [words for key, words in sizes.items() if key in missing]
-    leather = "a leather tip as high as it is drawn, or as is usual" if whole else ""
-    effects = " and ".join(filter(None, [leather, "waves along the cue and thrust on the bent shaft"]))
-    time = f"{1e3 * DEFAULT_CONTACT_TIME:g} ms; about 1 ms is usual"
-    stroke_of = "Kim's stroke" if game == KIM else f"a usual stroke of {game}"
+    leather = "leather tip (drawn or default height)" if whole else ""
+    effects = " and ".join(filter(None, [leather, "axial waves and geometric stiffness"]))
+    time = f"{1e3 * DEFAULT_CONTACT_TIME:g} ms (leather: about 1 ms)"
+    stroke_of = "Kim's stroke" if game == KIM else f"default stroke of {game}"
     told = (
-        (bool(missing), stroke_of if len(tables) <= 1 + ("game" in tables) else f"what is left out as in {stroke_of}"),
+        (bool(missing), stroke_of if len(tables) <= 1 + ("game" in tables) else f"missing keys as in {stroke_of}"),
         (bool(said), f"ball {', '.join(said)}"),
-        ("effects" in missing and usual, f"{effects} (effects = [] is without)"),
+        ("effects" in missing and usual, f"{effects} (effects = [] for none)"),
         (not (timed or whole), f"head-on contact time {time}"),
-        ("tip.restitution" in missing, f"e {bounce}{_option('restitution', offered)}"),
-        ("tip.friction" in missing, f"mu {tip_of.friction:g}{_option('friction', offered)}"),
-        ("stroke.speed" in missing, f"stroke {stroke.speed:g} m/s{_option('speed', offered)}"),
+        ("tip.restitution" in missing, f"restitution {bounce}{_option('restitution', offered)}"),
+        ("tip.friction" in missing, f"friction {tip_of.friction:g}{_option('friction', offered)}"),
+        ("stroke.speed" in missing, f"cue speed {stroke.speed:g} m/s{_option('speed', offered)}"),
         ("stroke.offset" in missing, f"offset b/R {stroke.offset:.4g}{_option('offset', offered)}"),
     )
     return [words for wanted, words in told if wanted]

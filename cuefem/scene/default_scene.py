@@ -76,8 +76,9 @@ class Game:
     @property
     def bounce(self) -> str:
         """Both restitutions in words."""
-        tip = f"{self.tip_restitution:.2f} of its tip, raised by waves along the cue"
-        return f"{self.restitution:g} of the whole cue head on: {tip}"
+        return (
+            f"{self.tip_restitution:.2f} of the tip (with axial waves, {self.restitution:g} of the whole cue head-on)"
+        )
 
     @property
     def effects(self) -> tuple[Effect, ...]:

@@ -101,7 +101,7 @@ def test_tables_of_the_pages_draw_the_bored_shaft(tmp_path: Path) -> None:
         squirts.append(squirt_of(path))
         if text == plain:
             continue
-        assert "bored 6 mm from 25 to 152 mm;" in " ".join(out.split())
+        assert "bored 6 mm from 25 to 152 mm " in " ".join(out.split())
         front, bored, *rest = cf.load(path).segments  # type: ignore[union-attr]
         assert (front.length, front.tip_bore, bored.tip_bore) == pytest.approx((0.025, 0.008, 0.006), rel=0.02)
         assert (bored.core, bored.material) == (None, front.core)
