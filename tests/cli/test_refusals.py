@@ -87,7 +87,7 @@ convert good.toml kept.vtu | already exists; --force overwrites it
 modes shaft.toml -o none/modes.html | cuefem: none/modes.html: cannot be written: No such file or directory
 report lumped.toml -o page.pdf | page.pdf: --output: must end in .html or .json
 report lumped.toml -o page.html --json | page.html: --output: cannot be combined with --json
-cost good.toml --output cost.pdf | must end in .html or .png or .svg
+cost good.toml --output cost.pdf | must end in .html or .json
 strike spring.toml --format pooltool --offset 0 | [A.31] has no squirt at offset 0
 strike spring.toml --format pooltool -o cue.json --offset 0.9 | the stroke is a miscue at offset 0.9
 strike spring.toml --format pooltool -o cue.toml | --output: must end in .html or .json

@@ -98,5 +98,5 @@ def test_a_row_that_is_taken_is_saved_and_replaces_no_file(tmp_path: Path, found
     assert call("improve", path, "--take", "2", "-o", target)[::2] == (0, "")
     assert cf.strike(cf.load(target)).squirt == pytest.approx(rows[1]["squirt"], rel=1e-9)
     command_refuses("--force", "improve", path, "--take", "2", "-o", target)
-    command_refuses("goes with -o FILE.toml", "improve", path, "--take", "1")
+    command_refuses("--take ROW requires -o FILE.toml", "improve", path, "--take", "1")
     command_refuses("must be a row of the table, 1 to ", "improve", path, "--take", "99", "-o", tmp_path / "x.toml")

@@ -69,7 +69,7 @@ def test_committed_study_finds_the_design_of_exact_gradients(tmp_path: Path) -> 
     written_best = cf.load(goal)
     assert cf.CueBatch.of([written_best.cue]).tip_stiffness[0] == pytest.approx(386.7, rel=1e-6)
     assert written_best.cue.segments[0].tip_diameter == pytest.approx(told["values"]["tip diameter"], rel=1e-8)
-    command_refuses("--force replaces it", "study", STUDY, "-o", goal)
+    command_refuses("--force", "study", STUDY, "-o", goal)
 
 
 @pytest.mark.heavy

@@ -177,10 +177,10 @@ FOLDERS: list[tuple[bytes, list[str], str]] = [
     (b"design,end_mass\n" * 100, [], "cannot be read or written as a database: file is not a database"),
     (b"", ["--store", "none/out.sqlite"], "unable to open database file"),
     (b"", ["-o", "out.xlsx"], "must end in .html or .csv or .json or .toml; got '.xlsx'"),
-    (b"", ["-o", "out.sqlite"], "--store names the file that keeps designs"),
+    (b"", ["-o", "out.sqlite"], "--store names the file of stored designs"),
     (b"", ["-o", "nowhere/out.csv"], "No such file or directory"),
     (b"", ["--dask", "tcp://localhost:1"], "pip install '.[distributed]' in the clone"),
-    (b"", ["--workers", "2", "--dask", "tcp://localhost:1"], "give one"),
+    (b"", ["--workers", "2", "--dask", "tcp://localhost:1"], "cannot be combined"),
 ]
 
 
