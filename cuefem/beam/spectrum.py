@@ -14,11 +14,12 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+import scipy.linalg as la
 from numpy.typing import NDArray
 from scipy.linalg import lapack
 
 from cuefem.beam.system import suits_dense
-from cuefem.beam.tail import inverse, ritz, ritz_of_rest
+from cuefem.beam.tail import STEPS, tail
 from cuefem.cue import Array
 
 # The lowest modes follow from the leading part of the tridiagonal matrix, if it begins at the only load. With LEADING
@@ -64,46 +65,50 @@ def spectrum(
     if not isinstance(K, np.ndarray) and suits_dense(K.shape[0], count):
         K, M = K.toarray(), M.toarray()
     taken = np.flatnonzero(loads[:, :ended].any(axis=0))  # no load acts on an unknown that a clamp holds
-    of = _dense if isinstance(K, np.ndarray) else _sparse
-    return of(K, M, loads, taken, shift, rigid, count, below)
-
-
-def _dense(
-    K: Array, M: Array, loads: Array, taken: NDArray[np.intp], shift: float, rigid: int, count: int, below: float
-) -> Spectrum:
-    form = _Tridiagonal(K, M, shift)
-    mu, z = form.eigen(rigid + count, leading=len(taken) == 1 and not loads[1:, taken].any())
-    felt = form.loads(loads)[: len(z)].T @ z
+    if isinstance(K, np.ndarray):
+        form = _Tridiagonal(K, M, shift)
+        mu, z = form.eigen(rigid + count, leading=len(taken) == 1 and not loads[1:, taken].any())
+        felt, vectors = form.loads(loads)[: len(z)].T @ z, lambda mix: form.vectors(z @ mix)
+    else:
+        mu, basis = _sparse(K, M, loads[:, taken], shift, rigid + count)
+        felt, vectors = loads.T @ basis, lambda mix: basis @ mix
     last = rigid + int(np.sum(1 / mu[rigid : rigid + count] - shift <= below**2))
     # the square of a mode on a support that is next to nothing is rounding
     omega = np.sqrt(np.maximum(1 / mu[rigid:last] - shift, np.finfo(float).eps * shift))
-    mix = np.eye(len(z), last)[:, rigid:] / np.sqrt(mu[rigid:last]) * np.where(felt[0, rigid:last] < 0, -1.0, 1.0)
+    mix = np.eye(len(mu), last)[:, rigid:] / np.sqrt(mu[rigid:last]) * np.where(felt[0, rigid:last] < 0, -1.0, 1.0)
     highest, radiation = float(omega[-1]) if np.isinf(below) else below, None
     if len(taken):
-        rest = ritz_of_rest(mu[last:], felt[taken, last:].T, shift=shift, highest=highest)
+        rest = tail(mu[last:], felt[taken, last:].T, shift=shift, highest=highest)
         omega, radiation = np.append(omega, rest.omega), rest.radiation
-        mix = np.concatenate([mix, np.concatenate([np.zeros((last, len(rest.omega))), rest.vectors])], axis=1)
-    return Spectrum(omega, loads, felt @ mix, highest, radiation, lambda: form.vectors(z @ mix))
+        mix = np.concatenate([mix, np.concatenate([np.zeros((last, len(rest.omega))), rest.mix])], axis=1)
+    return Spectrum(omega, loads, felt @ mix, highest, radiation, lambda: vectors(mix))
 
 
-def _sparse(
-    K: Any, M: Any, loads: Array, taken: NDArray[np.intp], shift: float, rigid: int, count: int, below: float
-) -> Spectrum:
-    from scipy.sparse.linalg import eigsh
+def _sparse(K: Any, M: Any, loads: Array, shift: float, count: int) -> tuple[Array, Array]:
+    """(mu, q), q' (K + shift M) q = 1, of the ``count`` lowest modes, then of what stands for all others.
+
+    These are the Ritz vectors of the deflections under the loads, and under those as loads, as far as they are not in
+    the modes: a tail finds the same in them as in all others.
+    """
+    from scipy.sparse.linalg import eigsh, splu
 
     start = np.ones(K.shape[0])  # a fixed start, so that the same input gives the same numbers
-    squares, vectors = eigsh(K, rigid + count, M, sigma=-shift, v0=start)
+    squares, vectors = eigsh(K, count, M, sigma=-shift, v0=start)
     order = np.argsort(squares)
-    order = order[squares[order] <= below**2]
-    omega, vectors = np.sqrt(np.maximum(squares[order], np.finfo(float).eps * shift))[rigid:], vectors[:, order]
-    vectors *= np.where(loads[:, 0] @ vectors < 0, -1.0, 1.0)
-    highest, radiation = float(omega[-1]) if np.isinf(below) else below, None
-    if len(taken):
-        more = ritz(vectors, K, M, loads[:, taken], shift=shift, deflect=inverse(K + shift * M), highest=highest)
-        omega, radiation = np.append(omega, more.omega), more.radiation
-        vectors = np.concatenate([vectors, more.vectors], axis=1)
-    flexible = vectors[:, rigid:]
-    return Spectrum(omega, loads, loads.T @ flexible, highest, radiation, lambda: flexible)
+    mu, vectors = 1 / (squares[order] + shift), vectors[:, order]
+    if not loads.size:
+        return mu, vectors * np.sqrt(mu)
+    S, steps, forces = K + shift * M, [], loads
+    deflect = splu(S.tocsc()).solve
+    for _ in range(STEPS):
+        step = deflect(forces)
+        for _ in range(2):  # once more, for rounding
+            step -= vectors @ ((M @ vectors).T @ step)
+        steps.append(step / np.sqrt(np.sum(step * (M @ step), axis=0)))
+        forces = M @ steps[-1]
+    rest = np.concatenate(steps, axis=1)
+    own, mix = la.eigh(rest.T @ (M @ rest), rest.T @ (S @ rest))
+    return np.append(mu, own[::-1]), np.concatenate([vectors * np.sqrt(mu), rest @ mix[:, ::-1]], axis=1)
 
 
 class _Tridiagonal:

@@ -111,6 +111,12 @@ class System:
         w, theta = self.forces_at(x).T @ vectors
         return w, theta / self.length
 
+    def static_stiffness(self, x: float) -> float:
+        """Force over deflection at the node ``x``, N/m, of a cue that is held."""
+        force = self.forces_at(x)[:, 0]
+        solve = np.linalg.solve if isinstance(self.K, np.ndarray) else scipy.sparse.linalg.spsolve
+        return float(1 / (force @ solve(self.K, force)))
+
     def fields(self, vectors: Array) -> Fields:
         """The fields of free unknowns ``vectors`` (free, k) at the Gauss points."""
         return _fields(self.length, self.points, self.whole(vectors))

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from cuefem.beam.basis import element_matrices, gauss, table
-from cuefem.beam.tail import ritz
+from cuefem.beam.tail import tail
 from cuefem.cue import Array, Cue, Section, SegmentRows, section_properties
 from cuefem.endmass.impulse_response import ImpulseResponse
 from cuefem.endmass.sticking_contact import StickLimit
@@ -254,28 +255,12 @@ def _joined(parts: Sequence[BatchModes]) -> BatchModes:
     return BatchModes(frequencies, tip, rigid, np.concatenate(radiations) if radiations else None)
 
 
-@dataclass(frozen=True)
-class Beams:
-    """Assembled beams of a block: K, M (cues, unknowns, unknowns), theta times the length; see `cuefem.beam.System`.
-
-    sizes: (cues, elements), m. length, shift: (cues,).
-    """
+class Beams(NamedTuple):
+    """Assembled beams of a block: K, M (cues, unknowns, unknowns), theta times the length, and shift, (cues,)."""
 
     K: Array
     M: Array
-    length: Array
     shift: Array
-    sizes: Array
-    order: int
-
-    @property
-    def rigid(self) -> Array:
-        """Translation, and rotation about the tip: (cues, unknowns, 2)."""
-        motions = np.zeros((*self.K.shape[:2], 2))
-        nodes = (2 * self.order + 1) * np.arange(self.sizes.shape[1] + 1)
-        motions[:, nodes, 0], motions[:, nodes + 1, 1] = 1.0, 1.0
-        motions[:, nodes[1:], 1] = np.cumsum(self.sizes, axis=1) / self.length[:, None]
-        return motions
 
 
 def _beams(batch: CueBatch, at: Resolution) -> Beams:
@@ -297,7 +282,7 @@ def _beams(batch: CueBatch, at: Resolution) -> Beams:
     stiffness, mass = (
         np.einsum("be,beq,q->b", sizes, part, table(order).weights) for part in (section.EI, section.rhoA)
     )
-    return Beams(K, M, length, 500 * stiffness / mass / length**4, sizes, order)
+    return Beams(K, M, 500 * stiffness / mass / length**4)
 
 
 def _standard(beams: Beams) -> tuple[Array, Array]:
@@ -330,34 +315,18 @@ def _block_frequencies(batch: CueBatch, count: int, at: Resolution) -> Array:
 def _block_modes(batch: CueBatch, count: int, at: Resolution, ended: bool) -> BatchModes:
     beams = _beams(batch, at)
     C, back = _standard(beams)
-    mu, y = np.linalg.eigh(C)
-    chosen = slice(-3, -3 - count, -1)  # the last two are the rigid motions
-    vectors = back @ (y[:, :, chosen] / np.sqrt(mu[:, None, chosen]))
-    omega = np.sqrt(1 / mu[:, chosen] - beams.shift[:, None])
+    mu, y = (each[..., :-2][..., ::-1] for each in np.linalg.eigh(C))  # the last two are the rigid motions
+    felt = (back[:, :1] @ y)[:, 0]
+    omega, tip = np.sqrt(1 / mu[:, :count] - beams.shift[:, None]), np.abs(felt[:, :count] / np.sqrt(mu[:, :count]))
     # the rigid part: inverse of the 2 x 2 mass of translation and rotation about the tip, its translation entry
-    tip, rigid, radiation = np.abs(vectors[:, 0]), _rigid_tip(batch), None
+    rigid, radiation = _rigid_tip(batch), None
     if ended:
-        high, follow, radiation = _tail(beams, back, vectors, omega[:, -1])
-        omega, tip = np.concatenate([omega, high], axis=1), np.concatenate([tip, follow], axis=1)
+        rest = tail(mu[:, count:], felt[:, count:, None], shift=beams.shift, highest=omega[:, -1])
+        across = (felt[:, None, count:] @ rest.mix)[:, 0]
+        signs = np.where(across < 0, -1.0, 1.0)
+        omega, tip = np.concatenate([omega, rest.omega], axis=1), np.concatenate([tip, abs(across)], axis=1)
+        radiation = signs[:, :, None] * rest.radiation * signs[:, None]
     return BatchModes(omega / (2 * np.pi), tip, rigid, radiation)
-
-
-def _tail(beams: Beams, back: Array, flexible: Array, top: Array) -> tuple[Array, Array, Array]:
-    """(omega, w(0), radiation) of the vectors that end the modes up to ``top``, (cues, steps) each; of w(0) >= 0."""
-    rigid = beams.rigid
-    mass = rigid.transpose(0, 2, 1) @ (beams.M @ rigid)
-    rigid = rigid @ np.linalg.inv(np.linalg.cholesky(mass)).transpose(0, 2, 1)
-    force = np.zeros((*back.shape[:2], 1))
-    force[:, 0] = 1.0
-
-    def deflect(load: Array) -> Array:
-        return np.asarray(back @ (back.transpose(0, 2, 1) @ load))
-
-    known = np.concatenate([rigid, flexible], axis=2)
-    vectors = ritz(known, beams.K, beams.M, force, shift=beams.shift, deflect=deflect, highest=top)
-    across = vectors.vectors[:, 0]
-    signs = np.where(across < 0, -1.0, 1.0)
-    return vectors.omega, signs * across, signs[:, :, None] * vectors.radiation * signs[:, None]
 
 
 def _rigid_tip(batch: CueBatch) -> Array:

@@ -10,7 +10,6 @@ import numpy as np
 
 from cuefem.beam.modes import modes
 from cuefem.beam.system import assemble
-from cuefem.beam.tail import inverse
 from cuefem.contact.side_strike import SideStrike, Striker, side_strike
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, Cue
@@ -65,8 +64,7 @@ class Predictions:
         if not free <= cue.length * (1 + 1e-9):
             raise ValueError(f"stiffness free_length must be in (0, {cue.length:.4g}] m, that of the wood; got {free}")
         system = assemble(cue, STATIC, (Support(min(free, cue.length), np.inf, np.inf),))
-        force = system.forces_at(0.0)[:, 0]
-        return float(1 / (force @ inverse(system.K)(force)))
+        return system.static_stiffness(0.0)
 
     def squirt(self, offset: float, speed: float | None = None, lump: tuple[float, float] | None = None) -> float:
         """Squirt of the coupled strike, rad; lump: mass, kg, and its place, m from the end of the tip."""

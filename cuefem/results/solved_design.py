@@ -12,7 +12,6 @@ import numpy as np
 
 from cuefem.beam.modes import modes
 from cuefem.beam.system import assemble
-from cuefem.beam.tail import inverse
 from cuefem.beam.tip import TipModes
 from cuefem.contact.outcome import grip_of
 from cuefem.contact.strike import strike_modes
@@ -205,8 +204,7 @@ def static_tip_stiffness(scene: Scene, at: Resolution | int) -> float:
     at: a resolution, or how many modes the mesh must hold. Without effects `CueBatch.tip_stiffness` is exact.
     """
     system = assemble(scene.shaft, at, (*scene.cue_effects, Support(scene.shaft.length, np.inf, np.inf)))
-    force = system.forces_at(0.0)[:, 0]
-    return float(1 / (force @ inverse(system.K)(force)))
+    return system.static_stiffness(0.0)
 
 
 def asked() -> dict[str, Result]:

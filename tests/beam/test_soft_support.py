@@ -1,10 +1,13 @@
-"""Verification: a support that is next to nothing is no support, down to the last digits."""
+"""Verification: a support that is next to nothing is no support."""
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from cuefem import Cue, LeatherTip, PointMass, Scene, Segment, Stroke, Support, end_mass, strike
+from cuefem.effects import Effect
+from tests.helpers.orders import assert_order
 from tests.helpers.strike_scenes import maple
 
 CUE = Cue((Segment(0.02, 0.01275, 0.01275, maple(8e9)), Segment(0.7, 0.01275, 0.0215, maple())), body_mass=0.42)
@@ -16,9 +19,14 @@ def scene(cue: Cue, *effects) -> Scene:
 
 
 @pytest.mark.parametrize("cue", [CUE, UNEVEN], ids=["even", "stiff ferrule"])
-@pytest.mark.parametrize("k", [1e-9, 1e-3])
-def test_end_mass_and_squirt_go_to_those_of_a_free_cue(cue: Cue, k: float) -> None:
-    # the same mesh, with an element's end where the support is
-    held, free = (scene(cue, effect) for effect in (Support(0.5, k), PointMass(0.5, 1e-15)))
-    assert end_mass(held) == pytest.approx(end_mass(free), rel=1e-7)
-    assert strike(held).squirt == pytest.approx(strike(free).squirt, rel=1e-6)
+def test_end_mass_and_squirt_go_to_those_of_a_free_cue(cue: Cue) -> None:
+    """In proportion to the stiffness, and never jump, though the soft mode's frequency becomes rounding."""
+
+    def answers(*effects: Effect) -> np.ndarray:
+        return np.array([end_mass(scene(cue, *effects)), strike(scene(cue, *effects)).squirt])
+
+    free = answers(PointMass(0.5, 1e-15))  # the same mesh, with an element's end where the support is
+    errors = np.array([abs(answers(Support(0.5, k)) / free - 1) for k in (1e3, 1e2, 1e-3, 1e-9)])
+    for each in errors.T:
+        assert_order(1, [1e3, 1e2], each[:2], within=0.05)
+    assert errors.max() < 1e-6
