@@ -150,7 +150,7 @@ def _numbered(nodes: Array, orders: NDArray[np.intp], splits: Sequence[float]) -
 def _by_user(cue: Cue, at: MeshOptions, places: Array) -> tuple[Array, NDArray[np.intp]]:
     """Nodes and orders of a fineness: numbers of elements are shared out over a segment's pieces by their lengths."""
     ends = np.unique(np.append(cue.nodes, places))
-    counts = np.full(len(ends) - 1, at.elements if isinstance(at.elements, int) else 0)
+    counts = np.full(len(ends) - 1, 0 if isinstance(at.elements, tuple) else at.elements)
     if isinstance(at.elements, tuple):
         segment = np.searchsorted(cue.nodes, (ends[:-1] + ends[1:]) / 2, side="right") - 1
         if len(at.elements) != len(cue.segments):
