@@ -2,11 +2,12 @@
 
 from dataclasses import replace
 from math import asin, cos, inf, sin
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from cuefem import Elevation, LumpedCue, PowerLawTip, Resolution, Scene, Stroke, Tip, strike
+from cuefem import Elevation, LumpedCue, PowerLawTip, Resolution, Scene, Stroke, Tip, load, strike
 from cuefem.contact.model import model_of
 from cuefem.contact.step_records import solve_contact
 from cuefem.contact.strike import strike_modes
@@ -127,6 +128,16 @@ def test_the_table_keeps_the_ball_up_and_lets_it_hop():
         up.append(outcome.history.velocity[2])
     assert min(up) > -1e-9
     assert sum(value > 1e-6 for value in up) > 3
+
+
+@pytest.mark.parametrize(("angle", "table", "offset"), [(0.05, 0.0, 0.6), (0.6, 1.0, 0.3)])
+def test_friction_that_parts_ball_and_tip_is_the_limit_of_strong_friction(angle, table, offset):
+    """Just before they part, what endless friction holds would take F_n away, without which it holds nothing."""
+    shaft = load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml")
+    scene = Scene(shaft, stroke=Stroke(2.0, offset), effects=(Elevation(angle, table),))
+    endless, strong = (strike(replace(scene, tip=Tip(0.8, friction, contact_time=1e-3))) for friction in (inf, 50.0))
+    assert imbalance(endless) < 1e-5
+    assert abs(endless.squirt / strong.squirt - 1) < 2e-3
 
 
 def test_a_ball_that_was_lifted_falls_back_onto_the_table() -> None:

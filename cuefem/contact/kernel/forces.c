@@ -1,7 +1,7 @@
 /* The forces of a step: the tip's law at mid-step, and friction as a return mapping. */
 #include "contact.h"
 
-enum { ROUNDS = 40, SWEEPS = 1000 };
+enum { ROUNDS = 40, SWEEPS = 1000, HALVINGS = 60 };
 static const double CLOSE = 1e-12,
                     NEAR = 1e-7; /* of the forces: where iterations end; what is still an answer */
 
@@ -123,8 +123,9 @@ static int plane_friction(Work *w, int a, int b, double bound)
 }
 
 /* Forces of a raised cue over a table, which never pulls: solved in turns, point after point, until nothing
-   changes; or the impulses of its blow, which stops the tip along the ball and the ball into the table. */
-static int settle(Work *w, int strikes)
+   changes; or the impulses of its blow, which stops the tip along the ball and the ball into the table.
+   bound: of the tip's friction; mu F_n where it is negative. */
+static int settle(Work *w, int strikes, double bound)
 {
     const Contact *c = w->c;
     double *F = w->F, half = w->t.h / 2, off = 1, size = 1;
@@ -140,7 +141,7 @@ static int settle(Work *w, int strikes)
             F[N] -= by;
             if (fabs(by) <= CLOSE * fabs(F[N])) break;
         }
-        sticks = plane_friction(w, T, P, strikes ? HUGE_VAL : c->friction * larger(F[N], 0));
+        sticks = plane_friction(w, T, P, bound < 0 ? c->friction * larger(F[N], 0) : bound);
         double u = w->u[UP] - w->W[UP][UP] * F[UP]; /* without the table */
         for (int f = 0; f < FORCES; f++) u += w->W[UP][f] * F[f];
         F[UP] = c->height > 0 && c->height + w->t.h * u > 0 ? 0 : larger(0, (w->rest[UP] - u) / w->W[UP][UP]);
@@ -153,7 +154,23 @@ static int settle(Work *w, int strikes)
     return off <= NEAR * size;
 }
 
-int raised_forces(Work *w) { return settle(w, 0); }
+/* Forces of a raised cue. Strong friction may hold so much that F_n is gone, without which it holds nothing:
+   the turns then go to and fro about the bound that is mu F_n, which lies between none and what it holds. */
+int raised_forces(Work *w)
+{
+    if (settle(w, 0, -1)) return 1;
+    int solved = settle(w, 0, HUGE_VAL);
+    double low = 0, high = hypot(w->F[T], w->F[P]);
+    for (int i = 0; i < HALVINGS && solved; i++) {
+        double bound = (low + high) / 2;
+        solved = settle(w, 0, bound);
+        if (w->c->friction * w->F[N] > bound)
+            low = bound;
+        else
+            high = bound;
+    }
+    return solved;
+}
 
 /* The blow of endless friction as ball and tip touch: it stops the tip's velocity along the ball, and the
    ball's into the table, which rubs. Whether the two stay together; where the blow alone throws them apart it
@@ -178,7 +195,7 @@ int blow(Work *w, Step *row)
     }
     if (c->forces == 2)
         F[T] = -w->v[T] / w->V[T][T];
-    else if (!settle(w, 1))
+    else if (!settle(w, 1, HUGE_VAL))
         c->status = UNSOLVED;
     double turned = 0, unused[FORCES];
     for (int f = 0; f < c->forces; f++) turned += w->V[N][f] * F[f];
