@@ -2,33 +2,17 @@
 
 from dataclasses import replace
 from math import asin, cos, inf, sin
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from cuefem import Elevation, LumpedCue, PowerLawTip, Resolution, Scene, Stroke, Tip, load, strike
+from cuefem import Elevation, LumpedCue, PowerLawTip, Resolution, Scene, Stroke, Tip, strike
 from cuefem.contact.model import model_of
 from cuefem.contact.step_records import solve_contact
-from cuefem.contact.strike import strike_modes
-from tests.helpers.orders import assert_order, falls_with_the_step
-from tests.helpers.strike_scenes import CLOSED, hand_made, imbalance, kim_scene
+from tests.helpers.orders import falls_with_the_step
+from tests.helpers.strike_scenes import CLOSED, hand_made, imbalance
 
 pytestmark = pytest.mark.kernel
-
-
-@pytest.mark.heavy
-@pytest.mark.parametrize(("table", "order"), [(0.0, 2), (0.2, 1)])
-def test_level_cue_is_approached_at_the_rate_of_the_table(table, order):
-    """Frictionless, the table does with the angle's square; its friction, in proportion to the angle."""
-    scene, angles = kim_scene(0.4), 0.04 * 2.0 ** -np.arange(5)
-    bare = strike_modes(scene, hand_made([600.0, 3000.0], [5.0, 8.0], rigid=9.0), steps=6400)
-    tip = hand_made([600.0, 3000.0], [5.0, 8.0], rigid=9.0)
-    raised = [strike_modes(replace(scene, effects=(Elevation(float(a), table),)), tip, steps=6400) for a in angles]
-    for name in ("ball_speed", "spin", "squirt")[: 3 if table == 0 else 2]:
-        errors = [abs(getattr(outcome, name) - getattr(bare, name)) for outcome in raised]
-        assert_order(order, angles, errors, within=[0.16, 0.08, 0.04, 0.02], rounding=1e-12)
-    assert abs(raised[-1].squirt / bare.squirt - 1) < 1e-3
 
 
 class Blow:
@@ -111,33 +95,6 @@ def test_table_friction_of_a_head_on_slide():
     assert abs(outcome.history.spin[0] / -follow - 1) < 1e-5  # forward roll turns about -x
     slide = impulse * along / M - follow * scene.ball.radius  # of the lowest point, at the end; in proportion before
     assert abs(outcome.energy["table loss"] / (mu * sin(angle) * impulse * slide / 2) - 1) < 1e-5
-
-
-def test_the_table_keeps_the_ball_up_and_lets_it_hop():
-    """Of random strikes on two modes some let the ball leave the table; none drives it through, and energy closes."""
-    rng, up = np.random.default_rng(12), []
-    for _ in range(20):
-        tip = hand_made(
-            sorted(10 ** rng.uniform(2.5, 4.0, 2)), list(rng.normal(size=2) * 10), rigid=rng.uniform(0.5, 10)
-        )
-        law = Tip(rng.uniform(0.5, 1), rng.choice([0.7, 2.0, inf]), contact_time=10 ** rng.uniform(-3.5, -2.5))
-        stroke = Stroke(1.0, rng.uniform(-0.9, 0.9))
-        raised = Elevation(rng.uniform(0.3, 1.5), rng.choice([0.0, 0.1, 0.5]))
-        outcome = strike_modes(Scene(LumpedCue(0.54, 0.01), tip=law, stroke=stroke, effects=(raised,)), tip)
-        assert imbalance(outcome) < 1e-5
-        up.append(outcome.history.velocity[2])
-    assert min(up) > -1e-9
-    assert sum(value > 1e-6 for value in up) > 3
-
-
-@pytest.mark.parametrize(("angle", "table", "offset"), [(0.05, 0.0, 0.6), (0.6, 1.0, 0.3)])
-def test_friction_that_parts_ball_and_tip_is_the_limit_of_strong_friction(angle, table, offset):
-    """Just before they part, what endless friction holds would take F_n away, without which it holds nothing."""
-    shaft = load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml")
-    scene = Scene(shaft, stroke=Stroke(2.0, offset), effects=(Elevation(angle, table),))
-    endless, strong = (strike(replace(scene, tip=Tip(0.8, friction, contact_time=1e-3))) for friction in (inf, 50.0))
-    assert imbalance(endless) < 1e-5
-    assert abs(endless.squirt / strong.squirt - 1) < 2e-3
 
 
 def test_a_ball_that_was_lifted_falls_back_onto_the_table() -> None:

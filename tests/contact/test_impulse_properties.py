@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from cuefem import Ball, LumpedCue, Scene, Stroke, Tip, impulse
 
-MANY = settings(max_examples=60, deadline=None)
+MANY = settings(max_examples=40, deadline=None)
 PLACES = ("initial", "ball translation", "ball rotation", "cue", "tip loss", "friction loss")
 
 
@@ -19,10 +19,10 @@ def powers(low, high):
 
 
 @st.composite
-def scenes(draw, widest=3.0, coupled=True):
+def scenes(draw):
     M, nu = draw(powers(-1, 0)), draw(st.floats(0.05, 1))
-    cue, ends = M * draw(powers(-widest, widest)), M * draw(powers(-3 * widest, widest))
-    coupling = draw(st.sampled_from([0.0, 0.3, -0.5, 0.95, -0.95])) / sqrt(cue * ends) if coupled else 0.0
+    cue, ends = M * draw(powers(-3, 3)), M * draw(powers(-9, 3))
+    coupling = draw(st.sampled_from([0.0, 0.3, -0.5, 0.95, -0.95])) / sqrt(cue * ends)
     offset = draw(st.sampled_from([0.0, 1e-12, 0.3, 0.5, 0.999999]) | st.floats(0, 0.99).map(lambda x: round(x, 9)))
     friction = draw(st.sampled_from([0.0, inf, 0.7]) | st.floats(0, 3))
     restitution = draw(st.sampled_from([0.0, 1.0]) | st.floats(0, 1))
@@ -38,15 +38,14 @@ def everything(out):
 
 
 @MANY
-@given(scenes(), powers(-5, 5))
-@example(Scene(LumpedCue(0.5, 0.2, -2.9), Ball(1.0, 0.03), Tip(0.5, inf), Stroke(1.0, 0.995)), 1.0)
-def test_what_every_stroke_keeps(scene, factor):
+@given(scenes())
+@example(Scene(LumpedCue(0.5, 0.2, -2.9), Ball(1.0, 0.03), Tip(0.5, inf), Stroke(1.0, 0.995)))
+def test_what_every_stroke_keeps(scene):
     out = impulse(scene)
     finite(out)
     energy_closes(scene, out)
     momentum_is_kept(scene, out)
     mirrors(out, impulse(replace(scene, stroke=replace(scene.stroke, offset=-scene.stroke.offset))))
-    scales(scene, out, factor)
 
 
 def finite(out):
@@ -72,22 +71,6 @@ def energy_closes(scene, out):
         assert abs(out.energy["tip loss"]) < 1e-15 * initial
     if scene.tip.friction == 0 or scene.stroke.offset == 0:
         assert abs(out.energy["friction loss"]) < 1e-15 * initial
-
-
-def scales(scene, one, factor):
-    """Impulses with the speed, energies with its square."""
-    other = impulse(replace(scene, stroke=replace(scene.stroke, speed=scene.stroke.speed * factor)))
-    assert (one.regime, one.jam) == (other.regime, other.jam)
-    for name, value in everything(one).items():
-        power = 0 if name == "squirt" else 2 if name in PLACES else 1
-        scale = one.energy["initial"] if name in PLACES else np.max(np.abs(value))
-        scale = scene.stroke.speed if name == "cue_speed" else scale
-        if name == "squirt" and scene.cue.coupling:  # a coupled cue may squirt by next to nothing, a difference
-            scale = max(scale, abs(scene.stroke.offset))
-        least = 1e-13 * scale + np.finfo(float).tiny  # smaller numbers have not all their digits
-        some = np.isfinite(value)
-        got = np.asarray(everything(other)[name])[some] / factor**power
-        np.testing.assert_allclose(got, np.asarray(value)[some], rtol=1e-11, atol=least, err_msg=name)
 
 
 def mirrors(right, left):

@@ -31,7 +31,6 @@ import pytest
 
 import cuefem as cf
 from tests.oracle.small_steps import Seen, struck
-from tests.oracle.spectral_beam import bending
 
 
 class Draw:
@@ -188,27 +187,3 @@ def test_strikes_of_each_kind(kind: str, seeds: Iterable[int], steps: int) -> No
     worst = {name: max(each[name] for each in off) for name in off[0]}
     print(kind, len(off), {name: f"{value:.1e}" for name, value in worst.items()})
     assert max(worst.values()) < KINDS[kind].within, worst
-
-
-@pytest.mark.parametrize("kind", ["Support", "Joint", "StructuralDamping"])
-def test_the_beam_rings_like_ours(kind: str) -> None:
-    """Two discretisations of one beam: frequencies of the lowest modes, and how their tips move."""
-    scene = KINDS[kind].make(Draw(1))
-    assert isinstance(scene.cue, cf.Cue)
-    ours = cf.modes(scene.cue, MODES, effects=scene.cue_effects, at=AT)
-    theirs = bending(scene.cue, scene.cue_effects, MODES + 2)
-    moving = theirs.omega > 0
-    count = min(MODES, int(moving.sum()))
-    assert np.abs(theirs.omega[moving][:count] / (2 * math.pi * ours.frequencies[:count]) - 1).max() < 1e-5
-    across = np.abs([ours.shape(0.0)[0]]).ravel()[:count]
-    assert np.abs(np.abs(theirs.across[moving][:count]) / across - 1).max() < 1e-4
-
-
-def test_small_steps_come_nearer_with_their_square() -> None:
-    """A lossless tip that slides throughout: what is left in the vibrations. Where in its step the contact ends is
-    chance, so that the error falls between two parabolas."""
-    tip = cf.Tip(1.0, 0.1, contact_time=1e-3)
-    scene = cf.Scene(Draw(0).cue(), cf.Ball(), tip, cf.Stroke(1.0, 0.5), (cf.TipDome(9e-3), cf.Joint(0.1, 1e-3)))
-    assert cf.strike(scene, AT).regime == "miscue"
-    for steps in (250, 500, 1000, 2000):
-        assert 0.05 < compared(scene, steps)["vibration"] * steps**2 < 1.0

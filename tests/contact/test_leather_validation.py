@@ -20,11 +20,6 @@ MAPLE = reference_cue("pool_maple")
 MAPLE = replace(MAPLE, segments=MAPLE.segments[1:])
 
 
-def degrees(*effects, offset: float = 0.375, cue: Cue = MAPLE, **more) -> float:
-    """Squirt at the default resolution."""
-    return float(np.degrees(strike(leather_scene(offset, *effects, cue=cue, **more)).squirt))
-
-
 @pytest.mark.parametrize(("speed", "time"), [(1.0, 1.35), (2.0, 1.14), (5.0, 0.89)])
 def test_contact_times_of_a_rigid_cue_of_567_g(speed: float, time: float) -> None:
     steel = Material(200e12, 80e12, 1000.0)

@@ -59,15 +59,3 @@ def test_the_relative_velocity_is_that_of_the_history(name: str, offset: float) 
     found = motion(scene, [0.0, until], AT)
     np.testing.assert_allclose(slid(found, scene)[1], expected, rtol=0, atol=1e-5 * SCENE.stroke.speed * until)
     assert found.duration == outcome.phases[-1].end
-
-
-def test_a_stroke_on_the_other_side_is_its_mirror_image() -> None:
-    other = replace(SCENE, stroke=replace(SCENE.stroke, offset=-0.3))
-    times = np.linspace(0, 3e-3, 7)
-    found, mirrored = motion(SCENE, times, AT), motion(other, times, AT)
-    for one, two in zip(found.deflection([0.0, 0.3]), mirrored.deflection([0.0, 0.3]), strict=True):
-        np.testing.assert_array_equal(one, -two)
-    np.testing.assert_array_equal(found.centre * [1, -1], mirrored.centre)
-    np.testing.assert_array_equal(found.force * [1, -1], mirrored.force)
-    np.testing.assert_array_equal(found.along, mirrored.along)
-    np.testing.assert_array_equal(found.turned, -mirrored.turned)

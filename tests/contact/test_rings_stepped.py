@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cuefem import LeatherTip, Resolution, Scene, Tip, batch_strike, strike
+from cuefem import LeatherTip, Scene, Tip, strike
 from tests.oracle.ring_stepper import LEATHER, stepped, struck_scene
 
 WITHIN = 5e-3
@@ -58,16 +58,6 @@ def jumps(offsets: np.ndarray, squirts: np.ndarray) -> list[float]:
     change = np.abs(np.diff(squirts))
     beside = np.maximum(np.r_[change[1:], 0.0], np.r_[0.0, change[:-1]])
     return offsets[:-1][change > BEND * beside + 1e-4 * np.abs(squirts[:-1])].tolist()
-
-
-@pytest.mark.heavy
-@pytest.mark.parametrize("friction", [0.2, 0.3, 0.5, 0.7])
-@pytest.mark.parametrize("speed", [0.8, 2.0, 7.0])
-def test_squirt_has_no_jump_over_the_offset(friction: float, speed: float) -> None:
-    """Steps of 1e-3: none changes squirt by more than one and a half times what both its neighbours do."""
-    offsets, at = np.arange(0.1, 0.7, 1e-3), Resolution(2, 12, 12)
-    scenes = [struck_scene(float(b), speed, LEATHER, tip=Tip(0.73, friction)) for b in offsets]
-    assert jumps(offsets, batch_strike(scenes, at).squirt) == []
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cuefem import Outcome, Scene, SecondHit, strike
+from cuefem import Outcome, SecondHit, strike
 from cuefem.contact.outcome import hits
 from tests.contact.test_independent_effects import AT, Draw, hit_again
 
@@ -22,22 +22,6 @@ def parted(outcome: Outcome) -> float:
     return next((float(phase.start) for phase in outcome.phases if phase.press == "free"), outcome.duration)
 
 
-def opens_and_closes(scene: Scene, outcome: Outcome) -> None:
-    """The gap is the integral of the velocity at which ball and tip part, and no force acts until it has closed."""
-    history = outcome.history
-    step = float(scene.contact_time) / 400
-    for phase in outcome.phases:
-        if phase.press != "free" or phase.end == outcome.duration:
-            continue
-        here = (history.ends >= phase.start) & (history.ends <= phase.end)
-        times, speed = history.ends[here], history.velocities[here, 1]
-        gap = np.cumsum(np.diff(times) * (speed[1:] + speed[:-1]) / 2)
-        middles = history.middles
-        assert not history.forces[(middles > phase.start) & (middles < phase.end), 1].any()
-        assert gap[:-1].min() > 0
-        assert abs(gap[-1]) <= 1.01 * step * abs(speed).max()  # the tip touches within the flight's last step
-
-
 @pytest.mark.parametrize("seed", [1, 6, 20, 24])
 def test_the_window_counts_from_the_first_separation(seed: int) -> None:
     scene = hit_again(Draw(seed))
@@ -49,7 +33,6 @@ def test_the_window_counts_from_the_first_separation(seed: int) -> None:
     assert (touches[0].end, touches[-1].end) == (first, outcome.duration)
     pushed = np.sum([hit.impulse for hit in touches], axis=0)
     assert pushed == pytest.approx(outcome.impulse, rel=1e-12)
-    opens_and_closes(scene, outcome)
     wait = again - first
     assert wait > 0
     just, missed = (

@@ -17,17 +17,14 @@ import cuefem as cf
 from cuefem.beam.tip import TipModes, lumped_tip_modes
 from cuefem.contact.model import model_of
 from cuefem.contact.strike import strike_modes
-from cuefem.contact.tip_identification import IdentifiedTip, with_tip
 from cuefem.tip_modes import tip_modes_of
 from tests.data.stored import scene_of, stored_law, strikes, tip_of
 from tests.helpers.cues import scaled
 from tests.helpers.strike_scenes import KIM, hand_made, imbalance, numbers
 
 MESHES = sorted((Path(__file__).parents[2] / "meshes").glob("*.toml"))
-ORDER, WITHIN = (
-    2.0,
-    0.4,
-)  # where in its step an event falls is chance: the root mean square of many errors has the order
+# Where in its step an event falls is chance: the root mean square of many errors has the order.
+ORDER, WITHIN = 2.0, 0.4
 
 
 def random_lumped(rng: np.random.Generator) -> cf.Scene:
@@ -72,8 +69,9 @@ def test_squirt_comes_nearer_with_the_step(kind: str) -> None:
         found = []
         for row in rows:
             with stored_law(row):
-                squirt = strike_modes(scene_of(row), tip_of(row), steps=steps).squirt
-            found.append((squirt - row["answer"]["squirt"]) / abs(row["scene"]["stroke"][1]))
+                outcome = strike_modes(scene_of(row), tip_of(row), steps=steps)
+            found.append((outcome.squirt - row["answer"]["squirt"]) / abs(row["scene"]["stroke"][1]))
+            assert steps == 100 or imbalance(outcome) < 1e-6
         errors[steps] = float(np.median(np.abs(found)))
     order = math.log(errors[100] / errors[800]) / math.log(8)
     assert order == pytest.approx(ORDER, abs=WITHIN)
@@ -110,32 +108,21 @@ def default_scene(kind: str) -> tuple[cf.Scene, TipModes]:
     return scene, tip_modes_of(scene)
 
 
-def stiffer(scene: cf.Scene, factor: float) -> cf.Scene:
-    """The scene with a tip that many times as stiff."""
-    if scene.tip.contact_time is not None:
-        return replace(scene, tip=replace(scene.tip, contact_time=scene.tip.contact_time / math.sqrt(factor)))
-    return with_tip(scene, IdentifiedTip(factor * scene.leather.E, float(scene.tip.restitution)))
+def squirts_over(kind: str, offsets: np.ndarray, **more: int) -> np.ndarray:
+    scene, tip = default_scene(kind)
+    strokes = (replace(scene.stroke, offset=float(b)) for b in offsets)
+    return np.array([strike_modes(replace(scene, stroke=stroke), tip, **more).squirt for stroke in strokes])
 
 
-OVER = {
-    "offset": (np.linspace(0.1, 0.5, 2001), lambda s, x: replace(s, stroke=replace(s.stroke, offset=x))),
-    "speed": (np.linspace(1.0, 3.0, 2001), lambda s, x: replace(s, stroke=replace(s.stroke, speed=x))),
-    "friction": (np.linspace(0.5, 1.0, 2001), lambda s, x: replace(s, tip=replace(s.tip, friction=x))),
-    "stiffness": (np.linspace(0.7, 1.3, 2001), stiffer),
-}
-
-
-@pytest.mark.parametrize("over", [pytest.param(name, marks=pytest.mark.heavy) for name in OVER])
+@pytest.mark.heavy
 @pytest.mark.parametrize("kind", ["usual", "bare"])
-def test_squirt_has_no_step(kind: str, over: str) -> None:
+def test_squirt_has_no_step(kind: str) -> None:
     """Neighbouring squirts differ by what the curve's slope makes of it, and by no more than 1e-5 of squirt.
 
     The rings of a default strike take 600 steps for that (400 leave 1.007e-5), a bare tip, whose grip changes at once,
     1600.
     """
-    (values, make), (scene, tip) = OVER[over], default_scene(kind)
-    steps = 600 if kind == "usual" else 1600
-    squirts = np.array([strike_modes(make(scene, float(x)), tip, steps=steps).squirt for x in values])
+    squirts = squirts_over(kind, np.linspace(0.1, 0.5, 2001), steps=600 if kind == "usual" else 1600)
     steps_up = np.diff(squirts)
     slope = np.median(np.lib.stride_tricks.sliding_window_view(np.pad(steps_up, 10, mode="reflect"), 21), axis=1)
     assert np.abs((steps_up - slope) / squirts[1:]).max() < 1e-5
@@ -143,27 +130,10 @@ def test_squirt_has_no_step(kind: str, over: str) -> None:
 
 @pytest.mark.parametrize(("kind", "most"), [("usual", 1e-5), ("bare", 2e-4)])
 def test_squirt_over_a_few_offsets_is_smooth(kind: str, most: float) -> None:
-    scene, tip = default_scene(kind)
     x = np.linspace(0.30, 0.32, 41)
-    squirts = np.array([strike_modes(OVER["offset"][1](scene, float(each)), tip).squirt for each in x])
+    squirts = squirts_over(kind, x)
     smooth = np.polyval(np.polyfit(x - 0.31, squirts, 4), x - 0.31)
     assert np.abs(squirts / smooth - 1).max() < most
-
-
-def loud() -> Iterator[tuple[cf.Scene, TipModes]]:
-    """Cues made by hand whose few modes are loud, of any frequency, and coupled along and across."""
-    rng = np.random.default_rng(1)
-    for i in range(300):
-        count = int(rng.integers(1, 12))
-        omega, across = np.sort(10 ** rng.uniform(2, 5.3, count)), rng.uniform(-20, 20, count)
-        tip = hand_made(list(omega), list(across), mass=10 ** rng.uniform(-1.5, 1), rigid=rng.uniform(0.1, 20))
-        if i % 2:
-            tip.amplitude[2:, 0] = rng.uniform(-5, 5, count)
-        law = cf.Tip(
-            float(rng.choice([0.05, 0.3, 1])), float(rng.choice([0, 1e-6, 0.1, 0.5, 2])), 10 ** rng.uniform(-3.7, -2)
-        )
-        stroke = cf.Stroke(1.0, float(rng.choice([1e-9, 0.1, 0.5, 0.9, 0.999])))
-        yield cf.Scene(cf.LumpedCue(float(tip.approach @ tip.approach), 0.01), tip=law, stroke=stroke), tip
 
 
 def again() -> Iterator[tuple[cf.Scene, TipModes]]:
@@ -191,21 +161,7 @@ def light() -> Iterator[tuple[cf.Scene, TipModes]]:
             yield replace(scene, effects=effects), lumped_tip_modes(cue)
 
 
-def extreme() -> Iterator[tuple[cf.Scene, TipModes]]:
-    """Every reference cue, contacts of 0.05 and 50 ms, friction 0 and much; one cue with 400 modes."""
-    for i, path in enumerate(MESHES):
-        loaded = cf.load(path)
-        cue = loaded.cue if isinstance(loaded, cf.Scene) else loaded
-        scene = cf.Scene(cue, tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(1.0, 0.3), effects=(cf.TipDome(0.0095),))
-        tip = tip_modes_of(scene, cf.Resolution(6, 26, 400) if i == 3 else cf.Resolution(4, 10, 24))
-        for e, mu, offset, time in product((0.05, 1.0), (0.0, 0.3, 5.0), (0.1, -0.4, 0.9), (5e-5, 1e-3, 5e-2)):
-            law, stroke = cf.Tip(e, mu, contact_time=time), cf.Stroke(1.0, offset)
-            yield replace(scene, tip=law, stroke=stroke), tip
-
-
-@pytest.mark.parametrize(
-    "scenes", [light, *(pytest.param(scenes, marks=pytest.mark.heavy) for scenes in (loud, again, extreme))]
-)
+@pytest.mark.parametrize("scenes", [light, pytest.param(again, marks=pytest.mark.heavy)])
 def test_hard_strikes_end_with_an_energy_that_closes(scenes) -> None:
     for scene, tip in scenes():
         outcome = strike_modes(scene, tip)
@@ -215,17 +171,6 @@ def test_hard_strikes_end_with_an_energy_that_closes(scenes) -> None:
             assert imbalance(strike_modes(scene, tip, steps=6400)) < imbalance(outcome) / 10
         assert min(outcome.energy.values()) > -1e-9 * outcome.energy["initial"]
         assert outcome.impulse[1] > 0
-
-
-@pytest.mark.parametrize("time", [5e-5, 1e-3, 5e-2])
-@pytest.mark.parametrize("offset", [1e-5, 0.3, 0.9])
-def test_endless_friction_ends_too(offset: float, time: float) -> None:
-    """Its blow starts fronts that no step resolves: the account of energy closes as the step falls."""
-    scene = cf.Scene(KIM, tip=cf.Tip(0.5, math.inf, contact_time=time), stroke=cf.Stroke(1.0, offset))
-    outcomes = [cf.strike(scene, cf.Resolution(4, 12, 12, steps)) for steps in (400, 1600)]
-    assert imbalance(outcomes[0]) < 1e-3
-    assert imbalance(outcomes[1]) < max(imbalance(outcomes[0]) / 4, 1e-9)
-    assert outcomes[1].phases[0].grip == "blow"
 
 
 @pytest.mark.parametrize(("e", "regime"), [(0.3, "miscue"), (0.9, "late stick")])
@@ -238,9 +183,3 @@ def test_a_blow_may_throw_the_two_apart(e: float, regime: str) -> None:
     assert (outcome.regime, exact.regime, outcome.duration) == (regime, regime, 0)
     for name in ("squirt", "ball_speed", "spin", "cue_speed"):
         assert getattr(outcome, name) == pytest.approx(getattr(exact, name), rel=1e-12)
-
-
-@pytest.mark.parametrize("steps", [19, 1_000_001])
-def test_steps_out_of_bounds_are_refused(steps: int) -> None:
-    with pytest.raises(ValueError, match=rf"Resolution.steps must be a whole number in \[20, 1000000\]; got {steps}"):
-        cf.Resolution(1, 1, 1, steps)

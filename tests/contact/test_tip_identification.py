@@ -54,14 +54,6 @@ def test_a_leather_has_the_contact_time_and_rebound_that_are_measured(name: str)
     )
 
 
-@pytest.mark.parametrize(("contact_time", "rebound"), [(0.9e-3, 0.81), (0.9e-3, 0.87)])
-def test_a_tip_of_phenolic_is_stiffer_than_leather(contact_time: float, rebound: float) -> None:
-    scene = whole_cue()
-    hard = replace(scene.leather, nu=0.35, rho=1340.0, dome_radius=12.7e-3)
-    found = cf.identify_tip(replace(scene, effects=(hard, *scene.effects[1:])), contact_time, rebound)
-    assert found.E > 1.5 * LEATHERS["hard"].E
-
-
 def test_a_drawn_butt_rebounds_as_whole_cues_do() -> None:
     """At 2 m/s, within what playing cues have (0.71 to 0.75, TP A.30) and 0.015: nothing is fitted to these cues."""
     for game, name in (("pool", "pool_maple"), ("pool", "pool_hollow"), ("pool", "carbon"), ("carom", "kim")):

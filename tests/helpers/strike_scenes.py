@@ -163,24 +163,3 @@ def lumped_scenes(draw: st.DrawFn) -> Scene:
     tip = Tip(draw(RESTITUTION), draw(FRICTION), contact_time=draw(logarithmic(1e-4, 2e-2)))
     stroke = Stroke(draw(logarithmic(0.01, 10.0)), draw(SIGN) * draw(OFFSET))
     return Scene(LumpedCue(mass, end_mass, coupling), draw(BALL), tip, stroke)
-
-
-@st.composite
-def shafts(draw: st.DrawFn) -> Cue:
-    """A cue of one to four conical pieces, some bored, of wood, plastic, carbon or leather."""
-    materials = [maple(), maple(16e9, 750.0), Material(3e9, 1.1e9, 1200.0), Material(70e9, 5e9, 1600.0)]
-    pieces = []
-    for i in range(draw(st.integers(1, 4))):
-        first, last = draw(st.floats(0.008, 0.03)), draw(st.floats(0.008, 0.03))
-        bore = draw(st.sampled_from([0.0, 0.0, 0.5])) * min(first, last)
-        length = draw(st.floats(0.003, 0.5)) if i else draw(st.floats(0.3, 0.7))
-        pieces.append(Segment(length, first, last, draw(st.sampled_from(materials)), bore, bore))
-    return Cue(tuple(pieces), body_mass=draw(st.floats(0.0, 1.0)))
-
-
-@st.composite
-def shaft_scenes(draw: st.DrawFn) -> tuple[Scene, Resolution]:
-    """Any finite-element cue, tip, ball and stroke; how finely."""
-    tip = Tip(draw(RESTITUTION), draw(FRICTION), contact_time=draw(logarithmic(3e-4, 5e-3)))
-    stroke = Stroke(1.0, draw(SIGN) * draw(OFFSET))
-    return Scene(draw(shafts()), draw(BALL), tip, stroke), Resolution(4, 8, draw(st.integers(1, 25)))
