@@ -44,7 +44,6 @@ def test_what_every_stroke_keeps(scene):
     out = impulse(scene)
     finite(out)
     energy_closes(scene, out)
-    momentum_is_kept(scene, out)
     mirrors(out, impulse(replace(scene, stroke=replace(scene.stroke, offset=-scene.stroke.offset))))
 
 
@@ -79,19 +78,6 @@ def mirrors(right, left):
     assert tuple(left.impulse) == (-right.impulse[0], right.impulse[1])
     assert (left.phases, left.energy) == (right.phases, right.energy)
     assert (left.regime, left.jam) == (right.regime, right.jam)
-
-
-def momentum_is_kept(scene, out):
-    M, ball = scene.ball.mass, scene.ball
-    np.testing.assert_allclose(out.impulse, M * out.ball_velocity, rtol=1e-14)
-    assert out.ball_speed == pytest.approx(np.hypot(*out.ball_velocity), rel=1e-14)
-    assert out.spin == pytest.approx(out.impulse[0] / (ball.inertia * M * ball.radius), rel=1e-14, abs=0)
-    phi = np.arcsin(scene.stroke.offset)
-    assert out.squirt == pytest.approx(phi - np.arctan2(*out.ball_velocity), abs=1e-13)
-    if scene.cue.coupling == 0:
-        along = np.sin(phi) * out.impulse[0] + np.cos(phi) * out.impulse[1]
-        lost = scene.cue.mass * (scene.stroke.speed - out.cue_speed)
-        assert lost == pytest.approx(along, rel=1e-12, abs=1e-14 * scene.cue.mass * scene.stroke.speed)
 
 
 def many_scenes(rng, shape):

@@ -37,6 +37,9 @@ def close(out: Outcome, told, scene: Scene, tolerance: float) -> None:
     p = np.hypot(*out.impulse)
     assert abs(float(told.p_t) - out.impulse[0]) < tolerance * p
     assert abs(float(told.p_n) - out.impulse[1]) < tolerance * p
+    np.testing.assert_allclose(out.impulse, scene.ball.mass * out.ball_velocity, rtol=1e-14)
+    moment = scene.ball.inertia * scene.ball.mass * scene.ball.radius
+    assert abs(out.spin * moment - out.impulse[0]) < 1e-14 * p
     assert abs(float(told.cue_speed) - out.cue_speed) < tolerance * U
     assert abs(float(told.tip_loss) - out.energy["tip loss"]) < tolerance * initial
     assert abs(float(told.friction_loss) - out.energy["friction loss"]) < tolerance * initial

@@ -30,6 +30,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.contact.outcome import hits
 from tests.oracle.small_steps import Seen, struck
 
 
@@ -187,3 +188,36 @@ def test_strikes_of_each_kind(kind: str, seeds: Iterable[int], steps: int) -> No
     worst = {name: max(each[name] for each in off) for name in off[0]}
     print(kind, len(off), {name: f"{value:.1e}" for name, value in worst.items()})
     assert max(worst.values()) < KINDS[kind].within, worst
+
+
+def starts(outcome: cf.Outcome) -> list[float]:
+    """When each contact after the first began, s."""
+    return [phase.end for phase in outcome.phases if phase.press == "free" and phase.end < outcome.duration]
+
+
+def parted(outcome: cf.Outcome) -> float:
+    """The first separation, s."""
+    return next((float(phase.start) for phase in outcome.phases if phase.press == "free"), outcome.duration)
+
+
+@pytest.mark.parametrize("seed", [1, 6, 20, 24])
+def test_the_window_counts_from_the_first_separation(seed: int) -> None:
+    scene = hit_again(Draw(seed))
+    others = tuple(effect for effect in scene.effects if not isinstance(effect, cf.SecondHit))
+    outcome = cf.strike(scene, AT)
+    again, first = starts(outcome)[0], parted(outcome)
+    touches = hits(outcome)
+    assert [hit.start for hit in touches] == [0.0, *starts(outcome)]
+    assert (touches[0].end, touches[-1].end) == (first, outcome.duration)
+    pushed = np.sum([hit.impulse for hit in touches], axis=0)
+    assert pushed == pytest.approx(outcome.impulse, rel=1e-12)
+    wait = again - first
+    assert wait > 0
+    just, missed = (
+        cf.strike(replace(scene, effects=(*others, cf.SecondHit(window))), AT) for window in (1.2 * wait, 0.8 * wait)
+    )
+    alone = cf.strike(replace(scene, effects=others), AT)
+    assert starts(just)[0] == again
+    assert not starts(missed)
+    assert missed.squirt == alone.squirt
+    assert parted(missed) == alone.duration

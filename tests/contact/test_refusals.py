@@ -41,17 +41,17 @@ def struck(scene: cf.Scene, at: cf.Resolution | None = None, **changes: Any) -> 
     return lambda: cf.strike(replace(scene, **changes), at)
 
 
-CALLS: list[tuple[Callable[[], object], str]] = [
+def heavy(ask: Callable[[], object], message: str) -> Any:
+    return pytest.param(ask, message, marks=pytest.mark.heavy)
+
+
+CALLS: list[Any] = [
     (lambda: cf.LumpedCue(0.25, 0.25, 4.0), "LumpedCue.coupling must be in (-4.0, 4.0) 1/kg; got 4.0"),
     (
         lambda: cf.LumpedCue(np.array([0.25, 1.0]), 0.25, np.array([2.0, -2.5])),
         "LumpedCue.coupling must be in (-2.0, 2.0) 1/kg; got -2.5 at index 1",
     ),
-    (
-        lambda: cf.impulse(THREE_SHAPES),
-        "array fields of a scene must broadcast together; got shapes LumpedCue.end_mass (3,), Tip.friction (2, 1), "
-        "Stroke.offset (4,)",
-    ),
+    (lambda: cf.impulse(THREE_SHAPES), "got shapes LumpedCue.end_mass (3,), Tip.friction (2, 1), Stroke.offset (4,)"),
     (lambda: cf.impulse(cf.Scene(KIM, cf.Ball(mass=TWO / 10))), "must be one number; got an array of shape (2,)"),
     (lambda: cf.Scene("cue"), "TypeError: Scene.cue must be a Cue or LumpedCue; got 'cue'"),
     (lambda: cf.Scene(cf.LumpedCue(0.5, 0.003), tip=0.7), "TypeError: Scene.tip must be a Tip"),
@@ -61,18 +61,14 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     ),
     # strikes
     (struck(kim_scene(), stroke=cf.Stroke(offset=TWO / 10)), "Stroke.offset must be one number"),
-    (struck(kim_scene(), ball=cf.Ball(mass=TWO / 10)), "Ball.mass must be one number"),
-    (struck(cf.Scene(cf.LumpedCue(TWO / 4, 0.003))), "LumpedCue.mass"),
     (struck(cf.Scene(cf.LumpedCue(0.5, TWO / 300))), "LumpedCue.end_mass"),
     (struck(leather_scene(speed=TWO)), "Stroke.speed must be one number; got an array of shape (2,); impulse alone"),
     (struck(leather_scene(e=0.05)), "LeatherTip; got 0.05: leather that gives back less rings on"),
     (struck(leather_scene(speed=60.0)), "mm): give LeatherTip a larger height or E, or Stroke a lower speed"),
-    *[
-        (struck(kim_scene(restitution=e), effects=effects), f"{DEAD}{e:g} (cuefem.impulse takes any)")
-        for e, effects in ((0.049, ()), (0.0, ()), (0.04, (cf.SecondHit(),)), (0.0, (cf.Elevation(0.1),)))
-    ],
+    (struck(kim_scene(restitution=0.049), effects=(cf.Elevation(0.1),)), f"{DEAD}0.049 (cuefem.impulse takes any)"),
     (struck(kim_scene(friction=inf), effects=(cf.SecondHit(),)), "Tip.friction must be finite beside SecondHit"),
     (lambda: cf.Resolution(4, 8, 0), "Resolution.modes"),
+    (lambda: cf.Resolution(1, 1, 1, 19), "Resolution.steps must be a whole number in [20, 1000000]; got 19"),
     (struck(kim_scene(), cf.Resolution(2, 3, 500)), "more elements or order"),
     (lambda: cf.strike(kim_scene(), cf.Resolution(2, 8, 4)).history(-1e-9), "History takes times in [0, "),
     # many strikes
@@ -80,7 +76,6 @@ CALLS: list[tuple[Callable[[], object], str]] = [
         lambda: cf.batch_strike(kim_scene()),
         "TypeError: batch_strike scenes must be a sequence of Scene; got one Scene: ",
     ),
-    (lambda: cf.batch_strike(3), "TypeError: batch_strike scenes must be a sequence of Scene; got 3"),
     (lambda: cf.batch_strike([kim_scene(), 3]), "TypeError: batch_strike scenes must be a Scene"),
     (lambda: cf.batch_strike([]), "batch_strike takes one scene or more; got none"),
     (lambda: cf.batch_strike([kim_scene()], threads=0), "batch_strike threads must be"),
@@ -96,9 +91,9 @@ CALLS: list[tuple[Callable[[], object], str]] = [
         lambda: cf.identify_tip(replace(leather_scene(), effects=(cf.TipDome(0.01),)), 1e-3, 0.73),
         "Scene.effects must hold a LeatherTip; got none",
     ),
-    (lambda: cf.identify_tip(leather_scene(), 9e-3, 0.73), "pressed in further than its law is known"),
-    (identified(0.5e-3, 0.73), "identify_tip contact_time must be at least 0.0006"),
-    (identified(1.1e-3, 0.999), "identify_tip rebound must be at most 0.9"),
+    heavy(lambda: cf.identify_tip(leather_scene(), 9e-3, 0.73), "pressed in further than its law is known"),
+    heavy(identified(0.5e-3, 0.73), "identify_tip contact_time must be at least 0.0006"),
+    heavy(identified(1.1e-3, 0.999), "identify_tip rebound must be at most 0.9"),
     # the table's frame
     (placed((R, 1.5 * R)), "R = 0.0286 m; got (0.0286, 0.0429"),
     (placed((nan, R)), "point must be in (-inf, inf) m; got nan at index 0"),

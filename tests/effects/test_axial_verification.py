@@ -9,8 +9,6 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.beam.modes import Modes, solve
-from cuefem.beam.system import assemble
 from cuefem.cue.materials import MATERIALS
 from cuefem.effects.axial import rod_modes
 
@@ -116,9 +114,3 @@ def test_with_its_tail_the_rod_gives_way_as_much_as_all_of_its_modes(below):
     plain = rod_modes(cue, (), below=below)
     assert plain.radiation is None
     assert np.sum(plain.along**2 / (plain.omega**2 + s)) < 0.95 * exact
-
-
-@cache
-def many(name: str) -> Modes:
-    """250 modes of a reference cue."""
-    return solve(assemble(drawn(name), 250), 250)

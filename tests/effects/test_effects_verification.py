@@ -14,17 +14,11 @@ from cuefem.effects import Effect
 from cuefem.effects.axial import rod_modes
 from cuefem.tip_modes import tip_modes_of
 from tests.helpers.cues import MAPLE, isotropic_kim, kim
-from tests.helpers.orders import assert_order, falls_with_the_step
-from tests.helpers.strike_scenes import KIM, KIM_AT, kim_scene
+from tests.helpers.orders import falls_with_the_step
+from tests.helpers.strike_scenes import KIM, kim_scene
 
 HERE = 0.213  # m, between the nodes of every mesh used here
 
-
-def squirt(*effects: Effect, offset: float = 0.3) -> float:
-    return cf.strike(replace(kim_scene(offset), effects=effects), KIM_AT).squirt
-
-
-# --- limits in which an effect vanishes -------------------------------------------------------------------------------
 
 NODE = cf.PointMass(HERE, 0.0)  # a node alone: the mesh's error is the same with and without the effect
 
@@ -34,16 +28,11 @@ NODE = cf.PointMass(HERE, 0.0)  # a node alone: the mesh's error is the same wit
 CLAMPED = [30.0962060889, 135.9070113953]  # Hz, Kim's isotropic cone clamped at the butt
 
 
-@pytest.mark.parametrize("stiffness", [inf, 1e12])
-def test_a_clamp_at_the_butt(stiffness):
-    """By default to the promise; elements of order 2 converge with the fourth power of their size."""
-    clamp, numbers = (cf.Support(0.7, stiffness, stiffness),), np.array([8, 16, 32])
-    found = cf.modes(isotropic_kim(), 2, effects=clamp)
-    np.testing.assert_allclose(found.frequencies, CLAMPED, rtol=1e-6)
+@pytest.mark.parametrize(("stiffness", "within"), [(inf, 1e-7), (1e12, 1e-7)])
+def test_a_clamp_at_the_butt(stiffness, within):
+    found = cf.modes(isotropic_kim(), 2, effects=(cf.Support(0.7, stiffness, stiffness),))
+    np.testing.assert_allclose(found.frequencies, CLAMPED, rtol=within)
     assert found.rigid == 0
-    coarse = [cf.modes(isotropic_kim(), 2, effects=clamp, at=cf.Resolution(n, 2, 2)).frequencies for n in numbers]
-    for errors in np.array(coarse).T / np.array(CLAMPED)[:, None] - 1:
-        assert_order(4, 1 / numbers, errors, within=0.2)
 
 
 # --- point masses -----------------------------------------------------------------------------------------------------
@@ -225,6 +214,3 @@ def test_a_rigid_body_with_a_dome_is_a_lumped_cue_with_coupling(offset, restitut
     falls_with_the_step(error, most=1e-3)
     flat = cf.impulse(replace(scene, cue=replace(lumped, coupling=0.0)))
     assert abs(expected.squirt - flat.squirt) > 1e-4 or friction == 0.2
-
-
-# --- a hand -----------------------------------------------------------------------------------------------------------

@@ -96,15 +96,8 @@ def changes(chain: Chain, scene: cf.Scene) -> float:
     return exact / linear - 1
 
 
-RIGID_AXIS = [
-    pytest.param(7.0, 0.187, marks=pytest.mark.heavy),
-    pytest.param(2.0, 0.375, marks=pytest.mark.heavy),
-    pytest.param(7.0, 0.375, marks=pytest.mark.heavy),
-    pytest.param(4.0, 0.6, marks=pytest.mark.heavy),
-]
-
-
-@pytest.mark.parametrize(("speed", "offset"), RIGID_AXIS)
+@pytest.mark.heavy
+@pytest.mark.parametrize(("speed", "offset"), [(7.0, 0.187), (4.0, 0.6)])
 def test_squirt_changes_as_in_a_geometrically_exact_chain(speed: float, offset: float) -> None:
     """Of 12 to 57 % of squirt all but a thousandth: the chain's modes in the engine, and the chain by small steps."""
     chain, scene = chain_of(stiffer=16.0), struck_shaft(speed, offset)
@@ -117,11 +110,9 @@ def test_squirt_changes_as_in_a_geometrically_exact_chain(speed: float, offset: 
 def test_tones_end_masses_and_blows_from_the_side_do_not_know_it() -> None:
     scene = cf.Scene(SHAFT, stroke=cf.Stroke(4.0, 0.3))
     bends = replace(scene, effects=(THRUST,))
-    assert cf.end_mass(scene, "force") == cf.end_mass(bends, "force")
-    for tip in ((LEATHER,), (cf.TipDome(9e-3),)):
-        one, other = (replace(each, effects=(*tip, *each.effects)) for each in (scene, bends))
-        for drive in ("stick", "offset", "velocity", "force"):
-            assert cf.end_mass(one, drive) == cf.end_mass(other, drive), (tip, drive)
+    one, other = (replace(each, effects=(LEATHER, *each.effects)) for each in (scene, bends))
+    for drive in ("stick", "offset", "velocity", "force"):
+        assert cf.end_mass(one, drive) == cf.end_mass(other, drive), drive
     assert np.array_equal(cf.modes(SHAFT).frequencies, cf.modes(SHAFT, effects=(THRUST,)).frequencies)
     side = cf.SideStrike(SHAFT, cf.Striker(0.02, 0.7, contact_time=1e-3), 0.3, 1.0)
     assert cf.side_strike(side).rebound_speed == cf.side_strike(replace(side, effects=(THRUST,))).rebound_speed

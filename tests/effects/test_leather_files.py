@@ -8,11 +8,10 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.cue.materials import LEATHER_NAMES, LEATHERS
+from cuefem.cue.materials import LEATHERS
 from tests.helpers.leather_scenes import SHAFT
 from tests.helpers.refusals import refuses
 
-NAMES = ", ".join([*LEATHER_NAMES][:8]) + ", ..."
 GIVEN = {"height": '"6 mm"', "dome_radius": '"9.5 mm"', "leather": '"medium"'}
 
 
@@ -58,20 +57,13 @@ def test_a_dome_by_a_coin_a_length_or_flat(file: Path, text: str, radius: float)
     ("entries", "message"),
     [
         ({"leather": None}, "effects[0].leather: must be one of soft, medium, hard, kamui soft"),
-        (
-            {"leather": "'sofd'"},
-            "got 'sofd'; did you mean 'soft'?",
-        ),
-        ({"leather": "3"}, "effects[0].leather: must be one of soft, medium, hard, kamui soft"),
+        ({"leather": "'sofd'"}, "got 'sofd'; did you mean 'soft'?"),
         ({"E": "'1 MPa'"}, "effects[0].E: must be left out beside leather, which gives it"),
-        ({"nu": "0.3"}, "effects[0].nu: must be left out beside leather, which gives it"),
         ({"leather": None, "lether": "'soft'"}, "got lether = 'soft'; did you mean 'leather'?"),
         ({"dome_radius": "'penny'"}, 'such as "12 mm", or "dime", "nickel", "flat"; got \'penny\''),
         ({"dome_radius": "9.5"}, 'needs a unit: "0.5 in" or "12.7 mm", or "dime", "nickel", "flat"; got 9.5'),
-        ({"dome_radius": "-inf"}, '"flat"; got -inf'),
         ({"height": "inf"}, "effects[0].height: must be a length with its unit"),
         ({"rolls": "'no'"}, "effects[0].rolls: must be true or false; got 'no'"),
-        ({"rolls": "0"}, "effects[0].rolls: must be true or false; got 0"),
         ({"shear": "'2e9 N/m'"}, "effects[0].shear: must be in (0, 1.374e+09] N/m, 1000 times E height; got"),
     ],
 )
@@ -79,6 +71,15 @@ def test_refusals(file: Path, entries: dict[str, str | None], message: str) -> N
     refuses(lambda: cf.load(put(file, **entries)), message)
 
 
-def test_rolls_is_read_as_it_stands(file: Path) -> None:
-    assert tip_of(put(file, rolls="false")).rolls is False
-    assert tip_of(put(file, rolls="true")).rolls is True
+@pytest.mark.parametrize(
+    "effects",
+    [
+        (cf.AxialWaves(), cf.Joint(0.254, 3e-4, 1e-8), cf.StructuralDamping(), cf.StructuralDamping(0.012)),
+        (cf.LeatherTip(6e-3, inf, 140e6, 0.3, 900.0, shear=4e5, rolls=False),),
+        (cf.LeatherTip(6e-3, 9.525e-3, 140e6),),
+    ],
+)
+def test_effects_read_back(file: Path, effects: tuple[cf.Effect, ...]) -> None:
+    scene = cf.Scene(SHAFT, effects=effects)
+    cf.save(scene, file)
+    assert cf.load(file) == scene

@@ -58,15 +58,6 @@ def test_hertz() -> None:
     np.testing.assert_allclose(found / tt.half_space_head_on(0.3, np.array(0.01)), 1, rtol=5e-3)
 
 
-@pytest.mark.heavy
-def test_refinement() -> None:
-    """Of the table's mesh and harmonics: less than 0.2 %, of the coupling too."""
-    coarse = solved(SHAPE, 0.4, PATCH)
-    fine = solved(SHAPE, 0.4, PATCH, usual(6, 8, 6, 48))
-    np.testing.assert_allclose(coarse, fine, rtol=2e-3)
-    assert abs(coarse[0, 1] - coarse[1, 0]) < 1e-9
-
-
 # --- the table --------------------------------------------------------------------------------------------------------
 
 

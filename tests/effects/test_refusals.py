@@ -29,10 +29,6 @@ DOME, RAISED, WAVES, FAR = cf.TipDome(0.01), cf.Elevation(0.1), cf.AxialWaves(),
 TWO: Any = np.array([0.01, 0.012])
 
 
-def struck(effect: cf.Effect, **tip: float) -> Callable[[], object]:
-    return lambda: cf.strike(replace(kim_scene(**tip), effects=(effect,)))
-
-
 def with_tip(tip: cf.Tip, *effects: cf.Effect, **more: Any) -> Callable[[], cf.Scene]:
     return lambda: replace(kim_scene(), tip=tip, effects=effects, **more)
 
@@ -40,36 +36,26 @@ def with_tip(tip: cf.Tip, *effects: cf.Effect, **more: Any) -> Callable[[], cf.S
 CALLS: list[tuple[Callable[[], object], str]] = [  # a line a raise, its first words
     (lambda: LeatherLaw((1.0, 2.0), (1.0,), 0.7, 1e-3), "as many force_terms as give_terms; got 2 and 1"),
     (listed(SHEAR, RAISED), "TipShear; got Elevation, which does not"),
-    (listed(RAISED, cf.RollingContact()), "RollingContact; got Elevation, which does not"),
     (lambda: replace(LEATHER, shear=1e6, surface_restitution=0.9), "surface_restitution must be 1 beside a constant"),
     (lambda: replace(LEATHER, dome_radius=6e-3).mass(0.013), "must have a radius of 6.5 mm or more, half of"),
     (lambda: replace(LEATHER, height=2e-3).mass(0.01275), "must be higher than 2.457 mm, the depth"),
     (lambda: replace(FLAT, height=6e-4).mass(0.01275), "must be 0.638 to 38.2 mm high; got "),
-    (lambda: replace(FLAT, height=0.04).mass(0.01275), "must be 0.638 to 38.2 mm high; got "),
     (lambda: FLAT.mass(-1.0), "diameter must be in (0, 10] m; got -1.0"),
     (lambda: FLAT.compliance(0.012, 0.1, 7e-3), "patch must be in (0, 0.006] m; got 0.007"),
     (lambda: FLAT.compliance(0.012, 1.0, 1e-3), "offset must be in (-1, 1); got 1.0"),
     (lambda: FLAT.head_on(0.012, 0.0), "ball_radius must be in (0, inf) m; got 0.0"),
     (lambda: LEATHER.mass(TWO), "diameter must be one number; got an array of shape (2,)"),
-    (lambda: LEATHER.lever(TWO, 0.012), "phi must be one number; got an array of shape (2,)"),
     (listed(SHEAR, cf.PointMass(0.71, 0.01)), "Scene.effects[1].position must be in [0, 0.7] m, on the cue"),
     (listed(SHEAR, FAR), "Scene.effects[1].position must be in (0, 0.7) m, between the ends"),
-    (lambda: cf.modes(KIM, 3, effects=(FAR,)), "Joint.position must be in (0, 0.7) m, between the ends"),
     (listed(CLAMP, cf.Support(0.2, inf), CLAMP), "Scene.effects[2].stiffness must be in [0, inf) N/m at 0.7 m, where"),
     (listed(CLAMP, TURNED), "Scene.effects[1].rotational_stiffness must be in [0, inf) N m/rad at"),
     (lambda: cf.modes(KIM, 3, effects=(CLAMP, TURNED)), "a clamp must be the only one at its place; got two at 0.7 m"),
     (lumped(SHEAR, cf.Joint(0.1)), "got Joint, which needs a finite-element Cue"),
-    (lumped(SHEAR, LEATHER), "got LeatherTip, which needs a finite-element Cue"),
     (lumped(SHEAR, WAVES), "Scene.effects[1] must be an effect that a LumpedCue can have"),
-    (
-        lambda: cf.AxialWaves(1.47),
-        "AxialWaves must be given cue_length, butt_diameter and wave_speed together, or none",
-    ),
+    (lambda: cf.AxialWaves(1.47), "AxialWaves must be given cue_length, butt_diameter and wave_speed together"),
     (listed(cf.AxialWaves(0.701, 0.03, 4430.0)), "Scene.effects[0].cue_length must be in [0.73"),
     (listed(WAVES, SHEAR, WAVES), "Scene.effects[2] must be another effect, AxialWaves acts once; got Axial"),
-    (listed(LEATHER, SHEAR), "effects[1], TipShear; got LeatherTip"),
     (listed(DOME, LEATHER), "must be an effect that goes with effects[0], TipDome; got LeatherTip"),
-    (listed(RAISED, LEATHER), "must be an effect that goes with effects[0], Elevation; got LeatherTip"),
     (listed(LEATHER), "Tip.contact_time must be left out beside an effect that gives the whole tip"),
     (with_tip(cf.Tip(stiffness=1e6), LEATHER), "Tip.stiffness must be left out beside an effect that gives the whole"),
     (with_tip(cf.Tip(), WAVES, LEATHER, cue=pool_cue()), "Scene.effects[1] must be the only leather: draw the cue"),
@@ -111,8 +97,6 @@ material = {{ E = "12.6 GPa", G = "0.84 GPa", rho = "700 kg/m^3" }}
 FILES = [
     ('type = "Joint"\nposition = "0.71 m"', "effects[1].position: must be in (0, 0.7) m, between"),
     ('type = "PointMass"\nposition = "71 cm"\nmass = "5 g"', "effects[1].position: must be 0 to 700 mm, on"),
-    ('type = "Joint"\nposition = 0.3', "effects[1].position: needs a unit"),
-    ('type = "AxialWaves"', "effects[1]: must be another effect, AxialWaves acts once"),
 ]
 
 
