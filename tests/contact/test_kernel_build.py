@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 
+from cuefem.contact import kernel
 from cuefem.contact.kernel import BINARY, BUILD
 
 ROOT = Path(__file__).parents[2]
@@ -45,16 +44,13 @@ def run(folder: Path, *arguments: str, **environment: str) -> tuple[int, str, li
 
 SPOILED = {  # the file of the kernel that is changed, and what becomes of its bytes
     "missing": (BINARY.name, lambda whole: None, "is missing"),
-    "without digest": ("_kernel.sha256", lambda whole: None, "is missing"),
     "cut short": (BINARY.name, lambda whole: whole[: len(whole) // 2], "is damaged: it is not the one that was built"),
-    "half a digest": ("_kernel.sha256", lambda whole: b"half", "is damaged: it is not the one that was built"),
     "other sources": ("step.c", lambda whole: whole + b"/* another version */\n", "was built from other sources"),
 }
 
 
-@pytest.mark.parametrize(
-    "how", ["cut short", *(pytest.param(how, marks=pytest.mark.heavy) for how in SPOILED if how != "cut short")]
-)
+@pytest.mark.heavy
+@pytest.mark.parametrize("how", SPOILED)
 def test_a_kernel_that_is_not_of_these_sources_ends_in_a_line_and_a_build_mends_it(folder: Path, how: str) -> None:
     name, spoil, words = SPOILED[how]
     binary = folder / BINARY.relative_to(ROOT)
@@ -74,44 +70,6 @@ def test_a_kernel_that_is_not_of_these_sources_ends_in_a_line_and_a_build_mends_
         assert sorted(path.name for path in binary.parent.glob("_kernel*")) == ["_kernel.sha256", BINARY.name]
 
 
-STORED = """
-import json, sys
-from concurrent.futures import ThreadPoolExecutor
-import cuefem
-from cuefem.contact.model import model_of
-from cuefem.contact.step_records import solve_contact
-from tests.data.stored import scene_of, stored_law, strikes, tip_of
-
-assert cuefem.__file__.startswith(sys.argv[2])
-models = []
-for row in strikes():
-    with stored_law(row):
-        models.append(model_of(scene_of(row), tip_of(row)))
-with ThreadPoolExecutor(int(sys.argv[1])) as executor:
-    solved = executor.map(solve_contact, models)
-    print(json.dumps([[*each.impulse, each.time, *each.cue_energy, *each.losses.values()] for each in solved]))
-"""
-
-
-@pytest.mark.nightly
-def test_compilers_and_threads_answer_alike(folder: Path) -> None:
-    """The stored strikes with the kernel of `cc` and that of `ziglang`, on one thread and on two: 1e-9."""
-    pytest.importorskip("ziglang", reason="compares the kernel of cc with that of the wheel ziglang")
-
-    def answers(where: Path, threads: int) -> np.ndarray:
-        both = os.pathsep.join([str(where), str(ROOT), *sys.path])
-        status, printed, said = run(where, "-c", STORED, str(threads), str(where), PYTHONPATH=both)
-        assert (status, said) == (0, [])
-        return np.array(json.loads(printed))
-
-    known = answers(ROOT, 1)
-    size = np.abs(known) + 1e-3 * np.abs(known[:, 1:2])  # of what is small beside the impulse along the normal
-    assert np.array_equal(answers(ROOT, 2), known)
-    assert run(folder, "-c", BUILDING, CC="no-such-compiler", PYTHONPATH=os.pathsep.join(sys.path))[0] == 0
-    for threads in (1, 2):
-        assert np.max(np.abs(answers(folder, threads) - known) / size) < 1e-9
-
-
 @pytest.mark.parametrize("environment", [{"CC": "no-such-compiler"}, {"PATH": ""}, {"CC": "false"}])
 def test_without_a_compiler_it_takes_zig_or_names_both(folder: Path, environment: dict[str, str]) -> None:
     without_zig = f"import sys; sys.modules['ziglang'] = None; {BUILDING}"
@@ -121,3 +79,10 @@ def test_without_a_compiler_it_takes_zig_or_names_both(folder: Path, environment
     assert (status, printed) == (1, "")
     assert said[0].startswith("cuefem: the contact's kernel does not compile with ")
     assert said[-1].endswith("a zig that does not compile")
+
+
+def test_a_digest_cut_short_is_no_kernel(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kernel, "DIGESTS", tmp_path / "_kernel.sha256")
+    (tmp_path / "_kernel.sha256").write_text("half")
+    with pytest.raises(kernel.KernelError, match="is damaged: it is not the one that was built"):
+        kernel.check()

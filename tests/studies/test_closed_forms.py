@@ -1,6 +1,6 @@
 """The paper's closed forms against the numbers of their sources and exact identities (verification).
 
-Against the impulse solver: tests/contact/test_impulse_verification.py.
+Against the impulse solver: tests/contact/test_impulse.py.
 """
 
 import numpy as np
