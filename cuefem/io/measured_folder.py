@@ -23,7 +23,7 @@ from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Setup, Tone
 from cuefem.measurements.pendulum import Pendulum
 from cuefem.measurements.recording import Recording, combined, tones_of
-from cuefem.measurements.uncertain_parameters import Prior, names
+from cuefem.measurements.uncertain_parameters import Prior
 from cuefem.parameters.parameter import parameter
 from cuefem.quantity.fields import Quantity, quantities
 from cuefem.scene import Scene
@@ -51,7 +51,7 @@ def load_measured(folder: Path) -> tuple[MeasuredCue, list[str]]:
             raise unknown_key(name, value, known, file=str(path), key="")
     scene, notes = _scene(folder, path, tables)
     measurements = (*_measurements(folder, path, tables), *_readings(folder, path, tables, scene))
-    priors = tuple(_priors(path, tables.get("uncertain", []), scene))
+    priors = tuple(_priors(path, tables, scene))
     name, source = (_words(path, tables, key) for key in ("name", "source"))
     with faults_of(path, ""):
         made = MeasuredCue(name or folder.resolve().name, scene, measurements, priors, source)
@@ -127,12 +127,17 @@ def _measurements(folder: Path, path: Path, tables: dict[str, Any]) -> Iterator[
             raise InputError(other, "", f"must be one of {names}{nearest(other.stem, MEASUREMENT_TYPES)}")
 
 
-def _rows(path: Path, tables: dict[str, Any], key: str, kind: type[Any]) -> Iterator[Any]:
-    """What the tables [[key]] say."""
+def _tables(path: Path, tables: dict[str, Any], key: str) -> list[dict[str, Any]]:
+    """The tables [[key]]."""
     rows = tables.get(key, [])
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise InputError(path, key, f"must be tables, [[{key}]]; got {shown(rows)}")
-    for i, row in enumerate(rows):
+    return rows
+
+
+def _rows(path: Path, tables: dict[str, Any], key: str, kind: type[Any]) -> Iterator[Any]:
+    """What the tables [[key]] say."""
+    for i, row in enumerate(_tables(path, tables, key)):
         yield build(kind, row, file=str(path), key=joined(key, i))
 
 
@@ -209,29 +214,14 @@ def _cell(path: Path, line: int, name: str, cell: str, unit: str, mark: Quantity
         raise InputError(path, f"line {line}, {name}", f"must be a number; got {shown(cell)}") from None
 
 
-def _priors(path: Path, rows: Any, scene: Scene) -> Iterator[Prior]:
-    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
-        raise InputError(path, "uncertain", f"must be tables, [[uncertain]]; got {shown(rows)}")
-    for i, row in enumerate(rows):
-        key = joined("uncertain", i)
-        name = row.get("name")
-        if name not in names():
-            hint = nearest(str(name), names())
-            raise InputError(path, joined(key, "name"), f"must be one of {', '.join(names())}; got {shown(name)}{hint}")
-        for other in row:
-            if other not in keys_of(Prior):
-                raise unknown_key(other, row[other], keys_of(Prior), file=str(path), key=key)
-        known = parameter(name)
-        if known and known.value(scene) is None:
-            raise InputError(
-                path, "", f"uncertain parameters must be of this cue; got {name!r}, which it does not have"
-            )
-        ends = Quantity(known.quantity(scene).unit if known else "", "(0, inf)")
-        marks = {"spread": Quantity("", "[0, 3]"), "low": ends, "high": ends}
-        values = {}
-        for each, mark in marks.items():
-            if each in row:
-                with faults_of(path, joined(key, each)):
-                    values[each] = mark.read(row[each])
+def _priors(path: Path, tables: dict[str, Any], scene: Scene) -> Iterator[Prior]:
+    """The [[uncertain]] tables: low and high are in the unit of the parameter that they name."""
+    for i, row in enumerate(_tables(path, tables, "uncertain")):
+        key, name, read = joined("uncertain", i), row.get("name"), dict(row)
         with faults_of(path, key):
-            yield Prior(name, **values)
+            known = parameter(name) if isinstance(name, str) else None
+            unit = known.quantity(scene).unit if known and {"low", "high"} & {*row} else ""
+        for end in {"low", "high"} & {*row} if known else ():
+            with faults_of(path, joined(key, end)):
+                read[end] = Quantity(unit, "(0, inf)").read(row[end])
+        yield build(Prior, read, file=str(path), key=key)
