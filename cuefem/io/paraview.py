@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import os
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -26,7 +26,6 @@ from cuefem.scene import Scene
 AROUND = 24  # points of a ring
 LONGEST = 0.01  # m between rings, at most
 MOST_FRAMES = 10_000
-Track = Callable[[Sequence[Any]], Iterable[Any]]
 
 
 def save_motion(
@@ -64,9 +63,10 @@ def save_motion(
 
     Notes
     -----
-    ``modes.vtu`` holds the shaft's surface with a displacement ``mode_k`` and a rotation ``mode_k_theta`` for each
-    mode, mass-normalised; ``strike.pvd`` lists a shaft and a ball for each frame, with the force on the ball, N, as
-    field data. X points along the stroke with its origin at the tip, Y across it, Z up; all lengths are in m.
+    ``modes.vtu`` holds the shaft's surface with a displacement, such as ``mode_1_95.0_Hz``, and a rotation
+    ``mode_1_theta`` for each mode, mass-normalised; ``strike.pvd`` lists a shaft and a ball for each frame, with the
+    force on the ball, N, at its points. X points along the stroke with its origin at the tip, Y across it, Z up; all
+    lengths are in m.
 
     Examples
     --------
@@ -149,57 +149,38 @@ def vectors(surface: ShaftSurface, w: Array, theta: Array, *, along: float = 0.0
     return np.column_stack([along + theta * surface.points[:, 1], w, np.zeros_like(w)])
 
 
-def save_vtu(path: Path, surface: ShaftSurface, data: Mapping[str, Array], fields: Mapping[str, Array]) -> None:
-    """Write a surface with point data, and field data, which meshio reads and does not write."""
-    mesh = meshio.Mesh(surface.points, surface.cells, point_data=dict(data))
-    meshio.vtu.write(str(path), mesh, binary=True)
-    tree = ET.parse(path)
-    grid = tree.getroot().find("UnstructuredGrid")
-    assert grid is not None
-    field_data = ET.Element("FieldData")
-    for name, values in fields.items():
-        rows = np.atleast_1d(values)
-        wide = {"NumberOfComponents": str(rows.shape[1])} if rows.ndim == 2 else {}
-        about = {"type": "Float64", "Name": name, "NumberOfTuples": str(len(rows)), "format": "ascii", **wide}
-        ET.SubElement(field_data, "DataArray", about).text = " ".join(repr(float(value)) for value in rows.ravel())
-    grid.insert(0, field_data)
-    tree.write(path, encoding="utf-8", xml_declaration=True)
+def save_vtu(path: Path, surface: ShaftSurface, data: Mapping[str, Array]) -> None:
+    """Write a surface with point data."""
+    meshio.vtu.write(str(path), meshio.Mesh(surface.points, surface.cells, point_data=dict(data)), binary=True)
 
 
 def save_modes(path: Path, cue: Cue, solved: Modes) -> None:
-    """Mode shapes on the shaft, mass-normalised: mode_k a displacement, 1/sqrt(kg), mode_k_theta, 1/(m sqrt(kg))."""
+    """Mode shapes on the shaft, mass-normalised: a displacement, 1/sqrt(kg), and a rotation, 1/(m sqrt(kg)), each."""
     surface = shaft_surface(cue)
-    shapes, turns = solved.shape(surface.x)
     data = {"x": surface.x}
-    for k, (w, theta) in enumerate(zip(shapes, turns, strict=True), start=1):
-        data |= {f"mode_{k}": vectors(surface, w, theta), f"mode_{k}_theta": theta}
-    save_vtu(path, surface, data, {"frequencies": solved.frequencies})
+    for k, (tone, w, theta) in enumerate(zip(solved.frequencies, *solved.shape(surface.x), strict=True), start=1):
+        data |= {f"mode_{k}_{tone:.1f}_Hz": vectors(surface, w, theta), f"mode_{k}_theta": theta}
+    save_vtu(path, surface, data)
 
 
-def save_strike(folder: Path, scene: Scene, motion: Motion, *, scale: float = 1.0, track: Track = iter) -> None:
+def save_strike(folder: Path, scene: Scene, motion: Motion, *, scale: float = 1.0) -> None:
     """Write folder/strike.pvd and, in folder/strike, a shaft and a ball a time.
 
     scale: what bending is drawn with; the displacement beside the points is the true one.
     """
-    _save_series(folder, scene.shaft, scalar("Ball.radius", scene.ball.radius), motion, scale=scale, track=track)
-
-
-def _save_series(folder: Path, cue: Cue, radius: float, motion: Motion, *, scale: float, track: Track) -> None:
-    shaft, ball = shaft_surface(cue), ball_surface(radius)
+    shaft, ball = shaft_surface(scene.shaft), ball_surface(scalar("Ball.radius", scene.ball.radius))
     w, theta = motion.deflection(shaft.x)
     centres, forces = (np.pad(plane, [(0, 0), (0, 1)]) for plane in (motion.centre, motion.force))
     (folder / "strike").mkdir()
     series = []
-    for i in track(range(len(motion.times))):
-        time, along = float(motion.times[i]), float(motion.along[i])
-        names = [f"strike/{body}_{i:04d}.vtu" for body in ("shaft", "ball")]
-        fields = {"TimeValue": motion.times[i], "force": forces[[i]], "ball": centres[[i]]}
+    for i, time in enumerate(motion.times.tolist()):
+        along, names = float(motion.along[i]), [f"strike/{body}_{i:04d}.vtu" for body in ("shaft", "ball")]
         drawn = shaft._replace(points=shaft.points + vectors(shaft, scale * w[i], scale * theta[i], along=along))
         true = vectors(shaft, w[i], theta[i], along=along)
-        save_vtu(folder / names[0], drawn, {"x": shaft.x, "displacement": true, "w": w[i], "theta": theta[i]}, fields)
+        save_vtu(folder / names[0], drawn, {"x": shaft.x, "displacement": true, "w": w[i], "theta": theta[i]})
         flown = ball._replace(points=np.add(_turned(ball.points, float(motion.turned[i])), centres[i]))
         gone = flown.points - np.add(ball.points, centres[0])
-        save_vtu(folder / names[1], flown, {"displacement": gone}, fields)
+        save_vtu(folder / names[1], flown, {"displacement": gone, "force": np.tile(forces[i], (len(gone), 1))})
         series += [(time, part, name) for part, name in enumerate(names)]
     save_pvd(folder / "strike.pvd", series)
 
