@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -148,17 +147,12 @@ def _column(path: Path, line: int, index: int, cell: str) -> ProfileColumn:
 
 
 def _kind(words: Sequence[str]) -> str:
-    """The kind of column that words mean; a long word may be misspelt."""
+    """The kind of column that words mean."""
     if FERRULE in words and {*words} <= {FERRULE, MATERIAL}:  # "distance from ferrule" is a place
         return FERRULE
     if any(map(_WALL.match, words)):
         return ""
-    for kind, known in _WORDS.items():
-        if known & set(words):
-            return kind
-    long = {word: kind for kind, known in _WORDS.items() if kind not in NAMES for word in known if len(word) > 4}
-    close = [difflib.get_close_matches(word, long, n=1, cutoff=0.8) for word in words if len(word) > 4]
-    return next((long[match[0]] for match in close if match), "")
+    return next((kind for kind, known in _WORDS.items() if known & {*words}), "")
 
 
 def from_butt(column: ProfileColumn) -> bool:

@@ -221,7 +221,7 @@ def _priors(path: Path, tables: dict[str, Any], scene: Scene) -> Iterator[Prior]
         with faults_of(path, key):
             known = parameter(name) if isinstance(name, str) else None
             unit = known.quantity(scene).unit if known and {"low", "high"} & {*row} else ""
-        for end in {"low", "high"} & {*row} if known else ():
+        for end in [end for end in ("low", "high") if known and end in row]:
             with faults_of(path, joined(key, end)):
                 read[end] = Quantity(unit, "(0, inf)").read(row[end])
         yield build(Prior, read, file=str(path), key=key)

@@ -35,7 +35,6 @@ from cuefem.io.toml import named_material
 from cuefem.quantity.display import MOST
 from cuefem.quantity.fields import DIAMETER as WIDTH
 from cuefem.quantity.fields import Quantity
-from cuefem.quantity.slips import CUE_DIAMETER, CUE_LENGTH
 from cuefem.quantity.units import number
 
 DEFAULT_MATERIAL = "hard maple"
@@ -49,7 +48,6 @@ _SAME = 0.005  # relative: two columns that say one thing in two units
 _NOTHING = ("none", "no", "-", "–", "—")  # cells without a bore or a material
 
 _POSITION, _HOLE = Quantity("m"), Quantity("m", "[0, 10]")
-_USUAL = {"mm": 1e-3, "in": 25.4e-3, "cm": 1e-2, "m": 1.0}  # units of a column that names none
 
 Point = tuple[float, float]  # position, diameter, m
 
@@ -156,7 +154,7 @@ def read_profile(path: Path, length_unit: str | None = None, *, checked: bool = 
             raise InputError(path, f"line {line}", f"{problem}; {hint}")
     numbers = [parted(cell)[0] for column in header.used for cell in _cells(header.rows, column)]
     mark = decimal_mark(numbers)
-    columns = _with_units(path, header, length_unit, mark, checked)
+    columns = _with_units(path, header, length_unit, checked)
     place, width, spare = _chosen(path, header, columns, mark)
     x = [_number(path, header.rows[i], place, mark) for i in range(len(header.rows))]
     d = [_number(path, header.rows[i], width, mark) for i in range(len(header.rows))]
@@ -262,7 +260,7 @@ def _cells(rows: Sequence[Row], column: ProfileColumn) -> list[str]:
     return [cells[column.index] if column.index < len(cells) else "" for _, cells in rows]
 
 
-def _with_units(path: Path, header: Header, length_unit: str | None, mark: str, checked: bool) -> list[ProfileColumn]:
+def _with_units(path: Path, header: Header, length_unit: str | None, checked: bool) -> list[ProfileColumn]:
     """The columns with the units that header, cells or ``length_unit`` say; InputError if there are none."""
     columns = []
     for column in header.used:
@@ -277,39 +275,11 @@ def _with_units(path: Path, header: Header, length_unit: str | None, mark: str, 
         if not unit_of(length_unit):
             raise InputError(path, "length unit", f"must be a unit of length, such as mm; got {shown(length_unit)}")
     if bare and length_unit is None:
-        raise InputError(path, f"line {header.line}", _no_unit(header, columns, bare, mark))
+        names, written = (",".join(f"{column.name}{unit}" for column in bare) for unit in ("", " [mm]"))
+        problem = f'{shown(names)} must name the unit: write "{written}" if these are mm, or give --length-unit'
+        raise InputError(path, f"line {header.line}", problem)
     unit = unit_of(length_unit) if length_unit is not None else ""
     return [ProfileColumn(c.kind, c.index, c.name, c.unit or unit) for c in columns]
-
-
-def _no_unit(header: Header, columns: Sequence[ProfileColumn], bare: Sequence[ProfileColumn], mark: str) -> str:
-    """What is said of columns without a unit, with the one that their numbers look like."""
-    option = "or give --length-unit"
-    if len(bare) < len(columns):
-        name = bare[0].name
-        example = f"such as {chr(34)}{name} [mm]{chr(34)}"
-        return f"the column {shown(name)} has no unit: write one in brackets, {example}, {option}"
-    unit = _guess(header, columns, mark)
-    written = ",".join(f"{column.name} [{unit or 'mm'}]" for column in columns)
-    return f"the columns have no unit: write {chr(34)}{written}{chr(34)}, if these are {unit or 'mm'}, {option}"
-
-
-def _guess(header: Header, columns: Sequence[ProfileColumn], mark: str) -> str:
-    """The one unit with which a table has the size of a shaft; "" if none or several have it."""
-    try:
-        x, d = (
-            [float(plain(parted(cell)[0], mark)) for cell in _cells(header.rows, column)]
-            for column in (_first(columns, PLACE), _first(columns, DIAMETER, RADIUS))
-        )
-        units = [
-            unit
-            for unit, scale in _USUAL.items()
-            if CUE_LENGTH[0] <= scale * (max(x) - min(x)) <= CUE_LENGTH[1]
-            and CUE_DIAMETER[0] <= scale * min(d) <= scale * max(d) <= CUE_DIAMETER[1]
-        ]
-    except ValueError:
-        return ""
-    return units[0] if len(units) == 1 else ""
 
 
 def _first(columns: Sequence[ProfileColumn], *kinds: str) -> ProfileColumn:

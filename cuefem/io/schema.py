@@ -6,7 +6,6 @@ import functools
 import re
 import types
 import typing
-from collections.abc import Iterator
 from dataclasses import MISSING, fields, is_dataclass
 from typing import Any, TypeVar, cast
 
@@ -24,24 +23,7 @@ ABSENT = ("tip_bore", "butt_bore", "weighed")  # not written if 0 or false, thei
 
 def build(kind: type[Kind], table: Any, *, file: str, key: str) -> Kind:
     """A ``kind`` from a file's table of keys and values; InputError names file, key path, bound, unit and value."""
-    for name, value, names, owner in _misspelt(kind, table, key):  # first: a missing key is usually one misspelt
-        raise unknown_key(name, value, names, file=file, key=owner)
     return cast(Kind, _read(kind, table, file, key))
-
-
-def _misspelt(hint: Any, value: Any, key: str) -> Iterator[tuple[str, Any, list[str], str]]:
-    """The keys that no field has: name, value, the names there are, and the path of their table."""
-    inner = choices(hint)[0]
-    if isinstance(value, list) and typing.get_origin(inner) is tuple:
-        for i, item in enumerate(value):
-            yield from _misspelt(typing.get_args(inner)[0], item, joined(key, i))
-    elif isinstance(value, dict) and is_dataclass(inner):
-        known = types_of(cast(type, inner))
-        for name in [name for name in known if name in value]:
-            yield from _misspelt(known[name], value[name], joined(key, name))
-        for name in value:
-            if name not in known:
-                yield name, value[name], keys_of(cast(type, inner)), key
 
 
 def _read(hint: Any, value: Any, file: str, key: str) -> Any:
@@ -69,9 +51,12 @@ def _read(hint: Any, value: Any, file: str, key: str) -> Any:
 
 
 def _made(kind: type, table: dict[str, Any], file: str, key: str) -> Any:
-    """A dataclass of a table whose keys are all known."""
-    values = {}
-    for name, hint in types_of(kind).items():
+    """A dataclass of a table; a key that no field has is told first, for a missing one is usually misspelt."""
+    values, known = {}, types_of(kind)
+    for name, value in table.items():
+        if name not in known:
+            raise unknown_key(name, value, keys_of(kind), file=file, key=key)
+    for name, hint in known.items():
         if name in table:
             values[name] = _read(hint, table[name], file, joined(key, name))
         elif name in needed(kind):

@@ -40,7 +40,6 @@ READ = {
     "swapped columns": "diameter [mm],x [mm]\n12.75,0\n13.2,330\n21.5,736.6\n",
     "loose names": ("Distance from tip (in),Dia. (in)\n0,0.5\n13,0.52\n29,0.85\n", INCHES, ()),
     "names in capitals": "POS_MM,DIA_MM\n0,12.75\n330,13.2\n736.6,21.5\n",
-    "a name misspelt": "positon [mm],diamter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n",
     "radius for diameter": (
         "x [mm],radius [mm]\n0,6.375\n330,6.6\n736.6,10.75\n",
         MEANT,

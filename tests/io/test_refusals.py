@@ -55,9 +55,10 @@ csv  | Hnan,12\n700,1                       | line 2, x: must be a finite number
 csv  | H0,0,12,75\n330,0,13,2               | line 2: must have no more numbers than there are columns, 2; got
 csv  | H0,12.75\n736.6,21.5\n330,13.2       | line 4, x: must be beyond 736.6 mm, the x of the line before
 csv  | H0,12.75\n330,about 13               | line 3, diameter: must be a number; got 'about 13'
-csv  | x,diameter\n0,12.75\n700,21.5        | line 1: the columns have no unit: write "x [mm],diameter [mm]"
-csv  | x [mm],diameter\n0,12.75\n700,21.5   | line 1: the column 'diameter' has no unit: write one in brackets
+csv  | x,diameter\n0,12.75\n700,21.5        | line 1: 'x,diameter' must name the unit: write "x [mm],diameter [mm]"
+csv  | x [mm],diameter\n0,12.75\n700,21.5   | line 1: 'diameter' must name the unit: write "diameter [mm]"
 csv  | 0,12.75\n700,21.5                    | line 1: must name the columns, such as "x [mm],diameter [mm]"; got
+csv  | x [mm],diamter [mm]\n0,12\n700,21    | line 1: must name a column for the diameter too
 csv  | a,b\n1,2                             | line 1: must name one column for the place along the shaft
 csv  | x [mm],weight [g]\n0,12\n700,21       | line 1: must name a column for the diameter too
 csv  | no.,diameter [mm]\n0,12\n700,21       | line 1: must name a column for the place along the shaft too
