@@ -40,7 +40,7 @@ COMMANDS = {
         "Sweep, tolerance analysis or optimum of a STUDY (.toml).",
     ),
     "parts": ("cuefem.cli.files:parts", FILES, "Catalogue of shafts, materials and tips, with sources."),
-    "convert": ("cuefem.cli.files:convert", FILES, "Convert a drawing to .toml, .vtk or .vtu."),
+    "convert": ("cuefem.cli.files:convert", FILES, "Convert a drawing to .toml or .vtu."),
     "guide": ("cuefem.cli.guide:guide", FILES, "Handbook: pages for makers, physics, glossary."),
     "designer": ("cuefem.cli.designer:designer", PAGE, "Browser page with sliders: squirt updates as they move."),
 }
@@ -145,5 +145,5 @@ def _forget_output() -> None:
 def main() -> None:
     """Compute natural frequencies, effective end mass and squirt of a billiard cue from its drawing.
 
-    FILE is a cue or a scene (.toml), a lathe profile (.csv), a mesh (.vtk, .vtu) or a CAD surface (.stl, .ply, .obj).
+    FILE is a cue or a scene (.toml), a lathe profile (.csv), a mesh (.vtu) or a CAD surface (.stl, .ply, .obj).
     """

@@ -23,7 +23,7 @@ from cuefem.report.parts_table import parts_record, parts_sheets
 @json_option
 @force_option
 def convert(file: Path, output: Path, force: bool, as_json: bool, **options: str | None) -> None:
-    """Convert FILE to OUTPUT, whose extension sets the format: .toml, .vtk or .vtu."""
+    """Convert FILE to OUTPUT, whose extension sets the format: .toml or .vtu."""
     check_free(output, force=force)
     said = {name for name, value in options.items() if value is not None}
     body_mass, shaft_mass = options.pop("body_mass"), options.pop("shaft_mass")

@@ -38,7 +38,7 @@ __all__ = [
     "write_whole_folder",
 ]
 
-_MESHES = (".vtk", ".vtu")
+MESH = ".vtu"
 
 
 def load(
@@ -56,7 +56,7 @@ def load(
     Parameters
     ----------
     path : str or path
-        A drawing or a scene (.toml), a lathe profile (.csv), a line mesh (.vtk, .vtu), or a closed CAD surface (.stl,
+        A drawing or a scene (.toml), a lathe profile (.csv), a line mesh (.vtu), or a closed CAD surface (.stl,
         .ply, .obj).
     material : str, optional
         Name of the material of the shaft. A lathe profile or a surface names none, and has "hard maple" by default.
@@ -134,7 +134,7 @@ def _load_cue(path: Path, material: str | None = None, length_unit: str | None =
     ending = path.suffix.lower()
     if ending == ".toml":
         return load_cue(path)
-    if ending in _MESHES:
+    if ending == MESH:
         from cuefem.io.mesh_files import load_mesh
 
         return load_mesh(path)
@@ -148,7 +148,7 @@ def _load_cue(path: Path, material: str | None = None, length_unit: str | None =
     if os.path.isdir(path):  # unlike Path.is_dir, of names too long as well
         raise InputError(path, "", "must be a file; got a folder")
     hint = "; save the table as .csv" if ending in TABLES else ""
-    raise InputError(path, "", f"must end in .toml, .csv, .vtk, .vtu, .stl, .ply or .obj; got {path.suffix!r}{hint}")
+    raise InputError(path, "", f"must end in .toml, .csv, .vtu, .stl, .ply or .obj; got {path.suffix!r}{hint}")
 
 
 def load_stroke(path: Path, **told: str | None) -> Cue | Scene:
@@ -176,7 +176,7 @@ def save(obj: Cue | Scene | SideStrike, path: str | os.PathLike[str]) -> None:
     obj : Cue, Scene or SideStrike
         What to write.
     path : str or path
-        A .toml file; for a cue also a line mesh, .vtk or .vtu. The file appears whole or not at all.
+        A .toml file; for a cue also a line mesh, .vtu. The file appears whole or not at all.
 
     Raises
     ------
@@ -199,12 +199,12 @@ def save(obj: Cue | Scene | SideStrike, path: str | os.PathLike[str]) -> None:
 
         content = toml_text(obj)
         write_whole(path, lambda temporary: temporary.write_text(content, encoding="utf-8"))
-    elif path.suffix.lower() in _MESHES and isinstance(obj, Cue):
+    elif path.suffix.lower() == MESH and isinstance(obj, Cue):
         from cuefem.io.mesh_files import save_mesh
 
         write_whole(path, lambda temporary: save_mesh(obj, temporary))
     else:
-        allowed = ".toml, .vtk or .vtu" if isinstance(obj, Cue) else ".toml, for a scene"
+        allowed = ".toml or .vtu" if isinstance(obj, Cue) else ".toml, for a scene"
         raise InputError(path, "", f"must end in {allowed}; got {path.suffix!r}")
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import io
 import lzma
-import re
 import threading
 import warnings
 import zlib
@@ -17,7 +16,7 @@ import meshio
 import numpy as np
 
 from cuefem.cue import Cue, Material, Segment
-from cuefem.io.errors import InputError, faults_of, read_bytes, shown
+from cuefem.io.errors import InputError, check_size, faults_of, shown
 from cuefem.quantity.fields import MOST_SEGMENTS, quantities
 
 # What a damaged mesh file makes meshio raise: it checks little itself.
@@ -43,15 +42,14 @@ def _row(segment: Segment) -> dict[str, float]:
 
 
 def save_mesh(cue: Cue, path: Path) -> None:
-    """Write a cue as .vtk (ASCII) or .vtu (binary): the two of meshio's formats that keep every bit of cell data."""
+    """Write a cue as .vtu, binary: ASCII would lose the last bits of its cell data."""
     rows = [_row(segment) | {"body_mass": cue.body_mass} for segment in cue.segments]
     points = np.zeros((len(cue.nodes), 3))
     points[:, 0] = cue.nodes
     cells = np.arange(len(rows))[:, None] + np.array([0, 1])
     data = {name: [np.array([row[name] for row in rows])] for name in rows[0]}
     mesh = meshio.Mesh(points, [("line", cells)], cell_data=data)
-    with quiet():  # meshio warns that ASCII is for debugging; here it is exact and can be compared line by line
-        _format(path).write(str(path), mesh, binary=path.suffix.lower() == ".vtu")
+    meshio.vtu.write(str(path), mesh, binary=True)
 
 
 @contextlib.contextmanager
@@ -68,33 +66,18 @@ def quiet() -> Iterator[None]:
             yield
 
 
-def _format(path: Path) -> Any:
-    return meshio.vtu if path.suffix.lower() == ".vtu" else meshio.vtk
-
-
-def _read(path: Path) -> meshio.Mesh:
-    """The mesh of a file of at most `LARGEST_MESH` bytes."""
-    content = read_bytes(path, LARGEST_MESH)
-    if path.suffix.lower() == ".vtk" and not re.search(rb"^\s*DATASET\s+UNSTRUCTURED_GRID", content, re.I | re.M):
-        raise meshio.ReadError("DATASET must be UNSTRUCTURED_GRID")  # a structured one may say any number of points
-    with quiet():
-        return _format(path).read(str(path))
-
-
 def load_mesh(path: Path) -> Cue:
     """The cue of a line mesh with this module's cell data, cells from tip to butt."""
+    check_size(path, LARGEST_MESH)
     try:
-        mesh = _read(path)
+        with quiet():
+            mesh = meshio.vtu.read(str(path))
         data = {name: np.concatenate(blocks).astype(float) for name, blocks in mesh.cell_data.items()}
         kinds, x = {block.type for block in mesh.cells}, np.asarray(mesh.points, float)[:, 0]
         cells = np.concatenate([block.data for block in mesh.cells])
-    except InputError:
-        raise
     except DAMAGED as error:
         said = f"{type(error).__name__} {error}".strip()
-        raise InputError(
-            path, "", f"must be a {path.suffix} mesh; got a file that meshio cannot read: {said}"
-        ) from None
+        raise InputError(path, "", f"must be a .vtu mesh; got a file that meshio cannot read: {said}") from None
     if kinds != {"line"}:
         raise InputError(path, "cells", f"must be lines alone; got {shown(sorted(kinds))}")
     wanted = [*_columns(Segment), *_columns(Material), *_columns(Material, "core_"), "body_mass"]

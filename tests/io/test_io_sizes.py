@@ -12,7 +12,6 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.io import InputError
 from tests.helpers.command_line import call
 
 SOON = 20.0  # s of the processor, where less than 1 is needed: a busy machine changes nothing
@@ -93,14 +92,6 @@ def stiff(stiffness: float) -> cf.Scene:
     return cf.Scene(cf.Cue((cf.Segment(0.7, 0.012, 0.021, ash),)), tip=cf.Tip(stiffness=stiffness))
 
 
-def test_a_structured_grid_of_any_size_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "cue.vtk"
-    head = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 9000 9000 9000\n"
-    path.write_text(head + "ORIGIN 0 0 0\nSPACING 1 1 1\n")
-    with pytest.raises(InputError, match="DATASET must be UNSTRUCTURED_GRID"):
-        cf.load(path)
-
-
 def test_a_profile_of_many_points_on_a_line_is_read_soon(tmp_path: Path) -> None:
     path = tmp_path / "shaft.csv"
     rows = "".join(f"{i * 0.01:.2f},{12 + i * 0.00015:.5f}\n" for i in range(5_001))
@@ -112,8 +103,8 @@ def test_a_profile_of_many_points_on_a_line_is_read_soon(tmp_path: Path) -> None
     assert cue.length == pytest.approx(0.05, rel=1e-12)
 
 
-KINDS = ["toml", "csv", "stl", "ply", "obj", "vtk", "vtu", "wav"]
-LIMITS = {"toml": 1, "csv": 1, "stl": 100, "ply": 100, "obj": 100, "vtk": 20, "vtu": 20, "wav": 100}  # MB
+KINDS = ["toml", "csv", "stl", "ply", "obj", "vtu", "wav"]
+LIMITS = {"toml": 1, "csv": 1, "stl": 100, "ply": 100, "obj": 100, "vtu": 20, "wav": 100}  # MB
 
 
 @pytest.fixture
