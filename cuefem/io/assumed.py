@@ -11,6 +11,7 @@ from cuefem.cue import Cue
 from cuefem.effects import AxialWaves, effect_kinds
 from cuefem.io.fittings import BORE, FERRULE, LEATHER, TENON
 from cuefem.io.profile import DEFAULT_MATERIAL, DEFAULT_UNIT, SHAPES, SURFACES, Profile, read_profile
+from cuefem.io.slices import TOLERANCE
 from cuefem.io.toml import left_out, read_tables
 from cuefem.parameters.parts import Layout
 from cuefem.scene import DEFAULT_CONTACT_TIME, Ball, Stroke, Tip
@@ -90,14 +91,14 @@ def _tenon(cue: Cue | None) -> list[str]:
 
 
 def _fit(path: Path) -> list[str]:
-    """How near a surface's segments keep to it, and how far its facets leave the round form open."""
+    """How many segments a surface has become, and how far its facets leave the round form open."""
     from cuefem.io.surface import read_surface
 
     surface = read_surface(path)
-    fit, corners = surface.fit / surface.widest, 2 * surface.facets / surface.widest
+    corners = 2 * surface.facets / surface.widest
     count = len(surface.pieces)
     return [
-        f"{count} conical segment{'s' if count > 1 else ''}, diameters within {max(fit, 1e-9):.0e} of the widest",
+        f"{count} conical segment{'s' if count > 1 else ''}, diameters within {TOLERANCE:.0e} of the widest",
         f"facets taken as round (corners up to {corners:.0e} of the widest diameter further out)",
         "the thinner end is the tip",
     ]

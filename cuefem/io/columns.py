@@ -75,7 +75,7 @@ def unit_of(text: str) -> str:
 
 def read_header(path: Path, rows: Sequence[Row]) -> Header:
     """The header of a profile's rows; InputError if no row names a place and a diameter."""
-    lacking = dict[int, str]()
+    nearest = rows[0]  # to a header
     for i, (line, cells) in enumerate(rows[:TITLES]):
         columns = [_column(path, line, j, cell) for j, cell in enumerate(cells)]
         used = tuple(column for column in columns if column.kind and column.kind not in NAMES)
@@ -94,29 +94,19 @@ def read_header(path: Path, rows: Sequence[Row]) -> Header:
             noted = tuple(row for row in below if not _has_data(row[1], used, names))
             passed = tuple(number for number, _ in (*rows[:i], *noted))
             return Header(line, used, names, unused, len(cells), tuple(r for r in below if r not in noted), passed)
-        if len(cells) > 1 and kinds:
-            lacking[line] = "a column for the diameter" if PLACE in kinds else "a column for the place along the shaft"
+        if len(cells) > 1 and kinds and nearest == rows[0]:
+            nearest = line, cells
         if len(cells) > 1 and all(map(is_number, cells)):
             break
-    line, cells = rows[0]
-    if all(map(is_number, cells)):
-        raise InputError(path, f"line {line}", f"must name the columns, such as {EXAMPLE}; got numbers, {_got(cells)}")
-    if lacking:
-        line, column = next(iter(lacking.items()))
-        got = _got(next(cells for number, cells in rows if number == line))
-        raise InputError(path, f"line {line}", f"must name {column} too, such as {EXAMPLE}; got {got}")
+    line, cells = nearest
     wanted = f"must name one column for the place along the shaft and one for the diameter, such as {EXAMPLE}"
-    raise InputError(path, f"line {line}", f"{wanted}; got {_got(cells)}")
+    raise InputError(path, f"line {line}", f"{wanted}; got {shown(','.join(cells))}")
 
 
 def _has_data(cells: Sequence[str], used: Sequence[ProfileColumn], names: Sequence[ProfileColumn]) -> bool:
     """Whether a line is a row of the table: it has a number or a material where one belongs."""
     inside = [[cells[c.index] for c in columns if c.index < len(cells)] for columns in (used, names)]
     return any(parted(cell)[0] for cell in inside[0]) or any(inside[1])
-
-
-def _got(cells: Sequence[str]) -> str:
-    return shown(",".join(cells))
 
 
 def _with_unit(column: ProfileColumn, units: Sequence[str]) -> ProfileColumn:

@@ -40,12 +40,10 @@ class ConicalPiece(NamedTuple):
 
 @dataclass(frozen=True)
 class Sliced:
-    """A shaft from a surface. pieces: from the thinner end to the thicker. fit: the largest distance of their diameters
-    from those of the slices. facets: how far corners of slices lie outside the round outline: half a true diameter lies
-    between the round one and that."""
+    """A shaft from a surface. pieces: from the thinner end to the thicker. facets: how far corners of slices lie
+    outside the round outline: half a true diameter lies between the round one and that."""
 
     pieces: tuple[ConicalPiece, ...]
-    fit: float
     facets: float
 
     @property
@@ -250,7 +248,7 @@ def sliced(body: Surface, tolerance: float = TOLERANCE) -> Sliced:
     the axis are kept. ValueError if a section is not one round piece about the axis.
     """
     pieces: list[ConicalPiece] = []
-    fit = facets = 0.0
+    facets = 0.0
     widest = 2 * float(np.sqrt((body.points[:, 1:] ** 2).sum(axis=1)).max())
     for start, stop in itertools.pairwise(body.flats):
         x = _places(body, float(start), float(stop))
@@ -259,13 +257,11 @@ def sliced(body: Surface, tolerance: float = TOLERANCE) -> Sliced:
             _check_round(cut, place, widest)
         diameters = np.array([cut.diameters for cut in cuts])
         diameters[:, 0] = np.maximum(diameters[:, 0], tolerance * widest)  # an apex
-        kept = 2 * corners(x[::2], diameters[::2], tolerance * widest)
-        for i, j in itertools.pairwise(kept):
+        for i, j in itertools.pairwise(2 * corners(x[::2], diameters[::2], tolerance * widest)):
             (outer0, bore0), (outer1, bore1) = diameters[i].tolist(), diameters[j].tolist()
             pieces.append(ConicalPiece(float(x[j] - x[i]), (outer0, outer1), (bore0, bore1)))
-        fit = max(fit, _deviation(x, diameters, kept))
         facets = max(facets, *(float(cut.reach - d / 2) for cut, d in zip(cuts, diameters[:, 0], strict=True)))
-    return Sliced(tuple(pieces), fit, facets)
+    return Sliced(tuple(pieces), facets)
 
 
 def _places(body: Surface, start: float, stop: float) -> Array:
@@ -321,7 +317,3 @@ def _offsets(x: Array, diameters: Array) -> Array:
     """Distances of diameters from the straight line between the first and the last, the larger of outer and bore."""
     t = (x - x[0]) / (x[-1] - x[0])
     return np.asarray(np.abs(diameters - diameters[0] - t[:, None] * (diameters[-1] - diameters[0])).max(axis=1))
-
-
-def _deviation(x: Array, diameters: Array, kept: Index) -> float:
-    return max(float(_offsets(x[i : j + 1], diameters[i : j + 1]).max()) for i, j in itertools.pairwise(kept))

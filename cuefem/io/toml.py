@@ -18,7 +18,6 @@ from cuefem.cue import Cue, LumpedCue, Material
 from cuefem.cue.materials import material
 from cuefem.effects import Effect, effect_kinds
 from cuefem.io.errors import LARGEST_TEXT, InputError, faults_of, nearest, read_bytes, shown
-from cuefem.io.fittings import BORE, FERRULE
 from cuefem.io.schema import build, joined, keys_of, table, unknown_key
 from cuefem.io.shelf import assembled
 from cuefem.parameters.parts import with_shaft_mass
@@ -26,12 +25,18 @@ from cuefem.quantity.fields import MOST_SEGMENTS, Quantity, check_fields, quanti
 from cuefem.scene import Scene, Stroke
 from cuefem.scene.default_scene import DEFAULT_GAME, GAMES, KIM, STROKES, usual_scene
 
-# The parts of which a cue is put together in the place of [[segments]], each with an example.
-EXAMPLES = {"shaft": '"conical taper"', "material": '"ash"', "ferrule": f'"{FERRULE}"', "bore": f'"{BORE}"'}
-OF_SHAFT = tuple(EXAMPLES)
-
 # What a scene's tables leave to its game.
 OF_GAME = {"ball": ("mass", "radius"), "tip": ("restitution", "friction"), "stroke": ("speed", "offset")}
+
+
+@dataclass(frozen=True)
+class ShaftParts:
+    """The parts of which a cue is put together in the place of [[segments]]."""
+
+    shaft: str
+    material: str | None = None
+    ferrule: str | None = None
+    bore: str | None = None
 
 
 @dataclass(frozen=True)
@@ -108,20 +113,6 @@ def load_cue(path: Path) -> Cue:
     return _cue(tables, path, "")
 
 
-def scene_of_table(table: Any, name: str) -> Scene:
-    """The scene of nested tables as `schema.table` makes them; it holds its cue itself. name: for messages.
-
-    These leave out what is empty, and nothing else.
-    """
-
-    def no_file(path: Path) -> Cue:
-        raise InputError(name, "cue", "must be a table of its own; got the path of a file")
-
-    if not isinstance(table, dict):
-        raise InputError(name, "", f"must be a table; got {shown(table)}")
-    return scene_of_tables({"game": KIM} | table, Path(name), no_file)
-
-
 def load_accuracy(path: str | Path) -> float | None:
     """The relative accuracy rtol that a scene file's [accuracy] table asks for; None if there is no such table."""
     path = Path(path)
@@ -154,16 +145,13 @@ def _cue(table: dict[str, Any], path: Path, key: str) -> Cue:
 
 def _of_parts(cue_table: dict[str, Any], path: Path, key: str) -> dict[str, Any]:
     """A cue's table whose shaft is one of the shelf, with its segments in the place of the parts that it names."""
-    parts = {name: cue_table.get(name) for name in OF_SHAFT}
-    for name, value in parts.items():
-        if not isinstance(value, str | None):
-            raise InputError(path, joined(key, name), f"must be a text, such as {EXAMPLES[name]}; got {shown(value)}")
+    told = {name: cue_table[name] for name in keys_of(ShaftParts) if name in cue_table}
+    parts = build(ShaftParts, told, file=str(path), key=key)
     if "segments" in cue_table:
         raise InputError(path, joined(key, "segments"), "must be left out beside shaft, which draws them")
-    shaft = str(parts.pop("shaft"))
     with faults_of(path, joined(key, "shaft")):
-        cue = assembled(shaft, load_cue, **parts)
-    rest = {name: value for name, value in cue_table.items() if name not in OF_SHAFT}
+        cue = assembled(parts.shaft, load_cue, material=parts.material, ferrule=parts.ferrule, bore=parts.bore)
+    rest = {name: value for name, value in cue_table.items() if name not in told}
     return rest | {"segments": [table(segment) for segment in cue.segments]}
 
 

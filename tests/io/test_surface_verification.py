@@ -74,7 +74,6 @@ def test_a_surface_of_straight_pieces_gives_the_drawing_back(name: str) -> None:
     for piece, segment in zip(found.pieces, cue.segments, strict=True):
         assert piece.outer == pytest.approx([shrunk * segment.tip_diameter, shrunk * segment.butt_diameter], rel=2e-6)
         assert piece.bore == pytest.approx([shrunk * segment.tip_bore, shrunk * segment.butt_bore], rel=2e-5)
-    assert found.fit < 1e-10
     widest = cue.segments[-1].butt_diameter
     assert found.facets == pytest.approx(widest / 2 * (1 - shrunk), rel=1e-6)
 
@@ -92,7 +91,7 @@ def test_facets_converge_with_the_second_order() -> None:
 
 
 def test_a_curved_profile_is_followed_within_the_tolerance() -> None:
-    """A pro taper's smooth curve: straight pieces keep within the tolerance of every slice, and say how near."""
+    """A pro taper's smooth curve: straight pieces keep within the tolerance of every slice."""
     x = np.linspace(0, 0.7, 141)
     radius = 0.006 + 0.005 * (x / 0.7) ** 3
     found = sliced(surface(*revolved([(0, 0), *zip(x, radius, strict=True), (0.7, 0)], 48)))
@@ -101,8 +100,7 @@ def test_a_curved_profile_is_followed_within_the_tolerance() -> None:
     exact = 2 * radius * np.sqrt(polygon(1, 48)[0] / np.pi)
     off = np.abs(np.interp(x, ends, outer) - exact).max()
     assert 8 < len(found.pieces) < 100
-    assert off <= found.fit * (1 + 1e-9)
-    assert 0.2 * TOLERANCE * found.widest < found.fit <= TOLERANCE * found.widest
+    assert 0.2 * TOLERANCE * found.widest < off <= TOLERANCE * found.widest
 
 
 @pytest.mark.parametrize("seed", range(3))
