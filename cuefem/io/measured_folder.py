@@ -8,16 +8,17 @@ import re
 import struct
 import warnings
 from collections.abc import Iterator
+from contextlib import suppress
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from scipy.io import wavfile
 
 from cuefem.io import InputError, load, write_whole_folder
 from cuefem.io.assumed import assumed_blow, assumed_drawing
 from cuefem.io.errors import faults_of, nearest, read_bytes, shown
-from cuefem.io.schema import build, joined, keys_of, unknown_key
+from cuefem.io.schema import build, choices, joined, mark_of, types_of, unknown_key
 from cuefem.io.toml import OF_GAME, game_of, left_out, read_tables, read_text, scene_of_tables
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Setup, Tone
@@ -25,7 +26,7 @@ from cuefem.measurements.pendulum import Pendulum
 from cuefem.measurements.recording import Recording, combined, tones_of
 from cuefem.measurements.uncertain_parameters import Prior
 from cuefem.parameters.parameter import parameter
-from cuefem.quantity.fields import Quantity, quantities
+from cuefem.quantity.fields import Quantity
 from cuefem.scene import Scene
 
 MEASURED = "measured.toml"
@@ -172,46 +173,43 @@ def _sound(path: Path) -> tuple[Any, float]:
     return samples.reshape(len(samples), -1).astype(float), float(rate)
 
 
-def _series(path: Path, kind: type[Measurement]) -> Iterator[Measurement]:
+def _series(path: Path, kind: type) -> Iterator[Measurement]:
     """The measurements of a CSV: a column a key, with its unit in the heading; empty cells are left out."""
     lines = list(enumerate(read_text(path).splitlines(), start=1))
     rows = [(i, next(csv.reader([line]))) for i, line in lines if line.strip() and not line.lstrip().startswith("#")]
     if not rows:
         raise InputError(path, "", "must begin with a line of headings; got comments alone")
-    marks = {name: mark for name, mark, *_ in quantities(cast(Any, kind))}
     (first, headings), *others = rows
-    columns = [_column(path, first, heading, kind, marks) for heading in headings]
+    columns = [_column(path, first, heading, kind) for heading in headings]
     for line, cells in others:
         if len(cells) != len(columns):
             raise InputError(path, f"line {line}", f"must have {len(columns)} cells, as the headings; got {len(cells)}")
-        filled = [(name, unit, cell.strip()) for (name, unit), cell in zip(columns, cells, strict=True) if cell.strip()]
-        table = {name: _cell(path, line, name, cell, unit, marks.get(name)) for name, unit, cell in filled}
+        filled = [(*column, cell.strip()) for column, cell in zip(columns, cells, strict=True) if cell.strip()]
+        table = {name: _cell(cell, unit, types_of(kind)[name]) for name, unit, cell in filled}
         yield build(kind, table, file=str(path), key=f"line {line}")
 
 
-def _column(path: Path, line: int, heading: str, kind: type, marks: dict[str, Quantity]) -> tuple[str, str]:
-    match, names = _COLUMN.fullmatch(heading), keys_of(kind)
-    if not match or match[1] not in names:
-        hint = nearest(heading.partition("[")[0].strip(), names)
-        raise InputError(path, f"line {line}", f"must have headings {', '.join(names)}; got {shown(heading)}{hint}")
-    name, unit = match[1], match[2] or ""
-    wanted = marks[name].unit if name in marks else ""
+def _column(path: Path, line: int, heading: str, kind: type) -> tuple[str, str]:
+    """Key and unit of a heading such as "value [deg]"."""
+    match, hints = _COLUMN.fullmatch(heading), types_of(kind)
+    if not match or match[1] not in hints:
+        hint = nearest(heading.partition("[")[0].strip(), hints)
+        raise InputError(path, f"line {line}", f"must have headings {', '.join(hints)}; got {shown(heading)}{hint}")
+    name, unit, mark = match[1], match[2] or "", mark_of(hints[match[1]])
+    wanted = mark.unit if mark else ""
     if bool(wanted) != bool(unit):
         example = f'"{name} [{wanted}]"' if wanted else f'"{name}"'
         raise InputError(path, f"line {line}, {name}", f"must be the heading {example}; got {shown(heading)}")
     return name, unit
 
 
-def _cell(path: Path, line: int, name: str, cell: str, unit: str, mark: Quantity | None) -> Any:
+def _cell(cell: str, unit: str, hint: Any) -> Any:
     """What a cell says, as a table of the file would: a text with its unit, a number, or words."""
     if unit:
         return f"{cell} {unit}"
-    if mark is None and name not in ("mode",):
-        return cell
-    try:
-        return int(cell) if mark is None else float(cell)
-    except ValueError:
-        raise InputError(path, f"line {line}, {name}", f"must be a number; got {shown(cell)}") from None
+    with suppress(ValueError):
+        return int(cell) if int in choices(hint) else float(cell) if mark_of(hint) else cell
+    return cell
 
 
 def _priors(path: Path, tables: dict[str, Any], scene: Scene) -> Iterator[Prior]:

@@ -84,7 +84,7 @@ measured.toml | [[recording]]\nfile = "\u0000.wav"\n | .wav: embedded null byte
 squirt.csv | offset,sqirt [deg]\n0.3,2\n | must have headings source, offset, value
 squirt.csv | offset,value,error [deg]\n0.3,2,1\n | line 1, value: must be the heading "value [rad]"
 squirt.csv | offset,value [deg],error [deg]\n0.3,2\n | line 2: must have 3 cells
-squirt.csv | offset,value [deg],error [deg]\na,2,1\n | line 2, offset: must be a number
+squirt.csv | offset,value [deg],error [deg]\na,2,1\n | line 2.offset: must be a bare number
 tone.csv | mode,value [Hz],error [Hz]\n1,x,1\n | line 2.value: must be a frequency with its unit
 tone.csv | # nothing\n | must begin with a line of headings
 squirts.csv | offset\n | squirts.csv: must be one of weight.csv
