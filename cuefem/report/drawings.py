@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from itertools import accumulate
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,8 @@ from cuefem.scene import Scene
 ACROSS = 8.0  # times that diameters are enlarged
 TITLE = f"Diameters {ACROSS:g} times enlarged"
 FRONT = 0.16  # m, of the drawing that shows the front true to scale
+LEAST_DRAWN = 1e-4  # m of a segment
+NO_MATERIAL = Material(1e10, 1e9, 700.0)  # of a lumped cue
 
 
 class Piece(NamedTuple):
@@ -52,40 +54,25 @@ class CueDrawing:
     unit: str = "mm"
 
 
-@dataclass(frozen=True)
-class SeenCue:
-    """The segments of a cue as one sees it, which may be one more than a cue itself may have."""
-
-    segments: tuple[Segment, ...]
-
-    @property
-    def nodes(self) -> tuple[float, ...]:
-        """Positions of the ends of the segments, m from the tip."""
-        return tuple(accumulate((segment.length for segment in self.segments), initial=0.0))
-
-    @property
-    def length(self) -> float:
-        """Its length, m."""
-        return self.nodes[-1]
-
-
-def materials_of(cue: SeenCue) -> tuple[str, ...]:
-    """Names of a cue's materials, from tip to butt, each once."""
-    materials = [m for segment in cue.segments for m in (segment.material, segment.core) if m is not None]
-    return tuple(dict.fromkeys(map(legend_name, materials)))
-
-
-def seen(scene: Scene) -> SeenCue:
-    """The cue as one sees it: with the leather and the layers of a whole tip in front of its segments."""
+def seen(scene: Scene) -> tuple[Segment, ...]:
+    """The segments as one sees them: behind the leather and the layers of a whole tip."""
     segments = scene.shaft.segments
     if scene.contact_terms.tip is None:
-        return SeenCue(segments)
+        return segments
     tip = scene.leather
     across = tip.diameter_on(segments[0].tip_diameter)
     below = [(layer.height, Material(layer.E, layer.E / 2 / (1 + layer.nu), layer.rho)) for layer in tip.layers[::-1]]
     leather = tip.height - math.fsum(height for height, _ in below)
     in_front = [(leather, MATERIALS["leather"].material), *below]
-    return SeenCue((*(Segment(height, across, across, of) for height, of in in_front), *segments))
+    return (*(Segment(height, across, across, of) for height, of in in_front), *segments)
+
+
+def legend(scenes: Iterable[Scene]) -> list[tuple[str, str]]:
+    """The materials of drawn cues, from tip to butt, each once, with their classes on the page; and a bore."""
+    segments = [segment for scene in scenes for segment in seen(scene)]
+    names = [legend_name(of) for segment in segments for of in (segment.material, segment.core) if of is not None]
+    hollow = any((s.tip_bore or s.butt_bore) and s.core is None for s in segments)
+    return [(name, style_of(name)) for name in dict.fromkeys(names)] + ([("bore", "hollow")] if hollow else [])
 
 
 def legend_name(material: Material) -> str:
@@ -99,48 +86,77 @@ def style_of(name: str) -> str:
 
 
 def cue_drawing(scene: Scene) -> CueDrawing:
-    """The whole cue from the side, its diameters `ACROSS` times enlarged."""
-    cue = seen(scene)
-    ahead = cue.length - scene.shaft.length  # positions on the cue count from behind the leather
-    scale = (WIDE - 20) / cue.length
-    widest = max(max(s.tip_diameter, s.butt_diameter) for s in cue.segments) * scale * ACROSS
-    signs = tuple(
-        Sign(10 + scale * (x + ahead), type(effect).__name__)
-        for effect in scene.effects
-        for x in effect.positions
-        if not effect.whole_tip
+    """The whole cue from the side, its diameters `ACROSS` times enlarged, with its effects."""
+    places = [(x, type(effect).__name__) for effect in scene.effects if not effect.whole_tip for x in effect.positions]
+    return _from_side(
+        scene,
+        scene.shaft.length,
+        TITLE,
+        across=ACROSS,
+        left=10.0,
+        above=14.0 if places else 3.0,
+        places=places,
     )
-    axis = (14.0 if signs else 3.0) + widest / 2
-    pieces = tuple(
-        _piece(segment, x, scale=scale, axis=axis, dome=0.0 if x else scene.dome_radius)
-        for x, segment in zip(cue.nodes[:-1], cue.segments, strict=True)
-    )
-    per_metre, unit = TRADE["m"]
-    ticks = Axis(unit, 0.0, per_metre * cue.length).over([np.zeros(1)]).ticks(10.0, WIDE - 10.0)
-    return CueDrawing(TITLE, axis + widest / 2 + 16, axis, pieces, signs, ticks, unit)
 
 
 def true_drawing(scene: Scene, reach: float, title: str) -> CueDrawing:
     """The cue from the side, true to scale, as far as ``reach``, m from where its segments begin."""
-    cue = seen(scene)
-    ahead = cue.length - scene.shaft.length
-    scale = WIDE / (reach + ahead)
-    shown = [(x, segment) for x, segment in zip(cue.nodes, cue.segments, strict=False) if x < reach + ahead]
-    widest = max(max(segment.tip_diameter, segment.butt_diameter) for _, segment in shown[:-1] or shown)
-    x, last = shown[-1]
-    there = last.tip_diameter + (last.butt_diameter - last.tip_diameter) * min(1.0, (reach + ahead - x) / last.length)
-    axis = 1.0 + scale * max(widest, last.tip_diameter, there) / 2
-    pieces = tuple(
-        _piece(segment, x, scale=scale, axis=axis, dome=0.0 if x else scene.dome_radius, across=1.0, left=0.0)
-        for x, segment in shown
+    return _from_side(scene, reach, title, across=1.0, left=0.0, above=1.0)
+
+
+def _from_side(
+    scene: Scene,
+    reach: float,
+    title: str,
+    *,
+    across: float,
+    left: float,
+    above: float,
+    places: Sequence[tuple[float, str]] = (),
+) -> CueDrawing:
+    """across: times that diameters are enlarged; left, above: space; places: of effects, m, with their names."""
+    segments = seen(scene)
+    ahead = sum(segment.length for segment in segments[: len(segments) - len(scene.shaft.segments)])
+    scale = (WIDE - 2 * left) / (reach + ahead)
+    drawn = _cut(segments, reach + ahead)
+    half = scale * across * max(max(segment.tip_diameter, segment.butt_diameter) for segment in drawn) / 2
+    pieces = _pieces(drawn, scale=scale, axis=above + half, dome=scene.dome_radius, across=across, left=left)
+    signs = tuple(Sign(left + scale * (x + ahead), name) for x, name in places)
+    ticks = Axis("mm", 0.0, 1e3 * reach).over([np.zeros(1)]).ticks(left + scale * ahead, WIDE - left)
+    return CueDrawing(title, 2 * half + above + 1, above + half, pieces, signs, ticks)
+
+
+def _cut(segments: Sequence[Segment], reach: float) -> list[Segment]:
+    """The segments as far as ``reach``, m."""
+    kept: list[Segment] = []
+    for segment in segments:
+        part = min(1.0, reach / segment.length)
+        if reach <= LEAST_DRAWN:
+            break
+        wide, bore = (
+            first + part * (last - first)
+            for first, last in (
+                (segment.tip_diameter, segment.butt_diameter),
+                (segment.tip_bore, segment.butt_bore),
+            )
+        )
+        kept.append(replace(segment, length=part * segment.length, butt_diameter=wide, butt_bore=bore))
+        reach -= segment.length
+    return kept
+
+
+def _pieces(
+    segments: Sequence[Segment], *, scale: float, axis: float, dome: float, across: float, left: float
+) -> tuple[Piece, ...]:
+    """The segments' outlines from ``left`` on, the first with the tip's dome."""
+    ends = accumulate((segment.length for segment in segments), initial=0.0)
+    return tuple(
+        _piece(segment, x, scale=scale, axis=axis, dome=0.0 if x else dome, across=across, left=left)
+        for x, segment in zip(ends, segments, strict=False)
     )
-    ticks = Axis("mm", 0.0, 1e3 * reach).over([np.zeros(1)]).ticks(scale * ahead, WIDE)
-    return CueDrawing(title, 2 * axis, axis, pieces, (), ticks)
 
 
-def _piece(
-    segment: Segment, x: float, *, scale: float, axis: float, dome: float, across: float = ACROSS, left: float = 10.0
-) -> Piece:
+def _piece(segment: Segment, x: float, *, scale: float, axis: float, dome: float, across: float, left: float) -> Piece:
     def outline(tip: float, butt: float, dome: float) -> str:
         first, last = left + scale * x, left + scale * (x + segment.length)
         high, low = (scale * across * width / 2 for width in (tip, butt))
@@ -166,7 +182,7 @@ class StrikeDrawing:
     height: float
     ball: tuple[float, float, float]  # centre and radius
     contact: tuple[float, float]
-    pieces: tuple[tuple[str, str], ...]  # the cue's end: outline and material's class, from the tip on
+    pieces: tuple[Piece, ...]  # the cue's end, from the tip on
     cue_line: float
     path_end: tuple[float, float]
     straight_end: tuple[float, float]
@@ -183,12 +199,11 @@ def strike_drawing(scene: Scene, squirt: float) -> StrikeDrawing:
     middle = 75.0
     centre = (apex + scale * (r - (R + r) * math.cos(phi)), middle)
     line = middle - scale * (R + r) * math.sin(phi)
-    radius = max(r, across / 2)
-    angle = np.linspace(1, -1, 25) * math.asin(across / 2 / radius)
-    front_x = apex + scale * radius * (1 - np.cos(angle)) if r else np.full(25, apex)
-    front_y = line + scale * across / 2 * np.linspace(1, -1, 25) if not r else line + scale * radius * np.sin(angle)
-    segments = scene.cue.segments and seen(scene).segments
-    pieces = _struck_end(segments, across, (front_x, front_y), apex=apex, line=line, scale=scale)
+    lumped = Segment((WIDE - apex) / scale, across, across, NO_MATERIAL)  # of which all that is drawn has one diameter
+    pieces = _pieces(
+        _cut(seen(scene) if scene.cue.segments else [lumped], (WIDE - apex) / scale),
+        **{"scale": scale, "axis": line, "dome": max(r, across / 2) if r else 0.0, "across": 1.0, "left": apex},
+    )
     reach = float(centre[0]) - 6
     fall = reach * math.tan(squirt)
     return StrikeDrawing(
@@ -201,28 +216,6 @@ def strike_drawing(scene: Scene, squirt: float) -> StrikeDrawing:
         (float(centre[0]) - reach, middle),
         (line - 6, middle + fall + 16) if phi >= 0 else (line + 15, middle + fall - 9),
     )
-
-
-def _struck_end(
-    segments: Sequence[Segment], across: float, front: tuple[Any, Any], *, apex: float, line: float, scale: float
-) -> tuple[tuple[str, str], ...]:
-    """The segments as far as the drawing reaches, the first with the tip's front; a lumped cue has no material."""
-    reach = (WIDE - apex) / scale
-    parts = [(0.0, reach, across, across, "m-other")]
-    if segments:
-        ends = [0.0, *accumulate(s.length for s in segments)]
-        parts = [
-            (x, x + s.length, s.tip_diameter, s.butt_diameter, style_of(legend_name(s.material)))
-            for x, s in zip(ends, segments, strict=False)
-            if x < reach
-        ]
-    shapes = []
-    for x, end, first, last, style in parts:
-        near, far = apex + scale * x, min(apex + scale * end, WIDE)
-        wide = scale * first / 2, scale * (first + (last - first) * min(1, (reach - x) / (end - x))) / 2
-        xs, ys = ([*front[0]], [*front[1]]) if x == 0 else ([near, near], [line + wide[0], line - wide[0]])
-        shapes.append((path([*xs, far, far], [*ys, line - wide[1], line + wide[1]]) + "Z", style))
-    return tuple(shapes)
 
 
 class ModeRow(NamedTuple):

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from cuefem.report.drawings import FRONT, materials_of, seen, style_of, true_drawing
+from cuefem.report.drawings import FRONT, legend, true_drawing
 from cuefem.report.templates import environment
 from cuefem.report.verdict_table import ScaleRow, scale, squirt_words
 from cuefem.results.quantities import NONE, TRADE, with_unit
@@ -143,10 +143,7 @@ def drawings_markup(designs: Mapping[str, Scene]) -> str:
         for name, scene in designs.items()
     ]
     whole = true_drawing(first, first.shaft.length, "Whole drawing, true to scale")
-    names = dict.fromkeys(name for scene in designs.values() for name in materials_of(seen(scene)))
-    hollow = any((s.tip_bore or s.butt_bore) and not s.core for scene in designs.values() for s in scene.shaft.segments)
-    legend = [(name, style_of(name)) for name in names] + ([("bore", "hollow")] if hollow else [])
-    return _macro("drawings", fronts, whole, legend)
+    return _macro("drawings", fronts, whole, legend(designs.values()))
 
 
 def parts_line(verdict: Record) -> str:

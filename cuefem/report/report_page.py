@@ -21,14 +21,7 @@ from cuefem.report.advice_table import advice_sheet
 from cuefem.report.charts import Axis, Chart, Shade
 from cuefem.report.comparison_table import comparison_sheet
 from cuefem.report.contact import contact_part
-from cuefem.report.drawings import (
-    cue_drawing,
-    materials_of,
-    modes_drawing,
-    seen,
-    strike_drawing,
-    style_of,
-)
+from cuefem.report.drawings import cue_drawing, legend, modes_drawing, strike_drawing
 from cuefem.report.effects import seconds_words
 from cuefem.report.end_mass import SQUIRT_END_MASS
 from cuefem.report.everything import report_record
@@ -245,11 +238,9 @@ def _cue_part(scene: Scene) -> Record:
         )
         for x, s in zip(cue.nodes[:-1], cue.segments, strict=True)
     )
-    names = materials_of(seen(scene))
-    hollow = any((s.tip_bore or s.butt_bore) and s.core is None for s in cue.segments)
     return {
         "drawing": cue_drawing(scene),
-        "materials": [(name, style_of(name)) for name in names] + ([("bore", "hollow")] if hollow else []),
+        "materials": legend([scene]),
         "segments": Sheet("Segments, from tip to butt", SEGMENT_COLUMNS, tuple(rows), texts=(5,)),
     }
 

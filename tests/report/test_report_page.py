@@ -147,7 +147,8 @@ def test_every_piece_and_effect_is_drawn_at_its_place(blow: cf.Scene, front: tup
             assert (outline == "") == (width == 0)
             assert not outline or box(outline) == pytest.approx([*along, *across], abs=0.02)
     assert {sign.label: (sign.at - 10) / scale for sign in drawing.signs} == pytest.approx(signs)
-    assert {tick.label: tick.at for tick in drawing.ticks}["200"] == pytest.approx(10 + scale * 0.2, abs=0.02)
+    at = 10 + scale * (0.2 + sum(front))  # behind the leather, as positions count
+    assert {tick.label: tick.at for tick in drawing.ticks}["200"] == pytest.approx(at, abs=0.02)
 
 
 def test_modes_are_drawn_with_their_nodes() -> None:
@@ -181,8 +182,8 @@ def test_the_blow_is_drawn_true(side: int) -> None:
     assert (y - made.cue_line) / scale == pytest.approx(0.375 * side * (blow.ball.radius + blow.dome_radius), rel=1e-9)
     assert (made.path_end[1] - y) / (x - made.path_end[0]) == pytest.approx(math.tan(0.03 * side), rel=1e-9)
     assert made.straight_end == (made.path_end[0], y)
-    tip, *behind = (box(outline) for outline, _ in made.pieces)
-    assert made.pieces[0][1] == "m-leather"
+    tip, *behind = (box(piece.outline) for piece in made.pieces)
+    assert made.pieces[0].material == "m-leather"
     assert tip[:2] == pytest.approx([300, 300 + 6e-3 * scale], abs=0.02)  # its apex, and its height
     assert tip[2:] == pytest.approx(made.cue_line + 5e-3 * scale * np.array([-1, 1]), abs=0.02)
     assert [b[0] for b in behind] == pytest.approx(
