@@ -7,18 +7,16 @@ from dataclasses import dataclass, field
 from html import escape
 from typing import Any
 
-import numpy as np
 from nicegui import ui
 
 import cuefem.report
 from cuefem.contact.outcome import MISSED
-from cuefem.cue import Array
 from cuefem.designer.computation import CURVE_OFFSETS
 from cuefem.designer.knobs import KNOBS, label, value, written
 from cuefem.designer.state import Design, Step
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.report.advice_table import advice_sheet
-from cuefem.report.charts import Axis, Curve, Shade, chart
+from cuefem.report.charts import Axis, Curve, chart
 from cuefem.report.first_screen import difference_words
 from cuefem.report.squirt import offset_charts
 from cuefem.report.strike_table import grip_warning
@@ -31,7 +29,6 @@ from cuefem.scene import Scene
 
 HALF = 0.5 * (CURVE_OFFSETS[1] - CURVE_OFFSETS[0])
 STYLES = ("c1", "c2")
-LATE = ("late stick", "partial slip", "slides")
 COMPUTING = '<p class="soft">computing …</p>'
 
 
@@ -64,10 +61,9 @@ def curves_markup(step: Step, known: Known) -> str:
     drawn = [(name, style, side["curve"]) for name, style, side in sides if "curve" in side]
     if not drawn or "curve" not in known.own:
         return COMPUTING
-    lines = [(name, style, *_to_miscue(curve)) for name, style, curve in drawn]
     grips = known.own["curve"]["grip"]
     offset = float(step.design.scene.stroke.offset)
-    charts = [*offset_charts(lines, CURVE_OFFSETS, offset, height=280, spans=_shades(grips))]
+    charts = [*offset_charts(drawn, CURVE_OFFSETS, offset, height=280, grips=grips)]
     grams = [
         Curve(name, 1e3 * side["gram"][0], side["gram"][1], style) for name, style, side in sides if "gram" in side
     ]
@@ -87,21 +83,6 @@ def curves_markup(step: Step, known: Known) -> str:
     if missed:
         note = f"{step.design.name}: miscue from b/R {missed[0] - HALF:.2f} on. {note}"
     return f'<div class="charts">{figures}</div><p class="soft">{escape(note)}</p>'
-
-
-def _to_miscue(curve: Mapping[str, Any]) -> tuple[Array, Array]:
-    """Squirt and pivot length of a curve as far as its first miscue: beyond it squirt grows without meaning."""
-    missed = np.cumsum([grip in MISSED for grip in curve["grip"]])
-    return tuple(np.where(missed > 1, np.nan, curve[name]) for name in ("squirt", "pivot_length"))  # type: ignore[return-value]
-
-
-def _shades(grips: Sequence[str]) -> list[Shade]:
-    kinds = ["miss" if grip in MISSED else "slip" if grip in LATE else "" for grip in grips]
-    return [
-        Shade(b - HALF, min(b + HALF, CURVE_OFFSETS[-1]), kind)
-        for b, kind in zip(CURVE_OFFSETS, kinds, strict=True)
-        if kind
-    ]
 
 
 def changes_panel(step: Step, known: Known, attempt: Callable[[Mapping[str, Any]], None]) -> None:

@@ -6,8 +6,6 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
-import numpy as np
-
 from cuefem.report.charts import Chart
 from cuefem.report.drawings import CueDrawing, cue_drawing
 from cuefem.report.end_mass import SQUIRT_END_MASS
@@ -97,8 +95,7 @@ def comparison_figures(scenes: Mapping[str, Scene], record: Record) -> list[Char
     """Squirt and pivot length of the cues against the offset, and each cue's drawing."""
     lines = []
     for style, (name, scene) in zip(STYLES, struck_alike(scenes).items(), strict=False):
-        curve = coupled_curve(scene, CURVE_OFFSETS, Solved(scene).tip)
-        lines.append((name, style, np.asarray(curve["squirt"]), curve["pivot_length"]))
+        lines.append((name, style, coupled_curve(scene, CURVE_OFFSETS, Solved(scene).tip)))
     charts = offset_charts(lines, CURVE_OFFSETS, record["offset"], height=300)
     drawings = (cue_drawing(scene) for scene in scenes.values())
     return [

@@ -6,19 +6,17 @@ import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
-
-import numpy as np
+from typing import Any
 
 from cuefem.beam.modes import modes
-from cuefem.contact.outcome import MISSED, grip_of
+from cuefem.contact.outcome import grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue.materials import material_name
 from cuefem.design.design_changes import design_changes
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.quantity.fields import scalar
 from cuefem.report.advice_table import advice_sheet
-from cuefem.report.charts import Axis, Chart, Shade
+from cuefem.report.charts import Axis, Chart
 from cuefem.report.comparison_table import comparison_sheet
 from cuefem.report.contact import contact_part
 from cuefem.report.drawings import cue_drawing, legend, modes_drawing, strike_drawing
@@ -37,7 +35,7 @@ from cuefem.report.glossary import with_words
 from cuefem.report.models import ALCIATORE, PAPER
 from cuefem.report.record import scene_record
 from cuefem.report.scene_words import assumptions, effect_words, plain_cue_line
-from cuefem.report.squirt import PAPER_CUE_END_MASS, offset_charts
+from cuefem.report.squirt import LATE, PAPER_CUE_END_MASS, offset_charts
 from cuefem.report.strike_table import BRIEF, grip_warning, models_sheet, strike_record
 from cuefem.report.templates import environment
 from cuefem.report.tip_table import tip_sheet
@@ -67,7 +65,6 @@ SOURCES = (
     ),
     ("A.31", ALCIATORE),
 )
-LATE = ("late stick", "partial slip", "slides", *MISSED)
 
 # The models' classes on the page.
 STYLES = {"coupled, this cue": "c1", "lumped, this cue": "c2", "two-part, this cue": "c3", "two-part, 12 g": "c5"}
@@ -168,7 +165,7 @@ def _steps(climbed_to: Sequence[tuple[Level, float]], rtol: float) -> Sheet:
 
 def _context(scene: Scene, records: Record) -> Record:
     outcome: Outcome = records["outcome"]
-    record = records["strike"]
+    record, grips = records["strike"], records["squirt"]["models"]["coupled, this cue"]["grip"]
     return {
         "scene": scene,
         "facts": _facts(scene),
@@ -186,9 +183,9 @@ def _context(scene: Scene, records: Record) -> Record:
         else None,
         "contact": None if outcome.history is None else contact_part(outcome),
         "tip": None if scene.contact_terms.tip is None else tip_sheet(records["tip"]),
-        "by_offset": _by_offset(records["squirt"]["models"], scene, _slipped(records["squirt"])),
-        "slipped": bool(_slipped(records["squirt"])),
-        "end_masses": _end_masses(records["end_masses"], records["squirt"], scene, outcome),
+        "by_offset": _by_offset(records["squirt"]["models"], scene, grips),
+        "slipped": any(grip in LATE for grip in grips),
+        "end_masses": _end_masses(records["end_masses"], scene, outcome),
         "energy": _energy(outcome),
         "models": replace(models_sheet(record, BRIEF), title="The same stroke by every model"),
         "coupling": record["coupling"],
@@ -245,33 +242,12 @@ def _cue_part(scene: Scene) -> Record:
     }
 
 
-def _by_offset(curves: Mapping[str, Record], scene: Scene, spans: Sequence[Shade] = ()) -> tuple[Chart, Chart]:
-    lines = [
-        (name, STYLES.get(name, f"c{i}"), curve["squirt"], curve["pivot_length"])
-        for i, (name, curve) in enumerate(curves.items(), 1)
-    ]
-    return offset_charts(lines, PAGE_OFFSETS, scalar("Stroke.offset", scene.stroke.offset), height=300, spans=spans)
+def _by_offset(curves: Mapping[str, Record], scene: Scene, grips: Sequence[str] = ()) -> tuple[Chart, Chart]:
+    lines = [(name, STYLES.get(name, f"c{i}"), curve) for i, (name, curve) in enumerate(curves.items(), 1)]
+    return offset_charts(lines, PAGE_OFFSETS, scalar("Stroke.offset", scene.stroke.offset), height=300, grips=grips)
 
 
-def _slipped(record: Record) -> list[Shade]:
-    """Where the coupled stroke sticks late, lets go or miscues: halfway to the offsets before and after."""
-    offsets, grips = np.array(record["offsets"]), record["models"]["coupled, this cue"]["grip"]
-    ends = np.r_[offsets[0], (offsets[1:] + offsets[:-1]) / 2, offsets[-1]]
-    spans = [(float(ends[i]), float(ends[i + 1])) for i, grip in enumerate(grips) if grip in LATE]
-    return [Shade(start, end, "slip") for start, end in spans]
-
-
-class MassRow(NamedTuple):
-    """An end mass on its axis: value, spread and text."""
-
-    name: str
-    at: float
-    low: float
-    high: float
-    text: str
-
-
-def _end_masses(record: Record, squirt: Record, scene: Scene, outcome: Outcome) -> Record:
+def _end_masses(record: Record, scene: Scene, outcome: Outcome) -> Record:
     drives = [(name, values) for name, values in record["drives"].items() if values["end_mass"] is not None]
     paper = PAPER_CUE_END_MASS / 4
     by_a31 = _a31_mass(scene, outcome)
@@ -282,16 +258,14 @@ def _end_masses(record: Record, squirt: Record, scene: Scene, outcome: Outcome) 
     def place(mass: float) -> float:
         return float(across.place(scaled(mass, "kg"), left, right))
 
-    def row(name: str, felt: float, spread: tuple[float, float]) -> MassRow:
-        return MassRow(name, place(felt), place(spread[0]), place(spread[1]), grams(felt))
-
-    rows = [
-        row(DEFINITIONS[n].label_at(record["offset"]), values["end_mass"], (values["lowest"], values["highest"]))
-        for n, values in drives
+    felt = [
+        (DEFINITIONS[name].label_at(record["offset"]), *(values[key] for key in ("end_mass", "lowest", "highest")))
+        for name, values in drives
     ]
-    rows.append(row("the paper's 12 g", paper, (paper, paper)))
-    if by_a31 is not None:
-        rows.append(row(A31_NAME, by_a31, (by_a31, by_a31)))
+    felt += [
+        (name, *3 * (mass,)) for name, mass in (("the paper's 12 g", paper), (A31_NAME, by_a31)) if mass is not None
+    ]
+    rows = [(name, grams(masses[0]), *map(place, masses)) for name, *masses in felt]
     return {
         "rows": rows,
         "ticks": across.ticks(left, right),
@@ -303,7 +277,6 @@ def _end_masses(record: Record, squirt: Record, scene: Scene, outcome: Outcome) 
             *((definition.label_at(record["offset"]), definition.meaning) for definition in DEFINITIONS.values()),
             *SOURCES,
         ],
-        "coupling": squirt["coupling"],
         "counted": "; ".join(definition.label for definition in DEFINITIONS.values() if definition.counts_tip),
     }
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from cuefem.contact.outcome import MISSED
 from cuefem.cue import LumpedCue
 from cuefem.endmass.lumped import impulse
 from cuefem.report.charts import Axis, Chart, Curve, Mark, Shade, chart
@@ -43,11 +44,6 @@ def _curve(
             curve["squirt"][i] = squirt(struck, cue)
             curve["pivot_length"][i] = pivot_length(struck, curve["squirt"][i])
     return curve
-
-
-def two_part_curve(solved: Solved, offsets: Sequence[float]) -> Record:
-    """The impulse solver's squirt and natural pivot length against the offset, each with its own `two_part_cues`."""
-    return _curve(solved.scene, offsets, two_part_cues(solved.scene, offsets, solved.tip_stuck))
 
 
 def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, solved: Solved | None = None) -> Record:
@@ -89,28 +85,36 @@ def squirt_sheet(record: Record, scene: Record) -> Sheet:
     )
 
 
+LATE = ("late stick", "partial slip", "slides", *MISSED)
 LONGEST_PIVOT = 1.5  # m; beyond it a pivot is behind the cue
 
 
 def offset_charts(
-    lines: Sequence[tuple[str, str, Any, Any]],
+    lines: Sequence[tuple[str, str, Record]],
     offsets: Sequence[float],
     own: float,
     *,
     height: float,
-    spans: Sequence[Shade] = (),
+    grips: Sequence[str] = (),
 ) -> tuple[Chart, Chart]:
-    """Charts of squirt and of pivot length against the offset.
+    """Charts of squirt and of pivot length against the offset, as far as the first miscue.
 
-    lines: name, class on the page, squirt in rad and pivot length in m of every curve. own: the offset of the scene's
-    stroke, which is marked. spans: offsets to shade.
+    lines: name, class on the page and `coupled_curve` or the like of every cue or model. own: the offset of the
+    scene's stroke, which is marked. grips: by which offsets are shaded, where the tip slips long or miscues.
     """
     x = np.array(offsets)
     per_metre, unit = TRADE["m"]
-    squirt = [Curve(name, np.r_[0.0, x], np.degrees(np.r_[0.0, angle]), style) for name, style, angle, _ in lines]
-    pivot = [
-        Curve(name, x, per_metre * np.where(np.asarray(angle) > 0, length, np.nan), style)
-        for name, style, angle, length in lines
+    squirt, pivot = [], []
+    for name, style, curve in lines:
+        beyond = np.cumsum([grip in MISSED for grip in curve.get("grip", [""] * len(x))]) > 1
+        angle = np.where(beyond, np.nan, curve["squirt"])
+        squirt.append(Curve(name, np.r_[0.0, x], np.degrees(np.r_[0.0, angle]), style))
+        pivot.append(Curve(name, x, per_metre * np.where(angle > 0, curve["pivot_length"], np.nan), style))
+    ends = np.r_[x[0], (x[1:] + x[:-1]) / 2, x[-1]]
+    spans = [
+        Shade(float(ends[i]), float(ends[i + 1]), "miss" if grip in MISSED else "slip")
+        for i, grip in enumerate(grips)
+        if grip in LATE
     ]
     longest = max([0.1, *(float(np.nanmax(curve.y, initial=0.0)) / per_metre for curve in pivot)])
     highest = Axis("", 0.0).over([np.array([per_metre * min(LONGEST_PIVOT, longest)])]).high
