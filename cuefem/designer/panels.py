@@ -17,7 +17,7 @@ from cuefem.designer.state import Design, Step
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.report.advice_table import advice_sheet
 from cuefem.report.charts import Axis, Curve, chart
-from cuefem.report.first_screen import difference_words
+from cuefem.report.comparison_table import difference_words
 from cuefem.report.squirt import offset_charts
 from cuefem.report.strike_table import grip_warning
 from cuefem.report.templates import chart_markup, sheet_markup

@@ -21,7 +21,7 @@ WIDE = 440.0
 
 
 class Tick(NamedTuple):
-    """A place on an axis, in units of the drawing, and what stands there."""
+    """A place on an axis, in its units or in those of the drawing, and what stands there."""
 
     at: float
     label: str
@@ -42,13 +42,6 @@ class Shade(NamedTuple):
     start: float
     end: float
     style: str
-
-
-class Mark(NamedTuple):
-    """A moment on the x axis, in its units, with a short label."""
-
-    at: float
-    label: str
 
 
 @dataclass(frozen=True)
@@ -121,7 +114,7 @@ class Chart:
     x_ticks: tuple[Tick, ...]
     y_ticks: tuple[Tick, ...]
     curves: tuple[tuple[str, str, str], ...]  # name, style, path
-    spans: tuple[tuple[float, float, str], ...]  # left, width, style
+    spans: tuple[tuple[float, float, str], ...]  # left, right, style
     marks: tuple[Tick, ...]
     labels: tuple[Tick, ...]  # of the marks, moved apart
     across: Scale
@@ -135,7 +128,7 @@ def chart(
     x: Axis,
     y: Axis,
     spans: Sequence[Shade] = (),
-    marks: Sequence[Mark] = (),
+    marks: Sequence[Tick] = (),
     height: float = 260.0,
 ) -> Chart:
     """A chart of curves; what lies beyond the axes' ends is cut off."""
@@ -155,7 +148,7 @@ def chart(
             (c.name, c.style, path(across.place(c.x, left, right), _within(up, c.y, bottom=bottom, top=top)))
             for c in curves
         ),
-        tuple(_span(across, span, left=left, right=right) for span in spans),
+        tuple((*across.place((span.start, span.end), left, right).tolist(), span.style) for span in spans),
         lines,
         tuple(Tick(at, line.label) for at, line in zip(apart([m.at for m in lines], left, right), lines, strict=True)),
         across,
@@ -176,8 +169,3 @@ def apart(places: Sequence[float], first: float, last: float, *, gap: float = 14
 def _within(scale: Scale, values: ArrayLike, *, bottom: float, top: float) -> Any:
     """Places of values, far ones kept near enough to be drawn; the page clips them."""
     return np.clip(scale.place(values, bottom, top), 2 * top - 1.5 * bottom, 2 * bottom)
-
-
-def _span(scale: Scale, span: Shade, *, left: float, right: float) -> tuple[float, float, str]:
-    start, end = (float(scale.place(t, left, right)) for t in (span.start, span.end))
-    return start, end - start, span.style

@@ -34,7 +34,7 @@ def comparison_sentences(record: Record) -> list[str]:
             which = f"the stroke of {' and of '.join(missed)} is a miscue" if missed else "a stroke is nearly a miscue"
             made.append(f"{name} and {first} cannot be compared in squirt: {which}.")
         elif not squirt["distinct"]:
-            made.append(f"{name} is not distinct from {first} in squirt: {_signed(squirt)} (1σ).")
+            made.append(f"{name} is not distinct from {first} in squirt: {difference_words(squirt)} (1σ).")
         else:
             more = "more" if squirt["difference"] > 0 else "less"
             size, error = 100 * abs(squirt["difference"]), 100 * squirt["error"]
@@ -42,7 +42,7 @@ def comparison_sentences(record: Record) -> list[str]:
     return made
 
 
-def _signed(difference: Record) -> str:
+def difference_words(difference: Record) -> str:
     """A difference in per cent with its uncertainty."""
     size, error = 100 * difference["difference"], 100 * difference["error"]
     digits = 0 if error >= 2 else 1 if error >= 0.2 else 2
@@ -57,7 +57,7 @@ def comparison_sheet(record: Record) -> Sheet:
         cells = [_label(name), _value(name, own)]
         for other in others:
             difference = record["differences"][other].get(name)
-            told = "" if difference is None else _signed(difference) + ("" if difference["distinct"] else " *")
+            told = "" if difference is None else difference_words(difference) + ("" if difference["distinct"] else " *")
             cells += [_value(name, record["cues"][other][name]), told or NONE]
         rows.append(tuple(cells))
         if name == "squirt":

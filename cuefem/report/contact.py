@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from cuefem.contact.outcome import Phase
-from cuefem.report.charts import Axis, Chart, Curve, Mark, Shade, chart
+from cuefem.report.charts import Axis, Chart, Curve, Shade, Tick, chart
 from cuefem.results.quantities import scaled, with_heading
 from cuefem.results.records import Record
 from cuefem.results.solved_design import course
@@ -26,7 +26,7 @@ def contact_part(outcome: Outcome) -> Record:
     t = np.linspace(0, outcome.duration, 401)
     ends = [scaled([phase.start, phase.end], "s").tolist() for phase in phases if phase.grip.startswith("slip")]
     spans = [Shade(start, end, "slip") for start, end in ends]
-    marks = [Mark(float(scaled(at, "s")), str(i + 1)) for i, (at, _) in enumerate(events)]
+    marks = [Tick(float(scaled(at, "s")), str(i + 1)) for i, (at, _) in enumerate(events)]
     time = Axis(with_heading("time", "s"), 0.0, float(scaled(outcome.duration, "s")))
 
     def drawn(title: str, name: str, unit: str) -> Chart:

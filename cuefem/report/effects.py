@@ -8,7 +8,6 @@ from dataclasses import asdict
 
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.design.worth import Change, Variant, change, variants
-from cuefem.effects import effect_kinds
 from cuefem.endmass.definitions import equivalent_end_mass
 from cuefem.report.scene_words import assumptions, effect_words
 from cuefem.results.convergence import climb
@@ -62,7 +61,6 @@ def effects_record(scene: Scene, *, rtol: float = DEFAULT_RTOL, track: Track = i
         "base": _figures(base, scene) | {"unknowns": base.unknowns, "seconds": seconds},
         "effects": rows,
         "worth": worth(rows),
-        "textbook": {name: kind.usual._asdict() for name, kind in effect_kinds().items() if kind.usual},
     }
 
 

@@ -72,11 +72,6 @@ def headline_markup(own: Shown, other: Shown | None = None, difference: Record |
     return _macro("headline", own.numbers["squirt"], text, error, f"{offset:.2f}", lines, grip)
 
 
-def difference_words(difference: Record) -> str:
-    """A relative difference with its uncertainty: "−15 ± 8 %"."""
-    return f"{100 * difference['difference']:+.0f} ± {100 * difference['error']:.0f} %".replace("-", "−")
-
-
 def _told(difference: Record | None, other: str) -> tuple[str, str, str]:
     """A relative difference with its uncertainty: "15 ± 8 %", "less squirt than", and of what it is."""
     if difference is None:

@@ -10,7 +10,7 @@ import numpy as np
 from cuefem.contact.outcome import MISSED
 from cuefem.cue import LumpedCue
 from cuefem.endmass.lumped import impulse
-from cuefem.report.charts import Axis, Chart, Curve, Mark, Shade, chart
+from cuefem.report.charts import Axis, Chart, Curve, Shade, Tick, chart
 from cuefem.report.models import (
     a31_squirt,
     bare_scene,
@@ -118,7 +118,7 @@ def offset_charts(
     ]
     longest = max([0.1, *(float(np.nanmax(curve.y, initial=0.0)) / per_metre for curve in pivot)])
     highest = Axis("", 0.0).over([np.array([per_metre * min(LONGEST_PIVOT, longest)])]).high
-    at, here = Axis("offset b/R", 0.0, float(x[-1])), [Mark(abs(own), "here")] if 0 < abs(own) <= x[-1] else []
+    at, here = Axis("offset b/R", 0.0, float(x[-1])), [Tick(abs(own), "here")] if 0 < abs(own) <= x[-1] else []
 
     def drawn(title: str, curves: list[Curve], y: Axis) -> Chart:
         return chart(title, curves, x=at, y=y, marks=here, spans=spans, height=height)
