@@ -53,7 +53,7 @@ def test_what_is_said_of_squirt() -> None:
     verdict = answers("report")["verdict"]
     degrees, aside = math.degrees(verdict["squirt"]), 1e3 * math.tan(verdict["squirt"])
     off = degrees * verdict["uncertainty"]["total"]
-    said = f"squirt {degrees:.2f} ± {off:.2f}° (at b/R 0.3, 3/10 of the way to the edge): the ball goes"
+    said = f"squirt {degrees:.2f} ± {off:.2f}° (at b/R 0.3, 3/10 of the way to the edge): the ball is"
     assert said in TEXTS["read_the_report"]
     assert f"about {aside:.0f} mm off after one metre" in TEXTS["what_squirt_is"]
     known = ready()
@@ -61,7 +61,7 @@ def test_what_is_said_of_squirt() -> None:
         assert 0.18 < 1 - known[name] / known["plain maple"] < 0.24
     assert verdict["uncertainty"]["total"] == pytest.approx(0.2, abs=0.025)  # "off by about 20 %"
     assert f"The model's own is {100 * MODEL:.0f} %" in TEXTS["read_the_report"]
-    assert f"a difference is {100 * SHAFTS:.0f} % of itself off by the model" in TEXTS["read_the_report"]
+    assert f"its uncertainty is {100 * SHAFTS:.0f} % of the difference for the model" in TEXTS["read_the_report"]
     assert f"{100 * SHAFTS:.0f} % of the change for the model" in TEXTS["change_it"]
     assert 0.13 < verdict["inputs"]["rho"] / 0.1 < 0.2  # "by about a sixth as much", of wood heavier by a tenth
 
