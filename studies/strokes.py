@@ -77,7 +77,7 @@ def pool_scene(struck: cf.Cue, contact_time: float, offset: float, effects: Sequ
 
 
 def whole(drawn: cf.Cue, offset: float = 0.375, speed: float = 2.0, **leather: float) -> cf.Scene:
-    """Pool's usual stroke: LeatherTip, axial waves, axial force on the bent shaft. leather: fields of the tip."""
+    """Pool's default stroke: LeatherTip, axial waves, axial force on the bent shaft. leather: fields of the tip."""
     usual = cf.usual_scene(drawn)
     effects = tuple(replace(e, **leather) if isinstance(e, cf.LeatherTip) else e for e in usual.effects)
     return replace(usual, stroke=cf.Stroke(speed, offset), effects=effects)

@@ -87,8 +87,8 @@ def scene_of(
 ) -> tuple[Scene, list[str]]:
     """The scene that a command computes, and what was assumed because neither file nor options say it.
 
-    A cue alone gets a game's usual stroke (`cuefem.scene.default_scene`). blow: whether ball, tip and stroke matter to
-    the command, so that what is assumed of them is told too. remarked: whether unusual numbers are told.
+    A cue alone gets a game's default stroke (`cuefem.scene.default_scene`). blow: whether ball, tip and stroke matter
+    to the command, so that assumptions on them are listed too. remarked: whether unusual numbers are printed.
     """
     opened = load_stroke(file, **fittings_of(options))
     said = {name for name, value in options.items() if value is not None}
@@ -151,7 +151,7 @@ def show(
 def whole_record(
     file: Path, notes: Sequence[str], solved: Scene, record: Record, *, blow: bool = True, **more: Any
 ) -> Record:
-    """What a program is told: the file, what was assumed and is unusual, the scene, the result, the units."""
+    """The JSON record: the file, assumptions, unusual values, the scene, the result, the units."""
     said = {"file": str(file), "assumed": notes, "unusual": unusual(solved, blow=blow), "scene": scene_record(solved)}
     return said | more | record | {"units": UNITS | record.get("units", {})}
 

@@ -114,7 +114,7 @@ def with_weight(thing: Cue | Scene | SideStrike, file: Path, text: str) -> Any:
 
 
 def usual(cue: Cue, file: Path, options: dict[str, Any]) -> Scene:
-    """The scene of a cue alone: the game's usual stroke."""
+    """The scene of a cue alone: the game's default stroke."""
     game = options.get("game") or DEFAULT_GAME
     leather = usual_tip(cue, game)
     changes = _changes(SimpleNamespace(effects=(leather,)), file, options, _is_leather)

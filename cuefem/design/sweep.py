@@ -274,7 +274,7 @@ def dask(address: str) -> Iterator[Pool]:
 
     levels = {log: log.level for log in map(logging.getLogger, LOGS)}
     for log in levels:
-        log.setLevel(logging.CRITICAL)  # a scheduler that is gone is told in one line: `check`
+        log.setLevel(logging.CRITICAL)  # a lost scheduler is one line of error: `check`
     try:
         workers = sum(client.nthreads().values())
         yield Pool(opened, 2 * max(workers, 1) + 1, check)

@@ -174,7 +174,7 @@ def reference_design(preset: Preset) -> Design:
 def read_design(name: str, content: bytes, game: str = DEFAULT_GAME) -> Design:
     """The design of a file that was sent; ValueError in one line.
 
-    A cue alone gets the usual stroke of a game. A scene that names a reference cue finds it, wherever it lies.
+    A cue alone gets the default stroke of a game. A scene that names a reference cue finds it, wherever it lies.
     """
     with TemporaryDirectory() as place:
         path = Path(place) / name

@@ -61,7 +61,7 @@ class TipDome(TipEffect):
 
 @dataclass(frozen=True)
 class TipShear(TipEffect):
-    """The give of the leather along the ball's surface: a massless contact patch on a spring.
+    """Tangential compliance of the leather: a massless contact patch on a spring.
 
     Parameters
     ----------

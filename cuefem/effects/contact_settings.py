@@ -67,7 +67,7 @@ class ContactTerms:
     """Terms of the contact; each effect of a scene adds its own (`Effect.add_to_contact`), in any order.
 
     tip_diameter: of the cue's end, m; None for a lumped cue, which has none. law: makes the tip's law along the normal
-    in the place of the linear one. tip: a whole tip. turns: whether the normal turns as the contact moves over ball and
+    instead of the linear one. tip: a whole tip. turns: whether the normal turns as the contact moves over ball and
     tip. table: that under the ball of a raised cue. window: how long cue and ball are followed after their first
     separation, s. `cuefem.contact.model` makes of them the law that the contact follows.
     """

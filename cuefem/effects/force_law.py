@@ -46,7 +46,7 @@ class TipLaw:
 
 
 def loading_time(exponent: float) -> float:
-    """Time to the greatest compression, in depth over speed: the integral of 1/sqrt(1 - s^(n + 1)) over 0..1."""
+    """Time to the maximum indentation, in depth over speed: the integral of 1/sqrt(1 - s^(n + 1)) over 0..1."""
     from scipy.special import gamma  # loaded when used: a scene alone needs no scipy
 
     power = 1 / (exponent + 1)
@@ -149,7 +149,7 @@ class LeatherLaw:
         return (1 - self.restitution**2) * float(self.work(deepest))
 
     def blow(self, mass: Any, speed: Any) -> tuple[Any, Any]:
-        """(greatest compression, m, time to it, s) of a head-on blow of a reduced mass, kg, at a speed, m/s."""
+        """(maximum indentation, m, time to it, s) of a head-on blow of a reduced mass, kg, at a speed, m/s."""
         mass, speed = np.broadcast_arrays(np.asarray(mass, float), np.asarray(speed, float))
         energy = mass * speed**2 / 2
         deepest = self._deepest(energy)

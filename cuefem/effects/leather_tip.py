@@ -96,7 +96,7 @@ class LeatherTip(CueEffect):
     rho : float, default 1000.0
         Density of the leather, kg/m^3.
     shear : float, optional
-        A constant stiffness along the surface, N/m, in the place of one that follows the load: for comparison. It is
+        A constant stiffness along the surface, N/m, instead of one that follows the load: for comparison. It is
         1000 E height at most, where squirt is within 0.1 % of that of a surface which does not give at all.
     rolls : bool, default True
         Whether the normal turns as the contact rolls over ball and dome; False for comparison.
@@ -305,7 +305,7 @@ class LeatherTip(CueEffect):
         self.check_diameter(diameter)
         deep, rim = self._drop(diameter / 2), diameter / 2
         dome = math.pi * deep * (3 * rim**2 + deep**2) / 6
-        more = math.fsum((layer.rho - self.rho) * layer.height for layer in self.layers)  # in the place of leather
+        more = math.fsum((layer.rho - self.rho) * layer.height for layer in self.layers)  # instead of leather
         return self.rho * (math.pi * rim**2 * (self.height - deep) + dome) + math.pi * rim**2 * more
 
     def lever(self, phi: float, diameter: float) -> tuple[float, float]:

@@ -97,7 +97,7 @@ def _names() -> dict[str, str]:
 
 
 def _fence(renderer: RendererHTML, tokens: Sequence[Token], index: int, *more: Any) -> str:
-    """A block of code; one of the kind "drawing" names a drawing beside this file, which stands in its place."""
+    """A block of code; one of the kind "drawing" names a drawing beside this file, which replaces it."""
     token = tokens[index]
     if token.info != "drawing":
         return RendererHTML.fence(renderer, tokens, index, *more)

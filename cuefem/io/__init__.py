@@ -116,7 +116,7 @@ def load(
             loaded = with_shaft_of(loaded, material)
         if changed:
             loaded = fitted(loaded, **told)
-        if changed and weight:  # what is told of a shaft does not change what the scale said
+        if changed and weight:  # options on a shaft do not change its measured mass
             told_of: Any = loaded if isinstance(loaded, Cue) else loaded.cue
             weighed = with_shaft_mass(told_of, weight)
             loaded = weighed if isinstance(loaded, Cue) else replace(loaded, cue=weighed)

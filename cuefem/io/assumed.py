@@ -107,7 +107,7 @@ def _fit(path: Path) -> list[str]:
 def assumed_usual(
     cue: Cue, game: str, options: Collection[str], *, offered: Collection[str], blow: bool = True
 ) -> list[str]:
-    """What a cue alone gets of its game's usual stroke (`cuefem.scene.default_scene`); arguments as for `assumed`."""
+    """What a cue alone gets of its game's default stroke (`cuefem.scene.default_scene`); arguments as for `assumed`."""
     known = GAMES[game]
     ball, tip = known.ball, usual_tip(cue, game)
     drawn = f"{1e3 * cue.leather:.4g} mm"

@@ -17,7 +17,7 @@ Row = tuple[int, list[str]]  # the number of a line in the file, and its cells
 _SPREADSHEETS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")  # how .xlsx and .ods begin, and how .xls does
 _MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 _COMMENTS = ("#", "//")
-_SEPARATORS = "\t;|,"  # the first of them that stands in most lines
+_SEPARATORS = "\t;|,"  # the first of them that is in most lines
 _ANY = re.compile(r"[\t;|,]")
 _GAPS = re.compile(r"(?<=\d)[ '](?=\d{3}(?!\d))")  # 1 470 and 1'470
 _PLAIN = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?|[+-]?(?:inf|nan)", re.IGNORECASE)

@@ -54,7 +54,7 @@ def save_mesh(cue: Cue, path: Path) -> None:
 
 @contextlib.contextmanager
 def quiet() -> Iterator[None]:
-    """Keep meshio quiet: a fault of a file is told once, as an InputError, and nothing goes to stdout or stderr.
+    """Keep meshio quiet: a fault of a file is one InputError, and nothing goes to stdout or stderr.
 
     Overflows are not errors here, unlike in computations: meshio at first reads the text of an ASCII .stl as a number
     of triangles, on purpose. One file at a time, since output and warnings belong to the whole process.

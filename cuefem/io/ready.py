@@ -1,4 +1,4 @@
-"""The ready cues and scenes: what each is, and what was measured on such cues."""
+"""The reference cues and scenes: what each is, and what was measured on such cues."""
 
 from __future__ import annotations
 
@@ -89,19 +89,19 @@ def opened(preset: Preset) -> tuple[Scene, list[str]]:
     scene: Any = load(folder() / preset.file)
     if isinstance(scene, Cue):
         bounce = f"e {GAMES[preset.game].bounce}"
-        return usual_scene(scene, preset.game), [f"a usual stroke of {preset.game}", bounce]
+        return usual_scene(scene, preset.game), [f"a default stroke of {preset.game}", bounce]
     return scene, []
 
 
 @cache
 def ready_cues() -> dict[str, Cue]:
-    """The ready cues among which a verdict places a cue, from the most squirt to less."""
+    """The reference cues among which a verdict places a cue, from the most squirt to less."""
     cues: dict[str, Any] = {name: load(folder() / file) for name, file in SCALE.items()}
     return cues
 
 
 def ready_cue(name: str) -> bytes | None:
-    """The content of a ready cue file of this name."""
+    """The content of a reference cue file of this name."""
     path = folder() / "meshes" / Path(name).name
     known = {Path(preset.file).name for preset in PRESETS if preset.file.startswith("meshes/")}
     return path.read_bytes() if Path(name).name in known and path.is_file() else None

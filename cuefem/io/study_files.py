@@ -35,7 +35,7 @@ Texts = str | tuple[str, ...]
 
 @dataclass(frozen=True)
 class VaryTable:
-    """[[vary]] as it stands in a file: values, or low and high, or middle and sd, in the unit of the field."""
+    """[[vary]] as it is in a file: values, or low and high, or middle and sd, in the unit of the field."""
 
     path: Texts
     name: str = ""
@@ -57,7 +57,7 @@ class VaryTable:
 
 @dataclass(frozen=True)
 class LimitTable:
-    """[[limit]] as it stands in a file."""
+    """[[limit]] as it is in a file."""
 
     response: str
     low: Any = None
@@ -78,7 +78,7 @@ class ObjectiveTable:
 
 @dataclass(frozen=True)
 class TolerancesTable:
-    """[tolerances] as it stands in a file; what is left out is that of `Scatter`."""
+    """[tolerances] as it is in a file; what is left out is that of `Scatter`."""
 
     count: int = Scatter.count
     seed: int = Scatter.seed
@@ -224,7 +224,7 @@ def _correlations(listed: tuple[Any, ...], path: Path) -> dict[tuple[str, str], 
 
 
 def _study_tables(path: Path) -> dict[str, Any]:
-    """The tables of a study's file; a drawing or a scene that stands in the place of a study is refused as one."""
+    """The tables of a study's file; a drawing or a scene given instead of a study is rejected as one."""
     state_of(path)
     shape = path.suffix.lower() in SHAPES
     tables = {} if shape else read_tables(path)
@@ -257,7 +257,7 @@ def assumed_base(path: Path, base: Scene) -> list[str]:
         return []
     game = game_of(tables, path)
     if game != KIM:
-        return [f"{tables['scene']} is a cue alone, struck with a usual stroke of {game} (game)"]
+        return [f"{tables['scene']} is a cue alone, struck with a default stroke of {game} (game)"]
     ball, time = with_unit(float(base.ball.mass), "kg", 6), with_unit(float(base.contact_time), "s", 6)
     told = f"{tables['scene']} is a cue alone, struck with a ball of {ball} and a flat tip in contact for {time}"
     return [f"{told}, b/R {base.stroke.offset:.4g} (game)"]

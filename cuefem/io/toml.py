@@ -85,7 +85,7 @@ def _unquoted(text: str, error: str) -> str:
     """A hint if the line of a syntax error has a value with a unit and no quotes."""
     match = re.search(r"at line (\d+)", error)
     line = text.splitlines()[int(match[1]) - 1] if match else ""
-    return "; a value with a unit stands in quotes" if re.search(r"=\s*[-+.\d]+\s*[^\W\d_]", line) else ""
+    return "; put a value with a unit in quotes" if re.search(r"=\s*[-+.\d]+\s*[^\W\d_]", line) else ""
 
 
 def load_toml(path: Path, cue_file: Callable[[Path], Cue]) -> Cue | Scene | SideStrike:
@@ -144,7 +144,7 @@ def _cue(table: dict[str, Any], path: Path, key: str) -> Cue:
 
 
 def _of_parts(cue_table: dict[str, Any], path: Path, key: str) -> dict[str, Any]:
-    """A cue's table whose shaft is one of the shelf, with its segments in the place of the parts that it names."""
+    """A cue's table whose shaft is one of the shelf, with its segments instead of the parts that it names."""
     told = {name: cue_table[name] for name in keys_of(ShaftParts) if name in cue_table}
     parts = build(ShaftParts, told, file=str(path), key=key)
     if "segments" in cue_table:
@@ -206,7 +206,7 @@ def left_out(tables: dict[str, Any]) -> list[str]:
 def _completed(parts: dict[str, Any], game: str, path: Path) -> dict[str, Any]:
     """The fields of a scene with what they leave out filled in from a game.
 
-    A tip that is told as a spring, and a lumped cue, take no leather.
+    A spring tip and a lumped cue take no leather.
     """
     known, cue, tip = GAMES[game], parts["cue"], parts.get("tip", {})
     if "effects" not in parts and isinstance(cue, LumpedCue):
@@ -294,14 +294,14 @@ def _effect(table: Any, path: Path, key: str) -> Effect:
 
 
 def _spelt_out(kind: type[Effect], table: dict[str, Any], path: Path, key: str) -> dict[str, Any]:
-    """The table with the fields in the place of each word that stands for several, such as the name of a leather."""
+    """The table with the fields instead of each word that stands for several, such as the name of a leather."""
     marks = {name: mark for name, mark, *_ in quantities(kind)}  # type: ignore[arg-type]
     for word, names in kind.named.items():
         wanted = f"must be one of {', '.join(names)}"
         meant = [*dict.fromkeys(name for values in names.values() for name in values)]
         here, first = joined(key, word), meant[0]
         if word not in table:
-            if first not in table and set(table) <= {*keys_of(kind)}:  # a misspelt key is told first
+            if first not in table and set(table) <= {*keys_of(kind)}:  # a misspelt key is reported first
                 raise InputError(path, here, f"{wanted}, or {first} be given in its place; got nothing")
             continue
         spelt = table[word].casefold() if isinstance(table[word], str) else table[word]

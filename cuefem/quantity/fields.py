@@ -102,7 +102,7 @@ class Quantity:
         return _WORDS[self.interval[0] + self.interval[-1]].format(low, high) + unit
 
     def read(self, value: Any) -> float:
-        """What stands in a file as a checked SI number; ValueError says what is wrong in the words of who wrote it."""
+        """What is in a file as a checked SI number; ValueError says what is wrong in the words of who wrote it."""
         if self.unit == "":
             return self._bare(value)
         known = dict(self.words) | ({"inf": math.inf} if self.endless else {})
@@ -143,7 +143,7 @@ class Quantity:
         return result
 
     def written(self, value: float) -> str | float:
-        """A number as it stands in a file: text with a unit, or a bare number if it has no dimension."""
+        """A number as it is in a file: text with a unit, or a bare number if it has no dimension."""
         return text(value, self.unit) if self.unit else value
 
     def check(self, name: str, value: Any) -> Any:

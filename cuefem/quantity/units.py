@@ -86,7 +86,7 @@ _TEXT = re.compile(
 LONGEST_TEXT = 200  # letters of a number and its unit: beyond it matching takes the square of them
 _SIGNS = re.compile(r"\s*([*/·])\s*|\s+")
 _FACTOR = re.compile(r"([^\W\d_]+|[°\"″”']+)(?:\^(-?[0-9])|([23]))?")
-_BELOW = re.compile(r"(.*?)(?:/\s*\(([^/()]*)\))?", re.DOTALL)  # what stands in brackets behind a stroke: rad/(N m)
+_BELOW = re.compile(r"(.*?)(?:/\s*\(([^/()]*)\))?", re.DOTALL)  # the bracket behind a slash: rad/(N m)
 _NO_UNIT = Unit(Decimal(1), (0, 0, 0, 0))
 _POWERS = str.maketrans({"²": "^2", "³": "^3"})
 

@@ -69,7 +69,7 @@ def _turn(before: Any, after: Any) -> str:
     grips = {"stick": "the tip sticks", "slip": "the tip slips", "slip back": "the tip slips back"}
     presses = {
         "load": "pressed beyond its old peak",
-        "unload": "greatest compression",
+        "unload": "maximum indentation",
     }
     words = []
     if after.press != before.press:

@@ -27,7 +27,7 @@ from cuefem.tip_modes import mass_on_face
 # Flexible modes on both sides; tones that are told.
 MODES, TONES = 40, 6
 ORDER, LARGE_ORDER, LARGE = 6, 4, 150  # a drawing of more elements than LARGE is computed with LARGE_ORDER
-# The beam that scikit-fem assembles: the longest element, m, its order, and the difference below which none is told.
+# The beam that scikit-fem assembles: the longest element, m, its order, and the smallest difference that is printed.
 LONGEST, ORDER_OF_BOTH, SAME = 0.03, 6, 1e-9
 Follow = Callable[[Sequence[Any]], Iterable[Any]]
 
@@ -47,7 +47,7 @@ def checked_scene(scene: Scene) -> tuple[Scene, list[str]]:
 
 
 def model_error_record(scene: Scene, follow: Follow = iter) -> Record:
-    """The scene's numbers by beam and solid: tones, static gives, end masses and squirt, with the mesh's own error.
+    """Frequencies, stiffness, end masses and squirt by beam and solid, with the discretisation error.
 
     "left_out": effects that no solid can have, left out on both sides. "scikit_fem": tone 1 of the beam whose weak
     forms scikit-fem assembles. follow: shows how far the work is.

@@ -202,7 +202,7 @@ def _facts(scene: Scene) -> list[str]:
 def _key_figures(record: Record, end_masses: Record, outcome: Outcome) -> list[tuple[str, str, str]]:
     coupled, felt = record["models"]["coupled"], end_masses["drives"]["squirt"]["end_mass"]
     remarks = {
-        "squirt": f"{math.tan(abs(outcome.squirt)) * 1e3:.0f} mm aside in a metre",
+        "squirt": f"{math.tan(abs(outcome.squirt)) * 1e3:.0f} mm off line after 1 m",
         "pivot_length": "pivot the cue about this point and squirt cancels",
         "end_mass": "the mass at the tip that would make this much squirt",
         "ball_speed": f"the cue goes on at {written('cue_speed', outcome.cue_speed, brief=True)}",
@@ -282,7 +282,7 @@ def _end_masses(record: Record, scene: Scene, outcome: Outcome) -> Record:
 
 
 def _a31_mass(scene: Scene, outcome: Outcome) -> float | None:
-    """The end mass with which A.31 gives this squirt, as that of measured cues is told; None if there is none."""
+    """The end mass with which A.31 gives this squirt, the definition of published end masses; None if there is none."""
     offset = float(scene.stroke.offset)
     try:
         mass = float(scene.ball.mass / alciatore_a31_mass_ratio(offset, outcome.squirt, inertia=scene.ball.inertia))

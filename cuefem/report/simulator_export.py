@@ -3,8 +3,8 @@
 pooltool turns the ball by [A.31] with nu = 2/5, whatever the ball: alpha = -atan((5/2) a sqrt(1 - a^2)/(1 + m/end_mass
 + (5/2)(1 - a^2))), its own words in `pooltool.physics.resolve.stick_ball.squirt`; a is b/R of the contact, positive on
 the ball's left, alpha positive to the left. [A.31] knows neither restitution nor the tip's dome: with the stick end
-mass it gives 14 to 36 % less squirt than the coupled strike of the ready scenes. The end mass exported here is the one
-with which it gives the squirt of the coupled strike at the scene's offset and speed.
+mass it gives 14 to 36 % less squirt than the coupled strike of the reference scenes. The end mass exported here is
+the one with which it gives the squirt of the coupled strike at the scene's offset and speed.
 """
 
 from __future__ import annotations

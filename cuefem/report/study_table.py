@@ -25,7 +25,7 @@ from cuefem.scene import Scene
 
 MOST_LEVELS = 24  # values of a column that are groups of their own; of more, each group is a range
 RANGES = 12  # so many then
-CLEAR = 0.2  # rank correlation from which on a trend is told
+CLEAR = 0.2  # the least rank correlation of a trend that is printed
 _FIELD = re.compile(rf"({'|'.join(field.name for field in fields(Scene))})(\[[\d*]+\])?(\.\w+(\[[\d*]+\])?)+")
 _ITEM = re.compile(r"(\w+)s\[(\d+|\*)\]")
 SHOWN = 7  # designs of a front in the terminal

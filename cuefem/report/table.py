@@ -1,4 +1,4 @@
-"""The renderers of records and sheets, one a medium: terminal, JSON and CSV; a page's stands in drawings.html.j2."""
+"""The renderers of records and sheets, one a medium: terminal, JSON and CSV; that of pages is drawings.html.j2."""
 
 from __future__ import annotations
 

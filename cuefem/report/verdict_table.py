@@ -124,7 +124,7 @@ def _percent(share: float) -> str:
 
 
 class ScaleRow(NamedTuple):
-    """A cue on the scale: name, squirt, whether it is one's own, and where it stands in per cent of the scale."""
+    """A cue on the scale: name, squirt, whether it is the design itself, and its position in per cent of the scale."""
 
     name: str
     text: str

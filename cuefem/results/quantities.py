@@ -39,7 +39,7 @@ class Result:
 
     words: its name for people, in full. decimals: in the unit that people read; None for four digits in all. heading:
     its name over a column, by default the words. about: what it is, in a line. of: its values of solved designs, at an
-    argument (None: at the scene's own offset); without it, it is told in records alone, which compute it. argument:
+    argument (None: at the scene's own offset); without it, only records have it, which compute it. argument:
     what it takes in brackets, "", "mode" or "offset". strikes: whether it needs the tip's modes up to the contact's
     cutoff. segments: whether it needs a cue of segments. limit: whether without an offset it is the limit of small
     offsets. reasons: for each design why it is nan, or None. better: which a player wants, "lower" or "higher", by

@@ -17,7 +17,7 @@ import numpy as np
 from cuefem.results.quantities import NONE, RESULTS, TRADE, with_unit, written
 
 Record = dict[str, Any]
-# What stands in a column of a row: the quantity of that name, a template such as "{swing:m}", or a text of the row.
+# The content of a column of a row: the quantity of that name, a template such as "{swing:m}", or a text of the row.
 Entry = str | Callable[[Mapping[str, Any]], str]
 
 

@@ -28,7 +28,7 @@ from cuefem.tip_modes import Solved
 
 TONES = 5  # bending modes that are told of one scene
 USUAL_OFFSET = GAMES["pool"].offset  # b/R
-OFFSETS = (0.1, 0.2, 0.3, 0.4, 0.5)  # b/R at which its squirt is told
+OFFSETS = (0.1, 0.2, 0.3, 0.4, 0.5)  # b/R of the table of squirt
 
 
 def at_offset(scene: Scene, offset: Any) -> Scene:

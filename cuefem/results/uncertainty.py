@@ -116,7 +116,7 @@ def _vibrating(scene: Scene) -> tuple[object, ...]:
 
 @lru_cache(maxsize=256)
 def squirt_of(scene: Scene) -> float:
-    """Squirt of a scene's coupled strike, rad, remembered for what is asked again and again, such as a ready cue."""
+    """Squirt of a scene's coupled strike, rad, cached for scenes that come again, such as reference cues."""
     return float(strike_modes(scene, Solved(scene).tip).squirt)
 
 

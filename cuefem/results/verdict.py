@@ -24,7 +24,7 @@ from cuefem.tip_modes import Solved
 
 
 def verdict_record(scene: Scene, outcome: Outcome, ready: Mapping[str, Cue], *, solved: Solved | None = None) -> Record:
-    """Squirt at the stroke's offset, its uncertainty, and the squirt of each ready cue by the same stroke.
+    """Squirt at the stroke's offset, its uncertainty, and the squirt of each reference cue by the same stroke.
 
     A stroke head on, which has no squirt, is taken at the usual offset instead. "inputs": by how much each changes
     squirt. "among": squirt, own squirt over it less 1, the error of that, and whether the two are "distinct". ready:

@@ -17,7 +17,7 @@ WAVE_SPEED = 4430.0  # m/s in the butt: the root of E over the density of maple,
 
 @dataclass(frozen=True)
 class Game:
-    """A usual stroke of a game, SI, and where its numbers are from.
+    """A default stroke of a game, SI, and where its numbers are from.
 
     Attributes
     ----------
@@ -82,7 +82,7 @@ class Game:
 
     @property
     def effects(self) -> tuple[Effect, ...]:
-        """What acts in a usual stroke beside the tip: waves along the cue, and thrust on the bent shaft."""
+        """What acts in a default stroke beside the tip: axial waves and geometric stiffness."""
         return AxialWaves(self.cue_length, self.butt_diameter, WAVE_SPEED), GeometricStiffness()
 
 
@@ -155,18 +155,18 @@ def usual_tip(cue: Cue, game: str = DEFAULT_GAME) -> LeatherTip:
 
 
 def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = None) -> Scene:
-    """A game's usual stroke with a cue: what the commands give to the drawing of a cue alone.
+    """A game's default stroke with a cue: what the commands give to the drawing of a cue alone.
 
     Parameters
     ----------
     cue
-        A drawing. Leather that is drawn at its tip is taken off, and the tip stands in its place; a drawing without
+        A drawing. Leather that is drawn at its tip is replaced by the tip; a drawing without
         leather ends at the ferrule, and the tip is put on it.
     game
         "pool", "carom" or "snooker": `GAMES` has their numbers and where these are from. "kim" is ``Scene(cue)``, the
         cue as it is drawn with the ball, tip and stroke of Kim's paper and without effects.
     tip
-        In the place of `usual_tip`; not with "kim".
+        Instead of `usual_tip`; not with "kim".
 
     Returns
     -------

@@ -319,7 +319,7 @@ class Scene:
 
     @property
     def deepest(self) -> float:
-        """The greatest compression of a whole tip (`LeatherTip`) by a head-on blow, m; ValueError without one."""
+        """The maximum indentation of a whole tip (`LeatherTip`) by a head-on blow, m; ValueError without one."""
         return self._pressed[0]
 
     @property
@@ -417,7 +417,7 @@ class Outcome:
         Of the contact, s; None from the impulse solver.
     regime : str or array
         How the first slip ended: "stick" (at once, or while the tip was being compressed), "late stick" (past the
-        greatest compression), "slip reversal", "miscue" (it never ended). It does not say that a tip which held at
+        maximum indentation), "slip reversal", "miscue" (it never ended). It does not say that a tip which held at
         first let go later, as leather does far out: `cuefem.contact.outcome.grip_of` does, and calls a strike whose
         tip slid through more than half of the push, or through the last third of it, a miscue too ("lets go"), as
         commands, pages and plots do.

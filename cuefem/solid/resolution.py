@@ -9,7 +9,7 @@ from cuefem.quantity.fields import check_count
 
 @dataclass(frozen=True)
 class Solid:
-    """A cue computed as a solid of revolution, by 3-D elasticity, in the place of a beam.
+    """A cue computed as a solid of revolution, by 3-D elasticity, instead of a beam.
 
     Parameters
     ----------

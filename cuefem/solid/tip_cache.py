@@ -33,7 +33,7 @@ def folder() -> Path | None:
 
 
 def announcement() -> str:
-    """What a person is told while a tip is computed."""
+    """The message printed while a tip is computed."""
     if folder() is None:
         return "computing this tip (about 10 s); it is not kept, for there is no home folder (XDG_CACHE_HOME gives one)"
     return "computing this tip once (about 10 s)"

@@ -1,4 +1,4 @@
-"""How much does each effect change in the ready scenes?
+"""How much does each effect change in the reference scenes?
 
 Every scene of scenes/ without each effect that it lists, and with each that it does not list, at a usual value; then
 the scenes as whole strokes (LeatherTip, axial waves, axial force on the bent shaft): its modulus makes the scene's
@@ -56,7 +56,7 @@ def change(struck: cf.Scene, effect: str) -> float | None:
 
 @cache
 def whole(name: str) -> cf.Scene:
-    """A ready scene with LeatherTip in the place of its leather and of the effects of its tip."""
+    """A ready scene with LeatherTip instead of its leather and of the effects of its tip."""
     found = scene(name)
     leather = found.cue.segments[0].length if found.cue.segments[0].material.E < 1e9 else 0.0
     domes = [e.radius for e in found.effects if isinstance(e, cf.TipDome)]
@@ -92,7 +92,7 @@ def text() -> str:
         rows.append([name, *stroke, f"{squirt(struck):.2f}", own])
     return pages.page(
         "What each effect changes",
-        "How much does each effect change squirt in the ready scenes?",
+        "How much does each effect change squirt in the reference scenes?",
         f"The dome of the tip changes squirt most, by {span('TipDome', listed)}; its shear by "
         f"{span('TipShear', listed)}, the rolling contact by {span('RollingContact', listed)}, axial waves by "
         f"{span('AxialWaves', listed)}, the axial force on the bent shaft by {span('GeometricStiffness', listed)}. In "
