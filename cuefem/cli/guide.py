@@ -32,9 +32,9 @@ def guide(chapter: str | None, output: Path | None, in_terminal: bool, as_json: 
     """Open the handbook in the browser: six pages for makers, then physics, effects, accuracy and a glossary.
 
     CHAPTER opens one chapter (--print: prints it). For makers: what_squirt_is, measure_your_shaft, read_the_report,
-    change_it, weigh_and_tap or what_not_to_believe. For engineers: start, files, study, working, frame, inverse_mass,
-    impulse_solver, beam, solid, strike, contact, end_mass, side, effects, measured, measuring, accuracy, paper,
-    glossary or sources.
+    change_it, weigh_and_tap or what_not_to_believe. For engineers: start, model, files, study, working, frame,
+    inverse_mass, impulse_solver, beam, solid, strike, contact, end_mass, side, effects, measured, measuring, accuracy,
+    paper, glossary or sources.
     """
     asked = [part for part in chapters() if chapter in (None, part.name)]
     if as_json:

@@ -111,7 +111,7 @@ class ContactTerms:
 
     @property
     def compliance(self) -> float:
-        """Give of the tip sideways, as a part of 1/(loading stiffness); 0 for a rigid patch."""
+        """Tangential compliance of the tip, as a part of 1/(loading stiffness); 0 for a rigid patch."""
         return math.fsum(self.compliances)
 
     def lever(self, phi: float) -> tuple[float, float]:

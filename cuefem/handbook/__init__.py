@@ -20,6 +20,7 @@ MAKERS = (
 CHAPTERS = (
     *MAKERS,
     "start",
+    "model",
     "files",
     "study",
     "working",
