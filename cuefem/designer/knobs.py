@@ -82,7 +82,7 @@ KNOBS = {
 GROUPS = ("Shaft", "Tip", "Stroke")
 SI = {"mm": "m", "g": "kg", "ms": "s"}
 # Where a knob is only what a verdict counts under other names.
-INPUTS = {"shaft_material": ("E", "G"), "shaft_mass": ("rho",), "bore": ("bore",)}
+INPUTS = {"shaft_material": ("E", "G"), "shaft_mass": ("rho",), "bore": ("bore_width",)}
 
 
 def label(key: str, scene: Scene) -> str:

@@ -22,7 +22,6 @@ from cuefem.cue.materials import material as named_material
 from cuefem.parameters.parts import (
     BORE_DEPTH,
     BORE_WIDTH,
-    BORED_WIDTH,
     CONTACT_TIME_OF_SPRING,
     FERRULE_LENGTH,
     FERRULE_MATERIAL,
@@ -30,6 +29,7 @@ from cuefem.parameters.parts import (
     PARTS,
     SHAFT_MATERIAL,
     WEIGHT,
+    Layout,
     Part,
     diameter_at,
     main_material,
@@ -374,6 +374,11 @@ def _leather_spread(scene: Scene) -> float | None:
     return math.log(high / low) / 2 if named else IDENTIFIED
 
 
+def _bore_spread(scene: Scene) -> float | None:
+    """Half the range of drilled bores, 6 to 7.5 mm (meshes/README.md), in logarithms; None of a shaft without one."""
+    return math.log(7.5 / 6) / 2 if Layout.of(scene.shaft).bore else None
+
+
 SHAFTS = (*WOODS, "carbon fibre")
 IDENTIFIED = 0.18  # of ln E: of a contact time known to 5 %, whose power -3.5 it is (`cuefem.identify_tip`)
 FERRULES = tuple(name for name in MATERIALS if name not in (*SHAFTS, "foam", "leather"))
@@ -404,8 +409,7 @@ PARAMETERS: dict[str, Parameter] = {
         Parameter("butt diameter", "diameter at the end", part=diameter_at(lambda cue: cue.length)),
         Parameter("taper", "diameter gained to the joint", part=GROWTH),
         Parameter("bore depth", "depth of the bore", part=BORE_DEPTH),
-        Parameter("bore width", "width of the bore", part=BORE_WIDTH),
-        Parameter("bore", "diameter of the bore", part=BORED_WIDTH, spread=math.log(7.5 / 6) / 2),  # meshes/README.md
+        Parameter("bore width", "width of the bore", part=BORE_WIDTH, spread=_bore_spread),
         Parameter(
             *("leather", "E of the leather", "leather.E"),
             spread=_leather_spread,

@@ -337,22 +337,6 @@ def halves(segment: Segment, share: float) -> tuple[Segment, Segment]:
     return front, replace(segment, length=segment.length - front.length, tip_diameter=outer, tip_bore=bore)
 
 
-def _bored_width(scene: Any) -> float | None:
-    return next((s.tip_bore for s in scene.shaft.segments if s.core is None and s.tip_bore > 0), None)
-
-
-def _with_bored_width(scene: Any, value: float) -> Any:
-    f = value / (_bored_width(scene) or value)
-    segments = (
-        replace(s, tip_bore=f * s.tip_bore, butt_bore=f * s.butt_bore) if s.core is None and s.tip_bore > 0 else s
-        for s in scene.shaft.segments
-    )
-    return with_segments(scene, tuple(segments))
-
-
-BORED_WIDTH = Part(_bored_width, _with_bored_width, DIAMETER)
-
-
 def _of_bore(which: int) -> Callable[[Any], float | None]:
     def read(scene: Any) -> float | None:
         bore = _bore(scene)

@@ -81,7 +81,7 @@ def test_without_a_scene_it_is_the_games_usual_stroke(tmp_path: Path) -> None:
 
 
 def test_an_estimate_has_the_numbers_of_the_library(tmp_path: Path) -> None:
-    known = "".join(f'[[uncertain]]\nname = "{name}"\nspread = 0.0\n' for name in ("G", "bore", "contact time"))
+    known = "".join(f'[[uncertain]]\nname = "{name}"\nspread = 0.0\n' for name in ("G", "bore width", "contact time"))
     place = folder(tmp_path / "cue", SOME + known)
     told = as_json("compare", place, "--estimate")
     found = estimate(load_measured(place)[0])

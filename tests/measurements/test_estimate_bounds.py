@@ -36,7 +36,7 @@ def test_a_bore_that_comes_near_the_outside(mass: float, error: float) -> None:
     """On its way the search meets bores within a tenth of a standard deviation of the outer diameter."""
     cue = weighed(mass, error)
     found = estimate(cue)
-    bore = next(value for value in found.values if value.name == "bore")
+    bore = next(value for value in found.values if value.name == "bore width")
     assert found.converged
     assert bore.value < cue.scene.shaft.segments[0].tip_diameter
     assert found.rows[-1].computed == pytest.approx(mass, rel=0.02)
@@ -66,7 +66,7 @@ def setup_of(cue: MeasuredCue, z: np.ndarray) -> bool:
         return False
 
 
-@pytest.mark.parametrize("name", ["E", pytest.param("bore", marks=pytest.mark.heavy), "taper"])
+@pytest.mark.parametrize("name", ["E", pytest.param("bore width", marks=pytest.mark.heavy), "taper"])
 def test_an_unknown_at_its_limits(name: str) -> None:
     at_limits(MeasuredCue("a cue", SCENE, CHEAP, (Prior("taper", 0.1),)), [name])
 

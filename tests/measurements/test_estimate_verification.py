@@ -44,7 +44,7 @@ def test_exact_data_are_found_again() -> None:
     cue = measured_cue(*small, priors=(CLOSED, Prior("G", 0.0)))
     z = np.array([0.7, -0.4, 0.5])
     found = estimate(measured_as(cue, cue.computed(z)))
-    assert [parameter.name for parameter in cue.parameters] == ["E", "rho", "bore"]
+    assert [parameter.name for parameter in cue.parameters] == ["E", "rho", "bore width"]
     assert found.converged
     assert found.z == pytest.approx(z, abs=2e-3)
     for value, parameter, each in zip(found.values, cue.parameters, z, strict=True):
@@ -56,7 +56,7 @@ def test_exact_data_are_found_again() -> None:
 def test_a_linear_case_is_that_of_the_textbook() -> None:
     """One weight, one parameter: the mean of prior and measurement by their weights."""
     one = Weight(value=0.110, error=5e-3)
-    cue = measured_cue(one, priors=(CLOSED, *(Prior(name, 0.0) for name in ("E", "G", "bore"))))
+    cue = measured_cue(one, priors=(CLOSED, *(Prior(name, 0.0) for name in ("E", "G", "bore width"))))
     (parameter,) = cue.parameters
     drawn = float(cue.computed()[0])
     slope = drawn * parameter.spread

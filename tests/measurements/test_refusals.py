@@ -71,7 +71,7 @@ measured.toml | [[squirt]]\noffset = 0.3\nerror = "1 deg"\n | squirt[0].value: m
 measured.toml | name = 3\n | name: must be text
 measured.toml | uncertain = 3\n | uncertain: must be tables
 measured.toml | [[uncertain]]\nname = "bor"\n | uncertain[0].name: must be one of E, G, rho
-measured.toml | [[uncertain]]\nname = "bore"\nlow = 6\nhigh = 7\n | uncertain[0].low: needs a unit
+measured.toml | [[uncertain]]\nname = "bore width"\nlow = 6\nhigh = 7\n | uncertain[0].low: needs a unit
 measured.toml | cue = { mass = "0.5 kg", end_mass = "6 g" }\n | cue: must be a cue of segments
 measured.toml | Pafter = ["-34"]\n | pendulum[0].after[0]: needs a unit
 measured.toml | Pafter = ["-34 mm"]\ncolour = 1\n | pendulum[0].colour: must be one of the keys
