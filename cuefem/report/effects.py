@@ -10,7 +10,7 @@ from cuefem.contact.strike import strike, strike_modes
 from cuefem.design.worth import Change, Variant, change, variants
 from cuefem.endmass.definitions import equivalent_end_mass
 from cuefem.report.scene_words import assumptions, effect_words
-from cuefem.results.convergence import climb
+from cuefem.results.convergence import levels
 from cuefem.results.quantities import NONE, degrees, grams, with_unit
 from cuefem.results.records import Record, Sheet
 from cuefem.scene import Outcome, Resolution, Scene
@@ -50,7 +50,7 @@ def effects_record(scene: Scene, *, rtol: float = DEFAULT_RTOL, track: Track = i
     """
     at = None
     if scene.lumped is None:
-        *_, level = climb(scene, rtol / MARGIN)
+        *_, level = levels(scene, rtol / MARGIN)
         at = level.at
     base, seconds = timed_strike(scene, at)
     rows = [_row(variant, scene, base, rtol=rtol, at=at) for variant in track(variants(scene))]

@@ -43,7 +43,7 @@ from cuefem.report.trust import trust_lines
 from cuefem.report.verdict_table import headline, uncertainty_line
 from cuefem.results.closed_forms import alciatore_a31_mass_ratio
 from cuefem.results.comparison import comparison_record
-from cuefem.results.convergence import Level, climb
+from cuefem.results.convergence import Level, levels
 from cuefem.results.quantities import GRIPS, NONE, RESULTS, degrees, grams, scaled, written
 from cuefem.results.records import Record, Sheet, value_rows, values_sheet
 from cuefem.results.solved_design import coupled_curve
@@ -94,15 +94,15 @@ def page_and_headline(
     the stages.
     """
     rtol = DEFAULT_RTOL if rtol is None else rtol
-    solved, levels = Solved(scene), list[tuple[Level, float]]()
+    solved, made = Solved(scene), list[tuple[Level, float]]()
 
     def climbed() -> Sheet:
         begun = time.perf_counter()
-        levels.extend((level, time.perf_counter() - begun) for level in climb(scene, rtol))
-        return _steps(levels, rtol)
+        made.extend((level, time.perf_counter() - begun) for level in levels(scene, rtol))
+        return _steps(made, rtol)
 
     def outcome() -> Outcome:
-        return levels[-1][0].outcome if levels else strike_modes(scene, solved.tip)
+        return made[-1][0].outcome if made else strike_modes(scene, solved.tip)
 
     stages: dict[str, Callable[[], Any]] = {"steps": climbed} if scene.lumped is None else {}
     stages |= {

@@ -7,7 +7,7 @@ level is its largest difference from the two before: neighbours may agree by cha
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -79,25 +79,19 @@ def resolve(scene: Scene, rtol: float) -> Outcome:
     """
     check_kind("resolve scene", scene, Scene)
     rtol = RTOL.check("resolve rtol", rtol)
-    *_, last = climb(scene, rtol)
+    *_, last = levels(scene, rtol)
     return last.outcome
 
 
-def climb(scene: Scene, rtol: float) -> Iterator[Level]:
-    """The `levels` up to the first whose error is within ``rtol``, or up to the last there is."""
-    for level in levels(scene):
-        yield level
-        if level.outcome.error is not None and level.outcome.error <= rtol:
-            return
-
-
-def levels(scene: Scene) -> Iterator[Level]:
-    """Strikes at ever more modes and steps, up to `MOST` modes."""
+def levels(scene: Scene, rtol: float) -> Iterator[Level]:
+    """Strikes at ever more modes and steps, up to the first whose error is within ``rtol``, or up to `MOST` modes."""
     before: list[Outcome] = []
     for at, tip in _tips(scene):
         outcome = strike_modes(scene, tip, steps=at.steps)
         error = max(relative_error(each, outcome, scene) for each in before) if len(before) == JUDGED_BY else None
         yield Level(at, replace(outcome, error=error), tip)
+        if error is not None and error <= rtol:
+            return
         before = [*before, outcome][-JUDGED_BY:]
 
 
@@ -134,20 +128,14 @@ def resolve_end_mass(scene: Scene, drive: str = "stick", rtol: float = 1e-4) -> 
     rtol, formula = RTOL.check("resolve_end_mass rtol", rtol), definition_of(drive).of
     if scene.lumped is not None:
         return float(end_mass(scene, drive)), ROUNDING
-    mass = error = math.inf
-    for _, mass, error in end_mass_levels(scene, formula):  # noqa: B007  # the last one is the answer
+    before, mass, error = list[float](), math.inf, math.inf
+    for _, tip in _tips(scene):
+        mass = float(formula(tip, scene))
+        error = max(abs(each / mass - 1) for each in before) if len(before) == JUDGED_BY else math.inf
         if error <= rtol:
             break
-    return mass, error
-
-
-def end_mass_levels(scene: Scene, formula: Callable[[TipModes, Scene], float]) -> Iterator[tuple[int, float, float]]:
-    """(modes, end mass in kg, its relative error) of ever more modes; the first two errors are infinite."""
-    before: list[float] = []
-    for at, tip in _tips(scene):
-        mass = float(formula(tip, scene))
-        yield at.modes, mass, max(abs(each / mass - 1) for each in before) if len(before) == JUDGED_BY else math.inf
         before = [*before, mass][-JUDGED_BY:]
+    return mass, error
 
 
 def relative_error(outcome: Outcome, best: Outcome, scene: Scene) -> float:

@@ -76,7 +76,7 @@ def test_the_estimated_error_holds_on_the_family(number: int) -> None:
     here = [*family(), endless_friction()][number]
     best, rougher = reference(here, 300), reference(here, 230)
     known = float((np.abs(rougher - best) / np.abs(best)).max())
-    for level in levels(here):
+    for level in levels(here, 0.0):
         error = level.outcome.error
         if error is not None:
             assert true_error(level.outcome, best, here) <= 2 * error + known
