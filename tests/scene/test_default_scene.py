@@ -47,7 +47,6 @@ def test_a_tip_has_the_restitution_of_its_leather_where_waves_raise_it() -> None
     scene = cf.usual_scene(cue, tip=tip)
     assert scene.tip.restitution == hard.restitution
     assert GAMES["pool"].tip_beside((tip,)) == cf.Tip(0.73, 0.7)
-    assert cf.usual_scene(cue, tip=replace(tip, E=1e8)).tip == cf.usual_scene(cue).tip
 
 
 @pytest.mark.parametrize("game", GAMES)
@@ -67,3 +66,15 @@ def test_refusals() -> None:
         lambda: cf.usual_scene(cf.LumpedCue(0.5, 0.01)), "TypeError: usual_scene cue must be a Cue; got a LumpedCue"
     )
     refuses(lambda: cf.usual_scene(cf.Cue((leather(1e-3), WOOD))), "higher than 2.054 mm, the depth of its dome")
+
+
+def test_restitution_of_a_typed_modulus_lies_between_the_leathers() -> None:
+    """That of a named leather at its modulus, and with axial waves alone."""
+
+    def own(E: float) -> float:
+        effects = (replace(GAMES["pool"].tip, E=E), cf.AxialWaves())
+        return float(GAMES["pool"].tip_beside(effects).restitution)
+
+    for leather in LEATHERS.values():
+        assert own(leather.E) == leather.restitution
+    assert LEATHERS["medium"].restitution < own(100e6) < LEATHERS["soft"].restitution == own(10e6)
