@@ -22,18 +22,10 @@ from tests.helpers.strike_scenes import kim_scene
 
 EFFECTS: list[tuple[cf.Effect, ...]] = [
     (),
-    (cf.PointMass(0.1, 0.01),),
-    (cf.Support(0.2, 5e3, 1.0, 20.0),),
-    (cf.Joint(0.3, 1e-4, 1e-8),),
-    (cf.StructuralDamping(0.02),),
-    (cf.AxialWaves(),),
-    (cf.TipShear(0.75),),
-    (cf.TipDome(0.0095),),
-    (cf.PowerLawTip(1.5),),
-    (cf.RollingContact(),),
     (cf.SecondHit(),),
+    (cf.PointMass(0.1, 0.01), cf.Support(0.2, 5e3, 1.0, 20.0), cf.StructuralDamping(0.02), cf.AxialWaves()),
+    (cf.TipShear(0.75), cf.TipDome(0.0095), cf.PowerLawTip(1.5)),
     (cf.Elevation(0.1),),
-    (LEATHER,),
     (replace(LEATHER, surface_restitution=0.9),),
 ]
 
@@ -71,8 +63,8 @@ def test_outcomes_of_many_strikes_are_values() -> None:
     assert deepcopy(side) == pickle.loads(pickle.dumps(side)) == side
 
 
-@pytest.mark.parametrize("strikes", [pytest.param(20_000, marks=pytest.mark.nightly)])
-def test_strikes_leave_no_memory_behind(strikes: int) -> None:
+@pytest.mark.nightly
+def test_strikes_leave_no_memory_behind() -> None:
     """The greatest memory of this process hardly grows over so many strikes; few are on leather."""
     bare, few = kim_scene(0.3), cf.Resolution(2, 8, 4)
     scenes = [leather_scene(0.3, cf.SecondHit(5e-3)), bare, replace(bare, effects=(cf.TipShear(0.75),))]
@@ -86,4 +78,4 @@ def test_strikes_leave_no_memory_behind(strikes: int) -> None:
                 cf.strike(replace(bare, effects=(cf.Elevation(0.1),)), few)
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
 
-    assert -memory_after(100) + memory_after(round(strikes / 2.2)) < 4e6
+    assert -memory_after(100) + memory_after(9_000) < 4e6

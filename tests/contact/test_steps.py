@@ -14,14 +14,16 @@ import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.beam.modes import solve
+from cuefem.beam.system import assemble
 from cuefem.beam.tip import TipModes, lumped_tip_modes
 from cuefem.contact.model import model_of
 from cuefem.contact.strike import strike_modes
-from cuefem.tip_modes import tip_modes_of
+from cuefem.tip_modes import default_modes, tip_modes_from, tip_modes_of
 from tests.data.stored import scene_of, stored_law, strikes, tip_of
 from tests.helpers.cues import scaled
 from tests.helpers.orders import falls_with_the_step
-from tests.helpers.strike_scenes import KIM, hand_made, imbalance, numbers
+from tests.helpers.strike_scenes import KIM, hand_made, imbalance, kim_scene, numbers
 
 MESHES = sorted((Path(__file__).parents[2] / "meshes").glob("*.toml"))
 # Where in its step an event falls is chance: the root mean square of many errors has the order.
@@ -59,7 +61,7 @@ def test_lumped_cues_come_to_the_impulse_solver_with_the_square_of_the_step() ->
 
 
 # Stick, slip, rings, everything of a default strike, and a raised cue.
-COURSES = ("linear", "rolling", "leather", "usual", "second hit", "raised")
+COURSES = ("linear", "rolling", "leather", "usual", "second hit", "raised", "thrust")
 
 
 @pytest.mark.parametrize("kind", COURSES)
@@ -204,3 +206,16 @@ def test_head_on_contact_time_falls_with_speed(exponent, speed, e):
         return max(abs(outcome.duration / time - 1), abs(leaves - 1))
 
     falls_with_the_step(error)
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("time", [0.7e-3, 2e-3, 4e-3])
+@pytest.mark.parametrize("path", MESHES, ids=[path.stem for path in MESHES])
+def test_the_default_keeps_squirt_within_half_a_percent_of_many_modes(path, time):
+    """Many: three times the modes on a mesh of their own, ended by a tail as well."""
+    base = replace(kim_scene(0.1, contact_time=time), cue=cf.load(path))
+    count = 3 * default_modes(base)
+    many = tip_modes_from(solve(assemble(base.cue, count), count, ended=1), base)
+    for offset in (0.1, 0.3, 0.5):
+        scene = replace(base, stroke=replace(base.stroke, offset=offset))
+        assert abs(cf.strike(scene).squirt / strike_modes(scene, many).squirt - 1) < 5e-3, offset

@@ -45,18 +45,6 @@ def pool_cue(ferrule: float = 0.025) -> Cue:
     )
 
 
-def hollow_cue() -> Cue:
-    """A shaft bored from the front, 8 mm wide and 12 cm deep, with a light ferrule."""
-    return Cue(
-        (
-            Segment(0.012, 0.0118, 0.0118, Material(2.5e9, 0.9e9, 1100.0), 0.006, 0.006),
-            Segment(0.12, 0.0118, 0.012, maple(), 0.007, 0.007),
-            Segment(0.60, 0.012, 0.021, maple()),
-        ),
-        body_mass=0.42,
-    )
-
-
 def uniform_rod(slenderness: float, diameter: float = 0.012) -> Cue:
     """A uniform rod whose length is ``slenderness`` times its radius."""
     return Cue((Segment(slenderness * diameter / 2, diameter, diameter, maple()),), body_mass=0.3)
