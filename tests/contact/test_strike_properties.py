@@ -110,7 +110,7 @@ def strike(scene: cf.Scene, at: cf.Resolution = AT) -> cf.Outcome | None:
         return None
 
 
-@pytest.mark.parametrize("examples", [8, pytest.param(250, marks=pytest.mark.heavy)])
+@pytest.mark.parametrize("examples", [5, pytest.param(250, marks=pytest.mark.heavy)])
 def test_energy_closes_the_other_side_mirrors_and_the_order_of_effects_does_not_matter(examples: int) -> None:
     @settings(max_examples=examples)
     @given(strikes(), st.integers(0, 5))
