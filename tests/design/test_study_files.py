@@ -32,7 +32,7 @@ PLACES = {
     "cue.segments[1].length": (0, "length", 0.020, FERRULE),
     "segments[2].tip_bore": (1, "tip_bore", 0.006, BORE),
     "ferrule length": (0, "length", 0.020, FERRULE),
-    "bore": (1, "tip_bore", 0.006, BORE),
+    "bore width": (1, "tip_bore", 0.006, BORE),
 }
 
 
@@ -70,7 +70,7 @@ def test_segments_off_the_modelled_cue_are_refused(path: str, words: str, tmp_pa
 
 def test_a_cue_alone_has_the_stroke_of_the_game_and_without_one_that_of_pool(tmp_path: Path) -> None:
     for game, usual in (("kim", lambda cue: cf.Scene(cue, stroke=cf.Stroke(offset=0.3))), ("", cf.usual_scene)):
-        file = varying(tmp_path, "bore")
+        file = varying(tmp_path, "bore width")
         file.write_text((f'game = "{game}"\n' if game else "") + file.read_text(encoding="utf-8"), encoding="utf-8")
         assert load_study(file).base == usual(cf.load(tmp_path / "cue.toml"))
         assert "cue.toml is a cue alone" in as_json("study", file)["assumed"][0]
