@@ -96,10 +96,12 @@ def _values(scenes: Sequence[Scene], responses: Sequence[Response], at: Resoluti
 
 def _column(solver: Designs, response: Response) -> tuple[Array, list[str | None]]:
     """(A response of the solver's designs; for each why it is missing); ValueError if one is missing for no reason."""
-    if response.segments and not solver.scenes[0].cue.segments:
+    if response.result.segments and not solver.scenes[0].cue.segments:
         raise ValueError(f"{response.name} needs a cue of segments; got a lumped cue")
     values = response.values(solver)
-    reasons = [response.reason(solver, i) if x != x else None for i, x in enumerate(values)]
+    known = response.result.reasons
+    every = known(solver) if known else [None] * len(values)
+    reasons = [reason if x != x else None for x, reason in zip(values, every, strict=True)]
     if any(x != x and reason is None for x, reason in zip(values, reasons, strict=True)):
         raise ValueError(f"{response.name} is not a number")
     return values, [None if reason is None else f"{response.name}: {reason}" for reason in reasons]
@@ -112,10 +114,8 @@ def common_resolution(scenes: Sequence[Scene], responses: Sequence[Response]) ->
     modes and lets a tail stand for those above. Designs compare well with each other, but their stick end masses are
     off by up to 2 %: on the reference cues 1.2 % at 2 ms (maple) and 1.8 % at 1.5 ms (carbon).
     """
-    count, strikes = (
-        max([1, *(response.modes for response in responses)]),
-        any(response.strikes for response in responses),
-    )
+    count = max([1, *(response.modes for response in responses)])
+    strikes = any(response.result.strikes for response in responses)
     mesh, modes = (1, 1), 1
     for scene in scenes:
         if not scene.cue.segments:

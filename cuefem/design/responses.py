@@ -63,25 +63,10 @@ class Response:
         return with_heading(self.label, self.unit)
 
     @property
-    def better(self) -> str:
-        """Which a player wants: "lower", "higher", or neither, ""."""
-        return self.result.better
-
-    @property
-    def strikes(self) -> bool:
-        """Whether it takes the tip's modes up to the contact's cutoff."""
-        return self.result.strikes
-
-    @property
     def in_time(self) -> bool:
         """Whether it takes a strike in time, some milliseconds a design."""
         kind = self.result
         return kind.argument == "offset" and not (kind.limit and self.argument is None)
-
-    @property
-    def segments(self) -> bool:
-        """Whether it needs a cue of segments."""
-        return self.result.segments
 
     @property
     def modes(self) -> int:
@@ -92,11 +77,6 @@ class Response:
         """The response of every design, (designs,)."""
         assert self.result.of is not None
         return self.result.of(designs, self.argument)
-
-    def reason(self, designs: Designs, i: int) -> str | None:
-        """Why a design's response is nan, if that is known."""
-        reasons = self.result.reasons
-        return None if reasons is None else reasons(designs)[i]
 
 
 def _usage(kind: str) -> str:

@@ -27,21 +27,6 @@ class Together(Designs):
         self.batch = CueBatch.of([scene.shaft for scene in scenes])
 
     @property
-    def mass(self) -> Array:
-        """Mass of the cue, kg."""
-        return self.batch.mass
-
-    @property
-    def shaft_mass(self) -> Array:
-        """Mass of the segments, kg."""
-        return self.batch.shaft_mass
-
-    @property
-    def balance_point(self) -> Array:
-        """Centre of the segments' mass, m from the tip."""
-        return self.batch.balance_point
-
-    @property
     def tip_stiffness(self) -> Array:
         """Static tip stiffness, N/m: see `CueBatch`."""
         return self.batch.tip_stiffness

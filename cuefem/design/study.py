@@ -167,9 +167,9 @@ class Study:
         twice = [name for name in names if names.count(name) > 1]
         if twice:
             raise ValueError(f"columns must have different names; got {twice[0]!r} twice")
-        lacking = [response.name for response in self.responses if response.segments and not self.base.cue.segments]
-        if lacking:
-            raise ValueError(f"{lacking[0]} needs a cue of segments; got a lumped cue")
+        drawn = [response.name for response in self.responses if response.result.segments]
+        if drawn and not self.base.cue.segments:
+            raise ValueError(f"{drawn[0]} needs a cue of segments; got a lumped cue")
 
     def _check_fields(self) -> None:
         seen: set[tuple[Path, str]] = set()

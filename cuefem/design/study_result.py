@@ -96,12 +96,12 @@ class StudyResult:
         """The best design for each response of which one way is better; for all, the lowest, if there is none."""
         if self.optimum or self.drivers:
             return {self.study.responses[0].name: self.optimum} if self.optimum else {}
-        judged = [response for response in self.study.responses if response.better] or self.study.responses
+        judged = [response for response in self.study.responses if response.result.better] or self.study.responses
         found = dict[str, StudyDesign]()
         for response in judged:
             column = self.responses[response.name]
             if np.isfinite(column).any():
-                i = int(np.nanargmax(column) if response.better == "higher" else np.nanargmin(column))
+                i = int(np.nanargmax(column) if response.result.better == "higher" else np.nanargmin(column))
                 found[response.name] = self._design(i)
         return found
 

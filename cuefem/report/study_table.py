@@ -67,7 +67,7 @@ class StudyTable:
     def best(self, k: int) -> int:
         """The row of the best design for a response."""
         result = self.results[:, k]
-        return int(result.argmax() if self.responses[k].better == "higher" else result.argmin())
+        return int(result.argmax() if self.responses[k].result.better == "higher" else result.argmin())
 
     @property
     def labels(self) -> list[str]:
@@ -81,12 +81,14 @@ class StudyTable:
     @property
     def judged(self) -> list[int]:
         """The responses of which one way is better; all of them if there is none."""
-        return [k for k, response in enumerate(self.responses) if response.better] or [*range(len(self.responses))]
+        return [k for k, response in enumerate(self.responses) if response.result.better] or [
+            *range(len(self.responses))
+        ]
 
     @cached_property
     def wanted(self) -> Array:
         """The results, turned so that less is better."""
-        signs = [-1.0 if response.better == "higher" else 1.0 for response in self.responses]
+        signs = [-1.0 if response.result.better == "higher" else 1.0 for response in self.responses]
         return self.results * np.array(signs)
 
     @cached_property
@@ -273,7 +275,7 @@ def sweep_record(table: StudyTable) -> dict[str, Any]:
     names = [response.name for response in table.responses]
     record: dict[str, Any] = {
         "best": {
-            table.responses[k].name: {"better": table.responses[k].better, **design(table.best(k))}
+            table.responses[k].name: {"better": table.responses[k].result.better, **design(table.best(k))}
             for k in table.judged
         },
         "drives": {
@@ -296,7 +298,7 @@ def best_sheet(table: StudyTable) -> Sheet:
     for k in table.judged:
         response, i, result = table.responses[k], table.best(k), table.results[:, k]
         ends = " to ".join(shown(end, response.unit) for end in (result.min(), result.max()))
-        which = f"{response.better} is better" if response.better else "the lowest"
+        which = f"{response.result.better} is better" if response.result.better else "the lowest"
         name = f"{response.heading} ({which})"
         rows.append((name, shown(result[i], response.unit), ends, str(table.numbers[i]), *table.at(i)))
     return Sheet("Best designs", head, tuple(rows))
