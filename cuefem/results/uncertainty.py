@@ -42,11 +42,6 @@ class Uncertainty(NamedTuple):
         return math.hypot(*self)
 
 
-def uncertainty_of(scene: Scene, inputs: Mapping[str, float], error: float | None = None) -> Uncertainty:
-    """The uncertainty of a scene's squirt. inputs: see `of_inputs`. error: of the computation, if known better."""
-    return Uncertainty(model_error(scene), math.hypot(*inputs.values()), COMPUTED if error is None else error)
-
-
 def model_error(scene: Scene) -> float:
     """The model's own error of a scene's squirt, relative: that of a leather tip or of a spring."""
     return MODEL if scene.contact_terms.tip is not None else MODEL_OF_SPRING
@@ -55,14 +50,6 @@ def model_error(scene: Scene) -> float:
 def of_shaft(inputs: Mapping[str, float]) -> float:
     """The share of the shaft's inputs alone: what is left where two shafts are struck with one tip."""
     return math.hypot(*(share for key, share in inputs.items() if not PARAMETERS[key].of_tip))
-
-
-def of_inputs(solved: Solved, own: float) -> dict[str, float]:
-    """By how much squirt changes, relatively, with each input of a scene that is uncertain by its usual spread.
-
-    own: its squirt, rad.
-    """
-    return {key: abs(change) for key, change in squirt_changes(solved, own).items()}
 
 
 def squirt_changes(solved: Solved, own: float, of: Iterable[str] = PARAMETERS) -> dict[str, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -10,13 +11,15 @@ from cuefem.effects import Joint, PointMass, Support
 from cuefem.results.records import Record
 from cuefem.results.solved_design import off_centre
 from cuefem.results.uncertainty import (
+    COMPUTED,
+    Uncertainty,
+    model_error,
     model_share,
-    of_inputs,
     of_shaft,
     ratio_error,
     squirt_beside,
+    squirt_changes,
     squirt_of,
-    uncertainty_of,
 )
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.default_scene import without_leather
@@ -36,8 +39,9 @@ def verdict_record(scene: Scene, outcome: Outcome, ready: Mapping[str, Cue], *, 
     # as fine as what it is compared with, where the outcome may be finer
     own = squirt_beside(solved, struck) if head_on or outcome.error is not None else float(outcome.squirt)
     squirt = own if head_on else float(outcome.squirt)
-    inputs = of_inputs(solved, own)
-    uncertainty = uncertainty_of(struck, inputs, outcome.error)
+    inputs = {key: abs(change) for key, change in squirt_changes(solved, own).items()}
+    computation = COMPUTED if outcome.error is None else outcome.error
+    uncertainty = Uncertainty(model_error(struck), math.hypot(*inputs.values()), computation)
     among = {name: _beside(struck, own, cue, of_shaft(inputs)) for name, cue in ready.items()}
     return {
         "offset": float(struck.stroke.offset),
