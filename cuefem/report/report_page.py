@@ -159,7 +159,7 @@ def _steps(climbed_to: Sequence[tuple[Level, float]], rtol: float) -> Sheet:
     ]
     reached = [i for i, (_, it, _) in enumerate(outcomes) if it.error is not None and it.error <= rtol]
     head = ("modes", "steps", "squirt", "error", "time so far")
-    title = "How exact the numbers are"
+    title = "Numerical convergence"
     return Sheet(title, head, tuple(rows), texts=(), styles=dict.fromkeys(reached, "reached"))
 
 
