@@ -41,6 +41,17 @@ def blocks(kind: str) -> list[str]:
 FIRST, OWN_SHAFT, *COMMANDS = blocks("sh")
 
 
+def test_a_newcomer_reads_it_at_once() -> None:
+    assert len(README.splitlines()) <= 120
+
+
+def test_the_sample_is_what_the_command_prints() -> None:
+    (sample,) = re.findall(r"^```text\n(.*?)```", README, flags=re.MULTILINE | re.DOTALL)
+    status, out, _ = call("report", ROOT / "meshes" / "pool_maple.toml")
+    assert status == 0
+    assert " ".join(sample.split()) in " ".join(out.split())
+
+
 def test_every_block_is_of_a_kind_that_runs() -> None:
     assert {name for name, _ in BLOCKS} == {"sh", "csv", "toml", "python", "text"}  # text: formulas
     assert TEXT.count("```") == 2 * len(BLOCKS)
