@@ -51,7 +51,7 @@ def _read(hint: Any, value: Any, file: str, key: str) -> Any:
 
 
 def _made(kind: type, table: dict[str, Any], file: str, key: str) -> Any:
-    """A dataclass of a table; a key that no field has is told first, for a missing one is usually misspelt."""
+    """A dataclass of a table; a key that no field has is reported first, for a missing one is usually misspelt."""
     values, known = {}, types_of(kind)
     for name, value in table.items():
         if name not in known:

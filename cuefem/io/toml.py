@@ -31,7 +31,7 @@ OF_GAME = {"ball": ("mass", "radius"), "tip": ("restitution", "friction"), "stro
 
 @dataclass(frozen=True)
 class ShaftParts:
-    """The parts of which a cue is put together in the place of [[segments]]."""
+    """The parts of which a cue is put together instead of [[segments]]."""
 
     shaft: str
     material: str | None = None
