@@ -16,6 +16,7 @@ from cuefem.io.fittings import TENON, fitted
 from cuefem.parameters.parameter import PARAMETERS, varied
 from cuefem.parameters.parts import Layout, bore_mouth, deepest_bore, halves, taper_position
 from cuefem.quantity.fields import Quantity, scalar
+from cuefem.quantity.units import parted, unit_of
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import GAMES, usual_scene, without_leather
 
@@ -23,6 +24,7 @@ LEAST_WALL = 0.0005  # m, that a typed bore must leave
 NEW_FERRULE, NEW_BORE, NEW_DEPTH = "25 mm", 0.006, 0.127
 NONE, DRILLED = "none", "drilled"
 LONGEST_TEXT = 40
+_UNITLESS = re.compile(r"[-+]?[\d./\s]+")
 FERRULE_BEGINS, LEATHER_BEGINS = "the ferrule; tip added", "the tip"
 
 
@@ -216,19 +218,31 @@ def written(key: str, shown: float, scene: Scene) -> str:
     return f"{known.scale * shown:.{decimals}f} {known.unit}".rstrip()
 
 
-def read(key: str, text: str, scene: Scene) -> float:
-    """The SI number of a typed text such as "11,8", "1/4 in", "15 oz"; ValueError in one line."""
-    unit = range_of(key).unit
-    si = SI.get(unit, unit)
+def read(key: str, text: str, scene: Scene, last: str = "") -> float:
+    """The SI number of a typed text such as "11,8", "1/4 in", "15 oz"; ValueError in one line. last: see `whole`."""
     bare = text.strip().replace(",", ".").replace("−", "-")
-    unitless = re.fullmatch(r"[-+]?[\d./\s]+", bare) is not None
     if len(text) > LONGEST_TEXT or not bare:
         raise ValueError(f"must be a number of at most {LONGEST_TEXT} characters")
+    unit, unitless = range_of(key).unit, _UNITLESS.fullmatch(bare)
     if key == "offset" and not unitless:
         return _within(key, Quantity("m").read(bare) / scalar("Ball.radius", scene.ball.radius), text, scene)
-    if not si:
+    if not unit:
         return _within(key, Quantity("").read(_float(bare)), text, scene)
-    return _within(key, Quantity(si).read(f"{bare} {unit}" if unitless else bare), text, scene)
+    return _within(key, Quantity(SI.get(unit, unit)).read(whole(key, bare, last)), text, scene)
+
+
+def whole(key: str, text: str, last: str = "") -> str:
+    """A typed text with its unit: where it has none, the one of ``last``, which was typed before, else the one shown.
+
+    A fraction is of inches, or says of what.
+    """
+    unit = range_of(key).unit
+    if not unit or not _UNITLESS.fullmatch(text.replace(",", ".").replace("−", "-")):
+        return text
+    typed = parted(last.replace(",", "."))[1] or unit
+    if unit == "mm" and "/" in text and unit_of(typed) != unit_of("in"):
+        raise ValueError(f"{text.strip()} in or {text.strip()} {typed}?")
+    return f"{text} {typed}"
 
 
 def _float(text: str) -> Any:
@@ -405,12 +419,12 @@ class KnobRow:
         if not text and self.key == "shaft_mass":
             return
         try:
-            new = read(self.key, text, scene)
+            last = self.page.step.design.typed.get(self.key, "")
+            new, text = read(self.key, text, scene, last), whole(self.key, text, last)
         except FAILURES as error:
             self._fail(one_line(error))
             return
-        unit = range_of(self.key).unit
-        self._set(new, text if any(map(str.isalpha, text)) else f"{text} {unit}".rstrip())
+        self._set(new, text)
 
 
 def _alike(mine: Any, other: Any) -> bool:
