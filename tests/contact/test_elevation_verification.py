@@ -9,6 +9,7 @@ import pytest
 from cuefem import Elevation, LumpedCue, PowerLawTip, Resolution, Scene, Stroke, Tip, strike
 from cuefem.contact.model import model_of
 from cuefem.contact.step_records import solve_contact
+from cuefem.contact.strike import strike_modes
 from tests.helpers.orders import falls_with_the_step
 from tests.helpers.strike_scenes import CLOSED, hand_made, imbalance
 
@@ -95,6 +96,21 @@ def test_table_friction_of_a_head_on_slide():
     assert abs(outcome.history.spin[0] / -follow - 1) < 1e-5  # forward roll turns about -x
     slide = impulse * along / M - follow * scene.ball.radius  # of the lowest point, at the end; in proportion before
     assert abs(outcome.energy["table loss"] / (mu * sin(angle) * impulse * slide / 2) - 1) < 1e-5
+
+
+def test_energy_closes_of_balls_that_hop() -> None:
+    """Of random strikes on two modes some let the ball leave the table; none drives it through."""
+    rng, up = np.random.default_rng(12), []
+    for _ in range(20):
+        omega, across = sorted(10 ** rng.uniform(2.5, 4.0, 2)), list(rng.normal(size=2) * 10)
+        tip = hand_made(omega, across, rigid=rng.uniform(0.5, 10))
+        law = Tip(rng.uniform(0.5, 1), rng.choice([0.7, 2.0, inf]), contact_time=10 ** rng.uniform(-3.5, -2.5))
+        stroke, raised = Stroke(1.0, rng.uniform(-0.9, 0.9)), Elevation(rng.uniform(0.3, 1.5), 0.1)
+        outcome = strike_modes(Scene(LumpedCue(0.54, 0.01), tip=law, stroke=stroke, effects=(raised,)), tip)
+        assert imbalance(outcome) < 1e-5
+        up.append(outcome.history.velocity[2])
+    assert min(up) > -1e-9
+    assert sum(value > 1e-6 for value in up) > 3
 
 
 def test_a_ball_that_was_lifted_falls_back_onto_the_table() -> None:

@@ -53,6 +53,8 @@ def test_hertz_on_a_wall_meets_its_closed_form(restitution: float) -> None:
     outcome = side_strike(SideStrike(kim(), striker, 0.2, 2.0, wall), Resolution(1, 6, 2, 12_800))
     smooth = lambda u: 2 * u / math.sqrt(-math.expm1(2.5 * math.log1p(-(u**2))))  # noqa: E731
     half = quad(smooth, 0, 1, epsabs=1e-14)[0] * (15 * 0.02 * 4.0 / (16 * 1e8 * math.sqrt(0.01))) ** 0.4 / 2.0
+    linear = SideStrike(kim(), Striker(0.02, restitution, contact_time=1e-3), 0.2, 2.0, wall)
+    assert side_strike(linear, Resolution(1, 6, 2, 12_800)).duration == pytest.approx(1e-3, rel=1e-4)
     load, unload = outcome.phases
     assert (load.end, unload.end - unload.start) == pytest.approx((half, restitution * half), abs=half / 2000)
     assert outcome.apparent_restitution == pytest.approx(restitution, abs=1e-7)
