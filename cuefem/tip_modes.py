@@ -35,7 +35,7 @@ PERIODS_OF_TIP, LEAST_OF_TIP = 15, 24
 # The end mass of a tip that sticks needs more: its velocity begins with a step, whose front comes back from the butt
 # at 2 L/c with frequencies of 10 to 80 kHz, whatever the contact time. A tip that is pushed or led from rest starts no
 # such front, and its end mass takes a strike's modes. The mesh holds the first MESHED of them; the rest only stand for
-# what is stiffer, and need no accuracy: the end mass is as right as on a mesh for 160 (60 random cues, 50 whole ones).
+# what is stiffer, and need no accuracy: the end mass is as right as on a mesh for 160 (50 shafts, 50 whole cues).
 # What these numbers hold: studies/accuracy/accuracy.md.
 LEAST_STUCK, MESHED = 160, 120
 SOFT = 1e9  # Pa: leather is softer, everything else that cues are made of is stiffer

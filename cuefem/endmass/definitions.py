@@ -63,7 +63,7 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
     at
         How finely the cue is computed. By default modes are kept by frequency (handbook: The beam), at least 160 of
         them, or 40 for "velocity" and "force", whose drives begin smoothly, on a cue without leather drawn in. Between
-        0.5 and 3 ms a stick end mass is within 0.03 % for 95 % of 60 shafts, and 0.2 % at most on 50 whole cues with
+        0.5 and 3 ms a stick end mass is within 0.03 % for 95 % of 50 shafts, and 0.2 % at most on 50 whole cues with
         joints and masses, of that of 400 modes, except for metal tips that stick, and "force" through soft leather in
         less than 1 ms; `cuefem.resolve_end_mass` estimates the error.
 
