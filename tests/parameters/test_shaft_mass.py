@@ -11,7 +11,7 @@ import cuefem as cf
 from cuefem.io import InputError
 from cuefem.parameters.parameter import varied
 from cuefem.parameters.parts import main_material, with_shaft_mass
-from cuefem.results.uncertainty import of_inputs
+from cuefem.results.uncertainty import squirt_changes
 from cuefem.tip_modes import Solved
 from tests.helpers.command_line import as_json, call
 from tests.helpers.cues import pool
@@ -43,7 +43,9 @@ def test_weight_counts_the_leather_tip_and_precedes_other_changes() -> None:
 
 def test_weighed_density_is_no_input_of_the_uncertainty() -> None:
     scene = cf.usual_scene(pool())
-    inputs = [of_inputs(Solved(each), cf.strike(each).squirt) for each in (scene, varied(scene, {"shaft mass": 0.112}))]
+    inputs = [
+        squirt_changes(Solved(each), cf.strike(each).squirt) for each in (scene, varied(scene, {"shaft mass": 0.112}))
+    ]
     assert inputs[0]["rho"] > 0.02
     assert {*inputs[0]} - {*inputs[1]} == {"rho"}
 
