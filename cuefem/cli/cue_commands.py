@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -13,11 +14,13 @@ import cuefem.report
 from cuefem.cli.common import blaming, check_free, file_options, force_option, scene_of, show, stroke_options
 from cuefem.cli.printing import Command, command, output_option, page_option, print_all
 from cuefem.cli.progress import followed
-from cuefem.cli.strokes import blow_options, tip_options
+from cuefem.cli.strokes import blow_options, option, tip_options, with_options
 from cuefem.design.design_changes import design_changes
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.io import InputError, load_accuracy, save, save_page
+from cuefem.io.fittings import FITTINGS
 from cuefem.parameters.parameter import varied
+from cuefem.parameters.parts import main_material
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.units import number
 from cuefem.report import (
@@ -135,8 +138,34 @@ def improve(file: Path, take: int | None, output: Path | None, force: bool, **op
     if take > len(rows):
         raise InputError(file, "--take", f"must be a row of the table, 1 to {len(rows)}; got {take}")
     row = rows[take - 1]
-    save(varied(scene, row["set"]), output)
+    changed = varied(scene, row["set"])
+    save(changed, output)
     click.echo(f"wrote {output}: {row['change']}")
+    for line in _comparing(file, output, options, (scene, changed)):
+        click.echo(line)
+
+
+def _comparing(file: Path, output: Path, options: dict[str, Any], scenes: tuple[Scene, Scene]) -> list[str]:
+    """The commands that compare a cue before and after a change; none if the file after it would be struck otherwise.
+
+    What only changes the drawing is converted first, since options are for both files.
+    """
+    given = {name: value for name, value in options.items() if isinstance(value, str)}
+    drawn = {name: given.pop(name) for name in (*FITTINGS, "shaft_mass") if name in given}
+    if "game" in given or with_options(scenes[1], output, given) != scenes[1]:
+        return []
+    before, lines = file, list[str]()
+    if drawn:
+        before = output.with_name(f"{file.stem}_before.toml")
+        lines = [f"first: cuefem convert {_typed(file, before, drawn)}"]
+    alike = main_material(scenes[0].shaft).E == main_material(scenes[1].shaft).E
+    same = " --same-shaft" if alike else ""
+    return [*lines, f"before and after: cuefem compare {_typed(before, output, given)}{same}"]
+
+
+def _typed(first: Path, second: Path, given: dict[str, str]) -> str:
+    """Two files and options as they are typed."""
+    return shlex.join([str(first), str(second), *(word for name in given for word in (option(name), given[name]))])
 
 
 @command()

@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from cuefem.cli.common import blaming, cue_options, scene_of
+from cuefem.cli.common import blaming, cue_options, remark, scene_of
 from cuefem.cli.printing import command, print_json
 from cuefem.cli.strokes import option
 from cuefem.io.ready import PRESETS
@@ -47,9 +47,10 @@ def designer(scene: Path | None, port: int, show: bool, as_json: bool, **options
             raise ValueError(f"{option(name)} needs a SCENE, whose cue or stroke it changes; got none")
         first = reference_design(PRESETS[0])
     else:
-        read, _ = scene_of(scene, options)
+        read, _ = scene_of(scene, options, remarked=False)
         with blaming(scene):
             first = design_of_file(scene, scene.stem, read, given)
+        remark(first.scene)
     told: Callable[[str], None] = (lambda address: print_json({"address": address})) if as_json else click.echo
     with suppress(KeyboardInterrupt):  # Ctrl-C is how one ends it
         serve(first, port=_free(port), show=show, announce=told)

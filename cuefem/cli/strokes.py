@@ -18,7 +18,7 @@ from cuefem.io.errors import faults_of
 from cuefem.parameters.parameter import PARAMETERS, Parameter, replaced, varied, with_fields
 from cuefem.parameters.parameter import Path as Steps
 from cuefem.parameters.parts import with_shaft_mass
-from cuefem.quantity.fields import Quantity
+from cuefem.quantity.fields import OutOfBounds, Quantity
 from cuefem.quantity.units import number
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, GAMES, usual_scene, usual_tip
@@ -132,6 +132,11 @@ def with_options(scene: Scene, file: Path, options: dict[str, Any]) -> Scene:
     changes = _changes(scene, file, options)
     try:
         return replaced(scene, changes) if changes else scene
+    except OutOfBounds as error:
+        if not error.name.endswith("cue.body_mass") or options.get("body_mass") is None:
+            raise InputError(file, "", str(error)) from None
+        bounds = error.bounds.bounds_in(error.bounds.unit)
+        raise InputError(file, "--body-mass", f"must be {bounds}{error.why}; got {options['body_mass']}") from None
     except ValueError as error:
         raise InputError(file, "", str(error)) from None
 

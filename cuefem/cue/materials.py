@@ -90,4 +90,5 @@ def _offer(name: str) -> str:
     alike = (known for known in _ROWS if words & {*known.split()} or known.startswith(tuple(words)))
     near = [*(known for known, row in _ROWS.items() if row["kind"] in kinds), *alike]
     near = near or get_close_matches(name, MATERIALS, n=3, cutoff=0.6)
+    near = near or [m for m in _ROWS if any(get_close_matches(word, m.split(), cutoff=0.7) for word in words)]
     return f"nearest: {', '.join(dict.fromkeys(near))}" if near else f"known: {', '.join(MATERIALS)}"

@@ -350,10 +350,13 @@ class AxialWaves(CueEffect):
     def check_on(self, cue: Cue, name: str) -> None:
         """ValueError unless the rest of the cue can have the density of a material."""
         volume = self._volume_behind(cue)
-        if volume and cue.body_mass > MOST_DENSITY * volume and self.cue_length is not None:
-            least = cue.length + cue.body_mass / MOST_DENSITY / volume * (self.cue_length - cue.length)
-            why = f", with which the rest of the cue has at most {MOST_DENSITY:g} kg/m^3"
-            raise OutOfBounds(f"{name}.cue_length", Quantity("m", f"[{least:.6g}, inf)"), self.cue_length, why)
+        if volume and cue.body_mass > (most := MOST_DENSITY * volume):
+            why = (
+                f", with which the rest of the cue, up to cue_length of AxialWaves, has at most {MOST_DENSITY:g} kg/m^3"
+            )
+            raise OutOfBounds(
+                f"{name.partition('.')[0]}.cue.body_mass", Quantity("kg", f"[0, {most:.4g}]"), cue.body_mass, why
+            )
 
     def unusual_on(self, cue: Cue) -> str:
         """A rigid mass at a joint, and a rest that is lighter or heavier than butts are."""

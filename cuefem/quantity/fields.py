@@ -72,6 +72,8 @@ class Quantity:
     def example(self) -> str:
         """What the unit measures, with an example: 'a length with its unit, such as "12 mm"'."""
         what, example = example_of(self.unit)
+        if self.unit == "Pa" and self.words:  # a leather's
+            example = "200 MPa"
         return f'{what} with its unit, such as "{example}"{self._named}'
 
     @property

@@ -418,9 +418,10 @@ class Outcome:
     regime : str or array
         How the first slip ended: "stick" (at once, or while the tip was being compressed), "late stick" (past the
         maximum indentation), "slip reversal", "miscue" (it never ended). It does not say that a tip which held at
-        first let go later, as leather does far out: `cuefem.contact.outcome.grip_of` does, and calls a strike whose
-        tip slid through more than half of the push, or through the last third of it, a miscue too ("lets go"), as
-        commands, pages and plots do.
+        first let go later, as leather does far out, nor that parts of a leather tip slipped while the whole held
+        ("partial slip"): `cuefem.contact.outcome.grip_of` does both, and calls a strike whose tip slid through more
+        than half of the push, or through the last third of it, a miscue too ("lets go"), as commands, pages and plots
+        do; it is "grip" in their JSON.
     jam : bool or array
         Whether friction pressed ball and tip together at first, so that they closed faster: usual for a light end mass.
     phases : tuple

@@ -66,7 +66,13 @@ def test_leather_from_contact_time() -> None:
 
 
 OFFERS = {
-    **{"hard mapel": "hard maple", "Maple": "hard maple", "carbon fiver": "carbon fibre", "alu": "aluminium"},
+    **{
+        "hard mapel": "hard maple",
+        "mapel": "hard maple",
+        "Maple": "hard maple",
+        "carbon fiver": "carbon fibre",
+        "alu": "aluminium",
+    },
     **{"ABS plastic": "abs", "steal": "steel", "Birch": "yellow birch", "ebony": "hard maple", "ivory": "melamine"},
 }
 SPELT = {"Hard Maple": "hard maple", " HARD_MAPLE": "hard maple", "sugar maple": "hard maple", "aluminum": "aluminium"}

@@ -95,7 +95,9 @@ def test_a_row_that_is_taken_is_saved_and_replaces_no_file(tmp_path: Path, found
     cf.save(found[0], path)
     rows = as_json("improve", path)["changes"]
     assert [row["squirt"] for row in rows] == pytest.approx([row["squirt"] for row in found[1]["changes"]], rel=1e-12)
-    assert call("improve", path, "--take", "2", "-o", target)[::2] == (0, "")
+    code, told, said = call("improve", path, "--take", "2", "-o", target)
+    assert (code, said) == (0, "")
+    assert f"cuefem compare {path} {target}" in told
     assert cf.strike(cf.load(target)).squirt == pytest.approx(rows[1]["squirt"], rel=1e-9)
     command_refuses("--force", "improve", path, "--take", "2", "-o", target)
     command_refuses("--take ROW requires -o FILE.toml", "improve", path, "--take", "1")
