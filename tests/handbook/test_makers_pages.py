@@ -55,7 +55,7 @@ def test_what_is_said_of_squirt() -> None:
     off = degrees * verdict["uncertainty"]["total"]
     said = f"squirt {degrees:.2f} ± {off:.2f}° (at b/R 0.3, 3/10 of the way to the edge): the ball is"
     assert said in TEXTS["read_the_report"]
-    assert f"about {aside:.0f} mm off after one metre" in TEXTS["what_squirt_is"]
+    assert f"about {aside:.0f} mm off line after 1 m" in TEXTS["what_squirt_is"]
     known = ready()
     for name in ("low deflection", "carbon"):  # "about a fifth less"
         assert 0.18 < 1 - known[name] / known["plain maple"] < 0.24
