@@ -152,14 +152,18 @@ def _comparing(file: Path, output: Path, options: dict[str, Any], scenes: tuple[
     """
     given = {name: value for name, value in options.items() if isinstance(value, str)}
     drawn = {name: given.pop(name) for name in (*FITTINGS, "shaft_mass") if name in given}
-    if "game" in given or with_options(scenes[1], output, given) != scenes[1]:
+    try:
+        alike = "game" not in given and with_options(scenes[1], output, given) == scenes[1]
+    except InputError:  # the options do not go with the changed cue
+        alike = False
+    if not alike:
         return []
     before, lines = file, list[str]()
     if drawn:
         before = output.with_name(f"{file.stem}_before.toml")
         lines = [f"first: cuefem convert {_typed(file, before, drawn)}"]
-    alike = main_material(scenes[0].shaft).E == main_material(scenes[1].shaft).E
-    same = " --same-shaft" if alike else ""
+    woods = {main_material(scene.shaft).E for scene in scenes}
+    same = " --same-shaft" if len(woods) == 1 else ""
     return [*lines, f"before and after: cuefem compare {_typed(before, output, given)}{same}"]
 
 
