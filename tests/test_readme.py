@@ -79,7 +79,7 @@ def test_ones_own_shaft_takes_three_commands(tmp_path: Path) -> None:
     here = [str(tmp_path / word) if word.startswith("my_shaft") else word for word in words[1:]]
     assert call(*here)[::2] == (0, "")
     page = (tmp_path / "my_shaft.html").read_text(encoding="utf-8")
-    assert "736.6 mm modelled" in page
+    assert "736.6 mm in" in page
     assert "assumptions</b>" in page
 
 
@@ -95,7 +95,7 @@ def test_a_new_user_gets_a_report_from_nothing(tmp_path: Path) -> None:
         clean = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "VIRTUAL_ENV"))}
         done = subprocess.run(["bash", "-c", line], cwd=fresh, capture_output=True, text=True, env=clean)
         assert done.returncode == 0, done.stderr
-    assert re.fullmatch(r"squirt [^\n]+ in a metre\nwrote my_shaft.html\n", done.stdout)
+    assert re.fullmatch(r"squirt [^\n]+ off line after 1 m\nwrote my_shaft.html\n", done.stdout)
     command = [".venv/bin/cuefem", "guide", "glossary", "--print"]
     guide = subprocess.run(command, cwd=fresh, capture_output=True, text=True, check=True)
     assert "effective end mass" in guide.stdout  # the wheel holds the handbook

@@ -127,8 +127,8 @@ def test_squirt_has_no_step(kind: str) -> None:
     """
     squirts = squirts_over(kind, np.linspace(0.1, 0.5, 2001), steps=600 if kind == "usual" else 1600)
     steps_up = np.diff(squirts)
-    slope = np.median(np.lib.stride_tricks.sliding_window_view(np.pad(steps_up, 10, mode="reflect"), 21), axis=1)
-    assert np.abs((steps_up - slope) / squirts[1:]).max() < 1e-5
+    slope = np.median(np.lib.stride_tricks.sliding_window_view(steps_up, 21), axis=1)  # of the ten steps on either side
+    assert np.abs((steps_up[10:-10] - slope) / squirts[11:-10]).max() < 1e-5
 
 
 @pytest.mark.parametrize(("kind", "most"), [("usual", 1e-5), ("bare", 2e-4)])

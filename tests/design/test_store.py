@@ -111,8 +111,8 @@ def test_interrupt_prints_one_line_and_the_same_command_goes_on(tmp_path: Path, 
     out, err = run.communicate(timeout=60)
     count = len(rows_of(store))
     assert (run.returncode, out) == (130, b"")
-    kept = f"{count} of 3000 designs are kept in {store}"
-    assert err.decode() == f"cuefem: interrupted; {kept}: the same command goes on\n"
+    kept = f"{count} of 3000 designs are stored in {store}"
+    assert err.decode() == f"cuefem: interrupted; {kept}; run the same command to resume\n"
     assert 100 <= count < 3000
 
 
