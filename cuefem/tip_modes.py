@@ -125,16 +125,6 @@ class Solved:
             return free_tip_modes(solid.omega, *solid.at_tip, self.scene.axial_mass)
         return tip_modes_from(self._modes(least), self.scene)
 
-    def without_spectra(self) -> Solved:
-        """The same, but of what it solved it holds the tip modes alone: the spectra with their matrices take 4 MB.
-
-        The tip modes are copied: strikes share a propagator of 1.5 MB as long as the tip modes live that it was made
-        of, and that is freed too.
-        """
-        small = Solved(self.scene, self.at)
-        vars(small).update({name: replace(value) for name, value in vars(self).items() if isinstance(value, TipModes)})
-        return small
-
     def _modes(self, least: int | None = None) -> Modes:
         if isinstance(self.at, Solid):
             raise ValueError("at must be a Resolution, for this asks for the shapes of a beam; got a Solid")

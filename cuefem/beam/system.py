@@ -106,11 +106,6 @@ class System:
         forces[self.index[list(self.mesh.unknowns_at(self.mesh.node(x)))], [0, 1]] = 1.0
         return forces[:-1]
 
-    def displacement_at(self, x: float, vectors: Array) -> tuple[Array, Array]:
-        """Deflection w and rotation theta of free unknowns ``vectors`` (free, k) at the node ``x``: two arrays (k,)."""
-        w, theta = self.forces_at(x).T @ vectors
-        return w, theta / self.length
-
     def static_stiffness(self, x: float) -> float:
         """Force over deflection at the node ``x``, N/m, of a cue that is held."""
         force = self.forces_at(x)[:, 0]

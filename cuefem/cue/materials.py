@@ -61,7 +61,7 @@ _ALSO = {other: name for name, row in _ROWS.items() for other in row.get("also",
 
 
 def material(name: str) -> Material:
-    """The material of this name in `MATERIALS`, in any case; ValueError, suggesting others, if there is none."""
+    """The material of this name in `MATERIALS`, in any case. An unknown name raises a ValueError with near names."""
     plain = " ".join(name.replace("_", " ").replace("-", " ").casefold().split())
     plain = _ALSO.get(plain, plain)
     if plain not in MATERIALS:

@@ -102,13 +102,6 @@ class CueBatch:
         return mass, moment, (w * across).sum(axis=(1, 2))
 
     @property
-    def walls(self) -> Array:
-        """Half the difference of outer diameter and bore at both ends of every segment, m, (cues, 2 segments)."""
-        rows = self.rows
-        ends = (rows.tip_diameter - rows.tip_bore, rows.butt_diameter - rows.butt_bore)
-        return np.concatenate(ends, axis=1) / 2
-
-    @property
     def tip_stiffness(self) -> Array:
         """Static tip stiffness, N/m, (cues,): force across the tip over its deflection, the butt end clamped.
 

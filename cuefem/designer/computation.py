@@ -32,7 +32,7 @@ from cuefem.results.verdict import verdict_record
 from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import Solved, default_modes
 
-LONGEST_WORK = 60.0  # s that a result may take: no cue that people play with needs a tenth of it
+LONGEST_WORK = 60.0  # s, time limit of a result; playing cues need less than a tenth
 KEPT = 12  # designs whose results are kept, to undo and compare at once
 CURVE_OFFSETS = tuple(round(0.04 * i, 2) for i in range(1, 18))  # b/R
 MOST_GRAM_MODES = 45  # what a gram adds takes all modes of the mesh: cubic

@@ -80,7 +80,7 @@ class Page:
 
     @property
     def step(self) -> Step:
-        """What is shown: the design, and the one that it is compared with."""
+        """The two designs on the page: the current one and the one beside it."""
         return self.history.now
 
     # --- the parts of the page ---------------------------------------------------------------------

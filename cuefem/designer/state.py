@@ -1,4 +1,4 @@
-"""What a tab works on: a design, the one that it is compared with, and every step before, to undo and redo."""
+"""The session of a browser tab: the current design, the one beside it, and the history for undo and redo."""
 
 from __future__ import annotations
 

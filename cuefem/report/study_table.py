@@ -41,7 +41,7 @@ TREND = (
 
 
 @dataclass(frozen=True)
-class StudyTable:
+class DesignTable:
     """Designs that have an answer, as columns.
 
     values: what varied, numbers or names. results: (designs, responses).
@@ -168,7 +168,7 @@ def range_words(vary: Vary, unit: str) -> str:
     return " ".join(word for word in (words, name, how) if word)
 
 
-def table_of(result: StudyResult) -> StudyTable | None:
+def table_of(result: StudyResult) -> DesignTable | None:
     """The designs of a sweep that have all answers; None if there are fewer than two."""
     good = [row for row in result.rows if None not in row.responses]
     if len(good) < 2:
@@ -176,7 +176,7 @@ def table_of(result: StudyResult) -> StudyTable | None:
     columns = tuple(np.array(column) for column in zip(*(row.values for row in good), strict=True))
     results, numbers = np.array([row.responses for row in good], float), np.array([row.design for row in good])
     names, units = (part[: len(columns)] for part in (result.study.columns, result.study.units))
-    return StudyTable(names, units, result.study.responses, numbers, columns, results)
+    return DesignTable(names, units, result.study.responses, numbers, columns, results)
 
 
 def _groups(column: np.ndarray) -> np.ndarray:
@@ -264,7 +264,7 @@ def study_sheets(result: StudyResult) -> list[Sheet | str]:
     return [*lines, varies, *([] if table is None else sweep_sheets(table))]
 
 
-def sweep_record(table: StudyTable) -> dict[str, Any]:
+def sweep_record(table: DesignTable) -> dict[str, Any]:
     """The summary of a sweep."""
 
     def design(i: int) -> dict[str, Any]:
@@ -291,7 +291,7 @@ def sweep_record(table: StudyTable) -> dict[str, Any]:
     return record
 
 
-def best_sheet(table: StudyTable) -> Sheet:
+def best_sheet(table: DesignTable) -> Sheet:
     """The best design for each response."""
     head = ("best for", "value", "all designs", "design", *map(with_heading, table.labels, table.units))
     rows = []
@@ -304,7 +304,7 @@ def best_sheet(table: StudyTable) -> Sheet:
     return Sheet("Best designs", head, tuple(rows))
 
 
-def drive_sheet(table: StudyTable) -> Sheet:
+def drive_sheet(table: DesignTable) -> Sheet:
     """Which part of each response's spread goes with each column."""
     rows = [
         (
@@ -316,7 +316,7 @@ def drive_sheet(table: StudyTable) -> Sheet:
     return Sheet(DRIVES, ("result", *table.labels), tuple(rows), (TREND,))
 
 
-def front_sheet(table: StudyTable, most: int) -> Sheet:
+def front_sheet(table: DesignTable, most: int) -> Sheet:
     """Designs along the front, evenly picked."""
     assert table.pair is not None
     picked = np.unique(np.linspace(0, len(table.front) - 1, min(most, len(table.front))).round().astype(int))
@@ -329,7 +329,7 @@ def front_sheet(table: StudyTable, most: int) -> Sheet:
     return Sheet(f"Trade-off, {front_words(table, most)}", ("design", *names), tuple(rows))
 
 
-def front_words(table: StudyTable, most: int) -> str:
+def front_words(table: DesignTable, most: int) -> str:
     """What the front is, and how many of its designs are listed where there is room for ``most``."""
     assert table.pair is not None
     first, other = (table.responses[k] for k in table.pair)
@@ -340,7 +340,7 @@ def front_words(table: StudyTable, most: int) -> str:
     return f"{first.label} against {other.label}: {count} designs, of which none is beaten in both{few}"
 
 
-def sweep_sheets(table: StudyTable) -> list[Sheet | str]:
+def sweep_sheets(table: DesignTable) -> list[Sheet | str]:
     """The summary of a sweep."""
     front = [] if table.pair is None else [front_sheet(table, SHOWN)]
     return [best_sheet(table), drive_sheet(table), *front]

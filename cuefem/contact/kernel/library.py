@@ -37,7 +37,7 @@ class KernelContact(ctypes.Structure):
 
 @cache
 def library() -> ctypes.CDLL:
-    """The kernel; KernelError where there is none to use."""
+    """The compiled kernel. KernelError if none can be used."""
     check()
     try:
         kernel = ctypes.CDLL(str(BINARY))
