@@ -18,7 +18,7 @@ from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.report.advice_table import advice_sheet
 from cuefem.report.charts import Axis, Curve, chart
 from cuefem.report.comparison_table import difference_words
-from cuefem.report.squirt import offset_charts
+from cuefem.report.squirt import SHADED, offset_charts
 from cuefem.report.strike_table import grip_warning
 from cuefem.report.templates import chart_markup, sheet_markup
 from cuefem.report.unusual import unusual
@@ -78,7 +78,7 @@ def curves_markup(step: Step, known: Known) -> str:
             )
         )
     figures = "".join(chart_markup(each, f"curve{i}") for i, each in enumerate(charts))
-    note = "Shaded: the tip slips through most of the impact; darker: miscue."
+    note = SHADED
     missed = [b for b, grip in zip(CURVE_OFFSETS, grips, strict=True) if grip in MISSED]
     if missed:
         note = f"{step.design.name}: miscue from b/R {missed[0] - HALF:.2f} on. {note}"

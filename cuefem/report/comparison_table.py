@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
 
 from cuefem.report.charts import Chart
-from cuefem.report.drawings import CueDrawing, cue_drawing
+from cuefem.report.drawings import ACROSS, CueDrawing, cue_drawing
 from cuefem.report.end_mass import SQUIRT_END_MASS
 from cuefem.report.squirt import offset_charts
 from cuefem.report.strike_table import grip_warning
@@ -97,8 +96,5 @@ def comparison_figures(scenes: Mapping[str, Scene], record: Record) -> list[Char
     for style, (name, scene) in zip(STYLES, struck_alike(scenes).items(), strict=False):
         lines.append((name, style, coupled_curve(scene, CURVE_OFFSETS, Solved(scene).tip)))
     charts = offset_charts(lines, CURVE_OFFSETS, record["offset"], height=300)
-    drawings = (cue_drawing(scene) for scene in scenes.values())
-    return [
-        *charts,
-        *(replace(drawing, title=f"{name}: {drawing.title}") for name, drawing in zip(scenes, drawings, strict=True)),
-    ]
+    drawings = [cue_drawing(scene, f"{name}, diameters {ACROSS:g} times enlarged") for name, scene in scenes.items()]
+    return [*charts, *drawings]

@@ -20,7 +20,7 @@ LEAST = 0.01  # of the normal impulse: near separation, where F_n is near 0, gri
 
 
 def contact_part(outcome: Outcome) -> Record:
-    """Charts over time, the numbered moments on them in words, and whether the tip slips."""
+    """Charts over time, and the numbered moments on them in words."""
     phases = _main_phases(outcome)
     events = list(_events(phases))
     t = np.linspace(0, outcome.duration, 401)
@@ -40,7 +40,6 @@ def contact_part(outcome: Outcome) -> Record:
             drawn("Velocity of the ball against the tip", "velocity", "m/s"),
         ],
         "events": [(str(i + 1), f"{scaled(at, 's'):.4f} ms", words) for i, (at, words) in enumerate(events)],
-        "slips": bool(spans),
     }
 
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from cuefem.report.drawings import FRONT, legend, true_drawing
+from cuefem.report.drawings import ACROSS, FRONT, cue_drawing, legend
 from cuefem.report.templates import environment
 from cuefem.report.verdict_table import ScaleRow, scale, squirt_words
 from cuefem.results.quantities import NONE, TRADE, with_unit
@@ -130,15 +130,15 @@ def tiles_markup(own: Shown, other: Shown | None = None) -> str:
 
 
 def drawings_markup(designs: Mapping[str, Scene]) -> str:
-    """The fronts of one or two designs true to scale, and the whole of the first."""
+    """The fronts of one or two designs true to scale, and the whole of the first with its diameters enlarged."""
     first = next(iter(designs.values()))
     reach = min([FRONT, *(scene.shaft.length for scene in designs.values())])
     fronts = [
-        (name, true_drawing(scene, reach, f"Tip end of {name}, first {1e3 * reach:.0f} mm, true to scale"))
+        (name, cue_drawing(scene, f"Tip end of {name}, first {1e3 * reach:.0f} mm, true to scale", reach, across=1.0))
         for name, scene in designs.items()
     ]
-    whole = true_drawing(first, first.shaft.length, "Whole drawing, true to scale")
-    return _macro("drawings", fronts, whole, legend(designs.values()))
+    whole = cue_drawing(first, f"Whole drawing, diameters {ACROSS:g} times enlarged")
+    return _macro("drawings", fronts, whole, ACROSS, legend(designs.values()))
 
 
 def parts_line(verdict: Record) -> str:

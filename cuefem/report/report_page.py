@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
-from cuefem.beam.modes import modes
 from cuefem.contact.outcome import grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue.materials import material_name
@@ -16,12 +13,11 @@ from cuefem.design.design_changes import design_changes
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.quantity.fields import scalar
 from cuefem.report.advice_table import advice_sheet
-from cuefem.report.charts import Axis, Chart
+from cuefem.report.charts import Chart
 from cuefem.report.comparison_table import comparison_sheet
 from cuefem.report.contact import contact_part
-from cuefem.report.drawings import cue_drawing, legend, modes_drawing, strike_drawing
-from cuefem.report.effects import seconds_words
-from cuefem.report.end_mass import SQUIRT_END_MASS
+from cuefem.report.drawings import modes_chart
+from cuefem.report.end_mass import end_mass_sheet
 from cuefem.report.everything import report_record
 from cuefem.report.first_screen import (
     Shown,
@@ -32,40 +28,25 @@ from cuefem.report.first_screen import (
     tiles_markup,
 )
 from cuefem.report.glossary import with_words
-from cuefem.report.models import ALCIATORE, PAPER
+from cuefem.report.modes_table import modes_sheet
 from cuefem.report.record import scene_record
 from cuefem.report.scene_words import assumptions, effect_words, plain_cue_line
-from cuefem.report.squirt import LATE, PAPER_CUE_END_MASS, offset_charts
-from cuefem.report.strike_table import BRIEF, grip_warning, models_sheet, strike_record
+from cuefem.report.squirt import SHADED, offset_charts
+from cuefem.report.strike_table import grip_warning, strike_record, strike_sheet
 from cuefem.report.templates import environment
 from cuefem.report.tip_table import tip_sheet
 from cuefem.report.trust import trust_lines
 from cuefem.report.verdict_table import headline, uncertainty_line
 from cuefem.results.closed_forms import alciatore_a31_mass_ratio
 from cuefem.results.comparison import comparison_record
-from cuefem.results.convergence import Level, levels
-from cuefem.results.quantities import GRIPS, NONE, RESULTS, degrees, grams, scaled, written
+from cuefem.results.convergence import resolve
+from cuefem.results.quantities import NONE, RESULTS, grams, with_unit, written
 from cuefem.results.records import Record, Sheet, value_rows, values_sheet
 from cuefem.results.solved_design import coupled_curve
 from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import Solved
 
-DEFAULT_RTOL = 1e-2
 PAGE_OFFSETS = tuple(round(0.03 * i, 2) for i in range(1, 21))  # b/R of the curves
-MEASURED_A31 = (5.8e-3, 14e-3)  # kg, of real cues by A.31, and by no other definition; handbook: Effective end mass
-# Where the numbers come from that the page shows beside the cue's own.
-A31_NAME = "by A.31, like measured cues"
-SOURCES = (
-    ("the paper's 12 g", f"the cue end of the two-part cue in {PAPER}"),
-    (
-        A31_NAME,
-        "the end mass with which A.31 gives the squirt of this stroke; measured cues have 5.8 to 14 g by this "
-        "definition alone, those with which A.31 gives the least and the most squirt that D. Alciatore's robot and "
-        "players measured (a Predator Z, 1.8° at b/R 0.453, and a Stinger, 2.4° at b/R 0.267, ball 170 g)",
-    ),
-    ("A.31", ALCIATORE),
-)
-
 # The models' classes on the page.
 STYLES = {"coupled, this cue": "c1", "lumped, this cue": "c2", "two-part, this cue": "c3", "two-part, 12 g": "c5"}
 STYLES |= {"A.31, this cue": "c4"}
@@ -89,24 +70,13 @@ def page_and_headline(
 ) -> tuple[str, str]:
     """The report of a scene as HTML, and its squirt in a line.
 
-    rtol: what is asked of the accuracy; notes: what was assumed; remarks: what is unusual; trust: what was
-    computed on how far to trust it; other: the name and scene of a cue to compare with, struck alike; track: follows
-    the stages.
+    rtol: the accuracy that is asked for, None for that of a default strike; notes: what was assumed; remarks: what is
+    unusual; trust: what was computed on how far to trust it; other: the name and scene of a cue to compare with, struck
+    alike; track: follows the stages.
     """
-    rtol = DEFAULT_RTOL if rtol is None else rtol
-    solved, made = Solved(scene), list[tuple[Level, float]]()
-
-    def climbed() -> Sheet:
-        begun = time.perf_counter()
-        made.extend((level, time.perf_counter() - begun) for level in levels(scene, rtol))
-        return _steps(made, rtol)
-
-    def outcome() -> Outcome:
-        return made[-1][0].outcome if made else strike_modes(scene, solved.tip)
-
-    stages: dict[str, Callable[[], Any]] = {"steps": climbed} if scene.lumped is None else {}
-    stages |= {
-        "outcome": outcome,
+    solved = Solved(scene)
+    stages: dict[str, Callable[[], Any]] = {
+        "outcome": lambda: strike_modes(scene, solved.tip) if rtol is None else resolve(scene, rtol),
         "report": lambda: report_record(scene, offsets=PAGE_OFFSETS, solved=solved, outcome=records["outcome"]),
         "strike": lambda: strike_record(scene, records["outcome"], solved=solved),
     }
@@ -119,7 +89,7 @@ def page_and_headline(
     for key, work in track([*stages.items()]):
         records[key] = work()
     records |= records.pop("report")
-    said = {"notes": list(notes), "remarks": list(remarks), "checked": list(trust), "asked": f"{100 * rtol:.3g} %"}
+    said = {"notes": list(notes), "remarks": list(remarks), "checked": list(trust)}
     context = _context(scene, records) | {"screen": _screen(name, scene, records, other), "comparison": None}
     if other is not None:
         curves = {name: records["squirt"]["models"]["coupled, this cue"], other[0]: records["other"]}
@@ -150,78 +120,40 @@ def _screen(name: str, scene: Scene, records: Record, other: tuple[str, Scene] |
     }
 
 
-def _steps(climbed_to: Sequence[tuple[Level, float]], rtol: float) -> Sheet:
-    """The levels of resolution: modes and steps, squirt, its estimated error, and seconds so far."""
-    outcomes = [(level.at, level.outcome, seconds) for level, seconds in climbed_to]
-    rows = [
-        (str(at.modes), str(at.steps), degrees(it.squirt), written("error", it.error), seconds_words(seconds))
-        for at, it, seconds in outcomes
-    ]
-    reached = [i for i, (_, it, _) in enumerate(outcomes) if it.error is not None and it.error <= rtol]
-    head = ("modes", "steps", "squirt", "error", "time so far")
-    title = "Numerical convergence"
-    return Sheet(title, head, tuple(rows), texts=(), styles=dict.fromkeys(reached, "reached"))
-
-
 def _context(scene: Scene, records: Record) -> Record:
     outcome: Outcome = records["outcome"]
-    record, grips = records["strike"], records["squirt"]["models"]["coupled, this cue"]["grip"]
+    about, grips = scene_record(scene), records["squirt"]["models"]["coupled, this cue"]["grip"]
+    told = f"{assumptions(about)}, offset b/R {scene.stroke.offset:.4g}"
+    shaft = "modes" in records
     return {
-        "scene": scene,
-        "facts": _facts(scene),
-        "figures": _key_figures(record, records["end_masses"], outcome),
-        "strike": strike_drawing(scene, outcome.squirt),
+        "facts": [plain_cue_line(scene.cue), told, *(f"with {effect_words(effect)}" for effect in scene.effects)],
         "squirt": written("squirt", outcome.squirt, brief=True),
         "error": "" if outcome.error is None else f"{100.0 * outcome.error:.2g} %",
         "uncertainty": uncertainty_line(records["verdict"]),
         "advice": advice_sheet(records["advice"]) if "advice" in records else None,
         "trust": trust_lines(scene),
         "warning": grip_warning(grip_of(outcome)),
-        "cue": _cue_part(scene) if scene.cue.segments else None,
-        "modes": modes_drawing(modes(scene.shaft, effects=scene.cue_effects), scene.shaft.length)
-        if scene.cue.segments
-        else None,
+        "modes": modes_chart(scene) if shaft else None,
+        "frequencies": modes_sheet(records["modes"]) if shaft else None,
         "contact": None if outcome.history is None else contact_part(outcome),
-        "tip": None if scene.contact_terms.tip is None else tip_sheet(records["tip"]),
         "by_offset": _by_offset(records["squirt"]["models"], scene, grips),
-        "slipped": any(grip in LATE for grip in grips),
-        "end_masses": _end_masses(records["end_masses"], scene, outcome),
-        "energy": _energy(outcome),
-        "models": replace(models_sheet(record, BRIEF), title="The same stroke by every model"),
-        "coupling": record["coupling"],
-        "numbers": values_sheet("The cue and this stroke in numbers", value_rows(records["numbers"])),
-        "steps": records.get("steps"),
+        "shaded": SHADED,
+        "numbers": values_sheet("Cue and stroke", value_rows(records["numbers"])),
+        "end_masses": end_mass_sheet(records["end_masses"], about),
+        "meanings": _meanings(scene, outcome),
+        "tables": [
+            *([_segments(scene)] if shaft else []),
+            strike_sheet(records["strike"], about),
+            *([] if "tip" not in records else [tip_sheet(records["tip"])]),
+            _energy(outcome),
+        ],
     }
-
-
-def _facts(scene: Scene) -> list[str]:
-    told = f"{assumptions(scene_record(scene))}, offset b/R {scene.stroke.offset:.4g}"
-    return [plain_cue_line(scene.cue), told, *(f"with {effect_words(effect)}" for effect in scene.effects)]
-
-
-def _key_figures(record: Record, end_masses: Record, outcome: Outcome) -> list[tuple[str, str, str]]:
-    coupled, felt = record["models"]["coupled"], end_masses["drives"]["squirt"]["end_mass"]
-    remarks = {
-        "squirt": f"{math.tan(abs(outcome.squirt)) * 1e3:.0f} mm off line after 1 m",
-        "pivot_length": "pivot the cue about this point and squirt cancels",
-        "end_mass": "the mass at the tip that would make this much squirt",
-        "ball_speed": f"the cue goes on at {written('cue_speed', outcome.cue_speed, brief=True)}",
-        "spin": f"{abs(outcome.spin) / (2 * math.pi):.1f} turns a second",
-        "duration": GRIPS[grip_of(outcome)][1],
-    }
-    values = coupled | {"end_mass": felt}
-    words = {"end_mass": SQUIRT_END_MASS}
-    return [
-        (words.get(name, RESULTS[name].words), written(name, values[name], brief=True), remark)
-        for name, remark in remarks.items()
-        if name != "duration" or outcome.duration is not None
-    ]
 
 
 SEGMENT_COLUMNS = ("at, mm", "length, mm", "diameter, mm", "bore, mm", "mass", "material")
 
 
-def _cue_part(scene: Scene) -> Record:
+def _segments(scene: Scene) -> Sheet:
     cue = scene.shaft
     place, across = RESULTS["position"].number, RESULTS["radius"].number
     rows = (
@@ -235,11 +167,7 @@ def _cue_part(scene: Scene) -> Record:
         )
         for x, s in zip(cue.nodes[:-1], cue.segments, strict=True)
     )
-    return {
-        "drawing": cue_drawing(scene),
-        "materials": legend([scene]),
-        "segments": Sheet("Segments, from tip to butt", SEGMENT_COLUMNS, tuple(rows), texts=(5,)),
-    }
+    return Sheet("Segments, from tip to butt", SEGMENT_COLUMNS, tuple(rows), texts=(5,))
 
 
 def _by_offset(curves: Mapping[str, Record], scene: Scene, grips: Sequence[str] = ()) -> tuple[Chart, Chart]:
@@ -247,58 +175,28 @@ def _by_offset(curves: Mapping[str, Record], scene: Scene, grips: Sequence[str] 
     return offset_charts(lines, PAGE_OFFSETS, scalar("Stroke.offset", scene.stroke.offset), height=300, grips=grips)
 
 
-def _end_masses(record: Record, scene: Scene, outcome: Outcome) -> Record:
-    drives = [(name, values) for name, values in record["drives"].items() if values["end_mass"] is not None]
-    paper = PAPER_CUE_END_MASS / 4
-    by_a31 = _a31_mass(scene, outcome)
-    largest = max([MEASURED_A31[1], by_a31 or 0.0, *(values["highest"] for _, values in drives)])
-    across = Axis("m_e, g", 0.0).over([scaled(largest, "kg")])
-    left, right = 212.0, 372.0
-
-    def place(mass: float) -> float:
-        return float(across.place(scaled(mass, "kg"), left, right))
-
-    felt = [
-        (DEFINITIONS[name].label_at(record["offset"]), *(values[key] for key in ("end_mass", "lowest", "highest")))
-        for name, values in drives
-    ]
-    felt += [
-        (name, *3 * (mass,)) for name, mass in (("the paper's 12 g", paper), (A31_NAME, by_a31)) if mass is not None
-    ]
-    rows = [(name, grams(masses[0]), *map(place, masses)) for name, *masses in felt]
-    return {
-        "rows": rows,
-        "ticks": across.ticks(left, right),
-        "band": None if by_a31 is None else (place(MEASURED_A31[0]), place(MEASURED_A31[1])),
-        "ends": (left, right),
-        "height": 26.0 * len(rows) + 44,
-        "reasons": [values["reason"] for values in record["drives"].values() if values["end_mass"] is None],
-        "meanings": [
-            *((definition.label_at(record["offset"]), definition.meaning) for definition in DEFINITIONS.values()),
-            *SOURCES,
-        ],
-        "counted": "; ".join(definition.label for definition in DEFINITIONS.values() if definition.counts_tip),
-    }
-
-
-def _a31_mass(scene: Scene, outcome: Outcome) -> float | None:
-    """The end mass with which A.31 gives this squirt, the definition of published end masses; None if there is none."""
-    offset = float(scene.stroke.offset)
+def _meanings(scene: Scene, outcome: Outcome) -> list[str]:
+    """What each definition of the end mass means, and the end mass by that of published ones."""
+    said = [f"{known.name}: {known.meaning}." for known in DEFINITIONS.values()]
     try:
-        mass = float(scene.ball.mass / alciatore_a31_mass_ratio(offset, outcome.squirt, inertia=scene.ball.inertia))
+        offset, inertia = float(scene.stroke.offset), scene.ball.inertia
+        mass = float(scene.ball.mass / alciatore_a31_mass_ratio(offset, outcome.squirt, inertia=inertia))
     except ValueError:
-        return None
-    return mass if 0 < mass < math.inf else None
-
-
-def _energy(outcome: Outcome) -> list[tuple[str, str, float, str]]:
-    whole = outcome.energy["initial"]
-    parts = [(name, value) for name, value in outcome.energy.items() if name != "initial"]
+        return said
+    if not 0 < mass < math.inf:
+        return said
     return [
-        (name, f"e{i % 8 + 1}", 100 * value / whole, _joules(value) if abs(value) > 1e-9 * whole else "0")
-        for i, (name, value) in enumerate(parts)
+        *said,
+        f"[A.31]: with {grams(mass)} Alciatore's formula (technical proof A.31, billiards.colostate.edu) gives this "
+        "squirt. By this definition alone measured cues have 5.8 to 14 g (handbook: Effective end mass).",
     ]
 
 
-def _joules(energy: float) -> str:
-    return f"{energy:.4g} J" if abs(energy) >= 1 else f"{1e3 * energy:.4g} mJ"
+def _energy(outcome: Outcome) -> Sheet:
+    whole = outcome.energy["initial"]
+    rows = (
+        (name, f"{100 * value / whole:.2f} %", with_unit(value, "J") if abs(value) > 1e-9 * whole else "0")
+        for name, value in outcome.energy.items()
+        if name != "initial"
+    )
+    return Sheet("Where the energy goes", ("", "share", "energy"), tuple(rows))

@@ -86,6 +86,7 @@ def squirt_sheet(record: Record, scene: Record) -> Sheet:
 
 
 LATE = ("late stick", "partial slip", "slides", *MISSED)
+SHADED = "Shaded: the tip slips through much of the normal impulse, close to a miscue. Darker: miscue."
 LONGEST_PIVOT = 1.5  # m; beyond it a pivot is behind the cue
 
 

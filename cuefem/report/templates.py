@@ -41,8 +41,7 @@ def chart_markup(drawing: Chart, name: str) -> str:
 
 def sheet_markup(sheet: Sheet) -> str:
     """A table under its title, with its notes."""
-    notes = "".join(f'<p class="made">{escape(note)}</p>' for note in sheet.notes)
-    return f"<h2>{escape(sheet.title)}</h2>{_macros().sheet(sheet)}{notes}"
+    return f"<h2>{escape(sheet.title)}</h2>{_macros().table(sheet)}"
 
 
 @cache

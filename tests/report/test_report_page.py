@@ -12,7 +12,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.report.charts import WIDE, Axis, round_step
-from cuefem.report.drawings import ACROSS, cue_drawing, modes_drawing, strike_drawing
+from cuefem.report.drawings import ACROSS, cue_drawing
 from cuefem.report.report_page import page
 
 MESHES = Path(__file__).parents[2] / "meshes"
@@ -92,7 +92,7 @@ def assert_sound(text: str) -> Reader:
 )
 def test_pages_of_lumped_cues(blow: cf.Scene) -> None:
     words = " ".join(assert_sound(page("lumped.toml", blow)).text)
-    assert not any(part in words for part in ("mode shapes", "Numerical convergence", "numerical error"))
+    assert "Mode shapes" not in words
     assert f"{math.degrees(cf.strike(blow).squirt):.2f}°" in words
 
 
@@ -129,66 +129,26 @@ def layered() -> cf.Scene:
 
 
 @pytest.mark.parametrize(
-    ("blow", "front", "signs"),
-    [(scene("pool_low_deflection"), (), {"Support": 0.2032}), (layered(), (6e-3, 2e-3, 1e-3), {"PointMass": 0.059})],
-    ids=["bored", "layers in front"],
+    ("blow", "front"), [(scene("pool_low_deflection"), ()), (layered(), (6e-3, 2e-3, 1e-3))], ids=["bored", "layers"]
 )
-def test_every_piece_and_effect_is_drawn_at_its_place(blow: cf.Scene, front: tuple, signs: dict[str, float]) -> None:
+def test_every_piece_is_drawn_at_its_place(blow: cf.Scene, front: tuple[float, ...]) -> None:
     """The cue in millimetres of a hundredth: tip to the left, diameters enlarged about the axis, bores inside."""
-    drawing, segments = cue_drawing(blow), blow.shaft.segments
+    drawing, segments = cue_drawing(blow, "all of it"), blow.shaft.segments
     sizes = [(height, 10e-3, 0.0) for height in front]
     sizes += [(s.length, max(s.tip_diameter, s.butt_diameter), max(s.tip_bore, s.butt_bore)) for s in segments]
     ends = np.cumsum([0.0, *(length for length, *_ in sizes)])
-    scale = (WIDE - 20) / ends[-1]
+    scale = WIDE / ends[-1]
     for piece, x, (length, wide, bore) in zip(drawing.pieces, ends[:-1], sizes, strict=True):
-        along = [10 + scale * x, 10 + scale * (x + length)]
+        along = [scale * x, scale * (x + length)]
         for outline, width in ((piece.outline, wide), (piece.bore, bore)):
             across = drawing.axis + scale * ACROSS * width / 2 * np.array([-1, 1])
             assert (outline == "") == (width == 0)
             assert not outline or box(outline) == pytest.approx([*along, *across], abs=0.02)
-    assert {sign.label: (sign.at - 10) / scale for sign in drawing.signs} == pytest.approx(signs)
-    at = 10 + scale * (0.2 + sum(front))  # behind the leather, as positions count
+    at = scale * (0.2 + sum(front))  # behind the leather, as positions count
     assert {tick.label: tick.at for tick in drawing.ticks}["200"] == pytest.approx(at, abs=0.02)
-
-
-def test_modes_are_drawn_with_their_nodes() -> None:
-    cue = scene("kim").shaft
-    found = cf.modes(cue, 3)
-    rows = modes_drawing(found, cue.length).rows
-    for k, row in enumerate(rows):
-        at = (np.array(row.nodes) - 10) / (WIDE - 88) * cue.length
-        assert len(at) == k + 2
-        assert found.shape(at)[0][k] == pytest.approx(0, abs=1e-3 * abs(found.shape(0.0)[0][k]))
-        assert box(row.shape)[:2] == pytest.approx([10, WIDE - 78], abs=0.01)
-    assert [row.axis for row in rows] == sorted(row.axis for row in rows)
 
 
 def test_the_longest_cue_has_a_leather_tip_too() -> None:
     piece = cf.Segment(0.36e-3, 0.012, 0.012, cf.Material(12.6e9, 0.84e9, 700.0))
     longest = cf.usual_scene(cf.Cue((piece,) * 200, body_mass=0.45))
-    assert len(cue_drawing(longest).pieces) == 201
-
-
-@pytest.mark.parametrize("side", [1, -1])
-def test_the_blow_is_drawn_true(side: int) -> None:
-    """The dome touches the ball at b/R, its apex on the cue's line; the ball's line leaves by the squirt."""
-    blow = layered()
-    blow = replace(blow, stroke=replace(blow.stroke, offset=0.375 * side))
-    made = strike_drawing(blow, 0.03 * side)
-    (x, y, radius), (at, height) = made.ball, made.contact
-    scale = radius / blow.ball.radius
-    assert math.hypot(at - x, height - y) == pytest.approx(radius, rel=1e-9)
-    assert (y - height) / radius == pytest.approx(0.375 * side, rel=1e-9)
-    assert (y - made.cue_line) / scale == pytest.approx(0.375 * side * (blow.ball.radius + blow.dome_radius), rel=1e-9)
-    assert (made.path_end[1] - y) / (x - made.path_end[0]) == pytest.approx(math.tan(0.03 * side), rel=1e-9)
-    assert made.straight_end == (made.path_end[0], y)
-    tip, *behind = (box(piece.outline) for piece in made.pieces)
-    assert made.pieces[0].material == "m-leather"
-    assert tip[:2] == pytest.approx([300, 300 + 6e-3 * scale], abs=0.02)  # its apex, and its height
-    assert tip[2:] == pytest.approx(made.cue_line + 5e-3 * scale * np.array([-1, 1]), abs=0.02)
-    assert [b[0] for b in behind] == pytest.approx(
-        [300 + 6e-3 * scale, 300 + 8e-3 * scale, 300 + 9e-3 * scale], abs=0.02
-    )
-    assert behind[-1][1] == pytest.approx(WIDE)
-    apart = [abs(label - line) for label, line in zip(made.labels, (made.cue_line, made.path_end[1]), strict=True)]
-    assert max(apart) < 20
+    assert len(cue_drawing(longest, "").pieces) == 201
