@@ -11,10 +11,11 @@ import pytest
 
 import cuefem as cf
 from cuefem.design import Response
+from cuefem.design.study_statistics import SweepStatistics
 from cuefem.report.plain_page import plain_page
 from cuefem.report.report_page import PAGE_OFFSETS, page
 from cuefem.report.squirt import squirt_record
-from cuefem.report.study_table import DesignTable, sweep_sheets
+from cuefem.report.study_table import sweep_sheets
 from tests.helpers.designer_browser import BROWSER, launched
 
 pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
@@ -77,7 +78,7 @@ def study_of_ten_columns() -> str:
     results = np.stack([time - 0.1 * bore, -bore, bore, -bore, -bore, bore, bore], axis=1)
     names, units = ("bore", "bore depth", "tip.contact_time"), ("m", "m", "s")
     values = (1e-3 * bore, 1e-3 * deep, 1e-3 * time)
-    table = DesignTable(names, units, tuple(map(Response.of, kinds)), np.arange(12), values, results)
+    table = SweepStatistics(names, units, tuple(map(Response.of, kinds)), np.arange(12), values, results)
     return plain_page("bore", ["12 designs", *sweep_sheets(table)])
 
 

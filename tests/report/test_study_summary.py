@@ -12,7 +12,8 @@ from hypothesis.extra.numpy import arrays
 
 import cuefem as cf
 from cuefem.design import Response
-from cuefem.report.study_table import DesignTable, column_label
+from cuefem.design.study_statistics import SweepStatistics
+from cuefem.report.study_table import column_label
 from cuefem.results.solved_design import asked
 from tests.helpers.command_line import as_json, said
 from tests.helpers.refusals import command_refuses
@@ -21,9 +22,11 @@ from tests.helpers.sweeps import STUDY, written
 PAIR = (Response.of("end_mass"), Response.of("tip_stiffness"))
 
 
-def table(columns: dict[str, np.ndarray], results: np.ndarray, responses: tuple[Response, ...] = PAIR) -> DesignTable:
+def table(
+    columns: dict[str, np.ndarray], results: np.ndarray, responses: tuple[Response, ...] = PAIR
+) -> SweepStatistics:
     units = ("",) * len(columns)
-    return DesignTable(tuple(columns), units, responses, np.arange(len(results)), tuple(columns.values()), results)
+    return SweepStatistics(tuple(columns), units, responses, np.arange(len(results)), tuple(columns.values()), results)
 
 
 def test_shares_of_a_grid_are_those_of_its_formula() -> None:

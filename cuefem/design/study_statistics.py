@@ -1,0 +1,114 @@
+"""Statistics of a sweep: which parameter explains which response, and where two responses trade off."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from cuefem.cue import Array
+from cuefem.design.responses import Response
+from cuefem.design.study_result import StudyResult
+
+MOST_LEVELS = 24  # values of a parameter that are groups of their own; of more, each group is a range
+RANGES = 12  # so many then
+CLEAR = 0.2  # the least rank correlation that is called a trend
+
+
+@dataclass(frozen=True)
+class SweepStatistics:
+    """Designs that have all responses.
+
+    names, units: of the parameters. numbers: of the designs. values: of each parameter, numbers or names.
+    results: (designs, responses).
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    responses: tuple[Response, ...]
+    numbers: Array
+    values: tuple[np.ndarray, ...]
+    results: Array
+
+    @cached_property
+    def shares(self) -> Array:
+        """Part of the variance of each response that each parameter explains alone, (parameters, responses)."""
+        return np.array([explained(column, self.results) for column in self.values])
+
+    @cached_property
+    def trends(self) -> list[list[str]]:
+        """ "rises", "falls" or nothing, by parameter and response."""
+        return [[_trend(column, result) for result in self.results.T] for column in self.values]
+
+    @cached_property
+    def judged(self) -> list[int]:
+        """The responses of which one way is better; all of them if there is none."""
+        every = range(len(self.responses))
+        return [k for k in every if self.responses[k].result.better] or [*every]
+
+    @cached_property
+    def losses(self) -> Array:
+        """The results, with the sign that makes less better."""
+        return self.results * [-1.0 if response.result.better == "higher" else 1.0 for response in self.responses]
+
+    def best(self, k: int) -> int:
+        """The row of the best design for a response."""
+        return int(self.losses[:, k].argmin())
+
+    @cached_property
+    def pair(self) -> tuple[int, int] | None:
+        """The first response that is judged, and the one that is most opposed to it; None if there is one alone."""
+        first, *others = self.judged
+        against = [_rank_correlation(self.losses[:, first], self.losses[:, k]) for k in others]
+        return (first, others[int(np.argmin(against))]) if others else None
+
+    @cached_property
+    def front(self) -> list[int]:
+        """Rows that no other row beats in both responses of the pair (Pareto), by the first response."""
+        if self.pair is None:
+            return []
+        first, second = self.losses[:, self.pair].T
+        order = np.lexsort((second, first))
+        least = np.minimum.accumulate(second[order])
+        return order[np.r_[True, least[1:] < least[:-1]]].tolist()
+
+
+def sweep_statistics(result: StudyResult) -> SweepStatistics | None:
+    """The statistics of a sweep; None if fewer than two designs have all responses."""
+    good = [row for row in result.rows if None not in row.responses]
+    if len(good) < 2:
+        return None
+    columns = tuple(np.array(column) for column in zip(*(row.values for row in good), strict=True))
+    names, units = (part[: len(columns)] for part in (result.study.columns, result.study.units))
+    numbers, results = np.array([row.design for row in good]), np.array([row.responses for row in good], float)
+    return SweepStatistics(names, units, result.study.responses, numbers, columns, results)
+
+
+def explained(column: np.ndarray, results: Array) -> Array:
+    """Variance of the means over equal values, or over ranges of values, over the whole variance, (responses,).
+
+    The share of ranges is less what chance alone gives them.
+    """
+    levels, group = np.unique(column, return_inverse=True)
+    chance = len(levels) > MOST_LEVELS and column.dtype.kind in "fi"
+    if chance:
+        count = max(2, min(RANGES, len(column) // 8))
+        edges = np.quantile(column, np.arange(1, count) / count)
+        group = np.unique(np.searchsorted(edges, column, side="right"), return_inverse=True)[1]
+    member = np.eye(group.max() + 1)[group]
+    between = np.var(member @ ((member.T @ results) / member.sum(axis=0)[:, None]), axis=0)
+    whole = results.var(axis=0)
+    share = np.divide(between, whole, out=np.zeros_like(whole), where=whole > 0)
+    count, groups = member.shape
+    return np.clip(1 - (1 - share) * (count - 1) / (count - groups), 0, 1) if chance and count > groups else share
+
+
+def _rank_correlation(first: Array, other: Array) -> float:
+    ranks = [np.unique(values, return_inverse=True)[1] for values in (first, other)]
+    return float(np.asarray(np.corrcoef(ranks))[0, 1]) if all(rank.any() for rank in ranks) else 0.0
+
+
+def _trend(column: np.ndarray, result: Array) -> str:
+    correlation = _rank_correlation(column, result) if column.dtype.kind in "fi" else 0.0
+    return "rises" if correlation > CLEAR else "falls" if correlation < -CLEAR else ""
