@@ -106,14 +106,6 @@ class Solved:
         """Tip modes for an end mass whose drive begins smoothly."""
         return self.tip_stuck if self.least_smooth == LEAST_STUCK else self.tip_modes(LEAST)
 
-    @cached_property
-    def tip_plain(self) -> TipModes:
-        """Tip modes summed plainly, without a tail: twice the frequencies of a strike's by default."""
-        if self.at is not None or self.scene.lumped is not None:
-            return self.tip
-        plain = default_modes(self.scene, periods=PLAIN_PERIODS)
-        return tip_modes_from(self._solved(plain, ended=False), self.scene)
-
     def tip_modes(self, least: int | None = None) -> TipModes:
         """Tip modes of any cue with its effects: a strike's by default, or at least ``least`` bending modes."""
         if self.scene.lumped is not None:

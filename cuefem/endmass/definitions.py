@@ -28,11 +28,6 @@ from cuefem.quantity.slips import trying
 from cuefem.scene import Outcome, Resolution, Scene, Stroke
 from cuefem.tip_modes import Solved
 
-# The tail stands for the modes left out. If those modes kept all their energy, they would change the stick end mass by
-# some amount; this part of it is the estimated error. Measured: the estimate covers all errors above 0.2 %
-# (version 0.1, 40 random cues at 200 contact times; studies/accuracy/accuracy.md has fewer).
-HEARD = 0.6
-
 # Offsets whose end masses are worked at a time, so that the arrays of modes by offsets stay small.
 BLOCK = 1024
 # The squirts of this many lumped cues are computed in one call, which costs as much as two single ones; a root is then
@@ -96,36 +91,6 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
     if scene.lumped is not None:
         return scene.lumped.end_mass
     return definition.of_solved(Solved(scene, at))
-
-
-class Spread(NamedTuple):
-    """An end mass, and the smallest and largest value while only 25 to 100 % of the modes are kept; kg.
-
-    error: the definition's own estimate of its relative error (`Definition.error`); lowest and highest reach at least
-    as far. None if the definition has no such estimate, or if a resolution was given.
-    """
-
-    end_mass: float
-    lowest: float
-    highest: float
-    error: float | None = None
-
-
-def spread_of(solved: Solved, drive: str) -> Spread:
-    """The end mass of a solved scene and its spread, by a definition.
-
-    The spread is over plain sums, without a tail, of 13 different numbers of modes; of 5, if each takes a coupled
-    strike. Wave fronts that return just before the pulse ends make false plateaus: one doubling proves nothing.
-    """
-    scene, definition, plain = solved.scene, definition_of(drive), solved.tip_plain
-    tip = definition.tip_of(solved)
-    rigid, whole = int(np.sum(plain.omega == 0)), len(plain.omega)
-    least, cutoffs = rigid + math.ceil((whole - rigid) / 4), 5 if definition.strikes(tip, scene) else 13
-    counts = sorted(set(np.linspace(least, whole, cutoffs).astype(int).tolist()))
-    values = [float(definition.of(each, scene)) for each in (tip, *map(plain.lowest, counts))]
-    error = definition.error(tip, scene)
-    reach = [values[0] * (1 + side * (error or 0.0)) for side in (-1, 1)]
-    return Spread(values[0], min(*values, *reach), max(*values, *reach), error)
 
 
 def _couples(tip: TipModes, scene: Scene) -> bool:
@@ -217,21 +182,6 @@ def _held(tip: TipModes, limit: StickLimit) -> Array:
     return ImpulseResponse.of(tip).held(limit.c, limit.T)
 
 
-def stick_error_estimate(tip: TipModes, scene: Scene) -> float | None:
-    """Estimated relative error of the stick end mass of modes that end in a tail; None without one.
-
-    The step of velocity at first touch sets the tail vibrating, and its dashpot takes that away. If instead it rang on
-    without loss, as a metal tip does on wood at 100 to 250 kHz, the impulse J would swing; `HEARD` of the most that it
-    swings in the last tenth of the contact is the estimate.
-    """
-    if tip.radiation is None:
-        return None
-    limit = StickLimit.of(scene)
-    held, ringing = _held(tip, limit), _held(replace(tip, radiation=None), limit)
-    swing, J = np.abs(ringing - held)[-len(held) // 10 :].max(), limit.transverse_impulse(held, limit.T)
-    return float(HEARD * swing / J * (1 + limit.end_mass(J) * limit.c))  # end mass goes with J so
-
-
 def small_offset_slope(tip: TipModes, scene: Scene) -> float:
     """Squirt over phi in the limit b -> 0 of the coupled strike: a strike at b/R = 1e-5 that sticks from the start.
 
@@ -315,21 +265,17 @@ def zoomed_root(function: Callable[[Array], Array], places: Array) -> float:
 class Definition(NamedTuple):
     """One definition of the effective end mass, and what commands, pages and sweeps say of it.
 
-    name: as `end_mass` takes it. label: in a few words. meaning: in plain English. formula: how it is computed. value:
-    the end mass of a vibrating cue, kg, from its tip modes and its scene. at_offset: whether it is the end mass at the
-    scene's own offset. strikes: whether it takes a coupled strike of these tip modes. error: its estimated relative
-    error with these tip modes, None if there is no estimate. counts_tip: whether effects at the tip count in it.
-    smooth: whether the tip starts from rest, without a step of its velocity, so that a strike's modes are enough.
+    name: as `end_mass` takes it. label: in a few words. meaning: in plain English. value: the end mass of a vibrating
+    cue, kg, from its tip modes and its scene. at_offset: whether it is the end mass at the scene's own offset.
+    counts_tip: whether effects at the tip count in it. smooth: whether the tip starts from rest, without a step of its
+    velocity, so that a strike's modes are enough.
     """
 
     name: str
     label: str
     meaning: str
-    formula: str
     value: Callable[[TipModes, Scene], Any]
     at_offset: bool = False
-    strikes: Callable[[TipModes, Scene], bool] = lambda tip, scene: False
-    error: Callable[[TipModes, Scene], float | None] = lambda tip, scene: None
     counts_tip: bool = False
     smooth: bool = False
 
@@ -355,49 +301,35 @@ DEFINITIONS: dict[str, Definition] = {
     definition.name: definition
     for definition in (
         Definition(
-            "stick",
-            "stick, small offsets",
+            *("stick", "stick, small offsets"),
             "transverse inertia of the cue at the tip in the coupled strike, in the limit of small offsets",
-            "(K - 1)/J - c = 1/m_e, J the impulse across the cue that makes the tip follow V(t) = K P(t) - 1",
             stick,
-            strikes=_couples,
-            error=stick_error_estimate,
             counts_tip=True,
         ),
         Definition(
-            "offset",
-            "stick",
+            *("offset", "stick"),
             "transverse inertia of the cue at the tip in a coupled strike at this offset whose tip never slips",
-            "as stick, with the K and T of the contact at this offset",
             stick_at_offset,
             at_offset=True,
-            strikes=_couples,
             counts_tip=True,
         ),
         Definition(
-            "velocity",
-            "velocity",
+            *("velocity", "velocity"),
             "impulse over final velocity, for a prescribed tip velocity (1 - cos(pi t/T))/2",
-            "m_e = integral of F dt over 0..T, F the force that gives the tip that velocity",
             velocity,
             smooth=True,
         ),
         Definition(
-            "force",
-            "force",
+            *("force", "force"),
             "impulse over final velocity, for a prescribed half-sine force of duration T",
-            "m_e = (2 T/pi)/(integral of h(T - t) sin(pi t/T) dt over 0..T)",
             force,
             smooth=True,
         ),
         Definition(
-            "squirt",
-            "squirt-equivalent",
+            *("squirt", "squirt-equivalent"),
             "the end mass whose squirt in the impulse solver (restitution, friction) is that of the coupled strike",
-            "squirt of impulse(LumpedCue(m_a, m_e)) = squirt of strike(scene), solved for m_e",
             squirt_equivalent,
             at_offset=True,
-            strikes=lambda tip, scene: True,
             counts_tip=True,
         ),
     )

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
-from cuefem.endmass.definitions import DEFINITIONS, spread_of
+from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.report.scene_words import assumptions, listed, tip_effect_notes
 from cuefem.results.closed_forms import cue_end_mass
-from cuefem.results.quantities import NONE, RESULTS, grams, with_unit
+from cuefem.results.quantities import with_unit
 from cuefem.results.records import Record, Sheet, sheet
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
@@ -17,7 +14,7 @@ SQUIRT_END_MASS = "squirt-equivalent end mass"  # the one that pages and tables 
 
 
 def end_mass_record(scene: Scene, *, solved: Solved | None = None) -> Record:
-    """The end masses m_e, their range while fewer modes are kept, and [Kim]'s m_c and eps = m_c/M of each.
+    """The end masses m_e, and [Kim]'s m_c and eps = m_c/M of each.
 
     A definition `at_offset` is taken at the scene's own offset; one that has no answer says why instead. solved: the
     scene's modes, if they are known already.
@@ -33,10 +30,9 @@ def end_mass_record(scene: Scene, *, solved: Solved | None = None) -> Record:
 def _end_mass(solved: Solved, drive: str) -> Record:
     scene = solved.scene
     try:
-        felt, lowest, highest, _ = spread_of(solved, drive)
+        felt = float(DEFINITIONS[drive].of_solved(solved))
     except ValueError as error:
-        names = ("end_mass", "lowest", "highest", "cue_end_mass", "eps")
-        return {**dict.fromkeys(names), "reason": str(error)}
+        return {"end_mass": None, "cue_end_mass": None, "eps": None, "reason": str(error)}
     if not felt > 0:
         time = with_unit(float(scene.contact_time), "s")
         raise ValueError(
@@ -44,13 +40,7 @@ def _end_mass(solved: Solved, drive: str) -> Record:
             f"contact of {time}: check dimensions, E and contact time"
         )
     whole = float(cue_end_mass(felt))
-    return {
-        "end_mass": felt,
-        "lowest": lowest,
-        "highest": highest,
-        "cue_end_mass": whole,
-        "eps": whole / scene.ball.mass,
-    }
+    return {"end_mass": felt, "cue_end_mass": whole, "eps": whole / scene.ball.mass}
 
 
 def end_mass_sheet(record: Record, scene: Record, *, paper: bool = False) -> Sheet:
@@ -64,21 +54,15 @@ def end_mass_sheet(record: Record, scene: Record, *, paper: bool = False) -> She
         {
             "definition": lambda row: row["name"] + (at if DEFINITIONS[row["name"]].at_offset else ""),
             "m_e": "end_mass",
-            "range": _spread,
             **papers,
         },
         rows,
         assumptions(scene),
         *(f"{row['name']}: {row['reason']}" for row in rows if row["end_mass"] is None),
         "m_e: effective end mass, the transverse inertia of the cue at its tip (the lumped models use offset)",
-        "range: m_e with 25 to 100 % of the modes retained (a convergence check, not an uncertainty)",
         *([their] if paper else []),
         *tip_effect_notes(scene, _counted()),
     )
-
-
-def _spread(row: Mapping[str, Any]) -> str:
-    return NONE if row["end_mass"] is None else f"{RESULTS['mass'].number(row['lowest'])}–{grams(row['highest'])}"
 
 
 def _counted() -> str:

@@ -161,8 +161,6 @@ RESULTS = {
         listed=False,
     ),
     "cue_end_mass": Result("mass of the cue's end", "kg"),
-    "lowest": Result("lowest", "kg"),
-    "highest": Result("highest", "kg"),
     "length": Result("length", "m", 0),
     "balance_point": Result(
         *("balance point of the drawn part, from the tip", "m", 1),

@@ -71,7 +71,7 @@ SPOT = Result(
 )
 PUSH = Result("push", "m/s", 3, of=of_strike(lambda outcome: 2 * outcome.ball_speed), argument="offset", strikes=True)
 RIGID = Definition(
-    *("rigid", "rigid body", "the inertia of the tip as a rigid body, plus one gram", "1/sum of the rigid phi^2"),
+    *("rigid", "rigid body", "the inertia of the tip as a rigid body, plus one gram"),
     lambda tip, _: 1e-3 + 1 / float(np.sum(tip.amplitude[tip.omega == 0, 1] ** 2)),
     True,
 )
