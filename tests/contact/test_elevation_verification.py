@@ -1,86 +1,18 @@
-"""A raised cue against exact solutions in the table's frame, and the rates at which it becomes a level one."""
+"""A raised cue against a closed form, and balls that hop; against small steps: test_independent_effects.py."""
 
 from dataclasses import replace
-from math import asin, cos, inf, sin
+from math import cos, inf, sin
 
 import numpy as np
 import pytest
 
-from cuefem import Elevation, LumpedCue, PowerLawTip, Resolution, Scene, Stroke, Tip, strike
+from cuefem import Elevation, LumpedCue, Resolution, Scene, Stroke, Tip, strike
 from cuefem.contact.model import model_of
 from cuefem.contact.step_records import solve_contact
 from cuefem.contact.strike import strike_modes
-from tests.helpers.orders import falls_with_the_step
-from tests.helpers.strike_scenes import CLOSED, hand_made, imbalance
+from tests.helpers.strike_scenes import hand_made, imbalance
 
 pytestmark = pytest.mark.kernel
-
-
-class Blow:
-    """A lumped cue and a ball on a table as rigid bodies in the table's frame (x right, y forward, z up).
-
-    Velocities: the cue's along u, w, p (masses M_c, m_e, m_e), the ball's V, its spin; a force along a constraint's row
-    keeps that velocity at zero. With no slip that begins or ends, the tip's impulse is (1 + e) times what stops it.
-    """
-
-    def __init__(self, scene: Scene, angle: float):
-        self.scene = scene
-        cue, ball, phi = scene.cue, scene.ball, asin(scene.stroke.offset)
-        x, u, p = np.eye(3)[0], np.array([0, cos(angle), -sin(angle)]), np.array([0, sin(angle), cos(angle)])
-        self.masses = np.array(
-            [cue.mass, cue.end_mass, cue.end_mass, *3 * [ball.mass], *3 * [ball.inertia * ball.mass * ball.radius**2]]
-        )
-        self.n, self.t, self.p = cos(phi) * u - sin(phi) * x, sin(phi) * u + cos(phi) * x, p
-        self.axes = np.array([u, x, p])
-
-    def row(self, way: np.ndarray, arm: np.ndarray, *, tip: bool) -> np.ndarray:
-        """Velocity along ``way`` of the ball's point at ``arm``, less the tip's."""
-        return np.concatenate([-(self.axes @ way) if tip else np.zeros(3), way, np.cross(arm, way)])
-
-    def after(self, held: list[np.ndarray]) -> np.ndarray:
-        R = self.scene.ball.radius
-        normal = self.row(self.n, -R * self.n, tip=True)
-        start = np.zeros(9)
-        start[0] = self.scene.stroke.speed
-        rows = np.array(held)
-        pull = rows.T / self.masses[:, None]
-
-        def free(v):
-            return v - pull @ np.linalg.solve(rows @ pull, rows @ v)
-
-        start, push = free(start), free(normal / self.masses)
-        return start - (1 + self.scene.tip.restitution) * (normal @ start) / (normal @ push) * push
-
-    def tip_rows(self) -> list[np.ndarray]:
-        arm = -self.scene.ball.radius * self.n
-        return [self.row(way, arm, tip=True) for way in (self.t, self.p)]
-
-    def table_rows(self, *, held: bool) -> list[np.ndarray]:
-        x, y, z = np.eye(3)
-        arm = -self.scene.ball.radius * z
-        return [self.row(way, arm, tip=False) for way in ((z, x, y) if held else (z,))]
-
-
-@pytest.mark.parametrize(("angle", "exponent"), [(0.05, 1.0), (0.4, 1.5), (1.1, 1.0)])
-@pytest.mark.parametrize(
-    ("offset", "friction", "table"),
-    [(0.35, 0.0, 0.0), (0.35, inf, 0.0), (0.6, inf, 0.0), (0.0, inf, 1e9), (0.6, 0.0, 1e9), (0.0, 0.0, 1e9)],
-)
-def test_rigid_bodies_on_a_table(angle, offset, exponent, friction, table):
-    scene = Scene(LumpedCue(0.54, 0.02), tip=Tip(0.7, friction, 1e-3), stroke=Stroke(1.4, offset))
-    scene = replace(scene, effects=(Elevation(angle, table), PowerLawTip(exponent)))
-    blow = Blow(scene, angle)
-    told = blow.after([*(blow.tip_rows() if friction else []), *blow.table_rows(held=table > 0)])
-
-    def error(steps: int) -> float:
-        outcome = strike(scene, Resolution(1, 1, 1, steps))
-        found = [*outcome.history.velocity, outcome.cue_speed, outcome.squirt, outcome.ball_speed]
-        exact = [*told[3:6], told[0], np.arctan2(-told[3], told[4]), np.hypot(told[3], told[4])]
-        spins = scene.ball.radius * (np.array([*outcome.history.spin, outcome.spin]) - [*told[6:9], told[8]])
-        assert imbalance(outcome) < CLOSED
-        return float(np.abs([*(np.array(found) - exact), *spins]).max())
-
-    falls_with_the_step(error)
 
 
 def test_table_friction_of_a_head_on_slide():
