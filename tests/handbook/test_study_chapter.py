@@ -15,7 +15,7 @@ from cuefem.results.solved_design import asked
 (TEXT,) = (chapter.text for chapter in chapters() if chapter.name == "study")
 EXAMPLES = {
     kind: re.findall(r"```toml\n(.*?)```", TEXT.partition(f"\n## {title}\n")[2].partition("\n## ")[0], re.DOTALL)
-    for kind, title in (("sweep", "A sweep"), ("scatter", "A scatter"), ("optimum", "An optimum"))
+    for kind, title in (("sweep", "Sweep"), ("scatter", "Tolerance analysis"), ("optimum", "Optimum"))
 }
 KINDS = {"sweep": "Study", "scatter": "Scatter", "optimum": "Problem"}
 
