@@ -14,7 +14,7 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike
 from skfem import Basis, BilinearForm, ElementLinePp, MeshLine
 
-from cuefem.beam.mesh import NEAR, ActsOnCue
+from cuefem.beam.mesh import NEAR, RIGID, ActsOnCue
 from cuefem.cue import Array, Cue
 
 
@@ -52,9 +52,11 @@ class _PointTerms:
                 getattr(self, kind)[unknown, unknown] += value
 
     def join(self, x: float, *compliances: float) -> None:
-        """Springs between the two sides of a joint; zero compliance: no jump."""
-        for (before, after), compliance in zip(self.at(x).T, compliances, strict=True):
-            if compliance:
+        """Springs between the two sides of a joint; next to no compliance: no jump."""
+        section = self.cue.section(min(x, self.cue.length))
+        stiffness = (section.kGA, section.EI)
+        for (before, after), compliance, own in zip(self.at(x).T, compliances, stiffness, strict=True):
+            if compliance * own > RIGID * self.cue.length:
                 self.stiffness[np.ix_([before, after], [before, after])] += np.array([[1, -1], [-1, 1]]) / compliance
             else:
                 self.source[before] = after

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from cuefem.effects.axial import RodModes
 
 BUTTS, MOST_DENSITY = (500.0, 1900.0), 23_000.0  # kg/m3, of usual butts; the highest of a material, platinum's
+SHORTEST_REST = 0.05  # m: what is left behind a drawing is a rod from this length on
 BUTT = "cue_length, butt_diameter and wave_speed"
 
 
@@ -273,7 +274,8 @@ class AxialWaves(CueEffect):
     ----------
     cue_length : float, optional
         Length of the whole cue, m. Behind what is drawn, `Cue.body_mass` is then a rod that tapers from the end of the
-        drawing to the butt. By default that mass is rigid, at the end of the drawing.
+        drawing to the butt; within 5 cm of that length, and by default, that mass is rigid, at the end of the drawing.
+        The rod is solid behind a bored segment too: along the axis its mass, length and wave speed alone count.
     butt_diameter : float, optional
         Diameter at the end of the butt, m; with ``cue_length``.
     wave_speed : float, optional
@@ -332,12 +334,14 @@ class AxialWaves(CueEffect):
         """Volume of the rod behind what is drawn, m3; 0 without one."""
         if self.cue_length is None or self.butt_diameter is None or not cue.body_mass:
             return 0.0
+        if self.cue_length - cue.length < SHORTEST_REST:
+            return 0.0
         first = cue.segments[-1].butt_diameter
         square = first**2 + first * self.butt_diameter + self.butt_diameter**2
-        return math.pi / 12 * square * max(0.0, self.cue_length - cue.length)
+        return math.pi / 12 * square * (self.cue_length - cue.length)
 
     def with_butt(self, cue: Cue) -> Cue:
-        """The cue with its rest as a segment; as it is if nothing is behind it, or no length is left for that."""
+        """The cue with its rest as a segment; as it is if nothing, or too little length, is behind it."""
         volume, last = self._volume_behind(cue), cue.segments[-1]
         if not volume or self.cue_length is None or self.butt_diameter is None or self.wave_speed is None:
             return cue

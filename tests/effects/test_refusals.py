@@ -53,7 +53,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [  # a line a raise, its first w
     (lumped(SHEAR, cf.Joint(0.1)), "got Joint, which needs a finite-element Cue"),
     (lumped(SHEAR, WAVES), "Scene.effects[1] must be an effect that a LumpedCue can have"),
     (lambda: cf.AxialWaves(1.47), "AxialWaves must be given cue_length, butt_diameter and wave_speed together"),
-    (listed(cf.AxialWaves(0.701, 0.03, 4430.0)), "Scene.cue.body_mass must be in [0, 0.0"),
+    (listed(cf.AxialWaves(0.76, 0.005, 4430.0)), "Scene.cue.body_mass must be in [0, 0.2"),
     (listed(WAVES, SHEAR, WAVES), "Scene.effects[2] must be another effect, AxialWaves acts once; got Axial"),
     (listed(DOME, LEATHER), "must be an effect that goes with effects[0], TipDome; got LeatherTip"),
     (listed(LEATHER), "Tip.contact_time must be left out beside an effect that gives the whole tip"),

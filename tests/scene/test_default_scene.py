@@ -68,6 +68,16 @@ def test_refusals() -> None:
     refuses(lambda: cf.usual_scene(cf.Cue((leather(1e-3), WOOD))), "higher than 2.054 mm, the depth of its dome")
 
 
+def test_a_rest_that_is_too_short_for_a_rod_is_a_rigid_mass() -> None:
+    """A cue drawn to 3 mm short of a whole one's length, with 100 g more at its end."""
+    cue = cf.Cue((WOOD, cf.Segment(0.7702, 0.021, 0.031, material("hard maple"))), body_mass=0.1)
+    scene = cf.usual_scene(cue)
+    rigid = replace(
+        scene, effects=tuple(cf.AxialWaves() if isinstance(one, cf.AxialWaves) else one for one in scene.effects)
+    )
+    assert cf.strike(scene).squirt == cf.strike(rigid).squirt
+
+
 def test_restitution_of_a_typed_modulus_lies_between_the_leathers() -> None:
     """That of a named leather at its modulus, and with axial waves alone."""
 
