@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from functools import cache
 from itertools import product
@@ -14,16 +14,27 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.beam.modes import solve
-from cuefem.beam.system import assemble
 from cuefem.beam.tip import TipModes, lumped_tip_modes
 from cuefem.contact.model import model_of
+from cuefem.contact.rigid_impact import inverse_mass
 from cuefem.contact.strike import strike_modes
-from cuefem.tip_modes import default_modes, tip_modes_from, tip_modes_of
+from cuefem.tip_modes import tip_modes_of
 from tests.data.stored import scene_of, stored_law, strikes, tip_of
-from tests.helpers.cues import scaled
 from tests.helpers.orders import falls_with_the_step
-from tests.helpers.strike_scenes import KIM, hand_made, imbalance, kim_scene, numbers
+from tests.helpers.strike_scenes import (
+    CLOSED,
+    KIM,
+    KIM_AT,
+    hand_made,
+    imbalance,
+    kim_scene,
+    maple,
+    pool_cue,
+    sound,
+    stepped_cue,
+    uniform_rod,
+    weighted_cue,
+)
 
 MESHES = sorted((Path(__file__).parents[2] / "meshes").glob("*.toml"))
 # Where in its step an event falls is chance: the root mean square of many errors has the order.
@@ -86,19 +97,6 @@ def test_leather_grips_at_the_first_touch_whatever_the_step(offset: float, regim
     leather = cf.LeatherTip(height=6e-3, dome_radius=9.5e-3, E=1e8)
     scene = cf.Scene(KIM, tip=cf.Tip(0.75, 0.3), stroke=cf.Stroke(2.0, offset), effects=(leather,))
     assert cf.strike(scene, cf.Resolution(4, 12, 12, steps)).regime == regime
-
-
-def test_a_stiffer_shaft_comes_to_the_impulse_solver_with_its_flexibility() -> None:
-    """The paper's model of a rigid cue is the limit of a stiff shaft: the error falls like 1/E."""
-    scene = cf.Scene(KIM, tip=cf.Tip(0.75, 0.7, contact_time=1e-3), stroke=cf.Stroke(1.0, 0.3))
-    rigid = tip_modes_of(scene, cf.Resolution(1, 6, 1)).amplitude[:3, 1]
-    exact = cf.impulse(replace(scene, cue=cf.LumpedCue(KIM.mass, 1 / float(rigid @ rigid)))).squirt
-    stiffer, errors = 10.0 ** np.arange(5, 7.6, 0.25), []
-    for factor in stiffer:
-        stiff = replace(scene, cue=scaled(KIM, E=factor, G=factor))
-        errors.append(abs(cf.strike(stiff, cf.Resolution(2, 10, 1, 10_000)).squirt - exact))
-    assert np.polyfit(np.log(stiffer), np.log(errors), 1)[0] == pytest.approx(-1.0, abs=0.2)
-    assert errors[-1] < 1e-4 * exact
 
 
 @cache
@@ -164,16 +162,55 @@ def light() -> Iterator[tuple[cf.Scene, TipModes]]:
             yield replace(scene, effects=effects), lumped_tip_modes(cue)
 
 
-@pytest.mark.parametrize("scenes", [light, pytest.param(again, marks=pytest.mark.heavy)])
-def test_hard_strikes_end_with_an_energy_that_closes(scenes) -> None:
+def drawn() -> Iterator[tuple[cf.Scene, TipModes]]:
+    """Odd shafts: thin, short, endless, stepped, heavy behind; a graze, and a miscue that presses a ringing tip on."""
+    few = cf.Resolution(4, 12, 12)
+    # of 0.2 mm in front of the shaft: its own mode rings at tens of kHz, and its mass is a milligram
+    needle = cf.Cue((cf.Segment(0.004, 0.0002, 0.0002, maple()), *KIM.segments), 0.42)
+    for cue, offsets, at in (
+        (pool_cue(ferrule=0.001), (0.3,), None),
+        (stepped_cue(), (0.1, 0.5), KIM_AT),
+        (weighted_cue(), (0.3,), KIM_AT),
+        (needle, (0.3,), KIM_AT),
+        (uniform_rod(10), (0.3,), few),
+        (uniform_rod(1e4), (0.3,), few),
+        (KIM, (0.999, 0.9), few),
+        (KIM, (1 - 1e-6, 1 - 1e-9, 1 - 1e-12), few),
+    ):
+        for offset in offsets:
+            scene = replace(kim_scene(offset, restitution=0.05 if 0.6 < offset < 0.9999 else 0.75), cue=cue)
+            yield scene, tip_modes_of(scene, at)
+
+
+HARD = [(light, 2e-5), (drawn, CLOSED), pytest.param(again, 2e-5, marks=pytest.mark.heavy)]
+
+
+@pytest.mark.parametrize(("scenes", "within"), HARD)
+def test_hard_strikes_end_with_an_energy_that_closes(
+    scenes: Callable[[], Iterable[tuple[cf.Scene, TipModes]]], within: float
+) -> None:
     for scene, tip in scenes():
         outcome = strike_modes(scene, tip)
-        assert np.all(np.isfinite(numbers(outcome)))
-        if imbalance(outcome) > 2e-5:  # a tip that chatters at e = 0.05 over modes of a megahertz
+        if (
+            chatters := scenes is not drawn and imbalance(outcome) > within
+        ):  # a tip that chatters at e = 0.05 over modes of a megahertz
             assert imbalance(outcome) < 3e-3, scene
             assert imbalance(strike_modes(scene, tip, steps=6400)) < imbalance(outcome) / 10
-        assert min(outcome.energy.values()) > -1e-9 * outcome.energy["initial"]
-        assert outcome.impulse[1] > 0
+        sound(outcome, within=3e-3 if chatters else within)
+        if scene.stroke.offset > 0.9999:  # the normal speed is 1e-3 of the cue's and less, the contact all slip
+            assert abs(np.tan(np.arcsin(scene.stroke.offset) - outcome.squirt) - 0.7) < 1e-6
+
+
+@pytest.mark.parametrize("end_mass", [0.003, 0.05, 1.0])
+def test_friction_of_exactly_mu_c_does_not_chatter(end_mass: float) -> None:
+    """Stick needs exactly mu_c, so |F_t| = mu F_n for the whole of it, but for rounding."""
+    cue, ball = cf.LumpedCue(0.54, end_mass), cf.Ball()
+    B = inverse_mass(cue, ball, 0.4)
+    scene = cf.Scene(cue, ball, cf.Tip(0.75, abs(float(B.tn / B.tt))), cf.Stroke(offset=0.4))
+    outcome = cf.strike(scene)
+    sound(outcome)
+    assert abs(outcome.squirt - cf.impulse(scene).squirt) < 1e-5
+    assert len(outcome.phases) <= 6
 
 
 @pytest.mark.parametrize(("e", "regime"), [(0.3, "miscue"), (0.9, "late stick")])
@@ -206,16 +243,3 @@ def test_head_on_contact_time_falls_with_speed(exponent, speed, e):
         return max(abs(outcome.duration / time - 1), abs(leaves - 1))
 
     falls_with_the_step(error)
-
-
-@pytest.mark.nightly
-@pytest.mark.parametrize("time", [0.7e-3, 2e-3, 4e-3])
-@pytest.mark.parametrize("path", MESHES, ids=[path.stem for path in MESHES])
-def test_the_default_keeps_squirt_within_half_a_percent_of_many_modes(path, time):
-    """Many: three times the modes on a mesh of their own, ended by a tail as well."""
-    base = replace(kim_scene(0.1, contact_time=time), cue=cf.load(path))
-    count = 3 * default_modes(base)
-    many = tip_modes_from(solve(assemble(base.cue, count), count, ended=1), base)
-    for offset in (0.1, 0.3, 0.5):
-        scene = replace(base, stroke=replace(base.stroke, offset=offset))
-        assert abs(cf.strike(scene).squirt / strike_modes(scene, many).squirt - 1) < 5e-3, offset

@@ -100,12 +100,12 @@ def numbers(outcome: Outcome) -> np.ndarray:
     )
 
 
-def sound(outcome: Outcome) -> None:
+def sound(outcome: Outcome, within: float = CLOSED) -> None:
     """What holds for every strike: finite numbers, losses that are losses, an energy account that closes."""
     assert np.all(np.isfinite(numbers(outcome)))
     initial = outcome.energy["initial"]
     assert all(part >= -CLOSED * initial for part in outcome.energy.values())
-    assert imbalance(outcome) < CLOSED
+    assert imbalance(outcome) < within
     thrown = [phase.grip for phase in outcome.phases] == ["blow"]  # apart by endless friction alone
     assert outcome.impulse[1] == 0 if thrown else outcome.impulse[1] > 0
     assert abs(outcome.impulse[0]) >= 0
