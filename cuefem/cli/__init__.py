@@ -145,5 +145,5 @@ def _forget_output() -> None:
 def main() -> None:
     """Compute natural frequencies, effective end mass and squirt of a billiard cue from its drawing.
 
-    FILE is a cue or a scene (.toml), a lathe profile (.csv), a mesh (.vtu) or a CAD surface (.stl, .ply, .obj).
+    FILE is a cue or a scene (.toml), a lathe profile (.csv) or a CAD surface (.stl, .ply, .obj).
     """

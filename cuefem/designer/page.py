@@ -42,7 +42,7 @@ from cuefem.scene import Scene
 from cuefem.solid.tip_cache import announcement
 
 LARGEST_FILE = 5_000_000  # bytes
-KINDS = (".toml", ".csv", ".vtu", ".stl", ".ply", ".obj")
+KINDS = (".toml", ".csv", ".stl", ".ply", ".obj")
 TABS = ("Curves", "Changes", "Numbers", "Check", "File")
 NOTHING, OPENED, NOW, FILE = "nothing", "as it was opened", "as it is now", "a file …"
 OPTIONS = {"opened": OPENED, "now": NOW}

@@ -1,5 +1,4 @@
-"""The only part of cuefem that opens files: cues and scenes as TOML, lathe profiles as CSV, cues as line meshes, and
-shafts as CAD surfaces."""
+"""The only part of cuefem that opens files: cues and scenes as TOML, lathe profiles as CSV, shafts as CAD surfaces."""
 
 from __future__ import annotations
 
@@ -56,8 +55,7 @@ def load(
     Parameters
     ----------
     path : str or path
-        A drawing or a scene (.toml), a lathe profile (.csv), a line mesh (.vtu), or a closed CAD surface (.stl,
-        .ply, .obj).
+        A drawing or a scene (.toml), a lathe profile (.csv), or a closed CAD surface (.stl, .ply, .obj).
     material : str, optional
         Name of the material of the shaft. A lathe profile or a surface names none, and has "hard maple" by default.
     length_unit : str, optional
@@ -134,10 +132,6 @@ def _load_cue(path: Path, material: str | None = None, length_unit: str | None =
     ending = path.suffix.lower()
     if ending == ".toml":
         return load_cue(path)
-    if ending == MESH:
-        from cuefem.io.mesh_files import load_mesh
-
-        return load_mesh(path)
     if ending in SHAPES:
         wood = named_material(material or DEFAULT_MATERIAL, path, "material")
         if ending == ".csv":
@@ -148,7 +142,7 @@ def _load_cue(path: Path, material: str | None = None, length_unit: str | None =
     if os.path.isdir(path):  # unlike Path.is_dir, of names too long as well
         raise InputError(path, "", "must be a file; got a folder")
     hint = "; save the table as .csv" if ending in TABLES else ""
-    raise InputError(path, "", f"must end in .toml, .csv, .vtu, .stl, .ply or .obj; got {path.suffix!r}{hint}")
+    raise InputError(path, "", f"must end in .toml, .csv, .stl, .ply or .obj; got {path.suffix!r}{hint}")
 
 
 def load_stroke(path: Path, **told: str | None) -> Cue | Scene:
@@ -169,14 +163,15 @@ def replaced_segments(path: Path, scene: Scene) -> int:
 
 
 def save(obj: Cue | Scene | SideStrike, path: str | os.PathLike[str]) -> None:
-    """Write a cue or a scene into a file, from which `load` reads back exactly the same object.
+    """Write a cue or a scene into a file: as TOML that `load` reads back, numbers to 12 digits, or as a line mesh.
 
     Parameters
     ----------
     obj : Cue, Scene or SideStrike
         What to write.
     path : str or path
-        A .toml file; for a cue also a line mesh, .vtu. The file appears whole or not at all.
+        A .toml file; for a cue also a line mesh, .vtu, for other programs: a cell for each segment with its sizes
+        and materials as cell data, SI. The file appears whole or not at all.
 
     Raises
     ------
@@ -200,9 +195,9 @@ def save(obj: Cue | Scene | SideStrike, path: str | os.PathLike[str]) -> None:
         content = toml_text(obj)
         write_whole(path, lambda temporary: temporary.write_text(content, encoding="utf-8"))
     elif path.suffix.lower() == MESH and isinstance(obj, Cue):
-        from cuefem.io.mesh_files import save_mesh
+        from cuefem.io.line_mesh import save_line_mesh
 
-        write_whole(path, lambda temporary: save_mesh(obj, temporary))
+        write_whole(path, lambda temporary: save_line_mesh(obj, temporary))
     else:
         allowed = ".toml or .vtu" if isinstance(obj, Cue) else ".toml, for a scene"
         raise InputError(path, "", f"must end in {allowed}; got {path.suffix!r}")

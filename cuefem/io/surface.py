@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
+import io
+import threading
+import warnings
+from collections.abc import Iterator
 from pathlib import Path
 
 import meshio
@@ -10,15 +15,34 @@ import numpy as np
 
 from cuefem.cue import Array, Cue, Material, Segment
 from cuefem.io.errors import InputError, check_size, faults_of, shown, state_of
-from cuefem.io.mesh_files import DAMAGED, quiet
 from cuefem.io.profile import DEFAULT_UNIT
 from cuefem.io.slices import Index, Sliced, sliced, surface
 from cuefem.quantity.units import number
 
+# What a damaged mesh file makes meshio raise: it checks little itself.
+_DAMAGED = (
+    *(meshio.ReadError, OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError, AssertionError),
+    *(SyntaxError, EOFError, MemoryError, RecursionError, SystemExit),
+)
+_ALONE = threading.Lock()
 LARGEST_SURFACE = 100_000_000  # bytes: two million triangles
 # What a surface may hold beside faces: corners and edges that a program wrote too.
 _PASSED_OVER = ("vertex", "line")
 _POLYGONS = ("triangle", "quad", "polygon")
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep meshio quiet: a fault of a file is one InputError, and nothing goes to stdout or stderr.
+
+    Overflows are not errors here, unlike in computations: meshio at first reads the text of an ASCII .stl as a number
+    of triangles, on purpose. One file at a time, since output and warnings belong to the whole process.
+    """
+    nowhere = io.StringIO()
+    with _ALONE, warnings.catch_warnings(), contextlib.redirect_stderr(nowhere), contextlib.redirect_stdout(nowhere):
+        warnings.simplefilter("ignore")
+        with np.errstate(all="ignore"):
+            yield
 
 
 def load_surface(path: Path, material: Material, length_unit: str | None = None) -> Cue:
@@ -82,11 +106,11 @@ def _faces(path: Path) -> tuple[Array, Index]:
     """Corners and triangles of a surface file; faces of more corners as fans."""
     check_size(path, LARGEST_SURFACE)
     try:
-        with quiet():  # a signalling nan in 32 bits is refused below
+        with _quiet():  # a signalling nan in 32 bits is refused below
             mesh = _READERS[path.suffix.lower()](path)
             points = np.asarray(mesh.points, float)
         blocks = [(block.type, np.asarray(block.data, dtype=np.intp)) for block in mesh.cells]
-    except DAMAGED as error:
+    except _DAMAGED as error:
         said = f"{type(error).__name__} {error}".strip()
         problem = f"must be a {path.suffix} surface; got a file that meshio cannot read: {said}"
         raise InputError(path, "", problem) from None

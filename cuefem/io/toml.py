@@ -152,7 +152,7 @@ def _of_parts(cue_table: dict[str, Any], path: Path, key: str) -> dict[str, Any]
     with faults_of(path, joined(key, "shaft")):
         cue = assembled(parts.shaft, load_cue, material=parts.material, ferrule=parts.ferrule, bore=parts.bore)
     rest = {name: value for name, value in cue_table.items() if name not in told}
-    return rest | {"segments": [table(segment) for segment in cue.segments]}
+    return rest | {"segments": [*cue.segments]}
 
 
 def _segment(table: Any, path: Path, key: str) -> Any:

@@ -146,7 +146,10 @@ class Quantity:
 
     def written(self, value: float) -> str | float:
         """A number as it is in a file: text with a unit, or a bare number if it has no dimension."""
-        return text(value, self.unit) if self.unit else value
+        if self.unit:
+            return text(value, self.unit)
+        rounded = float(f"{value:.13g}")
+        return rounded if self.holds(rounded) else value
 
     def check(self, name: str, value: Any) -> Any:
         """``value`` as a float or a read-only float array; the errors name field, bound, unit and value."""

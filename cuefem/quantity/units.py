@@ -1,4 +1,4 @@
-"""The one table of units, and text with a unit as a number and back, exactly: "29 in" is 0.7366 m, to the last bit."""
+"""The one table of units, and text with a unit as a number and back: "29 in" is 0.7366 m, to the last bit."""
 
 from __future__ import annotations
 
@@ -83,6 +83,7 @@ _TEXT = re.compile(
     rf"\s*({FRACTION.pattern}|[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?|[+-]?inf|nan)\s*(.*?)\s*",
     re.IGNORECASE,
 )
+SAME = 1e-12  # relative: numbers that a file need not tell apart
 LONGEST_TEXT = 200  # letters of a number and its unit: beyond it matching takes the square of them
 _SIGNS = re.compile(r"\s*([*/·])\s*|\s+")
 _FACTOR = re.compile(r"([^\W\d_]+|[°\"″”']+)(?:\^(-?[0-9])|([23]))?")
@@ -185,7 +186,7 @@ def number(text: str, unit: str) -> float:
 
 
 def text(value: float, unit: str) -> str:
-    """A number in a unit that reads well ("12 mm"), with the fewest digits that `number` takes for the same float.
+    """A number in a unit that reads well ("12 mm"), with the fewest digits that are right to `SAME`.
 
     Where those are more than in SI (0.1 rad), it is written in SI.
     """
@@ -194,7 +195,7 @@ def text(value: float, unit: str) -> str:
         exact, per = Decimal(repr(value)), scale(friendly, unit)
         for digits in range(len(exact.normalize().as_tuple().digits)):
             written = f"{_plain(Decimal(f'{exact / per:.{digits}e}'))} {friendly}"
-            if number(written, unit) == value:
+            if math.isclose(number(written, unit), value, rel_tol=SAME):
                 return written
     return f"{value!r} {unit}"
 

@@ -4,7 +4,6 @@ import json
 import math
 import subprocess
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -124,13 +123,12 @@ def test_a_scene_announces_what_it_leaves_out(folder: Path) -> None:
 
 def test_convert(folder: Path) -> None:
     assert said("convert", "cue.toml", "cue.vtu") == "wrote cue.vtu\n"
-    assert cf.load("cue.vtu") == KIM
-    said("convert", "cue.toml", "cue.vtu", "--force", "--body-mass", "15 oz")
-    assert cf.load("cue.vtu") == replace(KIM, body_mass=0.425242846875)
+    said("convert", "cue.toml", "cue2.toml", "--body-mass", "15 oz")
+    assert cf.load("cue2.toml") == cf.load("cue.toml", body_mass="15 oz")
     assert said("convert", "shaft.csv", "shaft.toml", "--material", "ash").startswith("assumed:\n  no mass behind")
     assert cf.load("shaft.toml") == cf.load("shaft.csv", material="ash")
     said("convert", "scene.toml", "shaft.toml", "--body-mass", "0.4 kg", "--force")
-    assert cf.load("shaft.toml") == replace(SCENE, cue=replace(KIM, body_mass=0.4))
+    assert cf.load("shaft.toml") == cf.load("scene.toml", body_mass=0.4)
 
 
 @pytest.mark.parametrize("module", ["cuefem", "cuefem.cli"])

@@ -104,8 +104,8 @@ def test_saving_over_a_file_replaces_it_or_leaves_it(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"Ball\.mass must be one number to stand in a file; got an array of 2"):
         cf.save(arrays, path)
     assert path.read_text() == "before"
-    cf.save(KIM, path)
-    assert cf.load(path) == KIM
+    cf.save(cf.Cue((SEGMENT, SEGMENT)), path)
+    assert cf.load(path).length == 1.4
     assert list(tmp_path.iterdir()) == [path]
 
 
@@ -132,9 +132,14 @@ def test_a_failed_save_leaves_nothing_behind(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [folder]
 
 
-def test_every_mesh_agrees_with_its_toml() -> None:
+def test_every_mesh_agrees_with_its_toml(tmp_path: Path) -> None:
     folder = Path(__file__).parents[2] / "meshes"
     cues = sorted(folder.glob("*.toml"))
     assert cues
     for path in cues:  # where this fails: cuefem convert meshes/NAME.toml meshes/NAME.vtu --force
-        assert cf.load(path.with_suffix(".vtu")) == cf.load(path)
+        cf.save(cf.load(path), tmp_path / "made.vtu")
+        made, kept = (meshio.vtu.read(mesh) for mesh in (tmp_path / "made.vtu", path.with_suffix(".vtu")))
+        assert made.points.tolist() == kept.points.tolist()
+        assert {name: value[0].tolist() for name, value in made.cell_data.items()} == {
+            name: value[0].tolist() for name, value in kept.cell_data.items()
+        }

@@ -4,7 +4,7 @@ import math
 import tempfile
 from collections import defaultdict
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -91,20 +91,27 @@ def saved_and_loaded(thing: cf.Cue | cf.Scene, name: str) -> cf.Cue | cf.Scene:
 
 @given(CUES | SCENES)
 @settings(max_examples=40)
-def test_toml_reads_back_exactly(thing: cf.Cue | cf.Scene) -> None:
-    assert saved_and_loaded(thing, "thing.toml") == thing
+def test_toml_reads_back_to_twelve_digits(thing: cf.Cue | cf.Scene) -> None:
+    close(saved_and_loaded(thing, "thing.toml"), thing)
 
 
-@given(cue=CUES)
-@settings(max_examples=20)
-def test_meshes_read_back_exactly(cue: cf.Cue) -> None:
-    assert saved_and_loaded(cue, "cue.vtu") == cue
+def close(found: Any, wanted: Any) -> None:
+    """Numbers are equal to 2e-12, everything else exactly."""
+    assert type(found) is type(wanted)
+    if is_dataclass(wanted):
+        for field in fields(wanted):  # type: ignore[arg-type]
+            close(getattr(found, field.name), getattr(wanted, field.name))
+    elif isinstance(wanted, tuple):
+        for one, other in zip(found, wanted, strict=True):
+            close(one, other)
+    else:
+        assert found == wanted or found == pytest.approx(wanted, rel=2e-12, abs=0)
 
 
 @given(FINITE, st.sampled_from(sorted(EXAMPLES)))
 @settings(max_examples=200)
 def test_every_number_is_written_so_that_it_reads_back(value: float, unit: str) -> None:
-    assert number(text(value, unit), unit) == value
+    assert number(text(value, unit), unit) == pytest.approx(value, rel=2e-12, abs=0)
 
 
 # What people type, and how many SI units it is by another source than the table.
@@ -177,7 +184,7 @@ def test_no_text_is_more_than_refused(given_text: str) -> None:
     assert refusal.startswith(told) if refusal else 0 < value < math.inf
 
 
-@given(st.binary(max_size=80), st.sampled_from([".toml", ".csv", ".vtu"]))
+@given(st.binary(max_size=80), st.sampled_from([".toml", ".csv", ".ply"]))
 @settings(max_examples=80)
 def test_no_file_is_more_than_refused(content: bytes, suffix: str) -> None:
     with tempfile.TemporaryDirectory() as folder:
@@ -188,13 +195,13 @@ def test_no_file_is_more_than_refused(content: bytes, suffix: str) -> None:
         assert len(str(caught.value).splitlines()) == 1
 
 
-@given(data=st.data(), suffix=st.sampled_from([".toml", ".vtu"]))
+@given(data=st.data())
 @settings(max_examples=50)
-def test_a_damaged_file_is_refused_or_read(data: st.DataObject, suffix: str) -> None:
+def test_a_damaged_file_is_refused_or_read(data: st.DataObject) -> None:
     maple = cf.Material(12.6e9, 0.84e9, 782.0)
     cue = cf.Cue((cf.Segment(0.3, 0.012, 0.014, maple), cf.Segment(0.4, 0.014, 0.021, maple, core=maple)), 0.42)
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"cue{suffix}"
+        path = Path(folder) / "cue.toml"
         cf.save(cue, path)
         content = bytearray(path.read_bytes())
         first = data.draw(st.integers(0, len(content) - 1))

@@ -6,7 +6,6 @@ Every declared field of every table: tests/quantity/test_declared_fields.py.
 import struct
 from pathlib import Path
 
-import meshio
 import numpy as np
 import pytest
 
@@ -126,32 +125,12 @@ def test_a_signalling_nan_is_no_corner(tmp_path: Path) -> None:
     assert refused(tmp_path / "shaft.stl").startswith("corners: must be finite")
 
 
-MESH = {
-    "cell data body_mass: must be given": {"body_mass": None},
-    "cell data length[0]: must be 0.7 m": {"length": 0.8},
-    "cell 0: Segment.tip_diameter must be in (": {"tip_diameter": -0.012},
-    "cells: must be lines alone; got ['triangle']": {},
-}
-
-
-@pytest.mark.parametrize("line", MESH)
-def test_meshes(tmp_path: Path, line: str) -> None:
-    path = tmp_path / "cue.vtu"
-    cf.save(cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 782.0)),), 0.42), path)
-    mesh, changed = meshio.vtu.read(path), MESH[line]
-    data = {name: [np.array([changed.get(name, blocks[0][0])])] for name, blocks in mesh.cell_data.items()}
-    kept = {name: blocks for name, blocks in data.items() if blocks[0][0] is not None}
-    cells = mesh.cells if changed else [("triangle", np.array([[0, 1, 1]]))]
-    meshio.vtu.write(path, meshio.Mesh(mesh.points, cells, cell_data=kept))
-    assert refused(path).startswith(line)
-
-
 def test_what_is_no_file_and_options_that_a_file_does_not_take(tmp_path: Path) -> None:
     (tmp_path / "folder.toml").mkdir()
-    for name in ("none.toml", "none.stl", "none.vtu"):
+    for name in ("none.toml", "none.stl"):
         assert refused(tmp_path / name) == "cannot be read: No such file or directory"
     assert refused(tmp_path / "folder.toml") == refused(tmp_path) == "must be a file; got a folder"
-    assert refused(tmp_path / "cue.msh").startswith("must end in .toml, .csv, .vtu")
+    assert refused(tmp_path / "cue.vtu").startswith("must end in .toml, .csv, .stl")
     shaft = written(tmp_path / "shaft.stl", POINTS, FACES)
     assert refused(shaft, length_unit="kg").startswith("length unit: must be a unit of length")
     for name in ("shaft.xlsx", "shaft.txt"):
