@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -17,7 +18,7 @@ from cuefem.io import InputError, with_body_mass
 from cuefem.io.errors import faults_of
 from cuefem.parameters.parameter import PARAMETERS, Parameter, replaced, varied, with_fields
 from cuefem.parameters.parameter import Path as Steps
-from cuefem.parameters.parts import with_shaft_mass
+from cuefem.parameters.parts import main_material, with_material
 from cuefem.quantity.fields import OutOfBounds, Quantity
 from cuefem.quantity.units import number
 from cuefem.scene import Scene
@@ -110,7 +111,10 @@ def with_weight(thing: Cue | Scene | SideStrike, file: Path, text: str) -> Any:
     if isinstance(thing, SideStrike) or (isinstance(thing, Scene) and thing.lumped):
         raise InputError(file, "--shaft-mass", "does not apply: FILE has no shaft")
     with faults_of(file, "--shaft-mass"):
-        return with_shaft_mass(thing, mass) if isinstance(thing, Cue) else varied(thing, {"shaft mass": mass})
+        if not isinstance(thing, Cue):
+            return varied(thing, {"shaft mass": mass})
+        weighed = varied(usual_scene(thing), {"shaft mass": mass})  # whose weight counts the tip, as a scale does
+        return replace(with_material(thing, *map(main_material, (thing, weighed.shaft))), weighed=True)
 
 
 def usual(cue: Cue, file: Path, options: dict[str, Any]) -> Scene:
