@@ -21,9 +21,9 @@ def assumptions(scene: Record) -> str:
         [
             f"ball {grams(ball['mass'])}, {with_unit(2 * ball['radius'], 'm')}",
             f"head-on contact time {_milliseconds(tip['contact_time'])} (rigid cue)",
-            f"e {tip['restitution']:g}",
-            f"mu {tip['friction']:g}".replace("inf", "∞"),
-            f"stroke {stroke['speed']:g} m/s",
+            f"tip restitution {tip['restitution']:g}",
+            f"friction {tip['friction']:g}".replace("inf", "∞"),
+            f"speed {stroke['speed']:g} m/s",
         ]
     )
 

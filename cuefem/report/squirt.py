@@ -2,24 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
 from cuefem.contact.outcome import MISSED
 from cuefem.cue import LumpedCue
-from cuefem.endmass.lumped import impulse
 from cuefem.report.charts import Axis, Chart, Curve, Shade, Tick, chart
-from cuefem.report.models import (
-    a31_squirt,
-    bare_scene,
-    coupling_slope,
-    two_part_cues,
-    with_coupling,
-)
 from cuefem.report.scene_words import assumptions
-from cuefem.report.strike_table import PIVOT
+from cuefem.report.strike_table import PIVOT, a31_squirt, lumped_cues, lumped_strike
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.quantities import TRADE, written
 from cuefem.results.records import Record, Sheet
@@ -30,22 +21,6 @@ from cuefem.tip_modes import Solved
 PAPER_CUE_END_MASS = 0.012  # kg, [Kim]'s m_c of a real cue; the tip feels a quarter of it
 
 
-def _curve(
-    scene: Scene,
-    offsets: Sequence[float],
-    cues: Sequence[LumpedCue | None],
-    squirt: Callable[[Scene, LumpedCue], Any] = lambda scene, cue: impulse(bare_scene(scene, cue)).squirt,
-) -> Record:
-    """Squirt and natural pivot length of one lumped cue an offset; nan at an offset that has no such cue."""
-    curve: Record = {"squirt": np.full(len(offsets), np.nan), "pivot_length": np.full(len(offsets), np.nan)}
-    for i, (offset, cue) in enumerate(zip(offsets, cues, strict=True)):
-        if cue is not None:
-            struck = at_offset(scene, offset)
-            curve["squirt"][i] = squirt(struck, cue)
-            curve["pivot_length"][i] = pivot_length(struck, curve["squirt"][i])
-    return curve
-
-
 def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, solved: Solved | None = None) -> Record:
     """Squirt and natural pivot length against the offset, by every model; nan at offsets where no lumped cue fits.
 
@@ -54,18 +29,23 @@ def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, solved: S
     solved: the scene's modes, if they are known already.
     """
     solved = solved or Solved(scene)
-    cues, slope = two_part_cues(scene, offsets, solved.tip_stuck), coupling_slope(scene, solved.tip_stuck)
+    own, slope = lumped_cues(scene, offsets, solved.tip_stuck)
+    cues = {f"{name}, this cue": each for name, each in own.items()}
+    cues["two-part, 12 g"] = [LumpedCue.two_part(scene.axial_mass, PAPER_CUE_END_MASS)] * len(offsets)
+    cues["A.31, this cue"] = own["two-part"]
+    struck = [at_offset(scene, offset) for offset in offsets]
     models: Record = {"coupled, this cue": coupled_curve(scene, offsets, solved.tip)}
-    if slope:
-        lumped = [with_coupling(cue, slope * abs(b)) for cue, b in zip(cues, offsets, strict=True)]
-        models["lumped, this cue"] = _curve(scene, offsets, lumped)
-    papers = LumpedCue.two_part(scene.axial_mass, PAPER_CUE_END_MASS)
-    models["two-part, this cue"] = _curve(scene, offsets, cues)
-    models["two-part, 12 g"] = _curve(scene, offsets, [papers] * len(offsets))
-    models["A.31, this cue"] = _curve(scene, offsets, cues, a31_squirt)
+    for name, each in cues.items():
+        squirt = a31_squirt if name.startswith("A.31") else lambda at, cue: lumped_strike(at, cue).squirt
+        pairs = [*zip(struck, each, strict=True)]
+        angles = [np.nan if cue is None else float(squirt(at, cue)) for at, cue in pairs]
+        pivots = [
+            np.nan if np.isnan(angle) else pivot_length(at, angle) for at, angle in zip(struck, angles, strict=True)
+        ]
+        models[name] = {"squirt": np.array(angles), "pivot_length": np.array(pivots, float)}
     return {
         "offsets": list(offsets),
-        "end_mass": [None if cue is None else cue.end_mass for cue in cues],
+        "end_mass": [cue and cue.end_mass for cue in own["two-part"]],
         "coupling": slope,
         "models": models,
     }

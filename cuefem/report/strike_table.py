@@ -1,28 +1,88 @@
-"""One strike by every model: record and sheet."""
+"""One strike by every model, and the lumped cues beside the coupled strike: record and sheet."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
+import numpy as np
+
+from cuefem.beam.tip import TipModes
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
-from cuefem.endmass.lumped import impulse
+from cuefem.cue import LumpedCue
+from cuefem.endmass.definitions import stick_at_offset
+from cuefem.endmass.lumped import impulse, lump_modes
 from cuefem.quantity.fields import scalar
-from cuefem.report.models import (
-    a31_squirt,
-    bare_scene,
-    coupling_slope,
-    model_notes,
-    offset_words,
-    two_part_cues,
-    with_coupling,
-)
-from cuefem.report.scene_words import assumptions
-from cuefem.results.closed_forms import pivot_length
+from cuefem.report.scene_words import assumptions, tip_effect_notes
+from cuefem.results.closed_forms import alciatore_a31, pivot_length
 from cuefem.results.quantities import DEFINITION_OF_MISCUE, GRIPS, RESULTS, written
 from cuefem.results.records import Record, Sheet
+from cuefem.results.solved_design import at_offset
 from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import Solved
+
+
+def lumped_cues(
+    scene: Scene, offsets: Sequence[float], tip: TipModes
+) -> tuple[dict[str, list[LumpedCue | None]], float]:
+    """The lumped cues of "lumped" and "two-part" at each offset, None where there is none; and the coupling per b/R.
+
+    "two-part" has the end mass of a tip that sticks, without effects at the tip; "lumped" adds the coupling of these
+    effects, and is missing where they add none.
+    """
+    cues, slope = two_part_cues(scene, offsets, tip), coupling_slope(scene, tip)
+    coupled = [_with_coupling(cue, slope * abs(b)) for cue, b in zip(cues, offsets, strict=True)]
+    return ({"lumped": coupled} if slope else {}) | {"two-part": cues}, slope
+
+
+def two_part_cues(scene: Scene, offsets: Sequence[float], tip: TipModes) -> list[LumpedCue | None]:
+    """The lumped cue that the impulse solver takes at each offset, with the end mass of a tip that sticks there.
+
+    Effects at the tip are left out. None at an offset where no end mass has that squirt. A lumped cue keeps its own
+    end mass. tip: the cue's tip modes as an end mass takes them.
+    """
+    if scene.lumped is not None:
+        return [replace(scene.lumped, coupling=0.0)] * len(offsets)
+    try:
+        masses = stick_at_offset(tip, at_offset(scene.bare, np.array(offsets)))
+    except ValueError:
+        if len(offsets) == 1:
+            return [None]
+        return [cue for offset in offsets for cue in two_part_cues(scene, [offset], tip)]
+    return [LumpedCue(scene.axial_mass, felt) for felt in masses.tolist()]
+
+
+def coupling_slope(scene: Scene, tip: TipModes) -> float:
+    """The coupling per b/R that effects at the tip add to `two_part_cues`; zero if no lumped cue has such a coupling.
+
+    It is found at the scene's own offset, or at 0.1 for a head-on stroke.
+    """
+    offset = scalar("Stroke.offset", scene.stroke.offset) or 0.1
+    try:
+        cue = lump_modes(at_offset(scene, offset), tip)
+    except ValueError:  # an offset, or an effect, beyond any lumped cue's coupling
+        return 0.0
+    return scalar("LumpedCue.coupling", cue.coupling) / abs(offset)
+
+
+def _with_coupling(cue: LumpedCue | None, coupling: float) -> LumpedCue | None:
+    """The cue with a coupling; None if no cue can have it."""
+    try:
+        return cue and replace(cue, coupling=coupling)
+    except ValueError:
+        return None
+
+
+def lumped_strike(scene: Scene, cue: LumpedCue) -> Outcome:
+    """What the impulse solver says of a scene with a lumped cue in its cue's place, and without effects."""
+    return impulse(replace(scene, cue=cue, effects=()))
+
+
+def a31_squirt(scene: Scene, cue: LumpedCue) -> Any:
+    """The squirt of Alciatore's formula [A.31] for the end mass of a lumped cue, rad."""
+    return alciatore_a31(scene.stroke.offset, mass_ratio=scene.ball.mass / cue.end_mass, inertia=scene.ball.inertia)
 
 
 def outcome_record(outcome: Outcome, scene: Scene) -> Record:
@@ -43,49 +103,32 @@ def strike_record(scene: Scene, outcome: Outcome | None = None, *, solved: Solve
     """
     solved = solved or Solved(scene)
     offset = scalar("Stroke.offset", scene.stroke.offset)
-    (cue,) = two_part_cues(scene, [offset], solved.tip_stuck)
-    coupling = coupling_slope(scene, solved.tip_stuck) * abs(offset)
+    cues, slope = lumped_cues(scene, [offset], solved.tip_stuck)
     models = {"coupled": outcome_record(outcome or strike_modes(scene, solved.tip), scene)}
-    coupled = with_coupling(cue, coupling) if coupling else None
-    if coupled is not None:
-        models["lumped"] = outcome_record(impulse(bare_scene(scene, coupled)), scene)
-    if cue is not None:
-        models["two-part"] = outcome_record(impulse(bare_scene(scene, cue)), scene)
+    models |= {name: outcome_record(lumped_strike(scene, cue), scene) for name, (cue,) in cues.items() if cue}
+    (cue,) = cues["two-part"]
+    if cue:
         squirt = a31_squirt(scene, cue)
         models["A.31"] = {"squirt": squirt, "pivot_length": pivot_length(scene, squirt)}
     return {
-        "end_mass": None if cue is None else cue.end_mass,
-        "coupling": 0.0 if coupled is None else coupling,
+        "end_mass": cue and cue.end_mass,
+        "coupling": slope * abs(offset) if "lumped" in models else 0.0,
         "models": models,
     }
 
 
 # What is shown of a strike, in this order; a vector by its parts (along the tangent, along the normal).
-BRIEF = ("squirt", "pivot_length", "ball_speed", "spin", "cue_speed", "grip")
-WHOLE = (
-    *("squirt", "pivot_length", "ball_speed", ("ball_velocity", 1, "normal"), ("ball_velocity", 0, "tangent")),
-    *("spin", "cue_speed", "duration", "grip", "error"),
+SHOWN: tuple[tuple[str, int | None, str], ...] = (
+    *((name, None, "") for name in ("squirt", "pivot_length", "ball_speed")),
+    *(("ball_velocity", 1, ", normal"), ("ball_velocity", 0, ", tangent")),
+    *((name, None, "") for name in ("spin", "cue_speed", "duration", "grip", "error")),
 )
-
-
-def models_sheet(record: Record, shown: tuple[str | tuple[str, int, str], ...] = WHOLE) -> Sheet:
-    """A column for each model, and a row for every quantity that any of the models has."""
-    rows = []
-    for row in shown:
-        name, part, words = row if isinstance(row, tuple) else (row, None, "")
-        values = [model.get(name) for model in record["models"].values()]
-        if any(value is not None for value in values):
-            label = f"{RESULTS[name].words}, {words}" if words else RESULTS[name].words
-            parts = [value if value is None or part is None else value[part] for value in values]
-            rows.append((label, *(written(name, value, brief=shown is BRIEF) for value in parts)))
-    return Sheet("", ("", *record["models"]), tuple(rows))
-
-
 SLOWER = 0.02  # relative: a lumped cue whose ball is slower by more gets a note
 LUMPED = (
     "ball speed: use the coupled value; the lumped models omit axial waves, which raise the restitution of the whole "
     "cue above that of its tip"
 )
+PIVOT = "distance from the tip to the point about which pivoting the cue cancels squirt (back-hand English)"
 OFF = "uncertainty of squirt: cuefem report"
 MISCUE = f"miscue: {DEFINITION_OF_MISCUE}. Ignore squirt and pivot length"
 
@@ -96,30 +139,39 @@ def grip_warning(grip: str) -> str:
 
 
 def strike_sheet(record: Record, scene: Record) -> Sheet:
-    """One strike, a column for each model."""
+    """A column for each model, and a row for every quantity that any of the models has."""
     coupled = record["models"]["coupled"]
+    rows = []
+    for name, part, words in SHOWN:
+        values = [model.get(name) for model in record["models"].values()]
+        if any(value is not None for value in values):
+            parts = (value if value is None or part is None else value[part] for value in values)
+            rows.append((RESULTS[name].words + words, *(written(name, value) for value in parts)))
     missed = [MISCUE] if coupled["grip"] in MISSED else []
     exact = (
         ", numerical error of squirt at most 0.1 % for 95 % of default strikes"
         if "length" in scene["cue"] and coupled["error"] is None
         else ""
     )
-    pivots = any(model.get("pivot_length") is not None for model in record["models"].values())
-    return replace(
-        models_sheet(record),
-        title=f"Strike at offset b/R = {scene['stroke']['offset']:.4g}",
-        notes=(
-            *missed,
-            assumptions(scene),
-            f"coupled: vibrating shaft in time{exact}; two-part and A.31: two masses, with the end mass of a "
-            f"tip that sticks ({offset_words(scene)}; `cuefem end-mass`)",
-            *([f"natural pivot length: {PIVOT}"] if pivots else []),
-            *([] if missed else [f"contact: {GRIPS[coupled['grip']][1]}"]),
-            *_on_speed(record, scene),
-            OFF,
-            *model_notes(scene, record, "/kg"),
-        ),
+    offset = "offset, without the effects at the tip" if scene["effects_at_tip"] else "offset"
+    lumped = (
+        f"; lumped includes them as a coupling of {record['coupling']:.4g} /kg, the tip's speed across the cue by a "
+        "unit of impulse along it"
+        if record["coupling"]
+        else ""
     )
+    notes = (
+        *missed,
+        assumptions(scene),
+        f"coupled: vibrating shaft in time{exact}; two-part and A.31: two masses, with the end mass of a tip that "
+        f"sticks ({offset}; `cuefem end-mass`)",
+        *([f"natural pivot length: {PIVOT}"] if any(row[0] == RESULTS["pivot_length"].words for row in rows) else []),
+        *([] if missed else [f"contact: {GRIPS[coupled['grip']][1]}"]),
+        *_on_speed(record, scene),
+        OFF,
+        *tip_effect_notes(scene, f"two-part and A.31 leave the effects at the tip out{lumped}"),
+    )
+    return Sheet(f"Strike at offset b/R = {scene['stroke']['offset']:.4g}", ("", *record["models"]), tuple(rows), notes)
 
 
 def _on_speed(record: Record, scene: Record) -> list[str]:
@@ -128,6 +180,3 @@ def _on_speed(record: Record, scene: Record) -> list[str]:
         return []
     coupled, *others = (model["ball_speed"] for model in record["models"].values() if "ball_speed" in model)
     return [LUMPED] if any(other < (1 - SLOWER) * coupled for other in others) else []
-
-
-PIVOT = "distance from the tip to the point about which pivoting the cue cancels squirt (back-hand English)"
