@@ -7,7 +7,7 @@ of the cue's motion along its axis.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import Annotated, Any
 
 import numpy as np
@@ -26,7 +26,6 @@ from cuefem.effects.base import NEAR
 from cuefem.effects.contact_settings import ContactTerms
 from cuefem.effects.force_law import TipLaw, loading_time
 from cuefem.quantity.fields import CONTACT_TIME, Quantity, check_fields, check_kind
-from cuefem.quantity.slips import remark_time_as_stiffness
 from cuefem.scene import Resolution, equal_fields
 from cuefem.tip_modes import modes_for
 
@@ -75,6 +74,7 @@ class Striker:
 
     mass: Annotated[float, Quantity("kg", "(0, inf)")]
     restitution: Annotated[float, Quantity("", "[0, 1]")]
+    _: KW_ONLY
     stiffness: Annotated[float | None, Quantity("N/m", "(0, inf)")] = None
     contact_time: Annotated[float | None, CONTACT_TIME] = None
     modulus: Annotated[float | None, Quantity("Pa", "(0, inf)")] = None
@@ -90,7 +90,6 @@ class Striker:
                 "Striker takes one law of contact: stiffness (N/m), contact_time (s), "
                 f"or modulus (Pa) with radius (m); got {got}"
             )
-        remark_time_as_stiffness("Striker", self.stiffness)
 
     @property
     def law(self) -> TipLaw:

@@ -15,12 +15,12 @@ from cuefem.quantity.fields import (
     DIAMETER,
     LENGTH,
     MOST_SEGMENTS,
-    Flag,
     Number,
     OutOfBounds,
     Quantity,
     check_fields,
     check_kind,
+    first_failure,
 )
 from cuefem.quantity.slips import CUE_DIAMETER
 
@@ -310,7 +310,7 @@ class Cue:
 
     segments: tuple[Segment, ...]
     body_mass: Annotated[float, Quantity("kg", "[0, inf)").usually(0.05, 0.8)] = 0.0
-    weighed: Annotated[bool, Flag()] = False
+    weighed: bool = False
 
     def __repr__(self) -> str:
         count = f"{len(self.segments)} segment{'s' if len(self.segments) > 1 else ''}"
@@ -420,15 +420,13 @@ class LumpedCue:
 
     def __post_init__(self) -> None:
         check_fields(self)
-        if np.ndim(self.coupling) == 0 and self.coupling == 0:
+        if not np.any(self.coupling):
             return
-        coupling, limit = np.broadcast_arrays(self.coupling, 1 / np.sqrt(np.multiply(self.mass, self.end_mass)))
-        wrong = ~(np.abs(coupling) < limit)
-        if wrong.any():
-            first = tuple(np.argwhere(wrong)[0])
-            where = f" at index {first[0] if len(first) == 1 else tuple(map(int, first))}" if first else ""
-            bound = limit[first]
-            raise ValueError(f"LumpedCue.coupling must be in ({-bound}, {bound}) 1/kg; got {coupling[first]}{where}")
+        limit = 1 / np.sqrt(np.multiply(self.mass, self.end_mass))
+        inside = np.abs(self.coupling) < limit
+        if not np.all(inside):
+            where, (got, bound) = first_failure(inside, self.coupling, limit)
+            raise ValueError(f"LumpedCue.coupling must be in ({-bound}, {bound}) 1/kg; got {got}{where}")
 
     @classmethod
     def two_part(cls, mass: Number, cue_end_mass: Number, nu_c: Number = 1 / 3) -> LumpedCue:

@@ -16,7 +16,7 @@ from cuefem.effects.base import CueEffect, Effect
 from cuefem.effects.contact_settings import ContactTerms, WholeTip
 from cuefem.effects.force_law import Curves, LeatherLaw
 from cuefem.effects.on_cue import PointMass
-from cuefem.quantity.fields import DIAMETER, Flag, Number, OutOfBounds, Quantity, check_fields, check_kind, scalar
+from cuefem.quantity.fields import DIAMETER, Number, OutOfBounds, Quantity, check_fields, check_kind, scalar
 from cuefem.solid.tip_cache import own_table, read
 from cuefem.solid.tip_table import (
     CURVATURE,
@@ -172,7 +172,7 @@ class LeatherTip(CueEffect):
     nu: Annotated[float, Quantity("", "[0, 0.49]")] = 0.4
     rho: Annotated[float, Quantity("kg/m^3", "(0, inf)").usually(40.0, 2e4)] = 1000.0
     shear: Annotated[float | None, Quantity("N/m", "(0, inf)")] = None
-    rolls: Annotated[bool, Flag()] = True
+    rolls: bool = True
     surface_restitution: Annotated[float, Quantity("", "[0.1, 1]")] = 1.0
     layers: tuple[TipLayer, ...] = ()
     diameter: Annotated[float | None, DIAMETER] = None

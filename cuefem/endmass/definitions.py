@@ -24,7 +24,6 @@ from cuefem.effects import Effect
 from cuefem.endmass.impulse_response import ImpulseResponse
 from cuefem.endmass.sticking_contact import StickLimit
 from cuefem.quantity.fields import check_kind, scalar
-from cuefem.quantity.slips import trying
 from cuefem.scene import Outcome, Resolution, Scene, Stroke
 from cuefem.tip_modes import Solved
 
@@ -245,13 +244,12 @@ def _with_squirt(squirt: float, scene: Scene, drive: str) -> float:
         return side * impact(replace(scene, cue=lumped, effects=())).squirt - squirt
 
     log_masses = np.linspace(math.log(1e-9), math.log(1e3), MANY)
-    with trying():
-        excesses = excess(log_masses)
-        if not excesses[0] < -FLAT < FLAT < excesses[-1]:  # of all light lumps the tip slides at one squirt
-            raise ValueError(
-                f"end_mass drive {drive!r}: no single lumped end mass in [1e-9, 1e3] kg has the squirt {squirt:.6g} rad"
-            )
-        return math.exp(zoomed_root(excess, log_masses))
+    excesses = excess(log_masses)
+    if not excesses[0] < -FLAT < FLAT < excesses[-1]:  # of all light lumps the tip slides at one squirt
+        raise ValueError(
+            f"end_mass drive {drive!r}: no single lumped end mass in [1e-9, 1e3] kg has the squirt {squirt:.6g} rad"
+        )
+    return math.exp(zoomed_root(excess, log_masses))
 
 
 def zoomed_root(function: Callable[[Array], Array], places: Array) -> float:

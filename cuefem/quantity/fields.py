@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from cuefem.quantity.slips import remark, slip
 from cuefem.quantity.units import (
-    BOTH,
     UNITS,
     UnknownUnit,
     example_of,
@@ -71,7 +70,7 @@ class Quantity:
     @property
     def example(self) -> str:
         """What the unit measures, with an example: 'a length with its unit, such as "12 mm"'."""
-        what, example = example_of(self.unit)
+        what, example, *_ = example_of(self.unit)
         if self.unit == "Pa" and self.words:  # a leather's
             example = "200 MPa"
         return f'{what} with its unit, such as "{example}"{self._named}'
@@ -79,11 +78,6 @@ class Quantity:
     @property
     def _named(self) -> str:
         return ", or " + ", ".join(f'"{word}"' for word, _ in self.words) if self.words else ""
-
-    @property
-    def endless(self) -> bool:
-        """Whether infinity is a value, which needs no unit."""
-        return self.interval.endswith("inf]")
 
     @property
     def wanted(self) -> str:
@@ -107,13 +101,13 @@ class Quantity:
         """What is in a file as a checked SI number; ValueError says what is wrong in the words of who wrote it."""
         if self.unit == "":
             return self._bare(value)
-        known = dict(self.words) | ({"inf": math.inf} if self.endless else {})
+        known = dict(self.words) | ({"inf": math.inf} if self.interval.endswith("inf]") else {})
         word = str(value).strip().lower()
         if word in known:
             return known[word]
         digits, unit = parted(str(value)) if isinstance(value, str | int | float) else ("", "")
         if digits and not unit and digits[-3:].lower() not in ("inf", "nan"):
-            named = " or ".join(f'"{text}"' for text in BOTH.get(self.unit, example_of(self.unit)[1:]))
+            named = " or ".join(f'"{text}"' for text in example_of(self.unit)[1:])
             raise ValueError(f"needs a unit: {named}{self._named}; got {shown(value)}")
         try:
             result = number(str(value), self.unit)
@@ -166,19 +160,14 @@ class Quantity:
             array = np.array(value, dtype=float)
         except (TypeError, ValueError):
             raise TypeError(f"{name} must be a number in {self.bounds}; got {shown(value)}") from None
-        wrong = ~self.holds(array)
-        if wrong.any():
-            index = tuple(int(i) for i in np.argwhere(wrong)[0])
-            where = f" at index {index if len(index) > 1 else index[0]}" if index else ""
-            raise ValueError(f"{name} must be in {self.bounds}; got {array[index]}{where}")
+        inside = self.holds(array)
+        if not np.all(inside):
+            where, (got,) = first_failure(inside, array)
+            raise ValueError(f"{name} must be in {self.bounds}; got {got}{where}")
         if array.ndim == 0:
             return float(array)
         array.flags.writeable = False
         return array
-
-
-class Flag:
-    """Marks a field that is true or false: no other word of a file is read as either."""
 
 
 _WORDS = {

@@ -8,14 +8,14 @@ import re
 from decimal import Decimal, DecimalException
 from typing import NamedTuple
 
-# What an SI unit of this package measures, and the unit that files are written in.
+# What an SI unit of this package measures, and examples, first in the unit that files are written in.
 EXAMPLES = {
-    "m": ("a length", "12 mm"),
-    "kg": ("a mass", "150 g"),
+    "m": ("a length", "12 mm", "0.5 in"),
+    "kg": ("a mass", "150 g", "15 oz"),
     "s": ("a time", "1.2 ms"),
-    "m/s": ("a speed", "2 m/s"),
-    "Pa": ("a stress", "12.6 GPa"),
-    "kg/m^3": ("a density", "700 kg/m^3"),
+    "m/s": ("a speed", "2 m/s", "4.5 mph"),
+    "Pa": ("a stress", "12.6 GPa", "1.8 Msi"),
+    "kg/m^3": ("a density", "700 kg/m^3", "0.025 lb/in^3"),
     "N/m": ("a stiffness", "5000 N/m"),
     "N m/rad": ("a rotational stiffness", "20 N m/rad"),
     "rad/(N m)": ("a rotational compliance", "2e-4 rad/(N m)"),
@@ -25,15 +25,6 @@ EXAMPLES = {
     "kg m^2": ("a rotary inertia", "40 g mm^2"),
     "rad": ("an angle", "3 deg"),
     "Hz": ("a frequency", "250 Hz"),
-}
-
-# Where two are shown: in the units of both systems.
-BOTH = {
-    "m": ("0.5 in", "12.7 mm"),
-    "kg": ("15 oz", "425 g"),
-    "m/s": ("4.5 mph", "2 m/s"),
-    "Pa": ("1.8 Msi", "12.4 GPa"),
-    "kg/m^3": ("0.025 lb/in^3", "700 kg/m^3"),
 }
 
 Powers = tuple[int, int, int, int]  # of m, kg, s and rad
@@ -138,15 +129,15 @@ def scale(unit: str, wanted: str) -> Decimal:
     return own.scale / other.scale
 
 
-def example_of(unit: str) -> tuple[str, str]:
-    """What an SI unit measures, and an example in a unit that reads well."""
+def example_of(unit: str) -> tuple[str, ...]:
+    """What an SI unit measures, and examples, the first in a unit that reads well."""
     return EXAMPLES.get(unit, ("a quantity", f"3 {unit}"))
 
 
 def kind_of(unit: str) -> str:
     """What a unit measures: "a mass"."""
     powers = unit_of(unit).powers
-    return next((what for si, (what, _) in EXAMPLES.items() if unit_of(si).powers == powers), "something else")
+    return next((what for si, (what, *_) in EXAMPLES.items() if unit_of(si).powers == powers), "something else")
 
 
 def first_name(unit: str) -> str:

@@ -195,7 +195,8 @@ class Scene:
         if isinstance(self.cue, Cue) and self.cue.segments:
             if self.cue.body_mass == 0:
                 remark_light(self.cue.mass, self.cue.length)
-            remark(*(effect.unusual_on(self.cue) for effect in self.effects))
+            for effect in self.effects:
+                remark(effect.unusual_on(self.cue))
         whole = self.contact_terms.tip is not None  # the terms refuse what may be given only once
         for name, unit in (("contact_time", "s"), ("stiffness", "N/m")):
             value = getattr(self.tip, name)

@@ -37,13 +37,6 @@ def test_a_slip_of_units_is_remarked_where_it_stands(words: str) -> None:
     assert {Path(one.filename).name for one in told} == {Path(__file__).name}
 
 
-def test_a_contact_time_in_the_place_of_a_strikers_stiffness() -> None:
-    """Of a ball of 5 g, e = 0.8, 1 ms."""
-    with pytest.warns(cf.Unusual, match=r"contact time in s\? Write Striker\(..., contact_time=0.001\)") as told:
-        cf.Striker(0.005, 0.8, 1e-3)
-    assert {Path(one.filename).name for one in told} == {Path(__file__).name}
-
-
 def test_a_shaft_that_is_struck_without_the_rest_of_its_cue() -> None:
     """At the scene, where the mass counts, and not at the shaft, which may be tapped; a model to scale may be light."""
     with pytest.warns(
@@ -100,16 +93,3 @@ def test_a_file_s_slip_is_told_to_the_one_who_loads_it(tmp_path: Path) -> None:
         warnings.simplefilter("error")
         status, _, err = call("strike", path)  # says it in its own words
     assert (status, err[:35]) == (0, "unusual: dome radius 9500 mm; expec")
-
-
-def test_a_sweep_is_warned_once_per_call_site_and_field() -> None:
-    with warnings.catch_warnings(record=True) as told:
-        warnings.simplefilter("default")
-        for radius in (9.5, 9.6, 9.7):
-            cf.TipDome(radius)
-        cf.TipDome(9.8)
-        for diameter in (0.7, 0.71):
-            cf.Segment(0.7, 0.012, diameter, cf.Material(12.6e9, 0.84e9, 700.0))
-    assert [str(each.message).partition(" is ")[0] for each in told] == [
-        *("TipDome.radius", "TipDome.radius", "Segment.butt_diameter")
-    ]

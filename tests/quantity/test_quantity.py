@@ -52,8 +52,8 @@ def test_fields_are_found_and_checked() -> None:
 MASS, SIZE = Quantity("kg", "[0, inf)"), Quantity("m", "(0, 10]")
 # What stands in a file or an option, and what is said of it.
 READ = [
-    (MASS, "15", 'needs a unit: "15 oz" or "425 g"; got \'15\''),
-    (MASS, 15, 'needs a unit: "15 oz" or "425 g"; got 15'),
+    (MASS, "15", 'needs a unit: "150 g" or "15 oz"; got \'15\''),
+    (MASS, 15, 'needs a unit: "150 g" or "15 oz"; got 15'),
     (MASS, "-1 oz", "must be 0 oz or more; got -1 oz"),
     (MASS, "15 onces", "got '15 onces': no unit is called 'onces'; did you mean 'ounces'?"),
     (MASS, "15 mm", "must be a mass with its unit, such as \"150 g\"; got '15 mm', which is a length"),
@@ -74,7 +74,7 @@ READ = [
     (
         Quantity("m", "(0, inf]", (("dime", 0.009),)),
         "9.5",
-        'needs a unit: "0.5 in" or "12.7 mm", or "dime"; got \'9.5\'',
+        'needs a unit: "12 mm" or "0.5 in", or "dime"; got \'9.5\'',
     ),
 ]
 
