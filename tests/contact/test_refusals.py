@@ -12,6 +12,7 @@ import cuefem as cf
 from cuefem.beam.tip import lumped_tip_modes
 from cuefem.contact.model import model_of
 from cuefem.contact.step_records import solve_contact
+from cuefem.tip_modes import default_modes
 from tests.helpers.leather_scenes import leather_scene
 from tests.helpers.refusals import refuses
 from tests.helpers.strike_scenes import KIM, kim_scene
@@ -30,6 +31,7 @@ BALL, NORTH = cf.Ball(0.17, 0.0286), (0.0, 1.0, 0.0)
 R = BALL.radius
 GOOD = (0.3 * R, R)
 STRUCK = cf.impulse(cf.Scene(cf.LumpedCue(0.54, 0.004), BALL, cf.Tip(0.75, 0.7), cf.Stroke(2.0, 0.3)))
+LUMPED = cf.Scene(cf.LumpedCue(0.54, 0.006, 3.0), stroke=cf.Stroke(offset=0.3))
 DEAD = "Tip.restitution must be in [0.05, 1] where a contact is followed in time; got "
 
 
@@ -53,6 +55,9 @@ CALLS: list[Any] = [
     ),
     (lambda: cf.impulse(THREE_SHAPES), "got shapes LumpedCue.end_mass (3,), Tip.friction (2, 1), Stroke.offset (4,)"),
     (lambda: cf.impulse(cf.Scene(KIM, cf.Ball(mass=TWO / 10))), "must be one number; got an array of shape (2,)"),
+    (lambda: cf.strike(3), "TypeError: strike scene must be a Scene; got 3"),  # type: ignore[arg-type]
+    (lambda: cf.impulse(3), "TypeError: impulse scene must be a Scene; got 3"),  # type: ignore[arg-type]
+    *((ask, "must be a Cue of segments: ") for ask in (lambda: LUMPED.shaft, lambda: default_modes(LUMPED))),
     (lambda: cf.Scene("cue"), "TypeError: Scene.cue must be a Cue or LumpedCue; got 'cue'"),
     (lambda: cf.Scene(cf.LumpedCue(0.5, 0.003), tip=0.7), "TypeError: Scene.tip must be a Tip"),
     (

@@ -31,7 +31,7 @@ def possible(tip: LeatherTip, diameter: float) -> LeatherTip:
     return tip
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=40)
 @given(TIPS, DIAMETERS, OFFSETS, st.floats(0.005, 0.5))
 def test_compliance(tip: LeatherTip, diameter: float, offset: float, patch: float) -> None:
     """Symmetric and positive definite, mirrored with the offset, in proportion to 1/E."""
@@ -45,6 +45,7 @@ def test_compliance(tip: LeatherTip, diameter: float, offset: float, patch: floa
     )
 
 
+@settings(max_examples=40)
 @given(TIPS, DIAMETERS, st.floats(-0.6, 0.6))
 def test_lever(tip: LeatherTip, diameter: float, phi: float) -> None:
     """The contact lies on the dome or on its rim, and the mass is between that of cylinders."""
@@ -61,6 +62,7 @@ def test_lever(tip: LeatherTip, diameter: float, phi: float) -> None:
     assert whole / 3 < tip.mass(diameter) <= whole * (1 + 1e-12)
 
 
+@settings(max_examples=40)
 @given(TIPS, DIAMETERS, OFFSETS)
 def test_every_ring_presses_and_holds(tip: LeatherTip, diameter: float, offset: float) -> None:
     """The force stiffens, so that a ring's share of it is not negative; with the whole tip in touch it may level off.

@@ -26,9 +26,6 @@ SHAPE = Shape(6 / 12.75, 12.75 / 9.5)
 PATCH = Patch(2 * 0.375 * 9.5 / 12.75, 2 / 12.75)
 
 
-# --- the solid --------------------------------------------------------------------------------------------------------
-
-
 def test_a_long_tip_is_a_rod() -> None:
     """EA/h along the axis, from the difference of two lengths, which the end's own give has dropped out of; 3EI/h^3
     across it on a slender rod. Over D: EA is pi/4, EI pi/64."""
@@ -56,9 +53,6 @@ def test_hertz() -> None:
     shape, how = Shape(1.0, 0.0), fitted(1.0, 0.01)
     found = head_on(shape, TipSolid(shape, how).surface(0.3, 0), 0.01, how)
     np.testing.assert_allclose(found / tt.half_space_head_on(0.3, np.array(0.01)), 1, rtol=5e-3)
-
-
-# --- the table --------------------------------------------------------------------------------------------------------
 
 
 def test_values() -> None:
@@ -136,3 +130,25 @@ def test_a_patch_that_sticks(height: float, radius: float) -> None:
     C = load @ TipSolid(Shape(height, 0.0), how).surface(0.4, 1) @ load.T
     rigid = 1 / np.linalg.inv(C).sum()
     assert abs((C[0, 0] - tt.rigid_patch_gain(0.4, height, np.array(radius))) / rigid - 1) < 0.01
+
+
+def test_a_rod_of_two_moduli() -> None:
+    """Two diameters of twice the modulus in a long rod give 2 (1 - 1/2)/A less than the leather, to 1 %: where the
+    moduli meet, each holds or widens the other over about a diameter (0.7 % here)."""
+    how, patch = usual(4, 4, 6, 1), Patch(0.0, 0.45)
+    plain, stiff = (Shape(8.0, 0.0, ((2.0, 1.0, 0.3), (2.0, E, 0.3), (2.0, 1.0, 0.3))) for E in (1.0, 2.0))
+    less = [solved(shape, 0.3, patch, how)[0, 0] for shape in (plain, stiff)]
+    assert abs((less[0] - less[1]) / (4 / math.pi) - 1) < 0.01
+
+
+@pytest.mark.heavy
+def test_a_thin_soft_pad_is_a_bonded_layer() -> None:
+    """t/(A M), M the modulus of a layer that cannot widen; the free edge gives more, in proportion to t."""
+    errors, nu = [], 0.3
+    for t in (0.02, 0.01):
+        shape = Shape(0.5 + t, 0.0, ((t, 1e-7, nu),))
+        found = solved(shape, 0.3, Patch(0.0, 0.4), usual(5, 10, 4, 1))[0, 0]
+        bonded = t / 1e-7 * (1 + nu) * (1 - 2 * nu) / (1 - nu) * 4 / math.pi
+        errors.append(found / bonded - 1)
+    assert 0 < errors[1] < errors[0] < 0.05
+    assert abs(errors[0] / errors[1] / 2 - 1) < 0.03

@@ -12,7 +12,7 @@ import pytest
 import cuefem as cf
 from cuefem.effects.force_law import LeatherLaw
 from tests.helpers.refusals import refuses
-from tests.helpers.strike_scenes import KIM, kim_scene, pool_cue
+from tests.helpers.strike_scenes import KIM, imbalance, kim_scene, pool_cue
 
 
 def listed(*effects: cf.Effect) -> Callable[[], cf.Scene]:
@@ -61,6 +61,8 @@ CALLS: list[tuple[Callable[[], object], str]] = [  # a line a raise, its first w
     (with_tip(cf.Tip(), WAVES, LEATHER, cue=pool_cue()), "Scene.effects[1] must be the only leather: draw the cue"),
     (lambda: cf.modes(pool_cue(), effects=(LEATHER,)), "LeatherTip must be the only leather: draw the cue without its"),
     (with_tip(cf.Tip(), replace(LEATHER, dome_radius=5e-3)), "the dome of a leather tip on 12 mm must have a radius"),
+    (lambda: cf.modes(KIM, 3, effects=(3,)), "TypeError: modes effects must be effects"),  # type: ignore[arg-type]
+    (lambda: replace(kim_scene(), effects=SHEAR), "TypeError: Scene.effects must be a sequence of effects"),  # type: ignore[arg-type]
     (lambda: replace(LEATHER, rolls="no"), "TypeError: LeatherTip.rolls must be a bool; got 'no'"),
     (listed(SHEAR, "TipDome"), "TypeError: Scene.effects[1] must be an Effect; got 'TipDome'"),  # type: ignore[arg-type]
 ]
@@ -69,6 +71,13 @@ CALLS: list[tuple[Callable[[], object], str]] = [  # a line a raise, its first w
 @pytest.mark.parametrize(("ask", "message"), CALLS, ids=[message for _, message in CALLS])
 def test_calls(ask: Callable[[], object], message: str) -> None:
     refuses(ask, message)
+
+
+def test_a_clamped_tip_is_struck_but_has_no_end_mass() -> None:
+    clamped = replace(kim_scene(0.3), effects=(cf.Support(0.0, np.inf),))
+    assert imbalance(cf.strike(clamped)) < 1e-9
+    for drive in ("stick", "velocity", "force"):
+        refuses(lambda drive=drive: cf.end_mass(clamped, drive), "a clamp holds the tip across the cue")
 
 
 def test_what_is_just_allowed() -> None:
