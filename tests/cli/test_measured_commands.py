@@ -89,11 +89,3 @@ def test_an_estimate_has_the_numbers_of_the_library(tmp_path: Path) -> None:
     assert (told["misfit"], told["converged"]) == (pytest.approx(found.misfit), True)
     assert {worth["kind"] for worth in told["next"]} <= set(MEASUREMENT_TYPES)
     assert all(0 < worth["left"] <= 1 and worth["bits"] >= 0 for worth in told["next"])
-
-
-@pytest.mark.heavy
-def test_an_estimate_for_people_tells_contradictions(tmp_path: Path) -> None:
-    weights = "".join(f'[[weight]]\nvalue = "{mass} g"\nerror = "0.5 g"\n' for mass in (90, 100, 110))
-    out = said("compare", folder(tmp_path / "cue", SOME + weights), "--estimate")
-    for words in ("E of the wood", "What to measure next", "squirt at b/R 0.3 by the model", "It is too large"):
-        assert words in out
