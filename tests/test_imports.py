@@ -4,7 +4,6 @@ import ast
 import re
 import subprocess
 import sys
-from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -164,15 +163,3 @@ def test_the_kernel_has_no_circle() -> None:
         asked = {other: sorted(gives[other] & words) for other in later}
         assert not any(asked.values()), (name, asked)
         assert gives.get(name, set()) <= words, name
-
-
-def test_a_class_name_stands_in_one_file_and_offsets_in_one_table() -> None:
-    names = Counter(
-        name for tree in TREES.values() for name in {n.name for n in ast.walk(tree) if isinstance(n, ast.ClassDef)}
-    )
-    assert names["Scene"] == 1
-    assert [name for name, count in names.items() if count > 1] == []
-    targets = [
-        each for tree in TREES.values() for node in tree.body if isinstance(node, ast.Assign) for each in node.targets
-    ]
-    assert [ast.unparse(each) for each in targets].count("OFFSETS") == 1

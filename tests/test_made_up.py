@@ -1,9 +1,7 @@
 """What is added by one entry of a table, or by a class, is found everywhere: parameter, result, definition, effects."""
 
-import functools
 import gc
 import json
-import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
@@ -34,9 +32,9 @@ RINGED = cf.Cue(tuple(cf.Segment(*part) for part in (FRONT, RING, REST)), 0.42)
 def _forgotten() -> Iterator[None]:
     """Made-up effects are gone when a test is over: files and tables list every effect that there is."""
     yield
-    for kept in gc.get_objects():
-        if isinstance(kept, functools._lru_cache_wrapper) and str(kept.__module__).startswith("cuefem"):
-            kept.cache_clear()
+    modules = [module for name, module in sys.modules.items() if name.startswith("cuefem.")]
+    for kept in [one for module in modules for one in vars(module).values() if hasattr(one, "cache_clear")]:
+        kept.cache_clear()
     gc.collect()
 
 
@@ -51,27 +49,6 @@ def test_a_parameter(monkeypatch: pytest.MonkeyPatch) -> None:
     plain = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.0125, 0.021, WOOD),), 0.42))
     with pytest.raises(ValueError, match="got 'collar length', which this scene does not have"):
         paths(plain, "collar length")
-
-
-OPTION = """import sys
-from cuefem.parameters.parameter import PARAMETERS
-from tests.helpers.made_up import PLACE
-
-PARAMETERS[PLACE.key] = PLACE
-from tests.helpers.command_line import call
-
-print(call("strike", sys.argv[1], "--collar-length", "20 mm", "--json")[1])
-"""
-
-
-@pytest.mark.heavy
-def test_a_parameter_is_an_option_of_commands(tmp_path: Path) -> None:
-    """In a process of its own: a command's options are those of the table when the command is loaded."""
-    cf.save(RINGED, tmp_path / "cue.toml")
-    command = [sys.executable, "-c", OPTION, str(tmp_path / "cue.toml")]
-    done = subprocess.run(command, cwd=Path(__file__).parents[1], capture_output=True, text=True, check=True)
-    mass = json.loads(done.stdout)["scene"]["cue"]["shaft_mass"]
-    assert mass > RINGED.shaft_mass + 0.005
 
 
 def test_a_result(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -138,12 +115,3 @@ def test_an_effect_at_the_tip() -> None:
         cf.strike(struck(cap(0.0, give=1.0), cf.Elevation(0.1)), AT)
     with pytest.raises(ValueError, match=r"Scene\.effects must give the contact one window for a second hit; got"):
         struck(cf.SecondHit(), cap(0.0, window=1e-3))
-
-
-@pytest.mark.heavy
-def test_report_and_page_show_them_all(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setitem(RESULTS, "sweet_spot", SPOT)
-    monkeypatch.setitem(DEFINITIONS, RIGID.name, RIGID)
-    shown = faces(kim_scene(0.3), tmp_path, "report", "page")
-    for words in ("sweet spot, from the tip", "rigid"):
-        assert missing(words, shown) == []

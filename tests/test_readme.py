@@ -66,23 +66,6 @@ def test_the_first_block_is_two_complete_commands() -> None:
     assert all(line.startswith("python3 -m venv") for line in lines)
 
 
-@pytest.mark.heavy
-def test_ones_own_shaft_takes_three_commands(tmp_path: Path) -> None:
-    """Its last two lines, in this process; all of them, from nothing, in the heavy test."""
-    install, profile, report = OWN_SHAFT.splitlines()
-    assert install.endswith("pip install --quiet .")
-    subprocess.run(["bash", "-c", profile], cwd=tmp_path, check=True)
-    csv, _ = blocks("csv")
-    assert (tmp_path / "my_shaft.csv").read_text() == csv
-    words = shlex.split(report)
-    assert words[0] == ".venv/bin/cuefem"
-    here = [str(tmp_path / word) if word.startswith("my_shaft") else word for word in words[1:]]
-    assert call(*here)[::2] == (0, "")
-    page = (tmp_path / "my_shaft.html").read_text(encoding="utf-8")
-    assert "736.6 mm in" in page
-    assert "assumptions</b>" in page
-
-
 @pytest.mark.nightly
 def test_a_new_user_gets_a_report_from_nothing(tmp_path: Path) -> None:
     fresh = tmp_path / "cuefem"

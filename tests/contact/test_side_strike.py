@@ -10,11 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.optimize import brentq
+from scipy.special import wofz
 
 import cuefem as cf
 from cuefem import PointMass, Resolution, SideStrike, Striker, Support, side_strike
 from tests.helpers.cues import FAMILY, cone, kim, rod, scaled
-from tests.helpers.half_order import spring_exact
 from tests.helpers.refusals import command_refuses, refuses
 
 BALL = Striker(0.005, 0.8, contact_time=1e-3)
@@ -60,6 +61,30 @@ def test_hertz_on_a_wall_meets_its_closed_form(restitution: float) -> None:
     assert outcome.apparent_restitution == pytest.approx(restitution, abs=1e-7)
     assert striker.wall_time(2.0) == pytest.approx((1 + restitution) * half, rel=1e-9)
     assert striker.wall_time(64.0) == pytest.approx((1 + restitution) * half / 2, rel=1e-9)  # goes with v^(-1/5)
+
+
+def spring_exact(inelasticity: float) -> tuple[float, float]:
+    """(e_A, duration in 1/w0) of an elastic spring on an endless Euler beam, in closed form.
+
+    A force F(t) moves its place by w(t) = C/Gamma(3/2) times the integral of sqrt(t - s) F(s) over s from 0 to t, with
+    C = 1/(2 sqrt(2) EI^(1/4) rhoA^(3/4)), the free end of one endless to one side four times as far. A striker
+    of mass m and speed v on a spring k has, in units of 1/w0 = sqrt(m/k) of time, v/w0 of length, m v w0 of force, the
+    compression d = t - I^2 F - L I^(3/2) F, L = C m sqrt(w0), the part that inelasticity has in Zener's plate.
+
+    Laplace: F = 1/(p^2 + 1 + L sqrt(p)). Over the four roots u of u^4 + L u + 1, F(t) is the sum of
+    u exp(u^2 t) erfc(-u sqrt(t))/(4 u^3 + L).
+    """
+    u = np.roots([1.0, 0.0, 0.0, inelasticity, 1.0])
+    weights = u / (4 * u**3 + inelasticity)
+
+    def force(t: float) -> float:
+        return float((weights * wofz(-1j * u * math.sqrt(t))).sum().real)
+
+    end = next(t for t in np.linspace(0.05, 40, 800) if force(t) < 0)
+    last = brentq(force, end - 0.05, end, xtol=1e-14)
+    # force is smooth in the root of time
+    impulse = quad(lambda x: 2 * x * force(x * x), 0, math.sqrt(last), epsabs=1e-13, limit=200)[0]
+    return impulse - 1, last
 
 
 @pytest.mark.parametrize("inelasticity", [0.05, 0.5, 2.0])

@@ -20,6 +20,7 @@ from cuefem.contact.rigid_impact import inverse_mass
 from cuefem.contact.strike import strike_modes
 from cuefem.tip_modes import tip_modes_of
 from tests.data.stored import scene_of, stored_law, strikes, tip_of
+from tests.helpers.cues import rod, stiff_ferrule
 from tests.helpers.orders import falls_with_the_step
 from tests.helpers.strike_scenes import (
     CLOSED,
@@ -29,10 +30,8 @@ from tests.helpers.strike_scenes import (
     imbalance,
     kim_scene,
     maple,
-    pool_cue,
     sound,
     stepped_cue,
-    uniform_rod,
     weighted_cue,
 )
 
@@ -168,12 +167,12 @@ def drawn() -> Iterator[tuple[cf.Scene, TipModes]]:
     # of 0.2 mm in front of the shaft: its own mode rings at tens of kHz, and its mass is a milligram
     needle = cf.Cue((cf.Segment(0.004, 0.0002, 0.0002, maple()), *KIM.segments), 0.42)
     for cue, offsets, at in (
-        (pool_cue(ferrule=0.001), (0.3,), None),
+        (stiff_ferrule(), (0.3,), None),
         (stepped_cue(), (0.1, 0.5), KIM_AT),
         (weighted_cue(), (0.3,), KIM_AT),
         (needle, (0.3,), KIM_AT),
-        (uniform_rod(10), (0.3,), few),
-        (uniform_rod(1e4), (0.3,), few),
+        (rod(10), (0.3,), few),
+        (rod(1e4), (0.3,), few),
         (KIM, (0.999, 0.9), few),
         (KIM, (1 - 1e-6, 1 - 1e-9, 1 - 1e-12), few),
     ):

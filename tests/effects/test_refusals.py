@@ -11,8 +11,9 @@ import pytest
 
 import cuefem as cf
 from cuefem.effects.force_law import LeatherLaw
+from tests.helpers.cues import pool
 from tests.helpers.refusals import refuses
-from tests.helpers.strike_scenes import KIM, imbalance, kim_scene, pool_cue
+from tests.helpers.strike_scenes import KIM, imbalance, kim_scene
 
 
 def listed(*effects: cf.Effect) -> Callable[[], cf.Scene]:
@@ -58,8 +59,8 @@ CALLS: list[tuple[Callable[[], object], str]] = [  # a line a raise, its first w
     (listed(DOME, LEATHER), "must be an effect that goes with effects[0], TipDome; got LeatherTip"),
     (listed(LEATHER), "Tip.contact_time must be left out beside an effect that gives the whole tip"),
     (with_tip(cf.Tip(stiffness=1e6), LEATHER), "Tip.stiffness must be left out beside an effect that gives the whole"),
-    (with_tip(cf.Tip(), WAVES, LEATHER, cue=pool_cue()), "Scene.effects[1] must be the only leather: draw the cue"),
-    (lambda: cf.modes(pool_cue(), effects=(LEATHER,)), "LeatherTip must be the only leather: draw the cue without its"),
+    (with_tip(cf.Tip(), WAVES, LEATHER, cue=pool()), "Scene.effects[1] must be the only leather: draw the cue"),
+    (lambda: cf.modes(pool(), effects=(LEATHER,)), "LeatherTip must be the only leather: draw the cue without its"),
     (with_tip(cf.Tip(), replace(LEATHER, dome_radius=5e-3)), "the dome of a leather tip on 12 mm must have a radius"),
     (lambda: cf.modes(KIM, 3, effects=(3,)), "TypeError: modes effects must be effects"),  # type: ignore[arg-type]
     (lambda: replace(kim_scene(), effects=SHEAR), "TypeError: Scene.effects must be a sequence of effects"),  # type: ignore[arg-type]

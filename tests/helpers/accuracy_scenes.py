@@ -3,22 +3,12 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import cuefem as cf
 from cuefem.effects import Effect
+from studies.strokes import DOME, NAMES, SHEAR, cue
 
-NAMES = ("kim", "pool_maple", "pool_hollow", "carbon", "whole_cue")
-MESHES = Path(__file__).parents[2] / "meshes"
-
-
-def reference_cue(name: str) -> cf.Cue:
-    cue = cf.load(MESHES / f"{name}.toml")
-    assert isinstance(cue, cf.Cue)
-    return cue
-
-
-DOME, SHEAR, WAVES = cf.TipDome(0.0095), cf.TipShear(0.75), cf.AxialWaves()
+WAVES = cf.AxialWaves()
 BRIDGE, CLAY = cf.Support(0.2, stiffness=1e4, dashpot=5.0), cf.PointMass(0.1, 0.011)
 
 # (contact time s, offset, restitution, friction) of the bare cues; every cue takes six of these eight.
@@ -57,7 +47,7 @@ def scene(
     effects: tuple[Effect, ...] = (),
 ) -> cf.Scene:
     tip = cf.Tip(restitution, friction, contact_time=contact_time)
-    return cf.Scene(reference_cue(name), cf.Ball(), tip, cf.Stroke(1.0, offset), effects)
+    return cf.Scene(cue(name), cf.Ball(), tip, cf.Stroke(1.0, offset), effects)
 
 
 def bare_scenes() -> list[cf.Scene]:

@@ -23,29 +23,15 @@ class Told(NamedTuple):
     pulls: list[str]
 
 
-def numbers(scene: Scene) -> dict[str, float]:
-    """The scene's numbers, mass and length in the ball's units, at unit speed."""
-    M = scene.ball.mass
-    return {
-        "b": scene.stroke.offset,
-        "along": M / scene.cue.mass,
-        "across": M / scene.cue.end_mass,
-        "coupling": M * scene.cue.coupling,
-        "nu": scene.ball.inertia,
-        "e": scene.tip.restitution,
-        "mu": scene.tip.friction,
-    }
-
-
 def exact(scene: Scene, digits: int = 60) -> Told:
     """The stroke in decimal arithmetic: straight pieces of velocity, roots of lines and parabolas."""
+    cue, ball, tip = scene.cue, scene.ball, scene.tip
     with localcontext() as context:
         context.prec = digits
-        x = {name: Decimal(value) for name, value in numbers(scene).items()}
-        # masses as they stand, not their rounded ratios
-        M = Decimal(scene.ball.mass)
-        x["along"], x["across"] = M / Decimal(scene.cue.mass), M / Decimal(scene.cue.end_mass)
-        x["coupling"] = M * Decimal(scene.cue.coupling)
+        M = Decimal(ball.mass)
+        x = {"along": M / Decimal(cue.mass), "across": M / Decimal(cue.end_mass), "coupling": M * Decimal(cue.coupling)}
+        x |= {"b": Decimal(scene.stroke.offset), "nu": Decimal(ball.inertia)}
+        x |= {"e": Decimal(tip.restitution), "mu": Decimal(tip.friction)}
         return _exact(x, M=M, U=Decimal(scene.stroke.speed))
 
 

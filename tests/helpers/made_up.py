@@ -19,21 +19,18 @@ from cuefem.endmass.definitions import Definition
 from cuefem.parameters.parameter import Parameter
 from cuefem.parameters.parts import Part
 from cuefem.quantity.fields import LENGTH, Quantity
-from cuefem.report.report_page import page
 from cuefem.results.quantities import Result, of_drawing, of_strike
 from tests.helpers.command_line import call
 
 
 def faces(scene: cf.Scene, folder: Path, *names: str) -> dict[str, str]:
-    """The words that these faces show of a scene: commands, the JSON of the report, the report page, the designer."""
+    """The words that these faces show of a scene: commands, the JSON of the report, the designer."""
     file = folder / "scene.toml"
     cf.save(scene, file)
 
     def shown(name: str) -> str:
         if name == "json":
             return call("report", file, "--json")[1]
-        if name == "page":
-            return page("this", scene)
         if name == "designer":
             known = Known({"numbers": numbers.__wrapped__(scene)})
             return sheets_markup([numbers_sheet(Step(Design("this", scene)), known)])

@@ -30,26 +30,6 @@ def kim_scene(offset: float = 0.3, **tip: float) -> Scene:
     return Scene(KIM, tip=replace(KIM_TIP, **tip), stroke=Stroke(offset=offset))
 
 
-def pool_cue(ferrule: float = 0.025) -> Cue:
-    """A generic pool shaft: 6 mm leather 100 times softer than the wood, a ferrule, a pro taper and a cone."""
-    leather = Material(12.6e7, 12.6e7 / 15, 950.0)
-    plastic = Material(3e9, 1.1e9, 1200.0)
-    return Cue(
-        (
-            Segment(0.006, 0.01275, 0.01275, leather),
-            Segment(ferrule, 0.01275, 0.01275, plastic, 0.008, 0.008, core=maple()),
-            Segment(0.30, 0.01275, 0.0132, maple()),
-            Segment(0.41, 0.0132, 0.0215, maple()),
-        ),
-        body_mass=0.4,
-    )
-
-
-def uniform_rod(slenderness: float, diameter: float = 0.012) -> Cue:
-    """A uniform rod whose length is ``slenderness`` times its radius."""
-    return Cue((Segment(slenderness * diameter / 2, diameter, diameter, maple()),), body_mass=0.3)
-
-
 def stepped_cue() -> Cue:
     """Radius steps of 5 to 1 and back."""
     return Cue(tuple(Segment(0.15, d, d, maple()) for d in (0.010, 0.050, 0.010, 0.050)), body_mass=0.2)

@@ -6,7 +6,8 @@ import pytest
 
 from cuefem import resolve
 from cuefem.report.cost import WANTED, cost_record
-from tests.helpers.accuracy_scenes import MESHES, scene
+from studies.strokes import MESHES
+from tests.helpers.accuracy_scenes import scene
 from tests.helpers.command_line import said
 
 KIM = MESHES / "kim.toml"

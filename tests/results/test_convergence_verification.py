@@ -12,7 +12,8 @@ from cuefem.contact.strike import strike_modes
 from cuefem.endmass.definitions import definition_of
 from cuefem.results.convergence import levels
 from cuefem.tip_modes import tip_modes_from, turning
-from tests.helpers.accuracy_scenes import NAMES, endless_friction, family, scene
+from studies.strokes import NAMES
+from tests.helpers.accuracy_scenes import endless_friction, family, scene
 
 
 def all_modes(scene: cf.Scene, count: int) -> Modes:
