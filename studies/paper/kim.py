@@ -5,7 +5,7 @@ What: each numbered result of the paper is evaluated as printed, beside what fol
 two-part cue (epsilon = m_c/M = 2/35, Q0 = M_c/M = 18/7, nu_c = 1/3), e = 3/4, mu = 0.7 (a rigid cue: Q0 = 3, nu_c =
 0.136, mu = 0.6). Limits epsilon -> 0 are Richardson-extrapolated from the exact law. Numbers that the text quotes stand
 beside the same quantities as derived. Sections are the paper's, I (introduction) to VI (summary). Equations: handbook:
-Frame and signs, Inverse mass, The impulse solver, What the paper says; closed_forms. Last what [Kim] says of the
+Frame and signs, Inverse mass, The impulse solver, Errata of Kim 2022; closed_forms. Last what [Kim] says of the
 shaft itself, its cue end, and finite elements: E 12.6 GPa, E/G 15, kappa 0.9, 540 g along its axis, T = 2 ms head on,
 22 flexible bending modes; numbers to four digits, which is about as exact as these modes allow. Takes seconds.
 """
