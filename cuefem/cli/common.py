@@ -11,10 +11,9 @@ import click
 
 from cuefem.cli.printing import assumed_lines, json_option, shared_option, tell
 from cuefem.cli.strokes import blow_options, offset_option, option, parameter_options, refuse_game, usual, with_options
-from cuefem.cue import Cue
 from cuefem.effects.force_law import TooDeep
 from cuefem.io import InputError, check_place, load_stroke
-from cuefem.io.assumed import assumed, assumed_usual
+from cuefem.io.assumed import assumed, in_words
 from cuefem.io.fittings import FITTINGS
 from cuefem.report.record import scene_record
 from cuefem.report.scene_words import cue_line, effect_words
@@ -22,7 +21,6 @@ from cuefem.report.unusual import unusual
 from cuefem.results.quantities import UNITS
 from cuefem.results.records import Record, plain
 from cuefem.scene import Scene
-from cuefem.scene.default_scene import DEFAULT_GAME
 from cuefem.solid.tip_cache import announcement
 
 
@@ -91,9 +89,6 @@ def scene_of(
     to the command, so that assumptions on them are listed too. remarked: whether unusual numbers are printed.
     """
     opened = load_stroke(file, **fittings_of(options))
-    said = {name for name, value in options.items() if value is not None}
-    shaft = opened.cue if isinstance(opened, Scene) else opened
-    notes = assumed(file, said, cue=shaft if isinstance(shaft, Cue) else None, offered=options, blow=blow)
     if isinstance(opened, Scene):
         refuse_game(file, options)
         scene = with_options(opened, file, options)
@@ -103,7 +98,8 @@ def scene_of(
         except InputError:
             remark(Scene(opened), blow=False)
             raise
-        notes += assumed_usual(opened, options.get("game") or DEFAULT_GAME, said, offered=options, blow=blow)
+    given = {name: value for name, value in options.items() if value is not None}
+    notes = in_words(assumed(file, scene, given), options, blow=blow)
     with blaming(file):
         compute_tip(scene)
     if remarked:

@@ -41,7 +41,7 @@ def designer(scene: Path | None, port: int, show: bool, as_json: bool, **options
             raise
         raise ValueError(f"the designer needs {error.name}: pip install '.[designer]' in the clone") from None
 
-    given = {name for name, value in options.items() if value is not None}
+    given = {name: value for name, value in options.items() if value is not None}
     if scene is None:
         for name in given:
             raise ValueError(f"{option(name)} needs a SCENE, whose cue or stroke it changes; got none")

@@ -6,13 +6,12 @@ from pathlib import Path
 
 import click
 
-from cuefem.cli.common import check_free, force_option, shape_options
+from cuefem.cli.common import check_free, fittings_of, force_option, shape_options
 from cuefem.cli.printing import assumed_lines, command, json_option, page_option, print_json, tell
 from cuefem.cli.strokes import with_body, with_weight
 from cuefem.cue import Cue
 from cuefem.io import load, save
-from cuefem.io.assumed import assumed
-from cuefem.io.profile import SHAPES
+from cuefem.io.assumed import assumed_drawing, in_words
 from cuefem.report.parts_table import parts_record, parts_sheets
 
 
@@ -25,15 +24,15 @@ from cuefem.report.parts_table import parts_record, parts_sheets
 def convert(file: Path, output: Path, force: bool, as_json: bool, **options: str | None) -> None:
     """Convert FILE to OUTPUT, whose extension sets the format: .toml or .vtu."""
     check_free(output, force=force)
-    said = {name for name, value in options.items() if value is not None}
-    body_mass, shaft_mass = options.pop("body_mass"), options.pop("shaft_mass")
-    drawing = load(file, **options)
+    given = {name: value for name, value in options.items() if value is not None}
+    body_mass, shaft_mass = options["body_mass"], options["shaft_mass"]
+    drawing = load(file, **fittings_of(options))
     if body_mass is not None:
         drawing = with_body(drawing, file, body_mass)
     if shaft_mass is not None:
         drawing = with_weight(drawing, file, shaft_mass)
     save(drawing, output)
-    notes = assumed(file, said, cue=drawing) if isinstance(drawing, Cue) and file.suffix.lower() in SHAPES else []
+    notes = in_words(assumed_drawing(file, drawing, given), options) if isinstance(drawing, Cue) else []
     if as_json:
         print_json({"written": str(output), "assumed": notes})
         return

@@ -12,7 +12,7 @@ from nicegui import ui
 from cuefem.cue import Cue, Segment
 from cuefem.cue.materials import LEATHERS, material_name, table_name
 from cuefem.designer.state import FAILURES, Design, Step, one_line
-from cuefem.io.fittings import TENON, fitted
+from cuefem.io.fittings import fitted
 from cuefem.parameters.parameter import PARAMETERS, varied
 from cuefem.parameters.parts import Layout, bore_mouth, deepest_bore, halves, taper_position
 from cuefem.quantity.fields import Quantity, scalar
@@ -167,14 +167,6 @@ def _joined(cue: Cue) -> Cue:
 
 def _sizes(piece: Segment) -> tuple[float, ...]:
     return piece.tip_diameter, piece.butt_diameter, piece.tip_bore, piece.butt_bore
-
-
-def notes_of(scene: Scene) -> list[str]:
-    """What is assumed of a drawing as it is now that no knob changes."""
-    ferrule = [scene.shaft.segments[i] for i in Layout.of(scene.shaft).ferrule]
-    if ferrule and all(s.core and math.isclose(s.tip_bore, TENON * s.tip_diameter, rel_tol=1e-4) for s in ferrule):
-        return [f"the ferrule sits on a tenon of the shaft's wood, {TENON:g} of its width (change it in File)"]
-    return []
 
 
 def _with_value(scene: Scene, key: str, new: Any) -> Scene:

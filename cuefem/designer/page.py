@@ -15,7 +15,7 @@ from nicegui import app, background_tasks, events, ui
 from cuefem.designer import computation, panels
 from cuefem.designer.computation import computed
 from cuefem.designer.file_editor import FileEditor
-from cuefem.designer.knobs import GROUPS, INPUTS, KNOBS, KnobRow, label, notes_of, value, with_value, written
+from cuefem.designer.knobs import GROUPS, INPUTS, KNOBS, KnobRow, label, value, with_value, written
 from cuefem.designer.panels import Known
 from cuefem.designer.state import (
     FAILURES,
@@ -28,6 +28,7 @@ from cuefem.designer.state import (
     read_design,
     reference_design,
 )
+from cuefem.io.assumed import tenon
 from cuefem.io.ready import PRESETS, SCALE
 from cuefem.io.toml_text import toml_text
 from cuefem.parameters.parameter import parameter, varied
@@ -149,7 +150,10 @@ class Page:
         return [key for key in KNOBS if key in self.step.design.assumed and value(key, scene) is not None]
 
     def _notes(self) -> list[str]:
-        return [*self.step.design.notes, *notes_of(self.step.design.scene)]
+        return [
+            *self.step.design.notes,
+            *(f"{words} (change it in File)" for _, words in tenon(self.step.design.scene.shaft)),
+        ]
 
     def _parts(self) -> dict[str, float]:
         """By how much each knob's uncertain parameters change squirt, relatively."""

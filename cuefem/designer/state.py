@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import NamedTuple
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 from cuefem.cue import Cue
 from cuefem.io import load_stroke
-from cuefem.io.profile import DEFAULT_UNIT, SHAPES, read_profile
+from cuefem.io.assumed import assumed
 from cuefem.io.ready import Preset, opened, ready_cue
 from cuefem.io.shelf import folder
-from cuefem.io.toml import left_out, read_tables
 from cuefem.parameters.parameter import varied
-from cuefem.parameters.parts import Layout
 from cuefem.quantity.units import number
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, usual_scene
@@ -27,17 +26,6 @@ MOST_SEGMENTS = 300  # the natural frequencies and the stiffness of as many take
 LONGEST_NAME = 80
 BUTT = "15 oz"  # of a drawing that names no weight behind it
 FAILURES = (ValueError, RuntimeError, ArithmeticError, MemoryError, OSError)
-# The knobs of what a scene's tables leave to its game; and those that a drawing alone leaves open.
-OF_TABLES = {
-    "ball.mass": ("ball_mass",),
-    "ball.radius": ("ball_diameter",),
-    "tip.restitution": ("restitution",),
-    "tip.friction": ("friction",),
-    "stroke.speed": ("speed",),
-    "stroke.offset": ("offset",),
-    "effects": ("leather", "dome", "tip_height"),
-}
-OF_GAME = ("game", *(key for keys in OF_TABLES.values() for key in keys))
 _CUE = re.compile(r"""^\s*cue\s*=\s*["']([^"'\n]+)["']""", re.MULTILINE)
 
 
@@ -71,7 +59,7 @@ class Design:
     def changed(self, scene: Scene, keys: Iterable[str], typed: Mapping[str, str]) -> Design:
         """Another scene, with the values of some knobs given by a person."""
         kept = {key: text for key, text in self.typed.items() if key not in keys}
-        weight = frozenset() if scene.shaft.weighed else frozenset({"shaft_mass"})
+        weight = frozenset({"shaft_mass"} if self.scene.shaft.weighed and not scene.shaft.weighed else ())
         return replace(self, scene=scene, assumed=self.assumed - {*keys} | weight, typed={**kept, **typed})
 
 
@@ -128,47 +116,23 @@ class Steps:
         return True
 
 
-def design_of_file(path: Path, name: str, scene: Scene, given: Collection[str] = ()) -> Design:
+def design_of_file(path: Path, name: str, scene: Scene, given: Mapping[str, Any] = MappingProxyType({})) -> Design:
     """A scene that was read from a file, and what was assumed for it.
 
-    given: names of options that told what the file does not. A shape without a weight behind it gets `BUTT`.
+    given: the values of options that told what the file does not, by name. A shape without a weight behind it gets
+    `BUTT`.
     """
-    assumed, notes = _assumed(path, given)
-    if "body_mass" in assumed:
+    found = assumed(path, scene, given)
+    keys = {{"material": "shaft_material"}.get(key, key) for key, _ in found if key}
+    if "body_mass" in keys:
         scene = varied(scene, {"body mass": number(BUTT, "kg")})
-    assumed |= set() if scene.shaft.weighed else {"shaft_mass"}
-    if not Layout.of(scene.shaft).ferrule:
-        assumed -= {"ferrule_length"}
-    return Design(name[:LONGEST_NAME], scene, frozenset(assumed), {}, tuple(notes))
-
-
-def _assumed(path: Path, given: Collection[str]) -> tuple[set[str], list[str]]:
-    """The knobs that a file and its options leave open, and notes on how a shape was read."""
-    tables = read_tables(path) if path.suffix.lower() == ".toml" else {}
-    named = tables.get("cue")
-    if named is not None:
-        keys = {key for left in left_out(tables) for key in OF_TABLES.get(left, ())}
-        own, notes = _assumed(path.parent / named, given) if isinstance(named, str) else (set[str](), [])
-        return keys | (own - {*OF_GAME}), notes
-    keys, notes = {*OF_GAME}, list[str]()
-    if path.suffix.lower() in SHAPES:
-        keys |= {"shaft_material", "body_mass", "begins", "ferrule", "bore"}
-        if path.suffix.lower() == ".csv":
-            profile = read_profile(path, DEFAULT_UNIT, checked=False)
-            keys -= {"shaft_material"} if profile.named else set()
-            keys -= {"ferrule", "bore"} - {*profile.lacking}
-            keys -= {"begins"} if profile.leather else set()
-            notes += profile.notes
-        elif "length_unit" not in given:
-            notes.append(f"lengths in {DEFAULT_UNIT}")
-    options = {"material": "shaft_material", "shaft_mass": "shaft_mass"}
-    return keys - {options.get(name, name) for name in given}, notes
+    return Design(name[:LONGEST_NAME], scene, frozenset(keys), {}, tuple(words for key, words in found if not key))
 
 
 def reference_design(preset: Preset) -> Design:
     """A reference cue."""
     path = folder() / preset.file
-    return design_of_file(path, path.stem, opened(preset)[0])
+    return design_of_file(path, path.stem, opened(preset))
 
 
 def read_design(name: str, content: bytes, game: str = DEFAULT_GAME) -> Design:

@@ -14,7 +14,7 @@ from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue
 from cuefem.io.errors import InputError, faults_of, reason, shown
 from cuefem.io.fittings import fitted, with_shaft_of
-from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, TABLES, load_profile
+from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, TABLES, read_profile
 from cuefem.io.toml import drawn_cue, load_accuracy, load_cue, load_toml, named_material
 from cuefem.parameters.parameter import with_fields
 from cuefem.parameters.parts import with_shaft_mass
@@ -135,7 +135,7 @@ def _load_cue(path: Path, material: str | None = None, length_unit: str | None =
     if ending in SHAPES:
         wood = named_material(material or DEFAULT_MATERIAL, path, "material")
         if ending == ".csv":
-            return load_profile(path, wood, length_unit)
+            return read_profile(path, wood, length_unit)[0]
         from cuefem.io.surface import load_surface
 
         return load_surface(path, wood, length_unit)

@@ -16,7 +16,7 @@ from typing import Any
 from scipy.io import wavfile
 
 from cuefem.io import InputError, load, write_whole_folder
-from cuefem.io.assumed import assumed_blow, assumed_drawing
+from cuefem.io.assumed import assumed_in, in_words
 from cuefem.io.errors import faults_of, nearest, read_bytes, shown
 from cuefem.io.schema import build, choices, joined, mark_of, types_of, unknown_key
 from cuefem.io.toml import OF_GAME, game_of, left_out, read_tables, read_text, scene_of_tables
@@ -103,8 +103,7 @@ def _scene(folder: Path, path: Path, tables: dict[str, Any]) -> tuple[Scene, lis
     scene = scene_of_tables(parts, path, _drawing)
     if scene.lumped is not None:
         raise InputError(path, "cue", "must be a cue of segments, which can be measured; got a lumped cue")
-    drawn = assumed_drawing(path.parent / parts["cue"], scene.shaft) if isinstance(parts["cue"], str) else []
-    return scene, [*drawn, *assumed_blow(parts, ["offset"], offered=())]
+    return scene, in_words(assumed_in(parts, folder, scene, {"offset": None}))
 
 
 def _drawing(path: Path) -> Any:

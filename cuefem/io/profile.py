@@ -62,87 +62,15 @@ class Inside:
     ferrule: Material | None = None
 
 
-@dataclass(frozen=True)
-class Profile:
-    """The points of a shaft from tip to butt, what lies inside behind each, and what its reader should know of it."""
-
-    points: tuple[Point, ...]
-    inside: tuple[Inside, ...]
-    notes: tuple[str, ...]
-    ferrule: str = ""  # one whose cell has its length too, as `fitted` takes it
-
-    @property
-    def named(self) -> bool:
-        """Whether the file names the material of all of the shaft."""
-        return all(inside.material for inside in self.inside[:-1])
-
-    @property
-    def lacking(self) -> tuple[str, ...]:
-        """Which of ferrule and bore the file has not; a material of its own may be a ferrule's."""
-        own = {
-            "ferrule": bool(self.ferrule) or any(inside.ferrule or inside.material for inside in self.inside),
-            "bore": any(inside.bore for inside in self.inside),
-        }
-        return tuple(name for name, drawn in own.items() if not drawn)
-
-    @property
-    def ferruled(self) -> bool:
-        """Whether a column names a ferrule."""
-        return bool(self.ferrule) or any(inside.ferrule for inside in self.inside)
-
-    @property
-    def leather(self) -> bool:
-        """Whether the file begins with leather."""
-        first = self.inside[0].material if self.inside else None
-        return first is not None and first.E < SOFT
-
-    def bores(self, i: int) -> tuple[float, float]:
-        """The bore's widths between a point and the next: it tapers to the next row's bore in the same materials.
-
-        The last row draws nothing behind it, so only its width counts.
-        """
-        here, behind = self.inside[i], self.inside[i + 1]
-        same = i + 2 == len(self.inside) or replace(here, bore=0.0) == replace(behind, bore=0.0)
-        return (here.bore, behind.bore) if here.bore and behind.bore and same else (here.bore, here.bore)
-
-
-def load_profile(path: Path, material: Material, length_unit: str | None = None) -> Cue:
-    """The shaft of a CSV that names a column x and a column diameter (or radius), with their units of length.
+def read_profile(path: Path, material: Material, length_unit: str | None = None) -> tuple[Cue, list[str]]:
+    """The shaft of a CSV that names a column x and a column diameter (or radius) with their units of length, and what
+    its reader should know of how it was read.
 
     Separator, decimal mark, encoding, order and names of the columns may be any usual ones. The first x may have any
     value: the shaft begins there. One segment an interval; straight tapers become one. Bore, core and ferrule hold for
     their row, a material until another is named. material: where the file names none. length_unit: of columns that
     name none.
     """
-    profile = read_profile(path, length_unit)
-    points, inside = profile.points, profile.inside
-    if len(points) < 2:
-        raise InputError(path, "", f"must hold at least 2 points; got {len(points)}")
-
-    def alike(i: int) -> tuple[object, ...]:
-        """What two intervals share that may be one segment; an interval with a tapered bore is one by itself."""
-        bores = profile.bores(i)
-        here = inside[i]
-        return (bores, here.material, here.core, here.ferrule, i if bores[0] != bores[1] else None)
-
-    segments = list[Segment]()
-    with faults_of(path, ""):
-        for _, run in itertools.groupby(range(len(points) - 1), key=alike):
-            first, *others = run
-            here, bores = inside[first], profile.bores(first)
-            run_of = points[first : first + len(others) + 2]
-            places, widths = np.array(run_of).T
-            ends = (run_of[k] for k in corners(places, widths[:, None], _STRAIGHT))
-            rest = (here.material or material, *bores, here.core if bores[0] else None)
-            drawn = [Segment(_apart(x0, x1), d0, d1, *rest) for (x0, d0), (x1, d1) in itertools.pairwise(ends)]
-            stuff = here.ferrule
-            segments += drawn if stuff is None else [on_tenon(s, stuff, here.material or material) for s in drawn]
-        cue = Cue(tuple(segments))
-        return fitted(cue, ferrule=profile.ferrule) if profile.ferrule else cue
-
-
-def read_profile(path: Path, length_unit: str | None = None, *, checked: bool = True) -> Profile:
-    """The points of a CSV. checked: whether a unit that is given although the file names its own is refused."""
     rows = read_rows(path)
     if not rows:
         raise InputError(path, "", f"must begin with the header {EXAMPLE}; got comments alone")
@@ -154,19 +82,54 @@ def read_profile(path: Path, length_unit: str | None = None, *, checked: bool = 
             raise InputError(path, f"line {line}", f"{problem}; {hint}")
     numbers = [parted(cell)[0] for column in header.used for cell in _cells(header.rows, column)]
     mark = decimal_mark(numbers)
-    columns = _with_units(path, header, length_unit, checked)
+    columns = _with_units(path, header, length_unit)
     place, width, spare = _chosen(path, header, columns, mark)
-    x = [_number(path, header.rows[i], place, mark) for i in range(len(header.rows))]
-    d = [_number(path, header.rows[i], width, mark) for i in range(len(header.rows))]
+    x = [_number(path, row, place, mark) for row in header.rows]
+    d = [_number(path, row, width, mark) for row in header.rows]
     points = _ordered(path, header, place, list(zip(x, d, strict=True)))
+    if len(points) < 2:
+        raise InputError(path, "", f"must hold at least 2 points; got {len(points)}")
     inside = _inside(path, header, columns, mark, d)
     if any(each != Inside() for each in inside) and (from_butt(place) or points[0][0] != x[0]):
         problem = "must run from tip to butt where a bore or a material stands beside it: each holds from its row on"
         raise InputError(path, f"line {header.line}, x", problem)
     behind = dict(zip(x, inside, strict=True))
-    ferrule = _ferrule_with_length(path, header, inside)
-    told = Profile(points, tuple(behind.get(at, Inside()) for at, _ in points), (), ferrule)
-    return replace(told, notes=(*_notes(header, place, width, spare, points), *_bored(told, place.unit)))
+    with faults_of(path, ""):
+        cue, bored = _drawn(points, [behind.get(at, Inside()) for at, _ in points], material, place.unit)
+        ferrule = _ferrule_with_length(path, header, inside)
+        notes = [*_notes(header, place, width, spare, points), *bored]
+        return fitted(cue, ferrule=ferrule) if ferrule else cue, notes
+
+
+def _drawn(points: Sequence[Point], inside: Sequence[Inside], material: Material, unit: str) -> tuple[Cue, list[str]]:
+    """The cue of points with what lies inside from each on, and where it is bored, in words."""
+    per, segments, bored = number(f"1 {unit}", "m"), list[Segment](), list[str]()
+
+    def bores(i: int) -> tuple[float, float]:
+        """The bore tapers to the next row's in the same materials; the last row draws nothing behind it."""
+        here, behind = inside[i], inside[i + 1]
+        same = i + 2 == len(inside) or replace(here, bore=0.0) == replace(behind, bore=0.0)
+        return (here.bore, behind.bore) if here.bore and behind.bore and same else (here.bore, here.bore)
+
+    def alike(i: int) -> tuple[object, ...]:
+        """What two intervals share that may be one segment; an interval with a tapered bore is one by itself."""
+        return bores(i), replace(inside[i], bore=0.0), i if bores(i)[0] != bores(i)[1] else None
+
+    for _, run in itertools.groupby(range(len(points) - 1), key=alike):
+        first, *others = run
+        here, widths = inside[first], bores(first)
+        run_of = points[first : first + len(others) + 2]
+        x, d = np.array(run_of).T
+        ends = (run_of[k] for k in corners(x, d[:, None], _STRAIGHT))
+        wood = here.material or material
+        rest = (wood, *widths, here.core if widths[0] else None)
+        drawn = [Segment(_apart(x0, x1), d0, d1, *rest) for (x0, d0), (x1, d1) in itertools.pairwise(ends)]
+        segments += drawn if here.ferrule is None else [on_tenon(s, here.ferrule, wood) for s in drawn]
+        if widths[0]:
+            sizes = " to ".join(f"{size / per:.6g}" for size in dict.fromkeys(widths))
+            filled = f" and filled with {material_name(here.core)}" if here.core else ""
+            bored.append(f"bored {sizes} {unit} from {x[0] / per:.6g} to {x[-1] / per:.6g} {unit}{filled}")
+    return Cue(tuple(segments)), bored
 
 
 def _inside(
@@ -215,32 +178,10 @@ def _entry(cells: Sequence[str], column: ProfileColumn) -> str:
     return "" if text.casefold() in _NOTHING else text
 
 
-def _bored(profile: Profile, unit: str) -> list[str]:
-    """Where the shaft is bored and what fills the bore, as it was read."""
-    per = number(f"1 {unit}", "m")
-    pieces = zip(range(len(profile.points) - 1), profile.inside, strict=False)
-    runs = [
-        (hole, [i for i, _ in run]) for hole, run in itertools.groupby(pieces, lambda piece: _hole(profile, *piece))
-    ]
-    places = [x / per for x, _ in profile.points]
-    return [
-        f"bored {' to '.join(f'{width / per:.6g}' for width in dict.fromkeys(widths))} {unit} "
-        f"from {places[run[0]]:.6g} to {places[run[-1] + 1]:.6g} {unit}"
-        + (f" and filled with {material_name(core)}" if core else "")
-        for (widths, core, _), run in runs
-        if widths[0]
-    ]
-
-
-def _hole(profile: Profile, i: int, inside: Inside) -> tuple[Point, Material | None, int]:
-    """What intervals share that are one bore, as a taper is by itself: its widths, what fills it."""
-    widths = profile.bores(i)
-    return widths, inside.core, i if widths[0] != widths[1] else -1
-
-
 def _notes(
     header: Header, place: ProfileColumn, width: ProfileColumn, spare: Sequence[str], points: Sequence[Point]
-) -> tuple[str, ...]:
+) -> list[str]:
+    """How the columns and lines were read."""
     names = [*header.unused, *spare]
     butt, first = from_butt(place), points[0][0] if points else 0.0
     told = f"{first / number(f'1 {place.unit}', 'm'):.6g} {place.unit}"
@@ -253,14 +194,14 @@ def _notes(
         f"x is measured from the butt, as {shown(place.name)} says": butt,
         f"the shaft begins at its first point, x = {told}: nothing is drawn before it": first > 0 and not butt,
     }
-    return tuple(note for note, holds in notes.items() if holds)
+    return [note for note, holds in notes.items() if holds]
 
 
 def _cells(rows: Sequence[Row], column: ProfileColumn) -> list[str]:
     return [cells[column.index] if column.index < len(cells) else "" for _, cells in rows]
 
 
-def _with_units(path: Path, header: Header, length_unit: str | None, checked: bool) -> list[ProfileColumn]:
+def _with_units(path: Path, header: Header, length_unit: str | None) -> list[ProfileColumn]:
     """The columns with the units that header, cells or ``length_unit`` say; InputError if there are none."""
     columns = []
     for column in header.used:
@@ -268,7 +209,7 @@ def _with_units(path: Path, header: Header, length_unit: str | None, checked: bo
         unit = column.unit or ("".join(beside) if len(beside) == 1 else "")
         columns.append(ProfileColumn(column.kind, column.index, column.name, unit))
     bare = [column for column in columns if not column.unit]
-    if length_unit is not None and checked:
+    if length_unit is not None:
         if not bare:
             problem = f"names its units itself: length_unit is for a table without units; got {shown(length_unit)}"
             raise InputError(path, "", problem)

@@ -12,7 +12,7 @@ from cuefem.io import load
 from cuefem.io.shelf import folder
 from cuefem.results.solved_design import strikes_at
 from cuefem.scene import Scene
-from cuefem.scene.default_scene import GAMES, usual_scene
+from cuefem.scene.default_scene import usual_scene
 from cuefem.tip_modes import Solved
 
 _NOT = "no measurement known"
@@ -84,13 +84,10 @@ SCALE = {
 }
 
 
-def opened(preset: Preset) -> tuple[Scene, list[str]]:
-    """The scene of a ready file, and what was assumed for it."""
+def opened(preset: Preset) -> Scene:
+    """The scene of a ready file."""
     scene: Any = load(folder() / preset.file)
-    if isinstance(scene, Cue):
-        bounce = f"e {GAMES[preset.game].bounce}"
-        return usual_scene(scene, preset.game), [f"a default stroke of {preset.game}", bounce]
-    return scene, []
+    return usual_scene(scene, preset.game) if isinstance(scene, Cue) else scene
 
 
 @cache

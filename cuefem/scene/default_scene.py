@@ -81,13 +81,6 @@ class Game:
         return Tip(own if waves else self.restitution, self.friction)
 
     @property
-    def bounce(self) -> str:
-        """Both restitutions in words."""
-        return (
-            f"{self.tip_restitution:.2f} of the tip (with axial waves, {self.restitution:g} of the whole cue head-on)"
-        )
-
-    @property
     def effects(self) -> tuple[Effect, ...]:
         """What acts in a default stroke beside the tip: axial waves and geometric stiffness."""
         return AxialWaves(self.cue_length, self.butt_diameter, WAVE_SPEED), GeometricStiffness()

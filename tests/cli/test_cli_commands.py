@@ -87,7 +87,7 @@ def test_a_profile_announces_its_material_and_that_nothing_is_behind_it(folder: 
 
 def test_a_scene_announces_what_it_leaves_out(folder: Path) -> None:
     Path("short.toml").write_text("game = 'kim'\ncue = 'cue.toml'\n[ball]\nmass = '170 g'\n[tip]\nfriction = 0.6\n")
-    left = ["missing keys as in Kim's stroke", "ball 61.5 mm"]
+    left = ["ball 61.5 mm"]
     left += ["head-on contact time 2 ms (leather: about 1 ms)", "restitution 0.75 (--restitution)"]
     left += ["cue speed 1 m/s (--speed)"]
     assert as_json("strike", "short.toml", "--offset", "0.2")["assumed"] == left

@@ -7,7 +7,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.cue.materials import material
-from cuefem.io.assumed import assumed
+from cuefem.io.assumed import assumed_drawing, in_words
 
 MAPLE = material("hard maple")
 MEANT = ((0.0, 12.75), (330.0, 13.2), (736.6, 21.5))  # mm
@@ -128,7 +128,7 @@ def test_bore_ferrule_and_core_stand_in_columns(tmp_path: Path) -> None:
         meant = [value / 1e3 for value in (x1 - x0, d0, d1, b0, b1)]
         assert numbers == pytest.approx(meant, rel=1e-12, abs=1e-15)
         assert (segment.material, segment.core) == (wood, core)
-    told = assumed(path, {"body_mass"}, cue=found)
+    told = in_words(assumed_drawing(path, found, {"body_mass": 0.4}))
     assert told == [
         "bored 8 mm from 6 to 31 mm and filled with hard maple",
         "bored 6 to 5 mm from 31 to 150 mm and filled with foam",
@@ -179,9 +179,9 @@ def test_read_as_meant(name: str, tmp_path: Path) -> None:
     for segment, (a, b) in zip(found.segments, itertools.pairwise(points), strict=True):
         sizes = segment.length, segment.tip_diameter, segment.butt_diameter
         assert sizes == pytest.approx(((b[0] - a[0]) / 1e3, a[1] / 1e3, b[1] / 1e3), rel=1e-12, abs=0)
-    told = assumed(tmp_path / "shaft.csv", {"material", "body_mass"})
-    assert tuple(told[: len(said)]) == said
-    assert told[len(said)].startswith("no ferrule, no bore")
+    told = assumed_drawing(tmp_path / "shaft.csv", found, {"material": "ash", "body_mass": 0.4})
+    assert told[: len(said)] == [("", note) for note in said]
+    assert [key for key, _ in told[len(said) :]] == ["ferrule", "bore", "begins"]
 
 
 def test_the_unit_of_a_profile_that_names_none(tmp_path: Path) -> None:

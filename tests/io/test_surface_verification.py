@@ -8,7 +8,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.cue.materials import material
-from cuefem.io.assumed import assumed
+from cuefem.io.assumed import assumed_drawing, in_words
 from cuefem.io.slices import TOLERANCE, sliced, surface
 from tests.helpers.orders import assert_order
 from tests.helpers.surfaces import outline_of, revolved, written
@@ -135,5 +135,5 @@ def test_unit_of_length_and_endings_in_capitals(tmp_path: Path) -> None:
     assert cf.load(path, material="ash").segments[0].material == material("ash")
     (tmp_path / "SCENE.TOML").write_text(f"game = 'kim'\ncue = '{path.name}'\n")
     assert cf.load(tmp_path / "SCENE.TOML").cue == loaded
-    told = assumed(path, {"body_mass"})
+    told = in_words(assumed_drawing(path, loaded, {"body_mass": 0.4}))
     assert [words.split(" ")[0] for words in told[:5]] == ["lengths", "1", "facets", "the", "material"]

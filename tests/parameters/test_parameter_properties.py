@@ -13,7 +13,7 @@ from cuefem.io.ready import PRESETS, opened
 from cuefem.parameters.parameter import PARAMETERS, paths, varied
 from cuefem.parameters.parts import outer_diameter
 
-SCENES = {preset.name: opened(preset)[0] for preset in PRESETS}
+SCENES = {preset.name: opened(preset) for preset in PRESETS}
 FIRST = SCENES[PRESETS[0].name]
 IDLE = {"bore_width"}  # what has no depth has no width
 

@@ -92,7 +92,7 @@ def test_squirt_has_the_digits_of_the_tables(squirt: float, error: float, words:
 
 @pytest.mark.parametrize("preset", [preset for preset in PRESETS if preset.measured in STROKES], ids=lambda p: p.file)
 def test_measured_squirt_stands_beside_the_same_offset(preset: Preset) -> None:
-    scene, _ = opened(preset)
+    scene = opened(preset)
     said = preset.beside(scene)
     for offset, measured in STROKES[preset.measured].items():
         assert f"at b/R {offset:g}" in preset.measured
