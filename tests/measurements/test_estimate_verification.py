@@ -1,4 +1,4 @@
-"""The inverse: exact data are found again, errors cover on made-up cues, what to measure next."""
+"""The inverse: exact data are found again, errors cover on made-up cues, what to measure next, limits of a cue."""
 
 from dataclasses import replace
 
@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from cuefem.measurements.estimate import Estimate, estimate
-from cuefem.measurements.measured_cue import MeasuredCue
+from cuefem.measurements.measured_cue import MeasuredCue, compare
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Stiffness, Tone, Weight
 from cuefem.measurements.outliers import solved
 from cuefem.measurements.uncertain_parameters import Prior
-from tests.helpers.measured_cues import blank, measured_cue
+from tests.helpers.measured_cues import SCENE, blank, measured_cue
 
 HOLDS_95 = 1.959964  # standard deviations either way that hold 95 %
 CLOSED = Prior("contact time", 0.0)  # nothing here depends on it
@@ -51,19 +51,6 @@ def test_exact_data_are_found_again() -> None:
         assert value.value == pytest.approx(parameter.value(float(each)), rel=1e-3)
         assert value.low < value.value < value.high
         assert value.narrowed < 0.05
-
-
-def test_a_linear_case_is_that_of_the_textbook() -> None:
-    """One weight, one parameter: the mean of prior and measurement by their weights."""
-    one = Weight(value=0.110, error=5e-3)
-    cue = measured_cue(one, priors=(CLOSED, *(Prior(name, 0.0) for name in ("E", "G", "bore width"))))
-    (parameter,) = cue.parameters
-    drawn = float(cue.computed()[0])
-    slope = drawn * parameter.spread
-    found = estimate(cue)
-    # ln(mass) is linear in z; the mass nearly so
-    assert found.z[0] == pytest.approx(slope * (0.110 - drawn) / (slope**2 + 5e-3**2), rel=0.1)
-    assert found.covariance[0, 0] == pytest.approx(1 / (1 + (slope / 5e-3) ** 2), rel=0.2)
 
 
 @pytest.mark.heavy
@@ -138,6 +125,7 @@ def test_intervals_cover_whichever_measurement_is_wrong(
     assert wide > {0: 0.6, 1: 0.8}.get(wrong, 0.86)
 
 
+@pytest.mark.heavy
 def test_what_a_next_measurement_would_tell_is_what_it_tells() -> None:
     """The predicted narrowing by a stiffness is that of an estimate with it, at the same values."""
     cue, _ = made_up(9, blank()[:4], size=0.5)
@@ -155,3 +143,35 @@ def test_what_a_next_measurement_would_tell_is_what_it_tells() -> None:
     gain = 0.5 * np.log2(np.linalg.det(before.covariance) / np.linalg.det(after.covariance))
     assert told.bits == pytest.approx(gain, rel=0.05)
     assert [worth.squirt_left for worth in worths] == sorted(worth.squirt_left for worth in worths)
+
+
+CHEAP = (
+    Weight(value=0.1, error=5e-4),
+    Tone(mode=1, value=95.0, error=0.2),
+    Stiffness(free_length=0.2, value=4600.0, error=90.0),
+)
+
+
+def possible(cue: MeasuredCue, i: int, z: float) -> bool:
+    """Whether there can be such a cue, by one parameter."""
+    try:
+        return bool(cue.setup(z * np.eye(len(cue.parameters))[i]))
+    except ValueError:
+        return False
+
+
+@pytest.mark.parametrize("name", ["E", pytest.param("bore width", marks=pytest.mark.heavy), "taper"])
+def test_a_cue_at_the_limits_of_what_can_be_is_estimated_like_others(name: str) -> None:
+    """Slopes are taken inside; what has no limit within 12 standard deviations of its prior is not limited."""
+    cue = MeasuredCue("a cue", SCENE, CHEAP, (Prior("taper", 0.1),))
+    i, parameter = next((i, each) for i, each in enumerate(cue.parameters) if each.name == name)
+    for outside in (side for side in (-12.0, 12.0) if not possible(cue, i, side)):
+        limit = [0.0, outside]
+        while abs(limit[1] - limit[0]) > 1e-9:
+            middle = sum(limit) / 2
+            limit[not possible(cue, i, middle)] = middle
+        end = limit[0]
+        for inside in (0.0, 0.3):
+            near = replace(cue, scene=parameter.setup(cue.setup(), end - np.sign(end) * inside).scene)
+            assert np.isfinite([row.spread for row in compare(near)]).all()
+        assert np.isfinite(estimate(near).covariance).all()

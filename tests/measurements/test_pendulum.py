@@ -12,7 +12,7 @@ from cuefem.io.measured_folder import load_measured
 from cuefem.measurements.measurement_types import EndMass, Setup
 from cuefem.measurements.pendulum import GRAVITY, Pendulum
 from tests.helpers.command_line import as_json, said
-from tests.helpers.measured_cues import SCENE, folder, measured_cue
+from tests.helpers.measured_cues import SCENE, folder
 
 TEXT = """[[pendulum]]
 ball_mass = "8 g"
@@ -96,16 +96,3 @@ def test_compare_tells_a_contradiction_with_the_drawing(tmp_path: Path) -> None:
     assert row["residual"] > 15
     assert row["pull"] > 5
     assert "contradicts the drawing" in said("compare", place)
-
-
-def test_its_contact_time_is_uncertain() -> None:
-    """A tenth of the time is an uncertain parameter of its own, shared by all pendulum tests."""
-    one = of_speeds(8e-3, -0.1, 0.48).end_mass
-    cue = measured_cue(one, one)
-    assert cue.parameters[-1].name == "ball time"
-    assert "ball time" not in [
-        parameter.name for parameter in measured_cue(replace(one, contact_time_error=None)).parameters
-    ]
-    by_time = cue.computed(np.eye(len(cue.parameters))[-1])
-    longer = replace(one, contact_time=math.exp(0.1) * one.contact_time).computed(Setup(SCENE))
-    assert by_time == pytest.approx([longer, longer], rel=1e-12)
