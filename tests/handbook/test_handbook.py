@@ -2,7 +2,9 @@
 
 import re
 import webbrowser
+from functools import cache
 from html.parser import HTMLParser
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -25,6 +27,11 @@ SOURCES = sorted(
 )
 # other tests may have made effects up before
 EFFECTS = {name: kind for name, kind in effect_kinds().items() if kind.__module__.startswith("cuefem.")}
+
+
+@cache
+def whole() -> str:
+    return page()
 
 
 def cited_wrongly(text: str) -> list[str]:
@@ -51,7 +58,7 @@ def test_the_handbook_shows_the_five_lines_of_every_effect(name: str) -> None:
     (text,) = (chapter.text for chapter in chapters() if chapter.name == "effects")
     section = text.partition(f"\n## {name}\n")[2].partition("\n## ")[0]
     assert [line for line in LINES if f"- **{line}:** {lines[line]}" not in section] == []
-    assert f">{name}</h2>" in page()
+    assert f">{name}</h2>" in whole()
 
 
 class Links(HTMLParser):
@@ -74,7 +81,7 @@ class Links(HTMLParser):
 
 
 def test_the_page_needs_nothing_from_the_network_and_its_links_lead_somewhere() -> None:
-    read, text = Links(), page()
+    read, text = Links(), whole()
     read.feed(text)
     assert read.open == []
     assert len(read.anchors) == len(set(read.anchors))
@@ -86,23 +93,20 @@ def test_the_page_needs_nothing_from_the_network_and_its_links_lead_somewhere() 
 
 
 @pytest.mark.parametrize("there", [True, False])
-def test_the_command_opens_a_browser(there: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_command_opens_a_browser_prints_and_writes(
+    there: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     opened: list[str] = []
+    monkeypatch.setattr(import_module("cuefem.cli.guide"), "page", whole)
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     monkeypatch.setattr(webbrowser, "open", lambda address: opened.append(address) or there)
     assert said("guide", "glossary").startswith("opened file:" if there else "no browser found")
     (made,) = tmp_path.glob("cuefem-guide-*.html")
     assert opened == [f"{made.as_uri()}#glossary"]
-    assert made.read_text(encoding="utf-8") == page()
-
-
-def test_the_command_prints_a_chapter_and_writes_the_page(tmp_path: Path) -> None:
-    path = tmp_path / "guide.html"
-    assert said("guide", "-o", path) == f"wrote {path}\n"
-    assert path.read_text(encoding="utf-8") == page()
-    out = said("guide", "glossary", "--print")
-    assert ("effective end mass" in out, "Hutchinson" in out) == (True, False)
-    assert "Hutchinson" in said("guide", "--print")
+    assert said("guide", "-o", tmp_path / "guide.html") == f"wrote {tmp_path / 'guide.html'}\n"
+    assert made.read_text(encoding="utf-8") == (tmp_path / "guide.html").read_text(encoding="utf-8") == whole()
+    printed = said("guide", "glossary", "--print")
+    assert ("effective end mass" in printed, "Hutchinson" in printed) == (True, False)
     listed = " ".join(said("guide", "--help").split())
     assert [name for name in CHAPTERS if name not in listed] == []
 

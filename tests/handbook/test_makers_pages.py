@@ -6,7 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
 import cuefem as cf
@@ -14,7 +13,7 @@ from cuefem.handbook import MAKERS, chapters
 from cuefem.parameters.parameter import varied
 from cuefem.results.uncertainty import MODEL, SHAFTS
 from tests.helpers.command_line import call
-from tests.helpers.maker_pictures import FOLDER, MAPLE, PICTURES, answers, ready
+from tests.helpers.maker_pictures import FOLDER, PICTURES, answers, ready
 
 TEXTS = {chapter.name: chapter.text for chapter in chapters() if chapter.name in MAKERS}
 NUMBER = re.compile(r"[−+-]?\d+(?:\.\d+)?")
@@ -29,16 +28,6 @@ def test_they_stand_first_and_are_short() -> None:
     assert all((FOLDER / f"{name}.svg").exists() for name in drawn)
 
 
-def test_the_loops_of_the_picture_hang_where_the_shaft_stands_still() -> None:
-    cue = cf.load(MAPLE)
-    assert isinstance(cue, cf.Cue)
-    x = np.linspace(0, cue.length, 2001)
-    shape = cf.modes(cf.Cue(cue.segments), 1).shape(x)[0][0]
-    nodes = x[:-1][shape[:-1] * shape[1:] < 0] / cue.length
-    told = re.findall(r">(\d+) % from the tip<", (FOLDER / "tap.svg").read_text(encoding="utf-8"))
-    assert [float(percent) for percent in told] == pytest.approx(100 * nodes, abs=0.6)
-
-
 @pytest.mark.heavy
 @pytest.mark.parametrize("name", PICTURES)
 def test_a_picture_is_as_it_would_be_drawn_now(name: str) -> None:
@@ -49,6 +38,7 @@ def test_a_picture_is_as_it_would_be_drawn_now(name: str) -> None:
     assert [(a, b) for a, b in both if abs(float(a.replace("−", "-")) - float(b.replace("−", "-"))) > 3] == []
 
 
+@pytest.mark.heavy
 def test_what_is_said_of_squirt() -> None:
     verdict = answers("report")["verdict"]
     degrees, aside = math.degrees(verdict["squirt"]), 1e3 * math.tan(verdict["squirt"])

@@ -1,16 +1,26 @@
-"""What the designer's server lets in: other pages, big bodies and names that no file has are refused (bad input)."""
+"""The designer's command and server: what they refuse, what they let in, and how they end (bad input)."""
 
 from __future__ import annotations
 
 import asyncio
+import os
+import signal
+import socket
+import subprocess
+import sys
+import urllib.request
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
+import cuefem as cf
 from cuefem.designer.page import LARGEST_FILE, file_name
 from cuefem.designer.server import REJECTED, RequestValidation
+from tests.helpers.designer_browser import await_listening
+from tests.helpers.refusals import command_refuses
 
 OWN = "http://127.0.0.1:8470"
 PIECE = 1_000_000  # bytes of a body that come together
@@ -85,3 +95,52 @@ def test_a_name_that_no_file_has(name: str | None) -> None:
 def test_names() -> None:
     assert file_name("../../etc/cue.toml") == "cue.toml"
     assert file_name("C:\\cues\\Löffel.toml") == "Löffel.toml"
+
+
+def test_without_the_library_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(sys.modules, "cuefem.designer.server", raising=False)
+    monkeypatch.setitem(sys.modules, "nicegui", None)
+    command_refuses("the designer needs nicegui: pip install '.[designer]' in the clone", "designer", "--no-open")
+
+
+@pytest.mark.parametrize(
+    ("file", "message"),
+    [
+        ("many.toml", "many.toml: the designer takes a cue of at most 300 segments; got 301: draw it with fewer, or"),
+        ("lumped.toml", "lumped.toml: Scene.cue must be a Cue of segments: its modes or its shape are needed"),
+        ("missing.toml", "missing.toml: cannot be read: No such file or directory"),
+    ],
+)
+def test_files(tmp_path: Path, file: str, message: str) -> None:
+    piece = cf.Segment(1.8e-3, 0.012, 0.012, cf.Material(12.6e9, 0.84e9, 700.0))
+    made = {"many.toml": cf.Cue((piece,) * 301, body_mass=0.45), "lumped.toml": cf.Scene(cf.LumpedCue(0.5, 0.006))}
+    if file in made:
+        cf.save(made[file], tmp_path / file)
+    command_refuses(message, "designer", "--no-open", tmp_path / file)
+
+
+def test_a_port_in_use() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        message = f"--port {port} is not available"
+        command_refuses(message, "designer", "--no-open", "--port", port)
+
+
+@pytest.mark.heavy
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows sends Ctrl-C to whole groups of processes")
+def test_ctrl_c_ends_it_quietly() -> None:
+    command = [sys.executable, "-m", "cuefem", "designer", "--no-open", "--port", "0"]
+    outside = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST")}
+    running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=outside)
+    try:
+        assert running.stdout is not None
+        address = running.stdout.readline().strip()
+        await_listening(int(address.rstrip("/").rsplit(":", 1)[1]))
+        with urllib.request.urlopen(address, timeout=90) as answer:
+            assert answer.status == 200
+        running.send_signal(signal.SIGINT)
+        out, err = running.communicate(timeout=90)
+    finally:
+        running.kill()
+        running.communicate()
+    assert (running.returncode, out, err) == (0, "", "")
