@@ -13,7 +13,6 @@ from .contact.strike import batch_strike as batch_strike, strike as strike
 from .contact.tip_identification import identify_tip as identify_tip
 from .contact.tip_identification import rebound as rebound
 from .cue.geometry import Cue as Cue, LumpedCue as LumpedCue, Material as Material, Segment as Segment
-from .design.batch import CueBatch as CueBatch, batch_stick as batch_stick
 from .design.design_changes import design_changes as design_changes
 from .effects import (
     AxialWaves as AxialWaves,
@@ -34,7 +33,6 @@ from .effects import (
 )
 from .endmass.definitions import end_mass as end_mass
 from .endmass.lumped import impulse as impulse, lump as lump
-from .endmass.sticking_contact import StickLimit as StickLimit
 from .scene.default_scene import usual_scene as usual_scene
 from .io import load as load, save as save
 from .io.paraview import save_motion as save_motion

@@ -69,12 +69,13 @@ class Solved:
     """A scene and its modes, each eigenproblem solved when it is first asked for, and once.
 
     Nothing here depends on the stroke: one solved scene serves strikes at every speed and offset. at: the resolution of
-    all modes; by default the modes of `strike_modes_kept`, ended by a tail.
+    all modes; by default the modes of `strike_modes_kept`, ended by a tail. known: modes that are solved already, which
+    scenes of one cue with the same effects on it share.
     """
 
     scene: Scene
     at: Resolution | Solid | None = None
-    _kept: dict[tuple[Resolution | int, bool], Modes] = field(default_factory=dict, init=False, repr=False)
+    known: dict[tuple[Resolution | int, int], Modes] = field(default_factory=dict, repr=False)
 
     @property
     def modes(self) -> Modes:
@@ -130,17 +131,17 @@ class Solved:
 
         ended: by a tail, or summed plainly. meshed: how many of them the mesh must hold, by default all.
         """
-        if (at, ended) not in self._kept:
+        scene = self.scene
+        loads = 0 if not ended else 2 if turning(scene) else 1
+        if (at, loads) not in self.known:
             from cuefem.beam import modes, system
 
-            scene = self.scene
             wanted = at if isinstance(at, int) else at.modes
             beam = system.assemble(scene.shaft, meshed or at, scene.cue_effects, wanted)
             # a support makes rigid modes flexible; the number of modes in all stays the same, so that its limits
             # are continuous
-            loads = 0 if not ended else 2 if turning(scene) else 1
-            self._kept[at, ended] = modes.solve(beam, wanted + 2 - beam.rigid.shape[1], ended=loads)
-        return self._kept[at, ended]
+            self.known[at, loads] = modes.solve(beam, wanted + 2 - beam.rigid.shape[1], ended=loads)
+        return self.known[at, loads]
 
 
 def tip_modes_of(scene: Scene, at: Resolution | Solid | None = None, *, least: int | None = None) -> TipModes:

@@ -1,4 +1,4 @@
-"""scikit-fem's hierarchical line basis, tabulated once for each order; element matrices are contracted from it.
+"""scikit-fem's hierarchical line basis, tabulated once for each order.
 
 It is written out here, since loading scikit-fem takes longer than solving a beam; a test compares the two.
 """
@@ -6,30 +6,14 @@ It is written out here, since loading scikit-fem takes longer than solving a bea
 from __future__ import annotations
 
 import functools
-from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
-from cuefem.cue import Array, Section
+from cuefem.cue import Array
 
 MORE_POINTS = 4  # than the order: Gauss's rule is then exact for cones, whose matrices have the degree 2 order + 6
-
-
-class BasisTable(NamedTuple):
-    """scikit-fem's hierarchical line basis on the reference element [0, 1], tabulated at Gauss points.
-
-    Local unknowns: w and theta of the left node, the bubbles of w, the bubbles of theta, w and theta of the right node.
-    points, weights: (q,). w, dw, theta, dtheta: (unknowns, q).
-    """
-
-    points: Array
-    weights: Array
-    w: Array
-    dw: Array
-    theta: Array
-    dtheta: Array
 
 
 def line_basis(degree: int, points: Array) -> tuple[Array, Array]:
@@ -78,39 +62,5 @@ def gauss(count: int) -> tuple[Array, Array]:
 
 @functools.cache
 def line_table(order: int) -> tuple[Array, Array]:
-    """The line basis of degree ``order`` + 1 and its derivatives at the Gauss points of `table`."""
+    """The line basis of degree ``order`` + 1 and its derivatives at Gauss points of one segment."""
     return line_basis(order + 1, gauss(order + MORE_POINTS)[0])
-
-
-@functools.cache
-def table(order: int) -> BasisTable:
-    """The tabulated basis of one polynomial order, made once."""
-    return BasisTable(*gauss(order + MORE_POINTS), *element_basis(order, *line_table(order)))
-
-
-@functools.cache
-def products(order: int) -> tuple[Array, Array]:
-    """What stacks of element matrices are contracted from: stiffness (4 q, unknowns^2), mass (2 q, unknowns^2)."""
-    points, _, w, dw, t, dt = table(order)
-
-    def product(a: Array, b: Array) -> Array:
-        both = np.einsum("iq,jq->qij", a, b)
-        return (both + both.transpose(0, 2, 1)).reshape(len(points), -1) / 2
-
-    stiffness = np.concatenate([product(dt, dt), product(dw, dw), -2 * product(dw, t), product(t, t)])
-    mass = np.concatenate([product(w, w), product(t, t)])
-    return stiffness, mass
-
-
-def element_matrices(section: Section, sizes: Array, length: float, order: int) -> tuple[Array, Array]:
-    """Element K and M, each (..., elements, u, u), from section properties (..., elements, q) and element sizes.
-
-    One matrix product each; ``length`` scales theta.
-    """
-    t, h = table(order), sizes[..., None]
-    EI, kGA = section.EI * t.weights, section.kGA * t.weights
-    stiff = np.concatenate([EI / (h * length**2), kGA / h, kGA / length, kGA * h / length**2], axis=-1)
-    heavy = np.concatenate([section.rhoA * t.weights * h, section.rhoI * t.weights * h / length**2], axis=-1)
-    shape = (*stiff.shape[:-1], len(t.w), len(t.w))
-    of_stiffness, of_mass = products(order)
-    return (stiff @ of_stiffness).reshape(shape), (heavy @ of_mass).reshape(shape)

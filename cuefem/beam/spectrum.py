@@ -73,6 +73,8 @@ def spectrum(
         mu, basis = _sparse(K, M, loads[:, taken], shift, rigid + count)
         felt, vectors = loads.T @ basis, lambda mix: basis @ mix
     last = rigid + int(np.sum(1 / mu[rigid : rigid + count] - shift <= below**2))
+    if last == rigid and np.isinf(below):
+        raise np.linalg.LinAlgError("no mode has a frequency that is a number: check sizes and materials")
     # the square of a mode on a support that is next to nothing is rounding
     omega = np.sqrt(np.maximum(1 / mu[rigid:last] - shift, np.finfo(float).eps * shift))
     mix = np.eye(len(mu), last)[:, rigid:] / np.sqrt(mu[rigid:last]) * np.where(felt[0, rigid:last] < 0, -1.0, 1.0)

@@ -27,19 +27,17 @@ class Tail(NamedTuple):
     radiation: Array
 
 
-def tail(mu: Array, felt: Array, *, shift: float | Array, highest: float | Array) -> Tail:
+def tail(mu: Array, felt: Array, *, shift: float, highest: float) -> Tail:
     """Tail of the modes left out, from their mu = 1/(omega^2 + shift), descending, and what the loads feel of them.
 
     felt: (modes, loads), the loads' shares in the modes, with q' (K + shift M) q = 1. Their flexibility, as each load
     feels it, by `STEPS` steps of Lanczos from the static deflections, which match its first moments in mu. The chain
     ends in a dashpot, as the matching end of a line does: waves above the ``highest`` frequency kept, rad/s, leave the
-    tip and do not come back; without it the end would ring. All may be stacks of beams: arrays with one axis more in
-    front, shift and highest (beams,).
+    tip and do not come back; without it the end would ring.
     """
-    shift, highest = np.asarray(shift)[..., None], np.asarray(highest)[..., None, None]
-    weights = mu[..., None]
-    basis = np.linalg.qr(np.concatenate([weights**step * felt for step in range(STEPS)], axis=-1))[0]
-    t, mix = np.linalg.eigh(basis.mT @ (weights * basis))
-    t, mix = t[..., ::-1], (mix / np.sqrt(t)[..., None, :])[..., ::-1]
-    ends = mix[..., -felt.shape[-1] :, :]
-    return Tail(np.sqrt(1 / t - shift), basis @ mix, DASHPOT / highest * (ends.mT @ ends))
+    weights = mu[:, None]
+    basis = np.linalg.qr(np.concatenate([weights**step * felt for step in range(STEPS)], axis=1))[0]
+    t, mix = np.linalg.eigh(basis.T @ (weights * basis))
+    t, mix = t[::-1], (mix / np.sqrt(t))[:, ::-1]
+    ends = mix[-felt.shape[1] :]
+    return Tail(np.sqrt(1 / t - shift), basis @ mix, DASHPOT / highest * (ends.T @ ends))

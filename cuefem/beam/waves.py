@@ -14,7 +14,7 @@ from cuefem.cue import Array, Cue
 # the square of it, and lower modes are far more accurate.
 SHAPE_ERROR = 3e-4
 # The longest element, as the phase of the waves on it, rad, and the highest order. Few long elements need the fewest
-# unknowns; the tables of beams that are solved together grow with the order's third power, and take shorter ones.
+# unknowns; a `Resolution` of one order for all segments takes shorter ones.
 LONGEST, LONGEST_EVEN, HIGHEST_ORDER = 150.0, 36.0, 110
 _GUESSES = np.geomspace(1e0, 1e9, 100)  # angular frequencies between which `mode_phases` interpolates, rad/s
 
@@ -73,7 +73,7 @@ def orders_for(phase: Array, taper: Array) -> NDArray[np.intp]:
 
 
 def even_mesh_for(cue: Cue, count: int) -> tuple[int, int]:
-    """(elements, order): the same in every segment, for the ``count`` lowest modes of cues that are solved together."""
+    """(elements, order): the same in every segment, for the ``count`` lowest modes."""
     phases = mode_phases(cue, count)
     elements = math.ceil(float(phases.max()) / LONGEST_EVEN)
     EA = cue.section_in(np.arange(len(phases))[:, None], np.diff(cue.nodes)[:, None] * np.array([0.0, 1.0])).EA

@@ -85,7 +85,7 @@ def study(
         kept = SqliteStore(store or file.with_suffix(".sqlite"), designs, file.stem)
         result = _kept(file, asked, kept, **where)
     record: dict[str, Any] = {"file": str(file), "kind": result.kind, "assumed": notes, "units": result.units}
-    record |= {"varied": varied_pieces(designs.vary, designs.base), "resolution": vars(designs.resolution)}
+    record |= {"varied": varied_pieces(designs.vary, designs.base), "resolution": designs.at and vars(designs.at)}
     stored = []
     if kept:
         record |= {"store": str(kept.path), "evaluated": kept.computed}

@@ -1,8 +1,7 @@
 """Design studies: many scenes at once, what varies in them, and sweeps that nothing can lose."""
 
-from cuefem.design.evaluation import Evaluation, common_resolution, evaluate
+from cuefem.design.evaluation import Evaluation, Response, evaluate
 from cuefem.design.ranges import METHODS, Levels, Normal, Sample, Span
-from cuefem.design.responses import Response
 from cuefem.design.study import Study, Vary
 from cuefem.design.sweep import Pool, Row, Store, Task, dask, processes, sweep
 
@@ -20,7 +19,6 @@ __all__ = [
     "Study",
     "Task",
     "Vary",
-    "common_resolution",
     "dask",
     "evaluate",
     "processes",

@@ -11,12 +11,13 @@ import numpy as np
 from cuefem.contact.outcome import grip_of
 from cuefem.cue import Cue
 from cuefem.cue.materials import MATERIALS, WOODS, table_name
+from cuefem.design.evaluation import Response
 from cuefem.effects.leather_tip import DOMES
 from cuefem.parameters.parameter import PARAMETERS, varied
 from cuefem.parameters.parts import Layout, taper_position
-from cuefem.results.quantities import RESULTS, scaled, with_unit
+from cuefem.results.quantities import scaled, with_unit
 from cuefem.results.records import Record
-from cuefem.results.solved_design import OneDesign, off_centre
+from cuefem.results.solved_design import SolvedDesign, off_centre
 from cuefem.results.uncertainty import model_share, ratio_error, squirt_changes
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
@@ -31,7 +32,7 @@ PRO_GAIN = 0.5 * MM  # from the tip to the taper's position, as in meshes/pool_m
 FERRULES = ("abs", "melamine", "phenolic")  # that are sold for cues; brass and steel only where they stand already
 COSTS = 0.05  # less stiffness that one feels
 LITTLE = 0.002  # of squirt: an input that changes it by less leaves nothing open in a change
-NUMBERS = ("squirt", "tip_stiffness", "shaft_mass", "frequency")
+NUMBERS = tuple(map(Response.of, ("squirt", "tip_stiffness", "shaft_mass", "frequency(1)")))
 WOOD = ("E", "G", "rho")
 Follow = Callable[[Sequence[Any]], Iterable[Any]]
 
@@ -166,7 +167,7 @@ def design_changes(scene: Scene, *, solved: Solved | None = None, follow: Follow
     """
     struck = off_centre(scene)
     solved = Solved(struck) if solved is None or struck is not scene else solved
-    own, grip = _numbers(solved), grip_of(OneDesign(solved).strike(0, None))
+    own, grip = _numbers(solved), grip_of(SolvedDesign(solved).strike())
     before = {key: x for key, x in squirt_changes(solved, own["squirt"]).items() if abs(x) > LITTLE}
     rows = []
     for change in follow(changes_of(struck)):
@@ -187,14 +188,8 @@ def design_changes(scene: Scene, *, solved: Solved | None = None, follow: Follow
 
 
 def _numbers(solved: Solved) -> Record:
-    design = OneDesign(solved)
-    return {name: float(_of(name)(design, 1 if name == "frequency" else None)[0]) for name in NUMBERS}
-
-
-def _of(name: str) -> Callable[..., Any]:
-    of = RESULTS[name].of
-    assert of is not None
-    return of
+    design = SolvedDesign(solved)
+    return {response.kind: response.value(design) for response in NUMBERS}
 
 
 def _wall(scene: Scene) -> float:

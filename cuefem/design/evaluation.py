@@ -1,30 +1,117 @@
-"""Designs in, numbers out: responses of many scenes, each failing on its own."""
+"""Designs in, numbers out: what can be asked of a design, and the answers of many, each failing by itself."""
 
 from __future__ import annotations
 
+import difflib
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from cuefem.beam.waves import even_mesh_for, modes_below
+from cuefem.beam.modes import Modes
 from cuefem.cue import Array
-from cuefem.design.batch import BLOCK
-from cuefem.design.responses import Response
-from cuefem.design.solvers import OneByOne, Together, key_of
-from cuefem.results.solved_design import Designs
+from cuefem.quantity.display import one_line
+from cuefem.results.quantities import Result, with_heading
+from cuefem.results.solved_design import SolvedDesign, asked
 from cuefem.scene import Resolution, Scene
-from cuefem.tip_modes import PERIODS_KEPT
+from cuefem.tip_modes import Solved
 
 # A design may fail because it cannot be made, has no answer, or its numbers overflow.
-Failed = (ValueError, RuntimeError, ArithmeticError, np.linalg.LinAlgError)
+Failed = (ValueError, RuntimeError, ArithmeticError)
+_NAME = re.compile(r"(\w+)(?:\(\s*([^()\s]+)\s*\))?")
+
+
+@dataclass(frozen=True)
+class Response:
+    """One number asked of every design: the name of a result, and the number of the mode or the offset b/R.
+
+    Without an offset, a strike is at the scene's own; "pivot_length" and "end_mass" are then the limits of small
+    offsets.
+    """
+
+    kind: str
+    argument: float | int | None = None
+
+    @classmethod
+    def of(cls, text: str) -> Response:
+        """Read text such as "squirt(0.3)"; ValueError, suggesting similar names, if no response matches."""
+        match = _NAME.fullmatch(text.strip())
+        if not match or match[1] not in asked():
+            close = difflib.get_close_matches(text.partition("(")[0], asked(), n=3, cutoff=0.5)
+            hint = f"; did you mean {' or '.join(close)}?" if close else ""
+            raise ValueError(f"must be one of {', '.join(map(_usage, asked()))}; got {text!r}{hint}")
+        return cls(match[1], _argument(match[1], match[2], text))
+
+    @property
+    def result(self) -> Result:
+        """What is asked, as it is declared."""
+        return asked()[self.kind]
+
+    @property
+    def name(self) -> str:
+        """The response as text that `of` reads back."""
+        return self.kind if self.argument is None else f"{self.kind}({self.argument!r})"
+
+    @property
+    def label(self) -> str:
+        """The response in tables and on pages: "squirt at b/R 0.3", "natural frequency 2"."""
+        kind = self.result
+        if self.argument is not None:
+            return f"{kind.in_short} {'' if kind.argument == 'mode' else 'at b/R '}{self.argument}"
+        return f"{kind.in_short} at the stroke's offset" if kind.argument and not kind.limit else kind.in_short
+
+    @property
+    def unit(self) -> str:
+        """SI unit, "" for a pure number."""
+        return self.result.unit
+
+    @property
+    def heading(self) -> str:
+        """The label with the unit that people read it in."""
+        return with_heading(self.label, self.unit)
+
+    def value(self, design: SolvedDesign) -> float:
+        """The response of a design; ValueError if it has none."""
+        if self.result.segments and not design.scene.cue.segments:
+            raise ValueError(f"{self.name} needs a cue of segments; got a lumped cue")
+        assert self.result.of is not None
+        value = self.result.of(design, self.argument)
+        if value != value:
+            raise ValueError(f"{self.name} is not a number")
+        return value
+
+
+def _usage(kind: str) -> str:
+    argument = asked()[kind].argument
+    return f"{kind}({argument})" if argument == "mode" else f"{kind}[({argument})]" if argument else kind
+
+
+def _argument(kind: str, argument: str | None, text: str) -> float | int | None:
+    wanted = asked()[kind].argument
+    if argument is None and wanted != "mode":
+        return None
+    if wanted == "":
+        raise ValueError(f"must be {kind}, which takes nothing in brackets; got {text!r}")
+    try:
+        number = float(argument or "nan")
+    except ValueError:
+        number = float("nan")
+    if wanted == "mode":
+        if not (number >= 1 and number.is_integer()):
+            raise ValueError(f"must be {kind}(n), n a whole number >= 1; got {text!r}")
+        return int(number)
+    if not -1 < number < 1 or (number == 0 and kind == "pivot_length"):
+        without = " without 0" if kind == "pivot_length" else ""
+        raise ValueError(f"must be {kind}(b), b an offset b/R in (-1, 1){without}; got {text!r}")
+    return number
 
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Responses of designs: values (designs, responses) in SI units, nan if a response has no value; reasons, why a
-    design lacks a value, None if it has all.
+    """Responses of designs: values (designs, responses) in SI units, nan if a response has no value; reasons, the first
+    reason for a missing value of a design, None if it has all.
     """
 
     values: Array
@@ -34,96 +121,23 @@ class Evaluation:
 def evaluate(
     scenes: Sequence[Scene], responses: Sequence[Response | str], *, at: Resolution | None = None
 ) -> Evaluation:
-    """The responses of every scene.
+    """The responses of every scene, each as the call for one scene computes it.
 
-    Bare cues with the same number of segments are computed as arrays, in blocks; scenes with effects, and lumped cues,
-    one by one, where the modes of equal cues with equal effects are solved once. ``at`` is one resolution for all; by
-    default it is `common_resolution`, which is coarser than the default of `cuefem.end_mass`: stick end masses differ
-    from that by up to 2 %. A response that a scene has not gets a reason and disturbs neither the scene's other
-    responses nor other scenes. ValueError if no response has one of the names.
+    at: one resolution for all scenes; by default each has its own, that of `cuefem.strike` and `cuefem.end_mass`. A
+    scene solves its modes once for all responses, and so do scenes in a row that have one cue with the same effects on
+    it. A response that fails leaves the others their values. ValueError if no response has one of the names.
     """
-    asked = tuple(Response.of(response) if isinstance(response, str) else response for response in responses)
-    at = at or common_resolution(scenes, asked)
-    values, reasons = np.full((len(scenes), len(asked)), np.nan), dict[int, str]()
-    waiting = _blocks(scenes)
-    while waiting:
-        rows = waiting.pop()
-        try:
-            values[rows], why = _values([scenes[i] for i in rows], asked, at)
-            reasons |= {i: reason for i, reason in zip(rows, why, strict=True) if reason}
-        except Failed as error:
-            if len(rows) == 1:
-                reasons[rows[0]] = " ".join(str(error).split())
-            else:  # one by one they show which it was
-                waiting += [[i] for i in rows]
-    return Evaluation(values, tuple(reasons.get(i) for i in range(len(scenes))))
-
-
-def _blocks(scenes: Sequence[Scene]) -> list[list[int]]:
-    """Indices of scenes to compute together, in blocks.
-
-    Bare cues go by their number of segments; with effects on them, those whose modes are the same; lumped ones alone.
-    """
-    groups: dict[Any, list[int]] = {}
+    wanted = [Response.of(response) if isinstance(response, str) else response for response in responses]
+    values, reasons = np.full((len(scenes), len(wanted)), np.nan), list[str | None]([None] * len(scenes))
+    before: tuple[Any, ...] | None = None
+    known: dict[tuple[Resolution | int, int], Modes] = {}
     for i, scene in enumerate(scenes):
-        if scene.cue.segments:
-            together: Any = key_of(scene, scene.cue, scene.cue_effects) if scene.effects else len(scene.cue.segments)
-        else:
-            together = -i
-        groups.setdefault(together, []).append(i)
-    return [rows[start : start + BLOCK] for rows in groups.values() for start in range(0, len(rows), BLOCK)]
-
-
-def _values(scenes: Sequence[Scene], responses: Sequence[Response], at: Resolution) -> tuple[Array, list[str | None]]:
-    """(responses (designs, responses) of scenes that can be computed together; for each design why one is missing).
-
-    Of a single scene a response that fails leaves the others their values; of several it fails for all.
-    """
-    bare = scenes[0].cue.segments and not scenes[0].effects
-    count = max([0, *(each.modes for each in responses)])
-    solver: Designs = (Together if bare else OneByOne)(scenes, at, count)
-    values, why = np.full((len(scenes), len(responses)), np.nan), list[str | None]([None] * len(scenes))
-    for j, response in enumerate(responses):
-        try:
-            values[:, j], reasons = _column(solver, response)
-        except Failed as error:
-            if len(scenes) > 1:
-                raise
-            reasons = [" ".join(str(error).split())]
-        why = [before or reason for before, reason in zip(why, reasons, strict=True)]
-    return values, why
-
-
-def _column(solver: Designs, response: Response) -> tuple[Array, list[str | None]]:
-    """(A response of the solver's designs; for each why it is missing); ValueError if one is missing for no reason."""
-    if response.result.segments and not solver.scenes[0].cue.segments:
-        raise ValueError(f"{response.name} needs a cue of segments; got a lumped cue")
-    values = response.values(solver)
-    known = response.result.reasons
-    every = known(solver) if known else [None] * len(values)
-    reasons = [reason if x != x else None for x, reason in zip(values, every, strict=True)]
-    if any(x != x and reason is None for x, reason in zip(values, reasons, strict=True)):
-        raise ValueError(f"{response.name} is not a number")
-    return values, [None if reason is None else f"{response.name}: {reason}" for reason in reasons]
-
-
-def common_resolution(scenes: Sequence[Scene], responses: Sequence[Response]) -> Resolution:
-    """One resolution for all scenes: the most modes that any needs, and a mesh that carries them.
-
-    A strike keeps the modes up to `PERIODS_KEPT` periods a contact. `cuefem.end_mass` is finer: it keeps at least 160
-    modes and lets a tail stand for those above. Designs compare well with each other, but their stick end masses are
-    off by up to 2 %: on the reference cues 1.2 % at 2 ms (maple) and 1.8 % at 1.5 ms (carbon).
-    """
-    count = max([1, *(response.modes for response in responses)])
-    strikes = any(response.result.strikes for response in responses)
-    mesh, modes = (1, 1), 1
-    for scene in scenes:
-        if not scene.cue.segments:
-            continue
-        time = scene.known_contact_time if strikes else None
-        if strikes and time is None:  # its contact fails by itself, with its reason, and stops no other design
-            continue
-        own = count if time is None else modes_below(scene.shaft, 2 * np.pi * PERIODS_KEPT / time)
-        # a mesh of more elements follows shorter waves, and so does one of as many of a higher order
-        mesh, modes = max(mesh, even_mesh_for(scene.shaft, max(own, count))), max(modes, own)
-    return Resolution(*mesh, modes)
+        on_cue = scene.cue, scene.cue_effects
+        before, known = on_cue, known if on_cue == before else {}
+        design = SolvedDesign(Solved(scene, at, known))
+        for j, response in enumerate(wanted):
+            try:
+                values[i, j] = response.value(design)
+            except Failed as error:
+                reasons[i] = reasons[i] or one_line(str(error))
+    return Evaluation(values, tuple(reasons))

@@ -15,9 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.design.evaluation import evaluate
+from cuefem.design.evaluation import Response, evaluate
 from cuefem.design.ranges import Levels, Normal, Span, Value
-from cuefem.design.responses import Response
 from cuefem.design.study import Study, StudyDesign, Vary
 from cuefem.parameters.parameter import value_at
 from cuefem.scene import Resolution, Scene
@@ -85,7 +84,7 @@ class Optimum(StudyDesign):
 class Problem:
     """What to make as small (or, with ``largest``, as large) as possible, by varying what, within which limits.
 
-    at: the one resolution of all designs; the default is that of a `Study`. chosen: values of what varies over a list,
+    at: as of a `Study`. chosen: values of what varies over a list,
     by the number of the variable; left out, the base's own. Points hold the other variables, those with low and high.
     """
 
@@ -117,8 +116,7 @@ class Problem:
     def choices(self) -> list[Problem]:
         """The problem with every combination of the values in lists."""
         lists = {i: vary.range.values for i, vary in enumerate(self.vary) if isinstance(vary.range, Levels)}
-        at = self.study.resolution
-        return [replace(self, chosen=dict(zip(lists, v, strict=True)), at=at) for v in product(*lists.values())]
+        return [replace(self, chosen=dict(zip(lists, v, strict=True))) for v in product(*lists.values())]
 
     def points(self, parts: Array) -> Array:
         """Points from parts in [0, 1] of the ranges, (..., variables); logarithmic spacing goes in equal ratios."""
@@ -138,13 +136,14 @@ class Problem:
             point.append(span.quantile(0.5) if own is None else min(max(own, span.low), span.high))
         return np.array(point)
 
-    def design(self, point: Array) -> dict[int, Value]:
-        """The values at a point, by the numbers of the variables."""
-        return {**self.chosen, **dict(zip(self.spans, point.tolist(), strict=True))}
+    def design(self, point: Array) -> tuple[Value, ...]:
+        """The values of what varies at a point."""
+        values = {**self.chosen, **dict(zip(self.spans, point.tolist(), strict=True))}
+        return tuple(values[i] for i in range(len(self.vary)))
 
     def scene(self, point: Array) -> Scene:
         """The design at a point; ValueError if it cannot be made."""
-        return self.study.made(self.design(point))
+        return self.study.scene(self.design(point))
 
     def values(self, points: Array) -> Array:
         """Responses of the study at points (n, variables): (n, responses), nan if there is none."""
@@ -155,7 +154,7 @@ class Problem:
             except ValueError:
                 continue
         if scenes:
-            values[[*scenes]] = evaluate([*scenes.values()], self.study.responses, at=self.study.resolution).values
+            values[[*scenes]] = evaluate([*scenes.values()], self.study.responses, at=self.at).values
         return values
 
     def room(self, values: Array) -> Array:
@@ -284,7 +283,7 @@ class _Search:
         point, study = self.problem.points(u), self.problem.study
         return Optimum(
             self.problem.scene(point),
-            {self.problem.vary[i].name: value for i, value in sorted(self.problem.design(point).items())},
+            dict(zip((vary.name for vary in self.problem.vary), self.problem.design(point), strict=True)),
             dict(zip((response.name for response in study.responses), self.at(u).tolist(), strict=True)),
             tuple(words for words, room in self.sides(u) if room < TOLERANCE),
             self.evaluations,

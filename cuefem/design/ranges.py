@@ -10,11 +10,10 @@ from statistics import NormalDist
 
 import numpy as np
 
-from cuefem.cue import Array
 from cuefem.quantity.fields import check_count
 
-# The most points of a Sobol sequence of 30 bits.
-MOST = 2**30
+# The most points of a Sobol sequence of 30 bits; the most levels of an interval; points that are made at a time.
+MOST, MOST_LEVELS, BLOCK = 2**30, 2**20, 256
 # Standard deviations at which a normal distribution is cut: it takes 0.05 % off its standard deviation.
 CUT = 4.0
 
@@ -31,12 +30,10 @@ class Levels:
         if not self.values:
             raise ValueError("values must hold at least one; got an empty range")
 
-    def __len__(self) -> int:
-        return len(self.values)
-
-    def level(self, i: int) -> Value:
-        """The i-th value."""
-        return self.values[i]
+    @property
+    def levels(self) -> tuple[Value, ...]:
+        """The values of a grid."""
+        return self.values
 
     def quantile(self, u: float) -> Value:
         """The value at ``u`` in [0, 1) of the list."""
@@ -58,25 +55,24 @@ class Span:
     logarithmic: bool = False
 
     def __post_init__(self) -> None:
-        check_count("count", self.count, 1)
+        check_count("count", self.count, 1, MOST_LEVELS)
         if not self.low < self.high:
             raise ValueError(f"low must be below high; got the empty range {self.low} to {self.high}")
         if self.logarithmic and self.low <= 0:
             raise ValueError(f"low must be above 0 where the spacing is logarithmic; got {self.low}")
 
-    def __len__(self) -> int:
-        return self.count
-
-    def level(self, i: int) -> float:
-        """The i-th of ``count`` values; the middle if there is only one."""
-        if i == self.count - 1 > 0:
-            return self.high
-        return self.quantile(i / (self.count - 1) if self.count > 1 else 0.5)
+    @property
+    def levels(self) -> tuple[float, ...]:
+        """The ``count`` values of a grid; the middle if there is only one."""
+        last = self.count - 1
+        return tuple(self.quantile(i / last) for i in range(self.count)) if last else (self.quantile(0.5),)
 
     def quantile(self, u: float) -> float:
         """The value at ``u`` in [0, 1] of the interval."""
+        if u in (0.0, 1.0):  # exactly
+            return self.ends[int(u)]
         if self.logarithmic:
-            return math.exp((1 - u) * math.log(self.low) + u * math.log(self.high)) if u else self.low
+            return math.exp((1 - u) * math.log(self.low) + u * math.log(self.high))
         return (1 - u) * self.low + u * self.high
 
     def share(self, value: float) -> float:
@@ -108,12 +104,10 @@ class Normal:
         if self.logarithmic and self.middle <= 0:
             raise ValueError(f"middle must be above 0 where the spacing is logarithmic; got {self.middle}")
 
-    def __len__(self) -> int:
-        return 1
-
-    def level(self, i: int) -> float:
-        """The middle."""
-        return self.middle
+    @property
+    def levels(self) -> tuple[float, ...]:
+        """The middle, which alone is in a grid."""
+        return (self.middle,)
 
     def quantile(self, u: float) -> float:
         """The value below which a share ``u`` in [0, 1] of all lies."""
@@ -150,22 +144,17 @@ class Sample:
     def __post_init__(self) -> None:
         if self.method not in METHODS:
             raise ValueError(f"method must be one of grid, {', '.join(METHODS)}; got {self.method!r}")
-        check_count("count", self.count, 1)
+        check_count("count", self.count, 1, MOST)
         check_count("seed", self.seed, 0)
-        if self.count > MOST:
-            raise ValueError(f"count must be at most {MOST}; got {self.count}")
 
-    def blocks(self, dimensions: int, size: int) -> Iterator[Array]:
-        """Points in [0, 1) of ``size`` designs at a time, each (size, dimensions)."""
+    def points(self, dimensions: int) -> Iterator[list[float]]:
+        """The points of the designs, each of numbers in [0, 1)."""
         from scipy.stats import qmc  # loaded when used: half a second
 
         engine = getattr(qmc, METHODS[self.method])(dimensions, seed=np.random.default_rng(self.seed))
-        if self.method == "latin hypercube":  # a part of one is not one
-            points = engine.random(self.count)
-            yield from (points[start : start + size] for start in range(0, self.count, size))
-            return
-        for start in range(0, self.count, size):
-            yield engine.random(size)[: self.count - start]  # whole blocks: powers of two keep Sobol points balanced
+        size = self.count if self.method == "latin hypercube" else BLOCK  # a part of a hypercube is none
+        for start in range(0, self.count, size):  # whole blocks: powers of two keep Sobol points balanced
+            yield from engine.random(size)[: self.count - start].tolist()
 
 
 METHODS = {"sobol": "Sobol", "halton": "Halton", "latin hypercube": "LatinHypercube"}

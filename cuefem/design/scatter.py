@@ -155,15 +155,14 @@ class _Points:
     def count(self) -> int:
         return (len(self.scatter.causes) + 2) * self.scatter.count
 
-    def blocks(self, dimensions: int, size: int) -> Iterator[Array]:
+    def points(self, dimensions: int) -> Iterator[list[float]]:
         from scipy.stats import qmc  # loaded when used: half a second
 
         engine = qmc.Sobol(2 * dimensions, seed=np.random.default_rng(self.scatter.seed))
         first, other = np.split(ndtri(engine.random(self.scatter.count) + HALF_CELL), 2, axis=1)
         drawn = (np.isin(np.arange(dimensions), cause) for cause in self.scatter.members)
         scores = np.concatenate([first, other, *(np.where(cause, other, first) for cause in drawn)])
-        points = ndtr(scores @ np.linalg.cholesky(self.scatter.matrix).T)
-        yield from (points[start : start + size] for start in range(0, len(points), size))
+        yield from ndtr(scores @ np.linalg.cholesky(self.scatter.matrix).T).tolist()
 
 
 @dataclass(frozen=True)

@@ -7,21 +7,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from importlib.metadata import version
+from itertools import product
 from typing import Any, Protocol
 
-import numpy as np
-
-from cuefem.cue import Array
 from cuefem.cue.materials import material
-from cuefem.design.evaluation import common_resolution
+from cuefem.design.evaluation import Response
 from cuefem.design.ranges import Levels, Normal, Span, Value
-from cuefem.design.responses import Response
 from cuefem.parameters.parameter import Path, paths, quantity_at, replaced, spelt, value_at
 from cuefem.quantity.display import spelt_out
 from cuefem.scene import Resolution, Scene
-
-# Designs evaluated, and written, at a time; fewer if each takes a strike in time.
-BLOCK, STRUCK_BLOCK = 256, 16
 
 
 class Sampled(Protocol):
@@ -31,8 +25,8 @@ class Sampled(Protocol):
     def count(self) -> int:
         """How many."""
 
-    def blocks(self, dimensions: int, size: int) -> Iterator[Array]:
-        """So many of them at a time, each (size, dimensions)."""
+    def points(self, dimensions: int) -> Iterator[list[float]]:
+        """The points, each of so many numbers."""
 
 
 @dataclass(frozen=True)
@@ -142,10 +136,10 @@ class Study:
     responses : tuple of Response
         What is asked of every design.
     sample : Sample, optional
-        A quasi-random sample in place of the grid; any object with its ``count`` and ``blocks``.
+        A quasi-random sample in place of the grid; any object with its ``count`` and ``points``.
     at : Resolution, optional
-        One resolution for all designs, so that responses do not jump between them. The default is that of the design
-        in the ranges that needs most modes (`common_resolution`: stick end masses are off by up to 2 %).
+        One resolution for all designs. By default each design has its own, that of `cuefem.strike` and
+        `cuefem.end_mass`.
 
     Raises
     ------
@@ -194,29 +188,16 @@ class Study:
     @property
     def size(self) -> int:
         """Number of designs."""
-        return self.sample.count if self.sample else math.prod(len(vary.range) for vary in self.vary)
+        return self.sample.count if self.sample else math.prod(len(vary.range.levels) for vary in self.vary)
 
-    @property
-    def block(self) -> int:
-        """Number of designs in a block; the last block may hold fewer."""
-        slow = any(response.in_time for response in self.responses) or self.base.effects
-        return STRUCK_BLOCK if slow else BLOCK
-
-    def blocks(self) -> Iterator[list[tuple[Value, ...]]]:
-        """The values of all designs, a block at a time; never all in memory."""
-        if self.sample:
-            ranges = [vary.range for vary in self.vary]
-            for points in self.sample.blocks(len(ranges), self.block):
-                yield [
-                    tuple(v.range.quantile(u) for v, u in zip(self.vary, point, strict=True))
-                    for point in points.tolist()
-                ]
+    def designs(self) -> Iterator[tuple[Value, ...]]:
+        """The values of all designs, made one after the other."""
+        ranges = [vary.range for vary in self.vary]
+        if not self.sample:
+            yield from product(*(each.levels for each in ranges))
             return
-        shape = [len(vary.range) for vary in self.vary]
-        for start in range(0, self.size, self.block):
-            index = np.unravel_index(np.arange(start, min(start + self.block, self.size)), shape)
-            rows = np.transpose(index).tolist()
-            yield [tuple(v.range.level(i) for v, i in zip(self.vary, row, strict=True)) for row in rows]
+        for point in self.sample.points(len(ranges)):
+            yield tuple(each.quantile(u) for each, u in zip(ranges, point, strict=True))
 
     @cached_property
     def _fields(self) -> tuple[tuple[Path, ...], ...]:
@@ -227,13 +208,11 @@ class Study:
         return tuple(vary.givers(self.base) for vary in self.vary)
 
     def scene(self, values: tuple[Value, ...]) -> Scene:
-        """The design with these values; ValueError if it cannot be made, such as a bore wider than its shaft."""
-        return self.made(dict(enumerate(values)))
+        """The design with these values; ValueError if it cannot be made, such as a bore wider than its shaft.
 
-    def made(self, values: dict[int, Value]) -> Scene:
-        """The base scene with some of what varies at a value: whole materials first, then numbers, then factors, then
-        shifts, and last what is taken."""
-        named = {p: material(v) for i, v in values.items() if isinstance(v, str) for p in self._fields[i]}
+        Whole materials come first, then numbers, then factors, then shifts, and last what is taken.
+        """
+        named = {p: material(v) for i, v in enumerate(values) if isinstance(v, str) for p in self._fields[i]}
         scene: Scene = replaced(self.base, named) if named else self.base
         numbers, shifts = dict[Path, Any](), list[tuple[Path, Any]]()
 
@@ -241,7 +220,7 @@ class Study:
             return numbers.get(path, value_at(scene, path))
 
         for how in ("set", "factor", "shift"):
-            for i, value in values.items():
+            for i, value in enumerate(values):
                 vary, fields = self.vary[i], self._fields[i]
                 if isinstance(value, str) or vary.how != how:
                     continue
@@ -252,31 +231,6 @@ class Study:
             numbers[path] = now(path) - gain
         return replaced(scene, numbers) if numbers else scene
 
-    @cached_property
-    def resolution(self) -> Resolution:
-        """The one resolution of all designs: the given one, or one that serves the ends of all ranges."""
-        return self.at or common_resolution(self._extremes(), self.responses)
-
-    def _extremes(self) -> list[Scene]:
-        """The base, every end of every range alone, and the scene with every range at its most demanding end."""
-        scenes, finest = [self.base], dict[int, Value]()
-        for i, vary in enumerate(self.vary):
-            most = 0
-            for end in vary.range.ends:
-                for scene in self._tried({i: end}):
-                    scenes.append(scene)
-                    modes = common_resolution([scene], self.responses).modes
-                    if modes > most:
-                        most, finest[i] = modes, end
-        return scenes + self._tried(finest)
-
-    def _tried(self, values: dict[int, Value]) -> list[Scene]:
-        """The scene with these values in a list, or an empty list: an end of a range may be no design by itself."""
-        try:
-            return [self.made(values)]
-        except ValueError:
-            return []
-
     @property
     def record(self) -> dict[str, Any]:
         """All that its numbers depend on, in a form that JSON can hold."""
@@ -286,5 +240,5 @@ class Study:
             "vary": [repr(vary) for vary in self.vary],
             "responses": [response.name for response in self.responses],
             "sample": repr(self.sample),
-            "resolution": repr(self.resolution),
+            "resolution": repr(self.at),
         }

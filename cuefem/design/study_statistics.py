@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.design.responses import Response
+from cuefem.design.evaluation import Response
 from cuefem.design.study_result import StudyResult
 
 MOST_LEVELS = 24  # values of a parameter that are groups of their own; of more, each group is a range

@@ -15,12 +15,13 @@ from itertools import chain, count, islice
 from multiprocessing import get_context, parent_process, resource_tracker
 from typing import NamedTuple, ParamSpec, Protocol, TypeVar
 
-from cuefem.design.evaluation import Failed, evaluate
+from cuefem.design.evaluation import Failed, Response, evaluate
 from cuefem.design.ranges import Value
-from cuefem.design.responses import Response
 from cuefem.design.study import Study
+from cuefem.quantity.display import one_line
 from cuefem.scene import Resolution, Scene
 
+BLOCK = 16  # designs that are evaluated, and written, at a time
 # A pool that breaks is opened again; this often in a row without a block done is too often.
 ATTEMPTS = 3
 # A Dask scheduler that does not answer for so long is not there; how often one is asked while nothing comes, s.
@@ -49,7 +50,7 @@ class Task(NamedTuple):
     designs: Sequence[tuple[int, tuple[Value, ...]]]
     scenes: Sequence[Scene]
     responses: tuple[Response, ...]
-    at: Resolution
+    at: Resolution | None
     failed: Sequence[Row] = ()
 
 
@@ -94,9 +95,9 @@ def task_of(study: Study, designs: dict[int, tuple[Value, ...]]) -> Task:
             scenes[design] = study.scene(values)
         except Failed as error:
             nothing = (None,) * len(study.responses)
-            failed.append(Row(design, values, nothing, " ".join(str(error).split())))
+            failed.append(Row(design, values, nothing, one_line(str(error))))
     there = [(design, designs[design]) for design in scenes]
-    return Task(there, [*scenes.values()], study.responses, study.resolution, failed)
+    return Task(there, [*scenes.values()], study.responses, study.at, failed)
 
 
 def computed(task: Task) -> list[Row]:
@@ -132,8 +133,8 @@ def sweep(
     RuntimeError
         If the pool breaks time after time, or its scheduler is gone. What was written stays.
     """
-    numbers = count()
-    blocks = ({next(numbers): values for values in block} for block in study.blocks())
+    designs = enumerate(study.designs())
+    blocks = iter(lambda: dict(islice(designs, BLOCK)), {})
     tasks = (task for block in blocks if (task := store.take(block)) is not None)
     for rows in in_parallel(computed, tasks, pool):
         store.write(rows)

@@ -27,7 +27,7 @@ from cuefem.parameters.parts import main_material
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.comparison import comparison_record
 from cuefem.results.records import Record
-from cuefem.results.solved_design import OneDesign, coupled_curve, listed
+from cuefem.results.solved_design import TONES, SolvedDesign, coupled_curve, listed
 from cuefem.results.verdict import verdict_record
 from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import Solved, default_modes
@@ -67,9 +67,10 @@ def first_numbers(scene: Scene) -> dict[str, float | None]:
 def numbers(scene: Scene) -> dict[str, Any]:
     """Every number that a table lists: the results by name, all end masses, and natural frequencies."""
     known = struck(scene)
-    design = OneDesign(known.solved, known.outcome)
+    design = SolvedDesign(known.solved, known.outcome)
     masses = {f"end_mass_{name}": _end_mass(name, known.solved) for name in DEFINITIONS}
-    return first_numbers(scene) | listed(design) | masses | {"frequencies": design.frequencies[0].tolist()}
+    frequencies = [design.frequency(mode) for mode in range(1, TONES + 1)]
+    return first_numbers(scene) | listed(design) | masses | {"frequencies": frequencies}
 
 
 def _end_mass(name: str, solved: Solved) -> float | None:

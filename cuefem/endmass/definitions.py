@@ -123,13 +123,10 @@ def velocity(tip: TipModes, scene: Scene) -> float:
 def stick(tip: TipModes, scene: Scene) -> float:
     """End mass of the limit b -> 0 of the coupled strike, kg: `cuefem.endmass.sticking_contact.StickLimit`.
 
-    That formula knows no effects at the tip (a dome, shear) and no axial waves: with them it takes the squirt of the
-    coupled strike at a small offset.
+    It has the squirt of `small_offset_slope`.
     """
     limit = StickLimit.of(scene)
-    if _couples(tip, scene):
-        return float(limit.end_mass(limit.impulse(small_offset_slope(tip, scene))))
-    return float(limit.end_mass(limit.transverse_impulse(_held(tip, limit), limit.T)))
+    return float(limit.end_mass(limit.impulse(small_offset_slope(tip, scene))))
 
 
 def stick_at_offset(tip: TipModes, scene: Scene) -> Any:
@@ -182,10 +179,15 @@ def _held(tip: TipModes, limit: StickLimit) -> Array:
 
 
 def small_offset_slope(tip: TipModes, scene: Scene) -> float:
-    """Squirt over phi in the limit b -> 0 of the coupled strike: a strike at b/R = 1e-5 that sticks from the start.
+    """Squirt over phi in the limit b -> 0 of the coupled strike, whose tip sticks from the start.
 
-    The first slip vanishes in the limit, like sqrt(b); endless friction takes it out, and leaves an error of b^2.
+    `StickLimit` knows no effects at the tip (a dome, shear), no axial waves and no lumped cue: with them it is that of
+    a strike at b/R = 1e-5. The first slip vanishes in the limit, like sqrt(b); endless friction takes it out, and
+    leaves an error of b^2.
     """
+    if scene.lumped is None and not _couples(tip, scene):
+        limit = StickLimit.of(scene)
+        return float(limit.slope(limit.transverse_impulse(_held(tip, limit), limit.T)))
     small = _aside(scene)
     return sticking_squirt(tip, small) / float(small.stroke.angle)
 

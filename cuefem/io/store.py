@@ -135,7 +135,7 @@ class SqliteStore:
         task = task_of(self.study, {design: values for design, values in designs.items() if design not in there})
         left, known = list[int](), [*task.failed]
         for i, ((design, values), scene) in enumerate(zip(task.designs, task.scenes, strict=True)):
-            self._scenes[design] = digest(code(), spelt_out(scene), repr(self.study.resolution))
+            self._scenes[design] = digest(code(), spelt_out(scene), repr(self.study.at))
             row = self._known(design, values)
             known.append(row) if row else left.append(i)
         self._insert(known)

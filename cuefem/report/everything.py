@@ -18,7 +18,7 @@ from cuefem.report.tip_table import tip_record, tip_sheet
 from cuefem.report.verdict_table import verdict_things
 from cuefem.results.quantities import grams
 from cuefem.results.records import Record, Sheet, value_rows, values_sheet
-from cuefem.results.solved_design import OFFSETS, OneDesign, listed
+from cuefem.results.solved_design import OFFSETS, SolvedDesign, listed
 from cuefem.results.verdict import verdict_record
 from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import Solved
@@ -47,7 +47,7 @@ def report_record(
     except (TooDeep, BentTooFar) as error:
         return record | {"no_contact": str(error)}
     record |= squirts | ({} if scene.contact_terms.tip is None else {"tip": tip_record(scene)})
-    numbers = listed(OneDesign(solved, outcome))
+    numbers = listed(SolvedDesign(solved, outcome))
     verdict = verdict_record(scene, outcome, ready_cues(), solved=solved)
     return record | {"verdict": verdict, "numbers": numbers, "regime": outcome.regime, "grip": grip_of(outcome)}
 

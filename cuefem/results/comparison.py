@@ -12,7 +12,7 @@ from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.parameters.parameter import PARAMETERS
 from cuefem.parameters.parts import main_material
 from cuefem.results.records import Record
-from cuefem.results.solved_design import OneDesign, asked, off_centre
+from cuefem.results.solved_design import SolvedDesign, asked, off_centre
 from cuefem.results.uncertainty import FLOOR, changes_by_input, model_share, ratio_error
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
@@ -81,7 +81,7 @@ def struck_alike(scenes: Mapping[str, Scene]) -> dict[str, Scene]:
 def _compared(scene: Scene, names: tuple[str, ...]) -> _Compared:
     numbers = _numbers(scene, names)
     try:
-        grip = grip_of(OneDesign(Solved(scene)).strike(0, None))
+        grip = grip_of(SolvedDesign(Solved(scene)).strike())
     except (ValueError, RuntimeError):  # no squirt either
         grip = ""
     return _Compared(scene, numbers, grip, changes_by_input(scene, numbers, lambda made: _numbers(made, names)))
@@ -90,7 +90,7 @@ def _compared(scene: Scene, names: tuple[str, ...]) -> _Compared:
 def _numbers(scene: Scene, names: Sequence[str]) -> dict[str, float]:
     """The numbers of a scene that are compared; nan where it has none, as squirt of a miscue."""
     _ = scene.shaft  # ValueError for a lumped cue, which has no shape
-    design, known = OneDesign(Solved(scene)), asked()
+    design, known = SolvedDesign(Solved(scene)), asked()
 
     def value(name: str) -> float:
         base, _, mode = name.partition("frequency_")
@@ -98,9 +98,9 @@ def _numbers(scene: Scene, names: Sequence[str]) -> dict[str, float]:
         argument: Any = int(mode) if mode else float(scene.stroke.offset) if name == "pivot_length" else None
         assert of is not None
         try:
-            if name in OF_SQUIRT and grip_of(design.strike(0, None)) in MISSED:
+            if name in OF_SQUIRT and grip_of(design.strike()) in MISSED:
                 return math.nan
-            return float(of(design, argument)[0])
+            return of(design, argument)
         except (ValueError, RuntimeError):
             return math.nan
 

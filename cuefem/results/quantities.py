@@ -7,7 +7,7 @@ response of sweeps, scatters and optimizations, and with these in their tables, 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +18,7 @@ from cuefem.results.closed_forms import pivot_at
 from cuefem.scene import Outcome, Scene
 
 if TYPE_CHECKING:  # at work every command that writes a number would pay for it
-    from cuefem.results.solved_design import Designs
+    from cuefem.results.solved_design import SolvedDesign
 
 NONE = "–"
 # The units in which a cue maker reads what a record holds in SI: how many of them one SI unit is, and their name.
@@ -38,13 +38,12 @@ class Result:
     """A number of a scene: what it is called, its SI unit ("" for a pure number or a word), and how it is computed.
 
     words: its name for people, in full. decimals: in the unit that people read; None for four digits in all. heading:
-    its name over a column, by default the words. about: what it is, in a line. of: its values of solved designs, at an
-    argument (None: at the scene's own offset); without it, only records have it, which compute it. argument:
-    what it takes in brackets, "", "mode" or "offset". strikes: whether it needs the tip's modes up to the contact's
-    cutoff. segments: whether it needs a cue of segments. limit: whether without an offset it is the limit of small
-    offsets. reasons: for each design why it is nan, or None. better: which a player wants, "lower" or "higher", by
-    which a summary picks designs. listed: whether a report and the
-    designer list it; what has a table of its own is not.
+    its name over a column, by default the words. about: what it is, in a line. of: its value for a solved design, at an
+    argument (None: at the scene's own offset), or a ValueError that gives the reason for none; without it, only records
+    have it, which compute it. argument: what it takes in brackets, "", "mode" or "offset". segments: whether it needs a
+    cue of segments. limit: whether without an offset it is the limit of small offsets. better: which a player wants,
+    "lower" or "higher", by which a summary picks designs. listed: whether a report and the designer list it; what has a
+    table of its own is not.
     """
 
     words: str
@@ -53,12 +52,10 @@ class Result:
     _: KW_ONLY
     heading: str = ""
     about: str = ""
-    of: Callable[[Designs, Any], Array] | None = None
+    of: Callable[[SolvedDesign, Any], float] | None = None
     argument: str = ""
-    strikes: bool = False
     segments: bool = False
     limit: bool = False
-    reasons: Callable[[Designs], Sequence[str | None]] | None = None
     better: str = ""
     listed: bool = True
 
@@ -116,22 +113,20 @@ def significant(value: float, digits: int = 4) -> str:
 SMALL = 1e-6
 
 
-def _pivot_lengths(designs: Designs, offset: float | None) -> Array:
+def _pivot_length(design: SolvedDesign, offset: float | None) -> float:
     if offset is None:
-        slopes = zip(designs.scenes, designs.stick.squirt, strict=True)
-        return np.array([pivot_at(scene, SMALL, slope * np.arcsin(SMALL)) for scene, slope in slopes])
-    strikes = enumerate(designs.scenes)
-    return np.array([pivot_at(scene, offset, designs.strike(i, offset).squirt) for i, scene in strikes], float)
+        return float(pivot_at(design.scene, SMALL, design.squirt_slope * math.asin(SMALL)))
+    return float(pivot_at(design.scene, offset, design.strike(offset).squirt))
 
 
-def of_strike(value: Callable[[Outcome], float]) -> Callable[[Designs, Any], Array]:
-    """A number of one coupled strike of each design, at the given offset; by default at the scene's own."""
-    return lambda designs, offset: np.array([value(designs.strike(i, offset)) for i in range(len(designs.scenes))])
+def of_strike(value: Callable[[Outcome], float]) -> Callable[[SolvedDesign, Any], float]:
+    """A number of the coupled strike at the given offset; by default at the scene's own."""
+    return lambda design, offset: value(design.strike(offset))
 
 
-def of_drawing(value: Callable[[Scene], float]) -> Callable[[Designs, Any], Array]:
-    """A number that follows from the drawing of each design."""
-    return lambda designs, _: np.array([value(scene) for scene in designs.scenes])
+def of_drawing(value: Callable[[Scene], Any]) -> Callable[[SolvedDesign, Any], float]:
+    """A number that follows from the drawing."""
+    return lambda design, _: float(value(design.scene))
 
 
 def _thinnest_wall(scene: Scene) -> float:
@@ -144,19 +139,17 @@ RESULTS = {
         *("mass of the drawn part", "kg"),
         heading="shaft mass",
         about="mass of the segments",
-        of=lambda designs, _: designs.shaft_mass,
+        of=of_drawing(lambda scene: scene.shaft.shaft_mass),
         segments=True,
     ),
-    "mass": Result("mass of the cue", "kg", heading="cue mass", of=lambda designs, _: designs.mass),
+    "mass": Result("mass of the cue", "kg", heading="cue mass", of=of_drawing(lambda scene: scene.cue.mass)),
     "body_mass": Result("mass of the rest of the cue", "kg"),
     "end_mass": Result(
         *("end mass", "kg"),
         about="stick definition, small offsets; at an offset: of a tip that sticks",
-        of=lambda designs, offset: designs.stick.end_mass if offset is None else designs.stick_at(offset),
+        of=lambda design, offset: design.end_mass("stick" if offset is None else "offset", offset),
         argument="offset",
-        strikes=True,
         limit=True,
-        reasons=lambda designs: designs.stick.reasons,
         better="lower",
         listed=False,
     ),
@@ -166,7 +159,7 @@ RESULTS = {
         *("balance point of the drawn part, from the tip", "m", 1),
         heading="balance point",
         about="centre of the segments' mass, from the tip",
-        of=lambda designs, _: designs.balance_point,
+        of=of_drawing(lambda scene: scene.shaft.balance_point),
         segments=True,
     ),
     "radius": Result("radius", "m", 2),
@@ -175,23 +168,20 @@ RESULTS = {
         about="of the coupled strike",
         of=of_strike(lambda outcome: outcome.squirt),
         argument="offset",
-        strikes=True,
         better="lower",
     ),
     "squirt_slope": Result(
         "squirt slope",
         about="squirt over phi in the limit of small offsets",
-        of=lambda designs, _: designs.stick.squirt,
-        strikes=True,
+        of=lambda design, _: design.squirt_slope,
         better="lower",
         listed=False,
     ),
     "pivot_length": Result(
         *("natural pivot length", "m", 0),
         about="of small offsets, or of the coupled strike at an offset",
-        of=_pivot_lengths,
+        of=_pivot_length,
         argument="offset",
-        strikes=True,
         limit=True,
         better="higher",
         listed=False,
@@ -202,7 +192,6 @@ RESULTS = {
         about="after the coupled strike",
         of=of_strike(lambda outcome: outcome.ball_speed),
         argument="offset",
-        strikes=True,
         better="higher",
     ),
     "ball_velocity": Result("ball velocity", "m/s", 4),
@@ -219,7 +208,6 @@ RESULTS = {
         about="left in the cue as free vibration by the coupled strike",
         of=of_strike(lambda outcome: outcome.energy["cue vibration"]),
         argument="offset",
-        strikes=True,
         better="lower",
     ),
     "impulse": Result("impulse", "N s"),
@@ -229,7 +217,7 @@ RESULTS = {
         *("shaft stiffness at the tip, static, butt clamped", "N/m"),
         heading="stiffness at the tip",
         about="static: force across the tip over its deflection, the butt end clamped",
-        of=lambda designs, _: designs.tip_stiffness,
+        of=lambda design, _: design.tip_stiffness,
         segments=True,
         better="higher",
     ),
@@ -250,7 +238,7 @@ RESULTS = {
     "frequency": Result(
         *("natural frequency", "Hz", 2),
         about="of a bending mode",
-        of=lambda designs, mode: designs.frequencies[:, mode - 1],
+        of=lambda design, mode: design.frequency(mode),
         argument="mode",
         segments=True,
         listed=False,

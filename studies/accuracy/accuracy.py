@@ -1,6 +1,6 @@
 """How far off are the default's numbers, and what does accuracy change beside the choice of the model?
 
-(a) The default of `strike`, `end_mass` and `batch_stick` against fine resolutions, on the cues of meshes/ and on random
+(a) The default of `strike` and `end_mass` against fine resolutions, on the cues of meshes/ and on random
 cues (woods, carbon tubes, ferrules, bores; contact times 0.5 to 3 ms, b/R 0.05 to 0.5; all draws seeded). (b) Order
 against number of elements in f1 to f10. (c) The number of modes in squirt. (d) The squirt of ever fuller models against
 that of the whole stroke (LeatherTip, axial waves, axial force on the bent shaft); each is told how long the whole
@@ -23,8 +23,6 @@ from studies.pages import table
 RANDOM, SEED, FINE = 12, 11, 2e-4  # random cues; accuracy of the reference
 MODES, MOST = (12, 24, 48, 96), 220
 ORDERS, ELEMENTS = (4, 8, 16), (1, 2, 4, 8)
-BATCHES = (cf.Resolution(1, 20, 12), cf.Resolution(1, 30, 18), cf.Resolution(1, 60, 36))
-WOODS, TIMES = 8, np.linspace(0.6e-3, 3e-3, 7)  # wooden shafts of each of three batches, contact times, s
 PLAYED = ((350e6, 4.0, 0.4), (229e6, 2.0, 0.3), (60e6, 0.8, 0.1))  # Pa, m/s, b/R
 EFFECTS: tuple[tuple[str, tuple[cf.Effect, ...]], ...] = (
     ("dome", (strokes.DOME,)),
@@ -38,7 +36,8 @@ def axial_waves(cue: cf.Cue) -> cf.Effect:
     return next(effect for effect in cf.usual_scene(cue).effects if isinstance(effect, cf.AxialWaves))
 
 
-def default_errors() -> dict[str, np.ndarray]:
+@cache
+def errors() -> dict[str, np.ndarray]:
     """Relative errors of the default by quantity, over random cues and those of meshes/, three strokes each."""
     draw = np.random.default_rng(SEED)
     cues = [*map(strokes.cue, strokes.NAMES), *(strokes.random_cue(draw) for _ in range(RANDOM))]
@@ -56,35 +55,6 @@ def default_errors() -> dict[str, np.ndarray]:
                 exact = cf.resolve_end_mass(scene, drive, FINE)[0]
                 found[f"end mass, {drive}"].append(cf.end_mass(scene, drive) / exact - 1)
     return {name: np.abs(errors) for name, errors in found.items()}
-
-
-def batch_errors() -> dict[str, np.ndarray]:
-    """Relative errors of `batch_stick` over random wooden shafts and contact times, by resolution."""
-    draw, found = np.random.default_rng(SEED), {at: [] for at in BATCHES}  # type: dict[cf.Resolution, list[np.ndarray]]
-    for i, kind in enumerate(("none", "ferrule", "leather and ferrule")):
-        cues = []
-        for _ in range(WOODS):
-            head = strokes.random_cue(draw, kind).segments[:i]
-            front, butt = draw.uniform(0.009, 0.014), draw.uniform(0.018, 0.024)
-            front = head[0].tip_diameter if head else front
-            body = cf.Segment(draw.uniform(0.65, 0.8), front, butt, strokes.wood(draw))
-            cues.append(cf.Cue((*head, body), draw.uniform(0.25, 0.6)))
-        batch = cf.CueBatch.of(cues)
-
-        def masses(at: cf.Resolution, batch: cf.CueBatch = batch, cues: list[cf.Cue] = cues) -> np.ndarray:
-            scenes = [[strokes.scene(cue, float(T)) for cue in cues] for T in TIMES]
-            return np.array([cf.batch_stick(batch, some, at=at, ended=True)[0] for some in scenes])
-
-        fine = np.array([[cf.end_mass(strokes.scene(cue, float(T))) for cue in cues] for T in TIMES])
-        for at in BATCHES:
-            found[at].append(np.abs(masses(at) / fine - 1).ravel())
-    return {f"batch_stick, Resolution({r.elements}, {r.order}, {r.modes})": np.concatenate(e) for r, e in found.items()}
-
-
-@cache
-def errors() -> dict[str, np.ndarray]:
-    """All of table (a)."""
-    return default_errors() | batch_errors()
 
 
 def error_table() -> str:
@@ -169,11 +139,8 @@ def text() -> str:
         f"with the tip's dome and shear {off['... and tip shear']}. Measured squirt differs from the whole stroke by "
         "18 % ([uncertainty](../measured/uncertainty.md)).",
         "## Errors of the default",
-        "Five cues of meshes/ and 12 random ones, 3 strokes each, against `resolve` to 2e-4; for "
-        "`batch_stick(ended=True)` 24 random wooden shafts at 7 contact times, 0.6 to 3 ms, against `end_mass`. Its "
-        "largest errors lie near the contact time 2L/c, at which the front of the shear wave returns to the tip. A "
-        "brass tip, which vibrates at 100 to 250 kHz, is not among them: its stick end mass is off by up to 1.4 %, "
-        "as its printed spread shows.",
+        "Five cues of meshes/ and 12 random ones, 3 strokes each, against `resolve` to 2e-4. A brass tip, which "
+        "vibrates at 100 to 250 kHz, is not among them: its stick end mass is off by up to 1.4 %.",
         error_table(),
         "## Order against elements: largest relative error of f1 to f10",
         order_table(),

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 import cuefem as cf
+from cuefem.design import evaluate
 from studies import pages, strokes
 from studies.pages import table
 from studies.strokes import cue, hollow, squirt
@@ -49,7 +50,7 @@ def shaft(bore: float, depth: float, ferrule: float, tip: float, taper: float) -
 @cache
 def measures(drawn: cf.Cue) -> tuple[float, float, float]:
     """Tip stiffness, N/m; squirt at b/R 0.3, deg, with a bare tip and in the whole stroke."""
-    stiffness = float(cf.CueBatch.of([drawn]).tip_stiffness[0])
+    stiffness = float(evaluate([cf.Scene(drawn)], ["tip_stiffness"]).values[0, 0])
     return stiffness, squirt(strokes.scene(drawn, 1e-3, 0.3)), squirt(strokes.whole(drawn, 0.3))
 
 

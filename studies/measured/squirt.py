@@ -19,6 +19,7 @@ from scipy.optimize import brentq
 
 import cuefem as cf
 from cuefem.cue.materials import material
+from cuefem.design import evaluate
 from cuefem.io.measured_folder import load_measured
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measurement_types import AddedMass, PivotLength, Squirt
@@ -181,7 +182,7 @@ def asked_bore(E: float) -> float:
             if part > 1e-9:
                 kept.append(replace(s, length=part * s.length, butt_diameter=end, material=wood))
             ahead -= part * s.length
-        return float(cf.CueBatch.of([cf.Cue(tuple(kept), 0.4)]).tip_stiffness[0])
+        return float(evaluate([cf.Scene(cf.Cue(tuple(kept), 0.4))], ["tip_stiffness"]).values[0, 0])
 
     return 1e3 * float(brentq(lambda bore: stiffness(bore) - 3480, 4e-3, 11.5e-3))
 

@@ -11,7 +11,7 @@ import pytest
 import cuefem as cf
 from cuefem.cli.studies import round_words
 from cuefem.cue.materials import material
-from cuefem.design import Response, Span, Vary
+from cuefem.design import Response, Span, Vary, evaluate
 from cuefem.design.optimum import Limit, Optimum, Problem, Round, optimum
 from cuefem.io.study_files import load_study
 from studies.pages import STUDIES
@@ -67,7 +67,7 @@ def test_committed_study_finds_the_design_of_exact_gradients(tmp_path: Path) -> 
     assert told["active"][:2] == ["tip_stiffness >= 386.7", "wall >= 0.002"]
     assert told["responses"] == pytest.approx({"squirt_slope": told["value"], "tip_stiffness": 386.7, "wall": 0.002})
     written_best = cf.load(goal)
-    assert cf.CueBatch.of([written_best.cue]).tip_stiffness[0] == pytest.approx(386.7, rel=1e-6)
+    assert evaluate([cf.Scene(written_best.cue)], [STIFFNESS]).values[0, 0] == pytest.approx(386.7, rel=1e-6)
     assert written_best.cue.segments[0].tip_diameter == pytest.approx(told["values"]["tip diameter"], rel=1e-8)
     command_refuses("--force", "study", STUDY, "-o", goal)
 

@@ -5,7 +5,6 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import cuefem as cf
@@ -13,7 +12,7 @@ from cuefem.design import Levels, Normal, Response, Sample, Span, Study, Vary
 from cuefem.design.optimum import Limit, Problem, optimum
 from cuefem.design.scatter import Scatter
 from cuefem.design.sensitivity import sensitivity
-from tests.helpers.cues import kim, low_deflection, pool, scene
+from tests.helpers.cues import low_deflection, scene
 from tests.helpers.refusals import command_refuses, refuses, untouched
 from tests.helpers.sweeps import OPTIMUM, SCATTER, SCENE, STRUCK, STUDY, written
 
@@ -46,10 +45,9 @@ CALLS: dict[str, Callable[[], object]] = {
     "low must be above 0 where the spacing is logarithmic": lambda: Span(0.0, 1.0, 3, logarithmic=True),
     "values must hold at least one": lambda: Levels(()),
     "path must name a field": lambda: Vary((), Levels((1.0,))),
-    "count must be a whole number >= 1": lambda: Sample("sobol", 0, 1),
+    "count must be a whole number in [1, 1073741824]; got 0": lambda: Sample("sobol", 0, 1),
     "seed must be a whole number >= 0": lambda: Sample("sobol", 4, -1),
     "method must be one of grid, sobol": lambda: Sample("grid", 10, 1),
-    "count must be at most": lambda: Sample("sobol", 2**31, 1),
     "cue.segments[0].material takes names": lambda: varying("cue.segments[0].material", 1.0),
     "ball.mass takes numbers in (0, inf) kg": lambda: varying("ball.mass", "ash"),
     "factor must multiply a number": lambda: varying("cue.segments[0].kappa", 1.1, factor=True),
@@ -63,10 +61,6 @@ CALLS: dict[str, Callable[[], object]] = {
     "must be ball_speed(b), b an": lambda: Response.of("ball_speed(fast)"),
     "must be squirt(b), b an offset b/R in (-1, 1); got": lambda: Response.of("squirt(1)"),
     "must be pivot_length(b), b an offset b/R in (-1, 1) without 0": lambda: Response.of("pivot_length(0)"),
-    "CueBatch takes cues of one topology; got [1, 4]": lambda: cf.CueBatch.of([kim(), pool()]),
-    "batch_stick takes one contact, or 3": lambda: cf.batch_stick(
-        cf.CueBatch.of([kim()] * 3), cf.StickLimit.law(0.21, 0.4, 0.75, np.full(4, 1e-3), 0.54), at=AT
-    ),
     "a correlation is of what varies: nothing is called 'density'": lambda: scattered({("E", "density"): 0.3}),
     "the correlation of E and rho must be in (-1, 1); got 1.0": lambda: scattered({("E", "rho"): 1.0}),
     "the correlation of E and rho must be in (-1, 1); got nan": lambda: scattered({("E", "rho"): float("nan")}),
@@ -106,7 +100,7 @@ FILES = [
     (STUDY, "segments[0].material", "segments[3].material", "a segment of the cue's file, 0 to 0"),
     (STUDY, '["0.8 ms", "1.2 ms"]', "[]", "vary[1].values: values must hold at least one"),
     (STUDY, 'low = "0 mm"', 'low = "15 mm"', "vary[0]: low must be below high; got"),
-    (STUDY, "count = 16", "count = 0", "vary[0]: count must be a whole number >= 1"),
+    (STUDY, "count = 16", "count = 0", "vary[0]: count must be a whole number in [1, 1048576]"),
     (STUDY, "count = 16", "", "vary[0].count: must be given"),
     (STUDY, '"1.2 ms"]', '"1.2 mm"]', "vary[1].values[1]: must be a time"),
     (STUDY, 'high = "15 mm"', "high = 15", "vary[0].high: needs a unit"),

@@ -29,7 +29,7 @@ STUDY = Study(BASE, VARY, (Response.of("shaft_mass"), Response.of("tip_stiffness
 
 
 def designs(scatter: Scatter) -> np.ndarray:
-    return np.array([values for block in scatter.designs.blocks() for values in block])
+    return np.array([*scatter.designs.designs()])
 
 
 def test_indices_of_ishigami() -> None:

@@ -201,14 +201,14 @@ def test_csv_holds_every_design_to_the_last_bit(text: str, tmp_path: Path) -> No
     units = zip(asked.columns, asked.units, strict=True)
     assert head == ["design", *(f"{name} [{unit}]" if unit else name for name, unit in units), "failure"]
     assert [int(line[0]) for line in lines] == list(range(asked.size))
-    for line, values in zip(lines, (values for block in asked.blocks() for values in block), strict=True):
+    for line, values in zip(lines, asked.designs(), strict=True):
         inside, responses = line[1 : 1 + len(values)], line[1 + len(values) : -1]
         assert inside == [value if isinstance(value, str) else repr(value) for value in values]
         if values[0] >= 0.012:
             assert line[-1].startswith("Segment.tip_bore must be in [0, 0.012) m, its outer diameter; got 0.01")
             assert set(responses) == {""}
         else:
-            (alone,) = evaluate([asked.scene(values)], asked.responses, at=asked.resolution).values
+            (alone,) = evaluate([asked.scene(values)], asked.responses, at=asked.at).values
             assert [float(x) for x in responses] == pytest.approx(alone, rel=1e-12)
             assert line[-1] == ""
 

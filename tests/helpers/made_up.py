@@ -66,7 +66,7 @@ SPOT = Result(
     of=of_drawing(lambda scene: scene.shaft.length / 5),
     better="higher",
 )
-PUSH = Result("push", "m/s", 3, of=of_strike(lambda outcome: 2 * outcome.ball_speed), argument="offset", strikes=True)
+PUSH = Result("push", "m/s", 3, of=of_strike(lambda outcome: 2 * outcome.ball_speed), argument="offset")
 RIGID = Definition(
     *("rigid", "rigid body", "the inertia of the tip as a rigid body, plus one gram"),
     lambda tip, _: 1e-3 + 1 / float(np.sum(tip.amplitude[tip.omega == 0, 1] ** 2)),

@@ -22,7 +22,6 @@ THINGS = {
     "array": (lambda: cf.impulse(LUMPED), "Outcome(squirt=array(50,), ball_speed=array(50,), "),
     "modes": (lambda: cf.modes(CUE, 40), "Modes(["),
     "motion": (lambda: cf.motion(SCENE, np.linspace(0, 1e-3, 30)), "Motion(30 times to 0.001 s, "),
-    "batch": (lambda: cf.CueBatch.of([CUE, CUE]), "CueBatch(2 cues of 6 segments)"),
 }
 
 
