@@ -403,12 +403,12 @@ class LeatherTip(CueEffect):
         Notes
         -----
         From the compliance of the Hertz-weighted patch, less the difference between it and a rigid patch: a sixth on a
-        half-space, 0.05 (1 - nu/2)/(G a); less of it on thin leather and for a wide patch
+        half-space, 0.05 (1 - nu/2)/(G a); less of it on thin leather and for a wide patch, more on a dome
         (`cuefem.solid.tip_table.rigid_patch_gain`).
         """
         below = self.height - self._drop(self._place(diameter, offset)[0] * diameter / 2)
         give = self._compliance(diameter, offset, RADII[1:])[:, 1, 1]
-        give -= rigid_patch_gain(self.nu, below / diameter, RADII[1:])
+        give -= rigid_patch_gain(self.nu, self._curvature(diameter), below / diameter, RADII[1:])
         stiffness = np.maximum.accumulate(1 / give)  # near the rim it levels off, to a thousandth
         return RADII * diameter, np.append(0.0, self.E * diameter * stiffness)
 

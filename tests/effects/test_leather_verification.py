@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
@@ -15,15 +16,17 @@ from cuefem.solid.tip_compliance import (
     TipSolid,
     fitted,
     head_on,
-    lagrange,
     tip_table,
     usual,
 )
-from studies.beam.leather import COUNTS, curvatures, shape_at, solved
+from studies.beam.leather import COUNTS, curvatures, shape_at, solved, stuck
 
 TIP, DIAMETER = LeatherTip(6e-3, 9.5e-3, 100e6), 12.75e-3
 SHAPE = Shape(6 / 12.75, 12.75 / 9.5)
 PATCH = Patch(2 * 0.375 * 9.5 / 12.75, 2 / 12.75)
+
+
+# --- the solid --------------------------------------------------------------------------------------------------------
 
 
 def test_a_long_tip_is_a_rod() -> None:
@@ -55,6 +58,9 @@ def test_hertz() -> None:
     np.testing.assert_allclose(found / tt.half_space_head_on(0.3, np.array(0.01)), 1, rtol=5e-3)
 
 
+# --- the table --------------------------------------------------------------------------------------------------------
+
+
 def test_values() -> None:
     """h 6, D 12.75, r 9.5 mm, nu 0.4, E 100 MPa, b/R 0.375, a 2 mm: an independent solution with scikit-fem's own
     assembly of quadratic elements gave these."""
@@ -62,9 +68,6 @@ def test_values() -> None:
     np.testing.assert_allclose(np.diagonal(give), [1.938, 4.597], rtol=3e-3)
     assert abs(abs(give[0, 1]) - 0.129) < 1e-3 * math.sqrt(give[0, 0] * give[1, 1])
     assert give[0, 1] == give[1, 0] < 0
-    normal = 1 / (give[0, 0] - 1e6 * 0.05 * 0.6 / (100e6 / 2.8 * 2e-3))  # a rigid patch's, as on a half-space
-    radius, stiffness = TIP.shear_stiffness(DIAMETER, 0.375)
-    assert abs(np.interp(2e-3, radius, stiffness) / 1e6 / normal / 0.376 - 1) < 0.01
 
 
 RANDOM = [  # height, diameter, dome radius, mm; nu; b/R; patch, mm
@@ -118,37 +121,11 @@ def test_the_table_is_what_its_program_gives() -> None:
 
 
 @pytest.mark.heavy
-@pytest.mark.parametrize(("height", "radius"), [(0.2, 0.1), (0.47, 0.1), (0.47, 0.2), (0.47, 0.35), (1.2, 0.2)])
-def test_a_patch_that_sticks(height: float, radius: float) -> None:
+@pytest.mark.parametrize("nu", [0.3, 0.4])
+@pytest.mark.parametrize("dome", [math.inf, 10.605e-3, 8.955e-3], ids=["flat", "nickel", "dime"])
+def test_a_patch_that_sticks(dome: float, nu: float) -> None:
     """Its traction is the sum of Hertz's and a punch's that gives least (the theorem of least complementary energy)."""
-    how = fitted(height, radius, 7)
-    g, w = np.polynomial.legendre.leggauss(200)
-    beta = np.pi / 4 * (g + 1)
-    weight = w * np.sin(beta) * np.cos(beta) ** np.array([[2], [0]])
-    radial = weight / weight.sum(axis=1)[:, None] @ lagrange(radius * np.sin(beta), how) / 2
-    load = np.hstack([radial, -radial, 0 * radial])
-    C = load @ TipSolid(Shape(height, 0.0), how).surface(0.4, 1) @ load.T
-    rigid = 1 / np.linalg.inv(C).sum()
-    assert abs((C[0, 0] - tt.rigid_patch_gain(0.4, height, np.array(radius))) / rigid - 1) < 0.01
-
-
-def test_a_rod_of_two_moduli() -> None:
-    """Two diameters of twice the modulus in a long rod give 2 (1 - 1/2)/A less than the leather, to 1 %: where the
-    moduli meet, each holds or widens the other over about a diameter (0.7 % here)."""
-    how, patch = usual(4, 4, 6, 1), Patch(0.0, 0.45)
-    plain, stiff = (Shape(8.0, 0.0, ((2.0, 1.0, 0.3), (2.0, E, 0.3), (2.0, 1.0, 0.3))) for E in (1.0, 2.0))
-    less = [solved(shape, 0.3, patch, how)[0, 0] for shape in (plain, stiff)]
-    assert abs((less[0] - less[1]) / (4 / math.pi) - 1) < 0.01
-
-
-@pytest.mark.heavy
-def test_a_thin_soft_pad_is_a_bonded_layer() -> None:
-    """t/(A M), M the modulus of a layer that cannot widen; the free edge gives more, in proportion to t."""
-    errors, nu = [], 0.3
-    for t in (0.02, 0.01):
-        shape = Shape(0.5 + t, 0.0, ((t, 1e-7, nu),))
-        found = solved(shape, 0.3, Patch(0.0, 0.4), usual(5, 10, 4, 1))[0, 0]
-        bonded = t / 1e-7 * (1 + nu) * (1 - 2 * nu) / (1 - nu) * 4 / math.pi
-        errors.append(found / bonded - 1)
-    assert 0 < errors[1] < errors[0] < 0.05
-    assert abs(errors[0] / errors[1] / 2 - 1) < 0.03
+    for height, patch in product((0.3, 0.47, 0.7), (0.1, 0.2, 0.25)):
+        radius, stiffness = LeatherTip(height * DIAMETER, dome, 1e9, nu).shear_stiffness(DIAMETER, 0.0)
+        _, rigid = stuck(Shape(height, DIAMETER / dome), nu, patch)
+        assert np.interp(patch * DIAMETER, radius, stiffness) * rigid / (1e9 * DIAMETER) == pytest.approx(1, abs=0.01)
