@@ -17,11 +17,11 @@ from cuefem.designer.state import Design, Step
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.report.advice_table import advice_sheet
 from cuefem.report.charts import Axis, Curve, chart
-from cuefem.report.comparison_table import difference_words
 from cuefem.report.squirt import SHADED, offset_charts
 from cuefem.report.strike_table import grip_warning
 from cuefem.report.templates import chart_markup, sheet_markup
 from cuefem.report.unusual import unusual
+from cuefem.report.verdict_table import difference_words
 from cuefem.results.quantities import NONE, RESULTS, signed
 from cuefem.results.records import Record, Sheet
 from cuefem.results.uncertainty import SHAFTS
@@ -152,7 +152,7 @@ def _number_row(name: str, values: Sequence[Any], words: str, difference: Record
         return (words, *cells)
     mine, other = values[:2]
     if name == "squirt" and difference:
-        return (words, *cells, difference_words(difference))
+        return (words, *cells, difference_words(difference["difference"], difference["error"]))
     part = NONE if not mine or not other else signed(100 * (mine / other - 1), 1, "%")
     return (words, *cells, part)
 

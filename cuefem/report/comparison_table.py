@@ -10,6 +10,7 @@ from cuefem.report.drawings import ACROSS, CueDrawing, cue_drawing
 from cuefem.report.end_mass import SQUIRT_END_MASS
 from cuefem.report.squirt import offset_charts
 from cuefem.report.strike_table import grip_warning
+from cuefem.report.verdict_table import difference_words, squirt_difference
 from cuefem.results.comparison import struck_alike
 from cuefem.results.quantities import NONE, RESULTS, with_unit
 from cuefem.results.records import Record, Sheet
@@ -32,20 +33,9 @@ def comparison_sentences(record: Record) -> list[str]:
             missed = [cue for cue in (first, name) if math.isnan(record["cues"][cue]["squirt"])]
             which = f"the stroke of {' and of '.join(missed)} is a miscue" if missed else "a stroke is nearly a miscue"
             made.append(f"{name} and {first} cannot be compared in squirt: {which}.")
-        elif not squirt["distinct"]:
-            made.append(f"{name} is not distinct from {first} in squirt: {difference_words(squirt)} (1σ).")
         else:
-            more = "more" if squirt["difference"] > 0 else "less"
-            size, error = 100 * abs(squirt["difference"]), 100 * squirt["error"]
-            made.append(f"{name} squirts {size:.0f} ± {error:.0f} % {more} than {first} (1σ).")
+            made.append(f"{name}: {squirt_difference(**squirt)} {first} (1σ).")
     return made
-
-
-def difference_words(difference: Record) -> str:
-    """A difference in per cent with its uncertainty."""
-    size, error = 100 * difference["difference"], 100 * difference["error"]
-    digits = 0 if error >= 2 else 1 if error >= 0.2 else 2
-    return f"{size:+.{digits}f} ± {error:.{digits}f} %".replace("-", "−")
 
 
 def comparison_sheet(record: Record) -> Sheet:
@@ -55,9 +45,11 @@ def comparison_sheet(record: Record) -> Sheet:
     for name, own in record["cues"][first].items():
         cells = [_label(name), _value(name, own)]
         for other in others:
-            difference = record["differences"][other].get(name)
-            told = "" if difference is None else difference_words(difference) + ("" if difference["distinct"] else " *")
-            cells += [_value(name, record["cues"][other][name]), told or NONE]
+            told = NONE
+            if difference := record["differences"][other].get(name):
+                told = difference_words(difference["difference"], difference["error"])
+                told += "" if difference["distinct"] else " *"
+            cells += [_value(name, record["cues"][other][name]), told]
         rows.append(tuple(cells))
         if name == "squirt":
             lateral = [_lateral(record["cues"][cue][name]) for cue in (first, *others)]

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from cuefem.report.drawings import ACROSS, FRONT, cue_drawing, legend
 from cuefem.report.templates import environment
-from cuefem.report.verdict_table import ScaleRow, scale, squirt_words
+from cuefem.report.verdict_table import scale, squirt_difference, squirt_words
 from cuefem.results.quantities import NONE, TRADE, with_unit
 from cuefem.results.records import Record
 from cuefem.scene import Scene
@@ -62,43 +62,15 @@ def headline_markup(own: Shown, other: Shown | None = None, difference: Record |
     text, error = (
         squirt_words(verdict) if verdict else (with_unit(abs(own.numbers["squirt"] or 0.0), "rad", decimals=2), "")
     )
-    lines = [] if other is None else [_told(difference, other.name)]
-    first = next(iter(verdict["among"]), "") if verdict else ""
-    if verdict and first and (other is None or other.name != first):
-        among = verdict["among"][first]
-        told = {"difference": among["difference"], "error": among["difference_error"], "distinct": among["distinct"]}
-        lines.append(_told(told, first))
+    lines = []
+    if other is not None:
+        lines.append(("compared with" if difference is None else squirt_difference(**difference), other.name))
+    for first, among in [*(verdict["among"].items() if verdict else ())][:1]:
+        if other is None or other.name != first:
+            told = squirt_difference(among["difference"], among["difference_error"], among["distinct"])
+            lines.append((told, first))
     offset = verdict["offset"] if verdict else own.scene.stroke.offset
     return _macro("headline", own.numbers["squirt"], text, error, f"{offset:.2f}", lines, grip)
-
-
-def _told(difference: Record | None, other: str) -> tuple[str, str, str]:
-    """A relative difference with its uncertainty: "15 ± 8 %", "less squirt than", and of what it is."""
-    if difference is None:
-        return "", "compared with", other
-    if not difference["distinct"]:
-        return "", "squirt not distinct from", other
-    size, error = 100 * abs(difference["difference"]), 100 * difference["error"]
-    return f"{size:.0f} ± {error:.0f} %", f"{'less' if difference['difference'] < 0 else 'more'} squirt than", other
-
-
-def scale_rows(own: Shown, other: Shown | None = None) -> list[ScaleRow]:
-    """The reference cues, this design with its uncertainty, and the other one, by their squirt."""
-    if not own.verdict:
-        return []
-    rows = scale(own.verdict, own.name)
-    squirt = None if other is None else other.numbers["squirt"]
-    if other is None or squirt is None or own.verdict["head_on"] or other.name in own.verdict["among"]:
-        return [
-            row._replace(beside="other") if other and row.name == other.name else row._replace(beside="")
-            for row in rows
-        ]
-    mine = next(row for row in rows if row.own)
-    most = abs(own.verdict["squirt"]) / mine.at if mine.at else 1.0
-    at = min(100.0, abs(squirt) / most)
-    decimals = len(mine.text.rstrip("°").partition(".")[2])
-    added = ScaleRow(other.name, with_unit(abs(squirt), "rad", decimals=decimals), "other", False, at, at, at)
-    return sorted([*(row._replace(beside="") for row in rows), added], key=lambda row: row.at)
 
 
 def tiles(own: Shown, other: Shown | None = None) -> list[Tile]:
@@ -120,8 +92,9 @@ def _value(design: Shown, key: str) -> float | None:
 
 
 def scale_markup(own: Shown, other: Shown | None = None) -> str:
-    """The scale as markup."""
-    return _macro("scale", scale_rows(own, other), other)
+    """The reference cues, this design with its uncertainty, and the other one, by their squirt."""
+    beside = None if other is None else (other.name, other.numbers["squirt"])
+    return _macro("scale", scale(own.verdict, own.name, beside) if own.verdict else [], other)
 
 
 def tiles_markup(own: Shown, other: Shown | None = None) -> str:

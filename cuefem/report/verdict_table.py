@@ -7,15 +7,12 @@ from typing import NamedTuple
 
 from cuefem.contact.strike import strike_modes
 from cuefem.io.ready import ready_cues
-from cuefem.report.scene_words import listed
-from cuefem.results.quantities import scaled, signed, with_unit
+from cuefem.results.quantities import scaled, with_unit
 from cuefem.results.records import Record, Sheet
 from cuefem.results.uncertainty import SHAFTS
 from cuefem.results.verdict import verdict_record
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
-
-SAME = 0.005  # differences between reference cues below this are told as "as much"
 
 
 def verdict(scene: Scene) -> Record:
@@ -76,36 +73,26 @@ def way_out(offset: float) -> str:
     return f"{part} of the way to the edge"
 
 
-def than_words(difference: float) -> str:
-    """A relative difference in words: "17 % less"."""
-    if abs(difference) < SAME:
-        return "as much"
-    return f"{100 * abs(difference):.0f} % {'less' if difference < 0 else 'more'}"
+def difference_words(difference: float, error: float) -> str:
+    """A relative difference with its uncertainty: "−3 ± 8 %"."""
+    digits = 0 if error >= 0.02 else 1 if error >= 0.002 else 2
+    return f"{100 * difference:+.{digits}f} ± {100 * error:.{digits}f} %".replace("-", "−")
 
 
-def beside_words(difference: float, other: str) -> str:
-    """A relative difference and of what it is: "17 % less than plain maple"."""
-    words = than_words(difference)
-    return f"{words} {'as' if abs(difference) < SAME else 'than'} {other}"
+def squirt_difference(difference: float, error: float, distinct: bool) -> str:
+    """The same of squirt, to stand before what it is compared with: "15 ± 8 % less squirt than"."""
+    words = difference_words(difference, error)
+    more = "more" if difference > 0 else "less"
+    return f"{words[1:]} {more} squirt than" if distinct else f"{words} squirt, not distinct from"
 
 
 def standing(record: Record) -> list[str]:
-    """Squirt relative to the reference cues, in sentences; none without a reference cue."""
-    among = record["among"]
-    if not among:
-        return []
-    first, *others = among
-    own = among[first]
-    size, error = 100 * own["difference"], 100 * own["difference_error"]
-    if own["distinct"]:
-        more = "more" if size > 0 else "less"
-        said = f"{abs(size):.0f} ± {error:.0f} % {more} squirt than a {first} shaft with the same tip."
-    else:
-        told = signed(size, 0, f"± {error:.0f} %")
-        said = f"Squirt is not distinct from that of a {first} shaft with the same tip: {told}."
-    ratios = {name: among[name]["squirt"] / among[first]["squirt"] - 1 for name in others}
-    rest = [f"{name} has {than_words(ratio)} squirt" for name, ratio in ratios.items()]
-    return [said, f"Reference pool cues with the same tip and stroke: {listed(rest)} than {first}."] if rest else [said]
+    """Squirt relative to the first reference cue, in a sentence; none without a reference cue."""
+    return [
+        f"{squirt_difference(own['difference'], own['difference_error'], own['distinct'])} a {first} shaft with the "
+        "same tip."
+        for first, own in [*record["among"].items()][:1]
+    ]
 
 
 def uncertainty_line(record: Record) -> str:
@@ -124,52 +111,46 @@ def _percent(share: float) -> str:
 
 
 class ScaleRow(NamedTuple):
-    """A cue on the scale: name, squirt, whether it is the design itself, and its position in per cent of the scale."""
+    """A cue on the scale: its name, its squirt in words, how it differs, "own" or "other" if it is the design or the
+    one beside it, and its position and range in per cent of the scale."""
 
     name: str
     text: str
     beside: str
-    own: bool
+    kind: str
     at: float
     low: float
     high: float
 
 
-def scale(record: Record, name: str = "yours") -> list[ScaleRow]:
-    """The cues by their squirt, the least first, one's own with its uncertainty; per cent are of the scale's length."""
+def scale(record: Record, name: str = "yours", other: tuple[str, float | None] | None = None) -> list[ScaleRow]:
+    """The cues by their squirt, the least first, one's own with its uncertainty; other: name and squirt of one more."""
     mine, error = abs(record["squirt"]), record["squirt_error"]
-    others = {name: abs(beside["squirt"]) for name, beside in record["among"].items()}
-    most = 1.05 * max([mine + error, *others.values()]) or 1.0
+    squirts = {each: abs(beside["squirt"]) for each, beside in record["among"].items()}
+    first = next(iter(squirts), "")
+    beside, squirt = other or ("", None)
+    if squirt is not None and not record["head_on"]:
+        squirts.setdefault(beside, abs(squirt))
     text, off = squirt_words(record)
     decimals = len(text.rstrip("°").partition(".")[2])
-
-    def row(name: str, squirt: float, error: float, words: str, beside: str) -> ScaleRow:
-        places = (100 * each / most for each in (squirt, max(0.0, squirt - error), squirt + error))
-        return ScaleRow(name, words, beside, bool(error), *places)
-
-    first = next(iter(others), "")
-    rows = [
-        row(
-            name,
-            squirt,
-            0.0,
-            with_unit(squirt, "rad", decimals=decimals),
-            "" if name == first else beside_words(squirt / others[first] - 1, first),
-        )
-        for name, squirt in others.items()
-    ]
-    return sorted([*rows, row(name, mine, error, text, f"± {off}")], key=lambda each: each.at)
+    part = 100 / (1.05 * max([mine + error, *squirts.values()]) or 1.0)
+    rows = [ScaleRow(name, text, f"± {off}", "own", part * mine, part * max(0.0, mine - error), part * (mine + error))]
+    for each, own in squirts.items():
+        ratio = round(100 * (own / squirts[first] - 1)) if first else 0
+        words = f"{abs(ratio)} % {'less' if ratio < 0 else 'more'} than {first}" if ratio else f"as much as {first}"
+        told, kind = with_unit(own, "rad", decimals=decimals), "other" if each == beside else ""
+        rows.append(ScaleRow(each, told, words if each != first else "", kind, *3 * (part * own,)))
+    return sorted(rows, key=lambda row: row.at)
 
 
 def verdict_things(record: Record) -> list[Sheet | str]:
     """The verdict in the terminal."""
-    scale_sheet = scale(record)
-    rows = tuple((row.name, row.text, _bar(row), row.beside) for row in scale_sheet)
-    own = {i: "bold" for i, row in enumerate(scale_sheet) if row.own}
+    rows = scale(record)
+    own = {i: "bold" for i, row in enumerate(rows) if row.kind == "own"}
     head = ("cue", "squirt", "less to more squirt", "")
-    table = Sheet(
-        "Reference pool cues, with the same tip and stroke", head, rows, (uncertainty_line(record),), (0, 2, 3), own
-    )
+    cells = tuple((row.name, row.text, _bar(row), row.beside) for row in rows)
+    title = "Reference pool cues, with the same tip and stroke"
+    table = Sheet(title, head, cells, (uncertainty_line(record),), (0, 2, 3), own)
     return [headline(record), *standing(record), "", table]
 
 
@@ -179,7 +160,7 @@ BAR = 32  # characters of the scale in a terminal
 def _bar(row: ScaleRow) -> str:
     at, low, high = (round(BAR * each / 100) for each in (row.at, row.low, row.high))
     line = ["·"] * (BAR + 1)
-    if row.own:
+    if row.kind == "own":
         line[low : high + 1] = ["━"] * len(line[low : high + 1])
     line[min(at, BAR)] = "●"
     return "".join(line)

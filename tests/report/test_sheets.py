@@ -71,4 +71,4 @@ def test_headings_wrap_before_texts_and_numbers_never() -> None:
     assert re.fullmatch(r"\[words\] of text +-1.2345 m/s +3.4e-12", row)
     *_, row, rest = lines(32)
     assert (row.split("  ")[0], rest) == ("[words] of", "text")
-    assert lines(20) == lines(60)  # even the least is too wide: the terminal may wrap it
+    assert "-1.2345 m/s  3.4e-12" in rendered([table], 20)  # too wide: the terminal may wrap the lines
