@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 
-from cuefem.contact.strike import strike
-from cuefem.cue import Array
 from cuefem.report.charts import Axis, Chart, Curve, chart
 from cuefem.results.convergence import MOST, Level, levels, relative_error
-from cuefem.results.quantities import NONE, TRADE, significant
+from cuefem.results.quantities import scaled, significant
 from cuefem.results.records import Entry, Record, Sheet, sheet
 from cuefem.scene import Scene
 
 WANTED = (1e-2, 1e-3, 1e-4, 1e-6)
-# A plain sum past so many modes takes seconds and says nothing new.
-MOST_PLAIN = 150
 
 Track = Callable[[Sequence[Any]], Iterable[Any]]
 
@@ -27,12 +24,12 @@ def cost_record(scene: Scene, *, most: int = MOST, track: Track = iter) -> Recor
     """Levels of resolution up to ``most`` modes, each with its errors and seconds; what to take for `WANTED`.
 
     Of each level: "modes", "steps", "elements", "order", "unknowns"; "estimate", its estimated relative error (None on
-    the first two); "difference" from the last level; "seconds" of all levels up to it, as `cuefem.resolve` takes; and
-    "plain", the sum without a tail: its own difference and seconds. ValueError for a lumped cue, which is exact.
+    the first two); "difference" from the last level; "seconds" of all levels up to it, as `cuefem.resolve` takes.
+    ValueError for a lumped cue, which is exact.
     """
     climbed = _climbed(scene, most, track)
     best = climbed[-1][0].outcome
-    rows = [_level_record(scene, level, seconds, best) for level, seconds in track(climbed)]
+    rows = [_level_record(scene, level, seconds, best) for level, seconds in climbed]
     return {"levels": rows, "wanted": [_recommended(rtol, rows) for rtol in WANTED]}
 
 
@@ -51,11 +48,6 @@ def _climbed(scene: Scene, most: int, track: Track) -> list[tuple[Level, float]]
 
 
 def _level_record(scene: Scene, level: Level, seconds: float, best: Any) -> Record:
-    plain = None
-    if level.at.modes <= MOST_PLAIN:
-        start = perf_counter()
-        outcome = strike(scene, level.at)
-        plain = {"seconds": perf_counter() - start, "difference": relative_error(outcome, best, scene)}
     return {
         "modes": level.at.modes,
         "steps": level.at.steps,
@@ -65,7 +57,6 @@ def _level_record(scene: Scene, level: Level, seconds: float, best: Any) -> Reco
         "estimate": level.outcome.error,
         "difference": None if level.outcome is best else relative_error(level.outcome, best, scene),
         "seconds": seconds,
-        "plain": plain,
     }
 
 
@@ -83,9 +74,7 @@ def cost_sheets(record: Record) -> list[Sheet]:
     sizes: dict[str, Entry] = {"modes": "{modes}", "steps": "{steps}", "elements x order": _mesh}
     errors = {"estimate": "{estimate:error}", "difference": "{difference:error}"}
     times: dict[str, Entry] = {
-        "ms, sequence": lambda row: _milliseconds(row["seconds"]),
-        "truncated sum": "{plain[difference]:error}",
-        "ms, truncated": lambda row: _milliseconds((row["plain"] or {}).get("seconds")),
+        "ms, sequence": lambda row: significant(float(scaled(row["seconds"], "s")), 3),
     }
     last: dict[str, Entry] = {"estimate": "{estimate:error}", "ms": times["ms, sequence"]}
     return [
@@ -94,8 +83,7 @@ def cost_sheets(record: Record) -> list[Sheet]:
             sizes | errors | times,
             record["levels"],
             "Relative error, the largest of squirt, ball speed and spin: estimate, and difference from the last row.",
-            "ms, sequence: time of all rows down to this one, which `resolve` runs. Truncated sum: the same modes "
-            "without the truncation correction.",
+            "ms, sequence: time of all rows down to this one, which `resolve` runs.",
             "elements: number for all segments together; order: degree of their polynomials.",
         ),
         sheet(
@@ -116,32 +104,12 @@ def _mesh(row: Mapping[str, Any]) -> str:
     return f"{sum(elements) if isinstance(elements, list) else elements} x {row['order']}"
 
 
-def _milliseconds(value: float | None) -> str:
-    return NONE if value is None else significant(TRADE["s"][0] * value, 3)
-
-
 def cost_charts(record: Record) -> list[Chart]:
-    """Error against seconds and against unknowns, for a page."""
+    """Error against the time of the sequence, for a page."""
     levels = record["levels"]
-    sums = [row["plain"] for row in levels]
-    errors = {
-        "estimate": ([row["estimate"] for row in levels], "c1"),
-        "difference": ([row["difference"] for row in levels], "c3"),
-        "truncated sum": ([plain and plain["difference"] for plain in sums], "c2"),
-    }
-
-    def drawn(title: str, own: list[float], of_sums: list[float | None]) -> Chart:
-        sizes = {"truncated sum": of_sums}
-        curves = [Curve(name, _powers(sizes.get(name, own)), _powers(e), style) for name, (e, style) in errors.items()]
-        return chart(title, curves, x=Axis(f"{title.rpartition(' ')[2]}, log10"), y=Axis("relative error, log10"))
-
-    seconds, unknowns = ([row[name] for row in levels] for name in ("seconds", "unknowns"))
-    return [
-        drawn("Error against seconds", seconds, [plain and plain["seconds"] for plain in sums]),
-        drawn("Error against unknowns", unknowns, unknowns),
+    ms = [math.log10(scaled(row["seconds"], "s")) for row in levels]
+    curves = [
+        Curve(name, ms, np.log10([row[name] or np.nan for row in levels]), style)
+        for name, style in (("estimate", "c1"), ("difference", "c3"))
     ]
-
-
-def _powers(values: Sequence[float | None]) -> Array:
-    """The logarithms of what there is to base 10, on the axes of charts."""
-    return np.log10([value or np.nan for value in values])
+    return [chart("Error against time", curves, x=Axis("time in ms, log10"), y=Axis("relative error, log10"))]

@@ -1,8 +1,7 @@
-"""What each effect of a scene is worth, as a record and as a sheet, with what it costs."""
+"""What each effect of a scene changes, as a record and as a sheet."""
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict
 
@@ -11,14 +10,12 @@ from cuefem.design.worth import Change, Variant, change, variants
 from cuefem.endmass.definitions import equivalent_end_mass
 from cuefem.report.scene_words import assumptions, effect_words
 from cuefem.results.convergence import levels
-from cuefem.results.quantities import NONE, degrees, grams, with_unit
+from cuefem.results.quantities import NONE, degrees, grams
 from cuefem.results.records import Record, Sheet
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import ended_tip_modes
 
 DEFAULT_RTOL = 1e-2
-# A strike is timed as the quickest of some, as many as fit in this many seconds.
-TIMED, TRIES = 0.3, 5
 # Strikes are this many times as exact as the tolerance.
 MARGIN = 3
 
@@ -30,20 +27,8 @@ def struck(scene: Scene, at: Resolution | None) -> Outcome:
     return strike(scene) if at is None else strike_modes(scene, ended_tip_modes(scene, at.modes))
 
 
-def timed_strike(scene: Scene, at: Resolution | None) -> tuple[Outcome, float]:
-    """Outcome of a strike, and the seconds of processor time it takes with its modes: the quickest of some."""
-    begun, quickest = time.perf_counter(), float("inf")
-    for _ in range(TRIES):
-        start = time.process_time()
-        outcome = struck(scene, at)
-        quickest = min(quickest, time.process_time() - start)
-        if time.perf_counter() - begun > TIMED:
-            break
-    return outcome, quickest
-
-
 def effects_record(scene: Scene, *, rtol: float = DEFAULT_RTOL, track: Track = iter) -> Record:
-    """Every effect dropped or added, what that changes, and which are worth their time at the tolerance ``rtol``.
+    """Every effect dropped or added, what that changes, and which matter at the tolerance ``rtol``.
 
     All strikes are at the resolution that the scene itself needs, so that their errors are alike and it is the effect
     that shows. track: follows the work, an iterator over the variants.
@@ -52,13 +37,13 @@ def effects_record(scene: Scene, *, rtol: float = DEFAULT_RTOL, track: Track = i
     if scene.lumped is None:
         *_, level = levels(scene, rtol / MARGIN)
         at = level.at
-    base, seconds = timed_strike(scene, at)
+    base = struck(scene, at)
     rows = [_row(variant, scene, base, rtol=rtol, at=at) for variant in track(variants(scene))]
     rows.sort(key=lambda row: -1.0 if row["weight"] is None else row["weight"], reverse=True)
     return {
         "rtol": rtol,
         "resolution": None if at is None else asdict(at),
-        "base": _figures(base, scene) | {"unknowns": base.unknowns, "seconds": seconds},
+        "base": _figures(base, scene),
         "effects": rows,
         "worth": worth(rows),
     }
@@ -91,7 +76,7 @@ def _row(variant: Variant, scene: Scene, base: Outcome, *, rtol: float, at: Reso
     if variant.scene is None:
         return about | _refused(variant.reason)
     try:
-        outcome, seconds = timed_strike(variant.scene, at)
+        outcome = struck(variant.scene, at)
     except (ValueError, RuntimeError) as error:
         return about | _refused(str(error))
     changed = change(outcome, base, offset=scene.stroke.offset)
@@ -101,8 +86,6 @@ def _row(variant: Variant, scene: Scene, base: Outcome, *, rtol: float, at: Reso
         "change": _changes(changed),
         "weight": changed.weight,
         "matters": changed.weight >= rtol,
-        "unknowns": outcome.unknowns,
-        "seconds": seconds,
     }
 
 
@@ -132,16 +115,14 @@ def effects_sheet(record: Record, scene: Record) -> Sheet:
     base, tried = record["base"], [row for row in record["effects"] if not row["refused"]]
     small = [row for row in tried if not row["matters"]]
     first = ("unmodified scene", degrees(base["squirt"]), grams(base["end_mass"]), f"{base['ball_speed']:.4f}")
-    rows: list[tuple[str, ...]] = [
-        (*first, f"{base['spin']:.2f}", str(base["unknowns"]), seconds_words(base["seconds"]))
-    ]
+    rows: list[tuple[str, ...]] = [(*first, f"{base['spin']:.2f}")]
     rows += [_cells(row) for row in tried if row["matters"]]
     dim = range(len(rows), len(rows) + len(small) + 1)
     if small:  # a row and no style alone says so, also where colours are not
-        rows += [(f"changes less than {percent}:", *[""] * 6), *map(_cells, small)]
+        rows += [(f"changes less than {percent}:", *[""] * 4), *map(_cells, small)]
     return Sheet(
         f"Sensitivity to each effect at offset b/R = {scene['stroke']['offset']:.4g}",
-        ("", "squirt", "end mass", "ball speed, m/s", "spin, rad/s", "DOF", "CPU time"),
+        ("", "squirt", "end mass", "ball speed, m/s", "spin, rad/s"),
         tuple(rows),
         (
             "without: this effect removed; with: an effect that is not listed added, at a default value; %: change "
@@ -169,8 +150,7 @@ def _not_tried(rows: Sequence[Record]) -> list[str]:
 def _cells(row: Record) -> tuple[str, ...]:
     word = "without" if row["listed"] else "with"
     squirt, speed, spin = (_percent(row["change"][name]["relative"]) for name in ("squirt", "ball_speed", "spin"))
-    figures = (squirt, grams(row["end_mass"]), speed, spin)
-    return (f"{word} {row['words']}", *figures, str(row["unknowns"]), seconds_words(row["seconds"]))
+    return (f"{word} {row['words']}", squirt, grams(row["end_mass"]), speed, spin)
 
 
 def _percent(part: float | None) -> str:
@@ -179,22 +159,12 @@ def _percent(part: float | None) -> str:
     return "0 %" if abs(part) < 5e-6 else f"{100 * part:+.3f} %" if abs(part) < 1e-3 else f"{100 * part:+.2f} %"
 
 
-def seconds_words(seconds: float) -> str:
-    """A duration of a computation."""
-    return with_unit(seconds, "s", 3) if seconds < 1 else f"{seconds:.2f} s"
-
-
 def advice(record: Record, percent: str) -> list[str]:
     """The recommendation, in sentences."""
-    base = record["base"]["seconds"]
+    found = record["worth"]
     lines = []
-    for words in record["worth"]["drop"]:
-        (row,) = (row for row in record["effects"] if row["words"] == words and row["listed"])
-        spared = base - row["seconds"]
-        saving = f" and saves {seconds_words(spared)} of {seconds_words(base)}" if spared > 0.1 * base else ""
-        lines.append(f"Negligible: {words}; removing it changes less than {percent}{saving}.")
-    if record["worth"]["add"]:
-        lines.append(f"Missing, each changes {percent} or more: {', '.join(record['worth']['add'])}.")
-    if not lines:
-        lines.append(f"At a tolerance of {percent} no listed effect is negligible and no unlisted effect matters.")
-    return lines
+    if found["drop"]:
+        lines.append(f"Negligible, removing each changes less than {percent}: {', '.join(found['drop'])}.")
+    if found["add"]:
+        lines.append(f"Missing, each changes {percent} or more: {', '.join(found['add'])}.")
+    return lines or [f"At a tolerance of {percent} no listed effect is negligible and no unlisted effect matters."]

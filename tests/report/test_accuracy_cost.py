@@ -32,4 +32,4 @@ def test_what_is_recommended_is_what_resolve_takes(record: dict) -> None:
 def test_the_command_prints_and_draws(tmp_path: Path) -> None:
     assert "1e-06, not reached" in said("cost", KIM, "--most", 24)
     said("cost", KIM, "--most", 24, "--output", tmp_path / "cost.html")
-    assert (tmp_path / "cost.html").read_text(encoding="utf-8").count('<path class="curve c2" d="M') == 4  # keys too
+    assert (tmp_path / "cost.html").read_text(encoding="utf-8").count('<path class="curve c3" d="M') == 2  # its key too
