@@ -204,9 +204,10 @@ def _with_game(scene: Scene, name: str) -> Scene:
 
 
 def written(key: str, shown: float, scene: Scene) -> str:
-    """A number with its unit, to the digits of a slider's step: "12.40 mm"."""
+    """A number with its unit, to the digits of a slider's step, or to its own up to three: "12.40 mm"."""
     known = range_of(key)
-    decimals = len(f"{known.step:g}".partition(".")[2])
+    least, whole_text = len(f"{known.step:g}".partition(".")[2]), f"{known.scale * shown:.3f}"
+    decimals = max(least, len(whole_text.rstrip("0").partition(".")[2]))
     return f"{known.scale * shown:.{decimals}f} {known.unit}".rstrip()
 
 

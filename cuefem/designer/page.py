@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from html import escape
 from importlib.resources import files
 from pathlib import PurePosixPath
 from typing import Any
 
-from nicegui import app, background_tasks, events, ui
+from nicegui import Client, app, background_tasks, events, ui
 
 from cuefem.designer import computation, panels
 from cuefem.designer.computation import computed
@@ -50,6 +51,13 @@ OPTIONS = {"opened": OPENED, "now": NOW}
 # What is computed of a design before its tabs, and for each tab.
 FIRST, OF_TAB = ("struck", "numbers", "verdict"), {"Curves": ("curve", "gram"), "Changes": ("changes",)}
 SHARED = ("struck", "numbers", "curve", "gram")  # also computed of the other design
+
+
+async def is_open(client: Client, timeout: float = 60.0) -> bool:
+    """Whether a tab's browser has connected; it has not if the tab was closed before its page was there."""
+    with suppress(TimeoutError):
+        await client.connected(timeout=timeout)
+    return client.has_socket_connection
 
 
 class Page:
@@ -416,7 +424,8 @@ class Page:
 
     async def _begin(self) -> None:
         """Take up what this tab had before a reload, and answer."""
-        await self.client.connected(timeout=60.0)
+        if not await is_open(self.client):
+            return
         kept = app.storage.tab.get("history")
         if isinstance(kept, Steps):
             self.history = kept

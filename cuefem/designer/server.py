@@ -12,7 +12,7 @@ from starlette.middleware.trustedhost import TrustedHostMiddleware
 from starlette.responses import HTMLResponse, PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from cuefem.designer.page import KINDS, LARGEST_FILE, Page
+from cuefem.designer.page import KINDS, LARGEST_FILE, Page, is_open
 from cuefem.designer.state import Design
 from cuefem.handbook.page import page as handbook
 from cuefem.quantity.slips import Unusual
@@ -28,8 +28,8 @@ def serve(first: Design, *, port: int, show: bool, announce: Callable[[str], Non
 
     @ui.page("/")
     async def index() -> None:
-        await ui.context.client.connected()
-        Page(first)
+        if await is_open(ui.context.client):
+            Page(first)
 
     app.add_api_route("/guide", handbook, response_class=HTMLResponse)
     app.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])
