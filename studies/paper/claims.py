@@ -66,18 +66,3 @@ def markdown(claims: Sequence[Claim]) -> str:
     """Claims as a markdown table."""
     head = ["| " + " | ".join(COLUMNS) + " |", "|" + "---|" * len(COLUMNS)]
     return "\n".join([*head, *map(markdown_row, claims)]) + "\n"
-
-
-def read_markdown(text: str) -> list[Claim]:
-    """The claims of a table that `markdown` wrote, other lines passed over; numbers at their printed precision."""
-    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines() if line.startswith("|")]
-    claims = []
-    for cells in rows:
-        if len(cells) == len(COLUMNS) and cells[6] in VERDICTS:
-            source, what, printed, derived, unit, _, verdict, cause = cells
-            claims.append(Claim(source, what, _value(printed), _value(derived), unit, verdict, cause))
-    return claims
-
-
-def _value(cell: str) -> float | None:
-    return None if cell == NONE else float(cell)

@@ -1,134 +1,16 @@
-"""The papers' closed forms, one function an equation: [Kim], [Shepard], Alciatore's [A.30], [A.31], [B.1].
+"""The papers' closed forms, one function an equation: [Kim], [Shepard], Alciatore's [A.31], [B.1].
 
 Numpy only. Everything is per unit cue speed and broadcasts over arrays; masses are ratios to the ball's, except in
 `closed_form`. m_e is always the effective end mass felt at the tip, m_c [Kim]'s mass of the cue end. Where what [Kim]
 prints does not follow from its own equations these functions give the derived result; studies/paper/kim.md shows both.
 """
 
-from cuefem.results.closed_forms import (
-    alciatore_a31,
-    alciatore_a31_mass_ratio,
-    axis_offset,
-    cue_end_mass,
-    natural_pivot_length,
-)
-from studies.paper.closed_forms.coefficients import (
-    Coefficients,
-    critical_friction,
-    gamma,
-    jam_friction,
-    lumped,
-    one_minus_gamma,
-    rigid,
-    two_part,
-)
-from studies.paper.closed_forms.cue_end import (
-    base_radius,
-    centre_of_mass,
-    cone_end_mass,
-    full_cone_length,
-    inertia_factor,
-    volume_ratio,
-)
-from studies.paper.closed_forms.kim_stroke import (
-    ClosedForm,
-    Impulses,
-    closed_form,
-    closed_form_holds,
-    compression_impulse,
-    final_impulse,
-    initial_impulse,
-    leaving_tangent,
-    restitution_bounds,
-    restitution_factor,
-    slip_impulse,
-    squirt_tangent,
-)
-from studies.paper.closed_forms.light import (
-    Expansion,
-    ball_speed,
-    ball_spin,
-    cue_end_rotation,
-    cue_speed,
-    first_order_coefficients,
-    first_order_critical_friction,
-    first_order_gamma,
-    first_order_leaving_tangent,
-    first_order_squirt,
-    kinetic_energy,
-    largest_spin,
-    light_coefficients,
-    light_cue_end_rotation,
-    light_initial_impulse,
-    light_restitution_factor,
-    offset_of_largest_spin,
-    resistance,
-    squirt_slope,
-)
-from studies.paper.closed_forms.miscue import compression_stick_friction, miscue_friction, miscue_offset
-from studies.paper.closed_forms.published import (
-    alciatore_a30,
-    contact_offset,
-    force_line_offset,
-    shepard,
-)
+# ruff: noqa: F403
 
-__all__ = [
-    "ClosedForm",
-    "Coefficients",
-    "Expansion",
-    "Impulses",
-    "alciatore_a30",
-    "alciatore_a31",
-    "alciatore_a31_mass_ratio",
-    "axis_offset",
-    "ball_speed",
-    "ball_spin",
-    "base_radius",
-    "centre_of_mass",
-    "closed_form",
-    "closed_form_holds",
-    "compression_impulse",
-    "compression_stick_friction",
-    "cone_end_mass",
-    "contact_offset",
-    "critical_friction",
-    "cue_end_mass",
-    "cue_end_rotation",
-    "cue_speed",
-    "final_impulse",
-    "first_order_coefficients",
-    "first_order_critical_friction",
-    "first_order_gamma",
-    "first_order_leaving_tangent",
-    "first_order_squirt",
-    "force_line_offset",
-    "full_cone_length",
-    "gamma",
-    "inertia_factor",
-    "initial_impulse",
-    "jam_friction",
-    "kinetic_energy",
-    "largest_spin",
-    "leaving_tangent",
-    "light_coefficients",
-    "light_cue_end_rotation",
-    "light_initial_impulse",
-    "light_restitution_factor",
-    "lumped",
-    "miscue_friction",
-    "miscue_offset",
-    "natural_pivot_length",
-    "offset_of_largest_spin",
-    "one_minus_gamma",
-    "resistance",
-    "restitution_bounds",
-    "restitution_factor",
-    "rigid",
-    "shepard",
-    "slip_impulse",
-    "squirt_slope",
-    "squirt_tangent",
-    "two_part",
-    "volume_ratio",
-]
+from cuefem.results.closed_forms import *
+from studies.paper.closed_forms.coefficients import *
+from studies.paper.closed_forms.cue_end import *
+from studies.paper.closed_forms.kim_stroke import *
+from studies.paper.closed_forms.light import *
+from studies.paper.closed_forms.miscue import *
+from studies.paper.closed_forms.published import *

@@ -1,0 +1,97 @@
+"""Rings of a leather patch in small steps, with losses that the package does not have; no study.
+
+On a cue without axial waves and thrust, and a contact that does not roll. The force F(d) and the stiffness k(d) along
+the surface of the leather are taken as those of rings (the method of dimensionality reduction): a ring at d' touches at
+that indentation, carries F''(d') (d - d') dd' along the normal and k'(d') along the surface, up to the friction of its
+normal force. With springs that relax that is Ting's solution (1966): rings unload on their own, and lose contact where
+their force vanishes.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.linalg as la
+
+import cuefem as cf
+from cuefem.tip_modes import Solved
+from studies.strokes import cue, whole
+
+RINGS, STEP = 200, 1e-6
+
+
+@dataclass(frozen=True)
+class Leather:
+    """How leather relaxes: its stiffness is `stiffer` times (1 - share + share exp(-t/time)) of the elastic one.
+
+    surface: whether it relaxes along the surface too. coupled: whether the normal force draws the patch along.
+    """
+
+    share: float = 0.0
+    time: float = 4e-4
+    stiffer: float = 1.0
+    surface: bool = False
+    coupled: bool = False
+
+
+def plain(offset: float, speed: float = 2.0) -> cf.Scene:
+    """The stroke that `stepped` makes: the leather's rings on a bending shaft, alone."""
+    scene = whole(cue("pool_maple"), offset, speed, rolls=False)
+    return replace(scene, effects=scene.effects[:1])
+
+
+def stepped(scene: cf.Scene, leather: Leather) -> tuple[float, float, float]:
+    """Squirt, deg, contact time, s, and speed of the ball over the cue's. The package's loss where nothing relaxes."""
+    tip, at, own = scene.leather, scene.stroke, scene.tip.restitution
+    diameter, mass = scene.tip_diameter, scene.ball.mass
+    law, modes = scene.tip_law(own, at.offset), Solved(scene).tip
+    edges = law.most * np.linspace(0, 1, RINGS + 1) ** 2
+    begin, stiff = (edges[1:] + edges[:-1]) / 2, np.array([np.diff(law.slope(edges)), np.diff(law.at(edges)[1])])
+    radius, depth_, _ = tip.head_on(diameter, scene.ball.radius)
+    C = tip.compliance(diameter, at.offset, np.minimum(radius[1:], diameter / 2))
+    lean = np.append(C[0, 0, 1] / C[0, 0, 0], C[:, 0, 1] / C[:, 0, 0]) if leather.coupled else np.zeros(len(radius))
+    n, omega = len(modes.omega), modes.omega
+    turn = np.zeros((3 * n, 3 * n))  # of q, omega q and q'
+    turn[:n, 2 * n :], turn[n : 2 * n, 2 * n :], turn[2 * n :, n : 2 * n] = np.eye(n), np.diag(omega), np.diag(-omega)
+    if modes.resistance is not None:
+        turn[2 * n :, 2 * n :] = -modes.resistance
+    turn, fade = la.expm(turn * STEP), math.exp(-STEP / leather.time)
+    phi = math.asin(at.offset)
+    t, normal = np.array([math.sin(phi), math.cos(phi)]), np.array([math.cos(phi), -math.sin(phi)])
+    reach = modes.amplitude + np.outer(modes.rotation, tip.lever(phi, diameter))
+    z, velocity, spin = np.concatenate([np.zeros(2 * n), at.speed * modes.approach]), np.zeros(2), 0.0
+    share = leather.share * np.array([1.0, float(leather.surface)])[:, None]
+    strain, slow = np.zeros((2, RINGS)), np.zeros((2, RINGS))  # along the normal and the surface; what relaxes of it
+    depth = peak = time = 0.0
+    while True:
+        old, z = z, turn @ z
+        near = velocity * STEP - (z[:n] - old[:n]) @ reach
+        by = -float(near @ normal)
+        depth, time = depth + by, time + STEP
+        peak = max(peak, depth)
+        if leather.share:
+            before = strain[0] > 0
+            strain[0] = np.maximum(depth - begin, 0.0)
+            slow[0] = np.where(strain[0] > 0, (slow[0] + np.where(before, by, strain[0])) * fade, 0.0)
+            pressed = np.maximum((1 - share[0]) * strain[0] + share[0] * slow[0], 0.0) * leather.stiffer
+        else:
+            virtual = depth if depth == peak else float(law.virtual(depth, peak))
+            pressed = np.maximum(virtual - begin, 0.0)
+        F_n = float(stiff[0] @ pressed)
+        if F_n <= 0:
+            break
+        leaning = float(np.interp(depth, depth_, lean))
+        along = -(float(near @ t) + spin * STEP) - leaning * by
+        on = pressed > 0
+        strain[1], slow[1] = np.where(on, strain[1] + along, 0.0), np.where(on, (slow[1] + along) * fade, 0.0)
+        shear = ((1 - share[1]) * strain[1] + share[1] * slow[1]) * (leather.stiffer if leather.surface else 1.0)
+        bound = scene.tip.friction * stiff[0] * pressed / stiff[1]
+        slip = (shear - np.clip(shear, -bound, bound)) / (leather.stiffer if leather.surface else 1.0)
+        strain[1], slow[1] = strain[1] - slip, slow[1] - slip
+        F_t = float(stiff[1] @ np.clip(shear, -bound, bound))
+        force = (F_n - leaning * F_t) * normal + F_t * t
+        z[2 * n :] -= reach @ force * STEP
+        velocity, spin = velocity + force * STEP / mass, spin + F_t * STEP / (scene.ball.inertia * mass)
+    return math.degrees(math.atan2(-velocity[1], velocity[0])), time, float(np.hypot(*velocity)) / at.speed
