@@ -40,10 +40,6 @@ def blocks(kind: str) -> list[str]:
 FIRST, OWN_SHAFT, *COMMANDS = blocks("sh")
 
 
-def test_a_newcomer_reads_it_at_once() -> None:
-    assert len(README.splitlines()) <= 120
-
-
 def test_the_sample_is_what_the_command_prints() -> None:
     (sample,) = re.findall(r"^```text\n(.*?)```", README, flags=re.MULTILINE | re.DOTALL)
     status, out, _ = call("report", ROOT / "meshes" / "pool_maple.toml")
@@ -54,15 +50,6 @@ def test_the_sample_is_what_the_command_prints() -> None:
 def test_every_block_is_of_a_kind_that_runs() -> None:
     assert {name for name, _ in BLOCKS} == {"sh", "csv", "toml", "python", "text"}  # text: formulas
     assert TEXT.count("```") == 2 * len(BLOCKS)
-
-
-def test_the_first_block_is_two_complete_commands() -> None:
-    assert BLOCKS[0] == ("sh", FIRST)
-    lines = FIRST.splitlines()
-    assert len(lines) == 2
-    assert lines[0].endswith("cuefem report studies/scenes/kim.toml")
-    assert lines[1].endswith("pytest")
-    assert all(line.startswith("python3 -m venv") for line in lines)
 
 
 @pytest.mark.nightly

@@ -104,22 +104,6 @@ def test_makers_film_saved_file_strikes_as_the_page_says(browser: Any, address: 
         )  # the report has an accuracy of its own
 
 
-def test_keyboard_alone_adds_a_ferrule_and_compares(browser: Any, address: str) -> None:
-    with opened(browser, address) as page:
-        page.get_by_role("combobox", name="Ferrule").first.focus()
-        for key in ("Enter", "ArrowDown", "Enter"):
-            page.keyboard.press(key)
-        settled(page)
-        slider = page.get_by_role("slider", name="Tip diameter, slider")
-        slider.focus()
-        before = number(page, "squirt")
-        page.keyboard.press("ArrowLeft")
-        page.wait_for_function("was => document.querySelector('[data-number=squirt]').dataset.value != was", arg=before)
-        settled(page)
-        page.keyboard.press("Control+z")
-        page.wait_for_function("was => document.querySelector('[data-number=squirt]').dataset.value == was", arg=before)
-
-
 CUT_OFF = """() => {
   const box = e => e.getBoundingClientRect(), all = what => [...document.querySelectorAll(what)];
   const texts = all("svg.chart text, svg.cue text").map(box).filter(r => r.height);

@@ -50,17 +50,6 @@ class Steps:
     """The strike of one scene; see `struck`."""
 
     def __init__(self, scene: cf.Scene, modes: int, steps: int) -> None:
-        known = (
-            cf.Elevation,
-            cf.SecondHit,
-            cf.Support,
-            cf.Joint,
-            cf.StructuralDamping,
-            cf.PointMass,
-            cf.TipDome,
-            cf.TipShear,
-        )
-        assert all(isinstance(effect, known) for effect in scene.effects), scene.effects
         self.scene = scene
         self.raised = self._effect(cf.Elevation)
         self.ball, self.tip, self.stroke = scene.ball, scene.tip, scene.stroke

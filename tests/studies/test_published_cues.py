@@ -4,21 +4,20 @@ import csv
 import math
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import cuefem as cf
 from cuefem.handbook import chapters
 from cuefem.io.measured_folder import load_measured
-from cuefem.measurements.measurement_types import AddedMass, Measurement, PivotLength, Squirt
+from cuefem.measurements.measurement_types import AddedMass, PivotLength, Squirt
 from cuefem.results.quantities import with_unit
 from studies.pages import STUDIES
 from tests.helpers.command_line import call
 
 HOME = STUDIES / "measured"
 FOLDERS = sorted(path for path in HOME.iterdir() if (path / "measured.toml").exists())
-PLAYERS = HOME / "players_maple"
-CUES = {"Players": "players_maple", "Predator": "predator_z", "Stinger": "stinger"}
+PLAYERS = "players_maple"
+CUES = {"Players": PLAYERS, "Predator": "predator_z", "Stinger": "stinger"}
 
 
 def rows(name: str) -> list[dict[str, str]]:
@@ -26,33 +25,24 @@ def rows(name: str) -> list[dict[str, str]]:
     return list(csv.DictReader(line for line in lines if not line.startswith("#")))
 
 
-def found(folder: str, kind: type[Measurement]) -> list[Measurement]:
-    return [one for one in load_measured(HOME / folder)[0].measurements if isinstance(one, kind)]
-
-
-def test_squirts_are_those_of_the_data() -> None:
-    """Every row of the data stands in a folder."""
-    for row in rows("measured_squirt"):
-        own = found(CUES[row["cue"].split()[0]], Squirt)
-        values = [(one.offset, round(math.degrees(one.measured), 6)) for one in own]
-        assert (float(row["b_over_R"]), float(row["squirt_deg"])) in values
-
-
-def test_pivot_lengths_are_those_of_the_data() -> None:
-    for row in rows("pivot_lengths_2007"):
-        (own,) = found(CUES[row["cue"].split()[0]], PivotLength)
-        told = (float(row["b_over_R"]), float(row["pivot_length_in"]))
-        assert (own.offset, own.value / 0.0254) == pytest.approx(told, rel=1e-12)
-
-
-def test_added_masses_are_those_of_the_data() -> None:
-    told = [(r["mass_g"], r["distance_in"], r["squirt_deg"]) for r in rows("added_mass_players_feb2008")]
-    own = [
-        (1e3 * one.mass, one.position / 0.0254, math.degrees(one.value))
-        for one in load_measured(PLAYERS)[0].measurements
-        if isinstance(one, AddedMass)
-    ]
-    assert np.array(own) == pytest.approx(np.array(told, float), rel=1e-12)
+def test_folders_hold_every_row_of_the_data() -> None:
+    """Squirt at an offset, pivot length at an offset, and the series of added masses."""
+    told = [("squirt", CUES[r["cue"].split()[0]], r["b_over_R"], r["squirt_deg"]) for r in rows("measured_squirt")]
+    pivots = rows("pivot_lengths_2007")
+    told += [("pivot", CUES[r["cue"].split()[0]], r["b_over_R"], r["pivot_length_in"]) for r in pivots]
+    masses = rows("added_mass_players_feb2008")
+    told += [(f"{float(r['mass_g']):g} g", PLAYERS, r["distance_in"], r["squirt_deg"]) for r in masses]
+    own = set()
+    for name in CUES.values():
+        for one in load_measured(HOME / name)[0].measurements:
+            if isinstance(one, Squirt):
+                own.add(("squirt", name, one.offset, round(math.degrees(one.measured), 6)))
+            elif isinstance(one, PivotLength):
+                own.add(("pivot", name, one.offset, round(one.value / 0.0254, 6)))
+            elif isinstance(one, AddedMass):
+                inch, squirt = round(one.position / 0.0254, 6), round(math.degrees(one.value), 6)
+                own.add((f"{1e3 * one.mass:g} g", name, inch, squirt))
+    assert {(kind, name, float(x), float(y)) for kind, name, x, y in told} - own == set()
 
 
 def test_the_page_says_what_is_computed() -> None:
