@@ -25,7 +25,7 @@ def test_the_modes_of_a_strike_hold_the_end_masses_of_smooth_drives(number: int)
     found = scene(cue, 1e-3)
     exact = ended_tip_modes(found, MANY)
     shortest = 1e-3 if E < 150e6 else 0.5e-3
-    for T in draw.uniform(shortest, 5e-3, 12):
+    for T in draw.uniform(shortest, 5e-3, 8):
         found = scene(cue, float(T))
         assert end_mass(found, "velocity") == pytest.approx(definition_of("velocity").of(exact, found), rel=5e-6)
         wanted = definition_of("force").of(exact, found)

@@ -9,7 +9,11 @@ import cuefem as cf
 FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
 
 
-@pytest.mark.parametrize("name", cf.__all__)
+# Strikes a cue for every change.
+SLOW = pytest.param("design_changes", marks=pytest.mark.heavy)
+
+
+@pytest.mark.parametrize("name", [SLOW if name == "design_changes" else name for name in cf.__all__])
 def test_examples_run(name: str) -> None:
     public = getattr(cf, name)
     failures: list[str] = []

@@ -247,7 +247,7 @@ def test_head_on_contact_time_falls_with_speed(exponent, speed, e):
 
 
 def test_table_friction_of_a_head_on_slide():
-    """Head on, the ball's lowest point slides forward throughout: f = -mu N, N = F math.sin(a), F math.cos(a) - f drives it."""
+    """Head on, the ball's lowest point slides forward throughout: f = -mu N, N = F sin(a), F cos(a) - f drives it."""
     angle, mu, e = 0.3, 0.15, 0.8
     scene = cf.Scene(cf.LumpedCue(0.5, 0.01), tip=cf.Tip(e, 0.0, 1e-3), stroke=cf.Stroke(1.0))
     outcome = cf.strike(replace(scene, effects=(cf.Elevation(angle, mu),)), cf.Resolution(1, 1, 1, 1600))

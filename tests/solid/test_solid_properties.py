@@ -8,8 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.report.model_error import model_error_record, model_error_sheet
@@ -19,7 +17,7 @@ from tests.helpers.command_line import call
 WOOD = cf.Material(E=12.6e9, G=1.1e9, rho=700.0, nu=0.45, across_ratio=0.0985, nu_across=0.52)
 CONE = cf.Segment(0.7, 0.012, 0.021, WOOD)
 SCENE = cf.Scene(cf.Cue((CONE,), body_mass=0.42), tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(offset=0.3))
-COARSE = cf.Solid(order=4, modes=20)
+COARSE = cf.Solid(order=3, modes=20)
 
 
 @pytest.mark.heavy
@@ -31,10 +29,8 @@ def test_a_strike_on_the_solid_is_near_that_on_the_beam() -> None:
     assert 0 < abs(beam.squirt / finer.squirt - 1) < 2e-3
 
 
-@settings(max_examples=1, deadline=None)
-@given(mass=st.floats(1e-4, 5e-3))
-def test_a_mass_on_the_tip_works_on_a_solid_as_on_a_beam(mass: float) -> None:
-    laden = replace(SCENE, effects=(cf.PointMass(0.0, mass),))
+def test_a_mass_on_the_tip_works_on_a_solid_as_on_a_beam() -> None:
+    laden = replace(SCENE, effects=(cf.PointMass(0.0, 2e-3),))
     beam, solid = (
         cf.strike(laden, at=at).squirt / cf.strike(SCENE, at=at).squirt for at in (cf.Resolution(3, 16, 20), COARSE)
     )
