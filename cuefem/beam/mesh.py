@@ -40,35 +40,12 @@ class ActsOnCue(Protocol):
         """Add the effect's point terms."""
 
 
-@dataclass(frozen=True)
-class ForcedNode:
-    """A place on the cue, m from the tip, that must be a node of the mesh, because a force acts there."""
-
-    position: float
-
-    @property
-    def positions(self) -> tuple[float, ...]:
-        """The place."""
-        return (self.position,)
-
-    @property
-    def splits(self) -> tuple[float, ...]:
-        """None: the beam goes on through it."""
-        return ()
-
-    def check_on(self, cue: Cue, name: str) -> None:
-        """Nothing: `mesh_cue` refuses places off the cue."""
-
-    def add_to(self, terms: Terms) -> None:
-        """Nothing is there but the node."""
-
-
 class MeshOptions(Protocol):
     """A mesh as the user asks for it: see `cuefem.Resolution`."""
 
     @property
-    def elements(self) -> int | tuple[int, ...]:
-        """Elements of every smooth piece, or one number a segment."""
+    def elements(self) -> int:
+        """Elements of every smooth piece."""
 
     @property
     def order(self) -> int:
@@ -109,20 +86,26 @@ class Mesh:
         return last, last + 1
 
 
-def mesh_cue(cue: Cue, at: int | MeshOptions, effects: Sequence[ActsOnCue] = ()) -> Mesh:
-    """Mesh a cue, with a node wherever an effect asks for one.
+def mesh_cue(cue: Cue, at: int | MeshOptions, effects: Sequence[ActsOnCue] = (), places: Sequence[float] = ()) -> Mesh:
+    """Mesh a cue, with a node at ``places``, m from the tip, and wherever an effect asks for one.
 
     at: how many of the lowest flexible modes the mesh must hold; or a fineness of the user, which has a node at every
     end of a segment. A joint splits its node.
     """
     for effect in effects:
         effect.check_on(cue, type(effect).__name__)
-    places = np.unique([cue.leather, *(x for effect in effects for x in effect.positions)])
-    for x in places:
+    wanted = np.unique([cue.leather, *places, *(x for effect in effects for x in effect.positions)])
+    for x in wanted:
         if not 0 <= x <= cue.length * (1 + NEAR):
             raise ValueError(f"an effect's position must be in [0, {cue.length}] m, on the cue; got {x}")
-    places = _snapped(cue, places)
-    nodes, orders = _by_rule(cue, mode_phases(cue, at), places) if isinstance(at, int) else _by_user(cue, at, places)
+    if isinstance(at, int):
+        nodes, orders = _by_rule(cue, mode_phases(cue, at), _snapped(cue, wanted))
+    else:
+        ends = np.unique(np.append(cue.nodes, _snapped(cue, wanted)))
+        pieces = len(ends) - 1
+        check_work(pieces * at.elements * (2 * at.order + 1), f"{pieces} pieces")
+        nodes = _divided(ends, np.full(pieces, at.elements))
+        orders = np.full(pieces * at.elements, at.order)
     return _numbered(nodes, orders, [x for effect in effects for x in effect.splits])
 
 
@@ -145,23 +128,6 @@ def _numbered(nodes: Array, orders: NDArray[np.intp], splits: Sequence[float]) -
     unknowns = int(first[-1] + strides[-1]) + 2
     check_work(unknowns, f"{len(orders)} elements")
     return Mesh(nodes, orders, first, unknowns)
-
-
-def _by_user(cue: Cue, at: MeshOptions, places: Array) -> tuple[Array, NDArray[np.intp]]:
-    """Nodes and orders of a fineness: numbers of elements are shared out over a segment's pieces by their lengths."""
-    ends = np.unique(np.append(cue.nodes, places))
-    counts = np.full(len(ends) - 1, 0 if isinstance(at.elements, tuple) else at.elements)
-    if isinstance(at.elements, tuple):
-        segment = np.searchsorted(cue.nodes, (ends[:-1] + ends[1:]) / 2, side="right") - 1
-        if len(at.elements) != len(cue.segments):
-            raise ValueError(
-                f"Resolution.elements must be one number or {len(cue.segments)} of them, one a segment; "
-                f"got {len(at.elements)}"
-            )
-        share = np.diff(ends) / np.diff(cue.nodes)[segment]
-        counts = np.maximum(np.ceil(np.array(at.elements)[segment] * share - NEAR), 1).astype(int)
-    check_work(sum(counts.tolist()) * (2 * at.order + 1), f"{len(counts)} pieces")
-    return _divided(ends, counts), np.full(counts.sum(), at.order)
 
 
 def _by_rule(cue: Cue, phases: Array, places: Array) -> tuple[Array, NDArray[np.intp]]:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from cuefem.beam.mesh import ActsOnCue
 from cuefem.beam.spectrum import Spectrum, spectrum
@@ -18,16 +18,15 @@ from cuefem.quantity.fields import Quantity, check_count, check_kind
 
 
 @dataclass(frozen=True, eq=False)
-class Modes:
-    """Flexible bending modes of a cue, undamped, ascending in frequency.
+class Modes(Spectrum):
+    """Flexible bending modes of a cue, undamped, as a force and a couple at one node feel them, the tip by default.
 
     system: the assembled beam. rigid_vectors: (free unknowns, rigid), mass-normalised motions whose frequency is
-    exactly zero. spectrum: the modes as a force and a couple at one node feel them, at the tip by default.
+    exactly zero.
     """
 
     system: System
     rigid_vectors: Array
-    spectrum: Spectrum
 
     def __repr__(self) -> str:
         first = self.frequencies[:6]
@@ -40,19 +39,9 @@ class Modes:
         return self.omega / (2 * np.pi)
 
     @property
-    def omega(self) -> Array:
-        """Angular frequencies, rad/s, (n,)."""
-        return self.spectrum.omega
-
-    @property
     def points(self) -> Points:
         """The Gauss points of the beam."""
         return self.system.points
-
-    @property
-    def vectors(self) -> Array:
-        """Mass-normalised shapes, (free unknowns, n)."""
-        return self.spectrum.vectors
 
     @property
     def rigid(self) -> int:
@@ -60,27 +49,13 @@ class Modes:
         return self.rigid_vectors.shape[1]
 
     @property
-    def radiation(self) -> Array | None:
-        """See `TipModes`; None unless the modes end in a tail (`cuefem.beam.tail`)."""
-        return self.spectrum.radiation
-
-    @property
-    def highest(self) -> float:
-        """Highest angular frequency kept, rad/s, without the tail's."""
-        return self.spectrum.highest
-
-    @property
     def at_tip(self) -> tuple[Array, Array]:
         """Deflection, 1/sqrt(kg), and rotation, 1/(m sqrt(kg)), of the tip in the rigid motions, then in the modes.
 
         Or of the node where the loads of the spectrum act.
         """
-        w, theta = np.concatenate([self.spectrum.loads.T @ self.rigid_vectors, self.spectrum.felt], axis=1)
+        w, theta = np.concatenate([self.loads.T @ self.rigid_vectors, self.felt], axis=1)
         return w, theta / self.system.length
-
-    def those(self, index: NDArray[np.intp]) -> Modes:
-        """Some of the modes alone, without a tail."""
-        return replace(self, spectrum=self.spectrum.those(index))
 
     def shape(self, x: ArrayLike) -> tuple[Array, Array]:
         """Deflection w and rotation theta of every mode at ``x`` m from the tip: two arrays (n, *x.shape).
@@ -188,7 +163,7 @@ def solve(system: System, count: int, *, ended: int = 0, position: float = 0.0) 
     rigid = normalised(system)
     loads = system.forces_at(position)
     found = spectrum(system.K, system.M, loads, shift=system.shift, rigid=rigid.shape[1], count=count, ended=ended)
-    return Modes(system, rigid, found)
+    return Modes(**vars(found), system=system, rigid_vectors=rigid)
 
 
 def normalised(system: System) -> Array:

@@ -9,9 +9,9 @@ half the time of an eigenproblem with vectors.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import scipy.linalg as la
@@ -48,10 +48,12 @@ class Spectrum:
         """(unknowns, n)."""
         return self.shapes()
 
-    def those(self, index: NDArray[np.intp]) -> Spectrum:
+    def those(self, index: NDArray[np.intp]) -> Self:
         """Some of the modes alone, without a tail."""
-        omega = self.omega[index]
-        return Spectrum(omega, self.loads, self.felt[:, index], omega[-1], None, lambda: self.vectors[:, index])
+        omega, felt = self.omega[index], self.felt[:, index]
+        return replace(
+            self, omega=omega, felt=felt, highest=omega[-1], radiation=None, shapes=lambda: self.vectors[:, index]
+        )
 
 
 def spectrum(

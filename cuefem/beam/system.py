@@ -187,13 +187,18 @@ def _points(cue: Cue, mesh: Mesh, x: Array, weights: Array, usual: list[bool]) -
     return Points(mesh, x, weights, piece, offset, cue.section_in(piece, offset), rows, usual)
 
 
-def assemble(cue: Cue, at: int | MeshOptions, effects: tuple[ActsOnCue, ...] = (), count: int | None = None) -> System:
+def assemble(
+    cue: Cue,
+    at: int | MeshOptions,
+    effects: tuple[ActsOnCue, ...] = (),
+    count: int | None = None,
+    places: Sequence[float] = (),
+) -> System:
     """Assemble a cue with the effects that act on it.
 
-    at: as in `mesh_cue`; a number of modes or a fineness. count: how many modes will be wanted, by default those of
-    ``at``, or few.
+    at, places: as in `mesh_cue`. count: how many modes will be wanted, by default those of ``at``, or few.
     """
-    mesh = mesh_cue(cue, at, effects)
+    mesh = mesh_cue(cue, at, effects, places)
     points = gauss_points(cue, mesh)
     terms = Terms(mesh, cue)
     for effect in effects:

@@ -48,10 +48,6 @@ class TipModes:
         """These modes without the thrust on the bent shaft."""
         return self if self.geometric is None else replace(self, geometric=None)
 
-    def lowest(self, count: int) -> TipModes:
-        """The first ``count`` modes alone."""
-        return self.those(np.arange(count))
-
     def those(self, index: NDArray[np.intp]) -> TipModes:
         """Some of the modes alone, in the order of their numbers ``index``."""
         pairs = (self.damping, self.radiation, self.geometric)
@@ -91,12 +87,6 @@ class TipModes:
             return self
         along, across = np.sqrt(np.sum(self.amplitude**2, axis=0))
         return replace(self, amplitude=np.diag([along, across]), approach=np.array([1 / along, 0.0]))
-
-    @property
-    def transverse(self) -> tuple[Array, Array]:
-        """(omega, amplitude across the cue) of the modes that move the contact across the cue."""
-        moving = self.amplitude[:, 1] != 0
-        return self.omega[moving], self.amplitude[moving, 1]
 
 
 def lumped_tip_modes(cue: LumpedCue) -> TipModes:

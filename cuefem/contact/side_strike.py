@@ -12,7 +12,6 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from cuefem.beam.mesh import ActsOnCue, ForcedNode
 from cuefem.beam.modes import solve
 from cuefem.beam.system import assemble
 from cuefem.beam.tip import TipModes, side_modes
@@ -343,8 +342,7 @@ def solved_side(scene: SideStrike, at: Resolution | None = None) -> SolvedContac
 def _place_modes(scene: SideStrike, at: Resolution | None) -> TipModes:
     """Frequencies of the beam, and the struck point's displacement in each mode; truncation is corrected by default."""
     fineness = at or modes_for(scene.cue, scene.contact_time)
-    acting: tuple[ActsOnCue, ...] = (*scene.cue_effects, ForcedNode(scene.position))
-    system = assemble(scene.cue, fineness, acting)
+    system = assemble(scene.cue, fineness, scene.cue_effects, places=[scene.position])
     count = (fineness if isinstance(fineness, int) else fineness.modes) + 2 - system.rigid.shape[1]
     modes = solve(system, count, ended=int(at is None), position=scene.position)
     place = side_modes(modes)

@@ -15,39 +15,28 @@ from cuefem.cue import Array, Cue, Section
 
 
 @dataclass(frozen=True, eq=False)
-class RodModes:
-    """Flexible rod modes of a cue with ascending frequency.
+class RodModes(Spectrum):
+    """Flexible rod modes of a cue: of the chain of elements behind the leather, felt by a force at the tip.
 
-    spectrum: of the chain of elements behind the leather, felt by a force at the tip. unknowns: those of each element
+    unknowns: those of each element
     in the chain, from the element ``front`` on; what lies before moves as one piece.
     """
 
     cue: Cue
     points: Points
-    spectrum: Spectrum
     front: int
     unknowns: list[NDArray[np.intp]]
 
     @property
-    def omega(self) -> Array:
-        """Angular frequencies, rad/s, (n,), the tail's last."""
-        return self.spectrum.omega
-
-    @property
     def along(self) -> Array:
         """Displacement of the tip, 1/sqrt(kg), (n,)."""
-        return self.spectrum.felt[0]
-
-    @property
-    def radiation(self) -> Array | None:
-        """(tail, tail), 1/s, the damping of the last modes if they are a tail (`cuefem.beam.tail`)."""
-        return self.spectrum.radiation
+        return self.felt[0]
 
     def loss_factors(self, loss: Section) -> Array:
         """Loss factor of every mode, (n,), from the loss factor of EA at the Gauss points, (points,)."""
         lost, stiffness = np.zeros(len(self.omega)), loss.EA * self.points.section.EA * self.points.weights
         for e, own in enumerate(self.unknowns, start=self.front):
-            strains = _rod_basis(self.points, e)[1].T @ self.spectrum.vectors[own]
+            strains = _rod_basis(self.points, e)[1].T @ self.vectors[own]
             lost += stiffness[self.points.element(e)] @ strains**2
         return lost / self.omega**2
 
@@ -83,7 +72,7 @@ def rod_modes(cue: Cue, masses: Sequence[tuple[float, float]], *, below: float, 
     dense = suits_dense(len(lumps), count)
     K, M = gather(stiff, np.zeros(len(lumps)), dense), gather(heavy, lumps, dense)
     found = spectrum(K, M, np.eye(len(lumps), 1), shift=shift, rigid=1, count=count, below=below, ended=int(tailed))
-    return RodModes(cue, points, found, front, unknowns)
+    return RodModes(**vars(found), cue=cue, points=points, front=front, unknowns=unknowns)
 
 
 def _rod_basis(points: Points, e: int) -> tuple[Array, Array]:

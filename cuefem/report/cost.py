@@ -51,7 +51,7 @@ def _level_record(scene: Scene, level: Level, seconds: float, best: Any) -> Reco
     return {
         "modes": level.at.modes,
         "steps": level.at.steps,
-        "elements": list(level.at.elements) if isinstance(level.at.elements, tuple) else level.at.elements,
+        "elements": level.at.elements,
         "order": level.at.order,
         "unknowns": level.outcome.unknowns,
         "estimate": level.outcome.error,

@@ -344,7 +344,7 @@ class Resolution:
     Parameters
     ----------
     elements
-        Number of elements in each smooth piece of the cue; or a tuple with one number for each segment.
+        Number of elements in each smooth piece of the cue.
     order
         Polynomial degree p of the rotation; the deflection has degree p + 1.
     modes
@@ -365,7 +365,7 @@ class Resolution:
     >>> fine = cf.Resolution(elements=4, order=16, modes=60)
     """
 
-    elements: int | tuple[int, ...]
+    elements: int
     order: int
     modes: int
     steps: int | None = None
@@ -373,10 +373,8 @@ class Resolution:
     def __post_init__(self) -> None:
         if self.steps is not None:
             check_count("Resolution.steps", self.steps, LEAST_STEPS, MOST_STEPS)
-        for name in ("order", "modes"):
+        for name in ("elements", "order", "modes"):
             check_count(f"Resolution.{name}", getattr(self, name), 1)
-        for count in self.elements if isinstance(self.elements, tuple) else (self.elements,):
-            check_count("Resolution.elements", count, 1)
 
 
 def equal_fields(this: Any, other: Any) -> bool:

@@ -142,9 +142,6 @@ def test_a_node_at_every_jump_and_position() -> None:
             assert np.min(np.abs(mesh.nodes - x)) < 1e-15
         assert len(mesh.orders) == elements
         assert mesh.unknowns == 2 + np.sum(2 * mesh.orders + 1)
-    assert len(mesh_cue(COMPOSITE, Resolution((1, 4, 1), 3, 1), effects).orders) == 1 + 2 + 3 + 1
-    with pytest.raises(ValueError, match="must be one number or 3 of them, one a segment; got 2"):
-        mesh_cue(COMPOSITE, Resolution((1, 4), 3, 1))
 
 
 def sliced(cue: Cue, count: int) -> Cue:

@@ -134,7 +134,10 @@ def test_a_rigid_body_with_a_dome_is_a_lumped_cue_with_coupling(offset, restitut
     stub, lumped = rigid_domed(abs(offset))
     scene = replace(kim_scene(offset, restitution=restitution, friction=friction), cue=stub)
     domed = replace(scene, effects=(cf.TipDome(RADIUS),))
-    tip, expected = tip_modes_of(domed, cf.Resolution(1, 4, 1)).lowest(3), cf.impulse(replace(scene, cue=lumped))
+    tip, expected = (
+        tip_modes_of(domed, cf.Resolution(1, 4, 1)).those(np.arange(3)),
+        cf.impulse(replace(scene, cue=lumped)),
+    )
 
     def error(steps: int) -> float:
         coupled = strike_modes(domed, tip, steps=steps)

@@ -83,7 +83,7 @@ def test_semi_infinite_euler_beam(
 @pytest.mark.parametrize("T", [0.8e-3, 2e-3])
 def test_force_by_quadrature(T: float) -> None:
     tip = few_modes()
-    omega, phi = tip.transverse
+    omega, phi = tip.omega[1:], tip.amplitude[1:, 1]
     moved, _ = quad(
         lambda s: math.sin(math.pi * s / T) * (phi**2 @ np.cos(omega * (T - s))), 0, T, epsrel=1e-12, limit=400
     )

@@ -43,7 +43,7 @@ def true_error(outcome: cf.Outcome, best: np.ndarray, scene: cf.Scene) -> float:
 
 def moment(found: Modes, power: int, *, past: int) -> np.ndarray:
     """Sum of [w, theta][w, theta]' / (omega^2 + shift)^power over the modes from number ``past`` on."""
-    rows = found.spectrum.felt[:, past:] / (found.omega[past:] ** 2 + found.system.shift) ** (power / 2)
+    rows = found.felt[:, past:] / (found.omega[past:] ** 2 + found.system.shift) ** (power / 2)
     return np.asarray(rows @ rows.T)
 
 
