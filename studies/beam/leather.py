@@ -1,9 +1,9 @@
-"""How compliant is a leather tip, from its geometry? The table that cuefem's LeatherTip reads, and how good it is.
+"""How compliant is a leather tip, from its geometry? The table of cuefem's LeatherTip, and its errors.
 
 A tip is a domed cylinder of linear, isotropic leather on a rigid ferrule, solved by cuefem/solid/tip_compliance.py.
-Two things are tabulated, over height, dome, Poisson's ratio and the patch's radius: the compliance along the normal
-and along the surface of a patch with Hertz's pressure anywhere on the dome, and force and depth of a ball that is
-pressed on it head on. `cuefem.solid.tip_table` holds the coordinates and reads the table. The page compares the solid
+Two things are tabulated, over height, dome, Poisson's ratio and the radius of the contact area: the normal and the
+tangential compliance under Hertz's pressure anywhere on the dome, and force and indentation of a ball that is pressed
+on it head-on. `cuefem.solid.tip_table` holds the coordinates and reads the table. The page compares the solid
 with exact solutions, and the table with the solid at random tips. python -m studies.beam.leather computes the table in
 half an hour and the page in four minutes; with the word page only the page.
 """
@@ -80,15 +80,15 @@ def exact() -> Iterator[list[str | float]]:
     short, long, slender = (solved(Shape(h, 0.0), 0.3, Patch(0.0, 0.45), how) for h in (4.0, 6.0, 30.0))
     yield ["rod, EA/h, from the difference of two lengths", (long - short)[0, 0] * np.pi / 8 - 1]
     yield [
-        "cantilever 30 diameters long, 3EI/h^3 (shear and the patch's own give: 0.001)",
+        "cantilever 30 diameters long, 3EI/h^3 (shear and local compliance: 0.001)",
         slender[1, 1] * np.pi / 64 / 9e3 - 1,
     ]
     for part in (16, 32, 64):
         radius = 0.5 / part
         found = solved(Shape(0.5, 0.0), 0.4, Patch(0.0, radius), fitted(0.5, radius)._replace(harmonics=1))
         n, t = np.diagonal(found) / tt.half_space(0.4, np.array(radius)) - 1
-        yield [f"half-space, patch of 1/{part} of the height, along n", n]
-        yield [f"half-space, patch of 1/{part} of the height, along t", t]
+        yield [f"half-space, contact radius 1/{part} of the height, normal", n]
+        yield [f"half-space, contact radius 1/{part} of the height, tangential", t]
 
 
 def stuck(shape: Shape, nu: float, radius: float) -> tuple[float, float]:
@@ -171,9 +171,9 @@ def errors(tips: int = 20, seed: int = 1) -> Errors:
 
 def measured(found: Errors) -> Iterator[list[str | float]]:
     for words, part, names in (
-        ("patches within the rim", found.within, ("C_nn", "C_tt", "C_nt")),
-        ("patches that the rim cuts", found.cut, ("C_nn", "C_tt", "C_nt")),
-        ("head on", found.head_on, ("force", "depth")),
+        ("area within the rim", found.within, ("C_nn", "C_tt", "C_nt")),
+        ("area cut by the rim", found.cut, ("C_nn", "C_tt", "C_nt")),
+        ("head-on", found.head_on, ("force", "indentation")),
     ):
         for name, column in zip(names, 100 * np.abs(part).T, strict=True):
             yield [words, name, str(len(column)), *(f"{q:.2f}" for q in np.quantile(column, (0.5, 0.95, 1.0)))]
@@ -184,19 +184,19 @@ def text() -> str:
     middle, high = (np.quantile(100 * np.abs(found.within[:, :2]), q) for q in (0.5, 0.95))
     return pages.page(
         "Compliance of a leather tip",
-        "How compliant is a leather tip, from its geometry, and how good is the table that LeatherTip reads?",
-        "A usual tip (6 mm high, 12.75 mm wide, dome 9.5 mm, 100 MPa, b/R 0.375, patch of 2 mm) yields 1.94 µm/N "
-        f"along the normal and 4.60 across, converged to 0.02 %. The table is within {middle:.1f} % in the median and "
-        f"{high:.1f} % in 95 of 100 random tips.",
+        "How compliant is a leather tip, from its geometry, and what are the errors of LeatherTip's table?",
+        "A typical tip (6 mm high, 12.75 mm wide, dome 9.5 mm, 100 MPa, b/R 0.375, contact radius 2 mm) has a normal "
+        f"compliance of 1.94 µm/N and a tangential one of 4.60, converged to 0.02 %. The error of the table is "
+        f"{middle:.1f} % (median) and {high:.1f} % (95th percentile) over random tips.",
         "## The solid over exact solutions, less 1",
         table(["case", "solid over exact, less 1"], exact(), 2),
-        "## That tip on finer meshes, µm/N",
+        "## Mesh convergence for this tip, µm/N",
         "An earlier solution with quadratic elements, 16 x 10, and 14 harmonics had 1.938, 4.597 and -0.129.",
         table(["mesh", "C_nn", "C_tt", "C_nt"], refined(), 4),
         "## The table against the solid at random tips, %",
-        "h 2 to 12, D 8 to 15, r 6 to 15 mm or flat, nu 0.2 to 0.45, patches of 0.06 to 0.5 diameters anywhere up to "
-        "the rim (b/R 0.75 on steep domes); C_nt over the root of C_nn C_tt.",
-        table(["what", "of", "points", "median", "95 of 100 below", "largest"], measured(found)),
+        "h 2 to 12, D 8 to 15, r 6 to 15 mm or flat, nu 0.2 to 0.45, contact areas of 0.06 to 0.5 diameters anywhere "
+        "up to the rim (b/R 0.75 on steep domes); C_nt over the root of C_nn C_tt.",
+        table(["contact", "quantity", "points", "median", "95th percentile", "maximum"], measured(found)),
         "## The compliance of a patch that sticks, against the solid, %",
         "12.75 mm wide, on the axis, heights of 0.3 to 0.7 and radii of 0.1 to 0.25 diameters; along the surface, by "
         "the table's compliance of the Hertz-weighted patch less `rigid_patch_gain`, that compliance being exact here.",
