@@ -1,4 +1,4 @@
-"""Cues and strokes that studies share: the cues of meshes/, a bare scene, the whole stroke, a hollow shaft's bore."""
+"""Cues and strokes of several studies: the cues of meshes/, a scene without effects, the default stroke, bores."""
 
 from __future__ import annotations
 

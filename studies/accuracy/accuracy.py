@@ -1,10 +1,10 @@
-"""How far off are the default's numbers, and what does accuracy change beside the choice of the model?
+"""What are the numerical errors at the default resolution, and the errors of simpler models?
 
 (a) The default of `strike` and `end_mass` against fine resolutions, on the cues of meshes/ and on random
 cues (woods, carbon tubes, ferrules, bores; contact times 0.5 to 3 ms, b/R 0.05 to 0.5; all draws seeded). (b) Order
-against number of elements in f1 to f10. (c) The number of modes in squirt. (d) The squirt of ever fuller models against
-that of the whole stroke (LeatherTip, axial waves, axial force on the bent shaft); each is told how long the whole
-stroke's central impact lasts, and how the cue rebounds. Equations: handbook: The beam, The strike, Effective end mass.
+against number of elements in f1 to f10. (c) The number of modes in squirt. (d) The squirt of simpler models against
+that of the full model (LeatherTip, AxialWaves, GeometricStiffness); each has the contact time and the restitution of
+the full model's central impact. Equations: handbook: The beam, The strike, Effective end mass.
 """
 
 from __future__ import annotations
@@ -130,23 +130,24 @@ def text() -> str:
     off = {name: f"{np.median(np.abs(values)):.0f} %" for name, values in ladder().items()}
     rows = [[name, *(f"{f(v):+.0f}" for f in (np.median, np.min, np.max))] for name, v in ladder().items()]
     return pages.page(
-        "Accuracy: numbers and models",
-        "How far off are the default's numbers, and how far off are models with fewer effects?",
-        f"The default's squirt is off by {np.quantile(squirt, 0.95):.2f} % (95th percentile) and {squirt.max():.1f} % "
-        f"at most over {len(squirt)} strokes, the stick end mass by {np.quantile(stick, 0.95):.2f} and "
-        f"{stick.max():.1f} %. The model counts more: beside the whole stroke, Kim's 12 g is {off[next(iter(off))]} "
-        f"off in the median, the stick end mass {off['lumped, stick end mass']}, a bare beam {off['coupled beam']}, "
-        f"with the tip's dome and shear {off['... and tip shear']}. Measured squirt differs from the whole stroke by "
-        "18 % ([uncertainty](../measured/uncertainty.md)).",
-        "## Errors of the default",
+        "Numerical errors and model errors",
+        "What are the numerical errors at the default resolution, and the errors of simpler models?",
+        f"At the default resolution the error of squirt is {np.quantile(squirt, 0.95):.2f} % (95th percentile) and "
+        f"{squirt.max():.1f} % (maximum) over {len(squirt)} strokes with a spring tip, that of the stick end mass "
+        f"{np.quantile(stick, 0.95):.2f} and {stick.max():.1f} %. The choice of model matters more. Median difference "
+        f"of squirt from the full model: Kim's 12 g {off[next(iter(off))]}, the stick end mass "
+        f"{off['lumped, stick end mass']}, a beam without effects {off['coupled beam']}, with the tip's dome and shear "
+        f"{off['... and tip shear']}. The model error of the full model is up to 18 % "
+        "([uncertainty](../measured/uncertainty.md)).",
+        "## Numerical errors at the default resolution",
         "Five cues of meshes/ and 12 random ones, 3 strokes each, against `resolve` to 2e-4. A brass tip, which "
-        "vibrates at 100 to 250 kHz, is not among them: its stick end mass is off by up to 1.4 %.",
+        "vibrates at 100 to 250 kHz, is not included: the error of its stick end mass is up to 1.4 %.",
         error_table(),
         "## Order against elements: largest relative error of f1 to f10",
         order_table(),
         "## Modes: squirt",
         mode_table(),
-        "## Models: squirt less that of the whole stroke, %",
+        "## Simpler models: difference of squirt from the full model, %",
         "Five cues x (leather of 350 MPa, 4 m/s, b/R 0.4), (229 MPa, 2 m/s, 0.3), (60 MPa, 0.8 m/s, 0.1), a ball of "
         "210 g.",
         table(["model", "median", "lowest", "highest"], rows),

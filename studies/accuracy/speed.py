@@ -162,15 +162,15 @@ def text() -> str:
     }
     spent, peers = seconds(calls), peer_rows()
     return pages.page(
-        "Speed, and other programs",
-        "What do the public calls cost, and what does the same answer cost elsewhere?",
-        f"A bare strike takes {1e3 * spent['strike(scene), bare']:.0f} ms, pool's whole stroke "
+        "Run time and other programs",
+        "What is the run time of the public calls, and that of the same result by other programs?",
+        f"A strike with a spring tip takes {1e3 * spent['strike(scene), bare']:.0f} ms, the default stroke of pool "
         f"{1e3 * spent[list(spent)[5]]:.0f} ms. For f3 to f5 of one cone to 1e-6 "
         f"scikit-fem takes {peers[1][4]} times cuefem's processor time, NGSolve 1.5 times, OpenSeesPy 114 times.",
         f"{pages.machine()}, one thread.",
         table(["call", "ms"], [[name, f"{1e3 * t:.2f}"] for name, t in spent.items()]),
-        "## The same answer by other programs",
-        "Rows of NGSolve, OpenSeesPy, ROSS and CalculiX: version 0.1, another machine; times cuefem's own seconds "
+        "## The same result by other programs",
+        "Rows of NGSolve, OpenSeesPy, ROSS and CalculiX: version 0.1, another machine; relative to cuefem's run time "
         "there.",
         table(["task", "program", "error", "ms", "times cuefem"], peers),
     )

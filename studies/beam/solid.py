@@ -1,8 +1,8 @@
 """How close is the beam to the solid cue, and which shear coefficient is right?
 
 The same cue by 3-D elasticity (`cuefem.solid`: a solid of revolution, harmonic m = 1) and by the beam, both converged
-below the figures shown. First the shear coefficient: a rod with its ends held in the plane (free to warp) has as its
-lowest mode a wave of k = pi/L, exactly; Timoshenko's dispersion, solved for kappa G A, gives the right coefficient as
+below the figures shown. First the shear coefficient: the lowest mode of a rod with ends fixed in their plane (free to
+warp) is exactly a wave of k = pi/L; Timoshenko's dispersion, solved for kappa G A, gives the right coefficient as
 k -> 0. Then free cues, one feature at a time, and squirt and end mass. Equations: handbook: The beam, The solid.
 """
 
@@ -122,11 +122,11 @@ def text() -> str:
     plain, wood = (np.abs(compared(CUES[name])).max() for name in list(CUES)[:2])
     worst = max(abs(response(name)[0]) for name in SHAFTS)
     return pages.page(
-        "Beam and solid",
+        "Beam theory and 3-D elasticity",
         "How close is the beam to 3-D elasticity, and which shear coefficient is right?",
         f"Six free modes of Kim's cone agree within {plain:.1e} (isotropic) and {wood:.1e} (wood), squirt within "
         f"{worst:.2f} % on the cues of meshes/. Hutchinson's coefficient at nu_e, nu_e/(1 + nu_e) = 2 nu_LT G/E, is "
-        "exact for long waves, solid and hollow. The beam is more than 1e-4 off at jumps of the diameter, steel pins "
+        "exact for long waves, solid and hollow. The beam's error exceeds 1e-4 at jumps of the diameter, steel pins "
         "and thin walls.",
         "## Shear coefficient of long waves",
         coefficient_table(),
@@ -135,11 +135,11 @@ def text() -> str:
             ["cue", *(f"mode {k}" for k in range(1, COUNT + 1))],
             [[name, *(f"{off:+.0e}" for off in compared(struck))] for name, struck in CUES.items()],
         ),
-        "On Kim's cone the taper turns bending stress into shear, which no beam describes (+5e-5 in wood), and "
+        "On Kim's cone the taper rotates bending stress into shear, which no beam theory includes (+5e-5 in wood), and "
         "sections warp in higher modes (-2e-4 in the sixth). A pin is too stiff because stress needs some length to "
         "spread into it.",
         "## Squirt and end mass: beam over solid, less 1, %",
-        "A bare tip, 1 ms, b/R 0.3, 60 modes on both sides. `cuefem check` compares more, for any cue.",
+        "A spring tip, 1 ms, b/R 0.3, 60 modes in both. `cuefem check` compares more quantities, for any cue.",
         table(["cue", "squirt", "end mass, force"], [[n, *(f"{off:+.2f}" for off in response(n))] for n in SHAFTS]),
     )
 

@@ -1,9 +1,9 @@
 """How much does each effect change in the reference scenes?
 
-Every scene of scenes/ without each effect that it lists, and with each that it does not list, at a usual value; then
-the scenes as whole strokes (LeatherTip, axial waves, axial force on the bent shaft): its modulus makes the scene's
-contact time, and the whole cue rebounds as the scene says. A change is squirt with the effect over squirt without it,
-less 1. Equations: handbook: Effects.
+Every scene of scenes/ without each effect that it lists, and with each that it does not list, at a typical value; then
+the scenes by the full model (LeatherTip, AxialWaves, GeometricStiffness), whose tip is identified from the contact time
+and the restitution of the scene. A change is squirt with the effect over squirt without it, less 1. Equations:
+handbook: Effects.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ AT_TIP = ("TipDome", "TipShear", "RollingContact", "PowerLawTip")
 
 @cache
 def scene(name: str) -> cf.Scene:
-    """A ready scene."""
+    """A reference scene."""
     found = cf.load(pages.STUDIES / "scenes" / f"{name}.toml")
     assert isinstance(found, cf.Scene)
     return found
@@ -56,7 +56,7 @@ def change(struck: cf.Scene, effect: str) -> float | None:
 
 @cache
 def whole(name: str) -> cf.Scene:
-    """A ready scene with LeatherTip instead of its leather and of the effects of its tip."""
+    """A reference scene by the full model: LeatherTip instead of its leather and of the effects of its tip."""
     found = scene(name)
     leather = found.cue.segments[0].length if found.cue.segments[0].material.E < 1e9 else 0.0
     domes = [e.radius for e in found.effects if isinstance(e, cf.TipDome)]
@@ -91,20 +91,20 @@ def text() -> str:
         own = f"{squirt(whole(name)):.2f}" if name in slow else "–"
         rows.append([name, *stroke, f"{squirt(struck):.2f}", own])
     return pages.page(
-        "What each effect changes",
+        "Sensitivity of squirt to each effect",
         "How much does each effect change squirt in the reference scenes?",
-        f"The dome of the tip changes squirt most, by {span('TipDome', listed)}; its shear by "
+        f"The tip dome changes squirt most, by {span('TipDome', listed)}; tip shear by "
         f"{span('TipShear', listed)}, the rolling contact by {span('RollingContact', listed)}, axial waves by "
-        f"{span('AxialWaves', listed)}, the axial force on the bent shaft by {span('GeometricStiffness', listed)}. In "
-        f"whole strokes axial waves change {span('AxialWaves', wholes)} and the axial force "
-        f"{span('GeometricStiffness', wholes)}. A bridge hand, damping and a double hit stay within 0.6 %. In the "
-        "break, at 11 m/s, the axial force turns the sign.",
+        f"{span('AxialWaves', listed)}, geometric stiffness by {span('GeometricStiffness', listed)}. In the full model "
+        f"axial waves change squirt by {span('AxialWaves', wholes)} and geometric stiffness by "
+        f"{span('GeometricStiffness', wholes)}. A bridge hand, damping and a double hit change it by less than 0.6 %. "
+        "In the break, at 11 m/s, geometric stiffness reverses the sign.",
         "## Scenes",
-        table(["scene", "T, ms", "b/R", "speed, m/s", "squirt, deg", "squirt of the whole stroke, deg"], rows),
+        table(["scene", "T, ms", "b/R", "speed, m/s", "squirt, deg", "squirt by the full model, deg"], rows),
         "## Change of squirt by the effect, %",
-        "Bold: the scene lists the effect. RollingContact is beyond its assumptions in the break.",
+        "Bold: the scene lists the effect. The break violates the assumptions of RollingContact.",
         table(["effect", *SCENES], [[e, *(cell(scene(n), e) for n in SCENES)] for e in USUAL]),
-        "## The same in whole strokes, %",
+        "## Change of squirt by the effect in the full model, %",
         table(["effect", *slow], [[e, *(cell(whole(n), e) for n in slow)] for e in BESIDE]),
     )
 

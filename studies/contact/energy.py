@@ -1,8 +1,8 @@
 """Where does the energy of a stroke go, against the offset?
 
-The cue's kinetic energy at first touch, split after the coupled strike into the ball's translation and spin, the cue's
-rigid motion and vibration, and the losses of tip and friction: a maple pool cue, T = 1 ms, e = 3/4, mu = 0.7, a ball of
-210 g, b/R 0 to 0.75, through the miscue. Equations: handbook: The strike (energy balance).
+The cue's kinetic energy at first contact, split after the coupled strike into the ball's translation and rotation, the
+cue's rigid motion and vibration, and the losses of tip and friction: a maple pool cue, T = 1 ms, e = 3/4, mu = 0.7, a
+ball of 210 g, b/R 0 to 0.75, beyond the miscue limit. Equations: handbook: The strike (energy balance).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ FINE = np.round(np.arange(0, 0.7501, 0.025), 3)
 
 @cache
 def shares(offset: float) -> tuple[dict[str, float], str]:
-    """Each part over the energy at first touch, %, and the regime."""
+    """Each part over the energy at first contact, %, and the regime."""
     outcome = cf.strike(strokes.scene(strokes.cue("pool_maple"), offset=offset))
     return {p: 100 * float(outcome.energy[p] / outcome.energy["initial"]) for p in PARTS}, str(outcome.regime)
 
@@ -34,13 +34,13 @@ def text() -> str:
     spin, shaken = (max(found[part] for found, _ in held) for part in ("ball rotation", "cue vibration"))
     rows = [[f"{b:.2f}", *(f"{shares(float(b))[0][p]:.1f}" for p in PARTS), shares(float(b))[1]] for b in FINE[::2]]
     return pages.page(
-        "Where the energy of a stroke goes",
-        "Where does the energy of a stroke go?",
-        f"In a central impact the ball takes {head_on['ball translation']:.0f} %, the cue keeps {head_on['cue']:.0f} "
-        f"% and the tip loses {head_on['tip loss']:.0f} %. While the tip sticks, spin takes at most {spin:.0f} % and "
-        f"the shaft's vibration {shaken:.1f} %. A miscue has no sharp edge: past b/R 0.6 friction takes up to 14 % "
-        "and the ball less and less.",
-        "pool_maple, per cent of the cue's energy at first touch:",
+        "Energy balance of a stroke",
+        "How does the energy of a stroke divide between ball, cue, tip and friction?",
+        f"In a central impact the ball receives {head_on['ball translation']:.0f} %, the cue retains "
+        f"{head_on['cue']:.0f} % and the tip dissipates {head_on['tip loss']:.0f} %. While the tip sticks, rotation of "
+        f"the ball is at most {spin:.0f} % and vibration of the shaft {shaken:.1f} %. The miscue limit is gradual: "
+        "beyond b/R 0.6 friction dissipates up to 14 % and the ball's part decreases.",
+        "pool_maple, per cent of the cue's energy at first contact:",
         table(["b/R", *PARTS, "regime"], rows),
     )
 

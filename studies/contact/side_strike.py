@@ -1,9 +1,9 @@
-"""How does a ball bounce off the side of a beam: exact cases, and what published experiments say of it.
+"""How does a ball rebound from the side of a beam: closed forms, and claims of published experiments.
 
-(1) The apparent restitution e_A of an elastic spring on endless Euler beams against its closed form. (2) Claims of
-three published experiments, as far as their text could be read, with beams of our own: e_A along a free aluminium rod
-and a bat, rigid, flexible and with the far end clamped; how often a heavy steel sphere touches a steel beam in one
-fall. No number is fitted, and none stands here from memory. Equations: handbook: The side strike.
+(1) The apparent restitution e_A of an elastic spring on infinite Euler beams against its closed form. (2) Claims of
+three published experiments, as far as their text was accessible, with assumed beams: e_A along a free aluminium rod
+and a bat, rigid, flexible and with the far end clamped; the number of contacts of a heavy steel sphere with a steel
+beam in one fall. No number is fitted or quoted from memory. Equations: handbook: The side strike.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ from studies import pages
 from studies.pages import table
 
 T, DIAMETER, DENSITY = 1e-3, 1e-2, 700.0  # s, m, kg/m3
-THIN, STIFF = 250.0, 1e4  # way of the waves over the diameter, and G/E: nearly Euler's beam
+THIN, STIFF = 250.0, 1e4  # distance of the waves over the diameter, and G/E: nearly an Euler beam
 PARAMETERS = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 3.0)
 LENGTHS = {"middle": 16.0, "end": 8.0}  # of the beams, over the distance that waves spread in T
 
 
 def exact(parameter: float) -> float:
-    """e_A of an elastic spring on an endless Euler beam: the force is a sum over the roots of u^4 + L u + 1.
+    """e_A of an elastic spring on an infinite Euler beam: the force is a sum over the roots of u^4 + L u + 1.
 
-    Above a parameter of 3.59 the force never vanishes: the striker does not leave.
+    Above a parameter of 3.59 the force never vanishes: striker and beam do not separate.
     """
     u = np.roots([1.0, 0.0, 0.0, parameter, 1.0])
     weights = u / (4 * u**3 + parameter)
@@ -107,21 +107,21 @@ def rectangular(width: float, height: float, length: float, material: cf.Materia
 
 STEEL = cf.Material(206e9, 79.4e9, 7850.0)
 SPHERE = 0.07  # m, and the beam 60 x 27.8 x 780 mm, simply supported: [Part II]'s abstract
-SPEED, WINDOW = 0.5, 6e-3  # m/s, s: ours, for those of the experiments could not be read
+SPEED, WINDOW = 0.5, 6e-3  # m/s, s: assumed, because those of the experiments were not accessible
 
 
 def touches(phases: Sequence[Any]) -> tuple[tuple[float, float], ...]:
-    """Touches (start, duration), s: phases of contact with no flight between them."""
+    """Contacts (start, duration), s: phases of contact without separation between them."""
     held = [list(part) for apart, part in groupby(phases, lambda phase: phase.grip == "apart") if not apart]
     return tuple((part[0].start, part[-1].end - part[0].start) for part in held)
 
 
 @cache
 def fall() -> tuple[tuple[tuple[float, float], ...], tuple[float, float, float]]:
-    """Touches (start, duration) of the sphere at midspan, s, and durations of the first by Hertz's law.
+    """Contacts (start, duration) of the sphere at midspan, s, and durations of the first by Hertz's law.
 
-    Touches are counted with a spring that is as quick against a wall as Hertz's law is at that speed. Durations: on the
-    beam, on a free rigid one, and against a wall.
+    Contacts are counted with a spring that has the contact time of Hertz's law on a wall at that speed. Durations: on
+    the beam, on a free rigid one, and against a wall.
     """
     beam = rectangular(0.06, 0.0278, 0.78, STEEL)
     mass = STEEL.rho * 4 / 3 * math.pi * SPHERE**3
@@ -142,7 +142,7 @@ SOURCES = """\
 - Impact of a steel sphere on a steel beam, Parts I and II, doi 10.1177/1687814016668089 and
   10.1177/1687814016683351: both abstracts, with the sizes of beam and sphere.
 
-Their tables of e_A, sizes of beams, speeds and measured durations could not be had; nor could C. Lindsey (Tennis
+Not accessible: their tables of e_A, sizes of beams, speeds and measured durations; C. Lindsey (Tennis
 Warehouse University, 2020), arXiv:2207.00795 (abstracts only) and W. Goldsmith, *Impact* (1960)."""
 
 
@@ -152,40 +152,40 @@ def text() -> str:
     found, (first, free, wall) = fall()
     near = [f"{1e3 * x:.0f}" for x, row in zip(CASES["bat"][2], bat, strict=True) if abs(row[1] - row[0]) < 0.02]
     return pages.page(
-        "A ball on the side of a beam",
-        "How does a ball bounce off the side of a beam, and does the model agree with what is published?",
-        f"On endless Euler beams e_A follows one parameter Λ in closed form, met within {worst:.0e}. No published "
-        "table of e_A could be had. Of what the readable abstracts claim: a bat bounces a ball like a rigid body "
-        "only over a few centimetres of its barrel, a clamped handle changes nothing there, and a heavy steel sphere "
-        "touches a steel beam several times.",
-        "## Endless Euler beams, elastic spring: e_A",
+        "Transverse impact of a ball on a beam",
+        "How does a ball rebound from the side of a beam, and does the model agree with publications?",
+        "The apparent restitution e_A on infinite Euler beams is a closed form of one parameter Λ; the model is within "
+        f"{worst:.0e} of it. No published table of e_A was accessible. The model agrees with claims of the accessible "
+        "abstracts: a bat acts as a rigid body only over a few centimetres of its barrel, a clamped handle changes "
+        "nothing there, and a heavy steel sphere has several contacts with a steel beam.",
+        "## Infinite Euler beams, elastic spring: e_A",
         curve_table(),
-        "Above a parameter of 3.59 a striker would not leave an endless beam.",
-        "## A free aluminium rod of 600 x 15 mm, a ball of 45 g, e 0.85, 2 ms (ours)",
+        "Above a parameter of 3.59 a striker would not separate from an infinite beam.",
+        "## A free aluminium rod of 600 x 15 mm, a ball of 45 g, e 0.85, 2 ms (assumed)",
         "[Cross] finds that rigid models are of limited use and that the hand's force can usually be neglected. Here "
-        f"rigid is off by up to {np.abs(rod[:, 0] - rod[:, 1]).max():.2f}; a clamp at the far end hardly changes e_A "
-        "within 10 cm.",
+        f"the error of the rigid model is up to {np.abs(rod[:, 0] - rod[:, 1]).max():.2f}; a clamp at the far end "
+        "hardly changes e_A within 10 cm.",
         bounce_table("rod"),
-        "## A wooden bat of 840 mm, 64 mm at the barrel, a ball of 145 g, e 0.5, 1 ms (ours)",
-        "[Nathan] finds the rigid exit speed only over a small region of the barrel, whatever holds the handle. Here "
-        f"rigid and flexible agree within 0.02 at {', '.join(near)} mm from the end and differ by up to "
+        "## A wooden bat of 840 mm, 64 mm at the barrel, a ball of 145 g, e 0.5, 1 ms (assumed)",
+        "[Nathan] finds the rigid exit speed only over a small region of the barrel, for any support of the handle. "
+        f"Here rigid and flexible agree within 0.02 at {', '.join(near)} mm from the end and differ by up to "
         f"{np.abs(bat[:, 0] - bat[:, 1]).max():.2f}.",
         bounce_table("bat"),
         "## A steel sphere of 70 mm radius on a steel beam of 60 x 27.8 x 780 mm, 0.5 m/s, midspan",
-        "The experiments find several touches in most falls, the first about as long as Hertz's law says. Computed: "
-        f"{len(found)} touches in {1e3 * (found[-1][0] + found[-1][1]):.1f} ms, of "
+        "The experiments find several contacts in most falls, the first of about the duration by Hertz's law. "
+        f"Computed: {len(found)} contacts in {1e3 * (found[-1][0] + found[-1][1]):.1f} ms, of "
         f"{1e3 * min(d for _, d in found):.1f} to {1e3 * max(d for _, d in found):.1f} ms; by Hertz's law the first "
         f"lasts {1e3 * first:.2f} ms, {1e3 * free:.2f} on a free rigid beam, {1e3 * wall:.2f} against a wall. Speed, "
-        "place, E = 206 GPa and e = 1 are ours.",
+        "position, E = 206 GPa and e = 1 are assumed.",
         "## Sources",
         SOURCES,
     )
 
 
 def draw(panels: Any) -> None:
-    """The curve of endless beams, and our bat."""
+    """The curve of infinite beams, and the bat."""
     grid = np.geomspace(0.03, 3.5, 60)
-    panels[0].plot(grid, [exact(float(p)) for p in grid], "k-", lw=1, label="endless Euler beam, exact")
+    panels[0].plot(grid, [exact(float(p)) for p in grid], "k-", lw=1, label="infinite Euler beam, exact")
     for where, mark in zip(LENGTHS, "o+", strict=True):
         found = [computed(where, p) for p in PARAMETERS]
         panels[0].plot(PARAMETERS, found, mark, ms=7, mfc="none", label=f"computed, {where}")
@@ -194,7 +194,7 @@ def draw(panels: Any) -> None:
     x = np.array(CASES["bat"][2])
     for i, (label, style) in enumerate((("rigid", "k:"), ("flexible", "C0-"), ("handle clamped", "C1--"))):
         panels[1].plot(1e3 * x, [bounces("bat", p)[i] for p in CASES["bat"][2]], style, label=label)
-    panels[1].set(xlabel="from the end of the barrel, mm", ylabel="apparent restitution $e_A$", title="our bat")
+    panels[1].set(xlabel="from the end of the barrel, mm", ylabel="apparent restitution $e_A$", title="bat")
     panels[1].legend(fontsize=8)
 
 

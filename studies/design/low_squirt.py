@@ -1,8 +1,8 @@
 """What lowers the squirt of a shaft, and what does it cost in stiffness?
 
 One change at a time on the hollow-front shaft of meshes/: the static tip stiffness with the joint clamped, and squirt
-at b/R 0.3 of a bare tip (1 ms, a ball of 210 g) and of pool's whole stroke. Then the shafts of meshes/, and the shaft
-of least squirt in the whole stroke among those as stiff as the solid one, with walls of 2 mm (SLSQP of scipy).
+at b/R 0.3 with a spring tip (1 ms, a ball of 210 g) and in the default stroke of pool. Then the shafts of meshes/, and
+the shaft of lowest squirt in the default stroke among those as stiff as the solid one, with walls of 2 mm (SLSQP).
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def shaft(bore: float, depth: float, ferrule: float, tip: float, taper: float) -
 
 @cache
 def measures(drawn: cf.Cue) -> tuple[float, float, float]:
-    """Tip stiffness, N/m; squirt at b/R 0.3, deg, with a bare tip and in the whole stroke."""
+    """Tip stiffness, N/m; squirt at b/R 0.3, deg, with a spring tip and in the default stroke."""
     stiffness = float(evaluate([cf.Scene(drawn)], ["tip_stiffness"]).values[0, 0])
     return stiffness, squirt(strokes.scene(drawn, 1e-3, 0.3)), squirt(strokes.whole(drawn, 0.3))
 
@@ -67,12 +67,12 @@ def change_table() -> str:
     found = measures(replace(cue("pool_hollow"), segments=(tip, heavy, *rest)))
     gained = (f"{100 * (new / old - 1):+.1f}" for new, old in zip(found[::-1], base[::-1], strict=True))
     rows.append([f"ferrule {1e3 * (heavy.mass - ferrule.mass):.2f} g heavier", *gained])
-    return table(["change", "squirt, whole stroke, %", "squirt, bare, %", "tip stiffness, %"], rows)
+    return table(["change", "squirt, default stroke, %", "squirt, spring tip, %", "tip stiffness, %"], rows)
 
 
 @cache
 def optimum() -> tuple[float, ...]:
-    """Sizes of the shaft of least squirt as stiff as the solid one, walls of 2 mm."""
+    """Sizes of the shaft of lowest squirt as stiff as the solid one, walls of 2 mm."""
     wanted, scale = measures(cue("pool_maple"))[0], np.array(START)
     limits = (
         {"type": "ineq", "fun": lambda x: measures(shaft(*(scale * x)))[0] / wanted - 1},
@@ -95,7 +95,7 @@ def shafts() -> dict[str, cf.Cue]:
         "carbon tube": cue("carbon"),
     }
     found |= {f"hollow front, bore {1e3 * bore:g} mm": hollow(bore) for bore in strokes.BORES}
-    return found | {"least squirt, as stiff as the solid": shaft(*optimum())}
+    return found | {"lowest squirt, as stiff as the solid": shaft(*optimum())}
 
 
 def shaft_table() -> str:
@@ -114,7 +114,7 @@ def shaft_table() -> str:
             ]
         )
     return table(
-        ["shaft", "tip stiffness, N/m", "squirt, bare, deg", "to solid", "whole stroke, deg", "to solid"], rows
+        ["shaft", "tip stiffness, N/m", "squirt, spring tip, deg", "to solid", "default stroke, deg", "to solid"], rows
     )
 
 
@@ -127,28 +127,29 @@ def text() -> str:
         for name, x in zip(("bore", "depth", "ferrule", "tip", "end of the taper"), optimum(), strict=True)
     )
     return pages.page(
-        "Shafts of little squirt",
+        "Low-squirt shafts",
         "What lowers the squirt of a shaft, and what does it cost in stiffness?",
-        f"A wider bore: 1 mm takes {100 * (1 - wider[2] / base[2]):.0f} % of a leather tip's squirt "
-        f"({100 * (1 - wider[1] / base[1]):.0f} % of a bare tip's) and {100 * (1 - wider[0] / base[0]):.1f} % of "
-        f"stiffness; a tip 0.5 mm narrower takes {100 * (broad[2] / base[2] - 1):.0f} %. Drilling 1 in deeper than 5 "
-        f"in takes {100 * (1 - deep[2] / base[2]):.0f} %. As stiff as a solid shaft, {best[2] / solid[2]:.2f} of its "
-        "squirt is the least found.",
+        f"A wider bore: 1 mm lowers squirt by {100 * (1 - wider[2] / base[2]):.0f} % with a leather tip "
+        f"({100 * (1 - wider[1] / base[1]):.0f} % with a spring tip) and stiffness by "
+        f"{100 * (1 - wider[0] / base[0]):.1f} %; a tip 0.5 mm narrower lowers squirt by "
+        f"{100 * (broad[2] / base[2] - 1):.0f} %. A bore 6 in deep instead of 5 in lowers it by "
+        f"{100 * (1 - deep[2] / base[2]):.0f} %. At the stiffness of a solid shaft the lowest squirt found is "
+        f"{best[2] / solid[2]:.2f} of its squirt.",
         "## One change at a time, hollow front",
         change_table(),
         "## Shafts, b/R 0.3",
-        "What a hollow end gains is smaller with a leather tip than bare: the moment of the force on the dome is the "
-        "same on every shaft, and a larger part of a small squirt. Measured, hollow over solid: 0.69 to 0.72 "
-        "(meshes/README.md).",
+        "A hollow end lowers squirt less with a leather tip than with a spring tip: the moment of the force on the "
+        "dome is the same on every shaft, and a larger part of a small squirt. Measured, hollow over solid: 0.69 to "
+        "0.72 (meshes/README.md).",
         shaft_table(),
-        f"Least squirt: {sizes}; limits: stiffness of the solid shaft, walls of 2 mm, "
+        f"Lowest squirt: {sizes}; limits: stiffness of the solid shaft, walls of 2 mm, "
         + ", ".join(f"{1e3 * low:g} to {1e3 * high:g}" for low, high in BOUNDS)
-        + " mm. `cuefem study studies/design/optimum.toml` finds such shafts for a bare tip.",
+        + " mm. `cuefem study studies/design/optimum.toml` finds such shafts for a spring tip.",
     )
 
 
 def draw(axes: Any) -> None:
-    """Squirt of the whole stroke against tip stiffness, by bore and taper."""
+    """Squirt of the default stroke against tip stiffness, by bore and taper."""
     for taper in (12.45e-3, 14e-3, 16e-3):
         found = [measures(shaft(bore, *START[1:4], taper)) for bore in (1e-3, 3e-3, 5e-3, 6e-3, 7e-3, 8e-3, 9e-3)]
         axes.plot(
@@ -160,8 +161,8 @@ def draw(axes: Any) -> None:
         )
     for name, drawn in shafts().items():
         if "bore" not in name and name != "carbon tube":
-            axes.plot(measures(drawn)[0], measures(drawn)[2], "k^" if "least" in name else "ks", label=name)
-    axes.set(xlabel="static tip stiffness, N/m", ylabel="squirt of the whole stroke, degrees")
+            axes.plot(measures(drawn)[0], measures(drawn)[2], "k^" if "lowest" in name else "ks", label=name)
+    axes.set(xlabel="static tip stiffness, N/m", ylabel="squirt of the default stroke, degrees")
     axes.legend(fontsize=8)
 
 

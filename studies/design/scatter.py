@@ -1,8 +1,9 @@
-"""How much do two maple pool shafts of one drawing differ, and what drives the difference?
+"""How much do two maple pool shafts of one drawing differ, and which inputs cause the difference?
 
-Pool's whole stroke at b/R 0.3 and 2 m/s with 16 inputs drawn at random (ranges and sources: scatter_leather.toml): wood
-(E, G and density, correlated), turning by 0.05 mm, ferrule, leather from new to worn and from soft to hard, speed,
-ball. Sobol' points; total indices of variance by Jansen's estimator, correlated wood as one cause.
+The default stroke of pool at b/R 0.3 and 2 m/s with 16 inputs drawn at random (ranges and sources:
+scatter_leather.toml): wood (E, G and density, correlated), turning by 0.05 mm, ferrule, leather from new to worn and
+from soft to hard, speed, ball. Sobol' points; total indices of variance by Jansen's estimator, correlated wood as one
+cause.
 """
 
 from __future__ import annotations
@@ -105,13 +106,13 @@ def text() -> str:
     low, middle, high = np.quantile(every, (0.05, 0.5, 0.95))
     said = [f"{cause.split(',')[0].split(':')[0]} {share:.0f} %" for cause, share in list(shares().items())[:3]]
     return pages.page(
-        "Scatter of maple pool shafts",
+        "Tolerance analysis of maple pool shafts",
         "How much do two maple pool shafts of one drawing differ in squirt, and why?",
-        f"9 of 10 strokes squirt {low:.2f} to {high:.2f}° (median {middle:.2f}°, standard deviation "
-        f"{np.std(every):.2f}°). Causes of the variance: {', '.join(said)}. Turning to 0.05 mm adds nothing.",
-        f"Pool's whole stroke at b/R 0.3; {COUNT * (len(CAUSES) + 2)} strikes, so the shares are known to some 10 % "
-        "of the variance. They count what a cause makes alone and together with others, and add up to more than 100 "
-        "%.",
+        f"Squirt of 90 % of the strokes is {low:.2f} to {high:.2f}° (median {middle:.2f}°, standard deviation "
+        f"{np.std(every):.2f}°). Causes of the variance: {', '.join(said)}. Turning to 0.05 mm contributes nothing.",
+        f"Default stroke of pool at b/R 0.3; {COUNT * (len(CAUSES) + 2)} strikes, so the standard error of a share is "
+        "about 10 % of the variance. The shares are total Sobol indices: they include interactions with other causes, "
+        "and their sum exceeds 100 %.",
         table(["cause", "share of the variance, %"], [[cause, f"{share:.0f}"] for cause, share in shares().items()]),
     )
 

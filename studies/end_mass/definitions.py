@@ -88,10 +88,10 @@ def text() -> str:
     return pages.page(
         "End mass: which definition predicts squirt",
         "Which definition of effective end mass gives a lumped cue the squirt of the vibrating shaft?",
-        f"Stick, taken at the offset: {own[0]:.1f}, {own[1]:.1f} and {own[2]:.0f} % off at b/R 0.1, 0.3 and 0.5 "
-        f"(medians of 20 strokes). Stick in the limit of small offsets is {stick[0]:.0f}, {stick[1]:.0f} and "
-        f"{stick[2]:.0f} % off, the paper's 12 g {kim[1]:.0f} % at b/R 0.3: it does not grow with the contact time, "
-        "as end masses do.",
+        f"Stick, computed at the offset: median errors of {own[0]:.1f}, {own[1]:.1f} and {own[2]:.0f} % at b/R 0.1, "
+        f"0.3 and 0.5 (20 strokes). Stick in the limit of small offsets has {stick[0]:.0f}, {stick[1]:.0f} and "
+        f"{stick[2]:.0f} %, the paper's 12 g {kim[1]:.0f} % at b/R 0.3, because it does not grow with the contact "
+        "time.",
         "## Error of squirt",
         error_table(),
         "## End mass, g",

@@ -1,7 +1,7 @@
-"""Which part of a cue makes its end mass: how much does a gram added here add?
+"""Which part of a cue determines its end mass: the effect of a point mass by its position.
 
-For each cue of meshes/ and contacts of 0.7, 1 and 2 ms the stick end mass with a small mass on the shaft, less that
-without it, over the mass. Equations: handbook: Effective end mass.
+For each cue of meshes/ and contact times of 0.7, 1 and 2 ms the stick end mass with a small point mass on the shaft,
+less that without it, over the mass. Equations: handbook: Effective end mass.
 """
 
 from __future__ import annotations
@@ -40,17 +40,18 @@ def text() -> str:
     ]
     near, far = ([added(name, 1e-3, x) for name in NAMES] for x in (0.025, 0.1))
     return pages.page(
-        "Which part of the cue makes the end mass",
-        "Which part of a cue makes its end mass?",
-        f"The first 10 cm. At 1 ms a gram at 2.5 cm from the tip adds {pages.span(near, 1)} g of stick end mass, at "
-        f"10 cm {pages.span(far, 1)} g; farther away it may even take some off. At 2 ms a longer part counts.",
-        "Grams of stick end mass that one gram adds, by its distance from the tip:",
+        "End-mass distribution along the shaft",
+        "Which part of a cue determines its end mass?",
+        f"The first 10 cm. At 1 ms a point mass of 1 g at 2.5 cm from the tip adds {pages.span(near, 1)} g to the "
+        f"stick end mass, at 10 cm {pages.span(far, 1)} g; at larger distances it may reduce it. At 2 ms a longer part "
+        "counts.",
+        "Increase of the stick end mass, g, by a point mass of 1 g, against its distance from the tip:",
         table(["cue", "T, ms", "end mass, g", *(f"{100 * place:g} cm" for place in PLACES)], rows),
     )
 
 
 def draw(axes: Any) -> None:
-    """What a gram adds, along three cues, at 1 ms."""
+    """Increase of the end mass by 1 g, along three cues, at 1 ms."""
     places = np.linspace(0.006, 0.4, 50)
     for name in ("kim", "pool_maple", "carbon"):
         axes.plot(places / INCH, [added(name, 1e-3, float(x)) for x in places], label=name)

@@ -76,7 +76,7 @@ def element_table() -> str:
     rows = [[str(n), *(f"{off[p][i]:.0e}" for p in off)] for i, n in enumerate(counts)]
     return table(
         ["elements", *(f"order {p}" for p in off)],
-        [*rows, ["rate", *(f"{pages.slope(counts, e):.1f}" for e in off.values())]],
+        [*rows, ["order", *(f"{pages.slope(counts, e):.1f}" for e in off.values())]],
     )
 
 
@@ -89,20 +89,20 @@ def text() -> str:
         for i, factor in enumerate(FACTORS)
     ]
     return pages.page(
-        "From the finite-element cue to the lumped one",
-        "Is the lumped cue of the papers a limit of the finite-element cue, and how fast is it reached?",
-        "Yes. In a long contact end masses by force and velocity and the squirt become rigid like "
-        f"T^{rates()['force']:.1f}, T^{rates()['velocity']:.1f} and T^{rates()['squirt']:.1f}; the stick end mass "
-        "does not, because the step of velocity that it starts with rings for ever. For a light cue Kim's first "
-        f"order is exact with the end mass of the offset; with that of small offsets it stays {left[0.1]:.0f}, "
-        f"{left[0.3]:.0f} and {left[0.5]:.0f} % off at b/R 0.1, 0.3 and 0.5.",
+        "Convergence of the finite-element cue to the lumped one",
+        "Is the lumped cue of the papers a limit of the finite-element cue, and what is the order of convergence?",
+        "Yes. In a long contact the end masses by force and velocity and the squirt converge to those of the rigid cue "
+        f"like T^{rates()['force']:.1f}, T^{rates()['velocity']:.1f} and T^{rates()['squirt']:.1f}; the stick end mass "
+        "does not, because the vibration after its initial step of velocity does not decay. For a light cue Kim's "
+        "first order is exact with the end mass at the offset; with that of small offsets the error remains "
+        f"{left[0.1]:.0f}, {left[0.3]:.0f} and {left[0.5]:.0f} % at b/R 0.1, 0.3 and 0.5.",
         "## (a) Kim's shaft in a long contact, b/R 0.3",
-        "Largest relative error in contact times from T to 2T. Friction caps the oscillating force at mu F_n, which "
-        "falls to zero at the end: so squirt has the limit that stick has not.",
-        table(["T, ms", *DRIVES], [*first, ["rate", *(f"{rates()[d]:.1f}" for d in DRIVES)]]),
+        "Largest relative error in contact times from T to 2T. Friction bounds the oscillating force by mu F_n, which "
+        "vanishes at separation: therefore squirt has a limit and stick has none.",
+        table(["T, ms", *DRIVES], [*first, ["order", *(f"{rates()[d]:.1f}" for d in DRIVES)]]),
         "## (b) A light cue of fixed shape: squirt over Kim's first order, less 1",
         table(["rho, E and G, times", *columns], second),
-        "## (c) Squirt by 22 modes against the mesh: the error falls with twice the order",
+        "## (c) Squirt with 22 modes against the mesh: order of convergence 2p",
         element_table(),
     )
 

@@ -749,7 +749,7 @@ def text() -> str:
     found = claims()
     count = Counter(claim.verdict for claim in found)
     return pages.page(
-        "What [Kim] prints, and what follows from its equations",
+        "Claims of Kim's paper and their derivation",
         "Does what Kim's paper prints follow from its own equations?",
         f"Of {len(found)} claims {count['agrees']} agree, {count['rounding']} are roundings, {count['slip']} slips, "
         f"{count['not derivable']} cannot be derived. The betas, the closed form and its expansions are right. The "

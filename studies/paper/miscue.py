@@ -95,10 +95,10 @@ def text() -> str:
     needed = float(squirt.compression_stick_friction(0.7, end_mass_ratio=TWO_PART.end_mass))
     return pages.page(
         "Largest offset before a miscue",
-        "How far off centre can one strike without a miscue?",
-        "Kim's tan phi = mu holds for an end mass of zero. Real cues allow a little more: mu = 0.6 allows b/R "
+        "What is the largest tip offset without a miscue (here: slip until separation of a lumped cue)?",
+        "Kim's tan phi = mu holds for an end mass of zero. Real cues allow slightly more: mu = 0.6 allows b/R "
         f"{float(miscue(TWO_PART, 0.6)):.3f} (the closed form holds to "
-        f"{float(compression_limit(TWO_PART, 0.6)):.3f}), not Coriolis' 0.7, which takes a mu of {needed:.2f}.",
+        f"{float(compression_limit(TWO_PART, 0.6)):.3f}), not Coriolis' 0.7, which requires a mu of {needed:.2f}.",
         table(
             [
                 "friction",
@@ -109,10 +109,10 @@ def text() -> str:
             ],
             rows,
         ),
-        "## Where Kim's mu = 0.6 stops working",
+        "## Limits of Kim's mu = 0.6",
         table(["cue", "closed form valid to b/R", "to phi, deg", "miscue from b/R", "from phi, deg"], edges),
-        f"The map of the rigid cue to 45 degrees takes a Q0 of at least {turning_ratio(math.radians(45)):.2f} at mu = "
-        "0.6.",
+        f"The map of the rigid cue to 45 degrees requires a Q0 of at least {turning_ratio(math.radians(45)):.2f} at mu "
+        "= 0.6.",
     )
 
 

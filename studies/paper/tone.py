@@ -1,6 +1,6 @@
-"""Which bending mode of which piece of the cue could be the 250 Hz that [Kim] heard?
+"""Which bending mode of which piece of the cue could be the 250 Hz that [Kim] states?
 
-What: bending frequencies of the 70 cm shaft (free; clamped at its butt; held at the joint, free to turn), of its first
+What: natural frequencies of the 70 cm shaft (free; clamped at its butt; pinned at the joint), of its first
 12 cm (free; clamped) and of a whole cue, for maple's range of E, and the E that puts the nearest modes at 250 Hz.
 Equations: Timoshenko beam (cuefem.modes), G = E/15, kappa 0.9, so every frequency grows as sqrt(E). The whole cue is
 an assumption: a butt of 0.7 m from 21 to 29 mm diameter that brings the mass to 540 g, of the shaft's E.
@@ -28,7 +28,7 @@ MAPLE = (10e9, 12.6e9, 16e9)  # Pa
 
 @dataclass(frozen=True)
 class Piece:
-    """A piece of the cue, made for a given E, and how it is held."""
+    """A piece of the cue as a function of E, and its supports."""
 
     name: str
     cue: Callable[[float], Cue]
@@ -60,7 +60,7 @@ def pieces() -> list[Piece]:
     return [
         Piece("shaft, free", front),
         Piece("shaft, clamped at the butt", front, (Support(0.7, math.inf, math.inf),)),
-        Piece("shaft, held at the joint", front, (Support(0.7, math.inf),)),
+        Piece("shaft, pinned at the joint", front, (Support(0.7, math.inf),)),
         Piece("12 cm cue end, free", end),
         Piece("12 cm cue end, clamped", end, (Support(0.12, math.inf, math.inf),)),
         Piece("whole cue, free", whole),
@@ -83,8 +83,8 @@ def text() -> str:
             rows.append([piece.name, f"{number}", *(f"{f:.0f}" for f in hertz), f"{needed / 1e9:.2g}", within])
     return pages.page(
         "The 250 Hz of [Kim]",
-        "Which bending mode could be the 250 Hz from which Kim guesses a cue end of 12 g?",
-        "None of the free or clamped shaft for maple's 10 to 16 GPa; the second mode of the shaft held at its joint, "
+        "Which bending mode could be the 250 Hz from which Kim estimates a cue end of 12 g?",
+        "None of the free or clamped shaft for maple's 10 to 16 GPa; the second mode of the shaft pinned at its joint, "
         "at 10.6 GPa.",
         table(
             ["piece", "mode", *(f"{E / 1e9:g} GPa, Hz" for E in MAPLE), "E for 250 Hz, GPa", "within 10 to 16 GPa"],
