@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.design.evaluation import Response, evaluate
+from cuefem.design.evaluation import Response
 from cuefem.design.ranges import Levels, Normal, Span, Value
 from cuefem.design.study import Study, StudyDesign, Vary
 from cuefem.parameters.parameter import value_at
@@ -147,15 +147,7 @@ class Problem:
 
     def values(self, points: Array) -> Array:
         """Responses of the study at points (n, variables): (n, responses), nan if there is none."""
-        values, scenes = np.full((len(points), len(self.study.responses)), np.nan), dict[int, Scene]()
-        for i, point in enumerate(points):
-            try:
-                scenes[i] = self.scene(point)
-            except ValueError:
-                continue
-        if scenes:
-            values[[*scenes]] = evaluate([*scenes.values()], self.study.responses, at=self.at).values
-        return values
+        return self.study.evaluated([self.design(point) for point in points]).values
 
     def room(self, values: Array) -> Array:
         """How far values (n, responses) lie inside the limits, relative to each limit's size: (n, sides).

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
 from statistics import NormalDist
 
 import numpy as np
@@ -15,7 +14,7 @@ from cuefem.quantity.fields import check_count
 # The most points of a Sobol sequence of 30 bits; the most levels of an interval; points that are made at a time.
 MOST, MOST_LEVELS, BLOCK = 2**30, 2**20, 256
 # Standard deviations at which a normal distribution is cut: it takes 0.05 % off its standard deviation.
-CUT = 4.0
+CUT, STANDARD = 4.0, NormalDist()
 
 Value = float | str
 
@@ -113,17 +112,13 @@ class Normal:
         """The value below which a share ``u`` in [0, 1] of all lies."""
         if u in (0.0, 1.0):  # exactly
             return self.ends[int(u)]
-        tail = self._standard.cdf(-CUT)
-        return self._at(self._standard.inv_cdf(tail + u * (1 - 2 * tail)))
+        tail = STANDARD.cdf(-CUT)
+        return self._at(STANDARD.inv_cdf(tail + u * (1 - 2 * tail)))
 
     @property
     def ends(self) -> tuple[float, ...]:
         """Where it is cut."""
         return self._at(-CUT), self._at(CUT)
-
-    @cached_property
-    def _standard(self) -> NormalDist:
-        return NormalDist()
 
     def _at(self, deviations: float) -> float:
         moved = self.sd * deviations

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from importlib.metadata import version
 from itertools import product
 from typing import Any, Protocol
 
+import numpy as np
+
 from cuefem.cue.materials import material
-from cuefem.design.evaluation import Response
+from cuefem.design.evaluation import Evaluation, Failed, Response, evaluate
 from cuefem.design.ranges import Levels, Normal, Span, Value
 from cuefem.parameters.parameter import Path, paths, quantity_at, replaced, spelt, value_at
-from cuefem.quantity.display import spelt_out
+from cuefem.quantity.display import one_line, spelt_out
 from cuefem.scene import Resolution, Scene
 
 
@@ -63,11 +65,6 @@ class Vary:
         if self.factor and self.shift:
             raise ValueError("factor and shift: give one")
         object.__setattr__(self, "name", self.name or ", ".join(self.paths))
-
-    @property
-    def named(self) -> bool:
-        """Whether its values are names of materials."""
-        return isinstance(self.range.ends[0], str)
 
     def fields(self, base: Scene) -> tuple[Path, ...]:
         """The fields of a scene that vary; ValueError if a path names no field, or a value does not fit the field."""
@@ -230,6 +227,20 @@ class Study:
         for path, gain in shifts:
             numbers[path] = now(path) - gain
         return replaced(scene, numbers) if numbers else scene
+
+    def evaluated(self, designs: Sequence[tuple[Value, ...]]) -> Evaluation:
+        """The responses of designs with these values; one that cannot be made has none, and the reason."""
+        scenes, reasons = dict[int, Scene](), dict[int, str | None]()
+        for i, values in enumerate(designs):
+            try:
+                scenes[i] = self.scene(values)
+            except Failed as error:
+                reasons[i] = one_line(str(error))
+        found, numbers = evaluate([*scenes.values()], self.responses, at=self.at), [np.nan] * len(self.responses)
+        answers = dict(zip(scenes, found.values.tolist(), strict=True))
+        reasons |= dict(zip(scenes, found.reasons, strict=True))
+        every = range(len(designs))
+        return Evaluation(np.array([answers.get(i, numbers) for i in every]), tuple(reasons[i] for i in every))
 
     @property
     def record(self) -> dict[str, Any]:

@@ -165,7 +165,7 @@ def found(
         row = Row(0, tuple(best.values.values()), tuple(best.responses.values()), None)
         return StudyResult(asked, (row,), best)
     designs = asked.designs if isinstance(asked, Scatter) else asked
-    store = MemoryStore(designs) if store is None else store
+    store = MemoryStore() if store is None else store
     sweep(designs, store, pool=pool, progress=progress)
     rows = tuple(store.rows())
     return StudyResult(asked, rows, None, drivers_of(asked, rows) if isinstance(asked, Scatter) else None)

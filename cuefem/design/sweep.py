@@ -6,20 +6,18 @@ import logging
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
 from concurrent.futures import wait as wait_for
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import chain, count, islice
 from multiprocessing import get_context, parent_process, resource_tracker
 from typing import NamedTuple, ParamSpec, Protocol, TypeVar
 
-from cuefem.design.evaluation import Failed, Response, evaluate
 from cuefem.design.ranges import Value
 from cuefem.design.study import Study
-from cuefem.quantity.display import one_line
-from cuefem.scene import Resolution, Scene
 
 BLOCK = 16  # designs that are evaluated, and written, at a time
 # A pool that breaks is opened again; this often in a row without a block done is too often.
@@ -43,22 +41,11 @@ class Row(NamedTuple):
     failure: str | None
 
 
-class Task(NamedTuple):
-    """Designs to compute: number and values of each, its scene, and the question; failed: rows of designs that cannot
-    be made."""
-
-    designs: Sequence[tuple[int, tuple[Value, ...]]]
-    scenes: Sequence[Scene]
-    responses: tuple[Response, ...]
-    at: Resolution | None
-    failed: Sequence[Row] = ()
-
-
 class Store(Protocol):
     """Where a study's rows go, and what is known already."""
 
-    def take(self, designs: dict[int, tuple[Value, ...]]) -> Task | None:
-        """What is to be computed of a block, designs by number; None if nothing is."""
+    def take(self, designs: dict[int, tuple[Value, ...]]) -> dict[int, tuple[Value, ...]]:
+        """What is left to compute of a block, designs by number."""
 
     def write(self, rows: list[Row]) -> None:
         """Store the rows of a task, all or none of them."""
@@ -71,12 +58,11 @@ class Store(Protocol):
 class MemoryStore:
     """A store that ends with the process."""
 
-    study: Study
     kept: list[Row] = field(default_factory=list)
 
-    def take(self, designs: dict[int, tuple[Value, ...]]) -> Task:
+    def take(self, designs: dict[int, tuple[Value, ...]]) -> dict[int, tuple[Value, ...]]:
         """All of them."""
-        return task_of(self.study, designs)
+        return designs
 
     def write(self, rows: list[Row]) -> None:
         """Store rows."""
@@ -87,29 +73,14 @@ class MemoryStore:
         return iter(sorted(self.kept, key=lambda row: row.design))
 
 
-def task_of(study: Study, designs: dict[int, tuple[Value, ...]]) -> Task:
-    """The task of designs by number."""
-    scenes, failed = dict[int, Scene](), list[Row]()
-    for design, values in designs.items():
-        try:
-            scenes[design] = study.scene(values)
-        except Failed as error:
-            nothing = (None,) * len(study.responses)
-            failed.append(Row(design, values, nothing, one_line(str(error))))
-    there = [(design, designs[design]) for design in scenes]
-    return Task(there, [*scenes.values()], study.responses, study.at, failed)
-
-
-def computed(task: Task) -> list[Row]:
-    """The rows of a task. The same scenes give the same bits, whatever else is in the task."""
-    evaluation = evaluate(task.scenes, task.responses, at=task.at)
-    rows = (
+def computed(study: Study, designs: dict[int, tuple[Value, ...]]) -> list[Row]:
+    """The rows of designs. The same designs give the same bits, whatever else is in the block."""
+    found = study.evaluated([*designs.values()])
+    answers = zip(designs.items(), found.values.tolist(), found.reasons, strict=True)
+    return [
         Row(design, values, tuple(None if x != x else x for x in numbers), reason)
-        for (design, values), numbers, reason in zip(
-            task.designs, evaluation.values.tolist(), evaluation.reasons, strict=True
-        )
-    )
-    return sorted([*task.failed, *rows], key=lambda row: row.design)
+        for (design, values), numbers, reason in answers
+    ]
 
 
 def sweep(
@@ -135,8 +106,7 @@ def sweep(
     """
     designs = enumerate(study.designs())
     blocks = iter(lambda: dict(islice(designs, BLOCK)), {})
-    tasks = (task for block in blocks if (task := store.take(block)) is not None)
-    for rows in in_parallel(computed, tasks, pool):
+    for rows in in_parallel(partial(computed, study), filter(None, map(store.take, blocks)), pool):
         store.write(rows)
         progress(rows)
 

@@ -19,9 +19,9 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
-from cuefem.design import Row, Study, Task
+from cuefem.design import Row, Study
+from cuefem.design.evaluation import Failed
 from cuefem.design.ranges import Value
-from cuefem.design.sweep import task_of
 from cuefem.io.errors import InputError, state_of
 from cuefem.quantity.display import spelt_out
 
@@ -92,7 +92,7 @@ def _rows(path: Path, file: sqlite3.Connection, study: str) -> Iterator[Row]:
 
 
 class SqliteStore:
-    """The designs of a study in a file that may hold those of others; a `cuefem.design.Store` and a context manager.
+    """The designs of a study in a file that may hold those of others; a `cuefem.design.sweep.Store` and a context manager.
 
     InputError if the file is no store or a damaged one. done: designs of the study that are there. computed: those of
     them that this run added.
@@ -128,20 +128,22 @@ class SqliteStore:
     def __exit__(self, *error: Any) -> bool | None:
         return self._open.__exit__(*error)
 
-    def take(self, designs: dict[int, tuple[Value, ...]]) -> Task | None:
-        """What is to be computed of a block; designs that a study in the file has are copied."""
+    def take(self, designs: dict[int, tuple[Value, ...]]) -> dict[int, tuple[Value, ...]]:
+        """What is left to compute of a block; designs that a study in the file has are copied."""
         query = "SELECT design FROM designs WHERE study = ? AND design BETWEEN ? AND ?"
         there = {row[0] for row in self._file.execute(query, (self._id, min(designs), max(designs)))}
-        task = task_of(self.study, {design: values for design, values in designs.items() if design not in there})
-        left, known = list[int](), [*task.failed]
-        for i, ((design, values), scene) in enumerate(zip(task.designs, task.scenes, strict=True)):
-            self._scenes[design] = digest(code(), spelt_out(scene), repr(self.study.at))
-            row = self._known(design, values)
-            known.append(row) if row else left.append(i)
+        left, known = {design: values for design, values in designs.items() if design not in there}, list[Row]()
+        for design, values in [*left.items()]:
+            try:
+                scene = spelt_out(self.study.scene(values))
+            except Failed:  # computing it gives the reason
+                continue
+            self._scenes[design] = digest(code(), scene, repr(self.study.at))
+            if row := self._known(design, values):
+                known.append(row)
+                del left[design]
         self._insert(known)
-        if not left:
-            return None
-        return Task([task.designs[i] for i in left], [task.scenes[i] for i in left], task.responses, task.at)
+        return left
 
     def _known(self, design: int, values: tuple[Value, ...]) -> Row | None:
         """The row of a design whose scene a study in the file has answered."""
