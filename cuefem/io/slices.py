@@ -20,7 +20,6 @@ from cuefem.cue import Array
 Index = NDArray[np.intp]
 
 SAME = 1e-6  # of the length: points closer than this are one
-CROWDED = 100  # points that are one, on average: more are a heap of which every pair would be counted
 FLAT = 1e-5  # of the length: a triangle that reaches less far along the axis lies across it
 UPRIGHT = 1e-3  # rad: an axis nearer than this to x, y or z is that
 SLENDER = 5.0  # length over the widest diameter, at least
@@ -175,18 +174,8 @@ def _tetrahedra(points: Array, triangles: Index) -> tuple[Array, Array]:
 
 def _welded(points: Array, triangles: Index, near: float) -> tuple[Array, Index]:
     """Points that are one made one (formats repeat them, rounded), and triangles left without extent dropped."""
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import KDTree
-
-    tree = KDTree(points)
-    if tree.count_neighbors(tree, near) > CROWDED * len(points):
-        raise ValueError(f"must have its corners apart; got more than {CROWDED} in one place on average")
-    pairs = tree.query_pairs(near, output_type="ndarray")
-    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(points),) * 2)
-    _, label = connected_components(graph, directed=False)
-    _, first = np.unique(label, return_index=True)
-    triangles = label[triangles].astype(np.intp)
+    _, first, label = np.unique(np.round(points / near), axis=0, return_index=True, return_inverse=True)
+    triangles = label.ravel()[triangles].astype(np.intp)
     whole = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
     return points[first], triangles[whole]
 

@@ -49,12 +49,6 @@ class Accuracy:
         check_fields(self)
 
 
-DEEPEST = 20  # parts of a dotted key: the deepest that means anything, segments.material.E, has three
-_PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
-# More parts than that in a key, for which tomllib takes the square of their number.
-_DEEP_KEY = re.compile(rf"""(?<![A-Za-z0-9_."' \t-])[ \t]*+{_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{DEEPEST}}}""")
-
-
 def read_text(path: Path) -> str:
     """A file's text; InputError if it cannot be read, is too long, is not UTF-8, or is empty."""
     try:
@@ -69,10 +63,6 @@ def read_text(path: Path) -> str:
 def read_tables(path: Path) -> dict[str, Any]:
     """A TOML file as plain tables."""
     text = read_text(path)
-    deep = _DEEP_KEY.search(text)
-    if deep:
-        line = text.count("\n", 0, deep.start() + 1) + 1
-        raise InputError(path, f"line {line}", f"must be TOML nested less deeply, keys of at most {DEEPEST} parts")
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:

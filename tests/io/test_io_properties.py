@@ -157,7 +157,7 @@ def test_every_unit_of_the_table_is_compared() -> None:
 
 def test_files_are_written_in_units_of_the_table() -> None:
     assert EXAMPLES.keys() <= TYPED.keys()
-    for unit, (_, example) in EXAMPLES.items():
+    for unit, (_, example, *_) in EXAMPLES.items():
         assert number(f"1 {example.split(' ', 1)[1]}", unit) > 0
 
 
