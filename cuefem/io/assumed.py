@@ -32,10 +32,10 @@ def assumed(path: Path, scene: Scene, given: Mapping[str, Any]) -> Assumptions:
     if "cue" in tables:
         return assumed_in(tables, path.parent, scene, given)
     game = given.get("game") or DEFAULT_GAME
-    butt = (
-        f", butt to {1e3 * GAMES[game].cue_length:g} mm, {1e3 * GAMES[game].butt_diameter:g} mm wide, for axial waves"
-    )
-    stroke = ("game", f"default stroke of {game}{butt if scene.shaft.body_mass else ''}")
+    known, butt = GAMES.get(game), ""
+    if known and scene.shaft.body_mass:
+        butt = f", butt to {1e3 * known.cue_length:g} mm, {1e3 * known.butt_diameter:g} mm wide, for axial waves"
+    stroke = ("game", f"default stroke of {game}{butt}")
     missing = [] if "game" in given else [stroke]
     return [*assumed_drawing(path, scene.shaft, given), *missing, *_stroke({}, game, scene, given)]
 

@@ -12,14 +12,6 @@ from pathlib import Path
 from cuefem.quantity.display import one_line, printable
 from cuefem.quantity.fields import nearest, shown
 
-_KINDS = {
-    stat.S_IFDIR: "a folder",
-    stat.S_IFIFO: "a pipe",
-    stat.S_IFSOCK: "a socket",
-    stat.S_IFCHR: "a device",
-    stat.S_IFBLK: "a device",
-}
-
 __all__ = ["InputError", "check_size", "faults_of", "nearest", "read_bytes", "reason", "shown", "state_of"]
 
 
@@ -56,7 +48,7 @@ def state_of(path: Path) -> os.stat_result:
     except OSError as error:
         raise InputError(path, "", f"cannot be read: {reason(error)}") from None
     if not stat.S_ISREG(state.st_mode):
-        kind = _KINDS.get(stat.S_IFMT(state.st_mode), "something else")
+        kind = "a folder" if stat.S_ISDIR(state.st_mode) else "a pipe or a device"
         raise InputError(path, "", f"must be a file; got {kind}")
     return state
 

@@ -16,6 +16,7 @@ from cuefem.design.scatter import Scatter
 from cuefem.design.study_result import StudyResult, found
 from cuefem.design.sweep import pool_of
 from cuefem.io import load_stroke, replaced_segments
+from cuefem.io.assumed import assumed, in_words
 from cuefem.io.errors import InputError, faults_of, shown, state_of
 from cuefem.io.profile import SHAPES
 from cuefem.io.schema import build, joined
@@ -23,7 +24,6 @@ from cuefem.io.store import SqliteStore
 from cuefem.io.toml import game_of, named_material, read_tables
 from cuefem.parameters.parameter import paths, quantity_at
 from cuefem.quantity.fields import Quantity
-from cuefem.results.quantities import with_unit
 from cuefem.scene import Resolution, Scene, Stroke
 from cuefem.scene.default_scene import KIM, usual_scene
 
@@ -251,16 +251,9 @@ def _game(told: StudyTable, path: Path) -> str:
 
 
 def assumed_base(path: Path, base: Scene) -> list[str]:
-    """What the base of a study is struck with, where the file that it names holds a cue alone."""
+    """What the file that a study names leaves to defaults, in words."""
     tables = read_tables(path)
-    if isinstance(load_stroke(path.parent / tables["scene"]), Scene):
-        return []
-    game = game_of(tables, path)
-    if game != KIM:
-        return [f"{tables['scene']} is a cue alone, struck with a default stroke of {game} (game)"]
-    ball, time = with_unit(float(base.ball.mass), "kg", 6), with_unit(float(base.contact_time), "s", 6)
-    told = f"{tables['scene']} is a cue alone, struck with a ball of {ball} and a flat tip in contact for {time}"
-    return [f"{told}, b/R {base.stroke.offset:.4g} (game)"]
+    return in_words(assumed(path.parent / tables["scene"], base, {k: tables[k] for k in ("game",) if k in tables}))
 
 
 def _response(text: str, path: Path, key: str) -> Response:

@@ -23,27 +23,18 @@ def toml_text(thing: Cue | Scene | SideStrike) -> str:
     return re.sub(r"(?<!\n)\n\[", "\n\n[", tomlkit.dumps(document)).rstrip("\n") + "\n"  # a blank line before a table
 
 
-def _item(value: Any) -> Any:
+def _item(value: Any, *, inside: bool = False) -> Any:
     """Segments and effects as [[tables]], what lies inside them in one line."""
     if isinstance(value, dict):
-        made = tomlkit.table()
+        made = tomlkit.inline_table() if inside else tomlkit.table()
         for name, inner in value.items():
-            made.add(name, _item(inner))
+            made.add(name, _item(inner, inside=inside))
         return made
     if isinstance(value, list) and value and isinstance(value[0], dict):
         tables = tomlkit.aot()
-        for inner in value:
-            tables.append(_row(inner))
+        for row in value:
+            tables.append(made := tomlkit.table())
+            for name, inner in row.items():
+                made.add(name, _item(inner, inside=True))
         return tables
     return value
-
-
-def _row(table: dict[str, Any]) -> Any:
-    made = tomlkit.table()
-    for name, inner in table.items():
-        if isinstance(inner, dict):
-            inline = tomlkit.inline_table()
-            inline.update(inner)
-            inner = inline
-        made.add(name, inner)
-    return made

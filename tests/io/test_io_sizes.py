@@ -4,7 +4,6 @@ import os
 import re
 import resource
 import signal
-import socket
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -131,19 +130,13 @@ def commands_on(name: str) -> list[list[str]]:
 
 
 def made_of_no_file(name: str, kind: str) -> None:
-    path = Path(name)
     if kind == "a folder":
-        path.mkdir()
-    elif kind == "a pipe":
-        os.mkfifo(path)
-    elif kind == "a device":
-        path.symlink_to("/dev/zero")
+        Path(name).mkdir()
     else:
-        with socket.socket(socket.AF_UNIX) as listening:
-            listening.bind(name)
+        os.mkfifo(name)
 
 
-@pytest.mark.parametrize("kind", ["a folder", "a pipe", "a device", "a socket"])
+@pytest.mark.parametrize("kind", ["a folder", "a pipe or a device"])
 @pytest.mark.parametrize("suffix", KINDS)
 def test_what_is_no_file_is_never_opened(folder: Path, soon: None, suffix: str, kind: str) -> None:
     name = f"cue.{suffix}"
