@@ -44,7 +44,6 @@ SHAPES = (".csv", *SURFACES)  # the files that say a shaft's shape and no materi
 TABLES = (".xlsx", ".xls", ".ods", ".numbers", ".txt", ".tsv", ".dat")  # files that can be saved as .csv
 # Points closer than this to a straight taper lie on it, m: the rounding of a file, far below what a lathe measures.
 _STRAIGHT = 1e-9
-_SAME = 0.005  # relative: two columns that say one thing in two units
 _NOTHING = ("none", "no", "-", "–", "—")  # cells without a bore or a material
 
 _POSITION, _HOLE = Quantity("m"), Quantity("m", "[0, 10]")
@@ -83,7 +82,7 @@ def read_profile(path: Path, material: Material, length_unit: str | None = None)
     numbers = [parted(cell)[0] for column in header.used for cell in _cells(header.rows, column)]
     mark = decimal_mark(numbers)
     columns = _with_units(path, header, length_unit)
-    place, width, spare = _chosen(path, header, columns, mark)
+    place, width = (_chosen(path, header, columns, kinds) for kinds in ((PLACE,), (DIAMETER, RADIUS)))
     x = [_number(path, row, place, mark) for row in header.rows]
     d = [_number(path, row, width, mark) for row in header.rows]
     points = _ordered(path, header, place, list(zip(x, d, strict=True)))
@@ -97,7 +96,7 @@ def read_profile(path: Path, material: Material, length_unit: str | None = None)
     with faults_of(path, ""):
         cue, bored = _drawn(points, [behind.get(at, Inside()) for at, _ in points], material, place.unit)
         ferrule = _ferrule_with_length(path, header, inside)
-        notes = [*_notes(header, place, width, spare, points), *bored]
+        notes = [*_notes(header, place, width, points), *bored]
         return fitted(cue, ferrule=ferrule) if ferrule else cue, notes
 
 
@@ -178,11 +177,9 @@ def _entry(cells: Sequence[str], column: ProfileColumn) -> str:
     return "" if text.casefold() in _NOTHING else text
 
 
-def _notes(
-    header: Header, place: ProfileColumn, width: ProfileColumn, spare: Sequence[str], points: Sequence[Point]
-) -> list[str]:
+def _notes(header: Header, place: ProfileColumn, width: ProfileColumn, points: Sequence[Point]) -> list[str]:
     """How the columns and lines were read."""
-    names = [*header.unused, *spare]
+    names = header.unused
     butt, first = from_butt(place), points[0][0] if points else 0.0
     told = f"{first / number(f'1 {place.unit}', 'm'):.6g} {place.unit}"
     lines = ", ".join(map(str, header.passed[:MOST])) + ", ..." * (len(header.passed) > MOST)
@@ -223,29 +220,13 @@ def _with_units(path: Path, header: Header, length_unit: str | None) -> list[Pro
     return [ProfileColumn(c.kind, c.index, c.name, c.unit or unit) for c in columns]
 
 
-def _first(columns: Sequence[ProfileColumn], *kinds: str) -> ProfileColumn:
-    return next(column for kind in kinds for column in columns if column.kind == kind)
-
-
-def _chosen(
-    path: Path, header: Header, columns: Sequence[ProfileColumn], mark: str
-) -> tuple[ProfileColumn, ProfileColumn, list[str]]:
-    """The column of places, that of diameters, and the names of others that say the same."""
-    place, width = _first(columns, PLACE), _first(columns, DIAMETER, RADIUS)
-    spare = []
-    for column in columns:
-        if column in (place, width) or column.kind == BORE:
-            continue
-        used = place if column.kind == PLACE else width
-        pairs = [(_number(path, row, used, mark), _number(path, row, column, mark)) for row in header.rows]
-        largest = max((abs(value) for value, _ in pairs), default=0.0)
-        if any(abs(value - other) > _SAME * largest for value, other in pairs):
-            word = "place" if column.kind == PLACE else "diameter"
-            both = f"{shown(used.name)} and {shown(column.name)}"
-            problem = f"two columns may be the {word}, {both}, and they differ: keep one"
-            raise InputError(path, f"line {header.line}", problem)
-        spare.append(column.name)
-    return place, width, spare
+def _chosen(path: Path, header: Header, columns: Sequence[ProfileColumn], kinds: Sequence[str]) -> ProfileColumn:
+    """The one column of these kinds."""
+    first, *more = [column for column in columns if column.kind in kinds]
+    if more:
+        both = f"{shown(first.name)} and {shown(more[0].name)}"
+        raise InputError(path, f"line {header.line}", f"two columns may be the {kinds[0]}, {both}: keep one")
+    return first
 
 
 def _number(path: Path, row: Row, column: ProfileColumn, mark: str) -> float:

@@ -71,11 +71,6 @@ READ = {
         MEANT,
         ("x is measured from the butt, as 'distance from joint [mm]' says",),
     ),
-    "both units twice": (
-        "x (in),x (mm),d (in),d (mm)\n0,0,0.5,12.7\n13,330.2,0.52,13.208\n29,736.6,0.85,21.59\n",
-        INCHES,
-        ("columns 'x (mm)', 'd (mm)' are not used",),
-    ),
     "fractions of an inch": (
         'x [in],diameter [in]\n0,1/2"\n14 1/2,17/32\n29,27/32\n',
         ((0, 12.7), (368.3, 25.4 * 17 / 32), (736.6, 25.4 * 27 / 32)),

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.io.ready import PRESETS, SCALE, STROKES, Preset, opened, ready_cues
+from cuefem.io.ready import SCALE, ready_cues
 from cuefem.parameters.parameter import varied
 from cuefem.report.verdict_table import scale, squirt_words, standing
 from cuefem.results.uncertainty import FLOOR
@@ -87,14 +87,3 @@ def test_the_scale_is_in_order_and_compares_every_cue_with_plain_maple() -> None
 def test_squirt_has_the_digits_of_the_tables(squirt: float, error: float, words: str) -> None:
     record = {"squirt": math.radians(squirt), "squirt_error": math.radians(error)}
     assert squirt_words(record)[0] == words
-
-
-@pytest.mark.parametrize("preset", [preset for preset in PRESETS if preset.measured in STROKES], ids=lambda p: p.file)
-def test_measured_squirt_stands_beside_the_same_offset(preset: Preset) -> None:
-    scene = opened(preset)
-    said = preset.beside(scene)
-    for offset, measured in STROKES[preset.measured].items():
-        assert f"at b/R {offset:g}" in preset.measured
-        ours = math.degrees(cf.strike(replace(scene, stroke=replace(scene.stroke, offset=offset))).squirt)
-        more = "more" if ours > measured else "less"
-        assert f"{ours:.2f}° at b/R {offset:g}, {abs(ours - measured):.2f}° {more}" in said
