@@ -26,7 +26,7 @@ _NUMBER = re.compile(rf"(?:{FRACTION.pattern}|[+-]?[\d.,](?:[\d.,' ]*[\d.,])?(?:
 
 def read_rows(path: Path) -> list[Row]:
     """The lines of a table that hold anything, without comments, each as its cells; InputError if it is no text."""
-    lines = [(i, line) for i, line in enumerate(_text(path).splitlines(), start=1) if line.strip()]
+    lines = [(i, line) for i, line in enumerate(read_text(path).splitlines(), start=1) if line.strip()]
     lines = [(i, line) for i, line in lines if not line.lstrip().startswith(_COMMENTS)]
     for i, line in lines:
         if len(line) > LONGEST_LINE:
@@ -57,17 +57,17 @@ def _cells(line: str, separator: str) -> list[str]:
     return next(csv.reader([line], delimiter=separator, skipinitialspace=True))
 
 
-def _text(path: Path) -> str:
+def read_text(path: Path) -> str:
     """The text of a file in UTF-8, UTF-16 or Windows' letters; InputError if it is empty or no text."""
     content = read_bytes(path, LARGEST_TEXT)
     if content.startswith(_SPREADSHEETS):
-        raise InputError(path, "", "is a spreadsheet, not a .csv: in its program, save it as CSV")
+        raise InputError(path, "", "is a spreadsheet, no text: in its program, save it as CSV")
     try:
         text = content.decode(_encoding(content))
     except UnicodeDecodeError:
         text = "\0"
     if any(ord(letter) < 32 and letter not in "\t\r\n\f\v" for letter in text):
-        raise InputError(path, "", "must be text, a table of numbers; got a file of another kind")
+        raise InputError(path, "", "must be text; got a file of another kind")
     if not text.strip():
         raise InputError(path, "", "must hold a cue or a scene; got an empty file")
     return text

@@ -17,9 +17,10 @@ from scipy.io import wavfile
 
 from cuefem.io import InputError, load, write_whole_folder
 from cuefem.io.assumed import assumed_in, in_words
+from cuefem.io.cells import read_text
 from cuefem.io.errors import faults_of, nearest, read_bytes, shown
 from cuefem.io.schema import build, choices, joined, mark_of, types_of, unknown_key
-from cuefem.io.toml import OF_GAME, game_of, left_out, read_tables, read_text, scene_of_tables
+from cuefem.io.toml import OF_GAME, game_of, left_out, read_tables, scene_of_tables
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Setup, Tone
 from cuefem.measurements.pendulum import Pendulum

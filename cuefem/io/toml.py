@@ -17,7 +17,8 @@ from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue, LumpedCue, Material
 from cuefem.cue.materials import material
 from cuefem.effects import Effect, effect_kinds
-from cuefem.io.errors import LARGEST_TEXT, InputError, faults_of, nearest, read_bytes, shown
+from cuefem.io.cells import read_text
+from cuefem.io.errors import InputError, faults_of, nearest, shown
 from cuefem.io.schema import build, joined, keys_of, table, unknown_key
 from cuefem.io.shelf import assembled
 from cuefem.parameters.parts import with_shaft_mass
@@ -47,17 +48,6 @@ class Accuracy:
 
     def __post_init__(self) -> None:
         check_fields(self)
-
-
-def read_text(path: Path) -> str:
-    """A file's text; InputError if it cannot be read, is too long, is not UTF-8, or is empty."""
-    try:
-        content = read_bytes(path, LARGEST_TEXT).decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise InputError(path, "", f"must be UTF-8 text; got byte {error.object[error.start]:#04x}") from None
-    if not content.strip():
-        raise InputError(path, "", "must hold a cue or a scene; got an empty file")
-    return content
 
 
 def read_tables(path: Path) -> dict[str, Any]:

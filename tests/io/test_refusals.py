@@ -30,7 +30,7 @@ CONTENTS = r"""
 toml |                                      | must hold a cue or a scene; got an empty file
 toml | a = 1\na = 2\n                       | must be TOML; got a syntax error: Cannot overwrite a value (at line 2
 toml | [[segments]]\nlength = 700 mm        | must be TOML; got a syntax error: Expected newline or end of document
-toml | \xff\xfe                             | must be UTF-8 text; got byte 0x
+toml | \xff\xfe                             | must hold a cue or a scene; got an empty file
 toml | # nothing                            | cue: must be given: [[segments]] make a cue, [cue] a scene; got nei
 toml | cue = 3                              | cue: must be a table or the path of a cue file; got 3
 toml | cue = 'x.toml'                       | cue: must be absent here: a scene's cue is a cue file
@@ -72,8 +72,8 @@ csv  | x [mm],diameter [mm],material\n0,12,hard mapel\n700,21, | line 2, materia
 csv  | x [mm],diameter [mm],core\n0,12.75,foam\n736.6,21.5,foam | line 2, core: must stand beside a bore
 csv  | x [mm],radius [mm],inner radius (mm)\n0,6.4,3\n700,10, | line 1, bore: must be a column of diameters
 csv  | x [mm];diameter [mm]\n0;12.75\n330,5;13     | line 3, x: must be written with the decimal point of the other
-csv  | PK\x03\x04xxxx                       | is a spreadsheet, not a .csv: in its program, save it as CSV
-csv  | \x89PNG\r\n\x1a\n\x00\x01\x02        | must be text, a table of numbers; got a file of another kind
+csv  | PK\x03\x04xxxx                       | is a spreadsheet, no text: in its program, save it as CSV
+csv  | \x89PNG\r\n\x1a\n\x00\x01\x02        | must be text; got a file of another kind
 stl  |                                      | faces: must be triangles or polygons; got none
 ply  | solid                                | must be a .ply surface; got a file that meshio cannot read
 obj  | v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9   | faces: must name corners in [0, 3); got another
