@@ -15,8 +15,7 @@ from cuefem.effects.force_law import TooDeep
 from cuefem.io import InputError, check_place, load_stroke
 from cuefem.io.assumed import assumed, in_words
 from cuefem.io.fittings import FITTINGS
-from cuefem.report.record import scene_record
-from cuefem.report.scene_words import cue_line, effect_words
+from cuefem.report.scene_words import cue_line, effect_words, scene_record
 from cuefem.report.unusual import unusual
 from cuefem.results.quantities import UNITS
 from cuefem.results.records import Record, plain

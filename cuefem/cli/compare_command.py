@@ -20,7 +20,7 @@ from cuefem.measurements.measured_cue import compare as compared
 from cuefem.measurements.measured_cue import zeros
 from cuefem.report.comparison_table import comparison_figures, comparison_sentences, comparison_sheet
 from cuefem.report.measured_page import compare_record, compare_sheets, estimate_record, estimate_sheets
-from cuefem.report.record import scene_record
+from cuefem.report.scene_words import scene_record
 from cuefem.results.comparison import comparison_record, struck_alike
 from cuefem.results.quantities import UNITS
 

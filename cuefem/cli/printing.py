@@ -71,6 +71,7 @@ class Output(click.Path):
         if path.suffix not in self.endings:
             wanted = " or ".join(self.endings)
             more = "; --store names the file of stored designs" if path.suffix == ".sqlite" else ""
+            more = "; figures stand on the page" if path.suffix in (".png", ".svg", ".pdf") else more
             raise InputError(path, "--output", f"must end in {wanted}; got {path.suffix!r}{more}")
         if path.suffix != ".toml":  # of a drawing the command itself looks
             check_place(path)
@@ -119,7 +120,7 @@ def write_told(path: Path, record: Any, things: Sequence[Any], title: str = "") 
     if path.suffix == ".json":
         write_whole(path, lambda temporary: temporary.write_text(json_text(record) + "\n", encoding="utf-8"))
     else:
-        from cuefem.report.plain_page import plain_page  # templates take 0.1 s, which tables need not pay
+        from cuefem.report.templates import plain_page  # templates take 0.1 s, which tables need not pay
 
         save_page(plain_page(title or path.stem, things), path)
 

@@ -5,7 +5,7 @@ from .end_mass import end_mass_record, end_mass_sheet
 from .everything import report_record, report_sheets
 from .model_error import model_error_record, model_error_sheet
 from .modes_table import modes_record, modes_sheet
-from .record import cue_record
+from .scene_words import cue_record
 from .squirt import squirt_record, squirt_sheet
 from .strike_table import strike_record, strike_sheet
 

@@ -66,13 +66,7 @@ def _events(phases: Sequence[Any]) -> Iterator[tuple[float, str]]:
 
 def _turn(before: Any, after: Any) -> str:
     grips = {"stick": "the tip sticks", "slip": "the tip slips", "slip back": "the tip slips back"}
-    presses = {
-        "load": "pressed beyond its old peak",
-        "unload": "maximum indentation",
-    }
-    words = []
-    if after.press != before.press:
-        words.append(presses.get(after.press, after.press))
-    if after.grip != before.grip:
-        words.append(grips.get(after.grip, after.grip))
+    presses = {"load": "pressed beyond its old peak", "unload": "maximum indentation"}
+    words = [presses.get(after.press, after.press)] if after.press != before.press else []
+    words += [grips.get(after.grip, after.grip)] if after.grip != before.grip else []
     return ", ".join(words) or "goes on"

@@ -1,14 +1,17 @@
-"""Single pieces of the report's page, as markup, for other pages that show the same drawings in the same style."""
+"""The templates: single pieces of the report's page for other pages, and the page of commands that have no other."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 from html import escape
+from itertools import groupby
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from cuefem.report.charts import Chart
+from cuefem.report.drawings import CueDrawing
 from cuefem.results.records import Sheet
 
 
@@ -42,6 +45,12 @@ def chart_markup(drawing: Chart, name: str) -> str:
 def sheet_markup(sheet: Sheet) -> str:
     """A table under its title, with its notes."""
     return f"<h2>{escape(sheet.title)}</h2>{_macros().table(sheet)}"
+
+
+def plain_page(name: str, things: Sequence[str | Sheet | Chart | CueDrawing]) -> str:
+    """Lines, tables, charts and drawings as a page that needs no network."""
+    groups = [[*group] for _, group in groupby(filter(None, things), type)]
+    return environment().get_template("plain.html.j2").render(name=name, groups=groups)
 
 
 @cache

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterator
 from itertools import pairwise
 from math import inf
-from typing import Any, NamedTuple
+from typing import Any
 
-from cuefem.cue import Segment
+from cuefem.cue import Cue, Segment
 from cuefem.cue.materials import MATERIALS, table_name
 from cuefem.effects import TipDome
 from cuefem.parameters.parts import main_material
@@ -23,15 +23,7 @@ AT_EASE = 0.1  # relative: so far beyond the range of a wood its density may be
 LONG, STIFF, LIGHT = 0.3, 3e10, 2500.0
 
 
-class UsualNumbers(NamedTuple):
-    """Numbers of a scene (by name, SI), their usual range, the unit that shows them, and what else to ask."""
-
-    of: Callable[[Scene], Iterable[tuple[str, Any]]]
-    least: float
-    most: float
-    unit: str
-    ask: str
-    blow: bool = True  # whether it matters to a blow alone, and not to how the cue rings
+Asked = tuple[str, Any, tuple[float, float], str, str]  # name, value, usual range, unit, what else to ask
 
 
 def _usual(kind: type, name: str) -> tuple[float, float]:
@@ -39,86 +31,53 @@ def _usual(kind: type, name: str) -> tuple[float, float]:
     return next(known.usual for field, known, *_ in quantities(kind) if field == name and known.usual)
 
 
-def _of_drawing(name: str, attribute: str) -> Callable[[Scene], Iterable[tuple[str, Any]]]:
-    """A number of the segments, if the cue has any."""
-    return lambda scene: [(name, getattr(scene.shaft, attribute))] if scene.cue.segments else []
+def _of_stroke(scene: Scene) -> Iterator[Asked]:
+    leather, ball = "expected 0.001 to 0.002 s for leather", scene.ball
+    yield "head-on contact time", scene.known_contact_time, _usual(Tip, "contact_time"), "s", leather
+    diameter = "expected 26 to 31 mm; is this the diameter?"
+    yield "ball radius", ball.radius, _usual(Ball, "radius"), "mm", diameter
+    yield "ball mass", ball.mass, _usual(Ball, "mass"), "g", "expected 140 to 210 g"
+    yield "stroke speed", scene.stroke.speed, _usual(Stroke, "speed"), "m/s", "expected 0.5 to 12 m/s"
+    dome = "expected 9 to 10.6 mm, dime to nickel"
+    yield "dome radius", scene.dome_radius or None, _usual(TipDome, "radius"), "mm", dome
 
 
-def _diameters(scene: Scene) -> Iterable[tuple[str, float]]:
-    for i, segment in enumerate(scene.cue.segments):
-        yield f"segments[{i}].tip_diameter", segment.tip_diameter
-        yield f"segments[{i}].butt_diameter", segment.butt_diameter
-
-
-def _solid_tubes(scene: Scene) -> Iterable[tuple[str, float]]:
-    """The mass of a shaft with a long piece that is solid, of a material that shafts have as a tube (carbon fibre)."""
-    solid = [
-        segment
-        for segment in scene.cue.segments
-        if segment.length > LONG and segment.material.E > STIFF and segment.material.rho < LIGHT
+def _of_drawing(cue: Cue) -> Iterator[Asked]:
+    yield "drawn length", cue.length, CUE_LENGTH, "mm", "check the unit of the lengths"
+    ends = (
+        (f"segments[{i}].{end}", getattr(segment, end))
+        for i, segment in enumerate(cue.segments)
+        for end in ("tip_diameter", "butt_diameter")
+    )
+    radii = "expected 8.5 to 14 mm at the tip; check the unit: are these radii?"
+    for name, across in [end for end in ends if not CUE_DIAMETER[0] <= end[1] <= CUE_DIAMETER[1]][:1]:
+        yield name, across, CUE_DIAMETER, "mm", radii
+    yield "drawn mass", cue.shaft_mass, (LEAST_DRAWN, inf), "g", "check the sizes and the densities"
+    wood = main_material(cue)
+    known = table_name(wood)
+    if cue.weighed and known is not None:
+        low, high = MATERIALS[known].ranges["rho"]
+        own = f"by the weight of the shaft the density of its {known} is"
+        joint = "does the measured mass include a joint or the rest of the cue?"
+        yield own, wood.rho, ((1 - AT_EASE) * low, (1 + AT_EASE) * high), "kg/m3", joint
+    if any(
+        segment.length > LONG and segment.material.E > STIFF and segment.material.rho < LIGHT
+        for segment in cue.segments
         if not max(segment.tip_bore, segment.butt_bore)
-    ]
-    return [("a solid rod as stiff as carbon fibre, drawn mass", scene.shaft.shaft_mass)] if solid else []
+    ):
+        tubes = "carbon shafts are tubes; add the bore (--bore, or `cuefem guide files`)"
+        yield "a solid rod as stiff as carbon fibre, drawn mass", cue.shaft_mass, (0.0, 0.0), "g", tubes
 
 
-def _weighed_wood(scene: Scene) -> Iterable[tuple[str, float]]:
-    """The density that a weight gives to the main material, over the usual range of that material."""
-    wood = main_material(scene.shaft) if scene.cue.segments else None
-    name = table_name(wood) if wood is not None and scene.shaft.weighed else None
-    if wood is None or name is None:
-        return []
-    low, high = MATERIALS[name].ranges["rho"]
-    beyond = wood.rho < (1 - AT_EASE) * low or wood.rho > (1 + AT_EASE) * high
-    return [(f"by the weight of the shaft the density of its {name} is", wood.rho)] if beyond else []
+def _of_mass(scene: Scene) -> Iterator[Asked]:
+    name, mass = "mass of the whole cue", float(scene.cue.mass)
+    yield name, mass, (0.0, 1.0), "kg", "expected 0.4 to 0.7 kg"
+    if not scene.cue.segments or scene.shaft.shaft_mass >= LEAST_DRAWN:  # else the drawing itself is too light
+        body = 'expected 400 to 700 g; add the rest of the cue with --body-mass "15 oz" (body_mass in a file)'
+        yield name, mass, (LIGHTEST, inf), "g", body
 
 
-def _light_cue(scene: Scene) -> Iterable[tuple[str, float]]:
-    """The mass of a whole cue, unless what is drawn is itself lighter than any shaft."""
-    if scene.cue.segments and scene.shaft.shaft_mass < LEAST_DRAWN:
-        return []
-    return [("mass of the whole cue", float(scene.cue.mass))]
-
-
-TUBES = "carbon shafts are tubes; add the bore (--bore, or `cuefem guide files`)"
-BODY = 'expected 400 to 700 g; add the rest of the cue with --body-mass "15 oz" (body_mass in a file)'
 SHOWN = {"mm": 1e3, "g": 1e3}  # how many of the unit an SI unit is, if not one
-ASKED = (
-    UsualNumbers(
-        lambda s: [("head-on contact time", s.known_contact_time)],
-        *(*_usual(Tip, "contact_time"), "s", "expected 0.001 to 0.002 s for leather"),
-    ),
-    UsualNumbers(
-        lambda s: [("ball radius", s.ball.radius)],
-        *(*_usual(Ball, "radius"), "mm", "expected 26 to 31 mm; is this the diameter?"),
-    ),
-    UsualNumbers(lambda s: [("ball mass", s.ball.mass)], *_usual(Ball, "mass"), "g", "expected 140 to 210 g"),
-    UsualNumbers(
-        lambda s: [("stroke speed", s.stroke.speed)], *_usual(Stroke, "speed"), "m/s", "expected 0.5 to 12 m/s"
-    ),
-    UsualNumbers(
-        lambda s: [("dome radius", s.dome_radius or None)],
-        *(*_usual(TipDome, "radius"), "mm", "expected 9 to 10.6 mm, dime to nickel"),
-    ),
-    UsualNumbers(_of_drawing("drawn length", "length"), *CUE_LENGTH, "mm", "check the unit of the lengths", False),
-    UsualNumbers(
-        _diameters,
-        *(
-            *CUE_DIAMETER,
-            "mm",
-            "expected 8.5 to 14 mm at the tip; check the unit: are these radii?",
-            False,
-        ),
-    ),
-    UsualNumbers(
-        _of_drawing("drawn mass", "shaft_mass"), LEAST_DRAWN, inf, "g", "check the sizes and the densities", False
-    ),
-    UsualNumbers(
-        _weighed_wood, 0.0, 0.0, "kg/m3", "does the measured mass include a joint or the rest of the cue?", False
-    ),
-    UsualNumbers(_solid_tubes, 0.0, 0.0, "g", TUBES, False),
-    UsualNumbers(lambda s: [("mass of the whole cue", float(s.cue.mass))], 0.0, 1.0, "kg", "expected 0.4 to 0.7 kg"),
-    UsualNumbers(_light_cue, LIGHTEST, inf, "g", BODY),
-)
 
 
 def unusual(scene: Scene, *, blow: bool = True) -> list[str]:
@@ -126,18 +85,19 @@ def unusual(scene: Scene, *, blow: bool = True) -> list[str]:
 
     blow: whether ball, tip, stroke and the mass of the whole cue count.
     """
-    asked = [usual for usual in ASKED if blow or not usual.blow]
-    said = [effect.unusual_on(scene.shaft) for effect in scene.effects] if blow and scene.cue.segments else []
-    beyond = [_beyond(usual, scene) for usual in asked]
-    return [*filter(None, [*beyond, *said]), *_shape(scene.cue.segments)]
-
-
-def _beyond(usual: UsualNumbers, scene: Scene) -> str:
-    """The first number that is out of bounds, in a line."""
-    for name, value in usual.of(scene):
-        if value is not None and not usual.least <= value <= usual.most:
-            return f"{name} {SHOWN.get(usual.unit, 1) * value:.6g} {usual.unit}; {usual.ask}"
-    return ""
+    drawn = scene.cue.segments
+    asked = [
+        *(_of_stroke(scene) if blow else ()),
+        *(_of_drawing(scene.shaft) if drawn else ()),
+        *(_of_mass(scene) if blow else ()),
+    ]
+    beyond = [
+        f"{name} {SHOWN.get(unit, 1) * value:.6g} {unit}; {ask}"
+        for name, value, (least, most), unit, ask in asked
+        if value is not None and not least <= value <= most
+    ]
+    said = [effect.unusual_on(scene.shaft) for effect in scene.effects] if blow and drawn else []
+    return [*beyond, *filter(None, said), *_shape(drawn)]
 
 
 def _shape(segments: tuple[Segment, ...]) -> list[str]:
@@ -153,10 +113,7 @@ def _shape(segments: tuple[Segment, ...]) -> list[str]:
         sizes = " and ".join(f"{scaled(end, 'm'):.4g}" for end in ends)
         lines.append(f"the tip is thicker than the butt, {sizes} mm; is the profile butt first?")
     for i, segment in enumerate(segments):
-        for end, here, there in (
-            ("tip", segment.tip_bore, segment.butt_bore),
-            ("butt", segment.butt_bore, segment.tip_bore),
-        ):
-            if here == 0 < there:
-                lines.append(f"the bore of segments[{i}] tapers to zero; is {end}_bore missing?")
+        bores = {"tip": segment.tip_bore, "butt": segment.butt_bore}
+        missing = [end for end, bore in bores.items() if bore == 0 < max(bores.values())]
+        lines += [f"the bore of segments[{i}] tapers to zero; is {end}_bore missing?" for end in missing]
     return lines

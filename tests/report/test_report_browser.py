@@ -12,10 +12,10 @@ import pytest
 import cuefem as cf
 from cuefem.design import Response
 from cuefem.design.study_statistics import SweepStatistics
-from cuefem.report.plain_page import plain_page
 from cuefem.report.report_page import PAGE_OFFSETS, page
 from cuefem.report.squirt import squirt_record
 from cuefem.report.study_table import sweep_sheets
+from cuefem.report.templates import plain_page
 from tests.helpers.designer_browser import BROWSER, launched
 
 pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
