@@ -11,7 +11,7 @@ from cuefem.report.unusual import unusual
 from tests.helpers.command_line import call
 
 ROOT = Path(__file__).parents[2]
-FILES = sorted([*ROOT.glob("meshes/*.*"), *ROOT.glob("studies/scenes/*.toml")])
+FILES = sorted(path for kind in ("meshes/*.toml", "meshes/*.stl", "studies/scenes/*.toml") for path in ROOT.glob(kind))
 SCENE = """
 game = "kim"
 cue = "cue.toml"
@@ -41,7 +41,7 @@ def remarks(path: Path) -> list[str]:
     return unusual(found if isinstance(found, cf.Scene) else cf.Scene(found))
 
 
-@pytest.mark.parametrize("path", [path for path in FILES if path.suffix != ".md"], ids=lambda path: path.name)
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
 def test_no_false_alarm(path: Path) -> None:
     assert remarks(path) == []
 
