@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from cuefem.contact.strike import strike_modes
 from cuefem.io.ready import ready_cues
-from cuefem.results.quantities import scaled, with_unit
+from cuefem.results.quantities import scaled, signed, with_unit
 from cuefem.results.records import Record, Sheet
 from cuefem.results.uncertainty import SHAFTS
 from cuefem.results.verdict import verdict_record
@@ -76,7 +76,7 @@ def way_out(offset: float) -> str:
 def difference_words(difference: float, error: float) -> str:
     """A relative difference with its uncertainty: "−3 ± 8 %"."""
     digits = 0 if error >= 0.02 else 1 if error >= 0.002 else 2
-    return f"{100 * difference:+.{digits}f} ± {100 * error:.{digits}f} %".replace("-", "−")
+    return signed(100 * difference, digits, f"± {100 * error:.{digits}f} %")
 
 
 def squirt_difference(difference: float, error: float, distinct: bool) -> str:
