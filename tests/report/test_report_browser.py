@@ -53,7 +53,7 @@ def opened(browser: Any) -> Iterator[Any]:
 
 def test_values_are_read_off_a_chart_words_are_explained_and_it_prints(opened: Any) -> None:
     opened.set_content(page("pool_maple.toml", SCENE))
-    chart, known = opened.locator("svg.read").nth(2), squirt_record(SCENE, PAGE_OFFSETS)["models"]
+    chart, known = opened.locator("svg.read").first, squirt_record(SCENE, PAGE_OFFSETS)["models"]
     chart.focus()
     opened.keyboard.press("Home")
     for _ in range(3):
