@@ -19,7 +19,7 @@ from cuefem.cue import Array
 # Steps of a contact. Against closed forms at the same 120 modes (100 random cues, 0.5 to 3 ms, free and damped, "stick"
 # and "offset"): relative error 1e-6 in the median and 9e-5 at most; 1e-3 at most with half of them.
 STEPS = 2048
-FADED = 1e-3  # factor of the last term of a power series on the circle where series are divided
+FADED = 2e-5  # factor of the last term of a power series on the circle where series are divided
 ROW = 32  # steps in a row of the table of exponentials, which is a product of what its rows and its columns begin with
 
 
@@ -88,9 +88,16 @@ def toeplitz_solution(column: Array, wanted: Array) -> Array:
     """x of L x = wanted, L lower triangular and Toeplitz with the first ``column``, (..., n).
 
     It is a quotient of power series, evaluated in 4 n points of the circle on which the last of the n terms has fallen
-    to `FADED`. The column answers a passive body, so that it has no zero there; what wraps around in x is `FADED`^4.
+    to `FADED`: the column answers a passive body, so that it has no zero there. The factor 1 + z, which a mean over
+    steps has, is divided out and brought back, for its zero lies beside the circle.
     """
     n = column.shape[-1]
     fade = FADED ** (np.arange(n) / n)
-    above, below = (np.fft.rfft(series * fade, 4 * n) for series in (wanted, column))
-    return np.asarray(np.fft.irfft(above / below)[..., :n] / fade)
+    above, below = (np.fft.rfft(series * fade, 4 * n) for series in (wanted, _over_one_plus_z(column)))
+    return _over_one_plus_z(np.fft.irfft(above / below)[..., :n] / fade)
+
+
+def _over_one_plus_z(series: Array) -> Array:
+    """The coefficients of a power series over 1 + z."""
+    signs = 1.0 - 2.0 * (np.arange(series.shape[-1]) % 2)
+    return np.asarray(signs * np.cumsum(signs * series, axis=-1))
