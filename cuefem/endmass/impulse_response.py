@@ -8,7 +8,7 @@ Solving that once gives the impulse that a velocity step of the tip takes; every
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,7 +24,7 @@ ROW = 32  # steps in a row of the table of exponentials, which is a product of w
 
 
 class ImpulseResponse(NamedTuple):
-    """Weights, 1/kg, and rates, 1/s, of h(t), (..., n): of one cue, or of a stack."""
+    """Weights, 1/kg, and rates, 1/s, of h(t), (n,)."""
 
     weights: Complex
     rates: Complex
@@ -39,34 +39,32 @@ class ImpulseResponse(NamedTuple):
             raise ValueError("end_mass: a clamp holds the tip across the cue, so its end mass is infinite")
         return cls(weights[felt], propagator.rates[felt])
 
-    def held(self, c: Any, T: Any) -> Array:
-        """Impulse that a tip has taken at the edges of the steps of 0..T, kg, (..., `STEPS` + 1), to move at 1 m/s.
+    def held(self, c: float, T: float) -> Array:
+        """Impulse that a tip has taken at the edges of the steps of 0..T, kg, (`STEPS` + 1,), to move at 1 m/s.
 
         It begins with a blow, and moves a ball of inertia 1/c, kg, along.
         """
         after_blow, column = self.means_with_ball(c, T)
-        blow = 1 / (self.weights.real.sum(axis=-1, keepdims=True) + np.asarray(c)[..., None])
+        blow = 1 / (self.weights.real.sum() + c)
         force = toeplitz_solution(column, 1 - blow * after_blow)
-        return np.concatenate([blow, blow + np.cumsum(force, axis=-1) * np.asarray(T)[..., None] / STEPS], axis=-1)
+        return np.append(blow, blow + np.cumsum(force) * T / STEPS)
 
-    def means_with_ball(self, c: Any, T: Any) -> tuple[Array, Array]:
-        """Mean velocities of tip and ball from each other over the steps of 0..T, (..., `STEPS`), m/s.
+    def means_with_ball(self, c: float, T: float) -> tuple[Array, Array]:
+        """Mean velocities of tip and ball from each other over the steps of 0..T, (`STEPS`,), m/s.
 
         After an impulse of 1 N s at the start, and after a force of 1 N over the first step.
         """
-        c, h = np.asarray(c)[..., None], np.asarray(T)[..., None] / STEPS
+        h = T / STEPS
         z = self.rates * h
         _, mean, own = responses(z)
-        within = np.exp(z[..., None] * np.arange(ROW))
-        rows = np.exp(z[..., None, :] * np.arange(0, STEPS, ROW)[:, None])
+        within, rows = np.exp(z[:, None] * np.arange(ROW)), np.exp(z * np.arange(0, STEPS, ROW)[:, None])
 
         def summed(weights: Complex) -> Array:
-            table = ((rows * weights[..., None, :]) @ within).real
-            return np.asarray(table.reshape(*table.shape[:-2], STEPS))
+            return np.asarray(((rows * weights) @ within).real.ravel())
 
-        first = (self.weights * h * own).real.sum(axis=-1, keepdims=True) + c * h / 2
-        later = summed(self.weights * h * mean**2)[..., :-1] + c * h
-        return summed(self.weights * mean) + c, np.concatenate([first, later], axis=-1)
+        first = (self.weights * h * own).real.sum() + c * h / 2
+        later = summed(self.weights * h * mean**2)[:-1] + c * h
+        return summed(self.weights * mean) + c, np.append(first, later)
 
     def smooth_start_impulse(self, T: float) -> float:
         """Impulse that makes the tip follow the velocity (1 - cos(pi t/T))/2 from 0 to T, N s per m/s."""
@@ -81,23 +79,23 @@ class ImpulseResponse(NamedTuple):
 
 def means(edges: Array) -> Array:
     """Means over the steps of values at their edges."""
-    return (edges[..., 1:] + edges[..., :-1]) / 2
+    return (edges[1:] + edges[:-1]) / 2
 
 
 def toeplitz_solution(column: Array, wanted: Array) -> Array:
-    """x of L x = wanted, L lower triangular and Toeplitz with the first ``column``, (..., n).
+    """x of L x = wanted, L lower triangular and Toeplitz with the first ``column``, (n,).
 
     It is a quotient of power series, evaluated in 4 n points of the circle on which the last of the n terms has fallen
     to `FADED`: the column answers a passive body, so that it has no zero there. The factor 1 + z, which a mean over
     steps has, is divided out and brought back, for its zero lies beside the circle.
     """
-    n = column.shape[-1]
+    n = len(column)
     fade = FADED ** (np.arange(n) / n)
     above, below = (np.fft.rfft(series * fade, 4 * n) for series in (wanted, _over_one_plus_z(column)))
-    return _over_one_plus_z(np.fft.irfft(above / below)[..., :n] / fade)
+    return _over_one_plus_z(np.fft.irfft(above / below)[:n] / fade)
 
 
 def _over_one_plus_z(series: Array) -> Array:
     """The coefficients of a power series over 1 + z."""
-    signs = 1.0 - 2.0 * (np.arange(series.shape[-1]) % 2)
-    return np.asarray(signs * np.cumsum(signs * series, axis=-1))
+    signs = 1.0 - 2.0 * (np.arange(len(series)) % 2)
+    return np.asarray(signs * np.cumsum(signs * series))

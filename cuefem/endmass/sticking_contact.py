@@ -69,21 +69,10 @@ class StickLimit:
     def end_mass(self, J: Any) -> Any:
         """The end mass of a lumped cue that takes the transverse impulse J, kg: (K - 1)/J = 1/m + c.
 
-        ValueError, with the reason of `stick_reason`, if no end mass does.
+        ValueError if no end mass does: a squirt below zero is that of a cue so light that it runs ahead of the ball.
         """
         rest = np.divide(self.K - 1, J, out=np.full(np.shape(J), np.nan), where=np.asarray(J) > 0) - self.c
         for i in np.argwhere(~(rest > 0))[:1]:
             slope = float(np.broadcast_to(self.slope(J), np.shape(rest))[tuple(i)])
-            raise ValueError(f"end_mass drive 'stick': {stick_reason(slope)}; see cuefem.lump")
+            raise ValueError(f"end_mass drive 'stick': no end mass has a squirt of {slope:.4g} phi; see cuefem.lump")
         return 1 / rest
-
-
-def stick_reason(slope: float) -> str:
-    """The reason why no end mass has this squirt over phi."""
-    if not np.isfinite(slope):
-        return "the squirt is not a number"
-    if slope < 0:
-        return f"the squirt is {slope:.4g} times phi, below that of any end mass: so light a cue runs ahead of the ball"
-    if slope == 0:
-        return "there is no squirt, which asks for an end mass of 0"
-    return f"the squirt is {slope:.4g} times phi, larger than that of any end mass"
