@@ -10,7 +10,6 @@ import pytest
 
 import cuefem as cf
 from cuefem.contact.trajectory import Motion, motion
-from tests.helpers.leather_scenes import LEATHER
 from tests.helpers.strike_scenes import KIM
 
 SCENE = cf.Scene(KIM, cf.Ball(0.17, 0.028575), cf.Tip(0.75, 0.7, 1e-3), cf.Stroke(2.0, 0.3))
@@ -23,16 +22,7 @@ EFFECTS: dict[str, tuple[Any, ...]] = {
     "second hit": (cf.SecondHit(4e-3),),
     "thrust": (cf.GeometricStiffness(),),
     "power law, second hit, dome": (cf.PowerLawTip(1.5, 2.0), cf.SecondHit(4e-3), cf.TipDome(0.0095)),
-    "turning, power law": (cf.RollingContact(), cf.PowerLawTip(1.5)),
-    "turning on leather, second hit": (LEATHER, cf.SecondHit(1e-3)),
 }
-STILL = [name for name in EFFECTS if "turning" not in name]  # where the contact keeps its points
-
-
-def scene_with(name: str, offset: float = 0.3) -> cf.Scene:
-    """Kim's shaft with these effects; leather has a contact time of its own."""
-    tip = cf.Tip(0.75, 0.7) if LEATHER in EFFECTS[name] else SCENE.tip
-    return replace(SCENE, tip=tip, stroke=replace(SCENE.stroke, offset=offset), effects=EFFECTS[name])
 
 
 def slid(found: Motion, scene: cf.Scene) -> Any:
@@ -48,10 +38,10 @@ def slid(found: Motion, scene: cf.Scene) -> Any:
 
 
 @pytest.mark.parametrize("offset", [0.3, -0.4])
-@pytest.mark.parametrize("name", STILL)
+@pytest.mark.parametrize("name", EFFECTS)
 def test_the_relative_velocity_is_that_of_the_history(name: str, offset: float) -> None:
     """The way slid is the integral of the velocity, within what straight lines between the steps leave of that."""
-    scene = scene_with(name, offset)
+    scene = replace(SCENE, stroke=replace(SCENE.stroke, offset=offset), effects=EFFECTS[name])
     outcome = cf.strike(scene, AT)
     times = outcome.history.ends[: int(0.8 * len(outcome.history.ends))]
     known, until = outcome.history(times), times[-1]

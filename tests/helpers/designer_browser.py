@@ -39,16 +39,13 @@ def launched() -> Iterator[Any]:
 
 
 @contextmanager
-def served(folder: Path, *arguments: object, before: str = "") -> Iterator[str]:
-    """The address of a designer that runs in a folder; it must say nothing on stderr and leave nothing there.
-
-    before: lines of Python that its process begins with.
-    """
-    command = [sys.executable, "-W", "error", "-c", before + COMMAND, "designer", "--no-open", "--port", "0"]
+def served(folder: Path) -> Iterator[str]:
+    """The address of a designer that runs in a folder; it must say nothing on stderr and leave nothing there."""
+    command = [sys.executable, "-W", "error", "-c", COMMAND, "designer", "--no-open", "--port", "0"]
     complaints = folder / "stderr"
     with complaints.open("w") as err:
         process = subprocess.Popen(
-            [*command, *map(str, arguments)],
+            command,
             stdout=subprocess.PIPE,
             stderr=err,
             text=True,
