@@ -15,14 +15,15 @@ from scipy.special import wofz
 
 import cuefem as cf
 from cuefem import PointMass, Resolution, SideStrike, Striker, Support, side_strike
-from tests.helpers.cues import FAMILY, cone, kim, rod, scaled
+from tests.helpers.cues import FAMILY, MAPLE, cone, kim, rod, scaled
 from tests.helpers.refusals import command_refuses, refuses
 
 BALL = Striker(0.005, 0.8, contact_time=1e-3)
 SOFT = Striker(0.005, 0.8, modulus=1e8, radius=0.02)
 FEW = Resolution(2, 10, 8)
 HAND, DAMPED, JOINT = Support(0.5, 1e4, dashpot=3.0), cf.StructuralDamping(0.02), cf.Joint(0.3, 1e-3)
-SCENE = SideStrike(kim(), Striker(0.02, 0.8, contact_time=1e-3), 0.05, 2.0, (PointMass(0.1, 2e-3), Support(0.6, 5e3)))
+PLAIN = cf.Cue((cf.Segment(0.7, 0.012, 0.021, MAPLE),), body_mass=0.42)
+SCENE = SideStrike(PLAIN, Striker(0.02, 0.8, contact_time=1e-3), 0.05, 2.0, (PointMass(0.1, 2e-3), Support(0.6, 5e3)))
 
 
 def stiffened(cue: cf.Cue) -> cf.Cue:
