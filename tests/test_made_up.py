@@ -85,7 +85,7 @@ def test_an_effect_on_the_cue(tmp_path: Path) -> None:
     assert effect_kinds()["Collar"] is made
     assert missing("Collar (position 30 mm, mass 4 g)", faces(scene, tmp_path, "strike")) == []
     assert 'type = "Collar"' in (tmp_path / "scene.toml").read_text(encoding="utf-8")
-    assert cf.load(tmp_path / "scene.toml") == scene
+    assert cf.load(tmp_path / "scene.toml").effects == scene.effects
     assert cf.strike(scene, AT).squirt > 1.01 * cf.strike(bare, AT).squirt
     (added,) = (one for one in variants(bare) if one.name == "Collar")
     assert (added.listed, added.scene) == (False, scene)

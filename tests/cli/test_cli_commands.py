@@ -96,13 +96,13 @@ def test_a_scene_announces_what_it_leaves_out(folder: Path) -> None:
 
 def test_convert(folder: Path) -> None:
     assert said("convert", "cue.toml", "cue.vtu") == "wrote cue.vtu\n"
-    assert cf.load("cue.vtu") == KIM
-    said("convert", "cue.toml", "cue.vtu", "--force", "--body-mass", "15 oz")
-    assert cf.load("cue.vtu") == replace(KIM, body_mass=0.425242846875)
+    said("convert", "cue.toml", "new.toml", "--body-mass", "15 oz")
+    assert cf.load("new.toml") == replace(cf.load("cue.toml"), body_mass=0.425242846875)
     assert said("convert", "shaft.csv", "shaft.toml", "--material", "ash").startswith("assumed:\n  no mass behind")
     assert cf.load("shaft.toml") == cf.load("shaft.csv", material="ash")
     said("convert", "scene.toml", "shaft.toml", "--body-mass", "0.4 kg", "--force")
-    assert cf.load("shaft.toml") == replace(SCENE, cue=replace(KIM, body_mass=0.4))
+    scene = cf.load("scene.toml")
+    assert cf.load("shaft.toml") == replace(scene, cue=replace(scene.cue, body_mass=0.4))
 
 
 @pytest.mark.parametrize("module", ["cuefem", "cuefem.cli"])

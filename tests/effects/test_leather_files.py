@@ -69,17 +69,3 @@ def test_a_dome_by_a_coin_a_length_or_flat(file: Path, text: str, radius: float)
 )
 def test_refusals(file: Path, entries: dict[str, str | None], message: str) -> None:
     refuses(lambda: cf.load(put(file, **entries)), message)
-
-
-@pytest.mark.parametrize(
-    "effects",
-    [
-        (cf.AxialWaves(), cf.Joint(0.254, 3e-4, 1e-8), cf.StructuralDamping(), cf.StructuralDamping(0.012)),
-        (cf.LeatherTip(6e-3, inf, 140e6, 0.3, 900.0, shear=4e5, rolls=False),),
-        (cf.LeatherTip(6e-3, 9.525e-3, 140e6),),
-    ],
-)
-def test_effects_read_back(file: Path, effects: tuple[cf.Effect, ...]) -> None:
-    scene = cf.Scene(SHAFT, effects=effects)
-    cf.save(scene, file)
-    assert cf.load(file) == scene
