@@ -1,10 +1,10 @@
-"""What somebody measured on a cue, beside what is computed, and what it tells.
+"""Measurements on a cue, compared with computed values, and estimates of uncertain parameters from them.
 
-predictions           what a shaft and its stroke do, each beam solved once
-measurement_types     the measurements that a measured cue may hold, one class each
-recording             the tones of a tapped shaft, from a recording
+predictions           computed values of measurements, each beam solved once
+measurement_types     the types of measurements, one class each
+recording             the natural frequencies of a tapped shaft, from a recording
 pendulum              the end mass by a ball on a thread
-uncertain_parameters  what a drawing leaves open, and within what
+uncertain_parameters  the uncertain parameters of a drawing, and their priors
 measured_cue          a cue with its measurements, and the table of measured and computed values
 outliers              measurements of which some may be wrong
 estimate              the uncertain parameters by least squares, their errors, and which measurement to make next

@@ -1,8 +1,8 @@
-"""The uncertain parameters of a measured cue from all its measurements together, and which measurement to make next.
+"""Estimates of the uncertain parameters of a measured cue from all its measurements, and the next measurement to make.
 
 The posterior is that of the priors of `cuefem.measurements.uncertain_parameters` and of independent errors, one or two
-of which may be far larger than stated (`cuefem.measurements.outliers`). Gauss and Newton's method finds where the model
-fits best; about that point the model is taken as linear, and mean and covariance of the posterior follow.
+of which may be far larger than stated (`cuefem.measurements.outliers`). The Gauss-Newton method finds the best fit;
+the model, linearised there, gives the mean and the covariance of the posterior.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ TARGET = 0.3  # b/R of the squirt that is predicted where the scene has no offse
 
 
 class Value(NamedTuple):
-    """An uncertain parameter: its name and words, its unit, what it was taken to be, and what it is now.
+    """An uncertain parameter: its name, label and unit, its value in the drawing, and the estimate.
 
-    low, high: the ends of the interval that holds it with 68 %; narrowed: the part of the prior's width that is left.
+    low, high: the limits of the 68 % interval; narrowed: the posterior's width over the prior's.
     """
 
     name: str
@@ -42,10 +42,10 @@ class Value(NamedTuple):
 
 
 class Worth(NamedTuple):
-    """What a further measurement would tell.
+    """Information gain of a further measurement.
 
-    bits: about all parameters. narrows: the parameter that it narrows most; left: the part of its error that is left.
-    squirt_left: the relative error of the squirt that is left.
+    bits: about all parameters. narrows: the parameter that it narrows most; left: the remaining part of its error.
+    squirt_left: the remaining relative error of squirt.
     """
 
     measurement: Measurement
@@ -56,9 +56,9 @@ class Worth(NamedTuple):
 
 
 class Unchecked(NamedTuple):
-    """A measurement that nothing else checks: a mistake of ten of its errors would go unnoticed, and nothing covers it.
+    """A measurement without redundancy: an outlier of ten times its error would go undetected.
 
-    value: the parameter that rests on it most, as it is without this measurement.
+    value: the parameter that depends on it most, estimated without this measurement.
     """
 
     measurement: Measurement
@@ -99,9 +99,9 @@ class Estimate:
 
     @property
     def unchecked(self) -> tuple[Unchecked, ...]:
-        """The measurements that nothing else checks.
+        """The measurements without redundancy.
 
-        The others predict a measurement with some error. A mistake of `WIDER` of its own errors is noticed if that is
+        The others predict a measurement with some error. An outlier of `WIDER` of its own errors is detected if that is
         `NOTICED` errors of the prediction and the measurement together (the reliability of W. Baarda, 1968).
         """
         J, residuals = _scaled(self.cue, self.z, self.computed, self.slopes)
@@ -117,12 +117,12 @@ class Estimate:
 
     @property
     def rows(self) -> tuple[Residual, ...]:
-        """The measurements beside the values with the estimated parameters."""
+        """The measurements and the values computed with the estimated parameters."""
         spread = np.sqrt(np.einsum("ij,jk,ik->i", self.slopes, self.covariance, self.slopes))
         return rows_of(self.cue, self.computed, spread)
 
     def predicted(self, what: Measurement) -> tuple[float, float]:
-        """Value of something else by the model with the estimated parameters, and its error; SI."""
+        """Value of another measurement by the model with the estimated parameters, and its error; SI."""
         at, slope = self._also((what,))
         return float(at[0]), float(np.sqrt(slope[0] @ self.covariance @ slope[0]))
 
@@ -133,9 +133,9 @@ class Estimate:
         return at, bare.slopes(self.z, others)
 
     def next(self) -> tuple[Worth, ...]:
-        """What each further measurement would tell, the most telling about squirt first.
+        """Information gain of each further measurement, the most informative about squirt first.
 
-        Each as if it came out as the estimate predicts it; it may also check those that were made.
+        Each is assumed to have the predicted value; it may also check the existing ones.
         """
         target = squirt_of(self.cue)
         others = [measurement for kind in MEASUREMENT_TYPES.values() for measurement in kind.next(self.cue.scene)]
@@ -153,13 +153,13 @@ class Estimate:
 
 
 def squirt_of(cue: MeasuredCue) -> Squirt:
-    """The squirt that an estimate predicts: at the scene's own offset; its value does not count."""
+    """The squirt that an estimate predicts, at the scene's own offset; its value has no effect."""
     own = abs(float(cue.scene.stroke.offset))
     return Squirt(offset=own or TARGET, left=0.0, right=0.0, error=1.0)
 
 
 def estimate(cue: MeasuredCue, *, track: Track = iter) -> Estimate:
-    """The uncertain parameters that all measurements of a cue and the priors make most likely, with their errors.
+    """Estimate the uncertain parameters of a cue from all measurements and priors (maximum a posteriori), with errors.
 
     Parameters
     ----------
@@ -180,9 +180,9 @@ def estimate(cue: MeasuredCue, *, track: Track = iter) -> Estimate:
 
     Notes
     -----
-    First all measurements count in full: Gauss and Newton's method, steps of at most 1.5 standard deviations of the
-    priors, halved while they lead upwards or to a cue that cannot be. From there on, what contradicts the others counts
-    less. Cost: some seven steps, each two computations of all values for every parameter.
+    First all measurements have full weight: the Gauss-Newton method, steps of at most 1.5 standard deviations of the
+    priors, halved while the cost rises or the cue is invalid. Then measurements that contradict the others get less
+    weight. Cost: some seven steps, each two computations of all values for every parameter.
     """
     if not cue.measurements or not cue.parameters:
         what = "measurements" if not cue.measurements else "uncertain parameters"
@@ -208,7 +208,7 @@ def estimate(cue: MeasuredCue, *, track: Track = iter) -> Estimate:
 
 
 def _counted(cue: MeasuredCue, z: Array, at: Array, misfit: float) -> Estimate:
-    """The estimate about a start, in which a measurement that contradicts the others counts less."""
+    """The estimate about a start, in which a measurement that contradicts the others has less weight."""
     for last in range(1, AGAIN + 1):
         slopes = cue.slopes(z)
         mean, covariance, wrong = solved(*_scaled(cue, z, at, slopes))
@@ -237,9 +237,9 @@ def _limited(step: Array) -> Array:
 def _lowest(
     cue: MeasuredCue, z: Array, step: Array, cost: float, measured: Array, sd: Array
 ) -> tuple[Array, Array, float] | None:
-    """The lowest point along a step, halved as long as that leads lower; None if no point is below ``cost``.
+    """Line search: the lowest point along a step, halved while the cost decreases; None if none is below ``cost``.
 
-    The first half is always tried: far from the measurements whole steps go to and fro.
+    The first half is always tried: far from the measurements full steps oscillate.
     """
     best = None
     for halving in range(HALVINGS):

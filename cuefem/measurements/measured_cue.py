@@ -1,4 +1,4 @@
-"""A measured cue: its drawing, the stroke, what was measured on it, and the table of measured and computed values."""
+"""A measured cue: its drawing, stroke and measurements, and the table of measured and computed values."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ class MeasuredCue:
     Parameters
     ----------
     name : str
-        What it is called.
+        Its name.
     scene : Scene
-        Its drawing with the ball and the tip; the stroke's speed holds where a measurement gives none.
+        Its drawing with ball, tip and stroke; the stroke's speed is the default of measurements.
     measurements : tuple
         The measurements, of the classes in `cuefem.measurements.measurement_types.MEASUREMENT_TYPES`.
     priors : tuple of Prior, optional
-        What is known of uncertain parameters, beyond the usual.
+        Priors of uncertain parameters that replace the defaults.
     source : str, optional
-        Where the numbers come from.
+        Source of the numbers.
 
     Raises
     ------
@@ -60,11 +60,11 @@ class MeasuredCue:
 
     @cached_property
     def parameters(self) -> tuple[UncertainParameter, ...]:
-        """What its drawing leaves open."""
+        """Its uncertain parameters."""
         return parameters_of(self.scene, self.measurements, self.priors)
 
     def setup(self, z: Array | None = None) -> Setup:
-        """The scene with its uncertain parameters ``z`` standard deviations of their priors off the usual values."""
+        """The scene with its uncertain parameters ``z`` standard deviations of their priors from the drawing."""
         made = Setup(self.scene)
         for parameter, each in zip(self.parameters, np.zeros(len(self.parameters)) if z is None else z, strict=True):
             made = parameter.setup(made, float(each))
@@ -88,7 +88,7 @@ class MeasuredCue:
         return np.array(columns).T.reshape(-1, len(z))
 
     def _slope(self, z: Array, move: Array, also: Sequence[Measurement], at: Array | None) -> Array:
-        """Change of the values over ``move``, from a smaller move or one side only where no cue can be farther out."""
+        """Change of the values over ``move``, from a smaller move or one side only where the cue would be invalid."""
         for part in 0.5 ** np.arange(NEARER):
             above = self.possible(z + part * move, also)
             if above is not None and at is not None:
@@ -102,7 +102,7 @@ class MeasuredCue:
         return (self.computed(z + part * move, also) - here) / part
 
     def possible(self, z: Array, also: Sequence[Measurement] = ()) -> Array | None:
-        """What `computed` gives; None where no cue can be, such as one with a bore wider than itself."""
+        """The values of `computed`; None for an invalid cue, such as one with a bore wider than itself."""
         try:
             return self.computed(z, also)
         except ValueError:
@@ -110,7 +110,7 @@ class MeasuredCue:
 
     @property
     def lacking(self) -> list[str]:
-        """What a useful data set has and this one does not, and what that costs."""
+        """Missing measurements of a useful data set, and the consequence of each."""
         said = (
             kind.lacking([measurement for measurement in self.measurements if isinstance(measurement, kind)])
             for kind in MEASUREMENT_TYPES.values()
@@ -119,9 +119,9 @@ class MeasuredCue:
 
 
 class Residual(NamedTuple):
-    """A measurement beside the model's value, both with one standard deviation, SI.
+    """A measured and a computed value, both with one standard deviation, SI.
 
-    spread: of the computed value, from the priors of what the drawing leaves open. residual: measured less computed, in
+    spread: of the computed value, from the priors of the uncertain parameters. residual: measured less computed, in
     units of the measurement's error. pull: the same in units of both errors together.
     """
 
@@ -135,7 +135,7 @@ class Residual(NamedTuple):
 
 
 def compare(cue: MeasuredCue, *, track: Track = iter) -> tuple[Residual, ...]:
-    """Every measurement of a measured cue beside the model's value, nothing fitted.
+    """Compare every measurement of a measured cue with the model's value; nothing is fitted.
 
     Cost: one strike for each squirt, times one more than there are parameters. track: follows these steps.
     """
@@ -165,9 +165,9 @@ def rows_of(cue: MeasuredCue, computed: Array, spread: Array) -> tuple[Residual,
 
 
 class Zero(NamedTuple):
-    """What the two sides of a squirt tell of the zero of the offset, m, with its error.
+    """The zero error of the offset by a squirt measured on both sides, m, with its error.
 
-    It is how far every stroke hit to the left of its aim: positive if squirt is larger on the left.
+    Positive if squirt is larger on the left: every stroke hit by so much to the left of its aim.
     """
 
     measurement: Squirt
@@ -178,7 +178,7 @@ class Zero(NamedTuple):
 def zeros(cue: MeasuredCue, rows: Sequence[Residual]) -> tuple[Zero, ...]:
     """The zero of the offset by each squirt that was measured on both sides.
 
-    Squirt is taken to be proportional to the offset there, which is right to a fifth.
+    It assumes that squirt is proportional to the offset, which is accurate to 20 %.
     """
     radius = float(cue.scene.ball.radius)
     made = []

@@ -1,4 +1,4 @@
-"""The measurements that a measured cue may hold, one class each, listed in `MEASUREMENT_TYPES`."""
+"""The types of measurements of a measured cue, one class each, listed in `MEASUREMENT_TYPES`."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ GOOD_TIME = 0.05  # relative, of a contact time
 
 
 class Setup(NamedTuple):
-    """A scene as it was measured.
+    """A scene with the systematic errors of its measurements.
 
-    zeros: how far the strokes of each series hit beside where they were aimed, m, by its name. squirt_factor: true
+    zeros: zero error of the offset of each series, m, by its name. squirt_factor: true
     squirt over that of the model. time_factor: true contact time of a pendulum's ball over the stated one.
     """
 
@@ -42,7 +42,7 @@ class Setup(NamedTuple):
 
     @property
     def predictions(self) -> Predictions:
-        """What its cue does."""
+        """Computed values of its cue."""
         return predictions_of(self.scene)
 
 
@@ -50,7 +50,7 @@ class Setup(NamedTuple):
 class Measurement:
     """Something that was measured: its error is one standard deviation, in the unit of the value."""
 
-    # Its key in a file; the SI unit of its value; what it is, for people; what is lost without it.
+    # Its key in a file; the SI unit of its value; its label; the consequence if it is missing.
     key: ClassVar[str] = ""
     unit: ClassVar[str] = ""
     words: ClassVar[str] = ""
@@ -73,7 +73,7 @@ class Measurement:
 
     @property
     def label(self) -> str:
-        """What was measured, in a few words."""
+        """Label of the measurement."""
         return self.words
 
     def computed(self, setup: Setup) -> float:
@@ -82,7 +82,7 @@ class Measurement:
 
     @classmethod
     def lacking(cls, measurements: Sequence[Any]) -> str:
-        """What is missing of this kind in a data set, and what that costs; empty if nothing is."""
+        """Missing measurements of this type in a data set, and the consequence; empty if none is missing."""
         return "" if measurements else f"{cls.words}: {cls.costs}"
 
     @classmethod
@@ -98,7 +98,7 @@ class Weight(Measurement):
     key: ClassVar[str] = "weight"
     unit: ClassVar[str] = "kg"
     words: ClassVar[str] = "weight"
-    costs: ClassVar[str] = "the density of the wood stays uncertain by a tenth, which is 4 % of the squirt"
+    costs: ClassVar[str] = "the density of the wood remains uncertain by 10 %, which is 4 % of the squirt"
 
     of: str = "shaft"
     value: Annotated[float, MASS]
@@ -131,7 +131,7 @@ class Balance(Measurement):
     key: ClassVar[str] = "balance"
     unit: ClassVar[str] = "m"
     words: ClassVar[str] = "balance point of the shaft"
-    costs: ClassVar[str] = "heavy parts that the drawing leaves out (an insert, a pin) go unnoticed"
+    costs: ClassVar[str] = "heavy parts that the drawing omits (an insert, a pin) remain undetected"
 
     value: Annotated[float, LENGTH]
     error: Annotated[float, Quantity("m", ERROR)]
@@ -148,11 +148,11 @@ class Balance(Measurement):
 
 @dataclass(frozen=True, kw_only=True)
 class Tone(Measurement):
-    """A tone of the shaft, hung free and tapped: mode 1 is the lowest."""
+    """A natural frequency of the freely suspended shaft, from tapping; mode 1 is the lowest."""
 
     key: ClassVar[str] = "tone"
     unit: ClassVar[str] = "Hz"
-    words: ClassVar[str] = "tones of the hung shaft"
+    words: ClassVar[str] = "natural frequencies of the freely suspended shaft"
     costs: ClassVar[str] = "E and G of the wood stay those of a table, uncertain by a fifth and more"
 
     mode: int
@@ -166,7 +166,7 @@ class Tone(Measurement):
 
     @property
     def sd(self) -> float:
-        """With `MODEL`: what a beam and a drawing leave open."""
+        """Including `MODEL`, the error of beam theory and drawing."""
         return float((self.error**2 + (MODEL * self.value) ** 2) ** 0.5)
 
     @property
@@ -180,14 +180,14 @@ class Tone(Measurement):
 
     @classmethod
     def next(cls, scene: Scene) -> tuple[Measurement, ...]:
-        """The four lowest, by ear of a telephone."""
+        """The four lowest, recorded by a telephone."""
         frequencies = predictions_of(scene).frequencies[:4]
         return tuple(cls(mode=i + 1, value=float(f), error=0.1) for i, f in enumerate(frequencies))
 
 
 @dataclass(frozen=True, kw_only=True)
 class Stiffness(Measurement):
-    """A static stiffness: a force across the ferrule's end over its deflection, the shaft clamped behind it.
+    """A static stiffness: a transverse force at the ferrule's end over its deflection, the shaft clamped behind it.
 
     free_length: from the force to the clamp; without it, the whole shaft, clamped at its joint.
     """
@@ -195,7 +195,7 @@ class Stiffness(Measurement):
     key: ClassVar[str] = "stiffness"
     unit: ClassVar[str] = "N/m"
     words: ClassVar[str] = "static stiffness, at two free lengths"
-    costs: ClassVar[str] = "a bore in the front and the wood's E cannot be told apart; a hidden bore goes unnoticed"
+    costs: ClassVar[str] = "a bore and the wood's E cannot be distinguished; a hidden bore remains undetected"
 
     free_length: Annotated[float | None, LENGTH] = None
     value: Annotated[float, Quantity("N/m", "(0, inf)")]
@@ -213,9 +213,9 @@ class Stiffness(Measurement):
 
     @classmethod
     def lacking(cls, measurements: Sequence[Any]) -> str:
-        """One length tells E; the second, near the tip, tells the bore."""
+        """One length determines E; the second, near the tip, the bore."""
         if len({measurement.free_length for measurement in measurements}) == 1:
-            return "static stiffness at a second free length: a bore in the front and the wood's E cannot be told apart"
+            return "static stiffness at a second free length: a bore and the wood's E cannot be distinguished"
         return super().lacking(measurements)
 
     @classmethod
@@ -234,7 +234,7 @@ class Stiffness(Measurement):
 class Squirt(Measurement):
     """Squirt at an offset b/R: one value, or left and right, whose mean is free of the zero of the offset.
 
-    error: of each of the values given. series: strokes that were aimed alike share an error of the offset, zero_error,
+    error: of each value. series: strokes with the same aim have one zero error of the offset, zero_error,
     one standard deviation, where only one side was measured. speed: of the cue, by default the scene's.
     """
 
@@ -314,9 +314,9 @@ class Squirt(Measurement):
 
 @dataclass(frozen=True, kw_only=True)
 class PivotLength(Measurement):
-    """The natural pivot length at an offset b/R: turned about it, the cue sends the ball along its first line.
+    """The natural pivot length at an offset b/R: pivoted about it, the cue sends the ball along its first line.
 
-    Zeros of angle and offset cancel in it. speed: of the cue, by default the scene's.
+    Zero errors of angle and offset cancel in it. speed: of the cue, by default the scene's.
     """
 
     key: ClassVar[str] = "pivot_length"
@@ -354,7 +354,7 @@ class AddedMass(Measurement):
     key: ClassVar[str] = "added_mass"
     unit: ClassVar[str] = ""
     words: ClassVar[str] = "squirt with masses added near the tip"
-    costs: ClassVar[str] = "the part of the shaft that takes part in the blow is not tested"
+    costs: ClassVar[str] = "the end-mass distribution along the shaft is not tested"
 
     mass: Annotated[float, MASS]
     position: Annotated[float, LENGTH]
@@ -387,11 +387,11 @@ class AddedMass(Measurement):
 
 @dataclass(frozen=True, kw_only=True)
 class ContactTime(Measurement):
-    """How long the tip touches the ball in a head-on blow; speed: of the cue, by default the scene's."""
+    """Contact time of a central impact; speed: of the cue, by default the scene's."""
 
     key: ClassVar[str] = "contact_time"
     unit: ClassVar[str] = "s"
-    words: ClassVar[str] = "contact time of a head-on blow"
+    words: ClassVar[str] = "contact time of a central impact"
     costs: ClassVar[str] = "the leather's E stays that of a table, uncertain by a factor of two"
 
     value: Annotated[float, CONTACT_TIME]
@@ -415,7 +415,7 @@ class ContactTime(Measurement):
 
 @dataclass(frozen=True, kw_only=True)
 class EndMass(Measurement):
-    """The end mass by a pendulum test (`cuefem.measurements.pendulum`): that which a light ball feels from the side.
+    """The end mass by a pendulum test (`cuefem.measurements.pendulum`): the transverse inertia in a side strike.
 
     ball_mass, restitution, contact_time: of the ball on the clamped shaft. position: of the impact, from the end of the
     tip. contact_time_error: shared by all pendulum tests of a cue.
@@ -424,7 +424,7 @@ class EndMass(Measurement):
     key: ClassVar[str] = "end_mass"
     unit: ClassVar[str] = "kg"
     words: ClassVar[str] = "end mass, by a pendulum"
-    costs: ClassVar[str] = "the mass that makes squirt is not measured as such"
+    costs: ClassVar[str] = "the mass that causes squirt is not measured directly"
 
     value: Annotated[float, MASS]
     error: Annotated[float, Quantity("kg", ERROR)]

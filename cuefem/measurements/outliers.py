@@ -1,7 +1,7 @@
-"""Predictions of which some may be wrong: each has its stated error or, in a small share of cases, a far larger one.
+"""Estimation with outliers: each measurement has its stated error or, with a small probability, a far larger one.
 
-A wrong number's error is `WIDER` times the stated one. A number that agrees with the others counts in full, one that
-contradicts them hardly at all, and where the numbers cannot tell which of them is wrong, the error grows (the
+The error of an outlier is `WIDER` times the stated one. A value that agrees with the others has full weight, one that
+contradicts them hardly any, and where the outlier cannot be identified, the posterior widens (the
 good-and-bad data model: W. H. Press, in Unsolved Problems in Astrophysics, Princeton 1997, 49; D. S. Sivia, Data
 Analysis, Oxford 2006, ch. 8).
 """
@@ -18,11 +18,11 @@ from cuefem.cue import Array
 WIDER = 10.0  # times the stated error: that of a wrong number
 MISTAKEN = 1e-3  # share of measurements that are wrong: contradictions of `NOTICED` errors outweigh it
 NOTICED = float(np.sqrt(2 * np.log(WIDER / MISTAKEN)))
-TOGETHER = 2  # measurements that are wrong at once, at most
+TOGETHER = 2  # outliers at once, at most
 
 
 class Linear(NamedTuple):
-    """What measurements tell of parameters whose priors are 0 ± 1; wrong: the chance of each measurement to be so."""
+    """Posterior of parameters whose priors are 0 ± 1; wrong: the probability of each measurement to be an outlier."""
 
     mean: Array
     covariance: Array
@@ -30,11 +30,11 @@ class Linear(NamedTuple):
 
 
 def solved(slopes: Array, residuals: Array) -> Linear:
-    """The parameters of a linear problem, of whose measurements `TOGETHER` at most are wrong.
+    """The posterior of a linear problem with at most `TOGETHER` outliers.
 
     slopes: (measurements, parameters) and residuals: (measurements,), both in units of the measurements' errors. Every
-    set of measurements that may be wrong, their errors `WIDER` times the stated ones, is a problem of its own; the
-    problems count by how likely they make what was measured.
+    set of possible outliers, their errors `WIDER` times the stated ones, is a separate problem; the
+    problems are weighted by their evidence.
     """
     count, parameters = slopes.shape
     sets = [each for size in range(min(TOGETHER, count) + 1) for each in combinations(range(count), size)]

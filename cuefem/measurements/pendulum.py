@@ -1,8 +1,8 @@
 """The pendulum test: a light ball on a thread swings against the side of a shaft, freely suspended and clamped.
 
-The ball comes back from the free shaft with e_A times its speed, and from the clamped one with e times its speed. A
-free mass from which it would bounce in the same way is m_e = m (1 + e_A)/(e - e_A): the end mass at that place, for an
-impact that lasts that long (handbook: Measuring a cue).
+The ball rebounds from the free shaft with e_A times its speed, and from the clamped one with e times its speed. A
+free mass with the same rebound is m_e = m (1 + e_A)/(e - e_A): the end mass at that position, for an
+impact of that duration (handbook: Measuring a cue).
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Ratio(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Pendulum:
-    """A pendulum test, as it is read from a ruler: `end_mass` is what it measures.
+    """A pendulum test by its readings from a ruler; `end_mass` is the result.
 
     Parameters
     ----------
@@ -44,8 +44,8 @@ class Pendulum:
     thread : float
         Length of its thread, m.
     before, after : tuple of float
-        How far aside the ball swings before and after rebounds from the freely suspended shaft, m: one reading before,
-        or one for each rebound; negative after a rebound where the ball goes on in its old direction.
+        Displacement of the ball before and after rebounds from the freely suspended shaft, m: one reading before,
+        or one for each rebound; negative after a rebound where the ball continues forwards.
     clamped_after, clamped_before : tuple of float
         The same from the clamped shaft; by default the first reading before.
     reading_error : float
@@ -109,7 +109,7 @@ class Pendulum:
 
     @property
     def end_mass(self) -> EndMass:
-        """The end mass with its error; ValueError for readings that cannot be."""
+        """The end mass with its error; ValueError for contradictory readings."""
         m, free = self.ball_mass, self._ratio(self.before, self.after)
         clamped = self._ratio(self.clamped_before, self.clamped_after)
         a, e = free.value, clamped.value
@@ -140,7 +140,7 @@ class Pendulum:
         return Striker(self.ball_mass, restitution, modulus=modulus, radius=1.0).wall_time(speed)
 
     def _ratio(self, before: Sequence[float], after: Sequence[float]) -> Ratio:
-        """The mean of all rebounds; its error holds that of readings, or the scatter where that is more."""
+        """The mean of all rebounds; its error is that of readings, or the scatter if that is larger."""
         (v0, d0), (v1, d1) = self._speeds(before), self._speeds(after)
         ratios = v1 / v0
         n = len(ratios)

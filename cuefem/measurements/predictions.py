@@ -1,4 +1,4 @@
-"""What a shaft and its stroke do: tones, stiffness, squirt, contact time, each beam and stroke solved once."""
+"""Computed values of measurements: natural frequencies, stiffness, squirt, contact time; each beam solved once."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from cuefem.effects import Effect, PointMass, Support
 from cuefem.scene import Outcome, Scene, Stroke
 from cuefem.tip_modes import Solved
 
-TONES = 8  # tones that are solved together
-STATIC = 8  # modes for which the mesh of a static load is made: it is exact to 1e-8
+TONES = 8  # natural frequencies that are solved together
+STATIC = 8  # modes that the mesh of a static load resolves: error 1e-8
 
 
 @dataclass(frozen=True, eq=False)
 class Predictions:
-    """A scene's cue as it is measured."""
+    """Computed values of the measurements on a scene's cue."""
 
     scene: Scene
     _solved: dict[tuple[Effect, ...], Solved] = field(default_factory=dict, init=False, repr=False)
@@ -31,12 +31,12 @@ class Predictions:
 
     @property
     def tip_height(self) -> float:
-        """Height of a whole tip, which stands before the first segment, m; 0 if the tip is drawn."""
+        """Height of a LeatherTip, which is in front of the first segment, m; 0 if the drawing has the tip."""
         return 0.0 if self.scene.contact_terms.tip is None else self.scene.leather.height
 
     @property
     def hung(self) -> tuple[Effect, ...]:
-        """The effects that stay on a cue which hangs free or is weighed."""
+        """The effects on a freely suspended or weighed cue."""
         return tuple(effect for effect in self.scene.cue_effects if effect.part_of_cue)
 
     @property
@@ -47,7 +47,7 @@ class Predictions:
 
     @property
     def balance_point(self) -> float:
-        """Centre of mass of the drawn part, m from the end of the tip; the leather of a whole tip sits at its foot."""
+        """Centre of mass of the drawn part, m from the end of the tip; the mass of a LeatherTip is at its base."""
         cue = self.scene.shaft
         moment = cue.shaft_mass * cue.balance_point
         moment += sum(effect.mass_on(cue) * effect.positions[0] for effect in self.hung if effect.mass_on(cue))
@@ -55,11 +55,11 @@ class Predictions:
 
     @cached_property
     def frequencies(self) -> Array:
-        """Tones of the cue, hung free, Hz."""
+        """Natural frequencies of the freely suspended cue, Hz."""
         return modes(self.scene.shaft, TONES, effects=self.hung).frequencies
 
     def stiffness(self, free: float) -> float:
-        """Static stiffness, N/m: a force across the ferrule's end, the shaft clamped ``free`` m behind it."""
+        """Static stiffness, N/m: a transverse force at the ferrule's end, the shaft clamped ``free`` m behind it."""
         cue = _without_leather(self.scene.shaft)
         if not free <= cue.length * (1 + 1e-9):
             raise ValueError(f"stiffness free_length must be in (0, {cue.length:.4g}] m, that of the wood; got {free}")
@@ -67,15 +67,15 @@ class Predictions:
         return system.static_stiffness(0.0)
 
     def squirt(self, offset: float, speed: float | None = None, lump: tuple[float, float] | None = None) -> float:
-        """Squirt of the coupled strike, rad; lump: mass, kg, and its place, m from the end of the tip."""
+        """Squirt of the coupled strike, rad; lump: mass, kg, and its position, m from the end of the tip."""
         return float(self._strike(offset, speed, lump).squirt)
 
     def duration(self, speed: float | None = None) -> float:
-        """Contact time of a head-on blow, s."""
+        """Contact time of a central impact, s."""
         return float(self._strike(0.0, speed, None).duration)
 
     def end_mass(self, striker: Striker, position: float) -> float:
-        """Effective mass, kg, that a striker feels across the shaft hung free; position: m from the end of the tip."""
+        """Effective transverse mass, kg, of the freely suspended shaft; position: m from the end of the tip."""
         effects = tuple(effect for effect in self.scene.bare.cue_effects if effect.part_of_cue)
         place = self.place(position, "end_mass position")
         return side_strike(SideStrike(self.scene.shaft, striker, place, effects=effects)).effective_mass
@@ -89,7 +89,7 @@ class Predictions:
         return self._struck[scene]
 
     def place(self, position: float, name: str) -> float:
-        """Where the drawing has what lies ``position`` m from the end of the tip, m; ValueError off the shaft."""
+        """Position in the drawing of a point ``position`` m from the end of the tip, m; ValueError off the shaft."""
         place, length = position - self.tip_height, self.scene.shaft.length
         if not 0 <= place <= length:
             bound = f"[{self.tip_height:.4g}, {self.tip_height + length:.4g}] m, on the shaft"
@@ -108,7 +108,7 @@ class Predictions:
 
 @lru_cache(maxsize=128)
 def predictions_of(scene: Scene) -> Predictions:
-    """What a scene's cue does, the same object for the same scene."""
+    """The computed values of a scene's cue, the same object for the same scene."""
     return Predictions(scene)
 
 

@@ -1,4 +1,4 @@
-"""Tones of a shaft from recordings: peaks of a spectrum, numbered by the natural frequencies of the drawing."""
+"""Natural frequencies of a shaft from recordings: spectral peaks, numbered by the modes of the drawing."""
 
 from __future__ import annotations
 
@@ -88,8 +88,8 @@ def _peak(level: Array, at: int, noise: float, step: float) -> Peak:
 def numbered(peaks: Sequence[Peak], frequencies: Array) -> dict[int, Peak]:
     """The peak of each mode, 1 the lowest, of a shaft with these natural frequencies, Hz, by its drawing.
 
-    One factor for all modes, sqrt(E/rho) of the true wood over the drawing's, is sought first: the one that brings most
-    peaks nearest to modes, and is not far from 1. So a mode that does not sound leaves the others their numbers.
+    One factor for all modes is searched first, sqrt(E/rho) of the true wood over the drawing's: it brings most
+    peaks nearest to modes, and is near 1. A silent mode therefore does not shift the numbers of the others.
     """
     shifts = np.linspace(-FARTHEST, FARTHEST, 281)
     apart = np.log([[peak.frequency] for peak in peaks]) - np.log(frequencies)  # (peaks, modes)
@@ -101,7 +101,7 @@ def numbered(peaks: Sequence[Peak], frequencies: Array) -> dict[int, Peak]:
 
 
 def tones_of(samples: Array, rate: float, frequencies: Array, source: str = "") -> tuple[Tone, ...]:
-    """The tones of a shaft in a recording.
+    """The natural frequencies of a shaft in a recording.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def tones_of(samples: Array, rate: float, frequencies: Array, source: str = "") 
 
 
 def combined(tones: Sequence[Tone]) -> tuple[Tone, ...]:
-    """One tone per mode from several recordings: the weighted mean, its error no less than what their scatter asks."""
+    """One frequency per mode from several recordings: the weighted mean, its error at least that of their scatter."""
     made = []
     for mode in sorted({tone.mode for tone in tones}):
         own = [tone for tone in tones if tone.mode == mode]

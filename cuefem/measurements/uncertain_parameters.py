@@ -1,4 +1,4 @@
-"""What a drawing leaves open: the wood, the bore, the tip; each with a prior that its source bounds.
+"""Uncertain parameters of a drawing: the wood, the bore, the tip; each with a prior.
 
 The prior of a positive number is lognormal about the drawing's value. Its spread, the standard deviation of the
 logarithm, comes from the table of materials where that has a range (which spans one standard deviation either way), and
@@ -24,7 +24,7 @@ ZERO, SQUIRT_MODEL, BALL_TIME = "zero", "squirt model", "ball time"
 
 @dataclass(frozen=True)
 class UncertainParameter:
-    """A number that is not known: its value in the drawing, and its prior.
+    """An uncertain parameter: its value in the drawing, and its prior.
 
     spread: standard deviation of its logarithm; of the number itself, in its unit, if ``plain``. put: a setup with
     another value.
@@ -39,7 +39,7 @@ class UncertainParameter:
     plain: bool = False
 
     def value(self, z: float) -> float:
-        """Its value ``z`` standard deviations of the prior from the usual one."""
+        """Its value ``z`` standard deviations of the prior from the drawing's."""
         return self.usual + z * self.spread if self.plain else self.usual * math.exp(z * self.spread)
 
     def setup(self, setup: Setup, z: float) -> Setup:
@@ -49,7 +49,7 @@ class UncertainParameter:
 
 @dataclass(frozen=True)
 class Prior:
-    """What a file says of an uncertain parameter: its spread, or a low and a high value, one standard deviation off."""
+    """A prior in a file: the spread, or a low and a high value, one standard deviation away."""
 
     name: str
     spread: Annotated[float | None, Quantity("", "[0, 3]")] = None
@@ -68,7 +68,7 @@ class Prior:
 
 
 def names() -> tuple[str, ...]:
-    """What can be uncertain: the parameters of a scene that hold a number, and the model's own error."""
+    """Names of possible uncertain parameters: the numerical parameters of a scene, and the model error."""
     return (*(known.name for known in PARAMETERS.values() if not known.materials), SQUIRT_MODEL)
 
 
@@ -81,7 +81,7 @@ def _key(name: str) -> str:
 def parameters_of(
     scene: Scene, measurements: Sequence[Measurement], priors: Sequence[Prior] = ()
 ) -> tuple[UncertainParameter, ...]:
-    """What is open in a measured cue: the usual parameters, those of the file, and what its measurements bring along.
+    """The uncertain parameters of a measured cue: the default ones, those of the file, and those of its measurements.
 
     ValueError if a prior is of something that the scene does not have.
     """

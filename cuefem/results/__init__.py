@@ -1,1 +1,1 @@
-"""What can be asked of a scene, each number declared once, and how designs are solved so that they can answer."""
+"""Results: the registry of all quantities of a scene, solved designs, accuracy, uncertainty and comparison."""

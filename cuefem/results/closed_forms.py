@@ -1,6 +1,6 @@
 """The papers' formulas that results need: Alciatore's [A.31], the natural pivot length [B.1] and [Kim]'s cue end.
 
-The other closed forms stand in studies/paper/closed_forms.
+The other closed forms are in studies/paper/closed_forms.
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ _QUANTITIES = {
 
 
 def _checked(**values: Any) -> tuple[Any, ...]:
-    """The values as floats or float arrays, in the order given; ValueError names field, bound, unit and value."""
+    """The values as floats or float arrays, in the same order; ValueError names field, bound, unit and value."""
     return tuple(_QUANTITIES[name].check(name, value) for name, value in values.items())
 
 
 def cue_end_mass(end_mass: Any, nu_c: Any = 1 / 3) -> Any:
-    """[Kim]'s m_c = m_e (1 + nu_c)/nu_c, kg, whose tip feels the effective end mass m_e."""
+    """[Kim]'s m_c = m_e (1 + nu_c)/nu_c, kg, of the effective end mass m_e."""
     end_mass, nu_c = _checked(end_mass=end_mass, nu_c=nu_c)
     return end_mass * (1 + nu_c) / nu_c
 
 
 def alciatore_a31(offset: Any, *, mass_ratio: Any, inertia: Any = 0.4) -> Any:
-    """[A.31]: squirt, rad, of a tip that sticks and keeps the ball's transverse speed; mass_ratio M/m_e.
+    """[A.31]: squirt, rad, of a tip that sticks and leaves with the ball's transverse speed; mass_ratio M/m_e.
 
     tan psi = (sin cos/nu)/(1 + M/m_e + cos^2/nu), b/R = sin(phi) of the contact: [Kim]'s law at e = 0.
     """
@@ -49,7 +49,7 @@ def alciatore_a31(offset: Any, *, mass_ratio: Any, inertia: Any = 0.4) -> Any:
 def alciatore_a31_mass_ratio(offset: Any, squirt: Any, *, inertia: Any = 0.4) -> Any:
     """The M/m_e with which `alciatore_a31` gives the squirt ``squirt``, rad: simulators that use [A.31] need it.
 
-    ValueError if no end mass in (0, inf) has it: head on, and at or beyond the squirt of an infinite end mass.
+    ValueError if no end mass in (0, inf) has it: head-on, and at or beyond the squirt of an infinite end mass.
     """
     offset, squirt, nu = _checked(offset=offset, squirt=squirt, inertia=inertia)
     s, c = sine_cosine(offset)
@@ -58,7 +58,7 @@ def alciatore_a31_mass_ratio(offset: Any, squirt: Any, *, inertia: Any = 0.4) ->
     if not np.all(positive := ratio > 0):
         where, (b, psi) = first_failure(positive, offset, squirt)
         raise ValueError(
-            "squirt must be of its offset's sign and less than that of an endless end mass in [A.31]; "
+            "squirt must be of its offset's sign and less than that of an infinite end mass in [A.31]; "
             f"got {psi:.6g} rad at offset {b:.6g}{where}"
         )
     return ratio[()]
@@ -71,10 +71,10 @@ def axis_offset(offset: Any, *, radius: Any, dome_radius: Any) -> Any:
 
 
 def natural_pivot_length(offset: Any, squirt: Any, *, radius: Any, dome_radius: Any = 0.0) -> Any:
-    """[B.1]: distance from tip to the bridge about which turning the cue undoes squirt, m.
+    """[B.1]: distance from the tip to the bridge about which pivoting the cue cancels squirt, m.
 
-    p = (R + r) b/(R sin psi) - R; radius R of the ball, dome_radius r of the tip (0: its curvature is left out).
-    Infinite without squirt; ValueError at offset 0, where every bridge will do.
+    p = (R + r) b/(R sin psi) - R; radius R of the ball, dome_radius r of the tip (0: its curvature is neglected).
+    Infinite without squirt; ValueError at offset 0, where no pivot is defined.
     """
     offset, squirt, radius, dome_radius = _checked(offset=offset, squirt=squirt, radius=radius, dome_radius=dome_radius)
     if not np.all(beside := np.not_equal(offset, 0)):

@@ -1,4 +1,4 @@
-"""Cues side by side: their numbers, and each difference with the uncertainty that the cues do not share."""
+"""Comparison of cues: their results, and each difference with the uncertainty that does not cancel."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from cuefem.results.uncertainty import FLOOR, changes_by_input, model_share, rat
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
 
-# The numbers that are compared, by their names in the registry of results.
-OF_SQUIRT = ("squirt", "end_mass_squirt", "pivot_length")  # what squirt makes them, so that the model adds its error
+# The compared results, by their names in the registry.
+OF_SQUIRT = ("squirt", "end_mass_squirt", "pivot_length")  # derived from squirt: they include the model error
 OF_SHAPE = ("tip_stiffness", "shaft_mass", "mass")
 N_FREQUENCIES = 3
 ALL = (*OF_SQUIRT, *OF_SHAPE, *(f"frequency_{k}" for k in range(1, N_FREQUENCIES + 1)))
@@ -27,8 +27,8 @@ Follow = Callable[[Sequence[Any]], Iterable[Any]]
 
 
 class _Compared(NamedTuple):
-    """A scene, its numbers, the grip of its strike ("" if it cannot be made), and their relative changes with
-    each input that may be off."""
+    """A scene, its results, the contact state of its strike ("" if it fails), and their relative changes with
+    each uncertain input."""
 
     scene: Scene
     numbers: dict[str, float]
@@ -77,7 +77,7 @@ def struck_alike(scenes: Mapping[str, Scene]) -> dict[str, Scene]:
     return {name: replace(scene, ball=first.ball, stroke=first.stroke) for name, scene in scenes.items()}
 
 
-@lru_cache(maxsize=16)  # one of two cues stays while the other is changed
+@lru_cache(maxsize=16)  # the reference usually remains while the other cue changes
 def _compared(scene: Scene, names: tuple[str, ...]) -> _Compared:
     numbers = _numbers(scene, names)
     try:
@@ -88,7 +88,7 @@ def _compared(scene: Scene, names: tuple[str, ...]) -> _Compared:
 
 
 def _numbers(scene: Scene, names: Sequence[str]) -> dict[str, float]:
-    """The numbers of a scene that are compared; nan where it has none, as squirt of a miscue."""
+    """The compared results of a scene; nan where it has none, such as squirt of a miscue."""
     _ = scene.shaft  # ValueError for a lumped cue, which has no shape
     design, known = SolvedDesign(Solved(scene)), asked()
 
@@ -117,14 +117,14 @@ def _differences(first: _Compared, other: _Compared, *, same_shaft: bool) -> dic
         errors = [_of_input(first, other, key, name, same_shaft=same_shaft) for key in {**first.inputs, **other.inputs}]
         share, floor = (model_share(first.scene, other.scene), FLOOR) if name in OF_SQUIRT else (0.0, OTHER_FLOOR)
         error = ratio_error(ratio, share, *errors, floor=floor)
-        if math.isnan(error):  # a strike at an end of an input's range miscues
+        if math.isnan(error):  # a strike at a limit of an input's range is a miscue
             continue
         made[name] = {"difference": ratio - 1, "error": error, "distinct": abs(ratio - 1) > error}
     return made
 
 
 def _of_input(first: _Compared, other: _Compared, key: str, name: str, *, same_shaft: bool) -> float:
-    """What an input leaves open in the logarithm of the ratio of two cues' numbers."""
+    """Uncertainty of the logarithm of a ratio of two cues' results by one input."""
     changes = [each.inputs.get(key, {}).get(name, 0.0) for each in (first, other)]
     known = PARAMETERS[key]
     shared = known.value(first.scene) == known.value(other.scene) if known.of_tip else same_shaft

@@ -1,7 +1,7 @@
-"""An accuracy that is asked for, and the least work that reaches it: `resolve` and `resolve_end_mass`.
+"""Refinement to a requested accuracy: `resolve` and `resolve_end_mass`.
 
-Every level has twice the modes (with a tail, `cuefem.beam.tail`) and half the step of the one before. The error of a
-level is its largest difference from the two before: neighbours may agree by chance.
+Each level has twice the modes (with truncation correction) and half the step of the previous one. The error of a
+level is its largest difference from the two previous levels: two levels may agree by chance.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from cuefem.scene import MOST_STEPS, Outcome, Resolution, Scene
 from cuefem.tip_modes import MOST, ended_tip_modes
 
 FIRST, FIRST_STEPS = 12, 100  # modes and steps of the first level
-JUDGED_BY = 2  # levels before
+JUDGED_BY = 2  # previous levels
 PERIODS = 3  # that the first level's modes have at least in a contact
 ROUNDING = 1e-12  # relative, of a lumped cue
 # Squirt is judged against no less than this part of sin(phi), rad: where it vanishes a relative error means nothing.
@@ -33,7 +33,7 @@ RTOL = Quantity("", "(0, 1)")
 
 
 class Level(NamedTuple):
-    """One level: how finely it was computed, and what came out, with its error from the third on."""
+    """One refinement level: its resolution and outcome, with an error from the third level on."""
 
     at: Resolution
     outcome: Outcome
@@ -48,7 +48,7 @@ def resolve(scene: Scene, rtol: float) -> Outcome:
     scene
         As `cuefem.strike` takes it.
     rtol
-        The accuracy wanted, in (0, 1): the largest relative error of squirt, ball speed and spin.
+        Requested accuracy, in (0, 1): the largest relative error of squirt, ball speed and spin.
 
     Returns
     -------
@@ -63,10 +63,10 @@ def resolve(scene: Scene, rtol: float) -> Outcome:
 
     Notes
     -----
-    Each level has twice the modes and half the step of the one before; the error is the largest difference from the two
-    levels before. Squirt is taken relative to itself, but to no less than 0.01 sin(phi) rad, since it may pass through
-    zero. Where a contact nearly parts, or nearly goes on, more modes may change its course: levels that agree then
-    prove little.
+    Each level has twice the modes and half the step of the previous one; the error is the largest difference from the
+    two previous levels. The error of squirt is relative to squirt, or to 0.01 sin(phi) rad if that is larger: squirt
+    may be zero. Close to a separation or a double hit more modes may change the sequence of contacts: agreement of
+    levels then proves little.
 
     Examples
     --------
@@ -103,7 +103,7 @@ def resolve_end_mass(scene: Scene, drive: str = "stick", rtol: float = 1e-4) -> 
     scene, drive
         As `cuefem.end_mass` takes them.
     rtol
-        The relative accuracy wanted, in (0, 1).
+        Requested relative accuracy, in (0, 1).
 
     Returns
     -------
@@ -113,7 +113,7 @@ def resolve_end_mass(scene: Scene, drive: str = "stick", rtol: float = 1e-4) -> 
     Raises
     ------
     ValueError
-        If rtol is out of bounds, or the definition is unknown or has no answer for this scene.
+        If rtol is out of bounds, or the definition is unknown or undefined for this scene.
 
     Examples
     --------

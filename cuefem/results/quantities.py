@@ -1,7 +1,7 @@
-"""The results: every number that can be told of a scene, declared once.
+"""The registry of results: every quantity of a scene, defined in one place.
 
-One entry of `RESULTS` is all that a new number takes: it is then in `report` and its JSON, in the designer's numbers, a
-response of sweeps, scatters and optimizations, and with these in their tables, pages and pandas frames.
+A new quantity is one entry of `RESULTS`. It then appears in `report`, its JSON and the designer's numbers, and is a
+response of sweeps, scatters and optima, with their tables, pages and pandas frames.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:  # at work every command that writes a number would pay for it
     from cuefem.results.solved_design import SolvedDesign
 
 NONE = "–"
-# The units in which a cue maker reads what a record holds in SI: how many of them one SI unit is, and their name.
+# Display units of SI quantities: the factor from the SI unit, and their name.
 TRADE = {
     "kg": (1e3, "g"),
     "m": (1e3, "mm"),
@@ -35,15 +35,14 @@ TRADE = {
 
 @dataclass(frozen=True)
 class Result:
-    """A number of a scene: what it is called, its SI unit ("" for a pure number or a word), and how it is computed.
+    """A quantity of a scene: its label, its SI unit ("" for a pure number or a text), and how it is computed.
 
-    words: its name for people, in full. decimals: in the unit that people read; None for four digits in all. heading:
-    its name over a column, by default the words. about: what it is, in a line. of: its value for a solved design, at an
-    argument (None: at the scene's own offset), or a ValueError that gives the reason for none; without it, only records
-    have it, which compute it. argument: what it takes in brackets, "", "mode" or "offset". segments: whether it needs a
-    cue of segments. limit: whether without an offset it is the limit of small offsets. better: which a player wants,
-    "lower" or "higher", by which a summary picks designs. listed: whether a report and the designer list it; what has a
-    table of its own is not.
+    words: its label. decimals: in the display unit; None for four significant digits. heading: its column heading, by
+    default the label. about: a one-line definition. of: its value for a solved design, at an argument (None: at the
+    scene's own offset), or a ValueError with the reason why it is undefined; without it, only records have it and
+    compute it. argument: the argument in brackets, "", "mode" or "offset". segments: whether it needs a cue of segments.
+    limit: whether without an offset it is the limit of small offsets. better: "lower" or "higher", the direction in
+    which a summary ranks designs. listed: whether a report and the designer list it (not if it has its own table).
     """
 
     words: str
@@ -66,11 +65,11 @@ class Result:
 
     @property
     def scale(self) -> float:
-        """How many of the units that people read one SI unit is."""
+        """Factor from the SI unit to the display unit."""
         return TRADE.get(self.unit, (1.0, self.unit))[0]
 
     def number(self, value: float, *, brief: bool = False) -> str:
-        """A value in the unit that people read, without it; brief: a decimal less, of three or more."""
+        """A value in the display unit, without the unit; brief: one decimal less, of three or more."""
         if self.decimals is None:
             return significant(self.scale * value)
         return f"{self.scale * value:.{self.decimals - (brief and self.decimals > 2)}f}"
@@ -109,7 +108,7 @@ def significant(value: float, digits: int = 4) -> str:
     return f"{value:.{decimals}f}"
 
 
-# The offset that stands for the limit b -> 0 in formulas; they leave an error of its square.
+# Represents the limit b -> 0 in formulas; the error is of its square.
 SMALL = 1e-6
 
 
@@ -120,7 +119,7 @@ def _pivot_length(design: SolvedDesign, offset: float | None) -> float:
 
 
 def of_strike(value: Callable[[Outcome], float]) -> Callable[[SolvedDesign, Any], float]:
-    """A number of the coupled strike at the given offset; by default at the scene's own."""
+    """A result of the coupled strike at an offset; by default at the scene's own."""
     return lambda design, offset: value(design.strike(offset))
 
 
@@ -205,7 +204,7 @@ RESULTS = {
     "energy": Result("energy", "J"),
     "vibration_energy": Result(
         *("energy of vibration", "J"),
-        about="left in the cue as free vibration by the coupled strike",
+        about="energy of the cue's free vibration after the coupled strike",
         of=of_strike(lambda outcome: outcome.energy["cue vibration"]),
         argument="offset",
         better="lower",
@@ -278,7 +277,7 @@ GRIPS = {
 def with_unit(
     value: float, unit: str, digits: int = 4, *, error: float | None = None, decimals: int | None = None
 ) -> str:
-    """A number of that SI unit as people read it, to so many digits or decimals; with an error, to its second digit."""
+    """An SI number in its display unit, to some digits or decimals; with an error, to the error's second digit."""
     scale, name = TRADE.get(unit, (1.0, unit))
     tail = f" {name}" if name not in ("", "°") else name
     if decimals is not None:
@@ -290,12 +289,12 @@ def with_unit(
 
 
 def scaled(values: Any, unit: str) -> Array:
-    """Numbers of that SI unit in the unit that people read."""
+    """SI numbers in their display unit."""
     return np.asarray(values) * TRADE.get(unit, (1.0, unit))[0]
 
 
 def with_heading(words: str, unit: str) -> str:
-    """The name of a column with the unit that people read it in."""
+    """The name of a column with its display unit."""
     name = TRADE.get(unit, (1.0, unit))[1]
     return f"{words}, {name}" if name else words
 

@@ -1,6 +1,6 @@
-"""Records, which are SI numbers by the names of their quantities, and the sheets of rows that people read of them.
+"""Records (SI numbers by the names of their quantities), and the tables that display them.
 
-A record is what a program reads. A sheet declares which of its numbers stand in which column; heading, unit and digits
+Programs read records. A sheet declares the column of each number; heading, unit and digits
 of a column are those of its quantity. A terminal, a page and a CSV file show the same sheet (`cuefem.report.table`).
 """
 
@@ -25,7 +25,7 @@ Entry = str | Callable[[Mapping[str, Any]], str]
 class Sheet:
     """A table for people: its title, the head of its columns, rows of texts, and lines that state its assumptions.
 
-    texts: numbers of the columns that hold words; the others hold numbers. styles: of rows that stand out, "bold" or
+    texts: indices of the columns with text; the others have numbers. styles: of highlighted rows, "bold" or
     "dim", by the row's number.
     """
 
@@ -44,7 +44,7 @@ def sheet(
     *notes: str,
     texts: tuple[int, ...] = (0,),
 ) -> Sheet:
-    """A sheet of rows that are records. columns: what stands below each heading."""
+    """A table with one row per record. columns: the template of each column."""
     cells = tuple(tuple(_cell(entry, row) for entry in columns.values()) for row in rows)
     return Sheet(title, tuple(columns), cells, notes, texts)
 
@@ -61,9 +61,9 @@ def _cell(entry: Entry, row: Mapping[str, Any]) -> str:
 
 
 class _Templates(Formatter):
-    """Templates whose numbers say after the colon how they are written; what is missing is a dash.
+    """Templates with a format after the colon of each number; a missing number becomes a dash.
 
-    {felt:end_mass}: as that quantity; {swing:m}: in the unit that people read for an SI unit; {share:.1 %}: in per
+    {felt:end_mass}: as that quantity; {swing:m}: in the display unit of an SI unit; {share:.1 %}: in per
     cent; otherwise as in Python.
     """
 
@@ -74,7 +74,7 @@ class _Templates(Formatter):
         return (value[inner] if inner and value is not None else value), first
 
     def format_field(self, value: Any, spec: str) -> str:
-        """The value as the template asks for it."""
+        """The value in the template's format."""
         if value is None:
             return NONE
         if spec in RESULTS:
@@ -102,7 +102,7 @@ def value_rows(record: Mapping[str, Any], names: Iterable[str] | None = None) ->
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON can hold it: arrays become lists, infinite and undefined numbers become null."""
+    """A value for JSON: arrays become lists, infinite and undefined numbers become null."""
     if isinstance(value, dict):
         return {str(key): plain(inner) for key, inner in value.items()}
     if isinstance(value, np.ndarray | np.generic):

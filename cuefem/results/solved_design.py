@@ -35,14 +35,14 @@ def at_offset(scene: Scene, offset: Any) -> Scene:
 
 
 def off_centre(scene: Scene) -> Scene:
-    """The scene itself; one that is struck head on, which has no squirt, with the usual offset instead."""
+    """The scene; a head-on stroke, which has no squirt, with the default offset instead."""
     return scene if scene.stroke.offset else at_offset(scene, USUAL_OFFSET)
 
 
 def strikes_at(scene: Scene, offsets: Iterable[float], tip: TipModes) -> Iterator[Outcome]:
-    """The coupled strike at one offset after the other, each computed when it is asked for; tip: the cue's modes.
+    """Coupled strikes over the offset, each computed on demand; tip: the cue's tip modes.
 
-    This is the one place where squirt against the offset comes from.
+    All curves of squirt against the offset come from here.
     """
     return (strike_modes(at_offset(scene, offset), tip) for offset in offsets)
 
@@ -113,7 +113,7 @@ class SolvedDesign:
 
 
 def asked() -> dict[str, Result]:
-    """All results that can be asked of a design, by name: also "end_mass_NAME" for every definition of the end mass."""
+    """All results of a design, by name: also "end_mass_NAME" for every definition of the end mass."""
     own = {name: result for name, result in RESULTS.items() if result.of is not None}
     return own | {f"end_mass_{name}": _defined(definition) for name, definition in DEFINITIONS.items()}
 

@@ -14,21 +14,21 @@ from cuefem.parameters.parameter import PARAMETERS, replaced
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
 
-# The model's own error, relative: what published squirt leaves when the inputs of those cues, which nobody measured
-# either, are taken off. Few series leave it in an interval; these are its upper ends, for a leather tip and for a
+# Model error, relative: the scatter of published squirt less the uncertainty of those cues' inputs, which were not
+# measured either. Few series determine it only to an interval; these are its upper ends, for a leather tip and for a
 # spring without a dome. studies/measured/uncertainty.py derives them, and tests/results/test_uncertainty.py again.
 MODEL, MODEL_OF_SPRING = 0.18, 0.29
 # The error of the logarithm of a ratio of squirt as a part of that logarithm: of two shafts (the upper end, from pairs
 # of shafts in one series), and of a shaft with and without a mass on it (31 places of two masses).
 SHAFTS, MASSES = 0.32, 0.54
-FLOOR = 0.01  # relative, of any ratio of squirt: what calipers and the computation leave open
+FLOOR = 0.01  # relative, of any ratio of squirt: calipers and numerical error
 COMPUTED = 0.002  # of squirt at the default resolution: 0.19 % at most (studies/accuracy/accuracy.md)
 
 
 class Uncertainty(NamedTuple):
     """Relative standard uncertainty of a squirt, by its cause.
 
-    model: what published squirt leaves. inputs: wood and tip of this scene that nobody measured. computation: modes and
+    model: model error. inputs: unmeasured wood and tip of this scene. computation: modes and
     steps.
     """
 
@@ -43,12 +43,12 @@ class Uncertainty(NamedTuple):
 
 
 def model_error(scene: Scene) -> float:
-    """The model's own error of a scene's squirt, relative: that of a leather tip or of a spring."""
+    """Model error of a scene's squirt, relative: that of a leather tip or of a spring tip."""
     return MODEL if scene.contact_terms.tip is not None else MODEL_OF_SPRING
 
 
 def of_shaft(inputs: Mapping[str, float]) -> float:
-    """The share of the shaft's inputs alone: what is left where two shafts are struck with one tip."""
+    """The contribution of the shaft's inputs alone, which remains between two shafts with one tip."""
     return math.hypot(*(share for key, share in inputs.items() if not PARAMETERS[key].of_tip))
 
 
@@ -66,9 +66,9 @@ def changes_by_input(
     of: Callable[[Scene], Mapping[str, float]],
     inputs: Iterable[str] = PARAMETERS,
 ) -> dict[str, dict[str, float]]:
-    """The relative changes of some numbers of a scene with each input that is uncertain by its usual spread.
+    """Relative changes of results of a scene with each uncertain input, by its standard deviation.
 
-    own: the numbers of the scene. of: those of a changed one. inputs: those that are asked for. Signs
+    own: results of the scene. of: computes those of a changed scene. inputs: the requested inputs. Signs
     are those of a larger value of the input.
     """
     changes: dict[str, dict[str, float]] = {}
@@ -79,7 +79,7 @@ def changes_by_input(
         value = known.value(scene) if ways else None
         if not value:
             continue
-        for off in ways:  # the other way where no cue can be farther out
+        for off in ways:  # the opposite sign where the first gives no valid cue
             try:
                 made = of(replaced(scene, {known.steps(): value * math.exp(off)}))
             except (ValueError, RuntimeError):
@@ -90,20 +90,20 @@ def changes_by_input(
 
 
 def squirt_beside(solved: Solved, made: Scene) -> float:
-    """Squirt of a changed scene, rad, by the modes that are known where what vibrates is not changed."""
+    """Squirt of a changed scene, rad; it reuses the solved modes if the vibrating cue is unchanged."""
     if _vibrating(made) == _vibrating(solved.scene):
         return float(strike_modes(made, solved.tip).squirt)
     return squirt_of(made)
 
 
 def _vibrating(scene: Scene) -> tuple[object, ...]:
-    """The cue and what acts on it: of a tip its mass, whatever its law."""
+    """The cue and the effects on it: of a tip only its mass."""
     return scene.cue, *chain.from_iterable(effect.left_on(scene.shaft) for effect in scene.cue_effects)
 
 
 @lru_cache(maxsize=256)
 def squirt_of(scene: Scene) -> float:
-    """Squirt of a scene's coupled strike, rad, cached for scenes that come again, such as reference cues."""
+    """Squirt of a scene's coupled strike, rad, cached for repeated scenes, such as reference cues."""
     return float(strike_modes(scene, Solved(scene).tip).squirt)
 
 
@@ -114,7 +114,7 @@ def model_share(first: Scene, other: Scene) -> float:
 
 
 def ratio_error(ratio: float, share: float, *inputs: float, floor: float = FLOOR) -> float:
-    """The error of a ratio, 1 sigma: the model's share of its logarithm, what inputs leave open in it, and a floor."""
+    """The error of a ratio, 1 sigma: the model's share of its logarithm, the contributions of inputs, and a floor."""
     ln = math.log(ratio)
     # from the logarithm to the ratio so that a difference and its error have one quotient in either order of the two
     return math.hypot(share * ln, *inputs, floor) * (math.expm1(ln) / ln if ln else 1.0)

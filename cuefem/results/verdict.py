@@ -1,4 +1,4 @@
-"""A verdict on a cue: its squirt with its uncertainty, and where that stands among other cues with the same stroke."""
+"""Verdict on a cue: its squirt with its uncertainty, compared with reference cues by the same stroke."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ from cuefem.tip_modes import Solved
 def verdict_record(scene: Scene, outcome: Outcome, ready: Mapping[str, Cue], *, solved: Solved | None = None) -> Record:
     """Squirt at the stroke's offset, its uncertainty, and the squirt of each reference cue by the same stroke.
 
-    A stroke head on, which has no squirt, is taken at the usual offset instead. "inputs": by how much each changes
+    A head-on stroke, which has no squirt, is computed at the default offset instead. "inputs": by how much each changes
     squirt. "among": squirt, own squirt over it less 1, the error of that, and whether the two are "distinct". ready:
-    the first is what is compared with in words. solved: the scene's modes by default, if they are known already.
+    the first is the reference of the text. solved: the scene's default modes, if already computed.
     """
     struck = off_centre(scene)
     head_on = struck is not scene
     solved = Solved(struck) if solved is None or head_on else solved
-    # as fine as what it is compared with, where the outcome may be finer
+    # at the resolution of the reference cues, since the outcome may be finer
     own = squirt_beside(solved, struck) if head_on or outcome.error is not None else float(outcome.squirt)
     squirt = own if head_on else float(outcome.squirt)
     inputs = {key: abs(change) for key, change in squirt_changes(solved, own).items()}
@@ -55,9 +55,9 @@ def verdict_record(scene: Scene, outcome: Outcome, ready: Mapping[str, Cue], *, 
 
 
 def _beside(scene: Scene, squirt: float, cue: Cue, inputs: float) -> Record | None:
-    """Another cue with the same stroke; None if this stroke cannot be made with it, or one of the two has no squirt.
+    """Another cue with the same stroke; None if this stroke fails with it, or one of the two has no squirt.
 
-    inputs: relative error of squirt by what is not known of the scene's shaft.
+    inputs: relative uncertainty of squirt by the inputs of the scene's shaft.
     """
     struck = same_stroke(scene, cue)
     try:
@@ -74,8 +74,8 @@ def _beside(scene: Scene, squirt: float, cue: Cue, inputs: float) -> Record | No
 def same_stroke(scene: Scene, cue: Cue) -> Scene:
     """The scene's ball, tip, stroke and effects with another cue.
 
-    What is fixed to the scene's own cue (a mass, a joint, a clamp beyond the other's end) stays with it. The other cue
-    has its drawn leather only where the scene's own cue has.
+    Effects on the scene's own cue (a mass, a joint, a clamp beyond the other's end) are dropped. The other cue
+    has the leather in its drawing only if the scene's own cue has.
     """
     own = scene.lumped is None and scene.shaft.leather
     other = cue if own else without_leather(cue)

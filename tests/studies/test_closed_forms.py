@@ -34,7 +34,7 @@ def test_a31_is_the_blow_without_restitution_and_has_an_inverse(m_e: float) -> N
     line = squirt.force_line_offset(offset, psi)
     np.testing.assert_allclose(squirt.shepard(line, mass_ratio=1 / m_e), psi, rtol=1e-13)
     for bad in (0.0, -0.01, 1.5):
-        with pytest.raises(ValueError, match=r"endless end mass in \[A.31\]"):
+        with pytest.raises(ValueError, match=r"infinite end mass in \[A.31\]"):
             squirt.alciatore_a31_mass_ratio(0.3, bad)
 
 
