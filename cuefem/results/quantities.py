@@ -40,7 +40,7 @@ class Result:
     words: its label. decimals: in the display unit; None for four significant digits. heading: its column heading, by
     default the label. about: a one-line definition. of: its value for a solved design, at an argument (None: at the
     scene's own offset), or a ValueError with the reason why it is undefined; without it, only records have it and
-    compute it. argument: the argument in brackets, "", "mode" or "offset". segments: whether it needs a cue of segments.
+    compute it. argument: its argument in brackets, "", "mode" or "offset". segments: whether it needs cue segments.
     limit: whether without an offset it is the limit of small offsets. better: "lower" or "higher", the direction in
     which a summary ranks designs. listed: whether a report and the designer list it (not if it has its own table).
     """

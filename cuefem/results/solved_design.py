@@ -1,4 +1,4 @@
-"""A solved design: what the numbers of a scene are computed from, and all that can be asked."""
+"""A solved design: modes and strikes of a scene, from which all its results are computed."""
 
 from __future__ import annotations
 
@@ -67,9 +67,9 @@ def course(outcome: Outcome, name: str, times: Array) -> dict[str, Array]:
 
 
 class SolvedDesign:
-    """A scene that is solved: its numbers in SI, as the calls for each of them give them, each computed once.
+    """A solved scene: its results in SI, each equal to that of its public function, computed on first access.
 
-    solved: the scene and its modes. outcome: of its own strike, if it is known.
+    solved: the scene and its modes. outcome: of its own strike, if already computed.
     """
 
     def __init__(self, solved: Solved, outcome: Outcome | None = None) -> None:
@@ -79,7 +79,7 @@ class SolvedDesign:
 
     @property
     def tip_stiffness(self) -> float:
-        """Static tip stiffness, N/m: force across the tip over its deflection, the butt end clamped."""
+        """Static tip stiffness, N/m: transverse force at the tip over its deflection, the butt end clamped."""
         cue, effects = self.scene.shaft, self.scene.cue_effects
         clamped = (*effects, Support(cue.length, np.inf, np.inf))
         return assemble(cue, TONES, clamped).static_stiffness(0.0)
@@ -143,6 +143,6 @@ def _value(result: Result, design: SolvedDesign) -> float | None:
     assert result.of is not None
     try:
         value = result.of(design, None)
-    except (ValueError, RuntimeError):  # such as the stiffness of a cue whose effects hold its tip
+    except (ValueError, RuntimeError):  # such as the stiffness of a cue whose effects clamp its tip
         return None
     return value if math.isfinite(value) else None
