@@ -28,7 +28,7 @@ from cuefem.quantity.fields import check_count, check_kind
 from cuefem.results.quantities import scaled, with_heading, with_unit
 from cuefem.results.solved_design import coupled_curve, course
 from cuefem.scene import Outcome, Resolution, Scene
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

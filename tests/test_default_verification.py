@@ -6,7 +6,7 @@ import pytest
 
 from cuefem import end_mass
 from cuefem.endmass.definitions import definition_of
-from cuefem.tip_modes import MOST, ended_tip_modes
+from cuefem.scene.solved_scene import MOST, ended_tip_modes
 from tests.helpers.cues import scene
 
 mpl.use("Agg")

@@ -22,7 +22,6 @@ ORDER = [
     "effects",
     "scene",
     "parameters",
-    "tip_modes",
     "contact",
     "endmass",
     "results",

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cuefem.cue import Array, LumpedCue
-from cuefem.quantity.fields import scalar
 
 if TYPE_CHECKING:
     from cuefem.beam.modes import Modes
@@ -90,13 +89,10 @@ class TipModes:
 
 
 def lumped_tip_modes(cue: LumpedCue) -> TipModes:
-    """The two modes of zero frequency that give a lumped cue's inverse mass; its fields must be single numbers."""
-    mass, end_mass, coupling = (
-        scalar(f"LumpedCue.{name}", getattr(cue, name)) for name in ("mass", "end_mass", "coupling")
-    )
-    root = math.sqrt(mass)
-    across = math.sqrt(1 / end_mass - coupling**2 * mass)
-    amplitude = np.array([[1 / root, coupling * root], [0.0, across]])
+    """The two modes of zero frequency that give a lumped cue's inverse mass."""
+    root = math.sqrt(cue.mass)
+    across = math.sqrt(1 / cue.end_mass - cue.coupling**2 * cue.mass)
+    amplitude = np.array([[1 / root, cue.coupling * root], [0.0, across]])
     return TipModes(np.zeros(2), amplitude, np.linalg.solve(amplitude.T, [1.0, 0.0]), np.zeros(2))
 
 

@@ -13,7 +13,6 @@ from cuefem.contact.modal_response import ModalPropagator, propagator_of
 from cuefem.cue import Array
 from cuefem.effects.contact_settings import ContactTerms, HeadOn, WholeTip
 from cuefem.effects.force_law import LeatherLaw, TipLaw
-from cuefem.quantity.fields import scalar
 from cuefem.scene import Scene
 
 # A tip of a small restitution e unloads 1/e times as fast as it loads, and takes as many steps. Such tips are refused
@@ -97,17 +96,17 @@ def model_of(scene: Scene, tip: TipModes) -> ContactModel:
 
     ValueError for what no contact honours together, and for a tip of too low a restitution.
     """
-    offset, terms = scalar("Stroke.offset", scene.stroke.offset), scene.contact_terms
+    offset, terms = scene.stroke.offset, scene.contact_terms
     tip = tip if offset else tip.uncoupled
     model: dict[str, Any] = {
         "phi": math.asin(abs(offset)),
         "side": math.copysign(1.0, offset),
-        "ball_mass": scalar("Ball.mass", scene.ball.mass),
-        "inertia": scalar("Ball.inertia", scene.ball.inertia),
-        "radius": scalar("Ball.radius", scene.ball.radius),
-        "restitution": scalar("Tip.restitution", scene.tip.restitution),
-        "friction": scalar("Tip.friction", scene.tip.friction),
-        "speed": scalar("Stroke.speed", scene.stroke.speed),
+        "ball_mass": scene.ball.mass,
+        "inertia": scene.ball.inertia,
+        "radius": scene.ball.radius,
+        "restitution": scene.tip.restitution,
+        "friction": scene.tip.friction,
+        "speed": scene.stroke.speed,
         "time": scene.contact_time,
         "window": terms.window,
     }

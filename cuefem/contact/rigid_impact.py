@@ -14,17 +14,15 @@ cancels, so that squirt keeps its digits however light the end mass is.
 
 from __future__ import annotations
 
-from types import SimpleNamespace
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from cuefem.cue import Array, LumpedCue
 from cuefem.quantity.fields import sine_cosine
-from cuefem.scene import Ball, Outcome, Scene
+from cuefem.scene import Outcome, Scene
 
-# Strokes worked at a time, so that the intermediate arrays stay in cache.
-BLOCK = 8192
 # Stands for endless friction: slip then ends after 1e-100 of the blow, and the square is still a number.
 ENDLESS = 1e100
 
@@ -54,11 +52,11 @@ class Event(NamedTuple):
     impulse: Any
 
 
-def inverse_mass(cue: LumpedCue, ball: Ball, offset: Any) -> InverseMass:
+def inverse_mass(offset: Any, *, mass: Any, end_mass: Any, coupling: Any, ball_mass: Any, inertia: Any) -> InverseMass:
     """B = B_ball + B_cue of handbook: Inverse mass at ``offset`` b/R = sin(phi) >= 0."""
     s, c = sine_cosine(offset)
-    along, across, both = 1 / cue.mass, 1 / cue.end_mass, cue.coupling
-    ball_tt, ball_nn = (1 + 1 / ball.inertia) / ball.mass, 1 / ball.mass
+    along, across, both = 1 / mass, 1 / end_mass, coupling
+    ball_tt, ball_nn = (1 + 1 / inertia) / ball_mass, 1 / ball_mass
     cue_tt = along * s**2 + across * c**2 + 2 * both * s * c
     cue_nn = along * c**2 + across * s**2 - 2 * both * s * c
     tn = (along - across) * s * c + both * (c**2 - s**2)
@@ -125,60 +123,59 @@ def _course(B: InverseMass, v_t: Array, v_n: Array, *, mu: Array, e: Array) -> _
     return _Course(slip_end, p_c, p_f, tangential, leaving_t, leaving_n, -work - regained, slipped, regime, jam)
 
 
-def impact(scene: Scene) -> Outcome:
-    """Outcome of a lumped cue's stroke, every regime; array fields of the scene broadcast.
+def numbers_of(scene: Scene, cue: LumpedCue) -> dict[str, float]:
+    """What `impact` takes of a scene that a lumped cue strikes."""
+    ball, tip, stroke = scene.ball, scene.tip, scene.stroke
+    return {
+        **{"mass": cue.mass, "end_mass": cue.end_mass, "coupling": cue.coupling},
+        **{"ball_mass": ball.mass, "inertia": ball.inertia, "radius": ball.radius},
+        **{"restitution": tip.restitution, "friction": tip.friction, "speed": stroke.speed, "offset": stroke.offset},
+    }
+
+
+def impact(numbers: Mapping[str, Any]) -> Outcome:
+    """Outcome of a lumped cue's stroke by `numbers_of`, every regime; of many strokes where some are arrays, (n,).
 
     phases: the events "slip ends", "greatest compression", "separation" with the normal impulse until then. energy:
     "ball translation", "ball rotation", "cue", "tip loss", "friction loss", which add up to "initial". The coupling of
     a LumpedCue is meant for positive offsets and changes sign with them, so that all is odd in the offset.
     """
-    cue = scene.lumped
-    if cue is None:
-        raise ValueError("impact takes a LumpedCue; got a Cue, which cuefem.impulse lumps first")
-    fields = {
-        **{f"LumpedCue.{name}": getattr(cue, name) for name in ("mass", "end_mass", "coupling")},
-        **{f"Ball.{name}": getattr(scene.ball, name) for name in ("mass", "inertia", "radius")},
-        **{f"Tip.{name}": getattr(scene.tip, name) for name in ("restitution", "friction")},
-        **{f"Stroke.{name}": getattr(scene.stroke, name) for name in ("speed", "offset")},
-    }
-    shape = _common_shape(fields)
-    starts = range(0, max(int(np.prod(shape, dtype=int)), 1), BLOCK)
-    flat = [f if np.ndim(f) == 0 else np.broadcast_to(f, shape).reshape(-1) for f in fields.values()]
-    blocks = [_strokes(*(f if np.ndim(f) == 0 else f[i : i + BLOCK] for f in flat)) for i in starts]
-    if not shape:
-        return _outcome({name: value[0] for name, value in blocks[0].items()}, ())
-    return _outcome({name: np.concatenate([b[name] for b in blocks]) for name in blocks[0]}, shape)
-
-
-def _common_shape(fields: dict[str, Any]) -> tuple[int, ...]:
-    try:
-        return np.broadcast_shapes(*(np.shape(f) for f in fields.values()))
-    except ValueError:
-        shapes = ", ".join(f"{name} {np.shape(f)}" for name, f in fields.items() if np.ndim(f) > 0)
-        raise ValueError(f"the array fields of a scene must broadcast together; got shapes {shapes}") from None
+    flat, many = _strokes(**numbers), any(np.ndim(number) for number in numbers.values())
+    return _outcome(flat if many else {name: values[0].item() for name, values in flat.items()})
 
 
 def _strokes(
-    m: Any, m_e: Any, coupling: Any, M: Any, nu: Any, R: Any, e: Any, mu: Any, U: Any, offset: Any
+    *,
+    mass: Any,
+    end_mass: Any,
+    coupling: Any,
+    ball_mass: Any,
+    inertia: Any,
+    radius: Any,
+    restitution: Any,
+    friction: Any,
+    speed: Any,
+    offset: Any,
 ) -> dict[str, Array]:
-    """One block of strokes: flat arrays by name."""
+    """Flat arrays by name."""
+    m, m_e, M, nu, R, U = mass, end_mass, ball_mass, inertia, radius, speed
     offset = np.atleast_1d(offset)
     side, distance = np.sign(offset), np.abs(offset)
-    cue = SimpleNamespace(mass=m, end_mass=m_e, coupling=np.where(side == 0, 0.0, coupling))
-    B = inverse_mass(cue, SimpleNamespace(mass=M, inertia=nu), distance)  # type: ignore[arg-type]
+    coupling = np.where(side == 0, 0.0, coupling)
+    B = inverse_mass(distance, mass=m, end_mass=m_e, coupling=coupling, ball_mass=M, inertia=nu)
     s, c = sine_cosine(distance)
-    course = _course(B, -s, -c, mu=mu, e=e)  # at unit speed
+    course = _course(B, -s, -c, mu=friction, e=restitution)  # at unit speed
     p_t, p_n = U * course.tangential, U * course.final
     p_u = s * p_t + c * p_n
     # across the cue: (1/M + 1/m_e) p_w + p_t c/(nu M) + coupling p_u is the contact's velocity at separation
     v_w = U * (c * course.leaving_t - s * course.leaving_n)
-    p_w = (v_w - c * p_t / (nu * M) - cue.coupling * p_u) / (1 / M + 1 / m_e)
+    p_w = (v_w - c * p_t / (nu * M) - coupling * p_u) / (1 / M + 1 / m_e)
     # which rounds like m_e; c p_t - s p_n rounds like m, and is as good as mu itself while the tip slips
     p_w = np.where(np.less(m_e, m) & (course.regime < SLIPPING), p_w, c * p_t - s * p_n)
     # the cue's tip velocity after the blow in (u, w), and kinetic energies with the inverse of B_cue
-    tip_u, tip_w = U - p_u / m - cue.coupling * p_w, -cue.coupling * p_u - p_w / m_e
-    free = 1 - cue.coupling**2 * m * m_e  # m/free: the axial inertia of a cue that moves as one along its axis
-    cue_energy = (m * tip_u**2 + m_e * tip_w**2 - 2 * cue.coupling * m * m_e * tip_u * tip_w) / (2 * free)
+    tip_u, tip_w = U - p_u / m - coupling * p_w, -coupling * p_u - p_w / m_e
+    free = 1 - coupling**2 * m * m_e  # m/free: the axial inertia of a cue that moves as one along its axis
+    cue_energy = (m * tip_u**2 + m_e * tip_w**2 - 2 * coupling * m * m_e * tip_u * tip_w) / (2 * free)
     out = {
         "squirt": side * np.arctan2(-p_w, p_u) + 0.0,
         "p_t": side * p_t,
@@ -188,7 +185,7 @@ def _strokes(
         "ball_speed": np.hypot(p_t, p_n) / M,
         "spin": side * p_t / (nu * M * R),
         "cue_speed": U - p_u * free / m,
-        "regime": course.regime,
+        "regime": REGIMES[course.regime],
         "jam": course.jam,
         "slip ends": U * course.slip_end,
         "greatest compression": U * course.compressed,
@@ -207,22 +204,13 @@ EVENTS = ("slip ends", "greatest compression", "separation")
 ENERGIES = ("initial", "ball translation", "ball rotation", "cue", "tip loss", "friction loss")
 
 
-def _outcome(flat: dict[str, Any], shape: tuple[int, ...]) -> Outcome:
-    def whole(name: str) -> Any:
-        return np.reshape(flat[name], shape) if shape else float(flat[name])
-
-    regime = REGIMES[np.reshape(flat["regime"], shape)]
+def _outcome(flat: dict[str, Any]) -> Outcome:
     return Outcome(
-        squirt=whole("squirt"),
-        ball_velocity=np.stack([whole("v_t"), whole("v_n")], axis=-1),
-        ball_speed=whole("ball_speed"),
-        spin=whole("spin"),
-        cue_speed=whole("cue_speed"),
-        impulse=np.stack([whole("p_t"), whole("p_n")], axis=-1),
+        **{name: flat[name] for name in ("squirt", "ball_speed", "spin", "cue_speed", "regime", "jam")},
+        ball_velocity=np.stack([flat["v_t"], flat["v_n"]], axis=-1),
+        impulse=np.stack([flat["p_t"], flat["p_n"]], axis=-1),
         duration=None,
-        regime=regime if shape else str(regime),
-        jam=np.reshape(flat["jam"], shape) if shape else bool(flat["jam"]),
-        phases=tuple(Event(name, whole(name)) for name in EVENTS),
-        energy={name: whole(name) for name in ENERGIES},
+        phases=tuple(Event(name, flat[name]) for name in EVENTS),
+        energy={name: flat[name] for name in ENERGIES},
         unknowns=2,
     )

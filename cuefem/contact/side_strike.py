@@ -26,7 +26,7 @@ from cuefem.effects.contact_settings import ContactTerms
 from cuefem.effects.force_law import TipLaw, loading_time
 from cuefem.quantity.fields import CONTACT_TIME, Quantity, check_fields, check_kind
 from cuefem.scene import Resolution, equal_fields
-from cuefem.tip_modes import modes_for
+from cuefem.scene.solved_scene import modes_for
 
 # Hertz's force grows with this power of the compression: F = 4/3 E* sqrt(R) d^(3/2).
 HERTZ = 1.5

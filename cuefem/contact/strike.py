@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import Any
@@ -13,10 +13,10 @@ from cuefem.beam.tip import TipModes
 from cuefem.contact.model import model_of
 from cuefem.contact.step_records import solve_contact
 from cuefem.cue import Cue
-from cuefem.quantity.fields import check_count, check_kind, shown
-from cuefem.scene import Outcome, Resolution, Scene
+from cuefem.quantity.fields import check_count, check_kind
+from cuefem.scene import Outcome, Resolution, Scene, several
+from cuefem.scene.solved_scene import strike_modes_kept, tip_modes_of, turning
 from cuefem.solid.resolution import Solid
-from cuefem.tip_modes import strike_modes_kept, tip_modes_of, turning
 
 NUMBERS = ("squirt", "ball_velocity", "ball_speed", "spin", "cue_speed", "impulse", "duration", "regime", "jam")
 
@@ -27,7 +27,7 @@ def strike(scene: Scene, at: Resolution | Solid | None = None) -> Outcome:
     Parameters
     ----------
     scene : Scene
-        What is there and which physics acts; every field is a single number.
+        What is there and which physics acts.
     at : Resolution or Solid, optional
         How finely the cue is computed: the plain sum over the modes asked for, of a beam or of a solid. By default
         modes of a beam are kept by frequency and completed, so that squirt is within 0.1 % for 95 % of default
@@ -43,7 +43,7 @@ def strike(scene: Scene, at: Resolution | Solid | None = None) -> Outcome:
     Raises
     ------
     ValueError
-        For a scene of arrays, effects that no contact honours together, or a restitution below 0.05 (0.1 beside
+        For effects that no contact honours together, or a restitution below 0.05 (0.1 beside
         `LeatherTip`); `cuefem.impulse` takes any.
     RuntimeError
         If the ball does not leave the cue.
@@ -124,14 +124,7 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None, *, threa
     ((3,), True)
     """
     check_count("batch_strike threads", threads, 1)
-    if isinstance(scenes, Scene) or not isinstance(scenes, Iterable):
-        got = "one Scene: write [scene], or cuefem.strike(scene)" if isinstance(scenes, Scene) else shown(scenes)
-        raise TypeError(f"batch_strike scenes must be a sequence of Scene; got {got}")
-    scenes = tuple(scenes)
-    for scene in scenes:
-        check_kind("batch_strike scenes", scene, Scene)
-    if not scenes:
-        raise ValueError("batch_strike takes one scene or more; got none")
+    scenes = several("batch_strike scenes", scenes)
     groups: dict[Any, list[int]] = {}
     counts: dict[tuple[Cue, float], int] = {}
     for i, scene in enumerate(scenes):

@@ -10,9 +10,9 @@ import numpy as np
 
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.effects.force_law import TooDeep
-from cuefem.quantity.fields import CONTACT_TIME, Quantity, scalar
+from cuefem.quantity.fields import CONTACT_TIME, Quantity
 from cuefem.scene import Outcome, Scene
-from cuefem.tip_modes import tip_modes_of
+from cuefem.scene.solved_scene import tip_modes_of
 
 CLOSE, NEAR = 1e-8, 1e-3  # of ln E and of the restitution: of an answer, and of the bounds in an error
 MODULI = 1e6, 2e10  # Pa, between which E is sought: softer and stiffer than any tip
@@ -69,8 +69,8 @@ def identify_tip(scene: Scene, contact_time: float, rebound: float) -> Identifie
     """
     from scipy.optimize import brentq, root
 
-    contact_time = scalar("contact_time", CONTACT_TIME.check("identify_tip contact_time", contact_time))
-    rebound = scalar("rebound", REBOUND.check("identify_tip rebound", rebound))
+    contact_time = CONTACT_TIME.check("identify_tip contact_time", contact_time)
+    rebound = REBOUND.check("identify_tip rebound", rebound)
     tip = tip_modes_of(with_tip(scene, IdentifiedTip(1e9, 0.5)))  # neither number changes the modes of the cue
     lowest, highest = map(math.log, MODULI)
 

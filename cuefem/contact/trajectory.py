@@ -22,9 +22,9 @@ from cuefem.contact.model import model_of
 from cuefem.contact.step_records import SolvedContact, solve_contact
 from cuefem.contact.strike import steps_of
 from cuefem.cue import Array
-from cuefem.quantity.fields import check_kind, scalar
+from cuefem.quantity.fields import check_kind
 from cuefem.scene import Resolution, Scene
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 
 
 @dataclass(frozen=True)
@@ -138,11 +138,11 @@ def ascending(times: ArrayLike) -> Array:
 
 
 def _read(scene: Scene, bending: Modes, tip: TipModes, *, solved: SolvedContact, times: Array) -> Motion:
-    phi, side = solved.model.phi, math.copysign(1.0, scalar("Stroke.offset", scene.stroke.offset))
+    phi, side = solved.model.phi, math.copysign(1.0, scene.stroke.offset)
     tangent, normal = np.array([math.sin(phi), math.cos(phi)]), np.array([math.cos(phi), -math.sin(phi)])
     modes, ball = _path(solved, times)
     vectors, across = _bending(bending, tip)
-    R, pressed = scalar("Ball.radius", scene.ball.radius), solved.steps["length"] > 0
+    R, pressed = scene.ball.radius, solved.steps["length"] > 0
     aside, back = scene.contact_terms.lever(phi)  # where on the cue's end the contact lies
     centre = R * normal + [-back, aside] + ball[:, :2] @ np.array([tangent, normal])
     angle = phi + np.interp(times, np.append(0.0, solved.steps["time"]), np.append(0.0, solved.steps["angle"]))

@@ -20,7 +20,7 @@ from cuefem.results.records import Record
 from cuefem.results.solved_design import SolvedDesign, off_centre
 from cuefem.results.uncertainty import model_share, ratio_error, squirt_changes
 from cuefem.scene import Scene
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 
 MM = 1e-3
 WIDER, DEEPER, SHORTER, LOWER, THINNER = 1 * MM, 25 * MM, 5 * MM, 1 * MM, 0.5 * MM

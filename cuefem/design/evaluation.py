@@ -16,7 +16,7 @@ from cuefem.quantity.display import one_line
 from cuefem.results.quantities import Result, with_heading
 from cuefem.results.solved_design import SolvedDesign, asked
 from cuefem.scene import Resolution, Scene
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 
 # A design may fail because it cannot be made, has no answer, or its numbers overflow.
 Failed = (ValueError, RuntimeError, ArithmeticError)

@@ -22,7 +22,7 @@ from cuefem.cue import Array
 from cuefem.endmass.impulse_response import STEPS, ImpulseResponse, toeplitz_solution
 from cuefem.endmass.sticking_contact import StickLimit
 from cuefem.scene import Resolution, Scene
-from cuefem.tip_modes import PLAIN_PERIODS, default_modes
+from cuefem.scene.solved_scene import PLAIN_PERIODS, default_modes
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ from cuefem.results.records import Record
 from cuefem.results.solved_design import TONES, SolvedDesign, coupled_curve, listed
 from cuefem.results.verdict import verdict_record
 from cuefem.scene import Outcome, Scene
-from cuefem.tip_modes import Solved, default_modes
+from cuefem.scene.solved_scene import Solved, default_modes
 
 LONGEST_WORK = 60.0  # s, time limit of a result; playing cues need less than a tenth
 KEPT = 12  # designs whose results are kept, to undo and compare at once

@@ -15,7 +15,7 @@ from cuefem.designer.state import FAILURES, Design, Step, one_line
 from cuefem.io.fittings import fitted
 from cuefem.parameters.parameter import PARAMETERS, varied
 from cuefem.parameters.parts import Layout, bore_mouth, deepest_bore, halves, taper_position
-from cuefem.quantity.fields import Quantity, scalar
+from cuefem.quantity.fields import Quantity
 from cuefem.quantity.units import parted, unit_of
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import GAMES, usual_scene, without_leather
@@ -218,7 +218,7 @@ def read(key: str, text: str, scene: Scene, last: str = "") -> float:
         raise ValueError(f"must be a number of at most {LONGEST_TEXT} characters")
     unit, unitless = range_of(key).unit, _UNITLESS.fullmatch(bare)
     if key == "offset" and not unitless:
-        return _within(key, Quantity("m").read(bare) / scalar("Ball.radius", scene.ball.radius), text, scene)
+        return _within(key, Quantity("m").read(bare) / scene.ball.radius, text, scene)
     if not unit:
         return _within(key, Quantity("").read(_float(bare)), text, scene)
     return _within(key, Quantity(SI.get(unit, unit)).read(whole(key, bare, last)), text, scene)

@@ -9,6 +9,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from cuefem.cue import SOFT, Array, Cue
 from cuefem.cue.materials import LEATHER_NAMES
@@ -16,7 +17,7 @@ from cuefem.effects.base import CueEffect, Effect
 from cuefem.effects.contact_settings import ContactTerms, WholeTip
 from cuefem.effects.force_law import Curves, LeatherLaw
 from cuefem.effects.on_cue import PointMass
-from cuefem.quantity.fields import DIAMETER, Number, OutOfBounds, Quantity, check_fields, check_kind, scalar
+from cuefem.quantity.fields import DIAMETER, OutOfBounds, Quantity, check_fields, check_kind
 from cuefem.solid.tip_cache import own_table, read
 from cuefem.solid.tip_table import (
     CURVATURE,
@@ -259,7 +260,7 @@ class LeatherTip(CueEffect):
         ValueError
             In one line, with the bound.
         """
-        scalar("diameter", DIAMETER.check("diameter", diameter))
+        DIAMETER.check("diameter", diameter)
         if self.dome_radius < diameter / 2:
             raise ValueError(
                 f"the dome of a leather tip on {1e3 * diameter:.4g} mm must have a radius of {500 * diameter:.4g} mm "
@@ -324,10 +325,10 @@ class LeatherTip(CueEffect):
             Displacement (u, w) of the contact per unit rotation of the ferrule's end section, m: along the cue and
             across it. On the dome (-r sin(phi), -(h - r (1 - cos(phi)))), on the rim (-D/2, -(h - depth of the dome)).
         """
-        off = min(self._off_axis(scalar("phi", phi)), diameter / 2)
+        off = min(self._off_axis(phi), diameter / 2)
         return -math.copysign(off, phi), -(self.height - self._drop(off))
 
-    def compliance(self, diameter: float, offset: float, patch: Number) -> Array:
+    def compliance(self, diameter: float, offset: float, patch: ArrayLike) -> Array:
         """The mean displacement of a patch under a load in proportion to Hertz's pressure, weighted with the load.
 
         Parameters
@@ -353,7 +354,7 @@ class LeatherTip(CueEffect):
         (b/R > 0.75) the patch is kept where the table ends, short of the rim, and only normal and tangent turn further.
         """
         self.check_diameter(diameter)
-        radii = np.asarray(Quantity("m", f"(0, {diameter / 2}]").check("patch", patch)) / diameter
+        radii = np.asarray(Quantity("m", f"(0, {diameter / 2}]").check_all("patch", patch)) / diameter
         matrices = self._compliance(diameter, offset, radii.ravel()) / (self.E * diameter)
         return np.asarray(matrices.reshape(*radii.shape, 2, 2))
 
@@ -379,7 +380,7 @@ class LeatherTip(CueEffect):
         The ball is rigid, and the pressure acts along the axis, in between the normal of the dome and that of the
         ball. It vanishes at the edge of the patch.
         """
-        scalar("ball_radius", Quantity("m", "(0, inf)").check("ball_radius", ball_radius))
+        Quantity("m", "(0, inf)").check("ball_radius", ball_radius)
         radius = np.linspace(0.0, HEAD_ON_RADIUS[1], 91)[1:]
         scaled = head_on(self._table(diameter), radius, ball_radius / diameter)
         force, depth = np.vstack([np.zeros(2), scaled * [self.E * diameter**2, diameter]]).T
@@ -467,7 +468,7 @@ class LeatherTip(CueEffect):
     def _place(self, diameter: float, offset: float) -> tuple[float, float]:
         """Distance of the patch's centre from the axis over the tip's radius, and by how much the contact's angle
         exceeds that of the dome there, rad."""
-        scalar("offset", Quantity("", "(-1, 1)").check("offset", offset))
+        Quantity("", "(-1, 1)").check("offset", offset)
         phi, curvature = math.asin(abs(offset)), diameter / self.dome_radius
         place = min(2 * self._off_axis(phi) / diameter, farthest(min(curvature, CURVATURE[1])))
         return place, phi - math.asin(min(curvature * place / 2, 1.0))

@@ -9,7 +9,7 @@ h(t) = sum phi_k^2 cos(omega_k t), free or damped (`cuefem.endmass.impulse_respo
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -17,18 +17,16 @@ import numpy as np
 
 from cuefem.beam.tip import TipModes
 from cuefem.contact.outcome import slides_away
-from cuefem.contact.rigid_impact import impact
+from cuefem.contact.rigid_impact import impact, numbers_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, LumpedCue
 from cuefem.effects import Effect
 from cuefem.endmass.impulse_response import ImpulseResponse
 from cuefem.endmass.sticking_contact import StickLimit
-from cuefem.quantity.fields import check_kind, scalar
+from cuefem.quantity.fields import check_kind
 from cuefem.scene import Outcome, Resolution, Scene, Stroke
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 
-# Offsets whose end masses are worked at a time, so that the arrays of modes by offsets stay small.
-BLOCK = 1024
 # The squirts of this many lumped cues are computed in one call, which costs as much as two single ones; a root is then
 # sought between two neighbours in the same way, ZOOMS times in all.
 MANY, ZOOMS = 500, 6
@@ -36,7 +34,7 @@ NEAR = 1e-5  # b/R that stands for the limit of small offsets
 FLAT = 1e-12  # rad: squirts that differ by less are the same
 
 
-def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -> Any:
+def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -> float:
     """Effective end mass m_e of a scene's cue: the inertia that the ball feels across the cue at the tip.
 
     Parameters
@@ -44,7 +42,7 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
     scene
         The cue, and what the pulse depends on. The pulse lasts the scene's head-on contact time. "stick" and "offset"
         also depend on the ball's mass and inertia factor and on the tip's restitution; "offset" and "squirt" on the
-        scene's offset; "squirt" on speed and friction too. For "offset" the offset and the speed may be arrays.
+        scene's offset; "squirt" on speed and friction too.
     drive
         Which definition, by its name in `cuefem.endmass.definitions.DEFINITIONS`:
 
@@ -63,7 +61,7 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
 
     Returns
     -------
-    float or ndarray
+    float
         kg. A `LumpedCue` answers its own ``end_mass``, whatever the definition.
 
     Raises
@@ -129,29 +127,43 @@ def stick(tip: TipModes, scene: Scene) -> float:
     return float(limit.end_mass(limit.impulse(small_offset_slope(tip, scene))))
 
 
-def stick_at_offset(tip: TipModes, scene: Scene) -> Any:
+def stick_at_offset(tip: TipModes, scene: Scene) -> float:
     """End mass of a tip that sticks from the first touch, at the scene's own offset, kg (handbook: Effective end mass).
 
     For a bare cue it is that of `stick` with the contact at this offset (`limit_at`), exact to first order in the
     lightness of the cue's end. With effects at the tip or axial waves it is the lumped end mass with the squirt of a
     coupled strike that never slips. The two ways differ in second order, by about 1 % at b/R 0.3. Both sides of the
-    ball are alike, and head on it is `stick`. Offsets and speeds may be arrays; a bare cue's end mass does not depend
-    on the speed. ValueError if no end mass has that squirt. Cost: for a bare cue, one linear solve for all
-    offsets; else a strike for each.
+    ball are alike, and head on it is `stick`. ValueError if no end mass has that squirt.
     """
-    b = np.abs(scene.stroke.offset)
+    b = abs(scene.stroke.offset)
     if _couples(tip, scene):
+        here = replace(scene, stroke=Stroke(scene.stroke.speed, b))
+        return _with_squirt(sticking_squirt(tip, here), _gripping(here), "offset") if b else stick(tip, here)
+    mass = float(_uncoupled(tip, scene, np.array([b]))[0])
+    if math.isnan(mass):
+        raise ValueError(f"end_mass drive 'offset': a tip that sticks has no end mass's squirt; got offset {b:g}")
+    return mass
 
-        def stuck(offset: float, speed: float) -> float:
-            here = replace(scene, stroke=Stroke(speed, offset))
-            return _with_squirt(sticking_squirt(tip, here), _gripping(here), "offset") if offset else stick(tip, here)
 
-        masses = np.vectorize(stuck, otypes=[float])(b, scene.stroke.speed)
-    else:
-        held, flat = _held(tip, StickLimit.of(scene)), np.ravel(b)
-        parts = [_end_mass_at(held, scene, flat[i : i + BLOCK]) for i in range(0, len(flat), BLOCK)]
-        masses = np.concatenate(parts).reshape(np.shape(b))
-    return masses if np.ndim(masses) else float(masses)
+def stick_at_offsets(tip: TipModes, scene: Scene, offsets: Sequence[float]) -> list[float]:
+    """`stick_at_offset` of each offset; nan where no end mass has that squirt."""
+    if not _couples(tip, scene):  # one linear solve for all
+        return [float(mass) for mass in _uncoupled(tip, scene, np.abs(offsets))]
+
+    def mass(offset: float) -> float:
+        try:
+            return stick_at_offset(tip, replace(scene, stroke=Stroke(scene.stroke.speed, offset)))
+        except ValueError:
+            return math.nan
+
+    return [mass(offset) for offset in offsets]
+
+
+def _uncoupled(tip: TipModes, scene: Scene, offsets: Array) -> Array:
+    limit = limit_at(scene, offsets)
+    J = limit.transverse_impulse(_held(tip, StickLimit.of(scene)), scene.contact_time)
+    rest = np.divide(limit.K - 1, J, out=np.full(len(J), np.nan), where=J > 0) - limit.c
+    return np.divide(1.0, rest, out=np.full(len(J), np.nan), where=rest > 0)
 
 
 def limit_at(scene: Scene, offset: Any) -> StickLimit:
@@ -163,15 +175,6 @@ def limit_at(scene: Scene, offset: Any) -> StickLimit:
     limit, q = StickLimit.of(scene), scene.ball.mass / scene.axial_mass
     share = (1 + q) / (1 + q + offset**2 / scene.ball.inertia)
     return replace(limit, K=limit.K * share, T=limit.T * np.sqrt((1 - offset**2) * share))
-
-
-def _end_mass_at(held: Array, scene: Scene, offset: Any) -> Any:
-    limit = limit_at(scene, offset)
-    try:
-        return limit.end_mass(limit.transverse_impulse(held, scene.contact_time))
-    except ValueError:
-        where = f"offset {offset[0]:g}" if len(offset) == 1 else f"offsets from {offset.min():g} to {offset.max():g}"
-        raise ValueError(f"end_mass drive 'offset': a tip that sticks has no end mass's squirt; got {where}") from None
 
 
 def _held(tip: TipModes, limit: StickLimit) -> Array:
@@ -194,7 +197,7 @@ def small_offset_slope(tip: TipModes, scene: Scene) -> float:
 
 def _aside(scene: Scene) -> Scene:
     """The scene's stroke so near to the centre that squirt is in proportion to the offset."""
-    return replace(scene, stroke=Stroke(scalar("Stroke.speed", scene.stroke.speed), NEAR))
+    return replace(scene, stroke=Stroke(scene.stroke.speed, NEAR))
 
 
 def sticking_squirt(tip: TipModes, scene: Scene) -> float:
@@ -239,11 +242,10 @@ def equivalent_end_mass(outcome: Outcome, scene: Scene) -> float:
 
 def _with_squirt(squirt: float, scene: Scene, drive: str) -> float:
     """The lumped end mass, kg, whose impulse-solver squirt is ``squirt``, rad, away from the side struck."""
-    side = np.sign(scene.stroke.offset)
+    side, numbers = np.sign(scene.stroke.offset), numbers_of(scene, LumpedCue(scene.axial_mass, scene.axial_mass))
 
     def excess(log_mass: Any) -> Any:
-        lumped = LumpedCue(scene.axial_mass, np.exp(log_mass))
-        return side * impact(replace(scene, cue=lumped, effects=())).squirt - squirt
+        return side * impact(numbers | {"end_mass": np.exp(log_mass)}).squirt - squirt
 
     log_masses = np.linspace(math.log(1e-9), math.log(1e3), MANY)
     excesses = excess(log_masses)

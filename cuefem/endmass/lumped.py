@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from cuefem.beam.tip import TipModes
-from cuefem.contact.rigid_impact import impact
+from cuefem.contact.rigid_impact import impact, numbers_of
 from cuefem.cue import Array, LumpedCue
 from cuefem.endmass.definitions import MANY, _gripping, end_mass, stick_at_offset, sticking_squirt, zoomed_root
-from cuefem.quantity.fields import check_kind, scalar
-from cuefem.scene import Outcome, Resolution, Scene
-from cuefem.tip_modes import Solved
+from cuefem.quantity.fields import check_kind
+from cuefem.scene import Outcome, Resolution, Scene, several
+from cuefem.scene.solved_scene import Solved
 
 
 def lump(scene: Scene, at: Resolution | None = None) -> LumpedCue:
@@ -56,7 +57,7 @@ def lump_modes(scene: Scene, tip: TipModes) -> LumpedCue:
     if scene.lumped is not None:
         return scene.lumped
     cue = LumpedCue(scene.axial_mass, stick_at_offset(tip, scene.bare))
-    if not scene.at_tip or scalar("Stroke.offset", scene.stroke.offset) == 0:
+    if not scene.at_tip or scene.stroke.offset == 0:
         return cue
     return replace(cue, coupling=_coupling(cue, scene, sticking_squirt(tip, scene)))
 
@@ -64,10 +65,10 @@ def lump_modes(scene: Scene, tip: TipModes) -> LumpedCue:
 def _coupling(cue: LumpedCue, scene: Scene, squirt: float) -> float:
     """The coupling, 1/kg, with which the squirt of a lumped cue whose tip never slips is ``squirt``, rad."""
     most, side = (1 - 1e-9) / math.sqrt(cue.mass * cue.end_mass), np.sign(scene.stroke.offset)
+    numbers = numbers_of(_gripping(scene), cue)
 
     def excess(part: Array) -> Array:
-        coupled = replace(cue, coupling=part * most)
-        return np.asarray(side * impact(replace(_gripping(scene), cue=coupled, effects=())).squirt - squirt)
+        return np.asarray(side * impact(numbers | {"coupling": part * most}).squirt - squirt)
 
     parts = np.linspace(-1.0, 1.0, MANY)
     excesses = excess(parts)
@@ -76,20 +77,20 @@ def _coupling(cue: LumpedCue, scene: Scene, squirt: float) -> float:
     return most * zoomed_root(excess, parts)
 
 
-def impulse(scene: Scene) -> Outcome:
+def impulse(scene: Scene | Sequence[Scene]) -> Outcome:
     """Outcome of a stroke from the general impulse solver: no time and no vibration, exact in every regime.
 
     Parameters
     ----------
     scene
-        Cue, ball, tip and stroke, whose fields may be arrays that broadcast: a million strokes take about a second. A
-        finite-element cue is first replaced, at every offset anew, by its axial mass and its end mass "offset" (see
-        `cuefem.end_mass`).
+        Cue, ball, tip and stroke; or a sequence of such scenes. A finite-element cue is first replaced by its axial
+        mass and its end mass "offset" (see `cuefem.end_mass`).
 
     Returns
     -------
     Outcome
-        With the arrays' broadcast shape. See `cuefem.contact.rigid_impact.impact` for phases and energies.
+        Of a sequence of scenes every field is an array, (scenes,), vectors (scenes, 2). See
+        `cuefem.contact.rigid_impact.impact` for phases and energies.
 
     Raises
     ------
@@ -110,10 +111,14 @@ def impulse(scene: Scene) -> Outcome:
     >>> outcome.regime, round(float(outcome.squirt), 4)  # rad
     ('stick', 0.0127)
     """
-    check_kind("impulse scene", scene, Scene)
+    if isinstance(scene, Scene):
+        return impact(_lumped_numbers(scene))
+    each = [_lumped_numbers(one) for one in several("impulse scene", scene)]
+    return impact({name: np.array([numbers[name] for numbers in each]) for name in each[0]})
+
+
+def _lumped_numbers(scene: Scene) -> dict[str, float]:
     if scene.effects and scene.lumped is not None:
         names = ", ".join(type(effect).__name__ for effect in scene.effects)
         raise ValueError(f"impulse takes a LumpedCue without effects, which need time (see strike); got {names}")
-    if scene.lumped is None:
-        scene = replace(scene, cue=LumpedCue(scene.axial_mass, end_mass(scene, "offset")), effects=())
-    return impact(scene)
+    return numbers_of(scene, scene.lumped or LumpedCue(scene.axial_mass, end_mass(scene, "offset")))

@@ -9,7 +9,6 @@ import numpy as np
 
 from cuefem.cue import Array
 from cuefem.endmass.impulse_response import means
-from cuefem.quantity.fields import scalar
 from cuefem.scene import Scene
 
 
@@ -31,8 +30,8 @@ class StickLimit:
     @classmethod
     def of(cls, scene: Scene) -> StickLimit:
         """The limit of a scene."""
-        M, nu = scalar("Ball.mass", scene.ball.mass), scalar("Ball.inertia", scene.ball.inertia)
-        e, axial_mass = scalar("Tip.restitution", scene.tip.restitution), scene.axial_mass
+        M, nu = scene.ball.mass, scene.ball.inertia
+        e, axial_mass = scene.tip.restitution, scene.axial_mass
         c = (1 + 1 / nu) / M
         head_on_mass = 1 / (1 / M + 1 / axial_mass)
         return cls(c, (1 + e) * head_on_mass * (c + 1 / axial_mass), e, scene.contact_time, head_on_mass)

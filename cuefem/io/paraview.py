@@ -20,7 +20,6 @@ from cuefem.beam.modes import Modes, modes
 from cuefem.contact.trajectory import Motion, motion
 from cuefem.cue import Array, Cue
 from cuefem.io import check_new, write_whole_folder
-from cuefem.quantity.fields import scalar
 from cuefem.scene import Scene
 
 AROUND = 24  # points of a ring
@@ -168,7 +167,7 @@ def save_strike(folder: Path, scene: Scene, motion: Motion, *, scale: float = 1.
 
     scale: what bending is drawn with; the displacement beside the points is the true one.
     """
-    shaft, ball = shaft_surface(scene.shaft), ball_surface(scalar("Ball.radius", scene.ball.radius))
+    shaft, ball = shaft_surface(scene.shaft), ball_surface(scene.ball.radius)
     w, theta = motion.deflection(shaft.x)
     centres, forces = (np.pad(plane, [(0, 0), (0, 1)]) for plane in (motion.centre, motion.force))
     (folder / "strike").mkdir()

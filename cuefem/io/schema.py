@@ -153,8 +153,6 @@ def table(instance: Any) -> dict[str, Any]:
 def _entry(name: str, value: Any, hint: Any) -> Any:
     mark = mark_of(hint)
     if mark is not None:
-        if not isinstance(value, float):
-            raise ValueError(f"{name} must be one number to stand in a file; got an array of {len(value)}")
         return mark.written(value)
     if isinstance(value, Effect):
         return {"type": type(value).__name__, **table(value)}

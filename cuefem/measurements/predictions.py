@@ -15,7 +15,7 @@ from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, Cue
 from cuefem.effects import Effect, PointMass, Support
 from cuefem.scene import Outcome, Scene, Stroke
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 
 TONES = 8  # natural frequencies that are solved together
 STATIC = 8  # modes that the mesh of a static load resolves: error 1e-8

@@ -27,9 +27,6 @@ from cuefem.quantity.units import (
     units_like,
 )
 
-# Fields that `impulse` broadcasts may hold an array; all others hold one number.
-Number = float | NDArray[np.float64]
-
 
 @dataclasses.dataclass(frozen=True)
 class Quantity:
@@ -145,28 +142,27 @@ class Quantity:
         rounded = float(f"{value:.13g}")
         return rounded if self.holds(rounded) else value
 
-    def check(self, name: str, value: Any) -> Any:
-        """``value`` as a float or a read-only float array; the errors name field, bound, unit and value."""
-        if isinstance(value, bool | str) or value is None:
-            raise TypeError(f"{name} must be a number in {self.bounds}; got {shown(value)}")
-        if isinstance(value, int | float | np.integer | np.floating):
-            if not self.holds(float(value)):
-                raise ValueError(f"{name} must be in {self.bounds}; got {value}")
-            return float(value)
-        return self._check_array(name, value)
-
-    def _check_array(self, name: str, value: Any) -> Any:
+    def check(self, name: str, value: Any) -> float:
+        """``value`` as a float; the errors name field, bound, unit and value."""
         try:
-            array = np.array(value, dtype=float)
+            if isinstance(value, bool | str) or np.ndim(value):
+                raise TypeError
+            number = float(value)
         except (TypeError, ValueError):
             raise TypeError(f"{name} must be a number in {self.bounds}; got {shown(value)}") from None
-        inside = self.holds(array)
-        if not np.all(inside):
-            where, (got,) = first_failure(inside, array)
-            raise ValueError(f"{name} must be in {self.bounds}; got {got}{where}")
-        if array.ndim == 0:
-            return float(array)
-        array.flags.writeable = False
+        if not self.holds(number):
+            raise ValueError(f"{name} must be in {self.bounds}; got {value}")
+        return number
+
+    def check_all(self, name: str, values: Any) -> NDArray[np.float64]:
+        """``values`` as a float array, likewise."""
+        try:
+            array = np.array(values, dtype=float)
+        except (TypeError, ValueError):
+            raise TypeError(f"{name} must be numbers in {self.bounds}; got {shown(values)}") from None
+        if not np.all(inside := self.holds(array)):
+            where, (value,) = first_failure(inside, array)
+            raise ValueError(f"{name} must be in {self.bounds}; got {value}{where}")
         return array
 
 
@@ -208,8 +204,8 @@ MOST_UNKNOWNS = 50_000  # of a beam: a cue of 30 segments takes 10,000 for the m
 
 
 @functools.cache
-def quantities(kind: type) -> tuple[tuple[str, Quantity, bool, bool], ...]:
-    """The dimensioned fields of a dataclass: (name, quantity, whether None is allowed, whether an array is)."""
+def quantities(kind: type) -> tuple[tuple[str, Quantity, bool], ...]:
+    """The dimensioned fields of a dataclass: (name, quantity, whether None is allowed)."""
     hints = typing.get_type_hints(kind, include_extras=True)
     listed = []
     for field in dataclasses.fields(kind):
@@ -217,36 +213,22 @@ def quantities(kind: type) -> tuple[tuple[str, Quantity, bool, bool], ...]:
         if typing.get_origin(hint) is Annotated:
             for mark in hint.__metadata__:
                 if isinstance(mark, Quantity):
-                    kinds = typing.get_args(hint.__origin__)
-                    arrays = any(typing.get_origin(k) is np.ndarray for k in kinds)
-                    listed.append((field.name, mark, type(None) in kinds, arrays))
+                    listed.append((field.name, mark, type(None) in typing.get_args(hint.__origin__)))
     return tuple(listed)
 
 
 def check_fields(instance: Any) -> None:
-    """Check every dimensioned field of a frozen dataclass; store it as float or read-only array (in __post_init__)."""
+    """Check every dimensioned field of a frozen dataclass; store it as float (in __post_init__)."""
     kind = type(instance)
-    for name, quantity, optional, arrays in quantities(kind):  # type: ignore[arg-type]
+    for name, quantity, optional in quantities(kind):  # type: ignore[arg-type]
         value = getattr(instance, name)
         if value is None and optional:
             continue
         checked = quantity.check(f"{kind.__name__}.{name}", value)
-        if not arrays:
-            scalar(f"{kind.__name__}.{name}", checked)
         if quantity.usual and isinstance(checked, float):
             remark(slip(f"{kind.__name__}.{name}", checked, quantity.unit, quantity.usual))
         if checked is not value:
             object.__setattr__(instance, name, checked)
-
-
-def scalar(name: str, value: Number) -> float:
-    """``value`` as a float where one number is needed; ValueError for an array."""
-    if isinstance(value, np.ndarray):
-        problem = f"{name} must be one number; got an array of shape {value.shape}"
-        raise ValueError(
-            problem + ("; impulse alone takes arrays" if name.startswith(("Stroke.", "Ball.", "Tip.")) else "")
-        )
-    return value
 
 
 def check_kind(name: str, value: Any, kind: type | tuple[type, ...]) -> None:

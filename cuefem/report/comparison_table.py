@@ -16,7 +16,7 @@ from cuefem.results.quantities import NONE, RESULTS, with_unit
 from cuefem.results.records import Record, Sheet
 from cuefem.results.solved_design import coupled_curve
 from cuefem.scene import Scene
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 
 CURVE_OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 13))  # b/R
 STYLES = ("c1", "c2", "c3", "c4", "c5")

@@ -13,7 +13,7 @@ from cuefem.results.convergence import levels
 from cuefem.results.quantities import NONE, degrees, grams
 from cuefem.results.records import Record, Sheet
 from cuefem.scene import Outcome, Resolution, Scene
-from cuefem.tip_modes import ended_tip_modes
+from cuefem.scene.solved_scene import ended_tip_modes
 
 DEFAULT_RTOL = 1e-2
 # Strikes are this many times as exact as the tolerance.

@@ -8,7 +8,7 @@ from cuefem.results.closed_forms import cue_end_mass
 from cuefem.results.quantities import with_unit
 from cuefem.results.records import Record, Sheet, sheet
 from cuefem.scene import Scene
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 
 SQUIRT_END_MASS = "squirt-equivalent end mass"  # the one that pages and tables for people show
 

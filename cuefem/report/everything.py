@@ -21,7 +21,7 @@ from cuefem.results.records import Record, Sheet, value_rows, values_sheet
 from cuefem.results.solved_design import OFFSETS, SolvedDesign, listed
 from cuefem.results.verdict import verdict_record
 from cuefem.scene import Outcome, Scene
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 
 
 def report_record(

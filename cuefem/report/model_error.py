@@ -20,9 +20,9 @@ from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.results.quantities import TRADE, scaled
 from cuefem.results.records import Record, Sheet, sheet
 from cuefem.scene import Scene
+from cuefem.scene.solved_scene import mass_on_face
 from cuefem.solid.meridian_mesh import Fineness, blocks, check_size
 from cuefem.solid.shaft import AXIAL, Body
-from cuefem.tip_modes import mass_on_face
 
 # Flexible modes on both sides; tones that are told.
 MODES, TONES = 40, 6

@@ -11,7 +11,6 @@ from cuefem.contact.strike import strike_modes
 from cuefem.cue.materials import material_name
 from cuefem.design.design_changes import design_changes
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.quantity.fields import scalar
 from cuefem.report.advice_table import advice_sheet
 from cuefem.report.charts import Chart
 from cuefem.report.comparison_table import comparison_sheet
@@ -42,7 +41,7 @@ from cuefem.results.quantities import NONE, RESULTS, grams, with_unit, written
 from cuefem.results.records import Record, Sheet, value_rows, values_sheet
 from cuefem.results.solved_design import coupled_curve
 from cuefem.scene import Outcome, Scene
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 
 PAGE_OFFSETS = tuple(round(0.03 * i, 2) for i in range(1, 21))  # b/R of the curves
 # What the model's error rests on; its size is in `cuefem.results.uncertainty`.
@@ -185,7 +184,7 @@ def _segments(scene: Scene) -> Sheet:
 
 def _by_offset(curves: Mapping[str, Record], scene: Scene, grips: Sequence[str] = ()) -> tuple[Chart, Chart]:
     lines = [(name, STYLES.get(name, f"c{i}"), curve) for i, (name, curve) in enumerate(curves.items(), 1)]
-    return offset_charts(lines, PAGE_OFFSETS, scalar("Stroke.offset", scene.stroke.offset), height=300, grips=grips)
+    return offset_charts(lines, PAGE_OFFSETS, scene.stroke.offset, height=300, grips=grips)
 
 
 def _meanings(scene: Scene, outcome: Outcome) -> list[str]:

@@ -15,7 +15,7 @@ from cuefem.results.closed_forms import alciatore_a31, alciatore_a31_mass_ratio
 from cuefem.results.quantities import RESULTS, degrees, units_of, with_unit
 from cuefem.results.records import Record, Sheet, sheet
 from cuefem.scene import Scene
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 
 VERSION = "0.6.0"  # the release whose CueSpecs these are; .ci/pooltool installs it
 INERTIA = 0.4  # its 5/2

@@ -16,7 +16,7 @@ from cuefem.results.quantities import TRADE, written
 from cuefem.results.records import Record, Sheet
 from cuefem.results.solved_design import OFFSETS, at_offset, coupled_curve
 from cuefem.scene import Scene
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 
 PAPER_CUE_END_MASS = 0.012  # kg, [Kim]'s m_c of a real cue; the tip feels a quarter of it
 

@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
-
-import numpy as np
 
 from cuefem.beam.tip import TipModes
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import LumpedCue
-from cuefem.endmass.definitions import stick_at_offset
+from cuefem.endmass.definitions import stick_at_offsets
 from cuefem.endmass.lumped import impulse, lump_modes
-from cuefem.quantity.fields import scalar
 from cuefem.report.scene_words import assumptions, tip_effect_notes
 from cuefem.results.closed_forms import alciatore_a31, pivot_length
 from cuefem.results.quantities import DEFINITION_OF_MISCUE, GRIPS, RESULTS, written
 from cuefem.results.records import Record, Sheet
 from cuefem.results.solved_design import at_offset
 from cuefem.scene import Outcome, Scene
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 
 
 def lumped_cues(
@@ -45,13 +43,8 @@ def two_part_cues(scene: Scene, offsets: Sequence[float], tip: TipModes) -> list
     """
     if scene.lumped is not None:
         return [replace(scene.lumped, coupling=0.0)] * len(offsets)
-    try:
-        masses = stick_at_offset(tip, at_offset(scene.bare, np.array(offsets)))
-    except ValueError:
-        if len(offsets) == 1:
-            return [None]
-        return [cue for offset in offsets for cue in two_part_cues(scene, [offset], tip)]
-    return [LumpedCue(scene.axial_mass, felt) for felt in masses.tolist()]
+    masses = stick_at_offsets(tip, scene.bare, offsets)
+    return [None if math.isnan(felt) else LumpedCue(scene.axial_mass, felt) for felt in masses]
 
 
 def coupling_slope(scene: Scene, tip: TipModes) -> float:
@@ -59,12 +52,12 @@ def coupling_slope(scene: Scene, tip: TipModes) -> float:
 
     It is found at the scene's own offset, or at 0.1 for a head-on stroke.
     """
-    offset = scalar("Stroke.offset", scene.stroke.offset) or 0.1
+    offset = scene.stroke.offset or 0.1
     try:
         cue = lump_modes(at_offset(scene, offset), tip)
     except ValueError:  # an offset, or an effect, beyond any lumped cue's coupling
         return 0.0
-    return scalar("LumpedCue.coupling", cue.coupling) / abs(offset)
+    return cue.coupling / abs(offset)
 
 
 def _with_coupling(cue: LumpedCue | None, coupling: float) -> LumpedCue | None:
@@ -102,7 +95,7 @@ def strike_record(scene: Scene, outcome: Outcome | None = None, *, solved: Solve
     if it is known already; solved: the scene's modes, if they are.
     """
     solved = solved or Solved(scene)
-    offset = scalar("Stroke.offset", scene.stroke.offset)
+    offset = scene.stroke.offset
     cues, slope = lumped_cues(scene, [offset], solved.tip_stuck)
     models = {"coupled": outcome_record(outcome or strike_modes(scene, solved.tip), scene)}
     models |= {name: outcome_record(lumped_strike(scene, cue), scene) for name, (cue,) in cues.items() if cue}

@@ -12,7 +12,7 @@ from cuefem.results.records import Record, Sheet
 from cuefem.results.uncertainty import SHAFTS
 from cuefem.results.verdict import verdict_record
 from cuefem.scene import Scene
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 
 
 def verdict(scene: Scene) -> Record:

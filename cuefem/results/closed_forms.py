@@ -26,8 +26,8 @@ _QUANTITIES = {
 
 
 def _checked(**values: Any) -> tuple[Any, ...]:
-    """The values as floats or float arrays, in the same order; ValueError names field, bound, unit and value."""
-    return tuple(_QUANTITIES[name].check(name, value) for name, value in values.items())
+    """The values as floats or float arrays, in the order given; ValueError names field, bound, unit and value."""
+    return tuple(_QUANTITIES[name].check_all(name, value) for name, value in values.items())
 
 
 def cue_end_mass(end_mass: Any, nu_c: Any = 1 / 3) -> Any:

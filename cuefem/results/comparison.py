@@ -15,7 +15,7 @@ from cuefem.results.records import Record
 from cuefem.results.solved_design import SolvedDesign, asked, off_centre
 from cuefem.results.uncertainty import FLOOR, changes_by_input, model_share, ratio_error
 from cuefem.scene import Scene
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 
 # The compared results, by their names in the registry.
 OF_SQUIRT = ("squirt", "end_mass_squirt", "pivot_length")  # derived from squirt: they include the model error

@@ -20,7 +20,7 @@ from cuefem.cue import Array
 from cuefem.endmass.definitions import definition_of, end_mass
 from cuefem.quantity.fields import Quantity, check_kind
 from cuefem.scene import MOST_STEPS, Outcome, Resolution, Scene
-from cuefem.tip_modes import MOST, ended_tip_modes
+from cuefem.scene.solved_scene import MOST, ended_tip_modes
 
 FIRST, FIRST_STEPS = 12, 100  # modes and steps of the first level
 JUDGED_BY = 2  # previous levels

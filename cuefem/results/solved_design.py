@@ -18,11 +18,11 @@ from cuefem.contact.strike import steps_of, strike_modes
 from cuefem.cue import Array
 from cuefem.effects import Support
 from cuefem.endmass.definitions import DEFINITIONS, Definition, small_offset_slope
-from cuefem.results.closed_forms import pivot_length
+from cuefem.results.closed_forms import pivot_at
 from cuefem.results.quantities import RESULTS, Result
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.default_scene import GAMES
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 
 TONES = 5  # bending modes that are solved for, at least
 USUAL_OFFSET = GAMES["pool"].offset  # b/R
@@ -53,7 +53,7 @@ def coupled_curve(scene: Scene, offsets: Sequence[float], tip: TipModes) -> dict
     squirt = np.array([outcome.squirt for outcome in struck])
     return {
         "squirt": squirt,
-        "pivot_length": pivot_length(at_offset(scene, np.array(offsets)), squirt),
+        "pivot_length": pivot_at(scene, np.array(offsets), squirt) if all(offsets) else None,
         "regime": [outcome.regime for outcome in struck],
         "grip": [grip_of(outcome) for outcome in struck],
     }

@@ -12,7 +12,7 @@ from cuefem.contact.strike import strike_modes
 from cuefem.effects import PointMass
 from cuefem.parameters.parameter import PARAMETERS, replaced
 from cuefem.scene import Scene
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 
 # Model error, relative: the scatter of published squirt less the uncertainty of those cues' inputs, which were not
 # measured either. Few series determine it only to an interval; these are its upper ends, for a leather tip and for a

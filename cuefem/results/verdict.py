@@ -23,7 +23,7 @@ from cuefem.results.uncertainty import (
 )
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.default_scene import without_leather
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 
 
 def verdict_record(scene: Scene, outcome: Outcome, ready: Mapping[str, Cue], *, solved: Solved | None = None) -> Record:

@@ -10,6 +10,7 @@ from cuefem.scene.scene import (
     Stroke,
     Tip,
     equal_fields,
+    several,
 )
 
 __all__ = [
@@ -22,4 +23,5 @@ __all__ = [
     "Stroke",
     "Tip",
     "equal_fields",
+    "several",
 ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, lru_cache
 from itertools import chain
@@ -17,12 +18,11 @@ from cuefem.effects.force_law import LeatherLaw, TooDeep
 from cuefem.quantity.display import said
 from cuefem.quantity.fields import (
     CONTACT_TIME,
-    Number,
     Quantity,
     check_count,
     check_fields,
     check_kind,
-    scalar,
+    shown,
 )
 from cuefem.quantity.slips import remark, remark_light
 
@@ -48,19 +48,15 @@ class Ball:
     ValueError
         If a number is out of bounds.
 
-    Notes
-    -----
-    Fields may be arrays, which broadcast, for `cuefem.impulse`.
-
     Examples
     --------
     >>> import cuefem as cf
     >>> pool = cf.Ball(mass=0.170, radius=0.028575)
     """
 
-    mass: Annotated[Number, Quantity("kg", "(0, inf)").usually(0.08, 0.4)] = 0.210
-    radius: Annotated[Number, Quantity("m", "(0, inf)").usually(0.02, 0.04)] = 0.03075
-    inertia: Annotated[Number, Quantity("", "(0, 1]")] = 0.4
+    mass: Annotated[float, Quantity("kg", "(0, inf)").usually(0.08, 0.4)] = 0.210
+    radius: Annotated[float, Quantity("m", "(0, inf)").usually(0.02, 0.04)] = 0.03075
+    inertia: Annotated[float, Quantity("", "(0, 1]")] = 0.4
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -96,8 +92,8 @@ class Tip:
     >>> tip = cf.Tip(restitution=0.75, friction=0.6, contact_time=1e-3)
     """
 
-    restitution: Annotated[Number, Quantity("", "[0, 1]")] = 0.75
-    friction: Annotated[Number, Quantity("", "[0, inf]")] = 0.7
+    restitution: Annotated[float, Quantity("", "[0, 1]")] = 0.75
+    friction: Annotated[float, Quantity("", "[0, inf]")] = 0.7
     contact_time: Annotated[float | None, CONTACT_TIME.usually(2e-4, 0.01)] = None
     stiffness: Annotated[float | None, Quantity("N/m", "(0, inf)")] = None
 
@@ -130,20 +126,20 @@ class Stroke:
     --------
     >>> import cuefem as cf
     >>> stroke = cf.Stroke(speed=2.0, offset=0.3)
-    >>> round(float(stroke.angle), 4)  # phi = asin(b/R), rad
+    >>> round(stroke.angle, 4)  # phi = asin(b/R), rad
     0.3047
     """
 
-    speed: Annotated[Number, Quantity("m/s", "(0, inf)").usually(0.01, 30.0)] = 1.0
-    offset: Annotated[Number, Quantity("", "(-1, 1)")] = 0.0
+    speed: Annotated[float, Quantity("m/s", "(0, inf)").usually(0.01, 30.0)] = 1.0
+    offset: Annotated[float, Quantity("", "(-1, 1)")] = 0.0
 
     def __post_init__(self) -> None:
         check_fields(self)
 
     @property
-    def angle(self) -> Any:
+    def angle(self) -> float:
         """The phi of sin(phi) = b/R, rad: the angle between the cue's axis and the normal of the contact."""
-        return np.arcsin(self.offset)
+        return math.asin(self.offset)
 
 
 @dataclass(frozen=True)
@@ -253,7 +249,7 @@ class Scene:
         return None if self.lumped is not None else self.shaft.segments[0].tip_diameter
 
     @property
-    def axial_mass(self) -> Any:
+    def axial_mass(self) -> float:
         """Mass m_a that a head-on blow feels, kg: the cue's mass and the mass that effects add."""
         added = (effect.axial_mass if self.lumped else effect.mass_on(self.shaft) for effect in self.effects)
         return self.cue.mass + math.fsum(added)
@@ -264,12 +260,12 @@ class Scene:
         return self.contact_terms.dome_radius
 
     @property
-    def head_on_mass(self) -> Any:
+    def head_on_mass(self) -> float:
         """The m_n of 1/m_n = 1/M + 1/m_a, kg."""
         return 1 / (1 / self.ball.mass + 1 / self.axial_mass)
 
     @cached_property
-    def contact_time(self) -> Any:
+    def contact_time(self) -> float:
         """Duration T of a head-on blow, s, given or from the tip's stiffness (handbook: The strike).
 
         A whole tip (`LeatherTip`) has it from its own law, at the stroke's speed, on a cue that is rigid along its
@@ -277,13 +273,13 @@ class Scene:
         choice of modes, in reports.
         """
         if self.contact_terms.tip is not None:
-            return (1 + scalar("Tip.restitution", self.tip.restitution)) * self._pressed[1]
+            return (1 + self.tip.restitution) * self._pressed[1]
         if self.tip.stiffness is None:
             return DEFAULT_CONTACT_TIME if self.tip.contact_time is None else self.tip.contact_time
-        return math.pi / 2 * (1 + self.tip.restitution) * np.sqrt(self.head_on_mass / self.tip.stiffness)
+        return math.pi / 2 * (1 + self.tip.restitution) * math.sqrt(self.head_on_mass / self.tip.stiffness)
 
     @property
-    def known_contact_time(self) -> Any:
+    def known_contact_time(self) -> float | None:
         """The `contact_time`, or None for leather that the blow presses further than its law is known."""
         try:
             return self.contact_time
@@ -291,7 +287,7 @@ class Scene:
             return None
 
     @property
-    def stiffness(self) -> Any:
+    def stiffness(self) -> float:
         """Loading stiffness k of the tip, N/m, given or from the head-on contact time (handbook: The strike)."""
         if self.tip.stiffness is not None:
             return self.tip.stiffness
@@ -316,7 +312,7 @@ class Scene:
         whole = self.contact_terms.tip
         if whole is None:
             raise ValueError("Scene.effects must hold a LeatherTip, whose law is asked for; got none")
-        return whole.law(scalar("Ball.radius", self.ball.radius), abs(offset), restitution)
+        return whole.law(self.ball.radius, abs(offset), restitution)
 
     @property
     def deepest(self) -> float:
@@ -326,8 +322,20 @@ class Scene:
     @property
     def _pressed(self) -> tuple[float, float]:
         """Greatest compression, m, of a whole tip by a head-on blow, and the time to it, s."""
-        mass, speed = scalar("Ball.mass", self.head_on_mass), scalar("Stroke.speed", self.stroke.speed)
-        return _pressed(self.tip_law(), mass, speed)
+        return _pressed(self.tip_law(), self.head_on_mass, self.stroke.speed)
+
+
+def several(name: str, scenes: Any) -> tuple[Scene, ...]:
+    """A sequence of scenes, one or more, as a tuple."""
+    if isinstance(scenes, Scene) or not isinstance(scenes, Iterable):
+        got = "one Scene: write [scene]" if isinstance(scenes, Scene) else shown(scenes)
+        raise TypeError(f"{name} must be a sequence of Scene; got {got}")
+    scenes = tuple(scenes)
+    for scene in scenes:
+        check_kind(name, scene, Scene)
+    if not scenes:
+        raise ValueError(f"{name} must be one scene or more; got none")
+    return scenes
 
 
 @lru_cache(maxsize=256)
@@ -395,7 +403,7 @@ def _equal(this: Any, other: Any) -> bool:
 class Outcome:
     """What a strike leaves behind.
 
-    From a scene of arrays every field has their broadcast shape; vectors have one axis more.
+    Of many strokes every field is an array, (strokes,); vectors have one axis more.
 
     Attributes
     ----------

@@ -16,7 +16,7 @@ import numpy as np
 import scipy.linalg as la
 
 import cuefem as cf
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 from studies.strokes import cue, whole
 
 RINGS, STEP = 200, 1e-6

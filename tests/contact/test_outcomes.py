@@ -16,7 +16,7 @@ import pytest
 import cuefem as cf
 from cuefem.contact.outcome import hits
 from cuefem.contact.strike import strike_modes
-from cuefem.tip_modes import tip_modes_of
+from cuefem.scene.solved_scene import tip_modes_of
 from tests.helpers.leather_scenes import AT, LEATHER, leather_scene
 from tests.helpers.strike_scenes import kim_scene
 

@@ -81,16 +81,3 @@ def contact_of(point, unit):
     forward = np.cross([0, 0, 1], right)
     h, up = point[0], point[1] - R
     return h * right + up * np.array([0, 0, 1]) - np.sqrt(max(R**2 - h**2 - up**2, 0)) * forward
-
-
-def test_arrays_of_strokes():
-    h = np.linspace(-0.5, 0.5, 7) * R
-    points = np.stack([h, np.full(7, 1.1 * R)], axis=-1)
-    directions = np.array([[0, 1, 0], [1, 0, 0]])[:, None, :]
-    offsets = offset_of(points, directions, ball=BALL)
-    assert offsets.shape == (2, 7)
-    placed = cf.place(stroke(offsets), points, directions, ball=BALL)
-    assert placed.velocity.shape == placed.spin.shape == (2, 7, 3)
-    one = cf.place(stroke(offsets[1, 2]), points[2], (1, 0, 0), ball=BALL)
-    np.testing.assert_array_equal(placed.velocity[1, 2], one.velocity)
-    np.testing.assert_array_equal(placed.spin[1, 2], one.spin)

@@ -19,7 +19,7 @@ from cuefem.contact.model import model_of
 from cuefem.contact.rigid_impact import inverse_mass
 from cuefem.contact.step_records import solve_contact
 from cuefem.contact.strike import strike_modes
-from cuefem.tip_modes import tip_modes_of
+from cuefem.scene.solved_scene import tip_modes_of
 from tests.data.stored import scene_of, stored_law, strikes, tip_of
 from tests.helpers.cues import rod, stiff_ferrule
 from tests.helpers.orders import falls_with_the_step

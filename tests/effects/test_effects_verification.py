@@ -13,7 +13,7 @@ from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike_modes
 from cuefem.effects import Effect
 from cuefem.effects.axial import rod_modes
-from cuefem.tip_modes import tip_modes_of
+from cuefem.scene.solved_scene import tip_modes_of
 from tests.helpers.cues import MAPLE, kim
 from tests.helpers.orders import falls_with_the_step
 from tests.helpers.strike_scenes import KIM, kim_scene

@@ -13,7 +13,7 @@ import scipy.linalg
 import cuefem as cf
 from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike_modes
-from cuefem.tip_modes import tip_modes_of
+from cuefem.scene.solved_scene import tip_modes_of
 from tests.helpers.leather_scenes import LEATHER, SHAFT
 from tests.oracle.chain import Chain, chain_squirt
 

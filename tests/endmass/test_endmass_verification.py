@@ -14,7 +14,7 @@ from cuefem.beam.modes import solve
 from cuefem.beam.system import assemble
 from cuefem.beam.tip import TipModes
 from cuefem.endmass.definitions import force, velocity
-from cuefem.tip_modes import default_modes, tip_modes_from, tip_modes_of
+from cuefem.scene.solved_scene import default_modes, tip_modes_from, tip_modes_of
 from tests.helpers.cues import cone, kim, rod, scaled, scene
 
 

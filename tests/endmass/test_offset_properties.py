@@ -13,7 +13,7 @@ from cuefem.endmass.definitions import squirt_equivalent
 from cuefem.endmass.lumped import lump
 from cuefem.report.squirt import squirt_record
 from cuefem.report.strike_table import strike_record
-from cuefem.tip_modes import tip_modes_of
+from cuefem.scene.solved_scene import tip_modes_of
 from tests.helpers.strike_scenes import KIM_AT, kim_scene
 
 EFFECTS = {
@@ -43,14 +43,6 @@ def test_it_tends_to_stick_like_the_square_of_the_offset_on_either_side(effects:
     assert offset_mass(at(scene, -0.3)) == pytest.approx(offset_mass(at(scene, 0.3)), rel=1e-12)
 
 
-@pytest.mark.parametrize("effects", [EFFECTS["bare"], EFFECTS["dome and shear"]], ids=["bare", "dome"])
-def test_arrays_of_offsets_are_one_by_one(effects: tuple[object, ...]) -> None:
-    scene, offsets = replace(kim_scene(), effects=effects), np.array([[0.3, -0.1], [0.0, 0.3]])
-    many = cf.end_mass(at(scene, offsets), "offset", KIM_AT)
-    singles = [offset_mass(at(scene, b)) for b in offsets.ravel().tolist()]
-    np.testing.assert_allclose(many.ravel(), singles, rtol=1e-12)
-
-
 def test_impulse_and_lump_take_it() -> None:
     scene = kim_scene(0.4)
     lumped = lump(scene)
@@ -59,7 +51,7 @@ def test_impulse_and_lump_take_it() -> None:
     curve = squirt_record(scene, (0.1, 0.4))
     assert curve["end_mass"][1] == pytest.approx(lumped.end_mass, rel=1e-12)
     assert curve["models"]["two-part, this cue"]["squirt"][1] == pytest.approx(cf.impulse(scene).squirt, rel=1e-12)
-    both = cf.impulse(at(scene, np.array([0.1, 0.4]))).squirt
+    both = cf.impulse([at(scene, 0.1), at(scene, 0.4)]).squirt
     assert both == pytest.approx(curve["models"]["two-part, this cue"]["squirt"], rel=1e-12)
 
 

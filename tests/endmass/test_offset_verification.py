@@ -11,7 +11,7 @@ import pytest
 import cuefem as cf
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.definitions import stick, stick_at_offset
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 
 MESHES = Path(__file__).parents[2] / "meshes"
 

@@ -5,23 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem import Ball, end_mass
+from cuefem import end_mass
 from cuefem.endmass.definitions import equivalent_end_mass
 from tests.helpers.cues import kim, scene
 from tests.helpers.refusals import refuses
 
 SCENE = scene(kim(), 1e-3)
-TWO_BALLS = replace(SCENE, ball=Ball(mass=np.array([0.17, 0.21])))
 CALLS: list[tuple[Callable[[], object], str]] = [
     (
         lambda: end_mass(SCENE, "push"),  # type: ignore[arg-type]
         "end_mass drive must be one of stick, offset, velocity, force, squirt; got 'push'",
     ),
-    (lambda: end_mass(TWO_BALLS), "Ball.mass must be one number; got an array of shape"),
 ]
 
 

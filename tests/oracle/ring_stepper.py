@@ -21,7 +21,7 @@ import scipy.linalg as la
 
 from cuefem import Ball, Effect, LeatherTip, Scene, Stroke, Tip
 from cuefem.effects.force_law import LeatherLaw
-from cuefem.tip_modes import tip_modes_of
+from cuefem.scene.solved_scene import tip_modes_of
 from studies.strokes import cue
 
 LEATHER = LeatherTip(height=6e-3, dome_radius=9.5e-3, E=140e6)

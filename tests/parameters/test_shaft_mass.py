@@ -12,7 +12,7 @@ from cuefem.io import InputError
 from cuefem.parameters.parameter import varied
 from cuefem.parameters.parts import main_material, with_shaft_mass
 from cuefem.results.uncertainty import squirt_changes
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 from tests.helpers.command_line import as_json, call
 from tests.helpers.cues import pool
 

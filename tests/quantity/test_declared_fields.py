@@ -46,21 +46,16 @@ def beyond(mark: Quantity) -> Iterator[float]:
 @pytest.mark.parametrize("made", MADE, ids=lambda made: type(made).__name__)
 def test_in_python(made: Any) -> None:
     kind = type(made)
-    for name, mark, optional, arrays in quantities(kind):
+    for name, mark, optional in quantities(kind):
         said = f"{kind.__name__}.{name} must be "
         for wrong in beyond(mark):
             with pytest.raises(ValueError, match=r"must be in") as refused:
                 replace(made, **{name: wrong})
             assert str(refused.value).startswith(f"{said}in "), name
-        for wrong in ("0.5", True, {}, *([] if optional else [None])):
+        for wrong in ("0.5", True, {}, np.full(2, 0.5), *([] if optional else [None])):
             with pytest.raises(TypeError) as told:
                 replace(made, **{name: wrong})
             assert str(told.value).startswith(f"{said}a number in {mark.bounds}; got "), name
-        many = np.full(2, next(value for value in (0.5, 1.0, 0.3) if mark.holds(value)))
-        if arrays:
-            many[1] = math.nan
-        with pytest.raises(ValueError, match="at index 1" if arrays else "must be one number; got an array"):
-            replace(made, **{name: many})
 
 
 def test_every_effect_is_tried() -> None:

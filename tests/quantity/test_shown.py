@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[2]
 CUE = cf.load(ROOT / "meshes" / "pool_hollow.toml")
 assert isinstance(CUE, cf.Cue)
 SCENE = cf.Scene(CUE, stroke=cf.Stroke(1.0, 0.3), effects=(cf.TipDome(0.0095),))
-LUMPED = cf.Scene(cf.LumpedCue(0.5, 0.006), stroke=cf.Stroke(1.0, np.linspace(0, 0.4, 50)))
+LUMPED = [cf.Scene(cf.LumpedCue(0.5, 0.006), stroke=cf.Stroke(1.0, b)) for b in np.linspace(0, 0.4, 50)]
 THINGS = {
     "cue": (lambda: CUE, "Cue(6 segments, 0.7366 m, "),
     "scene": (lambda: SCENE, "Scene(cue=Cue(6 segments, 0.7366 m, "),

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 
 from cuefem import LumpedCue, Scene, Stroke, impulse, resolve, resolve_end_mass
 from cuefem.results.convergence import mode_counts
-from cuefem.tip_modes import MOST
+from cuefem.scene.solved_scene import MOST
 from tests.helpers.accuracy_scenes import endless_friction, scene
 from tests.helpers.strike_scenes import lumped_scenes, numbers, sound
 

@@ -11,7 +11,7 @@ from cuefem.beam.waves import even_mesh_for
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.definitions import definition_of
 from cuefem.results.convergence import levels
-from cuefem.tip_modes import tip_modes_from, turning
+from cuefem.scene.solved_scene import tip_modes_from, turning
 from studies.strokes import NAMES
 from tests.helpers.accuracy_scenes import endless_friction, family, scene
 

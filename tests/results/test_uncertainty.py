@@ -8,7 +8,7 @@ import pytest
 import cuefem as cf
 from cuefem.parameters.parameter import varied
 from cuefem.results.uncertainty import MASSES, MODEL, MODEL_OF_SPRING, SHAFTS, of_shaft, squirt_changes
-from cuefem.tip_modes import Solved
+from cuefem.scene.solved_scene import Solved
 from studies.measured import uncertainty
 
 MESHES = Path(__file__).parents[2] / "meshes"

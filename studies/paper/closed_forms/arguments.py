@@ -35,4 +35,4 @@ _QUANTITIES = {
 
 def checked(**values: Any) -> tuple[Any, ...]:
     """The values as floats or float arrays, in the order given; ValueError names field, bound, unit and value."""
-    return tuple(_QUANTITIES[name].check(name, value) for name, value in values.items())
+    return tuple(_QUANTITIES[name].check_all(name, value) for name, value in values.items())

@@ -38,7 +38,6 @@ PERIODS_OF_TIP, LEAST_OF_TIP = 15, 24
 # what is stiffer, and need no accuracy: the end mass is as right as on a mesh for 160 (50 shafts, 50 whole cues).
 # What these numbers hold: studies/accuracy/accuracy.md.
 LEAST_STUCK, MESHED = 160, 120
-SOFT = 1e9  # Pa: leather is softer, everything else that cues are made of is stiffer
 # Never more than this by default, which a contact of a fraction of a millisecond would ask for: the tail does the rest,
 # and more would take over a second. MOST is the last rung of `resolve`.
 MOST_KEPT, MOST = 160, 400
@@ -80,35 +79,15 @@ class Solved:
     @property
     def modes(self) -> Modes:
         """Bending modes that a strike takes; ValueError for a lumped cue, which has none."""
-        return self._modes()
+        if isinstance(self.at, Solid):
+            raise ValueError("at must be a Resolution, for this asks for the shapes of a beam; got a Solid")
+        if self.at is not None:
+            return self._bending(self.at, ended=False)
+        return self._default(strike_modes_kept(self.scene))
 
     @cached_property
     def tip(self) -> TipModes:
         """Tip modes that a strike takes."""
-        return self.tip_modes()
-
-    @cached_property
-    def tip_stuck(self) -> TipModes:
-        """Tip modes for an end mass whose drive begins with a step: at least `LEAST_STUCK` of them by default."""
-        return self.tip_modes(LEAST_STUCK)
-
-    @property
-    def least_smooth(self) -> int:
-        """How many modes the end mass of a smooth drive takes at least: few, or `tip_stuck`'s on a leather segment.
-
-        A leather segment of the drawing has resonances far above the modes of a strike, and a push of a millisecond
-        still excites them: with a strike's modes alone, the end mass by force was 0.9 % off for leather before brass.
-        """
-        lumped = self.scene.lumped is not None
-        return LEAST if lumped or self.scene.shaft.segments[0].material.E > SOFT else LEAST_STUCK
-
-    @property
-    def tip_smooth(self) -> TipModes:
-        """Tip modes for an end mass whose drive begins smoothly."""
-        return self.tip_stuck if self.least_smooth == LEAST_STUCK else self.tip_modes(LEAST)
-
-    def tip_modes(self, least: int | None = None) -> TipModes:
-        """Tip modes of any cue with its effects: a strike's by default, or at least ``least`` bending modes."""
         if self.scene.lumped is not None:
             return lumped_tip_modes(self.scene.lumped)
         if isinstance(self.at, Solid):
@@ -116,17 +95,32 @@ class Solved:
 
             solid = face_loaded_modes(self.scene.shaft, self.at, mass_on_face(self.scene))
             return free_tip_modes(solid.omega, *solid.at_tip, self.scene.axial_mass)
-        return tip_modes_from(self._modes(least), self.scene)
+        return tip_modes_from(self.modes, self.scene)
 
-    def _modes(self, least: int | None = None) -> Modes:
-        if isinstance(self.at, Solid):
-            raise ValueError("at must be a Resolution, for this asks for the shapes of a beam; got a Solid")
-        if self.at is not None:
-            return self._solved(self.at, ended=False)
-        count = strike_modes_kept(self.scene) if least is None else default_modes(self.scene, least=least)
-        return self._solved(count, ended=True, meshed=min(count, MESHED))
+    @cached_property
+    def tip_stuck(self) -> TipModes:
+        """Tip modes for an end mass whose drive begins with a step: at least `LEAST_STUCK` of them by default."""
+        return self._at_least(LEAST_STUCK)
 
-    def _solved(self, at: Resolution | int, *, ended: bool, meshed: int | None = None) -> Modes:
+    @property
+    def tip_smooth(self) -> TipModes:
+        """Tip modes for an end mass whose drive begins smoothly: at least `LEAST`, or `tip_stuck` on a leather segment.
+
+        A leather segment of the drawing has resonances far above the modes of a strike, and a push of a millisecond
+        still excites them: with a strike's modes alone, the end mass by force was 0.9 % off for leather before brass.
+        """
+        lumped = self.scene.lumped is not None
+        return self._at_least(LEAST) if lumped or not self.scene.shaft.leather else self.tip_stuck
+
+    def _at_least(self, least: int) -> TipModes:
+        if self.at is not None or self.scene.lumped is not None:
+            return self.tip
+        return tip_modes_from(self._default(default_modes(self.scene, least=least)), self.scene)
+
+    def _default(self, count: int) -> Modes:
+        return self._bending(count, ended=True, meshed=min(count, MESHED))
+
+    def _bending(self, at: Resolution | int, *, ended: bool, meshed: int | None = None) -> Modes:
         """Bending modes at a resolution, or a number of them; each solved once.
 
         ended: by a tail, or summed plainly. meshed: how many of them the mesh must hold, by default all.
@@ -144,14 +138,14 @@ class Solved:
         return self.known[at, loads]
 
 
-def tip_modes_of(scene: Scene, at: Resolution | Solid | None = None, *, least: int | None = None) -> TipModes:
-    """Tip modes of any scene's cue, with its effects; ended by a tail if no resolution is given."""
-    return Solved(scene, at).tip_modes(least)
+def tip_modes_of(scene: Scene, at: Resolution | Solid | None = None) -> TipModes:
+    """Tip modes of any scene's cue, with its effects, that a strike takes."""
+    return Solved(scene, at).tip
 
 
 def ended_tip_modes(scene: Scene, count: int) -> TipModes:
     """Tip modes of a finite-element cue from ``count`` bending modes ended by a tail."""
-    return tip_modes_from(Solved(scene)._solved(count, ended=True), scene)
+    return tip_modes_from(Solved(scene)._bending(count, ended=True), scene)
 
 
 def turning(scene: Scene) -> bool:
