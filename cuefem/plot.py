@@ -20,7 +20,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cuefem.beam.modes import modes as solved_modes
-from cuefem.contact.outcome import MISSED
 from cuefem.contact.strike import strike
 from cuefem.cue import Cue, Material
 from cuefem.design.sensitivity import sensitivity
@@ -155,7 +154,7 @@ def squirt(
     -------
     matplotlib axes
         Degrees against b/R; a cross on the line of no squirt marks the first offset at which a scene miscues:
-        where the tip slips to the end, or lets go of the ball (`Outcome.regime`).
+        of a miscue (`Outcome.regime`).
     """
     named = scenes if isinstance(scenes, Mapping) else {"": scenes}
     axes = _axes(ax)
@@ -163,7 +162,7 @@ def squirt(
         check_kind(f"scenes[{name!r}]" if name else "scenes", scene, Scene)
         tip = Solved(scene, at).tip
         curve = coupled_curve(scene, offsets, tip)
-        lost = np.isin(curve["grip"], MISSED)
+        lost = np.array(curve["regime"]) == "miscue"
         (line,) = axes.plot(offsets, np.where(lost, np.nan, scaled(curve["squirt"], "rad")), label=name or None)
         if lost.any():
             axes.plot(np.asarray(offsets)[lost][:1], [0], "x", color=line.get_color(), clip_on=False)

@@ -1,7 +1,8 @@
-"""What a contact leaves behind: its phases, the forces at any time of it, and how the tip gripped."""
+"""What a contact leaves behind: its phases, the forces at any time of it, and the state of the contact."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
 from typing import NamedTuple
@@ -12,15 +13,15 @@ from numpy.typing import ArrayLike
 from cuefem.cue import Array
 from cuefem.scene import Outcome, equal_fields
 
-# Parts of the push that are given while the tip slides. Above SLIDES cuefem warns. Above LETS_GO in all, or above
-# SLIDES_AWAY without a break up to the end, squirt grows fast, and this is no shot. Both are needed: a bare tip that
-# slid through the first 79 % and then gripped squirts a fifth more than closer to the centre (after 46 % hardly more),
-# and leather that slid through the last 39 % three quarters more.
-SLIDES, LETS_GO, SLIDES_AWAY = 0.25, 0.5, 1 / 3
+# Parts of the normal impulse that are given while the tip slips. Above the first it is gross slip. Above the second in
+# all, or the third without a break up to the end, squirt grows fast, and this is a miscue. Both are needed: a bare tip
+# that slid through the first 79 % and then held squirts a fifth more than closer to the centre (after 46 % hardly
+# more), and leather that slid through the last 39 % three quarters more.
+GROSS_SLIP_SHARE, MISCUE_SHARE, MISCUE_SHARE_AT_END = 0.25, 0.5, 1 / 3
 # Friction loss over the ball's kinetic energy above which parts of a patch slip through much of the impulse: squirt of
 # a leather tip, in proportion to b/R closer to the centre, is then 7 to 15 % above that line and rises fast.
-PARTLY = 0.05
-MISSED = ("miscue", "lets go")
+PARTIAL_SLIP_LOSS = 0.05
+SLIPS = ("slip", "slip back")
 # The grip of a blow, and grip and press of a flight, in which ball and tip are apart before they touch again.
 BLOW, FLIGHT = "blow", ("apart", "free")
 
@@ -149,48 +150,45 @@ def hits(outcome: Outcome) -> tuple[Hit, ...]:
     return tuple(listed)
 
 
-def grip_of(outcome: Outcome) -> str:
-    """How the tip gripped the ball: the regime of the strike, or "partial slip", "slides" or "lets go".
+def contact_state(phases: Sequence[Phase], energy: Mapping[str, float]) -> str:
+    """The state of a contact, by its phases and energies (J): the `regime` of its outcome.
 
-    Soft leather takes up its load along the ball slowly, so that it grips at every offset and lets go only later.
-    "slides": through more than a quarter of the push; "lets go": through more than half of it, or through its last
-    third, which is a miscue. "partial slip": friction took more than `PARTLY` of the ball's energy, while the patch as
-    a whole held.
+    Soft leather takes up its load along the ball slowly, so that it sticks at every offset at first and slips only
+    later.
     """
-    if outcome.regime not in ("stick", "late stick"):
-        return str(outcome.regime)
-    slid, away = _shares(outcome)
-    if slid > LETS_GO or away > SLIDES_AWAY:
-        return "lets go"
-    if slid > SLIDES:
-        return "slides"
-    energy = outcome.energy
-    ball = energy["ball translation"] + energy["ball rotation"]
-    partly = outcome.regime == "stick" and energy["friction loss"] > PARTLY * ball
-    return "partial slip" if partly else str(outcome.regime)
-
-
-def slides_away(outcome: Outcome) -> bool:
-    """Whether the tip slides up to the end, through the push's last third or all of it: then friction makes squirt."""
-    return outcome.regime == "miscue" or _shares(outcome)[1] > SLIDES_AWAY
-
-
-def _shares(outcome: Outcome) -> tuple[float, float]:
-    """Parts of the push that are given while the tip slides: in all, and up to the end; none in the impulse solver."""
-    pushed = [(phase.grip, abs(phase.impulse[1])) for phase in outcome.phases if isinstance(phase, Phase)]
-    push = sum(impulse for _, impulse in pushed) or 1.0
-    slid = sum(impulse for grip, impulse in pushed if grip in ("slip", "slip back"))
-    last = takewhile(lambda each: each[0] != "stick" or each[1] < 1e-3 * push, reversed(pushed))
-    return slid / push, sum(impulse for _, impulse in last) / push
-
-
-def regime_of(phases: tuple[Phase, ...]) -> str:
-    """How the first slip ended, in the words of the impulse solver (see Outcome), of a contact with phases."""
-    first_touch = list(takewhile(lambda phase: phase[:2] != FLIGHT, phases))
-    grips = [phase.grip for phase in first_touch]
-    first = next((i for i, grip in enumerate(grips) if grip != "slip"), None)
-    if first is None:
+    state = end_of_first_slip(phases)
+    if state not in ("stick", "late stick"):
+        return state
+    share, share_at_end = _slip_shares(phases)
+    if share > MISCUE_SHARE or share_at_end > MISCUE_SHARE_AT_END:
         return "miscue"
-    if grips[first] == "slip back":
+    if share > GROSS_SLIP_SHARE:
+        return "gross slip"
+    partly = energy["friction loss"] > PARTIAL_SLIP_LOSS * (energy["ball translation"] + energy["ball rotation"])
+    return "partial slip" if state == "stick" and partly else state
+
+
+def slips_at_end(outcome: Outcome) -> bool:
+    """Whether the tip slips through the last third of the normal impulse: then friction makes squirt, not the cue."""
+    if outcome.duration is None:  # of the impulse solver, which has no phases in time
+        return bool(outcome.regime == "miscue")
+    return _slip_shares(outcome.phases)[1] > MISCUE_SHARE_AT_END
+
+
+def _slip_shares(phases: Sequence[Phase]) -> tuple[float, float]:
+    """Parts of the normal impulse that are given while the tip slips: in all, and without a break up to the end."""
+    given = [(phase.grip in SLIPS, abs(phase.impulse[1])) for phase in phases]
+    whole = sum(impulse for _, impulse in given) or 1.0
+    last = takewhile(lambda each: each[0] or each[1] < 1e-3 * whole, reversed(given))
+    return sum(impulse for slips, impulse in given if slips) / whole, sum(impulse for _, impulse in last) / whole
+
+
+def end_of_first_slip(phases: Sequence[Phase]) -> str:
+    """How the slip at the first touch ended, in the words of the impulse solver."""
+    first_touch = list(takewhile(lambda phase: phase[:2] != FLIGHT, phases))
+    held = next((i for i, phase in enumerate(first_touch) if phase.grip != "slip"), None)
+    if held is None:
+        return "miscue"
+    if first_touch[held].grip == "slip back":
         return "slip reversal"
-    return "stick" if all(phase.press == "load" for phase in first_touch[: first + 1]) else "late stick"
+    return "stick" if all(phase.press == "load" for phase in first_touch[: held + 1]) else "late stick"

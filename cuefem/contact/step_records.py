@@ -15,7 +15,7 @@ from cuefem.contact.geometric_stiffness import BentTooFar, buckling_thrust
 from cuefem.contact.kernel.library import STEP, KernelContact, library
 from cuefem.contact.modal_response import Complex
 from cuefem.contact.model import PARTIAL_SLIP, RIGID_PATCH, ContactModel
-from cuefem.contact.outcome import BLOW, FLIGHT, History, Phase, regime_of
+from cuefem.contact.outcome import BLOW, FLIGHT, History, Phase, contact_state
 from cuefem.cue import Array
 from cuefem.effects.force_law import LeatherLaw
 from cuefem.scene import Outcome
@@ -117,6 +117,7 @@ class SolvedContact:
         else:  # what turned the ball about the vertical, and what the cue gave
             turning = float(model.axes[2] @ self.ball[3:])
             along = model.speed * inertia - float(approach @ (model.propagator.velocities @ self.xi).real)
+        energy = self._energy(inertia, (p_t**2 + p_n**2) / (2 * M), model.inertia * M * turning**2 / 2)
         return Outcome(
             squirt=side * math.atan2(s * p_n - c * p_t, s * p_t + c * p_n) + 0.0,
             ball_velocity=np.array([side * p_t, p_n]) / M,
@@ -125,19 +126,18 @@ class SolvedContact:
             cue_speed=model.speed - along / inertia,
             impulse=np.array([side * p_t, p_n]),
             duration=self.time,
-            regime=self._regime,
+            regime=self._regime(energy),
             jam=self.phases[0].grip == "slip" and model.jams,
             phases=self.phases,
-            energy=self._energy(inertia, (p_t**2 + p_n**2) / (2 * M), model.inertia * M * turning**2 / 2),
+            energy=energy,
             unknowns=model.unknowns,
             history=self.history,
         )
 
-    @property
-    def _regime(self) -> str:
+    def _regime(self, energy: dict[str, float]) -> str:
         if self.time == 0:  # thrown apart by the blow of endless friction, which stopped the slip at last or did not
             return "late stick" if abs(self.velocity[0]) <= 1e-12 * self.model.speed else "miscue"
-        return regime_of(self.phases)
+        return contact_state(self.phases, energy)
 
     def _energy(self, inertia: float, moving: float, turning: float) -> dict[str, float]:
         """J by name; inertia, kg, of the cue along its axis; the ball's energy in its motion and its spin."""

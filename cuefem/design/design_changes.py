@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cuefem.contact.outcome import grip_of
 from cuefem.cue import Cue
 from cuefem.cue.materials import MATERIALS, WOODS, table_name
 from cuefem.design.evaluation import Response
@@ -145,7 +144,7 @@ def design_changes(scene: Scene, *, solved: Solved | None = None, follow: Follow
     Returns
     -------
     dict
-        "offset", b/R; "grip", the contact's (`cuefem.contact.outcome.grip_of`); "own", the cue's squirt (rad), tip
+        "offset", b/R; "regime", the contact's (`Outcome.regime`); "own", the cue's squirt (rad), tip
         stiffness (N/m), shaft mass (kg) and first natural frequency (Hz); "changes", a list of dicts with the least
         squirt first: "change" in words, "set" for `cuefem.parameters.parameter.varied`, the four numbers, relative
         changes of squirt (with "squirt_change_error", 1 sigma) and stiffness, absolute ones of mass and frequency, and
@@ -167,7 +166,7 @@ def design_changes(scene: Scene, *, solved: Solved | None = None, follow: Follow
     """
     struck = off_centre(scene)
     solved = Solved(struck) if solved is None or struck is not scene else solved
-    own, grip = _numbers(solved), grip_of(SolvedDesign(solved).strike())
+    own, regime = _numbers(solved), SolvedDesign(solved).strike().regime
     before = {key: x for key, x in squirt_changes(solved, own["squirt"]).items() if abs(x) > LITTLE}
     rows = []
     for change in follow(changes_of(struck)):
@@ -184,7 +183,7 @@ def design_changes(scene: Scene, *, solved: Solved | None = None, follow: Follow
         except (ValueError, RuntimeError):
             continue
     rows.sort(key=lambda row: row["squirt_change"])
-    return {"offset": float(struck.stroke.offset), "grip": grip, "own": own, "changes": rows}
+    return {"offset": float(struck.stroke.offset), "regime": regime, "own": own, "changes": rows}
 
 
 def _numbers(solved: Solved) -> Record:

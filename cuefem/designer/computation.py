@@ -16,7 +16,6 @@ import numpy as np
 from nicegui import run
 
 import cuefem.report
-from cuefem.contact.outcome import grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
 from cuefem.design.design_changes import design_changes
@@ -41,11 +40,10 @@ GRAM_REACH = 0.3  # m from the tip
 
 @dataclass(frozen=True)
 class Struck:
-    """A scene's modes, its strike without the course of it, and the state of the contact."""
+    """A scene's modes, and its strike without the course of it."""
 
     solved: Solved
     outcome: Outcome
-    grip: str
 
 
 @lru_cache(KEPT)
@@ -53,7 +51,7 @@ def struck(scene: Scene) -> Struck:
     """The coupled strike: all that the first number takes."""
     solved = Solved(scene)
     outcome = strike_modes(scene, solved.tip)
-    return Struck(solved, replace(outcome, history=None), grip_of(outcome))
+    return Struck(solved, replace(outcome, history=None))
 
 
 def first_numbers(scene: Scene) -> dict[str, float | None]:

@@ -36,7 +36,7 @@ from cuefem.parameters.parameter import parameter, varied
 from cuefem.report.first_screen import Shown, drawings_markup, headline_markup, parts_line, scale_markup, tiles_markup
 from cuefem.report.glossary import definitions, explained
 from cuefem.report.report_page import page as report_page
-from cuefem.report.strike_table import grip_warning
+from cuefem.report.strike_table import regime_warning
 from cuefem.report.table import csv_text
 from cuefem.report.templates import chart_script, page_style
 from cuefem.results.verdict import same_stroke
@@ -372,7 +372,7 @@ class Page:
         own, other = self._shown(self.known.own, 0), self._shown(self.known.other, 1)
         if own is None:
             return
-        warning = grip_warning(self.known.own["struck"].grip) or ""
+        warning = regime_warning(self.known.own["struck"].outcome.regime) or ""
         difference = self.known.difference
         self.headline.set_content(explained(headline_markup(own, other, difference, warning)))
         self.scale.set_content(scale_markup(own, other))

@@ -10,7 +10,6 @@ from typing import Any
 from nicegui import ui
 
 import cuefem.report
-from cuefem.contact.outcome import MISSED
 from cuefem.designer.computation import CURVE_OFFSETS
 from cuefem.designer.knobs import KNOBS, label, value, written
 from cuefem.designer.state import Design, Step
@@ -18,7 +17,7 @@ from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.report.advice_table import advice_sheet
 from cuefem.report.charts import Axis, Curve, chart
 from cuefem.report.squirt import SHADED, offset_charts
-from cuefem.report.strike_table import grip_warning
+from cuefem.report.strike_table import regime_warning
 from cuefem.report.templates import chart_markup, sheet_markup
 from cuefem.report.unusual import unusual
 from cuefem.report.verdict_table import difference_words
@@ -61,9 +60,9 @@ def curves_markup(step: Step, known: Known) -> str:
     drawn = [(name, style, side["curve"]) for name, style, side in sides if "curve" in side]
     if not drawn or "curve" not in known.own:
         return COMPUTING
-    grips = known.own["curve"]["grip"]
+    regimes = known.own["curve"]["regime"]
     offset = float(step.design.scene.stroke.offset)
-    charts = [*offset_charts(drawn, CURVE_OFFSETS, offset, height=280, grips=grips)]
+    charts = [*offset_charts(drawn, CURVE_OFFSETS, offset, height=280, regimes=regimes)]
     grams = [
         Curve(name, 1e3 * side["gram"][0], side["gram"][1], style) for name, style, side in sides if "gram" in side
     ]
@@ -79,7 +78,7 @@ def curves_markup(step: Step, known: Known) -> str:
         )
     figures = "".join(chart_markup(each, f"curve{i}") for i, each in enumerate(charts))
     note = SHADED
-    missed = [b for b, grip in zip(CURVE_OFFSETS, grips, strict=True) if grip in MISSED]
+    missed = [b for b, regime in zip(CURVE_OFFSETS, regimes, strict=True) if regime == "miscue"]
     if missed:
         note = f"{step.design.name}: miscue from b/R {missed[0] - HALF:.2f} on. {note}"
     return f'<div class="charts">{figures}</div><p class="soft">{escape(note)}</p>'
@@ -174,7 +173,7 @@ def check_sheet(step: Step, known: Known) -> list[Sheet]:
             ("a change of squirt, relative uncertainty", f"{100 * SHAFTS:.0f} %"),
         ]
     if "struck" in known.own:
-        rows.append(("tip contact", grip_warning(known.own["struck"].grip) or "no miscue"))
+        rows.append(("tip contact", regime_warning(known.own["struck"].outcome.regime) or "no miscue"))
     rows += [("unusual", line) for line in unusual(step.design.scene)] or [("unusual values", "none")]
     first = Sheet(f"Check of {step.design.name}", ("check", "result"), tuple(rows), texts=(0, 1))
     solid = known.own.get("solid")

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.beam.tip import TipModes
-from cuefem.contact.outcome import slides_away
+from cuefem.contact.outcome import slips_at_end
 from cuefem.contact.rigid_impact import impact, numbers_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, LumpedCue
@@ -233,7 +233,7 @@ def equivalent_end_mass(outcome: Outcome, scene: Scene) -> float:
 
     ValueError if the tip slid up to the end, since the squirt of a sliding tip does not depend on the end mass.
     """
-    if slides_away(outcome):
+    if slips_at_end(outcome):
         raise ValueError(
             f"end_mass drive 'squirt': the stroke miscues at offset {scene.stroke.offset}; got no end mass"
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from cuefem.report.strike_table import grip_warning
+from cuefem.report.strike_table import regime_warning
 from cuefem.results.quantities import signed, with_unit
 from cuefem.results.records import Record, Sheet, sheet
 
@@ -34,7 +34,7 @@ def advice_sheet(record: Record) -> Sheet:
 
 def advice_notes(record: Record) -> list[str]:
     """What the table is."""
-    warning = grip_warning(record["grip"])
+    warning = regime_warning(record["regime"])
     return [
         *([warning] if warning else []),
         f"Each change on its own, by the coupled strike at b/R {record['offset']:.4g}; this cue: "

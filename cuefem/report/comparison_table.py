@@ -9,7 +9,7 @@ from cuefem.report.charts import Chart
 from cuefem.report.drawings import ACROSS, CueDrawing, cue_drawing
 from cuefem.report.end_mass import SQUIRT_END_MASS
 from cuefem.report.squirt import offset_charts
-from cuefem.report.strike_table import grip_warning
+from cuefem.report.strike_table import regime_warning
 from cuefem.report.verdict_table import difference_words, squirt_difference
 from cuefem.results.comparison import struck_alike
 from cuefem.results.quantities import NONE, RESULTS, with_unit
@@ -59,7 +59,7 @@ def comparison_sheet(record: Record) -> Sheet:
     notes = (
         f"Same stroke, with the ball of {first}, b/R {record['offset']:.3g} at {record['speed']:g} m/s. ±: 1σ of the "
         f"difference, for {shaft}; shared errors cancel.",
-        *(f"{name}: {words}" for name, grip in record["grips"].items() if (words := grip_warning(grip))),
+        *(f"{name}: {words}" for name, regime in record["regimes"].items() if (words := regime_warning(regime))),
         "* smaller than its uncertainty: the cues are not distinct in this quantity.",
     )
     return Sheet("Side by side", head, tuple(rows), notes)

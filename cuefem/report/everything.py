@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from cuefem.contact.geometric_stiffness import BentTooFar
-from cuefem.contact.outcome import grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.effects.force_law import TooDeep
 from cuefem.io.ready import ready_cues
@@ -13,7 +12,7 @@ from cuefem.report.end_mass import SQUIRT_END_MASS, end_mass_record
 from cuefem.report.modes_table import modes_record, modes_sheet
 from cuefem.report.scene_words import assumptions
 from cuefem.report.squirt import squirt_record, squirt_sheet
-from cuefem.report.strike_table import grip_warning
+from cuefem.report.strike_table import regime_warning
 from cuefem.report.tip_table import tip_record, tip_sheet
 from cuefem.report.verdict_table import verdict_things
 from cuefem.results.quantities import grams
@@ -49,7 +48,7 @@ def report_record(
     record |= squirts | ({} if scene.contact_terms.tip is None else {"tip": tip_record(scene)})
     numbers = listed(SolvedDesign(solved, outcome))
     verdict = verdict_record(scene, outcome, ready_cues(), solved=solved)
-    return record | {"verdict": verdict, "numbers": numbers, "regime": outcome.regime, "grip": grip_of(outcome)}
+    return record | {"verdict": verdict, "numbers": numbers, "regime": outcome.regime}
 
 
 def report_sheets(record: Record, scene: Record) -> list[Sheet | str]:
@@ -57,7 +56,7 @@ def report_sheets(record: Record, scene: Record) -> list[Sheet | str]:
     shown: list[Sheet | str] = [modes_sheet(record["modes"])] if "modes" in record else []
     if "no_contact" in record:
         return [*shown, f"no end mass and no squirt: {record['no_contact']}"]
-    warning = grip_warning(record["grip"])
+    warning = regime_warning(record["regime"])
     first: list[Sheet | str] = [warning, ""] if warning else []
     first += verdict_things(record["verdict"])
     first += [record["model_error"]["sentence"], ""] if "model_error" in record else []

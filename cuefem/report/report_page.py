@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from cuefem.contact.outcome import grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue.materials import material_name
 from cuefem.design.design_changes import design_changes
@@ -30,7 +29,7 @@ from cuefem.report.glossary import with_words
 from cuefem.report.modes_table import modes_sheet
 from cuefem.report.scene_words import assumptions, effect_words, plain_cue_line, scene_record
 from cuefem.report.squirt import SHADED, offset_charts
-from cuefem.report.strike_table import grip_warning, strike_record, strike_sheet
+from cuefem.report.strike_table import regime_warning, strike_record, strike_sheet
 from cuefem.report.templates import environment
 from cuefem.report.tip_table import tip_sheet
 from cuefem.report.verdict_table import headline, uncertainty_line
@@ -134,7 +133,7 @@ def _screen(name: str, scene: Scene, records: Record, other: tuple[str, Scene] |
 
 def _context(scene: Scene, records: Record) -> Record:
     outcome: Outcome = records["outcome"]
-    about, grips = scene_record(scene), records["squirt"]["models"]["coupled, this cue"]["grip"]
+    about, regimes = scene_record(scene), records["squirt"]["models"]["coupled, this cue"]["regime"]
     told = f"{assumptions(about)}, offset b/R {scene.stroke.offset:.4g}"
     shaft = "modes" in records
     return {
@@ -144,11 +143,11 @@ def _context(scene: Scene, records: Record) -> Record:
         "uncertainty": uncertainty_line(records["verdict"]),
         "advice": advice_sheet(records["advice"]) if "advice" in records else None,
         "trust": (LAW if scene.contact_terms.tip is not None else SPRING, COMPARING),
-        "warning": grip_warning(grip_of(outcome)),
+        "warning": regime_warning(outcome.regime),
         "modes": modes_chart(scene) if shaft else None,
         "frequencies": modes_sheet(records["modes"]) if shaft else None,
         "contact": None if outcome.history is None else contact_part(outcome),
-        "by_offset": _by_offset(records["squirt"]["models"], scene, grips),
+        "by_offset": _by_offset(records["squirt"]["models"], scene, regimes),
         "shaded": SHADED,
         "numbers": values_sheet("Cue and stroke", value_rows(records["numbers"])),
         "end_masses": end_mass_sheet(records["end_masses"], about),
@@ -182,9 +181,9 @@ def _segments(scene: Scene) -> Sheet:
     return Sheet("Segments, from tip to butt", SEGMENT_COLUMNS, tuple(rows), texts=(5,))
 
 
-def _by_offset(curves: Mapping[str, Record], scene: Scene, grips: Sequence[str] = ()) -> tuple[Chart, Chart]:
+def _by_offset(curves: Mapping[str, Record], scene: Scene, regimes: Sequence[str] = ()) -> tuple[Chart, Chart]:
     lines = [(name, STYLES.get(name, f"c{i}"), curve) for i, (name, curve) in enumerate(curves.items(), 1)]
-    return offset_charts(lines, PAGE_OFFSETS, scene.stroke.offset, height=300, grips=grips)
+    return offset_charts(lines, PAGE_OFFSETS, scene.stroke.offset, height=300, regimes=regimes)
 
 
 def _meanings(scene: Scene, outcome: Outcome) -> list[str]:

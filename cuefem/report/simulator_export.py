@@ -9,7 +9,6 @@ the one with which it gives the squirt of the coupled strike at the scene's offs
 
 from __future__ import annotations
 
-from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.results.closed_forms import alciatore_a31, alciatore_a31_mass_ratio
 from cuefem.results.quantities import RESULTS, degrees, units_of, with_unit
@@ -51,7 +50,7 @@ def pooltool_record(name: str, scene: Scene, file: str = "cue.json") -> Record:
     if offset == 0:
         raise ValueError("[A.31] has no squirt at offset 0; give another --offset")
     outcome = strike_modes(scene, Solved(scene).tip)
-    if grip_of(outcome) in MISSED:
+    if outcome.regime == "miscue":
         raise ValueError(f"the stroke is a miscue at offset {offset} and has no end mass")
     mass = float(scene.ball.mass / alciatore_a31_mass_ratio(offset, float(outcome.squirt), inertia=INERTIA))
     by_default = alciatore_a31(offset, mass_ratio=scene.ball.mass / DEFAULT_END_MASS, inertia=INERTIA)

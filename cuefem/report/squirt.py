@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cuefem.contact.outcome import MISSED
 from cuefem.cue import LumpedCue
 from cuefem.report.charts import Axis, Chart, Curve, Shade, Tick, chart
 from cuefem.report.scene_words import assumptions
@@ -54,7 +53,7 @@ def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, solved: S
 def squirt_sheet(record: Record, scene: Record) -> Sheet:
     """Squirt, natural pivot length and the state of the contact against the offset."""
     own = record["models"]["coupled, this cue"]
-    names = ("squirt", "pivot_length", "grip")
+    names = ("squirt", "pivot_length", "regime")
     rows = [
         (f"{offset:g}", *(written(name, own[name][i], brief=True) for name in names))
         for i, offset in enumerate(record["offsets"])
@@ -65,7 +64,7 @@ def squirt_sheet(record: Record, scene: Record) -> Sheet:
     )
 
 
-LATE = ("late stick", "partial slip", "slides", *MISSED)
+LATE = ("late stick", "partial slip", "gross slip", "miscue")
 SHADED = "Shaded: the tip slips through much of the normal impulse, close to a miscue. Darker: miscue."
 LONGEST_PIVOT = 1.5  # m; beyond it a pivot is behind the cue
 
@@ -76,26 +75,26 @@ def offset_charts(
     own: float,
     *,
     height: float,
-    grips: Sequence[str] = (),
+    regimes: Sequence[str] = (),
 ) -> tuple[Chart, Chart]:
     """Charts of squirt and of pivot length against the offset, as far as the first miscue.
 
     lines: name, class on the page and `coupled_curve` or the like of every cue or model. own: the offset of the
-    scene's stroke, which is marked. grips: by which offsets are shaded, where the tip slips long or miscues.
+    scene's stroke, which is marked. regimes: by which offsets are shaded, where the tip slips long or miscues.
     """
     x = np.array(offsets)
     per_metre, unit = TRADE["m"]
     squirt, pivot = [], []
     for name, style, curve in lines:
-        beyond = np.cumsum([grip in MISSED for grip in curve.get("grip", [""] * len(x))]) > 1
+        beyond = np.cumsum([regime == "miscue" for regime in curve.get("regime", [""] * len(x))]) > 1
         angle = np.where(beyond, np.nan, curve["squirt"])
         squirt.append(Curve(name, np.r_[0.0, x], np.degrees(np.r_[0.0, angle]), style))
         pivot.append(Curve(name, x, per_metre * np.where(angle > 0, curve["pivot_length"], np.nan), style))
     ends = np.r_[x[0], (x[1:] + x[:-1]) / 2, x[-1]]
     spans = [
-        Shade(float(ends[i]), float(ends[i + 1]), "miss" if grip in MISSED else "slip")
-        for i, grip in enumerate(grips)
-        if grip in LATE
+        Shade(float(ends[i]), float(ends[i + 1]), "miss" if regime == "miscue" else "slip")
+        for i, regime in enumerate(regimes)
+        if regime in LATE
     ]
     longest = max([0.1, *(float(np.nanmax(curve.y, initial=0.0)) / per_metre for curve in pivot)])
     highest = Axis("", 0.0).over([np.array([per_metre * min(LONGEST_PIVOT, longest)])]).high

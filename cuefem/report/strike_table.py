@@ -8,14 +8,13 @@ from dataclasses import replace
 from typing import Any
 
 from cuefem.beam.tip import TipModes
-from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import LumpedCue
 from cuefem.endmass.definitions import stick_at_offsets
 from cuefem.endmass.lumped import impulse, lump_modes
 from cuefem.report.scene_words import assumptions, tip_effect_notes
 from cuefem.results.closed_forms import alciatore_a31, pivot_length
-from cuefem.results.quantities import DEFINITION_OF_MISCUE, GRIPS, RESULTS, written
+from cuefem.results.quantities import DEFINITION_OF_MISCUE, REGIMES, RESULTS, written
 from cuefem.results.records import Record, Sheet
 from cuefem.results.solved_design import at_offset
 from cuefem.scene import Outcome, Scene
@@ -81,8 +80,7 @@ def a31_squirt(scene: Scene, cue: LumpedCue) -> Any:
 def outcome_record(outcome: Outcome, scene: Scene) -> Record:
     """A strike's outcome with the natural pivot length of its squirt (None at offset 0)."""
     names = ("squirt", "ball_speed", "ball_velocity", "spin", "cue_speed", "impulse", "duration", "regime")
-    record = {name: getattr(outcome, name) for name in names} | {"grip": grip_of(outcome)}
-    record |= {name: getattr(outcome, name) for name in ("energy", "unknowns", "error")}
+    record = {name: getattr(outcome, name) for name in (*names, "energy", "unknowns", "error")}
     return record | {"pivot_length": pivot_length(scene, outcome.squirt)}
 
 
@@ -114,7 +112,7 @@ def strike_record(scene: Scene, outcome: Outcome | None = None, *, solved: Solve
 SHOWN: tuple[tuple[str, int | None, str], ...] = (
     *((name, None, "") for name in ("squirt", "pivot_length", "ball_speed")),
     *(("ball_velocity", 1, ", normal"), ("ball_velocity", 0, ", tangent")),
-    *((name, None, "") for name in ("spin", "cue_speed", "duration", "grip", "error")),
+    *((name, None, "") for name in ("spin", "cue_speed", "duration", "regime", "error")),
 )
 SLOWER = 0.02  # relative: a lumped cue whose ball is slower by more gets a note
 LUMPED = (
@@ -126,9 +124,9 @@ OFF = "uncertainty of squirt: cuefem report"
 MISCUE = f"miscue: {DEFINITION_OF_MISCUE}. Ignore squirt and pivot length"
 
 
-def grip_warning(grip: str) -> str:
+def regime_warning(regime: str) -> str:
     """What stands beside a squirt that miscues, or to which slip adds; "" for others."""
-    return MISCUE if grip in MISSED else GRIPS[grip][1] if grip in ("partial slip", "slides") else ""
+    return MISCUE if regime == "miscue" else REGIMES[regime] if regime in ("partial slip", "gross slip") else ""
 
 
 def strike_sheet(record: Record, scene: Record) -> Sheet:
@@ -140,7 +138,7 @@ def strike_sheet(record: Record, scene: Record) -> Sheet:
         if any(value is not None for value in values):
             parts = (value if value is None or part is None else value[part] for value in values)
             rows.append((RESULTS[name].words + words, *(written(name, value) for value in parts)))
-    missed = [MISCUE] if coupled["grip"] in MISSED else []
+    missed = [MISCUE] if coupled["regime"] == "miscue" else []
     exact = (
         ", numerical error of squirt at most 0.1 % for 95 % of default strikes"
         if "length" in scene["cue"] and coupled["error"] is None
@@ -159,7 +157,7 @@ def strike_sheet(record: Record, scene: Record) -> Sheet:
         f"coupled: vibrating shaft in time{exact}; two-part and A.31: two masses, with the end mass of a tip that "
         f"sticks ({offset}; `cuefem end-mass`)",
         *([f"natural pivot length: {PIVOT}"] if any(row[0] == RESULTS["pivot_length"].words for row in rows) else []),
-        *([] if missed else [f"contact: {GRIPS[coupled['grip']][1]}"]),
+        *([] if missed else [f"contact: {REGIMES[coupled['regime']]}"]),
         *_on_speed(record, scene),
         OFF,
         *tip_effect_notes(scene, f"two-part and A.31 leave the effects at the tip out{lumped}"),

@@ -8,7 +8,6 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.parameters.parameter import PARAMETERS
 from cuefem.parameters.parts import main_material
 from cuefem.results.records import Record
@@ -32,7 +31,7 @@ class _Compared(NamedTuple):
 
     scene: Scene
     numbers: dict[str, float]
-    grip: str
+    regime: str
     inputs: dict[str, dict[str, float]]
 
 
@@ -63,7 +62,7 @@ def comparison_record(
         "speed": float(first.stroke.speed),
         "same_shaft": same_shaft,
         "reference": reference,
-        "grips": {name: each.grip for name, each in compared.items()},
+        "regimes": {name: each.regime for name, each in compared.items()},
         "cues": {name: each.numbers for name, each in compared.items()},
         "differences": {
             name: _differences(compared[reference], compared[name], same_shaft=same_shaft) for name in others
@@ -81,10 +80,10 @@ def struck_alike(scenes: Mapping[str, Scene]) -> dict[str, Scene]:
 def _compared(scene: Scene, names: tuple[str, ...]) -> _Compared:
     numbers = _numbers(scene, names)
     try:
-        grip = grip_of(SolvedDesign(Solved(scene)).strike())
+        regime = SolvedDesign(Solved(scene)).strike().regime
     except (ValueError, RuntimeError):  # no squirt either
-        grip = ""
-    return _Compared(scene, numbers, grip, changes_by_input(scene, numbers, lambda made: _numbers(made, names)))
+        regime = ""
+    return _Compared(scene, numbers, regime, changes_by_input(scene, numbers, lambda made: _numbers(made, names)))
 
 
 def _numbers(scene: Scene, names: Sequence[str]) -> dict[str, float]:
@@ -98,7 +97,7 @@ def _numbers(scene: Scene, names: Sequence[str]) -> dict[str, float]:
         argument: Any = int(mode) if mode else float(scene.stroke.offset) if name == "pivot_length" else None
         assert of is not None
         try:
-            if name in OF_SQUIRT and grip_of(design.strike()) in MISSED:
+            if name in OF_SQUIRT and design.strike().regime == "miscue":
                 return math.nan
             return of(design, argument)
         except (ValueError, RuntimeError):

@@ -199,7 +199,6 @@ RESULTS = {
     "contact_time": Result("head-on contact time", "s"),
     "duration": Result("time in contact", "s", 4),
     "regime": Result("contact"),
-    "grip": Result("contact"),
     "error": _Error("estimated error"),
     "energy": Result("energy", "J"),
     "vibration_energy": Result(
@@ -257,20 +256,16 @@ RESULTS = {
     "seconds": Result("seconds", "s"),
 }
 UNITS = {name: result.unit for name, result in RESULTS.items() if result.unit}
-# The one definition of a miscue (`cuefem.contact.outcome.grip_of`).
+# The one definition of a miscue (`cuefem.contact.outcome.contact_state`).
 DEFINITION_OF_MISCUE = "the tip slips for more than half of the normal impulse, or through its last third"
-# The state of the contact, by the key of `grip_of`: a word for tables, and the same in full.
-GRIPS = {
-    "stick": ("stick", "the tip sticks to the ball; no miscue"),
-    "late stick": ("late stick", "the tip slips first and sticks late; close to a miscue"),
-    "slip reversal": ("slip reversal", "the tip slips, then slips back"),
-    "miscue": ("miscue", f"miscue: {DEFINITION_OF_MISCUE}"),
-    "partial slip": (
-        "partial slip",
-        "partial slip through much of the normal impulse: squirt rises fast, close to a miscue",
-    ),
-    "slides": ("gross slip", "gross slip: for more than a quarter of the normal impulse; close to a miscue"),
-    "lets go": ("miscue", f"miscue: {DEFINITION_OF_MISCUE}"),
+# The states of the contact (`Outcome.regime`) in full.
+REGIMES = {
+    "stick": "the tip sticks to the ball; no miscue",
+    "late stick": "the tip slips first and sticks late; close to a miscue",
+    "slip reversal": "the tip slips, then slips back",
+    "partial slip": "partial slip through much of the normal impulse: squirt rises fast, close to a miscue",
+    "gross slip": "gross slip: for more than a quarter of the normal impulse; close to a miscue",
+    "miscue": f"miscue: {DEFINITION_OF_MISCUE}",
 }
 
 
@@ -306,7 +301,7 @@ def units_of(*names: str) -> dict[str, str]:
 
 def written(name: str, value: Any, *, brief: bool = False) -> str:
     """A value of the quantity of that name, with its unit."""
-    return RESULTS[name].written(GRIPS[value][0] if name in ("regime", "grip") and value else value, brief=brief)
+    return RESULTS[name].written(value, brief=brief)
 
 
 def grams(mass: float | None) -> str:

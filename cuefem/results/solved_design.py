@@ -13,7 +13,6 @@ import numpy as np
 from cuefem.beam.modes import modes
 from cuefem.beam.system import assemble
 from cuefem.beam.tip import TipModes
-from cuefem.contact.outcome import grip_of
 from cuefem.contact.strike import steps_of, strike_modes
 from cuefem.cue import Array
 from cuefem.effects import Support
@@ -48,14 +47,13 @@ def strikes_at(scene: Scene, offsets: Iterable[float], tip: TipModes) -> Iterato
 
 
 def coupled_curve(scene: Scene, offsets: Sequence[float], tip: TipModes) -> dict[str, Any]:
-    """Squirt, natural pivot length, regime and grip of the coupled strike against the offset: every curve of a page."""
+    """Squirt, natural pivot length, and regime of the coupled strike against the offset: every curve of a page."""
     struck = list(strikes_at(scene, offsets, tip))
     squirt = np.array([outcome.squirt for outcome in struck])
     return {
         "squirt": squirt,
         "pivot_length": pivot_at(scene, np.array(offsets), squirt) if all(offsets) else None,
         "regime": [outcome.regime for outcome in struck],
-        "grip": [grip_of(outcome) for outcome in struck],
     }
 
 

@@ -423,12 +423,11 @@ class Outcome:
     duration : float or None
         Of the contact, s; None from the impulse solver.
     regime : str or array
-        How the first slip ended: "stick" (at once, or while the tip was being compressed), "late stick" (past the
-        maximum indentation), "slip reversal", "miscue" (it never ended). It does not say that a tip which held at
-        first let go later, as leather does far out, nor that parts of a leather tip slipped while the whole held
-        ("partial slip"): `cuefem.contact.outcome.grip_of` does both, and calls a strike whose tip slid through more
-        than half of the push, or through the last third of it, a miscue too ("lets go"), as commands, pages and plots
-        do; it is "grip" in their JSON.
+        State of the contact: "stick" (at once, or after slip while the tip was being compressed), "late stick" (past
+        the maximum indentation), "slip reversal", "partial slip" (friction took more than 5 % of the ball's energy
+        while the patch as a whole stuck), "gross slip" (through more than a quarter of the normal impulse), "miscue"
+        (slip through more than half of it, or through its last third). The impulse solver has "stick", "late stick",
+        "slip reversal", and "miscue" where slip never ends.
     jam : bool or array
         Whether friction pressed ball and tip together at first, so that they closed faster: usual for a light end mass.
     phases : tuple

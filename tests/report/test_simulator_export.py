@@ -65,7 +65,7 @@ def test_the_command_and_its_file(scene: Path, tmp_path: Path) -> None:
 
 
 def test_a_miscue_has_no_end_mass() -> None:
-    """Beyond the cone of friction, b/R 0.37 at mu 0.4, leather holds at first only: the regime says "stick"."""
+    """Beyond the cone of friction, b/R 0.37 at mu 0.4, leather sticks at first only."""
     slippery = cf.Tip(0.75, 0.4)
     struck = replace(SCENE, tip=slippery, effects=(cf.LeatherTip(0.006, 0.0095, 140e6),), stroke=cf.Stroke(2.0, 0.5))
     with pytest.raises(ValueError, match=r"miscue at offset 0\.5"):
