@@ -49,17 +49,6 @@ class Phase(NamedTuple):
     impulse: tuple[float, float]
 
 
-class Hit(NamedTuple):
-    """One contact of tip and ball: its start and end, s, and the impulse (t, n) on the ball in it, N s.
-
-    The impulses of a strike's hits add up to `Outcome.impulse`.
-    """
-
-    start: float
-    end: float
-    impulse: tuple[float, float]
-
-
 @dataclass(frozen=True, eq=False)
 class History:
     """Forces and velocities at any time of a contact.
@@ -116,38 +105,6 @@ class History:
             for name, (known, values) in named.items()
             for i, axis in enumerate("tn")
         }
-
-
-def hits(outcome: Outcome) -> tuple[Hit, ...]:
-    """List the contacts of a strike, the first one first.
-
-    Parameters
-    ----------
-    outcome : Outcome
-        Of a coupled strike; more than one contact needs the effect `SecondHit`.
-
-    Returns
-    -------
-    tuple of Hit
-
-    Examples
-    --------
-    >>> import cuefem as cf
-    >>> from cuefem.contact.outcome import hits
-    >>> len(hits(cf.strike(cf.Scene(cf.LumpedCue(0.54, 0.01)))))
-    1
-    """
-    parts: list[list[Phase]] = [[]]
-    for phase in outcome.phases:
-        if phase[:2] == FLIGHT:
-            parts.append([])
-        else:
-            parts[-1].append(phase)
-    listed = []
-    for part in parts:
-        p_t, p_n = np.sum([phase.impulse for phase in part], axis=0)
-        listed.append(Hit(part[0].start, part[-1].end, (float(p_t), float(p_n))))
-    return tuple(listed)
 
 
 def contact_state(phases: Sequence[Phase], energy: Mapping[str, float]) -> str:

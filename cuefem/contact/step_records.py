@@ -229,6 +229,8 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, course: bool
         "friction": tangential - shear,
         "shear": shear,
         "table": sum(c.work[3:]),
+        "damping": damping,
+        "radiated": radiated,
     }
     return SolvedContact(
         model,
@@ -236,7 +238,7 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, course: bool
         np.concatenate(states)[: c.pressed + 1] if course else None,
         arrays["xi"],
         arrays["ball"],
-        losses | {"table": sum(c.work[3:]), "damping": damping, "radiated": radiated},
+        losses,
     )
 
 

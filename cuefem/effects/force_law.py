@@ -136,14 +136,6 @@ class LeatherLaw:
         y = np.sqrt(np.maximum(depth, 0.0))
         return sum(2 / (5 + k) * term * y ** (5 + k) for k, term in enumerate(self.force_terms))
 
-    def virtual(self, depth: Any, deepest: float | None) -> Any:
-        """The virtual compression, m, of one on the loading curve, or on the way back from ``deepest``."""
-        return depth if deepest is None else (depth - self.rest(deepest)) / self.restitution**2
-
-    def rest(self, deepest: float) -> float:
-        """Compression, m, at which a tip unloaded from ``deepest`` has lost its force."""
-        return (1 - self.restitution**2) * deepest
-
     def loss(self, deepest: float) -> float:
         """Work that loading to ``deepest`` took and unloading did not give back, J."""
         return (1 - self.restitution**2) * float(self.work(deepest))

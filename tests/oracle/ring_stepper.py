@@ -119,7 +119,7 @@ def stepped(scene: Scene, step: float = 1e-6) -> float:
         depth -= float(near @ normal)
         phi += turned(moved, velocity * step) / 2
         loading, peak = loading and depth >= peak, max(peak, depth)
-        eta = float(law.virtual(depth, None if loading else peak))
+        eta = depth if loading else (depth - (1 - law.restitution**2) * peak) / law.restitution**2
         if eta <= 0:
             break
         F_n = float(law.at(np.array([eta]))[0][0])
