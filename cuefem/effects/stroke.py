@@ -23,8 +23,8 @@ class SecondHit(Effect):
     Notes
     -----
     Adds: After each separation cue and ball move freely in their plane, and a new contact begins wherever they touch
-    again within the window. Its phases follow a phase ("apart", "free") in `Outcome.phases`. The tip keeps the compression
-    that it had as the ball left, and is loaded anew on the curve on which it was unloaded.
+    again within the window. Its phases follow a phase ("apart", "free") in `Outcome.phases`. The tip keeps the
+    compression that it had as the ball left, and is loaded anew on the curve on which it was unloaded.
 
     Matters when: The tip is soft or dead on a shaft that vibrates, or the cue is heavy.
 
