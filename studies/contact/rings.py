@@ -77,7 +77,7 @@ def stepped(scene: cf.Scene, leather: Leather) -> tuple[float, float, float]:
             slow[0] = np.where(strain[0] > 0, (slow[0] + np.where(before, by, strain[0])) * fade, 0.0)
             pressed = np.maximum((1 - share[0]) * strain[0] + share[0] * slow[0], 0.0) * leather.stiffer
         else:
-            virtual = depth if depth == peak else float(law.virtual(depth, peak))
+            virtual = depth if depth == peak else (depth - (1 - law.restitution**2) * peak) / law.restitution**2
             pressed = np.maximum(virtual - begin, 0.0)
         F_n = float(stiff[0] @ pressed)
         if F_n <= 0:

@@ -21,6 +21,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.contact.outcome import Phase
 from tests.oracle.small_steps import Seen, struck
 
 
@@ -156,6 +157,11 @@ def compared(scene: cf.Scene, steps: int) -> dict[str, float]:
 DAILY = [(name, [seed], kind.steps) for name, kind in KINDS.items() for seed in kind.daily]
 HEAVY = [pytest.param(name, KINDS[name].daily, STEPS, marks=pytest.mark.heavy) for name in KINDS if "El" in name]
 MANY = [pytest.param(name, range(40), 2 * STEPS, marks=pytest.mark.nightly) for name in KINDS]
+
+
+def flights(outcome: cf.Outcome) -> list[Phase]:
+    """The phases in which ball and tip are apart before they touch again."""
+    return [phase for phase in outcome.phases if phase.press == "free"]
 
 
 @pytest.mark.parametrize(("kind", "seeds", "steps"), [*DAILY, *HEAVY, *MANY])
