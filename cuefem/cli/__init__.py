@@ -1,4 +1,4 @@
-"""The commands: one table of them, each loaded when it is called, and one-line errors."""
+"""The table of commands, each loaded when called, and one-line errors."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from cuefem.quantity.slips import Unusual
 for _threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(_threads, "1")
 
-# Every command by its name: the file and function that it is, its group, and what `cuefem --help` says of it.
+# Every command by its name: its file and function, its group, and its line in `cuefem --help`.
 CUE, SURE, STUDIES, FILES, PAGE = "Cue", "Verification", "Studies", "Files and parts", "Designer"
 COMMANDS = {
     "report": ("cuefem.cli.cue_commands:report", CUE, "Squirt with its uncertainty, and all other numbers of a cue."),
@@ -30,7 +30,7 @@ COMMANDS = {
     "modes": ("cuefem.cli.cue_commands:modes", CUE, "Natural frequencies of bending, and tip amplitudes."),
     "end-mass": ("cuefem.cli.cue_commands:end_mass", CUE, "Effective end mass, by five definitions."),
     "strike": ("cuefem.cli.cue_commands:strike", CUE, "Squirt, ball speed, spin and pivot length of one stroke."),
-    "compare": ("cuefem.cli.compare_command:compare", CUE, "Cues side by side, or computed beside measured values."),
+    "compare": ("cuefem.cli.compare_command:compare", CUE, "Compare cues, or computed and measured values."),
     "effects": ("cuefem.cli.how_sure:effects", SURE, "Sensitivity to each physical effect, removed or added."),
     "cost": ("cuefem.cli.how_sure:cost", SURE, "Convergence study, and the resolution it recommends."),
     "check": ("cuefem.cli.how_sure:check", SURE, "Error of the beam model against a 3-D elastic solid."),
@@ -54,7 +54,7 @@ class _Commands(click.Group):
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
-        """The command of that name, its file loaded; None if there is none."""
+        """Load the command of that name; None if there is none."""
         if name not in COMMANDS:
             return None
         module, _, attribute = COMMANDS[name][0].partition(":")
@@ -62,7 +62,7 @@ class _Commands(click.Group):
         return command
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
-        """The command that is called; for an unknown one the nearest name too."""
+        """The called command; for an unknown one an error with the nearest name."""
         near = get_close_matches(args[0], COMMANDS, 1) if args[0] not in COMMANDS and args[0][0] != "-" else []
         if near:
             ctx.fail(f"No such command {args[0]!r}; did you mean {near[0]!r}?")
@@ -76,14 +76,14 @@ class _Commands(click.Group):
                 formatter.write_dl([(f"{n:{width}}", words) for n, (_, g, words) in COMMANDS.items() if g == group])
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
-        """The commands that begin so, and then as for every command."""
+        """The commands with that prefix, then click's completion."""
         names = [name for name in COMMANDS if name.startswith(incomplete)]
         options = click.Command.shell_complete(self, ctx, incomplete)
         return [*(CompletionItem(name, help=COMMANDS[name][2]) for name in names), *options]
 
 
 class _OneLine(_Commands):
-    """Bad input ends in one line on stderr and status 2, a numerical failure in one and status 1; no tracebacks."""
+    """Invalid input: a one-line error on stderr, status 2; a numerical failure: one line, status 1; no tracebacks."""
 
     def main(self, *arguments: Any, **options: Any) -> Any:
         try:
@@ -105,7 +105,7 @@ class _OneLine(_Commands):
 
         try:
             with np.errstate(over="raise", divide="raise", invalid="raise"), warnings.catch_warnings():
-                warnings.filterwarnings("ignore", category=Unusual)  # commands say it in their own words: `remark`
+                warnings.filterwarnings("ignore", category=Unusual)  # commands print their own warning: `remark`
                 return super().invoke(ctx)
         except click.UsageError as error:
             _refuse_usage(error)
@@ -124,7 +124,7 @@ class _OneLine(_Commands):
 
 
 def _refuse_usage(error: click.UsageError) -> NoReturn:
-    """Say in one line what is wrong with a command line, and where its help is; help that was asked for passes."""
+    """Print a one-line usage error with the help command; a request for help passes."""
     if type(error).__name__ == "NoArgsIsHelpError":
         raise error
     words = one_line(error.format_message()).rstrip(".")
@@ -134,7 +134,7 @@ def _refuse_usage(error: click.UsageError) -> NoReturn:
 
 
 def _forget_output() -> None:
-    """Let what is left for stdout go nowhere, so that Python does not fail on it once more when it ends."""
+    """Discard pending stdout, so that Python does not fail on it again at exit."""
     with suppress(OSError, ValueError):
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, sys.stdout.fileno())

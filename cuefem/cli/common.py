@@ -1,4 +1,4 @@
-"""What commands share: a file and its options to a scene, and what they make of it."""
+"""Shared parts of commands: options, the scene of a file and its options, and output."""
 
 from __future__ import annotations
 
@@ -34,19 +34,19 @@ def stroke_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def cue_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The options for what a cue's file may leave out, and --json."""
+    """The options for values that a cue's file may omit, and --json."""
     return json_option(shape_options(command))
 
 
 def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The options for what a drawing leaves out or has otherwise: the masses, and `FITTINGS`."""
+    """The options that supplement or replace values of a drawing: the masses, and `FITTINGS`."""
     for name, known in reversed(FITTINGS.items()):
         command = shared_option("Cue", option(name), metavar=known.metavar, help=known.help)(command)
     return parameter_options("Cue", "body_mass", "shaft_mass")(command)
 
 
 def fittings_of(options: Mapping[str, Any]) -> dict[str, str | None]:
-    """What the options tell `load` of a drawing."""
+    """Arguments of `load` by these options."""
     return {name: options.get(name) for name in FITTINGS}
 
 
@@ -56,7 +56,7 @@ def force_option(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def check_free(drawing: Path, *, force: bool) -> None:
-    """Refuse to replace a drawing without --force, for it is somebody's work; pages and figures can be made again."""
+    """Reject overwriting a drawing without --force; pages and figures can be regenerated."""
     if drawing.exists() and not drawing.is_dir() and not force:
         raise InputError(drawing, "", "already exists; --force overwrites it")
     check_place(drawing)
@@ -64,9 +64,9 @@ def check_free(drawing: Path, *, force: bool) -> None:
 
 @contextmanager
 def blaming(file: Path, options: Collection[str] = ()) -> Iterator[None]:
-    """Name the file in errors that appear only while computing, such as an effect that lies off the cue.
+    """Prefix errors of the computation with the file name, such as an effect beyond the cue.
 
-    options: those that the command has, to be named where they help.
+    options: those of the command, which the error names where they help.
     """
     try:
         yield
@@ -82,10 +82,10 @@ def blaming(file: Path, options: Collection[str] = ()) -> Iterator[None]:
 def scene_of(
     file: Path, options: dict[str, Any], *, blow: bool = True, remarked: bool = True
 ) -> tuple[Scene, list[str]]:
-    """The scene that a command computes, and what was assumed because neither file nor options say it.
+    """The scene of a command, and the assumptions: values set neither in the file nor by options.
 
     A cue alone gets a game's default stroke (`cuefem.scene.default_scene`). blow: whether ball, tip and stroke matter
-    to the command, so that assumptions on them are listed too. remarked: whether unusual numbers are printed.
+    to the command, so that assumptions on them are listed too. remarked: whether to warn of unusual numbers.
     """
     opened = load_stroke(file, **fittings_of(options))
     if isinstance(opened, Scene):
@@ -115,7 +115,7 @@ def compute_tip(scene: Scene) -> None:
 
 
 def remark(scene: Scene, *, blow: bool = True) -> None:
-    """Say on stderr which numbers are unusual; a wrong unit is the most common reason."""
+    """Warn on stderr of unusual numbers; a wrong unit is the most common reason."""
     for line in unusual(scene, blow=blow):
         click.echo(f"unusual: {line}", err=True)
 
@@ -152,7 +152,7 @@ def whole_record(
 
 
 def head_line(file: Path, about: dict[str, Any]) -> str:
-    """The line above a command's tables: the file and its cue."""
+    """The heading of a command's tables: the file and its cue."""
     return f"{file.name}: {cue_line(plain(about['cue']))}"
 
 

@@ -1,4 +1,4 @@
-"""`cuefem compare`: cues side by side, or a cue beside what was measured on it."""
+"""`cuefem compare`: compare cues, or computed with measured values."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from cuefem.results.comparison import comparison_record, struck_alike
 from cuefem.results.quantities import UNITS
 
 MOST_CUES = 5
-STRUCK = ("ball ", "cue speed ", "offset ")  # what is assumed of ball and stroke, which are the first cue's
+STRUCK = ("ball ", "cue speed ", "offset ")  # assumptions on ball and stroke, which are those of the first cue
 
 
 @command()
@@ -74,7 +74,7 @@ def compare(
 
 
 def _side_by_side(files: Sequence[Path], options: dict[str, Any], output: Path | None, *, same_shaft: bool) -> None:
-    """Print, or write, cues side by side."""
+    """Print or write the comparison of cues."""
     if len(files) > MOST_CUES:
         raise InputError(files[MOST_CUES], "", f"must be one of at most {MOST_CUES} cues; got {len(files)}")
     if options["shaft_mass"] is not None:
@@ -101,7 +101,7 @@ def _side_by_side(files: Sequence[Path], options: dict[str, Any], output: Path |
 
 
 def _names(files: Sequence[Path]) -> list[str]:
-    """The files' names: without ending and folder, unless another's is the same."""
+    """The files' names, without folder and extension if they are distinct."""
     for i, file in enumerate(files):
         if file.resolve() in [other.resolve() for other in files[:i]]:
             raise InputError(file, "", "is given twice; compare different files")
@@ -110,7 +110,7 @@ def _names(files: Sequence[Path]) -> list[str]:
 
 
 def _with_measurements(folder: Path, output: Path | None, *, as_json: bool, estimate: bool) -> None:
-    """Print, or write, a cue beside what was measured on it, or what all of that together says."""
+    """Print or write the comparison with measurements, or the estimate from them."""
     cue, notes = load_measured(folder)
     remark(cue.scene)
     with blaming(folder):

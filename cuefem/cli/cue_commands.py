@@ -76,7 +76,7 @@ def report(file: Path, output: Path | None, check: bool, **options: Any) -> None
 
 
 def _sheets(file: Path, record: Record, about: Record) -> list[Sheet | str]:
-    """The tables, and at their end what one asks next."""
+    """The tables, followed by suggested commands."""
     sheets = report_sheets(record, about)
     return (
         [*sheets, "", f"Design changes: cuefem improve {file}, with the same options"]
@@ -92,7 +92,7 @@ def _model_error(scene: Scene) -> Record:
 def _write_page(file: Path, output: Path, options: dict[str, Any], *, check: bool) -> None:
     from cuefem.report.report_page import (
         page_and_headline,
-    )  # templates and charts take 0.1 s, which tables need not pay
+    )  # templates and charts take 0.1 s to load
 
     if options["as_json"]:
         raise InputError(output, "--output", "cannot be combined with --json")
@@ -146,9 +146,9 @@ def improve(file: Path, take: int | None, output: Path | None, force: bool, **op
 
 
 def _comparing(file: Path, output: Path, options: dict[str, Any], scenes: tuple[Scene, Scene]) -> list[str]:
-    """The commands that compare a cue before and after a change; none if the file after it would be struck otherwise.
+    """The commands that compare a cue before and after a change; none if the new file would have another stroke.
 
-    What only changes the drawing is converted first, since options are for both files.
+    Options that change only the drawing are converted first, since options apply to both files.
     """
     given = {name: value for name, value in options.items() if isinstance(value, str)}
     drawn = {name: given.pop(name) for name in (*FITTINGS, "shaft_mass") if name in given}
@@ -168,7 +168,7 @@ def _comparing(file: Path, output: Path, options: dict[str, Any], scenes: tuple[
 
 
 def _typed(first: Path, second: Path, given: dict[str, str]) -> str:
-    """Two files and options as they are typed."""
+    """Two files and options as command-line text."""
     return shlex.join([str(first), str(second), *(word for name in given for word in (option(name), given[name]))])
 
 
@@ -189,7 +189,7 @@ def modes(file: Path, near: str | None, count: int, **options: Any) -> None:
 
 
 def _hertz(file: Path, near: str) -> float:
-    """The frequency that --near gives: a number of hertz, or a number with its unit."""
+    """The frequency of --near: a number of hertz, or a number with its unit."""
     wanted = Quantity("Hz", "[0, inf)")
     for text in (near, f"{near} Hz"):
         with suppress(ValueError):

@@ -1,4 +1,4 @@
-"""The command that opens the designer's page."""
+"""`cuefem designer`: serve and open the designer's page."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def designer(scene: Path | None, port: int, show: bool, as_json: bool, **options
 
 
 def _free(port: int) -> int:
-    """The port, if it is free; any free one for 0."""
+    """The port if it is available; any available one for 0."""
     with socket.socket() as tried:
         tried.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

@@ -1,4 +1,4 @@
-"""Commands about files and what they can name: convert, parts."""
+"""Commands on files and parts: convert, parts."""
 
 from __future__ import annotations
 

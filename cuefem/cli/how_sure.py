@@ -1,4 +1,4 @@
-"""Commands that say what a result hangs on: effects, cost, check."""
+"""Verification commands: effects, cost, check."""
 
 from __future__ import annotations
 

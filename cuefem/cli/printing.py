@@ -1,4 +1,4 @@
-"""What commands print: tables and lines for people, and JSON for programs."""
+"""Output of commands: tables and text in the terminal, pages, and JSON."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ HEADINGS = ("Cue", "Tip", "Stroke", "Output")
 
 
 class SharedOption(click.Option):
-    """An option that stands under a heading, below those of the command alone."""
+    """An option listed under a heading, below the command's own options."""
 
     def __init__(self, *names: Any, heading: str, **about: Any) -> None:
         super().__init__(*names, **about)
@@ -59,14 +59,14 @@ WRITTEN = {
 
 
 class Output(click.Path):
-    """A file to write: its ending says what it will be. ValueError before anything is computed if none can be there."""
+    """A file to write; its extension sets the format. ValueError before the computation if it cannot be written."""
 
     def __init__(self, endings: Sequence[str]) -> None:
         super().__init__(path_type=Path)
         self.endings = endings
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The path, whose ending is one that the command writes."""
+        """The path, if the command writes its extension."""
         path = Path(os.fsdecode(super().convert(value, param, ctx)))
         if path.suffix not in self.endings:
             wanted = " or ".join(self.endings)
@@ -79,7 +79,7 @@ class Output(click.Path):
 
 
 def output_option(*endings: str, required: bool = False, many: bool = False) -> Callable[..., Any]:
-    """The option -o of every command, with what it writes, told by the ending; many: it may stand several times."""
+    """The option -o of every command, with the formats by extension; many: whether it is repeatable."""
     kinds = dict.fromkeys(WRITTEN[ending] for ending in endings)
     said = "; ".join(f"{kind} ({', '.join(e for e in endings if WRITTEN[e] == kind)})" for kind in kinds)
     said = f"Write {said}; the extension sets the format{'. Repeatable' if many else ''}."
@@ -93,19 +93,19 @@ page_option = output_option(".html", ".json")
 
 
 def assumed_lines(notes: Sequence[str]) -> list[str]:
-    """The assumptions, one a line, each with its option; none where nothing was assumed."""
+    """The assumptions, one per line, each with its option; empty without assumptions."""
     return ["assumed:", *(f"  {note}" for note in notes)] if notes else []
 
 
 def print_json(record: Any) -> None:
-    """Print a record for programs."""
+    """Print a record as JSON."""
     click.echo(json_text(record))
 
 
 def tell(as_json: bool, record: Any, things: Sequence[Any], page: Path | None = None, title: str = "") -> None:
-    """Print a record for programs, or lines and sheets for people.
+    """Print a record as JSON, or as text and tables.
 
-    page: the file in which one of these is to stand instead; title: of a page, by default the file's name.
+    page: a file to write instead; title: of a page, by default the file's name.
     """
     if page is not None:
         write_told(page, record, things, title)
@@ -116,17 +116,17 @@ def tell(as_json: bool, record: Any, things: Sequence[Any], page: Path | None = 
 
 
 def write_told(path: Path, record: Any, things: Sequence[Any], title: str = "") -> None:
-    """Write a record as .json, or lines and sheets as a page."""
+    """Write a record as .json, or text and tables as a page."""
     if path.suffix == ".json":
         write_whole(path, lambda temporary: temporary.write_text(json_text(record) + "\n", encoding="utf-8"))
     else:
-        from cuefem.report.templates import plain_page  # templates take 0.1 s, which tables need not pay
+        from cuefem.report.templates import plain_page  # templates take 0.1 s to load
 
         save_page(plain_page(title or path.stem, things), path)
 
 
 def print_all(things: Sequence[Any]) -> None:
-    """Print lines and sheets for people."""
+    """Print text and tables."""
     console = Console(highlight=False, emoji=False)
     if not console.is_terminal:
         console.width = 120  # files and pipes have no width: do not cut tables

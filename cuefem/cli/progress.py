@@ -1,4 +1,4 @@
-"""Progress bars on stderr, where a person looks on."""
+"""Progress bars on stderr, if it is a terminal."""
 
 from __future__ import annotations
 
@@ -20,31 +20,31 @@ from rich.progress import Progress as Bar
 
 
 def followed(work: Sequence[Any]) -> Iterable[Any]:
-    """The work, with a progress bar if stderr is a terminal."""
+    """Iterate with a progress bar if stderr is a terminal."""
     console = Console(stderr=True)
     return track(work, "computing", console=console, transient=True) if console.is_terminal else work
 
 
 class Progress:
-    """How many designs are done; shown as a bar with rate and times from the first second on."""
+    """Number of finished designs, shown as a bar with rate and times after the first second."""
 
     def __init__(self, bar: Any, total: int) -> None:
         self.bar, self.total = bar, total
         self.task = bar.add_task("choosing modes", total=None, rate="") if bar else None
 
     def begin(self, done: int) -> None:
-        """From here on designs are computed, of which so many are done."""
+        """Start the bar; some designs may be finished already."""
         if self.bar:
             self.bar.update(self.task, description="designs", total=self.total, completed=done)
 
     def to(self, done: int) -> None:
-        """Say how many designs are done."""
+        """Set the number of finished designs."""
         if self.bar:
             speed = self.bar.tasks[0].speed
             self.bar.update(self.task, completed=done, rate=f"{speed:.3g} designs/s" if speed else "")
 
     def end(self) -> None:
-        """Take the bar away."""
+        """Remove the bar."""
         if self.bar:
             self.bar.stop()
 

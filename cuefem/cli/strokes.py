@@ -1,4 +1,4 @@
-"""The places of a scene as options, and the scene that they make of a file's cue or scene."""
+"""The parameters of a scene as options, and the scene of a file with these options."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ NO_SHAFT = "does not apply to a lumped cue, which has no shaft geometry"
 
 
 def option(name: str) -> str:
-    """An option as it is typed."""
+    """The name of an option on the command line."""
     return f"--{name.replace('_', '-')}"
 
 
 def parameter_options(heading: str, *keys: str) -> Callable[[Command], Command]:
-    """The options of parameters, by their keys, under a heading."""
+    """The options of some parameters under a heading."""
 
     def decorated(command: Command) -> Command:
         for known in (PARAMETERS[key] for key in reversed(keys)):
@@ -53,7 +53,7 @@ def game_option(name: str, help_words: str) -> Callable[[Command], Command]:
 
 
 def tip_options(command: Command) -> Command:
-    """The game, and the options of the leather tip and of whatever else on the cue is an option."""
+    """The game, and the options of the leather tip and of the cue."""
     own = (key for key, known in PARAMETERS.items() if known.option and key not in (*OF_BLOW, *OF_CUE, "offset"))
     said = "Game whose default ball, tip and stroke a cue without a scene gets (default: pool)."
     return game_option("--game", said)(parameter_options("Tip", *own)(command))
@@ -81,7 +81,7 @@ def measured(file: Path, name: str, text: str, wanted: Quantity) -> float:
 
 
 def offset_of(file: Path, text: str, radius: float) -> float:
-    """The b/R that --offset gives: a bare number, or a length, over the radius of the ball, m."""
+    """The b/R of --offset: a bare number, or a length over the radius of the ball, m."""
     try:
         length = number(text, "m")
     except ValueError:
@@ -99,14 +99,14 @@ def offset_of(file: Path, text: str, radius: float) -> float:
 
 
 def with_body(thing: Cue | Scene | SideStrike, file: Path, text: str) -> Any:
-    """The cue or scene of a file with the mass behind its segments that --body-mass says."""
+    """The cue or scene of a file with the mass behind its segments by --body-mass."""
     if not isinstance(thing, Cue) and isinstance(thing.cue, LumpedCue):
         raise InputError(file, "--body-mass", NO_SHAFT)
     return with_body_mass(thing, file, "--body-mass", text)
 
 
 def with_weight(thing: Cue | Scene | SideStrike, file: Path, text: str) -> Any:
-    """The cue or scene of a file with the density of its wood that --shaft-mass says."""
+    """The cue or scene of a file with the density of its wood by --shaft-mass."""
     mass = measured(file, "--shaft-mass", text, Quantity("kg", "(0, 100]"))
     if isinstance(thing, SideStrike) or (isinstance(thing, Scene) and thing.lumped):
         raise InputError(file, "--shaft-mass", "does not apply: FILE has no shaft")
@@ -132,7 +132,7 @@ def usual(cue: Cue, file: Path, options: dict[str, Any]) -> Scene:
 
 
 def with_options(scene: Scene, file: Path, options: dict[str, Any]) -> Scene:
-    """The scene with the values that the command's options give."""
+    """The scene with the values of the command's options."""
     changes = _changes(scene, file, options)
     try:
         return replaced(scene, changes) if changes else scene
@@ -150,7 +150,7 @@ def _is_leather(known: Parameter) -> bool:
 
 
 def _options(options: dict[str, Any], which: Callable[[Parameter], bool] = lambda known: True) -> Iterator[Parameter]:
-    """The parameters of which options give a value."""
+    """The parameters that options set."""
     return (
         known for known in PARAMETERS.values() if known.option and options.get(known.key) is not None and which(known)
     )
@@ -159,7 +159,7 @@ def _options(options: dict[str, Any], which: Callable[[Parameter], bool] = lambd
 def _changes(
     scene: Any, file: Path, options: dict[str, Any], which: Callable[[Parameter], bool] = lambda known: True
 ) -> dict[Steps, Any]:
-    """The values that options give, by their paths."""
+    """The values of options, by their paths."""
     changes = dict[Steps, Any]()
     for known in _options(options, which):
         text, path = options[known.key], known.steps()
@@ -177,13 +177,13 @@ def _changes(
 
 
 def _absent(scene: Scene, known: Parameter) -> str:
-    """Why a scene has no such parameter."""
+    """Why a scene has no such parameter, for an error."""
     if _is_leather(known):
         return "does not apply: the scene has no LeatherTip among its effects"
     return NO_SHAFT if scene.lumped else f"does not apply: the scene has no {known.label}"
 
 
 def refuse_game(file: Path, options: dict[str, Any]) -> None:
-    """A game is for a cue alone: a scene has ball, tip and stroke of its own."""
+    """Reject a game for a scene, which has its own ball, tip and stroke."""
     if options.get("game") is not None:
         raise InputError(file, "--game", "does not apply: FILE is a scene, which has its own ball, tip and stroke")

@@ -1,4 +1,4 @@
-"""The command on studies: a sweep, a scatter or an optimum."""
+"""`cuefem study`: a sweep, a tolerance analysis (scatter) or an optimum."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def study(
 def _kept(
     file: Path, asked: Study | Scatter, designs: SqliteStore, *, workers: int | None, dask: str | None
 ) -> StudyResult:
-    """The result of a sweep or a scatter; one that is interrupted says what is kept."""
+    """The result of a sweep or a scatter; an interrupted one prints which designs are stored."""
     with ExitStack() as opened:
         progress = opened.enter_context(bar(designs.study.size))
         pool = opened.enter_context(pool_of(workers, dask))
@@ -134,7 +134,7 @@ def _write(path: Path, result: StudyResult, record: Any, things: list[Any], titl
 
 
 def _rounded(scene: Scene, study: Study) -> Scene:
-    """The scene with the numbers that varied to nine digits, far within the tolerance of the limits."""
+    """The scene with varied numbers rounded to nine digits, far within the tolerance of the limits."""
     moved = {path for vary in study.vary for path in (*vary.fields(scene), *vary.givers(scene))}
     numbers = {path: value_at(scene, path) for path in moved}
     return replaced(scene, {path: float(f"{x:.9g}") for path, x in numbers.items() if isinstance(x, float)})
@@ -142,7 +142,7 @@ def _rounded(scene: Scene, study: Study) -> Scene:
 
 @contextmanager
 def _rounds(problem: Problem, most: int) -> Iterator[Callable[[Round], object]]:
-    """The rounds of a search and the best so far on stderr, if a person looks on."""
+    """The iterations of a search and its best result on stderr, if it is a terminal."""
     console = Console(stderr=True)
     if not console.is_terminal:
         yield lambda reached: None

@@ -1,1 +1,1 @@
-"""The designer: a page on this computer where a person changes a cue and sees at once what that does to squirt."""
+"""The designer: a local browser page with sliders; squirt and other results update as they move."""

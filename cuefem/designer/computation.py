@@ -1,7 +1,7 @@
-"""What the page shows of a design, computed by the functions of the commands, off the page's loop, each once.
+"""The results on the page, computed by the functions of the commands, outside the event loop, each once.
 
-The strike and the end mass come first; then the verdict and the comparison; what a tab shows is computed when it is
-open. A knob that is moved again ends the sequence after the part that is being computed.
+The strike and the end mass are computed first, then the verdict and the comparison; results of a tab when it is
+open. Moving a control again ends the sequence after the current part.
 """
 
 from __future__ import annotations
@@ -32,15 +32,15 @@ from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import Solved, default_modes
 
 LONGEST_WORK = 60.0  # s, time limit of a result; playing cues need less than a tenth
-KEPT = 12  # designs whose results are kept, to undo and compare at once
+KEPT = 12  # designs whose results are cached, for undo and comparison
 CURVE_OFFSETS = tuple(round(0.04 * i, 2) for i in range(1, 18))  # b/R
-MOST_GRAM_MODES = 45  # what a gram adds takes all modes of the mesh: cubic
+MOST_GRAM_MODES = 45  # the end-mass distribution needs all modes of the mesh: cubic cost
 GRAM_REACH = 0.3  # m from the tip
 
 
 @dataclass(frozen=True)
 class Struck:
-    """A scene's modes, and its strike without the course of it."""
+    """A scene's modes, and its strike without the time history."""
 
     solved: Solved
     outcome: Outcome
@@ -48,14 +48,14 @@ class Struck:
 
 @lru_cache(KEPT)
 def struck(scene: Scene) -> Struck:
-    """The coupled strike: all that the first number takes."""
+    """The coupled strike, sufficient for the first numbers."""
     solved = Solved(scene)
     outcome = strike_modes(scene, solved.tip)
     return Struck(solved, replace(outcome, history=None))
 
 
 def first_numbers(scene: Scene) -> dict[str, float | None]:
-    """What follows from the strike alone, SI."""
+    """Results of the strike alone, SI."""
     outcome = struck(scene).outcome
     pivot = pivot_length(scene, outcome.squirt)
     return {"squirt": float(outcome.squirt), "pivot_length": None if pivot is None else float(pivot)}
@@ -80,7 +80,7 @@ def _end_mass(name: str, solved: Solved) -> float | None:
 
 @lru_cache(KEPT)
 def verdict(scene: Scene) -> Record:
-    """Squirt with its uncertainty, among the reference cues."""
+    """Squirt with its uncertainty, compared with the reference cues."""
     known = struck(scene)
     return verdict_record(scene, known.outcome, ready_cues(), solved=known.solved)
 
@@ -91,20 +91,20 @@ def struck_like(scene: Scene, other: Scene) -> Scene:
 
 
 def comparison(scene: Scene, other: Scene, same_shaft: bool, names: Sequence[str] = ("squirt",)) -> Record:
-    """The differences of a scene from another one that is struck alike; same_shaft counts only for one wood."""
+    """The differences of a scene from another one by the same stroke; same_shaft applies only to one wood."""
     same = same_shaft and main_material(scene.shaft).E == main_material(other.shaft).E
     return comparison_record({"other": other, "own": scene}, same_shaft=same, names=names)["differences"]["own"]
 
 
 @lru_cache(KEPT)
 def curve(scene: Scene) -> dict[str, Any]:
-    """Squirt, pivot length and the state of the contact against the offset."""
+    """Squirt, pivot length and the contact state against the offset."""
     return coupled_curve(scene, CURVE_OFFSETS, struck(scene).solved.tip)
 
 
 @lru_cache(KEPT)
 def gram(scene: Scene) -> tuple[Array, Array]:
-    """Positions along the bare cue, m, and the end mass that one gram adds there, g."""
+    """Positions along the cue without tip effects, m, and the increase of the end mass by a mass of 1 g there, g."""
     bare = replace(scene, effects=())
     effect = sensitivity(bare, min(default_modes(bare), MOST_GRAM_MODES))
     near = effect.x <= GRAM_REACH
@@ -113,17 +113,17 @@ def gram(scene: Scene) -> tuple[Array, Array]:
 
 @lru_cache(KEPT)
 def changes(scene: Scene) -> Record:
-    """What a maker can change, and what each change does."""
+    """The design changes a maker can make, with their results."""
     return design_changes(scene, solved=struck(scene).solved)
 
 
 def solid(scene: Scene) -> Record:
-    """The scene by beam and by solid."""
+    """The scene by the beam and by the solid model."""
     return cuefem.report.model_error_record(scene)  # loads scikit-fem, which the page's start need not
 
 
 async def computed(work: Callable[..., Any], *arguments: Any) -> Any:
-    """Work done in a thread, with overflows as errors; RuntimeError if it takes too long."""
+    """Run the work in a thread, with overflows as errors; RuntimeError at the time limit."""
 
     def guarded() -> Any:
         with np.errstate(over="raise", divide="raise", invalid="raise"):

@@ -1,4 +1,4 @@
-"""The scene as text: the file that Save writes, and where everything is that no knob changes."""
+"""The scene as text: the file that Save writes, with every key, also those without a control."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ NAME = "design.toml"
 
 
 class FileEditor:
-    """The text with its buttons. applied: takes a design that was read of it."""
+    """The text with its buttons. applied: called with the design read from it."""
 
     def __init__(self, applied: Callable[[Design], None]) -> None:
         self.applied = applied
         self.saved = ""
         with ui.element("div").classes("line"):
             self.title = ui.label().classes("h2")
-            ui.label("the file that Save writes; joint, bridge, layers and own materials are here").classes("soft")
+            ui.label("the file that Save writes; joint, bridge, layers and custom materials are here").classes("soft")
             self.apply = ui.button("Apply", on_click=self._apply).props("outline dense no-caps")
             self.revert = ui.button("Revert", on_click=lambda: self.show(self.design)).props("outline dense no-caps")
         self.error = ui.label().classes("error").props("role=alert")
@@ -36,7 +36,7 @@ class FileEditor:
         self._changed()
 
     def named(self) -> None:
-        """Name the editor for who does not see it, now that the browser has it."""
+        """Set the editor's accessible name once the browser has loaded it."""
         name = json.dumps("Scene as text")
         ui.run_javascript(
             f"document.querySelectorAll('.cm-content').forEach(e => e.setAttribute('aria-label', {name}))"

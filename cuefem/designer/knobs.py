@@ -1,4 +1,4 @@
-"""The knobs: which there are, what each changes in a scene, what may be typed, and each as a row of the page."""
+"""The controls: their ranges, the parameter each changes in a scene, typed input, and each as a row of the page."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from cuefem.quantity.units import parted, unit_of
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import GAMES, usual_scene, without_leather
 
-LEAST_WALL = 0.0005  # m, that a typed bore must leave
+LEAST_WALL = 0.0005  # m, the thinnest wall around a typed bore
 NEW_FERRULE, NEW_BORE, NEW_DEPTH = "25 mm", 0.006, 0.127
 NONE, DRILLED = "none", "drilled"
 LONGEST_TEXT = 40
@@ -29,9 +29,9 @@ FERRULE_BEGINS, LEATHER_BEGINS = "the ferrule; tip added", "the tip"
 
 
 class Range(NamedTuple):
-    """What a slider reaches from ``low`` to ``high`` in steps, and what may be typed, from ``least`` to ``most``.
+    """The range of a slider, ``low`` to ``high`` in steps, and of typed values, ``least`` to ``most``.
 
-    All in a unit that people read; ``scale`` is one SI unit in it. A range from 0 to 0 has no slider.
+    All in the display unit; ``scale`` is the factor from the SI unit. A range from 0 to 0 has no slider.
     """
 
     unit: str
@@ -44,7 +44,7 @@ class Range(NamedTuple):
 
 
 class Knob(NamedTuple):
-    """A knob: its group, its label ("{at}" is a position on the cue), and the range of its number; none of a choice."""
+    """A control: its group, its label ("{at}" is a position on the cue), and its range (None for a choice)."""
 
     group: str
     label: str
@@ -83,24 +83,24 @@ KNOBS = {
 }
 GROUPS = ("Shaft", "Tip", "Stroke")
 SI = {"mm": "m", "g": "kg", "ms": "s"}
-# Where a knob is only what a verdict counts under other names.
+# Controls whose uncertain parameters have other names in a verdict.
 INPUTS = {"shaft_material": ("E", "G"), "shaft_mass": ("rho",), "bore": ("bore_width",)}
 
 
 def label(key: str, scene: Scene) -> str:
-    """A knob's label."""
+    """A control's label."""
     return KNOBS[key].label.format(at=f"{1e3 * taper_position(scene.shaft):.0f} mm")
 
 
 def range_of(key: str) -> Range:
-    """What a number's slider reaches, and what may be typed."""
+    """The ranges of a number's slider and of its typed values."""
     known = KNOBS[key].range
     assert known is not None
     return known
 
 
 def value(key: str, scene: Scene) -> Any:
-    """What a scene has: an SI number, or the name of a choice; None without such a knob."""
+    """A control's value in a scene: an SI number, or the name of a choice; None if it does not apply."""
     cue, layout = scene.shaft, Layout.of(scene.shaft)
     if key == "ferrule":
         return _name(cue.segments[layout.ferrule.start].material) if layout.ferrule else NONE
@@ -127,7 +127,7 @@ def _name(known: Any) -> str:
 
 
 def options(key: str, scene: Scene) -> list[str]:
-    """What may be chosen; the scene's own is among it."""
+    """The options of a choice, including the scene's own."""
     offered = {
         "shaft_material": PARAMETERS["shaft_material"].materials,
         "ferrule": (NONE, *PARAMETERS["ferrule_material"].materials),
@@ -141,7 +141,7 @@ def options(key: str, scene: Scene) -> list[str]:
 
 
 def with_value(scene: Scene, key: str, new: Any) -> Scene:
-    """The scene with a knob at another value; ValueError if no such scene can be made."""
+    """The scene with a control at another value; ValueError if that scene is invalid."""
     made = _with_value(scene, key, new)
     if key.startswith(("ferrule", "bore")):  # which cut segments, and would cut them anew with every move
         made = replace(made, cue=_joined(made.shaft))
@@ -149,7 +149,7 @@ def with_value(scene: Scene, key: str, new: Any) -> Scene:
 
 
 def _joined(cue: Cue) -> Cue:
-    """The cue with one segment instead of two that are one cone of one material."""
+    """The cue with adjacent segments merged if they form one cone of one material."""
     segments = list(cue.segments[:1])
     for piece in cue.segments[1:]:
         last = segments[-1]
@@ -196,7 +196,7 @@ def _with_ferrule(scene: Scene, name: str) -> Scene:
 
 
 def _with_game(scene: Scene, name: str) -> Scene:
-    """The scene with a game's ball, tip and stroke; what acts on the cue stays."""
+    """The scene with a game's ball, tip and stroke; effects on the cue are unchanged."""
     usual = usual_scene(scene.shaft, name)
     brought = {type(effect) for effect in usual.effects}
     staying = tuple(effect for effect in scene.effects if not effect.at_tip and type(effect) not in brought)
@@ -225,9 +225,9 @@ def read(key: str, text: str, scene: Scene, last: str = "") -> float:
 
 
 def whole(key: str, text: str, last: str = "") -> str:
-    """A typed text with its unit: where it has none, the one of ``last``, which was typed before, else the one shown.
+    """A typed text with its unit; the default is that of ``last``, the previous input, else the displayed one.
 
-    A fraction is of inches, or says of what.
+    A fraction is in inches unless it has a unit.
     """
     unit = range_of(key).unit
     if not unit or not _UNITLESS.fullmatch(text.replace(",", ".").replace("−", "-")):
@@ -247,7 +247,7 @@ def _float(text: str) -> Any:
 
 
 def limits(key: str, scene: Scene) -> tuple[float, float, str]:
-    """The least and the most that may be typed, SI, and what sets it, which follows the cue."""
+    """The limits of typed values, SI, and the reason of each; they depend on the cue."""
     known, cue = range_of(key), scene.shaft
     least, most, why = known.least / known.scale, known.most / known.scale, ""
     if key == "bore_width" and (bore := Layout.of(cue).bore):
@@ -273,21 +273,21 @@ def _within(key: str, new: float, text: str, scene: Scene) -> float:
 
 
 class Turns(Protocol):
-    """What a knob's row needs of the page."""
+    """The page as a control's row uses it."""
 
     @property
     def step(self) -> Step:
-        """What is shown: the design, and the other one."""
+        """The displayed step: the design, and the other one."""
 
     def turn(self, key: str, new: Any, text: str = "", *, slid: bool = False) -> None:
-        """Set a knob to a value; ValueError if there is no such design."""
+        """Set a control to a value; ValueError if that design is invalid."""
 
     def go(self, steps: int) -> None:
         """Undo (-1) or redo (1)."""
 
 
 class KnobRow:
-    """A knob on the page: label, slider or note, field or list, and its error. short: in the list of assumptions.
+    """A control on the page: label, slider or note, field or list, and its error. short: in the list of assumptions.
 
     It is empty until `show` is called.
     """
@@ -348,7 +348,7 @@ class KnobRow:
         return design.typed.get(self.key) or written(self.key, mine, design.scene)
 
     def _note(self, design: Design, mine: Any, beside: Any) -> str:
-        """What stands below the label: the other design's value, or the weight, or a typed value in mm or g."""
+        """The note below the label: the other design's value, or the weight, or a typed value in mm or g."""
         own = mine if self.knob.range is None else written(self.key, mine, design.scene)
         if beside != mine:
             there = beside if beside is None or self.knob.range is None else written(self.key, beside, design.scene)

@@ -1,4 +1,4 @@
-"""The page of one browser tab: its header, its first screen, its knobs and its tabs, and how a change gets to them."""
+"""The page of one browser tab: header, first screen, controls and tabs, and how a change updates them."""
 
 from __future__ import annotations
 
@@ -54,14 +54,14 @@ SHARED = ("struck", "numbers", "curve", "gram")  # also computed of the other de
 
 
 async def is_open(client: Client, timeout: float = 60.0) -> bool:
-    """Whether a tab's browser has connected; it has not if the tab was closed before its page was there."""
+    """Whether a tab's browser has connected; not if the tab was closed before its page loaded."""
     with suppress(TimeoutError):
         await client.connected(timeout=timeout)
     return client.has_socket_connection
 
 
 class Page:
-    """What a tab shows, and what its controls do."""
+    """The content of a tab, and the actions of its controls."""
 
     def __init__(self, first: Design) -> None:
         self.history = Steps(first)
@@ -89,7 +89,7 @@ class Page:
 
     @property
     def step(self) -> Step:
-        """The two designs on the page: the current one and the one beside it."""
+        """The two designs on the page: the current one and the other one."""
         return self.history.now
 
     # --- the parts of the page ---------------------------------------------------------------------
@@ -140,7 +140,7 @@ class Page:
 
     @ui.refreshable_method
     def assumptions(self) -> None:
-        """What nobody gave: a line each, with the control that changes it."""
+        """The assumptions, one line each, with the control that changes it."""
         self.rows = [row for row in self.rows if not row.short]
         if not self.fold.value:
             return
@@ -164,7 +164,7 @@ class Page:
         ]
 
     def _parts(self) -> dict[str, float]:
-        """By how much each knob's uncertain parameters change squirt, relatively."""
+        """Relative uncertainty of squirt by each control's parameters."""
         inputs = self.known.own.get("verdict", {}).get("inputs", {})
         parts = {key: sum(inputs.get(name, 0.0) ** 2 for name in INPUTS.get(key, (key,))) ** 0.5 for key in KNOBS}
         return {key: part for key, part in parts.items() if part}
@@ -205,7 +205,7 @@ class Page:
     # --- changes -----------------------------------------------------------------------------------
 
     def turn(self, key: str, new: Any, text: str = "", *, slid: bool = False) -> None:
-        """Set a knob to a value, typed as a text; ValueError if there is no such design."""
+        """Set a control to a value, typed as a text; ValueError if that design is invalid."""
         when, name = time.monotonic(), key if slid else ""
         base = self.history.before(name, when)
         made = base.changed(with_value(base.scene, key, new), {key}, {key: text} if text else {})
@@ -229,7 +229,7 @@ class Page:
             self.say(one_line(error))
 
     def put(self, step: Step, label: str = "", *, when: float = 0.0) -> None:
-        """Go on to another step, and show it."""
+        """Add a step to the history, and show it."""
         self.history.put(step, label, when=when)
         self.show()
         self._answer_soon()
@@ -285,7 +285,7 @@ class Page:
         ui.download.content(toml_text(design.scene), f"{_stem(design.name)}.toml")
 
     async def _report(self) -> None:
-        """Write the report of the design, beside the other one."""
+        """Write the report of the design, compared with the other one."""
         design, other = self.step.design, self.step.other
         self.report.disable()
         notes = [f"{label(key, design.scene)} {_assumption(key, design.scene)}" for key in self._assumed()]
@@ -338,7 +338,7 @@ class Page:
         self.banner.set_visibility(bool(words))
 
     def show(self) -> None:
-        """Show the design at once: its knobs, its name, its drawing, its file."""
+        """Show the design at once: its controls, name, drawing and file."""
         design, other = self.step
         self.name.set_value(design.name)
         self.changed.set_text("changed since opened" if design.scene != self.history.opened.scene else "")
@@ -368,7 +368,7 @@ class Page:
             self.file.show(design)
 
     def _show_known(self) -> None:
-        """Show what is computed so far."""
+        """Show the results computed so far."""
         own, other = self._shown(self.known.own, 0), self._shown(self.known.other, 1)
         if own is None:
             return
@@ -390,7 +390,7 @@ class Page:
         return Shown(name, design.scene, numbers, side.get("verdict"))
 
     def _beside(self) -> Scene:
-        """The other design as it is struck: with this one's ball and stroke, a reference cue with its tip too."""
+        """The other design with this one's ball and stroke; a reference cue with this tip too."""
         assert self.step.other is not None
         mine, other = self.step.design.scene, self.step.other.design.scene
         return (
@@ -423,7 +423,7 @@ class Page:
     # --- results -----------------------------------------------------------------------------------
 
     async def _begin(self) -> None:
-        """Take up what this tab had before a reload, and answer."""
+        """Restore the state of this tab before a reload, and compute."""
         if not await is_open(self.client):
             return
         kept = app.storage.tab.get("history")
@@ -440,7 +440,7 @@ class Page:
         background_tasks.create(self._answer(self.version), name="answer")
 
     async def _answer(self, version: int) -> None:
-        """Compute what is shown, the first numbers first; end when the design is another one."""
+        """Compute the displayed results, the first numbers first; stop when the design changes."""
         step, known = self.step, Known()
         other = None if step.other is None else self._beside()
         scenes = [(step.design.scene, known.own), *([] if other is None else [(other, known.other)])]
@@ -462,7 +462,7 @@ class Page:
                     if version != self.version:
                         return
                 if "struck" not in known.own:
-                    failures = [f"{failures[0]}. The numbers are those of the design before."]
+                    failures = [f"{failures[0]}. The numbers are those of the previous design."]
                     break
                 self._take(known)
             self.say("; ".join(dict.fromkeys(failures)))
@@ -470,7 +470,7 @@ class Page:
 
     @staticmethod
     async def _compute(side: dict[str, Any], name: str, work: Callable[..., Any], *arguments: Any) -> list[str]:
-        """Compute one result of a side; what went wrong with it, if anything did."""
+        """Compute one result of a design; return the error message, if any."""
         try:
             side[name] = await computed(work, *arguments)
         except FAILURES as error:
@@ -478,7 +478,7 @@ class Page:
         return []
 
     def _take(self, known: Known) -> None:
-        """Show results; the card is no longer stale once the numbers are this design's."""
+        """Show results; the card is no longer stale once the numbers belong to this design."""
         first = "verdict" not in self.known.own
         solid = self.known.own.get("solid") if self.solid_of == self.step.design.scene else None
         self.known = Known(dict(known.own), dict(known.other), known.own.get("comparison", {}).get("squirt"))
@@ -509,7 +509,7 @@ class Page:
 
 
 def file_name(text: Any) -> str:
-    """The name of a file as the browser sent it, without folders; ValueError if no file can have that name."""
+    """The name of an uploaded file without folders; ValueError for an invalid file name."""
     name = PurePosixPath(str(text or "").replace("\\", "/")).name
     if name.strip() in ("", ".", "..") or not name.isprintable() or len(name.encode(errors="replace")) > 255:
         raise ValueError(f"a file must have a name of at most 255 bytes; got {name[:20]!r}")
@@ -525,7 +525,7 @@ def _other_name(other: Other | None) -> str:
 
 
 def _stem(name: str) -> str:
-    """A design's name as the name of a file."""
+    """A design's name as a file name."""
     return "".join(c if c.isalnum() or c in " -_." else "_" for c in name).strip(" .") or "design"
 
 

@@ -1,4 +1,4 @@
-"""The tabs below the result: curves, changes, numbers, check. Each shows what is known, and says what it waits for."""
+"""The tabs below the result: curves, changes, numbers, check. Each shows the results so far, and what is pending."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ COMPUTING = '<p class="soft">computing …</p>'
 
 @dataclass
 class Known:
-    """What is computed of the design in work ("own") and of the other one, by the names of the computation."""
+    """Results of the current design ("own") and of the other one, by the names of the computation."""
 
     own: dict[str, Any] = field(default_factory=dict)
     other: dict[str, Any] = field(default_factory=dict)
@@ -41,7 +41,7 @@ class Known:
 
 
 def named(step: Step) -> list[tuple[str, Design]]:
-    """The designs that are shown, by names that differ."""
+    """The displayed designs, by distinct names."""
     mine, other = step.design, step.other
     if other is None:
         return [(mine.name, mine)]
@@ -52,7 +52,7 @@ def named(step: Step) -> list[tuple[str, Design]]:
 
 
 def curves_markup(step: Step, known: Known) -> str:
-    """Squirt and pivot length against the offset, and what a gram adds along the shaft, of one or two designs."""
+    """Squirt and pivot length against the offset, and the end-mass distribution, of one or two designs."""
     sides = [
         (name, style, side)
         for (name, _), style, side in zip(named(step), STYLES, (known.own, known.other), strict=False)
@@ -85,7 +85,7 @@ def curves_markup(step: Step, known: Known) -> str:
 
 
 def changes_panel(step: Step, known: Known, attempt: Callable[[Mapping[str, Any]], None]) -> None:
-    """What a maker can change, each change with a button that makes it."""
+    """The design changes, each with a button that applies it."""
     record = known.own.get("changes")
     if record is None:
         ui.html(COMPUTING, sanitize=False)
@@ -162,7 +162,7 @@ def _knob_text(key: str, scene: Scene) -> str:
 
 
 def check_sheet(step: Step, known: Known) -> list[Sheet]:
-    """What was checked of the design, and beam beside solid once that is computed."""
+    """Checks of the design, and beam against solid once that is computed."""
     rows = []
     if "verdict" in known.own:
         band = known.own["verdict"]["uncertainty"]
@@ -181,5 +181,5 @@ def check_sheet(step: Step, known: Known) -> list[Sheet]:
 
 
 def sheets_markup(sheets: Sequence[Sheet | None]) -> str:
-    """Tables as the report has them."""
+    """Tables in the report's format."""
     return "".join(COMPUTING if each is None else sheet_markup(each) for each in sheets)

@@ -1,4 +1,4 @@
-"""The designer's server: one page, on this computer alone. It refuses other pages, and bodies that are too big."""
+"""The designer's server: one page, on this computer only. It rejects requests of other pages, and large bodies."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ REJECTED = f"a file must be a {', '.join(KINDS[:-1])} or {KINDS[-1]} of at most 
 
 
 def serve(first: Design, *, port: int, show: bool, announce: Callable[[str], None]) -> None:
-    """Serve the page on this computer alone until it is stopped. show: open it in the browser."""
+    """Serve the page on this computer only until stopped. show: open it in the browser."""
     warnings.filterwarnings("ignore", category=Unusual)  # the page's Check lists what is unusual
 
     @ui.page("/")
@@ -51,17 +51,17 @@ def serve(first: Design, *, port: int, show: bool, announce: Callable[[str], Non
 
 
 class TooBig(Exception):
-    """More was sent than the server reads."""
+    """The request body exceeds the limit."""
 
 
 class RequestValidation:
-    """Refuses what other pages ask for, and bodies that are too big, before they are read."""
+    """Rejects requests of other pages, and bodies above the limit, before reading them."""
 
     def __init__(self, app: ASGIApp, origins: tuple[str, ...]) -> None:
         self.app, self.origins = app, origins
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Let a request in, or answer it here."""
+        """Pass on a valid request, or reject it."""
         if scope["type"] not in ("http", "websocket"):
             await self.app(scope, receive, send)
             return

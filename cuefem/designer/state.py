@@ -1,4 +1,4 @@
-"""The session of a browser tab: the current design, the one beside it, and the history for undo and redo."""
+"""The session of a browser tab: the current design, the other one, and the history for undo and redo."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ TOGETHER = 1.5  # s: moves of one slider that follow each other within it are on
 MOST_STEPS = 60
 MOST_SEGMENTS = 300  # the natural frequencies and the stiffness of as many take 15 s and 0.6 GB
 LONGEST_NAME = 80
-BUTT = "15 oz"  # of a drawing that names no weight behind it
+BUTT = "15 oz"  # of a drawing without body_mass
 FAILURES = (ValueError, RuntimeError, ArithmeticError, MemoryError, OSError)
 _CUE = re.compile(r"""^\s*cue\s*=\s*["']([^"'\n]+)["']""", re.MULTILINE)
 
@@ -38,8 +38,8 @@ def one_line(error: BaseException) -> str:
 class Design:
     """A scene under a name.
 
-    assumed: the knobs whose values neither a file nor a person gave. typed: the texts of values as they were typed,
-    by knob. notes: what was assumed that no knob changes.
+    assumed: the controls whose values were set neither in a file nor by the user. typed: the texts of typed values,
+    by control. notes: assumptions without a control.
     """
 
     name: str
@@ -57,7 +57,7 @@ class Design:
             )
 
     def changed(self, scene: Scene, keys: Iterable[str], typed: Mapping[str, str]) -> Design:
-        """Another scene, with the values of some knobs given by a person."""
+        """The design with another scene, in which the user set some controls."""
         kept = {key: text for key, text in self.typed.items() if key not in keys}
         weight = frozenset({"shaft_mass"} if self.scene.shaft.weighed and not scene.shaft.weighed else ())
         return replace(self, scene=scene, assumed=self.assumed - {*keys} | weight, typed={**kept, **typed})
@@ -71,14 +71,14 @@ class Other(NamedTuple):
 
 
 class Step(NamedTuple):
-    """What one undo brings back."""
+    """One step of undo."""
 
     design: Design
     other: Other | None = None
 
 
 class Steps:
-    """All steps of a tab, and which of them is shown; it stays on the server while the tab is open or reloaded."""
+    """All steps of a tab, and the displayed one; the server retains them while the tab is open or reloaded."""
 
     def __init__(self, first: Design) -> None:
         self.opened = first
@@ -88,11 +88,11 @@ class Steps:
 
     @property
     def now(self) -> Step:
-        """The step that is shown."""
+        """The displayed step."""
         return self.steps[self.at]
 
     def joins(self, label: str, when: float) -> bool:
-        """Whether a move of the slider ``label`` at a time, s, goes on with the step that is shown."""
+        """Whether a move of the slider ``label`` at a time, s, continues the displayed step."""
         return bool(label) and label == self.label and when - self.when < TOGETHER and self.at > 0
 
     def before(self, label: str, when: float) -> Design:
@@ -100,7 +100,7 @@ class Steps:
         return self.steps[self.at - self.joins(label, when)].design
 
     def put(self, step: Step, label: str = "", *, when: float = 0.0) -> None:
-        """Go on to another step; steps that were undone are forgotten, and a whole slide is one step."""
+        """Add a step; undone steps are dropped, and one slide is one step."""
         if step == self.now:
             return
         kept = self.steps[: self.at + (not self.joins(label, when))]
@@ -108,7 +108,7 @@ class Steps:
         self.at, self.label, self.when = len(self.steps) - 1, label, when
 
     def go(self, steps: int) -> bool:
-        """Undo (-1) or redo (1); whether there was such a step."""
+        """Undo (-1) or redo (1); whether that step exists."""
         at = self.at + steps
         if not 0 <= at < len(self.steps):
             return False
@@ -117,9 +117,9 @@ class Steps:
 
 
 def design_of_file(path: Path, name: str, scene: Scene, given: Mapping[str, Any] = MappingProxyType({})) -> Design:
-    """A scene that was read from a file, and what was assumed for it.
+    """A scene read from a file, and its assumptions.
 
-    given: the values of options that told what the file does not, by name. A shape without a weight behind it gets
+    given: the values of options that supplement the file, by name. A shape without body_mass gets
     `BUTT`.
     """
     found = assumed(path, scene, given)
@@ -136,9 +136,9 @@ def reference_design(preset: Preset) -> Design:
 
 
 def read_design(name: str, content: bytes, game: str = DEFAULT_GAME) -> Design:
-    """The design of a file that was sent; ValueError in one line.
+    """The design of an uploaded file; ValueError in one line.
 
-    A cue alone gets the default stroke of a game. A scene that names a reference cue finds it, wherever it lies.
+    A cue alone gets the default stroke of a game. A scene may name a reference cue without its folder.
     """
     with TemporaryDirectory() as place:
         path = Path(place) / name

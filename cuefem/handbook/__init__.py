@@ -43,7 +43,7 @@ CHAPTERS = (
 )
 # The headed lines of every effect's docstring, in their order.
 LINES = ("Adds", "Matters when", "Wrong when", "Limit", "Source")
-# How a response's argument is written: an offset b/R may be left out.
+# How a response's argument is written: an offset b/R is optional.
 ARGUMENTS = {"": "", "mode": "(n)", "offset": "[(b)]"}
 
 
@@ -90,7 +90,7 @@ def _every_effect() -> str:
 
 
 def _every_response() -> str:
-    """The responses of studies as a table: name, unit in which people read it, what it is, and which is better."""
+    """The responses of studies as a table: name, display unit, definition, and which direction is better."""
     from cuefem.parameters.parameter import PARAMETERS
     from cuefem.results.quantities import TRADE
     from cuefem.results.solved_design import asked
