@@ -166,7 +166,7 @@ def test_designs_that_fail_disturb_no_other() -> None:
     assert np.isnan(found.values[1, 0])
     assert np.isnan(found.values[2]).tolist() == [True, False, False]
     assert found.values[2, 1] < 0
-    assert f"the squirt is {found.values[2, 1]:.4g} times phi" in found.reasons[2]
+    assert f"a squirt of {found.values[2, 1]:.4g} phi" in found.reasons[2]
 
 
 DEPTH = Vary(("cue.segments[2].length",), Span(0.05, 0.25), "bore depth", taken_from=("cue.segments[3].length",))
