@@ -14,7 +14,6 @@ from cuefem.cli import COMMANDS, main
 from cuefem.cue.materials import LEATHERS, material
 from cuefem.io.fittings import FITTINGS
 from cuefem.report.tip_table import SPEEDS, tip_record
-from cuefem.scene.default_scene import GAMES
 from tests.helpers.command_line import as_json, call
 
 SHAFT = cf.Cue((cf.Segment(0.7, 0.0118, 0.021, material("hard maple")),), 0.42)
@@ -29,17 +28,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     cf.save(cf.usual_scene(SHAFT), tmp_path / "leather.toml")
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-@pytest.mark.parametrize("game", GAMES)
-def test_a_cue_alone_is_struck_as_in_its_game(folder: Path, game: str) -> None:
-    found, known = as_json("strike", "shaft.toml", "--game", game), GAMES[game]
-    scene = found["scene"]
-    assert (scene["ball"]["mass"], scene["ball"]["radius"]) == (known.ball.mass, known.ball.radius)
-    assert scene["stroke"] == {"speed": known.speed, "offset": known.offset}
-    assert (scene["effects"][0]["height"], scene["effects"][0]["dome_radius"]) == (known.height, known.dome_radius)
-    squirt = cf.strike(cf.usual_scene(SHAFT, game)).squirt
-    assert found["models"]["coupled"]["squirt"] == pytest.approx(squirt, rel=1e-12)
 
 
 def test_the_drawn_leather_is_replaced_by_a_tip_of_its_height(folder: Path) -> None:

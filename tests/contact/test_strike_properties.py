@@ -245,10 +245,3 @@ def test_forces_obey_the_laws_of_friction_and_give_the_impulse(name: str) -> Non
             assert np.abs(f_t - way * mu * f_n)[last].max() < 1e-9 * f_n.max()
             assert np.all(way * history.velocities[1:][here][last, 0] < 1e-3 * scene.stroke.speed)
     assert np.sum([phase.impulse for phase in outcome.phases], axis=0) == pytest.approx(outcome.impulse, rel=1e-12)
-
-
-@pytest.mark.parametrize("extra", [(), (cf.PowerLawTip(1.5),), (cf.Elevation(0.1),), (cf.SecondHit(),)])
-def test_single_numbers_are_plain_floats(extra: tuple[Effect, ...]) -> None:
-    found = cf.strike(cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=cf.Stroke(offset=0.3), effects=extra))
-    values = [found.squirt, found.ball_speed, found.spin, found.cue_speed, found.duration, *found.energy.values()]
-    assert {type(value) for value in values} == {float}

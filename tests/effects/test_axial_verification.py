@@ -62,13 +62,10 @@ def stepped(cue: cf.Cue, pieces: int = 200) -> tuple[float, float]:
         time += dt
 
 
-@pytest.mark.parametrize(("name", "T", "e"), [("pool_maple", 1.269e-3, 0.7808)])
-def test_what_the_wood_adds_is_what_a_chain_of_masses_says(name, T, e):
+def test_what_the_wood_adds_is_what_a_chain_of_masses_says() -> None:
     """The remainder, of 1.1 ms and 0.73: about 0.16 ms and 0.05."""
-    cue = drawn(name)
-    found = seen(cf.strike(head_on(cue)), cue)
-    assert found == pytest.approx(stepped(cue), rel=2e-3)
-    assert found == pytest.approx((T, e), rel=5e-4)
+    cue = drawn("pool_maple")
+    assert seen(cf.strike(head_on(cue)), cue) == pytest.approx(stepped(cue), rel=2e-3)
 
 
 BUTT = {"cue_length": 1.4732, "butt_diameter": 0.03175}

@@ -13,8 +13,7 @@ import scipy.linalg
 import cuefem as cf
 from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike_modes
-from cuefem.scene.solved_scene import tip_modes_of
-from tests.helpers.leather_scenes import LEATHER, SHAFT
+from cuefem.tip_modes import tip_modes_of
 from tests.oracle.chain import Chain, chain_squirt
 
 THRUST = cf.GeometricStiffness()
@@ -105,17 +104,6 @@ def test_squirt_changes_as_in_a_geometrically_exact_chain(speed: float, offset: 
     bends, straight = (strike_modes(scene, each).squirt for each in (tip, replace(tip, geometric=None)))
     assert bends / straight - 1 == pytest.approx(changes(chain, scene), rel=1e-3)
     assert bends < 0.95 * straight
-
-
-def test_tones_end_masses_and_blows_from_the_side_do_not_know_it() -> None:
-    scene = cf.Scene(SHAFT, stroke=cf.Stroke(4.0, 0.3))
-    bends = replace(scene, effects=(THRUST,))
-    one, other = (replace(each, effects=(LEATHER, *each.effects)) for each in (scene, bends))
-    for drive in ("stick", "offset", "velocity", "force"):
-        assert cf.end_mass(one, drive) == cf.end_mass(other, drive), drive
-    assert np.array_equal(cf.modes(SHAFT).frequencies, cf.modes(SHAFT, effects=(THRUST,)).frequencies)
-    side = cf.SideStrike(SHAFT, cf.Striker(0.02, 0.7, contact_time=1e-3), 0.3, 1.0)
-    assert cf.side_strike(side).rebound_speed == cf.side_strike(replace(side, effects=(THRUST,))).rebound_speed
 
 
 def test_a_shaft_that_bends_too_far_is_refused_by_its_load() -> None:

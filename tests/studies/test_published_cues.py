@@ -2,7 +2,6 @@
 
 import csv
 import math
-from pathlib import Path
 
 import pytest
 
@@ -12,7 +11,6 @@ from cuefem.io.measured_folder import load_measured
 from cuefem.measurements.measurement_types import AddedMass, PivotLength, Squirt
 from cuefem.results.quantities import with_unit
 from studies.pages import STUDIES
-from tests.helpers.command_line import call
 
 HOME = STUDIES / "measured"
 FOLDERS = sorted(path for path in HOME.iterdir() if (path / "measured.toml").exists())
@@ -56,13 +54,6 @@ def test_the_page_says_what_is_computed() -> None:
                 computed = with_unit(one.computed(cue.setup()), one.unit)
                 told = with_unit(one.measured, one.unit, error=one.sd)
                 assert f"| {cue.name} | {one.label} | {told} | {computed} |" in text
-
-
-@pytest.mark.parametrize("name", ["stinger", pytest.param("players_maple", marks=pytest.mark.heavy)])
-def test_compare(name: str, tmp_path: Path) -> None:
-    assert call("compare", HOME / name, "-o", tmp_path / "page.html")[::2] == (0, "")
-    text = (tmp_path / "page.html").read_text(encoding="utf-8")
-    assert all(f">{one.label}<" in text for one in load_measured(HOME / name)[0].measurements)
 
 
 def test_the_handbook_s_tables_are_those_of_the_studies() -> None:
