@@ -92,7 +92,7 @@ def _rows(path: Path, file: sqlite3.Connection, study: str) -> Iterator[Row]:
 
 
 class SqliteStore:
-    """The designs of a study in a file that may hold those of others; a `cuefem.design.sweep.Store` and a context manager.
+    """The designs of a study in a file of any number of studies; a `cuefem.design.sweep.Store` and a context manager.
 
     InputError if the file is no store or a damaged one. done: designs of the study that are there. computed: those of
     them that this run added.
