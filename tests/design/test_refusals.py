@@ -78,7 +78,7 @@ CALLS: dict[str, Callable[[], object]] = {
     "limit on mass must have low <= high, one finite; got 2.0": lambda: Limit(Response("mass"), 2.0, 1.0),
     "a study varies something": lambda: replace(PROBLEM, vary=()),
     "E must have low and high, or values": lambda: replace(PROBLEM, vary=(E,)),
-    "no design within tip_stiffness >= 1000 was found": lambda: optimum(STIFF, rounds=8),
+    "no design within tip_stiffness >= 1000 was found": lambda: optimum(STIFF, rounds=2),
     "an optimum takes no store, workers or dask": lambda: cf.study(PROBLEM, workers=2),
     "workers are for this machine": lambda: cf.study(varying("ball.mass", 0.2), workers=2, dask="tcp://localhost:1"),
     "Scene.cue must be a Cue of segments": lambda: sensitivity(LUMPED),

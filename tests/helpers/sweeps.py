@@ -46,7 +46,7 @@ STRUCK += vary('"cue.segments[*].material.E"', 'name = "E over drawn"', "low = 0
 
 # Distributions of wood, and of a tip, for scatter.
 SCATTER = 'scene = "scene.toml"\nresponses = ["end_mass", "tip_stiffness"]\n' + resolution(8, 4)
-SCATTER += '[tolerances]\ncount = 64\nseed = 5\ncorrelations = [["E", "density", 0.4]]\n'
+SCATTER += '[tolerances]\ncount = 16\nseed = 5\ncorrelations = [["E", "density", 0.4]]\n'
 SCATTER += 'groups = { wood = ["E", "density"] }\n'
 SCATTER += vary('"cue.segments[0].material.E"', 'name = "E"', 'middle = "12 GPa"', 'sd = "2 GPa"')
 DENSITY = ('name = "density"', 'middle = "700 kg/m^3"', "sd = 0.1", 'spacing = "logarithmic"')
