@@ -10,6 +10,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from cuefem.cue.geometry import Material
 
 
@@ -47,6 +49,14 @@ _ROWS = _TABLES["materials"]
 MATERIALS: Mapping[str, Documented] = MappingProxyType({name: _documented(row) for name, row in _ROWS.items()})
 WOODS = tuple(name for name, row in _ROWS.items() if row["kind"] == "wood")
 LEATHERS: Mapping[str, Leather] = MappingProxyType({name: Leather(**row) for name, row in _TABLES["leathers"].items()})
+
+
+def leather_restitution(E: float) -> float:
+    """Restitution of a tip by the E of its leather, interpolated over log E between `LEATHERS`."""
+    moduli, restitutions = np.array(sorted((leather.E, leather.restitution) for leather in LEATHERS.values())).T
+    return float(np.interp(np.log(E), np.log(moduli), restitutions))
+
+
 # Tips that are sold: of each the name of the leather that stands for it, and the source.
 TIPS: Mapping[str, Mapping[str, str]] = MappingProxyType(_TABLES["tips"])
 # Leathers by their own names and by those of tips.

@@ -75,28 +75,21 @@ class MeasuredCue:
         setup = self.setup(z)
         return np.array([measurement.computed(setup) for measurement in (*self.measurements, *also)])
 
-    def slopes(
-        self, z: Array, also: Sequence[Measurement] = (), *, at: Array | None = None, track: Track = iter
-    ) -> Array:
-        """Derivatives of the values with respect to the parameters, (values, parameters), by central differences.
-
-        By one-sided ones from the values ``at`` that point, if these are given.
-        """
+    def slopes(self, z: Array, also: Sequence[Measurement] = (), *, step: float = STEP, track: Track = iter) -> Array:
+        """Derivatives of the values with respect to the parameters, (values, parameters), by central differences."""
         columns = []
-        for move in track(list(STEP * np.eye(len(z)))):
-            columns.append(self._slope(z, move, also, at) / STEP)
+        for move in track(list(step * np.eye(len(z)))):
+            columns.append(self._slope(z, move, also) / step)
         return np.array(columns).T.reshape(-1, len(z))
 
-    def _slope(self, z: Array, move: Array, also: Sequence[Measurement], at: Array | None) -> Array:
+    def _slope(self, z: Array, move: Array, also: Sequence[Measurement]) -> Array:
         """Change of the values over ``move``, from a smaller move or one side only where the cue would be invalid."""
         for part in 0.5 ** np.arange(NEARER):
             above = self.possible(z + part * move, also)
-            if above is not None and at is not None:
-                return (above - at) / part
             below = self.possible(z - part * move, also)
             if above is not None and below is not None:
                 return (above - below) / (2 * part)
-        here = self.computed(z, also) if at is None else at
+        here = self.computed(z, also)
         if below is not None:
             return (here - below) / part
         return (self.computed(z + part * move, also) - here) / part
@@ -137,12 +130,12 @@ class Residual(NamedTuple):
 def compare(cue: MeasuredCue, *, track: Track = iter) -> tuple[Residual, ...]:
     """Compare every measurement of a measured cue with the model's value; nothing is fitted.
 
-    Cost: one strike for each squirt, times one more than there are parameters. track: follows these steps.
+    The spread is that of `cuefem.results.uncertainty`: half the difference between one standard deviation up and down.
+    Cost: two strikes for each squirt and parameter. track: follows these steps.
     """
     z = np.zeros(len(cue.parameters))
-    at = cue.computed(z)
-    spread = np.sqrt(np.sum(cue.slopes(z, at=at, track=track) ** 2, axis=1))
-    return rows_of(cue, at, spread)
+    spread = np.sqrt(np.sum(cue.slopes(z, step=1.0, track=track) ** 2, axis=1))
+    return rows_of(cue, cue.computed(z), spread)
 
 
 def rows_of(cue: MeasuredCue, computed: Array, spread: Array) -> tuple[Residual, ...]:

@@ -17,7 +17,7 @@ from functools import cache
 from typing import Any, get_args, get_type_hints
 
 from cuefem.cue import Cue, LumpedCue, Material
-from cuefem.cue.materials import LEATHER_OF, LEATHERS, MATERIALS, WOODS, table_name
+from cuefem.cue.materials import LEATHER_OF, LEATHERS, MATERIALS, WOODS, leather_restitution, table_name
 from cuefem.cue.materials import material as named_material
 from cuefem.parameters.parts import (
     BORE_DEPTH,
@@ -76,6 +76,8 @@ class Parameter:
         The word for its value in a command's help, "" if it is no option; and what the help says.
     sets
         What names of its value set, by paths: its own, and others with it.
+    beside
+        What goes with another value of it where it is uncertain, by paths.
     """
 
     name: str
@@ -88,6 +90,7 @@ class Parameter:
     option: str = ""
     help: str = ""
     sets: Mapping[str, Mapping[str, float]] | None = None
+    beside: Callable[[Scene, float], dict[Path, float]] | None = None
 
     @property
     def key(self) -> str:
@@ -107,6 +110,11 @@ class Parameter:
     def of_tip(self) -> bool:
         """Whether it is the tip's or the butt's, which two shafts may share."""
         return self.path.startswith(("leather.", "tip.", "waves.")) or self.part is CONTACT_TIME_OF_SPRING
+
+    def scaled(self, scene: Scene, factor: float) -> dict[Path, float]:
+        """Its value in a scene times a factor, and what goes with it, by paths."""
+        value = factor * self.value(scene)
+        return {self.steps(): value} | (self.beside(scene, value) if self.beside else {})
 
     def spread_in(self, scene: Scene) -> float | None:
         """Its spread in a scene."""
@@ -366,12 +374,23 @@ def _wood_spread(name: str) -> Callable[[Scene], float | None]:
 
 
 def _leather_spread(scene: Scene) -> float | None:
-    """Half the range of all leather, in logarithms, of one by its name; less of an E of its own; None without one."""
+    """Of a contact time known to 10 % (1.0 to 1.2 ms) where the leather is one by its name, of an E of its own to 5 %;
+    None without one."""
     if scene.contact_terms.tip is None:
         return None
-    low, high = MATERIALS["leather"].ranges["E"]
     named = any(own.E == scene.leather.E for own in LEATHERS.values())
-    return math.log(high / low) / 2 if named else IDENTIFIED
+    return CONTACT_TIME_POWER * (0.1 if named else 0.05)
+
+
+def _restitution_beside(scene: Scene, E: float) -> dict[Path, float]:
+    """The tip's restitution with another E of its leather, the rebound of the whole cue the same."""
+    change = leather_restitution(E) - leather_restitution(scene.leather.E)
+    return {("tip", "restitution"): min(max(float(scene.tip.restitution) + change, 0.1), 1.0)}
+
+
+def _restitution_spread(scene: Scene) -> float | None:
+    """Of a tip whose cue rebounds with 0.71 to 0.75 (`cuefem.identify_tip`: 0.575 to 0.633); None without leather."""
+    return None if scene.contact_terms.tip is None else 0.05
 
 
 def _bore_spread(scene: Scene) -> float | None:
@@ -380,7 +399,7 @@ def _bore_spread(scene: Scene) -> float | None:
 
 
 SHAFTS = (*WOODS, "carbon fibre")
-IDENTIFIED = 0.18  # of ln E: of a contact time known to 5 %, whose power -3.5 it is (`cuefem.identify_tip`)
+CONTACT_TIME_POWER = 3.5  # a leather's E goes as that power of 1/contact time (`cuefem.identify_tip`)
 FERRULES = tuple(name for name in MATERIALS if name not in (*SHAFTS, "foam", "leather"))
 _LEATHERS = {
     name: {"leather.E": own.E, "leather.nu": own.nu, "leather.rho": own.rho, "tip.restitution": own.restitution}
@@ -413,6 +432,7 @@ PARAMETERS: dict[str, Parameter] = {
         Parameter(
             *("leather", "E of the leather", "leather.E"),
             spread=_leather_spread,
+            beside=_restitution_beside,
             option="LEATHER",
             help='Leather of the tip: soft, medium, hard, a tip of `cuefem parts`, or its E, e.g. "200 MPa".',
             sets=_LEATHERS,
@@ -437,6 +457,7 @@ PARAMETERS: dict[str, Parameter] = {
         Parameter("contact time", "contact time", part=CONTACT_TIME_OF_SPRING, spread=0.1),
         Parameter(
             *("restitution", "restitution of the tip", "tip.restitution"),
+            spread=_restitution_spread,
             option="E",
             help="Restitution of the tip alone, 0 to 1; with axial waves a tip of 0.6 gives a whole cue 0.73.",
         ),

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from functools import lru_cache
 from itertools import chain
+from types import MappingProxyType
 from typing import NamedTuple
 
 from cuefem.contact.strike import strike_modes
@@ -18,9 +20,9 @@ from cuefem.scene.solved_scene import Solved
 # measured either. Few series determine it only to an interval; these are its upper ends, for a leather tip and for a
 # spring without a dome. studies/measured/uncertainty.py derives them, and tests/results/test_uncertainty.py again.
 MODEL, MODEL_OF_SPRING = 0.18, 0.29
-# The error of the logarithm of a ratio of squirt as a part of that logarithm: of two shafts (the upper end, from pairs
-# of shafts in one series), and of a shaft with and without a mass on it (31 places of two masses).
-SHAFTS, MASSES = 0.32, 0.54
+# The error of the logarithm of a ratio of squirt as a part of that logarithm: of two shafts (upper end, from pairs of
+# shafts in one series, their inputs included), and of a shaft with and without a mass on it (31 places of two masses).
+SHAFTS, MASSES = 0.31, 0.54
 FLOOR = 0.01  # relative, of any ratio of squirt: calipers and numerical error
 COMPUTED = 0.002  # of squirt at the default resolution: 0.19 % at most (studies/accuracy/accuracy.md)
 
@@ -65,27 +67,26 @@ def changes_by_input(
     own: Mapping[str, float],
     of: Callable[[Scene], Mapping[str, float]],
     inputs: Iterable[str] = PARAMETERS,
+    spreads: Mapping[str, float] = MappingProxyType({}),
 ) -> dict[str, dict[str, float]]:
     """Relative changes of results of a scene with each uncertain input, by its standard deviation.
 
-    own: results of the scene. of: computes those of a changed scene. inputs: the requested inputs. Signs
-    are those of a larger value of the input.
+    Half the difference between one standard deviation up and one down; of one side where the other gives no valid cue.
+    own: results of the scene. of: computes those of a changed scene. inputs: the requested inputs. spreads: standard
+    deviations of logarithms that replace the usual ones, by input. Signs are those of a larger value of the input.
     """
     changes: dict[str, dict[str, float]] = {}
     for key in inputs if scene.cue.segments else ():
         known = PARAMETERS[key]
-        spread = known.spread_in(scene)
+        spread = spreads.get(key, known.spread_in(scene))
         ways = (spread, -spread) if spread is not None else (math.log1p(-known.below),) if known.below else ()
-        value = known.value(scene) if ways else None
-        if not value:
-            continue
-        for off in ways:  # the opposite sign where the first gives no valid cue
-            try:
-                made = of(replaced(scene, {known.steps(): value * math.exp(off)}))
-            except (ValueError, RuntimeError):
-                continue
-            changes[key] = {name: math.copysign(1.0, off) * (made[name] / own[name] - 1) for name in own}
-            break
+        found = []
+        for off in ways if known.value(scene) else ():
+            with suppress(ValueError, RuntimeError):  # no valid cue there
+                made = of(replaced(scene, known.scaled(scene, math.exp(off))))
+                found.append({name: math.copysign(1.0, off) * (made[name] / own[name] - 1) for name in own})
+        if found:
+            changes[key] = {name: sum(each[name] for each in found) / len(found) for name in own}
     return changes
 
 
@@ -114,7 +115,10 @@ def model_share(first: Scene, other: Scene) -> float:
 
 
 def ratio_error(ratio: float, share: float, *inputs: float, floor: float = FLOOR) -> float:
-    """The error of a ratio, 1 sigma: the model's share of its logarithm, the contributions of inputs, and a floor."""
+    """The error of a ratio, 1 sigma: the model's share of its logarithm or the contributions of inputs, and a floor.
+
+    The larger of share and inputs counts, because the share includes the inputs of the measured pairs.
+    """
     ln = math.log(ratio)
     # from the logarithm to the ratio so that a difference and its error have one quotient in either order of the two
-    return math.hypot(share * ln, *inputs, floor) * (math.expm1(ln) / ln if ln else 1.0)
+    return math.hypot(max(share * abs(ln), math.hypot(*inputs)), floor) * (math.expm1(ln) / ln if ln else 1.0)

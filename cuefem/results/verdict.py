@@ -57,7 +57,8 @@ def verdict_record(scene: Scene, outcome: Outcome, ready: Mapping[str, Cue], *, 
 def _beside(scene: Scene, squirt: float, cue: Cue, inputs: float) -> Record | None:
     """Another cue with the same stroke; None if this stroke fails with it, or one of the two has no squirt.
 
-    inputs: relative uncertainty of squirt by the inputs of the scene's shaft.
+    inputs: relative uncertainty of squirt by the inputs of the scene's shaft; the other shaft, another piece of wood,
+    is taken to have as much.
     """
     struck = same_stroke(scene, cue)
     try:
@@ -66,7 +67,7 @@ def _beside(scene: Scene, squirt: float, cue: Cue, inputs: float) -> Record | No
         return None
     if not squirt * other > 0:
         return None
-    difference, error = squirt / other - 1, ratio_error(squirt / other, model_share(scene, struck), inputs)
+    difference, error = squirt / other - 1, ratio_error(squirt / other, model_share(scene, struck), inputs, inputs)
     distinct = abs(difference) > error
     return {"squirt": other, "difference": difference, "difference_error": error, "distinct": distinct}
 

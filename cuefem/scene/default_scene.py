@@ -6,10 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
-import numpy as np
-
 from cuefem.cue import SOFT, Cue
-from cuefem.cue.materials import LEATHERS
+from cuefem.cue.materials import LEATHERS, leather_restitution
 from cuefem.effects import AxialWaves, Effect, GeometricStiffness, LeatherTip
 from cuefem.quantity.fields import check_kind
 from cuefem.scene.scene import Ball, Scene, Stroke, Tip
@@ -69,16 +67,10 @@ class Game:
         return LEATHERS[self.leather].restitution
 
     def tip_beside(self, effects: Sequence[Effect]) -> Tip:
-        """A tip of the leather's own restitution where axial waves act; else of the whole cue's.
-
-        Between the leathers of the table, whose whole cue rebounds as is measured, it is interpolated over log E.
-        """
+        """A tip of the leather's own restitution where axial waves act; else of the whole cue's."""
         E = next((effect.E for effect in effects if isinstance(effect, LeatherTip)), LEATHERS[self.leather].E)
-        known = sorted((leather.E, leather.restitution) for leather in LEATHERS.values())
-        moduli, restitutions = np.array(known).T
-        own = float(np.interp(np.log(E), np.log(moduli), restitutions))
         waves = any(isinstance(effect, AxialWaves) for effect in effects)
-        return Tip(own if waves else self.restitution, self.friction)
+        return Tip(leather_restitution(E) if waves else self.restitution, self.friction)
 
     @property
     def effects(self) -> tuple[Effect, ...]:

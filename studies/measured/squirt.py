@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,9 +22,10 @@ from cuefem.cue.materials import material
 from cuefem.design import evaluate
 from cuefem.io.measured_folder import load_measured
 from cuefem.measurements.measured_cue import MeasuredCue
-from cuefem.measurements.measurement_types import AddedMass, PivotLength, Squirt
-from cuefem.measurements.uncertain_parameters import SQUIRT_MODEL, ZERO
+from cuefem.measurements.measurement_types import AddedMass, Measurement, PivotLength, Setup, Squirt
+from cuefem.parameters.parameter import parameter
 from cuefem.results.closed_forms import natural_pivot_length
+from cuefem.results.uncertainty import changes_by_input
 from studies import pages, strokes
 from studies.pages import table
 from studies.strokes import INCH, at_offset, cue, hollow, pool_scene, squirt, whole
@@ -82,22 +83,31 @@ class Row(NamedTuple):
         return (f"{self.offset:.3f}", *written)
 
 
+def as_squirt(measurement: Measurement, value: float) -> float:
+    """A value that is proportional to squirt: a pivot length p as 1/(p + R)."""
+    return 1 / (value + RADIUS) if isinstance(measurement, PivotLength) else value
+
+
+def squirts(own: MeasuredCue, scene: cf.Scene) -> dict[str, float]:
+    """The measurements of a cue as squirts, computed with another scene."""
+    return {str(i): as_squirt(m, float(m.computed(Setup(scene)))) for i, m in enumerate(own.measurements)}
+
+
 @cache
 def rows(model: str) -> tuple[Row, ...]:
     """Every published squirt and pivot length."""
     found = []
     for folder in CUES:
         own = measured(folder, model)
-        z = np.zeros(len(own.parameters))
-        at = own.computed(z)
-        names = [p.name for p in own.parameters]
-        for m, value, slopes in zip(own.measurements, at.tolist(), own.slopes(z, at=at), strict=True):
+        spreads = {known.key: each.spread for each in own.parameters if (known := parameter(each.name))}
+        at = own.computed().tolist()
+        base = {str(i): as_squirt(m, value) for i, (m, value) in enumerate(zip(own.measurements, at, strict=True))}
+        changes = changes_by_input(own.scene, base, partial(squirts, own), spreads=spreads)
+        for i, (m, value) in enumerate(zip(own.measurements, at, strict=True)):
             assert isinstance(m, Squirt | PivotLength)
             pivot = isinstance(m, PivotLength)
-            per, way = (value + RADIUS, -1) if pivot else (value, 1)
-            difference = way * math.log((m.measured + RADIUS if pivot else m.measured) / per)
-            changes = dict(zip(names, (way * slopes / per).tolist(), strict=True))
-            inputs = {name: x for name, x in changes.items() if name != SQUIRT_MODEL and not name.startswith(ZERO)}
+            difference = math.log(as_squirt(m, m.measured) / base[str(i)])
+            inputs = {key: change[str(i)] for key, change in changes.items()}
             by_hand = isinstance(m, Squirt) and m.series == "2007"
             series = own.name if folder != PLAYERS else "angles, 2007" if by_hand else "robot, 2008"
             found.append(Row(folder, own.name, series, m.offset, pivot, m.measured, value, difference, inputs))
