@@ -101,7 +101,7 @@ def uncertainty_line(record: Record) -> str:
     return (
         f"±: uncertainty (1σ): model {parts['model']} (from published squirt), unmeasured wood and tip "
         f"{parts['inputs']}, numerical {parts['computation']}; combined {parts['total']}. A difference between two "
-        f"shafts: model {_percent(SHAFTS)} of the difference, their wood, and 1 % of squirt."
+        f"shafts: model {_percent(SHAFTS)} of the difference or, if more, their wood; and 1 % of squirt."
     )
 
 
