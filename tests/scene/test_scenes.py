@@ -44,9 +44,7 @@ def test_a_ready_scene_says_what_it_rests_on(name: str) -> None:
 
 def test_the_readme_of_the_drawings_has_their_squirts() -> None:
     text = (SCENES.parents[1] / "meshes" / "README.md").read_text(encoding="utf-8")
-    told = re.findall(
-        r"([\d.]+)° \((\w+)\)", text.partition("At b/R 0.3 this gives squirts of ")[2].partition(".\n")[0]
-    )
+    told = re.findall(r"([\d.]+)° \((\w+)\)", text.partition("Squirt at b/R 0.3 is then ")[2].partition(".\n")[0])
     assert len(told) == 5
     for squirt, name in told:
         cue = cf.load(SCENES.parents[1] / "meshes" / f"{name}.toml")
