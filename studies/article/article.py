@@ -1,8 +1,7 @@
 """Squirt of a billiard cue from its geometry: a short paper whose every number and figure this program makes.
 
-What: pool's whole stroke (leather tip, axial waves, axial force on the bent shaft) on a maple shaft: its equations, how
-it was verified, what it gives beside what was measured, and what is not known. Equations: handbook: Effects, The
-contact.
+What: the default stroke of pool by the full model (LeatherTip, AxialWaves, GeometricStiffness) on a maple shaft:
+equations, verification, comparison with measurements, open questions. Equations: handbook: Effects, The contact.
 """
 
 from __future__ import annotations
@@ -71,7 +70,7 @@ def input_table() -> str:
 
 
 def stroke() -> str:
-    """What happens in the contact."""
+    """Forces and deflection during the contact."""
     scene = whole(cue("pool_maple"))
     outcome, along = cf.strike(scene), np.linspace(0, 0.7, 200)
     most = float(outcome.history(np.linspace(0, outcome.duration, 200))["force_n"].max())
@@ -79,12 +78,12 @@ def stroke() -> str:
     flat = along[np.abs(bent) > 0.05 * np.abs(bent).max()].max()
     return (
         f"At 2 m/s and b/R 0.375 the contact lasts {1e3 * outcome.duration:.2f} ms and the normal force reaches "
-        f"{most:.0f} N. At separation the tip is deflected by {1e3 * abs(bent[0]):.1f} mm and the bend has come "
-        f"{100 * flat:.0f} cm down the shaft: what lies behind takes no part.\n\n![the forces, and the bent "
-        "shaft](article_stroke.svg)\n\nWhy squirt of this shaft changes little over the speed: its slopes w' grow "
-        "with the speed, and so does the axial force; the share of their product in all forces grows like the speed. "
-        "It bends the tip farther, and the ball is pushed less. A stiffening tip does the opposite: fast strokes "
-        "press the patch wide and shorten the contact."
+        f"{most:.0f} N. At separation the tip is deflected by {1e3 * abs(bent[0]):.1f} mm and the bending wave has "
+        f"travelled {100 * flat:.0f} cm along the shaft: the rest does not contribute.\n\n![the forces, and the bent "
+        "shaft](article_stroke.svg)\n\nWhy squirt of this shaft changes little with speed: the slopes w' and the axial "
+        "force grow with speed, so the share of their product in the forces grows like the speed. It increases the "
+        "deflection of the tip, which lowers the force on the ball. The stiffening tip has the opposite effect: fast "
+        "strokes have a larger contact area and a shorter contact."
     )
 
 
@@ -98,37 +97,37 @@ def text() -> str:
     farther = [pages.change(found("and axial force", U, b) for U in SPEEDS) for b in (0.3, 0.45)]
     return pages.page(
         "Squirt of a billiard cue from its geometry",
-        "A cue that strikes a ball off centre sends it a little aside. Programs take the size of this squirt from a "
-        "number that is typed in, the effective end mass (Shepard 2001). Does it follow from the drawing of the shaft?",
-        "Yes, if three things are there that are usually left out: a patch of contact that slips ring by ring, axial "
-        f"waves, and the axial force on the bent shaft. Four published series differ by {100 * own.total:.0f} % RMS, "
-        f"of which unmeasured wood and tips explain {100 * own.inputs:.0f} %; the model's own error is "
-        f"{100 * own.low:.0f} to {100 * own.high:.0f} % ([uncertainty](../measured/uncertainty.md)). On one maple "
+        "A ball struck off centre leaves at a small angle to the cue, its squirt. Programs compute squirt from an "
+        "input, the effective end mass (Shepard 2001). Does it follow from the drawing of the shaft?",
+        "Yes, with three effects that other models neglect: partial slip of the contact, axial waves, and the axial "
+        f"force on the bent shaft. Four published series differ from the model by {100 * own.total:.0f} % RMS, "
+        f"of which unmeasured wood and tips explain {100 * own.inputs:.0f} %; the model error is "
+        f"{100 * own.low:.0f} to {100 * own.high:.0f} % (1σ; [uncertainty](../measured/uncertainty.md)). On one maple "
         f"shaft at b/R 0.375 squirt is {min(squirts):.2f} to {max(squirts):.2f}° from 0.8 to 7 m/s; a robot measured "
         f"2.30 and 2.43°, without a trend from {low:.1f} to {high:.1f} m/s. Nothing is fitted to squirt: E and the "
-        "restitution of the leather give a published contact time and rebound.",
+        "restitution of the leather follow from a published contact time and restitution of whole cues.",
         "## Model",
         MODEL,
         "## Verification",
         " ".join(VERIFICATION.split()),
-        "## A stroke",
+        "## Forces and deflection in a stroke",
         stroke(),
         "## Computed and measured",
         f"A maple shaft of 12.75 mm, tip {1e3 * tip.height:g} mm high, dome {1e3 * tip.dome_radius:g} mm, mu "
-        f"{usual.tip.friction:g}. E {tip.E / 1e6:.0f} MPa and e {usual.tip.restitution:.2f} of the leather: head on "
-        f"at 2 m/s the contact lasts {1e3 * blow.duration:.2f} ms, and the whole cue rebounds with "
-        f"{cf.rebound(usual):.2f} (ball's over cue's speed). Squirt at b/R 0.375, degrees, over the cue's speed; the "
-        f"robot measured 2.34 to 2.54, the ball at 3.6 to 7.8 mph between two beams, which is the cue at {low:.1f} to "
+        f"{usual.tip.friction:g}. E {tip.E / 1e6:.0f} MPa and e {usual.tip.restitution:.2f} of the leather: a "
+        f"central impact at 2 m/s has a contact time of {1e3 * blow.duration:.2f} ms and a restitution of the whole "
+        f"cue of {cf.rebound(usual):.2f}. Squirt at b/R 0.375, degrees, against the cue's speed; the "
+        f"robot measured 2.34 to 2.54, the ball at 3.6 to 7.8 mph between two light beams: a cue speed of {low:.1f} to "
         f"{high:.1f} m/s:",
         speed_table(),
         "![squirt against speed](article.svg)",
         f"Over these speeds squirt of this shaft changes by {farther[0]} at b/R 0.3 and {farther[1]} at 0.45, where "
-        "the tip slips in part. [squirt](../measured/squirt.md) has the other measured cues, and 11 g on the shaft. "
-        f"Leather of 40 to 400 MPa changes squirt by {soft}, more than players say, who measured that nowhere to "
-        "better than ±5 %. The natural pivot length, in which zeros of angle and offset cancel, was 12.7 in, "
-        f"computed {pivot:.1f}; read as pivot lengths, the angles of September 2007 are 17.7, 17.8 and 14.2 in.",
+        "the tip is in partial slip. [squirt](../measured/squirt.md) has the other measured cues, and 11 g on the "
+        f"shaft. Leather of 40 to 400 MPa changes squirt by {soft}, more than players report; no measurement of this "
+        "is better than ±5 %. The measured natural pivot length, in which zero errors of angle and offset cancel, is "
+        f"12.7 in, the computed one {pivot:.1f}; the angles of September 2007 correspond to 17.7, 17.8 and 14.2 in.",
         input_table(),
-        "## What is not known",
+        "## Open questions",
         " ".join(UNKNOWN.split()),
         left_out_table((0.375,)),
         "## Sources",

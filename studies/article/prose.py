@@ -1,13 +1,13 @@
-"""Text of the article that holds no computed number."""
+"""Text of the article without computed numbers."""
 
 MODEL = """\
-**The shaft** is a tapered Timoshenko beam of wood, with its ferrule, bore and joint as drawn; along the axis it goes
-on as a tapered butt. Finite elements give its free modes; the static compliance of the truncated modes is added.
-**The tip** is a short cylinder of leather with a dome. 3-D elasticity, tabulated once, gives the force F(d) of a ball
-at indentation d in a central impact, and the stiffness k(a) across the tip of a patch of radius a. Restitution e
-unloads along the same curve with d scaled by e², a law without a source of its own. **The patch** is strained ring by
-ring since it touched, each ring up to mu times its part of the normal force (Cattaneo 1938; Mindlin and Deresiewicz
-1953; Jäger 1998). **The axial force** F_x bends the deflected shaft further (P-delta):
+**The shaft** is a tapered Timoshenko beam of wood, with ferrule, bore and joint as in the drawing; for axial waves it
+continues as a tapered butt. Finite elements give its free-free modes; the static compliance of the truncated modes is
+added. **The tip** is a short cylinder of leather with a dome. Tabulated 3-D elasticity gives the force F(d) of a ball
+at indentation d in a central impact, and the tangential stiffness k(a) of a contact of radius a. The restitution phase
+follows the same curve with d scaled by e², a law without a published source. **Partial slip**: each annulus is strained
+since it came into contact, up to mu times its part of the normal force (Cattaneo 1938; Mindlin and Deresiewicz
+1953; Jäger 1998). **The axial force** F_x increases the deflection of the bent shaft (P-delta):
 
 ```text
 F_t = sum of f_r          f_r -> clip(f_r + dk_r dv, +- mu dN_r)
@@ -16,16 +16,15 @@ V = -1/2 F_x (q'G q + l theta^2),        G_ij = integral of p w_i' w_j' dx
 
 p is the share of the cue's mass behind x, theta the rotation at the ferrule's end, l the distance to the dome."""
 VERIFICATION = """\
-The beam: 3-D elasticity on scikit-fem, six modes of Kim's cone within 4.3e-6 ([solid](../beam/solid.md)). The patch: a
-boundary-element solver with vector friction gives the squirt of a half-space to 0.0 %, of a bonded layer of 6 mm to
-0.04, 0.3 and 1.1 % at b/R 0.187, 0.375 and 0.453. The contact: small steps that share nothing with it (tests/oracle).
-The axial force: columns buckle at Engesser's load; a geometrically exact chain of links agrees to a thousandth of the
-change."""
+Beam: 3-D elasticity on scikit-fem, six modes of Kim's cone within 4.3e-6 ([solid](../beam/solid.md)). Partial slip: a
+boundary-element solver with vector friction gives the squirt on a half-space to 0.0 %, on a bonded layer of 6 mm to
+0.04, 0.3 and 1.1 % at b/R 0.187, 0.375 and 0.453. Contact: an independent code with small steps (tests/oracle).
+Axial force: columns buckle at Engesser's load; a geometrically exact chain of links gives the change to 0.1 %."""
 UNKNOWN = """\
-How leather gives back work: other laws of loss exist (Hunt and Crossley 1975; Ting 1966 for a viscoelastic half-space),
-and a ball dropped at a slant on a clamped tip would tell. The wood, tapers and bores of the measured shafts are
-assumed. Squirt of one known shaft at five offsets, left and right, to 3 %, would decide most of what is open. Change of
-squirt, % ([left_out](../contact/left_out.md)):"""
+The dissipation law of leather: others exist (Hunt and Crossley 1975; Ting 1966 for a viscoelastic half-space); a ball
+dropped obliquely on a clamped tip would discriminate between them. The wood, tapers and bores of the measured shafts
+are assumed. Squirt of one known shaft at five offsets, left and right, to 3 %, would resolve most of these questions.
+Change of squirt, % ([left_out](../contact/left_out.md)):"""
 SOURCES = """\
 Measured: D. G. Alciatore, Billiards Digest, September and November 2007, February 2008; billiards.colostate.edu, TP
 A.30, A.31, B.1. End mass: R. Shepard, *Everything you always wanted to know about cue ball squirt* (2001). Squirt:

@@ -1,7 +1,7 @@
-"""What does the default stroke leave out or assume, with what sign, and how much of squirt is it?
+"""Which effects does the default stroke neglect or assume, with what sign and size in squirt?
 
-Every row is the maple shaft's default stroke at 2 m/s and b/R 0.375 with one thing changed. Most are scenes; three are
-not in the package and come from rings in small steps (`studies.contact.rings`).
+Every row is the maple shaft's default stroke at 2 m/s with one change. Most are scenes; three are not in the package
+and come from annuli in small steps (`studies.contact.rings`).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from studies.strokes import INCH, at_offset, cue, pool_scene, squirt, whole
 
 OFFSETS = (0.187, 0.375, 0.453)  # b/R
 TIMES = (1e-4, 4e-4)  # s, of relaxation
-NORMAL = "loss along the normal: rings that relax in 0.1, 0.4 ms (Ting 1966)"
+NORMAL = "normal loss: viscoelastic annuli, relaxation time 0.1, 0.4 ms (Ting 1966)"
 Change = Callable[[float], float]
 HEAD_ON = cf.LeatherTip.head_on
 UNLIKE = 1 + 1e-9  # no tip that is remembered has this modulus
@@ -32,7 +32,7 @@ UNLIKE = 1 + 1e-9  # no tip that is remembered has this modulus
 
 @cache
 def relaxing(time: float) -> Leather:
-    """The leather that rebounds as fast, and touches as long head on, as the package's."""
+    """Viscoelastic leather with the restitution and the contact time of the package's in a central impact."""
     _, lasts, ratio = stepped(plain(0.0), Leather())
 
     def miss(x: Any) -> list[float]:
@@ -56,14 +56,14 @@ def change(scene: cf.Scene, base: cf.Scene, offset: float) -> float:
 
 
 def stiffening(tip: cf.LeatherTip, diameter: float, ball_radius: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Patch radius, m, indentation, m, and force, N, of a central impact on a neo-Hookean tip."""
+    """Contact radius, m, indentation, m, and force, N, of a central impact on a neo-Hookean tip."""
     patched, depth, force = HEAD_ON(tip, diameter, ball_radius)
     strain = depth / tip.height
     return patched, depth, force * (1 + strain + 4 / 3 * strain**2)
 
 
 def stiffened(offset: float) -> float:
-    """By how much large strain changes squirt."""
+    """Change of squirt by large strain."""
     usual = whole(cue("pool_maple"), offset)
     unlike = whole(cue("pool_maple"), offset, E=UNLIKE * usual.leather.E)
     squirt(usual)
@@ -93,9 +93,9 @@ def rows() -> dict[str, tuple[str, ...]]:
     both = [replace(leather, surface=True) for leather in relaxed]
     changes: dict[str, list[Change]] = {
         NORMAL: [partial(alone, leather) for leather in relaxed],
-        "the same, and along the surface too (isotropic)": [partial(alone, leather) for leather in both],
-        "loss along the surface: restitution 0.95, 0.9 there": scenes(lossy),
-        "normal force that draws the patch along (C_nt)": [partial(alone, Leather(coupled=True))],
+        "the same, with tangential loss too (isotropic)": [partial(alone, leather) for leather in both],
+        "tangential loss: tangential restitution 0.95, 0.9": scenes(lossy),
+        "normal-tangential coupling compliance (C_nt)": [partial(alone, Leather(coupled=True))],
         "large strain: a neo-Hookean tip": [stiffened],
         "a hand of 0.05, 0.3, 1 kg that moves with the grip": scenes(hands, drawn),
         "a bridge hand, 1e3 to 1e4 N/m, 6 to 12 in from the tip": scenes(bridges),
@@ -116,26 +116,27 @@ def left_out_table(offsets: tuple[float, ...] = OFFSETS) -> str:
     """The table, at some of the offsets."""
     kept = [OFFSETS.index(b) for b in offsets]
     made = [[name, *(values[i] for i in kept)] for name, values in rows().items()]
-    return table(["left out or assumed", *(f"b/R {b:g}" for b in offsets)], made)
+    return table(["neglected or assumed", *(f"b/R {b:g}" for b in offsets)], made)
 
 
 def text() -> str:
     normal, both = ([float(v) for v in values[1].split(", ")] for values in list(rows().values())[:2])
     base = max(abs(stepped(plain(b), Leather())[0] / squirt(plain(b)) - 1) for b in OFFSETS)
     return pages.page(
-        "What is left out",
-        "What does the default stroke leave out or assume, with what sign, and how much of squirt is it?",
-        f"The law of loss is the largest unknown: leather whose rings relax gives {pages.span(normal, 0)} % more "
-        "squirt at b/R 0.375 than the depth-scaled unloading that stands there, at the same rebound and contact time "
-        f"head on; if it relaxes along the surface too, about {np.mean(both):.0f} % more. All else is worth a few per "
-        "cent. The numbers say how far the model may be off, not by what to correct it.",
+        "Neglected effects",
+        "Which effects does the default stroke neglect or assume, with what sign and size in squirt?",
+        f"The dissipation law is the largest uncertainty: viscoelastic leather gives {pages.span(normal, 0)} % more "
+        "squirt at b/R 0.375 than the unloading law of the package (scaled indentation), at the same restitution and "
+        f"contact time of a central impact; with tangential loss too, about {np.mean(both):.0f} % more. All other "
+        "effects are a few per cent. The numbers indicate the size of the model error; they are not corrections.",
         "## Change of squirt, %, on the maple shaft at 2 m/s",
         left_out_table(),
-        "The rows of relaxing leather and of C_nt are made by rings in small steps, without axial waves, thrust and "
-        f"rolling; with the package's own law these give the squirt of `cf.strike` within {100 * base:.2f} %. The "
-        "share that relaxes and the leather's stiffness are set by rebound and contact time head on. The depth-scaled "
-        "unloading has no source of its own. The hand on the grip holds the whole cue of meshes/ 10 in before its end. "
-        "A tip of 6 mm is compressed by a quarter of its height from 4 m/s on: no law of small strains holds there.",
+        "The rows of viscoelastic leather and of C_nt are computed by annuli in small steps, without axial waves, "
+        "axial force and rolling; with the package's own law these give the squirt of `cf.strike` within "
+        f"{100 * base:.2f} %. The relaxing share and the leather's stiffness follow from the restitution and the "
+        "contact time of a central impact. The unloading law of the package has no published source. The hand grips "
+        "the whole cue of meshes/ 10 in before its end. From 4 m/s on the indentation of a 6 mm tip is 25 % of its "
+        "height, beyond small strains.",
     )
 
 

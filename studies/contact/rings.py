@@ -1,10 +1,10 @@
-"""Rings of a leather patch in small steps, with losses that the package does not have; no study.
+"""Annuli of a leather contact in small steps, with dissipation laws outside the package; no study.
 
-On a cue without axial waves and thrust, and a contact that does not roll. The force F(d) and the stiffness k(d) along
-the surface of the leather are taken as those of rings (the method of dimensionality reduction): a ring at d' touches at
-that indentation, carries F''(d') (d - d') dd' along the normal and k'(d') along the surface, up to the friction of its
-normal force. With springs that relax that is Ting's solution (1966): rings unload on their own, and lose contact where
-their force vanishes.
+On a cue without axial waves and axial force, and a contact that does not roll. The force F(d) and the tangential
+stiffness k(d) of the leather are distributed over annuli (method of dimensionality reduction): an annulus at d' comes
+into contact at that indentation, carries the normal force F''(d') (d - d') dd' and has the tangential stiffness k'(d'),
+up to its friction limit. With viscoelastic springs this is Ting's solution (1966): annuli unload separately, and lose
+contact where their force vanishes.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ RINGS, STEP = 200, 1e-6
 
 @dataclass(frozen=True)
 class Leather:
-    """How leather relaxes: its stiffness is `stiffer` times (1 - share + share exp(-t/time)) of the elastic one.
+    """Relaxation of leather: its stiffness is `stiffer` times (1 - share + share exp(-t/time)) of the elastic one.
 
-    surface: whether it relaxes along the surface too. coupled: whether the normal force draws the patch along.
+    surface: whether the tangential stiffness relaxes too. coupled: whether normal and tangential motion are coupled.
     """
 
     share: float = 0.0
