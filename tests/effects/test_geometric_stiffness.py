@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy.linalg
-from cuefem.tip_modes import tip_modes_of
 
 import cuefem as cf
 from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike_modes
+from cuefem.scene.solved_scene import tip_modes_of
 from tests.oracle.chain import Chain, chain_squirt
 
 THRUST = cf.GeometricStiffness()

@@ -125,7 +125,6 @@ def test_intervals_cover_whichever_measurement_is_wrong(
     assert wide > {0: 0.6, 1: 0.8}.get(wrong, 0.86)
 
 
-@pytest.mark.heavy
 def test_what_a_next_measurement_would_tell_is_what_it_tells() -> None:
     """The predicted narrowing by a stiffness is that of an estimate with it, at the same values."""
     cue, _ = made_up(9, blank()[:4], size=0.5)
