@@ -100,8 +100,8 @@ def uncertainty_line(record: Record) -> str:
     parts = {name: _percent(share) for name, share in record["uncertainty"].items()}
     return (
         f"±: uncertainty (1σ): model {parts['model']} (from published squirt), unmeasured wood and tip "
-        f"{parts['inputs']}, numerical {parts['computation']}; combined {parts['total']}. A difference between two "
-        f"shafts: model {_percent(SHAFTS)} of the difference or, if more, their wood; and 1 % of squirt."
+        f"{parts['inputs']}, numerical {parts['computation']}; combined {parts['total']}. Of a difference between "
+        f"two shafts: {_percent(SHAFTS)} of it (model) or that of their wood if larger, and 1 % of squirt."
     )
 
 
