@@ -13,7 +13,10 @@ from dataclasses import replace
 from functools import cache, partial
 from typing import Any
 
+from scipy.optimize import brentq
+
 import cuefem as cf
+from cuefem.contact.tip_identification import LEAST
 from cuefem.cue.materials import LEATHERS
 from cuefem.results.closed_forms import pivot_at
 from studies import pages, strokes
@@ -155,12 +158,11 @@ def waving(struck: cf.Scene, **factors: float) -> cf.Scene:
 
 
 def shortest(rebound: float) -> str:
-    """The least contact time of a leather, ms, as it is refused."""
-    try:
-        identified(0.6, rebound)
-    except ValueError as error:
-        return f"{1e3 * float(str(error).partition('at least ')[2].split()[0]):.2f}"
-    raise RuntimeError("a contact of 0.6 ms must be refused")
+    """The contact time, ms, of the leather of restitution `LEAST` with this rebound; a larger E lasts shorter."""
+    struck = whole(cue("whole_cue"))
+    E = math.exp(brentq(lambda log_E: cf.rebound(with_tip(struck, math.exp(log_E), LEAST)) - rebound, 18, 24))
+    central = with_tip(replace(struck, stroke=replace(struck.stroke, offset=0.0)), E, LEAST)
+    return f"{1e3 * cf.strike(central).duration:.2f}"
 
 
 def text() -> str:
