@@ -95,14 +95,14 @@ def scene_of(
         try:
             scene = usual(opened, file, options)
         except InputError:
-            remark(Scene(opened), blow=False)
+            remark(Scene(opened), with_impact=False)
             raise
     given = {name: value for name, value in options.items() if value is not None}
     notes = in_words(assumed(file, scene, given), options, blow=blow)
     with blaming(file):
         compute_tip(scene)
     if remarked:
-        remark(scene, blow=blow)
+        remark(scene, with_impact=blow)
     return scene, notes
 
 
@@ -114,9 +114,9 @@ def compute_tip(scene: Scene) -> None:
         scene.tip_law()
 
 
-def remark(scene: Scene, *, blow: bool = True) -> None:
+def remark(scene: Scene, *, with_impact: bool = True) -> None:
     """Warn on stderr of unusual numbers; a wrong unit is the most common reason."""
-    for line in unusual(scene, blow=blow):
+    for line in unusual(scene, with_impact=with_impact):
         click.echo(f"unusual: {line}", err=True)
 
 
@@ -147,8 +147,9 @@ def whole_record(
     file: Path, notes: Sequence[str], solved: Scene, record: Record, *, blow: bool = True, **more: Any
 ) -> Record:
     """The JSON record: the file, assumptions, unusual values, the scene, the result, the units."""
-    said = {"file": str(file), "assumed": notes, "unusual": unusual(solved, blow=blow), "scene": scene_record(solved)}
-    return said | more | record | {"units": UNITS | record.get("units", {})}
+    warnings = unusual(solved, with_impact=blow)
+    about = {"file": str(file), "assumed": notes, "unusual": warnings, "scene": scene_record(solved)}
+    return about | more | record | {"units": UNITS | record.get("units", {})}
 
 
 def head_line(file: Path, about: dict[str, Any]) -> str:

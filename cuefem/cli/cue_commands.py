@@ -98,9 +98,9 @@ def _write_page(file: Path, output: Path, options: dict[str, Any], *, check: boo
         raise InputError(output, "--output", "cannot be combined with --json")
     scene, notes = scene_of(file, options)
     with blaming(file, options):
-        trust = (_model_error(scene)["sentence"],) if check else ()
-        asked: dict[str, Any] = {"rtol": load_accuracy(file), "notes": notes, "remarks": unusual(scene), "trust": trust}
-        text, line = page_and_headline(file.name, scene, track=followed, **asked)
+        checks = [_model_error(scene)["summary"]] if check else []
+        more: dict[str, Any] = {"rtol": load_accuracy(file), "warnings": unusual(scene), "checks": checks}
+        text, line = page_and_headline(file.name, scene, notes=notes, track=followed, **more)
     save_page(text, output)
     click.echo(f"{line}\nwrote {output}")
 

@@ -61,4 +61,4 @@ def check(file: Path, **options: Any) -> None:
     def results(scene: Scene) -> Any:
         return cuefem.report.model_error_record(scene, followed)  # loads scikit-fem, which the others need not
 
-    show(file, options, results, lambda record, about: [cuefem.report.model_error_sheet(record), record["sentence"]])
+    show(file, options, results, lambda record, about: [cuefem.report.model_error_sheet(record), record["summary"]])

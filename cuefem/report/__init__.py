@@ -1,6 +1,6 @@
-"""What the commands show: records of plain SI numbers for programs, and readable tables made of them for people.
+"""Output of the commands: records of SI numbers for programs, and tables of them for people.
 
-The names stand in `__init__.pyi`; each is loaded when it is first used, so that a command loads its own tables alone.
+`__init__.pyi` lists the names; each is loaded at its first use, so that a command loads its own tables only.
 """
 
 import lazy_loader

@@ -1,4 +1,4 @@
-"""What the commands show: records of plain SI numbers for programs, and sheets made of them for people."""
+"""Output of the commands: records of SI numbers for programs, and tables of them for people."""
 
 from .effects import DEFAULT_RTOL, effects_record, effects_sheet
 from .end_mass import end_mass_record, end_mass_sheet

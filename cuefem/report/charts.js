@@ -1,4 +1,4 @@
-// The values of a chart under the pointer or, by the arrow keys, at round places of its axis, read off its curves.
+// Shows the values of a chart's curves at the pointer or, by the arrow keys, at round values of its x axis.
 (() => {
   const added = (parent, kind, attributes) => {
     const element = parent.appendChild(document.createElementNS(parent.namespaceURI, kind));
@@ -30,7 +30,7 @@
   };
   const show = (chart, value) => {
     const [left, top, right, bottom] = numbers(chart.dataset.box);
-    const [first, last, step] = numbers(chart.dataset.across), [low, high, up] = numbers(chart.dataset.up);
+    const [first, last, step] = numbers(chart.dataset.xScale), [low, high, yStep] = numbers(chart.dataset.yScale);
     value = Math.min(last, Math.max(first, value));
     const x = left + (value - first) / (last - first) * (right - left);
     away();
@@ -39,17 +39,17 @@
     added(group, "path", { class: "cursor", d: `M${x} ${top}V${bottom}` });
     const box = document.createElement("div"), head = box.appendChild(document.createElement("b"));
     box.className = "reading";
-    head.textContent = `${chart.dataset.named}: ${written(value, step, 2)}`;
+    head.textContent = `${chart.dataset.xLabel}: ${written(value, step, 2)}`;
     for (const curve of chart.querySelectorAll(".curve")) {
       const y = heightAt(curve.getAttribute("d"), x);
       if (!(y >= top - 1 && y <= bottom + 1)) continue;
       const style = [...curve.classList].filter(name => name !== "curve").join(" ");
       added(group, "circle", { class: `dot ${style}`, cx: x, cy: y, r: 3.2 });
       const line = box.appendChild(document.createElement("span"));
-      const named = line.appendChild(document.createElement("i"));
-      named.className = `name ${style}`;
-      named.textContent = curve.textContent;
-      line.append(` ${written(low + (bottom - y) / (bottom - top) * (high - low), up, 2)}`);
+      const name = line.appendChild(document.createElement("i"));
+      name.className = `name ${style}`;
+      name.textContent = curve.textContent;
+      line.append(` ${written(low + (bottom - y) / (bottom - top) * (high - low), yStep, 2)}`);
     }
     const figure = chart.closest("figure"), frame = chart.getBoundingClientRect();
     const over = figure.getBoundingClientRect(), unit = frame.width / 440;
@@ -61,7 +61,7 @@
   const follow = event => {
     const chart = event.target.closest?.("svg.read");
     if (!chart) return void (seen && document.activeElement !== seen.chart && away());
-    const [left, , right] = numbers(chart.dataset.box), [first, last] = numbers(chart.dataset.across);
+    const [left, , right] = numbers(chart.dataset.box), [first, last] = numbers(chart.dataset.xScale);
     const frame = chart.getBoundingClientRect(), x = (event.clientX - frame.left) * 440 / frame.width;
     if (x < left - 6 || x > right + 6) return away();
     show(chart, first + (x - left) / (right - left) * (last - first));
@@ -73,7 +73,7 @@
     const chart = event.target.closest?.("svg.read");
     if (!chart) return;
     if (event.key === "Escape") return away();
-    const [first, last, step] = numbers(chart.dataset.across), fine = step / 10;
+    const [first, last, step] = numbers(chart.dataset.xScale), fine = step / 10;
     const was = seen?.chart === chart ? seen.value : (first + last) / 2;
     const by = { ArrowLeft: -1, ArrowRight: 1, PageDown: -10, PageUp: 10 }[event.key];
     const to = { Home: first, End: last }[event.key] ?? (by && fine * Math.round(was / fine + by));

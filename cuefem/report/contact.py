@@ -1,4 +1,4 @@
-"""The course of one contact, for the page: charts of forces and velocities, and what happens when."""
+"""Time history of one contact, for the page: charts of force and velocity, and the events on them."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from cuefem.results.records import Record
 from cuefem.results.solved_design import course
 from cuefem.scene import Outcome
 
-MOST_EVENTS = 12
-LEAST = 0.01  # of the normal impulse: near separation, where F_n is near 0, grip changes step by step
+MAX_EVENTS = 12
+MIN_SHARE = 0.01  # of the normal impulse: near separation, where F_n is near 0, the contact state changes each step
 
 
 def contact_part(outcome: Outcome) -> Record:
-    """Charts over time, and the numbered moments on them in words."""
+    """Charts over time, and their numbered events: number, time and text."""
     phases = _main_phases(outcome)
     events = list(_events(phases))
     t = np.linspace(0, outcome.duration, 401)
@@ -29,26 +29,26 @@ def contact_part(outcome: Outcome) -> Record:
     marks = [Tick(float(scaled(at, "s")), str(i + 1)) for i, (at, _) in enumerate(events)]
     time = Axis(with_heading("time", "s"), 0.0, float(scaled(outcome.duration, "s")))
 
-    def drawn(title: str, name: str, unit: str) -> Chart:
+    def draw(title: str, name: str, unit: str) -> Chart:
         lines = zip(course(outcome, name, t).items(), ("c1", "c2"), strict=True)
         curves = [Curve(label, scaled(t, "s"), values, style) for (label, values), style in lines]
         return chart(title, curves, x=time, y=Axis(with_heading(name, unit)), spans=spans, marks=marks)
 
     return {
         "charts": [
-            drawn("Force of the tip on the ball", "force", "N"),
-            drawn("Velocity of the ball against the tip", "velocity", "m/s"),
+            draw("Force of the tip on the ball", "force", "N"),
+            draw("Velocity of the ball relative to the tip", "velocity", "m/s"),
         ],
-        "events": [(str(i + 1), f"{scaled(at, 's'):.4f} ms", words) for i, (at, words) in enumerate(events)],
+        "events": [(str(i + 1), f"{scaled(at, 's'):.4f} ms", text) for i, (at, text) in enumerate(events)],
     }
 
 
 def _main_phases(outcome: Outcome) -> list[Phase]:
-    """The phases of a contact, without those of less than `LEAST` of its normal impulse; alike neighbours are one."""
+    """The phases of a contact with at least `MIN_SHARE` of its normal impulse; equal neighbours are merged."""
     whole = sum(abs(phase.impulse[1]) for phase in outcome.phases)
     main: list[Phase] = []
     for phase in outcome.phases:
-        small = phase.grip in ("stick", "slip", "slip back") and abs(phase.impulse[1]) < LEAST * whole
+        small = phase.grip in ("stick", "slip", "slip back") and abs(phase.impulse[1]) < MIN_SHARE * whole
         if main and (small or (phase.grip, phase.press) == (main[-1].grip, main[-1].press)):
             main[-1] = main[-1]._replace(end=phase.end)
         else:
@@ -57,16 +57,16 @@ def _main_phases(outcome: Outcome) -> list[Phase]:
 
 
 def _events(phases: Sequence[Any]) -> Iterator[tuple[float, str]]:
-    """The moments, s, at which the phase changes, in words: the first `MOST_EVENTS` of them, and the last."""
+    """Time, s, and text of each change of phase: the first `MAX_EVENTS`, and separation."""
     yield phases[0].start, "first touch, the tip slips" if phases[0].grip != "stick" else "first touch, the tip sticks"
-    for before, after in islice(pairwise(phases), MOST_EVENTS):
-        yield after.start, _turn(before, after)
+    for before, after in islice(pairwise(phases), MAX_EVENTS):
+        yield after.start, _change_text(before, after)
     yield phases[-1].end, "separation"
 
 
-def _turn(before: Any, after: Any) -> str:
+def _change_text(before: Any, after: Any) -> str:
     grips = {"stick": "the tip sticks", "slip": "the tip slips", "slip back": "the tip slips back"}
-    presses = {"load": "pressed beyond its old peak", "unload": "maximum indentation"}
-    words = [presses.get(after.press, after.press)] if after.press != before.press else []
-    words += [grips.get(after.grip, after.grip)] if after.grip != before.grip else []
-    return ", ".join(words) or "goes on"
+    presses = {"load": "indentation beyond its former maximum", "unload": "maximum indentation"}
+    changes = [presses.get(after.press, after.press)] if after.press != before.press else []
+    changes += [grips.get(after.grip, after.grip)] if after.grip != before.grip else []
+    return ", ".join(changes) or "unchanged"

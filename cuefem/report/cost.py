@@ -1,4 +1,4 @@
-"""What accuracy costs for one's own scene: errors against seconds and unknowns, and the resolutions to take."""
+"""Convergence study of a scene (`cuefem cost`): error against run time and DOF, and recommended resolutions."""
 
 from __future__ import annotations
 
@@ -21,30 +21,30 @@ Track = Callable[[Sequence[Any]], Iterable[Any]]
 
 
 def cost_record(scene: Scene, *, most: int = MOST, track: Track = iter) -> Record:
-    """Levels of resolution up to ``most`` modes, each with its errors and seconds; what to take for `WANTED`.
+    """Refinement levels up to ``most`` modes with error and run time, and the recommendation for each of `WANTED`.
 
-    Of each level: "modes", "steps", "elements", "order", "unknowns"; "estimate", its estimated relative error (None on
-    the first two); "difference" from the last level; "seconds" of all levels up to it, as `cuefem.resolve` takes.
-    ValueError for a lumped cue, which is exact.
+    Keys of a level: "modes", "steps", "elements", "order"; "unknowns", the number of degrees of freedom; "estimate",
+    its estimated relative error (None on the first two); "difference", relative, from the last level; "seconds", the
+    run time of all levels up to it, which `cuefem.resolve` takes. ValueError for a lumped cue, which is exact.
     """
-    climbed = _climbed(scene, most, track)
-    best = climbed[-1][0].outcome
-    rows = [_level_record(scene, level, seconds, best) for level, seconds in climbed]
+    refined = _timed_levels(scene, most, track)
+    best = refined[-1][0].outcome
+    rows = [_level_record(scene, level, seconds, best) for level, seconds in refined]
     return {"levels": rows, "wanted": [_recommended(rtol, rows) for rtol in WANTED]}
 
 
-def _climbed(scene: Scene, most: int, track: Track) -> list[tuple[Level, float]]:
-    """Levels with the seconds of the climb to each: up to ``most`` modes or the finest accuracy wanted.
+def _timed_levels(scene: Scene, most: int, track: Track) -> list[tuple[Level, float]]:
+    """Levels with the run time, s, up to each: to ``most`` modes or the smallest of `WANTED`.
 
-    The climb is timed when it is done again, so that nothing is in it that a process does once.
+    A second run of the sequence is timed, so that the time includes nothing that a process does only once.
     """
-    climbed: list[Level] = []
+    refined: list[Level] = []
     for level in levels(scene, min(WANTED)):
-        if len(climbed) > 2 and level.at.modes > most:
+        if len(refined) > 2 and level.at.modes > most:
             break
-        climbed.append(level)
+        refined.append(level)
     again, start = levels(scene, min(WANTED)), perf_counter()
-    return [(next(again), perf_counter() - start) for _ in track(climbed)]
+    return [(next(again), perf_counter() - start) for _ in track(refined)]
 
 
 def _level_record(scene: Scene, level: Level, seconds: float, best: Any) -> Record:
@@ -61,16 +61,16 @@ def _level_record(scene: Scene, level: Level, seconds: float, best: Any) -> Reco
 
 
 def _recommended(rtol: float, rows: Sequence[Record]) -> Record:
-    """The first level whose estimate is within ``rtol``; none: the best, which says how far it gets."""
-    judged = [row for row in rows if row["estimate"] is not None]
-    first = next((row for row in judged if row["estimate"] <= rtol), None)
+    """The first level with an estimated error of at most ``rtol``; otherwise the last, with "reached" False."""
+    estimated = [row for row in rows if row["estimate"] is not None]
+    first = next((row for row in estimated if row["estimate"] <= rtol), None)
     names = ("modes", "steps", "elements", "order", "unknowns", "estimate", "seconds")
-    last = judged[-1] if judged else rows[-1]
+    last = estimated[-1] if estimated else rows[-1]
     return {"rtol": rtol, "reached": first is not None, **{name: (first or last)[name] for name in names}}
 
 
 def cost_sheets(record: Record) -> list[Sheet]:
-    """The levels, and what to take."""
+    """The refinement levels, and the recommended resolutions."""
     sizes: dict[str, Entry] = {"modes": "{modes}", "steps": "{steps}", "elements x order": _mesh}
     errors = {"estimate": "{estimate:error}", "difference": "{difference:error}"}
     times: dict[str, Entry] = {
@@ -88,14 +88,14 @@ def cost_sheets(record: Record) -> list[Sheet]:
         ),
         sheet(
             "Recommended resolution",
-            {"accuracy": _asked} | sizes | last,
+            {"accuracy": _accuracy} | sizes | last,
             record["wanted"],
             "With the truncation correction, as `resolve(scene, rtol)` and the rtol of a file's [accuracy] table.",
         ),
     ]
 
 
-def _asked(row: Mapping[str, Any]) -> str:
+def _accuracy(row: Mapping[str, Any]) -> str:
     return f"{row['rtol']:.0e}" + ("" if row["reached"] else ", not reached; the best:")
 
 
@@ -105,7 +105,7 @@ def _mesh(row: Mapping[str, Any]) -> str:
 
 
 def cost_charts(record: Record) -> list[Chart]:
-    """Error against the time of the sequence, for a page."""
+    """Error against run time, for a page."""
     levels = record["levels"]
     ms = [math.log10(scaled(row["seconds"], "s")) for row in levels]
     curves = [

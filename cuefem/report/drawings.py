@@ -1,4 +1,4 @@
-"""Drawings of cues from the side and of their mode shapes, as geometry for the page's templates."""
+"""Drawings of cues from the side and charts of their mode shapes, as geometry for the templates."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from cuefem.report.charts import WIDE, Axis, Chart, Curve, Tick, chart, path
 from cuefem.results.quantities import scaled, with_heading
 from cuefem.scene import Scene
 
-ACROSS = 4.0  # times that diameters of a whole cue are enlarged
-FRONT = 0.16  # m, of the drawing that shows the front true to scale
-LEAST_DRAWN = 1e-4  # m of a segment
-SHAPES = 4  # mode shapes that are drawn
+ACROSS = 4.0  # enlargement of the diameters in the drawing of a whole cue
+FRONT = 0.16  # m, length of the drawing of the front, true to scale
+MIN_DRAWN = 1e-4  # m, of a segment
+SHAPES = 4  # mode shapes in the chart
 
 
 class Piece(NamedTuple):
-    """The outlines of a segment and of its bore, as paths, with the page's classes for their materials."""
+    """The outlines of a segment and of its bore as paths, with the CSS classes of their materials."""
 
     outline: str
     material: str
@@ -34,7 +34,7 @@ class Piece(NamedTuple):
 
 @dataclass(frozen=True)
 class CueDrawing:
-    """A cue from the side, tip to the left, with places in mm from where its segments begin."""
+    """A cue from the side, tip on the left; ticks in mm from the front of its segments."""
 
     title: str
     height: float
@@ -44,20 +44,20 @@ class CueDrawing:
 
 
 def seen(scene: Scene) -> tuple[Segment, ...]:
-    """The segments as one sees them: behind the leather and the layers of a whole tip."""
+    """The segments of the cue, with the leather and the layers of a `LeatherTip` in front."""
     segments = scene.shaft.segments
     if scene.contact_terms.tip is None:
         return segments
     tip = scene.leather
-    across = tip.diameter_on(segments[0].tip_diameter)
+    diameter = tip.diameter_on(segments[0].tip_diameter)
     below = [(layer.height, Material(layer.E, layer.E / 2 / (1 + layer.nu), layer.rho)) for layer in tip.layers[::-1]]
     leather = tip.height - math.fsum(height for height, _ in below)
     in_front = [(leather, MATERIALS["leather"].material), *below]
-    return (*(Segment(height, across, across, of) for height, of in in_front), *segments)
+    return (*(Segment(height, diameter, diameter, of) for height, of in in_front), *segments)
 
 
 def legend(scenes: Iterable[Scene]) -> list[tuple[str, str]]:
-    """The materials of drawn cues, from tip to butt, each once, with their classes on the page; and a bore."""
+    """Names and CSS classes of the materials of drawn cues, from tip to butt; and of a bore."""
     segments = [segment for scene in scenes for segment in seen(scene)]
     names = [legend_name(of) for segment in segments for of in (segment.material, segment.core) if of is not None]
     hollow = any((s.tip_bore or s.butt_bore) and s.core is None for s in segments)
@@ -65,66 +65,66 @@ def legend(scenes: Iterable[Scene]) -> list[tuple[str, str]]:
 
 
 def legend_name(material: Material) -> str:
-    """A material's name in a drawing's legend, whatever its density."""
+    """The name of a material in a legend, regardless of its density."""
     return table_name(material) or material_name(material)
 
 
 def style_of(name: str) -> str:
-    """A material's class on the page."""
+    """The CSS class of a material."""
     return "m-" + name.replace(" ", "-") if name in MATERIALS else "m-other"
 
 
-def cue_drawing(scene: Scene, title: str, reach: float | None = None, *, across: float = ACROSS) -> CueDrawing:
+def cue_drawing(scene: Scene, title: str, length: float | None = None, *, diameter_scale: float = ACROSS) -> CueDrawing:
     """A cue from the side.
 
-    reach: how far it is drawn, m from where its segments begin; None for all of it. across: times that diameters are
-    enlarged.
+    length: m from the front of its segments; None for the whole cue. diameter_scale: enlargement of the diameters.
     """
     segments, own = seen(scene), scene.shaft
-    reach = own.length if reach is None else reach
+    length = own.length if length is None else length
     ahead = sum(segment.length for segment in segments[: len(segments) - len(own.segments)])
-    scale = WIDE / (reach + ahead)
-    drawn = _cut(segments, reach + ahead)
-    axis = 1 + scale * across * max(max(segment.tip_diameter, segment.butt_diameter) for segment in drawn) / 2
+    scale = WIDE / (length + ahead)
+    drawn = _cut(segments, length + ahead)
+    widest = max(max(segment.tip_diameter, segment.butt_diameter) for segment in drawn)
+    axis = 1 + scale * diameter_scale * widest / 2
     ends = accumulate((segment.length for segment in drawn), initial=0.0)
     pieces = tuple(
-        _piece(segment, x, scale, axis, dome=0.0 if x else scene.dome_radius, across=across)
+        _piece(segment, x, scale, axis, dome=0.0 if x else scene.dome_radius, diameter_scale=diameter_scale)
         for x, segment in zip(ends, drawn, strict=False)
     )
-    ticks = Axis("mm", 0.0, 1e3 * reach).over([np.zeros(1)]).ticks(scale * ahead, WIDE)
+    ticks = Axis("mm", 0.0, 1e3 * length).scale_for([np.zeros(1)]).ticks(scale * ahead, WIDE)
     return CueDrawing(title, 2 * axis, axis, pieces, ticks)
 
 
-def _cut(segments: Sequence[Segment], reach: float) -> list[Segment]:
-    """The segments as far as ``reach``, m."""
-    kept: list[Segment] = []
+def _cut(segments: Sequence[Segment], length: float) -> list[Segment]:
+    """The segments up to ``length``, m."""
+    front: list[Segment] = []
     for segment in segments:
-        part = min(1.0, reach / segment.length)
-        if reach <= LEAST_DRAWN:
+        part = min(1.0, length / segment.length)
+        if length <= MIN_DRAWN:
             break
-        wide, bore = (
+        diameter, bore = (
             first + part * (last - first)
             for first, last in (
                 (segment.tip_diameter, segment.butt_diameter),
                 (segment.tip_bore, segment.butt_bore),
             )
         )
-        kept.append(replace(segment, length=part * segment.length, butt_diameter=wide, butt_bore=bore))
-        reach -= segment.length
-    return kept
+        front.append(replace(segment, length=part * segment.length, butt_diameter=diameter, butt_bore=bore))
+        length -= segment.length
+    return front
 
 
-def _piece(segment: Segment, x: float, scale: float, axis: float, *, dome: float, across: float) -> Piece:
-    """A segment that begins ``x`` m from the front, with the tip's dome if it has one."""
+def _piece(segment: Segment, x: float, scale: float, axis: float, *, dome: float, diameter_scale: float) -> Piece:
+    """A segment that begins ``x`` m from the front. dome: radius of the tip's dome, m; 0 for none."""
 
     def outline(tip: float, butt: float, dome: float) -> str:
         first, last = scale * x, scale * (x + segment.length)
-        high, low = (scale * across * width / 2 for width in (tip, butt))
+        high, low = (scale * diameter_scale * diameter / 2 for diameter in (tip, butt))
         xs, ys = [first, last, last, first], [axis - high, axis - low, axis + low, axis + high]
         if dome > 0 and dome >= tip / 2:
             angle = np.linspace(1, -1, 25) * math.asin(tip / 2 / dome)
             front = scale * dome * (1 - np.cos(angle))
-            xs, ys = [*xs[1:3], *front], [*ys[1:3], *(axis + scale * across * dome * np.sin(angle))]
+            xs, ys = [*xs[1:3], *front], [*ys[1:3], *(axis + scale * diameter_scale * dome * np.sin(angle))]
         return path(xs, ys) + "Z"
 
     return Piece(

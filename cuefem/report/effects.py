@@ -1,4 +1,4 @@
-"""What each effect of a scene changes, as a record and as a sheet."""
+"""Sensitivity of a strike to each physical effect, removed or added: record and table of `cuefem effects`."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.scene.solved_scene import ended_tip_modes
 
 DEFAULT_RTOL = 1e-2
-# Strikes are this many times as exact as the tolerance.
+# The numerical error of the strikes is the tolerance over this.
 MARGIN = 3
 
 Track = Callable[[Sequence[Variant]], Iterable[Variant]]
 
 
 def struck(scene: Scene, at: Resolution | None) -> Outcome:
-    """A scene's strike with as many modes as a resolution has, ended by a tail; None for a lumped cue."""
+    """Strike with the modes of a resolution and a truncation correction. at: None for a lumped cue."""
     return strike(scene) if at is None else strike_modes(scene, ended_tip_modes(scene, at.modes))
 
 
 def effects_record(scene: Scene, *, rtol: float = DEFAULT_RTOL, track: Track = iter) -> Record:
-    """Every effect dropped or added, what that changes, and which matter at the tolerance ``rtol``.
+    """Change of the strike by removing or adding each effect, and whether it exceeds the relative tolerance ``rtol``.
 
-    All strikes are at the resolution that the scene itself needs, so that their errors are alike and it is the effect
-    that shows. track: follows the work, an iterator over the variants.
+    All strikes have the resolution that the unmodified scene needs, so that discretisation errors cancel. track:
+    iterates over the variants with a progress bar.
     """
     at = None
     if scene.lumped is None:
@@ -39,17 +39,17 @@ def effects_record(scene: Scene, *, rtol: float = DEFAULT_RTOL, track: Track = i
         at = level.at
     base = struck(scene, at)
     rows = [_row(variant, scene, base, rtol=rtol, at=at) for variant in track(variants(scene))]
-    rows.sort(key=lambda row: -1.0 if row["weight"] is None else row["weight"], reverse=True)
+    rows.sort(key=lambda row: -1.0 if row["largest_change"] is None else row["largest_change"], reverse=True)
     return {
         "rtol": rtol,
         "resolution": None if at is None else asdict(at),
-        "base": _figures(base, scene),
+        "base": _results(base, scene),
         "effects": rows,
         "worth": worth(rows),
     }
 
 
-def _figures(outcome: Outcome, scene: Scene) -> Record:
+def _results(outcome: Outcome, scene: Scene) -> Record:
     return {
         "squirt": outcome.squirt,
         "end_mass": _end_mass(outcome, scene),
@@ -59,7 +59,7 @@ def _figures(outcome: Outcome, scene: Scene) -> Record:
 
 
 def _end_mass(outcome: Outcome, scene: Scene) -> float | None:
-    """The squirt-equivalent end mass; None head on, in a miscue, and if no lumped cue has that squirt."""
+    """Squirt-equivalent end mass, kg; None at offset 0, in a miscue, and if no lumped cue has this squirt."""
     try:
         return equivalent_end_mass(outcome, scene) if scene.stroke.offset else None
     except ValueError:
@@ -70,55 +70,55 @@ def _row(variant: Variant, scene: Scene, base: Outcome, *, rtol: float, at: Reso
     about: Record = {
         "name": variant.name,
         "values": None if variant.effect is None else asdict(variant.effect),
-        "words": variant.name if variant.effect is None else effect_words(variant.effect),
+        "label": variant.name if variant.effect is None else effect_words(variant.effect),
         "listed": variant.listed,
     }
     if variant.scene is None:
-        return about | _refused(variant.reason)
+        return about | _failed(variant.reason)
     try:
         outcome = struck(variant.scene, at)
     except (ValueError, RuntimeError) as error:
-        return about | _refused(str(error))
+        return about | _failed(str(error))
     changed = change(outcome, base, offset=scene.stroke.offset)
     return about | {
-        "refused": None,
-        **_figures(outcome, variant.scene),
+        "failure": None,
+        **_results(outcome, variant.scene),
         "change": _changes(changed),
-        "weight": changed.weight,
-        "matters": changed.weight >= rtol,
+        "largest_change": changed.weight,
+        "significant": changed.weight >= rtol,
     }
 
 
-def _refused(reason: str) -> Record:
-    return {"refused": reason, "weight": None, "matters": None}
+def _failed(reason: str) -> Record:
+    return {"failure": reason, "largest_change": None, "significant": None}
 
 
 def _changes(changed: Change) -> Record:
-    gaps = asdict(changed)
-    relative = gaps.pop("relative")
-    return {name: {"by": gap, "relative": relative.get(name)} for name, gap in gaps.items()}
+    absolute = asdict(changed)
+    relative = absolute.pop("relative")
+    return {name: {"absolute": change, "relative": relative.get(name)} for name, change in absolute.items()}
 
 
 def worth(rows: Sequence[Record]) -> Record:
-    """Which effects to keep, which to drop, and which to add, by name, in the order of what they change."""
-    tried = [row for row in rows if row["refused"] is None]
+    """Labels of the effects to keep, to remove and to add, those with the largest change first."""
+    tried = [row for row in rows if row["failure"] is None]
 
-    def chosen(listed: bool, matters: bool) -> list[str]:
-        return [row["words"] for row in tried if (row["listed"], row["matters"]) == (listed, matters)]
+    def labels(listed: bool, significant: bool) -> list[str]:
+        return [row["label"] for row in tried if (row["listed"], row["significant"]) == (listed, significant)]
 
-    return {"keep": chosen(True, True), "drop": chosen(True, False), "add": chosen(False, True)}
+    return {"keep": labels(True, True), "remove": labels(True, False), "add": labels(False, True)}
 
 
 def effects_sheet(record: Record, scene: Record) -> Sheet:
-    """The effects, what matters most first, and what to make of it."""
+    """A row for each effect, the largest change first; the recommendation in the notes."""
     percent = f"{100 * record['rtol']:.3g} %"
-    base, tried = record["base"], [row for row in record["effects"] if not row["refused"]]
-    small = [row for row in tried if not row["matters"]]
+    base, tried = record["base"], [row for row in record["effects"] if not row["failure"]]
+    small = [row for row in tried if not row["significant"]]
     first = ("unmodified scene", degrees(base["squirt"]), grams(base["end_mass"]), f"{base['ball_speed']:.4f}")
     rows: list[tuple[str, ...]] = [(*first, f"{base['spin']:.2f}")]
-    rows += [_cells(row) for row in tried if row["matters"]]
+    rows += [_cells(row) for row in tried if row["significant"]]
     dim = range(len(rows), len(rows) + len(small) + 1)
-    if small:  # a row and no style alone says so, also where colours are not
+    if small:  # a row of its own, since a terminal may have no styles
         rows += [(f"changes less than {percent}:", *[""] * 4), *map(_cells, small)]
     return Sheet(
         f"Sensitivity to each effect at offset b/R = {scene['stroke']['offset']:.4g}",
@@ -139,18 +139,18 @@ def effects_sheet(record: Record, scene: Record) -> Sheet:
 
 
 def _not_tried(rows: Sequence[Record]) -> list[str]:
-    """Why effects were not tried, each reason once."""
+    """The effects that failed, grouped by reason."""
     reasons: dict[str, list[str]] = {}
     for row in rows:
-        if row["refused"]:
-            reasons.setdefault(row["refused"], []).append(row["words"])
+        if row["failure"]:
+            reasons.setdefault(row["failure"], []).append(row["label"])
     return [f"not tried: {', '.join(names)}: {reason}" for reason, names in reasons.items()]
 
 
 def _cells(row: Record) -> tuple[str, ...]:
     word = "without" if row["listed"] else "with"
     squirt, speed, spin = (_percent(row["change"][name]["relative"]) for name in ("squirt", "ball_speed", "spin"))
-    return (f"{word} {row['words']}", squirt, grams(row["end_mass"]), speed, spin)
+    return (f"{word} {row['label']}", squirt, grams(row["end_mass"]), speed, spin)
 
 
 def _percent(part: float | None) -> str:
@@ -160,11 +160,11 @@ def _percent(part: float | None) -> str:
 
 
 def advice(record: Record, percent: str) -> list[str]:
-    """The recommendation, in sentences."""
-    found = record["worth"]
+    """The recommendation as sentences."""
+    names = record["worth"]
     lines = []
-    if found["drop"]:
-        lines.append(f"Negligible, removing each changes less than {percent}: {', '.join(found['drop'])}.")
-    if found["add"]:
-        lines.append(f"Missing, each changes {percent} or more: {', '.join(found['add'])}.")
+    if names["remove"]:
+        lines.append(f"Negligible, removing each changes less than {percent}: {', '.join(names['remove'])}.")
+    if names["add"]:
+        lines.append(f"Missing, each changes {percent} or more: {', '.join(names['add'])}.")
     return lines or [f"At a tolerance of {percent} no listed effect is negligible and no unlisted effect matters."]

@@ -1,4 +1,4 @@
-"""The end masses of a scene: record and sheet."""
+"""Effective end mass of a scene by each definition: record and table."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ SQUIRT_END_MASS = "squirt-equivalent end mass"  # the one that pages and tables 
 
 
 def end_mass_record(scene: Scene, *, solved: Solved | None = None) -> Record:
-    """The end masses m_e, and [Kim]'s m_c and eps = m_c/M of each.
+    """End mass m_e, kg, by each definition, with [Kim]'s m_c and eps = m_c/M.
 
-    A definition `at_offset` is taken at the scene's own offset; one that has no answer says why instead. solved: the
-    scene's modes, if they are known already.
+    A definition `at_offset` takes the offset of the scene's stroke; where a definition has no value, "reason" states
+    why. solved: the scene's modes, if already computed.
     """
     solved = solved or Solved(scene)
     return {
@@ -30,21 +30,21 @@ def end_mass_record(scene: Scene, *, solved: Solved | None = None) -> Record:
 def _end_mass(solved: Solved, drive: str) -> Record:
     scene = solved.scene
     try:
-        felt = float(DEFINITIONS[drive].of_solved(solved))
+        end_mass = float(DEFINITIONS[drive].of_solved(solved))
     except ValueError as error:
         return {"end_mass": None, "cue_end_mass": None, "eps": None, "reason": str(error)}
-    if not felt > 0:
+    if not end_mass > 0:
         time = with_unit(float(scene.contact_time), "s")
         raise ValueError(
-            f"an end mass of {with_unit(float(felt), 'kg')} ({drive}) is not plausible; the tip is too soft for a "
+            f"an end mass of {with_unit(end_mass, 'kg')} ({drive}) is not plausible; the tip is too soft for a "
             f"contact of {time}: check dimensions, E and contact time"
         )
-    whole = float(cue_end_mass(felt))
-    return {"end_mass": felt, "cue_end_mass": whole, "eps": whole / scene.ball.mass}
+    cue_end = float(cue_end_mass(end_mass))
+    return {"end_mass": end_mass, "cue_end_mass": cue_end, "eps": cue_end / scene.ball.mass}
 
 
 def end_mass_sheet(record: Record, scene: Record, *, paper: bool = False) -> Sheet:
-    """The end masses by definition. paper: with [Kim]'s m_c and eps of each."""
+    """A row for each definition. paper: add [Kim]'s m_c and eps."""
     at = f", at b/R {record['offset']:.4g}"
     papers = {"m_c": "cue_end_mass", "eps": "{eps:.4f}"} if paper else {}
     their = "m_c = 4 m_e: end mass of the two-part cue in Kim's paper (nu_c 1/3); eps: m_c over the mass of the ball"
@@ -61,12 +61,12 @@ def end_mass_sheet(record: Record, scene: Record, *, paper: bool = False) -> She
         *(f"{row['name']}: {row['reason']}" for row in rows if row["end_mass"] is None),
         "m_e: effective end mass, the transverse inertia of the cue at its tip (the lumped models use offset)",
         *([their] if paper else []),
-        *tip_effect_notes(scene, _counted()),
+        *tip_effect_notes(scene, _tip_effects_note()),
     )
 
 
-def _counted() -> str:
-    """Which definitions count effects at the tip as end mass: those that take a coupled strike."""
+def _tip_effects_note() -> str:
+    """Which definitions include effects at the tip: those from a coupled strike."""
     counting, others = (
         [definition.name for definition in DEFINITIONS.values() if definition.counts_tip is c] for c in (True, False)
     )

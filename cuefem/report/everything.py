@@ -1,4 +1,4 @@
-"""The whole report of a cue: its record, and its sheets."""
+"""The report of a cue: its record, and its tables in their order for the terminal."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ def report_record(
     solved: Solved | None = None,
     outcome: Outcome | None = None,
 ) -> Record:
-    """The verdict, modes, end masses, squirt, pivot length, leather tip, all listed results and the grip of the stroke.
+    """Verdict, modes, end masses, squirt curve, leather tip, all results by name, and the contact state of a stroke.
 
-    Where a stroke presses a leather tip or bends the shaft further than their laws are known, modes and the reason,
-    "no_contact". offsets: of the curves; solved, outcome: the scene's modes and its strike, if they are known already.
+    Beyond the valid range of the force law or of the geometric stiffness: the modes, and the reason as "no_contact".
+    offsets: of the squirt curve; solved, outcome: the scene's modes and its strike, if already computed.
     """
     solved = solved or Solved(scene)
     record: Record = {"modes": modes_record(scene, count=count, near=None)} if scene.cue.segments else {}
@@ -52,20 +52,20 @@ def report_record(
 
 
 def report_sheets(record: Record, scene: Record) -> list[Sheet | str]:
-    """All of it, in the order in which one asks."""
-    shown: list[Sheet | str] = [modes_sheet(record["modes"])] if "modes" in record else []
+    """The tables of a report: the verdict first, the assumptions last."""
+    frequencies: list[Sheet | str] = [modes_sheet(record["modes"])] if "modes" in record else []
     if "no_contact" in record:
-        return [*shown, f"no end mass and no squirt: {record['no_contact']}"]
+        return [*frequencies, f"no end mass and no squirt: {record['no_contact']}"]
     warning = regime_warning(record["regime"])
     first: list[Sheet | str] = [warning, ""] if warning else []
     first += verdict_things(record["verdict"])
-    first += [record["model_error"]["sentence"], ""] if "model_error" in record else []
+    first += [record["model_error"]["summary"], ""] if "model_error" in record else []
     title = f"Cue, and stroke at offset b/R = {scene['stroke']['offset']:.4g}"
-    felt = (SQUIRT_END_MASS, grams(record["end_masses"]["drives"]["squirt"]["end_mass"]))
-    numbers = values_sheet(title, [felt, *value_rows(record["numbers"])], assumptions(scene))
+    end_mass = (SQUIRT_END_MASS, grams(record["end_masses"]["drives"]["squirt"]["end_mass"]))
+    numbers = values_sheet(title, [end_mass, *value_rows(record["numbers"])], assumptions(scene))
     return [
         *first,
-        *shown,
+        *frequencies,
         squirt_sheet(record["squirt"], scene),
         *([tip_sheet(record["tip"])] if "tip" in record else []),
         numbers,

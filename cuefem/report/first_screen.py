@@ -1,6 +1,7 @@
-"""The first screen of a design: what `cuefem report` pages begin with, and what the designer shows all the time.
+"""The first screen of a design, which begins the page of `cuefem report` and is always visible in the designer.
 
-Each part is small values for a macro of first_screen.html.j2: the headline, the scale, four numbers, the drawings.
+Its parts are the headline, the scale of reference cues, four numbers and the drawings; each calls a macro of
+first_screen.html.j2.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from cuefem.results.quantities import NONE, TRADE, with_unit
 from cuefem.results.records import Record
 from cuefem.scene import Scene
 
-# The four numbers: label, SI unit, decimals, and what each is.
+# The four numbers: label, SI unit, decimals, suffix, tooltip.
 TILES = {
     "off_line": ("Off line", "m", 0, "/m", "Distance of the ball from the line of aim after 1 m"),
     "end_mass_squirt": ("End mass", "kg", 2, "", "Squirt-equivalent: mass at the tip of a lumped cue with this squirt"),
@@ -34,7 +35,7 @@ TILES = {
 
 @dataclass(frozen=True)
 class Shown:
-    """What is known of a design: its name, its scene and numbers in SI; its verdict if that is computed."""
+    """A design with its computed numbers, SI, by name, and its verdict if computed."""
 
     name: str
     scene: Scene
@@ -54,9 +55,9 @@ class Tile(NamedTuple):
 
 
 def headline_markup(own: Shown, other: Shown | None = None, difference: Record | None = None, grip: str = "") -> str:
-    """Squirt with its uncertainty, and how much less or more that is than another's.
+    """Squirt with its uncertainty, and its difference from another design's and from a reference cue's.
 
-    difference: of `cuefem.results.comparison`, from the other design. grip: a warning about the contact.
+    difference: of `cuefem.results.comparison`, from the other design. grip: a warning about the contact state.
     """
     verdict = own.verdict
     text, error = (
@@ -67,14 +68,14 @@ def headline_markup(own: Shown, other: Shown | None = None, difference: Record |
         lines.append(("compared with" if difference is None else squirt_difference(**difference), other.name))
     for first, among in [*(verdict["among"].items() if verdict else ())][:1]:
         if other is None or other.name != first:
-            told = squirt_difference(among["difference"], among["difference_error"], among["distinct"])
-            lines.append((told, first))
+            line = squirt_difference(among["difference"], among["difference_error"], among["distinct"])
+            lines.append((line, first))
     offset = verdict["offset"] if verdict else own.scene.stroke.offset
     return _macro("headline", own.numbers["squirt"], text, error, f"{offset:.2f}", lines, grip)
 
 
 def tiles(own: Shown, other: Shown | None = None) -> list[Tile]:
-    """Four numbers, each with its difference from the other design's."""
+    """The four numbers, each with its difference from the other design's."""
     made = []
     for key, (label, unit, decimals, per, hint) in TILES.items():
         factor, name = TRADE.get(unit, (1.0, unit))
@@ -92,7 +93,7 @@ def _value(design: Shown, key: str) -> float | None:
 
 
 def scale_markup(own: Shown, other: Shown | None = None) -> str:
-    """The reference cues, this design with its uncertainty, and the other one, by their squirt."""
+    """The reference cues, this design with its uncertainty, and the other one, sorted by squirt."""
     beside = None if other is None else (other.name, other.numbers["squirt"])
     return _macro("scale", scale(own.verdict, own.name, beside) if own.verdict else [], other)
 
@@ -103,11 +104,12 @@ def tiles_markup(own: Shown, other: Shown | None = None) -> str:
 
 
 def drawings_markup(designs: Mapping[str, Scene]) -> str:
-    """The fronts of one or two designs true to scale, and the whole of the first with its diameters enlarged."""
+    """The tip ends of one or two designs, true to scale, and the whole first one with enlarged diameters."""
     first = next(iter(designs.values()))
-    reach = min([FRONT, *(scene.shaft.length for scene in designs.values())])
+    length = min([FRONT, *(scene.shaft.length for scene in designs.values())])
+    title = f"first {1e3 * length:.0f} mm, true to scale"
     fronts = [
-        (name, cue_drawing(scene, f"Tip end of {name}, first {1e3 * reach:.0f} mm, true to scale", reach, across=1.0))
+        (name, cue_drawing(scene, f"Tip end of {name}, {title}", length, diameter_scale=1.0))
         for name, scene in designs.items()
     ]
     whole = cue_drawing(first, f"Whole drawing, diameters {ACROSS:g} times enlarged")
@@ -115,7 +117,7 @@ def drawings_markup(designs: Mapping[str, Scene]) -> str:
 
 
 def parts_line(verdict: Record) -> str:
-    """What the uncertainty is made of: "± 0.35° (1σ) is 24 %: model 16 %, wood and tip 18 %"."""
+    """The parts of the uncertainty: "± 0.35° (1σ) is 24 %: model 16 %, wood and tip 18 %"."""
     _, error = squirt_words(verdict)
     parts = verdict["uncertainty"]
     model, inputs = f"{100 * parts['model']:.0f} %", f"{100 * parts['inputs']:.0f} %"

@@ -1,4 +1,4 @@
-"""The handbook's glossary on a page: a word is a button where it stands, and says what it means when it is pressed."""
+"""The handbook's glossary on a page: each term is a button that opens its definition."""
 
 from __future__ import annotations
 
@@ -9,27 +9,27 @@ from importlib.resources import files
 from typing import NamedTuple
 
 SKIPPED = ("head", "style", "script", "svg", "button", "h1", "h2", "h3", "summary", "a", "code", "label")
-PARTS = ("section", "header", "figure", "table")  # in each of them a word is explained once
+PARTS = ("section", "header", "figure", "table")  # a term has one button in each of them
 _TAG = re.compile(r"(<[^>]*>)")
 _NAME = re.compile(r"</?([a-zA-Z0-9]+)")
 _USED = re.compile(r'popovertarget="(w-[^"]*)"')
 
 
 class Entry(NamedTuple):
-    """Words that mean the same, and what they mean, as markdown."""
+    """Synonyms, and their definition as markdown."""
 
     words: tuple[str, ...]
     meaning: str
 
     @property
     def id(self) -> str:
-        """Its name on a page."""
+        """Its id on a page."""
         return "w-" + re.sub(r"\W+", "-", self.words[0].lower())
 
 
 @cache
 def entries() -> tuple[Entry, ...]:
-    """The handbook's glossary."""
+    """The entries of the handbook's glossary."""
     text = files("cuefem").joinpath("handbook/glossary.md").read_text(encoding="utf-8")
     _, *rows = (line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("| "))
     return tuple(Entry(tuple(words.split(", ")), meaning) for words, meaning in rows)
@@ -37,14 +37,14 @@ def entries() -> tuple[Entry, ...]:
 
 @cache
 def _words() -> tuple[re.Pattern[str], dict[str, str]]:
-    """Any word of the glossary, the longest first, or its plural; and the names of their entries."""
+    """A pattern of all terms and their plurals, the longest first; and the id of each term's entry."""
     known = {word.lower(): entry.id for entry in entries() for word in entry.words}
     longest = sorted(known, key=len, reverse=True)
     return re.compile(rf"(?<![\w/-])({'|'.join(map(re.escape, longest))})s?(?![\w/-])", re.IGNORECASE), known
 
 
 def explained(markup: str) -> str:
-    """Markup with the glossary's words as buttons that open their meanings: the first of each in a section."""
+    """Markup in which the first occurrence of each term in a section is a button that opens its definition."""
     pattern, known = _words()
     seen: set[str] = set()
     inside: list[str] = []
@@ -74,7 +74,7 @@ def explained(markup: str) -> str:
 
 
 def definitions(used: set[str] | None = None) -> str:
-    """The meanings that the buttons open, of all words or of those used; in print they stand at the page's end."""
+    """The definitions that the buttons open, of all terms or of those with an id in ``used``; printed at the end."""
     shown = (
         f'<div popover id="{entry.id}" class="word"><b>{escape(", ".join(entry.words))}</b> '
         f"{_with_code(entry.meaning)}</div>"
@@ -89,12 +89,12 @@ def _with_code(meaning: str) -> str:
 
 
 def subscripts(markup: str) -> str:
-    """Letters such as m_e as they are printed."""
+    """Markup with m_e and the like as subscripts."""
     return re.sub(r"(?<!\w)(\w)_(\w)(?!\w)", r"\1<sub>\2</sub>", markup)
 
 
 def with_words(page: str) -> str:
-    """A whole page with its words explained."""
+    """A page with buttons for the terms of the glossary, and their definitions."""
     text = explained(page)
     used = set(_USED.findall(text))
     return text.replace("<!-- words -->", definitions(used), 1) if used else text

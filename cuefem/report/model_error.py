@@ -1,4 +1,4 @@
-"""Beam theory beside the solid, for one's own shaft: record and sheet of `cuefem check`."""
+"""Error of the beam model against the elastic solid, for one shaft: record and table of `cuefem check`."""
 
 from __future__ import annotations
 
@@ -24,51 +24,50 @@ from cuefem.scene.solved_scene import mass_on_face
 from cuefem.solid.meridian_mesh import Fineness, blocks, check_size
 from cuefem.solid.shaft import AXIAL, Body
 
-# Flexible modes on both sides; tones that are told.
-MODES, TONES = 40, 6
-ORDER, LARGE_ORDER, LARGE = 6, 4, 150  # a drawing of more elements than LARGE is computed with LARGE_ORDER
-# The beam that scikit-fem assembles: the longest element, m, its order, and the smallest difference that is printed.
-LONGEST, ORDER_OF_BOTH, SAME = 0.03, 6, 1e-9
-Follow = Callable[[Sequence[Any]], Iterable[Any]]
+MODES, N_FREQUENCIES = 40, 6  # flexible modes of either model; natural frequencies in the table
+ORDER, LARGE_ORDER, LARGE = 6, 4, 150  # a mesh of more than LARGE elements has LARGE_ORDER
+# The beam that scikit-fem assembles: its longest element, m, its order, and the smallest relative difference printed.
+MAX_ELEMENT, SCIKIT_FEM_ORDER, MIN_DIFFERENCE = 0.03, 6, 1e-9
+Track = Callable[[Sequence[Any]], Iterable[Any]]
 
 
 def fineness(cue: Cue) -> Fineness:
-    """The finer of the two meshes on which a cue is checked; the coarser has an order less."""
+    """The finer of the two meshes of a cue; the order of the coarser is lower by 1."""
     mesh = Fineness(ORDER, 0.8, 0.05)
     cells = sum(len(block.along) - 1 for block in blocks(cue, mesh))
     return mesh if cells <= LARGE else mesh._replace(order=LARGE_ORDER)
 
 
 def checked_scene(scene: Scene) -> tuple[Scene, list[str]]:
-    """The scene with the effects that a solid can have alone, and the names of those that are left out."""
-    out = [e for e in scene.effects if isinstance(e, CueEffect) and e.mass_on_face(scene.shaft) is None]
-    rest = tuple(effect for effect in scene.effects if effect not in out)
-    return (replace(scene, effects=rest) if out else scene), [type(effect).__name__ for effect in out]
+    """The scene without the effects that the solid model does not include, and the names of these effects."""
+    excluded = [e for e in scene.effects if isinstance(e, CueEffect) and e.mass_on_face(scene.shaft) is None]
+    rest = tuple(effect for effect in scene.effects if effect not in excluded)
+    return (replace(scene, effects=rest) if excluded else scene), [type(effect).__name__ for effect in excluded]
 
 
-def model_error_record(scene: Scene, follow: Follow = iter) -> Record:
+def model_error_record(scene: Scene, track: Track = iter) -> Record:
     """Frequencies, stiffness, end masses and squirt by beam and solid, with the discretisation error.
 
-    "left_out": effects that no solid can have, left out on both sides. "scikit_fem": tone 1 of the beam whose weak
-    forms scikit-fem assembles. follow: shows how far the work is.
+    "excluded_effects": effects that the solid does not include, removed from both models. "scikit_fem": the first
+    natural frequency of the same beam, assembled by scikit-fem. track: iterates over the work with a progress bar.
     """
-    scene, left_out = checked_scene(scene)
+    scene, excluded = checked_scene(scene)
     bending = modes(scene.shaft, MODES, effects=scene.cue_effects)
     mesh = fineness(scene.shaft)
     check_size(scene.shaft, mesh)
     work = (lambda: _by_beam(scene, bending), lambda: _by_solid(scene, mesh))
     coarser = mesh._replace(order=mesh.order - 1)
-    beam, solid, coarse = (work_of() for work_of in follow([*work, lambda: _by_solid(scene, coarser)]))
+    beam, solid, coarse = (compute() for compute in track([*work, lambda: _by_solid(scene, coarser)]))
     rows = [
         {
-            "quantity": words,
+            "quantity": name,
             "unit": unit,
-            "beam": beam[words, unit],
+            "beam": beam[name, unit],
             "solid": value,
-            "difference": beam[words, unit] / value - 1,
-            "mesh_error": abs(coarse[words, unit] / value - 1),
+            "difference": beam[name, unit] / value - 1,
+            "discretisation_error": abs(coarse[name, unit] / value - 1),
         }
-        for (words, unit), value in solid.items()
+        for (name, unit), value in solid.items()
         if value
     ]
     return {
@@ -76,8 +75,8 @@ def model_error_record(scene: Scene, follow: Follow = iter) -> Record:
         "scikit_fem": _by_scikit_fem(scene, bending),
         "modes": MODES,
         "order": mesh.order,
-        "left_out": left_out,
-        "sentence": _sentence(rows),
+        "excluded_effects": excluded,
+        "summary": _summary(rows),
     }
 
 
@@ -85,11 +84,11 @@ Numbers = dict[tuple[str, str], float]
 
 
 def _by_scikit_fem(scene: Scene, bending: Modes) -> Record:
-    """Tone 1 of the beam and of the same beam as scikit-fem assembles it, on a mesh of its own."""
+    """First natural frequency, Hz, of the beam, and of the same beam assembled by scikit-fem on another mesh."""
     ends, shift = scene.shaft.nodes, bending.system.shift
-    pieces = [np.linspace(a, b, int(np.ceil((b - a) / LONGEST)) + 1)[:-1] for a, b in pairwise(ends)]
+    pieces = [np.linspace(a, b, int(np.ceil((b - a) / MAX_ELEMENT)) + 1)[:-1] for a, b in pairwise(ends)]
     nodes = np.concatenate([*pieces, ends[-1:]])
-    K, M = weak_forms.assemble(scene.shaft, nodes, order=ORDER_OF_BOTH, effects=scene.cue_effects)
+    K, M = weak_forms.assemble(scene.shaft, nodes, order=SCIKIT_FEM_ORDER, effects=scene.cue_effects)
     ours, theirs = bending.frequencies[0], weak_forms.frequencies(K, M, shift=shift)[bending.rigid]
     return {"beam": float(ours), "scikit_fem": float(theirs), "difference": float(ours / theirs - 1)}
 
@@ -97,15 +96,15 @@ def _by_scikit_fem(scene: Scene, bending: Modes) -> Record:
 def _by_beam(scene: Scene, bending: Modes) -> Numbers:
     cue = scene.shaft
     tip = tip_modes(bending, scene.axial_mass)
-    # one newton across the tip bends the cue by its distance from there, and shears it all along
+    # a transverse unit force at the tip has the bending moment x and the shear force 1
     x, weights = np.polynomial.legendre.leggauss(40)
     pieces = [(s.section((x + 1) / 2 * s.length), weights * s.length / 2) for s in cue.segments]
-    along = sum(float(w @ (1 / section.EA)) for section, w in pieces)
-    across = sum(
+    axial = sum(float(w @ (1 / section.EA)) for section, w in pieces)
+    transverse = sum(
         float(w @ ((at + (x + 1) / 2 * s.length) ** 2 / section.EI + 1 / section.kGA))
         for (section, w), s, at in zip(pieces, cue.segments, cue.nodes, strict=False)
     )
-    return _numbers(scene, tip, across, along)
+    return _numbers(scene, tip, transverse, axial)
 
 
 def _by_solid(scene: Scene, mesh: Fineness) -> Numbers:
@@ -115,12 +114,13 @@ def _by_solid(scene: Scene, mesh: Fineness) -> Numbers:
     return _numbers(scene, tip, body.give, Body(scene.shaft, mesh, AXIAL).give)
 
 
-def _numbers(scene: Scene, tip: TipModes, across: float, along: float) -> Numbers:
-    """What is compared, by its words and its unit, from a cue's tip modes and its gives with the butt held, m/N."""
+def _numbers(scene: Scene, tip: TipModes, transverse: float, axial: float) -> Numbers:
+    """The compared quantities by name and unit. transverse, axial: compliance at the tip, m/N, butt clamped."""
     omega, amplitude = tip.omega[3:], tip.amplitude[3:, 1]
-    numbers = {(f"natural frequency {k}", "Hz"): float(w) / (2 * np.pi) for k, w in enumerate(omega[:TONES], 1)}
-    numbers["transverse stiffness at the tip, butt clamped", "N/m"] = 1 / across
-    numbers["axial stiffness at the tip, butt clamped", "N/m"] = 1 / along
+    frequencies = omega[:N_FREQUENCIES] / (2 * np.pi)
+    numbers = {(f"natural frequency {k}", "Hz"): float(frequency) for k, frequency in enumerate(frequencies, 1)}
+    numbers["transverse stiffness at the tip, butt clamped", "N/m"] = 1 / transverse
+    numbers["axial stiffness at the tip, butt clamped", "N/m"] = 1 / axial
     numbers["tip compliance, free cue", "m/N"] = float(np.sum((amplitude / omega) ** 2))
     for definition in DEFINITIONS.values():
         with suppress(ValueError):  # a miscue has no squirt-equivalent end mass
@@ -130,22 +130,22 @@ def _numbers(scene: Scene, tip: TipModes, across: float, along: float) -> Number
 
 
 def _percent(part: float, digits: int, sign: str = "-") -> str:
-    """A part in per cent, so many digits of it; never as a power of ten where it is large."""
+    """A relative difference in per cent, to so many significant digits; large ones without exponent."""
     return f"{100 * part:{sign}.{digits}g} %" if abs(part) < 0.1 else f"{100 * part:{sign}.0f} %"
 
 
-def _sentence(rows: Sequence[Record]) -> str:
-    """How far beam theory is off, in a sentence."""
+def _summary(rows: Sequence[Record]) -> str:
+    """The error of the beam model in squirt, as a sentence."""
     row = next((row for row in rows if row["quantity"] == "squirt"), None) or rows[-1]
-    off, own = abs(row["difference"]), row["mesh_error"]
-    size = _percent(max(off, own), 2 if own < 0.05 * off else 1)
-    words = f"less than {size}" if off < own else size
-    return f"Error of the beam model for this shaft: {words} in {row['quantity']}."
+    difference, mesh = abs(row["difference"]), row["discretisation_error"]
+    size = _percent(max(difference, mesh), 2 if mesh < 0.05 * difference else 1)
+    error = f"less than {size}" if difference < mesh else size
+    return f"Error of the beam model for this shaft: {error} in {row['quantity']}."
 
 
 def model_error_sheet(record: Record) -> Sheet:
     """Beam and solid side by side."""
-    without = " *" if record["left_out"] else ""
+    without = " *" if record["excluded_effects"] else ""
     of_strike = ("end mass", "squirt")
     columns: Any = {
         "": lambda row: row["quantity"] + (without if row["quantity"].startswith(of_strike) else ""),
@@ -153,19 +153,17 @@ def model_error_sheet(record: Record) -> Sheet:
         "beam": lambda row: f"{scaled(row['beam'], row['unit']):.6g}",
         "solid": lambda row: f"{scaled(row['solid'], row['unit']):.6g}",
         "error of the beam": lambda row: _percent(row["difference"], 2, "+"),
-        "discretisation error": lambda row: _percent(row["mesh_error"], 1),
+        "discretisation error": lambda row: _percent(row["discretisation_error"], 1),
     }
     notes = [
         f"both from {record['modes']} bending modes without a truncation correction, which `cuefem end-mass` and "
         f"`cuefem strike` have; discretisation error: change from elements of order {record['order'] - 1} to "
         f"{record['order']}"
     ]
-    if record["left_out"]:
-        notes.append(
-            f"* without {', '.join(record['left_out'])}, which the solid model does not include; `cuefem end-mass` does"
-        )
-    found = sheet("Beam and solid models", columns, record["rows"], *notes, texts=(0, 1))
+    if excluded := record["excluded_effects"]:
+        notes.append(f"* without {', '.join(excluded)}, which the solid model does not include; `cuefem end-mass` does")
+    made = sheet("Beam and solid models", columns, record["rows"], *notes, texts=(0, 1))
     same = record["scikit_fem"]
-    off = "< 1e-07 %" if abs(same["difference"]) < SAME else _percent(same["difference"], 2, "+")
-    row = ("natural frequency 1, same beam by scikit-fem", "Hz", f"{same['beam']:.6g}", "", off, "")
-    return replace(found, rows=(*found.rows, row))
+    error = "< 1e-07 %" if abs(same["difference"]) < MIN_DIFFERENCE else _percent(same["difference"], 2, "+")
+    row = ("natural frequency 1, same beam by scikit-fem", "Hz", f"{same['beam']:.6g}", "", error, "")
+    return replace(made, rows=(*made.rows, row))

@@ -1,4 +1,4 @@
-"""The modes of a cue: record and sheet."""
+"""Natural frequencies of bending and tip amplitudes: record and table."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from cuefem.scene import Scene
 
 
 def modes_record(scene: Scene, *, count: int, near: float | None) -> Record:
-    """Frequencies and tip amplitudes of the scene's cue: the ``count`` lowest modes, or the ones nearest ``near`` Hz.
+    """Natural frequencies, Hz, and tip amplitudes of the ``count`` lowest modes, or of those nearest ``near``, Hz.
 
-    "nearest": the one frequency nearest ``near``; None if ``near`` is.
+    "nearest": the frequency nearest ``near``, or None.
     """
     bending = modes(scene.shaft, count, near, effects=scene.cue_effects)
     amplitudes, _ = bending.shape(0.0)
@@ -25,7 +25,7 @@ def modes_record(scene: Scene, *, count: int, near: float | None) -> Record:
 
 
 def modes_sheet(record: Record) -> Sheet:
-    """The modes of a free cue, or of a cue held by the scene's effects."""
+    """A row for each mode of the cue with the scene's effects on it."""
     near, nearest = record["near"], record["nearest"]
     rows = [
         {"frequency": frequency, "period": 1 / frequency, "at_tip": amplitude}

@@ -1,4 +1,4 @@
-"""The parts that a file can name: shafts, materials and tips; record and sheets."""
+"""Catalogue of the parts that a file can name (shafts, materials, tips): record and tables."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cuefem.results.records import Entry, Record, Sheet, sheet
 
 
 def parts_record() -> Record:
-    """The parts of which a cue is put together by name, each with its numbers and their source."""
+    """Shafts, materials and tips by name, each with its values, SI, and their source."""
     sources = {name: known.source for name, known in LEATHERS.items()} | {
         name: tip["source"] for name, tip in TIPS.items()
     }
@@ -36,7 +36,7 @@ def parts_record() -> Record:
 
 
 def parts_sheets(record: Record) -> list[Sheet]:
-    """A table for each kind of part, with how a file and an option name it."""
+    """A table for each kind of part; the notes show how a file and an option name it."""
     source: dict[str, Entry] = {"source": "{source}"}
     moduli: dict[str, Entry] = {with_heading(name, RESULTS[name].unit): _with_range(name) for name in ("E", "G", "rho")}
     return [

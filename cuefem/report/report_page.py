@@ -1,4 +1,4 @@
-"""The report as one self-contained page: inline drawings and styles, nothing from the network."""
+"""The report as one self-contained HTML page, with inline drawings, style and script."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import Solved
 
 PAGE_OFFSETS = tuple(round(0.03 * i, 2) for i in range(1, 21))  # b/R of the curves
-# What the model's error rests on; its size is in `cuefem.results.uncertainty`.
+# Notes on the accuracy of the model; its size is in `cuefem.results.uncertainty`.
 LAW = (
     "The tip is modelled as elastic leather of given height, dome and E. Its compliance is that of the elastic solid "
     "to 0.3 % (95 % of contacts; at worst 1.1 %); the model has not been tested on real tips. Computed squirt changes "
@@ -58,13 +58,13 @@ COMPARING = (
     "A ratio of two designs is more accurate than the squirt of one: a low-deflection shaft was measured with 0.72 "
     "of the squirt of a maple shaft; the model computes 0.70 to 0.78 (handbook: Measured squirt)."
 )
-# The models' classes on the page.
+# CSS classes of the models' curves.
 STYLES = {"coupled, this cue": "c1", "lumped, this cue": "c2", "two-part, this cue": "c3", "two-part, 12 g": "c5"}
 STYLES |= {"A.31, this cue": "c4"}
 
 
 def page(name: str, scene: Scene, **about: Any) -> str:
-    """The report of a scene as HTML; about: as for `page_and_headline`."""
+    """The report of a scene as HTML. about: arguments of `page_and_headline`."""
     return page_and_headline(name, scene, **about)[0]
 
 
@@ -74,16 +74,32 @@ def page_and_headline(
     *,
     rtol: float | None = None,
     notes: Sequence[str] = (),
-    remarks: Sequence[str] = (),
-    trust: Sequence[str] = (),
+    warnings: Sequence[str] = (),
+    checks: Sequence[str] = (),
     other: tuple[str, Scene] | None = None,
     track: Any = iter,
 ) -> tuple[str, str]:
-    """The report of a scene as HTML, and its squirt in a line.
+    """The report of a scene as HTML, and its headline.
 
-    rtol: the accuracy that is asked for, None for that of a default strike; notes: what was assumed; remarks: what is
-    unusual; trust: what was computed on how far to trust it; other: the name and scene of a cue to compare with, struck
-    alike; track: follows the stages.
+    Parameters
+    ----------
+    name : str
+        The title of the page.
+    scene : Scene
+        The stroke to report.
+    rtol : float, optional
+        Relative numerical error target of the strike; by default that of a default strike.
+    notes, warnings, checks : sequence of str
+        Assumptions, warnings of implausible values, and results of verification to show.
+    other : tuple of str and Scene, optional
+        Name and scene of a cue to compare with, with the same ball and stroke.
+    track : callable
+        Iterates over the stages with a progress bar.
+
+    Returns
+    -------
+    tuple of str
+        The page, and squirt with its uncertainty in one line.
     """
     solved = Solved(scene)
     stages: dict[str, Callable[[], Any]] = {
@@ -100,17 +116,17 @@ def page_and_headline(
     for key, work in track([*stages.items()]):
         records[key] = work()
     records |= records.pop("report")
-    said = {"notes": list(notes), "remarks": list(remarks), "checked": list(trust)}
+    lines = {"notes": list(notes), "warnings": list(warnings), "checks": list(checks)}
     context = _context(scene, records) | {"screen": _screen(name, scene, records, other), "comparison": None}
     if other is not None:
         curves = {name: records["squirt"]["models"]["coupled, this cue"], other[0]: records["other"]}
         context |= {"comparison": comparison_sheet(records["comparison"]), "by_offset": _by_offset(curves, scene)}
-    text = environment().get_template("page.html.j2").render(name=name, **said, **context)
+    text = environment().get_template("page.html.j2").render(name=name, **lines, **context)
     return with_words(text) + "\n", headline(records["verdict"])
 
 
 def _screen(name: str, scene: Scene, records: Record, other: tuple[str, Scene] | None) -> dict[str, str]:
-    """The parts of the first screen, as markup."""
+    """The parts of the first screen as markup."""
     outcome, drives = records["outcome"], records["end_masses"]["drives"]
     squirt = {"squirt": float(outcome.squirt), "pivot_length": records["strike"]["models"]["coupled"]["pivot_length"]}
     own = Shown(
@@ -134,16 +150,16 @@ def _screen(name: str, scene: Scene, records: Record, other: tuple[str, Scene] |
 def _context(scene: Scene, records: Record) -> Record:
     outcome: Outcome = records["outcome"]
     about, regimes = scene_record(scene), records["squirt"]["models"]["coupled, this cue"]["regime"]
-    told = f"{assumptions(about)}, offset b/R {scene.stroke.offset:.4g}"
+    stroke = f"{assumptions(about)}, offset b/R {scene.stroke.offset:.4g}"
     shaft = "modes" in records
     return {
-        "facts": [plain_cue_line(scene.cue), told, *(f"with {effect_words(effect)}" for effect in scene.effects)],
+        "facts": [plain_cue_line(scene.cue), stroke, *(f"with {effect_words(effect)}" for effect in scene.effects)],
         "squirt": written("squirt", outcome.squirt, brief=True),
         "error": "" if outcome.error is None else f"{100.0 * outcome.error:.2g} %",
         "uncertainty": uncertainty_line(records["verdict"]),
         "advice": advice_sheet(records["advice"]) if "advice" in records else None,
-        "trust": (LAW if scene.contact_terms.tip is not None else SPRING, COMPARING),
-        "warning": regime_warning(outcome.regime),
+        "accuracy": (LAW if scene.contact_terms.tip is not None else SPRING, COMPARING),
+        "regime_warning": regime_warning(outcome.regime),
         "modes": modes_chart(scene) if shaft else None,
         "frequencies": modes_sheet(records["modes"]) if shaft else None,
         "contact": None if outcome.history is None else contact_part(outcome),
@@ -166,13 +182,13 @@ SEGMENT_COLUMNS = ("at, mm", "length, mm", "diameter, mm", "bore, mm", "mass", "
 
 def _segments(scene: Scene) -> Sheet:
     cue = scene.shaft
-    place, across = RESULTS["position"].number, RESULTS["radius"].number
+    position, diameter = RESULTS["position"].number, RESULTS["radius"].number
     rows = (
         (
-            place(x),
-            place(s.length),
-            f"{across(s.tip_diameter)} – {across(s.butt_diameter)}",
-            f"{across(s.tip_bore)} – {across(s.butt_bore)}" if s.tip_bore or s.butt_bore else NONE,
+            position(x),
+            position(s.length),
+            f"{diameter(s.tip_diameter)} – {diameter(s.butt_diameter)}",
+            f"{diameter(s.tip_bore)} – {diameter(s.butt_bore)}" if s.tip_bore or s.butt_bore else NONE,
             grams(s.mass),
             material_name(s.material) + (f", core {material_name(s.core)}" if s.core else ""),
         )
@@ -187,17 +203,17 @@ def _by_offset(curves: Mapping[str, Record], scene: Scene, regimes: Sequence[str
 
 
 def _meanings(scene: Scene, outcome: Outcome) -> list[str]:
-    """What each definition of the end mass means, and the end mass by that of published ones."""
-    said = [f"{known.name}: {known.meaning}." for known in DEFINITIONS.values()]
+    """The definitions of the end mass, and the end mass by Alciatore's formula, which published values use."""
+    meanings = [f"{known.name}: {known.meaning}." for known in DEFINITIONS.values()]
     try:
         offset, inertia = float(scene.stroke.offset), scene.ball.inertia
         mass = float(scene.ball.mass / alciatore_a31_mass_ratio(offset, outcome.squirt, inertia=inertia))
     except ValueError:
-        return said
+        return meanings
     if not 0 < mass < math.inf:
-        return said
+        return meanings
     return [
-        *said,
+        *meanings,
         f"[A.31]: with {grams(mass)} Alciatore's formula (technical proof A.31, billiards.colostate.edu) gives this "
         "squirt. By this definition alone measured cues have 5.8 to 14 g (handbook: Effective end mass).",
     ]
@@ -210,4 +226,4 @@ def _energy(outcome: Outcome) -> Sheet:
         for name, value in outcome.energy.items()
         if name != "initial"
     )
-    return Sheet("Where the energy goes", ("", "share", "energy"), tuple(rows))
+    return Sheet("Energy balance", ("", "share", "energy"), tuple(rows))

@@ -1,4 +1,4 @@
-"""A cue, a scene and its effects: as records, and in a line of words each."""
+"""Summaries of a cue, a scene and its effects: as records, and as a line of text each."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from cuefem.scene import Scene
 
 
 def cue_record(cue: Cue | LumpedCue) -> Record:
-    """What a cue is, in a few numbers."""
+    """Length, masses, balance point and number of segments of a cue, or the parameters of a lumped cue, SI."""
     if not cue.segments:
         return {name: getattr(cue, name) for name in ("mass", "end_mass", "coupling")}
     names = ("length", "mass", "shaft_mass", "body_mass", "balance_point")
@@ -23,7 +23,7 @@ def cue_record(cue: Cue | LumpedCue) -> Record:
 
 
 def scene_record(scene: Scene) -> Record:
-    """The scene that a result is for: cue, ball, tip, stroke and effects."""
+    """The cue, ball, tip, stroke and effects of a scene, SI."""
     return {
         "cue": cue_record(scene.cue),
         "ball": asdict(scene.ball),
@@ -36,7 +36,7 @@ def scene_record(scene: Scene) -> Record:
 
 
 def assumptions(scene: Record) -> str:
-    """Ball, tip and stroke in one line."""
+    """Ball, tip and stroke as one line of text."""
     ball, tip, stroke = scene["ball"], scene["tip"], scene["stroke"]
     return ", ".join(
         [
@@ -54,7 +54,7 @@ def _milliseconds(time: float | None) -> str:
 
 
 def cue_line(cue: Record) -> str:
-    """A cue in one line."""
+    """The record of a cue as one line of text."""
     if "length" not in cue:
         return f"lumped cue, {grams(cue['mass'])}, end mass {grams(cue['end_mass'])}"
     pieces = f"{cue['segments']} segment" + ("s" if cue["segments"] > 1 else "")
@@ -63,20 +63,20 @@ def cue_line(cue: Record) -> str:
 
 
 def plain_cue_line(cue: Cue | LumpedCue) -> str:
-    """A cue in one line."""
+    """A cue as one line of text."""
     return cue_line(cue_record(cue))
 
 
 def effect_words(effect: Effect) -> str:
-    """An effect in a few words, without what is at its default: "PointMass (position 100 mm, mass 5 g)"."""
-    usual = {field.name: field.default for field in fields(effect)}
-    entered = {name: value for name, value in file_table(effect).items() if getattr(effect, name) != usual[name]}
+    """An effect and its values other than defaults: "PointMass (position 100 mm, mass 5 g)"."""
+    defaults = {field.name: field.default for field in fields(effect)}
+    entered = {name: value for name, value in file_table(effect).items() if getattr(effect, name) != defaults[name]}
     entries = [f"{name.replace('_', ' ')} {_short(value)}" for name, value in entered.items()]
     return type(effect).__name__ + (f" ({', '.join(entries)})" if entries else "")
 
 
 def _short(value: Any) -> str:
-    """A number, with its unit if it has one, to six digits; true or false; a table or a list of them."""
+    """A number with its unit to six digits, a Boolean, or a table or list of them, as text."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, list):
@@ -85,17 +85,17 @@ def _short(value: Any) -> str:
         return "of " + ", ".join(f"{name} {_short(number)}" for name, number in value.items())
     number_text, _, unit = str(value).partition(" ")
     number = float(number_text)
-    if unit == "GPa" and abs(number) < 1:  # leather's, as people say it
+    if unit == "GPa" and abs(number) < 1:  # the usual unit of leather
         number, unit = 1e3 * number, "MPa"
     return f"{number:.6g} {unit}".rstrip()
 
 
 def listed(names: Sequence[str]) -> str:
-    """Names as a sentence lists them: "stick, offset and squirt"."""
+    """Names as a list in a sentence: "stick, offset and squirt"."""
     *others, last = names
     return f"{', '.join(others)} and {last}" if others else last
 
 
-def tip_effect_notes(scene: Record, words: str) -> list[str]:
-    """The words as a caption line, if the scene has effects at the tip."""
-    return [words] if scene["effects_at_tip"] else []
+def tip_effect_notes(scene: Record, note: str) -> list[str]:
+    """The note, if the scene has effects at the tip."""
+    return [note] if scene["effects_at_tip"] else []

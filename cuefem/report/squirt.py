@@ -1,4 +1,4 @@
-"""Squirt and pivot length against the offset: record, sheets and charts."""
+"""Squirt and natural pivot length against the tip offset: record, table and charts."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from cuefem.results.solved_design import OFFSETS, at_offset, coupled_curve
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import Solved
 
-PAPER_CUE_END_MASS = 0.012  # kg, [Kim]'s m_c of a real cue; the tip feels a quarter of it
+PAPER_CUE_END_MASS = 0.012  # kg, [Kim]'s m_c of a real cue: four times the effective end mass
 
 
 def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, solved: Solved | None = None) -> Record:
-    """Squirt and natural pivot length against the offset, by every model; nan at offsets where no lumped cue fits.
+    """Squirt, rad, and natural pivot length, m, at each offset b/R by every model; nan where no lumped cue fits.
 
-    The models are: coupled in time; lumped (if effects at the tip couple the cue's motions); two-part, with this cue
-    and with [Kim]'s 12 g; and [A.31]. "end_mass": of a tip that sticks at each offset, without effects at the tip.
-    solved: the scene's modes, if they are known already.
+    Models: coupled strike; lumped, if effects at the tip couple the cue's transverse and axial motions; two-part, with
+    this cue's end mass and with [Kim]'s 12 g; [A.31]. "end_mass": kg at each offset, with sticking contact and without
+    effects at the tip. solved: the scene's modes, if already computed.
     """
     solved = solved or Solved(scene)
     own, slope = lumped_cues(scene, offsets, solved.tip_stuck)
@@ -51,7 +51,7 @@ def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, solved: S
 
 
 def squirt_sheet(record: Record, scene: Record) -> Sheet:
-    """Squirt, natural pivot length and the state of the contact against the offset."""
+    """Squirt, natural pivot length and contact state, a row for each offset."""
     own = record["models"]["coupled, this cue"]
     names = ("squirt", "pivot_length", "regime")
     rows = [
@@ -64,9 +64,9 @@ def squirt_sheet(record: Record, scene: Record) -> Sheet:
     )
 
 
-LATE = ("late stick", "partial slip", "gross slip", "miscue")
+SHADED_REGIMES = ("late stick", "partial slip", "gross slip", "miscue")
 SHADED = "Shaded: the tip slips through much of the normal impulse, close to a miscue. Darker: miscue."
-LONGEST_PIVOT = 1.5  # m; beyond it a pivot is behind the cue
+MAX_PIVOT = 1.5  # m, of the chart; a longer pivot length is beyond the butt
 
 
 def offset_charts(
@@ -77,10 +77,10 @@ def offset_charts(
     height: float,
     regimes: Sequence[str] = (),
 ) -> tuple[Chart, Chart]:
-    """Charts of squirt and of pivot length against the offset, as far as the first miscue.
+    """Charts of squirt and natural pivot length against the offset, up to the first miscue.
 
-    lines: name, class on the page and `coupled_curve` or the like of every cue or model. own: the offset of the
-    scene's stroke, which is marked. regimes: by which offsets are shaded, where the tip slips long or miscues.
+    lines: name, CSS class and `coupled_curve` (or a record with the same keys) of every cue or model. own: offset b/R
+    of the scene's stroke, which is marked. regimes: contact state at each offset; long slip and miscue are shaded.
     """
     x = np.array(offsets)
     per_metre, unit = TRADE["m"]
@@ -94,16 +94,16 @@ def offset_charts(
     spans = [
         Shade(float(ends[i]), float(ends[i + 1]), "miss" if regime == "miscue" else "slip")
         for i, regime in enumerate(regimes)
-        if regime in LATE
+        if regime in SHADED_REGIMES
     ]
     longest = max([0.1, *(float(np.nanmax(curve.y, initial=0.0)) / per_metre for curve in pivot)])
-    highest = Axis("", 0.0).over([np.array([per_metre * min(LONGEST_PIVOT, longest)])]).high
+    highest = Axis("", 0.0).scale_for([np.array([per_metre * min(MAX_PIVOT, longest)])]).high
     at, here = Axis("offset b/R", 0.0, float(x[-1])), [Tick(abs(own), "here")] if 0 < abs(own) <= x[-1] else []
 
-    def drawn(title: str, curves: list[Curve], y: Axis) -> Chart:
+    def draw(title: str, curves: list[Curve], y: Axis) -> Chart:
         return chart(title, curves, x=at, y=y, marks=here, spans=spans, height=height)
 
     return (
-        drawn("Squirt", squirt, Axis("squirt, degrees")),
-        drawn("Natural pivot length", pivot, Axis(f"pivot length, {unit}", 0.0, highest)),
+        draw("Squirt", squirt, Axis("squirt, degrees")),
+        draw("Natural pivot length", pivot, Axis(f"pivot length, {unit}", 0.0, highest)),
     )

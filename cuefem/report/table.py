@@ -1,4 +1,4 @@
-"""The renderers of records and sheets, one a medium: terminal, JSON and CSV; that of pages is drawings.html.j2."""
+"""Renderers of records and tables: terminal, JSON and CSV. drawings.html.j2 renders tables on pages."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, Group
 from rich.measure import Measurement
 from rich.padding import Padding
-from rich.table import Table
+from rich.table import Table as RichTable
 from rich.text import Text
 
 from cuefem.results.records import Sheet, plain
 
-FREE = 10_000  # characters: more than any table is wide
+UNLIMITED = 10_000  # characters: wider than any table
 
 
-class WholeTable(Table):
-    """A table whose cells are never cut: texts to the left, which wrap at spaces; numbers to the right, which do not.
+class UncroppedTable(RichTable):
+    """A table that never crops a cell: texts are left-aligned and wrap at spaces, numbers are right-aligned.
 
-    In a narrow terminal headings of numbers wrap first, then texts, the longest most. A table that is too wide even so
-    is left to the terminal to wrap (print it with ``crop=False``).
+    In a narrow terminal the headings of numbers wrap first, then the texts, the longest most. If the table is still too
+    wide, the terminal wraps its lines (print it with ``crop=False``).
     """
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[Any]:
-        if Measurement.get(console, options.update(width=FREE), self).maximum > options.max_width:
+        if Measurement.get(console, options.update(width=UNLIMITED), self).maximum > options.max_width:
             self.show_edge = self.pad_edge = False
             self.padding = (0, 1, 0, 0)
             for column in self.columns:
@@ -43,8 +43,8 @@ class WholeTable(Table):
 
 
 def terminal(sheet: Sheet) -> Group:
-    """A sheet for the terminal: text to the left, numbers to the right, no cell cut; its notes below it."""
-    table = WholeTable(title=sheet.title, box=box.SIMPLE_HEAD, title_justify="left", title_style="bold")
+    """A table for the terminal, its notes below it; no cell is cropped."""
+    table = UncroppedTable(title=sheet.title, box=box.SIMPLE_HEAD, title_justify="left", title_style="bold")
     for i, head in enumerate(sheet.head):
         text = i in sheet.texts
         pieces = [*head.split(), *(piece for row in sheet.rows for piece in (row[i].split() if text else [row[i]]))]
@@ -57,12 +57,12 @@ def terminal(sheet: Sheet) -> Group:
 
 
 def json_text(record: Any) -> str:
-    """A record for programs."""
+    """A record as JSON."""
     return json.dumps(plain(record), indent=2, allow_nan=False, ensure_ascii=False)
 
 
 def csv_text(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Head and rows for a spreadsheet, none of whose cells it takes for a formula."""
+    """Head and rows as CSV; a quote is put before a cell that a spreadsheet would read as a formula."""
     file = io.StringIO()
     writer = csv.writer(file)
     writer.writerows([_no_formula(cell) for cell in cells] for cells in (head, *rows))

@@ -1,4 +1,4 @@
-"""The templates: single pieces of the report's page for other pages, and the page of commands that have no other."""
+"""The Jinja templates: parts of the report page for other pages, and the plain page of a command's tables."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from cuefem.results.records import Sheet
 
 @cache
 def environment() -> Environment:
-    """The templates beside this file; what they insert is text, never markup."""
+    """The templates in this folder; inserted text is escaped."""
     return Environment(
         loader=PackageLoader("cuefem", "report"),
         autoescape=True,
@@ -28,27 +28,27 @@ def environment() -> Environment:
 
 
 def page_style() -> str:
-    """The style sheet of pages, with that of the first screen."""
+    """The style sheet of pages, including the first screen."""
     return "".join(environment().get_template(name).render() for name in ("page.css", "first_screen.css"))
 
 
 def chart_script() -> str:
-    """The script that reads values off charts."""
+    """The script that shows a chart's values at the pointer."""
     return environment().get_template("charts.js").render()
 
 
 def chart_markup(drawing: Chart, name: str) -> str:
-    """A chart as a figure; name: its own on the page."""
+    """A chart as a figure. name: its id on the page."""
     return str(_macros().chart(drawing, name))
 
 
 def sheet_markup(sheet: Sheet) -> str:
-    """A table under its title, with its notes."""
+    """A table below its title, with its notes."""
     return f"<h2>{escape(sheet.title)}</h2>{_macros().table(sheet)}"
 
 
 def plain_page(name: str, things: Sequence[str | Sheet | Chart | CueDrawing]) -> str:
-    """Lines, tables, charts and drawings as a page that needs no network."""
+    """Lines, tables, charts and drawings as a self-contained page."""
     groups = [[*group] for _, group in groupby(filter(None, things), type)]
     return environment().get_template("plain.html.j2").render(name=name, groups=groups)
 

@@ -1,4 +1,4 @@
-"""Numbers that no cue and no blow has, as a wrong unit or a diameter typed as a radius makes them."""
+"""Warnings of implausible values of a scene, such as a wrong unit or a diameter entered as a radius causes."""
 
 from __future__ import annotations
 
@@ -16,22 +16,21 @@ from cuefem.quantity.slips import CUE_DIAMETER, CUE_LENGTH, LIGHTEST
 from cuefem.results.quantities import scaled
 from cuefem.scene import Ball, Scene, Stroke, Tip
 
-JUMP = 1.5  # of the diameter between two segments
-LEAST_DRAWN = 0.02  # kg, of a shaft
-# m, Pa, kg/m^3: a long piece of a material stiffer than wood, lighter than metal
-AT_EASE = 0.1  # relative: so far beyond the range of a wood its density may be
-LONG, STIFF, LIGHT = 0.3, 3e10, 2500.0
+MAX_STEP = 1.5  # ratio of the diameters at the joint of two segments
+MIN_DRAWN_MASS = 0.02  # kg
+DENSITY_MARGIN = 0.1  # relative, beyond the density range of a wood
+LONG, STIFF, LIGHT = 0.3, 3e10, 2500.0  # m, Pa, kg/m3: a long segment, stiffer than wood and lighter than metal
 
 
-Asked = tuple[str, Any, tuple[float, float], str, str]  # name, value, usual range, unit, what else to ask
+Check = tuple[str, Any, tuple[float, float], str, str]  # name, value, plausible range, unit, hint
 
 
 def _usual(kind: type, name: str) -> tuple[float, float]:
-    """Between which numbers a field usually lies."""
+    """The plausible range of a field."""
     return next(known.usual for field, known, *_ in quantities(kind) if field == name and known.usual)
 
 
-def _of_stroke(scene: Scene) -> Iterator[Asked]:
+def _of_stroke(scene: Scene) -> Iterator[Check]:
     leather, ball = "expected 0.001 to 0.002 s for leather", scene.ball
     yield "head-on contact time", scene.known_contact_time, _usual(Tip, "contact_time"), "s", leather
     diameter = "expected 26 to 31 mm; is this the diameter?"
@@ -42,7 +41,7 @@ def _of_stroke(scene: Scene) -> Iterator[Asked]:
     yield "dome radius", scene.dome_radius or None, _usual(TipDome, "radius"), "mm", dome
 
 
-def _of_drawing(cue: Cue) -> Iterator[Asked]:
+def _of_drawing(cue: Cue) -> Iterator[Check]:
     yield "drawn length", cue.length, CUE_LENGTH, "mm", "check the unit of the lengths"
     ends = (
         (f"segments[{i}].{end}", getattr(segment, end))
@@ -50,16 +49,16 @@ def _of_drawing(cue: Cue) -> Iterator[Asked]:
         for end in ("tip_diameter", "butt_diameter")
     )
     radii = "expected 8.5 to 14 mm at the tip; check the unit: are these radii?"
-    for name, across in [end for end in ends if not CUE_DIAMETER[0] <= end[1] <= CUE_DIAMETER[1]][:1]:
-        yield name, across, CUE_DIAMETER, "mm", radii
-    yield "drawn mass", cue.shaft_mass, (LEAST_DRAWN, inf), "g", "check the sizes and the densities"
+    for name, diameter in [end for end in ends if not CUE_DIAMETER[0] <= end[1] <= CUE_DIAMETER[1]][:1]:
+        yield name, diameter, CUE_DIAMETER, "mm", radii
+    yield "drawn mass", cue.shaft_mass, (MIN_DRAWN_MASS, inf), "g", "check the sizes and the densities"
     wood = main_material(cue)
     known = table_name(wood)
     if cue.weighed and known is not None:
         low, high = MATERIALS[known].ranges["rho"]
         own = f"by the weight of the shaft the density of its {known} is"
         joint = "does the measured mass include a joint or the rest of the cue?"
-        yield own, wood.rho, ((1 - AT_EASE) * low, (1 + AT_EASE) * high), "kg/m3", joint
+        yield own, wood.rho, ((1 - DENSITY_MARGIN) * low, (1 + DENSITY_MARGIN) * high), "kg/m3", joint
     if any(
         segment.length > LONG and segment.material.E > STIFF and segment.material.rho < LIGHT
         for segment in cue.segments
@@ -69,43 +68,43 @@ def _of_drawing(cue: Cue) -> Iterator[Asked]:
         yield "a solid rod as stiff as carbon fibre, drawn mass", cue.shaft_mass, (0.0, 0.0), "g", tubes
 
 
-def _of_mass(scene: Scene) -> Iterator[Asked]:
+def _of_mass(scene: Scene) -> Iterator[Check]:
     name, mass = "mass of the whole cue", float(scene.cue.mass)
     yield name, mass, (0.0, 1.0), "kg", "expected 0.4 to 0.7 kg"
-    if not scene.cue.segments or scene.shaft.shaft_mass >= LEAST_DRAWN:  # else the drawing itself is too light
+    if not scene.cue.segments or scene.shaft.shaft_mass >= MIN_DRAWN_MASS:  # else the drawing itself is too light
         body = 'expected 400 to 700 g; add the rest of the cue with --body-mass "15 oz" (body_mass in a file)'
         yield name, mass, (LIGHTEST, inf), "g", body
 
 
-SHOWN = {"mm": 1e3, "g": 1e3}  # how many of the unit an SI unit is, if not one
+SCALES = {"mm": 1e3, "g": 1e3}  # of the SI unit; others: 1
 
 
-def unusual(scene: Scene, *, blow: bool = True) -> list[str]:
-    """Numbers that no cue and no blow has, one line each; empty for ordinary scenes.
+def unusual(scene: Scene, *, with_impact: bool = True) -> list[str]:
+    """Warnings of implausible values, one line each; empty for ordinary scenes.
 
-    blow: whether ball, tip, stroke and the mass of the whole cue count.
+    with_impact: also check ball, tip, stroke and the mass of the whole cue.
     """
     drawn = scene.cue.segments
-    asked = [
-        *(_of_stroke(scene) if blow else ()),
+    checks = [
+        *(_of_stroke(scene) if with_impact else ()),
         *(_of_drawing(scene.shaft) if drawn else ()),
-        *(_of_mass(scene) if blow else ()),
+        *(_of_mass(scene) if with_impact else ()),
     ]
-    beyond = [
-        f"{name} {SHOWN.get(unit, 1) * value:.6g} {unit}; {ask}"
-        for name, value, (least, most), unit, ask in asked
-        if value is not None and not least <= value <= most
+    outside = [
+        f"{name} {SCALES.get(unit, 1) * value:.6g} {unit}; {hint}"
+        for name, value, (low, high), unit, hint in checks
+        if value is not None and not low <= value <= high
     ]
-    said = [effect.unusual_on(scene.shaft) for effect in scene.effects] if blow and drawn else []
-    return [*beyond, *filter(None, said), *_shape(drawn)]
+    of_effects = [effect.unusual_on(scene.shaft) for effect in scene.effects] if with_impact and drawn else []
+    return [*outside, *filter(None, of_effects), *_of_outline(drawn)]
 
 
-def _shape(segments: tuple[Segment, ...]) -> list[str]:
-    """What the outline of a cue has that none has."""
+def _of_outline(segments: tuple[Segment, ...]) -> list[str]:
+    """Warnings of a cue's outline: steps of the diameter, butt first, and bores that end inside a segment."""
     lines = []
     for i, (near, other) in enumerate(pairwise(segments)):
         ends = near.butt_diameter, other.tip_diameter
-        if max(ends) > JUMP * min(ends):
+        if max(ends) > MAX_STEP * min(ends):
             sizes = " to ".join(f"{scaled(end, 'm'):.4g}" for end in ends)
             lines.append(f"the diameter jumps from {sizes} mm between segments[{i}] and segments[{i + 1}]")
     if segments and segments[0].tip_diameter > segments[-1].butt_diameter:

@@ -57,19 +57,19 @@ def test_a_change_is_that_of_two_strikes(record: Any, name: str) -> None:
         expected = getattr(exact, quantity) / getattr(base, quantity) - 1
         assert row["change"][quantity]["relative"] == pytest.approx(expected, abs=promised)
         gap = row["change"][quantity]["relative"] * abs(record["base"][quantity])
-        assert row["change"][quantity]["by"] == pytest.approx(gap, rel=1e-9)
+        assert row["change"][quantity]["absolute"] == pytest.approx(gap, rel=1e-9)
 
 
 @pytest.mark.heavy
 def test_the_recommendation_follows_the_tolerance(record: Any) -> None:
     worth = record["worth"]
-    assert worth["drop"] == ["Support (position 203.2 mm, stiffness 5000 N/m)"]
+    assert worth["remove"] == ["Support (position 203.2 mm, stiffness 5000 N/m)"]
     assert "TipDome (radius 9.5 mm)" in worth["keep"]
     assert "TipShear (ratio 0.75)" in worth["add"]
     said = advice(record, "1 %")
     assert "Support (position 203.2 mm, stiffness 5000 N/m)" in said[0]
     loose = effects_record(cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=cf.Stroke(offset=0.3)), rtol=0.9)
-    assert loose["worth"] == {"keep": [], "drop": [], "add": []}
+    assert loose["worth"] == {"keep": [], "remove": [], "add": []}
     assert advice(loose, "90 %") == [
         "At a tolerance of 90 % no listed effect is negligible and no unlisted effect matters."
     ]

@@ -106,12 +106,12 @@ def test_names_are_text_and_no_markup() -> None:
 
 def test_ticks_are_round_numbers() -> None:
     assert [round_step(length) for length in (1.0, 6.0, 7.0, 0.0123, 5000.0)] == [0.2, 1.0, 2.0, 0.005, 1000.0]
-    scale = Axis("x").over([np.array([0.3, 2.7, np.nan])])
+    scale = Axis("x").scale_for([np.array([0.3, 2.7, np.nan])])
     assert (scale.low, scale.high, scale.step) == (0.0, 3.0, 0.5)
     assert [(tick.label, tick.at) for tick in scale.ticks(0, 60)] == [
         (f"{i / 2}", pytest.approx(10 * i)) for i in range(7)
     ]
-    assert Axis("x").over([np.zeros(3)])[:2] == (0.0, 1.0)
+    assert Axis("x").scale_for([np.zeros(3)])[:2] == (0.0, 1.0)
 
 
 def box(outline: str) -> np.ndarray:

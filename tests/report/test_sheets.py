@@ -23,7 +23,7 @@ def cells(made: Sheet) -> dict[str, list[list[str]]]:
     with console.capture() as said:
         console.print(terminal(made))
     lines = [line for line in said.get().splitlines()[1:] if line.strip() and "─" not in line]
-    markup = str(environment().get_template("drawings.html.j2").module.sheet(made))  # type: ignore[attr-defined]
+    markup = str(environment().get_template("drawings.html.j2").module.cells(made))  # type: ignore[attr-defined]
     page = [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in re.findall(r"<tr.*?</tr>", markup)]
     return {
         "terminal": [re.split(r"\s{2,}", line.strip()) for line in lines],

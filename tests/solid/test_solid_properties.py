@@ -94,13 +94,13 @@ def test_check_and_report_say_how_far_beam_theory_is_off() -> None:
     rows = {row["quantity"]: row for row in record["rows"]}
     assert list(rows)[:6] == [f"natural frequency {k}" for k in range(1, 7)]
     for row in rows.values():
-        assert row["mesh_error"] < 1e-2
+        assert row["discretisation_error"] < 1e-2
         assert row["difference"] == pytest.approx(row["beam"] / row["solid"] - 1, abs=1e-15)
     laden = cf.modes(short, 1, effects=scene.effects).frequencies[0]
     assert rows["natural frequency 1"]["beam"] == pytest.approx(laden, rel=1e-6)
     assert 0 < abs(rows["natural frequency 1"]["solid"] / laden - 1) < 0.1
-    assert record["sentence"].startswith("Error of the beam model for this shaft: ")
-    assert record["left_out"] == ["AxialWaves"]
+    assert record["summary"].startswith("Error of the beam model for this shaft: ")
+    assert record["excluded_effects"] == ["AxialWaves"]
     sheet = model_error_sheet(record)
     assert [row[0].removesuffix(" *") for row in sheet.rows[:-1]] == list(rows)
     assert abs(record["scikit_fem"]["difference"]) < 1e-9
@@ -114,7 +114,7 @@ def test_a_report_says_how_far_beam_theory_is_off(tmp_path: Path, monkeypatch: p
 
     def record(scene: cf.Scene, follow: object) -> dict[str, object]:
         asked.append(scene)
-        return {"sentence": "Beam theory is 0.125 % off."}
+        return {"summary": "Beam theory is 0.125 % off."}
 
     monkeypatch.setattr("cuefem.report.model_error_record", record)
     cf.save(SCENE, tmp_path / "scene.toml")
