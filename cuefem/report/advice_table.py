@@ -1,4 +1,4 @@
-"""What a maker can change, for people."""
+"""Design changes that a maker can make: table of `cuefem improve`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ STYLES = {"worthwhile": "bold", "more squirt": "dim", "within uncertainty": "dim
 
 
 def advice_sheet(record: Record) -> Sheet:
-    """A row for each change, the least squirt first."""
+    """A row for each design change, the lowest squirt first."""
     rows = record["changes"]
     made = sheet(
         "Design changes",
@@ -33,7 +33,7 @@ def advice_sheet(record: Record) -> Sheet:
 
 
 def advice_notes(record: Record) -> list[str]:
-    """What the table is."""
+    """Definitions of the table's columns."""
     warning = regime_warning(record["regime"])
     return [
         *([warning] if warning else []),

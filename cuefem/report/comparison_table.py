@@ -1,4 +1,4 @@
-"""Cues side by side, for people: a sentence for each difference of squirt, a table, and figures for a page."""
+"""Comparison of cues: a sentence on each difference of squirt, a table, and figures for a page."""
 
 from __future__ import annotations
 
@@ -24,14 +24,16 @@ _WORDS = {"end_mass_squirt": SQUIRT_END_MASS}
 
 
 def comparison_sentences(record: Record) -> list[str]:
-    """What the differences of squirt say."""
+    """A sentence on the squirt of each cue relative to the first."""
     first = record["reference"]
     made = []
     for name, differences in record["differences"].items():
         squirt = differences.get("squirt")
         if squirt is None:
-            missed = [cue for cue in (first, name) if math.isnan(record["cues"][cue]["squirt"])]
-            which = f"the stroke of {' and of '.join(missed)} is a miscue" if missed else "a stroke is nearly a miscue"
+            miscues = [cue for cue in (first, name) if math.isnan(record["cues"][cue]["squirt"])]
+            which = (
+                f"the stroke of {' and of '.join(miscues)} is a miscue" if miscues else "a stroke is nearly a miscue"
+            )
             made.append(f"{name} and {first} cannot be compared in squirt: {which}.")
         else:
             made.append(f"{name}: {squirt_difference(**squirt)} {first} (1σ).")
@@ -39,17 +41,17 @@ def comparison_sentences(record: Record) -> list[str]:
 
 
 def comparison_sheet(record: Record) -> Sheet:
-    """A row for each number: the cues' values, and the others' differences from the first."""
+    """A row for each quantity: its value for each cue, and the differences of the others from the first."""
     first, *others = record["cues"]
     rows = []
     for name, own in record["cues"][first].items():
         cells = [_label(name), _value(name, own)]
         for other in others:
-            told = NONE
+            text = NONE
             if difference := record["differences"][other].get(name):
-                told = difference_words(difference["difference"], difference["error"])
-                told += "" if difference["distinct"] else " *"
-            cells += [_value(name, record["cues"][other][name]), told]
+                text = difference_words(difference["difference"], difference["error"])
+                text += "" if difference["distinct"] else " *"
+            cells += [_value(name, record["cues"][other][name]), text]
         rows.append(tuple(cells))
         if name == "squirt":
             lateral = [_lateral(record["cues"][cue][name]) for cue in (first, *others)]
@@ -59,7 +61,7 @@ def comparison_sheet(record: Record) -> Sheet:
     notes = (
         f"Same stroke, with the ball of {first}, b/R {record['offset']:.3g} at {record['speed']:g} m/s. ±: 1σ of the "
         f"difference, for {shaft}; shared errors cancel.",
-        *(f"{name}: {words}" for name, regime in record["regimes"].items() if (words := regime_warning(regime))),
+        *(f"{name}: {warning}" for name, regime in record["regimes"].items() if (warning := regime_warning(regime))),
         "* smaller than its uncertainty: the cues are not distinct in this quantity.",
     )
     return Sheet("Side by side", head, tuple(rows), notes)
@@ -83,7 +85,7 @@ def _lateral(squirt: float) -> str:
 
 
 def comparison_figures(scenes: Mapping[str, Scene], record: Record) -> list[Chart | CueDrawing]:
-    """Squirt and pivot length of the cues against the offset, and each cue's drawing."""
+    """Charts of squirt and natural pivot length against the offset, and a drawing of each cue."""
     lines = []
     for style, (name, scene) in zip(STYLES, struck_alike(scenes).items(), strict=False):
         lines.append((name, style, coupled_curve(scene, CURVE_OFFSETS, Solved(scene).tip)))

@@ -1,10 +1,10 @@
-"""The end mass of a scene for the simulator pooltool: its CueSpecs, beside pooltool's own default.
+"""Export of a scene's end mass for the simulator pooltool: its CueSpecs, beside pooltool's default.
 
-pooltool turns the ball by [A.31] with nu = 2/5, whatever the ball: alpha = -atan((5/2) a sqrt(1 - a^2)/(1 + m/end_mass
-+ (5/2)(1 - a^2))), its own words in `pooltool.physics.resolve.stick_ball.squirt`; a is b/R of the contact, positive on
-the ball's left, alpha positive to the left. [A.31] knows neither restitution nor the tip's dome: with the stick end
-mass it gives 14 to 36 % less squirt than the coupled strike of the reference scenes. The end mass exported here is
-the one with which it gives the squirt of the coupled strike at the scene's offset and speed.
+pooltool computes squirt by [A.31] with nu = 2/5 for every ball: alpha = -atan((5/2) a sqrt(1 - a^2)/(1 + m/end_mass
++ (5/2)(1 - a^2))) in `pooltool.physics.resolve.stick_ball.squirt`; a is b/R of the contact, positive on the ball's
+left, alpha positive to the left. [A.31] has neither restitution nor dome: with the stick end mass it gives 14 to 36 %
+less squirt than the coupled strike of the reference scenes. The exported end mass is the one with which [A.31] gives
+the squirt of the coupled strike at the scene's offset and speed.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ VERSION = "0.6.0"  # the release whose CueSpecs these are; .ci/pooltool installs
 INERTIA = 0.4  # its 5/2
 DEFAULT_END_MASS = 0.170097 / 30  # kg
 SHORTEST_CUE = 1.2  # m: a shorter drawing with a body mass is a shaft's
-# What pooltool takes where nothing else is said, its CueSpecs.default().
+# pooltool's CueSpecs.default()
 DEFAULT = {
     "brand": "Pooltool",
     "M": 0.567,
@@ -42,9 +42,9 @@ SIGNS = "a is b/R, positive on the ball's left, and alpha positive to the left: 
 
 
 def pooltool_record(name: str, scene: Scene, file: str = "cue.json") -> Record:
-    """pooltool's CueSpecs of a scene's cue and the squirt that pooltool computes from it and from its own default.
+    """pooltool's CueSpecs of a scene's cue, and the squirt, rad, that pooltool computes from it and from its default.
 
-    file: the JSON file that the line for pooltool reads. ValueError head on and in a miscue, which have no end mass.
+    file: the JSON file that the line for pooltool reads. ValueError at offset 0 and in a miscue, without end mass.
     """
     offset, speed = float(scene.stroke.offset), float(scene.stroke.speed)
     if offset == 0:
@@ -75,7 +75,7 @@ def pooltool_record(name: str, scene: Scene, file: str = "cue.json") -> Record:
 
 
 def _drawn(scene: Scene) -> Record:
-    """The sizes that the drawing has; those of the butt only if it is a whole cue's."""
+    """The dimensions in the drawing, m; those of the butt only of a whole cue."""
     sizes = {"tip_radius": scene.dome_radius} if scene.dome_radius else {}
     if scene.cue.segments:
         sizes["shaft_radius_at_tip"] = scene.cue.segments[0].tip_diameter / 2
@@ -102,7 +102,7 @@ def _notes(scene: Scene) -> list[str]:
 
 
 def pooltool_sheets(record: Record, written: bool) -> list[Sheet | str]:
-    """The end mass beside pooltool's default, and how pooltool gets it. written: whether its file is written."""
+    """The end mass beside pooltool's default, and the line that reads the file. written: whether there is a file."""
     stroke = f"b/R {record['offset']:.4g}, {record['speed']:g} m/s, contact {with_unit(record['contact_time'], 's', 3)}"
     rows = [
         ("this cue", record["CueSpecs"]["end_mass"], record["squirt"]),

@@ -1,4 +1,4 @@
-"""One strike by every model, and the lumped cues beside the coupled strike: record and sheet."""
+"""One stroke by the coupled strike and by lumped models: record and table."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ from cuefem.scene.solved_scene import Solved
 def lumped_cues(
     scene: Scene, offsets: Sequence[float], tip: TipModes
 ) -> tuple[dict[str, list[LumpedCue | None]], float]:
-    """The lumped cues of "lumped" and "two-part" at each offset, None where there is none; and the coupling per b/R.
+    """The lumped cues of "lumped" and "two-part" at each offset, or None; and the coupling per b/R, 1/kg.
 
-    "two-part" has the end mass of a tip that sticks, without effects at the tip; "lumped" adds the coupling of these
-    effects, and is missing where they add none.
+    "two-part" has the end mass with sticking contact and without effects at the tip; "lumped" adds the coupling by
+    these effects, and is absent if they add none.
     """
     cues, slope = two_part_cues(scene, offsets, tip), coupling_slope(scene, tip)
     coupled = [_with_coupling(cue, slope * abs(b)) for cue, b in zip(cues, offsets, strict=True)]
@@ -35,26 +35,26 @@ def lumped_cues(
 
 
 def two_part_cues(scene: Scene, offsets: Sequence[float], tip: TipModes) -> list[LumpedCue | None]:
-    """The lumped cue that the impulse solver takes at each offset, with the end mass of a tip that sticks there.
+    """The lumped cue for the impulse solver at each offset, with the end mass for sticking contact there.
 
-    Effects at the tip are left out. None at an offset where no end mass has that squirt. A lumped cue keeps its own
-    end mass. tip: the cue's tip modes as an end mass takes them.
+    Without effects at the tip. None at an offset where no end mass gives that squirt. A lumped cue has its own end
+    mass at all offsets. tip: the cue's tip modes with sticking contact.
     """
     if scene.lumped is not None:
         return [replace(scene.lumped, coupling=0.0)] * len(offsets)
     masses = stick_at_offsets(tip, scene.bare, offsets)
-    return [None if math.isnan(felt) else LumpedCue(scene.axial_mass, felt) for felt in masses]
+    return [None if math.isnan(mass) else LumpedCue(scene.axial_mass, mass) for mass in masses]
 
 
 def coupling_slope(scene: Scene, tip: TipModes) -> float:
-    """The coupling per b/R that effects at the tip add to `two_part_cues`; zero if no lumped cue has such a coupling.
+    """The coupling per b/R, 1/kg, that effects at the tip add to `two_part_cues`; zero if beyond any lumped cue.
 
-    It is found at the scene's own offset, or at 0.1 for a head-on stroke.
+    Computed at the offset of the stroke, or at 0.1 for a head-on stroke.
     """
     offset = scene.stroke.offset or 0.1
     try:
         cue = lump_modes(at_offset(scene, offset), tip)
-    except ValueError:  # an offset, or an effect, beyond any lumped cue's coupling
+    except ValueError:  # no lumped cue has so large a coupling
         return 0.0
     return cue.coupling / abs(offset)
 
@@ -68,29 +68,29 @@ def _with_coupling(cue: LumpedCue | None, coupling: float) -> LumpedCue | None:
 
 
 def lumped_strike(scene: Scene, cue: LumpedCue) -> Outcome:
-    """What the impulse solver says of a scene with a lumped cue in its cue's place, and without effects."""
+    """The outcome of the impulse solver for a lumped cue, without effects."""
     return impulse(replace(scene, cue=cue, effects=()))
 
 
 def a31_squirt(scene: Scene, cue: LumpedCue) -> Any:
-    """The squirt of Alciatore's formula [A.31] for the end mass of a lumped cue, rad."""
+    """Squirt, rad, by Alciatore's formula [A.31] with the end mass of a lumped cue."""
     return alciatore_a31(scene.stroke.offset, mass_ratio=scene.ball.mass / cue.end_mass, inertia=scene.ball.inertia)
 
 
 def outcome_record(outcome: Outcome, scene: Scene) -> Record:
-    """A strike's outcome with the natural pivot length of its squirt (None at offset 0)."""
+    """The outcome of a strike with its natural pivot length, m (None at offset 0)."""
     names = ("squirt", "ball_speed", "ball_velocity", "spin", "cue_speed", "impulse", "duration", "regime")
     record = {name: getattr(outcome, name) for name in (*names, "energy", "unknowns", "error")}
     return record | {"pivot_length": pivot_length(scene, outcome.squirt)}
 
 
 def strike_record(scene: Scene, outcome: Outcome | None = None, *, solved: Solved | None = None) -> Record:
-    """One strike by every model, by the model's name; a model that says less leaves keys out.
+    """One stroke by each model, by the model's name; [A.31] has squirt and pivot length only.
 
-    "coupled" is the vibrating cue in time. "two-part" (the impulse solver) and "A.31" take the end mass of a tip that
-    sticks at this offset, leave out effects at the tip, and are missing if no end mass has that squirt. "lumped" is
-    the impulse solver with the coupling that effects at the tip add, if they add any. outcome: of the coupled strike,
-    if it is known already; solved: the scene's modes, if they are.
+    "coupled": the vibrating cue, integrated in time. "two-part" (impulse solver) and "A.31": with the end mass for
+    sticking contact at this offset and without effects at the tip; absent if no end mass gives that squirt. "lumped":
+    the impulse solver with the coupling by effects at the tip, if any. outcome: of the coupled strike, solved: the
+    scene's modes, if already computed.
     """
     solved = solved or Solved(scene)
     offset = scene.stroke.offset
@@ -108,13 +108,13 @@ def strike_record(scene: Scene, outcome: Outcome | None = None, *, solved: Solve
     }
 
 
-# What is shown of a strike, in this order; a vector by its parts (along the tangent, along the normal).
+# Rows of the table; a vector has a row for each component (0 tangential, 1 normal).
 SHOWN: tuple[tuple[str, int | None, str], ...] = (
     *((name, None, "") for name in ("squirt", "pivot_length", "ball_speed")),
     *(("ball_velocity", 1, ", normal"), ("ball_velocity", 0, ", tangent")),
     *((name, None, "") for name in ("spin", "cue_speed", "duration", "regime", "error")),
 )
-SLOWER = 0.02  # relative: a lumped cue whose ball is slower by more gets a note
+SLOWER = 0.02  # relative: a note explains a ball speed that is lower by more
 LUMPED = (
     "ball speed: use the coupled value; the lumped models omit axial waves, which raise the restitution of the whole "
     "cue above that of its tip"
@@ -125,48 +125,48 @@ MISCUE = f"miscue: {DEFINITION_OF_MISCUE}. Ignore squirt and pivot length"
 
 
 def regime_warning(regime: str) -> str:
-    """What stands beside a squirt that miscues, or to which slip adds; "" for others."""
+    """The warning for a miscue, or for slip that increases squirt; "" for other contact states."""
     return MISCUE if regime == "miscue" else REGIMES[regime] if regime in ("partial slip", "gross slip") else ""
 
 
 def strike_sheet(record: Record, scene: Record) -> Sheet:
-    """A column for each model, and a row for every quantity that any of the models has."""
+    """A column for each model, a row for each quantity that any model has."""
     coupled = record["models"]["coupled"]
     rows = []
-    for name, part, words in SHOWN:
+    for name, part, component in SHOWN:
         values = [model.get(name) for model in record["models"].values()]
         if any(value is not None for value in values):
             parts = (value if value is None or part is None else value[part] for value in values)
-            rows.append((RESULTS[name].words + words, *(written(name, value) for value in parts)))
-    missed = [MISCUE] if coupled["regime"] == "miscue" else []
-    exact = (
+            rows.append((RESULTS[name].words + component, *(written(name, value) for value in parts)))
+    miscue = [MISCUE] if coupled["regime"] == "miscue" else []
+    accuracy = (
         ", numerical error of squirt at most 0.1 % for 95 % of default strikes"
         if "length" in scene["cue"] and coupled["error"] is None
         else ""
     )
     offset = "offset, without the effects at the tip" if scene["effects_at_tip"] else "offset"
     lumped = (
-        f"; lumped includes them as a coupling of {record['coupling']:.4g} /kg, the tip's speed across the cue by a "
-        "unit of impulse along it"
+        f"; lumped includes them as a coupling of {record['coupling']:.4g} /kg, transverse tip velocity per unit axial "
+        "impulse"
         if record["coupling"]
         else ""
     )
     notes = (
-        *missed,
+        *miscue,
         assumptions(scene),
-        f"coupled: vibrating shaft in time{exact}; two-part and A.31: two masses, with the end mass of a tip that "
+        f"coupled: vibrating shaft in time{accuracy}; two-part and A.31: two masses, with the end mass of a tip that "
         f"sticks ({offset}; `cuefem end-mass`)",
         *([f"natural pivot length: {PIVOT}"] if any(row[0] == RESULTS["pivot_length"].words for row in rows) else []),
-        *([] if missed else [f"contact: {REGIMES[coupled['regime']]}"]),
+        *([] if miscue else [f"contact: {REGIMES[coupled['regime']]}"]),
         *_on_speed(record, scene),
         OFF,
-        *tip_effect_notes(scene, f"two-part and A.31 leave the effects at the tip out{lumped}"),
+        *tip_effect_notes(scene, f"two-part and A.31 exclude the effects at the tip{lumped}"),
     )
     return Sheet(f"Strike at offset b/R = {scene['stroke']['offset']:.4g}", ("", *record["models"]), tuple(rows), notes)
 
 
 def _on_speed(record: Record, scene: Record) -> list[str]:
-    """Why the ball of a lumped cue is slower, where waves along the cue act in the coupled strike alone."""
+    """A note on the lower ball speed of lumped models, which omit the axial waves of the coupled strike."""
     if "AxialWaves" not in {effect["type"] for effect in scene["effects"]}:
         return []
     coupled, *others = (model["ball_speed"] for model in record["models"].values() if "ball_speed" in model)

@@ -1,5 +1,8 @@
-"""What a study found, as records for programs and sheets for people: what varies; of a sweep the best designs, what
-drives the results and where two of them trade off; of a scatter the spread and its causes; of an optimum the design."""
+"""Results of a study: records and tables.
+
+Varied parameters; of a sweep the best designs, sensitivities and a trade-off; of a tolerance analysis the spread and
+its causes; of an optimum the best design and its active constraints.
+"""
 
 from __future__ import annotations
 
@@ -25,25 +28,25 @@ from cuefem.scene import Scene
 
 _FIELD = re.compile(rf"({'|'.join(field.name for field in fields(Scene))})(\[[\d*]+\])?(\.\w+(\[[\d*]+\])?)+")
 _ITEM = re.compile(r"(\w+)s\[(\d+|\*)\]")
-SHOWN = 7  # designs of a front
-LEAST_NAMED = 0.01  # share of a cause that is named among the strongest
+SHOWN = 7  # designs of a Pareto front
+MIN_SHARE = 0.01  # of the variance: a smaller cause is not named among the strongest
 
 
 def varied_pieces(vary: Sequence[Vary], base: Scene) -> dict[str, list[str]]:
-    """The pieces of the cue that each column varies, with their extents, by the column's name; none off the cue."""
-    pieces = {each.name: _pieces(base.shaft, each.fields(base)) for each in vary} if base.lumped is None else {}
-    return {name: words for name, words in pieces.items() if words}
+    """The segments of the cue that each parameter varies, with their extents, by the parameter's name."""
+    pieces = {each.name: _segments(base.shaft, each.fields(base)) for each in vary} if base.lumped is None else {}
+    return {name: texts for name, texts in pieces.items() if texts}
 
 
-def _pieces(cue: Cue, paths: Sequence[Path]) -> list[str]:
-    """The pieces of a cue that some paths vary, each with its material and extent from the tip."""
+def _segments(cue: Cue, paths: Sequence[Path]) -> list[str]:
+    """The segments at the paths, each with its material and its extent from the tip."""
     layout = Layout.of(cue)
     parts = {"ferrule": layout.ferrule, "bore": layout.bore or (), "shaft": layout.shaft}
-    found = set[int]()
+    varied = set[int]()
     for path in paths:
-        found |= {int(path[2])} if path[:2] == ("cue", "segments") else {*parts.get(str(path[0]).split()[0], ())}
+        varied |= {int(path[2])} if path[:2] == ("cue", "segments") else {*parts.get(str(path[0]).split()[0], ())}
     pieces: dict[str, tuple[float, float]] = {}
-    for i in sorted(found):
+    for i in sorted(varied):
         hollow = "bored " if layout.bore and i in layout.bore else ""
         part = "ferrule" if i in layout.ferrule else "shaft" if i in layout.shaft else f"segment {i}"
         name = f"{hollow}{part} of {material_name(cue.segments[i].material)}"
@@ -52,16 +55,16 @@ def _pieces(cue: Cue, paths: Sequence[Path]) -> list[str]:
 
 
 def varied_sheet(study: Study) -> Sheet:
-    """What varies: its name, its range with the unit, and the pieces of the cue that it is of."""
+    """A row for each varied parameter: its name, its range with the unit, and the segments that it varies."""
     pieces = varied_pieces(study.vary, study.base)
     rows = tuple(
         (column_label(vary.name), range_words(vary, unit), ", ".join(pieces.get(vary.name, ())))
         for vary, unit in zip(study.vary, study.units, strict=False)
     )
     notes = ("positions from the front of the modelled cue",) if pieces else ()
-    head = ("varies", "over", "of")
+    head = ("parameter", "range", "segments")
     return Sheet(
-        "What varies",
+        "Varied parameters",
         head if pieces else head[:2],
         tuple(row[: 2 + bool(pieces)] for row in rows),
         notes,
@@ -70,25 +73,25 @@ def varied_sheet(study: Study) -> Sheet:
 
 
 def range_words(vary: Vary, unit: str) -> str:
-    """The values that a column takes, with their unit."""
+    """The values of a varied parameter, with their unit."""
     scale, name = TRADE.get(unit, (1.0, unit))
     match vary.range:
         case Levels(values):
-            words = ", ".join(v if isinstance(v, str) else f"{scale * v:.4g}" for v in values)
+            text = ", ".join(v if isinstance(v, str) else f"{scale * v:.4g}" for v in values)
         case Span(low, high):
-            words = f"{scale * low:.4g} to {scale * high:.4g}"
+            text = f"{scale * low:.4g} to {scale * high:.4g}"
         case Normal(middle, sd, logarithmic):
-            words = f"{scale * middle:.4g} ± {f'{100 * sd:.3g} %,' if logarithmic else f'{scale * sd:.3g}'}"
-    how = "times what is drawn" if vary.factor else "added to what is drawn" if vary.shift else ""
-    return " ".join(word for word in (words, name, how) if word)
+            text = f"{scale * middle:.4g} ± {f'{100 * sd:.3g} %,' if logarithmic else f'{scale * sd:.3g}'}"
+    how = "times the drawn value" if vary.factor else "added to the drawn value" if vary.shift else ""
+    return " ".join(part for part in (text, name, how) if part)
 
 
 def column_label(name: str) -> str:
-    """A column's name as people say it; fields of the scene are said in words: "segment 3 tip bore"."""
-    return ", ".join(_field_words(path) if _FIELD.fullmatch(path) else path for path in name.split(", "))
+    """The label of a column: a path of the scene as text, such as "segment 3 tip bore"; another name as it is."""
+    return ", ".join(_path_label(path) if _FIELD.fullmatch(path) else path for path in name.split(", "))
 
 
-def _field_words(path: str) -> str:
+def _path_label(path: str) -> str:
     steps = path.removeprefix("cue.").split(".")
     items = (
         _ITEM.sub(lambda match: f"all {match[1]}s" if match[2] == "*" else f"{match[1]} {int(match[2]) + 1}", s)
@@ -98,14 +101,14 @@ def _field_words(path: str) -> str:
 
 
 def shown(value: Any, unit: str) -> str:
-    """A value of a column in that unit, without it; names as they are."""
+    """A value in the display unit of an SI unit, without the unit; a name as it is."""
     if isinstance(value, str):
         return str(value)
     return significant(TRADE.get(unit, (1.0, unit))[0] * float(value))
 
 
 def study_record(result: StudyResult) -> Record:
-    """What a study found, for programs: SI."""
+    """The results of a study, SI."""
     if isinstance(result.asked, Problem) and result.optimum:
         return optimum_record(result.asked, result.optimum)
     if isinstance(result.asked, Scatter) and result.drivers:
@@ -117,7 +120,7 @@ def study_record(result: StudyResult) -> Record:
 
 
 def study_sheets(result: StudyResult) -> list[Sheet | str]:
-    """What a study found, for people."""
+    """The tables of a study: its varied parameters, and its results by kind."""
     varies = varied_sheet(result.study)
     if isinstance(result.asked, Problem) and result.optimum:
         return [varies, *optimum_sheets(result.asked, result.optimum)]
@@ -129,16 +132,17 @@ def study_sheets(result: StudyResult) -> list[Sheet | str]:
 
 
 def sweep_record(found: SweepStatistics) -> Record:
-    """The summary of a sweep."""
+    """Best designs, sensitivities and the Pareto front of a sweep."""
     names = [response.name for response in found.responses]
 
     def design(i: int) -> Record:
-        at = {name: column[i].item() for name, column in zip(found.names, found.values, strict=True)}
-        return {"design": found.numbers[i], "at": at, "responses": dict(zip(names, found.results[i], strict=True))}
+        values = {name: column[i].item() for name, column in zip(found.names, found.values, strict=True)}
+        responses = dict(zip(names, found.results[i], strict=True))
+        return {"design": found.numbers[i], "values": values, "responses": responses}
 
     record: Record = {
         "best": {names[k]: {"better": found.responses[k].result.better, **design(found.best(k))} for k in found.judged},
-        "drives": {
+        "sensitivities": {
             name: {
                 column: {"share": found.shares[j, k], "trend": found.trends[j][k] or None}
                 for j, column in enumerate(found.names)
@@ -152,36 +156,36 @@ def sweep_record(found: SweepStatistics) -> Record:
 
 
 def sweep_sheets(found: SweepStatistics) -> list[Sheet | str]:
-    """The best design for each response, what drives each, and designs along the trade-off, evenly picked."""
+    """The best design for each response, the sensitivities, and evenly spaced designs of the Pareto front."""
     labels = [*map(column_label, found.names)]
     heads = [*map(with_heading, labels, found.units)]
 
-    def at(i: int, responses: Iterable[int]) -> list[str]:
-        of = [shown(found.results[i, k], found.responses[k].unit) for k in responses]
-        return [*of, *(shown(column[i], unit) for column, unit in zip(found.values, found.units, strict=True))]
+    def cells(i: int, responses: Iterable[int]) -> list[str]:
+        results = [shown(found.results[i, k], found.responses[k].unit) for k in responses]
+        return [*results, *(shown(column[i], unit) for column, unit in zip(found.values, found.units, strict=True))]
 
-    best, drives = list[tuple[str, ...]](), list[tuple[str, ...]]()
+    best, sensitivities = list[tuple[str, ...]](), list[tuple[str, ...]]()
     for k in found.judged:
         response, i = found.responses[k], found.best(k)
         ends = " to ".join(shown(end(found.results[:, k]), response.unit) for end in (np.min, np.max))
         which = f"{response.result.better} is better" if response.result.better else "the lowest"
-        value, *rest = at(i, [k])
+        value, *rest = cells(i, [k])
         best.append((f"{response.heading} ({which})", value, ends, str(found.numbers[i]), *rest))
     for k, response in enumerate(found.responses):
         parts = (
             f"{100 * share:.0f} % {trend[k]}".strip()
             for share, trend in zip(found.shares[:, k], found.trends, strict=True)
         )
-        drives.append((response.label, *parts))
+        sensitivities.append((response.label, *parts))
     sheets: list[Sheet | str] = [
         Sheet("Best designs", ("best for", "value", "all designs", "design", *heads), tuple(best)),
         Sheet(
-            "What drives the results: the part of the spread between designs that goes with one column alone",
+            "Sensitivity: share of a result's variance between designs by one parameter alone",
             ("result", *labels),
-            tuple(drives),
+            tuple(sensitivities),
             (
-                "falls: a larger number in the column gives a smaller result (a larger bore, less squirt); rises: a "
-                "larger one; parts that only act together are in no column",
+                "falls: a larger value of the parameter gives a smaller result (a larger bore, less squirt); rises: a "
+                "larger one; the shares exclude interactions of parameters",
             ),
         ),
     ]
@@ -189,10 +193,10 @@ def sweep_sheets(found: SweepStatistics) -> list[Sheet | str]:
         return sheets
     count, two = len(found.front), [found.responses[k] for k in found.pair]
     picked = np.unique(np.linspace(0, count - 1, min(SHOWN, count)).round().astype(int))
-    rows = tuple((str(found.numbers[i]), *at(i, found.pair)) for i in (found.front[j] for j in picked))
-    few = f"; {SHOWN} of them are listed, evenly picked" if count > SHOWN else ""
+    rows = tuple((str(found.numbers[i]), *cells(i, found.pair)) for i in (found.front[j] for j in picked))
+    few = f"; {SHOWN} of them, evenly spaced" if count > SHOWN else ""
     title = (
-        f"{two[0].label} against {two[1].label}: {count} designs, of which none is beaten in both{few}"
+        f"{two[0].label} against {two[1].label}: Pareto front of {count} designs{few}"
         if count > 1
         else f"{two[0].label} and {two[1].label}: one design is the best for both"
     )
@@ -201,7 +205,7 @@ def sweep_sheets(found: SweepStatistics) -> list[Sheet | str]:
 
 
 def scatter_record(result: StudyResult, drivers: Drivers) -> Record:
-    """The distribution of every response, and the shares of its causes."""
+    """The distribution of each response, and the shares of its causes in the variance."""
     parts = ("first", "first_interval", "total", "total_interval")
     return {
         response.name: {
@@ -217,7 +221,7 @@ def scatter_record(result: StudyResult, drivers: Drivers) -> Record:
 
 
 def scatter_sheets(result: StudyResult, scatter: Scatter, drivers: Drivers) -> list[Sheet | str]:
-    """The spread of every response, what drives it, and both in a sentence for each."""
+    """The spread of each response, the shares of its causes, and a sentence on both."""
     spreads, rows, bold, lines = list[tuple[str, ...]](), list[tuple[str, ...]](), dict[int, str](), list[str]()
     for k, response in enumerate(scatter.study.responses):
         numbers = {name: shown(value, response.unit) for name, value in result.spread[response.name].items()}
@@ -228,24 +232,24 @@ def scatter_sheets(result: StudyResult, scatter: Scatter, drivers: Drivers) -> l
         for i in strongest:
             both = ((drivers.first, drivers.first_interval), (drivers.total, drivers.total_interval))
             rows.append((f"  {drivers.causes[i]}", *(_share(value[i, k], ends[:, i, k]) for value, ends in both)))
-        total = np.clip(drivers.total[:, k], 0.0, 1.0)  # an estimate may lie beyond
-        most = [f"{drivers.causes[i]} ({100 * total[i]:.0f} %)" for i in strongest[:2] if total[i] >= LEAST_NAMED]
+        total = np.clip(drivers.total[:, k], 0.0, 1.0)  # an estimate may be outside
+        most = [f"{drivers.causes[i]} ({100 * total[i]:.0f} %)" for i in strongest[:2] if total[i] >= MIN_SHARE]
         unit = TRADE.get(response.unit, (1, response.unit))[1]
-        ends = f"{response.label}: nine in ten lie from {numbers['5 %']} to {numbers['95 %']} {unit}".rstrip()
+        ends = f"{response.label}: 90 % of the designs from {numbers['5 %']} to {numbers['95 %']} {unit}".rstrip()
         named = f"the strongest cause{'s are' if len(most) > 1 else ' is'} {' and '.join(most)}"
         lines.append(f"{ends}; {named if most else 'no cause stands out'}")
-    drawn = "a column headed 5 %: 5 % of the designs lie below its value; sd: standard deviation"
+    quantiles = "column 5 %: 5 % of the designs are below this value; sd: standard deviation"
     notes = (
-        "alone: the part of the variance that goes away if this cause is known; in all: the part that stays if all "
+        "first-order: share of the variance that disappears if this cause is known; total: share that remains if all "
         "other causes are known",
-        "in brackets 95 % intervals, bootstrapped",
+        "in parentheses 95 % intervals by bootstrap",
         *(f"{cause}: {', '.join(names)}" for cause, names in scatter.groups.items()),
     )
     return [
-        Sheet(f"Spread of {2 * scatter.count} designs", ("response", *numbers), tuple(spreads), (drawn,)),
+        Sheet(f"Spread of {2 * scatter.count} designs", ("response", *numbers), tuple(spreads), (quantiles,)),
         Sheet(
-            "What drives the spread: share of the variance, in per cent",
-            ("response, cause", "alone", "in all"),
+            "Sensitivity: share of the variance, %",
+            ("response, cause", "first-order", "total"),
             tuple(rows),
             notes,
             styles=bold,
@@ -260,7 +264,7 @@ def _share(value: float, ends: Any) -> str:
 
 
 def optimum_record(problem: Problem, best: Optimum) -> Record:
-    """The best design, and how it was found."""
+    """The best design, its responses and active constraints, and the evaluations."""
     aim = {"maximize" if problem.largest else "minimize": problem.objective.name}
     return {
         "objective": aim,
@@ -275,35 +279,35 @@ def optimum_record(problem: Problem, best: Optimum) -> Record:
 
 
 def optimum_sheets(problem: Problem, best: Optimum) -> list[Sheet | str]:
-    """The best design, what holds it, and the best with each of the listed values."""
+    """The best design, its active constraints, and the best design for each choice."""
     units = dict(zip(problem.study.columns, problem.study.units, strict=True))
     labels = {response.name: response.label for response in problem.study.responses}
 
-    def words(name: str, value: Any) -> str:
+    def text(name: str, value: Any) -> str:
         return value if isinstance(value, str) else with_unit(value, units[name], 6)
 
     both = {**best.responses, **best.values}
     names = {name: labels.get(name) or column_label(name) for name in both}
     aim = f"{'maximize' if problem.largest else 'minimize'} {problem.objective.label}"
     limits = (limit.rsplit(" ", 2) for limit in best.active)
-    held_by = [f"{names[name]} {sign} {words(name, float(bound))}" for name, sign, bound in limits]
-    things: list[Sheet | str] = [
+    active = [f"{names[name]} {sign} {text(name, float(bound))}" for name, sign, bound in limits]
+    tables: list[Sheet | str] = [
         f"{aim}: {best.evaluations} designs computed",
-        Sheet("Best design", ("", "value"), tuple((names[name], words(name, value)) for name, value in both.items())),
-        f"held by: {', '.join(held_by) or 'nothing'}",
+        Sheet("Best design", ("", "value"), tuple((names[name], text(name, value)) for name, value in both.items())),
+        f"active constraints: {', '.join(active) or 'none'}",
     ]
     if best.unfinished:
-        things.append(f"not finished: {best.unfinished}; more --iterations may find a better design")
+        tables.append(f"not finished: {best.unfinished}; more --iterations may find a better design")
     if best.choices:
         head = (*map(column_label, best.choices[0].values), problem.objective.heading, "")
         rows = tuple(
             (
-                *(words(name, value) for name, value in choice.values.items()),
+                *(text(name, value) for name, value in choice.values.items()),
                 NONE if choice.reason else shown(choice.objective, problem.objective.unit),
                 choice.reason,
             )
             for choice in best.choices
         )
         texts = (*range(len(head) - 2), len(head) - 1)
-        things.append(Sheet("The best with each of the listed values", head, rows, texts=texts))
-    return things
+        tables.append(Sheet("Best design for each choice", head, rows, texts=texts))
+    return tables

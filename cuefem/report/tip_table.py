@@ -1,4 +1,4 @@
-"""The leather tip of a scene by itself: record and sheet."""
+"""Central impacts of a leather tip on a rigid cue: record and table."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ SPEEDS = (0.5, 1.0, 2.0, 3.0, 5.0, 8.0)  # m/s
 
 
 def tip_record(scene: Scene) -> Record:
-    """Central impacts of a leather tip at several speeds, on a cue that is rigid along its axis.
+    """Central impacts of a leather tip at several speeds, on an axially rigid cue.
 
-    Contact time, peak force and, at that force, depth, stiffness and diameter of the patch; None at a speed that
-    presses the leather further than its law is known.
+    Contact time, s, maximum force, N, and at that force indentation, m, stiffness, N/m, and contact diameter, m; None
+    at a speed with an indentation beyond the valid range of the force law.
     """
     leather = scene.leather
     diameter = leather.diameter_on(scene.shaft.segments[0].tip_diameter)
@@ -27,17 +27,17 @@ def tip_record(scene: Scene) -> Record:
 
     def impact(speed: float) -> Record:
         try:
-            deepest, loading = law.blow(scene.head_on_mass, speed)
+            indentation, loading = law.blow(scene.head_on_mass, speed)
         except ValueError:
             return dict.fromkeys(("contact_time", "force", "depth", "stiffness", "patch")) | {"speed": speed}
-        at = np.array([deepest])
+        at = np.array([indentation])
         return {
             "speed": speed,
             "contact_time": (1 + law.restitution) * loading,
             "force": float(law.at(at)[0][0]),
-            "depth": float(deepest),
+            "depth": float(indentation),
             "stiffness": float(law.slope(at)[0]),
-            "patch": 2 * float(np.interp(deepest, depths, patches)),
+            "patch": 2 * float(np.interp(indentation, depths, patches)),
         }
 
     impacts = [impact(speed) for speed in sorted({*SPEEDS, float(scene.stroke.speed)})]
@@ -45,15 +45,15 @@ def tip_record(scene: Scene) -> Record:
 
 
 def tip_sheet(record: Record) -> Sheet:
-    """The central impacts, a row a speed."""
-    unknown = any(impact["force"] is None for impact in record["impacts"])
+    """A row for each speed."""
+    outside = any(impact["force"] is None for impact in record["impacts"])
     return sheet(
         "Leather tip, head-on impact",
         {"speed": "{speed:g} m/s", **by_words("contact_time", "force", "depth", "patch"), "stiffness": _stiffness},
         record["impacts"],
         f"leather of {grams(record['tip_mass'])}, E {significant(record['E'] / 1e6)} MPa; force, indentation, contact "
         "diameter and stiffness at maximum indentation; rigid cue (without axial waves)",
-        *([f"{NONE}: indentation beyond the valid range of the force law"] if unknown else []),
+        *([f"{NONE}: indentation beyond the valid range of the force law"] if outside else []),
         texts=(),
     )
 

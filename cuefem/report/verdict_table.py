@@ -1,4 +1,4 @@
-"""The verdict for people: a line with the squirt and its uncertainty, sentences, and rows of a scale."""
+"""Verdict on a cue: squirt with its uncertainty in one line, and a scale of reference cues."""
 
 from __future__ import annotations
 
@@ -16,33 +16,33 @@ from cuefem.scene.solved_scene import Solved
 
 
 def verdict(scene: Scene) -> Record:
-    """Squirt of a stroke with its uncertainty, beside the reference cues struck the same way.
+    """Squirt of a stroke with its uncertainty, compared with reference cues by the same stroke.
 
     Parameters
     ----------
     scene : Scene
-        A stroke with a cue of segments or a lumped cue. A central stroke is taken at the game's usual offset.
+        A stroke with a cue of segments or a lumped cue. A head-on stroke is computed at the game's default offset.
 
     Returns
     -------
     dict
-        "squirt", rad, and "squirt_error", its uncertainty (1 sigma); "offset", b/R; "uncertainty", its relative
-        parts (model, inputs, computation, and their total in quadrature); "inputs", what each uncertain parameter adds;
-        "among", for each reference cue its squirt, the relative "difference" of the scene's, the error of that, and
-        whether the two are "distinct", which is a difference larger than its error.
+        "squirt", rad, and "squirt_error", its uncertainty (1 sigma), rad; "offset", b/R; "uncertainty", its relative
+        parts (model, inputs, computation, and their total in quadrature); "inputs", the relative part of each uncertain
+        parameter; "among", for each reference cue its squirt, the relative "difference" of the scene's, its error, and
+        whether the two are "distinct": the difference is larger than its error.
 
     Raises
     ------
     ValueError
-        If the stroke is beyond a law's range, such as a leather tip that is pressed too far.
+        If the stroke is beyond the valid range of a law, such as an indentation too large for a leather tip.
 
     Examples
     --------
     >>> import cuefem as cf
     >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
     >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43))
-    >>> found = cf.verdict(scene)
-    >>> 0.1 < found["squirt_error"] / found["squirt"] < 0.3, "plain maple" in found["among"]
+    >>> record = cf.verdict(scene)
+    >>> 0.1 < record["squirt_error"] / record["squirt"] < 0.3, "plain maple" in record["among"]
     (True, True)
     """
     solved = Solved(scene)
@@ -50,24 +50,24 @@ def verdict(scene: Scene) -> Record:
 
 
 def squirt_words(record: Record) -> tuple[str, str]:
-    """The squirt as tables have it, and its uncertainty: "1.82°" and "0.31°"."""
+    """Squirt and its uncertainty as text: "1.82°" and "0.31°"."""
     squirt, error = abs(record["squirt"]), record["squirt_error"]
     decimals = 3 if error and scaled(error, "rad") < 0.01 else 2
     return with_unit(squirt, "rad", decimals=decimals), with_unit(error, "rad", decimals=decimals)
 
 
 def headline(record: Record) -> str:
-    """The squirt with its uncertainty in a line."""
+    """Squirt with its uncertainty as one line."""
     squirt, error = squirt_words(record)
-    aside = with_unit(math.tan(abs(record["squirt"])), "m", decimals=0)
+    off_line = with_unit(math.tan(abs(record["squirt"])), "m", decimals=0)
     where = f"at b/R {record['offset']:.4g}, {way_out(record['offset'])}" + (
         "; the stroke itself is head-on" if record["head_on"] else ""
     )
-    return f"squirt {squirt.rstrip('°')} ± {error} ({where}): the ball is {aside} off line after 1 m"
+    return f"squirt {squirt.rstrip('°')} ± {error} ({where}): the ball is {off_line} off line after 1 m"
 
 
 def way_out(offset: float) -> str:
-    """How far out the ball is struck: "3/10 of the way to the edge"."""
+    """The offset as a share of the radius: "3/10 of the way to the edge"."""
     tenths, percent = round(10 * abs(offset)), 100 * abs(offset)
     part = f"{tenths}/10" if abs(percent - 10 * tenths) < 0.5 else f"{percent:.0f} %"
     return f"{part} of the way to the edge"
@@ -80,14 +80,14 @@ def difference_words(difference: float, error: float) -> str:
 
 
 def squirt_difference(difference: float, error: float, distinct: bool) -> str:
-    """The same of squirt, to stand before what it is compared with: "15 ± 8 % less squirt than"."""
-    words = difference_words(difference, error)
+    """A difference of squirt, followed by the name of the other cue: "15 ± 8 % less squirt than"."""
+    text = difference_words(difference, error)
     more = "more" if difference > 0 else "less"
-    return f"{words[1:]} {more} squirt than" if distinct else f"{words} squirt, not distinct from"
+    return f"{text[1:]} {more} squirt than" if distinct else f"{text} squirt, not distinct from"
 
 
 def standing(record: Record) -> list[str]:
-    """Squirt relative to the first reference cue, in a sentence; none without a reference cue."""
+    """Squirt relative to the first reference cue as a sentence; empty without reference cues."""
     return [
         f"{squirt_difference(own['difference'], own['difference_error'], own['distinct'])} a {first} shaft with the "
         "same tip."
@@ -96,7 +96,7 @@ def standing(record: Record) -> list[str]:
 
 
 def uncertainty_line(record: Record) -> str:
-    """What the uncertainty is made of, in a line."""
+    """The parts of the uncertainty as one line."""
     parts = {name: _percent(share) for name, share in record["uncertainty"].items()}
     return (
         f"±: uncertainty (1σ): model {parts['model']} (from published squirt), unmeasured wood and tip "
@@ -111,12 +111,12 @@ def _percent(share: float) -> str:
 
 
 class ScaleRow(NamedTuple):
-    """A cue on the scale: its name, its squirt in words, how it differs, "own" or "other" if it is the design or the
-    one beside it, and its position and range in per cent of the scale."""
+    """A cue on the scale: name, squirt and difference as text; kind "own" for the design, "other" for the compared one;
+    position and interval (1σ), per cent of the scale."""
 
     name: str
     text: str
-    beside: str
+    difference: str
     kind: str
     at: float
     low: float
@@ -124,31 +124,33 @@ class ScaleRow(NamedTuple):
 
 
 def scale(record: Record, name: str = "yours", other: tuple[str, float | None] | None = None) -> list[ScaleRow]:
-    """The cues by their squirt, the least first, one's own with its uncertainty; other: name and squirt of one more."""
+    """The cues by their squirt, the lowest first, the design with its uncertainty. other: name and squirt, rad, of one
+    more cue."""
     mine, error = abs(record["squirt"]), record["squirt_error"]
-    squirts = {each: abs(beside["squirt"]) for each, beside in record["among"].items()}
+    squirts = {cue: abs(values["squirt"]) for cue, values in record["among"].items()}
     first = next(iter(squirts), "")
-    beside, squirt = other or ("", None)
+    compared, squirt = other or ("", None)
     if squirt is not None and not record["head_on"]:
-        squirts.setdefault(beside, abs(squirt))
-    text, off = squirt_words(record)
+        squirts.setdefault(compared, abs(squirt))
+    text, error_text = squirt_words(record)
     decimals = len(text.rstrip("°").partition(".")[2])
     part = 100 / (1.05 * max([mine + error, *squirts.values()]) or 1.0)
-    rows = [ScaleRow(name, text, f"± {off}", "own", part * mine, part * max(0.0, mine - error), part * (mine + error))]
-    for each, own in squirts.items():
+    interval = (part * max(0.0, mine - error), part * (mine + error))
+    rows = [ScaleRow(name, text, f"± {error_text}", "own", part * mine, *interval)]
+    for cue, own in squirts.items():
         ratio = round(100 * (own / squirts[first] - 1)) if first else 0
-        words = f"{abs(ratio)} % {'less' if ratio < 0 else 'more'} than {first}" if ratio else f"as much as {first}"
-        told, kind = with_unit(own, "rad", decimals=decimals), "other" if each == beside else ""
-        rows.append(ScaleRow(each, told, words if each != first else "", kind, *3 * (part * own,)))
+        more = f"{abs(ratio)} % {'less' if ratio < 0 else 'more'} than {first}" if ratio else f"as much as {first}"
+        text, kind = with_unit(own, "rad", decimals=decimals), "other" if cue == compared else ""
+        rows.append(ScaleRow(cue, text, more if cue != first else "", kind, *3 * (part * own,)))
     return sorted(rows, key=lambda row: row.at)
 
 
 def verdict_things(record: Record) -> list[Sheet | str]:
-    """The verdict in the terminal."""
+    """The verdict for the terminal: headline, comparison, and the table of reference cues."""
     rows = scale(record)
     own = {i: "bold" for i, row in enumerate(rows) if row.kind == "own"}
     head = ("cue", "squirt", "less to more squirt", "")
-    cells = tuple((row.name, row.text, _bar(row), row.beside) for row in rows)
+    cells = tuple((row.name, row.text, _bar(row), row.difference) for row in rows)
     title = "Reference pool cues, with the same tip and stroke"
     table = Sheet(title, head, cells, (uncertainty_line(record),), (0, 2, 3), own)
     return [headline(record), *standing(record), "", table]

@@ -20,9 +20,9 @@ def test_numbers_and_the_page(tmp_path: Path) -> None:
     (place / "squirt.csv").write_text("offset,value [deg],error [deg]\n0.3,1.5,0.1\n", encoding="utf-8")
     found, (cue, _) = as_json("compare", place), load_measured(place)
     for told, row in zip(found["rows"], compare(cue), strict=True):
-        assert told["what"] == row.measurement.label
+        assert told["label"] == row.measurement.label
         assert [told[name] for name in ("computed", "spread", "pull")] == [row.computed, row.spread, row.pull]
-    assert (found["name"], found["lacking"]) == ("a cue", cue.lacking)
+    assert (found["name"], found["missing"]) == ("a cue", cue.lacking)
     out = said("compare", place)
     assert all(words in out for words in ("weight of the shaft", "100.00 ± 0.50 g", "not measured, and what that"))
     assert call("compare", place, "-o", page) == (0, f"wrote {page}\n", "")
@@ -87,5 +87,5 @@ def test_an_estimate_has_the_numbers_of_the_library(tmp_path: Path) -> None:
     found = estimate(load_measured(place)[0])
     assert [value["value"] for value in told["values"]] == pytest.approx([value.value for value in found.values])
     assert (told["misfit"], told["converged"]) == (pytest.approx(found.misfit), True)
-    assert {worth["kind"] for worth in told["next"]} <= set(MEASUREMENT_TYPES)
-    assert all(0 < worth["left"] <= 1 and worth["bits"] >= 0 for worth in told["next"])
+    assert {worth["kind"] for worth in told["recommended"]} <= set(MEASUREMENT_TYPES)
+    assert all(0 < worth["left"] <= 1 and worth["bits"] >= 0 for worth in told["recommended"])

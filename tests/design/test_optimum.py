@@ -148,7 +148,7 @@ def of(cue: cf.Cue, name: str) -> cf.Segment:
 def test_output_has_units_limits_and_rounds(tmp_path: Path) -> None:
     out = said("study", written(tmp_path, OPTIMUM))
     assert {"bore 9 mm", "tip 10 mm"} <= {" ".join(line.split()) for line in out.splitlines()}
-    assert "held by: bore <= 9 mm, tip >= 10 mm" in out
+    assert "active constraints: bore <= 9 mm, tip >= 10 mm" in out
     assert "not finished: " in said("study", tmp_path / "study.toml", "--iterations", 1)
     problem = load_study(tmp_path / "study.toml")
     words = [round_words(problem, Round({"wood": "ash"}, 3, 30, best), 60) for best in (np.nan, 0.0412345678)]

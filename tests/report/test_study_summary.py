@@ -73,8 +73,8 @@ def test_command_ends_with_a_summary_and_writes_it_as_a_page(tmp_path: Path) -> 
     assert (told["designs"], told["evaluated"], told["failed"]) == (64, 0, 16)
     summary = told["summary"]
     widest = pytest.approx(0.011, rel=1e-12)  # of those that exist
-    assert (summary["best"]["end_mass"]["at"]["bore"], cf.load(best).cue.segments[0].tip_bore) == (widest, widest)
-    assert summary["drives"]["end_mass"]["bore"]["trend"] == "falls"
+    assert (summary["best"]["end_mass"]["values"]["bore"], cf.load(best).cue.segments[0].tip_bore) == (widest, widest)
+    assert summary["sensitivities"]["end_mass"]["bore"]["trend"] == "falls"
     assert summary["front"]["of"] == ["end_mass", "tip_stiffness"]
     assert summary["front"]["designs"][0]["design"] == summary["best"]["end_mass"]["design"]
     text = page.read_text(encoding="utf-8")

@@ -74,7 +74,7 @@ def test_the_scale_is_in_order_and_compares_every_cue_with_plain_maple() -> None
     assert [row.at for row in rows] == sorted(row.at for row in rows)
     assert all(0 <= row.low <= row.at <= row.high <= 100 for row in rows)
     assert [row.name for row in rows if row.kind == "own"] == ["yours"]
-    beside = {row.name: row.beside for row in rows}
+    beside = {row.name: row.difference for row in rows}
     for name in ("low deflection", "carbon"):
         less = 1 - among[name]["squirt"] / among["plain maple"]["squirt"]
         assert beside[name] == f"{100 * less:.0f} % less than plain maple"
