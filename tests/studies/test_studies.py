@@ -1,6 +1,5 @@
 """Every study of studies/: its page is what its program gives, and the index names it (regression)."""
 
-import ast
 import re
 from importlib import import_module
 
@@ -56,22 +55,3 @@ def test_nothing_lies_about() -> None:
 def test_every_link_of_the_index_is_there() -> None:
     links = re.findall(r"\]\(([^)#]+)\)", INDEX)
     assert [link for link in links if not link.startswith("http") and not (STUDIES / link).exists()] == []
-
-
-def test_studies_do_not_reach_into_the_contact() -> None:
-    """But for the one that asks what its laws leave out."""
-    named = {
-        path.name
-        for path in STUDIES.rglob("*.py")
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("cuefem.contact")
-    }
-    assert named <= {"left_out.py"}
-
-
-def test_a_changed_number_of_a_committed_page_is_found() -> None:
-    page = "| 0.05 | 61.7 | late stick |\n| 2e-05 | +0.3 |\n"
-    assert disagreements(page, page.replace("61.7", "61.8")) == []
-    assert len(disagreements(page, page.replace("61.7", "61.9"))) == 1
-    assert len(disagreements(page, page.replace("late stick", "stick"))) == 1
-    assert len(disagreements(page, page.replace("+0.3", "-0.3"))) == 1
