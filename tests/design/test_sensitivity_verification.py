@@ -11,7 +11,7 @@ import pytest
 from cuefem import Cue, Material, PointMass, Resolution, Scene, Tip, load
 from cuefem.design.sensitivity import Sensitivity, sensitivity
 from cuefem.endmass.definitions import end_mass
-from tests.helpers.cues import carbon_tube, kim, low_deflection
+from tests.helpers.cues import drawn, kim, low_deflection
 
 MESHES = Path(__file__).parents[2] / "meshes"
 AT = Resolution(3, 8, 14)
@@ -52,7 +52,7 @@ def slope(function: Callable[[float], float], step: float) -> float:
     return (4 * narrow - wide) / 3
 
 
-CUES = pytest.mark.parametrize("cue", [kim(), low_deflection(), carbon_tube()], ids=["kim", "hollow", "carbon"])
+CUES = pytest.mark.parametrize("cue", [kim(), low_deflection(), drawn("carbon")], ids=["kim", "hollow", "carbon"])
 
 
 @CUES

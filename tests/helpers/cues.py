@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from cuefem import Cue, Material, Scene, Segment, Tip
+from studies.strokes import cue as drawn
 
 KIM_DENSITY = 782.3284453057836  # kg/m3: [Kim]'s cone, 120 g
 MAPLE = Material(12.6e9, 12.6e9 / 15, 700.0)
@@ -72,31 +73,12 @@ def low_deflection() -> Cue:
     )
 
 
-def carbon_tube() -> Cue:
-    """A carbon tube with a core of foam."""
-    return Cue(
-        (
-            Segment(0.006, 0.0124, 0.0124, LEATHER),
-            Segment(0.010, 0.0124, 0.0124, ABS),
-            Segment(0.30, 0.0124, 0.0128, CARBON, 0.0094, 0.0098, core=FOAM),
-            Segment(0.42, 0.0128, 0.0215, CARBON, 0.0098, 0.0185, core=FOAM),
-        ),
-        body_mass=0.43,
-    )
-
-
-def whole_cue() -> Cue:
-    """A cue of 58 inches, modelled to the butt, with a brass-like joint."""
-    joint = Material(100e9, 37e9, 8500.0)
-    return Cue((*pool().segments, Segment(0.02, 0.0215, 0.0215, joint), Segment(0.7166, 0.0215, 0.031, MAPLE)))
-
-
 FAMILY = {
     "kim": kim(),
     "pool": pool(),
     "low deflection": low_deflection(),
-    "carbon tube": carbon_tube(),
-    "whole cue": whole_cue(),
+    "carbon tube": drawn("carbon"),
+    "whole cue": drawn("whole_cue"),
 }
 
 
