@@ -73,16 +73,13 @@ def imported(tree: ast.Module) -> Iterator[str]:
             yield ast.literal_eval(node.value.args[0])  # type: ignore[attr-defined]
 
 
-def walk(node: ast.AST) -> Iterator[ast.stmt]:
-    """The statements within a node, but for those of type checking."""
-    todo = [node]
-    while todo:
-        one = todo.pop()
-        if isinstance(one, ast.stmt):
-            yield one
-        if not (isinstance(one, ast.If) and getattr(one.test, "id", "") == "TYPE_CHECKING"):
-            inner = (getattr(one, name, ()) for name in ("body", "orelse", "handlers", "finalbody", "cases"))
-            todo += [part for parts in inner if isinstance(parts, list) for part in parts]
+def walk(tree: ast.AST) -> list[ast.stmt]:
+    """The statements within a file, but for those of type checking."""
+    hints = (
+        one for one in ast.walk(tree) if isinstance(one, ast.If) and getattr(one.test, "id", "") == "TYPE_CHECKING"
+    )
+    skipped = {inner for one in hints for inner in ast.walk(one)}
+    return [one for one in ast.walk(tree) if isinstance(one, ast.stmt) and one not in skipped]
 
 
 def out_of_order(part: str, tree: ast.Module) -> list[str]:

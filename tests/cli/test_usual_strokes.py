@@ -6,19 +6,15 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
-import click
 import pytest
 
 import cuefem as cf
-from cuefem.cli import COMMANDS, main
 from cuefem.cue.materials import LEATHERS, material
-from cuefem.io.fittings import FITTINGS
 from cuefem.report.tip_table import SPEEDS, tip_record
 from tests.helpers.command_line import as_json, call
 
 SHAFT = cf.Cue((cf.Segment(0.7, 0.0118, 0.021, material("hard maple")),), 0.42)
 DRAWN = cf.Cue((cf.Segment(5e-3, 0.0118, 0.0118, material("leather")), *SHAFT.segments), 0.42)
-TIP = {"game", "tip_height", "dome", "leather"}
 
 
 @pytest.fixture
@@ -61,16 +57,6 @@ def test_every_assumption_has_its_option(folder: Path) -> None:
         assert value(found["scene"]) == pytest.approx(wanted, rel=1e-12), name
     changed = as_json("strike", "leather.toml", *given)  # a file that says all
     assert (changed["assumed"], changed["scene"]) == ([], found["scene"])
-
-
-def test_the_commands_that_strike_have_all_the_options() -> None:
-    commands = {name: main.get_command(click.Context(main), name) for name in COMMANDS}
-    names = {name: {p.name for p in command.params} for name, command in commands.items() if command}
-    on_files = {name for name, params in names.items() if {"body_mass", "as_json"} <= params}
-    struck = TIP | {"restitution", "friction", "speed"}
-    assert {name for name in on_files if names[name] >= struck} == on_files - {"modes", "convert", "designer"}
-    assert names["modes"] >= TIP
-    assert all(params >= {*FITTINGS} for params in names.values() if "body_mass" in params)
 
 
 def test_leather_too_soft_for_the_stroke_stops_what_needs_the_contact_alone(folder: Path) -> None:

@@ -3,7 +3,6 @@
 import re
 import webbrowser
 from functools import cache
-from html.parser import HTMLParser
 from importlib import import_module
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from cuefem.endmass.definitions import DEFINITIONS, end_mass
 from cuefem.handbook import CHAPTERS, LINES, chapters, effect_lines
 from cuefem.handbook.page import page
 from tests.helpers.command_line import said
+from tests.helpers.page_reader import Reader
 from tests.helpers.refusals import untouched
 
 ROOT = Path(__file__).parents[2]
@@ -61,33 +61,14 @@ def test_the_handbook_shows_the_five_lines_of_every_effect(name: str) -> None:
     assert f">{name}</h2>" in whole()
 
 
-class Links(HTMLParser):
-    """The anchors of a page, its links, and the tags that are open."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.anchors: list[str] = []
-        self.links: list[str] = []
-        self.open: list[str] = []
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        given = dict(attrs)
-        self.anchors += [given["id"] or ""] if "id" in given else []
-        self.links += [given[name] or "" for name in ("href", "src") if name in given]
-        self.open += [tag] if tag not in ("meta", "link", "br", "hr", "input") else []
-
-    def handle_endtag(self, tag: str) -> None:
-        assert self.open.pop() == tag
-
-
 def test_the_page_needs_nothing_from_the_network_and_its_links_lead_somewhere() -> None:
-    read, text = Links(), whole()
-    read.feed(text)
+    text = whole()
+    read = Reader(text)
+    anchors, links = read.values("id"), read.values("href", "src")
     assert read.open == []
-    assert len(read.anchors) == len(set(read.anchors))
-    assert {link for link in read.links if not link.startswith("#")} == {"data:,"}
-    assert {link[1:] for link in read.links if link.startswith("#")} <= set(read.anchors)
-    assert set(CHAPTERS) <= set(read.anchors)
+    assert len(anchors) == len(set(anchors))
+    assert {link for link in links if not link.startswith("#")} == {"data:,"}
+    assert {link[1:] for link in links if link.startswith("#")} | set(CHAPTERS) <= set(anchors)
     assert [title for title in TITLES if f">{title}</h1>" not in text] == []
     assert 'handbook: <a href="#beam">The beam</a>, <a href="#strike">The strike</a>, <a href="#effects">' in text
 

@@ -64,14 +64,6 @@ def test_the_command_and_its_file(scene: Path, tmp_path: Path) -> None:
     assert written["line"] == f'CueSpecs(**json.load(open("{goal}"))["CueSpecs"])'
 
 
-def test_a_miscue_has_no_end_mass() -> None:
-    """Beyond the cone of friction, b/R 0.37 at mu 0.4, leather sticks at first only."""
-    slippery = cf.Tip(0.75, 0.4)
-    struck = replace(SCENE, tip=slippery, effects=(cf.LeatherTip(0.006, 0.0095, 140e6),), stroke=cf.Stroke(2.0, 0.5))
-    with pytest.raises(ValueError, match=r"miscue at offset 0\.5"):
-        pooltool_record("kim", struck)
-
-
 def test_what_a_drawing_leaves_out_is_pooltools_own() -> None:
     whole = pooltool_record("drawn whole", replace(SCENE, cue=replace(KIM, body_mass=0.0)))["CueSpecs"]
     assert (whole["length"], whole["shaft_radius_at_butt"]) == (0.7, 0.0105)

@@ -14,7 +14,6 @@ import cuefem as cf
 from cuefem.design import Response
 from cuefem.design.study_statistics import SweepStatistics
 from cuefem.report.study_table import column_label
-from cuefem.results.solved_design import asked
 from tests.helpers.command_line import as_json, said
 from tests.helpers.refusals import command_refuses
 from tests.helpers.sweeps import STUDY, written
@@ -113,10 +112,3 @@ def test_columns_and_responses_are_named_in_words() -> None:
     names = ("end_mass", "squirt(-0.25)", "frequency(2)", "end_mass_force")
     said = [Response.of(name).label for name in names]
     assert said == ["end mass", "squirt at b/R -0.25", "natural frequency 2", "end mass, force"]
-    every = [
-        Response(name, x).label
-        for name, of in asked().items()
-        for x in ((None, 0.3, 0.3000001, 2) if of.argument else (None,))
-    ]
-    assert len({*every}) == len(every)
-    assert not any("_" in label for label in every)

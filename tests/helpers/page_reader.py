@@ -1,0 +1,39 @@
+"""Reads a page as a browser's parser does, and refuses tags that do not close in order; no tests."""
+
+from collections import Counter
+from html.parser import HTMLParser
+
+VOID = {"meta", "link", "br", "hr", "input"}
+
+
+class Reader(HTMLParser):
+    """Tags, attributes and text of a page; refuses tags that do not close in order."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.tags: Counter[str] = Counter()
+        self.attributes: list[tuple[str, str]] = []
+        self.text: list[str] = []
+        self.within = False  # a sentence that a word which is explained stands in
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags[tag] += 1
+        self.attributes += [(name, value or "") for name, value in attrs]
+        self.within = tag == "button"
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert tag in VOID or self.open.pop() == tag
+        self.within = tag == "button"
+
+    def handle_data(self, data: str) -> None:
+        if not {"style", "script"} & set(self.open):
+            self.text[-1:] = ["".join([*self.text[-1:], data])] if self.within else [*self.text[-1:], data]
+
+    def values(self, *names: str) -> list[str]:
+        """The values of these attributes, in their order on the page."""
+        return [value for name, value in self.attributes if name in names]
