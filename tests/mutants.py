@@ -118,7 +118,6 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="random mutants, and how many of them a test notices")
     for name, value in (("--seed", 1), ("--core", 40), ("--faces", 20)):
         parser.add_argument(name, type=int, default=value)
-    parser.add_argument("--only", type=int, nargs="*", help="numbers of mutants to try; all others are passed over")
     asked = parser.parse_args()
     files = sorted((ROOT / "cuefem").rglob("*.py"))
     faces = [file for file in files if file.relative_to(ROOT / "cuefem").parts[0] in FACES]
@@ -126,19 +125,16 @@ def main() -> None:
     for seed, (part, count) in enumerate(((sorted({*files} - {*faces}), asked.core), (faces, asked.faces))):
         every = [mutant for file in part for mutant in mutants(file)]
         drawn += random.Random(f"{asked.seed} {seed}").sample(every, count)
-    tried = [*range(len(drawn))] if asked.only is None else asked.only
     noticed = 0
     with tempfile.TemporaryDirectory() as folder:
         tree = Path(folder) / "tree"
         shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns(".git", ".venv*", "__pycache__", "dist", "*.sqlite"))
-        for number in tried:
-            mutant = drawn[number]
+        for number, mutant in enumerate(drawn):
             by = is_noticed(tree, mutant)
             noticed += bool(by)
-            print(
-                number, f"{mutant.path.relative_to(ROOT)}:{mutant.line}", mutant.text, "|", by or "SURVIVES", flush=True
-            )
-    n, z, rate = len(tried), 1.96, noticed / len(tried)
+            place = f"{mutant.path.relative_to(ROOT)}:{mutant.line}"
+            print(number, place, mutant.text, "|", by or "SURVIVES", flush=True)
+    n, z, rate = len(drawn), 1.96, noticed / len(drawn)
     middle = (rate + z**2 / 2 / n) / (1 + z**2 / n)
     half = z * math.sqrt(rate * (1 - rate) / n + z**2 / 4 / n**2) / (1 + z**2 / n)
     print(f"noticed {noticed} of {n}: {rate:.0%}, 95 % interval {middle - half:.0%} to {middle + half:.0%}")

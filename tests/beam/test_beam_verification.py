@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -72,11 +73,8 @@ def uniform_frequencies(cue: Cue, count: int) -> np.ndarray:
         a, b, c = (x * omega**2 for x in (rhoA / kGA, rhoI / EI, rhoA / EI))
         half = math.hypot((a - b) / 2, math.sqrt(c))
         p, q = half - (a + b) / 2, half + (a + b) / 2
-        r, s = math.sqrt(abs(p)), math.sqrt(q)
-        if p > 0:  # both over e^(rh)
-            cosh, sinh = (1 + math.exp(-2 * r * h)) / 2, -math.expm1(-2 * r * h) / 2 / r
-        else:
-            cosh, sinh = math.cos(r * h), math.sin(r * h) / r
+        r, s = cmath.sqrt(p), math.sqrt(q)
+        cosh, sinh = cmath.cosh(r * h).real, (cmath.sinh(r * h) / r).real
         cos, sin = math.cos(s * h), math.sin(s * h) / s
         return (p + a) * cosh * sin + (q - a) * cos * sinh, (p + a) * p * sinh * cos - (q - a) * q * sin * cosh
 
@@ -149,21 +147,13 @@ def sliced(cue: Cue, count: int) -> Cue:
     pieces = []
     for segment in cue.segments:
         n = max(round(count * segment.length / cue.length), 1)
-        outer, bore = (
-            np.linspace(*ends, n + 1)
-            for ends in ((segment.tip_diameter, segment.butt_diameter), (segment.tip_bore, segment.butt_bore))
-        )
-        for i in range(n):
-            pieces.append(
-                replace(
-                    segment,
-                    length=segment.length / n,
-                    tip_diameter=outer[i],
-                    butt_diameter=outer[i + 1],
-                    tip_bore=bore[i],
-                    butt_bore=bore[i + 1],
-                )
-            )
+        outer = np.linspace(segment.tip_diameter, segment.butt_diameter, n + 1)
+        bore = np.linspace(segment.tip_bore, segment.butt_bore, n + 1)
+        slices = zip(outer, outer[1:], bore, bore[1:], strict=False)
+        names = ("tip_diameter", "butt_diameter", "tip_bore", "butt_bore")
+        pieces += [
+            replace(segment, length=segment.length / n, **dict(zip(names, ends, strict=True))) for ends in slices
+        ]
     return Cue(tuple(pieces), cue.body_mass)
 
 

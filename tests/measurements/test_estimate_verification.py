@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import bisect
 
 from cuefem.measurements.estimate import Estimate, estimate
 from cuefem.measurements.measured_cue import MeasuredCue, compare
@@ -165,11 +166,8 @@ def test_a_cue_at_the_limits_of_what_can_be_is_estimated_like_others(name: str) 
     cue = MeasuredCue("a cue", SCENE, CHEAP, (Prior("taper", 0.1),))
     i, parameter = next((i, each) for i, each in enumerate(cue.parameters) if each.name == name)
     for outside in (side for side in (-12.0, 12.0) if not possible(cue, i, side)):
-        limit = [0.0, outside]
-        while abs(limit[1] - limit[0]) > 1e-9:
-            middle = sum(limit) / 2
-            limit[not possible(cue, i, middle)] = middle
-        end = limit[0]
+        end = bisect(lambda z: possible(cue, i, z) - 0.5, 0.0, outside, xtol=1e-9)
+        end -= 2e-9 * np.sign(end)
         for inside in (0.0, 0.3):
             near = replace(cue, scene=parameter.setup(cue.setup(), end - np.sign(end) * inside).scene)
             assert np.isfinite([row.spread for row in compare(near)]).all()
