@@ -107,8 +107,7 @@ def scene_of(
 
 
 def compute_tip(scene: Scene) -> None:
-    """Compute the scene's leather tip if it is none of the table's and was never computed, and say that it takes a
-    while."""
+    """Compute the scene's leather tip unless it is tabulated or cached, and announce the waiting time."""
     if not scene.tip_at_hand:
         click.echo(announcement(), err=True)
         scene.tip_law()

@@ -71,9 +71,9 @@ class Output(click.Path):
         if path.suffix not in self.endings:
             wanted = " or ".join(self.endings)
             more = "; --store names the file of stored designs" if path.suffix == ".sqlite" else ""
-            more = "; figures stand on the page" if path.suffix in (".png", ".svg", ".pdf") else more
+            more = "; a page (.html) has the figures" if path.suffix in (".png", ".svg", ".pdf") else more
             raise InputError(path, "--output", f"must end in {wanted}; got {path.suffix!r}{more}")
-        if path.suffix != ".toml":  # of a drawing the command itself looks
+        if path.suffix != ".toml":  # a command that writes a drawing checks it itself
             check_place(path)
         return path
 

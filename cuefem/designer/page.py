@@ -71,13 +71,13 @@ class Page:
         self.solid_of: Scene | None = None  # that was computed as a solid
         self.tab = TABS[0]
         self.rows: list[KnobRow] = []
-        self.folds: dict[str, Any] = {}  # of the groups of knobs
+        self.folds: dict[str, Any] = {}  # of the groups of controls
         self.client = ui.context.client
         ui.add_css(page_style() + files("cuefem.designer").joinpath("page.css").read_text(encoding="utf-8"))
         ui.add_body_html(f"{definitions()}<script>{chart_script()}</script>")
         self._header()
         with ui.element("div").classes("main").props('data-busy="true"') as self.main:
-            with ui.element("aside").classes("card knobs").props("aria-label=Knobs"):
+            with ui.element("aside").classes("card knobs").props("aria-label=Controls"):
                 self._knobs()
             with ui.element("section").classes("screen card").props("aria-label=Result") as self.card:
                 self._first_screen()

@@ -93,7 +93,7 @@ class Measurement:
 
 @dataclass(frozen=True, kw_only=True)
 class Weight(Measurement):
-    """A weight: of the drawn shaft with its tip, or of the whole cue."""
+    """A weight: of the shaft in the drawing with its tip, or of the whole cue."""
 
     key: ClassVar[str] = "weight"
     unit: ClassVar[str] = "kg"

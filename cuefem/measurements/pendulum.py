@@ -121,8 +121,8 @@ class Pendulum:
         relative = math.hypot(self.ball_mass_error / m, by_free, by_clamped)
         if relative > 1:
             raise ValueError(
-                "Pendulum.after must differ enough from clamped_after to tell the end mass to within its own size; got "
-                f"an error of {100 * relative:.3g} %"
+                "Pendulum.after must differ more from clamped_after, for an end mass uncertain by at most 100 %; "
+                f"got {100 * relative:.3g} %"
             )
         value, time = m * (1 + a) / (e - a), self._time(min(e, 1.0))
         later = self.contact_time_error or TIME_ERROR * time

@@ -135,7 +135,7 @@ def tones_of(samples: Array, rate: float, frequencies: Array, source: str = "") 
     if len(found) < FEWEST:
         there = ", ".join(f"{peak.frequency:.0f}" for peak in sorted(peaks)) or "none"
         modes = ", ".join(f"{hertz:.0f}" for hertz in frequencies)
-        raise ValueError(f"must hold {FEWEST} tones or more near those of the drawn shaft, {modes} Hz; got {there}")
+        raise ValueError(f"must have at least {FEWEST} peaks near the natural frequencies, {modes} Hz; got {there}")
     return tuple(Tone(mode=k, value=peak.frequency, error=peak.error, source=source) for k, peak in found.items())
 
 

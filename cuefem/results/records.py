@@ -23,7 +23,7 @@ Entry = str | Callable[[Mapping[str, Any]], str]
 
 @dataclass(frozen=True)
 class Sheet:
-    """A table for people: its title, the head of its columns, rows of texts, and lines that state its assumptions.
+    """A table: its title, the head of its columns, rows of texts, and lines that state its assumptions.
 
     texts: indices of the columns with text; the others have numbers. styles: of highlighted rows, "bold" or
     "dim", by the row's number.

@@ -45,7 +45,7 @@ CALLS: dict[str, Callable[[], object]] = {
     "without it; got contact_time and force": lambda: replace(GOOD, force=9.0),
     "Pendulum.clamped_after must be (0, 1]": lambda: replace(GOOD, clamped_after=(0.3,)),
     "Pendulum.after must be between -1 and 0.": lambda: replace(GOOD, after=(0.188,)),
-    "to tell the end mass to within its own size": lambda: replace(GOOD, after=(0.1495,)),
+    "for an end mass uncertain by at most 100 %": lambda: replace(GOOD, after=(0.1495,)),
 }
 
 
@@ -93,7 +93,7 @@ NOISE, TIME = np.random.default_rng(3), np.arange(22050)[:, None] / 22050
 SOUNDS: dict[str, tuple[np.ndarray | bytes, int]] = {
     "tap.wav: must hold a sound; got silence": (np.zeros((4000, 1)), 22050),
     "tap.wav: must last 0.1 s or more": (np.linspace(0, 0.5, 4000)[:, None] ** 2, 22050),
-    "must hold 3 tones or more near": (0.1 * NOISE.standard_normal((22050, 1)), 22050),
+    "must have at least 3 peaks near": (0.1 * NOISE.standard_normal((22050, 1)), 22050),
     "got 318": (0.5 * np.exp(-9 * TIME) * np.sin(2e3 * TIME), 22050),
     "must have 4000 to 400000 samples per second": (NOISE.uniform(-1, 1, (900, 1)), 1000),
     "tap.wav: must be a .wav file of sound": (b"ID3 and so on", 0),
