@@ -1,8 +1,8 @@
-"""What do butt and leather of the default stroke change, and how do their numbers follow from what was measured?
+"""How sensitive is squirt to butt and leather of the default stroke, and how do their values follow from measurements?
 
-Contact time and rebound of a whole cue give the leather's E and the tip's own restitution together
-(`cuefem.identify_tip`); a butt behind the shaft throws axial waves back later than a rigid mass at the joint. Three
-strokes side by side: both as before (rigid mass, 140 MPa, e 0.63), the butt alone, both. Data: squirt.py.
+Contact time and restitution of a whole cue identify the leather's E and the tip's restitution together
+(`cuefem.identify_tip`); a butt behind the shaft reflects axial waves later than a rigid mass at the joint. Three
+strokes are compared: rigid mass and 140 MPa with e 0.63; the butt and 140 MPa; butt and 229 MPa. Data: squirt.py.
 """
 
 from __future__ import annotations
@@ -171,21 +171,24 @@ def text() -> str:
     hard = [identified(0.9, rebound, **PHENOLIC) for rebound in (0.81, 0.87)]
     return pages.page(
         "Butt and leather of the default stroke",
-        "What do butt and leather of the default stroke change, and how do their numbers follow from measurements?",
+        "How sensitive is squirt to butt and leather of the default stroke, and how do their values follow from "
+        "measurements?",
         f"Squirt of the maple shaft at b/R 0.375 and 2 m/s is {now:.2f}° ({before:.2f}° with a rigid mass at the joint "
         f"and leather of 140 MPa, {drawn:.2f}° with the butt alone). Medium leather has {medium.E / 1e6:.0f} MPa and e "
-        f"{medium.restitution:.2f}; no leather is shorter in contact than {shortest(REBOUND)} ms.",
+        f"{medium.restitution:.2f}; no leather has a contact time below {shortest(REBOUND)} ms.",
         stroke_table(),
-        "## Leathers by contact time",
-        "Head on at 2 m/s, pool ball, whole cue of meshes/whole_cue.toml, rebound 0.73; squirt at b/R 0.375 and 2 m/s.",
+        "## Modulus and restitution of leather by contact time",
+        "Central impact at 2 m/s, pool ball, meshes/whole_cue.toml, restitution of the whole cue 0.73; squirt at b/R "
+        "0.375 and 2 m/s.",
         leather_table(),
-        f"A blow shorter than {shortest(REBOUND)} ms would need leather that gives back less than e = 0.1. The "
+        f"A contact time below {shortest(REBOUND)} ms would require a tip restitution below 0.1. The "
         "published 0.8 ms is of phenolic in a fast stroke (Alciatore, FAQ, tip contact time: most tips 1 to 2 ms, soft "
-        "and slow ones up to 3 ms); data that the FAQ links are of dbkcues.ru, who play Russian pyramid, whose balls "
-        "have 285 g: whether they were used was not checked. A phenolic tip with a dome of 12.7 mm that lasts 0.9 ms "
-        f"with a rebound of 0.81 to 0.87 has {hard[0].E / 1e6:.0f} to {hard[1].E / 1e6:.0f} MPa and e "
+        "tips in slow strokes up to 3 ms). The data linked in the FAQ are of dbkcues.ru, a maker of cues for Russian "
+        "pyramid, with balls of 285 g; whether the FAQ uses them was not checked. A phenolic tip with a dome of 12.7 "
+        "mm, a contact time of 0.9 ms and a restitution of the whole cue of 0.81 to 0.87 has "
+        f"{hard[0].E / 1e6:.0f} to {hard[1].E / 1e6:.0f} MPa and e "
         f"{hard[0].restitution:.2f} to {hard[1].restitution:.2f}.",
-        "## What the butt's numbers are worth: maple shaft, b/R 0.375",
+        "## Sensitivity of squirt to the butt: maple shaft, b/R 0.375",
         input_table(),
     )
 

@@ -1,9 +1,9 @@
-"""Does the model give the squirt that was measured on real cues, with nothing fitted?
+"""Does computed squirt agree with measured squirt of real cues, with nothing fitted?
 
-Two models of one stroke: bare (a spring along the normal, of the leather's contact time, e 0.73), and whole
-(LeatherTip, axial waves, axial force on the bent shaft). The folders beside this file hold cues, strokes, measured
-values and their sources: D. Alciatore, Billiards Digest, September 2007 (angles, by hand), November 2007 (pivot
-lengths), February 2008 (robot), TP B.1. Only the diameter of each tip was published, so that a usual drawing stands for
+Two models of one stroke: bare (the bare-tip model: a normal spring with the leather's contact time, e 0.73), and whole
+(the full model: LeatherTip, AxialWaves, GeometricStiffness). The folders beside this file contain cues, strokes,
+measured values and their sources: D. Alciatore, Billiards Digest, September 2007 (angles, by hand), November 2007
+(pivot lengths), February 2008 (robot), TP B.1. Only the diameter of each tip is published; a typical drawing represents
 each cue.
 """
 
@@ -212,34 +212,36 @@ def text() -> str:
     added = ", ".join(f"{one / (mass_ratios()[11, x][1] - 1):.2f}" for one, x in zip(small, (2, 4), strict=True))
     bores = ", ".join(f"{asked_bore(E):.1f} mm for {E / 1e9:g} GPa" for E in (10.8e9, 13.9e9, 16.9e9))
     return pages.page(
-        "Measured squirt, nothing fitted",
-        "Does the model give the squirt that was measured on real cues?",
-        f"At b/R 0.375 the whole model gives {robot.told[2]} (a robot measured 2.30 and 2.43°). A low-deflection "
-        f"shaft has {hollow_ratio:.2f} of a maple shaft's squirt (measured 0.72). It fails in the angles of 2007. "
-        "Nothing is fitted to squirt: E and restitution of the leather give a published contact time and rebound. What "
-        "follows for the model's error: [uncertainty](uncertainty.md).",
+        "Computed and measured squirt",
+        "Does computed squirt agree with measured squirt of real cues, with nothing fitted?",
+        f"At b/R 0.375 the full model gives {robot.told[2]} (a robot measured 2.30 and 2.43°). A low-deflection "
+        f"shaft has {hollow_ratio:.2f} of a maple shaft's squirt (measured 0.72). The angles of 2007 disagree with the "
+        "model. Nothing is fitted to squirt: E and restitution of the leather follow from a published contact time and "
+        "restitution of whole cues. Model error: [uncertainty](uncertainty.md).",
         squirt_table(),
-        "Differences: logarithms, of pivot lengths as squirt. Pivot lengths were found in November 2007 by turning the "
-        "cue about the bridge until squirt cancels; zeros of angle and offset cancel too. Strokes were fast, balls "
-        "sprayed with silicone; speeds and errors were not published. Read as pivot lengths (dome "
-        f"{1e3 * DIME:.2f} mm, a dime), the maple angles of September 2007 are {as_pivots()} in, for a cue that "
-        "measured 12.7 in two months later: the two contradict each other. 12.7 in is 2.30° at b/R 0.375, the robot's "
-        "number; by TP B.1 the angles of Predator and Stinger are their pivot lengths. Each of these pairs may be one "
+        "Columns: bare is the bare-tip model, whole the full model. Differences are logarithms; those of pivot lengths "
+        "are converted to squirt. Pivot lengths were measured in November 2007 by pivoting the cue about the bridge "
+        "until squirt cancels, which also cancels zero errors of angle and offset. Strokes were fast, balls sprayed "
+        "with silicone; speeds and errors were not published. The maple angles of September 2007 correspond to pivot "
+        f"lengths (dome {1e3 * DIME:.2f} mm, a dime) of {as_pivots()} in, for a cue with a measured 12.7 in two months "
+        "later: the two contradict each other. 12.7 in corresponds to 2.30° at b/R 0.375, the robot's number; by TP "
+        "B.1 the angles of Predator and Stinger correspond to their pivot lengths. Each of these pairs may be one "
         "measurement.",
-        "## What squirt depends on: maple shaft, b/R 0.375",
+        "## Sensitivity of squirt: maple shaft, b/R 0.375",
         depends_table(),
-        "Players say that the hardness of the tip has no practical effect (Alciatore's FAQ); nobody measured that to "
-        "better than ±5 %. The robot found no trend over 3.6 to 7.8 mph of the ball between two beams, which are "
-        f"{low:.1f} to {high:.1f} m/s of the cue, with a scatter of 9 %.",
-        "## 11 g on the maple shaft: squirt over that without them",
+        "Players report no practical effect of tip hardness (Alciatore's FAQ); no measurement of it is better than "
+        "±5 %. The robot found no trend with speed, with a scatter of 9 %, for the ball at 3.6 to 7.8 mph between two "
+        f"light beams: a cue speed of {low:.1f} to {high:.1f} m/s.",
+        "## Point mass of 11 g on the maple shaft: squirt over that without it",
         mass_table(),
-        "The dip at 6 to 9 in is a bending wave that the mass reflects; it comes earlier in shorter contacts. 3 g add "
-        f"{added} of what 11 g add at 2 and 4 in; 0.51 to 0.80 was measured. Added squirt is nearly proportional to a "
-        "small mass, so the model fails here, or the label or the digitised curve is wrong.",
-        "## Hollow over maple at b/R 0.453 by bore, measured 0.72",
+        "The minimum at 6 to 9 in is caused by the bending wave that the mass reflects; in shorter contacts it is "
+        f"nearer to the tip. The change of squirt by 3 g is {added} of that by 11 g at 2 and 4 in; measured: 0.51 to "
+        "0.80. It is nearly proportional to a small mass, so either the model fails here, or the label or the "
+        "digitised curve is wrong.",
+        "## Squirt of the hollow shaft over the maple shaft at b/R 0.453 by bore, measured 0.72",
         bore_table(),
-        "The last 8 in of a shaft that is taken for this one have 3480 N/m (data/static_stiffness.csv): a bore of "
-        f"{bores}.",
+        "The last 8 in of a shaft assumed to be this one have 3480 N/m (data/static_stiffness.csv), which requires a "
+        f"bore of {bores}.",
     )
 
 

@@ -1,8 +1,8 @@
-"""How uncertain is a computed squirt, and the ratio of two, by what was published?
+"""How uncertain are a computed squirt and a ratio of two, by published measurements?
 
 Four series are independent: the robot, whose 2.30 deg is the pivot length of that cue (12.7 in), the angles of 2007,
 and two cues whose angle and pivot length are one number by TP B.1. Wood and tip of those cues were not measured either:
-what they leave open is taken off, and the rest is the model's own (`cuefem.results.uncertainty`). Data: squirt.py.
+their contribution is subtracted, and the rest is the model error (`cuefem.results.uncertainty`). Data: squirt.py.
 """
 
 from __future__ import annotations
@@ -159,28 +159,29 @@ def text() -> str:
     own, (shafts, masses) = model_error("whole"), ratio_errors()
     return pages.page(
         "Uncertainty of squirt",
-        "How uncertain is a computed squirt, and the ratio of two, by what was published?",
-        f"The model's own error is {100 * own.best:.0f} % of squirt, between {100 * own.low:.0f} and "
-        f"{100 * own.high:.0f} %: four series differ from it by {100 * own.total:.0f} % RMS, of which the inputs "
-        f"explain {100 * own.inputs:.0f} %. Its upper end and the inputs of a scene make that scene's uncertainty. A "
-        f"ratio of two shafts is off by up to {shafts:.2f} of its logarithm, one of masses on a shaft by {masses:.2f}.",
-        "## The model's own error",
+        "How uncertain are a computed squirt and a ratio of two, by published measurements?",
+        f"The model error is {100 * own.best:.0f} % of squirt (1σ), between {100 * own.low:.0f} and "
+        f"{100 * own.high:.0f} %: four series differ from the model by {100 * own.total:.0f} % RMS, of which the "
+        f"inputs explain {100 * own.inputs:.0f} %. The uncertainty of a scene combines its upper end with the scene's "
+        f"inputs. The uncertainty of a ratio of two shafts is up to {shafts:.2f} of its logarithm, that of point "
+        f"masses on one shaft {masses:.2f}.",
+        "## Model error",
         error_table(),
-        "A series counts once, by the mean of its rows. Errors of measurement were not published, and none is taken "
-        "off. Interval: chi-square with as many degrees of freedom as series. Inputs, by half the difference between "
-        "one spread up and one down: E, G and density of the wood, waves in the butt, taper, bore, leather (a contact "
-        "time known to 10 %, the restitution following), restitution (a rebound of 0.71 to 0.75), loss along the "
-        "surface, height and dome of the tip; of the bare model its contact time.",
-        "## Ratios",
+        "A series counts once, by the mean of its rows. Errors of measurement were not published, and none is "
+        "subtracted. Interval: chi-square with as many degrees of freedom as series. Inputs, by half the difference "
+        "between plus and minus one standard deviation: E, G and density of the wood, waves in the butt, taper, bore, "
+        "leather (a contact time known to 10 %, with the restitution that follows), restitution (0.71 to 0.75 of the "
+        "whole cue), tangential loss, height and dome of the tip; of the bare-tip model its contact time.",
+        "## Ratios of two shafts",
         pair_table(),
         f"Two shafts: RMS {pair_share().total:.2f} of the logarithm, upper end {shafts:.2f} (chi-square, three pairs "
-        f"in two series; no other series has a second shaft). Their inputs alone leave {pair_inputs():.2f} open, so "
-        "that the model's own part is between nothing and the upper end: the upper end counts or a ratio's own inputs, "
-        f"whichever is larger. Masses of 3 and 11 g on one shaft: RMS {masses:.2f} over 31 places.",
-        "## Coverage",
+        f"in two series; no other series has a second shaft). Their inputs alone contribute {pair_inputs():.2f}, so "
+        "the model's part is between zero and the upper end: cuefem takes the upper end or a ratio's own inputs, "
+        f"whichever is larger. Point masses of 3 and 11 g on one shaft: RMS {masses:.2f} over 31 positions.",
+        "## Cross-validation",
         coverage_table(),
-        "Each row is judged by an error of the model that was set without its series, and by its own inputs; 68 % is "
-        "expected. With 3 g the model fails ([squirt](squirt.md)).",
+        "Each row is compared with a model error determined without its series, and its own inputs; 68 % should lie "
+        "within. With 3 g the model fails ([squirt](squirt.md)).",
         squirt_table(),
     )
 
