@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, NamedTuple
 from cuefem.contact.side_strike import Striker
 from cuefem.measurements.predictions import TONES, Predictions, predictions_of
 from cuefem.quantity.fields import CONTACT_TIME, LENGTH, Quantity, check_fields
-from cuefem.results.closed_forms import pivot_at
+from cuefem.results.closed_forms import pivot_length
 from cuefem.scene import Scene
 
 MASS = Quantity("kg", "(0, inf)")
@@ -341,7 +341,7 @@ class PivotLength(Measurement):
             raise ValueError(
                 f"pivot_length must be of a stroke with squirt above 0 rad; got {squirt:.3g} rad at b/R {self.offset:g}"
             )
-        return float(pivot_at(setup.scene, self.offset, squirt))
+        return float(pivot_length(setup.scene, squirt, self.offset))
 
 
 @dataclass(frozen=True, kw_only=True)

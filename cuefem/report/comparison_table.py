@@ -12,7 +12,7 @@ from cuefem.report.squirt import offset_charts
 from cuefem.report.strike_table import regime_warning
 from cuefem.report.verdict_table import difference_words, squirt_difference
 from cuefem.results.comparison import struck_alike
-from cuefem.results.quantities import NONE, RESULTS, with_unit
+from cuefem.results.quantities import NONE, RESULTS, with_unit, written
 from cuefem.results.records import Record, Sheet
 from cuefem.results.solved_design import coupled_curve
 from cuefem.scene import Scene
@@ -75,9 +75,8 @@ def _label(name: str) -> str:
 
 def _value(name: str, value: float) -> str:
     """A value with its unit."""
-    if name.startswith("frequency_"):
-        return RESULTS["frequency"].written(value)
-    return RESULTS["end_mass" if name in _WORDS else name].written(value)
+    quantity = "frequency" if name.startswith("frequency_") else "end_mass" if name in _WORDS else name
+    return written(quantity, value)
 
 
 def _lateral(squirt: float) -> str:

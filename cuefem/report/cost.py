@@ -28,7 +28,7 @@ def cost_record(scene: Scene, *, most: int = MOST, track: Track = iter) -> Recor
     run time of all levels up to it, which `cuefem.resolve` takes. ValueError for a lumped cue, which is exact.
     """
     refined = _timed_levels(scene, most, track)
-    best = refined[-1][0].outcome
+    best = refined[-1][0].result
     rows = [_level_record(scene, level, seconds, best) for level, seconds in refined]
     return {"levels": rows, "wanted": [_recommended(rtol, rows) for rtol in WANTED]}
 
@@ -53,9 +53,9 @@ def _level_record(scene: Scene, level: Level, seconds: float, best: Any) -> Reco
         "steps": level.at.steps,
         "elements": level.at.elements,
         "order": level.at.order,
-        "unknowns": level.outcome.unknowns,
-        "estimate": level.outcome.error,
-        "difference": None if level.outcome is best else relative_error(level.outcome, best, scene),
+        "unknowns": level.result.unknowns,
+        "estimate": level.error,
+        "difference": None if level.result is best else relative_error(level.result, best, scene),
         "seconds": seconds,
     }
 

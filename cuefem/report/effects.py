@@ -10,7 +10,7 @@ from cuefem.design.worth import Change, Variant, change, variants
 from cuefem.endmass.definitions import equivalent_end_mass
 from cuefem.report.scene_words import assumptions, effect_words
 from cuefem.results.convergence import levels
-from cuefem.results.quantities import NONE, degrees, grams
+from cuefem.results.quantities import NONE, written
 from cuefem.results.records import Record, Sheet
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.scene.solved_scene import ended_tip_modes
@@ -114,7 +114,8 @@ def effects_sheet(record: Record, scene: Record) -> Sheet:
     percent = f"{100 * record['rtol']:.3g} %"
     base, tried = record["base"], [row for row in record["effects"] if not row["failure"]]
     small = [row for row in tried if not row["significant"]]
-    first = ("unmodified scene", degrees(base["squirt"]), grams(base["end_mass"]), f"{base['ball_speed']:.4f}")
+    squirt, mass = written("squirt", base["squirt"]), written("mass", base["end_mass"])
+    first = ("unmodified scene", squirt, mass, f"{base['ball_speed']:.4f}")
     rows: list[tuple[str, ...]] = [(*first, f"{base['spin']:.2f}")]
     rows += [_cells(row) for row in tried if row["significant"]]
     dim = range(len(rows), len(rows) + len(small) + 1)
@@ -150,7 +151,7 @@ def _not_tried(rows: Sequence[Record]) -> list[str]:
 def _cells(row: Record) -> tuple[str, ...]:
     word = "without" if row["listed"] else "with"
     squirt, speed, spin = (_percent(row["change"][name]["relative"]) for name in ("squirt", "ball_speed", "spin"))
-    return (f"{word} {row['label']}", squirt, grams(row["end_mass"]), speed, spin)
+    return (f"{word} {row['label']}", squirt, written("mass", row["end_mass"]), speed, spin)
 
 
 def _percent(part: float | None) -> str:

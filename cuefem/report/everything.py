@@ -15,7 +15,7 @@ from cuefem.report.squirt import squirt_record, squirt_sheet
 from cuefem.report.strike_table import regime_warning
 from cuefem.report.tip_table import tip_record, tip_sheet
 from cuefem.report.verdict_table import verdict_things
-from cuefem.results.quantities import grams
+from cuefem.results.quantities import written
 from cuefem.results.records import Record, Sheet, value_rows, values_sheet
 from cuefem.results.solved_design import OFFSETS, SolvedDesign, listed
 from cuefem.results.verdict import verdict_record
@@ -61,7 +61,7 @@ def report_sheets(record: Record, scene: Record) -> list[Sheet | str]:
     first += verdict_things(record["verdict"])
     first += [record["model_error"]["summary"], ""] if "model_error" in record else []
     title = f"Cue, and stroke at offset b/R = {scene['stroke']['offset']:.4g}"
-    end_mass = (SQUIRT_END_MASS, grams(record["end_masses"]["drives"]["squirt"]["end_mass"]))
+    end_mass = (SQUIRT_END_MASS, written("mass", record["end_masses"]["drives"]["squirt"]["end_mass"]))
     numbers = values_sheet(title, [end_mass, *value_rows(record["numbers"])], assumptions(scene))
     return [
         *first,

@@ -68,7 +68,7 @@ def headline_markup(own: Shown, other: Shown | None = None, difference: Record |
         lines.append(("compared with" if difference is None else squirt_difference(**difference), other.name))
     for first, among in [*(verdict["among"].items() if verdict else ())][:1]:
         if other is None or other.name != first:
-            line = squirt_difference(among["difference"], among["difference_error"], among["distinct"])
+            line = squirt_difference(among["difference"], among["error"], among["distinct"])
             lines.append((line, first))
     offset = verdict["offset"] if verdict else own.scene.stroke.offset
     return _macro("headline", own.numbers["squirt"], text, error, f"{offset:.2f}", lines, grip)

@@ -36,7 +36,7 @@ from cuefem.report.verdict_table import headline, uncertainty_line
 from cuefem.results.closed_forms import alciatore_a31_mass_ratio
 from cuefem.results.comparison import comparison_record
 from cuefem.results.convergence import resolve
-from cuefem.results.quantities import NONE, RESULTS, grams, with_unit, written
+from cuefem.results.quantities import NONE, RESULTS, with_unit, written
 from cuefem.results.records import Record, Sheet, value_rows, values_sheet
 from cuefem.results.solved_design import coupled_curve
 from cuefem.scene import Outcome, Scene
@@ -189,7 +189,7 @@ def _segments(scene: Scene) -> Sheet:
             position(s.length),
             f"{diameter(s.tip_diameter)} – {diameter(s.butt_diameter)}",
             f"{diameter(s.tip_bore)} – {diameter(s.butt_bore)}" if s.tip_bore or s.butt_bore else NONE,
-            grams(s.mass),
+            written("mass", s.mass),
             material_name(s.material) + (f", core {material_name(s.core)}" if s.core else ""),
         )
         for x, s in zip(cue.nodes[:-1], cue.segments, strict=True)
@@ -214,8 +214,8 @@ def _meanings(scene: Scene, outcome: Outcome) -> list[str]:
         return meanings
     return [
         *meanings,
-        f"[A.31]: with {grams(mass)} Alciatore's formula (technical proof A.31, billiards.colostate.edu) gives this "
-        "squirt. By this definition alone measured cues have 5.8 to 14 g (handbook: Effective end mass).",
+        f"[A.31]: with {written('mass', mass)} Alciatore's formula (technical proof A.31, billiards.colostate.edu) "
+        "gives this squirt. By this definition alone measured cues have 5.8 to 14 g (handbook: Effective end mass).",
     ]
 
 

@@ -9,7 +9,7 @@ from typing import Any
 from cuefem.cue import Cue, LumpedCue
 from cuefem.effects import Effect
 from cuefem.io.schema import table as file_table
-from cuefem.results.quantities import grams, with_unit
+from cuefem.results.quantities import with_unit, written
 from cuefem.results.records import Record
 from cuefem.scene import Scene
 
@@ -40,7 +40,7 @@ def assumptions(scene: Record) -> str:
     ball, tip, stroke = scene["ball"], scene["tip"], scene["stroke"]
     return ", ".join(
         [
-            f"ball {grams(ball['mass'])}, {with_unit(2 * ball['radius'], 'm')}",
+            f"ball {written('mass', ball['mass'])}, {with_unit(2 * ball['radius'], 'm')}",
             f"head-on contact time {_milliseconds(tip['contact_time'])} (rigid cue)",
             f"tip restitution {tip['restitution']:g}",
             f"friction {tip['friction']:g}".replace("inf", "∞"),
@@ -56,10 +56,10 @@ def _milliseconds(time: float | None) -> str:
 def cue_line(cue: Record) -> str:
     """The record of a cue as one line of text."""
     if "length" not in cue:
-        return f"lumped cue, {grams(cue['mass'])}, end mass {grams(cue['end_mass'])}"
+        return f"lumped cue, {written('mass', cue['mass'])}, end mass {written('mass', cue['end_mass'])}"
     pieces = f"{cue['segments']} segment" + ("s" if cue["segments"] > 1 else "")
-    masses = f"as drawn {grams(cue['shaft_mass'])}, rest {grams(cue['body_mass'])}"
-    return f"{with_unit(cue['length'], 'm')} in {pieces}, cue {grams(cue['mass'])} ({masses})"
+    masses = f"as drawn {written('mass', cue['shaft_mass'])}, rest {written('mass', cue['body_mass'])}"
+    return f"{with_unit(cue['length'], 'm')} in {pieces}, cue {written('mass', cue['mass'])} ({masses})"
 
 
 def plain_cue_line(cue: Cue | LumpedCue) -> str:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from cuefem.contact.strike import strike_modes
 from cuefem.results.closed_forms import alciatore_a31, alciatore_a31_mass_ratio
-from cuefem.results.quantities import RESULTS, degrees, units_of, with_unit
+from cuefem.results.quantities import RESULTS, units_of, with_unit
 from cuefem.results.records import Record, Sheet, sheet
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import Solved
@@ -110,9 +110,9 @@ def pooltool_sheets(record: Record, written: bool) -> list[Sheet | str]:
     ]
     table = sheet(
         f"End mass for pooltool, {stroke}",
-        {"": "{name}", "end mass": "{mass}", "squirt in pooltool": "{squirt}"},
+        {"": "{name}", "end mass": "{mass}", "squirt in pooltool": "squirt"},
         [
-            {"name": name, "mass": f"{RESULTS['mass'].scale * mass:.3f} g", "squirt": degrees(squirt)}
+            {"name": name, "mass": f"{RESULTS['mass'].scale * mass:.3f} g", "squirt": squirt}
             for name, mass, squirt in rows
         ],
         record["meaning"],

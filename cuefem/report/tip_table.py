@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.results.quantities import NONE, grams, significant
+from cuefem.results.quantities import NONE, significant, written
 from cuefem.results.records import Record, Sheet, by_words, sheet
 from cuefem.scene import Scene
 
@@ -51,8 +51,8 @@ def tip_sheet(record: Record) -> Sheet:
         "Leather tip, head-on impact",
         {"speed": "{speed:g} m/s", **by_words("contact_time", "force", "depth", "patch"), "stiffness": _stiffness},
         record["impacts"],
-        f"leather of {grams(record['tip_mass'])}, E {significant(record['E'] / 1e6)} MPa; force, indentation, contact "
-        "diameter and stiffness at maximum indentation; rigid cue (without axial waves)",
+        f"leather of {written('mass', record['tip_mass'])}, E {significant(record['E'] / 1e6)} MPa; force, "
+        "indentation, contact diameter and stiffness at maximum indentation; rigid cue (without axial waves)",
         *([f"{NONE}: indentation beyond the valid range of the force law"] if outside else []),
         texts=(),
     )

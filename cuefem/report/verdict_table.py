@@ -89,8 +89,7 @@ def squirt_difference(difference: float, error: float, distinct: bool) -> str:
 def standing(record: Record) -> list[str]:
     """Squirt relative to the first reference cue as a sentence; empty without reference cues."""
     return [
-        f"{squirt_difference(own['difference'], own['difference_error'], own['distinct'])} a {first} shaft with the "
-        "same tip."
+        f"{squirt_difference(own['difference'], own['error'], own['distinct'])} a {first} shaft with the same tip."
         for first, own in [*record["among"].items()][:1]
     ]
 

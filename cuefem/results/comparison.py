@@ -12,7 +12,7 @@ from cuefem.parameters.parameter import PARAMETERS
 from cuefem.parameters.parts import main_material
 from cuefem.results.records import Record
 from cuefem.results.solved_design import SolvedDesign, asked, off_centre
-from cuefem.results.uncertainty import FLOOR, changes_by_input, model_share, ratio_error
+from cuefem.results.uncertainty import FLOOR, changes_by_input, difference_record, model_share
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import Solved
 
@@ -115,10 +115,9 @@ def _differences(first: _Compared, other: _Compared, *, same_shaft: bool) -> dic
             continue
         errors = [_of_input(first, other, key, name, same_shaft=same_shaft) for key in {**first.inputs, **other.inputs}]
         share, floor = (model_share(first.scene, other.scene), FLOOR) if name in OF_SQUIRT else (0.0, OTHER_FLOOR)
-        error = ratio_error(ratio, share, *errors, floor=floor)
-        if math.isnan(error):  # a strike at a limit of an input's range is a miscue
-            continue
-        made[name] = {"difference": ratio - 1, "error": error, "distinct": abs(ratio - 1) > error}
+        difference = difference_record(ratio, share, *errors, floor=floor)
+        if not math.isnan(difference["error"]):  # a strike at a limit of an input's range is a miscue
+            made[name] = difference
     return made
 
 

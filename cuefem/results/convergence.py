@@ -6,10 +6,9 @@ level is its largest difference from the two previous levels: two levels may agr
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from cuefem.beam.tip import TipModes, lumped_tip_modes
 from cuefem.beam.waves import even_mesh_for, modes_below
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
-from cuefem.endmass.definitions import definition_of, end_mass
+from cuefem.endmass.definitions import definition_of
 from cuefem.quantity.fields import Quantity, check_kind
 from cuefem.scene import MOST_STEPS, Outcome, Resolution, Scene
 from cuefem.scene.solved_scene import MOST, ended_tip_modes
@@ -25,7 +24,6 @@ from cuefem.scene.solved_scene import MOST, ended_tip_modes
 FIRST, FIRST_STEPS = 12, 100  # modes and steps of the first level
 JUDGED_BY = 2  # previous levels
 PERIODS = 3  # that the first level's modes have at least in a contact
-ROUNDING = 1e-12  # relative, of a lumped cue
 # Squirt is judged against no less than this part of sin(phi), rad: where it vanishes a relative error means nothing.
 LEAST_SQUIRT = 0.01
 
@@ -33,11 +31,11 @@ RTOL = Quantity("", "(0, 1)")
 
 
 class Level(NamedTuple):
-    """One refinement level: its resolution and outcome, with an error from the third level on."""
+    """One refinement level: its resolution, its outcome or end mass, and from the third level on its relative error."""
 
     at: Resolution
-    outcome: Outcome
-    tip: TipModes
+    result: Any
+    error: float | None
 
 
 def resolve(scene: Scene, rtol: float) -> Outcome:
@@ -80,19 +78,26 @@ def resolve(scene: Scene, rtol: float) -> Outcome:
     check_kind("resolve scene", scene, Scene)
     rtol = RTOL.check("resolve rtol", rtol)
     *_, last = levels(scene, rtol)
-    return last.outcome
+    return replace(last.result, error=last.error)
 
 
 def levels(scene: Scene, rtol: float) -> Iterator[Level]:
     """Strikes at ever more modes and steps, up to the first whose error is within ``rtol``, or up to `MOST` modes."""
-    before: list[Outcome] = []
+    strike = lambda tip, at: strike_modes(scene, tip, steps=at.steps)  # noqa: E731
+    return _refined(scene, rtol, strike, lambda outcome, best: relative_error(outcome, best, scene))
+
+
+def _refined(
+    scene: Scene, rtol: float, solve: Callable[[TipModes, Resolution], Any], difference: Callable[[Any, Any], float]
+) -> Iterator[Level]:
+    before: list[Any] = []
     for at, tip in _tips(scene):
-        outcome = strike_modes(scene, tip, steps=at.steps)
-        error = max(relative_error(each, outcome, scene) for each in before) if len(before) == JUDGED_BY else None
-        yield Level(at, replace(outcome, error=error), tip)
+        result = solve(tip, at)
+        error = max(difference(each, result) for each in before) if len(before) == JUDGED_BY else None
+        yield Level(at, result, error)
         if error is not None and error <= rtol:
             return
-        before = [*before, outcome][-JUDGED_BY:]
+        before = [*before, result][-JUDGED_BY:]
 
 
 def resolve_end_mass(scene: Scene, drive: str = "stick", rtol: float = 1e-4) -> tuple[float, float]:
@@ -127,15 +132,10 @@ def resolve_end_mass(scene: Scene, drive: str = "stick", rtol: float = 1e-4) -> 
     check_kind("resolve_end_mass scene", scene, Scene)
     rtol, formula = RTOL.check("resolve_end_mass rtol", rtol), definition_of(drive).of
     if scene.lumped is not None:
-        return float(end_mass(scene, drive)), ROUNDING
-    before, mass, error = list[float](), math.inf, math.inf
-    for _, tip in _tips(scene):
-        mass = float(formula(tip, scene))
-        error = max(abs(each / mass - 1) for each in before) if len(before) == JUDGED_BY else math.inf
-        if error <= rtol:
-            break
-        before = [*before, mass][-JUDGED_BY:]
-    return mass, error
+        return scene.lumped.end_mass, 0.0
+    *_, last = _refined(scene, rtol, lambda tip, _: float(formula(tip, scene)), lambda mass, best: abs(mass / best - 1))
+    assert last.error is not None
+    return last.result, last.error
 
 
 def relative_error(outcome: Outcome, best: Outcome, scene: Scene) -> float:

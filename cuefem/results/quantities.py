@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.results.closed_forms import pivot_at
+from cuefem.results.closed_forms import pivot_length
 from cuefem.scene import Outcome, Scene
 
 if TYPE_CHECKING:  # at work every command that writes a number would pay for it
@@ -37,18 +37,20 @@ TRADE = {
 class Result:
     """A quantity of a scene: its label, its SI unit ("" for a pure number or a text), and how it is computed.
 
-    words: its label. decimals: in the display unit; None for four significant digits. heading: its column heading, by
-    default the label. about: a one-line definition. of: its value for a solved design, at an argument (None: at the
-    scene's own offset), or a ValueError with the reason why it is undefined; without it, only records have it and
-    compute it. argument: its argument in brackets, "", "mode" or "offset". segments: whether it needs cue segments.
-    limit: whether without an offset it is the limit of small offsets. better: "lower" or "higher", the direction in
-    which a summary ranks designs. listed: whether a report and the designer list it (not if it has its own table).
+    words: its label. decimals: in the display unit; None for ``digits`` significant digits. heading: its column
+    heading, by default the label. about: a one-line definition. of: its value for a solved design, at an argument
+    (None: at the scene's own offset), or a ValueError with the reason why it is undefined; without it, only records
+    have it and compute it. argument: its argument in brackets, "", "mode" or "offset". segments: whether it needs cue
+    segments. limit: whether without an offset it is the limit of small offsets. better: "lower" or "higher", the
+    direction in which a summary ranks designs. listed: whether a report and the designer list it (not if it has its own
+    table).
     """
 
     words: str
     unit: str = ""
     decimals: int | None = None
     _: KW_ONLY
+    digits: int = 4
     heading: str = ""
     about: str = ""
     of: Callable[[SolvedDesign, Any], float] | None = None
@@ -71,7 +73,7 @@ class Result:
     def number(self, value: float, *, brief: bool = False) -> str:
         """A value in the display unit, without the unit; brief: one decimal less, of three or more."""
         if self.decimals is None:
-            return significant(self.scale * value)
+            return significant(self.scale * value, self.digits)
         return f"{self.scale * value:.{self.decimals - (brief and self.decimals > 2)}f}"
 
     def written(self, value: Any, *, brief: bool = False) -> str:
@@ -83,14 +85,6 @@ class Result:
         unit = TRADE.get(self.unit, (1.0, self.unit))[1]
         space = "" if unit in ("°", "") else " "
         return f"{self.number(float(value), brief=brief)}{space}{unit}"
-
-
-class _Error(Result):
-    """A relative error, of which only the size means anything."""
-
-    def number(self, value: float, *, brief: bool = False) -> str:
-        """Two digits and a power of ten."""
-        return f"{value:.1e}"
 
 
 def signed(change: float, decimals: int, unit: str) -> str:
@@ -114,8 +108,8 @@ SMALL = 1e-6
 
 def _pivot_length(design: SolvedDesign, offset: float | None) -> float:
     if offset is None:
-        return float(pivot_at(design.scene, SMALL, design.squirt_slope * math.asin(SMALL)))
-    return float(pivot_at(design.scene, offset, design.strike(offset).squirt))
+        return float(pivot_length(design.scene, design.squirt_slope * math.asin(SMALL), SMALL))
+    return float(pivot_length(design.scene, design.strike(offset).squirt, offset))
 
 
 def of_strike(value: Callable[[Outcome], float]) -> Callable[[SolvedDesign, Any], float]:
@@ -199,7 +193,7 @@ RESULTS = {
     "contact_time": Result("head-on contact time", "s"),
     "duration": Result("time in contact", "s", 4),
     "regime": Result("contact"),
-    "error": _Error("estimated error"),
+    "error": Result("estimated error", digits=2),
     "energy": Result("energy", "J"),
     "vibration_energy": Result(
         *("energy of vibration", "J"),
@@ -302,13 +296,3 @@ def units_of(*names: str) -> dict[str, str]:
 def written(name: str, value: Any, *, brief: bool = False) -> str:
     """A value of the quantity of that name, with its unit."""
     return RESULTS[name].written(value, brief=brief)
-
-
-def grams(mass: float | None) -> str:
-    """A mass in grams, to four digits where they are decimals."""
-    return RESULTS["mass"].written(mass)
-
-
-def degrees(angle: float | None) -> str:
-    """An angle in degrees, to a thousandth."""
-    return RESULTS["squirt"].written(angle)

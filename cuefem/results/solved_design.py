@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -17,7 +17,7 @@ from cuefem.contact.strike import steps_of, strike_modes
 from cuefem.cue import Array
 from cuefem.effects import Support
 from cuefem.endmass.definitions import DEFINITIONS, Definition, small_offset_slope
-from cuefem.results.closed_forms import pivot_at
+from cuefem.results.closed_forms import pivot_length
 from cuefem.results.quantities import RESULTS, Result
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.default_scene import GAMES
@@ -38,21 +38,16 @@ def off_centre(scene: Scene) -> Scene:
     return scene if scene.stroke.offset else at_offset(scene, USUAL_OFFSET)
 
 
-def strikes_at(scene: Scene, offsets: Iterable[float], tip: TipModes) -> Iterator[Outcome]:
-    """Coupled strikes over the offset, each computed on demand; tip: the cue's tip modes.
-
-    All curves of squirt against the offset come from here.
-    """
-    return (strike_modes(at_offset(scene, offset), tip) for offset in offsets)
-
-
 def coupled_curve(scene: Scene, offsets: Sequence[float], tip: TipModes) -> dict[str, Any]:
-    """Squirt, natural pivot length, and regime of the coupled strike against the offset: every curve of a page."""
-    struck = list(strikes_at(scene, offsets, tip))
+    """Squirt, natural pivot length, and regime of the coupled strike against the offset: every curve of a page.
+
+    tip: the cue's tip modes.
+    """
+    struck = [strike_modes(at_offset(scene, offset), tip) for offset in offsets]
     squirt = np.array([outcome.squirt for outcome in struck])
     return {
         "squirt": squirt,
-        "pivot_length": pivot_at(scene, np.array(offsets), squirt) if all(offsets) else None,
+        "pivot_length": pivot_length(scene, squirt, np.array(offsets)),
         "regime": [outcome.regime for outcome in struck],
     }
 

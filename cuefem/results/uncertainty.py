@@ -11,8 +11,8 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from cuefem.contact.strike import strike_modes
-from cuefem.effects import PointMass
 from cuefem.parameters.parameter import PARAMETERS, replaced
+from cuefem.results.records import Record
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import Solved
 
@@ -110,7 +110,7 @@ def squirt_of(scene: Scene) -> float:
 
 def model_share(first: Scene, other: Scene) -> float:
     """The model's part of the logarithm of a ratio: `MASSES` if the masses on the two shafts differ, else `SHAFTS`."""
-    masses = [[effect for effect in scene.effects if isinstance(effect, PointMass)] for scene in (first, other)]
+    masses = [[effect for effect in scene.effects if effect.axial_mass] for scene in (first, other)]
     return SHAFTS if masses[0] == masses[1] else MASSES
 
 
@@ -122,3 +122,10 @@ def ratio_error(ratio: float, share: float, *inputs: float, floor: float = FLOOR
     ln = math.log(ratio)
     # from the logarithm to the ratio so that a difference and its error have one quotient in either order of the two
     return math.hypot(max(share * abs(ln), math.hypot(*inputs)), floor) * (math.expm1(ln) / ln if ln else 1.0)
+
+
+def difference_record(ratio: float, share: float, *inputs: float, floor: float = FLOOR) -> Record:
+    """The relative difference of a ratio, its error as `ratio_error`, and whether the two are distinct, that is differ
+    by more than the error."""
+    error = ratio_error(ratio, share, *inputs, floor=floor)
+    return {"difference": ratio - 1, "error": error, "distinct": abs(ratio - 1) > error}

@@ -7,16 +7,15 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from cuefem.cue import Cue
-from cuefem.effects import Joint, PointMass, Support
 from cuefem.results.records import Record
 from cuefem.results.solved_design import off_centre
 from cuefem.results.uncertainty import (
     COMPUTED,
     Uncertainty,
+    difference_record,
     model_error,
     model_share,
     of_shaft,
-    ratio_error,
     squirt_beside,
     squirt_changes,
     squirt_of,
@@ -67,9 +66,7 @@ def _beside(scene: Scene, squirt: float, cue: Cue, inputs: float) -> Record | No
         return None
     if not squirt * other > 0:
         return None
-    difference, error = squirt / other - 1, ratio_error(squirt / other, model_share(scene, struck), inputs, inputs)
-    distinct = abs(difference) > error
-    return {"squirt": other, "difference": difference, "difference_error": error, "distinct": distinct}
+    return {"squirt": other} | difference_record(squirt / other, model_share(scene, struck), inputs, inputs)
 
 
 def same_stroke(scene: Scene, cue: Cue) -> Scene:
@@ -80,6 +77,5 @@ def same_stroke(scene: Scene, cue: Cue) -> Scene:
     """
     own = scene.lumped is None and scene.shaft.leather
     other = cue if own else without_leather(cue)
-    effects = (e for e in scene.effects if not isinstance(e, PointMass | Joint))
-    reached = (e for e in effects if not isinstance(e, Support) or e.position < other.length)
-    return replace(scene, cue=other, effects=tuple(reached))
+    stay = (e for e in scene.effects if e.at_tip or not (e.part_of_cue or any(x >= other.length for x in e.positions)))
+    return replace(scene, cue=other, effects=tuple(stay))

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 import cuefem as cf
-from cuefem.results.closed_forms import pivot_at
+from cuefem.results.closed_forms import pivot_length
 from studies import pages
 from studies.article.prose import MODEL, SOURCES, UNKNOWN, VERIFICATION
 from studies.contact.left_out import left_out_table
@@ -88,7 +88,7 @@ def stroke() -> str:
 
 
 def text() -> str:
-    pivot = float(pivot_at(whole(cue("pool_maple")), 0.375, np.radians(found("and axial force")))) / INCH
+    pivot = float(pivot_length(whole(cue("pool_maple")), np.radians(found("and axial force")), 0.375)) / INCH
     squirts = [found("and axial force", U) for U in SPEEDS]
     low, high = robot_speeds()
     soft = pages.change(squirt(whole(cue("pool_maple"), E=E)) for E in (40e6, 100e6, 200e6, 400e6))

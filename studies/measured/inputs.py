@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 import cuefem as cf
 from cuefem.contact.tip_identification import LEAST
 from cuefem.cue.materials import LEATHERS
-from cuefem.results.closed_forms import pivot_at
+from cuefem.results.closed_forms import pivot_length
 from studies import pages, strokes
 from studies.measured.squirt import INCHES, mass_ratios
 from studies.pages import table
@@ -73,7 +73,7 @@ def rows(of: Any) -> Iterator[tuple[str, str, str]]:
     yield "at 70, 140, 280 MPa", "–", f"{several(moduli)} ({pages.change(moduli)})"
     for name, shaft, told in (("Players", cue("pool_maple"), "12.7"), ("Predator Z", hollow(strokes.BORES[1]), "20.2")):
         struck = of(whole(shaft))
-        length = float(pivot_at(struck, 0.375, math.radians(squirt(struck)))) / INCH
+        length = float(pivot_length(struck, math.radians(squirt(struck)), 0.375)) / INCH
         yield f"pivot length of {name}, in", told, f"{length:.1f}"
     angles = [squirt(of(maple(b))) for b in (0.187, 0.320, 0.453)]
     yield "at b/R 0.187, 0.320, 0.453 (2007)", "0.84, 1.43, 2.50", several(angles)

@@ -41,7 +41,7 @@ def test_every_medium_shows_the_same_cells() -> None:
 
 def test_what_is_missing_is_a_dash_and_what_no_medium_has_is_left_out() -> None:
     made = sheet("", {"error": "{plain[error]:error}"}, [{"plain": {"error": 1e-3}}, {"plain": None}])
-    assert made.rows == (("1.0e-03",), (NONE,))
+    assert made.rows == (("0.0010",), (NONE,))
     numbers = json.loads(json_text({"a": float("inf"), "b": [float("nan"), 1.0], "c": {"d": 2}}))
     assert numbers == {"a": None, "b": [None, 1.0], "c": {"d": 2}}
     assert csv_text(["=1+1"], [["-2"], ["-x"]]).split() == ["'=1+1", "-2", "'-x"]  # none is taken for a formula

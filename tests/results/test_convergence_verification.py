@@ -78,8 +78,8 @@ def test_the_estimated_error_holds_on_the_family(number: int) -> None:
     best, rougher = reference(here, 300), reference(here, 230)
     known = float((np.abs(rougher - best) / np.abs(best)).max())
     for level in levels(here, 0.0):
-        error = level.outcome.error
+        error = level.error
         if error is not None:
-            assert true_error(level.outcome, best, here) <= 2 * error + known
+            assert true_error(level.result, best, here) <= 2 * error + known
             if error < 1e-4 or level.at.modes > 200:
                 break

@@ -55,8 +55,8 @@ def test_a_difference_within_its_error_is_not_told_apart(depth: float, distinct:
     bored = varied(cf.usual_scene(maple), {"bore depth": depth, "bore width": 0.006})
     record = verdict_record(bored, cf.strike(bored), {"plain maple": maple})
     among = record["among"]["plain maple"]
-    assert among["distinct"] == distinct == (abs(among["difference"]) > among["difference_error"])
-    assert among["difference_error"] >= FLOOR
+    assert among["distinct"] == distinct == (abs(among["difference"]) > among["error"])
+    assert among["error"] >= FLOOR
     assert ("less squirt" in standing(record)[0]) == distinct
 
 
