@@ -46,7 +46,7 @@ MODULI = (1e-3, 1e4)  # over E: of what is under the leather
 
 @dataclass(frozen=True)
 class TipLayer:
-    """A flat layer under the leather of a `LeatherTip`: a pad, another leather, or the ferrule.
+    """A flat layer under the leather of a `LeatherTip`: a pad, or another leather.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class TipLayer:
     nu : float, default 0.35
         Poisson's ratio, in [0, 0.49].
     rho : float, default 1000.0
-        Density, kg/m^3. A ferrule's counts only in the cue's drawing.
+        Density, kg/m^3.
 
     Raises
     ------
@@ -108,9 +108,6 @@ class LeatherTip(CueEffect):
         What is glued under the leather, from the ferrule up, within ``height`` and below the dome.
     diameter : float, optional
         Diameter of the tip, m, where it is smaller than the end of the ferrule; by default it is flush.
-    ferrule : TipLayer, optional
-        The ferrule below, if it gives under the tip; by default it is rigid there. Only what it gives in
-        itself is added; the motion of its end section as a whole is the beam's. Two diameters of its height are enough.
 
     Raises
     ------
@@ -177,19 +174,17 @@ class LeatherTip(CueEffect):
     surface_restitution: Annotated[float, Quantity("", "[0.1, 1]")] = 1.0
     layers: tuple[TipLayer, ...] = ()
     diameter: Annotated[float | None, DIAMETER] = None
-    ferrule: TipLayer | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
         check_kind("LeatherTip.layers", self.layers, (tuple, list))
         object.__setattr__(self, "layers", tuple(self.layers))
-        under = [(f"layers[{i}]", layer) for i, layer in enumerate(self.layers)]
-        for name, layer in [*under, *([] if self.ferrule is None else [("ferrule", self.ferrule)])]:
-            check_kind(f"LeatherTip.{name}", layer, TipLayer)
+        for i, layer in enumerate(self.layers):
+            check_kind(f"LeatherTip.layers[{i}]", layer, TipLayer)
             low, high = (part * self.E for part in MODULI)
             if not low <= layer.E <= high:
                 bounds = Quantity("Pa", f"[{low:.6g}, {high:.6g}]")
-                raise OutOfBounds(f"LeatherTip.{name}.E", bounds, layer.E, ", 1e-3 to 1e4 of the leather's E")
+                raise OutOfBounds(f"LeatherTip.layers[{i}].E", bounds, layer.E, ", 1e-3 to 1e4 of the leather's E")
         check_kind("LeatherTip.rolls", self.rolls, bool)
         if self.shear is not None and self.shear > STIFFEST * self.E * self.height:
             raise ValueError(
@@ -277,11 +272,6 @@ class LeatherTip(CueEffect):
             raise ValueError(
                 f"the layers of a leather tip must be at most {1e3 * (self.height - deep - WALL * diameter):.4g} mm "
                 f"high together, to end below its dome; got {1e3 * below:.4g} mm"
-            )
-        if self.ferrule is not None and self.ferrule.height > 5 * diameter:
-            raise ValueError(
-                f"LeatherTip.ferrule.height must be at most {5e3 * diameter:.4g} mm, five diameters of the tip, of "
-                f"which two are enough; got {1e3 * self.ferrule.height:.4g} mm"
             )
         low, high = (part * diameter for part in HEIGHTS)
         if not low * (1 - 1e-9) <= self.height <= high * (1 + 1e-9):
@@ -432,21 +422,18 @@ class LeatherTip(CueEffect):
     def _own(self, diameter: float) -> OwnTip | None:
         """The tip that the table does not hold, lengths over its diameter; None for one that it does."""
 
-        def flat(layer: TipLayer) -> tuple[float, float, float]:
-            return layer.height / diameter, layer.E / self.E, layer.nu
-
         layers: list[tuple[float, float, float]] = []
-        for height, modulus, nu in map(flat, self.layers):
+        for layer in self.layers:
+            height, modulus, nu = layer.height / diameter, layer.E / self.E, layer.nu
             if layers and layers[-1][1:] == (modulus, nu):  # two of one kind are one
                 height += layers.pop()[0]
             layers.append((height, modulus, nu))
         if layers and layers[-1][1:] == (1.0, self.nu):  # it is of the leather itself
             layers.pop()
         height = self.height / diameter
-        if not layers and self.ferrule is None and covers(height, self.nu):
+        if not layers and covers(height, self.nu):
             return None
-        ferrule = None if self.ferrule is None else flat(self.ferrule)
-        return OwnTip(height, self._curvature(diameter), self.nu, tuple(layers), ferrule)
+        return OwnTip(height, self._curvature(diameter), self.nu, tuple(layers))
 
     def at_hand(self, diameter: float) -> bool:
         """Whether the tip's elasticity is known: from the table, or because it was computed once.

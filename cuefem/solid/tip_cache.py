@@ -9,9 +9,6 @@ from __future__ import annotations
 
 import hashlib
 import os
-import tempfile
-import zipfile
-import zlib
 from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
@@ -58,9 +55,8 @@ def file_of(tip: OwnTip, place: Path) -> Path:
 
 def read(tip: OwnTip) -> TipTable | None:
     """The table of a tip that was computed before; None if there is no file, or none that can be read."""
-    unreadable = (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error)
     if place := folder():
-        with suppress(*unreadable), file_of(tip, place).open("rb") as stream, np.load(stream) as file:
+        with suppress(Exception), file_of(tip, place).open("rb") as stream, np.load(stream) as file:
             parts = LeatherTable(*(np.asarray(file[name], float) for name in LeatherTable._fields))
             like = all(part.shape == whole.shape[4:] for part, whole in zip(parts, table(), strict=True))
             if like and all(np.all(np.isfinite(part)) for part in parts):
@@ -73,10 +69,6 @@ def write(tip: OwnTip, computed: TipTable) -> None:
     if place := folder():
         with suppress(OSError):
             place.mkdir(parents=True, exist_ok=True)
-            handle, beside = tempfile.mkstemp(dir=place, suffix=".part")
-            try:
-                with os.fdopen(handle, "wb") as stream:
-                    np.savez_compressed(stream, patches=computed.patches, head_on=computed.head_on)
-                os.replace(beside, file_of(tip, place))
-            finally:
-                Path(beside).unlink(missing_ok=True)
+            partial = file_of(tip, place).with_suffix(f".{os.getpid()}.npz")
+            np.savez_compressed(partial, patches=computed.patches, head_on=computed.head_on)
+            partial.replace(file_of(tip, place))

@@ -5,10 +5,6 @@ onto the section, r = sin(pi x/2) D/2 and z = y H(r), z from the base, which is 
 leather keep z = y H(0), and the leather is mapped from there on. What counts is the compliance of the top surface, on
 which each patch of load is a quadratic form. The unit of length is the diameter, that of stress is Young's modulus of
 the leather on top.
-
-Where the ferrule below gives too, it is the lowest layer, and what its end section moves is taken out of the surface's
-compliance: that the beam has already. Both are solids, so that the ferrule's held base cancels, and what is left is
-what leather and ferrule give beyond a section that moves as a whole.
 """
 
 from __future__ import annotations
@@ -241,17 +237,11 @@ def head_on(shape: Shape, surface: Array, radius: float, how: TipFineness, terms
     return np.array([shapes[:-1].sum(axis=1) @ solution[:-1], solution[-1]])
 
 
-def tip_table(shape: Shape, nu: float, *, on_ferrule: bool = False) -> tt.TipTable:
-    """The table of one tip, with whatever layers it has; on_ferrule: whether the lowest layer is the ferrule."""
-    section = _section(shape.layers[0]) if on_ferrule else None
-
-    def local(solid: TipSolid, m: int, surface: Array) -> Array:
-        """The surface's compliance without what the ferrule's end section moves."""
-        return surface if section is None else surface - _carried(shape, solid.how, section, m)
-
+def tip_table(shape: Shape, nu: float) -> tt.TipTable:
+    """The table of one tip, with whatever layers it has."""
     places, radii = table_patches(shape.curvature)
     solid = TipSolid(shape, TABLE)
-    surface = [local(solid, m, S) for m, S in enumerate(surfaces(solid, nu))]
+    surface = surfaces(solid, nu)
     flat = [compliance(surface, load) for load in table_loads(shape.curvature)]
     C = np.reshape(flat, (PLACES, RADII, 2, 2))
     direct = np.diagonal(C, axis1=2, axis2=3)
@@ -260,7 +250,7 @@ def tip_table(shape: Shape, nu: float, *, on_ferrule: bool = False) -> tt.TipTab
     head = np.zeros((HEAD_ON, 2, 3))
     for i, a in enumerate(np.exp(tt.nodes(*tt.LOG_HEAD_ON, HEAD_ON))):
         solid = TipSolid(shape, fitted(shape.leather, a))
-        forces = head_on(shape, local(solid, 0, solid.surface(nu, 0)), a, solid.how)
+        forces = head_on(shape, solid.surface(nu, 0), a, solid.how)
         head[i] = np.log(forces / tt.half_space_head_on(nu, a))
     return tt.TipTable(shape.curvature, nu, patches, head)
 
@@ -278,50 +268,7 @@ def table_loads(curvature: float) -> list[Array]:
     return [loads(Shape(1.0, curvature), Patch(s, a), TABLE) for s in places for a in radii]
 
 
-def _section(ferrule: tt.Flat) -> Array:
-    """Displacements (u_z, u_x, turn about y) of the end section of a ferrule alone, held at its base, per unit force
-    along z and along x and unit moment about y there; (3, 3).
-
-    They come as the tractions of a long beam (de Saint-Venant's), so that nothing is local at the end: with the radius
-    R, 1/A along z, and for the force along x and the moment, over the second moment I,
-    t_r = (3 + 2 nu)/(8 (1 + nu)) (R^2 - r^2) cos t, t_t = -((3 + 2 nu) R^2 - (1 - 2 nu) r^2)/(8 (1 + nu)) sin t, and
-    t_z = -r cos t.
-    """
-    (height, modulus, nu), how = ferrule, TABLE._replace(up=ROWS, harmonics=1)  # the base's corner on one mesh
-    solid = TipSolid(Shape(height, 0.0), how)
-    g, w = np.polynomial.legendre.leggauss(60)
-    r, weight = (g + 1) / 4, w / 4
-    functions = lagrange(r, how) * (weight * r)[:, None]
-    area, second = np.pi / 4, np.pi / 64
-    a, b = (3 + 2 * nu) / (8 * (1 + nu)), (1 - 2 * nu) / (8 * (1 + nu))
-    none = np.zeros(functions.shape[1])
-    along = np.concatenate([none, none, 2 * np.pi * functions.sum(axis=0) / area])
-    pushed = [np.pi / second * (t @ functions) for t in (a * (0.25 - r * r), -(a * 0.25 - b * r * r), -r)]
-    across = np.array([np.concatenate([pushed[0], pushed[1], none]), np.concatenate([none, none, pushed[2]])])
-    moved = np.zeros((3, 3))
-    moved[0, 0] = along @ solid.surface(nu, 0) @ along
-    moved[1:, 1:] = across @ solid.surface(nu, 1) @ across.T
-    return moved / modulus
-
-
-def _carried(shape: Shape, how: TipFineness, section: Array, m: int) -> Array:
-    """The compliance of the surface's nodes in harmonic m that comes of the ferrule's end section alone, which carries
-    the tip as a rigid body; (3 nodes, 3 nodes)."""
-    x = surface_nodes(how)
-    zeros, ones = np.zeros_like(x), np.ones_like(x)
-    if m > 1:
-        return np.zeros((3 * len(x), 3 * len(x)))
-    if m == 0:
-        moved = np.concatenate([zeros, zeros, ones])[None]
-        return np.asarray(moved.T @ section[:1, :1] @ moved)
-    r = np.sin(np.pi / 2 * x) / 2
-    z = shape.height - drop(r, shape.curvature) - shape.layers[0][0]
-    moved = np.array([np.concatenate([ones, -ones, zeros]), np.concatenate([z, -z, -r])])
-    return np.asarray(moved.T @ section[1:, 1:] @ moved)
-
-
 def own_tip(tip: tt.OwnTip) -> tt.TipTable:
     """The table of one tip, by itself."""
-    under = tip.layers if tip.ferrule is None else (tip.ferrule, *tip.layers)
-    height = max(tip.height, tt.sag(tip.curvature) + tt.WALL) + (tip.ferrule[0] if tip.ferrule else 0.0)
-    return tip_table(Shape(height, tip.curvature, under), tip.nu, on_ferrule=tip.ferrule is not None)
+    height = max(tip.height, tt.sag(tip.curvature) + tt.WALL)
+    return tip_table(Shape(height, tip.curvature, tip.layers), tip.nu)

@@ -1,6 +1,6 @@
 """The static compliance of a leather tip, from the table beside this file, which studies/beam/leather.py makes.
 
-A tip outside the table, with layers, or on a ferrule that gives, is computed and kept by `cuefem.solid.tip_cache`.
+A tip outside the table, or with layers, is computed and kept by `cuefem.solid.tip_cache`.
 
 Lengths are over the tip's diameter D and moduli over Young's modulus E here. A tip is its height, its dome's curvature
 D/r (0: flat) and Poisson's ratio nu; a patch is the place of its centre, the distance from the axis over D/2, and its
@@ -141,13 +141,12 @@ Flat = tuple[float, float, float]  # a layer's height over D, Young's modulus ov
 
 class OwnTip(NamedTuple):
     """A tip that the table does not hold, lengths over its diameter: the height of leather and layers, the dome's
-    curvature, the leather's Poisson's ratio, the layers from the ferrule up, and the ferrule if it gives."""
+    curvature, the leather's Poisson's ratio, and the layers from the ferrule up."""
 
     height: float
     curvature: float
     nu: float
     layers: tuple[Flat, ...]
-    ferrule: Flat | None
 
 
 def covers(height: float, nu: float) -> bool:
