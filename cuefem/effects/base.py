@@ -71,10 +71,6 @@ class Effect:
         """What is left of the effect on a cue whose tip is bare (`Scene.bare`)."""
         return () if self.at_tip else (self,)
 
-    def unusual_on(self, cue: Cue) -> str:
-        """What is said of numbers that no such cue has; "" of ordinary ones."""
-        return ""
-
     def check_on(self, cue: Cue, name: str) -> None:
         """ValueError, in the words of ``name``, unless the effect's positions lie on the cue."""
         for x in self.positions:

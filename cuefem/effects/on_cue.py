@@ -11,8 +11,7 @@ import numpy as np
 
 from cuefem.cue import Array, Cue, Segment
 from cuefem.effects.base import NEAR, CueEffect, Usual
-from cuefem.quantity.fields import DIAMETER, LENGTH, OutOfBounds, Quantity
-from cuefem.quantity.slips import WHOLE
+from cuefem.quantity.fields import DIAMETER, LENGTH, Quantity
 
 if TYPE_CHECKING:
     from cuefem.beam.mesh import Terms
@@ -20,7 +19,6 @@ if TYPE_CHECKING:
     from cuefem.beam.tip import TipModes
     from cuefem.effects.axial import RodModes
 
-BUTTS, MOST_DENSITY = (500.0, 1900.0), 23_000.0  # kg/m3, of usual butts; the highest of a material, platinum's
 SHORTEST_REST = 0.05  # m: what is left behind a drawing is a rod from this length on
 BUTT = "cue_length, butt_diameter and wave_speed"
 
@@ -330,52 +328,20 @@ class AxialWaves(CueEffect):
         if len({value is None for value in (self.cue_length, self.butt_diameter, self.wave_speed)}) > 1:
             raise ValueError(f"AxialWaves must be given {BUTT} together, or none of them; got {self}")
 
-    def _volume_behind(self, cue: Cue) -> float:
-        """Volume of the rod behind what is drawn, m3; 0 without one."""
-        if self.cue_length is None or self.butt_diameter is None or not cue.body_mass:
-            return 0.0
-        if self.cue_length - cue.length < SHORTEST_REST:
-            return 0.0
-        first = cue.segments[-1].butt_diameter
-        square = first**2 + first * self.butt_diameter + self.butt_diameter**2
-        return math.pi / 12 * square * (self.cue_length - cue.length)
-
     def with_butt(self, cue: Cue) -> Cue:
         """The cue with its rest as a segment; as it is if nothing, or too little length, is behind it."""
-        volume, last = self._volume_behind(cue), cue.segments[-1]
-        if not volume or self.cue_length is None or self.butt_diameter is None or self.wave_speed is None:
+        if self.cue_length is None or self.butt_diameter is None or self.wave_speed is None or not cue.body_mass:
             return cue
-        rho = cue.body_mass / volume
+        length, last = self.cue_length - cue.length, cue.segments[-1]
+        if length < SHORTEST_REST:
+            return cue
+        first = last.butt_diameter
+        square = first**2 + first * self.butt_diameter + self.butt_diameter**2
+        rho = cue.body_mass / (math.pi / 12 * square * length)
         stiffer = rho * self.wave_speed**2 / last.material.E
         wood = replace(last.material, E=stiffer * last.material.E, G=stiffer * last.material.G, rho=rho)
-        rest = Segment(self.cue_length - cue.length, last.butt_diameter, self.butt_diameter, wood)
+        rest = Segment(length, first, self.butt_diameter, wood)
         return replace(cue, segments=(*cue.segments, rest), body_mass=0.0)
-
-    def check_on(self, cue: Cue, name: str) -> None:
-        """ValueError unless the rest of the cue can have the density of a material."""
-        volume = self._volume_behind(cue)
-        if volume and cue.body_mass > (most := MOST_DENSITY * volume):
-            why = (
-                f", with which the rest of the cue, up to cue_length of AxialWaves, has at most {MOST_DENSITY:g} kg/m^3"
-            )
-            raise OutOfBounds(
-                f"{name.partition('.')[0]}.cue.body_mass", Quantity("kg", f"[0, {most:.4g}]"), cue.body_mass, why
-            )
-
-    def unusual_on(self, cue: Cue) -> str:
-        """A rigid mass at a joint, and a rest that is lighter or heavier than butts are."""
-        mass, volume = f"Cue.body_mass is {cue.body_mass:.4g} kg", self._volume_behind(cue)
-        if cue.body_mass and self.cue_length is None and WHOLE[0] <= cue.length <= WHOLE[1]:
-            return (
-                f"{mass}, rigid at the end of the shaft, and throws axial waves back twice as early as a butt: "
-                f"squirt is off by up to 6 %; give AxialWaves {BUTT}"
-            )
-        if volume and not BUTTS[0] <= cue.body_mass / volume <= BUTTS[1]:
-            return (
-                f"{mass}, with which the rest of the cue has {cue.body_mass / volume:.0f} kg/m^3; "
-                f"{BUTTS[0]:g} to {BUTTS[1]:g} is usual of butts"
-            )
-        return ""
 
     def vibrations(self, bending: Modes, cue: Cue, effects: Sequence[CueEffect]) -> tuple[RodModes, ...]:
         """The rod modes."""

@@ -19,13 +19,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.cue import SOFT, Cue, Material, Segment
-from cuefem.effects.on_cue import MOST_DENSITY
 from cuefem.quantity.fields import CONTACT_TIME, DIAMETER, LENGTH, Quantity
 
 LONGEST_FERRULE = 0.06  # m
 TAPER_AT = 0.3302  # m, 13 in: so far pool shafts stay nearly straight; half the length of a cue shorter than twice that
 USUAL_BORE = 0.006  # m, the width of a new bore, where the front is wide enough
-LEAST_DENSITY = 20.0  # kg/m3, foam's: of a material that a weight tells
+LEAST_DENSITY, MOST_DENSITY = 20.0, 23_000.0  # kg/m3, foam and platinum: of a material that a weight determines
 SAME = 1e-9  # relative to a length: positions closer than this are the same
 
 

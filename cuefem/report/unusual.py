@@ -95,8 +95,7 @@ def unusual(scene: Scene, *, with_impact: bool = True) -> list[str]:
         for name, value, (low, high), unit, hint in checks
         if value is not None and not low <= value <= high
     ]
-    of_effects = [effect.unusual_on(scene.shaft) for effect in scene.effects] if with_impact and drawn else []
-    return [*outside, *filter(None, of_effects), *_of_outline(drawn)]
+    return [*outside, *_of_outline(drawn)]
 
 
 def _of_outline(segments: tuple[Segment, ...]) -> list[str]:

@@ -24,7 +24,7 @@ from cuefem.quantity.fields import (
     check_kind,
     shown,
 )
-from cuefem.quantity.slips import remark, remark_light
+from cuefem.quantity.slips import remark_light
 
 DEFAULT_CONTACT_TIME = 2e-3  # s, [Kim] sec. 4
 LEAST_STEPS, MOST_STEPS = 20, 1_000_000  # of a contact, in a head-on contact time
@@ -188,11 +188,8 @@ class Scene:
             raise TypeError(f"Scene.effects must be a sequence of effects; got one, {self.effects!r}")
         object.__setattr__(self, "effects", tuple(self.effects))
         check_effects(self.cue, self.effects)
-        if isinstance(self.cue, Cue) and self.cue.segments:
-            if self.cue.body_mass == 0:
-                remark_light(self.cue.mass, self.cue.length)
-            for effect in self.effects:
-                remark(effect.unusual_on(self.cue))
+        if isinstance(self.cue, Cue) and self.cue.segments and self.cue.body_mass == 0:
+            remark_light(self.cue.mass, self.cue.length)
         whole = self.contact_terms.tip is not None  # the terms refuse what may be given only once
         for name, unit in (("contact_time", "s"), ("stiffness", "N/m")):
             value = getattr(self.tip, name)

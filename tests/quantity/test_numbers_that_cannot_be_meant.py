@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.report.unusual import unusual
 from tests.helpers.command_line import call
 
 ROOT = Path(__file__).parents[2]
@@ -49,27 +48,6 @@ def test_a_shaft_that_is_struck_without_the_rest_of_its_cue() -> None:
         cf.modes(cf.Cue((SEGMENT,)), 2)
         cf.Scene(cf.Cue((SEGMENT,), 0.43))
         cf.Scene(cf.Cue((dataclasses.replace(SEGMENT, length=0.07),)))
-
-
-BUTT = cf.AxialWaves(1.47, 0.03, 4430.0)
-
-
-@pytest.mark.parametrize(
-    ("mass", "waves", "words"),
-    [
-        (0.43, cf.AxialWaves(), "rigid at the end of the shaft"),
-        (0.1, BUTT, "with which the rest of the cue has 252 kg/m^3"),
-        (0.9, BUTT, "with which the rest of the cue has 2265 kg/m^3"),
-    ],
-)
-def test_a_rest_that_no_butt_is(mass: float, waves: cf.AxialWaves, words: str) -> None:
-    scene = cf.Scene(cf.Cue((SEGMENT,), 0.43), effects=(BUTT,))
-    assert not any(effect.unusual_on(scene.shaft) for effect in scene.effects)
-    with pytest.warns(cf.Unusual) as told:
-        scene = cf.Scene(cf.Cue((SEGMENT,), mass), effects=(waves,))
-    said = f"Cue.body_mass is {mass} kg, {words}"
-    assert [str(one.message)[: len(said)] for one in told] == [said]
-    assert unusual(scene)[-1].startswith(said)
 
 
 def test_limits_and_scales_pass_without_a_word() -> None:
