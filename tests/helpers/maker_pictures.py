@@ -11,6 +11,8 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from tests.helpers.command_line import call
 
 ROOT = Path(__file__).parents[2]
@@ -54,27 +56,36 @@ def words(x: float, y: float, text: str, more: str = "") -> str:
 MIDDLE, END, SAID = ' text-anchor="middle"', ' text-anchor="end"', ' class="said"'
 
 
-def scale() -> str:
-    """The verdict's scale of the plain maple shaft."""
-    verdict = answers("report")["verdict"]
-    rows = sorted(ready().items(), key=lambda item: item[1])
-    own, off = math.degrees(verdict["squirt"]), math.degrees(verdict["squirt"]) * verdict["uncertainty"]["total"]
-    place = lambda degrees: 100 + 90 * degrees  # noqa: E731
-    texts = [
-        f'{words(90, 24 + 26 * i, name, END)}<circle class="ball" cx="{place(value):.0f}" cy="{20 + 26 * i}" r="5"/>'
-        for i, (name, value) in enumerate(rows)
-    ]
+def on_scale(rows: dict[str, float], verdict: Any, label: str, own: str, *, x0: int, unit: int, last: float) -> str:
+    """Squirts of others, degrees, and one's own with its uncertainty, on a scale from 0 to ``last``."""
+    squirt = math.degrees(verdict["squirt"])
+    off = squirt * verdict["uncertainty"]["total"]
+
+    def at(degrees: float) -> str:
+        return f"{x0 + unit * degrees:.0f}"
+
     y = 24 + 26 * len(rows)
+    texts = [
+        f'{words(x0 - 10, 24 + 26 * i, name, END)}<circle class="ball" cx="{at(value)}" cy="{20 + 26 * i}" r="5"/>'
+        for i, (name, value) in enumerate(rows.items())
+    ]
     return picture(
         y + 40,
-        "Squirt of the ready shafts and of yours on one scale, yours with what it may be off",
+        label,
         *texts,
-        words(90, y, "yours", f"{END}{SAID}"),
-        f'<path class="arrow" d="M{place(own - off):.0f} {y - 4}H{place(own + off):.0f}"/>',
-        f'<circle class="wood" cx="{place(own):.0f}" cy="{y - 4}" r="5"/>',
-        f'<path class="measure" d="M{place(0):.0f} {y + 12}H{place(2.5):.0f}"/>',
-        *(words(place(d), y + 26, f"{d:g}°", MIDDLE) for d in (0, 0.5, 1, 1.5, 2, 2.5)),
+        words(x0 - 10, y, own, f"{END}{SAID}"),
+        f'<path class="arrow" d="M{at(squirt - off)} {y - 4}H{at(squirt + off)}"/>',
+        f'<circle class="wood" cx="{at(squirt)}" cy="{y - 4}" r="5"/>',
+        f'<path class="measure" d="M{at(0)} {y + 12}H{at(last)}"/>',
+        *(words(float(at(d)), y + 26, f"{d:g}°", MIDDLE) for d in np.arange(0, last + 0.1, 0.5)),
     )
+
+
+def scale() -> str:
+    """The verdict's scale of the plain maple shaft."""
+    rows = dict(sorted(ready().items(), key=lambda item: item[1]))
+    label = "Squirt of the ready shafts and of yours on one scale, yours with what it may be off"
+    return on_scale(rows, answers("report")["verdict"], label, "yours", x0=100, unit=90, last=2.5)
 
 
 def changes_drawn() -> str:
@@ -99,24 +110,9 @@ def changes_drawn() -> str:
 def trust() -> str:
     """One cue, measured three times, and computed with its uncertainty."""
     verdict = answers("report", "--offset", str(OFFSET))["verdict"]
-    own, off = math.degrees(verdict["squirt"]), math.degrees(verdict["squirt"]) * verdict["uncertainty"]["total"]
-    place = lambda degrees: 135 + 60 * degrees  # noqa: E731
-    texts = [
-        words(125, 24 + 26 * i, name, END)
-        + f'<circle class="ball" cx="{place(value):.0f}" cy="{20 + 26 * i}" r="5"/>'
-        + words(place(value) + 10, 24 + 26 * i, f"{value}°")
-        for i, (name, value) in enumerate(MEASURED.items())
-    ]
-    return picture(
-        140,
-        "Squirt of one plain maple cue: measured three times, and computed with what it may be off",
-        *texts,
-        words(125, 102, "computed", f"{END}{SAID}"),
-        f'<path class="arrow" d="M{place(own - off):.0f} 98H{place(own + off):.0f}"/>',
-        f'<circle class="wood" cx="{place(own):.0f}" cy="98" r="5"/>',
-        f'<path class="measure" d="M{place(0):.0f} 112H{place(3):.0f}"/>',
-        *(words(place(d), 126, f"{d}°", MIDDLE) for d in (0, 1, 2, 3)),
-    )
+    label = "Squirt of one plain maple cue: measured three times, and computed with what it may be off"
+    rows = {f"{name}, {value:.2f}°": value for name, value in MEASURED.items()}
+    return on_scale(rows, verdict, label, "computed", x0=175, unit=50, last=3)
 
 
 PICTURES = {"scale": scale, "changes": changes_drawn, "trust": trust}
