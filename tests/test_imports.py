@@ -1,7 +1,6 @@
 """The house has one way through it: imports run in one order, heavy libraries stay where they belong (properties)."""
 
 import ast
-import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -140,22 +139,3 @@ def test_what_is_not_needed_is_not_loaded(statement: str, light: list[str]) -> N
         [sys.executable, "-c", program], capture_output=True, text=True, cwd=PACKAGE.parent, check=True
     )
     assert done.stdout.strip() == "[]"
-
-
-def test_the_kernel_has_no_circle() -> None:
-    """contact.h lists the kernel's files in an order, with what each gives; a file asks for what stands above it."""
-    kernel = PACKAGE / "contact" / "kernel"
-    listed = re.split(r"/\* (\w+\.c) \*/", (kernel / "contact.h").read_text())[1:]
-    gives = {
-        name: set(re.findall(r"(\w+)(?:\(|;)", re.sub(r"\([^;]*\);", "(", declared)))
-        for name, declared in zip(listed[::2], listed[1::2], strict=True)
-    }
-    files = {path.name: re.sub(r"/\*.*?\*/", "", path.read_text(), flags=re.DOTALL) for path in kernel.glob("*.c")}
-    assert set(files) == {*gives, "step.c"}
-    order = list(gives)
-    for name, text in files.items():
-        words = set(re.findall(r"\w+", text))
-        later = order[order.index(name) + 1 :] if name in gives else []
-        asked = {other: sorted(gives[other] & words) for other in later}
-        assert not any(asked.values()), (name, asked)
-        assert gives.get(name, set()) <= words, name

@@ -162,24 +162,3 @@ def test_slices_of_one_piece_are_one_piece() -> None:
     found = sliced(COMPOSITE, 300)
     np.testing.assert_allclose(mesh_cue(found, 12).nodes, whole.nodes, rtol=1e-12)
     np.testing.assert_allclose(modes(found, 12).frequencies, modes(COMPOSITE, 12).frequencies, rtol=1e-6)
-
-
-@pytest.mark.parametrize("n", [100, pytest.param(1000, marks=pytest.mark.heavy)])
-def test_slices_of_two_materials_go_to_their_mean(n: int) -> None:
-    """Of n pairs of thin slices the error goes like 1/n: compliance and mass per length are the mean of both."""
-    d, light, heavy = 0.014, Material(12e9, 0.8e9, 700.0), Material(16e9, 1.2e9, 1000.0)
-
-    def mean(a: float, b: float) -> float:
-        return 2 / (1 / a + 1 / b)
-
-    one = Material(mean(light.E, heavy.E), mean(light.G, heavy.G), (light.rho + heavy.rho) / 2)
-    exact = modes(Cue((Segment(0.7, d, d, one, kappa=0.9),)), 3).frequencies
-    slices = tuple(Segment(0.35 / n, d, d, of, kappa=0.9) for _ in range(n) for of in (light, heavy))
-    assert abs(modes(Cue(slices), 3).frequencies / exact - 1).max() < 0.3 / n
-
-
-def test_a_joint_that_hardly_gives_is_none() -> None:
-    none = modes(kim(), 3).frequencies
-    for least in (3.5e-202, 1e-15):
-        found = modes(kim(), 3, effects=(Joint(0.5, 0.0, least), Joint(0.5, least))).frequencies
-        np.testing.assert_allclose(found, none, rtol=1e-6)

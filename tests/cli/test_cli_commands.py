@@ -30,15 +30,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_modes(folder: Path) -> None:
-    found = as_json("modes", "kim.toml", "--near", "250", "--count", "2")
-    expected = cf.modes(KIM, 2, 250.0)
-    assert found["frequencies"] == pytest.approx(expected.frequencies.tolist(), rel=1e-12)
-    assert found["tip_amplitudes"] == pytest.approx(expected.shape(0.0)[0].tolist(), rel=1e-12)
-    assert (found["rigid"], found["near"], found["units"]["frequencies"]) == (2, 250.0, "Hz")
-    assert as_json("modes", "kim.toml", "--near", "0.25 kHz", "--count", "2")["frequencies"] == found["frequencies"]
-
-
 def test_strike(folder: Path) -> None:
     found = as_json("strike", "kim.toml")["models"]
     for name, expected in (("two-part", cf.impulse(BLOW)), ("coupled", cf.strike(BLOW))):

@@ -55,6 +55,14 @@ def test_impulse_and_lump_take_it() -> None:
     assert both == pytest.approx(curve["models"]["two-part, this cue"]["squirt"], rel=1e-12)
 
 
+def test_offset_end_mass_of_kims_cue_is_within_a_hundredth_where_stick_is_a_tenth_off() -> None:
+    scene = kim_scene(0.3)
+    squirt = cf.strike(scene).squirt
+    rigid = replace(scene, cue=cf.LumpedCue(scene.shaft.mass, cf.end_mass(scene, "stick")))
+    assert 0.005 < abs(cf.impulse(scene).squirt / squirt - 1) < 0.012
+    assert 0.08 < abs(cf.impulse(rigid).squirt / squirt - 1) < 0.11
+
+
 @pytest.mark.parametrize("offset", [-0.4, 0.1, 0.3])
 def test_a_lump_with_a_dome_squirts_as_the_strike_that_never_slips(offset: float) -> None:
     scene = replace(kim_scene(offset), effects=EFFECTS["dome and shear"])

@@ -89,13 +89,10 @@ def linear_estimate(cue: MeasuredCue, slopes: np.ndarray, values: np.ndarray) ->
 def test_intervals_cover_whichever_measurement_is_wrong(
     wrong: int | None, linear: tuple[MeasuredCue, np.ndarray]
 ) -> None:
-    """A reading that is 6 to 20 errors off: the intervals hold the truth, or the estimate says that nothing checks it.
-
-    Without that reading the parameter that rests on it lies in its interval as often as the estimate states.
-    """
+    """A reading 6 to 20 errors off: the intervals hold the truth, or the estimate says that nothing checks it."""
     cue, slopes = linear
     generator, sd = np.random.default_rng(26), np.array([one.sd for one in cue.measurements])
-    pulls, without, named = [], [], []
+    pulls, named = [], []
     for _ in range(300):
         z = generator.normal(size=slopes.shape[1])
         noise = generator.normal(size=len(sd))
@@ -103,15 +100,8 @@ def test_intervals_cover_whichever_measurement_is_wrong(
             noise[wrong] += generator.choice([-1, 1]) * generator.uniform(6, 20)
         found = linear_estimate(cue, slopes, slopes @ z + sd * noise)
         pulls.append(np.abs(found.z - z) / np.sqrt(np.diag(found.covariance)))
-        unchecked = {each.measurement.label: each.value for each in found.unchecked}
         label = None if wrong is None else cue.measurements[wrong].label
-        named.append(label in unchecked)
-        if label in unchecked:
-            value = unchecked[label]
-            i = [parameter.name for parameter in cue.parameters].index(value.name)
-            truth = np.log(cue.parameters[i].value(float(z[i])))
-            low, high = np.log([value.low, value.high])
-            without.append(abs(truth - (low + high) / 2) / ((high - low) / 2))
+        named.append(label in {each.measurement.label for each in found.unchecked})
     covered, wide = (np.mean(np.array(pulls) < each) for each in (1.0, HOLDS_95))
     if wrong is None:
         assert covered == pytest.approx(0.683, abs=0.04)
@@ -119,8 +109,6 @@ def test_intervals_cover_whichever_measurement_is_wrong(
         return
     if wrong == 0:  # the weight alone tells the density
         assert all(named)
-        assert np.mean(np.array(without) < 1.0) == pytest.approx(0.683, abs=0.08)
-        assert np.mean(np.array(without) < HOLDS_95) == pytest.approx(0.95, abs=0.04)
     elif wrong > 1:
         assert np.mean(named) < 0.5
     assert wide > {0: 0.6, 1: 0.8}.get(wrong, 0.86)

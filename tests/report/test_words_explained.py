@@ -34,11 +34,6 @@ def test_names_and_controls_are_left_alone(tag: str) -> None:
     assert len(buttons(explained(f"{inside}<p>squirt</p>"))) == 1
 
 
-def test_a_word_is_explained_once_in_a_section() -> None:
-    section = "<section><p>squirt, squirt</p><p>spin and squirt</p></section>"
-    assert [words for _, words in buttons(explained(2 * section))] == 2 * ["squirt", "spin"]
-
-
 @given(st.lists(st.sampled_from([*WORDS, "<p>", "</p>", "<b>", "</b>", " ", ", ", "the", "&amp;", "3 mm"])))
 def test_the_text_stays_as_it_was(parts: list[str]) -> None:
     markup = "".join(parts)

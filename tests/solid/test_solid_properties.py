@@ -46,27 +46,14 @@ def test_the_modes_of_a_solid_are_those_of_the_beam() -> None:
     assert np.sum(solid.at_tip[0][:2] ** 2) == pytest.approx(np.sum(beam.at_tip[0][:2] ** 2), rel=1e-9)
 
 
-def crossing() -> cf.Cue:
-    """Two bores between the same diameters, one within the other at one end and outside it at the other."""
-    return cf.Cue(
-        (
-            cf.Segment(0.1, 0.012, 0.012, WOOD, 0.004, 0.004),
-            cf.Segment(0.1, 0.012, 0.012, WOOD, 0.0119999999, 0.0119999999),
-        )
-    )
-
-
+BORES = (0.004, 0.0119999999)  # one within the other
+CROSSING = cf.Cue(tuple(cf.Segment(0.1, 0.012, 0.012, WOOD, bore, bore) for bore in BORES))
 FINE = tuple(cf.Segment(0.002, 0.012, 0.013, WOOD) for _ in range(300))
 REFUSED: list[tuple[Callable[[], object], str]] = [
     (lambda: replace(WOOD, nu_across=0.98), r"Material.nu_across must be in \(0, 0.9"),
     (lambda: replace(WOOD, across_ratio=4.0), "Material.nu_across must be in .* across_ratio = 4.0"),
-    (lambda: replace(WOOD, across_ratio=-1.0), r"Material.across_ratio must be in \(0, inf\)"),
-    (lambda: cf.Segment(0.1, 0.012, 0.012, WOOD, 0.012, 0.012), "Segment.tip_bore must be in"),
-    (lambda: cf.Segment(0.0, 0.012, 0.012, WOOD), "Segment.length must be in"),
-    (lambda: cf.solid_modes(crossing()), "wall of 1 um or more"),
+    (lambda: cf.solid_modes(CROSSING), "wall of 1 um or more"),
     (lambda: cf.solid_modes(cf.Cue(FINE), at=cf.Solid(order=12)), "2 GiB"),
-    (lambda: cf.solid_modes(SCENE.cue, 0), "count must be a whole number >= 1"),
-    (lambda: cf.Solid(order=1), "order must be a whole number >= 2"),
     (lambda: cf.Solid(order=40), r"order must be in \[2, 12\]"),
     (
         lambda: cf.strike(replace(SCENE, effects=(cf.Support(0.3, 1e4),)), at=COARSE),

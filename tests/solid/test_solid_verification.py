@@ -9,11 +9,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 from scipy.special import iv, ivp
-from skfem import Basis, BilinearForm, DiscreteField, ElementQuadP, ElementVector
 
 from cuefem import Cue, Material, Segment
 from cuefem.cue.materials import material
-from cuefem.solid.elasticity import displacements, matrices, stiffness, strains
 from cuefem.solid.meridian_mesh import Fineness
 from cuefem.solid.shaft import AXIAL, BENDING, Body
 from tests.helpers.orders import assert_order
@@ -102,36 +100,3 @@ def test_a_pulled_rod_is_as_stiff_as_its_section(wood: Material) -> None:
     rod = Cue((Segment(LENGTH, 2 * RADIUS, 2 * RADIUS, wood, RADIUS, RADIUS),))
     give = LENGTH / float(rod.section(0.0).EA)
     assert Body(rod, Fineness(4, 1.0, 0.01), AXIAL).give == pytest.approx(give, rel=1e-10)
-
-
-@pytest.mark.parametrize("m", [0, 1, 2, 5])
-def test_the_matrices_are_those_of_scikit_fems_own_assembly(m: int) -> None:
-    """Of the weak forms of three fields at once, on conical cells of wood."""
-    body = Body(Cue((Segment(LENGTH, 2 * RADIUS, 3 * RADIUS, MAPLE, RADIUS, RADIUS),)), Fineness(2, 1.0, 0.02))
-    mesh, element = body.basis.mesh, ElementVector(ElementQuadP(2), 3)
-    C = stiffness(MAPLE.E, MAPLE.nu, MAPLE.G, MAPLE.E_across, MAPLE.nu_in_plane)
-    turn = math.pi * (1 if m else 2)
-
-    def fields(u: DiscreteField) -> list[np.ndarray]:
-        return [np.array([value, *slopes]) for value, slopes in zip(u, u.grad, strict=True)]
-
-    @BilinearForm
-    def strain_energy(u, v, w):  # type: ignore[no-untyped-def]
-        first, second = (np.array(strains(m, *fields(f), w.x[1])) for f in (u, v))
-        return turn * w.x[1] * np.einsum("i...,ij,j...->...", second, C, first)
-
-    @BilinearForm
-    def inertia(u, v, w):  # type: ignore[no-untyped-def]
-        first, second = (np.array(displacements(m, *fields(f)))[:, 0] for f in (u, v))
-        return turn * w.x[1] * MAPLE.rho * np.sum(first * second, axis=0)
-
-    theirs = Basis(mesh, element, intorder=6)
-    split = np.argsort(np.concatenate(theirs.split_indices()), kind="stable")
-    cells = mesh.nelements
-    for ours, form in zip(
-        matrices(body.basis, m, [C] * cells, [MAPLE.rho] * cells), (strain_energy, inertia), strict=True
-    ):
-        expected = form.assemble(theirs).toarray()
-        np.testing.assert_allclose(
-            ours.toarray()[np.ix_(split, split)], expected, rtol=1e-9, atol=1e-11 * expected.max()
-        )
