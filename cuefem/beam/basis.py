@@ -1,6 +1,6 @@
 """scikit-fem's hierarchical line basis, tabulated once for each order.
 
-It is written out here, since loading scikit-fem takes longer than solving a beam; a test compares the two.
+Loading scikit-fem takes longer than solving a beam; a test compares this basis with it.
 """
 
 from __future__ import annotations
@@ -35,16 +35,16 @@ def line_basis(degree: int, points: Array) -> tuple[Array, Array]:
 
 @functools.cache
 def _rows(order: int) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
-    """Where the functions of w and of theta stand among an element's unknowns, and which of the line basis they are."""
+    """Indices of w and theta among an element's degrees of freedom, and the line-basis function of each."""
     last = 2 * order + 1
     w, theta = np.r_[0, 2 : 2 + order, last], np.r_[1, 2 + order : last, last + 1]
     return w, np.r_[0, 2 : order + 2, 1], theta, np.r_[0, 2 : order + 1, 1]
 
 
 def element_basis(order: int, values: Array, slopes: Array, length: float = 1.0) -> Array:
-    """w, w', theta, theta' of an element's unknowns, (4, unknowns, q), from its line basis and slopes (degrees, q).
+    """w, w', theta, theta' of an element's degrees of freedom, (4, dofs, q), from its line basis, (degrees, q).
 
-    Rotations stand times ``length``.
+    Rotational degrees of freedom are theta times ``length``.
     """
     out = np.zeros((4, 2 * order + 3, values.shape[1]))
     w, of_w, theta, of_theta = _rows(order)

@@ -1,4 +1,4 @@
-"""The mesh of a cue by one rule, and the point terms that effects add at its nodes."""
+"""The mesh of a cue, and the springs, dashpots, masses and joints that effects add at its nodes."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from cuefem.quantity.fields import MOST_UNKNOWNS
 
 # Two points count as one if they are closer than this fraction of the cue's length.
 NEAR = 1e-9
-# The element goes on through the end of a segment if the section there leaves the mean of its neighbourhood by less
-# than this, relative. Segments that cut one smooth profile into slices then make few elements.
+# An element continues across the end of a segment if the section there differs from the mean of its neighbourhood by
+# less than this, relative. A smooth profile cut into many segments then needs few elements.
 SMOOTH = 2e-3
-# A joint that gives less than this, relative to the whole shaft, does not give: its spring would only bring rounding.
+# A joint with less compliance than this, relative to the whole shaft's, is rigid: its spring would add round-off error.
 RIGID = 1e-9
 
 
 class ActsOnCue(Protocol):
-    """What an effect that acts on the cue must offer to the beam."""
+    """Interface of an effect that acts on the cue."""
 
     @property
     def positions(self) -> tuple[float, ...]:
@@ -41,7 +41,7 @@ class ActsOnCue(Protocol):
 
 
 class MeshOptions(Protocol):
-    """A mesh as the user asks for it: see `cuefem.Resolution`."""
+    """A mesh requested by the user: see `cuefem.Resolution`."""
 
     @property
     def elements(self) -> int:
@@ -56,9 +56,9 @@ class MeshOptions(Protocol):
 class Mesh:
     """Elements of a cue.
 
-    nodes: (elements + 1,) m. orders: (elements,) polynomial degrees of the rotation. first: (elements,) the element's
-    first unknown. unknowns: their number. Neighbouring elements share the two unknowns of their node, unless a joint
-    splits the node.
+    nodes: (elements + 1,) m. orders: (elements,) polynomial degrees of the rotation. first: (elements,) each element's
+    first degree of freedom. unknowns: number of degrees of freedom. Neighbouring elements share the two of their node,
+    unless a joint splits the node.
     """
 
     nodes: Array
@@ -72,25 +72,25 @@ class Mesh:
 
     @property
     def last(self) -> NDArray[np.intp]:
-        """The deflection of every element's butt end, its last unknown but one: (elements,)."""
+        """Degree of freedom of the deflection at each element's butt end: (elements,)."""
         return self.first + 2 * self.orders + 1
 
     def unknowns_at(self, node: int) -> tuple[int, int]:
-        """Unknowns (w, theta) of a node; if a joint splits it, those of the butt side."""
+        """Degrees of freedom (w, theta) of a node; at a joint, those of the butt side."""
         first = int(self.first[node]) if node < len(self.first) else self.unknowns - 2
         return first, first + 1
 
     def unknowns_before(self, node: int) -> tuple[int, int]:
-        """Unknowns (w, theta) of the tip side of a node inside the cue."""
+        """Degrees of freedom (w, theta) on the tip side of a node inside the cue."""
         last = int(self.last[node - 1])
         return last, last + 1
 
 
 def mesh_cue(cue: Cue, at: int | MeshOptions, effects: Sequence[ActsOnCue] = (), places: Sequence[float] = ()) -> Mesh:
-    """Mesh a cue, with a node at ``places``, m from the tip, and wherever an effect asks for one.
+    """Mesh a cue, with nodes at ``places``, m from the tip, and at the positions of effects.
 
-    at: how many of the lowest flexible modes the mesh must hold; or a fineness of the user, which has a node at every
-    end of a segment. A joint splits its node.
+    at: how many of the lowest flexible modes the mesh must resolve; or the user's resolution, with a node at the end of
+    every segment. A joint splits its node.
     """
     for effect in effects:
         effect.check_on(cue, type(effect).__name__)
@@ -115,7 +115,7 @@ def mesh_for(cue: Cue, phases: Array, places: Sequence[float]) -> Mesh:
 
 
 def _snapped(cue: Cue, places: Array) -> Array:
-    """The places, at the ends of segments where they are these."""
+    """The positions, moved to the end of a segment where they coincide with it."""
     nearest = cue.nodes[np.argmin(np.abs(places[:, None] - cue.nodes), axis=1)]
     return np.where(np.abs(places - nearest) > NEAR * cue.length, places, nearest)
 
@@ -131,7 +131,7 @@ def _numbered(nodes: Array, orders: NDArray[np.intp], splits: Sequence[float]) -
 
 
 def _by_rule(cue: Cue, phases: Array, places: Array) -> tuple[Array, NDArray[np.intp]]:
-    """Nodes and orders for waves of ``phases`` over the segments: elements alike in phase."""
+    """Nodes and orders for waves of ``phases`` rad over the segments: elements of equal phase."""
     check_work(2 * phases.sum(), f"waves of {phases.sum():.6g} rad")
     sides = cue.section_in(np.arange(len(phases))[:, None], np.diff(cue.nodes)[:, None] * np.array([0.0, 1.0]))
     logs = np.log([sides.EA, sides.EI, sides.kGA, sides.rhoA])
@@ -177,16 +177,17 @@ def _divided(ends: Array, counts: NDArray[np.intp]) -> Array:
 
 
 def check_work(unknowns: float, what: str) -> None:
-    """ValueError if a mesh would have more unknowns than can be solved in a reasonable time and memory."""
+    """ValueError if a mesh has more degrees of freedom than can be solved in reasonable time and memory."""
     if unknowns > MOST_UNKNOWNS:
-        asked = "ask for fewer modes or elements, draw fewer segments, or check sizes and materials"
-        raise ValueError(f"the mesh must have at most {MOST_UNKNOWNS} unknowns; got {unknowns:.6g}, of {what}: {asked}")
+        remedy = "request fewer modes or elements, draw fewer segments, or check sizes and materials"
+        limit = f"the mesh must have at most {MOST_UNKNOWNS} degrees of freedom"
+        raise ValueError(f"{limit}; got {unknowns:.6g}, of {what}: {remedy}")
 
 
 class Terms:
-    """The point terms that effects add: springs, dashpots, masses and clamps at nodes, compliances between two sides.
+    """What effects add at nodes: springs, dashpots, masses and clamps, and compliances between the sides of a joint.
 
-    At a joint the butt side's unknowns are the node's.
+    At a joint, the degrees of freedom of the node are those of the butt side.
     """
 
     def __init__(self, mesh: Mesh, cue: Cue) -> None:
@@ -203,15 +204,15 @@ class Terms:
         for unknown, value in zip(self.mesh.unknowns_at(self.mesh.node(x)), (w, theta), strict=True):
             if np.isinf(value):
                 if unknown in self.fixed:
-                    raise ValueError(f"a clamp must be the only one at its place; got two at {x} m")
+                    raise ValueError(f"a clamp must be the only one at its position; got two at {x} m")
                 self.fixed.add(unknown)
             elif value:
                 terms[unknown] = terms.get(unknown, 0.0) + value
 
     def join(self, x: float, w: float, theta: float) -> None:
-        """Let deflection and rotation jump at position ``x``, with compliances ``w`` and ``theta``; zero: no jump."""
+        """Add a joint at position ``x`` with compliances ``w`` (m/N) and ``theta`` (rad/(N m)); zero: no jump."""
         node, section = self.mesh.node(x), self.cue.section(min(x, self.cue.length))
         pairs = zip(self.mesh.unknowns_before(node), self.mesh.unknowns_at(node), strict=True)
         for pair, value, stiffness in zip(pairs, (w, theta), (section.kGA, section.EI), strict=True):
-            gives = value * stiffness > RIGID * self.cue.length
-            self.compliance[pair] = self.compliance.get(pair, 0.0) + (value if gives else 0.0)
+            compliant = value * stiffness > RIGID * self.cue.length
+            self.compliance[pair] = self.compliance.get(pair, 0.0) + (value if compliant else 0.0)

@@ -19,10 +19,9 @@ from cuefem.quantity.fields import Quantity, check_count, check_kind
 
 @dataclass(frozen=True, eq=False)
 class Modes(Spectrum):
-    """Flexible bending modes of a cue, undamped, as a force and a couple at one node feel them, the tip by default.
+    """Undamped flexible bending modes of a cue, with their motion at one node, the tip by default.
 
-    system: the assembled beam. rigid_vectors: (free unknowns, rigid), mass-normalised motions whose frequency is
-    exactly zero.
+    system: the assembled beam. rigid_vectors: (free, rigid), the mass-normalised rigid-body modes of zero frequency.
     """
 
     system: System
@@ -35,7 +34,7 @@ class Modes(Spectrum):
 
     @property
     def frequencies(self) -> Array:
-        """Hz, (n,), with those of a tail at the end."""
+        """Natural frequencies, Hz, (n,); those of a truncation correction last."""
         return self.omega / (2 * np.pi)
 
     @property
@@ -45,14 +44,14 @@ class Modes(Spectrum):
 
     @property
     def rigid(self) -> int:
-        """Number of rigid motions."""
+        """Number of rigid-body modes."""
         return self.rigid_vectors.shape[1]
 
     @property
     def at_tip(self) -> tuple[Array, Array]:
-        """Deflection, 1/sqrt(kg), and rotation, 1/(m sqrt(kg)), of the tip in the rigid motions, then in the modes.
+        """Deflection, 1/sqrt(kg), and rotation, 1/(m sqrt(kg)), of the tip in the rigid-body and the flexible modes.
 
-        Or of the node where the loads of the spectrum act.
+        If the loads act at another node, of that node.
         """
         w, theta = np.concatenate([self.loads.T @ self.rigid_vectors, self.felt], axis=1)
         return w, theta / self.system.length
@@ -71,7 +70,7 @@ class Modes(Spectrum):
     def loss_factors(self, loss: Section) -> Array:
         """Loss factor of every mode, (n,), from the loss factors of EI and kGA at the Gauss points, (points,).
 
-        It is the mean of the losses, weighted with the strain energy stored there; springs store energy without loss.
+        Their mean weighted with the strain energy; springs store energy without loss.
         """
         fields, section, weights = (
             self.system.fields(self.vectors),
@@ -98,16 +97,17 @@ def modes(
     count
         How many modes.
     near
-        A frequency, Hz. By default the lowest modes are given.
+        A frequency, Hz. By default the lowest modes are computed.
     effects
-        Effects of a scene. Those that act on the cue count; effects at the tip do not change its modes.
+        Effects of a scene. Effects at the tip do not change the modes.
     at
-        A `Resolution`, of which only elements and order count. By default frequencies hold to 1e-6.
+        A `Resolution`, of which only elements and order count. By default the discretisation error of a frequency is
+        below 1e-6, relative.
 
     Returns
     -------
     Modes
-        ``.frequencies`` in Hz, ascending; ``.rigid``, the number of rigid motions; ``.shape(x)``, deflection and
+        ``.frequencies`` in Hz, ascending; ``.rigid``, the number of rigid-body modes; ``.shape(x)``, deflection and
         rotation of every mode at ``x`` m from the tip.
 
     Raises
@@ -115,12 +115,12 @@ def modes(
     TypeError
         If the cue is lumped: it has no modes.
     ValueError
-        If the mesh of ``at`` holds fewer modes.
+        If the mesh of ``at`` has fewer modes.
 
     Notes
     -----
-    Timoshenko's beam, free at both ends unless an effect holds it (handbook: The beam). Costs one dense symmetric
-    eigenproblem, cubic in the unknowns.
+    A Timoshenko beam, free at both ends unless an effect supports it (handbook: The beam). The cost is one dense
+    symmetric eigenproblem, cubic in the degrees of freedom.
 
     Examples
     --------
@@ -152,14 +152,14 @@ def _on_the_cue(effects: tuple[Any, ...]) -> tuple[ActsOnCue, ...]:
 
 
 def solve(system: System, count: int, *, ended: int = 0, position: float = 0.0) -> Modes:
-    """The lowest ``count`` flexible modes of an assembled beam. The rigid ones are known and need no eigenvalue.
+    """The lowest ``count`` flexible modes of an assembled beam; the rigid-body modes need no eigenproblem.
 
-    ended: 1 for a tail (`cuefem.beam.tail`) that takes a force at ``position``, a node, m from the tip; 2 for one that
-    takes a couple too, as where the contact lies off the cue's axis.
+    ended: number of loads with a truncation correction (`cuefem.beam.tail`): 1 for a force at ``position``, a node, m
+    from the tip; 2 for a couple too, as where the contact lies off the cue's axis; 0 for none.
     """
     most = system.size - system.rigid.shape[1]
     if count > most:
-        raise ValueError(f"modes: the mesh holds {most} flexible modes; got {count} wanted; use more elements or order")
+        raise ValueError(f"modes count must be at most {most} on this mesh; got {count}: use more elements")
     rigid = normalised(system)
     loads = system.forces_at(position)
     found = spectrum(system.K, system.M, loads, shift=system.shift, rigid=rigid.shape[1], count=count, ended=ended)
@@ -167,7 +167,7 @@ def solve(system: System, count: int, *, ended: int = 0, position: float = 0.0) 
 
 
 def normalised(system: System) -> Array:
-    """The exact rigid motions, made orthonormal in the mass."""
+    """The exact rigid-body modes, orthonormal in the mass."""
     rigid = system.rigid
     if rigid.shape[1] == 0:
         return rigid

@@ -1,9 +1,9 @@
-"""The lowest modes of K q = omega^2 M q as some loads feel them; their shapes are worked out when they are asked for.
+"""The lowest modes of K q = omega^2 M q and their participation in given loads; mode shapes are computed on demand.
 
-`eigh(K, M)` would lose the low modes in the rounding of the high ones. So this solves the inverse form
+`eigh(K, M)` would lose the low modes in the round-off error of the high ones. This solves the inverse form
 M q = mu (K + shift M) q, whose largest mu = 1/(omega^2 + shift) are the lowest modes. LAPACK reduces it to a
-tridiagonal matrix; a strike needs the frequencies and the loads' shares in the modes, which follow from that alone, in
-half the time of an eigenproblem with vectors.
+tridiagonal matrix, which determines the frequencies and the participation of loads, all that a strike needs, in half
+the time of an eigenproblem with vectors.
 """
 
 from __future__ import annotations
@@ -22,18 +22,19 @@ from cuefem.beam.system import suits_dense
 from cuefem.beam.tail import STEPS, tail
 from cuefem.cue import Array
 
-# The lowest modes follow from the leading part of the tridiagonal matrix, if it begins at the only load. With LEADING
-# times as many rows as modes wanted, and SPARE more, the rest changes none of them by more than the square of ROUNDING,
-# or the whole is taken; the modes left over have the same first moments in mu as those of the whole.
+# If the tridiagonal matrix begins at the only load, its leading part determines the lowest modes. With LEADING times
+# as many rows as modes, and SPARE more, the rest changes none of them by more than the square of ROUNDING; otherwise
+# the whole matrix is solved. The truncated modes have the same first moments in mu as those of the whole.
 LEADING, SPARE, ROUNDING = 2.2, 12, 1e-7
 
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
-    """Modes with ascending frequency, mass-normalised, the tail's last.
+    """Mass-normalised modes of ascending frequency, those of the truncation correction last.
 
-    omega: (n,) rad/s. loads: (unknowns, loads). felt: (loads, n), each load's work on each mode. highest: rad/s, of
-    those before the tail. radiation: of the tail, (tail, tail), 1/s; None without one. shapes: makes the vectors.
+    omega: (n,) rad/s. loads: (free, loads). felt: (loads, n), the work of each load on each mode. highest: rad/s, of
+    the retained modes. radiation: (k, k) of the k correction modes, 1/s; None without a correction. shapes: computes
+    the vectors.
     """
 
     omega: Array
@@ -45,11 +46,11 @@ class Spectrum:
 
     @cached_property
     def vectors(self) -> Array:
-        """(unknowns, n)."""
+        """Mode shapes, (free, n)."""
         return self.shapes()
 
     def those(self, index: NDArray[np.intp]) -> Self:
-        """Some of the modes alone, without a tail."""
+        """The modes of these indices, without a truncation correction."""
         omega, felt = self.omega[index], self.felt[:, index]
         return replace(
             self, omega=omega, felt=felt, highest=omega[-1], radiation=None, shapes=lambda: self.vectors[:, index]
@@ -61,12 +62,12 @@ def spectrum(
 ) -> Spectrum:
     """The ``count`` lowest flexible modes, or those of them up to ``below`` rad/s.
 
-    loads: (unknowns, loads). rigid: how many modes of zero frequency come first and are left out. ended: how many of
-    the loads the tail takes; 0 for none.
+    loads: (free, loads). rigid: number of modes of zero frequency, which come first and are not returned. ended: number
+    of loads with a truncation correction; 0 for none.
     """
     if not isinstance(K, np.ndarray) and suits_dense(K.shape[0], count):
         K, M = K.toarray(), M.toarray()
-    taken = np.flatnonzero(loads[:, :ended].any(axis=0))  # no load acts on an unknown that a clamp holds
+    taken = np.flatnonzero(loads[:, :ended].any(axis=0))  # loads on clamped degrees of freedom are zero
     if isinstance(K, np.ndarray):
         form = _Tridiagonal(K, M, shift)
         mu, z = form.eigen(rigid + count, leading=len(taken) == 1 and not loads[1:, taken].any())
@@ -77,7 +78,7 @@ def spectrum(
     last = rigid + int(np.sum(1 / mu[rigid : rigid + count] - shift <= below**2))
     if last == rigid and np.isinf(below):
         raise np.linalg.LinAlgError("no mode has a frequency that is a number: check sizes and materials")
-    # the square of a mode on a support that is next to nothing is rounding
+    # on a nearly vanishing support, the squared frequency is round-off error
     omega = np.sqrt(np.maximum(1 / mu[rigid:last] - shift, np.finfo(float).eps * shift))
     mix = np.eye(len(mu), last)[:, rigid:] / np.sqrt(mu[rigid:last]) * np.where(felt[0, rigid:last] < 0, -1.0, 1.0)
     highest, radiation = float(omega[-1]) if np.isinf(below) else below, None
@@ -89,10 +90,10 @@ def spectrum(
 
 
 def _sparse(K: Any, M: Any, loads: Array, shift: float, count: int) -> tuple[Array, Array]:
-    """(mu, q), q' (K + shift M) q = 1, of the ``count`` lowest modes, then of what stands for all others.
+    """(mu, q), q' (K + shift M) q = 1, of the ``count`` lowest modes, then of a few that replace all others.
 
-    These are the Ritz vectors of the deflections under the loads, and under those as loads, as far as they are not in
-    the modes: a tail finds the same in them as in all others.
+    These are Ritz vectors of the static deflections under the loads, and under the inertia of those, orthogonal to the
+    modes. A truncation correction is the same with them as with all other modes.
     """
     from scipy.sparse.linalg import eigsh, splu
 
@@ -106,7 +107,7 @@ def _sparse(K: Any, M: Any, loads: Array, shift: float, count: int) -> tuple[Arr
     deflect = splu(S.tocsc()).solve
     for _ in range(STEPS):
         step = deflect(forces)
-        for _ in range(2):  # once more, for rounding
+        for _ in range(2):  # the second pass removes round-off error
             step -= vectors @ ((M @ vectors).T @ step)
         steps.append(step / np.sqrt(np.sum(step * (M @ step), axis=0)))
         forces = M @ steps[-1]
@@ -118,25 +119,25 @@ def _sparse(K: Any, M: Any, loads: Array, shift: float, count: int) -> tuple[Arr
 class _Tridiagonal:
     """M q = mu S q with S = K + shift M as a tridiagonal problem T y = mu shift y: y = Q' U q, U' U = S, y' y = q' S q.
 
-    U is taken with the unknowns in reverse, so that y begins with the first unknown's load, which Q leaves alone.
+    U factors S in reverse order, so that y begins with the first degree of freedom's load, which Q does not change.
     """
 
     def __init__(self, K: Array, M: Array, shift: float) -> None:
-        # a symmetric array copied by rows has LAPACK's order when it is transposed; each step overwrites its input,
-        # for fresh memory costs a quarter of the time
+        # a symmetric array copied by rows has LAPACK's order when transposed; each step overwrites its input, because
+        # fresh memory costs a quarter of the time
         self.shift, self.upper, heavy = shift, K[::-1, ::-1].copy().T, M[::-1, ::-1].copy().T
         heavy *= shift
         self.upper += heavy
         _done(lapack.dpotrf(self.upper, lower=0, clean=0, overwrite_a=1))
         _done(lapack.dsygst(heavy, self.upper, lower=0, overwrite_a=1))
         size, whole = len(M), heavy.T[::-1, ::-1].copy().T
-        # wider blocks take longer for so few unknowns
+        # wider blocks take longer for matrices of this size
         found = _done(lapack.dsytrd(whole, lower=1, lwork=10 * size, overwrite_a=1))
         _, self.diagonal, self.off, self.tau = found
         self.reflectors = whole.T.ravel()[1 : 1 + size * (size - 1)].reshape(size - 1, size).T  # whole[1:], unmoved
 
     def eigen(self, count: int, *, leading: bool) -> tuple[Array, Array]:
-        """(mu, y) with descending mu, (m,), (m, m): the first ``count`` exact, of all or only the leading ones."""
+        """(mu, y) with descending mu, (m,), (m, m), of the whole or the leading part; the first ``count`` are exact."""
         size = len(self.diagonal)
         part = min(int(LEADING * count) + SPARE, size) if leading else size
         mu, y = (each[..., ::-1] for each in _done(lapack.dstevd(self.diagonal[:part], self.off[: part - 1])))
@@ -145,12 +146,12 @@ class _Tridiagonal:
         return mu / self.shift, y
 
     def loads(self, loads: Array) -> Array:
-        """y of loads on the unknowns, (unknowns, k): Q' U'^-1 loads."""
+        """y of loads (free, k): Q' U'^-1 loads."""
         y = _done(lapack.dtrtrs(self.upper, loads[::-1], trans=1))[::-1].copy()
         return self._turned(y, "T")
 
     def vectors(self, y: Array) -> Array:
-        """Unknowns (unknowns, k) of y (rows of the leading part, k): U^-1 Q y."""
+        """q (free, k) of y (rows of the leading part, k): U^-1 Q y."""
         whole = np.zeros((len(self.upper), y.shape[1]))
         whole[: len(y)] = y
         return np.asarray(_done(lapack.dtrtrs(self.upper, self._turned(whole, "N")[::-1]))[::-1])
@@ -162,7 +163,7 @@ class _Tridiagonal:
 
 
 def _done(answer: tuple[Any, ...]) -> Any:
-    """What a routine of LAPACK gives; LinAlgError if it failed."""
+    """The outputs of a LAPACK routine; LinAlgError if it failed."""
     *found, failed = answer
     if failed:
         raise np.linalg.LinAlgError(f"the eigenproblem of the modes has no solution (LAPACK {failed})")

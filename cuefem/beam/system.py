@@ -1,4 +1,4 @@
-"""The matrices K and M of a cue and its effects, in the unknowns that clamps and stiff joints leave."""
+"""The matrices K and M of a cue and its effects, in the degrees of freedom that clamps and rigid joints leave."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ if TYPE_CHECKING:
     import scipy.sparse as sp
 
 scipy = lazy_loader.load("scipy")  # loaded when used: few cues need sparse matrices
-# A sparse eigenproblem costs in proportion to the modes wanted, a dense one to the cube of the unknowns. They cost the
-# same when the number of modes is (unknowns/EVEN)^3. Measured: 6 modes of 270 unknowns, 30 of 450, 150 of 780.
-# Below DENSE_LIMIT unknowns a dense one is always faster.
+# A sparse eigenproblem costs in proportion to the modes, a dense one to the cube of the degrees of freedom (dof). They
+# cost the same when the number of modes is (dof/EVEN)^3. Measured: 6 modes of 270 dof, 30 of 450, 150 of 780.
+# Below DENSE_LIMIT dof a dense one is always faster.
 EVEN, DENSE_LIMIT = 145, 220
-# A spring that holds the cue less than this, relative to the first mode, leaves it free: its mode is rounding.
+# A spring softer than this, relative to the first mode, leaves the cue free: its mode would be round-off error.
 SOFT = 1e-10
 
 
 class Points(NamedTuple):
     """Gauss points of the whole beam, element by element, and within an element segment by segment; or other points.
 
-    x: (points,) m from the tip. weights: m. piece: the segment a point lies in; offset: m from its tip end. section:
-    arrays (points,). rows: (elements + 1,) the first point of each element. usual: (elements,) whether its points are
-    Gauss's of one segment, at which the basis is tabulated.
+    x: (points,) m from the tip. weights: m. piece: index of the point's segment; offset: m from the segment's tip end.
+    section: arrays (points,). rows: (elements + 1,) the first point of each element. tabulated: (elements,) whether its
+    points are the Gauss points of one segment, at which the basis is tabulated.
     """
 
     mesh: Mesh
@@ -41,7 +41,7 @@ class Points(NamedTuple):
     offset: Array
     section: Section
     rows: list[int]
-    usual: list[bool]
+    tabulated: list[bool]
 
     def element(self, e: int) -> slice:
         """The points of an element."""
@@ -50,7 +50,7 @@ class Points(NamedTuple):
     def line_basis(self, e: int) -> tuple[Array, Array]:
         """scikit-fem's hierarchical line basis in an element at its points, and its derivatives, 1/m: (degrees, q)."""
         start, end = self.mesh.nodes[e : e + 2]
-        if self.usual[e]:
+        if self.tabulated[e]:
             values, slopes = line_table(int(self.mesh.orders[e]))
         else:
             values, slopes = line_basis(int(self.mesh.orders[e]) + 1, (self.x[self.element(e)] - start) / (end - start))
@@ -58,7 +58,7 @@ class Points(NamedTuple):
 
 
 class Fields(NamedTuple):
-    """Deflection, its slope, rotation and its slope at points, each (points, k)."""
+    """Deflection, rotation and their derivatives along x at points, each (points, k)."""
 
     w: Array
     dw: Array
@@ -70,10 +70,10 @@ class Fields(NamedTuple):
 class System:
     """The assembled beam: K q = omega^2 M q, in w (m) and theta times the cue's length (m).
 
-    K, M: (free, free), arrays or sparse (`suits_dense`). index: (unknowns,) which free unknown each unknown of the mesh
-    is, or -1 where a clamp holds it; the two sides of a stiff joint are one. rigid: (free, r), the exact rigid motions
-    that stay free (two for a free cue). dashpots: (free,) diagonal of the viscous matrix, None without one. shift: a
-    square frequency of the order of the lowest mode's, rad2/s2, with which K + shift M is regular where K is not.
+    K, M: (free, free), arrays or sparse (`suits_dense`). index: (unknowns,) the free degree of freedom of each one of
+    the mesh, -1 if clamped; the two sides of a rigid joint are one. rigid: (free, r), the exact rigid-body modes that
+    no support resists (two for a free cue). dashpots: (free,) diagonal of the viscous matrix, None without dashpots.
+    shift: rad2/s2, of the order of the lowest mode's squared frequency; it makes K + shift M regular.
     """
 
     cue: Cue
@@ -93,36 +93,36 @@ class System:
 
     @property
     def size(self) -> int:
-        """Number of free unknowns."""
+        """Number of free degrees of freedom."""
         return int(self.K.shape[0])
 
-    def whole(self, vectors: Array) -> Array:
-        """All unknowns of the mesh, (unknowns, k), of free unknowns ``vectors`` (free, k)."""
+    def all_dofs(self, vectors: Array) -> Array:
+        """All degrees of freedom of the mesh, (unknowns, k), from the free ones ``vectors`` (free, k)."""
         return np.asarray(np.concatenate([vectors, np.zeros((1, vectors.shape[1]))])[self.index])
 
     def forces_at(self, x: float) -> Array:
-        """A unit force, and a unit couple over the length, at the node ``x``, m, (free, 2); zero where a clamp is."""
+        """A unit force and a unit couple over the length at the node ``x``, m, (free, 2); zero where clamped."""
         forces = np.zeros((self.size + 1, 2))
         forces[self.index[list(self.mesh.unknowns_at(self.mesh.node(x)))], [0, 1]] = 1.0
         return forces[:-1]
 
     def static_stiffness(self, x: float) -> float:
-        """Force over deflection at the node ``x``, N/m, of a cue that is held."""
+        """Force over deflection at the node ``x``, N/m, of a supported cue."""
         force = self.forces_at(x)[:, 0]
         solve = np.linalg.solve if isinstance(self.K, np.ndarray) else scipy.sparse.linalg.spsolve
         return float(1 / (force @ solve(self.K, force)))
 
     def fields(self, vectors: Array) -> Fields:
-        """The fields of free unknowns ``vectors`` (free, k) at the Gauss points."""
-        return _fields(self.length, self.points, self.whole(vectors))
+        """The fields of the degrees of freedom ``vectors`` (free, k) at the Gauss points."""
+        return _fields(self.length, self.points, self.all_dofs(vectors))
 
     def geometric_stiffness(self, vectors: Array, masses: Sequence[tuple[float, float]]) -> Array:
-        """What a newton of thrust at the tip does to ``vectors`` (free, k): integral p w_i' w_j' dx, (k, k).
+        """Geometric stiffness of ``vectors`` (free, k) per newton of axial force: integral p w_i' w_j' dx, (k, k).
 
-        The cue shortens by half the integral of w'^2 as it bends. Seen from its centre of mass, the tip goes back by
-        half the integral of p w'^2, p(x) being the share of the mass behind x, and p is also the share of the thrust
-        that the cue bears there, which accelerates what is behind. The slope is w' and not the section's rotation, as
-        in Engesser's column. masses: (position m, mass kg) of each lump.
+        The cue shortens by half the integral of w'^2 as it bends. Relative to its centre of mass, the tip recedes by
+        half the integral of p w'^2, p(x) being the share of the mass behind x. The axial force at x is p times that at
+        the tip, because it accelerates the mass behind x. The slope is w', not the section's rotation, as in Engesser's
+        column. masses: (position m, mass kg) of each point mass.
         """
         root = np.sqrt(self.share_behind(masses) * self.points.weights)
         rows = root[:, None] * self.fields(vectors).dw
@@ -140,17 +140,17 @@ class System:
         return np.asarray(1 - ahead / (mass.sum() + sum(lump for _, lump in masses)))
 
     def interpolate(self, vectors: Array, x: Array) -> tuple[Array, Array]:
-        """(w, theta) of free unknowns ``vectors`` (free, k) at positions ``x``: two arrays (k, *x.shape)."""
+        """(w, theta) of the degrees of freedom ``vectors`` (free, k) at positions ``x``: two arrays (k, *x.shape)."""
         order = np.argsort(x, axis=None, kind="stable")
         points = _points(self.cue, self.mesh, x.ravel()[order], np.ones(x.size), [False] * len(self.mesh.orders))
-        fields = _fields(self.length, points, self.whole(vectors))
+        fields = _fields(self.length, points, self.all_dofs(vectors))
         w, theta = np.empty_like(fields.w), np.empty_like(fields.w)
         w[order], theta[order] = fields.w, fields.theta
         return w.T.reshape(-1, *x.shape), theta.T.reshape(-1, *x.shape)
 
 
 def _fields(length: float, points: Points, unknowns: Array) -> Fields:
-    """The fields of ``unknowns`` (unknowns of the mesh, k) at any points."""
+    """The fields of all degrees of freedom ``unknowns`` (unknowns, k) at any points."""
     out, mesh = np.zeros((4, len(points.x), unknowns.shape[1])), points.mesh
     for e, (order, first) in enumerate(zip(mesh.orders.tolist(), mesh.first.tolist(), strict=True)):
         rows = points.element(e)
@@ -166,7 +166,7 @@ def gauss_points(cue: Cue, mesh: Mesh) -> Points:
     x = np.sort(np.append(mesh.nodes, ends))
     sizes = np.diff(x)
     element = np.searchsorted(mesh.nodes, (x[:-1] + x[1:]) / 2) - 1
-    # polynomials turn fastest beside the ends of an element, as in the angle whose cosine is x
+    # polynomials vary fastest near the ends of an element: like cos(n arccos x)
     part = np.sqrt(sizes / np.diff(mesh.nodes)[element])
     counts = np.ceil(mesh.orders[element] * part - NEAR).astype(int) + MORE_POINTS
     rules = [gauss(n) for n in counts.tolist()]
@@ -179,12 +179,12 @@ def gauss_points(cue: Cue, mesh: Mesh) -> Points:
     )
 
 
-def _points(cue: Cue, mesh: Mesh, x: Array, weights: Array, usual: list[bool]) -> Points:
+def _points(cue: Cue, mesh: Mesh, x: Array, weights: Array, tabulated: list[bool]) -> Points:
     """The points ``x``, ascending."""
     piece = np.searchsorted(cue.nodes[1:-1], x, side="right")
     offset = x - cue.nodes[piece]
     rows = [0, *np.searchsorted(x, mesh.nodes[1:-1]).tolist(), len(x)]
-    return Points(mesh, x, weights, piece, offset, cue.section_in(piece, offset), rows, usual)
+    return Points(mesh, x, weights, piece, offset, cue.section_in(piece, offset), rows, tabulated)
 
 
 def assemble(
@@ -196,7 +196,7 @@ def assemble(
 ) -> System:
     """Assemble a cue with the effects that act on it.
 
-    at, places: as in `mesh_cue`. count: how many modes will be wanted, by default those of ``at``, or few.
+    at, places: as in `mesh_cue`. count: how many modes will be computed, by default those of ``at``, or few.
     """
     mesh = mesh_cue(cue, at, effects, places)
     points = gauss_points(cue, mesh)
@@ -204,7 +204,7 @@ def assemble(
     for effect in effects:
         effect.add_to(terms)
     scale = np.ones(mesh.unknowns)
-    scale[np.append(mesh.first, mesh.last) + 1] = 1 / cue.length**2  # rotations stand times the length
+    scale[np.append(mesh.first, mesh.last) + 1] = 1 / cue.length**2  # rotations are scaled by the length
     index = np.arange(mesh.unknowns)
     for (before, after), value in terms.compliance.items():
         index[before] = before if value else after
@@ -238,7 +238,7 @@ def assemble(
     K, M = gather(stiff, springs, dense), gather(heavy, point(terms.mass), dense)
     dashpots = point(terms.dashpot) if terms.dashpot else None
     shift, mass = _shift(cue, points), float(points.weights @ points.section.rhoA)
-    rigid = _rigid_motions(mesh, cue.length, index, springs > SOFT * shift * mass)
+    rigid = _free_rigid_modes(mesh, cue.length, index, springs > SOFT * shift * mass)
     return System(cue, mesh, points, K, M, index, rigid, dashpots, shift)
 
 
@@ -248,12 +248,12 @@ def _shift(cue: Cue, points: Points) -> float:
 
 
 def suits_dense(unknowns: int, count: int) -> bool:
-    """Whether a dense eigenproblem gives the lowest ``count`` modes faster than a sparse one."""
+    """Whether a dense eigenproblem computes the lowest ``count`` modes faster than a sparse one."""
     return unknowns <= DENSE_LIMIT or count > (unknowns / EVEN) ** 3
 
 
 def gather(blocks: Iterable[tuple[NDArray[np.intp], Array]], diagonal: Array, dense: bool) -> Array | sp.csc_matrix:
-    """The matrix summed from ``blocks``, each of the unknowns of its index (-1: left out), and a ``diagonal``."""
+    """The sum of ``blocks``, each with its indices (-1: omitted), and a ``diagonal``, as a matrix."""
     size = len(diagonal)
     if dense:
         whole = np.diag(diagonal)
@@ -272,7 +272,7 @@ def gather(blocks: Iterable[tuple[NDArray[np.intp], Array]], diagonal: Array, de
     return scipy.sparse.csc_matrix(summed + scipy.sparse.diags(diagonal))
 
 
-def _rigid_motions(mesh: Mesh, length: float, index: NDArray[np.intp], sprung: NDArray[np.bool_]) -> Array:
+def _free_rigid_modes(mesh: Mesh, length: float, index: NDArray[np.intp], sprung: NDArray[np.bool_]) -> Array:
     """The combinations of translation and rotation about the tip that no spring or clamp resists, (free, r)."""
     motions = np.zeros((mesh.unknowns, 2))
     for w, x in ((mesh.first, mesh.nodes[:-1]), (mesh.last, mesh.nodes[1:])):

@@ -1,8 +1,9 @@
-"""The tail: a few vectors that stand for the modes left out of a sum.
+"""Truncation correction: a few Ritz vectors that replace the truncated modes of a sum.
 
-A plain sum over the lowest n modes converges only like 1/n to n^-1.3, because the modes left out also give way under
-the force at the tip and carry waves away from it. A tail of a few Ritz vectors on a dashpot does both. With the same
-number of modes the error of a strike falls ten to a thousand times.
+A truncated modal sum over the lowest n modes converges only like 1/n to n^-1.3: the truncated modes also contribute
+flexibility under the force at the tip and carry waves away from it. A few Ritz vectors (residual flexibility) on a
+dashpot (absorbing termination) do both. With the same number of modes, the error of a strike falls by a factor of 10 to
+1000.
 """
 
 from __future__ import annotations
@@ -13,14 +14,15 @@ import numpy as np
 
 from cuefem.cue import Array
 
-# Number of Lanczos steps, and the dashpot in units of 1/(the highest frequency kept). Measured: one step is up to
-# thirty times worse and three are no better; any dashpot from 0.35 to 1.5 changes errors by less than a factor of two.
-STEPS, DASHPOT = 2, 0.5
+# Measured: one Lanczos step is up to 30 times worse and three are no better; any dashpot from 0.35 to 1.5 changes
+# errors by less than a factor of 2.
+STEPS = 2
+DASHPOT = 0.5  # in units of 1/(the highest retained frequency)
 
 
 class Tail(NamedTuple):
-    """k vectors: their angular frequencies (k,), how they are mixed from the modes left out, mass-normalised, (modes,
-    k), and their radiation (k, k), 1/s (see `TipModes`)."""
+    """Angular frequencies (k,), rad/s, combination of the truncated modes, mass-normalised, (modes, k), and radiation
+    (k, k), 1/s (see `TipModes`), of k vectors."""
 
     omega: Array
     mix: Array
@@ -28,12 +30,11 @@ class Tail(NamedTuple):
 
 
 def tail(mu: Array, felt: Array, *, shift: float, highest: float) -> Tail:
-    """Tail of the modes left out, from their mu = 1/(omega^2 + shift), descending, and what the loads feel of them.
+    """Correction for the truncated modes, from their mu = 1/(omega^2 + shift), descending, and their participation.
 
-    felt: (modes, loads), the loads' shares in the modes, with q' (K + shift M) q = 1. Their flexibility, as each load
-    feels it, by `STEPS` steps of Lanczos from the static deflections, which match its first moments in mu. The chain
-    ends in a dashpot, as the matching end of a line does: waves above the ``highest`` frequency kept, rad/s, leave the
-    tip and do not come back; without it the end would ring.
+    felt: (modes, loads), the work of the loads on the modes, with q' (K + shift M) q = 1. `STEPS` Lanczos steps from
+    the static deflections match the first moments of the flexibility in mu. The chain ends in a dashpot, like a matched
+    transmission line: waves above the ``highest`` retained frequency, rad/s, leave the tip without reflection.
     """
     weights = mu[:, None]
     basis = np.linalg.qr(np.concatenate([weights**step * felt for step in range(STEPS)], axis=1))[0]

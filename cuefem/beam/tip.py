@@ -1,4 +1,4 @@
-"""The tip modes, which are all that a ball feels of a cue. This file needs numpy alone."""
+"""Tip modes: the motion of a cue's modes at the tip, which determines an impact. This file needs numpy alone."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class TipModes:
-    """All that an impact sees of a cue: B(t) = sum of a_k a_k' cos(omega_k t), the inverse mass at the contact.
+    """Modes of a cue at the contact: the inverse mass there is B(t) = sum of a_k a_k' cos(omega_k t).
 
-    omega: (n,) rad/s, the rigid ones (zero) first. amplitude: (n, 2), the mass-normalised displacement of the contact
-    along and across the cue (u, w), 1/sqrt(kg). approach: (n,), the modal velocities of a cue that moves at unit speed
-    along its axis, sqrt(kg). rotation: (n,) of the tip's section, 1/(m sqrt(kg)). damping: (n, n) viscous, 1/s, of the
-    modal equations q'' + damping q' + omega^2 q = f, or None. radiation: (n, n), likewise, but its energy is not lost:
-    it stands for waves that leave the tip in the modes left out. geometric: (n, n), 1/(m kg), what a thrust of 1 N
-    takes of the modal stiffness where the shaft bends, or None. In a lumped cue all omega are 0.
+    omega: (n,) rad/s, rigid-body modes (zero) first. amplitude: (n, 2), mass-normalised axial and transverse
+    displacement (u, w) of the contact, 1/sqrt(kg). approach: (n,), modal velocities of a cue that moves axially at 1
+    m/s, sqrt(kg). rotation: (n,) of the tip's section, 1/(m sqrt(kg)). damping: (n, n) viscous, 1/s, of the modal
+    equations q'' + damping q' + omega^2 q = f, or None. radiation: (n, n), likewise, but its energy is not dissipated:
+    waves carry it into the truncated modes. geometric: (n, n), 1/(m kg), the decrease of the modal stiffness per newton
+    of axial force, or None. A lumped cue has omega = 0 throughout.
     """
 
     omega: Array
@@ -44,11 +44,11 @@ class TipModes:
 
     @cached_property
     def straight(self) -> TipModes:
-        """These modes without the thrust on the bent shaft."""
+        """These modes without geometric stiffness."""
         return self if self.geometric is None else replace(self, geometric=None)
 
     def those(self, index: NDArray[np.intp]) -> TipModes:
-        """Some of the modes alone, in the order of their numbers ``index``."""
+        """The modes of these indices, in their order."""
         pairs = (self.damping, self.radiation, self.geometric)
         parts = (None if part is None else part[np.ix_(index, index)] for part in pairs)
         damping, radiation, geometric = (part if part is not None and part.any() else None for part in parts)
@@ -56,9 +56,9 @@ class TipModes:
         return TipModes(omega[index], amplitude[index], approach[index], rotation[index], damping, radiation, geometric)
 
     def beside(self, omega: Array, along: Array, radiation: Array | None = None) -> TipModes:
-        """These modes followed by n vibrating ones that move the tip by ``along``, (n,), along the cue, undamped.
+        """These modes followed by n undamped axial modes of tip amplitude ``along``, (n,), 1/sqrt(kg).
 
-        radiation: that of the last of them, if they end in a tail.
+        radiation: of the last of them, if they have a truncation correction.
         """
         n, before = len(omega), len(self.omega)
         own = None if self.radiation is None else np.pad(self.radiation, (0, n))
@@ -81,7 +81,7 @@ class TipModes:
 
     @property
     def uncoupled(self) -> TipModes:
-        """The modes for a head-on blow, where a lumped cue's coupling is 0, since it changes sign with the offset."""
+        """The modes for a centre-ball impact, where a lumped cue's coupling is 0: it changes sign with the offset."""
         if not np.any(self.amplitude[:, 0] * self.amplitude[:, 1]):
             return self
         along, across = np.sqrt(np.sum(self.amplitude**2, axis=0))
@@ -89,7 +89,7 @@ class TipModes:
 
 
 def lumped_tip_modes(cue: LumpedCue) -> TipModes:
-    """The two modes of zero frequency that give a lumped cue's inverse mass."""
+    """The two modes of zero frequency of a lumped cue."""
     root = math.sqrt(cue.mass)
     across = math.sqrt(1 / cue.end_mass - cue.coupling**2 * cue.mass)
     amplitude = np.array([[1 / root, cue.coupling * root], [0.0, across]])
@@ -97,14 +97,14 @@ def lumped_tip_modes(cue: LumpedCue) -> TipModes:
 
 
 def tip_modes(bending: Modes, axial_mass: float) -> TipModes:
-    """Tip modes of a beam's bending modes beside a rigid axial motion of ``axial_mass`` kg (the first mode)."""
+    """Tip modes from bending modes and a rigid-body axial mode of ``axial_mass`` kg, which comes first."""
     omega = np.concatenate([np.zeros(bending.rigid), bending.omega])
     damping, radiation = _resistances(bending, 1 + len(omega))
     return replace(free_tip_modes(omega, *bending.at_tip, axial_mass), damping=damping, radiation=radiation)
 
 
 def free_tip_modes(omega: Array, across: Array, turning: Array, axial_mass: float) -> TipModes:
-    """Tip modes of bending modes, the rigid ones among them, beside a rigid axial motion of ``axial_mass`` kg."""
+    """Tip modes from bending modes, rigid-body modes included, and a rigid-body axial mode of ``axial_mass`` kg."""
     amplitude = np.zeros((1 + len(across), 2))
     amplitude[0, 0], amplitude[1:, 1] = axial_mass**-0.5, across
     approach = np.zeros(len(amplitude))
@@ -113,10 +113,10 @@ def free_tip_modes(omega: Array, across: Array, turning: Array, axial_mass: floa
 
 
 def side_modes(bending: Modes) -> TipModes:
-    """All that a body feels which strikes the beam from the side at the node where the modes' loads act.
+    """Modes at the contact of a body that strikes the resting beam from the side, at the node of the modes' loads.
 
-    The first direction of the contact is that of the body's rebound, against the deflection w of the beam; nothing
-    moves along the second. The beam is at rest.
+    The first direction of the contact is that of the body's rebound, opposite to the deflection w of the beam; the
+    second does not move.
     """
     deflection, turning = bending.at_tip
     omega = np.concatenate([np.zeros(bending.rigid), bending.omega])
@@ -126,7 +126,7 @@ def side_modes(bending: Modes) -> TipModes:
 
 
 def _resistances(bending: Modes, count: int) -> tuple[Array | None, Array | None]:
-    """Damping by dashpots and radiation by a tail of ``count`` modes, of which the ``bending`` ones are the last."""
+    """Damping by dashpots and radiation of ``count`` modes, of which the ``bending`` ones are the last."""
     damping = None
     if bending.system.dashpots is not None:
         vectors = np.concatenate([bending.rigid_vectors, bending.vectors], axis=1)

@@ -1,4 +1,4 @@
-"""How fine a mesh must be, judged by the bending waves on each segment; and how many modes lie below a frequency."""
+"""Phases of the bending waves on each segment: the mesh that resolves them, and the number of modes they make."""
 
 from __future__ import annotations
 
@@ -10,12 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from cuefem.cue import Array, Cue
 
-# The error that the polynomials of an element may leave in the shape of the highest mode. The error of its frequency is
-# the square of it, and lower modes are far more accurate.
+# Interpolation error of the shape of the highest mode. The error of its frequency is the square of it, and lower modes
+# are far more accurate.
 SHAPE_ERROR = 3e-4
-# The longest element, as the phase of the waves on it, rad, and the highest order. Few long elements need the fewest
-# unknowns; a `Resolution` of one order for all segments takes shorter ones.
-LONGEST, LONGEST_EVEN, HIGHEST_ORDER = 150.0, 36.0, 110
+# Few long elements need the fewest degrees of freedom; a `Resolution` of one order for all segments has shorter ones.
+LONGEST = 150.0  # phase of the waves on an element, rad
+LONGEST_EVEN = 36.0  # the same in a mesh of one order
+HIGHEST_ORDER = 110
 _GUESSES = np.geomspace(1e0, 1e9, 100)  # angular frequencies between which `mode_phases` interpolates, rad/s
 
 
@@ -37,13 +38,13 @@ def wave_phase(cue: Cue, omega: ArrayLike) -> Array:
 
 
 def modes_below(cue: Cue, omega: float) -> int:
-    """About how many flexible modes of a free cue lie below ``omega`` rad/s (never too few by more than one)."""
+    """Estimated number of flexible modes of a free cue below ``omega`` rad/s, at most one too few."""
     return math.ceil(float(wave_phase(cue, omega).sum()) / np.pi)
 
 
 @functools.lru_cache(maxsize=32)
 def _log_phases(cue: Cue) -> Array:
-    """Logarithm of the phase of all waves together at `_GUESSES`; kept, for a sweep of strokes meshes one cue often."""
+    """Logarithm of the total phase of all waves at `_GUESSES`; cached, because a sweep meshes one cue many times."""
     return np.asarray(np.log(wave_phase(cue, _GUESSES).sum(axis=(0, 1))))
 
 
@@ -54,13 +55,13 @@ def mode_phases(cue: Cue, count: int) -> Array:
 
 
 def orders_for(phase: Array, taper: Array) -> NDArray[np.intp]:
-    """Polynomial orders that leave `SHAPE_ERROR` of waves of ``phase`` rad over an element, (elements,).
+    """Polynomial orders with an interpolation error of `SHAPE_ERROR` for waves of ``phase`` rad, (elements,).
 
-    Polynomials of degree p leave 2 J_{p+1}(phase/2) of a wave, here by Debye's expansion of the Bessel function.
+    The error of degree p is 2 J_{p+1}(phase/2), by Debye's expansion of the Bessel function.
 
-    taper: ratio of the largest to the smallest EA in an element. Where a cone or its wall goes on to zero beyond its
-    thin end, the shapes are singular there, (taper + 1)/(taper - 1) half lengths from the middle, and order p leaves
-    rho^-p, with rho = (sqrt taper + 1)/(sqrt taper - 1).
+    taper: ratio of the largest to the smallest EA in an element. A cone, extended beyond its thin end to zero width,
+    makes the shapes singular there, (taper + 1)/(taper - 1) half lengths from the middle: order p has the error rho^-p,
+    rho = (sqrt taper + 1)/(sqrt taper - 1).
     """
     n = np.arange(2, HIGHEST_ORDER + 2)[:, None]
     ratio = np.maximum(2 * n / np.maximum(phase, 1e-9), 1 + 1e-9)
@@ -73,7 +74,7 @@ def orders_for(phase: Array, taper: Array) -> NDArray[np.intp]:
 
 
 def even_mesh_for(cue: Cue, count: int) -> tuple[int, int]:
-    """(elements, order): the same in every segment, for the ``count`` lowest modes."""
+    """(elements, order) of a mesh with the same in every segment, for the ``count`` lowest modes."""
     phases = mode_phases(cue, count)
     elements = math.ceil(float(phases.max()) / LONGEST_EVEN)
     EA = cue.section_in(np.arange(len(phases))[:, None], np.diff(cue.nodes)[:, None] * np.array([0.0, 1.0])).EA

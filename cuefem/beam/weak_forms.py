@@ -1,7 +1,7 @@
-"""The beam's two weak forms in scikit-fem, with what effects add at points: the definition that `system` tabulates.
+"""The beam's two weak forms in scikit-fem, with point terms of effects: the definition of `cuefem.beam.system`.
 
-The package solves beams by `system`, five times as fast. This file assembles the same beam independently, for
-`cuefem check` and the tests; it alone in this folder loads scikit-fem, which takes 0.3 s.
+The package solves beams by `cuefem.beam.system`, five times as fast. This file assembles the same beam independently,
+for `cuefem check` and the tests; only this file loads scikit-fem, which takes 0.3 s.
 """
 
 from __future__ import annotations
@@ -26,21 +26,21 @@ def stiffness(w: Any, theta: Any, v: Any, eta: Any, x: Any) -> Any:
 
 @BilinearForm
 def inertia(w: Any, theta: Any, v: Any, eta: Any, x: Any) -> Any:
-    """Inertia across, and of rotation."""
+    """Transverse and rotary inertia."""
     return x.rhoA * w * v + x.rhoI * theta * eta
 
 
 class _PointTerms:
-    """What effects add at nodes ``x`` of the mesh; a joint has two, of which the butt side's carries the rest."""
+    """What effects add at nodes ``x`` of the mesh; a joint has two nodes, and other terms act on the butt side's."""
 
     def __init__(self, cue: Cue, basis: Basis, x: Array) -> None:
         self.cue, self.x, self.unknowns = cue, x, basis.nodal_dofs.T  # (nodes, 2): w, theta
         size = basis.N
         self.stiffness, self.mass, self.dashpot = (sp.lil_matrix((size, size)) for _ in range(3))
-        self.source = np.arange(size)  # the unknown that an unknown is equal to; -1 where it is clamped
+        self.source = np.arange(size)  # the degree of freedom that each is equal to; -1 where clamped
 
     def at(self, x: float) -> Any:
-        """The unknowns (w, theta) of the nodes at ``x``: (1 or 2, 2)."""
+        """Degrees of freedom (w, theta) of the nodes at ``x``: (1 or 2, 2)."""
         return self.unknowns[abs(self.x - x) < NEAR * self.cue.length]
 
     def add(self, x: float, kind: str, *values: float) -> None:
@@ -52,7 +52,7 @@ class _PointTerms:
                 getattr(self, kind)[unknown, unknown] += value
 
     def join(self, x: float, *compliances: float) -> None:
-        """Springs between the two sides of a joint; next to no compliance: no jump."""
+        """Springs between the two sides of a joint; no jump if the compliance is negligible."""
         section = self.cue.section(min(x, self.cue.length))
         stiffness = (section.kGA, section.EI)
         for (before, after), compliance, own in zip(self.at(x).T, compliances, stiffness, strict=True):
@@ -65,11 +65,11 @@ class _PointTerms:
 def assemble(
     cue: Cue, nodes: ArrayLike, *, order: int, effects: tuple[ActsOnCue, ...] = ()
 ) -> tuple[sp.csc_matrix, sp.csc_matrix]:
-    """K and M of the free unknowns (w in m, theta in rad) of a cue on elements between ``nodes``, m.
+    """K and M of the free degrees of freedom (w in m, theta in rad) of a cue on elements between ``nodes``, m.
 
     w has the polynomial degree order + 1, theta order. Nodes must lie at the ends of segments and at effects.
     """
-    x = np.sort(np.append(nodes, [place for effect in effects for place in effect.splits]))
+    x = np.sort(np.append(nodes, [split for effect in effects for split in effect.splits]))
     elements = np.flatnonzero(np.diff(x) > NEAR * cue.length)
     mesh = MeshLine(x[None], np.array([elements, elements + 1]))
     # a taper's EI has degree 4
@@ -78,15 +78,15 @@ def assemble(
     points = _PointTerms(cue, basis, x)
     for effect in effects:
         effect.add_to(points)  # type: ignore[arg-type]
-    held = points.source < 0
-    free, column = np.unique(points.source[~held], return_inverse=True)
-    spread = sp.csc_matrix((np.ones(len(column)), (np.flatnonzero(~held), column)), (basis.N, len(free)))
+    clamped = points.source < 0
+    free, column = np.unique(points.source[~clamped], return_inverse=True)
+    spread = sp.csc_matrix((np.ones(len(column)), (np.flatnonzero(~clamped), column)), (basis.N, len(free)))
     own = {name: fields[name] for name in ("EI", "kGA", "rhoA", "rhoI")}
     K, M = stiffness.assemble(basis, **own) + points.stiffness, inertia.assemble(basis, **own) + points.mass
     return sp.csc_matrix(spread.T @ K @ spread), sp.csc_matrix(spread.T @ M @ spread)
 
 
 def frequencies(K: sp.csc_matrix, M: sp.csc_matrix, *, shift: float) -> Array:
-    """All natural frequencies, Hz, ascending, the rigid motions' near zero; shift: that of `System`, rad2/s2."""
+    """All natural frequencies, Hz, ascending, rigid-body modes near zero; shift: that of `System`, rad2/s2."""
     inverse = la.eigh(M.toarray(), (K + shift * M).toarray(), eigvals_only=True)[::-1]
     return np.sqrt(np.maximum(1 / inverse - shift, 0)) / (2 * np.pi)

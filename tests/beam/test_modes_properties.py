@@ -20,7 +20,7 @@ AT = Resolution(2, 8, 10)
 def cues(draw: st.DrawFn) -> Cue:
     """One to four pieces of 4 mm to 40 cm, 8 to 30 mm wide, some bored, of wood, leather or steel.
 
-    kappa is given: left out, it follows E/G.
+    kappa is set, because its default depends on E/G.
     """
     pieces = []
     for _ in range(draw(st.integers(1, 4))):
@@ -37,7 +37,7 @@ drives = st.sampled_from(["force", "velocity", "stick"])
 
 @given(cues(), factors, factors, factors)
 @settings(max_examples=20)
-def test_frequencies_in_other_units(cue: Cue, length: float, time: float, mass: float) -> None:
+def test_modes_scaled_units_scale(cue: Cue, length: float, time: float, mass: float) -> None:
     """Units of length, time, mass a, b, c times smaller: E and G c/(a b^2), rho c/a^3, frequency 1/b, w 1/sqrt(c)."""
     stiff, heavy = mass / (length * time**2), mass / length**3
     other = scaled(cue, E=stiff, G=stiff, rho=heavy, length=length)
@@ -52,7 +52,7 @@ def test_frequencies_in_other_units(cue: Cue, length: float, time: float, mass: 
 
 @given(cues(), drives, factors, factors, factors)
 @settings(max_examples=20)
-def test_end_mass_in_other_units(cue: Cue, drive: str, length: float, time: float, mass: float) -> None:
+def test_end_mass_scaled_units_scales(cue: Cue, drive: str, length: float, time: float, mass: float) -> None:
     stiff, heavy = mass / (length * time**2), mass / length**3
     other = replace(scaled(cue, E=stiff, G=stiff, rho=heavy, length=length), body_mass=cue.body_mass * mass)
     here = Scene(cue, tip=Tip(contact_time=1e-3))
@@ -63,7 +63,7 @@ def test_end_mass_in_other_units(cue: Cue, drive: str, length: float, time: floa
 
 @given(cues(), st.floats(1.01, 4.0))
 @settings(max_examples=20)
-def test_stiffer_is_faster_and_heavier_is_slower(cue: Cue, factor: float) -> None:
+def test_frequencies_rise_with_stiffness_and_fall_with_mass(cue: Cue, factor: float) -> None:
     """Rayleigh: with E alone (or G alone) no frequency falls; with both all go like the root, as with mass."""
     plain = modes(cue, 6, at=AT).frequencies
     stiff, both = (
@@ -77,7 +77,7 @@ def test_stiffer_is_faster_and_heavier_is_slower(cue: Cue, factor: float) -> Non
 
 @given(cues(), st.floats(0.0, 8000.0), st.integers(1, 5))
 @settings(max_examples=20)
-def test_near_is_the_nearest(cue: Cue, near: float, count: int) -> None:
+def test_modes_near_frequency_are_the_nearest(cue: Cue, near: float, count: int) -> None:
     many = modes_below(cue, 2 * np.pi * near) + count + 6
     every = modes(cue, many).frequencies
     wanted = np.sort(every[np.argsort(np.abs(every - near), kind="stable")[:count]])

@@ -1,4 +1,4 @@
-"""Verification of the modes: rigid ones, orthogonality, `near`, shapes, and pieces that are one."""
+"""Verification of the modes: orthogonality, `near`, the default mesh, and tip modes."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ def stations(cue: Cue, nodes: np.ndarray | None = None) -> tuple[np.ndarray, np.
 
 
 @pytest.mark.parametrize("name", SHAFTS)
-def test_modes_are_orthonormal_in_the_mass(name: str) -> None:
-    """By an integral of their own, with the rigid motions translation and rotation among them."""
+def test_modes_are_orthonormal_in_mass(name: str) -> None:
+    """By an integral of their own, and orthogonal to translation and rotation."""
     cue = SHAFTS[name]
     found = modes(cue, 8)
     nodes = found.system.mesh.nodes
@@ -51,7 +51,7 @@ def test_modes_are_orthonormal_in_the_mass(name: str) -> None:
 
 
 @pytest.mark.parametrize("mode", [0, 1, 2])
-def test_near_an_eigenfrequency(mode: int) -> None:
+def test_modes_near_a_natural_frequency_finds_it(mode: int) -> None:
     """E and G scaled until 250 Hz *is* the frequency of a mode: no singular matrix, and it comes first of all."""
     cue = kim()
     ratio = (250.0 / modes(cue, 3).frequencies[mode]) ** 2
@@ -66,14 +66,14 @@ def test_near_an_eigenfrequency(mode: int) -> None:
 
 @pytest.mark.parametrize("name", [*SHAFTS, "isotropic"])
 @pytest.mark.parametrize("count", [1, 5, 12, 40])
-def test_the_mesh_left_out_holds_the_modes_asked_for(name: str, count: int) -> None:
+def test_default_mesh_resolves_requested_modes(name: str, count: int) -> None:
     cue = SHAFTS.get(name, isotropic_kim())
     finer = modes(cue, count, at=Resolution(*even_mesh_for(cue, 2 * count + 4), count)).frequencies
     np.testing.assert_allclose(modes(cue, count).frequencies, finer, rtol=1e-6)
 
 
-def test_tip_modes_are_what_a_ball_feels() -> None:
-    """Inverse mass at once: sum of a a' over the modes; its rigid part is the cue's own, axial and transverse."""
+def test_tip_modes_sum_to_inverse_mass_at_tip() -> None:
+    """The initial inverse mass is the sum of a a' over the modes; its rigid-body part is axial and transverse."""
     cue = kim()
     found = modes(cue, 5)
     tip = tip_modes(found, cue.mass)

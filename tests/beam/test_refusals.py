@@ -1,4 +1,4 @@
-"""What `modes` refuses: calls, each with a part of the one line that says why."""
+"""Invalid input of `modes`: each call with the beginning of its error message."""
 
 from __future__ import annotations
 
@@ -14,12 +14,15 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: modes(kim(), 0), "modes count must be a whole number >= 1; got 0"),
     (lambda: modes(kim(), near=-1.0), "modes near must be in [0, inf) Hz; got -1.0"),
     (lambda: modes(kim(), near="250"), "TypeError: modes near must be a number"),  # type: ignore[arg-type]
-    (lambda: modes(kim(), 9, at=Resolution(1, 1, 1)), "the mesh holds 3 flexible modes; got 9 wanted"),
+    (
+        lambda: modes(kim(), 9, at=Resolution(1, 1, 1)),
+        "modes count must be at most 3 on this mesh; got 9",
+    ),
     (lambda: modes(LumpedCue(0.5, 0.01)), "TypeError: modes cue must be a Cue; got a LumpedCue"),  # type: ignore[arg-type]
     (lambda: modes(kim(), 2).shape(0.8), "Modes.shape takes positions in [0, 0.7] m"),
 ]
 
 
-@pytest.mark.parametrize(("ask", "message"), CALLS, ids=[message for _, message in CALLS])
-def test_calls(ask: Callable[[], object], message: str) -> None:
-    refuses(ask, message)
+@pytest.mark.parametrize(("call", "message"), CALLS, ids=[message for _, message in CALLS])
+def test_modes_invalid_input_raises(call: Callable[[], object], message: str) -> None:
+    refuses(call, message)

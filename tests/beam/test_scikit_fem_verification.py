@@ -15,19 +15,19 @@ EFFECTS = {
     "free": (),
     "mass, springs": (PointMass(0.0, 2e-3), Support(0.2, stiffness=5e3, rotational_stiffness=3.0)),
     "clamp, joint": (Support(0.55, stiffness=np.inf), Joint(0.31, rotational_compliance=1e-3)),
-    "held": (Support(0.6, np.inf, np.inf), Joint(0.25, rotational_compliance=2e-3, shear_compliance=1e-6)),
+    "fixed": (Support(0.6, np.inf, np.inf), Joint(0.25, rotational_compliance=2e-3, shear_compliance=1e-6)),
     "stiff joint": (Joint(0.5, 0.0, 3.5e-202),),
 }
 
 
 @pytest.mark.parametrize(
-    ("name", "held"), [*((name, "free") for name in NAMES), *(("kim", held) for held in EFFECTS if held != "free")]
+    ("name", "support"), [*((name, "free") for name in NAMES), *(("kim", key) for key in EFFECTS if key != "free")]
 )
-def test_the_tones_of_both(name: str, held: str) -> None:
+def test_frequencies_equal_those_of_weak_forms(name: str, support: str) -> None:
     """Twelve flexible modes on one mesh, to 1e-9: the bases differ, the spaces are the same."""
-    drawn, order, effects = cue(name), 8, EFFECTS[held]
+    drawn, order, effects = cue(name), 8, EFFECTS[support]
     ours = assemble(drawn, Resolution(2, order, 12), effects)
     found = solve(ours, 12)
     K, M = weak_forms.assemble(drawn, ours.mesh.nodes, order=order, effects=effects)
-    tones = weak_forms.frequencies(K, M, shift=ours.shift)[found.rigid : found.rigid + 12]
-    np.testing.assert_allclose(tones, found.frequencies, rtol=1e-9)
+    frequencies = weak_forms.frequencies(K, M, shift=ours.shift)[found.rigid : found.rigid + 12]
+    np.testing.assert_allclose(frequencies, found.frequencies, rtol=1e-9)

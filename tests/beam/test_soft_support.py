@@ -1,4 +1,4 @@
-"""Verification: a support that is next to nothing is no support."""
+"""A support of vanishing stiffness changes nothing (verification)."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ def scene(cue: Cue, *effects) -> Scene:
 
 
 @pytest.mark.parametrize("cue", [CUE, UNEVEN], ids=["even", "stiff ferrule"])
-def test_end_mass_and_squirt_go_to_those_of_a_free_cue(cue: Cue) -> None:
-    """In proportion to the stiffness, and never jump, though the soft mode's frequency becomes rounding."""
+def test_end_mass_and_squirt_soft_support_converge_to_free_cue(cue: Cue) -> None:
+    """In proportion to the stiffness and without a jump, though the soft mode's frequency becomes round-off error."""
 
-    def answers(*effects: Effect) -> np.ndarray:
+    def results(*effects: Effect) -> np.ndarray:
         return np.array([end_mass(scene(cue, *effects)), strike(scene(cue, *effects)).squirt])
 
-    free = answers(PointMass(0.5, 1e-15))  # the same mesh, with an element's end where the support is
-    errors = np.array([abs(answers(Support(0.5, k)) / free - 1) for k in (1e3, 1e2, 1e-3, 1e-9)])
+    free = results(PointMass(0.5, 1e-15))  # the same mesh, with an element's end where the support is
+    errors = np.array([abs(results(Support(0.5, k)) / free - 1) for k in (1e3, 1e2, 1e-3, 1e-9)])
     for each in errors.T:
         assert_order(1, [1e3, 1e2], each[:2], within=0.05)
     assert errors.max() < 1e-6

@@ -46,7 +46,10 @@ CALLS: list[tuple[Callable[[], object], str]] = [  # a line a raise, its first w
     (listed(SHEAR, FAR), "Scene.effects[1].position must be in (0, 0.7) m, between the ends"),
     (listed(CLAMP, cf.Support(0.2, inf), CLAMP), "Scene.effects[2].stiffness must be in [0, inf) N/m at 0.7 m, where"),
     (listed(CLAMP, TURNED), "Scene.effects[1].rotational_stiffness must be in [0, inf) N m/rad at"),
-    (lambda: cf.modes(KIM, 3, effects=(CLAMP, TURNED)), "a clamp must be the only one at its place; got two at 0.7 m"),
+    (
+        lambda: cf.modes(KIM, 3, effects=(CLAMP, TURNED)),
+        "a clamp must be the only one at its position; got two at 0.7 m",
+    ),
     (lumped(SHEAR, cf.Joint(0.1)), "got Joint, which needs a finite-element Cue"),
     (lumped(SHEAR, WAVES), "Scene.effects[1] must be an effect that a LumpedCue can have"),
     (lambda: cf.AxialWaves(1.47), "AxialWaves must be given cue_length, butt_diameter and wave_speed together"),

@@ -49,13 +49,13 @@ def ratio(cue: Cue, periods: float, drive: str) -> float:
     [(kim(), 5.494268), (rod(3e3), 4.0), (cone(3e3, 0.4), 6.8318457694)],
     ids=["kim", "rod", "cone 0.4"],
 )
-def test_long_pulses_feel_the_rigid_cue(cue: Cue, limit: float, drive: str) -> None:
+def test_end_mass_long_pulse_equals_rigid_cue(cue: Cue, limit: float, drive: str) -> None:
     found = ratio(cue, 1e4, drive)
     np.testing.assert_allclose(found, rigid_ratio(cue), rtol=1e-7)
     np.testing.assert_allclose(found, limit, rtol=1e-6)
 
 
-# --- a beam so long that no wave returns ---
+# --- a beam so long that no wave is reflected ---
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +70,7 @@ def long_rod() -> tuple[TipModes, Scene, float]:
 
 
 @pytest.mark.parametrize(("formula", "constant"), [(force, 0.79021), (velocity, 0.54814)])
-def test_semi_infinite_euler_beam(
+def test_end_mass_long_rod_equals_semi_infinite_beam(
     long_rod: tuple[TipModes, Scene, float], formula: Callable[[TipModes, Scene], float], constant: float
 ) -> None:
     tip, found, unit = long_rod
@@ -81,7 +81,7 @@ def test_semi_infinite_euler_beam(
 
 
 @pytest.mark.parametrize("T", [0.8e-3, 2e-3])
-def test_force_by_quadrature(T: float) -> None:
+def test_force_equals_quadrature(T: float) -> None:
     tip = few_modes()
     omega, phi = tip.omega[1:], tip.amplitude[1:, 1]
     moved, _ = quad(
@@ -96,7 +96,7 @@ def test_force_by_quadrature(T: float) -> None:
 @pytest.mark.parametrize(
     ("drive", "T", "grams"), [("force", 2e-3, 17.3), ("stick", 1e-3, 5.27), ("stick", 2e-3, 8.1), ("force", 1e-3, 10.4)]
 )
-def test_kim_shaft(drive: str, T: float, grams: float) -> None:
+def test_end_mass_kim_shaft_equals_reference(drive: str, T: float, grams: float) -> None:
     """Reference values at the precision it gives them."""
     found = scene(kim(), T)
     value = end_mass(found, drive)  # type: ignore[arg-type]
@@ -104,6 +104,6 @@ def test_kim_shaft(drive: str, T: float, grams: float) -> None:
 
 
 @pytest.mark.parametrize("drive", ["stick", "velocity", "force", "squirt"])
-def test_a_lumped_cue_answers_its_own(drive: str) -> None:
+def test_end_mass_lumped_cue_is_its_own(drive: str) -> None:
     found = Scene(LumpedCue(0.54, 0.0123))
     assert end_mass(found, drive) == 0.0123  # type: ignore[arg-type]

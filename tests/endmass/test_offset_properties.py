@@ -1,4 +1,4 @@
-"""The end mass of a tip that sticks at the scene's own offset: symmetry, limits, and who takes it (properties)."""
+"""End mass of a sticking tip at the scene's own offset: symmetry, limits, and its use in lumped models (properties)."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def offset_mass(scene: cf.Scene) -> float:
 
 
 @pytest.mark.parametrize("effects", EFFECTS.values(), ids=EFFECTS.keys())
-def test_it_tends_to_stick_like_the_square_of_the_offset_on_either_side(effects: tuple[object, ...]) -> None:
+def test_offset_end_mass_small_offsets_converges_to_stick(effects: tuple[object, ...]) -> None:
     scene = replace(kim_scene(0.0), effects=effects)
     limit = cf.end_mass(scene, "stick", KIM_AT)
     assert offset_mass(scene) == pytest.approx(limit, rel=1e-12)
@@ -43,7 +43,7 @@ def test_it_tends_to_stick_like_the_square_of_the_offset_on_either_side(effects:
     assert offset_mass(at(scene, -0.3)) == pytest.approx(offset_mass(at(scene, 0.3)), rel=1e-12)
 
 
-def test_impulse_and_lump_take_it() -> None:
+def test_offset_end_mass_equals_impulse_and_lump() -> None:
     scene = kim_scene(0.4)
     lumped = lump(scene)
     assert lumped.end_mass == cf.end_mass(scene, "offset") == strike_record(scene)["end_mass"]
@@ -64,15 +64,15 @@ def test_offset_end_mass_of_kims_cue_is_within_a_hundredth_where_stick_is_a_tent
 
 
 @pytest.mark.parametrize("offset", [-0.4, 0.1, 0.3])
-def test_a_lump_with_a_dome_squirts_as_the_strike_that_never_slips(offset: float) -> None:
+def test_lump_with_dome_squirt_equals_strike_without_slip(offset: float) -> None:
     scene = replace(kim_scene(offset), effects=EFFECTS["dome and shear"])
     gripping = replace(scene, tip=replace(scene.tip, friction=math.inf))
     lumped = replace(gripping, cue=lump(scene, KIM_AT), effects=())
     assert cf.impulse(lumped).squirt == pytest.approx(cf.strike(gripping, KIM_AT).squirt, rel=1e-9)
 
 
-def test_where_there_is_none_the_lumped_models_are_left_out() -> None:
-    """A tip that gives back next to nothing, far off centre: the cue's end runs ahead of the ball."""
+def test_strike_record_without_end_mass_omits_lumped_models() -> None:
+    """A tip of low restitution, far off centre: the cue's end runs ahead of the ball."""
     scene = replace(kim_scene(0.85), tip=cf.Tip(0.05, 0.7, 1e-3))
     with pytest.raises(ValueError, match="end_mass drive 'offset': a tip that sticks has no end mass's squirt; got"):
         cf.impulse(scene)
@@ -85,8 +85,8 @@ def test_where_there_is_none_the_lumped_models_are_left_out() -> None:
 
 
 @pytest.mark.parametrize("effects", [(), (cf.GeometricStiffness(),), (cf.Elevation(0.2), cf.GeometricStiffness())])
-def test_squirt_s_end_mass_has_no_jump_at_the_centre(effects: tuple[cf.Effect, ...]) -> None:
-    """Head on it is the limit of the same strikes: thrust (7 % of it) and the table's push (40 %) count there too."""
+def test_squirt_end_mass_is_continuous_at_centre(effects: tuple[cf.Effect, ...]) -> None:
+    """At the centre it is the limit of the same strikes, with axial force (7 %) and the table's force (40 %)."""
     cue = cf.Cue((cf.Segment(0.74, 0.0125, 0.0215, cf.Material(12.6e9, 0.84e9, 700.0)),), body_mass=0.42)
     scene = cf.Scene(cue, tip=cf.Tip(0.73, 0.6), stroke=cf.Stroke(2.0, 0.0), effects=effects)
     tip = tip_modes_of(scene)
