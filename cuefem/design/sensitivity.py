@@ -1,12 +1,13 @@
-"""Where end mass lives: exact derivatives of the stick end mass to the section properties along the cue.
+"""End-mass distribution along the shaft: exact derivatives of the stick end mass to the section properties.
 
-The end mass is a function of the kept modes' squares lambda_k = omega_k^2 and tip amplitudes phi_k. A change of
-stiffness and mass changes those by first-order perturbation over *all* modes of the mesh (kept, dropped and rigid j):
+The end mass is a function of lambda_k = omega_k^2 and the tip amplitudes phi_k of the retained modes. A change of
+stiffness and mass changes those by first-order perturbation over *all* modes of the mesh (retained, truncated and
+rigid-body modes j):
 
     d lambda_k = dK_kk - lambda_k dM_kk
     d phi_k = -phi_k dM_kk/2 + sum over j != k of phi_j (dK_jk - lambda_k dM_jk)/(lambda_k - lambda_j)
 
-so that dm is a quadratic form in the modes' curvatures, shears, deflections and rotations at each point: the densities.
+so dm is a quadratic form in the modes' curvatures, shears, deflections and rotations at each point: the densities.
 """
 
 from __future__ import annotations
@@ -30,9 +31,8 @@ class Sensitivity:
     """Derivatives of an end mass, kg.
 
     x: Gauss points of the mesh, m from the tip, (points,). weights: their lengths, m. rhoA, rhoI, EI, kGA: densities of
-    the derivatives per unit length, so that dm = integral of density times the change of the property; rhoA is a pure
-    number per unit: kg of end mass for a kg put there. ball_mass, axial_mass: derivatives to M and m_a, pure numbers.
-    end_mass: kg.
+    the derivatives per unit length: dm = integral of density times the change of the property; rhoA is a pure number,
+    kg of end mass per kg of added mass. ball_mass, axial_mass: derivatives to M and m_a, pure numbers. end_mass: kg.
     """
 
     x: Array
@@ -48,7 +48,7 @@ class Sensitivity:
 
 @dataclass(frozen=True)
 class _Gradient:
-    """An end mass and its derivatives to lambda_k, phi_k of the kept modes, the rigid sum, M and m_a."""
+    """An end mass and its derivatives to lambda_k, phi_k of the retained modes, the rigid-body sum, M and m_a."""
 
     value: float
     squares: Array
@@ -66,12 +66,12 @@ def sensitivity(scene: Scene, at: Resolution | int | None = None) -> Sensitivity
     scene : Scene
         With a finite-element cue and without effects.
     at : Resolution or int, optional
-        A resolution, or a number of modes. The default is that of `end_mass` without a tail.
+        A resolution, or a number of modes. The default is that of `end_mass` without a truncation correction.
 
     Returns
     -------
     Sensitivity
-        Exact for the modes kept, on the mesh as it is.
+        Exact for the retained modes of the mesh.
 
     Raises
     ------
@@ -80,12 +80,12 @@ def sensitivity(scene: Scene, at: Resolution | int | None = None) -> Sensitivity
 
     Notes
     -----
-    The formulas stand at the top of `cuefem.design.sensitivity`. The densities times their properties integrate to
+    See the top of `cuefem.design.sensitivity` for the formulas. The densities times their properties integrate to
     m_e - M dm/dM - m_a dm/dm_a: m_e scales with all masses and stiffnesses together. The cost is one dense eigenproblem
     for all modes of the mesh.
     """
     if scene.effects:
-        raise ValueError(f"sensitivity takes a scene without effects; got {len(scene.effects)}")
+        raise ValueError(f"sensitivity scene must have no effects; got {len(scene.effects)}")
     at = at or default_modes(scene, periods=PLAIN_PERIODS)
     system, count = assemble(scene.shaft, at), at if isinstance(at, int) else at.modes
     bending = solve(system, system.size - system.rigid.shape[1])
@@ -97,7 +97,7 @@ def sensitivity(scene: Scene, at: Resolution | int | None = None) -> Sensitivity
 
 
 def _forms(gradient: _Gradient, squares: Array, phi: Array, still: Array) -> tuple[Array, Array]:
-    """The quadratic forms in the modes (rigid ones first) that give dm for dK and for dM."""
+    """The quadratic forms of dm in the modes (rigid-body modes first), for dK and for dM."""
     rigid, modes = len(still), len(gradient.squares)
     all_squares, all_phi = np.concatenate([np.zeros(rigid), squares]), np.concatenate([still, phi])
     size = len(all_phi)
@@ -133,7 +133,7 @@ def _densities(system: System, vectors: Array, stiff: Array, heavy: Array, gradi
 
 
 def _stick(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
-    """Derivatives of the stick end mass, by the adjoint of the linear solve that gives its J (`ImpulseResponse.held`).
+    """Derivatives of the stick end mass, by the adjoint of the linear solve for its J (`ImpulseResponse.held`).
 
     J is a sum of ``edges`` times the impulse at the edges of the steps. The mean velocities over the steps are linear
     in the modes' phi^2; a response R(omega) is the derivative of J to the phi^2 of a mode of this frequency.

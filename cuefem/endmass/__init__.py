@@ -1,1 +1,1 @@
-"""The effective end mass: its definitions, and a cue as two numbers."""
+"""The effective end mass: its definitions, and the lumped cue of a finite-element cue."""

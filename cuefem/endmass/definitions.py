@@ -1,8 +1,8 @@
 """The definitions of effective end mass, each from the tip modes of a cue (handbook: Effective end mass).
 
-The effective end mass m_e is the inertia that the ball feels across the cue at the tip. A vibrating cue has no single
-one: how much of it takes part depends on how the tip is driven. `DEFINITIONS`, at the end of this file, is the table of
-the definitions that every command, page and sweep reads. All of them follow from the tip's transverse impulse response
+The effective end mass m_e is the transverse inertia of the cue at the tip. A vibrating cue has no single one: it
+depends on how the tip is driven. `DEFINITIONS`, at the end of this file, is the table of definitions for commands,
+pages and sweeps. All of them follow from the tip's transverse impulse response
 h(t) = sum phi_k^2 cos(omega_k t), free or damped (`cuefem.endmass.impulse_response`).
 """
 
@@ -27,51 +27,52 @@ from cuefem.quantity.fields import check_kind
 from cuefem.scene import Outcome, Resolution, Scene, Stroke
 from cuefem.scene.solved_scene import Solved
 
-# The squirts of this many lumped cues are computed in one call, which costs as much as two single ones; a root is then
-# sought between two neighbours in the same way, ZOOMS times in all.
-MANY, ZOOMS = 500, 6
-NEAR = 1e-5  # b/R that stands for the limit of small offsets
-FLAT = 1e-12  # rad: squirts that differ by less are the same
+# The squirts of this many lumped cues are computed in one call, which costs as much as two single ones. The root is
+# then bracketed by two neighbours and refined in the same way.
+MANY = 500
+ZOOMS = 6  # rounds of refinement
+NEAR = 1e-5  # b/R in the limit of small offsets
+FLAT = 1e-12  # rad: squirts that differ by less are equal
 
 
 def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -> float:
-    """Effective end mass m_e of a scene's cue: the inertia that the ball feels across the cue at the tip.
+    """Effective end mass m_e of a scene's cue: its transverse inertia at the tip.
 
     Parameters
     ----------
     scene
-        The cue, and what the pulse depends on. The pulse lasts the scene's head-on contact time. "stick" and "offset"
+        The cue, and the impact. The pulse lasts the scene's contact time of a centre-ball impact. "stick" and "offset"
         also depend on the ball's mass and inertia factor and on the tip's restitution; "offset" and "squirt" on the
         scene's offset; "squirt" on speed and friction too.
     drive
-        Which definition, by its name in `cuefem.endmass.definitions.DEFINITIONS`:
+        Name of a definition in `cuefem.endmass.definitions.DEFINITIONS`:
 
         - "stick": the tip sticks to the ball as in the coupled strike of a straight cue, in the limit of small offsets.
           Recommended.
-        - "offset": the same at the scene's own offset; this is what the impulse solver takes.
-        - "velocity": the tip's velocity rises like (1 - cos(pi t/T))/2.
-        - "force": the tip is pushed by a half-sine force.
-        - "squirt": the lumped end mass that has the squirt of the coupled strike.
+        - "offset": the same at the scene's own offset, as in the impulse solver.
+        - "velocity": the tip's velocity is prescribed as (1 - cos(pi t/T))/2.
+        - "force": a half-sine force acts on the tip.
+        - "squirt": the lumped end mass with the squirt of the coupled strike.
     at
-        How finely the cue is computed. By default modes are kept by frequency (handbook: The beam), at least 160 of
-        them, or 40 for "velocity" and "force", whose drives begin smoothly, on a cue without leather drawn in. Between
-        0.5 and 3 ms a stick end mass is within 0.03 % for 95 % of 50 shafts, and 0.2 % at most on 50 whole cues with
-        joints and masses, of that of 400 modes, except for metal tips that stick, and "force" through soft leather in
-        less than 1 ms; `cuefem.resolve_end_mass` estimates the error.
+        A `Resolution`. By default modes are retained by frequency (handbook: The beam): at least 160, or 40 for
+        "velocity" and "force" on a cue without a leather segment. At contact times of 0.5 to 3 ms, a stick end mass
+        differs from that of 400 modes by less than 0.03 % for 95 % of 50 shafts, and by at most 0.2 % for 50 whole cues
+        with joints and masses. Exceptions are metal tips that stick, and "force" through soft leather in less than 1
+        ms; `cuefem.resolve_end_mass` estimates the error.
 
     Returns
     -------
     float
-        kg. A `LumpedCue` answers its own ``end_mass``, whatever the definition.
+        kg. Of a `LumpedCue` its own ``end_mass``, whatever the definition.
 
     Raises
     ------
     ValueError
-        If the definition is unknown, or has no answer for this scene (a miscue, a clamped tip).
+        If the definition is unknown, or has no value for this scene (a miscue, a clamped tip).
 
     Notes
     -----
-    Costs one eigenproblem of the beam; "stick", "offset" and "velocity" a linear solve over equal steps too.
+    The cost is one eigenproblem of the beam; "stick", "offset" and "velocity" add a linear solve over equal steps.
     Definitions and formulas: handbook: Effective end mass.
 
     Examples
@@ -91,9 +92,9 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
 
 
 def _couples(tip: TipModes, scene: Scene) -> bool:
-    """Whether the tip does not follow K P(t) - 1, so that a coupled strike must be solved."""
-    along = np.any(tip.amplitude[tip.omega > 0, 0] != 0)  # rod modes change the course of the normal impulse
-    return bool(along) or bool(scene.at_tip)
+    """Whether the tip's velocity is not K P(t) - 1, so that a coupled strike must be solved."""
+    axial = np.any(tip.amplitude[tip.omega > 0, 0] != 0)  # axial modes change the history of the normal impulse
+    return bool(axial) or bool(scene.at_tip)
 
 
 def definition_of(drive: str) -> Definition:
@@ -104,17 +105,17 @@ def definition_of(drive: str) -> Definition:
 
 
 def force(tip: TipModes, scene: Scene) -> float:
-    """Impulse of a half-sine force over the tip velocity at its end, kg. Converges like 1/modes^2 (it has kinks).
+    """Impulse of a half-sine force over the final tip velocity, kg. The error falls like 1/modes^2 (kinks of the force).
 
-    A soft tip on a heavy ferrule may be at rest when the push ends, or move back: then this is huge, or negative, and
-    its inverse alone is accurate.
+    A soft tip on a heavy ferrule may be at rest when the force ends, or move back: the value is then huge or negative,
+    and only its inverse is accurate.
     """
     T = float(scene.contact_time)
     return 2 * T / np.pi / ImpulseResponse.of(tip).half_sine_velocity(T)
 
 
 def velocity(tip: TipModes, scene: Scene) -> float:
-    """Impulse that makes the tip follow (1 - cos(pi t/T))/2, over its final velocity, kg."""
+    """Impulse for the tip velocity (1 - cos(pi t/T))/2, over the final velocity, kg."""
     return ImpulseResponse.of(tip).smooth_start_impulse(float(scene.contact_time))
 
 
@@ -131,9 +132,9 @@ def stick_at_offset(tip: TipModes, scene: Scene) -> float:
     """End mass of a tip that sticks from the first touch, at the scene's own offset, kg (handbook: Effective end mass).
 
     For a bare cue it is that of `stick` with the contact at this offset (`limit_at`), exact to first order in the
-    lightness of the cue's end. With effects at the tip or axial waves it is the lumped end mass with the squirt of a
-    coupled strike that never slips. The two ways differ in second order, by about 1 % at b/R 0.3. Both sides of the
-    ball are alike, and head on it is `stick`. ValueError if no end mass has that squirt.
+    mass ratio of the cue's end. With effects at the tip or axial waves it is the lumped end mass with the squirt of a
+    coupled strike without slip. The two differ in second order, by about 1 % at b/R 0.3. It is even in the offset, and
+    equals `stick` at the centre. ValueError if no end mass has that squirt.
     """
     b = abs(scene.stroke.offset)
     if _couples(tip, scene):
@@ -141,7 +142,7 @@ def stick_at_offset(tip: TipModes, scene: Scene) -> float:
         return _with_squirt(sticking_squirt(tip, here), _gripping(here), "offset") if b else stick(tip, here)
     mass = float(_uncoupled(tip, scene, np.array([b]))[0])
     if math.isnan(mass):
-        raise ValueError(f"end_mass drive 'offset': a tip that sticks has no end mass's squirt; got offset {b:g}")
+        raise ValueError(f"end_mass drive 'offset': no end mass has the squirt of a sticking tip; got offset {b:g}")
     return mass
 
 
@@ -167,10 +168,10 @@ def _uncoupled(tip: TipModes, scene: Scene, offsets: Array) -> Array:
 
 
 def limit_at(scene: Scene, offset: Any) -> StickLimit:
-    """The law of a tip that sticks at offsets b/R >= 0. A light cue end leaves the force along the cue.
+    """The contact of a tip that sticks at offsets b/R >= 0. With a light cue end, the force is axial.
 
     Then F_t = F_n tan(phi). With D = 1 + 1/Q0 + sin(phi)^2/nu the contact is that of the mass M cos(phi)^2/D, of the
-    length T cos(phi) sqrt((1 + 1/Q0)/D), and the tip's velocity runs as K P - 1, K = (1 + e)(1 + 1/nu + 1/Q0)/D.
+    length T cos(phi) sqrt((1 + 1/Q0)/D), and the tip's velocity is K P - 1, K = (1 + e)(1 + 1/nu + 1/Q0)/D.
     """
     limit, q = StickLimit.of(scene), scene.ball.mass / scene.axial_mass
     share = (1 + q) / (1 + q + offset**2 / scene.ball.inertia)
@@ -184,8 +185,8 @@ def _held(tip: TipModes, limit: StickLimit) -> Array:
 def small_offset_slope(tip: TipModes, scene: Scene) -> float:
     """Squirt over phi in the limit b -> 0 of the coupled strike, whose tip sticks from the start.
 
-    `StickLimit` knows no effects at the tip (a dome, shear), no axial waves and no lumped cue: with them it is that of
-    a strike at b/R = 1e-5. The first slip vanishes in the limit, like sqrt(b); endless friction takes it out, and
+    `StickLimit` excludes effects at the tip (a dome, shear), axial waves and lumped cues: with them it is that of a
+    strike at b/R = 1e-5. The initial slip vanishes in the limit, like sqrt(b); infinite friction removes it, which
     leaves an error of b^2.
     """
     if scene.lumped is None and not _couples(tip, scene):
@@ -196,21 +197,21 @@ def small_offset_slope(tip: TipModes, scene: Scene) -> float:
 
 
 def _aside(scene: Scene) -> Scene:
-    """The scene's stroke so near to the centre that squirt is in proportion to the offset."""
+    """The scene's stroke at an offset so small that squirt is proportional to it."""
     return replace(scene, stroke=Stroke(scene.stroke.speed, NEAR))
 
 
 def sticking_squirt(tip: TipModes, scene: Scene) -> float:
-    """Squirt, rad, away from the side struck, of a coupled strike with endless friction, while tip and ball press.
+    """Squirt, rad, away from the side struck, of a coupled strike with infinite friction, up to separation.
 
-    The cue is the straight one, as for all end masses but "squirt": thrust would make them fall with the speed.
+    Geometric stiffness is excluded, as for all end masses but "squirt": it would make them fall with the speed.
     """
     p_t, p_n = strike_modes(_gripping(scene), tip.straight).impulse
     return float(abs(scene.stroke.angle) - math.atan2(p_t * np.sign(scene.stroke.offset), p_n))
 
 
 def _gripping(scene: Scene) -> Scene:
-    """The scene with a tip that never slips, without table and later hits, which are no part of an end mass."""
+    """The scene with infinite friction, without the table and double hits, which do not belong to an end mass."""
 
     def of_contact(effect: Effect) -> bool:
         terms = replace(scene, effects=(effect,)).contact_terms
@@ -220,7 +221,7 @@ def _gripping(scene: Scene) -> Scene:
 
 
 def squirt_equivalent(tip: TipModes, scene: Scene) -> float:
-    """The lumped end mass whose impulse-solver squirt is that of the coupled strike, kg; head on that at b/R = 1e-5.
+    """The lumped end mass with the squirt of the coupled strike in the impulse solver, kg; at the centre that at b/R = 1e-5.
 
     ValueError if there is none: see `equivalent_end_mass`.
     """
@@ -231,7 +232,7 @@ def squirt_equivalent(tip: TipModes, scene: Scene) -> float:
 def equivalent_end_mass(outcome: Outcome, scene: Scene) -> float:
     """The lumped end mass, kg, whose impulse-solver squirt is that of a scene's outcome, off centre.
 
-    ValueError if the tip slid up to the end, since the squirt of a sliding tip does not depend on the end mass.
+    ValueError if the tip slips until separation: squirt then does not depend on the end mass.
     """
     if slips_at_end(outcome):
         raise ValueError(
@@ -249,7 +250,7 @@ def _with_squirt(squirt: float, scene: Scene, drive: str) -> float:
 
     log_masses = np.linspace(math.log(1e-9), math.log(1e3), MANY)
     excesses = excess(log_masses)
-    if not excesses[0] < -FLAT < FLAT < excesses[-1]:  # of all light lumps the tip slides at one squirt
+    if not excesses[0] < -FLAT < FLAT < excesses[-1]:  # for all light end masses the tip slides at one squirt
         raise ValueError(
             f"end_mass drive {drive!r}: no single lumped end mass in [1e-9, 1e3] kg has the squirt {squirt:.6g} rad"
         )
@@ -257,7 +258,7 @@ def _with_squirt(squirt: float, scene: Scene, drive: str) -> float:
 
 
 def zoomed_root(function: Callable[[Array], Array], places: Array) -> float:
-    """The place, to rounding, where a function that is below zero at the first of many places first is not."""
+    """First root, to round-off error, of a function that is negative at the first of ``places``, (n,) ascending."""
     for _ in range(ZOOMS):
         above = int(np.argmax(function(places) >= 0))
         places = np.linspace(places[above - 1], places[above], len(places))
@@ -265,12 +266,12 @@ def zoomed_root(function: Callable[[Array], Array], places: Array) -> float:
 
 
 class Definition(NamedTuple):
-    """One definition of the effective end mass, and what commands, pages and sweeps say of it.
+    """One definition of the effective end mass, for commands, pages and sweeps.
 
-    name: as `end_mass` takes it. label: in a few words. meaning: in plain English. value: the end mass of a vibrating
+    name: the ``drive`` of `end_mass`. label: a short title. meaning: one sentence. value: the end mass of a vibrating
     cue, kg, from its tip modes and its scene. at_offset: whether it is the end mass at the scene's own offset.
-    counts_tip: whether effects at the tip count in it. smooth: whether the tip starts from rest, without a step of its
-    velocity, so that a strike's modes are enough.
+    counts_tip: whether it includes effects at the tip. smooth: whether the tip starts without a step of its velocity,
+    so that a strike's modes suffice.
     """
 
     name: str
@@ -282,23 +283,23 @@ class Definition(NamedTuple):
     smooth: bool = False
 
     def tip_of(self, solved: Solved) -> TipModes:
-        """The tip modes of a solved scene that this definition takes."""
+        """The tip modes of a solved scene for this definition."""
         return solved.tip_smooth if self.smooth else solved.tip_stuck
 
     def of_solved(self, solved: Solved) -> Any:
-        """The end mass of a solved scene, kg, from the tip modes that this definition takes."""
+        """The end mass of a solved scene, kg."""
         return self.of(self.tip_of(solved), solved.scene)
 
     def of(self, tip: TipModes, scene: Scene) -> Any:
-        """The end mass of any cue by this definition, kg; a lumped cue has its own whatever the definition."""
+        """The end mass of any cue by this definition, kg; of a lumped cue its own."""
         return self.value(tip, scene) if scene.lumped is None else scene.lumped.end_mass
 
     def label_at(self, offset: Any) -> str:
-        """The label, with the offset b/R where the definition is of the scene's own."""
+        """The label, with the offset b/R if the definition depends on it."""
         return f"{self.label} at b/R {offset:g}" if self.at_offset else self.label
 
 
-# The one table of the definitions, in the order in which they are shown. What is added here is found everywhere.
+# The table of definitions, in the order of display. An entry added here appears in commands, pages and sweeps.
 DEFINITIONS: dict[str, Definition] = {
     definition.name: definition
     for definition in (

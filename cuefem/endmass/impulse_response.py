@@ -1,9 +1,9 @@
-"""The tip's answer across the cue to a force, and the force that a velocity of the tip takes, over equal steps.
+"""The tip's transverse response to a force, and the force for a prescribed tip velocity, over equal steps.
 
-The impulse response is h(t) = sum of Re(weight exp(rate t)), 1/kg, of modes that are free, damped or radiate. Forces
-that are constant over each step give the tip mean velocities over the steps by a lower triangular Toeplitz matrix.
-Solving that once gives the impulse that a velocity step of the tip takes; every other velocity follows by superposition
-(a Volterra equation of the first kind).
+The impulse response is h(t) = sum of Re(weight exp(rate t)), 1/kg, of modes that are undamped, damped or radiate. A
+lower triangular Toeplitz matrix maps forces, constant over each step, to mean velocities of the tip over the steps.
+One solve determines the impulse for a velocity step of the tip; every other velocity follows by superposition (a
+Volterra equation of the first kind).
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from cuefem.contact.modal_response import Complex, propagator_of, responses
 from cuefem.cue import Array
 
 # Steps of a contact. Against closed forms at the same 120 modes (100 random cues, 0.5 to 3 ms, free and damped, "stick"
-# and "offset"): relative error 1e-6 in the median and 9e-5 at most; 1e-3 at most with half of them.
+# and "offset"): relative error 1e-6 (median), 9e-5 (maximum); with half the steps 1e-3 (maximum).
 STEPS = 2048
-FADED = 2e-5  # factor of the last term of a power series on the circle where series are divided
-ROW = 32  # steps in a row of the table of exponentials, which is a product of what its rows and its columns begin with
+FADED = 2e-5  # factor of the last term of a power series on the circle of evaluation
+ROW = 32  # steps in a row of the table of exponentials, an outer product of its first row and column
 
 
 class ImpulseResponse(NamedTuple):
@@ -31,26 +31,26 @@ class ImpulseResponse(NamedTuple):
 
     @classmethod
     def of(cls, tip: TipModes) -> ImpulseResponse:
-        """The response of tip modes; ValueError if a clamp holds the tip."""
+        """The response of tip modes; ValueError if the tip is clamped."""
         propagator = propagator_of(tip.straight)
         weights = propagator.readings[1] * propagator.drives[1]
-        felt = weights != 0
-        if not felt.any():
-            raise ValueError("end_mass: a clamp holds the tip across the cue, so its end mass is infinite")
-        return cls(weights[felt], propagator.rates[felt])
+        active = weights != 0
+        if not active.any():
+            raise ValueError("end_mass: the tip is clamped transversely, so its end mass is infinite")
+        return cls(weights[active], propagator.rates[active])
 
     def held(self, c: float, T: float) -> Array:
-        """Impulse that a tip has taken at the edges of the steps of 0..T, kg, (`STEPS` + 1,), to move at 1 m/s.
+        """Impulse on the tip that moves it at 1 m/s from t = 0, at the edges of the steps of 0..T, kg, (`STEPS` + 1,).
 
-        It begins with a blow, and moves a ball of inertia 1/c, kg, along.
+        It begins with a jump, and also moves a ball of inertia 1/c, kg.
         """
-        after_blow, column = self.means_with_ball(c, T)
-        blow = 1 / (self.weights.real.sum() + c)
-        force = toeplitz_solution(column, 1 - blow * after_blow)
-        return np.append(blow, blow + np.cumsum(force) * T / STEPS)
+        after_jump, column = self.means_with_ball(c, T)
+        jump = 1 / (self.weights.real.sum() + c)
+        force = toeplitz_solution(column, 1 - jump * after_jump)
+        return np.append(jump, jump + np.cumsum(force) * T / STEPS)
 
     def means_with_ball(self, c: float, T: float) -> tuple[Array, Array]:
-        """Mean velocities of tip and ball from each other over the steps of 0..T, (`STEPS`,), m/s.
+        """Mean relative velocities of tip and ball over the steps of 0..T, (`STEPS`,), m/s.
 
         After an impulse of 1 N s at the start, and after a force of 1 N over the first step.
         """
@@ -67,12 +67,12 @@ class ImpulseResponse(NamedTuple):
         return summed(self.weights * mean) + c, np.append(first, later)
 
     def smooth_start_impulse(self, T: float) -> float:
-        """Impulse that makes the tip follow the velocity (1 - cos(pi t/T))/2 from 0 to T, N s per m/s."""
-        led = (1 - np.cos(np.pi * np.linspace(0.0, 1.0, STEPS + 1))) / 2
-        return float(means(self.held(0.0, T)) @ np.diff(led)[::-1])
+        """Impulse for the tip velocity (1 - cos(pi t/T))/2 from 0 to T, N s per m/s."""
+        prescribed = (1 - np.cos(np.pi * np.linspace(0.0, 1.0, STEPS + 1))) / 2
+        return float(means(self.held(0.0, T)) @ np.diff(prescribed)[::-1])
 
     def half_sine_velocity(self, T: float) -> float:
-        """Velocity of the tip at the end of a half-sine force of unit height and length T, m/s per N."""
+        """Velocity of the tip at the end of a half-sine force of amplitude 1 N and duration T, m/s per N."""
         lower, upper = (responses((self.rates + side * 1j * np.pi / T) * T)[1] for side in (-1, 1))
         return float((self.weights * T * (upper - lower) / 2j).real.sum())
 
@@ -85,9 +85,9 @@ def means(edges: Array) -> Array:
 def toeplitz_solution(column: Array, wanted: Array) -> Array:
     """x of L x = wanted, L lower triangular and Toeplitz with the first ``column``, (n,).
 
-    It is a quotient of power series, evaluated in 4 n points of the circle on which the last of the n terms has fallen
-    to `FADED`: the column answers a passive body, so that it has no zero there. The factor 1 + z, which a mean over
-    steps has, is divided out and brought back, for its zero lies beside the circle.
+    It is a quotient of power series, evaluated at 4 n points of the circle on which the last of the n terms has fallen
+    to `FADED`. The column is the response of a passive body and has no zero there, except near z = -1 from the mean
+    over steps: the factor 1 + z is divided out first and multiplied back.
     """
     n = len(column)
     fade = FADED ** (np.arange(n) / n)

@@ -1,4 +1,4 @@
-"""A finite-element cue as two numbers, and the impulse solver that takes them."""
+"""The lumped cue of a finite-element cue, and the impulse solver for it."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from cuefem.scene.solved_scene import Solved
 
 
 def lump(scene: Scene, at: Resolution | None = None) -> LumpedCue:
-    """The lumped cue that squirts at the scene's own offset as the coupled strike does whose tip never slips.
+    """The lumped cue with the squirt of a coupled strike without slip, at the scene's own offset.
 
     Parameters
     ----------
     scene
         The cue, ball, tip and stroke. A `LumpedCue` is returned as it is.
     at
-        How finely the cue is computed; by default as in `cuefem.strike`.
+        A `Resolution`; by default as in `cuefem.strike`.
 
     Returns
     -------
     LumpedCue
-        Its mass is the cue's along the axis, its end mass "offset" of the cue alone (see `cuefem.end_mass`). Effects at
-        the tip (`TipDome`, `TipShear`) go into the coupling, which is about proportional to sin(phi).
+        Its mass is the cue's axial mass, its end mass "offset" of the cue without tip effects (see `cuefem.end_mass`).
+        Effects at the tip (`TipDome`, `TipShear`) determine the coupling, roughly proportional to sin(phi).
 
     Raises
     ------
@@ -63,7 +63,7 @@ def lump_modes(scene: Scene, tip: TipModes) -> LumpedCue:
 
 
 def _coupling(cue: LumpedCue, scene: Scene, squirt: float) -> float:
-    """The coupling, 1/kg, with which the squirt of a lumped cue whose tip never slips is ``squirt``, rad."""
+    """The coupling, 1/kg, of a lumped cue without slip whose squirt is ``squirt``, rad."""
     most, side = (1 - 1e-9) / math.sqrt(cue.mass * cue.end_mass), np.sign(scene.stroke.offset)
     numbers = numbers_of(_gripping(scene), cue)
 
@@ -73,12 +73,12 @@ def _coupling(cue: LumpedCue, scene: Scene, squirt: float) -> float:
     parts = np.linspace(-1.0, 1.0, MANY)
     excesses = excess(parts)
     if not excesses[0] < 0 < excesses[-1]:
-        raise ValueError(f"lump: no coupling of a lumped cue has the squirt {squirt:.6g} rad of a tip that sticks")
+        raise ValueError(f"lump: no coupling of a lumped cue has the squirt {squirt:.6g} rad of a sticking tip")
     return most * zoomed_root(excess, parts)
 
 
 def impulse(scene: Scene | Sequence[Scene]) -> Outcome:
-    """Outcome of a stroke from the general impulse solver: no time and no vibration, exact in every regime.
+    """Outcome of a stroke by the general impulse solver: without time and vibration, exact in every regime.
 
     Parameters
     ----------
@@ -95,8 +95,7 @@ def impulse(scene: Scene | Sequence[Scene]) -> Outcome:
     Raises
     ------
     ValueError
-        If a lumped cue has effects, which need time (see `cuefem.strike`), or if a finite-element cue has no such end
-        mass.
+        If a lumped cue has effects (see `cuefem.strike`), or if a finite-element cue has no such end mass.
 
     Notes
     -----
@@ -120,5 +119,5 @@ def impulse(scene: Scene | Sequence[Scene]) -> Outcome:
 def _lumped_numbers(scene: Scene) -> dict[str, float]:
     if scene.effects and scene.lumped is not None:
         names = ", ".join(type(effect).__name__ for effect in scene.effects)
-        raise ValueError(f"impulse takes a LumpedCue without effects, which need time (see strike); got {names}")
+        raise ValueError(f"impulse scene must have no effects on a LumpedCue (use strike for them); got {names}")
     return numbers_of(scene, scene.lumped or LumpedCue(scene.axial_mass, end_mass(scene, "offset")))

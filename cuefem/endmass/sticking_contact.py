@@ -16,7 +16,7 @@ from cuefem.scene import Scene
 class StickLimit:
     """The limit b -> 0 of the coupled strike: the tip sticks to the ball from the first touch.
 
-    The tip's velocity against the ball is K P(t) - 1 times what it was, P the part of the normal impulse given so far.
+    The tip's velocity relative to the ball is K P(t) - 1 times its initial value, P the fraction of the normal impulse.
     c = (1 + 1/nu)/M, 1/kg. K = (1 + e)(1 + 1/nu + 1/Q0)/(1 + 1/Q0). T: contact time, s. e: restitution. head_on_mass,
     kg. K and T may be arrays (offsets,). J, kg, is the transverse impulse over U phi.
     """
@@ -37,9 +37,9 @@ class StickLimit:
         return cls(c, (1 + e) * head_on_mass * (c + 1 / axial_mass), e, scene.contact_time, head_on_mass)
 
     def normal_impulse(self, t: Array) -> Array:
-        """P at times t, s, (..., times): the head-on impulse of the bilinear tip over its total.
+        """P at times t, s, (..., times): the impulse of the bilinear tip in a centre-ball impact over its total.
 
-        It is two quarter periods: (1 - cos)/(1 + e) while the tip is loaded, T/(1 + e) long, then (1 + e sin)/(1 + e).
+        Two quarter periods: (1 - cos)/(1 + e) in compression, T/(1 + e) long, then (1 + e sin)/(1 + e).
         """
         e, T = (np.asarray(value)[..., None] for value in (self.e, self.T))
         peak = T / (1 + e)
@@ -47,15 +47,15 @@ class StickLimit:
         unloaded = np.sin((x - np.pi / 2) / np.where(e > 0, e, 1.0))
         return np.asarray(np.where(x < np.pi / 2, 1 - np.cos(x), 1 + e * unloaded) / (1 + e))
 
-    def transverse_impulse(self, held: Array, until: float) -> Any:
-        """J, kg, of the tip that takes ``held``, over 0..until s (`ImpulseResponse.held`), to move at 1 m/s.
+    def transverse_impulse(self, step_impulse: Array, until: float) -> Any:
+        """J, kg, from the impulse of a velocity step over 0..until s (`ImpulseResponse.held`).
 
         The contacts end by then.
         """
-        u = until * np.linspace(0.0, 1.0, len(held))
-        given = self.normal_impulse(np.asarray(self.T)[..., None] - u)
-        swung = -(np.diff(given, axis=-1) * means(held)).sum(axis=-1)
-        return self.K * swung - np.interp(self.T, u, held)
+        u = until * np.linspace(0.0, 1.0, len(step_impulse))
+        P = self.normal_impulse(np.asarray(self.T)[..., None] - u)
+        swung = -(np.diff(P, axis=-1) * means(step_impulse)).sum(axis=-1)
+        return self.K * swung - np.interp(self.T, u, step_impulse)
 
     def impulse(self, slope: Any) -> Any:
         """J of a strike whose squirt is ``slope`` times phi, kg."""
@@ -66,9 +66,10 @@ class StickLimit:
         return J / ((1 + self.e) * self.head_on_mass)
 
     def end_mass(self, J: Any) -> Any:
-        """The end mass of a lumped cue that takes the transverse impulse J, kg: (K - 1)/J = 1/m + c.
+        """The end mass of a lumped cue with the transverse impulse J, kg: (K - 1)/J = 1/m + c.
 
-        ValueError if no end mass does: a squirt below zero is that of a cue so light that it runs ahead of the ball.
+        ValueError if there is none: squirt is negative if the end of the cue is so light that it runs ahead of the
+        ball.
         """
         rest = np.divide(self.K - 1, J, out=np.full(np.shape(J), np.nan), where=np.asarray(J) > 0) - self.c
         for i in np.argwhere(~(rest > 0))[:1]:

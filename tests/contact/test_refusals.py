@@ -50,7 +50,7 @@ CALLS: list[Any] = [
     (lambda: cf.Scene(cf.LumpedCue(0.5, 0.003), tip=0.7), "TypeError: Scene.tip must be a Tip"),
     (
         lambda: cf.impulse(cf.Scene(cf.LumpedCue(0.54, 0.005), effects=(cf.TipShear(0.75),))),
-        "impulse takes a LumpedCue without effects",
+        "impulse scene must have no effects on a LumpedCue",
     ),
     # strikes
     (struck(leather_scene(e=0.05)), "LeatherTip; got 0.05: leather that gives back less rings on"),

@@ -82,9 +82,7 @@ CALLS: dict[str, Callable[[], object]] = {
     "an optimum takes no store, workers or dask": lambda: cf.study(PROBLEM, workers=2),
     "workers are for this machine": lambda: cf.study(varying("ball.mass", 0.2), workers=2, dask="tcp://localhost:1"),
     "Scene.cue must be a Cue of segments": lambda: sensitivity(LUMPED),
-    "sensitivity takes a scene without effects": lambda: sensitivity(
-        replace(MAPLE, effects=(cf.PointMass(0.1, 1e-3),))
-    ),
+    "sensitivity scene must have no effects": lambda: sensitivity(replace(MAPLE, effects=(cf.PointMass(0.1, 1e-3),))),
 }
 
 

@@ -76,7 +76,7 @@ def test_a_clamped_tip_is_struck_but_has_no_end_mass() -> None:
     clamped = replace(kim_scene(0.3), effects=(cf.Support(0.0, inf),))
     assert imbalance(cf.strike(clamped)) < 1e-9
     for drive in ("stick", "velocity", "force"):
-        refuses(lambda drive=drive: cf.end_mass(clamped, drive), "a clamp holds the tip across the cue")
+        refuses(lambda drive=drive: cf.end_mass(clamped, drive), "the tip is clamped transversely")
 
 
 def test_what_is_just_allowed() -> None:
