@@ -105,7 +105,7 @@ def definition_of(drive: str) -> Definition:
 
 
 def force(tip: TipModes, scene: Scene) -> float:
-    """Impulse of a half-sine force over the final tip velocity, kg. The error falls like 1/modes^2 (kinks of the force).
+    """Impulse of a half-sine force over the final tip velocity, kg; its kinks make the error fall like 1/modes^2.
 
     A soft tip on a heavy ferrule may be at rest when the force ends, or move back: the value is then huge or negative,
     and only its inverse is accurate.
@@ -221,7 +221,7 @@ def _gripping(scene: Scene) -> Scene:
 
 
 def squirt_equivalent(tip: TipModes, scene: Scene) -> float:
-    """The lumped end mass with the squirt of the coupled strike in the impulse solver, kg; at the centre that at b/R = 1e-5.
+    """The lumped end mass with the squirt of the coupled strike, kg; at the centre that at b/R = 1e-5.
 
     ValueError if there is none: see `equivalent_end_mass`.
     """

@@ -59,7 +59,7 @@ CALLS: list[Any] = [
     (struck(kim_scene(friction=inf), effects=(cf.SecondHit(),)), "Tip.friction must be finite beside SecondHit"),
     (lambda: cf.Resolution(4, 8, 0), "Resolution.modes"),
     (lambda: cf.Resolution(1, 1, 1, 19), "Resolution.steps must be a whole number in [20, 1000000]; got 19"),
-    (struck(kim_scene(), cf.Resolution(2, 3, 500)), "more elements or order"),
+    (struck(kim_scene(), cf.Resolution(2, 3, 500)), "use more elements"),
     (lambda: cf.strike(kim_scene(), cf.Resolution(2, 8, 4)).history(-1e-9), "History takes times in [0, "),
     # many strikes
     (lambda: cf.impulse([kim_scene(), 3]), "TypeError: impulse scene must be a Scene"),
