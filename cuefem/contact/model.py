@@ -193,13 +193,11 @@ def check_restitution(name: str, restitution: float) -> None:
 
 
 def _leather(scene: Scene, whole: WholeTip, common: dict[str, Any]) -> dict[str, Any]:
-    """What a whole tip gives a contact: its patch slips ring by ring, or is a spring of a constant stiffness."""
+    """The terms of a whole tip, whose patch slips annulus by annulus."""
     law = whole.law(common["radius"], abs(float(scene.stroke.offset)), common["restitution"])
-    terms: dict[str, float] = {"law": 1, "most": law.most, "terms": len(law.force_terms)}
+    terms = {"law": 1, "most": law.most, "terms": len(law.force_terms), "rings": RINGS}
+    terms["surface_restitution"] = whole.surface_restitution
     arrays = {"force_terms": np.array(law.force_terms), "compliance_terms": np.array(law.give_terms)}
-    if whole.shear is not None:
-        return {"law": law, "patch": SPRING_PATCH, "terms": terms | {"compliance": 1 / whole.shear}, "arrays": arrays}
-    terms |= {"rings": RINGS, "surface_restitution": whole.surface_restitution}
     # the last ring has what lies beyond
     edges = min(law.most, DEEPER * scene.deepest) * np.linspace(0.0, 1.0, RINGS + 1) ** 2
     force, stiffness = law.at(edges)

@@ -27,16 +27,14 @@ class WholeTip:
     """A tip that gives everything at the contact: where this is on the cue, and the forces there.
 
     diameter: m. dome_radius: m; 0 for a flat tip. rim: the contact's angle at which the dome ends, rad; beyond it the
-    ball rolls on an edge. shear: a constant stiffness along the surface, N/m; None where the patch has its own.
-    surface_restitution: the root of what the leather gives back of the work that strains it along the surface. lever:
-    displacement (u, w) of the contact per unit rotation of the tip's end section, m, at an angle >= 0, rad. law: the
-    forces on a ball by its radius, m, the offset b/R >= 0 and the restitution.
+    ball rolls on an edge. surface_restitution: square root of the part of the tangential strain energy that the leather
+    returns. lever: displacement (u, w) of the contact per unit rotation of the tip's end section, m, at an angle >= 0,
+    rad. law: the forces on a ball by its radius, m, the offset b/R >= 0 and the restitution.
     """
 
     diameter: float
     dome_radius: float
     rim: float
-    shear: float | None
     surface_restitution: float
     lever: Callable[[float], tuple[float, float]]
     law: Callable[[float, float, float], LeatherLaw]

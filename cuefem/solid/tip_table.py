@@ -1,6 +1,6 @@
 """The static compliance of a leather tip, from the table beside this file, which studies/beam/leather.py makes.
 
-A tip outside the table, or with layers, is computed and kept by `cuefem.solid.tip_cache`.
+A tip outside the table, or with layers, is computed and stored by `cuefem.solid.tip_cache`.
 
 Lengths are over the tip's diameter D and moduli over Young's modulus E here. A tip is its height, its dome's curvature
 D/r (0: flat) and Poisson's ratio nu; a patch is the place of its centre, the distance from the axis over D/2, and its

@@ -27,7 +27,7 @@ SCENES = [
     *(leather_scene(offset, speed=speed) for offset, speed in ((0.0, 1.0), (0.3, 1.0), (-0.3, 2.0), (0.45, 6.0))),
     replace(leather_scene(0.2), ball=cf.Ball(mass=0.17, radius=0.028575)),
     leather_scene(0.45, cf.SecondHit(0.02)),
-    leather_scene(0.4, leather=replace(leather_scene().leather, shear=1e6)),
+    leather_scene(0.4),
 ]
 LEFT_OUT = ("phases", "history", "unknowns", "error", "energy")
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -45,17 +44,6 @@ def gives(tip: cf.LeatherTip) -> list[np.ndarray]:
         np.array(tip.head_on(D, 0.0286)[1:])[:, 1:],
         tip.shear_stiffness(D, 0.375)[1][1:],
     ]
-
-
-def test_layers_of_the_leather_are_no_layers() -> None:
-    """To 1e-10, and at no cost: two halves of one pad are the pad, a pad of the leather is the leather."""
-    same = cf.TipLayer(1e-3, 100e6, 0.4)
-    for layers in ((same,), (same, same)):
-        for own, plain in zip(gives(replace(PLAIN, layers=layers)), gives(PLAIN), strict=True):
-            np.testing.assert_allclose(own, plain, rtol=1e-10)
-    pad = cf.TipLayer(1e-3, 2e9)
-    halves, whole = (replace(PLAIN, layers=layers)._own(D) for layers in ((replace(pad, height=0.5e-3),) * 2, (pad,)))
-    assert halves == whole
 
 
 @pytest.fixture
