@@ -110,7 +110,9 @@ def model_of(scene: Scene, tip: TipModes) -> ContactModel:
         "time": scene.contact_time,
         "window": terms.window,
     }
-    _check_restitution(model["restitution"], terms)
+    check_restitution(
+        "Tip.restitution", model["restitution"], LEAST_RESTITUTION if terms.tip is None else LEAST_OF_LEATHER
+    )
     raised = terms.table is not None
     if raised and (terms.compliance or terms.turns or terms.window is not None or terms.tip is not None):
         raise ValueError("a raised cue (Elevation) takes a tip without give sideways, a fixed normal and a single hit")
@@ -174,20 +176,11 @@ def _raised(phi: float, axes: Array) -> Array:
     return facing
 
 
-def _check_restitution(e: float, terms: ContactTerms) -> None:
-    if terms.tip is not None and e < LEAST_OF_LEATHER:
-        raise ValueError(
-            f"Tip.restitution must be in [{LEAST_OF_LEATHER}, 1] beside LeatherTip; got {e:g}: leather that gives back "
-            "less rings on the ball while it is unloaded, which is not computed (cue tips: 0.7 to 0.85)"
-        )
-    check_restitution("Tip.restitution", e)
-
-
-def check_restitution(name: str, restitution: float) -> None:
+def check_restitution(name: str, restitution: float, least: float = LEAST_RESTITUTION) -> None:
     """ValueError for a restitution near 0."""
-    if restitution < LEAST_RESTITUTION:
+    if restitution < least:
         raise ValueError(
-            f"{name} must be in [{LEAST_RESTITUTION:g}, 1] where a contact is followed in time; got {restitution:g} "
+            f"{name} must be in [{least:g}, 1] where a contact is followed in time; got {restitution:g} "
             "(cuefem.impulse takes any)"
         )
 

@@ -117,7 +117,13 @@ class SolvedContact:
         else:  # what turned the ball about the vertical, and what the cue gave
             turning = float(model.axes[2] @ self.ball[3:])
             along = model.speed * inertia - float(approach @ (model.propagator.velocities @ self.xi).real)
-        energy = self._energy(inertia, (p_t**2 + p_n**2) / (2 * M), model.inertia * M * turning**2 / 2)
+        energy = self.energies(
+            {
+                "initial": inertia * model.speed**2 / 2,
+                "ball translation": (p_t**2 + p_n**2) / (2 * M),
+                "ball rotation": model.inertia * M * turning**2 / 2,
+            }
+        )
         return Outcome(
             squirt=side * math.atan2(s * p_n - c * p_t, s * p_t + c * p_n) + 0.0,
             ball_velocity=np.array([side * p_t, p_n]) / M,
@@ -139,13 +145,11 @@ class SolvedContact:
             return "late stick" if abs(self.velocity[0]) <= 1e-12 * self.model.speed else "miscue"
         return contact_state(self.phases, energy)
 
-    def _energy(self, inertia: float, moving: float, turning: float) -> dict[str, float]:
-        """J by name; inertia, kg, of the cue along its axis; the ball's energy in its motion and its spin."""
+    def energies(self, of_ball: dict[str, float]) -> dict[str, float]:
+        """Energies after the contact by name, J; of_ball: the initial one, and the ball's or striker's."""
         model, losses, (rigid, vibrating) = self.model, self.losses, self.cue_energy
         account = {
-            "initial": inertia * model.speed**2 / 2,
-            "ball translation": moving,
-            "ball rotation": turning,
+            **of_ball,
             "cue": rigid,
             "cue vibration": vibrating + losses["radiated"],
             "tip loss": losses["tip"],

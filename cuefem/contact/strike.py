@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,7 +11,7 @@ from cuefem.beam.tip import TipModes
 from cuefem.contact.model import model_of
 from cuefem.contact.step_records import solve_contact
 from cuefem.cue import Cue
-from cuefem.quantity.fields import check_count, check_kind
+from cuefem.quantity.fields import check_kind
 from cuefem.scene import Outcome, Resolution, Scene, several
 from cuefem.scene.solved_scene import strike_modes_kept, tip_modes_of, turning
 from cuefem.solid.resolution import Solid
@@ -83,7 +81,7 @@ def strike_modes(scene: Scene, tip: TipModes, *, steps: int | None = None) -> Ou
     return solve_contact(model_of(scene, tip), steps=steps).outcome
 
 
-def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None, *, threads: int = 1) -> Outcome:
+def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None) -> Outcome:
     """Strike many balls with vibrating cues: the numbers of `cuefem.strike`, as arrays.
 
     Parameters
@@ -93,8 +91,6 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None, *, threa
         solved once, as long as the same resolution is meant for them.
     at
         As in `cuefem.strike`, for all; by default each scene's own.
-    threads
-        How many threads strike, beside each other. The numbers do not depend on it.
 
     Returns
     -------
@@ -119,58 +115,30 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None, *, threa
     >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
     >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),), body_mass=0.43)
     >>> scenes = [cf.Scene(cue, stroke=cf.Stroke(2.0, offset)) for offset in (0.1, 0.2, 0.3)]
-    >>> outcome = cf.batch_strike(scenes, cf.Resolution(2, 10, 10), threads=2)
+    >>> outcome = cf.batch_strike(scenes, cf.Resolution(2, 10, 10))
     >>> outcome.squirt.shape, bool(outcome.squirt[2] > outcome.squirt[1])
     ((3,), True)
     """
-    check_count("batch_strike threads", threads, 1)
     scenes = several("batch_strike scenes", scenes)
-    groups: dict[Any, list[int]] = {}
-    counts: dict[tuple[Cue, float], int] = {}
+    tips: dict[Any, TipModes] = {}
+    results = []
     for i, scene in enumerate(scenes):
-        with _told_of(i):
-            groups.setdefault(_modes_of(scene, at, counts), []).append(i)
-    struck: list[Any] = list(scenes)
-    with ThreadPoolExecutor(threads) as executor:
-        for group in groups.values():  # strikes with the same modes, which are solved once
-            with _told_of(group[0]):
-                tip = tip_modes_of(scenes[group[0]], at)
-            for i in group:
-                struck[i] = executor.submit(_struck, i, scenes[i], tip, steps_of(at))
-    return _together([each.result() for each in struck])
+        try:
+            key = _modes_of(scene, at)
+            tip = tips[key] = tips.get(key) or tip_modes_of(scene, at)
+            results.append(strike_modes(scene, tip, steps=steps_of(at)))
+        except (ValueError, RuntimeError) as error:
+            kind = ValueError if isinstance(error, ValueError) else RuntimeError
+            raise kind(f"scene {i}: {error}") from error
+    names = dict.fromkeys(name for outcome in results for name in outcome.energy)
+    energy = {name: np.array([outcome.energy.get(name, 0.0) for outcome in results]) for name in names}
+    columns = {name: np.array([getattr(outcome, name) for outcome in results]) for name in NUMBERS}
+    unknowns = max(outcome.unknowns for outcome in results)
+    return Outcome(**columns, phases=(), energy=energy, unknowns=unknowns)  # type: ignore[arg-type]
 
 
-def _modes_of(scene: Scene, at: Resolution | None, counts: dict[tuple[Cue, float], int]) -> tuple[Any, ...]:
-    """What the tip modes of a scene depend on; counts: the default numbers of modes known so far."""
+def _modes_of(scene: Scene, at: Resolution | None) -> tuple[Any, ...]:
+    """What the tip modes of a scene depend on."""
     if scene.lumped is not None:
         return (scene.lumped,)
-    fineness: Resolution | int | None = at
-    if fineness is None:
-        timed = scene.shaft, float(scene.contact_time)
-        fineness = counts.get(timed) or counts.setdefault(timed, strike_modes_kept(scene))
-    return scene.cue, scene.cue_effects, float(scene.axial_mass), turning(scene), fineness
-
-
-@contextmanager
-def _told_of(number: int) -> Iterator[None]:
-    """Errors of a scene have its number in front."""
-    try:
-        yield
-    except (ValueError, RuntimeError) as error:
-        raised = ValueError if isinstance(error, ValueError) else RuntimeError
-        raise raised(f"scene {number}: {error}") from error
-
-
-def _struck(number: int, scene: Scene, tip: TipModes, steps: int | None) -> dict[str, Any]:
-    """The numbers of a strike."""
-    with _told_of(number):
-        outcome = strike_modes(scene, tip, steps=steps)
-    return {name: getattr(outcome, name) for name in (*NUMBERS, "energy", "unknowns")}
-
-
-def _together(results: Sequence[dict[str, Any]]) -> Outcome:
-    names = dict.fromkeys(name for numbers in results for name in numbers["energy"])
-    energy = {name: np.array([numbers["energy"].get(name, 0.0) for numbers in results]) for name in names}
-    columns = {name: np.array([numbers[name] for numbers in results]) for name in NUMBERS}
-    unknowns = max(numbers["unknowns"] for numbers in results)
-    return Outcome(**columns, phases=(), energy=energy, unknowns=unknowns)  # type: ignore[arg-type]
+    return scene.cue, scene.cue_effects, float(scene.axial_mass), turning(scene), at or strike_modes_kept(scene)

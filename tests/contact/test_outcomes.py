@@ -51,11 +51,6 @@ def test_many_strikes_are_the_strikes_one_by_one(scenes: list[cf.Scene], at: cf.
     assert together.unknowns > 20
 
 
-@pytest.mark.parametrize("threads", [2, 5])
-def test_threads_change_nothing(threads: int) -> None:
-    assert cf.batch_strike(SCENES, AT, threads=threads) == cf.batch_strike(SCENES, AT)
-
-
 EFFECTS: list[tuple[cf.Effect, ...]] = [
     (),
     (cf.SecondHit(),),
