@@ -19,8 +19,6 @@ from cuefem.cue import Array
 PUSHES, LOOKS, UNTIL = (0.5, 0.75, 1.0), 16, 1.5
 # Of the decomposition, rows that carry less than this part of the greatest one's q'Gq are dropped, and all beyond MOST.
 LEAST_PART, MOST = 1e-12, 12
-# A rigid motion whose entry in G is less than this part of the largest entry does not turn the cue: that is rounding.
-BALANCED = 1e-12
 
 
 class BentTooFar(ValueError):
@@ -49,22 +47,6 @@ def slope_rows(tip: TipModes, time: float, until: float) -> Array:
     parts, ways = np.linalg.eigh(together.T @ onto)
     strongest = np.flatnonzero(parts > LEAST_PART * parts[-1])[-MOST:]
     return np.concatenate([(onto @ (ways[:, strongest] / np.sqrt(parts[strongest]))).T[::-1], tip.rotation[None]])
-
-
-def buckling_thrust(tip: TipModes, ahead: float = 0.0) -> float:
-    """The thrust along a fixed line that buckles a cue if it lasts, N; ahead: how far before its end that acts, m.
-
-    It is the least P > 0 for which omega^2 - P G is singular. Any thrust turns a cue that nothing holds, and that is no
-    buckling: the rigid motions are eliminated, G - G_fr G_rr^-1 G_rf over the flexible modes f and the rigid ones r.
-    """
-    assert tip.geometric is not None
-    stiffness = tip.geometric + ahead * np.outer(tip.rotation, tip.rotation)
-    bends = tip.omega > 0
-    turns = ~bends & (np.diag(tip.geometric) > BALANCED * np.diag(tip.geometric).max())
-    of_both = stiffness[np.ix_(bends, turns)]
-    balanced = stiffness[np.ix_(bends, bends)] - of_both @ np.linalg.solve(stiffness[np.ix_(turns, turns)], of_both.T)
-    greatest = np.linalg.eigvalsh(balanced / np.outer(tip.omega[bends], tip.omega[bends]))[-1]
-    return float(1 / greatest) if greatest > 0 else math.inf
 
 
 def _pushed(omega: Array, span: float, times: Array) -> Array:

@@ -29,8 +29,8 @@ class ContactModel:
     propagator: the cue's modes and ports. facing: (forces, ports + ball), from the velocities of the ports to those of
     the contact at the first touch. inverse_masses: (n,), of the ball's velocities; ball: these at the first touch, m/s.
     law: the force along the normal. terms, arrays: what `kernel/contact.h` names, by name. axes: right, forward and up
-    in (t, n, p), (3, 3), above a table; None for a level cue. tip: the cue's modes, where they are known. side: of the
-    ball that is struck, 1 or -1; all else is that of the stroke on the side 1. radius: of the ball, m.
+    in (t, n, p), (3, 3), above a table; None for a level cue. side: of the ball that is struck, 1 or -1; all else is
+    that of the stroke on the side 1. radius: of the ball, m.
     """
 
     propagator: ModalPropagator
@@ -50,7 +50,6 @@ class ContactModel:
     arrays: dict[str, Array] = field(default_factory=dict)
     axes: Array | None = None
     window: float | None = None
-    tip: TipModes | None = None
     side: float = 1.0
     radius: float = 1.0
 
@@ -145,7 +144,7 @@ def model_of(scene: Scene, tip: TipModes) -> ContactModel:
         facing = _raised(model["phi"], model["axes"])
     moves, turns = 1 / model["ball_mass"], 1 / (model["inertia"] * model["ball_mass"])
     inverse_masses = np.array([moves] * 3 + [turns] * 3 if raised else [moves, moves, turns])
-    return ContactModel(propagator, facing, inverse_masses, 0 * inverse_masses, tip=tip, **model)
+    return ContactModel(propagator, facing, inverse_masses, 0 * inverse_masses, **model)
 
 
 def _level(phi: float, u: float, w: float) -> Array:

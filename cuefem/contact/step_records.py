@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from cuefem.contact.geometric_stiffness import BentTooFar, buckling_thrust
+from cuefem.contact.geometric_stiffness import BentTooFar
 from cuefem.contact.kernel.library import STEP, KernelContact, library
 from cuefem.contact.modal_response import Complex
 from cuefem.contact.model import PARTIAL_SLIP, RIGID_PATCH, ContactModel
@@ -253,11 +253,9 @@ def _failure(model: ContactModel, c: KernelContact) -> Exception:
     if c.status == _TOO_DEEP and isinstance(model.law, LeatherLaw):
         return model.law.too_deep(c.depth)
     if c.status == _BENT_TOO_FAR:
-        assert model.tip is not None
-        buckles = buckling_thrust(model.tip, float(model.arrays["slope_weights"][-1]))
         return BentTooFar(
-            f"the thrust of {c.thrust:.4g} N bends the shaft by {c.steepest:.3g} rad at its tip, further than "
-            f"GeometricStiffness holds; thrust that lasts buckles it from {buckles:.4g} N on"
+            f"the axial force of {c.thrust:.4g} N bends the shaft by {c.steepest:.3g} rad at its tip, beyond the range "
+            "of GeometricStiffness: lower the speed, or stiffen the shaft"
         )
     if c.status == _UNSOLVED:
         return RuntimeError(

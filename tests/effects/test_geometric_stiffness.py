@@ -109,7 +109,5 @@ def test_squirt_changes_as_in_a_geometrically_exact_chain(speed: float, offset: 
 def test_a_shaft_that_bends_too_far_is_refused_by_its_load() -> None:
     thin = cf.Cue((cf.Segment(0.7, 0.005, 0.006, cf.Material(E=12.6e9, G=0.84e9, rho=700.0)),), body_mass=0.5)
     scene = cf.Scene(thin, tip=cf.Tip(contact_time=4e-3), stroke=cf.Stroke(20.0, 0.5), effects=(THRUST,))
-    with pytest.raises(
-        ValueError, match=r"the thrust of \S+ N bends the shaft by 0\.\d+ rad .* buckles it from \S+ N on"
-    ):
+    with pytest.raises(ValueError, match=r"the axial force of \S+ N bends the shaft by 0\.\d+ rad"):
         cf.strike(scene)
