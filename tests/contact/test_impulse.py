@@ -81,7 +81,7 @@ def mirrors(singles: list[Scene], right: Outcome) -> None:
 
 
 @pytest.mark.parametrize("kind", REGIMES)
-def test_an_oracle_agrees_in_every_regime(kind: str) -> None:
+def test_impulse_every_regime_agrees_with_oracle(kind: str) -> None:
     rng = np.random.default_rng([8, REGIMES.index(kind)])
     singles = [draw(rng, kind) for _ in range(100)]
     n, out, told = columns(singles), impulse(singles), [exact(each) for each in singles]
@@ -102,14 +102,14 @@ def test_an_oracle_agrees_in_every_regime(kind: str) -> None:
         assert np.all(abs(joules - out.energy[name]) < near * out.energy["initial"]), name
 
 
-def test_energy_closes_and_mirrors_at_the_edges() -> None:
+def test_impulse_edge_cases_conserve_energy_and_mirror() -> None:
     out = impulse(EDGES)
     assert all(np.all(np.isfinite(value)) for name, value in everything(out).items() if name != "slip ends")
     energy_closes(EDGES, out)
     mirrors(EDGES, out)
 
 
-def test_many_strokes_are_their_strokes_one_by_one() -> None:
+def test_impulse_of_sequence_equals_single_strokes() -> None:
     rng = np.random.default_rng(5)
     singles = [draw(rng, kind) for kind in REGIMES for _ in range(8)]
     out = impulse(singles)

@@ -165,7 +165,7 @@ def flights(outcome: cf.Outcome) -> list[Phase]:
 
 
 @pytest.mark.parametrize(("kind", "seeds", "steps"), [*DAILY, *HEAVY, *MANY])
-def test_strikes_of_each_kind(kind: str, seeds: Iterable[int], steps: int) -> None:
+def test_strike_each_kind_of_effects_agrees_with_small_steps(kind: str, seeds: Iterable[int], steps: int) -> None:
     off = [compared(KINDS[kind].make(Draw(seed)), steps) for seed in seeds]
     worst = {name: max(each[name] for each in off) for name in off[0]}
     print(kind, len(off), {name: f"{value:.1e}" for name, value in worst.items()})
@@ -173,7 +173,7 @@ def test_strikes_of_each_kind(kind: str, seeds: Iterable[int], steps: int) -> No
 
 
 @pytest.mark.parametrize("seed", [1, 6, 20, 24])
-def test_the_window_counts_from_the_first_separation(seed: int) -> None:
+def test_second_hit_window_counts_from_first_separation(seed: int) -> None:
     scene = hit_again(Draw(seed))
     others = tuple(effect for effect in scene.effects if not isinstance(effect, cf.SecondHit))
 

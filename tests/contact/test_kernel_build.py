@@ -51,7 +51,7 @@ SPOILED = {  # the file of the kernel that is changed, and what becomes of its b
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("how", SPOILED)
-def test_a_kernel_that_is_not_of_these_sources_ends_in_a_line_and_a_build_mends_it(folder: Path, how: str) -> None:
+def test_kernel_of_other_sources_raises_until_built(folder: Path, how: str) -> None:
     name, spoil, words = SPOILED[how]
     binary = folder / BINARY.relative_to(ROOT)
     file = binary.parent / name
@@ -71,7 +71,7 @@ def test_a_kernel_that_is_not_of_these_sources_ends_in_a_line_and_a_build_mends_
 
 
 @pytest.mark.parametrize("environment", [{"CC": "no-such-compiler"}, {"PATH": ""}, {"CC": "false"}])
-def test_without_a_compiler_it_takes_zig_or_names_both(folder: Path, environment: dict[str, str]) -> None:
+def test_kernel_build_without_compiler_uses_zig_or_names_both(folder: Path, environment: dict[str, str]) -> None:
     without_zig = f"import sys; sys.modules['ziglang'] = None; {BUILDING}"
     assert run(folder, "-c", without_zig, **environment) == (1, "", [NAMES_BOTH])
     (folder / "ziglang.py").write_text("raise SystemExit('a zig that does not compile')")

@@ -25,14 +25,14 @@ BEND = 1.5
 
 
 @pytest.mark.parametrize(("speed", "chain"), [(0.8, 2.30), (2.0, 2.32), (4.0, 2.33), (7.0, 2.31)])
-def test_squirt_on_maple_is_that_of_an_exact_chain(speed: float, chain: float) -> None:
+def test_leather_strike_on_maple_equals_exact_chain(speed: float, chain: float) -> None:
     """The full model against rigid links of their own, which are geometrically exact."""
     found = strike(struck_scene(0.375, speed, more=(cf.AxialWaves(), cf.GeometricStiffness())))
     assert np.degrees(found.squirt) == pytest.approx(chain, rel=0.02)
 
 
 @pytest.mark.parametrize("speed", [1.0, 2.0, 5.0])
-def test_head_on_the_contact_time_is_that_of_the_law_by_quadrature(speed: float) -> None:
+def test_leather_central_impact_contact_time_equals_quadrature(speed: float) -> None:
     scene, at = struck_scene(0.0, speed), cf.Resolution(2, 10, 10)
     falls_with_the_step(lambda steps: abs(strike(scene, replace(at, steps=steps)).duration / scene.contact_time - 1))
     law, mass = scene.tip_law(), scene.head_on_mass
@@ -62,7 +62,7 @@ def off(scene: cf.Scene, step: float = 1e-6) -> float:
     ("offset", "friction", "restitution"),
     [(0.38, 0.3, 1.0), (0.5, 0.4, 1.0), (0.6, 0.5, 1.0), (0.375, 0.7, 0.95), (0.2, 0.7, 0.7), (0.5, 0.7, 0.5)],
 )
-def test_small_steps_slide_as_a_whole_and_lose_along_the_surface_alike(
+def test_leather_strike_slip_and_losses_agree_with_small_steps(
     offset: float, friction: float, restitution: float
 ) -> None:
     leather = replace(LEATHER, surface_restitution=restitution)
@@ -70,7 +70,7 @@ def test_small_steps_slide_as_a_whole_and_lose_along_the_surface_alike(
 
 
 @pytest.mark.nightly
-def test_a_hundred_random_strikes() -> None:
+def test_leather_strike_random_scenes_agree_with_small_steps() -> None:
     found = np.array([off(drawn(seed)) for seed in range(100)])
     wrong = np.flatnonzero(np.abs(found) >= WITHIN).tolist()
     print("worst", np.abs(found).max(), "median", np.median(np.abs(found)), "wrong", len(wrong))

@@ -41,7 +41,7 @@ def numbers(outcome: cf.Outcome) -> dict[str, object]:
 @pytest.mark.parametrize(
     ("scenes", "at"), [(SCENES, AT), (SCENES[::-1], AT), (SCENES[:22:6], None)], ids=["given", "backwards", "default"]
 )
-def test_many_strikes_are_the_strikes_one_by_one(scenes: list[cf.Scene], at: cf.Resolution | None) -> None:
+def test_batch_strike_equals_single_strikes(scenes: list[cf.Scene], at: cf.Resolution | None) -> None:
     """So are strikes that share what a cue does, in any order."""
     together = cf.batch_strike(scenes, at)
     for i, scene in enumerate(scenes):
@@ -67,7 +67,7 @@ def struck(effects: tuple[cf.Effect, ...]) -> cf.Outcome:
 
 
 @pytest.mark.heavy
-def test_an_outcome_is_a_value_also_in_another_process() -> None:
+def test_outcome_in_another_process_is_equal() -> None:
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as executor:
         for effects, sent in zip(EFFECTS, executor.map(struck, EFFECTS), strict=True):
             outcome = struck(effects)
@@ -83,7 +83,7 @@ def test_an_outcome_is_a_value_also_in_another_process() -> None:
             assert (outcome == struck(())) == (effects in ((), (cf.SecondHit(),)))
 
 
-def test_outcomes_of_many_strikes_are_values() -> None:
+def test_outcome_of_batch_copies_and_pickles_equal() -> None:
     scenes = [kim_scene(offset) for offset in (0.1, 0.2, 0.3)]
     outcome = cf.batch_strike(scenes, AT)
     assert deepcopy(outcome) == pickle.loads(pickle.dumps(outcome)) == outcome == cf.batch_strike(scenes, AT)
@@ -94,7 +94,7 @@ def test_outcomes_of_many_strikes_are_values() -> None:
 
 
 @pytest.mark.nightly
-def test_strikes_leave_no_memory_behind() -> None:
+def test_strike_repeated_leaves_no_memory_behind() -> None:
     """The greatest memory of this process hardly grows over so many strikes; few are on leather."""
     bare, few = kim_scene(0.3), cf.Resolution(2, 8, 4)
     scenes = [leather_scene(0.3, cf.SecondHit(5e-3)), bare, replace(bare, effects=(cf.TipShear(0.75),))]

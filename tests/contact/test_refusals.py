@@ -103,11 +103,11 @@ def test_calls(ask: Callable[[], object], message: str) -> None:
     refuses(ask, message)
 
 
-def test_what_is_just_allowed() -> None:
+def test_contact_input_at_bound_is_accepted() -> None:
     assert cf.impulse(cf.Scene(cf.LumpedCue(1, 1), cf.Ball(1, 1, 1), cf.Tip(0, inf), cf.Stroke(1, 0))).cue_speed == 0.5
 
 
-def test_a_strike_that_does_not_separate_says_so_with_its_state(monkeypatch) -> None:
+def test_strike_without_separation_raises_with_its_state(monkeypatch) -> None:
     monkeypatch.setattr("cuefem.contact.step_records.LONGEST", 0.3)
     message = (
         r"does not leave the cue: after .* s \(head-on contact time .* s\) the tip is pressed by .* m, in stick; check"
@@ -116,7 +116,7 @@ def test_a_strike_that_does_not_separate_says_so_with_its_state(monkeypatch) -> 
         cf.strike(cf.Scene(cf.LumpedCue(0.54, 0.003), stroke=cf.Stroke(offset=0.3)))
 
 
-def test_a_strike_of_too_many_steps_is_given_up(monkeypatch) -> None:
+def test_strike_of_too_many_steps_raises(monkeypatch) -> None:
     monkeypatch.setattr("cuefem.contact.step_records.MOST", 3000)
     once = cf.Scene(cf.LumpedCue(0.54, 0.003), stroke=cf.Stroke(offset=0.3))
     assert cf.strike(replace(once, effects=(cf.SecondHit(2e-3),))) == cf.strike(once)
@@ -124,7 +124,7 @@ def test_a_strike_of_too_many_steps_is_given_up(monkeypatch) -> None:
         cf.strike(replace(once, effects=(cf.SecondHit(1.0),)))
 
 
-def test_a_force_that_is_no_number_is_seen_in_its_step() -> None:
+def test_strike_with_nan_force_raises_in_its_step() -> None:
     scene = cf.Scene(cf.LumpedCue(0.54, 0.003), stroke=cf.Stroke(offset=0.3), effects=(cf.Elevation(0.2),))
     model = model_of(scene, lumped_tip_modes(scene.cue))
     model.facing[2, 2] = nan  # out of the plane of the stroke

@@ -38,7 +38,7 @@ def stiffened(cue: cf.Cue) -> cf.Cue:
     [(rod(3e3), 4.0), (cone(3e3, 0.4), 6.8318457694), (kim(), 5.494268)],
     ids=["rod", "cone 0.4", "kim"],
 )
-def test_effective_mass_of_a_stiff_beam_is_the_rigid_one(cue: cf.Cue, limit: float, restitution: float) -> None:
+def test_side_strike_stiff_beam_has_rigid_effective_mass(cue: cf.Cue, limit: float, restitution: float) -> None:
     """A free rigid rod is felt at its end as 1/4 of its mass, a cone of 0.4 as 1/6.83; anywhere as `rigid_mass`."""
     striker, at = Striker(0.1 * cue.shaft_mass, restitution, contact_time=1e-3), Resolution(1, 12, 2, 6400)
     scene = SideStrike(stiffened(cue), striker)
@@ -48,7 +48,7 @@ def test_effective_mass_of_a_stiff_beam_is_the_rigid_one(cue: cf.Cue, limit: flo
 
 
 @pytest.mark.parametrize("restitution", [1.0, 0.6, 0.2])
-def test_hertz_on_a_wall_meets_its_closed_form(restitution: float) -> None:
+def test_side_strike_hertz_on_wall_equals_closed_form(restitution: float) -> None:
     """Duration 2.94 of the greatest compression (15 m v²/(16 E* √R))^(2/5) over v, times (1 + e)/2; e_A = e."""
     striker = Striker(0.02, restitution, modulus=1e8, radius=0.01)
     wall = (Support(0.2, math.inf, math.inf),)
@@ -90,7 +90,7 @@ def spring_exact(inelasticity: float) -> tuple[float, float]:
 
 @pytest.mark.parametrize("inelasticity", [0.05, 0.5, 2.0])
 @pytest.mark.parametrize(("where", "lengths"), [("middle", 16.0), ("end", 8.0)])
-def test_a_long_thin_beam_meets_the_endless_one(where: str, lengths: float, inelasticity: float) -> None:
+def test_side_strike_long_thin_beam_equals_infinite_beam(where: str, lengths: float, inelasticity: float) -> None:
     """An elastic spring on an endless Euler beam: e_A by Laplace's transform, one parameter C m √ω0."""
     time, diameter, rho = 1e-3, 1e-2, 700.0
     spread = 250 * diameter  # (EI/rhoA)^(1/4) sqrt(T): thin, and without shear, it is nearly Euler's beam
@@ -108,7 +108,7 @@ def test_a_long_thin_beam_meets_the_endless_one(where: str, lengths: float, inel
 
 @pytest.mark.parametrize("striker", [BALL, SOFT, replace(BALL, restitution=0.05), replace(BALL, mass=0.5)])
 @pytest.mark.parametrize("effects", [(), (PointMass(0.1, 2e-3, 1e-7), HAND, JOINT, DAMPED)], ids=["bare", "effects"])
-def test_energies_and_momentum_balance(striker: Striker, effects: tuple[cf.Effect, ...]) -> None:
+def test_side_strike_conserves_energy_and_momentum(striker: Striker, effects: tuple[cf.Effect, ...]) -> None:
     scene = SideStrike(kim(), striker, 0.04, 1.7, effects)
     outcome = side_strike(scene, FEW)
     parts = sum(joules for name, joules in outcome.energy.items() if name != "initial")
@@ -123,7 +123,7 @@ ON = [pytest.param(name, marks=[] if name == "kim" else pytest.mark.heavy) for n
 
 
 @pytest.mark.parametrize("name", ON)
-def test_a_light_striker_feels_the_end_mass_by_force(name: str) -> None:
+def test_side_strike_light_striker_measures_end_mass_by_force(name: str) -> None:
     """The force of a striker of no mass is a half sine; impulse over the tip's speed at its end is that definition."""
     cue, at = FAMILY[name], Resolution(2, 14, 24, 1600)
     felt = cf.end_mass(cf.Scene(cue, tip=cf.Tip(contact_time=1e-3)), "force", at)
@@ -132,7 +132,7 @@ def test_a_light_striker_feels_the_end_mass_by_force(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ON)
-def test_the_default_resolution_gives_e_A_within_1e_4(name: str) -> None:
+def test_side_strike_default_resolution_restitution_within_1e_4(name: str) -> None:
     rng, cue = np.random.default_rng(7), FAMILY[name]
     for _ in range(2):
         mass, time = np.exp(rng.uniform(np.log([1e-3, 0.3e-3]), np.log([0.2, 3e-3])))
@@ -144,7 +144,7 @@ def test_the_default_resolution_gives_e_A_within_1e_4(name: str) -> None:
 
 
 @pytest.mark.parametrize("law", [{"contact_time": 0.3e-3}, {"modulus": 1e9, "radius": 0.02}], ids=["linear", "Hertz"])
-def test_a_second_hit_is_followed(law: dict[str, float]) -> None:
+def test_side_strike_second_hit_is_computed(law: dict[str, float]) -> None:
     """The end that a heavy striker drove away hits it again; a contact that outlasts the window is the last."""
     scene = SideStrike(kim(), Striker(0.05, 0.8, **law), 0.0)
     once, twice = side_strike(scene, FEW), side_strike(replace(scene, effects=(cf.SecondHit(20e-3),)), FEW)
@@ -157,7 +157,7 @@ def test_a_second_hit_is_followed(law: dict[str, float]) -> None:
 
 
 @pytest.mark.parametrize("striker", [BALL, SOFT, Striker(0.1, 0.5, stiffness=3e5)])
-def test_a_file_reads_back(tmp_path: Path, striker: Striker) -> None:
+def test_side_strike_file_round_trip_is_equal(tmp_path: Path, striker: Striker) -> None:
     scene = replace(SCENE, striker=striker)
     cf.save(scene, tmp_path / "side.toml")
     assert cf.load(tmp_path / "side.toml") == scene
@@ -179,5 +179,5 @@ CALLS: list[tuple[Callable[[], object], str]] = [
 
 
 @pytest.mark.parametrize(("ask", "message"), CALLS, ids=[message for _, message in CALLS])
-def test_bad_input_is_refused(ask: Callable[[], object], message: str) -> None:
+def test_side_strike_invalid_input_raises(ask: Callable[[], object], message: str) -> None:
     refuses(ask, message)

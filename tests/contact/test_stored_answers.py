@@ -33,7 +33,7 @@ def squirt_error(outcome: Outcome, row: dict[str, Any]) -> float:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_strikes_of_a_kind_answer_as_stored(kind: str) -> None:
+def test_strike_each_kind_equals_stored_answers(kind: str) -> None:
     rows = [row for row in strikes() if row["kind"] == kind]
     outcomes = [struck(row) for row in rows]
     errors = np.array([squirt_error(outcome, row) for outcome, row in zip(outcomes, rows, strict=True)])
@@ -57,7 +57,7 @@ def test_strikes_of_a_kind_answer_as_stored(kind: str) -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("damped", [False, True])
-def test_end_masses_answer_as_stored(damped: bool) -> None:
+def test_end_mass_equals_stored_answers(damped: bool) -> None:
     """The default modes leave up to 0.6 % of an end mass (handbook: Accuracy)."""
     errors = []
     for row in cues():
@@ -70,7 +70,7 @@ def test_end_masses_answer_as_stored(damped: bool) -> None:
     assert max(errors) < 6e-3
 
 
-def test_frequencies_answer_as_stored() -> None:
+def test_frequencies_equal_stored_answers() -> None:
     with_modes = [row for row in cues() if "frequencies" in row]
     assert len(with_modes) == 30
     for row in with_modes[::3]:

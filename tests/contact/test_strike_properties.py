@@ -36,7 +36,7 @@ from tests.helpers.strike_scenes import (
 
 pytestmark = pytest.mark.kernel
 AT = cf.Resolution(2, 10, 8)
-# How well energy closes at the default steps on a cue with any dampers; how it falls with the step: test_steps.py.
+# How well energy closes at the default steps on a cue with any dampers; how it falls with the step: test_step_convergence.py.
 ACCOUNT = 1e-4
 HERE = 0.213  # m
 PLACE = st.floats(0.01, 0.69)
@@ -105,7 +105,7 @@ def strike(scene: cf.Scene, at: cf.Resolution = AT) -> cf.Outcome | None:
 
 
 @pytest.mark.parametrize("examples", [5, pytest.param(250, marks=pytest.mark.heavy)])
-def test_energy_closes_the_other_side_mirrors_and_the_order_of_effects_does_not_matter(examples: int) -> None:
+def test_strike_conserves_energy_mirrors_and_ignores_effect_order(examples: int) -> None:
     @settings(max_examples=examples)
     @given(strikes(), st.integers(0, 5))
     @example(replace(kim_scene(0.3, restitution=0.05), effects=(cf.Support(0.25, dashpot=5.0),)), 0)
@@ -143,7 +143,7 @@ SPLIT: dict[str, tuple[Effect, ...]] = {  # the first is the sum of the others
 
 
 @pytest.mark.parametrize("name", SPLIT)
-def test_an_effect_in_parts_is_the_whole(name: str) -> None:
+def test_effect_split_in_parts_equals_whole(name: str) -> None:
     """For strike, end mass, motion and the impulse solver alike."""
     whole, *parts = SPLIT[name]
     one, other = (replace(kim_scene(), effects=tuple(effects)) for effects in ([whole], parts))
@@ -176,7 +176,7 @@ def squirt(*effects: Effect, **stroke: float) -> float:
 
 
 @pytest.mark.parametrize("name", VANISHING)
-def test_an_effect_vanishes_linearly(name: str) -> None:
+def test_effect_near_limit_vanishes_linearly(name: str) -> None:
     make, limit = VANISHING[name]
     bare = squirt(limit) if limit else squirt()
     steps = [1.0, 1e-1, 1e-2]
@@ -184,7 +184,7 @@ def test_an_effect_vanishes_linearly(name: str) -> None:
     assert abs(squirt(make(0.0)) / bare - 1) < 1e-14
 
 
-def test_other_limits() -> None:
+def test_strike_other_limits_are_reached() -> None:
     """Stiff shear is none, like one over its ratio with wiggles of a factor 2; exponent 1 is the bilinear law; a level
     cue is not raised; thrust falls with the speed; a turning contact, with its time."""
     bare = squirt()
@@ -221,7 +221,7 @@ def struck(name: str) -> cf.Outcome:
 
 
 @pytest.mark.parametrize("name", COURSES)
-def test_forces_obey_the_laws_of_friction_and_give_the_impulse(name: str) -> None:
+def test_history_forces_obey_friction_and_integrate_to_impulse(name: str) -> None:
     scene, outcome = COURSES[name], struck(name)
     history, side, mu = outcome.history, np.sign(scene.stroke.offset), scene.tip.friction
     middles, force, lengths = history.middles[1:-1], history.forces[1:-1], np.diff(history.ends)

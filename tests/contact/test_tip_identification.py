@@ -27,7 +27,7 @@ def whole_cue() -> cf.Scene:
 
 
 @pytest.mark.parametrize("E", [60e6, 400e6])
-def test_the_law_of_a_rigid_cue_gives_its_tip_back(E: float) -> None:
+def test_identify_tip_rigid_cue_recovers_tip(E: float) -> None:
     """Head on, a cue without axial waves is a rigid one: it rebounds as its tip, its law gives the time."""
     told = leather_scene(leather=replace(LEATHER, E=E))
     assert cf.rebound(told) == pytest.approx(0.73, rel=1e-4)
@@ -35,7 +35,7 @@ def test_the_law_of_a_rigid_cue_gives_its_tip_back(E: float) -> None:
     assert cf.identify_tip(soft, float(told.contact_time), 0.73) == pytest.approx((E, 0.73), rel=2e-4)
 
 
-def test_axial_waves_are_counted() -> None:
+def test_identify_tip_with_axial_waves_recovers_tip() -> None:
     scene = leather_scene(0.3, cf.AxialWaves())
     found = cf.identify_tip(scene, 1.1e-3, 0.8)
     assert head_on(with_tip(scene, found)) == pytest.approx((1.1e-3, 0.8), rel=1e-5)
@@ -45,7 +45,7 @@ def test_axial_waves_are_counted() -> None:
 
 
 @pytest.mark.parametrize("name", LEATHERS)
-def test_a_leather_has_the_contact_time_and_rebound_that_are_measured(name: str) -> None:
+def test_identify_tip_reproduces_measured_contact_time_and_rebound(name: str) -> None:
     known = LEATHERS[name]
     found = cf.identify_tip(whole_cue(), known.contact_time, 0.73)
     assert (known.E, known.restitution) == pytest.approx(found, rel=3e-3)  # three digits are stored
@@ -54,7 +54,7 @@ def test_a_leather_has_the_contact_time_and_rebound_that_are_measured(name: str)
     )
 
 
-def test_a_drawn_butt_rebounds_as_whole_cues_do() -> None:
+def test_rebound_of_drawn_butt_is_that_of_whole_cues() -> None:
     """At 2 m/s, within what playing cues have (0.71 to 0.75, TP A.30) and 0.015: nothing is fitted to these cues."""
     for game, name in (("pool", "pool_maple"), ("pool", "pool_hollow"), ("pool", "carbon"), ("carom", "kim")):
         cue = cf.load(MESHES / f"{name}.toml")

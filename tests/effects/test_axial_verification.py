@@ -62,7 +62,7 @@ def stepped(cue: cf.Cue, pieces: int = 200) -> tuple[float, float]:
         time += dt
 
 
-def test_what_the_wood_adds_is_what_a_chain_of_masses_says() -> None:
+def test_axial_waves_equal_chain_of_masses() -> None:
     """The remainder, of 1.1 ms and 0.73: about 0.16 ms and 0.05."""
     cue = drawn("pool_maple")
     assert seen(cf.strike(head_on(cue)), cue) == pytest.approx(stepped(cue), rel=2e-3)
@@ -71,7 +71,7 @@ def test_what_the_wood_adds_is_what_a_chain_of_masses_says() -> None:
 BUTT = {"cue_length": 1.4732, "butt_diameter": 0.03175}
 
 
-def test_head_on_a_butt_is_that_which_is_drawn():
+def test_axial_waves_stated_butt_equals_drawn_butt():
     """Along the axis it is a tapered segment of the rest's mass and of the wave speed; across it nothing is there."""
     waves, cue = cf.AxialWaves(**BUTT, wave_speed=4430.0), drawn("pool_maple")
     whole, scene = waves.with_butt(cue), replace(head_on(cue), effects=(waves,))
@@ -83,7 +83,7 @@ def test_head_on_a_butt_is_that_which_is_drawn():
 
 
 @pytest.mark.parametrize("below", [1e3, 2e5])
-def test_with_its_tail_the_rod_gives_way_as_much_as_all_of_its_modes(below):
+def test_rod_truncation_correction_has_compliance_of_all_modes(below):
     """A free uniform rod on springs of s per mass under a steady force at its end: the sum of along^2/(omega^2 + s),
     for the s = 10 (c/L)^2 with which the tail is made, is coth(L sqrt(s)/c) / sqrt(s EA rhoA), rigid motion and all."""
     cue = cf.Cue((cf.Segment(0.7, 0.012, 0.012, MAPLE),))

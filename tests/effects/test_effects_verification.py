@@ -25,7 +25,7 @@ NODE = cf.PointMass(HERE, 0.0)  # a node alone: the mesh's error is the same wit
 
 
 @pytest.mark.parametrize("share", [0.0, 0.4, 1.0])
-def test_a_point_mass_loads_the_axis_by_its_share_alone(share):
+def test_point_mass_adds_its_axial_share_to_axial_mass(share):
     """Bending modes are those of the whole mass; head on, the cue is as heavy as with its share of it behind."""
     lump = cf.PointMass(HERE, 0.05, axial_share=share)
     across = [cf.modes(kim(), 3, effects=(each,)).frequencies for each in (lump, cf.PointMass(HERE, 0.05))]
@@ -41,7 +41,7 @@ SOFT = (3e-3, 2e-6)  # rad/(N m), m/N
 
 @pytest.mark.parametrize("order", [3, 12])
 @pytest.mark.parametrize("compliances", [SOFT, (SOFT[0], 0.0), (0.0, SOFT[1]), (0.0, 0.0)])
-def test_a_joint_is_a_spring_in_series(compliances, order):
+def test_joint_compliance_adds_in_series(compliances, order):
     """A force at the tip of a cue clamped at its butt bends it by the joint's lever squared, and shears it, more."""
 
     def give(*effects: Effect) -> float:
@@ -54,7 +54,7 @@ def test_a_joint_is_a_spring_in_series(compliances, order):
     assert abs(give(cf.Joint(HERE, *compliances)) / (give(NODE) + extra) - 1) < 1e-11
 
 
-def test_a_cone_s_rod_modes():
+def test_rod_modes_of_cone_equal_closed_form():
     """r u is a plane wave: (r u)' = (r'/r) (r u) at both free ends."""
     cue = kim()
     material = cue.segments[0].material
@@ -81,7 +81,7 @@ def lossy_cue(shell: float = 1.0, core: float = 1.0) -> cf.Cue:
 
 
 @pytest.mark.parametrize("effects", [(), (cf.AxialWaves(),)])
-def test_loss_factors_are_those_of_the_strain_energy(effects: tuple[Effect, ...]) -> None:
+def test_structural_damping_equals_strain_energy_loss(effects: tuple[Effect, ...]) -> None:
     """A material's share of a mode's strain energy is what its moduli do to the frequency: d ln omega^2 / d ln E."""
 
     def modes(shell: float = 1.0, core: float = 1.0, *more: Effect) -> TipModes:
@@ -98,7 +98,7 @@ def test_loss_factors_are_those_of_the_strain_energy(effects: tuple[Effect, ...]
     assert np.count_nonzero(lossy.damping - np.diag(damping)) == np.count_nonzero(damping[~moving]) == 0
 
 
-def test_a_joint_keeps_energy_that_is_not_lost() -> None:
+def test_joint_strain_energy_is_not_dissipated() -> None:
     scene = cf.Scene(lossy_cue(), effects=(cf.StructuralDamping(0.05), cf.Joint(0.3, 1e-3)))
     tip = tip_modes_of(scene, cf.Resolution(3, 16, 12))
     found = (np.diag(tip.damping) / np.maximum(tip.omega, 1e-9))[tip.omega > 0]
@@ -130,7 +130,7 @@ def rigid_domed(offset: float) -> tuple[cf.Cue, cf.LumpedCue]:
 
 @pytest.mark.parametrize("offset", [0.05, 0.3, 0.6, -0.3])
 @pytest.mark.parametrize(("restitution", "friction"), [(0.75, 0.7), (0.05, 0.5), (1.0, 0.2), (0.75, inf)])
-def test_a_rigid_body_with_a_dome_is_a_lumped_cue_with_coupling(offset, restitution, friction):
+def test_dome_on_rigid_body_equals_lumped_cue_with_coupling(offset, restitution, friction):
     stub, lumped = rigid_domed(abs(offset))
     scene = replace(kim_scene(offset, restitution=restitution, friction=friction), cue=stub)
     domed = replace(scene, effects=(cf.TipDome(RADIUS),))

@@ -29,7 +29,7 @@ def column(G: float, *supports: cf.Support, count: int = 60) -> tuple[Any, float
 
 
 @pytest.mark.parametrize("G", [1.9e10, 0.84e9])
-def test_a_cantilever_gives_as_the_tangent_says(G: float) -> None:
+def test_geometric_stiffness_cantilever_deflection_equals_tangent_formula(G: float) -> None:
     """The deflection under a load across the end, beside a thrust: tan(kL)/k, with Engesser's shear."""
     clamp = cf.Support(LENGTH, math.inf, rotational_stiffness=math.inf)
     off = []
@@ -97,7 +97,7 @@ def changes(chain: Chain, scene: cf.Scene) -> float:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize(("speed", "offset"), [(7.0, 0.187), (4.0, 0.6)])
-def test_squirt_changes_as_in_a_geometrically_exact_chain(speed: float, offset: float) -> None:
+def test_geometric_stiffness_squirt_equals_exact_chain(speed: float, offset: float) -> None:
     """Of 12 to 57 % of squirt all but a thousandth: the chain's modes in the engine, and the chain by small steps."""
     chain, scene = chain_of(stiffer=16.0), struck_shaft(speed, offset)
     tip = modes_of(chain)
@@ -106,7 +106,7 @@ def test_squirt_changes_as_in_a_geometrically_exact_chain(speed: float, offset: 
     assert bends < 0.95 * straight
 
 
-def test_a_shaft_that_bends_too_far_is_refused_by_its_load() -> None:
+def test_geometric_stiffness_out_of_range_raises_with_its_force() -> None:
     thin = cf.Cue((cf.Segment(0.7, 0.005, 0.006, cf.Material(E=12.6e9, G=0.84e9, rho=700.0)),), body_mass=0.5)
     scene = cf.Scene(thin, tip=cf.Tip(contact_time=4e-3), stroke=cf.Stroke(20.0, 0.5), effects=(THRUST,))
     with pytest.raises(ValueError, match=r"the axial force of \S+ N bends the shaft by 0\.\d+ rad"):

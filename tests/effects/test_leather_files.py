@@ -35,7 +35,7 @@ def tip_of(file: Path) -> cf.LeatherTip:
 
 
 @pytest.mark.parametrize("name", LEATHERS)
-def test_a_leather_by_its_name(file: Path, name: str) -> None:
+def test_leather_name_in_file_sets_constants(file: Path, name: str) -> None:
     known = LEATHERS[name]
     assert tip_of(put(file, leather=f"'{name}'")) == cf.LeatherTip(6e-3, 9.5e-3, known.E, known.nu, known.rho)
 
@@ -47,7 +47,7 @@ def test_a_leather_by_its_name(file: Path, name: str) -> None:
         *(("'flat'", inf), ("inf", inf), ("'inf'", inf), ("'inf m'", inf)),
     ],
 )
-def test_a_dome_by_a_coin_a_length_or_flat(file: Path, text: str, radius: float) -> None:
+def test_dome_radius_by_coin_length_or_flat_is_read(file: Path, text: str, radius: float) -> None:
     assert tip_of(put(file, dome_radius=text)).dome_radius == pytest.approx(radius, rel=1e-12)
     cf.save(cf.load(file), file)
     assert tip_of(file).dome_radius == pytest.approx(radius, rel=1e-12)

@@ -33,7 +33,9 @@ def possible(tip: LeatherTip, diameter: float) -> LeatherTip:
 
 @settings(max_examples=40)
 @given(TIPS, DIAMETERS, OFFSETS, st.floats(0.005, 0.5))
-def test_compliance(tip: LeatherTip, diameter: float, offset: float, patch: float) -> None:
+def test_leather_compliance_is_symmetric_and_positive(
+    tip: LeatherTip, diameter: float, offset: float, patch: float
+) -> None:
     """Symmetric and positive definite, mirrored with the offset, in proportion to 1/E."""
     give = possible(tip, diameter).compliance(diameter, offset, patch * diameter)
     near = {"rtol": 1e-9, "atol": 1e-12 * give[0, 0]}
@@ -47,7 +49,7 @@ def test_compliance(tip: LeatherTip, diameter: float, offset: float, patch: floa
 
 @settings(max_examples=40)
 @given(TIPS, DIAMETERS, st.floats(-0.6, 0.6))
-def test_lever(tip: LeatherTip, diameter: float, phi: float) -> None:
+def test_leather_moment_arm_lies_on_dome_or_rim(tip: LeatherTip, diameter: float, phi: float) -> None:
     """The contact lies on the dome or on its rim, and the mass is between that of cylinders."""
     along, across = possible(tip, diameter).lever(phi, diameter)
     assert abs(along) <= diameter / 2
@@ -64,7 +66,7 @@ def test_lever(tip: LeatherTip, diameter: float, phi: float) -> None:
 
 @settings(max_examples=40)
 @given(TIPS, DIAMETERS, OFFSETS)
-def test_every_ring_presses_and_holds(tip: LeatherTip, diameter: float, offset: float) -> None:
+def test_leather_law_stiffness_of_every_annulus_is_positive(tip: LeatherTip, diameter: float, offset: float) -> None:
     """The force stiffens, so that a ring's share of it is not negative; with the whole tip in touch it may level off.
 
     Near the rim the patch's stiffness levels off too: it falls by less than two thousandths of its greatest. Only where

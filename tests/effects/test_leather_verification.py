@@ -29,7 +29,7 @@ PATCH = Patch(2 * 0.375 * 9.5 / 12.75, 2 / 12.75)
 # --- the solid --------------------------------------------------------------------------------------------------------
 
 
-def test_a_long_tip_is_a_rod() -> None:
+def test_leather_long_tip_equals_rod() -> None:
     """EA/h along the axis, from the difference of two lengths, which the end's own give has dropped out of; 3EI/h^3
     across it on a slender rod. Over D: EA is pi/4, EI pi/64."""
     how = usual(4, 4, 6, 1)
@@ -39,7 +39,7 @@ def test_a_long_tip_is_a_rod() -> None:
 
 
 @pytest.mark.heavy
-def test_a_small_patch_has_a_half_space_below_it() -> None:
+def test_leather_small_patch_equals_half_space() -> None:
     """Within 5 % at a/h = 1/16, and the difference falls as a/h."""
     errors = []
     for radius in (1 / 32, 1 / 64, 1 / 128):
@@ -51,7 +51,7 @@ def test_a_small_patch_has_a_half_space_below_it() -> None:
     np.testing.assert_allclose(np.divide(errors[1], errors[2]), 2, rtol=0.05)
 
 
-def test_hertz() -> None:
+def test_leather_central_impact_equals_hertz() -> None:
     """A small contact is Hertz's, force and depth alike, for gaps of second and of fourth order."""
     shape, how = Shape(1.0, 0.0), fitted(1.0, 0.01)
     found = head_on(shape, TipSolid(shape, how).surface(0.3, 0), 0.01, how)
@@ -61,7 +61,7 @@ def test_hertz() -> None:
 # --- the table --------------------------------------------------------------------------------------------------------
 
 
-def test_values() -> None:
+def test_leather_compliance_equals_computed_values() -> None:
     """h 6, D 12.75, r 9.5 mm, nu 0.4, E 100 MPa, b/R 0.375, a 2 mm: an independent solution with scikit-fem's own
     assembly of quadratic elements gave these."""
     give = 1e6 * TIP.compliance(DIAMETER, 0.375, 2e-3)
@@ -81,7 +81,7 @@ RANDOM = [  # height, diameter, dome radius, mm; nu; b/R; patch, mm
 
 @pytest.mark.heavy
 @pytest.mark.parametrize(("height", "diameter", "dome", "nu", "offset", "patch"), RANDOM)
-def test_the_table_is_the_solution(
+def test_leather_table_equals_solution(
     height: float, diameter: float, dome: float, nu: float, offset: float, patch: float
 ) -> None:
     place = 2 * offset * dome / diameter if offset else 0.0
@@ -93,7 +93,7 @@ def test_the_table_is_the_solution(
 
 
 @pytest.mark.parametrize(("height", "diameter", "dome", "nu", "offset", "patch"), RANDOM[:2])
-def test_the_head_on_table_is_the_solution(
+def test_leather_central_impact_table_equals_solution(
     height: float, diameter: float, dome: float, nu: float, offset: float, patch: float
 ) -> None:
     tip, shape, ball = (
@@ -110,7 +110,7 @@ def test_the_head_on_table_is_the_solution(
 
 
 @pytest.mark.heavy
-def test_the_table_is_what_its_program_gives() -> None:
+def test_leather_table_equals_its_program() -> None:
     """One tip of the table, nu aside: all its patches and contacts."""
     panel, i, j, u = 1, 2, 3, 1
     k = curvatures(panel, COUNTS["curvature"])[i]
@@ -123,7 +123,7 @@ def test_the_table_is_what_its_program_gives() -> None:
 @pytest.mark.heavy
 @pytest.mark.parametrize("nu", [0.3, 0.4])
 @pytest.mark.parametrize("dome", [math.inf, 10.605e-3, 8.955e-3], ids=["flat", "nickel", "dime"])
-def test_a_patch_that_sticks(dome: float, nu: float) -> None:
+def test_leather_sticking_patch_equals_rigid_punch(dome: float, nu: float) -> None:
     """Its traction is the sum of Hertz's and a punch's that gives least (the theorem of least complementary energy)."""
     for height, patch in product((0.3, 0.47, 0.7), (0.1, 0.2, 0.25)):
         radius, stiffness = LeatherTip(height * DIAMETER, dome, 1e9, nu).shear_stiffness(DIAMETER, 0.0)

@@ -72,14 +72,14 @@ def test_calls(ask: Callable[[], object], message: str) -> None:
     refuses(ask, message)
 
 
-def test_a_clamped_tip_is_struck_but_has_no_end_mass() -> None:
+def test_clamped_tip_has_strike_but_no_end_mass() -> None:
     clamped = replace(kim_scene(0.3), effects=(cf.Support(0.0, inf),))
     assert imbalance(cf.strike(clamped)) < 1e-9
     for drive in ("stick", "velocity", "force"):
         refuses(lambda drive=drive: cf.end_mass(clamped, drive), "the tip is clamped transversely")
 
 
-def test_what_is_just_allowed() -> None:
+def test_effect_input_at_bound_is_accepted() -> None:
     """The very end is on the cue, but for rounding; springs beside a clamp, and a clamp of the rotation beside one of
     the deflection, are no second clamp."""
     assert cf.modes(KIM, 1, effects=(cf.Support(0.7 * (1 + 1e-12), inf, inf),)).rigid == 0

@@ -19,7 +19,7 @@ def leather(length: float) -> cf.Segment:
 
 
 @pytest.mark.parametrize("game", GAMES)
-def test_a_cue_without_leather_gets_the_game_s_tip_on_what_is_drawn(game: str) -> None:
+def test_default_scene_cue_without_leather_gets_tip_of_game(game: str) -> None:
     cue = cf.Cue((WOOD,), 0.4)
     scene, known = cf.usual_scene(cue, game), GAMES[game]
     assert scene.cue == cue
@@ -32,7 +32,7 @@ def test_a_cue_without_leather_gets_the_game_s_tip_on_what_is_drawn(game: str) -
     assert len(known.source) > 40
 
 
-def test_the_drawn_leather_is_the_tip_s_height() -> None:
+def test_default_tip_has_height_of_drawn_leather() -> None:
     drawn = cf.Cue((leather(3e-3), leather(2e-3), WOOD), 0.4)
     scene = cf.usual_scene(drawn)
     assert scene.cue == cf.Cue((WOOD,), 0.4)
@@ -41,7 +41,7 @@ def test_the_drawn_leather_is_the_tip_s_height() -> None:
     assert cf.usual_scene(drawn, tip=replace(scene.leather, height=7e-3)).leather.height == 7e-3
 
 
-def test_a_tip_has_the_restitution_of_its_leather_where_waves_raise_it() -> None:
+def test_default_tip_restitution_with_axial_waves_is_leather_s() -> None:
     cue, hard = cf.Cue((WOOD,), 0.4), LEATHERS["hard"]
     tip = replace(GAMES["pool"].tip, E=hard.E)
     scene = cf.usual_scene(cue, tip=tip)
@@ -50,7 +50,7 @@ def test_a_tip_has_the_restitution_of_its_leather_where_waves_raise_it() -> None
 
 
 @pytest.mark.parametrize("game", GAMES)
-def test_a_cue_whose_tip_is_drawn_is_struck_with_all_that_a_usual_stroke_has(game: str) -> None:
+def test_default_scene_drawn_tip_has_all_effects(game: str) -> None:
     bare = cf.usual_scene(cf.Cue((WOOD,), 0.4), game)
     drawn = cf.usual_scene(cf.Cue((leather(bare.leather.height), WOOD), 0.4), game)
     assert drawn == bare
@@ -68,7 +68,7 @@ def test_refusals() -> None:
     refuses(lambda: cf.usual_scene(cf.Cue((leather(1e-3), WOOD))), "higher than 2.054 mm, the depth of its dome")
 
 
-def test_a_rest_that_is_too_short_for_a_rod_is_a_rigid_mass() -> None:
+def test_axial_waves_short_rest_is_rigid_mass() -> None:
     """A cue drawn to 3 mm short of a whole one's length, with 100 g more at its end."""
     cue = cf.Cue((WOOD, cf.Segment(0.7702, 0.021, 0.031, material("hard maple"))), body_mass=0.1)
     scene = cf.usual_scene(cue)
@@ -78,7 +78,7 @@ def test_a_rest_that_is_too_short_for_a_rod_is_a_rigid_mass() -> None:
     assert cf.strike(scene).squirt == cf.strike(rigid).squirt
 
 
-def test_restitution_of_a_typed_modulus_lies_between_the_leathers() -> None:
+def test_restitution_of_stated_modulus_lies_between_named_leathers() -> None:
     """That of a named leather at its modulus, and with axial waves alone."""
 
     def own(E: float) -> float:

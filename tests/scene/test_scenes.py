@@ -28,12 +28,12 @@ def scene(name: str) -> cf.Scene:
     return found
 
 
-def test_these_are_all() -> None:
+def test_ready_scenes_are_all_listed() -> None:
     assert tuple(sorted(path.stem for path in SCENES.glob("*.toml"))) == tuple(sorted(rows())) == READY
 
 
 @pytest.mark.parametrize("name", READY)
-def test_a_ready_scene_says_what_it_rests_on(name: str) -> None:
+def test_ready_scene_states_its_sources(name: str) -> None:
     text = (SCENES / f"{name}.toml").read_text(encoding="utf-8")
     assert text.startswith("# ")
     assert load_accuracy(SCENES / f"{name}.toml") == 1e-2
@@ -42,7 +42,7 @@ def test_a_ready_scene_says_what_it_rests_on(name: str) -> None:
     ]
 
 
-def test_the_readme_of_the_drawings_has_their_squirts() -> None:
+def test_readme_of_meshes_states_computed_squirts() -> None:
     text = (SCENES.parents[1] / "meshes" / "README.md").read_text(encoding="utf-8")
     told = re.findall(r"([\d.]+)° \((\w+)\)", text.partition("Squirt at b/R 0.3 is then ")[2].partition(".\n")[0])
     assert len(told) == 5
@@ -54,7 +54,7 @@ def test_the_readme_of_the_drawings_has_their_squirts() -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("name", READY)
-def test_a_ready_scene_is_what_its_readme_says(name: str) -> None:
+def test_ready_scene_equals_its_readme(name: str) -> None:
     found, outcome = scene(name), resolve(scene(name), 1e-3)
     _, ball, offset, squirt, effects = rows()[name]
     assert ball == f"{2e3 * found.ball.radius:g} mm, {1e3 * found.ball.mass:g} g"

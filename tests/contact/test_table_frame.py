@@ -37,7 +37,7 @@ def struck(point, direction=NORTH, **how):
         ((0, -1), (1, 0, 0), (0, 0, 1)),  # draw
     ],
 )
-def test_english_follow_and_draw(side, spin, squirt):
+def test_place_english_follow_and_draw_spin_as_expected(side, spin, squirt):
     outcome, placed = struck((0.4 * R * side[0], R * (1 + 0.4 * side[1])))
     assert outcome.squirt > 0.005
     np.testing.assert_allclose(placed.spin, outcome.spin * np.array(spin), rtol=0, atol=1e-12)
@@ -50,7 +50,7 @@ def test_english_follow_and_draw(side, spin, squirt):
 
 @MANY
 @given(INSIDE, st.floats(0, 2 * pi), st.floats(0, 1.2), st.floats(0.1, 10))
-def test_angles_and_sizes_of_any_stroke(point, heading, elevation, length):
+def test_place_any_stroke_keeps_angles_and_magnitudes(point, heading, elevation, length):
     direction = length * np.array([cos(elevation) * sin(heading), cos(elevation) * cos(heading), -sin(elevation)])
     unit = direction / length
     contact = contact_of(point, unit)

@@ -53,7 +53,7 @@ def random_lumped(rng: np.random.Generator) -> cf.Scene:
     )
 
 
-def test_lumped_cues_come_to_the_impulse_solver_with_the_square_of_the_step() -> None:
+def test_strike_lumped_cue_converges_to_impulse_solver_second_order() -> None:
     rng, seen = np.random.default_rng(3), Counter()
     errors: dict[int, list[float]] = {250: [], 1000: []}
     for _ in range(80):
@@ -77,7 +77,7 @@ COURSES = ("linear", "rolling", "leather", "usual", "second hit", "raised", "thr
 
 
 @pytest.mark.parametrize("kind", COURSES)
-def test_squirt_comes_nearer_with_the_step(kind: str) -> None:
+def test_squirt_of_each_kind_converges_second_order(kind: str) -> None:
     rows = [row for row in strikes() if row["kind"] == kind]
     errors = {}
     for steps in (100, 800):
@@ -94,7 +94,7 @@ def test_squirt_comes_nearer_with_the_step(kind: str) -> None:
 
 @pytest.mark.parametrize("steps", [100, 1600])
 @pytest.mark.parametrize(("offset", "regime"), [(0.73, "stick"), (0.79, "miscue"), (0.85, "miscue")])
-def test_leather_grips_at_the_first_touch_whatever_the_step(offset: float, regime: str, steps: int) -> None:
+def test_leather_first_touch_sticks_at_any_step(offset: float, regime: str, steps: int) -> None:
     leather = cf.LeatherTip(height=6e-3, dome_radius=9.5e-3, E=1e8)
     scene = cf.Scene(KIM, tip=cf.Tip(0.75, 0.3), stroke=cf.Stroke(2.0, offset), effects=(leather,))
     assert end_of_first_slip(cf.strike(scene, cf.Resolution(4, 12, 12, steps)).phases) == regime
@@ -118,7 +118,7 @@ def squirts_over(kind: str, offsets: np.ndarray, **more: int) -> np.ndarray:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("kind", ["usual", "bare"])
-def test_squirt_has_no_step(kind: str) -> None:
+def test_squirt_over_steps_has_no_jump(kind: str) -> None:
     """Neighbouring squirts differ by what the curve's slope makes of it, and by no more than 1e-5 of squirt.
 
     The rings of a default strike take 600 steps for that (400 leave 1.007e-5), a bare tip, whose grip changes at once,
@@ -131,7 +131,7 @@ def test_squirt_has_no_step(kind: str) -> None:
 
 
 @pytest.mark.parametrize(("kind", "most"), [("usual", 1e-5), ("bare", 2e-4)])
-def test_squirt_over_a_few_offsets_is_smooth(kind: str, most: float) -> None:
+def test_squirt_over_offsets_is_smooth(kind: str, most: float) -> None:
     x = np.linspace(0.30, 0.32, 41)
     squirts = squirts_over(kind, x)
     smooth = np.polyval(np.polyfit(x - 0.31, squirts, 4), x - 0.31)
@@ -188,7 +188,7 @@ HARD = [(light, 2e-5), (drawn, CLOSED), pytest.param(again, 2e-5, marks=pytest.m
 
 @pytest.mark.kernel
 @pytest.mark.parametrize(("scenes", "within"), HARD)
-def test_hard_strikes_end_with_an_energy_that_closes(
+def test_strike_extreme_inputs_conserves_energy(
     scenes: Callable[[], Iterable[tuple[cf.Scene, TipModes]]], within: float
 ) -> None:
     for scene, tip in scenes():
@@ -204,7 +204,7 @@ def test_hard_strikes_end_with_an_energy_that_closes(
 
 
 @pytest.mark.parametrize("end_mass", [0.003, 0.05, 1.0])
-def test_friction_of_exactly_mu_c_does_not_chatter(end_mass: float) -> None:
+def test_friction_at_critical_value_does_not_chatter(end_mass: float) -> None:
     """Stick needs exactly mu_c, so |F_t| = mu F_n for the whole of it, but for rounding."""
     cue, ball = cf.LumpedCue(0.54, end_mass), cf.Ball()
     B = inverse_mass(0.4, mass=cue.mass, end_mass=end_mass, coupling=0.0, ball_mass=ball.mass, inertia=ball.inertia)
@@ -216,7 +216,7 @@ def test_friction_of_exactly_mu_c_does_not_chatter(end_mass: float) -> None:
 
 
 @pytest.mark.parametrize(("e", "regime"), [(0.3, "miscue"), (0.9, "late stick")])
-def test_a_blow_may_throw_the_two_apart(e: float, regime: str) -> None:
+def test_infinite_friction_impact_may_separate_at_once(e: float, regime: str) -> None:
     """A light cue against endless friction: the blow alone is the contact, as in the impulse solver; at e it ends."""
     cue = cf.LumpedCue(0.05, 0.02, -0.8 / math.sqrt(0.05 * 0.02))
     scene = cf.Scene(cue, tip=cf.Tip(e, math.inf, contact_time=1e-3), stroke=cf.Stroke(1.0, 0.95))
@@ -229,7 +229,7 @@ def test_a_blow_may_throw_the_two_apart(e: float, regime: str) -> None:
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.7])
 @pytest.mark.parametrize(("speed", "e"), [(0.2, 0.4), (1.0, 0.1), (7.0, 1.0)])
-def test_head_on_contact_time_falls_with_speed(exponent, speed, e):
+def test_central_impact_contact_time_falls_with_speed(exponent, speed, e):
     scene = cf.Scene(
         cf.LumpedCue(0.5, 0.005),
         tip=cf.Tip(e, contact_time=1.3e-3),
@@ -247,7 +247,7 @@ def test_head_on_contact_time_falls_with_speed(exponent, speed, e):
     falls_with_the_step(error)
 
 
-def test_table_friction_of_a_head_on_slide():
+def test_elevation_table_friction_of_sliding_ball_equals_closed_form():
     """Head on, the ball's lowest point slides forward throughout: f = -mu N, N = F sin(a), F cos(a) - f drives it."""
     angle, mu, e = 0.3, 0.15, 0.8
     scene = cf.Scene(cf.LumpedCue(0.5, 0.01), tip=cf.Tip(e, 0.0, 1e-3), stroke=cf.Stroke(1.0))
@@ -262,7 +262,7 @@ def test_table_friction_of_a_head_on_slide():
     assert abs(outcome.energy["table loss"] / (mu * math.sin(angle) * impulse * slide / 2) - 1) < 1e-5
 
 
-def test_energy_closes_of_balls_that_hop() -> None:
+def test_elevation_hopping_ball_conserves_energy() -> None:
     """Of random strikes on two modes some let the ball leave the table; none drives it through."""
     rng, up = np.random.default_rng(12), []
     for _ in range(20):
@@ -277,7 +277,7 @@ def test_energy_closes_of_balls_that_hop() -> None:
     assert sum(value > 1e-6 for value in up) > 3
 
 
-def test_a_ball_that_was_lifted_falls_back_onto_the_table() -> None:
+def test_elevation_lifted_ball_returns_to_table() -> None:
     """A loud cue lifts the ball by friction; the table pushes where it lies, and does not hold it in the air."""
     tip = hand_made([8000.0], [15.0], rigid=1.0)
     law, stroke = cf.Tip(0.8, 3.0, contact_time=3e-3), cf.Stroke(1.0, 0.8)

@@ -39,7 +39,7 @@ def slid(found: Motion, scene: cf.Scene) -> Any:
 
 @pytest.mark.parametrize("offset", [0.3, -0.4])
 @pytest.mark.parametrize("name", EFFECTS)
-def test_the_relative_velocity_is_that_of_the_history(name: str, offset: float) -> None:
+def test_motion_relative_velocity_equals_history(name: str, offset: float) -> None:
     """The way slid is the integral of the velocity, within what straight lines between the steps leave of that."""
     scene = replace(SCENE, stroke=replace(SCENE.stroke, offset=offset), effects=EFFECTS[name])
     outcome = cf.strike(scene, AT)
