@@ -31,42 +31,42 @@ from cuefem.results.verdict import verdict_record
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import Solved, default_modes
 
-LONGEST_WORK = 60.0  # s, time limit of a result; playing cues need less than a tenth
-KEPT = 12  # designs whose results are cached, for undo and comparison
+TIME_LIMIT = 60.0  # s, time limit of a result; playing cues need less than a tenth
+CACHED_DESIGNS = 12  # designs whose results are cached, for undo and comparison
 CURVE_OFFSETS = tuple(round(0.04 * i, 2) for i in range(1, 18))  # b/R
-MOST_GRAM_MODES = 45  # the end-mass distribution needs all modes of the mesh: cubic cost
-GRAM_REACH = 0.3  # m from the tip
+MAX_MASS_MODES = 45  # the end-mass distribution needs all modes of the mesh: cubic cost
+MASS_RANGE = 0.3  # m from the tip
 
 
 @dataclass(frozen=True)
-class Struck:
+class SolvedStrike:
     """A scene's modes, and its strike without the time history."""
 
     solved: Solved
     outcome: Outcome
 
 
-@lru_cache(KEPT)
-def struck(scene: Scene) -> Struck:
+@lru_cache(CACHED_DESIGNS)
+def solved_strike(scene: Scene) -> SolvedStrike:
     """The coupled strike, sufficient for the first numbers."""
     solved = Solved(scene)
     outcome = strike_modes(scene, solved.tip)
-    return Struck(solved, replace(outcome, history=None))
+    return SolvedStrike(solved, replace(outcome, history=None))
 
 
 def first_numbers(scene: Scene) -> dict[str, float | None]:
     """Results of the strike alone, SI."""
-    outcome = struck(scene).outcome
+    outcome = solved_strike(scene).outcome
     pivot = pivot_length(scene, outcome.squirt)
     return {"squirt": float(outcome.squirt), "pivot_length": None if pivot is None else float(pivot)}
 
 
-@lru_cache(KEPT)
+@lru_cache(CACHED_DESIGNS)
 def numbers(scene: Scene) -> dict[str, Any]:
     """Every number that a table lists: the results by name, all end masses, and natural frequencies."""
-    known = struck(scene)
-    design = SolvedDesign(known.solved, known.outcome)
-    masses = {f"end_mass_{name}": _end_mass(name, known.solved) for name in DEFINITIONS}
+    strike = solved_strike(scene)
+    design = SolvedDesign(strike.solved, strike.outcome)
+    masses = {f"end_mass_{name}": _end_mass(name, strike.solved) for name in DEFINITIONS}
     frequencies = [design.frequency(mode) for mode in range(1, TONES + 1)]
     return first_numbers(scene) | listed(design) | masses | {"frequencies": frequencies}
 
@@ -78,14 +78,14 @@ def _end_mass(name: str, solved: Solved) -> float | None:
         return None
 
 
-@lru_cache(KEPT)
+@lru_cache(CACHED_DESIGNS)
 def verdict(scene: Scene) -> Record:
     """Squirt with its uncertainty, compared with the reference cues."""
-    known = struck(scene)
-    return verdict_record(scene, known.outcome, ready_cues(), solved=known.solved)
+    strike = solved_strike(scene)
+    return verdict_record(scene, strike.outcome, ready_cues(), solved=strike.solved)
 
 
-def struck_like(scene: Scene, other: Scene) -> Scene:
+def with_stroke_of(scene: Scene, other: Scene) -> Scene:
     """Another design's scene with the ball and the stroke of the first."""
     return replace(other, ball=scene.ball, stroke=scene.stroke)
 
@@ -96,25 +96,25 @@ def comparison(scene: Scene, other: Scene, same_shaft: bool, names: Sequence[str
     return comparison_record({"other": other, "own": scene}, same_shaft=same, names=names)["differences"]["own"]
 
 
-@lru_cache(KEPT)
+@lru_cache(CACHED_DESIGNS)
 def curve(scene: Scene) -> dict[str, Any]:
     """Squirt, pivot length and the contact state against the offset."""
-    return coupled_curve(scene, CURVE_OFFSETS, struck(scene).solved.tip)
+    return coupled_curve(scene, CURVE_OFFSETS, solved_strike(scene).solved.tip)
 
 
-@lru_cache(KEPT)
-def gram(scene: Scene) -> tuple[Array, Array]:
+@lru_cache(CACHED_DESIGNS)
+def end_mass_distribution(scene: Scene) -> tuple[Array, Array]:
     """Positions along the cue without tip effects, m, and the increase of the end mass by a mass of 1 g there, g."""
     bare = replace(scene, effects=())
-    effect = sensitivity(bare, min(default_modes(bare), MOST_GRAM_MODES))
-    near = effect.x <= GRAM_REACH
+    effect = sensitivity(bare, min(default_modes(bare), MAX_MASS_MODES))
+    near = effect.x <= MASS_RANGE
     return effect.x[near], effect.rhoA[near]
 
 
-@lru_cache(KEPT)
+@lru_cache(CACHED_DESIGNS)
 def changes(scene: Scene) -> Record:
     """The design changes a maker can make, with their results."""
-    return design_changes(scene, solved=struck(scene).solved)
+    return design_changes(scene, solved=solved_strike(scene).solved)
 
 
 def solid(scene: Scene) -> Record:
@@ -122,7 +122,7 @@ def solid(scene: Scene) -> Record:
     return cuefem.report.model_error_record(scene)  # loads scikit-fem, which the page's start need not
 
 
-async def computed(work: Callable[..., Any], *arguments: Any) -> Any:
+async def run_in_thread(work: Callable[..., Any], *arguments: Any) -> Any:
     """Run the work in a thread, with overflows as errors; RuntimeError at the time limit."""
 
     def guarded() -> Any:
@@ -130,6 +130,6 @@ async def computed(work: Callable[..., Any], *arguments: Any) -> Any:
             return work(*arguments)
 
     try:
-        return await asyncio.wait_for(run.io_bound(guarded), LONGEST_WORK)
+        return await asyncio.wait_for(run.io_bound(guarded), TIME_LIMIT)
     except TimeoutError:
-        raise RuntimeError(f"this takes more than {LONGEST_WORK:g} s: draw fewer segments, or check sizes") from None
+        raise RuntimeError(f"this takes more than {TIME_LIMIT:g} s: draw fewer segments, or check sizes") from None

@@ -32,10 +32,10 @@ class FileEditor:
         self.design, self.saved = design, toml_text(design.scene)
         self.title.set_text(f"{design.name}.toml")
         self.editor.set_value(self.saved)
-        self._say("")
+        self._show_error("")
         self._changed()
 
-    def named(self) -> None:
+    def set_accessible_name(self) -> None:
         """Set the editor's accessible name once the browser has loaded it."""
         name = json.dumps("Scene as text")
         ui.run_javascript(
@@ -49,11 +49,11 @@ class FileEditor:
     def _apply(self) -> None:
         try:
             made = read_design(NAME, str(self.editor.value).encode())
-            self._say("")
+            self._show_error("")
             self.applied(made)
         except FAILURES as error:
-            self._say(one_line(error).replace(NAME, self.title.text))
+            self._show_error(one_line(error).replace(NAME, self.title.text))
 
-    def _say(self, words: str) -> None:
+    def _show_error(self, words: str) -> None:
         self.error.set_text(words)
         self.error.set_visibility(bool(words))

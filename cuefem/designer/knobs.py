@@ -20,10 +20,10 @@ from cuefem.quantity.units import parted, unit_of
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import GAMES, usual_scene, without_leather
 
-LEAST_WALL = 0.0005  # m, the thinnest wall around a typed bore
+MIN_WALL = 0.0005  # m, the thinnest wall around a typed bore
 NEW_FERRULE, NEW_BORE, NEW_DEPTH = "25 mm", 0.006, 0.127
 NONE, DRILLED = "none", "drilled"
-LONGEST_TEXT = 40
+MAX_TEXT = 40
 _UNITLESS = re.compile(r"[-+]?[\d./\s]+")
 FERRULE_BEGINS, LEATHER_BEGINS = "the ferrule; tip added", "the tip"
 
@@ -144,11 +144,11 @@ def with_value(scene: Scene, key: str, new: Any) -> Scene:
     """The scene with a control at another value; ValueError if that scene is invalid."""
     made = _with_value(scene, key, new)
     if key.startswith(("ferrule", "bore")):  # which cut segments, and would cut them anew with every move
-        made = replace(made, cue=_joined(made.shaft))
+        made = replace(made, cue=_merged(made.shaft))
     return made
 
 
-def _joined(cue: Cue) -> Cue:
+def _merged(cue: Cue) -> Cue:
     """The cue with adjacent segments merged if they form one cone of one material."""
     segments = list(cue.segments[:1])
     for piece in cue.segments[1:]:
@@ -203,7 +203,7 @@ def _with_game(scene: Scene, name: str) -> Scene:
     return replace(usual, effects=(*usual.effects, *staying))
 
 
-def written(key: str, shown: float, scene: Scene) -> str:
+def value_text(key: str, shown: float, scene: Scene) -> str:
     """A number with its unit, to the digits of a slider's step, or to its own up to three: "12.40 mm"."""
     known = range_of(key)
     least, whole_text = len(f"{known.step:g}".partition(".")[2]), f"{known.scale * shown:.3f}"
@@ -211,20 +211,20 @@ def written(key: str, shown: float, scene: Scene) -> str:
     return f"{known.scale * shown:.{decimals}f} {known.unit}".rstrip()
 
 
-def read(key: str, text: str, scene: Scene, last: str = "") -> float:
-    """The SI number of a typed text such as "11,8", "1/4 in", "15 oz"; ValueError in one line. last: see `whole`."""
+def parse(key: str, text: str, scene: Scene, last: str = "") -> float:
+    """The SI number of a typed text such as "11,8", "1/4 in", "15 oz". last: see `with_unit`."""
     bare = text.strip().replace(",", ".").replace("−", "-")
-    if len(text) > LONGEST_TEXT or not bare:
-        raise ValueError(f"must be a number of at most {LONGEST_TEXT} characters")
+    if len(text) > MAX_TEXT or not bare:
+        raise ValueError(f"must be a number of at most {MAX_TEXT} characters")
     unit, unitless = range_of(key).unit, _UNITLESS.fullmatch(bare)
     if key == "offset" and not unitless:
-        return _within(key, Quantity("m").read(bare) / scene.ball.radius, text, scene)
+        return _check_limits(key, Quantity("m").read(bare) / scene.ball.radius, text, scene)
     if not unit:
-        return _within(key, Quantity("").read(_float(bare)), text, scene)
-    return _within(key, Quantity(SI.get(unit, unit)).read(whole(key, bare, last)), text, scene)
+        return _check_limits(key, Quantity("").read(_float(bare)), text, scene)
+    return _check_limits(key, Quantity(SI.get(unit, unit)).read(with_unit(key, bare, last)), text, scene)
 
 
-def whole(key: str, text: str, last: str = "") -> str:
+def with_unit(key: str, text: str, last: str = "") -> str:
     """A typed text with its unit; the default is that of ``last``, the previous input, else the displayed one.
 
     A fraction is in inches unless it has a unit.
@@ -252,7 +252,7 @@ def limits(key: str, scene: Scene) -> tuple[float, float, str]:
     least, most, why = known.least / known.scale, known.most / known.scale, ""
     if key == "bore_width" and (bore := Layout.of(cue).bore):
         narrow = min(min(cue.segments[i].tip_diameter, cue.segments[i].butt_diameter) for i in bore)
-        most, why = narrow - 2 * LEAST_WALL, f"leaves a wall of {1e3 * LEAST_WALL:g} mm in {1e3 * narrow:.2f} mm"
+        most, why = narrow - 2 * MIN_WALL, f"leaves a wall of {1e3 * MIN_WALL:g} mm in {1e3 * narrow:.2f} mm"
     elif key == "bore_depth":
         most, why = deepest_bore(cue), f"reaches the end, from {1e3 * bore_mouth(cue):.0f} mm behind the tip on"
     elif key == "dome":
@@ -260,11 +260,11 @@ def limits(key: str, scene: Scene) -> tuple[float, float, str]:
     return least, most, why
 
 
-def _within(key: str, new: float, text: str, scene: Scene) -> float:
+def _check_limits(key: str, new: float, text: str, scene: Scene) -> float:
     least, most, why = limits(key, scene)
     if math.isnan(new) or not least * (1 - 1e-9) <= new <= most * (1 + 1e-9):
         low = not new > least
-        end = written(key, least if low else most, scene)
+        end = value_text(key, least if low else most, scene)
         reason = f" {why}" if why else " can be typed"
         raise ValueError(
             f"{text.strip()} is too {'small' if low else 'large'}: at {'least' if low else 'most'} {end}{reason}."
@@ -272,17 +272,17 @@ def _within(key: str, new: float, text: str, scene: Scene) -> float:
     return new
 
 
-class Turns(Protocol):
+class KnobHost(Protocol):
     """The page as a control's row uses it."""
 
     @property
     def step(self) -> Step:
         """The displayed step: the design, and the other one."""
 
-    def turn(self, key: str, new: Any, text: str = "", *, slid: bool = False) -> None:
+    def set_knob(self, key: str, new: Any, text: str = "", *, slid: bool = False) -> None:
         """Set a control to a value; ValueError if that design is invalid."""
 
-    def go(self, steps: int) -> None:
+    def undo_redo(self, steps: int) -> None:
         """Undo (-1) or redo (1)."""
 
 
@@ -292,7 +292,7 @@ class KnobRow:
     It is empty until `show` is called.
     """
 
-    def __init__(self, key: str, page: Turns, *, short: bool = False) -> None:
+    def __init__(self, key: str, page: KnobHost, *, short: bool = False) -> None:
         self.key, self.page, self.short = key, page, short
         self.knob, self.shown = KNOBS[key], ""
         self.slider: Any = None
@@ -306,7 +306,9 @@ class KnobRow:
                 if self.knob.range.high and not short:
                     self.slider = ui.element("input").classes("slide").props("type=range")
                     self.slider.on("input", self._slid, throttle=0.05, js_handler="(e) => emit(e.target.valueAsNumber)")
-                    self.slider.on("keydown.ctrl.z", lambda: page.go(-1)).on("keydown.ctrl.y", lambda: page.go(1))
+                    self.slider.on("keydown.ctrl.z", lambda: page.undo_redo(-1)).on(
+                        "keydown.ctrl.y", lambda: page.undo_redo(1)
+                    )
                 self.field = ui.input().props("outlined dense autocomplete=off").classes("number")
                 self.field.on("keydown.enter", lambda: self._typed(entered=True)).on("blur", self._typed)
             self.error = ui.label().classes("error").props("role=alert")
@@ -345,13 +347,13 @@ class KnobRow:
             return str(mine)
         if self.key == "shaft_mass" and not design.scene.shaft.weighed:
             return ""
-        return design.typed.get(self.key) or written(self.key, mine, design.scene)
+        return design.typed.get(self.key) or value_text(self.key, mine, design.scene)
 
     def _note(self, design: Design, mine: Any, beside: Any) -> str:
         """The note below the label: the other design's value, or the weight, or a typed value in mm or g."""
-        own = mine if self.knob.range is None else written(self.key, mine, design.scene)
+        own = mine if self.knob.range is None else value_text(self.key, mine, design.scene)
         if beside != mine:
-            there = beside if beside is None or self.knob.range is None else written(self.key, beside, design.scene)
+            there = beside if beside is None or self.knob.range is None else value_text(self.key, beside, design.scene)
             return NONE if there is None else str(there)
         if self.key == "shaft_mass":
             return f"{'now' if design.scene.shaft.weighed else 'computed'} {own}"
@@ -377,14 +379,14 @@ class KnobRow:
             "style": style,
             "aria-label": f"{name}, slider",
         }
-        wanted["aria-valuetext"] = written(self.key, mine, scene)
+        wanted["aria-valuetext"] = value_text(self.key, mine, scene)
         if any(self.slider.props.get(key) != own for key, own in wanted.items()):
             self.slider.props.update(wanted)
             self.slider.update()
 
     def _set(self, new: Any, text: str = "", *, slid: bool = False) -> None:
         try:
-            self.page.turn(self.key, new, text, slid=slid)
+            self.page.set_knob(self.key, new, text, slid=slid)
         except FAILURES as error:
             self._fail(one_line(error))
 
@@ -413,7 +415,7 @@ class KnobRow:
             return
         try:
             last = self.page.step.design.typed.get(self.key, "")
-            new, text = read(self.key, text, scene, last), whole(self.key, text, last)
+            new, text = parse(self.key, text, scene, last), with_unit(self.key, text, last)
         except FAILURES as error:
             self._fail(one_line(error))
             return

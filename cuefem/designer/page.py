@@ -14,17 +14,17 @@ from typing import Any
 from nicegui import Client, app, background_tasks, events, ui
 
 from cuefem.designer import computation, panels
-from cuefem.designer.computation import computed
+from cuefem.designer.computation import run_in_thread
 from cuefem.designer.file_editor import FileEditor
-from cuefem.designer.knobs import GROUPS, INPUTS, KNOBS, KnobRow, label, value, with_value, written
-from cuefem.designer.panels import Known
+from cuefem.designer.knobs import GROUPS, INPUTS, KNOBS, KnobRow, label, value, value_text, with_value
+from cuefem.designer.panels import Results
 from cuefem.designer.state import (
     FAILURES,
-    LONGEST_NAME,
+    MAX_NAME,
+    ComparedDesign,
     Design,
-    Other,
+    History,
     Step,
-    Steps,
     one_line,
     read_design,
     reference_design,
@@ -43,14 +43,15 @@ from cuefem.results.verdict import same_stroke
 from cuefem.scene import Scene
 from cuefem.solid.tip_cache import announcement
 
-LARGEST_FILE = 5_000_000  # bytes
+MAX_FILE = 5_000_000  # bytes
 KINDS = (".toml", ".csv", ".stl", ".ply", ".obj")
 TABS = ("Curves", "Changes", "Numbers", "Check", "File")
 NOTHING, OPENED, NOW, FILE = "nothing", "as it was opened", "as it is now", "a file …"
 OPTIONS = {"opened": OPENED, "now": NOW}
 # What is computed of a design before its tabs, and for each tab.
-FIRST, OF_TAB = ("struck", "numbers", "verdict"), {"Curves": ("curve", "gram"), "Changes": ("changes",)}
-SHARED = ("struck", "numbers", "curve", "gram")  # also computed of the other design
+FIRST = ("solved_strike", "numbers", "verdict")
+OF_TAB = {"Curves": ("curve", "end_mass_distribution"), "Changes": ("changes",)}
+SHARED = ("solved_strike", "numbers", "curve", "end_mass_distribution")  # also computed of the other design
 
 
 async def is_open(client: Client, timeout: float = 60.0) -> bool:
@@ -64,10 +65,10 @@ class Page:
     """The content of a tab, and the actions of its controls."""
 
     def __init__(self, first: Design) -> None:
-        self.history = Steps(first)
+        self.history = History(first)
         self.listed = (self._assumed(), self._notes())  # the assumptions that are on the page
         self.version = 0  # of the design in work: results of an older one are dropped
-        self.known = Known()
+        self.results = Results()
         self.solid_of: Scene | None = None  # that was computed as a solid
         self.tab = TABS[0]
         self.rows: list[KnobRow] = []
@@ -98,7 +99,7 @@ class Page:
         with ui.element("header").classes("head"):
             ui.html("<h1>cuefem designer</h1>", sanitize=False).classes("brand")
             self.name = ui.input(on_change=self._renamed).props(
-                f'borderless dense debounce=400 maxlength={LONGEST_NAME} aria-label="Name of the design"'
+                f'borderless dense debounce=400 maxlength={MAX_NAME} aria-label="Name of the design"'
             )
             self.changed = ui.label().classes("soft setup")
             with ui.element("div").classes("tools").props('role=toolbar aria-label="File and history"'):
@@ -108,14 +109,14 @@ class Page:
                         ui.menu_item(preset.name, lambda preset=preset: self._reference(preset))
                 _tool("Save", "save_alt", self._save)
                 self.report = _tool("Report", "description", self._report)
-                self.undo = _tool("Undo", "undo", lambda: self.go(-1))
-                self.redo = _tool("Redo", "redo", lambda: self.go(1))
+                self.undo = _tool("Undo", "undo", lambda: self.undo_redo(-1))
+                self.redo = _tool("Redo", "redo", lambda: self.undo_redo(1))
                 ui.link("Guide", "/guide", new_tab=True).classes("guide")
             self.upload = ui.upload(
                 auto_upload=True,
-                max_file_size=LARGEST_FILE,
-                on_upload=self._sent,
-                on_rejected=lambda: self.say(f"not opened: at most {LARGEST_FILE // 10**6} MB"),
+                max_file_size=MAX_FILE,
+                on_upload=self._uploaded,
+                on_rejected=lambda: self.show_message(f"not opened: at most {MAX_FILE // 10**6} MB"),
             ).props(f'accept="{",".join(KINDS)}"')
             self.upload.classes("unseen")
             self.purpose = "design"
@@ -165,7 +166,7 @@ class Page:
 
     def _parts(self) -> dict[str, float]:
         """Relative uncertainty of squirt by each control's parameters."""
-        inputs = self.known.own.get("verdict", {}).get("inputs", {})
+        inputs = self.results.own.get("verdict", {}).get("inputs", {})
         parts = {key: sum(inputs.get(name, 0.0) ** 2 for name in INPUTS.get(key, (key,))) ** 0.5 for key in KNOBS}
         return {key: part for key, part in parts.items() if part}
 
@@ -200,55 +201,55 @@ class Page:
     @ui.refreshable_method
     def changes(self) -> None:
         """The table of changes, each with Try."""
-        panels.changes_panel(self.step, self.known, self._try)
+        panels.changes_panel(self.step, self.results, self._try)
 
     # --- changes -----------------------------------------------------------------------------------
 
-    def turn(self, key: str, new: Any, text: str = "", *, slid: bool = False) -> None:
+    def set_knob(self, key: str, new: Any, text: str = "", *, slid: bool = False) -> None:
         """Set a control to a value, typed as a text; ValueError if that design is invalid."""
         when, name = time.monotonic(), key if slid else ""
-        base = self.history.before(name, when)
+        base = self.history.slide_start(name, when)
         made = base.changed(with_value(base.scene, key, new), {key}, {key: text} if text else {})
-        self.put(Step(made, self.step.other), name, when=when)
+        self.push(Step(made, self.step.other), name, when=when)
 
     def _try(self, places: Mapping[str, Any]) -> None:
         design = self.step.design
         keys = {known.key for name in places if (known := parameter(name))}
-        self._attempt(lambda: self.put(Step(design.changed(varied(design.scene, places), keys, {}), self.step.other)))
+        self._attempt(lambda: self.push(Step(design.changed(varied(design.scene, places), keys, {}), self.step.other)))
 
     def _applied(self, read: Design) -> None:
         design = self.step.design
         new = {key for key in KNOBS if value(key, read.scene) != value(key, design.scene)}
-        self.put(Step(design.changed(read.scene, new, {}), self.step.other))
+        self.push(Step(design.changed(read.scene, new, {}), self.step.other))
 
     def _attempt(self, work: Callable[[], Any]) -> None:
         try:
             work()
-            self.say("")
+            self.show_message("")
         except FAILURES as error:
-            self.say(one_line(error))
+            self.show_message(one_line(error))
 
-    def put(self, step: Step, label: str = "", *, when: float = 0.0) -> None:
+    def push(self, step: Step, label: str = "", *, when: float = 0.0) -> None:
         """Add a step to the history, and show it."""
-        self.history.put(step, label, when=when)
+        self.history.push(step, label, when=when)
         self.show()
-        self._answer_soon()
+        self._start_computation()
 
-    def go(self, steps: int) -> None:
+    def undo_redo(self, steps: int) -> None:
         """Undo (-1) or redo (1)."""
-        if self.history.go(steps):
+        if self.history.move(steps):
             self.show()
-            self._answer_soon()
+            self._start_computation()
 
     def _key(self, event: events.KeyEventArguments) -> None:
         key = str(event.key).lower()
         if event.action.keydown and (event.modifiers.ctrl or event.modifiers.meta) and key in ("z", "y"):
-            self.go(1 if key == "y" or event.modifiers.shift else -1)
+            self.undo_redo(1 if key == "y" or event.modifiers.shift else -1)
 
     def _renamed(self, event: Any) -> None:
-        name = str(event.value or "").strip()[:LONGEST_NAME]
+        name = str(event.value or "").strip()[:MAX_NAME]
         if name and name != self.step.design.name:
-            self.put(Step(replace(self.step.design, name=name), self.step.other), "name", when=time.monotonic())
+            self.push(Step(replace(self.step.design, name=name), self.step.other), "name", when=time.monotonic())
 
     # --- files -------------------------------------------------------------------------------------
 
@@ -256,29 +257,29 @@ class Page:
         self.purpose = purpose
         self.upload.run_method("pickFiles")
 
-    async def _sent(self, event: events.UploadEventArguments) -> None:
+    async def _uploaded(self, event: events.UploadEventArguments) -> None:
         content, name = await event.file.read(), file_name(event.file.name)
         self.upload.reset()
         purpose, self.purpose = self.purpose, "design"
         try:
-            if len(content) > LARGEST_FILE:
-                raise ValueError(f"a file must be of at most {LARGEST_FILE // 10**6} MB")
-            design = await computed(read_design, name, content)
+            if len(content) > MAX_FILE:
+                raise ValueError(f"a file must be of at most {MAX_FILE // 10**6} MB")
+            design = await run_in_thread(read_design, name, content)
         except FAILURES as error:
-            self.say(one_line(error))
+            self.show_message(one_line(error))
             return
-        self.say("")
+        self.show_message("")
         if purpose == "design":
-            self._work_on(design)
+            self._edit(design)
         else:
-            self.put(Step(self.step.design, Other("file", design)))
+            self.push(Step(self.step.design, ComparedDesign("file", design)))
 
-    def _work_on(self, design: Design) -> None:
+    def _edit(self, design: Design) -> None:
         self.history.opened = design
-        self.put(Step(design, self.step.other))
+        self.push(Step(design, self.step.other))
 
     def _reference(self, preset: Any) -> None:
-        self._attempt(lambda: self._work_on(reference_design(preset)))
+        self._attempt(lambda: self._edit(reference_design(preset)))
 
     def _save(self) -> None:
         design = self.step.design
@@ -289,12 +290,12 @@ class Page:
         design, other = self.step.design, self.step.other
         self.report.disable()
         notes = [f"{label(key, design.scene)} {_assumption(key, design.scene)}" for key in self._assumed()]
-        beside = None if other is None else (panels.named(self.step)[1][0], self._beside())
+        beside = None if other is None else (panels.named_designs(self.step)[1][0], self._compared_scene())
         try:
-            text = await computed(self._page, design, [*notes, *self._notes()], beside)
+            text = await run_in_thread(self._page, design, [*notes, *self._notes()], beside)
             ui.download.content(text, f"{_stem(design.name)}.html")
         except FAILURES as error:
-            self.say(one_line(error))
+            self.show_message(one_line(error))
         finally:
             self.report.enable()
 
@@ -303,7 +304,7 @@ class Page:
         return report_page(design.name, design.scene, notes=notes, other=beside)
 
     def _table(self) -> None:
-        made = panels.numbers_sheet(self.step, self.known)
+        made = panels.numbers_sheet(self.step, self.results)
         if made is not None:
             ui.download.content("\ufeff" + csv_text(made.head, made.rows), f"{_stem(self.step.design.name)}.csv")
 
@@ -317,22 +318,22 @@ class Page:
             self._pick("other")
             self.show()
         elif name == NOTHING:
-            self.put(Step(step.design))
+            self.push(Step(step.design))
         elif name in SCALE:
             preset = next(preset for preset in PRESETS if preset.file == SCALE[name])
-            self.put(Step(step.design, Other("reference", replace(reference_design(preset), name=name))))
+            self.push(Step(step.design, ComparedDesign("reference", replace(reference_design(preset), name=name))))
         else:
             kind = next(kind for kind, words in OPTIONS.items() if words == name)
-            self.put(Step(step.design, Other(kind, self.history.opened if kind == "opened" else step.design)))
+            self.push(Step(step.design, ComparedDesign(kind, self.history.opened if kind == "opened" else step.design)))
 
     def _swap(self) -> None:
         design, other = self.step
         if other is not None:
-            self.put(Step(other.design, Other("now" if other.kind in OPTIONS else "file", design)))
+            self.push(Step(other.design, ComparedDesign("now" if other.kind in OPTIONS else "file", design)))
 
     # --- what is shown -----------------------------------------------------------------------------
 
-    def say(self, words: str) -> None:
+    def show_message(self, words: str) -> None:
         """Show a message above the page, or none."""
         self.banner.set_text(words)
         self.banner.set_visibility(bool(words))
@@ -355,7 +356,7 @@ class Page:
         if (self.compare.options, self.compare.value) != (offered, chosen):
             self.compare.set_options(offered, value=chosen)
         self.swap.set_visibility(other is not None)
-        shown = panels.named(self.step)
+        shown = panels.named_designs(self.step)
         self.drawing.set_content(drawings_markup({name: each.scene for name, each in shown}))
         captions = {
             "Shaft": f"length {1e3 * design.scene.shaft.length:.1f} mm",
@@ -367,13 +368,13 @@ class Page:
         if self.tab == "File" and self.file is not None:
             self.file.show(design)
 
-    def _show_known(self) -> None:
+    def _show_numbers(self) -> None:
         """Show the results computed so far."""
-        own, other = self._shown(self.known.own, 0), self._shown(self.known.other, 1)
+        own, other = self._shown(self.results.own, 0), self._shown(self.results.other, 1)
         if own is None:
             return
-        warning = regime_warning(self.known.own["struck"].outcome.regime) or ""
-        difference = self.known.difference
+        warning = regime_warning(self.results.own["solved_strike"].outcome.regime) or ""
+        difference = self.results.difference
         self.headline.set_content(explained(headline_markup(own, other, difference, warning)))
         self.scale.set_content(scale_markup(own, other))
         self.tiles.set_content(tiles_markup(own, other))
@@ -383,31 +384,31 @@ class Page:
         self._show_tab()
 
     def _shown(self, side: Mapping[str, Any], i: int) -> Shown | None:
-        if "struck" not in side:
+        if "solved_strike" not in side:
             return None
-        name, design = panels.named(self.step)[i]
-        numbers = side.get("numbers") or computation.first_numbers(design.scene if i == 0 else self._beside())
+        name, design = panels.named_designs(self.step)[i]
+        numbers = side.get("numbers") or computation.first_numbers(design.scene if i == 0 else self._compared_scene())
         return Shown(name, design.scene, numbers, side.get("verdict"))
 
-    def _beside(self) -> Scene:
+    def _compared_scene(self) -> Scene:
         """The other design with this one's ball and stroke; a reference cue with this tip too."""
         assert self.step.other is not None
         mine, other = self.step.design.scene, self.step.other.design.scene
         return (
             same_stroke(mine, other.shaft)
             if self.step.other.kind == "reference"
-            else computation.struck_like(mine, other)
+            else computation.with_stroke_of(mine, other)
         )
 
     def _show_tab(self) -> None:
         if self.tab == "Curves":
-            self.curves.set_content(panels.curves_markup(self.step, self.known))
+            self.curves.set_content(panels.curves_markup(self.step, self.results))
         elif self.tab == "Changes":
             self.changes.refresh()
         elif self.tab == "Numbers":
-            self.numbers.set_content(panels.sheets_markup([panels.numbers_sheet(self.step, self.known)]))
+            self.numbers.set_content(panels.sheets_markup([panels.numbers_sheet(self.step, self.results)]))
         elif self.tab == "Check":
-            self.check.set_content(panels.sheets_markup(panels.check_sheet(self.step, self.known)))
+            self.check.set_content(panels.sheets_markup(panels.check_sheet(self.step, self.results)))
 
     def _opened(self, event: Any) -> None:
         self.tab = str(event.value)
@@ -416,9 +417,9 @@ class Page:
                 with self.file_panel:
                     self.file = FileEditor(self._applied)
             self.file.show(self.step.design)
-            self.file.named()
+            self.file.set_accessible_name()
         else:
-            self._answer_soon()
+            self._start_computation()
 
     # --- results -----------------------------------------------------------------------------------
 
@@ -426,68 +427,68 @@ class Page:
         """Restore the state of this tab before a reload, and compute."""
         if not await is_open(self.client):
             return
-        kept = app.storage.tab.get("history")
-        if isinstance(kept, Steps):
-            self.history = kept
+        saved = app.storage.tab.get("history")
+        if isinstance(saved, History):
+            self.history = saved
             self.show()
         app.storage.tab["history"] = self.history
-        self._answer_soon()
+        self._start_computation()
 
-    def _answer_soon(self) -> None:
+    def _start_computation(self) -> None:
         self.version += 1
         self.main.props('data-busy="true"')
         self.card.classes(add="stale")
-        background_tasks.create(self._answer(self.version), name="answer")
+        background_tasks.create(self._compute_all(self.version), name="computation")
 
-    async def _answer(self, version: int) -> None:
+    async def _compute_all(self, version: int) -> None:
         """Compute the displayed results, the first numbers first; stop when the design changes."""
-        step, known = self.step, Known()
-        other = None if step.other is None else self._beside()
-        scenes = [(step.design.scene, known.own), *([] if other is None else [(other, known.other)])]
+        step, results = self.step, Results()
+        other = None if step.other is None else self._compared_scene()
+        scenes = [(step.design.scene, results.own), *([] if other is None else [(other, results.other)])]
         waits = not all(scene.tip_at_hand for scene, _ in scenes)
         with self.client:
             if waits:
-                self.say(announcement())
+                self.show_message(announcement())
             failures = list[str]()
             for name in (*FIRST, *OF_TAB.get(self.tab, ())):
                 for scene, side in scenes:
-                    if side is known.own or name in SHARED:
+                    if side is results.own or name in SHARED:
                         failures += await self._compute(side, name, getattr(computation, name), scene)
                         if version != self.version:
                             return
-                if name == "verdict" and other is not None and "struck" in known.other:
+                if name == "verdict" and other is not None and "solved_strike" in results.other:
                     same = step.other is not None and step.other.kind in OPTIONS
                     work = computation.comparison
-                    failures += await self._compute(known.own, "comparison", work, step.design.scene, other, same)
+                    failures += await self._compute(results.own, "comparison", work, step.design.scene, other, same)
                     if version != self.version:
                         return
-                if "struck" not in known.own:
+                if "solved_strike" not in results.own:
                     failures = [f"{failures[0]}. The numbers are those of the previous design."]
                     break
-                self._take(known)
-            self.say("; ".join(dict.fromkeys(failures)))
+                self._show_results(results)
+            self.show_message("; ".join(dict.fromkeys(failures)))
             self.main.props('data-busy="false"')
 
     @staticmethod
     async def _compute(side: dict[str, Any], name: str, work: Callable[..., Any], *arguments: Any) -> list[str]:
         """Compute one result of a design; return the error message, if any."""
         try:
-            side[name] = await computed(work, *arguments)
+            side[name] = await run_in_thread(work, *arguments)
         except FAILURES as error:
             return [one_line(error)]
         return []
 
-    def _take(self, known: Known) -> None:
+    def _show_results(self, results: Results) -> None:
         """Show results; the card is no longer stale once the numbers belong to this design."""
-        first = "verdict" not in self.known.own
-        solid = self.known.own.get("solid") if self.solid_of == self.step.design.scene else None
-        self.known = Known(dict(known.own), dict(known.other), known.own.get("comparison", {}).get("squirt"))
+        first = "verdict" not in self.results.own
+        solid = self.results.own.get("solid") if self.solid_of == self.step.design.scene else None
+        self.results = Results(dict(results.own), dict(results.other), results.own.get("comparison", {}).get("squirt"))
         if solid is not None:
-            self.known.own["solid"] = solid
-        if "numbers" in known.own:
+            self.results.own["solid"] = solid
+        if "numbers" in results.own:
             self.card.classes(remove="stale")
-        self._show_known()
-        if first and "verdict" in known.own:
+        self._show_numbers()
+        if first and "verdict" in results.own:
             self.assumptions.refresh()
 
     async def _check(self) -> None:
@@ -496,12 +497,12 @@ class Page:
         self.check_button.disable()
         self.main.props('data-busy="true"')
         try:
-            solid = await computed(computation.solid, scene)
+            solid = await run_in_thread(computation.solid, scene)
             if scene == self.step.design.scene:
-                self.solid_of, self.known.own["solid"] = scene, solid
+                self.solid_of, self.results.own["solid"] = scene, solid
                 self._show_tab()
         except FAILURES as error:
-            self.say(one_line(error))
+            self.show_message(one_line(error))
         finally:
             self.check_button.enable()
             if version == self.version:
@@ -520,7 +521,7 @@ def _tool(words: str, icon: str, action: Callable[[], Any]) -> Any:
     return ui.button(words, icon=icon, on_click=action).props("flat dense no-caps")
 
 
-def _other_name(other: Other | None) -> str:
+def _other_name(other: ComparedDesign | None) -> str:
     return NOTHING if other is None else OPTIONS.get(other.kind, other.design.name)
 
 
@@ -531,8 +532,8 @@ def _stem(name: str) -> str:
 
 def _assumption(key: str, scene: Scene) -> str:
     own = value(key, scene)
-    return str(own) if KNOBS[key].range is None else written(key, own, scene)
+    return str(own) if KNOBS[key].range is None else value_text(key, own, scene)
 
 
 def _texts(scene: Scene, *keys: str) -> str:
-    return ", ".join(escape(written(key, own, scene)) for key in keys if (own := value(key, scene)) is not None)
+    return ", ".join(escape(value_text(key, own, scene)) for key in keys if (own := value(key, scene)) is not None)

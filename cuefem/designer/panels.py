@@ -11,7 +11,7 @@ from nicegui import ui
 
 import cuefem.report
 from cuefem.designer.computation import CURVE_OFFSETS
-from cuefem.designer.knobs import KNOBS, label, value, written
+from cuefem.designer.knobs import KNOBS, label, value, value_text
 from cuefem.designer.state import Design, Step
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.report.advice_table import advice_sheet
@@ -32,7 +32,7 @@ COMPUTING = '<p class="soft">computing …</p>'
 
 
 @dataclass
-class Known:
+class Results:
     """Results of the current design ("own") and of the other one, by the names of the computation."""
 
     own: dict[str, Any] = field(default_factory=dict)
@@ -40,7 +40,7 @@ class Known:
     difference: Record | None = None
 
 
-def named(step: Step) -> list[tuple[str, Design]]:
+def named_designs(step: Step) -> list[tuple[str, Design]]:
     """The displayed designs, by distinct names."""
     mine, other = step.design, step.other
     if other is None:
@@ -51,26 +51,28 @@ def named(step: Step) -> list[tuple[str, Design]]:
     ]
 
 
-def curves_markup(step: Step, known: Known) -> str:
+def curves_markup(step: Step, results: Results) -> str:
     """Squirt and pivot length against the offset, and the end-mass distribution, of one or two designs."""
     sides = [
         (name, style, side)
-        for (name, _), style, side in zip(named(step), STYLES, (known.own, known.other), strict=False)
+        for (name, _), style, side in zip(named_designs(step), STYLES, (results.own, results.other), strict=False)
     ]
     drawn = [(name, style, side["curve"]) for name, style, side in sides if "curve" in side]
-    if not drawn or "curve" not in known.own:
+    if not drawn or "curve" not in results.own:
         return COMPUTING
-    regimes = known.own["curve"]["regime"]
+    regimes = results.own["curve"]["regime"]
     offset = float(step.design.scene.stroke.offset)
     charts = [*offset_charts(drawn, CURVE_OFFSETS, offset, height=280, regimes=regimes)]
-    grams = [
-        Curve(name, 1e3 * side["gram"][0], side["gram"][1], style) for name, style, side in sides if "gram" in side
+    curves = [
+        Curve(name, 1e3 * side["end_mass_distribution"][0], side["end_mass_distribution"][1], style)
+        for name, style, side in sides
+        if "end_mass_distribution" in side
     ]
-    if grams:
+    if curves:
         charts.append(
             chart(
                 "End mass that one gram adds, g",
-                grams,
+                curves,
                 x=Axis("distance from the tip, mm", 0.0),
                 y=Axis("end mass, g"),
                 height=280,
@@ -84,16 +86,16 @@ def curves_markup(step: Step, known: Known) -> str:
     return f'<div class="charts">{figures}</div><p class="soft">{escape(note)}</p>'
 
 
-def changes_panel(step: Step, known: Known, attempt: Callable[[Mapping[str, Any]], None]) -> None:
+def changes_panel(step: Step, results: Results, attempt: Callable[[Mapping[str, Any]], None]) -> None:
     """The design changes, each with a button that applies it."""
-    record = known.own.get("changes")
+    record = results.own.get("changes")
     if record is None:
         ui.html(COMPUTING, sanitize=False)
         return
     made = advice_sheet(record)
     ui.label(f"Changes to {step.design.name}, each alone").classes("h2")
     around = ui.element("div").classes("scroll").props('tabindex=0 role=region aria-label="Design changes"')
-    with around, ui.element("table").classes("sheet"):
+    with around, ui.element("table").classes("changes"):
         with ui.element("thead"), ui.element("tr"):
             for i, head in enumerate(made.head):
                 _cell("th", head, text=i in made.texts)
@@ -117,16 +119,16 @@ def _cell(kind: str, content: str, *, text: bool = False) -> None:
         cell.props("scope=col")
 
 
-def numbers_sheet(step: Step, known: Known) -> Sheet | None:
+def numbers_sheet(step: Step, results: Results) -> Sheet | None:
     """Every number of the design and of the other one, and their differences."""
-    if "numbers" not in known.own:
+    if "numbers" not in results.own:
         return None
-    shown, sides = named(step), [side["numbers"] for side in (known.own, known.other) if "numbers" in side]
+    shown, sides = named_designs(step), [side["numbers"] for side in (results.own, results.other) if "numbers" in side]
     rows = [
-        _number_row(name, [side.get(name) for side in sides], words, known.difference)
-        for name, words in _names(known.own["numbers"], float(step.design.scene.stroke.offset))
+        _number_row(name, [side.get(name) for side in sides], words, results.difference)
+        for name, words in _names(results.own["numbers"], float(step.design.scene.stroke.offset))
     ]
-    for k, _ in enumerate(known.own["numbers"]["frequencies"]):
+    for k, _ in enumerate(results.own["numbers"]["frequencies"]):
         rows.append(_number_row("frequency", [side["frequencies"][k] for side in sides], f"natural frequency {k + 1}"))
     scenes = [design.scene for _, design in shown[: len(sides)]]
     for key, knob in KNOBS.items():
@@ -158,25 +160,25 @@ def _number_row(name: str, values: Sequence[Any], words: str, difference: Record
 
 def _knob_text(key: str, scene: Scene) -> str:
     own = value(key, scene)
-    return NONE if own is None else own if KNOBS[key].range is None else written(key, own, scene)
+    return NONE if own is None else own if KNOBS[key].range is None else value_text(key, own, scene)
 
 
-def check_sheet(step: Step, known: Known) -> list[Sheet]:
+def check_sheet(step: Step, results: Results) -> list[Sheet]:
     """Checks of the design, and beam against solid once that is computed."""
     rows = []
-    if "verdict" in known.own:
-        band = known.own["verdict"]["uncertainty"]
+    if "verdict" in results.own:
+        uncertainty = results.own["verdict"]["uncertainty"]
         rows += [
-            ("calculation error of squirt", f"{100 * band['computation']:.1g} %"),
-            ("model error, RMS of published strokes", f"{100 * band['model']:.0f} %"),
-            ("wood and tip, not measured", f"{100 * band['inputs']:.0f} %"),
+            ("calculation error of squirt", f"{100 * uncertainty['computation']:.1g} %"),
+            ("model error, RMS of published strokes", f"{100 * uncertainty['model']:.0f} %"),
+            ("wood and tip, not measured", f"{100 * uncertainty['inputs']:.0f} %"),
             ("a change of squirt, relative uncertainty", f"{100 * SHAFTS:.0f} %"),
         ]
-    if "struck" in known.own:
-        rows.append(("tip contact", regime_warning(known.own["struck"].outcome.regime) or "no miscue"))
+    if "solved_strike" in results.own:
+        rows.append(("tip contact", regime_warning(results.own["solved_strike"].outcome.regime) or "no miscue"))
     rows += [("unusual", line) for line in unusual(step.design.scene)] or [("unusual values", "none")]
     first = Sheet(f"Check of {step.design.name}", ("check", "result"), tuple(rows), texts=(0, 1))
-    solid = known.own.get("solid")
+    solid = results.own.get("solid")
     return [first] if solid is None else [first, cuefem.report.model_error_sheet(solid)]
 
 

@@ -12,14 +12,14 @@ from starlette.middleware.trustedhost import TrustedHostMiddleware
 from starlette.responses import HTMLResponse, PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from cuefem.designer.page import KINDS, LARGEST_FILE, Page, is_open
+from cuefem.designer.page import KINDS, MAX_FILE, Page, is_open
 from cuefem.designer.state import Design
 from cuefem.handbook.page import page as handbook
 from cuefem.quantity.slips import Unusual
 
 HOST = "127.0.0.1"
-AROUND_FILE = 10_000  # bytes of a form beside its file
-REJECTED = f"a file must be a {', '.join(KINDS[:-1])} or {KINDS[-1]} of at most {LARGEST_FILE // 10**6} MB"
+FORM_SIZE = 10_000  # bytes of a form beside its file
+REJECTED = f"a file must be a {', '.join(KINDS[:-1])} or {KINDS[-1]} of at most {MAX_FILE // 10**6} MB"
 
 
 def serve(first: Design, *, port: int, show: bool, announce: Callable[[str], None]) -> None:
@@ -79,7 +79,7 @@ class RequestValidation:
 
     async def _bounded(self, headers: Headers, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass a request on, and stop reading its body where it is longer than a file and its form may be."""
-        most, read, begun = LARGEST_FILE + AROUND_FILE, 0, False
+        most, read, begun = MAX_FILE + FORM_SIZE, 0, False
 
         async def counted() -> Message:
             nonlocal read

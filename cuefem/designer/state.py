@@ -20,11 +20,11 @@ from cuefem.quantity.units import number
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, usual_scene
 
-TOGETHER = 1.5  # s: moves of one slider that follow each other within it are one step
-MOST_STEPS = 60
-MOST_SEGMENTS = 300  # the natural frequencies and the stiffness of as many take 15 s and 0.6 GB
-LONGEST_NAME = 80
-BUTT = "15 oz"  # of a drawing without body_mass
+SLIDE_PAUSE = 1.5  # s: moves of one slider that follow each other within it are one step
+MAX_STEPS = 60
+MAX_SEGMENTS = 300  # the natural frequencies and the stiffness of as many take 15 s and 0.6 GB
+MAX_NAME = 80
+DEFAULT_BUTT = "15 oz"  # of a drawing without body_mass
 FAILURES = (ValueError, RuntimeError, ArithmeticError, MemoryError, OSError)
 _CUE = re.compile(r"""^\s*cue\s*=\s*["']([^"'\n]+)["']""", re.MULTILINE)
 
@@ -50,9 +50,9 @@ class Design:
 
     def __post_init__(self) -> None:
         count = len(self.scene.shaft.segments)  # ValueError for a lumped cue
-        if count > MOST_SEGMENTS:
+        if count > MAX_SEGMENTS:
             raise ValueError(
-                f"the designer takes a cue of at most {MOST_SEGMENTS} segments; got {count}: draw it with fewer, or "
+                f"the designer takes a cue of at most {MAX_SEGMENTS} segments; got {count}: draw it with fewer, or "
                 "use cuefem report"
             )
 
@@ -63,7 +63,7 @@ class Design:
         return replace(self, scene=scene, assumed=self.assumed - {*keys} | weight, typed={**kept, **typed})
 
 
-class Other(NamedTuple):
+class ComparedDesign(NamedTuple):
     """The design to compare with. kind: "reference", "file", "opened" or "now", the last two of the same shaft."""
 
     kind: str
@@ -74,10 +74,10 @@ class Step(NamedTuple):
     """One step of undo."""
 
     design: Design
-    other: Other | None = None
+    other: ComparedDesign | None = None
 
 
-class Steps:
+class History:
     """All steps of a tab, and the displayed one; the server retains them while the tab is open or reloaded."""
 
     def __init__(self, first: Design) -> None:
@@ -91,23 +91,23 @@ class Steps:
         """The displayed step."""
         return self.steps[self.at]
 
-    def joins(self, label: str, when: float) -> bool:
+    def continues_slide(self, label: str, when: float) -> bool:
         """Whether a move of the slider ``label`` at a time, s, continues the displayed step."""
-        return bool(label) and label == self.label and when - self.when < TOGETHER and self.at > 0
+        return bool(label) and label == self.label and when - self.when < SLIDE_PAUSE and self.at > 0
 
-    def before(self, label: str, when: float) -> Design:
+    def slide_start(self, label: str, when: float) -> Design:
         """The design that a move of a slider changes: the one before the slide began."""
-        return self.steps[self.at - self.joins(label, when)].design
+        return self.steps[self.at - self.continues_slide(label, when)].design
 
-    def put(self, step: Step, label: str = "", *, when: float = 0.0) -> None:
+    def push(self, step: Step, label: str = "", *, when: float = 0.0) -> None:
         """Add a step; undone steps are dropped, and one slide is one step."""
         if step == self.now:
             return
-        kept = self.steps[: self.at + (not self.joins(label, when))]
-        self.steps = [*kept, step][-MOST_STEPS:]
+        kept = self.steps[: self.at + (not self.continues_slide(label, when))]
+        self.steps = [*kept, step][-MAX_STEPS:]
         self.at, self.label, self.when = len(self.steps) - 1, label, when
 
-    def go(self, steps: int) -> bool:
+    def move(self, steps: int) -> bool:
         """Undo (-1) or redo (1); whether that step exists."""
         at = self.at + steps
         if not 0 <= at < len(self.steps):
@@ -116,17 +116,17 @@ class Steps:
         return True
 
 
-def design_of_file(path: Path, name: str, scene: Scene, given: Mapping[str, Any] = MappingProxyType({})) -> Design:
+def design_of_file(path: Path, name: str, scene: Scene, options: Mapping[str, Any] = MappingProxyType({})) -> Design:
     """A scene read from a file, and its assumptions.
 
-    given: the values of options that supplement the file, by name. A shape without body_mass gets
-    `BUTT`.
+    options: the values of options that supplement the file, by name. A shape without body_mass gets
+    `DEFAULT_BUTT`.
     """
-    found = assumed(path, scene, given)
+    found = assumed(path, scene, options)
     keys = {{"material": "shaft_material"}.get(key, key) for key, _ in found if key}
     if "body_mass" in keys:
-        scene = varied(scene, {"body mass": number(BUTT, "kg")})
-    return Design(name[:LONGEST_NAME], scene, frozenset(keys), {}, tuple(words for key, words in found if not key))
+        scene = varied(scene, {"body mass": number(DEFAULT_BUTT, "kg")})
+    return Design(name[:MAX_NAME], scene, frozenset(keys), {}, tuple(words for key, words in found if not key))
 
 
 def reference_design(preset: Preset) -> Design:

@@ -17,7 +17,7 @@ import pytest
 
 pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
 import cuefem as cf
-from cuefem.designer.page import LARGEST_FILE, file_name
+from cuefem.designer.page import MAX_FILE, file_name
 from cuefem.designer.server import REJECTED, RequestValidation
 from tests.helpers.designer_browser import await_listening
 from tests.helpers.refusals import command_refuses
@@ -83,7 +83,7 @@ def test_a_big_body_is_refused_and_not_read() -> None:
         assert asked("http", {"content-length": length}, 1)[0][0]["status"] == 413
     sent, read = asked("http", {}, 60)  # its length is not said
     assert sent[0]["status"] == 413
-    assert read <= LARGEST_FILE + 2 * PIECE
+    assert read <= MAX_FILE + 2 * PIECE
 
 
 @pytest.mark.parametrize("name", [None, "", " ", ".", "..", "../..", "a\0.toml", "a\n.toml", "é" * 150 + ".toml"])

@@ -11,7 +11,7 @@ import numpy as np
 
 import cuefem as cf
 from cuefem.designer.computation import numbers
-from cuefem.designer.panels import Known, numbers_sheet, sheets_markup
+from cuefem.designer.panels import Results, numbers_sheet, sheets_markup
 from cuefem.designer.state import Design, Step
 from cuefem.effects import CueEffect, TipEffect, Usual
 from cuefem.effects.contact_settings import ContactTerms
@@ -32,8 +32,8 @@ def faces(scene: cf.Scene, folder: Path, *names: str) -> dict[str, str]:
         if name == "json":
             return call("report", file, "--json")[1]
         if name == "designer":
-            known = Known({"numbers": numbers.__wrapped__(scene)})
-            return sheets_markup([numbers_sheet(Step(Design("this", scene)), known)])
+            results = Results({"numbers": numbers.__wrapped__(scene)})
+            return sheets_markup([numbers_sheet(Step(Design("this", scene)), results)])
         return call(name, file)[1]
 
     return {name: " ".join(re.sub("<[^>]*>", "", shown(name)).split()) for name in names}
