@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.io import InputError
 from tests.helpers.sweeps import resolution, vary, written
 
 pd = pytest.importorskip("pandas")
@@ -27,11 +26,3 @@ def test_a_sweep(tmp_path: Path) -> None:
     grid = frame.pivot_table(index="tip", columns="wood", values="end_mass")
     assert grid.shape == (3, 2)
     assert np.all(np.diff(grid["ash"]) > 0)
-
-
-def test_what_is_no_store(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="No such file"):
-        cf.frames.of_store(tmp_path / "none.sqlite")
-    (tmp_path / "text.sqlite").write_text("x" * 200)
-    with pytest.raises(InputError, match="cannot be read or written as a database"):
-        cf.frames.of_store(tmp_path / "text.sqlite")

@@ -1,6 +1,5 @@
 """Commands: their JSON is the library's numbers, and says what was assumed; what they print: tests/test_faces.py."""
 
-import json
 import math
 import subprocess
 import sys
@@ -11,7 +10,7 @@ import pytest
 
 import cuefem as cf
 from studies.paper.closed_forms import alciatore_a31, natural_pivot_length
-from tests.helpers.command_line import as_json, call, said
+from tests.helpers.command_line import as_json, said
 from tests.helpers.cues import kim as kims_shaft
 
 KIM = kims_shaft()
@@ -64,25 +63,6 @@ def test_a_scene_file_uses_its_own_and_options_replace_what_it_says(folder: Path
     told = as_json("strike", "scene.toml", "--offset", "0.1", "--friction", "0.5", "--body-mass", "14 oz")["scene"]
     assert (told["stroke"]["offset"], told["tip"]["friction"]) == (0.1, 0.5)
     assert told["cue"]["body_mass"] == 0.39689332375
-
-
-def test_a_profile_announces_its_material_and_that_nothing_is_behind_it(folder: Path) -> None:
-    assert as_json("modes", "shaft.csv")["assumed"][0] == "material hard maple (--material)"
-    bare = json.loads(call("strike", "shaft.csv", "--json")[1])  # and a remark on stderr
-    whole = as_json("strike", "shaft.csv", "--body-mass", "15 oz")
-    words = "no mass behind the shaft (--body-mass)"
-    assert [words in told["assumed"] for told in (bare, whole)] == [True, False]
-    speeds = [told["models"]["coupled"]["ball_speed"] for told in (bare, whole)]
-    assert 0.4 * speeds[1] < speeds[0] < 0.75 * speeds[1]
-
-
-def test_a_scene_announces_what_it_leaves_out(folder: Path) -> None:
-    Path("short.toml").write_text("game = 'kim'\ncue = 'cue.toml'\n[ball]\nmass = '170 g'\n[tip]\nfriction = 0.6\n")
-    left = ["ball 61.5 mm"]
-    left += ["head-on contact time 2 ms (leather: about 1 ms)", "restitution 0.75 (--restitution)"]
-    left += ["cue speed 1 m/s (--speed)"]
-    assert as_json("strike", "short.toml", "--offset", "0.2")["assumed"] == left
-    assert as_json("strike", "short.toml")["assumed"] == [*left, "offset b/R 0 (--offset)"]
 
 
 def test_convert(folder: Path) -> None:

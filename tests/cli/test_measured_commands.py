@@ -31,15 +31,6 @@ def test_numbers_and_the_page(tmp_path: Path) -> None:
     assert "http" not in text.replace("http://www.w3.org", "")
 
 
-def test_series_and_file_are_read_alike(tmp_path: Path) -> None:
-    """A measurement reads the same from measured.toml and from a CSV."""
-    tone = '[[tone]]\nmode = 1\nvalue = "95 Hz"\nerror = "0.2 Hz"\n'
-    place = folder(tmp_path / "cue", SOME.replace(tone, ""))
-    (place / "tone.csv").write_text("# by ear\nmode,value [Hz],error [Hz],source\n1,95,0.2,\n", encoding="utf-8")
-    (before, _), (after, _) = load_measured(folder(tmp_path / "other")), load_measured(place)
-    assert set(before.measurements) == set(after.measurements)
-
-
 @pytest.mark.parametrize("drawing", ["cue.toml", "cue.csv"])
 def test_only_the_shaft_must_be_there(tmp_path: Path, drawing: str) -> None:
     place = folder(tmp_path / "cue")

@@ -46,7 +46,7 @@ def told(study: Path, *options: object) -> dict[str, Any]:
 
 
 def command(study: Path, *more: str) -> list[str]:
-    return [sys.executable, str(Path(ROOT) / "tests/helpers/sweep_run.py"), "study", str(study), *more]
+    return [sys.executable, "-m", "cuefem", "study", str(study), *more]
 
 
 def started(study: Path, *more: str) -> subprocess.Popen[bytes]:

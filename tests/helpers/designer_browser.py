@@ -75,23 +75,28 @@ def await_listening(port: int) -> None:
 
 
 @contextmanager
-def opened(browser: Any, address: str, *, width: int = 1280, scheme: str = "light") -> Iterator[Any]:
-    """A page on the designer, whole; the browser must not complain, nor ask for anything from elsewhere."""
-    height = 900 if width > 600 else 844
-    context = browser.new_context(
-        viewport={"width": width, "height": height}, color_scheme=scheme, accept_downloads=True
-    )
+def watched(browser: Any, address: str = "", *, width: int = 1280, scheme: str = "light") -> Iterator[Any]:
+    """An empty page, on which the browser must not complain, nor ask for anything but the address."""
+    size = {"width": width, "height": 900 if width > 600 else 844}
+    context = browser.new_context(viewport=size, color_scheme=scheme, accept_downloads=True)
     page = context.new_page()
     page.set_default_timeout(PATIENCE)
     said: list[str] = []
     page.on("console", lambda message: said.append(message.text))
     page.on("pageerror", lambda error: said.append(str(error)))
     page.on("request", lambda asked: None if _own(asked.url, address) else said.append(asked.url))
-    page.goto(address)
-    settled(page)
     yield page
     context.close()
     assert said == []
+
+
+@contextmanager
+def opened(browser: Any, address: str, **how: Any) -> Iterator[Any]:
+    """A page on the designer, whole."""
+    with watched(browser, address, **how) as page:
+        page.goto(address)
+        settled(page)
+        yield page
 
 
 def _own(url: str, address: str) -> bool:

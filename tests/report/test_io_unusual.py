@@ -93,12 +93,6 @@ def test_a_shaft_without_the_rest_of_its_cue_is_remarked_where_it_is_struck(tmp_
 
 def test_a_solid_rod_of_carbon_is_remarked(tmp_path: Path) -> None:
     """A lathe profile has no bore: carbon in it is a rod of twice a shaft's mass."""
-    shaft = tmp_path / "shaft.csv"
-    shaft.write_text(PROFILE)
-    for command in (["modes"], ["strike", "--body-mass", "15 oz"]):
-        status, _, err = call(command[0], shaft, "--material", "carbon fibre", *command[1:])
-        assert status == 0
-        (line,) = err.splitlines()
-        assert line.startswith("unusual: a solid rod as stiff as carbon fibre, drawn mass 2")
-        assert "--bore" in line
-    assert call("modes", shaft, "--material", "steel")[2] == ""
+    (shaft := tmp_path / "shaft.csv").write_text(PROFILE)
+    (line,) = unusual(cf.Scene(cf.load(shaft, material="carbon fibre", body_mass="15 oz")))
+    assert line.startswith("a solid rod as stiff as carbon fibre, drawn mass 2")

@@ -52,9 +52,8 @@ def assert_sound(text: str) -> Reader:
         replace(LUMPED, stroke=cf.Stroke(offset=0.75)),
         replace(LUMPED, cue=cf.LumpedCue(0.54, 0.006, 0.5), effects=(cf.TipShear(0.75),)),
         replace(LUMPED, tip=cf.Tip(friction=math.inf)),
-        replace(LUMPED, tip=cf.Tip(friction=0.0)),
     ],
-    ids=["lumped", "left", "head on", "miscue", "coupled", "no slip", "no friction"],
+    ids=["lumped", "left", "head on", "miscue", "coupled", "no slip"],
 )
 def test_pages_of_lumped_cues(blow: cf.Scene) -> None:
     words = " ".join(assert_sound(page("lumped.toml", blow)).text)

@@ -109,6 +109,3 @@ LABELS = {
 
 def test_columns_and_responses_are_named_in_words() -> None:
     assert {name: column_label(name) for name in LABELS} == LABELS
-    names = ("end_mass", "squirt(-0.25)", "frequency(2)", "end_mass_force")
-    said = [Response.of(name).label for name in names]
-    assert said == ["end mass", "squirt at b/R -0.25", "natural frequency 2", "end mass, force"]

@@ -2,14 +2,13 @@
 
 from dataclasses import replace
 
-import numpy as np
 from hypothesis import given, settings
 
-from cuefem import LumpedCue, Scene, Stroke, impulse, resolve, resolve_end_mass
+from cuefem import LumpedCue, Scene, impulse, resolve, resolve_end_mass
 from cuefem.results.convergence import mode_counts
 from cuefem.scene.solved_scene import MOST
 from tests.helpers.accuracy_scenes import endless_friction, scene
-from tests.helpers.strike_scenes import lumped_scenes, numbers, sound
+from tests.helpers.strike_scenes import lumped_scenes, sound
 
 KIM = scene("kim", 1e-3, 0.3)
 
@@ -24,16 +23,6 @@ def test_a_lumped_cue_takes_steps_alone(lumped: Scene) -> None:
 
 def test_a_lumped_cue_answers_its_own_end_mass() -> None:
     assert resolve_end_mass(replace(KIM, cue=LumpedCue(0.5, 0.006)), "force", 1e-3) == (0.006, 0.0)
-
-
-def test_the_same_twice_and_mirrored() -> None:
-    first, again = resolve(KIM, 1e-2), resolve(KIM, 1e-2)
-    np.testing.assert_array_equal(numbers(first), numbers(again))
-    assert first.error == again.error
-    mirrored = resolve(replace(KIM, stroke=Stroke(offset=-0.3)), 1e-2)
-    assert mirrored.squirt == -first.squirt
-    assert mirrored.spin == -first.spin
-    assert mirrored.error == first.error
 
 
 def test_better_is_never_cheaper() -> None:
