@@ -1,11 +1,10 @@
 """Tables of studies as pandas frames (`pip install '.[pandas]'`), for analysis in Python.
 
-Numbers are SI; the units of the columns stand in ``attrs["units"]``. What pandas does with a frame is pandas' own, such
-as ``to_parquet`` and ``to_xarray``.
+Values are SI; ``attrs["units"]`` has the units of the columns.
 
 >>> import cuefem as cf
->>> found = cf.study("studies/sweeps/bore.toml")  # doctest: +SKIP
->>> cf.frames.of_study(found).plot("bore", "squirt(0.3)")  # doctest: +SKIP
+>>> result = cf.study("studies/sweeps/bore.toml")  # doctest: +SKIP
+>>> cf.frames.of_study(result).plot("bore", "squirt(0.3)")  # doctest: +SKIP
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ __all__ = ["of_store", "of_study"]
 
 
 def __dir__() -> list[str]:
-    """What a person looks for here, without what the module imports."""
+    """The public names, for completion in a Python session."""
     return __all__
 
 
@@ -36,19 +35,19 @@ def of_store(path: str | PathLike[str], study: str | None = None) -> pd.DataFram
     Parameters
     ----------
     path : str or path
-        What `cuefem study` wrote, ``STUDY.sqlite``; it may still be at work on it.
+        The store of `cuefem study`, ``STUDY.sqlite``; the study may still be running.
     study : str, optional
-        The name of a study's file, without its ending, in a store of several; by default the one computed last.
+        The name of a study's file, without extension, in a store of several; by default the one computed last.
 
     Returns
     -------
     pandas.DataFrame
-        As `of_study` gives it.
+        As of `of_study`.
 
     Raises
     ------
     ValueError
-        If the file is no store, or a damaged one.
+        If the file is not a store, or is damaged.
     """
     table = read_table(path, study)
     return _frame(table.rows, table.varied, table.responses, table.units)
@@ -60,13 +59,13 @@ def of_study(result: StudyResult) -> pd.DataFrame:
     Parameters
     ----------
     result : StudyResult
-        What `cuefem.study` returned.
+        The result of `cuefem.study`.
 
     Returns
     -------
     pandas.DataFrame
-        A row a design, by its number: what varied, the responses in SI (nan where one is missing), and ``failure``,
-        why it is missing. ``attrs``: "units", "varied", "responses".
+        A row for each design, by its number: the varied parameters, the responses in SI (nan where one is missing), and
+        ``failure``, the reason. ``attrs``: "units", "varied", "responses".
     """
     varied = [vary.name for vary in result.study.vary]
     return _frame(result.rows, varied, [response.name for response in result.study.responses], result.units)
@@ -77,7 +76,7 @@ def _frame(rows: Iterable[Row], varied: Sequence[str], responses: Sequence[str],
     try:
         pandas = importlib.import_module("pandas")
     except ModuleNotFoundError:
-        raise RuntimeError("this needs the library pandas: pip install '.[pandas]' in the clone") from None
+        raise RuntimeError("frames need pandas: pip install '.[pandas]' in the clone") from None
     frame = pandas.DataFrame.from_records(lines, columns=["design", *varied, *responses, "failure"], index="design")
     frame[[*responses]] = frame[[*responses]].astype(float)
     frame.attrs = {"units": dict(units), "varied": [*varied], "responses": [*responses]}

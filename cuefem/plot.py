@@ -36,18 +36,18 @@ __all__ = ["end_mass", "forces", "modes", "shaft", "squirt"]
 
 
 def __dir__() -> list[str]:
-    """What a person looks for here, without what the module imports."""
+    """The public names, for completion in a Python session."""
     return __all__
 
 
 PLOT_OFFSETS = tuple(np.round(np.arange(0.0, 0.525, 0.025), 3).tolist())
 FROM_TIP, TIME = with_heading("from the tip", "m"), with_heading("time", "s")
 _SOFT, _WOODY, _METAL = 1e9, (300.0, 1250.0), 2500.0  # Pa: leather and foam; kg/m3: woods, metals
-_LOCAL = 5e-4  # m: where end mass lives is drawn from behind the leather, and beyond this
+_LOCAL = 5e-4  # m behind the leather: the end-mass distribution is drawn from here
 
 
 def _axes(axes: Axes | None) -> Axes:
-    """The axes to draw on; a figure's own are made if none are given."""
+    """The axes to draw on; those of a new figure by default."""
     if axes is not None:
         return axes
     import matplotlib.pyplot as plt
@@ -61,7 +61,7 @@ def _cue_of(thing: Cue | Scene) -> Cue:
 
 
 def _colour(material: Material) -> str:
-    """Of leather, wood, carbon, metal or plastic, told by stiffness and density."""
+    """The colour of leather, wood, carbon, metal or plastic, by Young's modulus and density."""
     if material.E < _SOFT:
         return "#8fa3b5"
     if material.rho > _METAL:
@@ -72,7 +72,7 @@ def _colour(material: Material) -> str:
 
 
 def shaft(cue: Cue | Scene, ax: Axes | None = None) -> Axes:
-    """Draw a cue from its side, tip on the left; leather, wood, carbon, metal and plastics have their colours.
+    """Draw a cue from the side, tip on the left; colours show leather, wood, carbon, metal and plastics.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def shaft(cue: Cue | Scene, ax: Axes | None = None) -> Axes:
     Returns
     -------
     matplotlib axes
-        Lengths along it in mm, diameters in mm at another scale.
+        Axial positions in mm, radii in mm at another scale.
     """
     drawn, axes = _cue_of(cue), _axes(ax)
     for segment, x in zip(drawn.segments, drawn.nodes, strict=False):
@@ -105,9 +105,9 @@ def modes(cue: Cue | Scene, count: int = 4, ax: Axes | None = None, *, at: Resol
     Parameters
     ----------
     cue : Cue or Scene
-        A cue of segments, or a scene, whose effects on the cue count.
+        A cue of segments, or a scene, which includes its effects on the cue.
     count : int
-        How many modes.
+        Number of modes.
     ax : matplotlib axes, optional
         Where to draw; by default on a new figure.
     at : Resolution, optional
@@ -116,7 +116,7 @@ def modes(cue: Cue | Scene, count: int = 4, ax: Axes | None = None, *, at: Resol
     Returns
     -------
     matplotlib axes
-        Places along the cue in mm; a legend names the frequencies.
+        Positions along the cue in mm; the legend lists the natural frequencies.
     """
     drawn, axes = _cue_of(cue), _axes(ax)
     check_count("count", count, 1)
@@ -137,12 +137,12 @@ def squirt(
     *,
     at: Resolution | None = None,
 ) -> Axes:
-    """Draw squirt against the offset, from coupled strikes; a line ends where the stroke miscues.
+    """Draw squirt of coupled strikes against the offset; a line ends where the stroke miscues.
 
     Parameters
     ----------
     scenes : Scene, or mapping of names to scenes
-        Each gives a line. The offset of its own stroke does not matter.
+        A line for each; the offset of its stroke is not used.
     offsets : sequence of float
         b/R, in (-1, 1).
     ax : matplotlib axes, optional
@@ -153,8 +153,7 @@ def squirt(
     Returns
     -------
     matplotlib axes
-        Degrees against b/R; a cross on the line of no squirt marks the first offset at which a scene miscues:
-        of a miscue (`Outcome.regime`).
+        Degrees against b/R; a cross at zero squirt marks the first offset with a miscue (`Outcome.regime`).
     """
     named = scenes if isinstance(scenes, Mapping) else {"": scenes}
     axes = _axes(ax)
@@ -162,10 +161,10 @@ def squirt(
         check_kind(f"scenes[{name!r}]" if name else "scenes", scene, Scene)
         tip = Solved(scene, at).tip
         curve = coupled_curve(scene, offsets, tip)
-        lost = np.array(curve["regime"]) == "miscue"
-        (line,) = axes.plot(offsets, np.where(lost, np.nan, scaled(curve["squirt"], "rad")), label=name or None)
-        if lost.any():
-            axes.plot(np.asarray(offsets)[lost][:1], [0], "x", color=line.get_color(), clip_on=False)
+        miscue = np.array(curve["regime"]) == "miscue"
+        (line,) = axes.plot(offsets, np.where(miscue, np.nan, scaled(curve["squirt"], "rad")), label=name or None)
+        if miscue.any():
+            axes.plot(np.asarray(offsets)[miscue][:1], [0], "x", color=line.get_color(), clip_on=False)
     axes.set(xlabel="offset b/R", ylabel="squirt, degrees")
     if any(named):
         axes.legend()
@@ -173,12 +172,12 @@ def squirt(
 
 
 def forces(stroke: Scene | Outcome, ax: Axes | None = None, *, at: Resolution | None = None) -> Axes:
-    """Draw the forces on the ball in the course of a coupled strike.
+    """Draw the time history of the forces on the ball in a coupled strike.
 
     Parameters
     ----------
     stroke : Scene or Outcome
-        A scene, which is struck, or what `cuefem.strike` returned.
+        A scene, of which the strike is computed, or the outcome of `cuefem.strike`.
     ax : matplotlib axes, optional
         Where to draw; by default on a new figure.
     at : Resolution, optional
@@ -187,17 +186,17 @@ def forces(stroke: Scene | Outcome, ax: Axes | None = None, *, at: Resolution | 
     Returns
     -------
     matplotlib axes
-        Newtons against milliseconds, along the normal and along the tangent.
+        Normal and tangential force, N, against time, ms.
 
     Raises
     ------
     ValueError
-        If the outcome has no course in time, as that of `cuefem.impulse`.
+        If the outcome has no time history, such as one of `cuefem.impulse`.
     """
     check_kind("stroke", stroke, (Scene, Outcome))
     outcome = strike(stroke, at) if isinstance(stroke, Scene) else stroke
     if outcome.history is None:
-        raise ValueError("forces needs an outcome of strike; got one without a course in time")
+        raise ValueError("forces needs an outcome of strike; got one without a time history")
     axes, times = _axes(ax), np.linspace(0, outcome.duration, 400)
     for label, force in course(outcome, "force", times).items():
         axes.plot(scaled(times, "s"), force, label=label)
@@ -208,14 +207,14 @@ def forces(stroke: Scene | Outcome, ax: Axes | None = None, *, at: Resolution | 
 
 
 def end_mass(scene: Scene, ax: Axes | None = None, *, at: Resolution | None = None) -> Axes:
-    """Draw where the stick end mass lives: the grams that one gram more at each place would add to it.
+    """Draw the end-mass distribution along the shaft: the increase of the stick end mass by a mass of 1 g at each x.
 
     Parameters
     ----------
     scene : Scene
-        With a cue of segments and without effects but a `LeatherTip`, of which the contact time stays, and those that
-        leave the cue alone across its axis (waves along it, and thrust, which is not counted). The leather
-        itself is left out: all of its mass, which sits at the tip, is end mass.
+        With a cue of segments. Of effects only a `LeatherTip`, of which the contact time is used, and effects without
+        transverse action (axial waves, geometric stiffness) are valid. The leather itself is excluded: all of its
+        mass is at the tip and is end mass.
     ax : matplotlib axes, optional
         Where to draw; by default on a new figure.
     at : Resolution, optional
@@ -224,8 +223,8 @@ def end_mass(scene: Scene, ax: Axes | None = None, *, at: Resolution | None = No
     Returns
     -------
     matplotlib axes
-        Grams a gram against mm from the tip. A tip of soft leather is left out: its own modes lie too near the limit
-        of those kept.
+        Grams per gram against mm from the tip. Drawn leather is excluded: its modes are too close to the truncation
+        limit.
 
     Raises
     ------
@@ -235,11 +234,11 @@ def end_mass(scene: Scene, ax: Axes | None = None, *, at: Resolution | None = No
     check_kind("scene", scene, Scene)
     if others := [effect for effect in scene.effects if effect.across and not effect.whole_tip]:
         names = ", ".join(sorted({type(effect).__name__ for effect in others}))
-        raise ValueError(f"plot.end_mass takes a scene without effects, LeatherTip apart; got {names}")
-    bare, left_out = scene, ""
+        raise ValueError(f"plot.end_mass takes a scene without effects other than LeatherTip; got {names}")
+    bare, excluded = scene, ""
     if scene.effects:
         bare = replace(scene.bare, effects=())
-        left_out = f", without the {with_unit(scene.axial_mass - bare.axial_mass, 'kg', 2)} of its leather"
+        excluded = f", without the {with_unit(scene.axial_mass - bare.axial_mass, 'kg', 2)} of its leather"
     drivers, axes = sensitivity(bare, at=at), _axes(ax)
     behind = drivers.x > scene.shaft.leather + _LOCAL
     axes.plot(scaled(drivers.x[behind], "m"), (drivers.rhoA + drivers.axial_mass)[behind])
@@ -247,5 +246,5 @@ def end_mass(scene: Scene, ax: Axes | None = None, *, at: Resolution | None = No
     axes.set(
         xlabel=FROM_TIP, ylabel=with_heading("end mass a gram adds", "kg"), xlim=(0, scaled(scene.shaft.length, "m"))
     )
-    axes.set_title(f"end mass {with_unit(drivers.end_mass, 'kg', 3)}{left_out}", fontsize="medium")
+    axes.set_title(f"end mass {with_unit(drivers.end_mass, 'kg', 3)}{excluded}", fontsize="medium")
     return axes

@@ -1,4 +1,4 @@
-"""Tables of studies as pandas frames hold what the studies found (properties)."""
+"""Pandas frames of studies have their designs, responses and units (properties)."""
 
 from pathlib import Path
 
@@ -15,8 +15,7 @@ STUDY += vary('"cue.segments[0].tip_diameter"', 'name = "tip"', 'low = "11 mm"',
 STUDY += vary('"cue.segments[0].material"', 'name = "wood"', 'values = ["hard maple", "ash"]')
 
 
-def test_a_sweep(tmp_path: Path) -> None:
-    """The frame of its result, and that of its store; pandas takes it on."""
+def test_frame_of_sweep_equals_frame_of_store(tmp_path: Path) -> None:
     found = cf.study(written(tmp_path, STUDY), store=tmp_path / "study.sqlite")
     frame = cf.frames.of_study(found)
     pd.testing.assert_frame_equal(frame, cf.frames.of_store(tmp_path / "study.sqlite"))

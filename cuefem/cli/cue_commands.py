@@ -100,7 +100,7 @@ def _write_page(file: Path, output: Path, options: dict[str, Any], *, check: boo
     with blaming(file, options):
         checks = [_model_error(scene)["summary"]] if check else []
         more: dict[str, Any] = {"rtol": load_accuracy(file), "warnings": unusual(scene), "checks": checks}
-        text, line = page_and_headline(file.name, scene, notes=notes, track=followed, **more)
+        text, line = page_and_headline(file.name, scene, notes=notes, progress=followed, **more)
     save_page(text, output)
     click.echo(f"{line}\nwrote {output}")
 

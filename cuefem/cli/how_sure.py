@@ -29,7 +29,7 @@ def effects(file: Path, **options: Any) -> None:
 
     def results(scene: Scene) -> Any:
         rtol = load_accuracy(file)
-        return effects_record(scene, rtol=DEFAULT_RTOL if rtol is None else rtol, track=followed)
+        return effects_record(scene, rtol=DEFAULT_RTOL if rtol is None else rtol, progress=followed)
 
     show(file, options, results, lambda record, about: [effects_sheet(record, about)])
 
@@ -42,7 +42,7 @@ def cost(file: Path, most: int, **options: Any) -> None:
     """Run a convergence study and recommend a resolution: error against run time and degrees of freedom."""
 
     def results(scene: Scene) -> Any:
-        return cost_record(scene, most=most, track=followed)
+        return cost_record(scene, most=most, progress=followed)
 
     figures = cost_charts if options["output"] else lambda record: []
     show(file, options, results, lambda record, about: [*cost_sheets(record), *figures(record)])

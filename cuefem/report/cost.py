@@ -17,23 +17,23 @@ from cuefem.scene import Scene
 
 WANTED = (1e-2, 1e-3, 1e-4, 1e-6)
 
-Track = Callable[[Sequence[Any]], Iterable[Any]]
+Progress = Callable[[Sequence[Any]], Iterable[Any]]
 
 
-def cost_record(scene: Scene, *, most: int = MOST, track: Track = iter) -> Record:
+def cost_record(scene: Scene, *, most: int = MOST, progress: Progress = iter) -> Record:
     """Refinement levels up to ``most`` modes with error and run time, and the recommendation for each of `WANTED`.
 
     Keys of a level: "modes", "steps", "elements", "order"; "unknowns", the number of degrees of freedom; "estimate",
     its estimated relative error (None on the first two); "difference", relative, from the last level; "seconds", the
     run time of all levels up to it, which `cuefem.resolve` takes. ValueError for a lumped cue, which is exact.
     """
-    refined = _timed_levels(scene, most, track)
-    best = refined[-1][0].result
+    refined = _timed_levels(scene, most, progress)
+    best = refined[-1][0].outcome
     rows = [_level_record(scene, level, seconds, best) for level, seconds in refined]
     return {"levels": rows, "wanted": [_recommended(rtol, rows) for rtol in WANTED]}
 
 
-def _timed_levels(scene: Scene, most: int, track: Track) -> list[tuple[Level, float]]:
+def _timed_levels(scene: Scene, most: int, progress: Progress) -> list[tuple[Level, float]]:
     """Levels with the run time, s, up to each: to ``most`` modes or the smallest of `WANTED`.
 
     A second run of the sequence is timed, so that the time includes nothing that a process does only once.
@@ -44,7 +44,7 @@ def _timed_levels(scene: Scene, most: int, track: Track) -> list[tuple[Level, fl
             break
         refined.append(level)
     again, start = levels(scene, min(WANTED)), perf_counter()
-    return [(next(again), perf_counter() - start) for _ in track(refined)]
+    return [(next(again), perf_counter() - start) for _ in progress(refined)]
 
 
 def _level_record(scene: Scene, level: Level, seconds: float, best: Any) -> Record:

@@ -19,7 +19,7 @@ DEFAULT_RTOL = 1e-2
 # The numerical error of the strikes is the tolerance over this.
 MARGIN = 3
 
-Track = Callable[[Sequence[Variant]], Iterable[Variant]]
+Progress = Callable[[Sequence[Variant]], Iterable[Variant]]
 
 
 def struck(scene: Scene, at: Resolution | None) -> Outcome:
@@ -27,10 +27,10 @@ def struck(scene: Scene, at: Resolution | None) -> Outcome:
     return strike(scene) if at is None else strike_modes(scene, ended_tip_modes(scene, at.modes))
 
 
-def effects_record(scene: Scene, *, rtol: float = DEFAULT_RTOL, track: Track = iter) -> Record:
+def effects_record(scene: Scene, *, rtol: float = DEFAULT_RTOL, progress: Progress = iter) -> Record:
     """Change of the strike by removing or adding each effect, and whether it exceeds the relative tolerance ``rtol``.
 
-    All strikes have the resolution that the unmodified scene needs, so that discretisation errors cancel. track:
+    All strikes have the resolution that the unmodified scene needs, so that discretisation errors cancel. progress:
     iterates over the variants with a progress bar.
     """
     at = None
@@ -38,7 +38,7 @@ def effects_record(scene: Scene, *, rtol: float = DEFAULT_RTOL, track: Track = i
         *_, level = levels(scene, rtol / MARGIN)
         at = level.at
     base = struck(scene, at)
-    rows = [_row(variant, scene, base, rtol=rtol, at=at) for variant in track(variants(scene))]
+    rows = [_row(variant, scene, base, rtol=rtol, at=at) for variant in progress(variants(scene))]
     rows.sort(key=lambda row: -1.0 if row["largest_change"] is None else row["largest_change"], reverse=True)
     return {
         "rtol": rtol,

@@ -28,7 +28,7 @@ MODES, N_FREQUENCIES = 40, 6  # flexible modes of either model; natural frequenc
 ORDER, LARGE_ORDER, LARGE = 6, 4, 150  # a mesh of more than LARGE elements has LARGE_ORDER
 # The beam that scikit-fem assembles: its longest element, m, its order, and the smallest relative difference printed.
 MAX_ELEMENT, SCIKIT_FEM_ORDER, MIN_DIFFERENCE = 0.03, 6, 1e-9
-Track = Callable[[Sequence[Any]], Iterable[Any]]
+Progress = Callable[[Sequence[Any]], Iterable[Any]]
 
 
 def fineness(cue: Cue) -> Fineness:
@@ -45,11 +45,11 @@ def checked_scene(scene: Scene) -> tuple[Scene, list[str]]:
     return (replace(scene, effects=rest) if excluded else scene), [type(effect).__name__ for effect in excluded]
 
 
-def model_error_record(scene: Scene, track: Track = iter) -> Record:
+def model_error_record(scene: Scene, progress: Progress = iter) -> Record:
     """Frequencies, stiffness, end masses and squirt by beam and solid, with the discretisation error.
 
     "excluded_effects": effects that the solid does not include, removed from both models. "scikit_fem": the first
-    natural frequency of the same beam, assembled by scikit-fem. track: iterates over the work with a progress bar.
+    natural frequency of the same beam, assembled by scikit-fem. progress: iterates over the work with a progress bar.
     """
     scene, excluded = checked_scene(scene)
     bending = modes(scene.shaft, MODES, effects=scene.cue_effects)
@@ -57,7 +57,7 @@ def model_error_record(scene: Scene, track: Track = iter) -> Record:
     check_size(scene.shaft, mesh)
     work = (lambda: _by_beam(scene, bending), lambda: _by_solid(scene, mesh))
     coarser = mesh._replace(order=mesh.order - 1)
-    beam, solid, coarse = (compute() for compute in track([*work, lambda: _by_solid(scene, coarser)]))
+    beam, solid, coarse = (compute() for compute in progress([*work, lambda: _by_solid(scene, coarser)]))
     rows = [
         {
             "quantity": name,

@@ -77,7 +77,7 @@ def page_and_headline(
     warnings: Sequence[str] = (),
     checks: Sequence[str] = (),
     other: tuple[str, Scene] | None = None,
-    track: Any = iter,
+    progress: Any = iter,
 ) -> tuple[str, str]:
     """The report of a scene as HTML, and its headline.
 
@@ -93,7 +93,7 @@ def page_and_headline(
         Assumptions, warnings of implausible values, and results of verification to show.
     other : tuple of str and Scene, optional
         Name and scene of a cue to compare with, with the same ball and stroke.
-    track : callable
+    progress : callable
         Iterates over the stages with a progress bar.
 
     Returns
@@ -113,7 +113,7 @@ def page_and_headline(
         stages["comparison"] = lambda: comparison_record({other[0]: other[1], name: scene})
         stages["other"] = lambda: coupled_curve(other[1], PAGE_OFFSETS, Solved(other[1]).tip)
     records: Record = {}
-    for key, work in track([*stages.items()]):
+    for key, work in progress([*stages.items()]):
         records[key] = work()
     records |= records.pop("report")
     lines = {"notes": list(notes), "warnings": list(warnings), "checks": list(checks)}
