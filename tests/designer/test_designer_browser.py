@@ -1,4 +1,4 @@
-"""The designer in a headless browser: the maker's film, accessibility, and nothing cut off (regression)."""
+"""The designer in a headless browser: a maker's session, accessibility, and nothing cropped (regression)."""
 
 from __future__ import annotations
 
@@ -43,14 +43,14 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
         yield made
 
 
-def faults(page: Any) -> list[tuple[str, list[str]]]:
-    """Each rule of accessibility that the page breaks, and where."""
+def violations(page: Any) -> list[tuple[str, list[str]]]:
+    """Each violated accessibility rule, and its elements."""
     found = axe.Axe().run(page).response["violations"]
     return [(one["id"], [str(node["target"]) for node in one["nodes"]]) for one in found]
 
 
-def test_makers_film_saved_file_strikes_as_the_page_says(browser: Any, address: str, tmp_path: Path) -> None:
-    """A drawing, a ferrule, a weight, a bore; two undone; compared, the best change tried, saved and reported."""
+def test_saved_design_strikes_as_displayed(browser: Any, address: str, tmp_path: Path) -> None:
+    """Open a drawing, add a ferrule, a weight and a bore, undo two, compare, try the best change, save and report."""
     (tmp_path / "mine.csv").write_text(DRAWING, encoding="utf-8")
     (tmp_path / "broken.toml").write_text("[[segments", encoding="utf-8")
     with opened(browser, address) as page:
@@ -101,7 +101,7 @@ def test_makers_film_saved_file_strikes_as_the_page_says(browser: Any, address: 
         ]
         assert sorted(printed) == pytest.approx(
             sorted([tried, plain]), rel=5e-3
-        )  # the report has an accuracy of its own
+        )  # the report has another numerical error
 
 
 CUT_OFF = """() => {
@@ -117,7 +117,7 @@ CUT_OFF = """() => {
 
 
 @pytest.mark.parametrize(("scheme", "width"), [("light", 1280), ("dark", 390)])
-def test_every_tab_is_accessible_and_nothing_is_cut_off(browser: Any, address: str, scheme: str, width: int) -> None:
+def test_every_tab_is_accessible_and_not_cropped(browser: Any, address: str, scheme: str, width: int) -> None:
     with opened(browser, address, width=width, scheme=scheme) as page:
         picked(page, "Compare with", "low deflection")
         for group in ("Tip", "Stroke", "Shaft"):
@@ -129,4 +129,4 @@ def test_every_tab_is_accessible_and_nothing_is_cut_off(browser: Any, address: s
             assert found["scroll"] <= width, tab
             assert (found["wide"], found["outside"]) == ([], 0), tab
             assert found["smallest"] is None or found["smallest"] > 6.5, tab  # px, of a text's line
-            assert faults(page) == [], tab
+            assert violations(page) == [], tab

@@ -1,4 +1,4 @@
-"""The handbook: every citation names a chapter, every effect has its five lines and stands in it, the page is whole."""
+"""The handbook: citations, the lines of every effect, the page and the command (regression)."""
 
 import re
 import webbrowser
@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from cuefem.design.worth import effect_kinds
+from cuefem.endmass.definitions import DEFINITIONS, end_mass
 from cuefem.handbook import CHAPTERS, LINES, chapters, effect_lines
 from cuefem.handbook.page import page
 from tests.helpers.command_line import said
@@ -24,7 +25,7 @@ SOURCES = sorted(
     for path in (ROOT / folder).rglob("*")
     if path.suffix in (".py", ".md", ".toml") and path != Path(__file__)
 )
-# other tests may have made effects up before
+# without effects that other tests define
 EFFECTS = {name: kind for name, kind in effect_kinds().items() if kind.__module__.startswith("cuefem.")}
 
 
@@ -34,7 +35,7 @@ def whole() -> str:
 
 
 def cited_wrongly(text: str) -> list[str]:
-    """The citations in a text that do not begin with a chapter's title, and the places after a comma that do not."""
+    """The citations in a text that do not begin with a chapter's title, and the titles after a comma that do not."""
     wrong = []
     for found in CITED.findall(re.sub(r"\n\s*(?:# )?", "\n", text)):
         first, *others = (" ".join(part.split()) for part in found.split(","))
@@ -43,14 +44,14 @@ def cited_wrongly(text: str) -> list[str]:
     return wrong
 
 
-def test_every_citation_names_a_chapter() -> None:
+def test_every_citation_names_chapter() -> None:
     texts = {path: path.read_text(encoding="utf-8") for path in SOURCES}
     assert sum(len(CITED.findall(text)) for text in texts.values()) > 40
     assert {str(path): wrong for path, text in texts.items() if (wrong := cited_wrongly(text))} == {}
 
 
 @pytest.mark.parametrize("name", EFFECTS)
-def test_the_handbook_shows_the_five_lines_of_every_effect(name: str) -> None:
+def test_effects_chapter_has_five_lines_of_every_effect(name: str) -> None:
     lines = effect_lines(EFFECTS[name])
     assert tuple(lines) == LINES
     assert all(text.endswith(".") for text in lines.values())
@@ -60,7 +61,7 @@ def test_the_handbook_shows_the_five_lines_of_every_effect(name: str) -> None:
     assert f">{name}</h2>" in whole()
 
 
-def test_the_page_needs_nothing_from_the_network_and_its_links_lead_somewhere() -> None:
+def test_handbook_page_is_self_contained_with_valid_links() -> None:
     text = whole()
     read = Reader(text)
     anchors, links = read.values("id"), read.values("href", "src")
@@ -73,9 +74,7 @@ def test_the_page_needs_nothing_from_the_network_and_its_links_lead_somewhere() 
 
 
 @pytest.mark.parametrize("there", [True, False])
-def test_the_command_opens_a_browser_prints_and_writes(
-    there: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_guide_command_opens_prints_and_writes(there: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     opened: list[str] = []
     monkeypatch.setattr(import_module("cuefem.cli.guide"), "page", whole)
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
@@ -99,6 +98,17 @@ def test_the_command_opens_a_browser_prints_and_writes(
         ("-o guide.txt", "must end in .html or .json; got '.txt'"),
     ],
 )
-def test_refusals(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: str, message: str) -> None:
+def test_guide_with_invalid_arguments_exits_with_message(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: str, message: str
+) -> None:
     monkeypatch.chdir(tmp_path)
     untouched(tmp_path, message, "guide", *arguments.split())
+
+
+def test_end_mass_chapter_and_docstring_list_every_definition() -> None:
+    """The chapter and the docstring of `end_mass` list every definition, in the order of the table."""
+    chapter = (ROOT / "cuefem" / "handbook" / "end_mass.md").read_text(encoding="utf-8")
+    assert re.findall(r"^- \*\*(\w+)\*\*", chapter, re.MULTILINE) == [*DEFINITIONS]
+    assert re.findall(r'^ +- "(\w+)": ', end_mass.__doc__ or "", re.MULTILINE) == [*DEFINITIONS]
+    numbers = {5: "five", 6: "six", 7: "seven"}
+    assert f"there are {numbers[len(DEFINITIONS)]} definitions" in chapter

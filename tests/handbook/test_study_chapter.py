@@ -1,4 +1,4 @@
-"""The chapter on studies: its examples are of the kinds that it says and run, and it has every key (regression)."""
+"""The chapter on studies: its examples load and run, and it lists every key and response (regression)."""
 
 import re
 from pathlib import Path
@@ -29,7 +29,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_examples_are_of_their_kinds(folder: Path) -> None:
+def test_examples_load_as_their_kinds(folder: Path) -> None:
     for kind, name in KINDS.items():
         assert type(load_study(folder / f"{kind}.toml")).__name__ == name
     first, sample = EXAMPLES["sweep"]
@@ -38,7 +38,7 @@ def test_examples_are_of_their_kinds(folder: Path) -> None:
     assert load_study(folder / "drawn.toml").size == 4096
 
 
-def test_every_key_and_response_is_there() -> None:
+def test_study_chapter_lists_every_key_and_response() -> None:
     tables_of = [value for name, value in vars(study_files).items() if name.endswith("Table")]
     keys = {f"`{key}`" for each in tables_of for key in keys_of(each)}
     tables = {"`vary`", "`sample`", "`tolerances`", "`objective`", "`limit`", "`resolution`"}
@@ -49,7 +49,7 @@ def test_every_key_and_response_is_there() -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("code", re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL), ids=["front", "one call"])
-def test_python_examples_run(folder: Path, code: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_python_examples_of_study_chapter_run(folder: Path, code: str, capsys: pytest.CaptureFixture[str]) -> None:
     exec(compile(code.replace(", workers=2", ""), "example", "exec"), {"__name__": "example"})
     out = capsys.readouterr().out
     squirts = [float(line.split()[1]) for line in out.splitlines() if line[:1] in "34"]

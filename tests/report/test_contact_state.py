@@ -1,4 +1,4 @@
-"""A stroke that leather grips at first and then lets go is called a miscue, as a bare tip's is (properties)."""
+"""Contact state and miscue of strokes with and without a leather tip, and their end masses (properties)."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -12,7 +12,7 @@ MAPLE = cf.load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml")
 assert isinstance(MAPLE, cf.Cue)
 LEATHER = cf.usual_scene(MAPLE)
 BARE = cf.Scene(MAPLE, LEATHER.ball, cf.Tip(0.73, 0.7, 1.1e-3), LEATHER.stroke)
-# The cone of mu = 0.7 ends at b/R 0.573; leather slips in part before it slides.
+# The friction cone of mu = 0.7 ends at b/R 0.573; leather has partial slip before gross slip.
 REGIMES = [(BARE, 0.0, "stick"), (BARE, 0.45, "stick"), (BARE, 0.575, "gross slip"), (BARE, 0.6, "miscue")]
 REGIMES += [(LEATHER, 0.0, "stick"), (LEATHER, 0.6, "partial slip"), (LEATHER, 0.63, "miscue")]
 
@@ -21,14 +21,14 @@ REGIMES += [(LEATHER, 0.0, "stick"), (LEATHER, 0.6, "partial slip"), (LEATHER, 0
     ("speed", "offset", "regime"),
     [(7, 0.4, "stick"), (7, 0.45, "partial slip"), (4, 0.45, "stick"), (4, 0.5, "partial slip"), (2, 0.5, "stick")],
 )
-def test_partial_slip_through_much_of_the_impulse_is_named(speed: float, offset: float, regime: str) -> None:
-    """Squirt over b/R is more than 20 % above that close to the centre where friction takes much energy."""
+def test_regime_with_long_partial_slip_warns(speed: float, offset: float, regime: str) -> None:
+    """Squirt over b/R is more than 20 % above that near the centre where friction dissipates much energy."""
     outcome, close = (cf.strike(replace(LEATHER, stroke=cf.Stroke(speed, b))) for b in (offset, 0.2))
     assert outcome.regime == regime
     assert bool(regime_warning(regime)) == (regime != "stick") == (outcome.squirt / offset > 1.2 * close.squirt / 0.2)
 
 
-def test_a_tip_that_slides_away_has_no_end_mass() -> None:
+def test_end_mass_of_miscue_raises() -> None:
     """Its squirt hardly depends on the cue: an end mass of it would be 18.7 g at 0.63, and 7 g where it grips."""
     miscue = replace(LEATHER, stroke=cf.Stroke(2.0, 0.63))
     assert cf.strike(miscue).regime == "miscue"
@@ -37,5 +37,5 @@ def test_a_tip_that_slides_away_has_no_end_mass() -> None:
 
 
 @pytest.mark.parametrize(("scene", "offset", "regime"), REGIMES)
-def test_the_tip_miscue_where_friction_ends(scene: cf.Scene, offset: float, regime: str) -> None:
+def test_regime_beyond_friction_cone_is_miscue(scene: cf.Scene, offset: float, regime: str) -> None:
     assert cf.strike(replace(scene, stroke=cf.Stroke(2.0, offset))).regime == regime

@@ -1,4 +1,4 @@
-"""What each effect is worth: the ablation agrees with strikes made one by one (properties)."""
+"""Sensitivity to each effect: the changes equal differences of single strikes (properties)."""
 
 from dataclasses import replace
 from typing import Any
@@ -26,7 +26,7 @@ def rows(record: Any) -> dict[str, Any]:
     return {row["name"]: row for row in record["effects"]}
 
 
-def test_every_effect_is_dropped_or_added_once() -> None:
+def test_variants_remove_or_add_each_effect_once() -> None:
     found = variants(SCENE)
     assert sorted(variant.name for variant in found) == sorted(effect_kinds())
     assert [v.name for v in found if v.listed] == ["TipDome", "PointMass", "Support"]
@@ -35,10 +35,10 @@ def test_every_effect_is_dropped_or_added_once() -> None:
         assert v.reason if v.scene is None else v.scene.effects == changed
 
 
-def test_two_of_a_kind_are_dropped_one_at_a_time_and_what_does_not_go_says_so() -> None:
+def test_variants_of_repeated_effect_remove_one_and_invalid_has_reason() -> None:
     two = replace(SCENE, effects=(CLAY, cf.PointMass(0.1, 0.003)))
-    dropped = [v.scene.effects for v in variants(two) if v.listed and v.scene is not None]
-    assert dropped == [two.effects[1:], two.effects[:1]]
+    remaining = [v.scene.effects for v in variants(two) if v.listed and v.scene is not None]
+    assert remaining == [two.effects[1:], two.effects[:1]]
     short = cf.Cue((cf.Segment(0.15, 0.012, 0.013, KIM.segments[0].material),), 0.5)
     (support,) = (v for v in variants(replace(SCENE, cue=short, effects=(DOME,))) if v.name == "Support")
     assert support.scene is None
@@ -47,21 +47,21 @@ def test_two_of_a_kind_are_dropped_one_at_a_time_and_what_does_not_go_says_so() 
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("name", ["TipDome", "PointMass", "Support", "TipShear", "AxialWaves"])
-def test_a_change_is_that_of_two_strikes(record: Any, name: str) -> None:
+def test_effect_change_equals_difference_of_strikes(record: Any, name: str) -> None:
     row = rows(record)[name]
     (variant,) = (v for v in variants(SCENE) if v.name == name)
     assert variant.scene is not None
     exact, base = resolve(variant.scene, 1e-3), resolve(SCENE, 1e-3)
-    promised = 2 * record["rtol"] / MARGIN  # the error of either strike
+    tolerance = 2 * record["rtol"] / MARGIN  # the error of either strike
     for quantity in ("squirt", "ball_speed", "spin"):
         expected = getattr(exact, quantity) / getattr(base, quantity) - 1
-        assert row["change"][quantity]["relative"] == pytest.approx(expected, abs=promised)
+        assert row["change"][quantity]["relative"] == pytest.approx(expected, abs=tolerance)
         gap = row["change"][quantity]["relative"] * abs(record["base"][quantity])
         assert row["change"][quantity]["absolute"] == pytest.approx(gap, rel=1e-9)
 
 
 @pytest.mark.heavy
-def test_the_recommendation_follows_the_tolerance(record: Any) -> None:
+def test_recommendation_depends_on_tolerance(record: Any) -> None:
     worth = record["worth"]
     assert worth["remove"] == ["Support (position 203.2 mm, stiffness 5000 N/m)"]
     assert "TipDome (radius 9.5 mm)" in worth["keep"]

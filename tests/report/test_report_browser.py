@@ -1,4 +1,4 @@
-"""The report in a headless browser: values by keys, print, nothing cut off (regression)."""
+"""The report in a headless browser: values by keyboard, print, nothing cropped (regression)."""
 
 import math
 import re
@@ -16,7 +16,7 @@ from cuefem.report.report_page import PAGE_OFFSETS, page
 from cuefem.report.squirt import squirt_record
 from cuefem.report.study_table import sweep_sheets
 from cuefem.report.templates import plain_page
-from tests.helpers.designer_browser import BROWSER, launched, watched
+from tests.helpers.designer_browser import BROWSER, launched
 
 pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
 axe = pytest.importorskip(
@@ -27,7 +27,7 @@ pytestmark = [
     pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium"),
 ]
 SCENE = cf.usual_scene(cf.load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml"))
-# tables wider than their place, and what lies outside the window
+# tables wider than their container, and elements outside the window
 CUT = "[...document.querySelectorAll('.scroll')].filter(e => e.scrollWidth > e.clientWidth + 1).length"
 OUTSIDE = """[...document.querySelectorAll("section, figure, header, svg text")].map(e => e.getBoundingClientRect())
   .filter(r => r.right > innerWidth + 1 || r.left < 0).length"""
@@ -41,11 +41,17 @@ def browser() -> Iterator[Any]:
 
 @pytest.fixture
 def opened(browser: Any) -> Iterator[Any]:
-    with watched(browser) as page:
-        yield page
+    context = browser.new_context(viewport={"width": 1280, "height": 900})
+    made = context.new_page()
+    messages: list[str] = []
+    made.on("console", lambda message: messages.append(message.text))
+    made.on("pageerror", lambda error: messages.append(str(error)))
+    yield made
+    context.close()
+    assert messages == []
 
 
-def test_values_are_read_off_a_chart_words_are_explained_and_it_prints(opened: Any) -> None:
+def test_report_by_keyboard_shows_values_and_definitions_and_prints(opened: Any) -> None:
     opened.set_content(page("pool_maple.toml", SCENE))
     chart, known = opened.locator("svg.read").first, squirt_record(SCENE, PAGE_OFFSETS)["models"]
     chart.focus()
@@ -78,7 +84,7 @@ def study_of_ten_columns() -> str:
 
 @pytest.mark.parametrize("width", [1280, 390])
 @pytest.mark.parametrize("what", ["report", "study"])
-def test_everybody_reads_it_and_nothing_is_cut_off(opened: Any, what: str, width: int) -> None:
+def test_page_is_accessible_and_not_cropped(opened: Any, what: str, width: int) -> None:
     opened.set_viewport_size({"width": width, "height": 900})
     opened.emulate_media(color_scheme="dark" if width == 390 else "light")
     opened.set_content(page("pool_maple.toml", SCENE) if what == "report" else study_of_ten_columns())

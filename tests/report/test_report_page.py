@@ -1,4 +1,4 @@
-"""The report page: well-formed, self-contained, agrees with the library, and looks right in a browser (regression)."""
+"""The report page is valid and self-contained, and its drawings agree with the cue (regression)."""
 
 import math
 import re
@@ -25,8 +25,8 @@ def scene(name: str) -> cf.Scene:
     return found
 
 
-def assert_sound(text: str) -> Reader:
-    """A page that is whole, needs nothing from outside, and says no nan and no None."""
+def assert_valid(text: str) -> Reader:
+    """A page of valid HTML without external resources, nan and None."""
     found = Reader(text)
     assert found.open == []
     titles_of_curves = text.count("</title></path>")
@@ -44,7 +44,7 @@ def assert_sound(text: str) -> Reader:
 
 
 @pytest.mark.parametrize(
-    "blow",
+    "stroke",
     [
         LUMPED,
         replace(LUMPED, stroke=cf.Stroke(offset=-0.3)),
@@ -55,21 +55,21 @@ def assert_sound(text: str) -> Reader:
     ],
     ids=["lumped", "left", "head on", "miscue", "coupled", "no slip"],
 )
-def test_pages_of_lumped_cues(blow: cf.Scene) -> None:
-    words = " ".join(assert_sound(page("lumped.toml", blow)).text)
+def test_page_of_lumped_cue_is_valid_html(stroke: cf.Scene) -> None:
+    words = " ".join(assert_valid(page("lumped.toml", stroke)).text)
     assert "Mode shapes" not in words
-    assert f"{math.degrees(cf.strike(blow).squirt):.2f}°" in words
+    assert f"{math.degrees(cf.strike(stroke).squirt):.2f}°" in words
 
 
-def test_names_are_text_and_no_markup() -> None:
+def test_page_with_markup_in_name_is_escaped() -> None:
     text = page("<script>alert(1)</script> & co.toml", LUMPED, notes=["a < b", "ash (take --material)"])
     assert "<script>alert" not in text
     assert "&lt;script&gt;alert(1)&lt;/script&gt; &amp; co.toml" in text
     assert "a &lt; b</li>" in text
-    assert_sound(text)
+    assert_valid(text)
 
 
-def test_ticks_are_round_numbers() -> None:
+def test_axis_ticks_are_round_numbers() -> None:
     assert [round_step(length) for length in (1.0, 6.0, 7.0, 0.0123, 5000.0)] == [0.2, 1.0, 2.0, 0.005, 1000.0]
     scale = Axis("x").scale_for([np.array([0.3, 2.7, np.nan])])
     assert (scale.low, scale.high, scale.step) == (0.0, 3.0, 0.5)
@@ -94,11 +94,11 @@ def layered() -> cf.Scene:
 
 
 @pytest.mark.parametrize(
-    ("blow", "front"), [(scene("pool_low_deflection"), ()), (layered(), (6e-3, 2e-3, 1e-3))], ids=["bored", "layers"]
+    ("stroke", "front"), [(scene("pool_low_deflection"), ()), (layered(), (6e-3, 2e-3, 1e-3))], ids=["bored", "layers"]
 )
-def test_every_piece_is_drawn_at_its_place(blow: cf.Scene, front: tuple[float, ...]) -> None:
-    """The cue in millimetres of a hundredth: tip to the left, diameters enlarged about the axis, bores inside."""
-    drawing, segments = cue_drawing(blow, "all of it"), blow.shaft.segments
+def test_cue_drawing_has_segments_at_their_positions(stroke: cf.Scene, front: tuple[float, ...]) -> None:
+    """To 0.02 units: tip on the left, diameters enlarged about the axis, bores inside."""
+    drawing, segments = cue_drawing(stroke, "whole cue"), stroke.shaft.segments
     sizes = [(height, 10e-3, 0.0) for height in front]
     sizes += [(s.length, max(s.tip_diameter, s.butt_diameter), max(s.tip_bore, s.butt_bore)) for s in segments]
     ends = np.cumsum([0.0, *(length for length, *_ in sizes)])
@@ -109,5 +109,5 @@ def test_every_piece_is_drawn_at_its_place(blow: cf.Scene, front: tuple[float, .
             across = drawing.axis + scale * ACROSS * width / 2 * np.array([-1, 1])
             assert (outline == "") == (width == 0)
             assert not outline or box(outline) == pytest.approx([*along, *across], abs=0.02)
-    at = scale * (0.2 + sum(front))  # behind the leather, as positions count
+    at = scale * (0.2 + sum(front))  # positions are from behind the leather
     assert {tick.label: tick.at for tick in drawing.ticks}["200"] == pytest.approx(at, abs=0.02)

@@ -1,7 +1,7 @@
-"""What pooltool makes of the exported end mass: its own squirt is ours (verification).
+"""Export for pooltool: with the exported end mass it computes the same squirt (verification).
 
-pooltool 0.6.0 pins a development build of its graphics that PyPI has not, so that pip takes 0.3.3, which knows no end
-mass: no extra `cuefem[pooltool]` can be. .ci/pooltool makes an environment that has it, and POOLTOOL_PYTHON names it.
+pooltool 0.6.0 requires a development build of its graphics that is not on PyPI, so that pip installs 0.3.3, which has
+no end mass, and `cuefem[pooltool]` cannot exist. .ci/pooltool makes an environment, and POOLTOOL_PYTHON names it.
 """
 
 import json
@@ -27,7 +27,7 @@ CUE_SPECS = ("brand", "M", "length", "tip_radius", "shaft_radius_at_tip", "shaft
 
 
 def pooltool_squirt(mass: float, end_mass: float, a: float) -> float:
-    """Its get_squirt_angle, 0.6.0, written again: alpha, rad, positive to the left; a positive on the left."""
+    """get_squirt_angle of pooltool 0.6.0: alpha, rad, positive to the left; a positive on the left."""
     A = 1 - a**2
     return -math.atan2(2.5 * a * math.sqrt(A), 1 + mass / end_mass + 2.5 * A)
 
@@ -43,7 +43,7 @@ def scene(tmp_path: Path) -> Path:
 
 
 @pytest.mark.parametrize("offset", [-0.3, 0.1, 0.5])
-def test_their_formula_turns_the_ball_as_our_strike_does(offset: float) -> None:
+def test_pooltool_formula_with_exported_end_mass_equals_strike(offset: float) -> None:
     struck = replace(SCENE, stroke=replace(SCENE.stroke, offset=offset))
     record = pooltool_record("kim", struck)
     squirt = cf.strike(struck).squirt
@@ -52,7 +52,7 @@ def test_their_formula_turns_the_ball_as_our_strike_does(offset: float) -> None:
     assert -pooltool_squirt(0.17, 0.170097 / 30, offset) == pytest.approx(record["default_squirt"], rel=1e-12)
 
 
-def test_the_command_and_its_file(scene: Path, tmp_path: Path) -> None:
+def test_pooltool_export_writes_cue_specs(scene: Path, tmp_path: Path) -> None:
     found, goal = exported(scene), tmp_path / "kim.json"
     mass = pytest.approx(KIM.mass, rel=1e-11)  # of a file
     expected = {"brand": "scene", "M": mass, "length": 1.4732, "tip_radius": 0.0095, "shaft_radius_at_tip": 0.006}
@@ -64,7 +64,7 @@ def test_the_command_and_its_file(scene: Path, tmp_path: Path) -> None:
     assert written["line"] == f'CueSpecs(**json.load(open("{goal}"))["CueSpecs"])'
 
 
-def test_what_a_drawing_leaves_out_is_pooltools_own() -> None:
+def test_pooltool_export_without_dimension_has_its_default() -> None:
     whole = pooltool_record("drawn whole", replace(SCENE, cue=replace(KIM, body_mass=0.0)))["CueSpecs"]
     assert (whole["length"], whole["shaft_radius_at_butt"]) == (0.7, 0.0105)
     record = pooltool_record("two parts", replace(SCENE, cue=cf.LumpedCue(0.54, 0.005), effects=()))
@@ -92,7 +92,7 @@ print(json.dumps([pt.__version__, answers]))
 
 
 def pooltool_python() -> str:
-    """A Python that has pooltool: this one, or that of its own environment, whose pins are not ours."""
+    """A Python with pooltool: this one, or POOLTOOL_PYTHON."""
     has_it = "from importlib.util import find_spec; raise SystemExit(find_spec('pooltool') is None)"
     for python in (sys.executable, os.environ.get("POOLTOOL_PYTHON", "")):
         if python and subprocess.run([python, "-c", has_it], capture_output=True).returncode == 0:
@@ -100,8 +100,8 @@ def pooltool_python() -> str:
     pytest.skip("no pooltool here: POOLTOOL_PYTHON names the Python of an environment that has it")
 
 
-def test_a_ball_that_pooltool_strikes(scene: Path) -> None:
-    """pooltool reads what is exported; its own stroke leaves its aim by our squirt, away from the struck side."""
+def test_pooltool_with_exported_cue_computes_same_squirt(scene: Path) -> None:
+    """pooltool reads the exported file; its own stroke has the same squirt, away from the struck side."""
     python = pooltool_python()
     offsets = (-0.4, 0.1, 0.3, 0.5)
     sent = json.dumps([(offset, exported(scene, f"--offset={offset}")) for offset in offsets])

@@ -1,4 +1,4 @@
-"""The summary of a study: best designs, drivers and fronts against what they are by definition (verification)."""
+"""Tables of a study: best designs, sensitivities and Pareto fronts against their definitions (verification)."""
 
 import itertools
 import re
@@ -28,7 +28,7 @@ def table(
     return SweepStatistics(tuple(columns), units, responses, np.arange(len(results)), tuple(columns.values()), results)
 
 
-def test_shares_of_a_grid_are_those_of_its_formula() -> None:
+def test_shares_of_grid_equal_exact_variances() -> None:
     """y = 3 a + b + 2 a c on a, b, c = -1, 0, 1: variances 6, 2/3 and 16/9 of a sum."""
     a, b, c = np.array(list(itertools.product((-1.0, 0.0, 1.0), repeat=3))).T
     y = 3 * a + b + 2 * a * c
@@ -40,8 +40,8 @@ def test_shares_of_a_grid_are_those_of_its_formula() -> None:
     assert found.trends[1][1] == "falls"
 
 
-def test_shares_of_a_sample_and_of_names() -> None:
-    """y = x + z/2 has 80 and 20 per cent of them; a column that changes nothing has nothing; names are groups."""
+def test_shares_of_sample_and_of_choices_equal_exact_variances() -> None:
+    """y = x + z/2 has shares of 80 and 20 %; a column without effect has 0; choices are groups."""
     x, z, w = np.random.default_rng(3).random((3, 2000))
     found = table({"x": x, "z": z, "w": w}, np.stack([x + z / 2, w], axis=1))
     assert found.shares[:, 0] == pytest.approx([0.8, 0.2, 0.0], abs=0.045)
@@ -52,26 +52,26 @@ def test_shares_of_a_sample_and_of_names() -> None:
 
 @settings(max_examples=30)
 @given(arrays(int, (60, 2), elements=st.integers(0, 11)))  # with ties
-def test_the_front_is_what_none_beats(numbers: np.ndarray) -> None:
+def test_pareto_front_has_undominated_designs(numbers: np.ndarray) -> None:
     results = numbers.astype(float)
     found = table({"x": np.arange(60.0)}, results)
-    wanted = results * [1, -1]  # stiffness is better if it is higher
-    beaten = [any((other <= own).all() and (other < own).any() for other in wanted) for own in wanted]
-    assert {tuple(wanted[i]) for i in found.front} == {tuple(w) for w, b in zip(wanted, beaten, strict=True) if not b}
-    assert all(not beaten[i] for i in found.front)
+    costs = results * [1, -1]  # stiffness is better if it is higher
+    dominated = [any((other <= own).all() and (other < own).any() for other in costs) for own in costs]
+    assert {tuple(costs[i]) for i in found.front} == {tuple(w) for w, b in zip(costs, dominated, strict=True) if not b}
+    assert all(not dominated[i] for i in found.front)
     assert found.best(0) in np.flatnonzero(results[:, 0] == results[:, 0].min())
     assert found.best(1) in np.flatnonzero(results[:, 1] == results[:, 1].max())
 
 
-def test_command_ends_with_a_summary_and_writes_it_as_a_page(tmp_path: Path) -> None:
+def test_study_command_prints_summary_and_writes_page(tmp_path: Path) -> None:
     study, (page, best) = written(tmp_path), (tmp_path / name for name in ("page.html", "best.toml"))
     out = " ".join(said("study", study, "-o", page, "-o", best).split())
     assert "16 failed, the first of them design 48: Segment.tip_bore must be in [0, 0.012)" in out
     assert "bore 0 to 15 mm" in out
-    told = as_json("study", study)
-    assert (told["designs"], told["evaluated"], told["failed"]) == (64, 0, 16)
-    summary = told["summary"]
-    widest = pytest.approx(0.011, rel=1e-12)  # of those that exist
+    record = as_json("study", study)
+    assert (record["designs"], record["evaluated"], record["failed"]) == (64, 0, 16)
+    summary = record["summary"]
+    widest = pytest.approx(0.011, rel=1e-12)  # of the valid designs
     assert (summary["best"]["end_mass"]["values"]["bore"], cf.load(best).cue.segments[0].tip_bore) == (widest, widest)
     assert summary["sensitivities"]["end_mass"]["bore"]["trend"] == "falls"
     assert summary["front"]["of"] == ["end_mass", "tip_stiffness"]
@@ -82,7 +82,7 @@ def test_command_ends_with_a_summary_and_writes_it_as_a_page(tmp_path: Path) -> 
     command_refuses("has no design to write", "study", none, "-o", tmp_path / "none.toml")
 
 
-def test_result_has_designs_responses_units_best_and_spread(tmp_path: Path) -> None:
+def test_study_result_has_designs_responses_units_best_and_spread(tmp_path: Path) -> None:
     found = cf.study(written(tmp_path), store=tmp_path / "some.sqlite")
     assert (found.kind, len(found.rows), len(found.failures)) == ("sweep", 64, 16)
     units = ["m", "s", "", "kg", "N/m", "Hz"]
@@ -94,7 +94,7 @@ def test_result_has_designs_responses_units_best_and_spread(tmp_path: Path) -> N
     assert set(found.best) == {"end_mass", "tip_stiffness"}
     assert found.spread["end_mass"]["5 %"] < found.spread["end_mass"]["mean"] < found.spread["end_mass"]["95 %"]
     assert repr(found).splitlines()[0] == "StudyResult(sweep of 64 designs, 16 without an answer)"
-    again = cf.study(tmp_path / "study.toml", store=tmp_path / "some.sqlite", workers=1)  # nothing is left to do
+    again = cf.study(tmp_path / "study.toml", store=tmp_path / "some.sqlite", workers=1)  # all designs are stored
     assert again.rows == found.rows
 
 
@@ -107,5 +107,5 @@ LABELS = {
 }
 
 
-def test_columns_and_responses_are_named_in_words() -> None:
+def test_labels_of_columns_and_responses_are_distinct_text() -> None:
     assert {name: column_label(name) for name in LABELS} == LABELS

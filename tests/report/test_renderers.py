@@ -1,4 +1,4 @@
-"""A sheet is declared once and shown alike in a terminal, on a page and in a spreadsheet (properties)."""
+"""Renderers: a table has the same cells in the terminal, on a page and as CSV (properties)."""
 
 import csv
 import io
@@ -18,11 +18,11 @@ ROWS = [{"at": 0.01, "felt": 0.0062, "part": 0.25}, {"at": 0.02, "felt": None, "
 
 
 def cells(made: Sheet) -> dict[str, list[list[str]]]:
-    """What stands in the cells of a sheet, by medium."""
+    """The cells of a table by medium."""
     console = Console(width=200, file=io.StringIO())
-    with console.capture() as said:
+    with console.capture() as captured:
         console.print(terminal(made))
-    lines = [line for line in said.get().splitlines()[1:] if line.strip() and "─" not in line]
+    lines = [line for line in captured.get().splitlines()[1:] if line.strip() and "─" not in line]
     markup = str(environment().get_template("drawings.html.j2").module.cells(made))  # type: ignore[attr-defined]
     page = [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in re.findall(r"<tr.*?</tr>", markup)]
     return {
@@ -32,14 +32,14 @@ def cells(made: Sheet) -> dict[str, list[list[str]]]:
     }
 
 
-def test_every_medium_shows_the_same_cells() -> None:
+def test_table_in_every_medium_has_same_cells() -> None:
     columns = {"place": "{at:m}", "felt <there>": "{felt:end_mass}", "part": "{part:.1 %}"}
     made = sheet("Where", columns, ROWS, texts=())
     whole = [["place", "felt <there>", "part"], ["10 mm", "6.200 g", "25.0 %"], ["20 mm", NONE, "-50.0 %"]]
     assert cells(made) == dict.fromkeys(("terminal", "page", "spreadsheet"), whole)
 
 
-def test_what_is_missing_is_a_dash_and_what_no_medium_has_is_left_out() -> None:
+def test_missing_value_is_dash_and_nonfinite_is_null() -> None:
     made = sheet("", {"error": "{plain[error]:error}"}, [{"plain": {"error": 1e-3}}, {"plain": None}])
     assert made.rows == (("0.0010",), (NONE,))
     numbers = json.loads(json_text({"a": float("inf"), "b": [float("nan"), 1.0], "c": {"d": 2}}))
@@ -55,7 +55,7 @@ def rendered(things: list[Any], width: int) -> str:
     return out.getvalue()
 
 
-def test_headings_wrap_before_texts_and_numbers_never() -> None:
+def test_table_in_narrow_terminal_wraps_headings_first_and_numbers_never() -> None:
     table = terminal(
         Sheet("A title", ("what", "a long heading", "another one"), (("[words] of text", "-1.2345 m/s", "3.4e-12"),))
     )

@@ -1,4 +1,4 @@
-"""What a wrong unit or a slip of the pen makes is remarked, and nothing else is (regression)."""
+"""Warnings of implausible values, such as by a wrong unit, and none for shipped cues (regression)."""
 
 import json
 from dataclasses import replace
@@ -34,16 +34,16 @@ segments = [
 PROFILE = "x [mm],diameter [mm]\n0,12.5\n250,12.9\n737,21\n"
 
 
-def remarks(path: Path) -> list[str]:
+def warnings_of(path: Path) -> list[str]:
     found = cf.load(path)
-    if isinstance(found, cf.Cue) and not found.body_mass and path.suffix != ".toml":  # a shape knows of no other mass
+    if isinstance(found, cf.Cue) and not found.body_mass and path.suffix != ".toml":  # a profile has no other mass
         found = replace(found, body_mass=0.43)
     return unusual(found if isinstance(found, cf.Scene) else cf.Scene(found))
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
-def test_no_false_alarm(path: Path) -> None:
-    assert remarks(path) == []
+def test_plausibility_of_shipped_cues_has_no_warning(path: Path) -> None:
+    assert warnings_of(path) == []
 
 
 @pytest.mark.parametrize(
@@ -65,19 +65,19 @@ def test_no_false_alarm(path: Path) -> None:
         ),
     ],
 )
-def test_a_slip_is_remarked(tmp_path: Path, old: str, new: str, line: str) -> None:
+def test_plausibility_of_wrong_value_warns(tmp_path: Path, old: str, new: str, line: str) -> None:
     assert old in CUE + SCENE
-    for changed, remarked in (((old, old), False), ((old, new), True)):
+    for changed, warned in (((old, old), False), ((old, new), True)):
         for name, content in (("cue.toml", CUE), ("scene.toml", SCENE)):
             (tmp_path / name).write_text(content.replace(*changed, 1))
-        assert bool(remarks(tmp_path / "scene.toml")) is remarked
-    assert any(said.startswith(line) for said in remarks(tmp_path / "scene.toml"))
+        assert bool(warnings_of(tmp_path / "scene.toml")) is warned
+    assert any(text.startswith(line) for text in warnings_of(tmp_path / "scene.toml"))
 
 
 LEFT_OUT = "; expected 400 to 700 g"
 
 
-def test_a_shaft_without_the_rest_of_its_cue_is_remarked_where_it_is_struck(tmp_path: Path) -> None:
+def test_strike_of_shaft_without_butt_warns(tmp_path: Path) -> None:
     shaft = tmp_path / "shaft.csv"
     shaft.write_text(PROFILE)
     light = cf.load(shaft)
@@ -88,11 +88,17 @@ def test_a_shaft_without_the_rest_of_its_cue_is_remarked_where_it_is_struck(tmp_
     assert (status, err.splitlines()) == (0, [f"unusual: {json.loads(out)['unusual'][0]}"])
     assert LEFT_OUT in err
     assert call("strike", shaft, "--body-mass", "15 oz")[2] == ""
-    assert call("modes", shaft)[2] == ""  # how it rings does not depend on it
+    assert call("modes", shaft)[2] == ""  # frequencies do not depend on it
 
 
-def test_a_solid_rod_of_carbon_is_remarked(tmp_path: Path) -> None:
-    """A lathe profile has no bore: carbon in it is a rod of twice a shaft's mass."""
-    (shaft := tmp_path / "shaft.csv").write_text(PROFILE)
-    (line,) = unusual(cf.Scene(cf.load(shaft, material="carbon fibre", body_mass="15 oz")))
-    assert line.startswith("a solid rod as stiff as carbon fibre, drawn mass 2")
+def test_solid_carbon_rod_warns(tmp_path: Path) -> None:
+    """A lathe profile has no bore: carbon in it is a solid rod of twice a shaft's mass."""
+    shaft = tmp_path / "shaft.csv"
+    shaft.write_text(PROFILE)
+    for command in (["modes"], ["strike", "--body-mass", "15 oz"]):
+        status, _, err = call(command[0], shaft, "--material", "carbon fibre", *command[1:])
+        assert status == 0
+        (line,) = err.splitlines()
+        assert line.startswith("unusual: a solid rod as stiff as carbon fibre, drawn mass 2")
+        assert "--bore" in line
+    assert call("modes", shaft, "--material", "steel")[2] == ""

@@ -1,4 +1,4 @@
-"""The six pages for makers: their numbers are computed again, their pictures drawn again, and their files read."""
+"""The six chapters for makers: numbers, pictures and example files are computed again (verification)."""
 
 import math
 import re
@@ -19,7 +19,7 @@ TEXTS = {chapter.name: chapter.text for chapter in chapters() if chapter.name in
 NUMBER = re.compile(r"[−+-]?\d+(?:\.\d+)?")
 
 
-def test_they_stand_first_and_are_short() -> None:
+def test_makers_chapters_are_first_and_short() -> None:
     assert [chapter.name for chapter in chapters()][:6] == [*TEXTS] == [*MAKERS]
     assert max(len(text.split()) for text in TEXTS.values()) < 400
     drawn = re.findall(r"```drawing\n(\w+)", "".join(TEXTS.values()))
@@ -30,22 +30,22 @@ def test_they_stand_first_and_are_short() -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("name", PICTURES)
-def test_a_picture_is_as_it_would_be_drawn_now(name: str) -> None:
-    """Up to three pixels and one in a hundred: a number that is rounded must not hang on another machine's digits."""
-    kept, now = (FOLDER / f"{name}.svg").read_text(encoding="utf-8"), PICTURES[name]()
-    assert NUMBER.sub("#", kept) == NUMBER.sub("#", now)
-    both = zip(NUMBER.findall(kept), NUMBER.findall(now), strict=True)
+def test_picture_equals_drawing_now(name: str) -> None:
+    """Within three units: rounded numbers may differ between machines."""
+    stored, now = (FOLDER / f"{name}.svg").read_text(encoding="utf-8"), PICTURES[name]()
+    assert NUMBER.sub("#", stored) == NUMBER.sub("#", now)
+    both = zip(NUMBER.findall(stored), NUMBER.findall(now), strict=True)
     assert [(a, b) for a, b in both if abs(float(a.replace("−", "-")) - float(b.replace("−", "-"))) > 3] == []
 
 
 @pytest.mark.heavy
-def test_what_is_said_of_squirt() -> None:
+def test_numbers_in_makers_chapters_equal_computation() -> None:
     verdict = answers("report")["verdict"]
-    degrees, aside = math.degrees(verdict["squirt"]), 1e3 * math.tan(verdict["squirt"])
+    degrees, off_line = math.degrees(verdict["squirt"]), 1e3 * math.tan(verdict["squirt"])
     off = degrees * verdict["uncertainty"]["total"]
-    said = f"squirt {degrees:.2f} ± {off:.2f}° (at b/R 0.3, 3/10 of the way to the edge): the ball is"
-    assert said in TEXTS["read_the_report"]
-    assert f"about {aside:.0f} mm off line after 1 m" in TEXTS["what_squirt_is"]
+    line = f"squirt {degrees:.2f} ± {off:.2f}° (at b/R 0.3, 3/10 of the way to the edge): the ball is"
+    assert line in TEXTS["read_the_report"]
+    assert f"about {off_line:.0f} mm off line after 1 m" in TEXTS["what_squirt_is"]
     known = ready()
     for name in ("low deflection", "carbon"):  # "about a fifth less"
         assert 0.18 < 1 - known[name] / known["plain maple"] < 0.24
@@ -57,13 +57,13 @@ def test_what_is_said_of_squirt() -> None:
 
 
 def squirt_of(path: Path) -> float:
-    """Degrees, by the usual stroke of pool with a rest of the cue of 15 oz."""
+    """Squirt, degrees, by the default stroke of pool with a butt of 15 oz."""
     cue: Any = cf.load(path)
     return math.degrees(cf.strike(cf.usual_scene(replace(cue, body_mass=0.42524))).squirt)
 
 
 @pytest.mark.parametrize(("name", "least", "most"), [("pool_maple", 1.0, 2.0), ("pool_hollow", -1.0, 0.0)])
-def test_a_deeper_bore_is_worth_what_the_page_and_improve_say(name: str, least: float, most: float) -> None:
+def test_deeper_bore_changes_squirt_as_stated(name: str, least: float, most: float) -> None:
     """From 5 to 7 in: less than 1 % under the light ferrule of one, a loss under the other's; deeper no gain."""
     scene = cf.usual_scene(cf.load(Path("meshes") / f"{name}.toml"))
     of = {
@@ -78,8 +78,8 @@ def test_a_deeper_bore_is_worth_what_the_page_and_improve_say(name: str, least: 
         assert 1 - of[5] / cf.strike(scene).squirt == pytest.approx(0.055, abs=0.005)
 
 
-def test_tables_of_the_pages_draw_the_bored_shaft(tmp_path: Path) -> None:
-    """The bore behind the ferrule is empty, and both ways of writing the ferrule have one squirt."""
+def test_profiles_in_chapters_load_as_bored_shaft(tmp_path: Path) -> None:
+    """The bore behind the ferrule is empty, and both notations of the ferrule have the same squirt."""
     plain, ferrule = re.findall(r"```csv\n(.*?)```", TEXTS["measure_your_shaft"], re.DOTALL)
     files = next(chapter.text for chapter in chapters() if chapter.name == "files")
     cored = next(text for text in re.findall(r"```csv\n(.*?)```", files, re.DOTALL) if "core" in text)

@@ -1,4 +1,4 @@
-"""The glossary's words on a page: each is a button that opens its meaning, and says nothing else (properties)."""
+"""The glossary on a page: each term is a button that opens its definition; the text is unchanged (properties)."""
 
 import re
 
@@ -13,11 +13,11 @@ TAGS = re.compile(r"<[^>]*>")
 
 
 def buttons(markup: str) -> list[tuple[str, str]]:
-    """What each button opens, and its words."""
+    """Id of the definition that each button opens, and its text."""
     return re.findall(r'<button type="button" class="term" popovertarget="([^"]*)">([^<]*)</button>', markup)
 
 
-def test_every_word_of_the_glossary_is_explained_by_its_entry() -> None:
+def test_every_term_has_button_of_its_entry() -> None:
     for entry in entries():
         for word in entry.words:
             assert buttons(explained(f"<p>The {word} of it.</p>")) == [(entry.id, word)]
@@ -27,14 +27,19 @@ def test_every_word_of_the_glossary_is_explained_by_its_entry() -> None:
 
 
 @pytest.mark.parametrize("tag", ["svg", "h1", "title", "button", "summary", "code", "label"])
-def test_names_and_controls_are_left_alone(tag: str) -> None:
+def test_terms_in_headings_and_controls_have_no_button(tag: str) -> None:
     markup = f"<{tag}>squirt <b>spin</b></{tag}>"
     inside = f"<head>{markup}</head>" if tag == "title" else markup
     assert explained(inside) == inside
     assert len(buttons(explained(f"{inside}<p>squirt</p>"))) == 1
 
 
+def test_term_repeated_in_section_has_one_button() -> None:
+    section = "<section><p>squirt, squirt</p><p>spin and squirt</p></section>"
+    assert [words for _, words in buttons(explained(2 * section))] == 2 * ["squirt", "spin"]
+
+
 @given(st.lists(st.sampled_from([*WORDS, "<p>", "</p>", "<b>", "</b>", " ", ", ", "the", "&amp;", "3 mm"])))
-def test_the_text_stays_as_it_was(parts: list[str]) -> None:
+def test_term_buttons_preserve_text(parts: list[str]) -> None:
     markup = "".join(parts)
     assert TAGS.sub("", explained(markup)) == TAGS.sub("", markup)

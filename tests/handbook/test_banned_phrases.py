@@ -1,4 +1,4 @@
-"""Phrases that the terms of the field replaced everywhere stay out of what people read (regression)."""
+"""Phrases that the field's terms replaced are absent from code, help, pages and README (regression)."""
 
 from pathlib import Path
 
@@ -17,7 +17,7 @@ BANNED = (
 )
 
 
-def test_replaced_phrases_stay_out_of_help_messages_and_pages() -> None:
+def test_banned_phrases_are_absent_from_texts() -> None:
     pages = [path for path in (ROOT / "cuefem").rglob("*") if path.suffix in (".py", ".md", ".j2", ".toml")]
     whole = {path: " ".join(path.read_text(encoding="utf-8").lower().split()) for path in (*pages, ROOT / "README.md")}
     found = {str(path): [phrase for phrase in BANNED if phrase in text] for path, text in whole.items()}

@@ -1,4 +1,4 @@
-"""`cuefem cost`: its table, its figure and what it recommends (properties)."""
+"""`cuefem cost`: its table, its chart and its recommendation (properties)."""
 
 from pathlib import Path
 
@@ -18,7 +18,7 @@ def record() -> dict:
     return cost_record(scene("kim", 1e-3, 0.3), most=60)
 
 
-def test_what_is_recommended_is_what_resolve_takes(record: dict) -> None:
+def test_recommended_resolution_equals_resolve(record: dict) -> None:
     assert [row["rtol"] for row in record["wanted"]] == list(WANTED)
     for row in record["wanted"]:
         if row["reached"]:
@@ -29,7 +29,8 @@ def test_what_is_recommended_is_what_resolve_takes(record: dict) -> None:
     assert record["wanted"][-1]["estimate"] == best
 
 
-def test_the_command_prints_and_draws(tmp_path: Path) -> None:
+def test_cost_command_prints_table_and_draws_chart(tmp_path: Path) -> None:
     assert "1e-06, not reached" in said("cost", KIM, "--most", 24)
     said("cost", KIM, "--most", 24, "--output", tmp_path / "cost.html")
-    assert (tmp_path / "cost.html").read_text(encoding="utf-8").count('<path class="curve c3" d="M') == 2  # its key too
+    text = (tmp_path / "cost.html").read_text(encoding="utf-8")
+    assert text.count('<path class="curve c3" d="M') == 2  # with its legend
