@@ -1,5 +1,5 @@
 "use strict";
-// Search in the handbook: every part, from a heading to the next, that holds all the words; nothing leaves the page.
+// Search in the handbook: lists each section, from a heading to the next, that contains all words; runs offline.
 {
   const field = document.getElementById("search"), hits = document.getElementById("hits");
   const count = document.getElementById("count"), contents = document.getElementById("contents");
@@ -9,7 +9,7 @@
     const chapter = head.parentElement.querySelector("h1");
     const title = head === chapter ? head.textContent : `${chapter.textContent}: ${head.textContent}`;
     text = text.replace(/\s+/g, " ").trim();
-    return { id: head.id, title, text, heading: title.toLowerCase(), low: `${title} ${text}`.toLowerCase() };
+    return { id: head.id, title, text, heading: title.toLowerCase(), lower: `${title} ${text}`.toLowerCase() };
   });
   const around = (part, word) => {
     const at = Math.max(part.text.toLowerCase().indexOf(word), 0), from = Math.max(at - 40, 0);
@@ -17,18 +17,18 @@
   };
   const show = () => {
     const words = field.value.toLowerCase().split(/\s+/).filter(Boolean);
-    const met = words.length ? parts.filter((part) => words.every((word) => part.low.includes(word))) : [];
+    const matches = words.length ? parts.filter((part) => words.every((word) => part.lower.includes(word))) : [];
     const rank = (part) => words.filter((word) => part.heading.includes(word)).length;
-    met.sort((a, b) => rank(b) - rank(a));
-    hits.replaceChildren(...met.slice(0, 12).map((part) => {
+    matches.sort((a, b) => rank(b) - rank(a));
+    hits.replaceChildren(...matches.slice(0, 12).map((part) => {
       const link = Object.assign(document.createElement("a"), { href: `#${part.id}`, textContent: part.title });
-      const item = document.createElement("li"), said = document.createElement("span");
-      said.textContent = around(part, words[0]);
-      item.append(link, said);
+      const item = document.createElement("li"), excerpt = document.createElement("span");
+      excerpt.textContent = around(part, words[0]);
+      item.append(link, excerpt);
       return item;
     }));
-    const more = met.length > 12 ? ", the first 12 here" : "";
-    count.textContent = words.length ? (met.length ? `${met.length} place${met.length > 1 ? "s" : ""}${more}` : "not found") : "";
+    const more = matches.length > 12 ? ", the first 12 here" : "";
+    count.textContent = words.length ? (matches.length ? `${matches.length} section${matches.length > 1 ? "s" : ""}${more}` : "not found") : "";
     contents.hidden = words.length > 0;
   };
   field.addEventListener("input", show);

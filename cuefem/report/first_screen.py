@@ -54,10 +54,10 @@ class Tile(NamedTuple):
     more: str
 
 
-def headline_markup(own: Shown, other: Shown | None = None, difference: Record | None = None, grip: str = "") -> str:
+def headline_markup(own: Shown, other: Shown | None = None, difference: Record | None = None, warning: str = "") -> str:
     """Squirt with its uncertainty, and its difference from another design's and from a reference cue's.
 
-    difference: of `cuefem.results.comparison`, from the other design. grip: a warning about the contact state.
+    difference: of `cuefem.results.comparison`, from the other design. warning: about the contact state.
     """
     verdict = own.verdict
     text, error = (
@@ -71,7 +71,7 @@ def headline_markup(own: Shown, other: Shown | None = None, difference: Record |
             line = squirt_difference(among["difference"], among["error"], among["distinct"])
             lines.append((line, first))
     offset = verdict["offset"] if verdict else own.scene.stroke.offset
-    return _macro("headline", own.numbers["squirt"], text, error, f"{offset:.2f}", lines, grip)
+    return _macro("headline", own.numbers["squirt"], text, error, f"{offset:.2f}", lines, warning)
 
 
 def tiles(own: Shown, other: Shown | None = None) -> list[Tile]:

@@ -114,9 +114,9 @@ def study_record(result: StudyResult) -> Record:
     if isinstance(result.asked, Scatter) and result.drivers:
         about = {"count": result.asked.count, "seed": result.asked.seed}
         return about | {"responses": scatter_record(result, result.drivers)}
-    found, failed = sweep_statistics(result), [*result.failures.values()]
+    sweep, failed = sweep_statistics(result), [*result.failures.values()]
     counts = {"designs": len(result.rows), "failed": len(failed), "first_failure": failed[0] if failed else None}
-    return counts | {"summary": found and sweep_record(found)}
+    return counts | {"summary": sweep and sweep_record(sweep)}
 
 
 def study_sheets(result: StudyResult) -> list[Sheet | str]:
@@ -126,55 +126,55 @@ def study_sheets(result: StudyResult) -> list[Sheet | str]:
         return [varies, *optimum_sheets(result.asked, result.optimum)]
     if isinstance(result.asked, Scatter) and result.drivers:
         return [varies, *scatter_sheets(result, result.asked, result.drivers)]
-    found, failures = sweep_statistics(result), [*result.failures.items()]
+    sweep, failures = sweep_statistics(result), [*result.failures.items()]
     lines = [f"{len(failures)} failed, the first of them design {n}: {reason}" for n, reason in failures[:1]]
-    return [*lines, varies, *([] if found is None else sweep_sheets(found))]
+    return [*lines, varies, *([] if sweep is None else sweep_sheets(sweep))]
 
 
-def sweep_record(found: SweepStatistics) -> Record:
+def sweep_record(sweep: SweepStatistics) -> Record:
     """Best designs, sensitivities and the Pareto front of a sweep."""
-    names = [response.name for response in found.responses]
+    names = [response.name for response in sweep.responses]
 
     def design(i: int) -> Record:
-        values = {name: column[i].item() for name, column in zip(found.names, found.values, strict=True)}
-        responses = dict(zip(names, found.results[i], strict=True))
-        return {"design": found.numbers[i], "values": values, "responses": responses}
+        values = {name: column[i].item() for name, column in zip(sweep.names, sweep.values, strict=True)}
+        responses = dict(zip(names, sweep.results[i], strict=True))
+        return {"design": sweep.numbers[i], "values": values, "responses": responses}
 
     record: Record = {
-        "best": {names[k]: {"better": found.responses[k].result.better, **design(found.best(k))} for k in found.judged},
+        "best": {names[k]: {"better": sweep.responses[k].result.better, **design(sweep.best(k))} for k in sweep.judged},
         "sensitivities": {
             name: {
-                column: {"share": found.shares[j, k], "trend": found.trends[j][k] or None}
-                for j, column in enumerate(found.names)
+                column: {"share": sweep.shares[j, k], "trend": sweep.trends[j][k] or None}
+                for j, column in enumerate(sweep.names)
             }
             for k, name in enumerate(names)
         },
     }
-    if found.pair is not None:
-        record["front"] = {"of": [names[k] for k in found.pair], "designs": [design(i) for i in found.front]}
+    if sweep.pair is not None:
+        record["front"] = {"of": [names[k] for k in sweep.pair], "designs": [design(i) for i in sweep.front]}
     return record
 
 
-def sweep_sheets(found: SweepStatistics) -> list[Sheet | str]:
+def sweep_sheets(sweep: SweepStatistics) -> list[Sheet | str]:
     """The best design for each response, the sensitivities, and evenly spaced designs of the Pareto front."""
-    labels = [*map(column_label, found.names)]
-    heads = [*map(with_heading, labels, found.units)]
+    labels = [*map(column_label, sweep.names)]
+    heads = [*map(with_heading, labels, sweep.units)]
 
     def cells(i: int, responses: Iterable[int]) -> list[str]:
-        results = [shown(found.results[i, k], found.responses[k].unit) for k in responses]
-        return [*results, *(shown(column[i], unit) for column, unit in zip(found.values, found.units, strict=True))]
+        results = [shown(sweep.results[i, k], sweep.responses[k].unit) for k in responses]
+        return [*results, *(shown(column[i], unit) for column, unit in zip(sweep.values, sweep.units, strict=True))]
 
     best, sensitivities = list[tuple[str, ...]](), list[tuple[str, ...]]()
-    for k in found.judged:
-        response, i = found.responses[k], found.best(k)
-        ends = " to ".join(shown(end(found.results[:, k]), response.unit) for end in (np.min, np.max))
+    for k in sweep.judged:
+        response, i = sweep.responses[k], sweep.best(k)
+        ends = " to ".join(shown(end(sweep.results[:, k]), response.unit) for end in (np.min, np.max))
         which = f"{response.result.better} is better" if response.result.better else "the lowest"
         value, *rest = cells(i, [k])
-        best.append((f"{response.heading} ({which})", value, ends, str(found.numbers[i]), *rest))
-    for k, response in enumerate(found.responses):
+        best.append((f"{response.heading} ({which})", value, ends, str(sweep.numbers[i]), *rest))
+    for k, response in enumerate(sweep.responses):
         parts = (
             f"{100 * share:.0f} % {trend[k]}".strip()
-            for share, trend in zip(found.shares[:, k], found.trends, strict=True)
+            for share, trend in zip(sweep.shares[:, k], sweep.trends, strict=True)
         )
         sensitivities.append((response.label, *parts))
     sheets: list[Sheet | str] = [
@@ -189,11 +189,11 @@ def sweep_sheets(found: SweepStatistics) -> list[Sheet | str]:
             ),
         ),
     ]
-    if found.pair is None:
+    if sweep.pair is None:
         return sheets
-    count, two = len(found.front), [found.responses[k] for k in found.pair]
+    count, two = len(sweep.front), [sweep.responses[k] for k in sweep.pair]
     picked = np.unique(np.linspace(0, count - 1, min(SHOWN, count)).round().astype(int))
-    rows = tuple((str(found.numbers[i]), *cells(i, found.pair)) for i in (found.front[j] for j in picked))
+    rows = tuple((str(sweep.numbers[i]), *cells(i, sweep.pair)) for i in (sweep.front[j] for j in picked))
     few = f"; {SHOWN} of them, evenly spaced" if count > SHOWN else ""
     title = (
         f"{two[0].label} against {two[1].label}: Pareto front of {count} designs{few}"
