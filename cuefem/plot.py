@@ -244,7 +244,7 @@ def end_mass(scene: Scene, ax: Axes | None = None, *, at: Resolution | None = No
     axes.plot(scaled(drivers.x[behind], "m"), (drivers.rhoA + drivers.axial_mass)[behind])
     axes.axhline(0, color="#888", linewidth=0.6)
     axes.set(
-        xlabel=FROM_TIP, ylabel=with_heading("end mass a gram adds", "kg"), xlim=(0, scaled(scene.shaft.length, "m"))
+        xlabel=FROM_TIP, ylabel=with_heading("end mass added by 1 g", "kg"), xlim=(0, scaled(scene.shaft.length, "m"))
     )
     axes.set_title(f"end mass {with_unit(drivers.end_mass, 'kg', 3)}{excluded}", fontsize="medium")
     return axes

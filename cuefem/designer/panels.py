@@ -71,7 +71,7 @@ def curves_markup(step: Step, results: Results) -> str:
     if curves:
         charts.append(
             chart(
-                "End mass that one gram adds, g",
+                "End mass added by 1 g",
                 curves,
                 x=Axis("distance from the tip, mm", 0.0),
                 y=Axis("end mass, g"),
