@@ -45,7 +45,7 @@ def test_a_parameter(monkeypatch: pytest.MonkeyPatch) -> None:
     assert study.units[0] == "m"
     assert study.scene((0.025,)).cue.segments[1].length == 0.025
     (unknown,) = (each for each in parameters_of(scene, ()) if each.name == "collar length")
-    assert (unknown.words, unknown.unit, unknown.usual, unknown.spread) == ("length of the collar", "m", 0.01, 0.1)
+    assert (unknown.label, unknown.unit, unknown.median, unknown.spread) == ("length of the collar", "m", 0.01, 0.1)
     plain = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.0125, 0.021, WOOD),), 0.42))
     with pytest.raises(ValueError, match="got 'collar length', which this scene does not have"):
         paths(plain, "collar length")

@@ -15,9 +15,9 @@ from cuefem.cli.strokes import blow_options, offset_option, option
 from cuefem.io import InputError
 from cuefem.io.measured_folder import load_measured, write_template
 from cuefem.measurements.estimate import estimate as estimated
-from cuefem.measurements.estimate import squirt_of
+from cuefem.measurements.estimate import predicted_squirt
 from cuefem.measurements.measured_cue import compare as compared
-from cuefem.measurements.measured_cue import zeros
+from cuefem.measurements.measured_cue import offset_zeros
 from cuefem.report.comparison_table import comparison_figures, comparison_sentences, comparison_sheet
 from cuefem.report.measured_page import compare_record, compare_sheets, estimate_record, estimate_sheets
 from cuefem.report.scene_words import scene_record
@@ -115,12 +115,12 @@ def _with_measurements(folder: Path, output: Path | None, *, as_json: bool, esti
     remark(cue.scene)
     with blaming(folder):
         if estimate:
-            found, target = estimated(cue, track=followed), squirt_of(cue)
-            record = estimate_record(found, found.next(), found.predicted(target), target.offset)
+            found, target = estimated(cue, track=followed), predicted_squirt(cue)
+            record = estimate_record(found, found.next_measurements(), found.predict(target), target.offset)
             sheets = estimate_sheets(record)
         else:
             rows = compared(cue, track=followed)
-            record = compare_record(cue, rows, zeros(cue, rows))
+            record = compare_record(cue, rows, offset_zeros(cue, rows))
             sheets = compare_sheets(record)
     whole = whole_record(folder, notes, cue.scene, record)
     tell(as_json, whole, [cue.name, "", *sheets, "", *assumed_lines(notes)], output)

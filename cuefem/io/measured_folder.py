@@ -24,7 +24,7 @@ from cuefem.io.toml import OF_GAME, game_of, left_out, read_tables, scene_of_tab
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Setup, Tone
 from cuefem.measurements.pendulum import Pendulum
-from cuefem.measurements.recording import Recording, combined, tones_of
+from cuefem.measurements.recording import Recording, combine_tones, tones_in
 from cuefem.measurements.uncertain_parameters import Prior
 from cuefem.parameters.parameter import parameter
 from cuefem.quantity.fields import Quantity
@@ -33,7 +33,7 @@ from cuefem.scene import Scene
 MEASURED = "measured.toml"
 DRAWINGS = ("cue.toml", "cue.csv")
 SCENE_KEYS = ("cue", "game", "ball", "tip", "stroke", "effects")
-OWN_KEYS = ("name", "source", "uncertain")
+OWN_KEYS = ("name", "source", "prior")
 READINGS: dict[str, type] = {"recording": Recording, "pendulum": Pendulum}  # from which measurements are made
 LONGEST, LARGEST_SOUND = 120.0, 100_000_000  # s, bytes of a recording: as long, two channels at 96 kHz in 32 bits
 TEMPLATE = ("README.md", "added_mass.csv", "cue.toml", MEASURED, "squirt.csv")
@@ -79,7 +79,7 @@ def _examples(folder: Path) -> list[str]:
     """That files of the template still hold its made-up numbers."""
     there = [name for name in TEMPLATE[1:] if (folder / name).is_file()]
     left = [name for name in there if read_text(folder / name) == _example(name)]
-    return [f"{', '.join(left)} as in the template, whose numbers are examples: put yours there"] if left else []
+    return [f"{', '.join(left)} as in the template, whose numbers are examples: replace them"] if left else []
 
 
 def _words(path: Path, tables: dict[str, Any], key: str) -> str:
@@ -152,8 +152,8 @@ def _readings(folder: Path, path: Path, tables: dict[str, Any], scene: Scene) ->
         with faults_of(sound, ""):
             samples, rate = _sound(sound)
             source = recording.source or recording.file
-            tones += tones_of(samples, rate, Setup(scene).predictions.frequencies, source)
-    yield from combined(tones)
+            tones += tones_in(samples, rate, Setup(scene).predictions.frequencies, source)
+    yield from combine_tones(tones)
 
 
 def _sound(path: Path) -> tuple[Any, float]:
@@ -213,9 +213,9 @@ def _cell(cell: str, unit: str, hint: Any) -> Any:
 
 
 def _priors(path: Path, tables: dict[str, Any], scene: Scene) -> Iterator[Prior]:
-    """The [[uncertain]] tables: low and high are in the unit of the parameter that they name."""
-    for i, row in enumerate(_tables(path, tables, "uncertain")):
-        key, name, read = joined("uncertain", i), row.get("name"), dict(row)
+    """The [[prior]] tables: low and high are in the unit of the parameter that they name."""
+    for i, row in enumerate(_tables(path, tables, "prior")):
+        key, name, read = joined("prior", i), row.get("name"), dict(row)
         with faults_of(path, key):
             known = parameter(name) if isinstance(name, str) else None
             unit = known.quantity(scene).unit if known and {"low", "high"} & {*row} else ""

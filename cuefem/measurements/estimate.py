@@ -14,55 +14,55 @@ from typing import NamedTuple
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.measurements.measured_cue import MeasuredCue, Residual, Track, rows_of
+from cuefem.measurements.measured_cue import MeasuredCue, Residual, Track, residuals_of
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Squirt
-from cuefem.measurements.outliers import NOTICED, WIDER, solved
+from cuefem.measurements.outliers import DETECTABLE, OUTLIER_FACTOR, posterior
 
-STEPS, SETTLED = 12, 0.05  # steps at most; length of a step, in standard deviations of the result, that ends them
-AGAIN = 6  # steps at most of the search that counts contradictions less
-HALVINGS = 6
-FARTHEST = 1.5  # standard deviations of the priors, a step
-TARGET = 0.3  # b/R of the squirt that is predicted where the scene has no offset
+MAX_STEPS, CONVERGED = 12, 0.05  # steps at most; length of a step, in standard deviations of the result, that ends them
+MAX_OUTLIER_STEPS = 6  # steps at most of the search that counts contradictions less
+MAX_HALVINGS = 6
+LONGEST_STEP = 1.5  # standard deviations of the priors, a step
+TARGET_OFFSET = 0.3  # b/R of the squirt that is predicted where the scene has no offset
 
 
-class Value(NamedTuple):
+class EstimatedParameter(NamedTuple):
     """An uncertain parameter: its name, label and unit, its value in the drawing, and the estimate.
 
-    low, high: the limits of the 68 % interval; narrowed: the posterior's width over the prior's.
+    low, high: the limits of the 68 % interval; error_ratio: the posterior's width over the prior's.
     """
 
     name: str
-    words: str
+    label: str
     unit: str
-    before: float
+    drawing: float
     value: float
     low: float
     high: float
-    narrowed: float
+    error_ratio: float
 
 
-class Worth(NamedTuple):
+class InformationGain(NamedTuple):
     """Information gain of a further measurement.
 
-    bits: about all parameters. narrows: the parameter that it narrows most; left: the remaining part of its error.
-    squirt_left: the remaining relative error of squirt.
+    bits: about all parameters. parameter: the one whose error it reduces most; error_ratio: its error after over
+    before. squirt_error: the relative error of squirt after it.
     """
 
     measurement: Measurement
     bits: float
-    narrows: str
-    left: float
-    squirt_left: float
+    parameter: str
+    error_ratio: float
+    squirt_error: float
 
 
-class Unchecked(NamedTuple):
+class UncheckedMeasurement(NamedTuple):
     """A measurement without redundancy: an outlier of ten times its error would go undetected.
 
-    value: the parameter that depends on it most, estimated without this measurement.
+    without: the parameter that depends on it most, estimated without this measurement.
     """
 
     measurement: Measurement
-    value: Value
+    without: EstimatedParameter
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,8 +71,8 @@ class Estimate:
 
     z: (parameters,) mean, in standard deviations of the priors. covariance: (parameters, parameters). computed: (n,)
     values of the measurements there. slopes: (n, parameters). misfit: the least sum of squares of the residuals and the
-    priors, every measurement in full. converged: whether the last step was short. wrong: (n,) the chance that a
-    measurement is wrong: that its error is far larger than stated.
+    priors, every measurement in full. converged: whether the last step was short. outlier_probability: (n,)
+    the probability of each measurement that its error is far larger than stated.
     """
 
     cue: MeasuredCue
@@ -82,80 +82,82 @@ class Estimate:
     slopes: Array
     misfit: float
     converged: bool
-    wrong: Array
+    outlier_probability: Array
 
     @property
-    def values(self) -> tuple[Value, ...]:
+    def values(self) -> tuple[EstimatedParameter, ...]:
         """The parameters in their units."""
         return self._values(self.z, self.covariance)
 
-    def _values(self, mean: Array, covariance: Array) -> tuple[Value, ...]:
+    def _values(self, mean: Array, covariance: Array) -> tuple[EstimatedParameter, ...]:
         made = []
         for parameter, z, sd in zip(self.cue.parameters, mean, np.sqrt(np.diag(covariance)), strict=True):
-            names = (parameter.name, parameter.words, parameter.unit, parameter.usual)
+            names = (parameter.name, parameter.label, parameter.unit, parameter.median)
             at, low, high = (parameter.value(float(each)) for each in (z, z - sd, z + sd))
-            made.append(Value(*names, at, low, high, float(sd)))
+            made.append(EstimatedParameter(*names, at, low, high, float(sd)))
         return tuple(made)
 
     @property
-    def unchecked(self) -> tuple[Unchecked, ...]:
+    def unchecked(self) -> tuple[UncheckedMeasurement, ...]:
         """The measurements without redundancy.
 
-        The others predict a measurement with some error. An outlier of `WIDER` of its own errors is detected if that is
-        `NOTICED` errors of the prediction and the measurement together (the reliability of W. Baarda, 1968).
+        The others predict a measurement with some error. An outlier of `OUTLIER_FACTOR` of its own errors is detected
+        if that is `DETECTABLE` errors of prediction and measurement together (reliability: W. Baarda, 1968).
         """
         J, residuals = _scaled(self.cue, self.z, self.computed, self.slopes)
         made = []
         for i, measurement in enumerate(self.cue.measurements):
             others = np.arange(len(J)) != i
             foreseen = J[i] @ np.linalg.solve(J[others].T @ J[others] + np.eye(len(self.z)), J[i])
-            if NOTICED**2 * (1 + foreseen) > WIDER**2:
-                mean, covariance, _ = solved(J[others], residuals[others])
-                rests = int(np.argmax(np.diag(covariance) / np.diag(self.covariance)))
-                made.append(Unchecked(measurement, self._values(mean, covariance)[rests]))
+            if DETECTABLE**2 * (1 + foreseen) > OUTLIER_FACTOR**2:
+                mean, covariance, _ = posterior(J[others], residuals[others])
+                largest = int(np.argmax(np.diag(covariance) / np.diag(self.covariance)))
+                made.append(UncheckedMeasurement(measurement, self._values(mean, covariance)[largest]))
         return tuple(made)
 
     @property
-    def rows(self) -> tuple[Residual, ...]:
+    def residuals(self) -> tuple[Residual, ...]:
         """The measurements and the values computed with the estimated parameters."""
         spread = np.sqrt(np.einsum("ij,jk,ik->i", self.slopes, self.covariance, self.slopes))
-        return rows_of(self.cue, self.computed, spread)
+        return residuals_of(self.cue, self.computed, spread)
 
-    def predicted(self, what: Measurement) -> tuple[float, float]:
+    def predict(self, measurement: Measurement) -> tuple[float, float]:
         """Value of another measurement by the model with the estimated parameters, and its error; SI."""
-        at, slope = self._also((what,))
+        at, slope = self._values_of((measurement,))
         return float(at[0]), float(np.sqrt(slope[0] @ self.covariance @ slope[0]))
 
-    def _also(self, others: Sequence[Measurement]) -> tuple[Array, Array]:
+    def _values_of(self, others: Sequence[Measurement]) -> tuple[Array, Array]:
         bare = MeasuredCue(self.cue.name, self.cue.scene, (), self.cue.priors)
         bare.__dict__["parameters"] = self.cue.parameters  # those of all measurements, the zeros too
         at = bare.computed(self.z, others)
-        return at, bare.slopes(self.z, others)
+        return at, bare.jacobian(self.z, others)
 
-    def next(self) -> tuple[Worth, ...]:
+    def next_measurements(self) -> tuple[InformationGain, ...]:
         """Information gain of each further measurement, the most informative about squirt first.
 
         Each is assumed to have the predicted value; it may also check the existing ones.
         """
-        target = squirt_of(self.cue)
-        others = [measurement for kind in MEASUREMENT_TYPES.values() for measurement in kind.next(self.cue.scene)]
-        at, slopes = self._also((target, *others))
+        target = predicted_squirt(self.cue)
+        others = [measurement for kind in MEASUREMENT_TYPES.values() for measurement in kind.candidates(self.cue.scene)]
+        at, slopes = self._values_of((target, *others))
         J, residuals = _scaled(self.cue, self.z, self.computed, self.slopes)
         made = []
         for measurement, slope in zip(others, slopes[1:] / [[measurement.sd] for measurement in others], strict=True):
-            after = solved(np.vstack([J, slope]), np.append(residuals, slope @ self.z)).covariance
+            after = posterior(np.vstack([J, slope]), np.append(residuals, slope @ self.z)).covariance
             left = np.sqrt(np.diag(after) / np.diag(self.covariance))
             i = int(np.argmin(left))
             bits = 0.5 / np.log(2) * (np.linalg.slogdet(self.covariance)[1] - np.linalg.slogdet(after)[1])
             relative = float(np.sqrt(slopes[0] @ after @ slopes[0])) / abs(float(at[0]))
-            made.append(Worth(measurement, float(bits), self.cue.parameters[i].words, float(left[i]), relative))
-        return tuple(sorted(made, key=lambda worth: worth.squirt_left))
+            made.append(
+                InformationGain(measurement, float(bits), self.cue.parameters[i].label, float(left[i]), relative)
+            )
+        return tuple(sorted(made, key=lambda gain: gain.squirt_error))
 
 
-def squirt_of(cue: MeasuredCue) -> Squirt:
+def predicted_squirt(cue: MeasuredCue) -> Squirt:
     """The squirt that an estimate predicts, at the scene's own offset; its value has no effect."""
     own = abs(float(cue.scene.stroke.offset))
-    return Squirt(offset=own or TARGET, left=0.0, right=0.0, error=1.0)
+    return Squirt(offset=own or TARGET_OFFSET, left=0.0, right=0.0, error=1.0)
 
 
 def estimate(cue: MeasuredCue, *, track: Track = iter) -> Estimate:
@@ -191,33 +193,33 @@ def estimate(cue: MeasuredCue, *, track: Track = iter) -> Estimate:
     z = np.zeros(len(cue.parameters))
     at = cue.computed(z)
     cost, converged = _cost(z, (measured - at) / sd), False
-    for _ in track(range(STEPS)):
+    for _ in track(range(MAX_STEPS)):
         if converged:
             continue  # a progress bar runs to its end
-        J = cue.slopes(z) / sd[:, None]
+        J = cue.jacobian(z) / sd[:, None]
         inverse = J.T @ J + np.eye(len(z))
         step = np.linalg.solve(inverse, J.T @ ((measured - at) / sd) - z)
-        converged = float(np.sqrt(step @ inverse @ step)) < SETTLED
+        converged = float(np.sqrt(step @ inverse @ step)) < CONVERGED
         if converged:
             continue
         best = _lowest(cue, z, _limited(step), cost, measured, sd)
         if best is None:
             break
         z, at, cost = best
-    return _counted(cue, z, at, cost)
+    return _reweighted(cue, z, at, cost)
 
 
-def _counted(cue: MeasuredCue, z: Array, at: Array, misfit: float) -> Estimate:
+def _reweighted(cue: MeasuredCue, z: Array, at: Array, misfit: float) -> Estimate:
     """The estimate about a start, in which a measurement that contradicts the others has less weight."""
-    for last in range(1, AGAIN + 1):
-        slopes = cue.slopes(z)
-        mean, covariance, wrong = solved(*_scaled(cue, z, at, slopes))
+    for last in range(1, MAX_OUTLIER_STEPS + 1):
+        slopes = cue.jacobian(z)
+        mean, covariance, wrong = posterior(*_scaled(cue, z, at, slopes))
         step = mean - z
-        converged = float(np.sqrt(step @ np.linalg.solve(covariance, step))) < SETTLED
-        if converged or last == AGAIN:
+        converged = float(np.sqrt(step @ np.linalg.solve(covariance, step))) < CONVERGED
+        if converged or last == MAX_OUTLIER_STEPS:
             break
-        ways = (z + _limited(step) / 2**halving for halving in range(HALVINGS))
-        possible = ((there, computed) for there in ways if (computed := cue.possible(there)) is not None)
+        ways = (z + _limited(step) / 2**halving for halving in range(MAX_HALVINGS))
+        possible = ((there, computed) for there in ways if (computed := cue.computed_or_none(there)) is not None)
         z, at = next(possible, (z, at))
     return Estimate(cue, z, covariance, at, slopes, misfit, converged, wrong)
 
@@ -230,8 +232,8 @@ def _scaled(cue: MeasuredCue, z: Array, at: Array, slopes: Array) -> tuple[Array
 
 
 def _limited(step: Array) -> Array:
-    """A step of at most `FARTHEST` in any parameter."""
-    return step * min(1.0, FARTHEST / max(float(np.abs(step).max()), 1e-12))
+    """A step of at most `LONGEST_STEP` in any parameter."""
+    return step * min(1.0, LONGEST_STEP / max(float(np.abs(step).max()), 1e-12))
 
 
 def _lowest(
@@ -242,9 +244,9 @@ def _lowest(
     The first half is always tried: far from the measurements full steps oscillate.
     """
     best = None
-    for halving in range(HALVINGS):
+    for halving in range(MAX_HALVINGS):
         there = z + step / 2**halving
-        lowest = cue.possible(there)
+        lowest = cue.computed_or_none(there)
         after = np.inf if lowest is None else _cost(there, (measured - lowest) / sd)
         if lowest is not None and after < (cost if best is None else best[2]):
             best = there, lowest, after

@@ -16,7 +16,7 @@ from cuefem.quantity.fields import check_kind
 from cuefem.scene import Scene
 
 STEP = 0.1  # of differences, in standard deviations of a prior
-NEARER = 8  # of that step, towards the limit of what can be
+MAX_HALVINGS = 8  # of that step, towards the limit of what can be
 
 Track = Callable[[Sequence[Any]], Iterable[Any]]
 
@@ -70,45 +70,47 @@ class MeasuredCue:
             made = parameter.setup(made, float(each))
         return made
 
-    def computed(self, z: Array | None = None, also: Sequence[Measurement] = ()) -> Array:
-        """The values of its measurements by the model, SI, and of others ``also``."""
+    def computed(self, z: Array | None = None, extra: Sequence[Measurement] = ()) -> Array:
+        """The values of its measurements by the model, SI, and of others ``extra``."""
         setup = self.setup(z)
-        return np.array([measurement.computed(setup) for measurement in (*self.measurements, *also)])
+        return np.array([measurement.computed(setup) for measurement in (*self.measurements, *extra)])
 
-    def slopes(self, z: Array, also: Sequence[Measurement] = (), *, step: float = STEP, track: Track = iter) -> Array:
+    def jacobian(
+        self, z: Array, extra: Sequence[Measurement] = (), *, step: float = STEP, track: Track = iter
+    ) -> Array:
         """Derivatives of the values with respect to the parameters, (values, parameters), by central differences."""
         columns = []
         for move in track(list(step * np.eye(len(z)))):
-            columns.append(self._slope(z, move, also) / step)
+            columns.append(self._slope(z, move, extra) / step)
         return np.array(columns).T.reshape(-1, len(z))
 
-    def _slope(self, z: Array, move: Array, also: Sequence[Measurement]) -> Array:
+    def _slope(self, z: Array, move: Array, extra: Sequence[Measurement]) -> Array:
         """Change of the values over ``move``, from a smaller move or one side only where the cue would be invalid."""
-        for part in 0.5 ** np.arange(NEARER):
-            above = self.possible(z + part * move, also)
-            below = self.possible(z - part * move, also)
+        for part in 0.5 ** np.arange(MAX_HALVINGS):
+            above = self.computed_or_none(z + part * move, extra)
+            below = self.computed_or_none(z - part * move, extra)
             if above is not None and below is not None:
                 return (above - below) / (2 * part)
-        here = self.computed(z, also)
+        here = self.computed(z, extra)
         if below is not None:
             return (here - below) / part
-        return (self.computed(z + part * move, also) - here) / part
+        return (self.computed(z + part * move, extra) - here) / part
 
-    def possible(self, z: Array, also: Sequence[Measurement] = ()) -> Array | None:
+    def computed_or_none(self, z: Array, extra: Sequence[Measurement] = ()) -> Array | None:
         """The values of `computed`; None for an invalid cue, such as one with a bore wider than itself."""
         try:
-            return self.computed(z, also)
+            return self.computed(z, extra)
         except ValueError:
             return None
 
     @property
-    def lacking(self) -> list[str]:
+    def missing(self) -> list[str]:
         """Missing measurements of a useful data set, and the consequence of each."""
-        said = (
-            kind.lacking([measurement for measurement in self.measurements if isinstance(measurement, kind)])
+        texts = (
+            kind.missing([measurement for measurement in self.measurements if isinstance(measurement, kind)])
             for kind in MEASUREMENT_TYPES.values()
         )
-        return [words for words in said if words]
+        return [text for text in texts if text]
 
 
 class Residual(NamedTuple):
@@ -134,11 +136,11 @@ def compare(cue: MeasuredCue, *, track: Track = iter) -> tuple[Residual, ...]:
     Cost: two strikes for each squirt and parameter. track: follows these steps.
     """
     z = np.zeros(len(cue.parameters))
-    spread = np.sqrt(np.sum(cue.slopes(z, step=1.0, track=track) ** 2, axis=1))
-    return rows_of(cue, cue.computed(z), spread)
+    spread = np.sqrt(np.sum(cue.jacobian(z, step=1.0, track=track) ** 2, axis=1))
+    return residuals_of(cue, cue.computed(z), spread)
 
 
-def rows_of(cue: MeasuredCue, computed: Array, spread: Array) -> tuple[Residual, ...]:
+def residuals_of(cue: MeasuredCue, computed: Array, spread: Array) -> tuple[Residual, ...]:
     """The table of computed values with their standard deviations."""
     made = []
     for measurement, value, error in zip(cue.measurements, computed.tolist(), spread.tolist(), strict=True):
@@ -157,7 +159,7 @@ def rows_of(cue: MeasuredCue, computed: Array, spread: Array) -> tuple[Residual,
     return tuple(made)
 
 
-class Zero(NamedTuple):
+class OffsetZero(NamedTuple):
     """The zero error of the offset by a squirt measured on both sides, m, with its error.
 
     Positive if squirt is larger on the left: every stroke hit by so much to the left of its aim.
@@ -168,7 +170,7 @@ class Zero(NamedTuple):
     error: float
 
 
-def zeros(cue: MeasuredCue, rows: Sequence[Residual]) -> tuple[Zero, ...]:
+def offset_zeros(cue: MeasuredCue, rows: Sequence[Residual]) -> tuple[OffsetZero, ...]:
     """The zero of the offset by each squirt that was measured on both sides.
 
     It assumes that squirt is proportional to the offset, which is accurate to 20 %.
@@ -180,6 +182,6 @@ def zeros(cue: MeasuredCue, rows: Sequence[Residual]) -> tuple[Zero, ...]:
         if isinstance(measurement, Squirt) and measurement.left is not None and measurement.right is not None:
             slope = row.measured / (measurement.offset * radius)
             made.append(
-                Zero(measurement, (measurement.left - measurement.right) / 2 / slope, abs(measurement.sd / slope))
+                OffsetZero(measurement, (measurement.left - measurement.right) / 2 / slope, abs(measurement.sd / slope))
             )
     return tuple(made)

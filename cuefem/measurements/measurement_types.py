@@ -8,24 +8,24 @@ from types import MappingProxyType
 from typing import Annotated, Any, ClassVar, NamedTuple
 
 from cuefem.contact.side_strike import Striker
-from cuefem.measurements.predictions import TONES, Predictions, predictions_of
+from cuefem.measurements.predictions import N_FREQUENCIES, Predictions, predictions_of
 from cuefem.quantity.fields import CONTACT_TIME, LENGTH, Quantity, check_fields
 from cuefem.results.closed_forms import pivot_length
 from cuefem.scene import Scene
 
 MASS = Quantity("kg", "(0, inf)")
 ANGLE = Quantity("rad", "(-1.5, 1.5)")
-ERROR = "(0, inf)"
+POSITIVE = "(0, inf)"
 PARTS = ("shaft", "cue")
 INCH = 0.0254
-MODEL = 2e-3  # relative, of a natural frequency: diameters to 0.1 %, uneven grain, the beam
+FREQUENCY_MODEL_ERROR = 2e-3  # relative, of a natural frequency: diameters to 0.1 %, uneven grain, the beam
 # What one can reach with simple means, for advice on what to measure next.
-SCALE = 0.5e-3  # kg, of a kitchen scale
-FORCE_AND_DIAL = 0.02  # relative, of a static stiffness: a kitchen scale and a dial gauge
-STRING = 1e-3  # m, of a balance point
-GOOD_SQUIRT = 8.7e-4  # rad, 0.05 degrees: the mean of some shots on either side
-GOOD_END_MASS = 0.03  # relative, of a pendulum test: ten swings on either side
-GOOD_TIME = 0.05  # relative, of a contact time
+SCALE_ERROR = 0.5e-3  # kg, of a kitchen scale
+STIFFNESS_ERROR = 0.02  # relative, of a static stiffness: a kitchen scale and a dial gauge
+BALANCE_ERROR = 1e-3  # m, of a balance point
+SQUIRT_ERROR = 8.7e-4  # rad, 0.05 degrees: the mean of some shots on either side
+END_MASS_ERROR = 0.03  # relative, of a pendulum test: ten swings on either side
+TIME_ERROR = 0.05  # relative, of a contact time
 
 
 class Setup(NamedTuple):
@@ -50,11 +50,11 @@ class Setup(NamedTuple):
 class Measurement:
     """Something that was measured: its error is one standard deviation, in the unit of the value."""
 
-    # Its key in a file; the SI unit of its value; its label; the consequence if it is missing.
+    # Its key in a file; the SI unit of its value; its title; the consequence if it is missing.
     key: ClassVar[str] = ""
     unit: ClassVar[str] = ""
-    words: ClassVar[str] = ""
-    costs: ClassVar[str] = ""
+    title: ClassVar[str] = ""
+    consequence: ClassVar[str] = ""
 
     source: str = ""
 
@@ -74,19 +74,19 @@ class Measurement:
     @property
     def label(self) -> str:
         """Label of the measurement."""
-        return self.words
+        return self.title
 
     def computed(self, setup: Setup) -> float:
         """The same by the model, SI."""
         raise NotImplementedError
 
     @classmethod
-    def lacking(cls, measurements: Sequence[Any]) -> str:
+    def missing(cls, measurements: Sequence[Any]) -> str:
         """Missing measurements of this type in a data set, and the consequence; empty if none is missing."""
-        return "" if measurements else f"{cls.words}: {cls.costs}"
+        return "" if measurements else f"{cls.title}: {cls.consequence}"
 
     @classmethod
-    def next(cls, scene: Scene) -> tuple[Measurement, ...]:
+    def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
         """Measurements of this kind that one could make on the cue; their values do not count."""
         return ()
 
@@ -97,31 +97,31 @@ class Weight(Measurement):
 
     key: ClassVar[str] = "weight"
     unit: ClassVar[str] = "kg"
-    words: ClassVar[str] = "weight"
-    costs: ClassVar[str] = "the density of the wood remains uncertain by 10 %, which is 4 % of the squirt"
+    title: ClassVar[str] = "weight"
+    consequence: ClassVar[str] = "the density of the wood remains uncertain by 10 %, which is 4 % of the squirt"
 
-    of: str = "shaft"
+    part: str = "shaft"
     value: Annotated[float, MASS]
-    error: Annotated[float, Quantity("kg", ERROR)]
+    error: Annotated[float, Quantity("kg", POSITIVE)]
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.of not in PARTS:
-            raise ValueError(f"Weight.of must be one of {', '.join(PARTS)}; got {self.of!r}")
+        if self.part not in PARTS:
+            raise ValueError(f"Weight.part must be one of {', '.join(PARTS)}; got {self.part!r}")
 
     @property
     def label(self) -> str:
         """Of which part."""
-        return f"weight of the {self.of}"
+        return f"weight of the {self.part}"
 
     def computed(self, setup: Setup) -> float:
         """That of the drawing."""
-        return setup.predictions.shaft_mass + (setup.scene.shaft.body_mass if self.of == "cue" else 0.0)
+        return setup.predictions.shaft_mass + (setup.scene.shaft.body_mass if self.part == "cue" else 0.0)
 
     @classmethod
-    def next(cls, scene: Scene) -> tuple[Measurement, ...]:
+    def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
         """The shaft on a kitchen scale."""
-        return (cls(value=scene.shaft.shaft_mass, error=SCALE),)
+        return (cls(value=scene.shaft.shaft_mass, error=SCALE_ERROR),)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -130,20 +130,20 @@ class Balance(Measurement):
 
     key: ClassVar[str] = "balance"
     unit: ClassVar[str] = "m"
-    words: ClassVar[str] = "balance point of the shaft"
-    costs: ClassVar[str] = "heavy parts that the drawing omits (an insert, a pin) remain undetected"
+    title: ClassVar[str] = "balance point of the shaft"
+    consequence: ClassVar[str] = "heavy parts that the drawing omits (an insert, a pin) remain undetected"
 
     value: Annotated[float, LENGTH]
-    error: Annotated[float, Quantity("m", ERROR)]
+    error: Annotated[float, Quantity("m", POSITIVE)]
 
     def computed(self, setup: Setup) -> float:
         """That of the drawing."""
         return setup.predictions.balance_point
 
     @classmethod
-    def next(cls, scene: Scene) -> tuple[Measurement, ...]:
+    def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
         """The shaft on an edge."""
-        return (cls(value=scene.shaft.balance_point, error=STRING),)
+        return (cls(value=scene.shaft.balance_point, error=BALANCE_ERROR),)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -152,22 +152,22 @@ class Tone(Measurement):
 
     key: ClassVar[str] = "tone"
     unit: ClassVar[str] = "Hz"
-    words: ClassVar[str] = "natural frequencies of the freely suspended shaft"
-    costs: ClassVar[str] = "E and G of the wood stay those of a table, uncertain by a fifth and more"
+    title: ClassVar[str] = "natural frequencies of the freely suspended shaft"
+    consequence: ClassVar[str] = "E and G of the wood stay those of a table, uncertain by a fifth and more"
 
     mode: int
     value: Annotated[float, Quantity("Hz", "(0, inf)")]
-    error: Annotated[float, Quantity("Hz", ERROR)]
+    error: Annotated[float, Quantity("Hz", POSITIVE)]
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if isinstance(self.mode, bool) or not 1 <= self.mode <= TONES:
-            raise ValueError(f"Tone.mode must be in [1, {TONES}], 1 the lowest; got {self.mode!r}")
+        if isinstance(self.mode, bool) or not 1 <= self.mode <= N_FREQUENCIES:
+            raise ValueError(f"Tone.mode must be in [1, {N_FREQUENCIES}], 1 the lowest; got {self.mode!r}")
 
     @property
     def sd(self) -> float:
-        """Including `MODEL`, the error of beam theory and drawing."""
-        return float((self.error**2 + (MODEL * self.value) ** 2) ** 0.5)
+        """Including `FREQUENCY_MODEL_ERROR`, the error of beam theory and drawing."""
+        return float((self.error**2 + (FREQUENCY_MODEL_ERROR * self.value) ** 2) ** 0.5)
 
     @property
     def label(self) -> str:
@@ -179,7 +179,7 @@ class Tone(Measurement):
         return float(setup.predictions.frequencies[self.mode - 1])
 
     @classmethod
-    def next(cls, scene: Scene) -> tuple[Measurement, ...]:
+    def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
         """The four lowest, recorded by a telephone."""
         frequencies = predictions_of(scene).frequencies[:4]
         return tuple(cls(mode=i + 1, value=float(f), error=0.1) for i, f in enumerate(frequencies))
@@ -194,12 +194,12 @@ class Stiffness(Measurement):
 
     key: ClassVar[str] = "stiffness"
     unit: ClassVar[str] = "N/m"
-    words: ClassVar[str] = "static stiffness, at two free lengths"
-    costs: ClassVar[str] = "a bore and the wood's E cannot be distinguished; a hidden bore remains undetected"
+    title: ClassVar[str] = "static stiffness, at two free lengths"
+    consequence: ClassVar[str] = "a bore and the wood's E cannot be distinguished; a hidden bore remains undetected"
 
     free_length: Annotated[float | None, LENGTH] = None
     value: Annotated[float, Quantity("N/m", "(0, inf)")]
-    error: Annotated[float, Quantity("N/m", ERROR)]
+    error: Annotated[float, Quantity("N/m", POSITIVE)]
 
     @property
     def label(self) -> str:
@@ -212,21 +212,21 @@ class Stiffness(Measurement):
         return setup.predictions.stiffness(wood if self.free_length is None else self.free_length)
 
     @classmethod
-    def lacking(cls, measurements: Sequence[Any]) -> str:
+    def missing(cls, measurements: Sequence[Any]) -> str:
         """One length determines E; the second, near the tip, the bore."""
         if len({measurement.free_length for measurement in measurements}) == 1:
             return "static stiffness at a second free length: a bore and the wood's E cannot be distinguished"
-        return super().lacking(measurements)
+        return super().missing(measurements)
 
     @classmethod
-    def next(cls, scene: Scene) -> tuple[Measurement, ...]:
+    def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
         """The whole shaft, and its last 8 in."""
         lengths = (None, 8 * INCH)
         made = []
         for free in lengths:
             if free is None or free < scene.shaft.length:
                 value = cls(free_length=free, value=1.0, error=1.0).computed(Setup(scene))
-                made.append(cls(free_length=free, value=value, error=FORCE_AND_DIAL * value))
+                made.append(cls(free_length=free, value=value, error=STIFFNESS_ERROR * value))
         return tuple(made)
 
 
@@ -240,14 +240,14 @@ class Squirt(Measurement):
 
     key: ClassVar[str] = "squirt"
     unit: ClassVar[str] = "rad"
-    words: ClassVar[str] = "squirt, left and right, at three offsets and two speeds"
-    costs: ClassVar[str] = "nothing here tests the tip or the contact"
+    title: ClassVar[str] = "squirt, left and right, at three offsets and two speeds"
+    consequence: ClassVar[str] = "nothing here tests the tip or the contact"
 
     offset: Annotated[float, Quantity("", "(0, 1)")]
     value: Annotated[float | None, ANGLE] = None
     left: Annotated[float | None, ANGLE] = None
     right: Annotated[float | None, ANGLE] = None
-    error: Annotated[float, Quantity("rad", ERROR)]
+    error: Annotated[float, Quantity("rad", POSITIVE)]
     speed: Annotated[float | None, Quantity("m/s", "(0, inf)")] = None
     series: str = ""
     zero_error: Annotated[float | None, Quantity("m", "(0, inf)")] = None
@@ -256,15 +256,15 @@ class Squirt(Measurement):
         super().__post_init__()
         sides = (self.left is None) + (self.right is None)
         if sides == 1 or (sides == 0) == (self.value is not None):
-            raise ValueError("Squirt.value must be given, or left and right without it; got " + self._given())
+            raise ValueError("Squirt.value must be given, or left and right without it; got " + self._present())
         if sides == 0 and self.zero_error is not None:
             raise ValueError(
                 f"Squirt.zero_error must be absent beside left and right, whose mean has none; got {self.zero_error} m"
             )
 
-    def _given(self) -> str:
-        given = [name for name in ("value", "left", "right") if getattr(self, name) is not None]
-        return " and ".join(given) or "none of them"
+    def _present(self) -> str:
+        present = [name for name in ("value", "left", "right") if getattr(self, name) is not None]
+        return " and ".join(present) or "none of them"
 
     @property
     def measured(self) -> float:
@@ -287,15 +287,15 @@ class Squirt(Measurement):
 
     def computed(self, setup: Setup) -> float:
         """Of the coupled strike; the mean of both sides, to first order, if both were measured."""
-        aside = 0.0 if self.left is not None else setup.zeros.get(self.series, 0.0)
-        offset = self.offset + aside / float(setup.scene.ball.radius)
+        shift = 0.0 if self.left is not None else setup.zeros.get(self.series, 0.0)
+        offset = self.offset + shift / float(setup.scene.ball.radius)
         return setup.squirt_factor * setup.predictions.squirt(min(max(offset, -0.99), 0.99), self.speed)
 
     @classmethod
-    def lacking(cls, measurements: Sequence[Any]) -> str:
+    def missing(cls, measurements: Sequence[Any]) -> str:
         """Which part of the full set is missing."""
         if not measurements:
-            return super().lacking(measurements)
+            return super().missing(measurements)
         offsets, speeds = ({getattr(measurement, name) for measurement in measurements} for name in ("offset", "speed"))
         parts = []
         if any(measurement.left is None for measurement in measurements):
@@ -307,9 +307,9 @@ class Squirt(Measurement):
         return f"squirt: {'; '.join(parts)}" if parts else ""
 
     @classmethod
-    def next(cls, scene: Scene) -> tuple[Measurement, ...]:
+    def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
         """Left and right at a medium offset."""
-        return (cls(offset=0.3, left=0.03, right=0.03, error=GOOD_SQUIRT * 2**0.5),)
+        return (cls(offset=0.3, left=0.03, right=0.03, error=SQUIRT_ERROR * 2**0.5),)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -321,18 +321,18 @@ class PivotLength(Measurement):
 
     key: ClassVar[str] = "pivot_length"
     unit: ClassVar[str] = "m"
-    words: ClassVar[str] = "natural pivot length"
-    costs: ClassVar[str] = "squirt is not tested by a value that is free of the zeros of angle and offset"
+    title: ClassVar[str] = "natural pivot length"
+    consequence: ClassVar[str] = "squirt is not tested by a value that is free of the zeros of angle and offset"
 
     offset: Annotated[float, Quantity("", "(0, 1)")]
     value: Annotated[float, Quantity("m", "(0, inf)")]
-    error: Annotated[float, Quantity("m", ERROR)]
+    error: Annotated[float, Quantity("m", POSITIVE)]
     speed: Annotated[float | None, Quantity("m/s", "(0, inf)")] = None
 
     @property
     def label(self) -> str:
         """At which offset and speed."""
-        return f"{self.words} at b/R {self.offset:g}{'' if self.speed is None else f', {self.speed:.3g} m/s'}"
+        return f"{self.title} at b/R {self.offset:g}{'' if self.speed is None else f', {self.speed:.3g} m/s'}"
 
     def computed(self, setup: Setup) -> float:
         """Of the coupled strike's squirt and the radii of ball and dome [B.1]; ValueError without squirt."""
@@ -353,14 +353,14 @@ class AddedMass(Measurement):
 
     key: ClassVar[str] = "added_mass"
     unit: ClassVar[str] = ""
-    words: ClassVar[str] = "squirt with masses added near the tip"
-    costs: ClassVar[str] = "the end-mass distribution along the shaft is not tested"
+    title: ClassVar[str] = "squirt with masses added near the tip"
+    consequence: ClassVar[str] = "the end-mass distribution along the shaft is not tested"
 
     mass: Annotated[float, MASS]
     position: Annotated[float, LENGTH]
     value: Annotated[float, ANGLE]
     baseline: Annotated[float, ANGLE]
-    error: Annotated[float, Quantity("rad", ERROR)]
+    error: Annotated[float, Quantity("rad", POSITIVE)]
     offset: Annotated[float, Quantity("", "(0, 1)")]
     speed: Annotated[float | None, Quantity("m/s", "(0, inf)")] = None
 
@@ -391,26 +391,26 @@ class ContactTime(Measurement):
 
     key: ClassVar[str] = "contact_time"
     unit: ClassVar[str] = "s"
-    words: ClassVar[str] = "contact time of a central impact"
-    costs: ClassVar[str] = "the leather's E stays that of a table, uncertain by a factor of two"
+    title: ClassVar[str] = "contact time of a central impact"
+    consequence: ClassVar[str] = "the leather's E stays that of a table, uncertain by a factor of two"
 
     value: Annotated[float, CONTACT_TIME]
-    error: Annotated[float, Quantity("s", ERROR)]
+    error: Annotated[float, Quantity("s", POSITIVE)]
     speed: Annotated[float | None, Quantity("m/s", "(0, inf)")] = None
 
     @property
     def label(self) -> str:
         """At which speed."""
-        return self.words if self.speed is None else f"contact time at {self.speed:.3g} m/s"
+        return self.title if self.speed is None else f"contact time at {self.speed:.3g} m/s"
 
     def computed(self, setup: Setup) -> float:
         """Of the coupled strike."""
         return setup.predictions.duration(self.speed)
 
     @classmethod
-    def next(cls, scene: Scene) -> tuple[Measurement, ...]:
+    def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
         """By a circuit of foil, or on video."""
-        return (cls(value=float(scene.contact_time), error=GOOD_TIME * float(scene.contact_time)),)
+        return (cls(value=float(scene.contact_time), error=TIME_ERROR * float(scene.contact_time)),)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -423,15 +423,15 @@ class EndMass(Measurement):
 
     key: ClassVar[str] = "end_mass"
     unit: ClassVar[str] = "kg"
-    words: ClassVar[str] = "end mass, by a pendulum"
-    costs: ClassVar[str] = "the mass that causes squirt is not measured directly"
+    title: ClassVar[str] = "end mass, by a pendulum"
+    consequence: ClassVar[str] = "the mass that causes squirt is not measured directly"
 
     value: Annotated[float, MASS]
-    error: Annotated[float, Quantity("kg", ERROR)]
+    error: Annotated[float, Quantity("kg", POSITIVE)]
     ball_mass: Annotated[float, MASS]
     restitution: Annotated[float, Quantity("", "(0, 1]")]
     contact_time: Annotated[float, CONTACT_TIME]
-    contact_time_error: Annotated[float | None, Quantity("s", ERROR)] = None
+    contact_time_error: Annotated[float | None, Quantity("s", POSITIVE)] = None
     position: Annotated[float, LENGTH]
 
     @property
@@ -446,12 +446,12 @@ class EndMass(Measurement):
         return setup.predictions.end_mass(striker, self.position)
 
     @classmethod
-    def next(cls, scene: Scene) -> tuple[Measurement, ...]:
+    def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
         """A ball of 8 g that touches a wall for 1 ms, 10 mm behind the ferrule's end."""
         place = 0.01 + predictions_of(scene).tip_height
         blank = cls(value=1.0, error=1.0, ball_mass=8e-3, restitution=0.8, contact_time=1e-3, position=place)
         value = blank.computed(Setup(scene))
-        return (replace(blank, value=value, error=GOOD_END_MASS * value),)
+        return (replace(blank, value=value, error=END_MASS_ERROR * value),)
 
 
 _TYPES: tuple[type[Measurement], ...] = (

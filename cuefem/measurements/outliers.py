@@ -1,9 +1,8 @@
 """Estimation with outliers: each measurement has its stated error or, with a small probability, a far larger one.
 
-The error of an outlier is `WIDER` times the stated one. A value that agrees with the others has full weight, one that
-contradicts them hardly any, and where the outlier cannot be identified, the posterior widens (the
-good-and-bad data model: W. H. Press, in Unsolved Problems in Astrophysics, Princeton 1997, 49; D. S. Sivia, Data
-Analysis, Oxford 2006, ch. 8).
+The error of an outlier is `OUTLIER_FACTOR` times the stated one. A value that agrees with the others has full weight, a
+contradictory one nearly none, and where the outlier cannot be identified, the posterior widens (the good-and-bad data
+model: W. H. Press, in Unsolved Problems in Astrophysics, Princeton 1997, 49; D. S. Sivia, Data Analysis, 2006, ch. 8).
 """
 
 from __future__ import annotations
@@ -15,42 +14,44 @@ import numpy as np
 
 from cuefem.cue import Array
 
-WIDER = 10.0  # times the stated error: that of a wrong number
-MISTAKEN = 1e-3  # share of measurements that are wrong: contradictions of `NOTICED` errors outweigh it
-NOTICED = float(np.sqrt(2 * np.log(WIDER / MISTAKEN)))
-TOGETHER = 2  # outliers at once, at most
+OUTLIER_FACTOR = 10.0  # times the stated error: that of a wrong number
+OUTLIER_SHARE = 1e-3  # share of measurements that are wrong: contradictions of `DETECTABLE` errors outweigh it
+DETECTABLE = float(np.sqrt(2 * np.log(OUTLIER_FACTOR / OUTLIER_SHARE)))
+MAX_OUTLIERS = 2  # outliers at once, at most
 
 
-class Linear(NamedTuple):
-    """Posterior of parameters whose priors are 0 ± 1; wrong: the probability of each measurement to be an outlier."""
+class Posterior(NamedTuple):
+    """Posterior of parameters whose priors are 0 ± 1; outlier_probability: of each measurement."""
 
     mean: Array
     covariance: Array
-    wrong: Array
+    outlier_probability: Array
 
 
-def solved(slopes: Array, residuals: Array) -> Linear:
-    """The posterior of a linear problem with at most `TOGETHER` outliers.
+def posterior(slopes: Array, residuals: Array) -> Posterior:
+    """The posterior of a linear problem with at most `MAX_OUTLIERS` outliers.
 
     slopes: (measurements, parameters) and residuals: (measurements,), both in units of the measurements' errors. Every
-    set of possible outliers, their errors `WIDER` times the stated ones, is a separate problem; the
+    set of possible outliers, their errors `OUTLIER_FACTOR` times the stated ones, is a separate problem; the
     problems are weighted by their evidence.
     """
     count, parameters = slopes.shape
-    sets = [each for size in range(min(TOGETHER, count) + 1) for each in combinations(range(count), size)]
+    sets = [each for size in range(min(MAX_OUTLIERS, count) + 1) for each in combinations(range(count), size)]
     bad = np.zeros((len(sets), count))
     for row, each in zip(bad, sets, strict=True):
         row[list(each)] = 1.0
-    weights = np.where(bad, WIDER**-2, 1.0)
+    weights = np.where(bad, OUTLIER_FACTOR**-2, 1.0)
     inverse = np.einsum("sm,mi,mj->sij", weights, slopes, slopes) + np.eye(parameters)
     covariance = np.linalg.inv(inverse)
     right = (weights * residuals) @ slopes
     means = np.einsum("sij,sj->si", covariance, right)
     fit = (weights * residuals) @ residuals - np.einsum("si,si->s", means, right)
-    odds = bad.sum(axis=1) * np.log(MISTAKEN / (1 - MISTAKEN) / WIDER)
+    odds = bad.sum(axis=1) * np.log(OUTLIER_SHARE / (1 - OUTLIER_SHARE) / OUTLIER_FACTOR)
     level = odds - fit / 2 - np.linalg.slogdet(inverse)[1] / 2
     share = np.exp(level - level.max())
     share /= share.sum()
     mean = share @ means
     apart = means - mean
-    return Linear(mean, np.einsum("s,sij->ij", share, covariance + apart[:, :, None] * apart[:, None, :]), share @ bad)
+    return Posterior(
+        mean, np.einsum("s,sij->ij", share, covariance + apart[:, :, None] * apart[:, None, :]), share @ bad
+    )

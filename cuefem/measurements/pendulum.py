@@ -41,12 +41,12 @@ class Pendulum:
     ----------
     ball_mass, ball_mass_error : float
         Of the light ball, kg.
-    thread : float
-        Length of its thread, m.
-    before, after : tuple of float
+    thread_length : float
+        Of its thread, m.
+    release, rebound : tuple of float
         Displacement of the ball before and after rebounds from the freely suspended shaft, m: one reading before,
         or one for each rebound; negative after a rebound where the ball continues forwards.
-    clamped_after, clamped_before : tuple of float
+    clamped_rebound, clamped_release : tuple of float
         The same from the clamped shaft; by default the first reading before.
     reading_error : float
         Of one reading, m.
@@ -54,8 +54,8 @@ class Pendulum:
         Of the impact, m from the end of the tip.
     contact_time, contact_time_error : float, optional
         Of the ball on the clamped shaft, s; 10 % by default. Or
-    force, depth : float, optional
-        A force, N, that indents the ball by this depth, m: the contact time follows from Hertz's law.
+    force, indentation : float, optional
+        A force, N, and the indentation of the ball under it, m: the contact time follows from Hertz's law.
     source : str
 
     Raises
@@ -66,62 +66,69 @@ class Pendulum:
     Examples
     --------
     >>> from cuefem.measurements.pendulum import Pendulum
-    >>> swings = {"before": (0.2,), "after": (-0.034,), "clamped_after": (0.162,)}
-    >>> measured = Pendulum(ball_mass=8e-3, thread=1.0, position=0.016, contact_time=1e-3, **swings).end_mass
+    >>> swings = {"release": (0.2,), "rebound": (-0.034,), "clamped_rebound": (0.162,)}
+    >>> measured = Pendulum(ball_mass=8e-3, thread_length=1.0, position=0.016, contact_time=1e-3, **swings).end_mass
     >>> round(1e3 * measured.value, 2), round(1e3 * measured.error, 2)  # g
     (6.8, 0.12)
     """
 
     ball_mass: Annotated[float, MASS]
     ball_mass_error: Annotated[float, MASS] = 1e-4
-    thread: Annotated[float, SIZE]
-    before: tuple[Annotated[float, SIZE], ...]
-    after: tuple[Annotated[float, SWING], ...]
-    clamped_before: tuple[Annotated[float, SIZE], ...] = ()
-    clamped_after: tuple[Annotated[float, SIZE], ...]
+    thread_length: Annotated[float, SIZE]
+    release: tuple[Annotated[float, SIZE], ...]
+    rebound: tuple[Annotated[float, SWING], ...]
+    clamped_release: tuple[Annotated[float, SIZE], ...] = ()
+    clamped_rebound: tuple[Annotated[float, SIZE], ...]
     reading_error: Annotated[float, SIZE] = 1e-3
     position: Annotated[float, LENGTH]
     contact_time: Annotated[float | None, CONTACT_TIME] = None
     contact_time_error: Annotated[float | None, Quantity("s", "(0, inf)")] = None
     force: Annotated[float | None, Quantity("N", "(0, inf)")] = None
-    depth: Annotated[float | None, SIZE] = None
+    indentation: Annotated[float | None, SIZE] = None
     source: str = ""
 
     def __post_init__(self) -> None:
         check_fields(self)
-        if not self.clamped_before:
-            object.__setattr__(self, "clamped_before", self.before[:1])
-        for name, bounds in (("before", SIZE), ("after", SWING), ("clamped_before", SIZE), ("clamped_after", SIZE)):
+        if not self.clamped_release:
+            object.__setattr__(self, "clamped_release", self.release[:1])
+        for name, bounds in (
+            ("release", SIZE),
+            ("rebound", SWING),
+            ("clamped_release", SIZE),
+            ("clamped_rebound", SIZE),
+        ):
             readings = tuple(bounds.check(f"Pendulum.{name}", value) for value in getattr(self, name))
             object.__setattr__(self, name, readings)
-            if not 0 < max(map(abs, readings), default=0.0) < self.thread:
+            if not 0 < max(map(abs, readings), default=0.0) < self.thread_length:
                 got = f"{max(map(abs, readings))} m" if readings else "no reading"
-                raise ValueError(f"Pendulum.{name} must be swings shorter than the thread, {self.thread} m; got {got}")
-        for before, after in (("before", "after"), ("clamped_before", "clamped_after")):
-            one, many = len(getattr(self, before)), len(getattr(self, after))
+                raise ValueError(
+                    f"Pendulum.{name} must be swings shorter than the thread, {self.thread_length} m; got {got}"
+                )
+        for release, rebound in (("release", "rebound"), ("clamped_release", "clamped_rebound")):
+            one, many = len(getattr(self, release)), len(getattr(self, rebound))
             if one not in (1, many):
-                raise ValueError(f"Pendulum.{before} must be one reading, or {many} as {after}; got {one}")
-        stated = [name for name in ("contact_time", "force", "depth") if getattr(self, name) is not None]
-        if stated not in (["contact_time"], ["force", "depth"]):
+                raise ValueError(f"Pendulum.{release} must be one reading, or {many} as {rebound}; got {one}")
+        stated = [name for name in ("contact_time", "force", "indentation") if getattr(self, name) is not None]
+        if stated not in (["contact_time"], ["force", "indentation"]):
             got = " and ".join(stated) or "none of them"
-            raise ValueError(f"Pendulum.contact_time must be given, or force and depth without it; got {got}")
+            raise ValueError(f"Pendulum.contact_time must be given, or force and indentation without it; got {got}")
         _ = self.end_mass
 
     @property
     def end_mass(self) -> EndMass:
         """The end mass with its error; ValueError for contradictory readings."""
-        m, free = self.ball_mass, self._ratio(self.before, self.after)
-        clamped = self._ratio(self.clamped_before, self.clamped_after)
+        m, free = self.ball_mass, self._ratio(self.release, self.rebound)
+        clamped = self._ratio(self.clamped_release, self.clamped_rebound)
         a, e = free.value, clamped.value
         if not 0 < e <= 1 + 3 * clamped.error:
-            raise ValueError(f"Pendulum.clamped_after must be (0, 1] of the speed before; got {e:.4g} of it")
+            raise ValueError(f"Pendulum.clamped_rebound must be (0, 1] of the speed before; got {e:.4g} of it")
         if not -1 < a < e:
-            raise ValueError(f"Pendulum.after must be between -1 and {e:.4g} of the speed before; got {a:.4g} of it")
+            raise ValueError(f"Pendulum.rebound must be between -1 and {e:.4g} of the speed before; got {a:.4g} of it")
         by_free, by_clamped = (1 + e) / ((1 + a) * (e - a)) * free.error, clamped.error / (e - a)
         relative = math.hypot(self.ball_mass_error / m, by_free, by_clamped)
         if relative > 1:
             raise ValueError(
-                "Pendulum.after must differ more from clamped_after, for an end mass uncertain by at most 100 %; "
+                "Pendulum.rebound must differ more from clamped_rebound, for an end mass uncertain by at most 100 %; "
                 f"got {100 * relative:.3g} %"
             )
         value, time = m * (1 + a) / (e - a), self._time(min(e, 1.0))
@@ -134,23 +141,23 @@ class Pendulum:
         if self.contact_time is not None:
             return self.contact_time
         assert self.force is not None
-        assert self.depth is not None
-        speed = 2 * math.sqrt(GRAVITY * self.thread) * float(np.mean(self._speeds(self.before)[0]))
-        modulus = 0.75 * self.force / self.depth**1.5  # with R = 1 m: K = 4/3 E* sqrt(R)
+        assert self.indentation is not None
+        speed = 2 * math.sqrt(GRAVITY * self.thread_length) * float(np.mean(self._speeds(self.release)[0]))
+        modulus = 0.75 * self.force / self.indentation**1.5  # with R = 1 m: K = 4/3 E* sqrt(R)
         return Striker(self.ball_mass, restitution, modulus=modulus, radius=1.0).wall_time(speed)
 
-    def _ratio(self, before: Sequence[float], after: Sequence[float]) -> Ratio:
+    def _ratio(self, release: Sequence[float], rebound: Sequence[float]) -> Ratio:
         """The mean of all rebounds; its error is that of readings, or the scatter if that is larger."""
-        (v0, d0), (v1, d1) = self._speeds(before), self._speeds(after)
+        (v0, d0), (v1, d1) = self._speeds(release), self._speeds(rebound)
         ratios = v1 / v0
         n = len(ratios)
-        by_before = float(np.sqrt(np.mean((ratios * d0 / v0) ** 2) / len(before)))
-        by_after = float(np.sqrt(np.mean((d1 / v0) ** 2) / n))
+        by_release = float(np.sqrt(np.mean((ratios * d0 / v0) ** 2) / len(release)))
+        by_rebound = float(np.sqrt(np.mean((d1 / v0) ** 2) / n))
         scatter = float(np.std(ratios, ddof=1)) / math.sqrt(n) if n > 1 else 0.0
-        return Ratio(float(np.mean(ratios)), max(math.hypot(by_before, by_after), scatter))
+        return Ratio(float(np.mean(ratios)), max(math.hypot(by_release, by_rebound), scatter))
 
     def _speeds(self, swings: Sequence[float]) -> tuple[Array, Array]:
         """sin of half the thread's angle, which is proportional to the speed at its lowest point, and its error."""
-        aside = np.array(swings) / self.thread
+        aside = np.array(swings) / self.thread_length
         angle = np.arcsin(aside)
-        return np.sin(angle / 2), np.cos(angle / 2) / (2 * np.cos(angle)) * self.reading_error / self.thread
+        return np.sin(angle / 2), np.cos(angle / 2) / (2 * np.cos(angle)) * self.reading_error / self.thread_length

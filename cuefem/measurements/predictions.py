@@ -17,8 +17,8 @@ from cuefem.effects import Effect, PointMass, Support
 from cuefem.scene import Outcome, Scene, Stroke
 from cuefem.scene.solved_scene import Solved
 
-TONES = 8  # natural frequencies that are solved together
-STATIC = 8  # modes that the mesh of a static load resolves: error 1e-8
+N_FREQUENCIES = 8  # natural frequencies that are solved together
+STATIC_MODES = 8  # modes that the mesh of a static load resolves: error 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +27,7 @@ class Predictions:
 
     scene: Scene
     _solved: dict[tuple[Effect, ...], Solved] = field(default_factory=dict, init=False, repr=False)
-    _struck: dict[Scene, Outcome] = field(default_factory=dict, init=False, repr=False)
+    _outcomes: dict[Scene, Outcome] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def tip_height(self) -> float:
@@ -35,7 +35,7 @@ class Predictions:
         return 0.0 if self.scene.contact_terms.tip is None else self.scene.leather.height
 
     @property
-    def hung(self) -> tuple[Effect, ...]:
+    def suspended_effects(self) -> tuple[Effect, ...]:
         """The effects on a freely suspended or weighed cue."""
         return tuple(effect for effect in self.scene.cue_effects if effect.part_of_cue)
 
@@ -43,32 +43,36 @@ class Predictions:
     def shaft_mass(self) -> float:
         """Mass of the drawn part with its tip, kg."""
         cue = self.scene.shaft
-        return cue.shaft_mass + sum(effect.mass_on(cue) for effect in self.hung)
+        return cue.shaft_mass + sum(effect.mass_on(cue) for effect in self.suspended_effects)
 
     @property
     def balance_point(self) -> float:
         """Centre of mass of the drawn part, m from the end of the tip; the mass of a LeatherTip is at its base."""
         cue = self.scene.shaft
         moment = cue.shaft_mass * cue.balance_point
-        moment += sum(effect.mass_on(cue) * effect.positions[0] for effect in self.hung if effect.mass_on(cue))
+        moment += sum(
+            effect.mass_on(cue) * effect.positions[0] for effect in self.suspended_effects if effect.mass_on(cue)
+        )
         return self.tip_height + moment / self.shaft_mass
 
     @cached_property
     def frequencies(self) -> Array:
         """Natural frequencies of the freely suspended cue, Hz."""
-        return modes(self.scene.shaft, TONES, effects=self.hung).frequencies
+        return modes(self.scene.shaft, N_FREQUENCIES, effects=self.suspended_effects).frequencies
 
-    def stiffness(self, free: float) -> float:
-        """Static stiffness, N/m: a transverse force at the ferrule's end, the shaft clamped ``free`` m behind it."""
+    def stiffness(self, free_length: float) -> float:
+        """Static stiffness, N/m: force over deflection at the ferrule's end, clamped ``free_length`` m behind it."""
         cue = _without_leather(self.scene.shaft)
-        if not free <= cue.length * (1 + 1e-9):
-            raise ValueError(f"stiffness free_length must be in (0, {cue.length:.4g}] m, that of the wood; got {free}")
-        system = assemble(cue, STATIC, (Support(min(free, cue.length), np.inf, np.inf),))
+        if not free_length <= cue.length * (1 + 1e-9):
+            raise ValueError(
+                f"stiffness free_length must be in (0, {cue.length:.4g}] m, that of the wood; got {free_length}"
+            )
+        system = assemble(cue, STATIC_MODES, (Support(min(free_length, cue.length), np.inf, np.inf),))
         return system.static_stiffness(0.0)
 
-    def squirt(self, offset: float, speed: float | None = None, lump: tuple[float, float] | None = None) -> float:
-        """Squirt of the coupled strike, rad; lump: mass, kg, and its position, m from the end of the tip."""
-        return float(self._strike(offset, speed, lump).squirt)
+    def squirt(self, offset: float, speed: float | None = None, added_mass: tuple[float, float] | None = None) -> float:
+        """Squirt of the coupled strike, rad; added_mass: mass, kg, and its position, m from the end of the tip."""
+        return float(self._strike(offset, speed, added_mass).squirt)
 
     def duration(self, speed: float | None = None) -> float:
         """Contact time of a central impact, s."""
@@ -77,31 +81,31 @@ class Predictions:
     def end_mass(self, striker: Striker, position: float) -> float:
         """Effective transverse mass, kg, of the freely suspended shaft; position: m from the end of the tip."""
         effects = tuple(effect for effect in self.scene.bare.cue_effects if effect.part_of_cue)
-        place = self.place(position, "end_mass position")
-        return side_strike(SideStrike(self.scene.shaft, striker, place, effects=effects)).effective_mass
+        at = self.drawing_position(position, "end_mass position")
+        return side_strike(SideStrike(self.scene.shaft, striker, at, effects=effects)).effective_mass
 
-    def _strike(self, offset: float, speed: float | None, lump: tuple[float, float] | None) -> Outcome:
-        scene = self._with_lump(lump)
+    def _strike(self, offset: float, speed: float | None, added_mass: tuple[float, float] | None) -> Outcome:
+        scene = self._with_added_mass(added_mass)
         own = float(scene.stroke.speed)
         scene = replace(scene, stroke=Stroke(own if speed is None else speed, offset))
-        if scene not in self._struck:
-            self._struck[scene] = strike_modes(scene, self._solved[scene.effects].tip)
-        return self._struck[scene]
+        if scene not in self._outcomes:
+            self._outcomes[scene] = strike_modes(scene, self._solved[scene.effects].tip)
+        return self._outcomes[scene]
 
-    def place(self, position: float, name: str) -> float:
+    def drawing_position(self, position: float, name: str) -> float:
         """Position in the drawing of a point ``position`` m from the end of the tip, m; ValueError off the shaft."""
-        place, length = position - self.tip_height, self.scene.shaft.length
-        if not 0 <= place <= length:
+        at, length = position - self.tip_height, self.scene.shaft.length
+        if not 0 <= at <= length:
             bound = f"[{self.tip_height:.4g}, {self.tip_height + length:.4g}] m, on the shaft"
             raise ValueError(f"{name} must be in {bound}; got {position}")
-        return place
+        return at
 
-    def _with_lump(self, lump: tuple[float, float] | None) -> Scene:
+    def _with_added_mass(self, added_mass: tuple[float, float] | None) -> Scene:
         scene = self.scene
-        if lump is not None:
-            mass, position = lump
-            place = self.place(position, "added_mass position")
-            scene = replace(scene, effects=(*scene.effects, PointMass(place, mass)))
+        if added_mass is not None:
+            mass, position = added_mass
+            at = self.drawing_position(position, "added_mass position")
+            scene = replace(scene, effects=(*scene.effects, PointMass(at, mass)))
         self._solved.setdefault(scene.effects, Solved(scene))
         return scene
 

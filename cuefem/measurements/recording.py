@@ -11,16 +11,14 @@ import numpy as np
 from cuefem.cue import Array
 from cuefem.measurements.measurement_types import Tone
 
-RATES = (4e3, 4e5)  # Hz, of samples: a telephone line has 8 kHz, a studio 192 kHz
-SECONDS, LEAST = 0.4, 0.1  # s that are transformed after the loudest sample, and that there must be
-BLOCK = 600.0  # Hz, over which the median is the noise: wider than a peak
-ABOVE, BELOW = (
-    12.0,
-    40.0,
-)  # dB of a peak above the noise, as noise alone is once in 50 recordings; below the highest one
-APART, NEAR = 0.05, 0.05  # ln f, least distance of two peaks, and largest one of a peak from its mode
-SHIFT, FARTHEST = 0.15, 0.35  # ln f, of sqrt(E/rho) from that of the drawing: standard deviation, and largest
-FEWEST = 3  # tones: any two peaks are near two modes of some wood
+SAMPLE_RATES = (4e3, 4e5)  # Hz, of samples: a telephone line has 8 kHz, a studio 192 kHz
+TRANSFORM_TIME, MIN_TIME = 0.4, 0.1  # s that are transformed after the loudest sample, and that there must be
+NOISE_BLOCK = 600.0  # Hz, over which the median is the noise: wider than a peak
+MIN_ABOVE_NOISE = 12.0  # dB of a peak, which noise alone exceeds once in 50 recordings
+MAX_BELOW_PEAK = 40.0  # dB below the highest peak
+MIN_SPACING, MAX_MODE_DISTANCE = 0.05, 0.05  # ln f: of two peaks, of a peak from its mode
+SHIFT_SD, MAX_SHIFT = 0.15, 0.35  # ln f, of sqrt(E/rho) from that of the drawing: standard deviation, and largest
+MIN_TONES = 3  # tones: any two peaks are near two modes of some wood
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,31 +39,33 @@ class Peak(NamedTuple):
 def spectral_peaks(samples: Array, rate: float, low: float, high: float) -> list[Peak]:
     """Peaks between ``low`` and ``high``, Hz, after the loudest sample.
 
-    samples: (n, channels). rate: samples per second, Hz. ValueError for silence, for less than `LEAST` after the tap,
-    and for a rate beyond `RATES`.
+    samples: (n, channels). rate: samples per second, Hz. ValueError for silence, for less than `MIN_TIME` after the
+    tap, and for a rate beyond `SAMPLE_RATES`.
     """
-    if not RATES[0] <= rate <= RATES[1]:
-        raise ValueError(f"must have {RATES[0]:g} to {RATES[1]:g} samples per second; got {rate:g}")
+    if not SAMPLE_RATES[0] <= rate <= SAMPLE_RATES[1]:
+        raise ValueError(f"must have {SAMPLE_RATES[0]:g} to {SAMPLE_RATES[1]:g} samples per second; got {rate:g}")
     if not np.isfinite(samples).all():
         raise ValueError("must hold finite samples; got inf or nan")
     size = np.abs(samples - samples.mean(axis=0)).max(axis=1)
     if not size.max() > 0:
         raise ValueError("must hold a sound; got silence")
-    after = samples[size.argmax() :][: int(SECONDS * rate)]
-    if len(after) < LEAST * rate:
-        raise ValueError(f"must last {LEAST:g} s or more after its loudest tap; got {len(after) / rate:.2g} s")
+    after = samples[size.argmax() :][: int(TRANSFORM_TIME * rate)]
+    if len(after) < MIN_TIME * rate:
+        raise ValueError(f"must last {MIN_TIME:g} s or more after its loudest tap; got {len(after) / rate:.2g} s")
     fading = np.hanning(2 * len(after))[len(after) :, None]
     count = 1 << int(np.ceil(np.log2(4 * rate)))  # bins of 1/4 Hz or less
     power = np.square(np.abs(np.fft.rfft(fading * (after - after.mean(axis=0)), count, axis=0))).sum(axis=1)
     level, step = 10 * np.log10(power + 1e-30), rate / count
-    noise = _noise(level, int(BLOCK / step))
+    noise = _noise(level, int(NOISE_BLOCK / step))
     top = 1 + np.flatnonzero((level[1:-1] > level[:-2]) & (level[1:-1] >= level[2:]))
-    top = top[(top * step > low) & (top * step < high) & (level[top] > noise[top] + ABOVE)]
-    kept: list[int] = []
+    top = top[(top * step > low) & (top * step < high) & (level[top] > noise[top] + MIN_ABOVE_NOISE)]
+    peaks: list[int] = []
     for at in top[np.argsort(-level[top])].tolist():
-        if level[at] > level[kept[0] if kept else at] - BELOW and all(abs(np.log(at / near)) > APART for near in kept):
-            kept.append(at)
-    return [_peak(level, at, noise[at], step) for at in kept]
+        if level[at] > level[peaks[0] if peaks else at] - MAX_BELOW_PEAK and all(
+            abs(np.log(at / near)) > MIN_SPACING for near in peaks
+        ):
+            peaks.append(at)
+    return [_peak(level, at, noise[at], step) for at in peaks]
 
 
 def _noise(level: Array, block: int) -> Array:
@@ -85,22 +85,22 @@ def _peak(level: Array, at: int, noise: float, step: float) -> Peak:
     return Peak(float(vertex * step), float(width / 2 * 10 ** ((noise - here) / 20) * step))
 
 
-def numbered(peaks: Sequence[Peak], frequencies: Array) -> dict[int, Peak]:
+def assign_modes(peaks: Sequence[Peak], frequencies: Array) -> dict[int, Peak]:
     """The peak of each mode, 1 the lowest, of a shaft with these natural frequencies, Hz, by its drawing.
 
     One factor for all modes is searched first, sqrt(E/rho) of the true wood over the drawing's: it brings most
     peaks nearest to modes, and is near 1. A silent mode therefore does not shift the numbers of the others.
     """
-    shifts = np.linspace(-FARTHEST, FARTHEST, 281)
+    shifts = np.linspace(-MAX_SHIFT, MAX_SHIFT, 281)
     apart = np.log([[peak.frequency] for peak in peaks]) - np.log(frequencies)  # (peaks, modes)
     off = np.abs(apart - shifts[:, None, None])
-    cost = np.minimum(off.min(axis=2) / NEAR, 1) ** 2
-    best = off[np.argmin(cost.sum(axis=1) + (shifts / SHIFT) ** 2)]
+    cost = np.minimum(off.min(axis=2) / MAX_MODE_DISTANCE, 1) ** 2
+    best = off[np.argmin(cost.sum(axis=1) + (shifts / SHIFT_SD) ** 2)]
     nearest = best.argmin(axis=0)  # of the peaks, for each mode
-    return {mode + 1: peaks[i] for mode, i in enumerate(nearest) if best[i, mode] == best[i].min() < NEAR}
+    return {mode + 1: peaks[i] for mode, i in enumerate(nearest) if best[i, mode] == best[i].min() < MAX_MODE_DISTANCE}
 
 
-def tones_of(samples: Array, rate: float, frequencies: Array, source: str = "") -> tuple[Tone, ...]:
+def tones_in(samples: Array, rate: float, frequencies: Array, source: str = "") -> tuple[Tone, ...]:
     """The natural frequencies of a shaft in a recording.
 
     Parameters
@@ -122,24 +122,24 @@ def tones_of(samples: Array, rate: float, frequencies: Array, source: str = "") 
     Examples
     --------
     >>> import numpy as np
-    >>> from cuefem.measurements.recording import tones_of
+    >>> from cuefem.measurements.recording import tones_in
     >>> time = np.arange(22050) / 44100
     >>> sound = sum(np.exp(-20 * time) * np.cos(2 * np.pi * f * time) for f in (100.0, 570.0, 970.0))
     >>> drawn = np.array([95.0, 280.0, 560.0, 930.0])
-    >>> [(tone.mode, round(tone.value)) for tone in tones_of(sound[:, None], 44100.0, drawn)]
+    >>> [(tone.mode, round(tone.value)) for tone in tones_in(sound[:, None], 44100.0, drawn)]
     [(1, 100), (3, 570), (4, 970)]
     """
-    margin = np.exp(FARTHEST)
+    margin = np.exp(MAX_SHIFT)
     peaks = spectral_peaks(samples, rate, frequencies[0] / margin, frequencies[-1] * margin)
-    found = numbered(peaks, frequencies) if peaks else {}
-    if len(found) < FEWEST:
+    found = assign_modes(peaks, frequencies) if peaks else {}
+    if len(found) < MIN_TONES:
         there = ", ".join(f"{peak.frequency:.0f}" for peak in sorted(peaks)) or "none"
         modes = ", ".join(f"{hertz:.0f}" for hertz in frequencies)
-        raise ValueError(f"must have at least {FEWEST} peaks near the natural frequencies, {modes} Hz; got {there}")
+        raise ValueError(f"must have at least {MIN_TONES} peaks near the natural frequencies, {modes} Hz; got {there}")
     return tuple(Tone(mode=k, value=peak.frequency, error=peak.error, source=source) for k, peak in found.items())
 
 
-def combined(tones: Sequence[Tone]) -> tuple[Tone, ...]:
+def combine_tones(tones: Sequence[Tone]) -> tuple[Tone, ...]:
     """One frequency per mode from several recordings: the weighted mean, its error at least that of their scatter."""
     made = []
     for mode in sorted({tone.mode for tone in tones}):

@@ -26,25 +26,25 @@ ZERO, SQUIRT_MODEL, BALL_TIME = "zero", "squirt model", "ball time"
 class UncertainParameter:
     """An uncertain parameter: its value in the drawing, and its prior.
 
-    spread: standard deviation of its logarithm; of the number itself, in its unit, if ``plain``. put: a setup with
+    spread: standard deviation of its logarithm; of the number itself, in its unit, if ``normal``. apply: a setup with
     another value.
     """
 
     name: str
-    words: str
+    label: str
     unit: str
-    usual: float
+    median: float
     spread: float
-    put: Callable[[Setup, float], Setup] = field(repr=False)
-    plain: bool = False
+    apply: Callable[[Setup, float], Setup] = field(repr=False)
+    normal: bool = False
 
     def value(self, z: float) -> float:
         """Its value ``z`` standard deviations of the prior from the drawing's."""
-        return self.usual + z * self.spread if self.plain else self.usual * math.exp(z * self.spread)
+        return self.median + z * self.spread if self.normal else self.median * math.exp(z * self.spread)
 
     def setup(self, setup: Setup, z: float) -> Setup:
         """The setup with that value."""
-        return self.put(setup, self.value(z))
+        return self.apply(setup, self.value(z))
 
 
 @dataclass(frozen=True)
@@ -85,12 +85,12 @@ def parameters_of(
 
     ValueError if a prior is of something that the scene does not have.
     """
-    asked = {_key(prior.name): prior for prior in priors}
+    named = {_key(prior.name): prior for prior in priors}
     made = []
     for key, known in PARAMETERS.items():
-        if known.spread is None and key not in asked:
+        if known.spread is None and key not in named:
             continue
-        usual, prior = known.value(scene), asked.get(key)
+        usual, prior = known.value(scene), named.get(key)
         if usual is None or isinstance(usual, Material):
             if prior:
                 raise ValueError(
@@ -106,34 +106,34 @@ def parameters_of(
         unit = known.quantity(scene).unit
         made.append(UncertainParameter(known.name, known.label, unit, middle, spread, _on_scene(known.steps())))
     squirts = [measurement for measurement in measurements if isinstance(measurement, Squirt)]
-    _, spread = _prior(asked.get(SQUIRT_MODEL), 1.0, model_error(scene))
+    _, spread = _prior(named.get(SQUIRT_MODEL), 1.0, model_error(scene))
     if any(isinstance(measurement, Squirt | PivotLength) for measurement in measurements):
-        put: Any = lambda setup, value: setup._replace(squirt_factor=value)  # noqa: E731
-        made.append(UncertainParameter(SQUIRT_MODEL, "true squirt over the model's", "", 1.0, spread, put))
+        factor: Any = lambda setup, value: setup._replace(squirt_factor=value)  # noqa: E731
+        made.append(UncertainParameter(SQUIRT_MODEL, "true squirt over the model's", "", 1.0, spread, factor))
     ends = [one for one in measurements if isinstance(one, EndMass) and one.contact_time_error]
     if ends:
         spread = max((one.contact_time_error or 0.0) / one.contact_time for one in ends)
-        longer: Any = lambda setup, value: setup._replace(time_factor=value)  # noqa: E731
-        words = "true contact time of the pendulum over the stated"
-        made.append(UncertainParameter(BALL_TIME, words, "", 1.0, spread, longer))
+        time_factor: Any = lambda setup, value: setup._replace(time_factor=value)  # noqa: E731
+        label = "true contact time of the pendulum over the stated"
+        made.append(UncertainParameter(BALL_TIME, label, "", 1.0, spread, time_factor))
     series: dict[str, float] = {}
     for measurement in squirts:
         if measurement.zero_error is not None:
             series[measurement.series] = max(measurement.zero_error, series.get(measurement.series, 0.0))
     for name, error in series.items():
-        words = f"zero of the offset{', ' + name if name else ''}"
-        made.append(UncertainParameter(f"{ZERO} {name}".strip(), words, "m", 0.0, error, _zero(name), plain=True))
+        label = f"zero of the offset{', ' + name if name else ''}"
+        made.append(UncertainParameter(f"{ZERO} {name}".strip(), label, "m", 0.0, error, _zero(name), normal=True))
     return tuple(parameter for parameter in made if parameter.spread > 0)
 
 
-def _prior(said: Prior | None, usual: float, spread: float) -> tuple[float, float]:
+def _prior(prior: Prior | None, usual: float, spread: float) -> tuple[float, float]:
     """Middle and spread."""
-    if said is None:
+    if prior is None:
         return usual, spread
-    if said.low is not None and said.high is not None:
-        return math.sqrt(said.low * said.high), math.log(said.high / said.low) / 2
-    assert said.spread is not None
-    return usual, said.spread
+    if prior.low is not None and prior.high is not None:
+        return math.sqrt(prior.low * prior.high), math.log(prior.high / prior.low) / 2
+    assert prior.spread is not None
+    return usual, prior.spread
 
 
 def _on_scene(path: Path) -> Callable[[Setup, float], Setup]:

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cuefem.measurements.estimate import Estimate, Worth
-from cuefem.measurements.measured_cue import MeasuredCue, Residual, Zero
+from cuefem.measurements.estimate import Estimate, InformationGain
+from cuefem.measurements.measured_cue import MeasuredCue, Residual, OffsetZero
 from cuefem.results.quantities import NONE, with_unit
 from cuefem.results.records import Entry, Record, Sheet, sheet
 
@@ -29,7 +29,7 @@ def row_record(row: Residual) -> Record:
     } | {name: getattr(row, name) for name in names}
 
 
-def compare_record(cue: MeasuredCue, rows: Sequence[Residual], zeros: Sequence[Zero]) -> Record:
+def compare_record(cue: MeasuredCue, rows: Sequence[Residual], zeros: Sequence[OffsetZero]) -> Record:
     """Every measurement beside its computed value, the offset zeros, and what was not measured."""
     return {
         "name": cue.name,
@@ -37,8 +37,8 @@ def compare_record(cue: MeasuredCue, rows: Sequence[Residual], zeros: Sequence[Z
         "rows": [row_record(row) for row in rows],
         "rms_pull": float(np.sqrt(np.mean([row.pull**2 for row in rows]))) if rows else None,
         "zeros": [{"label": zero.measurement.label, "zero": zero.zero, "error": zero.error} for zero in zeros],
-        "uncertain_parameters": [parameter.words for parameter in cue.parameters],
-        "missing": cue.lacking,
+        "uncertain_parameters": [parameter.label for parameter in cue.parameters],
+        "missing": cue.missing,
         "units": UNITS,
     }
 
@@ -102,32 +102,32 @@ def zero_lines(record: Record) -> list[str]:
     return [f"The strokes hit {zero} to the {side} of their aim; the mean of left and right is free of it"]
 
 
-def worth_record(worth: Worth) -> Record:
+def gain_record(gain: InformationGain) -> Record:
     """A further measurement, and the uncertainty that it would remove."""
-    measurement = worth.measurement
+    measurement = gain.measurement
     about = {"kind": measurement.key, "label": measurement.label, "unit": measurement.unit, "error": measurement.sd}
-    return about | {name: value for name, value in worth._asdict().items() if name != "measurement"}
+    return about | {name: value for name, value in gain._asdict().items() if name != "measurement"}
 
 
-def estimate_record(estimate: Estimate, worths: Sequence[Worth], squirt: tuple[float, float], offset: float) -> Record:
+def estimate_record(estimate: Estimate, gains: Sequence[InformationGain], squirt: tuple[float, float], offset: float) -> Record:
     """The uncertain parameters by all measurements, the fit, squirt (value and 1σ, rad) and further measurements."""
     sd = np.sqrt(np.diag(estimate.covariance))
     return {
         "name": estimate.cue.name,
         "values": [value._asdict() for value in estimate.values],
         "correlations": (estimate.covariance / np.outer(sd, sd)).tolist(),
-        "rows": [row_record(row) for row in estimate.rows],
+        "rows": [row_record(row) for row in estimate.residuals],
         "misfit": estimate.misfit,
         "measurements": len(estimate.cue.measurements),
-        "outlier_probability": estimate.wrong.tolist(),
+        "outlier_probability": estimate.outlier_probability.tolist(),
         "unchecked": [
-            {"label": each.measurement.label, "without": each.value._asdict()} for each in estimate.unchecked
+            {"label": each.measurement.label, "without": each.without._asdict()} for each in estimate.unchecked
         ],
         "converged": estimate.converged,
         "squirt": squirt[0],
         "squirt_error": squirt[1],
         "offset": offset,
-        "recommended": [worth_record(worth) for worth in worths],
+        "recommended": [gain_record(gain) for gain in gains],
         "units": UNITS,
     }
 
@@ -138,7 +138,7 @@ def estimate_sheets(record: Record) -> list[Sheet | str]:
     return [
         sheet(
             "Estimated parameters",
-            {"uncertain parameter": "{words}", "drawing": _value("before"), "estimate": _value("value")} | _INTERVAL,
+            {"uncertain parameter": "{label}", "drawing": _value("drawing"), "estimate": _value("value")} | _INTERVAL,
             record["values"],
             *_estimate_notes(record),
         ),
@@ -150,10 +150,10 @@ def estimate_sheets(record: Record) -> list[Sheet | str]:
             "Recommended measurements",
             {
                 "measurement": "{label}",
-                "1σ": lambda worth: with_unit(worth["error"], worth["unit"]) if worth["unit"] else NONE,
-                "narrows most": "{narrows}",
-                "to": "{left:.0 %}",
-                "squirt then": "± {squirt_left:.1 %}",
+                "1σ": lambda gain: with_unit(gain["error"], gain["unit"]) if gain["unit"] else NONE,
+                "narrows most": "{parameter}",
+                "to": "{error_ratio:.0 %}",
+                "squirt then": "± {squirt_error:.1 %}",
             },
             record["recommended"],
             "Sorted by the remaining relative uncertainty (1σ) of squirt, squirt then.",
@@ -167,7 +167,7 @@ def _value(name: str) -> Entry:
 
 _INTERVAL: dict[str, Entry] = {
     "68 %": lambda value: " to ".join(with_unit(value[end], value["unit"]) for end in ("low", "high")),
-    "remaining": "{narrowed:.0 %}",
+    "remaining": "{error_ratio:.0 %}",
 }
 
 
@@ -187,7 +187,7 @@ def _estimate_notes(record: Record) -> list[str]:
         low, high = (with_unit(without[end], without["unit"]) for end in ("low", "high"))
         notes.append(
             f"No other measurement checks {each['label']}, and the intervals include no mistake in it: without it, "
-            f"{without['words']} is {low} to {high} (68 %)."
+            f"{without['label']} is {low} to {high} (68 %)."
         )
     if not record["converged"]:
         notes.append(

@@ -22,7 +22,7 @@ def test_numbers_and_the_page(tmp_path: Path) -> None:
     for told, row in zip(found["rows"], compare(cue), strict=True):
         assert told["label"] == row.measurement.label
         assert [told[name] for name in ("computed", "spread", "pull")] == [row.computed, row.spread, row.pull]
-    assert (found["name"], found["missing"]) == ("a cue", cue.lacking)
+    assert (found["name"], found["missing"]) == ("a cue", cue.missing)
     out = said("compare", place)
     assert all(words in out for words in ("weight of the shaft", "100.00 ± 0.50 g", "not measured, and what that"))
     assert call("compare", place, "-o", page) == (0, f"wrote {page}\n", "")
@@ -40,7 +40,7 @@ def test_only_the_shaft_must_be_there(tmp_path: Path, drawing: str) -> None:
         (place / "cue.csv").write_text("x [mm],diameter [mm]\n0,12.75\n730,21\n", encoding="utf-8")
     status, out, err = call("compare", place)
     assert (status, err[:7]) == (0, "unusual" if bare else "")
-    assert all(kind.words in out for kind in MEASUREMENT_TYPES.values())
+    assert all(kind.title in out for kind in MEASUREMENT_TYPES.values())
 
 
 def test_the_template_holds_every_kind(tmp_path: Path) -> None:
@@ -49,7 +49,7 @@ def test_the_template_holds_every_kind(tmp_path: Path) -> None:
     assert sorted(path.name for path in place.iterdir()) == sorted(TEMPLATE)
     cue, notes = load_measured(place)
     assert {type(one) for one in cue.measurements} == set(MEASUREMENT_TYPES.values())
-    assert cue.lacking == []
+    assert cue.missing == []
     assert notes[0].startswith(", ".join(name for name in sorted(TEMPLATE) if name != "README.md"))
     (place / "squirt.csv").unlink()
     (place / "cue.toml").write_text((place / "cue.toml").read_text().replace("467 g", "450 g"), encoding="utf-8")
@@ -72,11 +72,11 @@ def test_without_a_scene_it_is_the_games_usual_stroke(tmp_path: Path) -> None:
 
 
 def test_an_estimate_has_the_numbers_of_the_library(tmp_path: Path) -> None:
-    known = "".join(f'[[uncertain]]\nname = "{name}"\nspread = 0.0\n' for name in ("G", "bore width", "contact time"))
+    known = "".join(f'[[prior]]\nname = "{name}"\nspread = 0.0\n' for name in ("G", "bore width", "contact time"))
     place = folder(tmp_path / "cue", SOME + known)
     told = as_json("compare", place, "--estimate")
     found = estimate(load_measured(place)[0])
     assert [value["value"] for value in told["values"]] == pytest.approx([value.value for value in found.values])
     assert (told["misfit"], told["converged"]) == (pytest.approx(found.misfit), True)
-    assert {worth["kind"] for worth in told["recommended"]} <= set(MEASUREMENT_TYPES)
-    assert all(0 < worth["left"] <= 1 and worth["bits"] >= 0 for worth in told["recommended"])
+    assert {gain["kind"] for gain in told["recommended"]} <= set(MEASUREMENT_TYPES)
+    assert all(0 < gain["error_ratio"] <= 1 and gain["bits"] >= 0 for gain in told["recommended"])

@@ -1,4 +1,4 @@
-"""The inverse: exact data are found again, errors cover on made-up cues, what to measure next, limits of a cue."""
+"""Estimates: exact data, coverage of the intervals over drawn cues, the next measurement, limits of the geometry."""
 
 from dataclasses import replace
 
@@ -9,7 +9,7 @@ from scipy.optimize import bisect
 from cuefem.measurements.estimate import Estimate, estimate
 from cuefem.measurements.measured_cue import MeasuredCue, compare
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Stiffness, Tone, Weight
-from cuefem.measurements.outliers import solved
+from cuefem.measurements.outliers import posterior
 from cuefem.measurements.uncertain_parameters import Prior
 from tests.helpers.measured_cues import SCENE, blank, measured_cue
 
@@ -19,17 +19,17 @@ CLOSED = Prior("contact time", 0.0)  # nothing here depends on it
 
 def measured_as(cue: MeasuredCue, values: np.ndarray) -> MeasuredCue:
     """The cue with other values measured."""
-    found = tuple(replace(one, value=float(value)) for one, value in zip(cue.measurements, values, strict=True))  # type: ignore[call-arg]
-    return replace(cue, measurements=found)
+    result = tuple(replace(one, value=float(value)) for one, value in zip(cue.measurements, values, strict=True))  # type: ignore[call-arg]
+    return replace(cue, measurements=result)
 
 
-def made_up(seed: int, found: tuple[Measurement, ...] = blank(), size: float = 1.0) -> tuple[MeasuredCue, np.ndarray]:
+def made_up(seed: int, measurements: tuple[Measurement, ...] = blank(), size: float = 1.0) -> tuple[MeasuredCue, np.ndarray]:
     """A cue whose parameters are drawn from their priors, measured with noise; and these parameters."""
     generator = np.random.default_rng(seed)
-    cue = measured_cue(*found, priors=(CLOSED,))
+    cue = measured_cue(*measurements, priors=(CLOSED,))
     z = size * generator.normal(size=len(cue.parameters))
     exact = cue.computed(z)
-    # errors follow the values, as a person would state them
+    # errors follow the values, as a user would state them
     scaled = tuple(
         replace(one, value=float(value), error=one.error * float(value) / one.measured)  # type: ignore[call-arg,attr-defined]
         for one, value in zip(cue.measurements, exact, strict=True)
@@ -39,98 +39,98 @@ def made_up(seed: int, found: tuple[Measurement, ...] = blank(), size: float = 1
     return measured_as(cue, exact + noise), z
 
 
-def test_exact_data_are_found_again() -> None:
-    """With small errors the priors do not count, and four parameters come back from seven values."""
+def test_estimate_exact_data_recovers_the_parameters() -> None:
+    """With small errors the priors do not count, and the parameters follow from the values."""
     small = tuple(replace(one, error=1e-3 * one.error) for one in blank() if not isinstance(one, Tone))  # type: ignore[call-arg,attr-defined]
     cue = measured_cue(*small, priors=(CLOSED, Prior("G", 0.0)))
     z = np.array([0.7, -0.4, 0.5])
-    found = estimate(measured_as(cue, cue.computed(z)))
+    result = estimate(measured_as(cue, cue.computed(z)))
     assert [parameter.name for parameter in cue.parameters] == ["E", "rho", "bore width"]
-    assert found.converged
-    assert found.z == pytest.approx(z, abs=2e-3)
-    for value, parameter, each in zip(found.values, cue.parameters, z, strict=True):
+    assert result.converged
+    assert result.z == pytest.approx(z, abs=2e-3)
+    for value, parameter, each in zip(result.values, cue.parameters, z, strict=True):
         assert value.value == pytest.approx(parameter.value(float(each)), rel=1e-3)
         assert value.low < value.value < value.high
-        assert value.narrowed < 0.05
+        assert value.error_ratio < 0.05
 
 
 @pytest.mark.heavy
-def test_intervals_cover_the_parameters_of_made_up_cues() -> None:
+def test_intervals_of_drawn_cues_have_stated_coverage() -> None:
     """A hundred cues of four parameters drawn from the priors: 68 and 95 % intervals to three standard deviations."""
     pulls = []
     for seed in range(100):
         cue, z = made_up(seed)
-        found = estimate(cue)
-        assert found.converged
-        pulls.append(np.abs(found.z - z) / np.sqrt(np.diag(found.covariance)))
+        result = estimate(cue)
+        assert result.converged
+        pulls.append(np.abs(result.z - z) / np.sqrt(np.diag(result.covariance)))
     for share, half_width in ((0.683, 1.0), (0.95, HOLDS_95)):
         assert np.mean(np.array(pulls) < half_width) == pytest.approx(share, abs=3 * np.sqrt(share * (1 - share) / 400))
 
 
 @pytest.fixture(scope="module")
 def linear() -> tuple[MeasuredCue, np.ndarray]:
-    """A cue measured as its drawing computes, and the slopes of its values."""
+    """A cue whose measured values are the computed ones, and their Jacobian."""
     cue = made_up(0, size=0.0)[0]
     zero = np.zeros(len(cue.parameters))
-    return measured_as(cue, cue.computed(zero)), cue.slopes(zero)
+    return measured_as(cue, cue.computed(zero)), cue.jacobian(zero)
 
 
 def linear_estimate(cue: MeasuredCue, slopes: np.ndarray, values: np.ndarray) -> Estimate:
-    """What `estimate` is where the values are linear in the parameters, measured beside the drawing's by ``values``."""
+    """The estimate of a linear model, its measured values ``values`` above those of the drawing."""
     sd = np.array([one.sd for one in cue.measurements])
-    mean, covariance, wrong = solved(slopes / sd[:, None], values / sd)
+    mean, covariance, wrong = posterior(slopes / sd[:, None], values / sd)
     there = np.array([one.measured for one in cue.measurements])
     off = measured_as(cue, there + values)
     return Estimate(off, mean, covariance, there + slopes @ mean, slopes, 0.0, True, wrong)
 
 
 @pytest.mark.heavy
-@pytest.mark.parametrize("wrong", [None, *range(7)])
-def test_intervals_cover_whichever_measurement_is_wrong(
-    wrong: int | None, linear: tuple[MeasuredCue, np.ndarray]
+@pytest.mark.parametrize("outlier", [None, *range(7)])
+def test_intervals_with_one_outlier_cover_or_name_it(
+    outlier: int | None, linear: tuple[MeasuredCue, np.ndarray]
 ) -> None:
-    """A reading 6 to 20 errors off: the intervals hold the truth, or the estimate says that nothing checks it."""
+    """A reading 6 to 20 errors off: the intervals hold the truth, or the estimate lists it as unchecked."""
     cue, slopes = linear
     generator, sd = np.random.default_rng(26), np.array([one.sd for one in cue.measurements])
     pulls, named = [], []
     for _ in range(300):
         z = generator.normal(size=slopes.shape[1])
         noise = generator.normal(size=len(sd))
-        if wrong is not None:
-            noise[wrong] += generator.choice([-1, 1]) * generator.uniform(6, 20)
-        found = linear_estimate(cue, slopes, slopes @ z + sd * noise)
-        pulls.append(np.abs(found.z - z) / np.sqrt(np.diag(found.covariance)))
-        label = None if wrong is None else cue.measurements[wrong].label
-        named.append(label in {each.measurement.label for each in found.unchecked})
+        if outlier is not None:
+            noise[outlier] += generator.choice([-1, 1]) * generator.uniform(6, 20)
+        result = linear_estimate(cue, slopes, slopes @ z + sd * noise)
+        pulls.append(np.abs(result.z - z) / np.sqrt(np.diag(result.covariance)))
+        label = None if outlier is None else cue.measurements[outlier].label
+        named.append(label in {each.measurement.label for each in result.unchecked})
     covered, wide = (np.mean(np.array(pulls) < each) for each in (1.0, HOLDS_95))
-    if wrong is None:
+    if outlier is None:
         assert covered == pytest.approx(0.683, abs=0.04)
         assert wide == pytest.approx(0.95, abs=0.02)
         return
-    if wrong == 0:  # the weight alone tells the density
+    if outlier == 0:  # only the weight determines the density
         assert all(named)
-    elif wrong > 1:
+    elif outlier > 1:
         assert np.mean(named) < 0.5
-    assert wide > {0: 0.6, 1: 0.8}.get(wrong, 0.86)
+    assert wide > {0: 0.6, 1: 0.8}.get(outlier, 0.86)
 
 
-def test_what_a_next_measurement_would_tell_is_what_it_tells() -> None:
+def test_next_measurement_added_gives_predicted_gain() -> None:
     """The predicted narrowing by a stiffness is that of an estimate with it, at the same values."""
     cue, _ = made_up(9, blank()[:4], size=0.5)
     before = estimate(cue)
-    worths = before.next()
-    assert {type(worth.measurement) for worth in worths} <= set(MEASUREMENT_TYPES.values())
-    told = next(w for w in worths if isinstance(w.measurement, Stiffness) and w.measurement.free_length)
-    value = before.predicted(told.measurement)[0]
-    more = replace(told.measurement, value=value)  # type: ignore[call-arg]
+    gains = before.next_measurements()
+    assert {type(gain.measurement) for gain in gains} <= set(MEASUREMENT_TYPES.values())
+    predicted = next(g for g in gains if isinstance(g.measurement, Stiffness) and g.measurement.free_length)
+    value = before.predict(predicted.measurement)[0]
+    more = replace(predicted.measurement, value=value)  # type: ignore[call-arg]
     after = estimate(replace(cue, measurements=(*cue.measurements, more)))
     ratio = np.sqrt(np.diag(after.covariance) / np.diag(before.covariance))
-    words = [parameter.words for parameter in cue.parameters]
-    assert told.narrows == words[int(np.argmin(ratio))]
-    assert told.left == pytest.approx(float(ratio.min()), rel=0.05)
-    gain = 0.5 * np.log2(np.linalg.det(before.covariance) / np.linalg.det(after.covariance))
-    assert told.bits == pytest.approx(gain, rel=0.05)
-    assert [worth.squirt_left for worth in worths] == sorted(worth.squirt_left for worth in worths)
+    labels = [parameter.label for parameter in cue.parameters]
+    assert predicted.parameter == labels[int(np.argmin(ratio))]
+    assert predicted.error_ratio == pytest.approx(float(ratio.min()), rel=0.05)
+    bits = 0.5 * np.log2(np.linalg.det(before.covariance) / np.linalg.det(after.covariance))
+    assert predicted.bits == pytest.approx(bits, rel=0.05)
+    assert [gain.squirt_error for gain in gains] == sorted(gain.squirt_error for gain in gains)
 
 
 CHEAP = (
@@ -141,7 +141,7 @@ CHEAP = (
 
 
 def possible(cue: MeasuredCue, i: int, z: float) -> bool:
-    """Whether there can be such a cue, by one parameter."""
+    """Whether the cue is valid with one parameter changed."""
     try:
         return bool(cue.setup(z * np.eye(len(cue.parameters))[i]))
     except ValueError:
@@ -149,8 +149,8 @@ def possible(cue: MeasuredCue, i: int, z: float) -> bool:
 
 
 @pytest.mark.parametrize("name", ["E", pytest.param("bore width", marks=pytest.mark.heavy), "taper"])
-def test_a_cue_at_the_limits_of_what_can_be_is_estimated_like_others(name: str) -> None:
-    """Slopes are taken inside; what has no limit within 12 standard deviations of its prior is not limited."""
+def test_estimate_at_limits_of_geometry_stays_finite(name: str) -> None:
+    """Differences are one-sided at a limit; a parameter without a limit within 12 standard deviations of its prior is not limited."""
     cue = MeasuredCue("a cue", SCENE, CHEAP, (Prior("taper", 0.1),))
     i, parameter = next((i, each) for i, each in enumerate(cue.parameters) if each.name == name)
     for outside in (side for side in (-12.0, 12.0) if not possible(cue, i, side)):

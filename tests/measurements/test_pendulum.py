@@ -1,4 +1,4 @@
-"""The pendulum test: exact on free masses, README's and the handbook's numbers, contradictions, and what is refused."""
+"""The pendulum test: exact on free masses, the numbers of the handbook, contradictions."""
 
 import math
 from dataclasses import replace
@@ -16,78 +16,81 @@ from tests.helpers.measured_cues import SCENE, folder
 
 TEXT = """[[pendulum]]
 ball_mass = "8 g"
-thread = "1 m"
-before = ["200 mm"]
-after = ["-34 mm"]
-clamped_after = ["162 mm"]
+thread_length = "1 m"
+release = ["200 mm"]
+rebound = ["-34 mm"]
+clamped_rebound = ["162 mm"]
 contact_time = "1 ms"
 position = "10 mm"
 """
 TWICE = TEXT.replace('"-34 mm"', '"-34 mm", "-35 mm"').replace('"162 mm"', '"162 mm", "161 mm"')
-PRESSED = TWICE.replace('contact_time = "1 ms"', 'force = "50 N"\ndepth = "0.5 mm"')
+BY_HERTZ = TWICE.replace('contact_time = "1 ms"', 'force = "50 N"\nindentation = "0.5 mm"')
 
 
 def measured(text: str, place: Path) -> EndMass:
-    (found,) = load_measured(folder(place, text))[0].measurements
-    assert isinstance(found, EndMass)
-    return found
+    (result,) = load_measured(folder(place, text))[0].measurements
+    assert isinstance(result, EndMass)
+    return result
 
 
 def swing(speed: float) -> float:
-    """How far aside a thread of 1 m swings for a speed, m/s."""
+    """Displacement of a pendulum of 1 m for a speed, m/s."""
     return math.copysign(math.sin(2 * math.asin(abs(speed) / (2 * math.sqrt(GRAVITY)))), speed)
 
 
 def of_speeds(m: float, back: float, clamped: float, U: float = 0.6, **more: float) -> Pendulum:
-    swings = {"before": (swing(U),), "after": (swing(back),), "clamped_after": (swing(clamped),)}
-    return Pendulum(ball_mass=m, thread=1.0, position=0.02, contact_time=1e-3, **swings, **more)  # type: ignore[arg-type]
+    swings = {"release": (swing(U),), "rebound": (swing(back),), "clamped_rebound": (swing(clamped),)}
+    return Pendulum(ball_mass=m, thread_length=1.0, position=0.02, contact_time=1e-3, **swings, **more)  # type: ignore[arg-type]
 
 
-def test_readings_of_the_readme_and_of_the_handbook(tmp_path: Path) -> None:
+def test_pendulum_handbook_readings_give_its_numbers(tmp_path: Path) -> None:
     """6.80 ± 0.12 g for 1 ms; 6.78 ± 0.11 g of two rebounds, for 1.01 ms by force and depth."""
     one = measured(TEXT, tmp_path / "one")
     assert (round(1e3 * one.value, 2), round(1e3 * one.error, 2)) == (6.80, 0.12)
-    two = measured(PRESSED, tmp_path / "two")
+    two = measured(BY_HERTZ, tmp_path / "two")
     assert (round(1e3 * two.value, 2), round(1e3 * two.error, 2)) == (6.78, 0.11)
     assert two.contact_time == pytest.approx(1.01e-3, rel=5e-3)
     assert two.contact_time_error == pytest.approx(0.1 * two.contact_time)
 
 
 @pytest.mark.parametrize("m", [3e-3, 7e-3, 20e-3])
-def test_a_free_mass_is_measured_exactly(m: float) -> None:
+def test_pendulum_on_free_mass_is_exact(m: float) -> None:
     """Momentum and restitution: a ball of mass m against a free mass M."""
     M, e, U = 7.3e-3, 0.8, 0.6
-    found = of_speeds(m, U * (e * M - m) / (m + M), e * U).end_mass
-    assert found.value == pytest.approx(M, rel=1e-12)
-    assert found.restitution == pytest.approx(e, rel=1e-12)
+    result = of_speeds(m, U * (e * M - m) / (m + M), e * U).end_mass
+    assert result.value == pytest.approx(M, rel=1e-12)
+    assert result.restitution == pytest.approx(e, rel=1e-12)
 
 
-def test_a_shaft_is_measured_as_its_side_strike_computes_it() -> None:
+def test_pendulum_on_shaft_equals_side_strike() -> None:
     ball = cf.Striker(8e-3, 0.8, contact_time=1e-3)
     struck = cf.side_strike(cf.SideStrike(SCENE.shaft, ball, 0.02))
-    found = of_speeds(8e-3, 0.6 * struck.apparent_restitution, 0.6 * 0.8).end_mass
-    assert found.value == pytest.approx(struck.effective_mass, rel=1e-9)
-    assert found.computed(Setup(SCENE)) == pytest.approx(struck.effective_mass, rel=1e-9)
+    result = of_speeds(8e-3, 0.6 * struck.apparent_restitution, 0.6 * 0.8).end_mass
+    assert result.value == pytest.approx(struck.effective_mass, rel=1e-9)
+    assert result.computed(Setup(SCENE)) == pytest.approx(struck.effective_mass, rel=1e-9)
 
 
-def test_its_error_covers_the_readings_errors() -> None:
+def test_pendulum_error_covers_noise_of_readings() -> None:
     """Some hundred tests with noise in every reading and in the ball's mass: 68 % lie within the stated error."""
     generator, M, e, m, U = np.random.default_rng(4), 7e-3, 0.8, 6e-3, 0.6
     back, inside = U * (e * M - m) / (m + M), []
     for _ in range(300):
         off = generator.normal(scale=1e-3, size=(4, 3))
         speeds = zip((U, back, U, e * U), off.tolist(), strict=True)
-        before, after, held, wall = (tuple(swing(speed) + x for x in row) for speed, row in speeds)
-        weighed, held_back = m + 5e-5 * generator.normal(), {"clamped_before": held, "clamped_after": wall}
-        swings = {"before": before, "after": after, **held_back}
-        found = replace(of_speeds(m, back, e * U), ball_mass=weighed, ball_mass_error=5e-5, **swings).end_mass
-        inside.append(abs(found.value - M) < found.error)
+        release, rebound, clamped_release, clamped_rebound = (
+            tuple(swing(speed) + x for x in row) for speed, row in speeds
+        )
+        weighed = m + 5e-5 * generator.normal()
+        clamped = {"clamped_release": clamped_release, "clamped_rebound": clamped_rebound}
+        swings = {"release": release, "rebound": rebound, **clamped}
+        result = replace(of_speeds(m, back, e * U), ball_mass=weighed, ball_mass_error=5e-5, **swings).end_mass
+        inside.append(abs(result.value - M) < result.error)
     assert np.mean(inside) == pytest.approx(0.683, abs=0.08)
-    wild = replace(of_speeds(m, back, e * U), after=(0.01, 0.02, 0.03)).end_mass
-    assert wild.error > 3 * replace(of_speeds(m, back, e * U), after=(0.02, 0.02, 0.02)).end_mass.error
+    wild = replace(of_speeds(m, back, e * U), rebound=(0.01, 0.02, 0.03)).end_mass
+    assert wild.error > 3 * replace(of_speeds(m, back, e * U), rebound=(0.02, 0.02, 0.02)).end_mass.error
 
 
-def test_compare_tells_a_contradiction_with_the_drawing(tmp_path: Path) -> None:
+def test_compare_contradiction_with_drawing_is_reported(tmp_path: Path) -> None:
     """8.95 g measured for 6.06 g drawn: beyond the readings' errors, and beyond what drawing and contact time allow."""
     drawing = (Path(__file__).parents[2] / "meshes" / "pool_maple.toml").read_text(encoding="utf-8")
     place = folder(tmp_path / "cue", TEXT.replace("-34 mm", "-9 mm"), drawing)

@@ -1,4 +1,4 @@
-"""Recordings: the wood that they tell, numbers of modes where some are missing, noise, and what is refused."""
+"""Recordings: the wood estimated from one, mode numbers where some modes are silent, noise."""
 
 import itertools
 from pathlib import Path
@@ -10,30 +10,30 @@ import cuefem as cf
 from cuefem.io.measured_folder import load_measured
 from cuefem.measurements.estimate import estimate
 from cuefem.measurements.measurement_types import Tone
-from cuefem.measurements.recording import Peak, numbered, tones_of
+from cuefem.measurements.recording import Peak, assign_modes, tones_in
 from tests.helpers.measured_cues import SHAFT, folder
 from tests.helpers.recordings import other_wood, recording, save_wav, tapped
 
 POOL = Path(__file__).parents[2] / "meshes" / "pool_maple.toml"
-HEARD = '[[recording]]\nfile = "tap.wav"\n'
+RECORDING = '[[recording]]\nfile = "tap.wav"\n'
 DRAWN = cf.modes(SHAFT, 8).frequencies
 
 
 @pytest.mark.heavy
-def test_the_wood_of_a_recording_is_found(tmp_path: Path) -> None:
-    """Three taps of pool_maple in another wood, 25 dB: the true E, G, density, and what three taps told before."""
+def test_recording_of_known_wood_gives_its_constants(tmp_path: Path) -> None:
+    """Three taps of pool_maple in another wood, 25 dB: the true E, G, density, and those of an earlier estimate."""
     drawn = cf.load(POOL)
     assert isinstance(drawn, cf.Cue)
     shaft = other_wood(drawn)
     weight = f'[[weight]]\nvalue = "{1e3 * shaft.shaft_mass:.1f} g"\nerror = "0.5 g"\n'
-    place = folder(tmp_path / "cue", weight + HEARD, POOL.read_text(encoding="utf-8"))
+    place = folder(tmp_path / "cue", weight + RECORDING, POOL.read_text(encoding="utf-8"))
     save_wav(place / "tap.wav", recording(tapped(shaft), 25.0, 0))
     cue, _ = load_measured(place)
     assert [one.mode for one in cue.measurements if isinstance(one, Tone)] == [1, 2, 3, 4, 5, 6, 7]
     assert {one.source for one in cue.measurements if isinstance(one, Tone)} == {"tap.wav"}
-    found = estimate(cue)
-    assert found.misfit < 2 * len(cue.measurements)
-    values = {value.name: value for value in found.values}
+    result = estimate(cue)
+    assert result.misfit < 2 * len(cue.measurements)
+    values = {value.name: value for value in result.values}
     for name, *known in (("E", 15.94e9, 15.84e9), ("G", 1.025e9, 1.015e9), ("rho", 748.0, 742.0)):
         error = (values[name].high - values[name].low) / 2
         assert values[name].value == pytest.approx(known[0], abs=2 * error)
@@ -42,39 +42,39 @@ def test_the_wood_of_a_recording_is_found(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("snr", "missing"), [(10.0, ()), (10.0, (1, 2)), (20.0, (1,)), (60.0, (3,))])
-def test_tones_are_those_of_their_modes(snr: float, missing: tuple[int, ...]) -> None:
-    """The wood is 15 % stiffer than drawn; a mode that does not sound leaves the others their numbers."""
+def test_tones_with_silent_modes_keep_their_numbers(snr: float, missing: tuple[int, ...]) -> None:
+    """The wood is 15 % stiffer than drawn; a silent mode does not shift the numbers of the others."""
     shaft = other_wood(SHAFT)
     true = cf.modes(shaft, 8).frequencies
-    tones = tones_of(recording(tapped(shaft, missing=missing), snr, 1), 44100.0, DRAWN)
+    tones = tones_in(recording(tapped(shaft, missing=missing), snr, 1), 44100.0, DRAWN)
     assert [tone.mode for tone in tones][: 6 - len(missing)] == [k for k in range(1, 7) if k not in missing]
     for tone in tones:
         assert abs(tone.value - true[tone.mode - 1]) < 3 * tone.sd
         assert tone.error < 2e-3 * tone.value
 
 
-def test_numbers_hold_for_every_set_of_modes_and_any_wood() -> None:
-    """Woods from the table's spread; what three lone high modes leave open may be named otherwise, five may not."""
+def test_mode_numbers_of_any_subset_and_wood_are_right() -> None:
+    """Woods from the table's spread; three modes may be ambiguous, five may not."""
     generator, wrong, sets = np.random.default_rng(0), 0, 0
     for E, G, rho in np.exp(generator.normal(0, (0.2, 0.25, 0.1), (6, 3))):
         true = cf.modes(other_wood(SHAFT, E=E, G=G, rho=rho), 8).frequencies
         for count in (3, 5, 7):
             for chosen in itertools.combinations(range(8), count):
-                found = numbered([Peak(float(true[i]), 0.1) for i in chosen], DRAWN)
-                off = any(abs(peak.frequency / true[mode - 1] - 1) > 1e-9 for mode, peak in found.items())
+                result = assign_modes([Peak(float(true[i]), 0.1) for i in chosen], DRAWN)
+                off = any(abs(peak.frequency / true[mode - 1] - 1) > 1e-9 for mode, peak in result.items())
                 assert not off or count == 3
                 wrong, sets = wrong + off, sets + 1
     assert wrong < 0.02 * sets
 
 
-def test_two_recordings_are_one_tone_per_mode(tmp_path: Path) -> None:
+def test_two_recordings_give_one_tone_per_mode(tmp_path: Path) -> None:
     """Their scatter is an error: 1 Hz apart, it is half of that; and their tones have both as source."""
     time = np.arange(44100) / 44100
 
     def sound(*tones: float) -> np.ndarray:
         return 0.4 * sum(np.exp(-15 * time) * np.sin(2 * np.pi * f * time) for f in tones)[:, None]
 
-    place = folder(tmp_path / "cue", HEARD + HEARD.replace("tap", "two"))
+    place = folder(tmp_path / "cue", RECORDING + RECORDING.replace("tap", "two"))
     save_wav(place / "tap.wav", sound(*DRAWN[:3]))
     save_wav(place / "two.wav", sound(DRAWN[0], DRAWN[1] + 1.0, DRAWN[3]))
     first, second, third, fourth = load_measured(place)[0].measurements

@@ -1,4 +1,4 @@
-"""What measured cues refuse: measurements that cannot be, files and folders of none, a line a `raise`."""
+"""Invalid measurements, files and folders are rejected; one line for each `raise`."""
 
 import errno
 from collections.abc import Callable
@@ -18,8 +18,8 @@ from tests.helpers.measured_cues import DRAWING, SCENE, SOME, folder, measured_c
 from tests.helpers.recordings import save_wav
 from tests.helpers.refusals import command_refuses, refuses, untouched
 
-SWING = {"before": (0.19,), "after": (-0.03,), "clamped_after": (0.15,)}
-GOOD = Pendulum(ball_mass=8e-3, thread=1.0, position=0.02, contact_time=1e-3, **SWING)  # type: ignore[arg-type]
+SWING = {"release": (0.19,), "rebound": (-0.03,), "clamped_rebound": (0.15,)}
+GOOD = Pendulum(ball_mass=8e-3, thread_length=1.0, position=0.02, contact_time=1e-3, **SWING)  # type: ignore[arg-type]
 FAR = AddedMass(mass=0.01, position=0.8, value=0.1, baseline=0.1, error=0.01, offset=0.3)
 PIVOT = PivotLength(offset=0.3, value=0.3, error=0.01)
 CALLS: dict[str, Callable[[], object]] = {
@@ -38,25 +38,25 @@ CALLS: dict[str, Callable[[], object]] = {
     ),
     "added_mass position must be in [0, 0.73] m": lambda: FAR.computed(Setup(SCENE)),
     "estimate takes a cue with measurements": lambda: estimate(measured_cue()),
-    "Pendulum.before must be swings shorter than the thread, 0.1 m": lambda: replace(GOOD, thread=0.1),
-    "Pendulum.after must be swings": lambda: replace(GOOD, after=()),
-    "Pendulum.before must be one reading, or 1": lambda: replace(GOOD, before=(0.2, 0.2)),
+    "Pendulum.release must be swings shorter than the thread, 0.1 m": lambda: replace(GOOD, thread_length=0.1),
+    "Pendulum.rebound must be swings": lambda: replace(GOOD, rebound=()),
+    "Pendulum.release must be one reading, or 1": lambda: replace(GOOD, release=(0.2, 0.2)),
     "Pendulum.contact_time must be given": lambda: replace(GOOD, contact_time=None),
     "without it; got contact_time and force": lambda: replace(GOOD, force=9.0),
-    "Pendulum.clamped_after must be (0, 1]": lambda: replace(GOOD, clamped_after=(0.3,)),
-    "Pendulum.after must be between -1 and 0.": lambda: replace(GOOD, after=(0.188,)),
-    "for an end mass uncertain by at most 100 %": lambda: replace(GOOD, after=(0.1495,)),
+    "Pendulum.clamped_rebound must be (0, 1]": lambda: replace(GOOD, clamped_rebound=(0.3,)),
+    "Pendulum.rebound must be between -1 and 0.": lambda: replace(GOOD, rebound=(0.188,)),
+    "for an end mass uncertain by at most 100 %": lambda: replace(GOOD, rebound=(0.1495,)),
 }
 
 
 @pytest.mark.parametrize("message", CALLS)
-def test_calls(message: str) -> None:
+def test_invalid_arguments_are_rejected(message: str) -> None:
     refuses(CALLS[message], message)
 
 
-PENDULUM = r"""[[pendulum]]\nball_mass = "8 g"\nthread = "1 m"\nbefore = ["200 mm"]\nclamped_after = ["162 mm"]\n"""
+PENDULUM = r"""[[pendulum]]\nball_mass = "8 g"\nthread_length = "1 m"\nrelease = ["200 mm"]\nclamped_rebound = ["162 mm"]\n"""
 PENDULUM += r"""contact_time = "1 ms"\nposition = "10 mm"\n"""
-# A file of the folder, what it holds (P is a pendulum test without the rebound), and a part of the refusal.
+# A file of the folder, what it holds (P is a pendulum test without the rebound), and a part of the message.
 FILES = r"""
 measured.toml | [[weigth]]\nvalue = "1 g"\n | measured.toml: weigth: must be one of the keys
 measured.toml | [[weight]]\nvalue = 100\nerror = "1 g"\n | weight[0].value: needs a unit
@@ -64,9 +64,9 @@ measured.toml | [[weight]]\nvalue = "100 g"\n | weight[0].error: must be given
 measured.toml | weight = "100 g"\n | weight: must be tables, [[weight]]
 measured.toml | [[squirt]]\noffset = 0.3\nerror = "1 deg"\n | squirt[0].value: must be given, or left and right
 measured.toml | name = 3\n | name: must be text
-measured.toml | uncertain = 3\n | uncertain: must be tables
+measured.toml | prior = 3\n | prior: must be tables
 measured.toml | cue = { mass = "0.5 kg", end_mass = "6 g" }\n | cue: must be a cue of segments
-measured.toml | Pafter = ["250 cm"]\n | pendulum[0].after: must be swings shorter
+measured.toml | Prebound = ["250 cm"]\n | pendulum[0].rebound: must be swings shorter
 measured.toml | [[recording]]\nfile = "none.wav"\n | none.wav: cannot be read: No such file
 measured.toml | [[recording]]\nfile = "tap.mp3"\n | tap.mp3: must end in .wav
 measured.toml | [[recording]]\nfile = "tap.wav"\nloud = 1\n | recording[0].loud: must be one of the keys
@@ -81,7 +81,7 @@ squirts.csv | offset\n | squirts.csv: must be one of weight.csv
 
 
 @pytest.mark.parametrize("row", FILES.strip().splitlines())
-def test_files(row: str, tmp_path: Path) -> None:
+def test_invalid_files_are_rejected(row: str, tmp_path: Path) -> None:
     name, text, message = row.split(" | ")
     place = folder(tmp_path / "cue")
     text = (PENDULUM + text[1:]) if text[0] == "P" else text
@@ -102,14 +102,14 @@ SOUNDS: dict[str, tuple[np.ndarray | bytes, int]] = {
 
 
 @pytest.mark.parametrize("message", SOUNDS)
-def test_sounds(message: str, tmp_path: Path) -> None:
+def test_invalid_recordings_are_rejected(message: str, tmp_path: Path) -> None:
     place, (samples, rate) = folder(tmp_path / "cue", '[[recording]]\nfile = "tap.wav"\n'), SOUNDS[message]
     path = place / "tap.wav"
     path.write_bytes(samples) if isinstance(samples, bytes) else save_wav(path, samples, rate)
     command_refuses(message, "compare", place)
 
 
-def test_a_template_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_template_write_failure_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(path: Path, *_: object, **__: object) -> None:
         raise OSError(errno.ENOSPC, "No space left on device", str(path))
 
@@ -123,7 +123,7 @@ def test_a_template_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: 
     untouched(tmp_path, "must be a new folder", *template)
 
 
-def test_folders(tmp_path: Path) -> None:
+def test_invalid_folders_are_rejected(tmp_path: Path) -> None:
     command_refuses("got no folder", "compare", tmp_path / "none")
     (empty := tmp_path / "empty").mkdir()
     command_refuses("must hold the shaft's drawing, cue.toml or cue.csv; got none", "compare", empty)
