@@ -98,7 +98,7 @@ def scene_of(
             remark(Scene(opened), with_impact=False)
             raise
     given = {name: value for name, value in options.items() if value is not None}
-    notes = in_words(assumed(file, scene, given), options, blow=blow)
+    notes = in_words(assumed(file, scene, given), options, with_impact=blow)
     with blaming(file):
         compute_tip(scene)
     if remarked:

@@ -1,5 +1,7 @@
-"""What a file leaves out and the defaults supply: by the key of the parameter or fitting, and in words for the reader
-of the result. An assumption that nothing changes has the key ""."""
+"""Report of defaults: for each value that a file lacks, the option that sets it and a text.
+
+An assumption without an option has the key "".
+"""
 
 from __future__ import annotations
 
@@ -9,10 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from cuefem.cue import Cue, Material
-from cuefem.io.fittings import BORE, FERRULE, LEATHER, TENON
-from cuefem.io.profile import DEFAULT_MATERIAL, DEFAULT_UNIT, SHAPES, SURFACES, read_profile
+from cuefem.io.fittings import BORE, FERRULE, LEATHER, TENON_RATIO
+from cuefem.io.profile import DEFAULT_MATERIAL, DEFAULT_UNIT, SHAPE_EXTENSIONS, SURFACE_EXTENSIONS, read_profile
 from cuefem.io.slices import TOLERANCE
-from cuefem.io.toml import left_out, read_tables
+from cuefem.io.toml import missing_keys, read_tables
 from cuefem.parameters.parts import Layout
 from cuefem.scene import DEFAULT_CONTACT_TIME, Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, GAMES
@@ -21,39 +23,40 @@ Assumptions = list[tuple[str, str]]
 
 OF_BLOW = ("ball_mass", "ball_diameter", "contact_time", "restitution", "friction", "speed", "offset")
 _EXAMPLES = {"ferrule": FERRULE, "bore": BORE, "begins": LEATHER}
-# The keys of what a scene's tables leave out; where none stands, the name of the field.
+# Options of missing keys of a scene file; for other keys the name of the field.
 _KEYS = {"ball.mass": ("ball_mass",), "ball.radius": ("ball_diameter",), "effects": ("tip_height", "dome", "leather")}
-_UNNAMED = Material(1e9, 1e9 / 15, 1000.0)  # stands for the material that a profile does not name
+_UNNAMED = Material(1e9, 1e9 / 15, 1000.0)  # placeholder for the material of a profile without one
 
 
-def assumed(path: Path, scene: Scene, given: Mapping[str, Any]) -> Assumptions:
-    """What is assumed for the scene of a file. given: what options tell, by their names."""
+def assumed(path: Path, scene: Scene, options: Mapping[str, Any]) -> Assumptions:
+    """Assumptions for the scene of a file; options: values of the command's options by name."""
     tables = read_tables(path) if path.suffix.lower() == ".toml" else {}
     if "cue" in tables:
-        return assumed_in(tables, path.parent, scene, given)
-    game = given.get("game") or DEFAULT_GAME
+        return assumptions_of_tables(tables, path.parent, scene, options)
+    game = options.get("game") or DEFAULT_GAME
     known, butt = GAMES.get(game), ""
     if known and scene.shaft.body_mass:
         butt = f", butt to {1e3 * known.cue_length:g} mm, {1e3 * known.butt_diameter:g} mm wide, for axial waves"
     stroke = ("game", f"default stroke of {game}{butt}")
-    missing = [] if "game" in given else [stroke]
-    return [*assumed_drawing(path, scene.shaft, given), *missing, *_stroke({}, game, scene, given)]
+    missing = [] if "game" in options else [stroke]
+    return [*assumed_drawing(path, scene.shaft, options), *missing, *_stroke({}, game, scene, options)]
 
 
-def assumed_in(tables: dict[str, Any], folder: Path, scene: Scene, given: Mapping[str, Any]) -> Assumptions:
-    """What is assumed for a scene of a file's tables."""
+def assumptions_of_tables(
+    tables: dict[str, Any], folder: Path, scene: Scene, options: Mapping[str, Any]
+) -> Assumptions:
+    """Assumptions for a scene of a file's tables."""
     cue, game = tables["cue"], str(tables.get("game", DEFAULT_GAME))
-    drawing = assumed_drawing(folder / cue, scene.shaft, given) if isinstance(cue, str) else []
-    stroke = _stroke(tables, game, scene, given)
-    named = [] if "game" in tables or not stroke else [("", f"what is left out as in the default stroke of {game}")]
+    drawing = assumed_drawing(folder / cue, scene.shaft, options) if isinstance(cue, str) else []
+    stroke = _stroke(tables, game, scene, options)
+    named = [] if "game" in tables or not stroke else [("", f"missing values from the default stroke of {game}")]
     return [*drawing, *named, *stroke]
 
 
-def assumed_drawing(path: Path, cue: Cue, given: Mapping[str, Any]) -> Assumptions:
-    """What a lathe profile or a surface cannot say: its unit, its material, its parts, and what is behind the shaft; of
-    any drawing, the tenon of its ferrule."""
+def assumed_drawing(path: Path, cue: Cue, options: Mapping[str, Any]) -> Assumptions:
+    """Assumptions for a drawing: unit, material, parts and rest of the cue of a profile or surface; the tenon."""
     ending = path.suffix.lower()
-    if ending not in SHAPES:
+    if ending not in SHAPE_EXTENSIONS:
         return tenon(cue)
     lacking = [("material", f"material {DEFAULT_MATERIAL}"), ("shaft_mass", "weight by the density of that material")]
     parts = [
@@ -61,35 +64,35 @@ def assumed_drawing(path: Path, cue: Cue, given: Mapping[str, Any]) -> Assumptio
         ("bore", "no bore"),
         ("begins", "the drawing begins at the ferrule, the tip is added"),
     ]
-    if ending in SURFACES:
-        notes = [*([] if "length_unit" in given else [f"lengths in {DEFAULT_UNIT} (--length-unit)"]), *_surface(path)]
+    if ending in SURFACE_EXTENSIONS:
+        notes = [*([] if "length_unit" in options else [f"lengths in {DEFAULT_UNIT} (--length-unit)"]), *_surface(path)]
     else:
-        drawn, notes = read_profile(path, _UNNAMED, given.get("length_unit"))
+        drawn, notes = read_profile(path, _UNNAMED, options.get("length_unit"))
         woods, ferrule = [segment.material for segment in drawn.segments], Layout.of(drawn).ferrule
-        told = {
+        in_drawing = {
             "material": _UNNAMED not in woods,
             "ferrule": any(wood != _UNNAMED for wood in woods),
             "bore": any(s.tip_bore for i, s in enumerate(drawn.segments) if i not in ferrule),
             "begins": bool(drawn.leather),
         }
-        given = {**given, **{key: True for key, is_told in told.items() if is_told}}
+        options = {**options, **{key: True for key, present in in_drawing.items() if present}}
     if any(cue.segments[i].tip_bore and cue.segments[i].core is None for i in Layout.of(cue).ferrule):
         notes = [*notes, "the ferrule has the bore of the shaft, without a tenon"]
-    lacking = [] if "material" in given else lacking
-    found = [*lacking, ("body_mass", "no mass behind the shaft"), *parts]
-    return [*(("", note) for note in notes), *((k, words) for k, words in found if k not in given), *tenon(cue)]
+    lacking = [] if "material" in options else lacking
+    assumptions = [*lacking, ("body_mass", "no mass behind the shaft"), *parts]
+    return [*(("", note) for note in notes), *((k, words) for k, words in assumptions if k not in options), *tenon(cue)]
 
 
 def tenon(cue: Cue) -> Assumptions:
-    """What was drawn inside a ferrule that says nothing of it."""
+    """Assumption of a tenon of the default diameter in the ferrule."""
     pieces = [cue.segments[i] for i in Layout.of(cue).ferrule]
-    if pieces and all(s.core and math.isclose(s.tip_bore, TENON * s.tip_diameter, rel_tol=1e-4) for s in pieces):
-        return [("tenon", f"the ferrule sits on a tenon of the shaft's wood, {TENON:g} of its width")]
+    if pieces and all(s.core and math.isclose(s.tip_bore, TENON_RATIO * s.tip_diameter, rel_tol=1e-4) for s in pieces):
+        return [("tenon", f"the ferrule sits on a tenon of the shaft's wood, {TENON_RATIO:g} of its width")]
     return []
 
 
 def _surface(path: Path) -> list[str]:
-    """How many segments a surface has become, and how far its facets leave the round form open."""
+    """Number of segments from a surface, and the error of its facets."""
     from cuefem.io.surface import read_surface
 
     surface = read_surface(path)
@@ -97,18 +100,18 @@ def _surface(path: Path) -> list[str]:
     count = len(surface.pieces)
     return [
         f"{count} conical segment{'s' if count > 1 else ''}, diameters within {TOLERANCE:.0e} of the widest",
-        f"facets taken as round (corners up to {corners:.0e} of the widest diameter further out)",
+        f"facets replaced by circles (corners up to {corners:.0e} of the widest diameter further out)",
         "the thinner end is the tip",
     ]
 
 
-def _stroke(tables: dict[str, Any], game: str, scene: Scene, given: Mapping[str, Any]) -> Assumptions:
-    """What a scene's tables leave out of ball, tip, stroke and effects, with the values of the scene."""
+def _stroke(tables: dict[str, Any], game: str, scene: Scene, options: Mapping[str, Any]) -> Assumptions:
+    """Assumptions for ball, tip, stroke and effects that a scene's tables lack, with the values of the scene."""
     known, ball, tip = GAMES.get(game), scene.ball, scene.tip
-    missing = {key for left in left_out(tables) for key in _KEYS.get(left, (left.rpartition(".")[2],))} - {*given}
-    whole = ""
+    missing = {key for left in missing_keys(tables) for key in _KEYS.get(left, (left.rpartition(".")[2],))} - {*options}
+    whole_cue = ""
     if known and tip.restitution != known.restitution:
-        whole = f" of the tip (with axial waves, {known.restitution:g} of the whole cue head-on)"
+        whole_cue = f" of the tip (with axial waves, {known.restitution:g} of the whole cue head-on)"
     words = {"ball_mass": f"ball {1e3 * ball.mass:g} g", "ball_diameter": f"ball {2e3 * ball.radius:g} mm"}
     if any(effect.whole_tip for effect in scene.effects):
         leather = scene.leather
@@ -121,7 +124,7 @@ def _stroke(tables: dict[str, Any], game: str, scene: Scene, given: Mapping[str,
         words["contact_time"] = f"head-on contact time {1e3 * DEFAULT_CONTACT_TIME:g} ms (leather: about 1 ms)"
         missing.add("contact_time")
     words |= {
-        "restitution": f"restitution {tip.restitution:.3g}{whole}",
+        "restitution": f"restitution {tip.restitution:.3g}{whole_cue}",
         "friction": f"friction {tip.friction:g}",
         "speed": f"cue speed {scene.stroke.speed:g} m/s",
         "offset": f"offset b/R {scene.stroke.offset:.4g}",
@@ -129,12 +132,12 @@ def _stroke(tables: dict[str, Any], game: str, scene: Scene, given: Mapping[str,
     return [(key, text) for key, text in words.items() if key in missing]
 
 
-def in_words(found: Assumptions, offered: Collection[str] = (), *, blow: bool = True) -> list[str]:
-    """The assumptions in words, each with the option that changes it, if the command has it.
+def in_words(assumptions: Assumptions, offered: Collection[str] = (), *, with_impact: bool = True) -> list[str]:
+    """Texts of assumptions, each with the option that changes it if it is among ``offered``.
 
-    blow: whether ball, tip and stroke matter.
+    with_impact: whether to include ball, tip and stroke.
     """
-    return [f"{words}{_option(key, offered)}" for key, words in found if blow or key not in OF_BLOW]
+    return [f"{words}{_option(key, offered)}" for key, words in assumptions if with_impact or key not in OF_BLOW]
 
 
 def _option(key: str, offered: Collection[str]) -> str:

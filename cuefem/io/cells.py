@@ -1,4 +1,4 @@
-"""A table of numbers as spreadsheets and people write it: any usual encoding, separator and decimal mark."""
+"""Reader of tables of numbers from spreadsheets and editors: common encodings, separators and decimal marks."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from pathlib import Path
 from cuefem.io.errors import LARGEST_TEXT, InputError, read_bytes, shown
 from cuefem.quantity.units import FRACTION, decimal
 
-LONGEST_LINE = 10_000  # letters of a line
+LONGEST_LINE = 10_000  # characters
 
-Row = tuple[int, list[str]]  # the number of a line in the file, and its cells
+Row = tuple[int, list[str]]  # line number in the file, and its cells
 
-_SPREADSHEETS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")  # how .xlsx and .ods begin, and how .xls does
+_SPREADSHEETS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")  # first bytes of .xlsx and .ods, and of .xls
 _MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 _COMMENTS = ("#", "//")
-_SEPARATORS = "\t;|,"  # the first of them that is in most lines
+_SEPARATORS = "\t;|,"  # in order of preference: the first one that is in most lines
 _ANY = re.compile(r"[\t;|,]")
 _GAPS = re.compile(r"(?<=\d)[ '](?=\d{3}(?!\d))")  # 1 470 and 1'470
 _PLAIN = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?|[+-]?(?:inf|nan)", re.IGNORECASE)
@@ -25,14 +25,14 @@ _NUMBER = re.compile(rf"(?:{FRACTION.pattern}|[+-]?[\d.,](?:[\d.,' ]*[\d.,])?(?:
 
 
 def read_rows(path: Path) -> list[Row]:
-    """The lines of a table that hold anything, without comments, each as its cells; InputError if it is no text."""
+    """The lines of a table as cells, without empty lines and comments; InputError if the file is not text."""
     lines = [(i, line) for i, line in enumerate(read_text(path).splitlines(), start=1) if line.strip()]
     lines = [(i, line) for i, line in lines if not line.lstrip().startswith(_COMMENTS)]
     for i, line in lines:
         if len(line) > LONGEST_LINE:
-            raise InputError(path, f"line {i}", f"must be shorter; got {len(line)} letters")
-    if lines and (said := re.fullmatch(r"sep=(.)", lines[0][1].strip(), re.IGNORECASE)):
-        return _split(lines[1:], said[1])
+            raise InputError(path, f"line {i}", f"must have at most {LONGEST_LINE} characters; got {len(line)}")
+    if lines and (first := re.fullmatch(r"sep=(.)", lines[0][1].strip(), re.IGNORECASE)):
+        return _split(lines[1:], first[1])
     most = [mark for mark in _SEPARATORS if 2 * sum(mark in line for _, line in lines) >= len(lines)]
     return _split(lines, most[0] if most else None)
 
@@ -43,7 +43,7 @@ def _split(lines: Iterable[tuple[int, str]], separator: str | None) -> list[Row]
         cells = re.split(r"\s{2,}|\t", line.strip()) if separator is None else _cells(line, separator)
         if separator is None and len(cells) == 1:
             cells = line.split()
-        if len(cells) == 1 and _ANY.search(line):  # a header that is parted by something else
+        if len(cells) == 1 and _ANY.search(line):  # a header with another separator
             cells = _cells(line, _ANY.search(line)[0])  # type: ignore[index]
         cells = [cell.replace("\xa0", " ").strip() for cell in cells]
         while cells and not cells[-1]:
@@ -58,10 +58,10 @@ def _cells(line: str, separator: str) -> list[str]:
 
 
 def read_text(path: Path) -> str:
-    """The text of a file in UTF-8, UTF-16 or Windows' letters; InputError if it is empty or no text."""
+    """The text of a file in UTF-8, UTF-16 or Windows-1252; InputError if it is empty or not text."""
     content = read_bytes(path, LARGEST_TEXT)
     if content.startswith(_SPREADSHEETS):
-        raise InputError(path, "", "is a spreadsheet, no text: in its program, save it as CSV")
+        raise InputError(path, "", "is a spreadsheet: export it as CSV")
     try:
         text = content.decode(_encoding(content))
     except UnicodeDecodeError:
@@ -77,7 +77,7 @@ def _encoding(content: bytes) -> str:
     for mark, name in _MARKS.items():
         if content.startswith(mark):
             return name
-    if b"\0" in content[:100]:  # UTF-16 without its mark: every other byte of plain letters is 0
+    if b"\0" in content[:100]:  # UTF-16 without a byte-order mark: every other byte of ASCII text is 0
         return "utf-16-be" if content[:1] == b"\0" else "utf-16-le"
     try:
         content.decode("utf-8")
@@ -86,8 +86,8 @@ def _encoding(content: bytes) -> str:
     return "utf-8"
 
 
-def parted(cell: str) -> tuple[str, str]:
-    """A cell's number and what stands behind it, its unit; the number is empty if the cell begins with none."""
+def split_unit(cell: str) -> tuple[str, str]:
+    """A cell's number and the unit behind it; the number is empty if the cell does not start with one."""
     cell = cell.replace("−", "-").lstrip("'")
     match = _NUMBER.match(cell)
     return (match[0], cell[match.end() :].strip()) if match else ("", cell)
@@ -95,12 +95,12 @@ def parted(cell: str) -> tuple[str, str]:
 
 def is_number(cell: str) -> bool:
     """Whether a cell holds a number and no unit."""
-    number, rest = parted(cell)
+    number, rest = split_unit(cell)
     return bool(number) and not rest
 
 
 def decimal_mark(numbers: Sequence[str]) -> str:
-    """The decimal mark of a table: a point, or a comma if that is what most of its numbers have."""
+    """The decimal mark of a table: a point, or a comma if most numbers have one."""
     both = [number for number in numbers if "." in number and "," in number]
     if both:
         return max(".,", key=both[0].rfind)
@@ -108,8 +108,8 @@ def decimal_mark(numbers: Sequence[str]) -> str:
     return "," if commas > points else "."
 
 
-def plain(number: str, mark: str) -> str:
-    """A number as Python writes it, from one with this decimal mark; ValueError if it has the other mark or is none."""
+def python_number(number: str, mark: str) -> str:
+    """A number with this decimal mark in Python's notation; ValueError for another mark or no number."""
     if FRACTION.fullmatch(number):
         return str(decimal(number))
     other = "," if mark == "." else "."

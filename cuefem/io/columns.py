@@ -1,4 +1,4 @@
-"""The header of a lathe profile, as people write it: which column is the place, which the diameter, in which units."""
+"""Header of a lathe profile: which columns are position, diameter, bore and materials, and their units."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from cuefem.io.cells import Row, is_number, parted
+from cuefem.io.cells import Row, is_number, split_unit
 from cuefem.io.errors import InputError, shown
 from cuefem.quantity.units import first_name, scale
 
 EXAMPLE = '"x [mm],diameter [mm]"'
-TITLES = 20  # lines that may stand above the header
+MAX_TITLES = 20  # lines allowed above the header
 
-PLACE, DIAMETER, RADIUS, BORE, MATERIAL, CORE = "x", "diameter", "radius", "bore", "material", "core"
+POSITION, DIAMETER, RADIUS, BORE, MATERIAL, CORE = "x", "diameter", "radius", "bore", "material", "core"
 FERRULE = "ferrule"
-NAMES = (MATERIAL, CORE, FERRULE)  # columns of names, which have no unit
-# The words by which a column is known, most telling first: "bore diameter" is a bore, "diameter at x" a diameter.
+NAMES = (MATERIAL, CORE, FERRULE)  # columns of material names, without units
+# Words that identify a column, in order of precedence: "bore diameter" is a bore, "diameter at x" a diameter.
 _WORDS = {
     CORE: {"core", "kern"},
     MATERIAL: {"material", "materials", "wood"},
@@ -27,21 +27,21 @@ _WORDS = {
         *("diameter", "diameters", "dia", "diam", "d", "ø", "od", "width", "thickness"),
         *("thick", "dicke", "durchmesser", "diamètre", "diametre", "diámetro", "diametro"),
     },
-    PLACE: {
+    POSITION: {
         *("x", "z", "position", "pos", "place", "location", "station", "distance", "dist", "length", "along", "from"),
         *("von", "abstand", "länge", "distancia", "posición", "posizione", "distanza"),
     },
 }
-_OTHERS = ("kg", "g", "oz", "lb", "s", "ms", "n", "deg", "°", "%")  # units of no length
+_OTHERS = ("kg", "g", "oz", "lb", "s", "ms", "n", "deg", "°", "%")  # units that are not lengths
 _BRACKETS = re.compile(r"[\[({<]([^])}>]*)[\])}>]")
 _TOKENS = re.compile(r"[^\W\d_]+")
-_WALL = re.compile(r"wall|wand")  # how the name of a tube's wall thickness begins
-_BUTT = {"butt", "joint"}  # where x is measured from, if "from" stands before it
+_WALL = re.compile(r"wall|wand")  # first letters of a wall thickness
+_BUTT = {"butt", "joint"}  # origin of x, after the word "from"
 
 
 @dataclass(frozen=True)
 class ProfileColumn:
-    """A column that is used: what it holds, where it stands, its name in the file, and its unit ("" if it has none)."""
+    """A used column: its kind, index, name in the file and unit ("" without one)."""
 
     kind: str
     index: int
@@ -51,20 +51,19 @@ class ProfileColumn:
 
 @dataclass(frozen=True)
 class Header:
-    """The columns of a profile that say a length, a material, and nothing that is used; the lines below that hold
-    numbers; and which lines are titles and notes."""
+    """Columns of lengths, of materials and unused ones; the rows; the numbers of lines with titles and notes."""
 
     line: int
-    used: tuple[ProfileColumn, ...]
-    names: tuple[ProfileColumn, ...]
-    unused: tuple[str, ...]
+    number_columns: tuple[ProfileColumn, ...]
+    name_columns: tuple[ProfileColumn, ...]
+    unused_names: tuple[str, ...]
     width: int
     rows: tuple[Row, ...]
-    passed: tuple[int, ...]
+    skipped_lines: tuple[int, ...]
 
 
 def unit_of(text: str) -> str:
-    """The unit of length that a text names, by its first name in the table of units; "" if it names none."""
+    """The unit of length named by a text, by its first name in the table of units; "" without one."""
     word = text.strip().strip(".[](){}<>").strip()
     try:
         scale(word, "m")
@@ -74,14 +73,14 @@ def unit_of(text: str) -> str:
 
 
 def read_header(path: Path, rows: Sequence[Row]) -> Header:
-    """The header of a profile's rows; InputError if no row names a place and a diameter."""
-    nearest = rows[0]  # to a header
-    for i, (line, cells) in enumerate(rows[:TITLES]):
+    """The header of a profile's rows; InputError if no row names a position and a diameter."""
+    nearest = rows[0]  # the row that resembles a header most
+    for i, (line, cells) in enumerate(rows[:MAX_TITLES]):
         columns = [_column(path, line, j, cell) for j, cell in enumerate(cells)]
         used = tuple(column for column in columns if column.kind and column.kind not in NAMES)
         names = tuple(column for column in columns if column.kind in NAMES)
         kinds = {column.kind for column in used}
-        if PLACE in kinds and kinds & {DIAMETER, RADIUS}:
+        if POSITION in kinds and kinds & {DIAMETER, RADIUS}:
             below = rows[i + 1 :]
             units = [unit_of(cell) for cell in below[0][1]] if below else []
             if units and all(unit or not cell for unit, cell in zip(units, below[0][1], strict=True)):
@@ -99,14 +98,14 @@ def read_header(path: Path, rows: Sequence[Row]) -> Header:
         if len(cells) > 1 and all(map(is_number, cells)):
             break
     line, cells = nearest
-    wanted = f"must name one column for the place along the shaft and one for the diameter, such as {EXAMPLE}"
+    wanted = f"must name a column for the position along the shaft and one for the diameter, such as {EXAMPLE}"
     raise InputError(path, f"line {line}", f"{wanted}; got {shown(','.join(cells))}")
 
 
 def _has_data(cells: Sequence[str], used: Sequence[ProfileColumn], names: Sequence[ProfileColumn]) -> bool:
-    """Whether a line is a row of the table: it has a number or a material where one belongs."""
+    """Whether a line has a number or a material in a used column."""
     inside = [[cells[c.index] for c in columns if c.index < len(cells)] for columns in (used, names)]
-    return any(parted(cell)[0] for cell in inside[0]) or any(inside[1])
+    return any(split_unit(cell)[0] for cell in inside[0]) or any(inside[1])
 
 
 def _with_unit(column: ProfileColumn, units: Sequence[str]) -> ProfileColumn:
@@ -115,18 +114,18 @@ def _with_unit(column: ProfileColumn, units: Sequence[str]) -> ProfileColumn:
 
 
 def _column(path: Path, line: int, index: int, cell: str) -> ProfileColumn:
-    """What a cell of a header says; its kind is "" if it is neither a place nor a width."""
+    """The column of a header cell; its kind is "" if the column is not used."""
     text = cell.replace("⌀", "ø").replace("Ø", "ø").casefold()
     inside = _BRACKETS.findall(text)
     unit = next(filter(None, map(unit_of, inside)), "")
     words = _TOKENS.findall(_BRACKETS.sub(" ", text) if unit else text)
-    for place in (-1, 0):  # "diameter mm", "inches from tip"
-        if not unit and len(words) > 1 and (unit := unit_of(words[place])):
-            words.pop(place)
+    for end in (-1, 0):  # "diameter mm", "inches from tip"
+        if not unit and len(words) > 1 and (unit := unit_of(words[end])):
+            words.pop(end)
     if not unit and text.rstrip().endswith(('"', "″", "”")):
         unit = "in"
     kind = _kind(words)
-    if words == ["id"] and not unit:  # the number of a row, no inner diameter
+    if words == ["id"] and not unit:  # a row number, not an inner diameter
         kind = ""
     if kind == BORE and _WORDS[RADIUS] & {*words}:
         raise InputError(path, f"line {line}, {kind}", f"must be a column of diameters; got {shown(cell)}")
@@ -137,15 +136,15 @@ def _column(path: Path, line: int, index: int, cell: str) -> ProfileColumn:
 
 
 def _kind(words: Sequence[str]) -> str:
-    """The kind of column that words mean."""
-    if FERRULE in words and {*words} <= {FERRULE, MATERIAL}:  # "distance from ferrule" is a place
+    """The kind of a column by the words of its name."""
+    if FERRULE in words and {*words} <= {FERRULE, MATERIAL}:  # "distance from ferrule" is a position
         return FERRULE
     if any(map(_WALL.match, words)):
         return ""
     return next((kind for kind, known in _WORDS.items() if known & {*words}), "")
 
 
-def from_butt(column: ProfileColumn) -> bool:
-    """Whether a column of places says that it counts from the butt."""
+def measured_from_butt(column: ProfileColumn) -> bool:
+    """Whether positions count from the butt, by the column's name."""
     words = _TOKENS.findall(column.name.casefold())
     return "from" in words and bool(_BUTT & set(words[words.index("from") :])) and "tip" not in words

@@ -1,4 +1,4 @@
-"""What every unreadable or unacceptable file raises: one line that names file, key, bound, unit and the value got."""
+"""The error of invalid input: one line with file, key, limit, unit and value."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from pathlib import Path
 from cuefem.quantity.display import one_line, printable
 from cuefem.quantity.fields import nearest, shown
 
-__all__ = ["InputError", "check_size", "faults_of", "nearest", "read_bytes", "reason", "shown", "state_of"]
+__all__ = ["InputError", "check_size", "faults_of", "file_state", "nearest", "os_error_text", "read_bytes", "shown"]
 
 
-LARGEST_TEXT = 1_000_000  # bytes: five times what as many segments as there may be take
+LARGEST_TEXT = 1_000_000  # bytes: five times a file of the largest number of segments
 
 
 class InputError(ValueError):
-    """Input from outside that cannot be used, said in one line: ``FILE: KEY.PATH: must be in BOUND UNIT; got VALUE``.
+    """Invalid input, in one line: ``FILE: KEY.PATH: must be in BOUND UNIT; got VALUE``.
 
-    file: as the user named it. key: path of the key inside the file, such as ``segments[0].length``; "" for the file
-    as a whole. problem: what is wrong.
+    file: as the user typed it. key: path of the key in the file, such as ``segments[0].length``; "" for the whole file.
+    problem: limit and value.
     """
 
     def __init__(self, file: str | PathLike[str], key: str, problem: str) -> None:
@@ -32,7 +32,7 @@ class InputError(ValueError):
 
 @contextmanager
 def faults_of(path: str | PathLike[str], key: str) -> Iterator[None]:
-    """Say of what file and key a bad value is, unless that was said where it was noticed."""
+    """Turn a TypeError or ValueError into an InputError with file and key; an InputError passes unchanged."""
     try:
         yield
     except InputError:
@@ -41,12 +41,12 @@ def faults_of(path: str | PathLike[str], key: str) -> Iterator[None]:
         raise InputError(path, key, str(error)) from None
 
 
-def state_of(path: Path) -> os.stat_result:
-    """Size and time of a file; InputError if it is none, before it is opened: a pipe would wait for whoever writes."""
+def file_state(path: Path) -> os.stat_result:
+    """Size and time of a file; InputError if it is not a regular file (opening a pipe would block)."""
     try:
         state = path.stat()
     except OSError as error:
-        raise InputError(path, "", f"cannot be read: {reason(error)}") from None
+        raise InputError(path, "", f"cannot be read: {os_error_text(error)}") from None
     if not stat.S_ISREG(state.st_mode):
         kind = "a folder" if stat.S_ISDIR(state.st_mode) else "a pipe or a device"
         raise InputError(path, "", f"must be a file; got {kind}")
@@ -54,20 +54,20 @@ def state_of(path: Path) -> os.stat_result:
 
 
 def check_size(path: Path, most: int) -> None:
-    """InputError if a file cannot be found, or holds more than ``most`` bytes."""
-    if (size := state_of(path).st_size) > most:
+    """InputError if a file does not exist or has more than ``most`` bytes."""
+    if (size := file_state(path).st_size) > most:
         raise InputError(path, "", f"must be a file of at most {most / 1e6:g} MB; got {size / 1e6:.9g}")
 
 
 def read_bytes(path: Path, most: int) -> bytes:
-    """The bytes of a file; InputError if it cannot be read, or holds more than ``most``."""
+    """The bytes of a file; InputError if it cannot be read or has more than ``most``."""
     check_size(path, most)
     try:
         return path.read_bytes()
     except OSError as error:
-        raise InputError(path, "", f"cannot be read: {reason(error)}") from None
+        raise InputError(path, "", f"cannot be read: {os_error_text(error)}") from None
 
 
-def reason(error: OSError) -> str:
-    """Why the system refused a file."""
+def os_error_text(error: OSError) -> str:
+    """The operating system's message for a failed file operation."""
     return error.strerror or type(error).__name__

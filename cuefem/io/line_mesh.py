@@ -1,4 +1,4 @@
-"""Cues as line meshes for other programs, through meshio: a cell for each segment, its fields as cell data."""
+"""Cues as line meshes (.vtu) for other programs: one cell per segment, its fields as cell data."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cuefem.quantity.fields import quantities
 
 
 def save_line_mesh(cue: Cue, path: Path) -> None:
-    """Write a cue as .vtu, points along x from tip to butt, m; SI cell data, in which 0 stands for nothing given."""
+    """Write a cue as .vtu, points along x from tip to butt, m; cell data in SI units, 0 for an absent value."""
     data: dict[str, list[Any]] = {}
     for prefix, kind, things in (
         ("", Segment, cue.segments),

@@ -1,4 +1,4 @@
-"""A measured cue as a folder: the drawing, measured.toml with what was measured, and a CSV for each long series."""
+"""A measured cue as a folder: the drawing, measured.toml with the measurements, and a CSV for each long series."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from typing import Any
 
 from scipy.io import wavfile
 
-from cuefem.io import InputError, load, write_whole_folder
-from cuefem.io.assumed import assumed_in, in_words
+from cuefem.io import InputError, load, write_folder_atomically
+from cuefem.io.assumed import assumptions_of_tables, in_words
 from cuefem.io.cells import read_text
 from cuefem.io.errors import faults_of, nearest, read_bytes, shown
-from cuefem.io.schema import build, choices, joined, mark_of, types_of, unknown_key
-from cuefem.io.toml import OF_GAME, game_of, left_out, read_tables, scene_of_tables
+from cuefem.io.schema import build, key_path, mark_of, member_types, types_of, unknown_key
+from cuefem.io.toml import GAME_KEYS, game_of, missing_keys, read_tables, scene_from_tables
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Setup, Tone
 from cuefem.measurements.pendulum import Pendulum
@@ -34,17 +34,19 @@ MEASURED = "measured.toml"
 DRAWINGS = ("cue.toml", "cue.csv")
 SCENE_KEYS = ("cue", "game", "ball", "tip", "stroke", "effects")
 OWN_KEYS = ("name", "source", "prior")
-READINGS: dict[str, type] = {"recording": Recording, "pendulum": Pendulum}  # from which measurements are made
-LONGEST, LARGEST_SOUND = 120.0, 100_000_000  # s, bytes of a recording: as long, two channels at 96 kHz in 32 bits
+READINGS: dict[str, type] = {"recording": Recording, "pendulum": Pendulum}  # tables that yield measurements
+LONGEST, LARGEST_SOUND = 120.0, 100_000_000  # s, bytes of a recording: 120 s of two channels at 96 kHz and 32 bits
 TEMPLATE = ("README.md", "added_mass.csv", "cue.toml", MEASURED, "squirt.csv")
 
 _COLUMN = re.compile(r"\s*([a-z_]+)\s*(?:\[([^\]]+)\])?\s*")
 
 
 def load_measured(folder: Path) -> tuple[MeasuredCue, list[str]]:
-    """The measured cue of a folder, and what its files leave to defaults; InputError if they cannot be used."""
+    """Load the measured cue of a folder, and the assumptions for its drawing; InputError for invalid files."""
     if not folder.is_dir():
-        raise InputError(folder, "", "must be the folder of a measured cue (`--template` makes one); got no folder")
+        raise InputError(
+            folder, "", "must be the folder of a measured cue (create one with `--template`); got no folder"
+        )
     path = folder / MEASURED
     tables = read_tables(path) if path.exists() else {}
     known = [*OWN_KEYS, *SCENE_KEYS, *MEASUREMENT_TYPES, *READINGS]
@@ -54,20 +56,20 @@ def load_measured(folder: Path) -> tuple[MeasuredCue, list[str]]:
     scene, notes = _scene(folder, path, tables)
     measurements = (*_measurements(folder, path, tables), *_readings(folder, path, tables, scene))
     priors = tuple(_priors(path, tables, scene))
-    name, source = (_words(path, tables, key) for key in ("name", "source"))
+    name, source = (_text(path, tables, key) for key in ("name", "source"))
     with faults_of(path, ""):
         made = MeasuredCue(name or folder.resolve().name, scene, measurements, priors, source)
     return made, [*notes, *_examples(folder)]
 
 
 def write_template(folder: Path) -> None:
-    """Make a folder with the files of a measured cue, to be filled in; InputError if it exists."""
+    """Create a folder with example files of a measured cue; InputError if it exists."""
 
-    def put(temporary: Path) -> None:
+    def write(temporary: Path) -> None:
         for name in TEMPLATE:
             (temporary / name).write_text(_example(name), encoding="utf-8")
 
-    write_whole_folder(folder, put)
+    write_folder_atomically(folder, write)
 
 
 def _example(name: str) -> str:
@@ -76,13 +78,13 @@ def _example(name: str) -> str:
 
 
 def _examples(folder: Path) -> list[str]:
-    """That files of the template still hold its made-up numbers."""
+    """A note on files that are unchanged from the template."""
     there = [name for name in TEMPLATE[1:] if (folder / name).is_file()]
     left = [name for name in there if read_text(folder / name) == _example(name)]
     return [f"{', '.join(left)} as in the template, whose numbers are examples: replace them"] if left else []
 
 
-def _words(path: Path, tables: dict[str, Any], key: str) -> str:
+def _text(path: Path, tables: dict[str, Any], key: str) -> str:
     value = tables.get(key, "")
     if not isinstance(value, str):
         raise InputError(path, key, f"must be text; got {shown(value)}")
@@ -90,29 +92,26 @@ def _words(path: Path, tables: dict[str, Any], key: str) -> str:
 
 
 def _scene(folder: Path, path: Path, tables: dict[str, Any]) -> tuple[Scene, list[str]]:
-    """The scene, and what its files leave to defaults: what they do not say of ball, tip, stroke and effects is that of
-    the game, pool where none is named."""
+    """The scene, and the assumptions for it: ball, tip, stroke and effects default to those of the game, or of pool."""
     parts = {key: tables[key] for key in SCENE_KEYS if key in tables}
     if "cue" not in parts:
         there = next((name for name in DRAWINGS if (folder / name).exists()), None)
         if there is None:
-            raise InputError(folder, "", f"must hold the shaft's drawing, {' or '.join(DRAWINGS)}; got none")
+            raise InputError(folder, "", f"must contain the shaft's drawing, {' or '.join(DRAWINGS)}; got none")
         parts["cue"] = there
-    told = {*OF_GAME, "effects"} & {*parts}
-    if not told or left_out(parts) == ["stroke.offset"]:  # every measurement has its own offset
+    present = {*GAME_KEYS, "effects"} & {*parts}
+    if not present or missing_keys(parts) == ["stroke.offset"]:  # every measurement has its own offset
         parts["game"] = game_of(parts, path)
-    scene = scene_of_tables(parts, path, _drawing)
+    scene = scene_from_tables(parts, path, _drawing)
     if scene.lumped is not None:
-        raise InputError(path, "cue", "must be a cue of segments, which can be measured; got a lumped cue")
-    return scene, in_words(assumed_in(parts, folder, scene, {"offset": None}))
+        raise InputError(path, "cue", "must be a cue of segments; got a lumped cue")
+    return scene, in_words(assumptions_of_tables(parts, folder, scene, {"offset": None}))
 
 
 def _drawing(path: Path) -> Any:
     drawing = load(path)
     if isinstance(drawing, Scene):
-        raise InputError(
-            path, "cue", "must be absent here: this file is the drawing; ball and tip stand in " + MEASURED
-        )
+        raise InputError(path, "cue", "must be absent: this file is the drawing; ball and tip belong in " + MEASURED)
     return drawing
 
 
@@ -137,13 +136,13 @@ def _tables(path: Path, tables: dict[str, Any], key: str) -> list[dict[str, Any]
 
 
 def _rows(path: Path, tables: dict[str, Any], key: str, kind: type[Any]) -> Iterator[Any]:
-    """What the tables [[key]] say."""
+    """The objects of the tables [[key]]."""
     for i, row in enumerate(_tables(path, tables, key)):
-        yield build(kind, row, file=str(path), key=joined(key, i))
+        yield build(kind, row, file=str(path), key=key_path(key, i))
 
 
 def _readings(folder: Path, path: Path, tables: dict[str, Any], scene: Scene) -> Iterator[Measurement]:
-    """What pendulum tests and recordings measure: end masses, and one tone for each mode that sounds."""
+    """Measurements from pendulum tests and recordings: end masses, and one tone for each mode in the recordings."""
     for pendulum in _rows(path, tables, "pendulum", Pendulum):
         yield pendulum.end_mass
     tones: list[Tone] = []
@@ -163,18 +162,18 @@ def _sound(path: Path) -> tuple[Any, float]:
     content = read_bytes(path, LARGEST_SOUND)
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", wavfile.WavFileWarning)  # what phones write beside the sound
+            warnings.simplefilter("ignore", wavfile.WavFileWarning)  # for chunks of metadata that phones add
             rate, samples = wavfile.read(io.BytesIO(content))
     except (ValueError, TypeError, ArithmeticError, MemoryError, struct.error, UnboundLocalError) as error:
-        detail = "" if isinstance(error, UnboundLocalError) else f" ({error})"  # no data in it
+        detail = "" if isinstance(error, UnboundLocalError) else f" ({error})"  # raised for a file without data
         raise InputError(path, "", f"must be a .wav file of sound{detail}") from None
     if samples.size == 0 or not 0 < len(samples) <= LONGEST * rate:
-        raise InputError(path, "", f"must last {LONGEST:g} s at most, and hold a sound; got {len(samples)} samples")
+        raise InputError(path, "", f"must last at most {LONGEST:g} s and contain samples; got {len(samples)} samples")
     return samples.reshape(len(samples), -1).astype(float), float(rate)
 
 
 def _series(path: Path, kind: type) -> Iterator[Measurement]:
-    """The measurements of a CSV: a column a key, with its unit in the heading; empty cells are left out."""
+    """The measurements of a CSV: one column per key, its unit in the heading; empty cells are skipped."""
     lines = list(enumerate(read_text(path).splitlines(), start=1))
     rows = [(i, next(csv.reader([line]))) for i, line in lines if line.strip() and not line.lstrip().startswith("#")]
     if not rows:
@@ -183,7 +182,7 @@ def _series(path: Path, kind: type) -> Iterator[Measurement]:
     columns = [_column(path, first, heading, kind) for heading in headings]
     for line, cells in others:
         if len(cells) != len(columns):
-            raise InputError(path, f"line {line}", f"must have {len(columns)} cells, as the headings; got {len(cells)}")
+            raise InputError(path, f"line {line}", f"must have {len(columns)} cells, one per heading; got {len(cells)}")
         filled = [(*column, cell.strip()) for column, cell in zip(columns, cells, strict=True) if cell.strip()]
         table = {name: _cell(cell, unit, types_of(kind)[name]) for name, unit, cell in filled}
         yield build(kind, table, file=str(path), key=f"line {line}")
@@ -204,22 +203,22 @@ def _column(path: Path, line: int, heading: str, kind: type) -> tuple[str, str]:
 
 
 def _cell(cell: str, unit: str, hint: Any) -> Any:
-    """What a cell says, as a table of the file would: a text with its unit, a number, or words."""
+    """The value of a cell as in a TOML file: a text with its unit, a number, or text."""
     if unit:
         return f"{cell} {unit}"
     with suppress(ValueError):
-        return int(cell) if int in choices(hint) else float(cell) if mark_of(hint) else cell
+        return int(cell) if int in member_types(hint) else float(cell) if mark_of(hint) else cell
     return cell
 
 
 def _priors(path: Path, tables: dict[str, Any], scene: Scene) -> Iterator[Prior]:
-    """The [[prior]] tables: low and high are in the unit of the parameter that they name."""
+    """The [[prior]] tables; low and high have the unit of the parameter."""
     for i, row in enumerate(_tables(path, tables, "prior")):
-        key, name, read = joined("prior", i), row.get("name"), dict(row)
+        key, name, read = key_path("prior", i), row.get("name"), dict(row)
         with faults_of(path, key):
             known = parameter(name) if isinstance(name, str) else None
             unit = known.quantity(scene).unit if known and {"low", "high"} & {*row} else ""
         for end in [end for end in ("low", "high") if known and end in row]:
-            with faults_of(path, joined(key, end)):
+            with faults_of(path, key_path(key, end)):
                 read[end] = Quantity(unit, "(0, inf)").read(row[end])
         yield build(Prior, read, file=str(path), key=key)

@@ -14,7 +14,7 @@ from cuefem.scene.default_scene import usual_scene
 
 
 class Preset(NamedTuple):
-    """A ready file: its path from the folder of `meshes`, its name, its game."""
+    """An example file: its path from the data folder, its name, its game."""
 
     file: str
     name: str
@@ -35,7 +35,7 @@ PRESETS = (
     Preset("studies/scenes/clay_on_shaft.toml", "Pool: 11 g of clay on the shaft", "pool"),
 )
 
-# By what they are called in a sentence: the first is what the others, and a person's own cue, are compared with.
+# By their names in sentences; other cues are compared with the first.
 SCALE = {
     "plain maple": "meshes/pool_maple.toml",
     "low deflection": "meshes/pool_hollow.toml",
@@ -44,20 +44,20 @@ SCALE = {
 
 
 def opened(preset: Preset) -> Scene:
-    """The scene of a ready file."""
+    """The scene of an example file."""
     scene: Any = load(folder() / preset.file)
     return usual_scene(scene, preset.game) if isinstance(scene, Cue) else scene
 
 
 @cache
 def ready_cues() -> dict[str, Cue]:
-    """The reference cues among which a verdict places a cue, from the most squirt to less."""
+    """The reference cues of a verdict, in order of decreasing squirt."""
     cues: dict[str, Any] = {name: load(folder() / file) for name, file in SCALE.items()}
     return cues
 
 
 def ready_cue(name: str) -> bytes | None:
-    """The content of a reference cue file of this name."""
+    """The content of the reference cue file of this name; None for another name."""
     path = folder() / "meshes" / Path(name).name
     known = {Path(preset.file).name for preset in PRESETS if preset.file.startswith("meshes/")}
     return path.read_bytes() if Path(name).name in known and path.is_file() else None

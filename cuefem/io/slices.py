@@ -1,8 +1,8 @@
-"""A closed surface of triangles, sliced across its long axis into the round sections of a shaft.
+"""Round sections of a shaft from slices of a closed surface of triangles, normal to its long axis.
 
-A slice of a polyhedron is a polygon; its area and second moments are exact (Green's theorem). A round section of the
-same area and second moment has diameters D and d: A = pi/4 (D^2 - d^2), I = pi/64 (D^4 - d^4). All lengths are in the
-unit of the points.
+A slice of a polyhedron is a polygon; its area and second moments are exact (Green's theorem). The round section of the
+same area and second moment has diameters D and d: A = pi/4 (D^2 - d^2), I = pi/64 (D^4 - d^4). Lengths are in the unit
+of the points.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from cuefem.cue import Array
 
 Index = NDArray[np.intp]
 
-SAME = 1e-6  # of the length: points closer than this are one
-FLAT = 1e-5  # of the length: a triangle that reaches less far along the axis lies across it
-UPRIGHT = 1e-3  # rad: an axis nearer than this to x, y or z is that
-SLENDER = 5.0  # length over the widest diameter, at least
+SAME = 1e-6  # of the length: closer points are merged
+FLAT = 1e-5  # of the length: a triangle of a smaller axial extent is a flat face
+UPRIGHT = 1e-3  # rad: an axis closer to x, y or z is replaced by it
+SLENDER = 5.0  # least ratio of length to largest diameter
 ROUND = 0.02  # relative: the two second moments of a section, and that of a solid section against a disc's
 STRAIGHT = 0.02  # of the diameter: the centre of a section off the axis
-TOLERANCE = 5e-5  # of the widest diameter: how near the straight pieces keep to the slices
-SLICES, LEVELS = 50, 1000  # at least so many slices; so many levels of corners are cut each at its place
+TOLERANCE = 5e-5  # of the widest diameter: error of the straight pieces
+SLICES, LEVELS = 50, 1000  # least number of slices; largest number of corner levels that are all cut
 
 
 class ConicalPiece(NamedTuple):
-    """A conical piece: its length, outer diameters and bores at its two ends, tip side first."""
+    """A conical piece: length, outer diameters and bores at both ends, tip side first."""
 
     length: float
     outer: tuple[float, float]
@@ -38,9 +38,11 @@ class ConicalPiece(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Sliced:
-    """A shaft from a surface. pieces: from the thinner end to the thicker. facets: how far corners of slices lie
-    outside the round outline: half a true diameter lies between the round one and that."""
+class SectionedShaft:
+    """A shaft from a surface. pieces: from the thinner end to the thicker.
+
+    facets: largest distance of a corner outside the circle of its slice; the true radius lies between the two.
+    """
 
     pieces: tuple[ConicalPiece, ...]
     facets: float
@@ -52,8 +54,8 @@ class Sliced:
 
 
 class Slice(NamedTuple):
-    """A polygon across the axis: area, second moments about its centre (yy, zz, yz), its centre (y, z), the number of
-    its outlines outside and inside, and the largest distance of a corner from the axis."""
+    """A polygon normal to the axis: area, second moments about its centroid (yy, zz, yz), centroid (y, z), numbers of
+    outer and inner outlines, and the largest distance of a corner from the axis."""
 
     area: float
     moments: tuple[float, float, float]
@@ -63,7 +65,7 @@ class Slice(NamedTuple):
 
     @property
     def diameters(self) -> tuple[float, float]:
-        """Outer diameter and bore of the round section; one outline alone is a disc of the same area."""
+        """Outer diameter and bore of the equivalent round section; for one outline a disc of the same area."""
         if self.area <= 0:
             return 0.0, 0.0
         difference = 4 * self.area / np.pi
@@ -75,8 +77,8 @@ class Slice(NamedTuple):
 
 @dataclass(frozen=True)
 class Surface:
-    """A closed surface with its axis along x from 0 to ``length``. points: (n, 3). triangles: (m, 3), turned
-    outwards. flats: positions of the faces across the axis, both ends among them."""
+    """A closed surface with its axis along x from 0 to ``length``. points: (n, 3). triangles: (m, 3), oriented
+    outwards. flats: positions of the faces normal to the axis, both ends included."""
 
     points: Array
     triangles: Index
@@ -94,14 +96,14 @@ class Surface:
         return np.array([along.min(axis=1), along.max(axis=1)])
 
     def cut(self, x: float, *, butt_side: bool = True) -> Slice:
-        """The slice at ``x``; at a face across the axis that on its butt side, or on its tip side."""
+        """The slice at ``x``; at a flat face, the slice on its butt side or on its tip side."""
         low, high = self._spans
         triangles = self.triangles[(low <= x) & (x < high) if butt_side else (low < x) & (x <= high)]
         along = self.points[triangles, 0]
         beyond = along > x if butt_side else along >= x
         if not len(triangles):
             return Slice(0.0, (0.0, 0.0, 0.0), (0.0, 0.0), (0, 0), 0.0)
-        alone = np.argmax(beyond == (beyond.sum(axis=1) == 1)[:, None], axis=1)  # the corner that lies by itself
+        alone = np.argmax(beyond == (beyond.sum(axis=1) == 1)[:, None], axis=1)  # the corner that is alone on its side
         rows = np.arange(len(triangles))
         a, b, c = (triangles[rows, (alone + k) % 3] for k in range(3))
         leaving = beyond[rows, alone]  # the outline runs a-b to a-c where the corner lies beyond, else back
@@ -116,13 +118,13 @@ class Surface:
 
 
 def _chains(a: Index, first: Index, last: Index) -> Index:
-    """Which outline each side of the polygon belongs to: one side ends at the cut edge where the next begins."""
+    """Label of the outline of each side of the polygon: a side ends at the cut edge where the next one starts."""
     count = 1 + max(int(part.max()) for part in (a, first, last))
     begins, ends = (np.minimum(a, other) * count + np.maximum(a, other) for other in (first, last))
     following = np.empty(len(a), dtype=np.intp)
     following[np.argsort(ends, kind="stable")] = np.argsort(begins, kind="stable")
     label = np.arange(len(a))
-    for _ in range(len(a).bit_length()):  # the least label spreads twice as far along the outline every time
+    for _ in range(len(a).bit_length()):  # pointer doubling: the least label spreads twice as far each time
         label = np.minimum(label, label[following])
         following = following[following]
     return np.unique(label, return_inverse=True)[1].ravel()
@@ -145,12 +147,12 @@ def _polygon(start: Array, end: Array, outline: Index) -> Slice:
     return Slice(area, (yy, zz, yz), (y, z), outlines, reach)
 
 
-def surface(points: Array, triangles: Index) -> Surface:
-    """The surface laid along x, its thinner end at 0; ValueError if it is not closed or not slender."""
+def aligned_surface(points: Array, triangles: Index) -> Surface:
+    """The surface rotated to the x axis, its thinner end at 0; ValueError if it is not closed or not slender."""
     size = float(np.ptp(points, axis=0).max()) if len(points) else 0.0
     if not np.isfinite(size) or size <= 0 or not len(triangles):
         raise ValueError("must be a surface with finite corners and some extent; got none")
-    points, triangles = _welded(points, triangles, SAME * size)
+    points, triangles = _merged(points, triangles, SAME * size)
     _check_closed(points, triangles)
     points = points - points.mean(axis=0)
     volumes, corners = _tetrahedra(points, triangles)
@@ -163,7 +165,7 @@ def surface(points: Array, triangles: Index) -> Surface:
     volumes, corners = _tetrahedra(points, triangles)
     total = corners.sum(axis=1)
     spread = np.einsum("i,ij,ik->jk", volumes, total, total) + np.einsum("i,ilj,ilk->jk", volumes, corners, corners)
-    return _laid(points @ _frame(spread), triangles)
+    return _aligned(points @ _frame(spread), triangles)
 
 
 def _tetrahedra(points: Array, triangles: Index) -> tuple[Array, Array]:
@@ -172,8 +174,8 @@ def _tetrahedra(points: Array, triangles: Index) -> tuple[Array, Array]:
     return np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6, corners
 
 
-def _welded(points: Array, triangles: Index, near: float) -> tuple[Array, Index]:
-    """Points that are one made one (formats repeat them, rounded), and triangles left without extent dropped."""
+def _merged(points: Array, triangles: Index, near: float) -> tuple[Array, Index]:
+    """Coincident points merged (formats repeat them, rounded) and degenerate triangles removed."""
     _, first, label = np.unique(np.round(points / near), axis=0, return_index=True, return_inverse=True)
     triangles = label.ravel()[triangles].astype(np.intp)
     whole = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
@@ -186,16 +188,18 @@ def _check_closed(points: Array, triangles: Index) -> None:
     edges, met = np.unique(np.minimum(first, last) * count + np.maximum(first, last), return_counts=True)
     loose = edges[met % 2 == 1]
     if len(loose):
-        place = ", ".join(f"{v:.6g}" for v in points[loose[0] // count])
-        raise ValueError(f"must be closed, two triangles at every edge; got {len(loose)} loose edges, one at ({place})")
+        position = ", ".join(f"{v:.6g}" for v in points[loose[0] // count])
+        raise ValueError(
+            f"must be closed, two triangles at every edge; got {len(loose)} loose edges, one at ({position})"
+        )
     there, back = (np.sort(a * count + b) for a, b in ((first, last), (last, first)))
     if not np.array_equal(there, back):
         wrong = int(np.sum(there != back))
-        raise ValueError(f"must have its triangles turned the same way; got about {wrong} edges run one way alone")
+        raise ValueError(f"must have consistently oriented triangles; got about {wrong} edges in one direction only")
 
 
 def _frame(spread: Array) -> Array:
-    """Columns: the long axis and two across it, right-handed."""
+    """Columns: the long axis and two transverse ones, right-handed."""
     axis = np.linalg.eigh(spread)[1][:, -1]
     nearest = int(np.argmax(np.abs(axis)))
     straight = np.eye(3)[nearest] * np.sign(axis[nearest])
@@ -206,8 +210,8 @@ def _frame(spread: Array) -> Array:
     return np.column_stack([axis, side, np.cross(axis, side)])
 
 
-def _laid(points: Array, triangles: Index) -> Surface:
-    """With the thinner end at x = 0, and the corners of faces across the axis all at one x."""
+def _aligned(points: Array, triangles: Index) -> Surface:
+    """With the thinner end at x = 0, and all corners of each flat face at the same x."""
     points[:, 0] -= points[:, 0].min()
     length = float(points[:, 0].max())
     widest = 2 * float(np.sqrt((points[:, 1:] ** 2).sum(axis=1)).max())
@@ -226,35 +230,35 @@ def _laid(points: Array, triangles: Index) -> Surface:
     ends = laid.cut(0.01 * length).area, laid.cut(0.99 * length).area
     if ends[0] <= ends[1]:
         return laid
-    turned = points * [-1, -1, 1] + [length, 0, 0]  # about z: a rotation, so that outside stays outside
+    turned = points * [-1, -1, 1] + [length, 0, 0]  # about z: a rotation preserves the orientation
     return replace(laid, points=turned, flats=length - levels[::-1])
 
 
-def sliced(body: Surface, tolerance: float = TOLERANCE) -> Sliced:
-    """The straight pieces that keep within ``tolerance`` (of the widest diameter) of the slices of a surface.
+def section_shaft(body: Surface, tolerance: float = TOLERANCE) -> SectionedShaft:
+    """The conical pieces that approximate the slices of a surface to ``tolerance`` (of the widest diameter).
 
-    Slices lie at every level of corners, between the levels, and at least `SLICES` in all; jumps at the faces across
-    the axis are kept. ValueError if a section is not one round piece about the axis.
+    Slices are at every level of corners and between the levels, at least `SLICES`; steps at flat faces are preserved.
+    ValueError if a section is not one round piece about the axis.
     """
     pieces: list[ConicalPiece] = []
     facets = 0.0
     widest = 2 * float(np.sqrt((body.points[:, 1:] ** 2).sum(axis=1)).max())
     for start, stop in itertools.pairwise(body.flats):
-        x = _places(body, float(start), float(stop))
+        x = _cut_positions(body, float(start), float(stop))
         cuts = [body.cut(p, butt_side=p < stop) for p in x]
-        for place, cut in zip(x, cuts, strict=True):
-            _check_round(cut, place, widest)
+        for position, cut in zip(x, cuts, strict=True):
+            _check_round(cut, position, widest)
         diameters = np.array([cut.diameters for cut in cuts])
         diameters[:, 0] = np.maximum(diameters[:, 0], tolerance * widest)  # an apex
-        for i, j in itertools.pairwise(2 * corners(x[::2], diameters[::2], tolerance * widest)):
+        for i, j in itertools.pairwise(2 * polyline_corners(x[::2], diameters[::2], tolerance * widest)):
             (outer0, bore0), (outer1, bore1) = diameters[i].tolist(), diameters[j].tolist()
             pieces.append(ConicalPiece(float(x[j] - x[i]), (outer0, outer1), (bore0, bore1)))
         facets = max(facets, *(float(cut.reach - d / 2) for cut, d in zip(cuts, diameters[:, 0], strict=True)))
-    return Sliced(tuple(pieces), facets)
+    return SectionedShaft(tuple(pieces), facets)
 
 
-def _places(body: Surface, start: float, stop: float) -> Array:
-    """Where a stretch without jumps is cut: levels and more, and half-way between any two of them."""
+def _cut_positions(body: Surface, start: float, stop: float) -> Array:
+    """Positions of the slices between two steps: corner levels, points between them, and all midpoints."""
     levels = np.unique(body.points[:, 0])
     levels = levels[(levels > start) & (levels < stop)]
     near = FLAT * body.length
@@ -267,13 +271,13 @@ def _places(body: Surface, start: float, stop: float) -> Array:
     return np.insert(x, np.arange(1, len(x)), (x[:-1] + x[1:]) / 2)
 
 
-def _check_round(cut: Slice, place: float, widest: float) -> None:
-    where = f"at {place:.6g} from its thinner end"
+def _check_round(cut: Slice, position: float, widest: float) -> None:
+    where = f"at {position:.6g} from its thinner end"
     if cut.area <= (FLAT * widest) ** 2:
         return  # an apex
     outside, inside = cut.outlines
     if outside != 1:
-        raise ValueError(f"must be one piece across the axis; got {outside} outlines {where}")
+        raise ValueError(f"must have one outer outline in every section; got {outside} outlines {where}")
     off = float(np.hypot(*cut.centre))
     if off > STRAIGHT * widest:
         bound = f"its sections' centres within {100 * STRAIGHT:g} % of the width of one axis"
@@ -289,17 +293,17 @@ def _check_round(cut: Slice, place: float, widest: float) -> None:
         raise ValueError(f"must be round, its second moment within {100 * ROUND:g} % of a disc's; got {got}")
 
 
-def corners(x: Array, diameters: Array, near: float) -> Index:
-    """Indices of the points that straight pieces need to keep within ``near`` of all of them (Douglas and Peucker)."""
-    kept, open_ends = {0, len(x) - 1}, [(0, len(x) - 1)]
+def polyline_corners(x: Array, diameters: Array, near: float) -> Index:
+    """Indices of the points of a polyline within ``near`` of all points (Douglas and Peucker)."""
+    corners, open_ends = {0, len(x) - 1}, [(0, len(x) - 1)]
     while open_ends:
         i, j = open_ends.pop()
         off = _offsets(x[i : j + 1], diameters[i : j + 1])
         worst = int(np.argmax(off))
         if off[worst] > near:
-            kept.add(i + worst)
+            corners.add(i + worst)
             open_ends += [(i, i + worst), (i + worst, j)]
-    return np.array(sorted(kept), dtype=np.intp)
+    return np.array(sorted(corners), dtype=np.intp)
 
 
 def _offsets(x: Array, diameters: Array) -> Array:

@@ -1,5 +1,7 @@
-"""Studies as TOML: a base scene by its path, [[vary]] tables, and what is asked: responses of a sweep, a scatter with
-[tolerances], or the [objective] of an optimum. The handbook's chapter on studies has every key."""
+"""Studies as TOML: the path of a base scene, [[vary]] tables, and responses, [tolerances] or an [objective].
+
+The handbook's chapter on studies lists every key.
+"""
 
 from __future__ import annotations
 
@@ -17,9 +19,9 @@ from cuefem.design.study_result import StudyResult, found
 from cuefem.design.sweep import pool_of
 from cuefem.io import load_stroke, replaced_segments
 from cuefem.io.assumed import assumed, in_words
-from cuefem.io.errors import InputError, faults_of, shown, state_of
-from cuefem.io.profile import SHAPES
-from cuefem.io.schema import build, joined
+from cuefem.io.errors import InputError, faults_of, file_state, shown
+from cuefem.io.profile import SHAPE_EXTENSIONS
+from cuefem.io.schema import build, key_path
 from cuefem.io.store import SqliteStore
 from cuefem.io.toml import game_of, named_material, read_tables
 from cuefem.parameters.parameter import paths, quantity_at
@@ -27,7 +29,7 @@ from cuefem.quantity.fields import Quantity
 from cuefem.scene import Resolution, Scene, Stroke
 from cuefem.scene.default_scene import KIM, usual_scene
 
-OFFSET = 0.3  # b/R, of a cue alone with the game "kim"
+OFFSET = 0.3  # b/R, for a cue without a scene and the game "kim"
 FACTOR = Quantity("", "(0, inf)")
 _SEGMENT = re.compile(r"((?:cue\.)?segments)\[(\d+)\]")
 Texts = str | tuple[str, ...]
@@ -35,7 +37,7 @@ Texts = str | tuple[str, ...]
 
 @dataclass(frozen=True)
 class VaryTable:
-    """[[vary]] as it is in a file: values, or low and high, or middle and sd, in the unit of the field."""
+    """[[vary]] of a file: values, or low and high, or middle and sd, in the unit of the field."""
 
     path: Texts
     name: str = ""
@@ -57,7 +59,7 @@ class VaryTable:
 
 @dataclass(frozen=True)
 class LimitTable:
-    """[[limit]] as it is in a file."""
+    """[[limit]] of a file."""
 
     response: str
     low: Any = None
@@ -66,7 +68,7 @@ class LimitTable:
 
 @dataclass(frozen=True)
 class ObjectiveTable:
-    """[objective]: the response to make least or largest."""
+    """[objective] of a file: the response to minimize or maximize."""
 
     minimize: str | None = None
     maximize: str | None = None
@@ -78,7 +80,7 @@ class ObjectiveTable:
 
 @dataclass(frozen=True)
 class TolerancesTable:
-    """[tolerances] as it is in a file; what is left out is that of `Scatter`."""
+    """[tolerances] of a file; the defaults are those of `Scatter`."""
 
     count: int = Scatter.count
     seed: int = Scatter.seed
@@ -88,7 +90,7 @@ class TolerancesTable:
 
 @dataclass(frozen=True)
 class StudyTable:
-    """A study's file: all its keys."""
+    """All keys of a study's file."""
 
     scene: str
     vary: tuple[VaryTable, ...]
@@ -103,31 +105,31 @@ class StudyTable:
     def __post_init__(self) -> None:
         kinds = [name for name in ("objective", "tolerances", "sample") if getattr(self, name) is not None]
         if len(kinds) > 1:
-            raise ValueError(f"StudyTable.{kinds[1]} must be left out beside [{kinds[0]}]: a study is of one kind")
+            raise ValueError(f"StudyTable.{kinds[1]} must be left out beside [{kinds[0]}]: a study has one kind")
         if self.objective and self.responses:
-            raise ValueError("StudyTable.responses must be left out beside [objective], which asks")
+            raise ValueError("StudyTable.responses must be left out beside [objective], which names the response")
         if self.limit and not self.objective:
-            raise ValueError("StudyTable.limit must stand beside an [objective]")
+            raise ValueError("StudyTable.limit needs an [objective]")
 
 
 def load_study(path: str | PathLike[str]) -> Study | Scatter | Problem:
-    """Load a study from a TOML file; InputError in one line if it is not valid.
+    """Load a study from a TOML file; InputError for an invalid one.
 
-    [objective] makes it a `Problem`, [tolerances] a `Scatter`, else it is a `Study`. A base that is a cue alone gets
-    the default stroke of the ``game`` that the file names. Values carry their units as text.
+    [objective] makes it a `Problem`, [tolerances] a `Scatter`, else it is a `Study`. A base without a stroke (a cue)
+    gets the default stroke of the file's ``game``. Values are texts with units.
     """
     path = Path(path)
-    told = build(StudyTable, _study_tables(path), file=str(path), key="")
-    base = _base(told, path)
-    vary = _varied(told, base, path)
-    if told.objective is not None:
-        return _problem(told, told.objective, base, vary, path)
-    responses = tuple(_response(text, path, joined("responses", i)) for i, text in enumerate(told.responses))
+    tables = build(StudyTable, _study_tables(path), file=str(path), key="")
+    base = _base(tables, path)
+    vary = _varied(tables, base, path)
+    if tables.objective is not None:
+        return _problem(tables, tables.objective, base, vary, path)
+    responses = tuple(_response(text, path, key_path("responses", i)) for i, text in enumerate(tables.responses))
     with faults_of(path, ""):
-        study = Study(base, vary, responses, told.sample, told.resolution)
-    if told.tolerances is None:
+        study = Study(base, vary, responses, tables.sample, tables.resolution)
+    if tables.tolerances is None:
         return study
-    tolerances = told.tolerances
+    tolerances = tables.tolerances
     correlations = _correlations(tolerances.correlations, path)
     with faults_of(path, "tolerances"):
         return Scatter(study, correlations, tolerances.groups, tolerances.count, tolerances.seed)
@@ -145,27 +147,27 @@ def study(
     Parameters
     ----------
     what : str, path, Study, Scatter or Problem
-        A study's file (.toml), as `cuefem study` takes it (`cuefem guide study`), or the object that it means.
+        A study's file (.toml; see `cuefem guide study`), or the object that `load_study` makes of it.
     store : str or path, optional
-        A file (.sqlite) for the designs, from which an interrupted or edited study goes on. An optimum has none.
+        A file (.sqlite) for the designs, with which an interrupted or edited study resumes. Not for an optimum.
     workers : int, optional
-        Number of worker processes; by default none is started.
+        Number of worker processes; by default none.
     dask : str, optional
-        The address of a Dask scheduler to work on instead, such as "tcp://host:8786".
+        The address of a Dask scheduler, instead of workers, such as "tcp://host:8786".
 
     Returns
     -------
     StudyResult
         ``designs`` and ``responses`` are arrays by name, in the SI ``units``; ``best`` has the best design by response,
-        ``spread`` mean, standard deviation and quantiles; ``optimum`` and ``drivers`` what such studies have besides.
-        ``cf.frames.of_study`` makes a pandas frame of it.
+        ``spread`` mean, standard deviation and quantiles; ``optimum`` and ``drivers`` are for such studies only.
+        ``cf.frames.of_study`` converts it to a pandas frame.
 
     Raises
     ------
     ValueError
-        If the file is no study, a response does not exist, or no design is within the limits.
+        If the file is not a study, a response does not exist, or no design is within the limits.
     RuntimeError
-        If worker processes die time after time, or the scheduler is gone.
+        If worker processes die repeatedly, or the connection to the scheduler is lost.
 
     Examples
     --------
@@ -173,38 +175,40 @@ def study(
     >>> from cuefem.design import Response, Span, Study, Vary
     >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 700.0)),), 0.42)
     >>> tip = Vary(("cue.segments[0].tip_diameter",), Span(0.011, 0.013, count=3), name="tip")
-    >>> found = cf.study(Study(cf.Scene(cue), (tip,), (Response("tip_stiffness"), Response("shaft_mass"))))
-    >>> found
+    >>> result = cf.study(Study(cf.Scene(cue), (tip,), (Response("tip_stiffness"), Response("shaft_mass"))))
+    >>> result
     StudyResult(sweep of 3 designs)
       tip_stiffness: 649.4 N/m, tip 13 mm
       shaft_mass: 107.5 ± 5.8 g, mean ± sd
-    >>> found.designs["tip"], found.units["tip"]
+    >>> result.designs["tip"], result.units["tip"]
     (array([0.011, 0.012, 0.013]), 'm')
     """
-    asked = load_study(what) if isinstance(what, str | PathLike) else what
-    if isinstance(asked, Problem):
+    problem = load_study(what) if isinstance(what, str | PathLike) else what
+    if isinstance(problem, Problem):
         if store or workers or dask:
-            raise ValueError("an optimum takes no store, workers or dask: its designs follow from one another")
-        return found(asked)
-    designs = asked.designs if isinstance(asked, Scatter) else asked
+            raise ValueError("an optimum takes no store, workers or dask: it computes one design after the other")
+        return found(problem)
+    designs = problem.designs if isinstance(problem, Scatter) else problem
     with ExitStack() as opened:
         pool = opened.enter_context(pool_of(workers, dask))
-        kept = opened.enter_context(SqliteStore(store, designs)) if store else None
-        return found(asked, store=kept, pool=pool)
+        stored = opened.enter_context(SqliteStore(store, designs)) if store else None
+        return found(problem, store=stored, pool=pool)
 
 
-def _problem(told: StudyTable, objective: ObjectiveTable, base: Scene, vary: tuple[Vary, ...], path: Path) -> Problem:
+def _problem(tables: StudyTable, objective: ObjectiveTable, base: Scene, vary: tuple[Vary, ...], path: Path) -> Problem:
     aim = "maximize" if objective.minimize is None else "minimize"
-    asked = _response(getattr(objective, aim), path, joined("objective", aim))
-    limits = tuple(_limit(table, path, joined("limit", i)) for i, table in enumerate(told.limit))
+    response = _response(getattr(objective, aim), path, key_path("objective", aim))
+    limits = tuple(_limit(table, path, key_path("limit", i)) for i, table in enumerate(tables.limit))
     with faults_of(path, ""):
-        return Problem(base, vary, asked, limits, told.resolution, largest=aim == "maximize")
+        return Problem(base, vary, response, limits, tables.resolution, largest=aim == "maximize")
 
 
-def _limit(told: LimitTable, path: Path, key: str) -> Limit:
-    response = _response(told.response, path, joined(key, "response"))
-    unit, sides = Quantity(response.unit), {"low": told.low, "high": told.high}
-    bounds = {side: _number(value, unit, path, joined(key, side)) for side, value in sides.items() if value is not None}
+def _limit(tables: LimitTable, path: Path, key: str) -> Limit:
+    response = _response(tables.response, path, key_path(key, "response"))
+    unit, sides = Quantity(response.unit), {"low": tables.low, "high": tables.high}
+    bounds = {
+        side: _number(value, unit, path, key_path(key, side)) for side, value in sides.items() if value is not None
+    }
     with faults_of(path, key):
         return Limit(response, **bounds)
 
@@ -212,11 +216,11 @@ def _limit(told: LimitTable, path: Path, key: str) -> Limit:
 def _correlations(listed: tuple[Any, ...], path: Path) -> dict[tuple[str, str], float]:
     correlations = dict[tuple[str, str], float]()
     for i, entry in enumerate(listed):
-        key = joined("tolerances.correlations", i)
+        key = key_path("tolerances.correlations", i)
         match entry:
             case [str(one), str(other), int() | float() as r] if not isinstance(r, bool):
                 if (one, other) in correlations:
-                    raise InputError(path, key, f"must be said once; got {one} and {other} twice")
+                    raise InputError(path, key, f"must be the only one of its pair; got {one} and {other} twice")
                 correlations[one, other] = float(r)
             case _:
                 raise InputError(path, key, f"must be [name, name, number]; got {shown(entry)}")
@@ -224,34 +228,34 @@ def _correlations(listed: tuple[Any, ...], path: Path) -> dict[tuple[str, str], 
 
 
 def _study_tables(path: Path) -> dict[str, Any]:
-    """The tables of a study's file; a drawing or a scene given instead of a study is rejected as one."""
-    state_of(path)
-    shape = path.suffix.lower() in SHAPES
+    """The tables of a study's file; InputError for a drawing or a scene."""
+    file_state(path)
+    shape = path.suffix.lower() in SHAPE_EXTENSIONS
     tables = {} if shape else read_tables(path)
     if shape or (not {"scene", "vary"} & set(tables) and {"segments", "cue"} & set(tables)):
         what = "a drawing of a shaft" if shape or "segments" in tables else "a scene"
-        wanted = f'must be a study, with scene = "{path.name}" and [[vary]] tables, as studies/sweeps/bore.toml is'
-        raise InputError(path, "", f"{wanted}; got {what}")
+        expected = f'must be a study, with scene = "{path.name}" and [[vary]] tables, such as studies/sweeps/bore.toml'
+        raise InputError(path, "", f"{expected}; got {what}")
     return tables
 
 
-def _base(told: StudyTable, path: Path) -> Scene:
-    base, game = load_stroke(path.parent / told.scene), _game(told, path)
+def _base(tables: StudyTable, path: Path) -> Scene:
+    base, game = load_stroke(path.parent / tables.scene), _game(tables, path)
     if not isinstance(base, Scene):
         with faults_of(path, "game"):
             return Scene(base, stroke=Stroke(offset=OFFSET)) if game == KIM else usual_scene(base, game)
-    if told.game is not None:
-        problem = f"must be left out: {told.scene} is a scene, which has its own ball, tip and stroke"
+    if tables.game is not None:
+        problem = f"must be left out: {tables.scene} is a scene, which has its own ball, tip and stroke"
         raise InputError(path, "game", f"{problem}; got {shown(game)}")
     return base
 
 
-def _game(told: StudyTable, path: Path) -> str:
-    return game_of({} if told.game is None else {"game": told.game}, path)
+def _game(tables: StudyTable, path: Path) -> str:
+    return game_of({} if tables.game is None else {"game": tables.game}, path)
 
 
 def assumed_base(path: Path, base: Scene) -> list[str]:
-    """What the file that a study names leaves to defaults, in words."""
+    """Texts of the assumptions for the base file of a study."""
     tables = read_tables(path)
     return in_words(assumed(path.parent / tables["scene"], base, {k: tables[k] for k in ("game",) if k in tables}))
 
@@ -261,16 +265,18 @@ def _response(text: str, path: Path, key: str) -> Response:
         return Response.of(text)
 
 
-def _varied(told: StudyTable, base: Scene, path: Path) -> tuple[Vary, ...]:
-    """What varies, by the [[vary]] tables of a study."""
-    replaced = replaced_segments(path.parent / told.scene, base)
-    grid = told.objective is None and told.tolerances is None and told.sample is None
-    return tuple(_vary(table, base, replaced, path, i, grid) for i, table in enumerate(told.vary))
+def _varied(tables: StudyTable, base: Scene, path: Path) -> tuple[Vary, ...]:
+    """The [[vary]] tables of a study as objects."""
+    replaced = replaced_segments(path.parent / tables.scene, base)
+    grid = tables.objective is None and tables.tolerances is None and tables.sample is None
+    return tuple(_vary(table, base, replaced, path, i, grid) for i, table in enumerate(tables.vary))
 
 
 def _in_scene(text: str, base: Scene, replaced: int, path: Path, key: str) -> str:
-    """A path whose segments count as in the cue's file, as a path of the scene, in which a `LeatherTip` replaces the
-    first ``replaced`` segments."""
+    """Convert a path with the segment numbers of the cue's file to those of the scene.
+
+    In the scene a `LeatherTip` replaces the first ``replaced`` segments.
+    """
     match = _SEGMENT.match(text)
     if match is None or not base.cue.segments:
         return text
@@ -287,19 +293,19 @@ def _in_scene(text: str, base: Scene, replaced: int, path: Path, key: str) -> st
     return f"{match[1]}[{i - replaced}]{text[match.end() :]}"
 
 
-def _vary(told: VaryTable, base: Scene, replaced: int, path: Path, i: int, grid: bool) -> Vary:
-    key = joined("vary", i)
+def _vary(tables: VaryTable, base: Scene, replaced: int, path: Path, i: int, grid: bool) -> Vary:
+    key = key_path("vary", i)
     fields, givers = (
-        tuple(_in_scene(text, base, replaced, path, joined(key, name)) for text in _listed(texts))
-        for name, texts in (("path", told.path), ("taken_from", told.taken_from))
+        tuple(_in_scene(text, base, replaced, path, key_path(key, name)) for text in _listed(texts))
+        for name, texts in (("path", tables.path), ("taken_from", tables.taken_from))
     )
-    wanted = _wanted(fields, base, told, path, joined(key, "path"))
-    drawn = _range(told, wanted, path, key, grid)
-    name = told.name or ", ".join(_listed(told.path))
+    quantity = _quantity(fields, base, tables, path, key_path(key, "path"))
+    drawn = _range(tables, quantity, path, key, grid)
+    name = tables.name or ", ".join(_listed(tables.path))
     with faults_of(path, key):
-        made = Vary(fields, drawn, name, told.factor, told.shift, givers)
+        made = Vary(fields, drawn, name, tables.factor, tables.shift, givers)
     for name, check in (("path", made.unit), ("taken_from", made.givers)):
-        with faults_of(path, joined(key, name)):
+        with faults_of(path, key_path(key, name)):
             check(base)
     return made
 
@@ -308,54 +314,60 @@ def _listed(texts: Texts) -> tuple[str, ...]:
     return (texts,) if isinstance(texts, str) else texts
 
 
-def _wanted(texts: tuple[str, ...], base: Scene, told: VaryTable, path: Path, key: str) -> Quantity | None:
-    """Unit and bounds of the values; None for names of materials."""
+def _quantity(texts: tuple[str, ...], base: Scene, tables: VaryTable, path: Path, key: str) -> Quantity | None:
+    """Unit and bounds of the values; None for materials."""
     with faults_of(path, key):
         field = next((place for text in texts for place in paths(base, text)), None)
         if field is None:
             raise ValueError("must name a field; got none")
     value = quantity_at(base, field)
-    if value is None or not (told.factor or told.shift):
+    if value is None or not (tables.factor or tables.shift):
         return value
-    return FACTOR if told.factor else Quantity(value.unit)
+    return FACTOR if tables.factor else Quantity(value.unit)
 
 
-def _range(told: VaryTable, wanted: Quantity | None, path: Path, key: str, grid: bool) -> Levels | Span | Normal:
-    """The range of the one pair of keys that a table has."""
+def _range(tables: VaryTable, quantity: Quantity | None, path: Path, key: str, grid: bool) -> Levels | Span | Normal:
+    """The range by the keys of a table: values, low and high, or middle and sd."""
     pairs = (("values", "values"), ("low", "high"), ("middle", "sd"))
-    asked = [pair for pair in pairs if any(getattr(told, name) is not None for name in pair)]
-    if len(asked) != 1:
-        got = ", and ".join(" and ".join(dict.fromkeys(pair)) for pair in asked) or "none of them"
+    present = [pair for pair in pairs if any(getattr(tables, name) is not None for name in pair)]
+    if len(present) != 1:
+        got = ", and ".join(" and ".join(dict.fromkeys(pair)) for pair in present) or "none of them"
         raise InputError(path, key, f"must have values, or low and high, or middle and sd; got {got}")
-    if told.values is not None:
-        levels = tuple(_level(v, wanted, path, joined(joined(key, "values"), i)) for i, v in enumerate(told.values))
-        with faults_of(path, joined(key, "values")):
+    if tables.values is not None:
+        levels = tuple(
+            _level(v, quantity, path, key_path(key_path(key, "values"), i)) for i, v in enumerate(tables.values)
+        )
+        with faults_of(path, key_path(key, "values")):
             return Levels(levels)
-    normal, logarithmic = told.low is None and told.high is None, told.spacing == "logarithmic"
-    if wanted is None:
-        raise InputError(path, key, "must have values, names of materials, which have no low and high, and no middle")
+    normal, logarithmic = tables.low is None and tables.high is None, tables.spacing == "logarithmic"
+    if quantity is None:
+        raise InputError(
+            path, key, "must have values, a list of material names: materials have no low and high, or middle and sd"
+        )
     if normal and grid:
-        raise InputError(path, key, "middle and sd are of numbers, drawn by a sample: give [sample] or [tolerances]")
-    for name in (*asked[0], *(["count"] if grid else [])):
-        if getattr(told, name) is None:
-            raise InputError(path, joined(key, name), f"must be given, beside {' and '.join(asked[0])}; got nothing")
-    deviation = Quantity("" if logarithmic else wanted.unit, "(0, inf)")
-    marks = zip(asked[0], (wanted, deviation if normal else wanted), strict=True)
-    first, last = (_number(getattr(told, name), mark, path, joined(key, name)) for name, mark in marks)
+        raise InputError(path, key, "middle and sd need random designs: give [sample] or [tolerances]")
+    for name in (*present[0], *(["count"] if grid else [])):
+        if getattr(tables, name) is None:
+            raise InputError(
+                path, key_path(key, name), f"must be given, beside {' and '.join(present[0])}; got nothing"
+            )
+    deviation = Quantity("" if logarithmic else quantity.unit, "(0, inf)")
+    marks = zip(present[0], (quantity, deviation if normal else quantity), strict=True)
+    first, last = (_number(getattr(tables, name), mark, path, key_path(key, name)) for name, mark in marks)
     with faults_of(path, key):
         if normal:
             return Normal(first, last, logarithmic)
-        return Span(first, last, 1 if told.count is None else told.count, logarithmic)
+        return Span(first, last, 1 if tables.count is None else tables.count, logarithmic)
 
 
-def _number(value: Any, wanted: Quantity, path: Path, key: str) -> float:
+def _number(value: Any, quantity: Quantity, path: Path, key: str) -> float:
     with faults_of(path, key):
-        return wanted.read(value)
+        return quantity.read(value)
 
 
-def _level(value: Any, wanted: Quantity | None, path: Path, key: str) -> float | str:
-    if wanted is not None:
-        return _number(value, wanted, path, key)
+def _level(value: Any, quantity: Quantity | None, path: Path, key: str) -> float | str:
+    if quantity is not None:
+        return _number(value, quantity, path, key)
     if not isinstance(value, str):
         raise InputError(path, key, f"must be the name of a material (see `cuefem parts`); got {shown(value)}")
     named_material(value, path, key)

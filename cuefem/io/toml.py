@@ -1,7 +1,6 @@
-"""Cues and scenes as TOML: `[[segments]]` at the top is a cue, `[cue]` (a table, or the path of a cue file) a scene.
+"""Reader of cues and scenes as TOML: `[[segments]]` makes a cue, `[cue]` (a table or a path) a scene.
 
-What a scene leaves out of ball, tip, stroke and effects is that of its `game`, which is pool where none is named.
-A scene with a `[striker]` is a strike from the side (`SideStrike`).
+Ball, tip, stroke and effects default to those of the scene's `game`, by default pool. `[striker]` makes a side strike.
 """
 
 from __future__ import annotations
@@ -19,20 +18,20 @@ from cuefem.cue.materials import material
 from cuefem.effects import Effect, effect_kinds
 from cuefem.io.cells import read_text
 from cuefem.io.errors import InputError, faults_of, nearest, shown
-from cuefem.io.schema import build, joined, keys_of, table, unknown_key
-from cuefem.io.shelf import assembled
+from cuefem.io.schema import build, key_path, keys_of, table, unknown_key
+from cuefem.io.shelf import assemble_shaft
 from cuefem.parameters.parts import with_shaft_mass
 from cuefem.quantity.fields import MOST_SEGMENTS, Quantity, check_fields, quantities
 from cuefem.scene import Scene, Stroke
 from cuefem.scene.default_scene import DEFAULT_GAME, GAMES, KIM, STROKES, usual_scene
 
-# What a scene's tables leave to its game.
-OF_GAME = {"ball": ("mass", "radius"), "tip": ("restitution", "friction"), "stroke": ("speed", "offset")}
+# Keys of a scene that default to those of its game.
+GAME_KEYS = {"ball": ("mass", "radius"), "tip": ("restitution", "friction"), "stroke": ("speed", "offset")}
 
 
 @dataclass(frozen=True)
 class ShaftParts:
-    """The parts of which a cue is put together instead of [[segments]]."""
+    """The parts of a cue from the catalogue, instead of [[segments]]."""
 
     shaft: str
     material: str | None = None
@@ -42,7 +41,7 @@ class ShaftParts:
 
 @dataclass(frozen=True)
 class Accuracy:
-    """How exact a command's answer shall be: rtol, relative; no part of the scene."""
+    """The requested accuracy of a command: rtol, relative; not a part of the scene."""
 
     rtol: Annotated[float, Quantity("", "(0, 1)")]
 
@@ -62,39 +61,37 @@ def read_tables(path: Path) -> dict[str, Any]:
 
 
 def _unquoted(text: str, error: str) -> str:
-    """A hint if the line of a syntax error has a value with a unit and no quotes."""
+    """A hint if the line of a syntax error has an unquoted value with a unit."""
     match = re.search(r"at line (\d+)", error)
     line = text.splitlines()[int(match[1]) - 1] if match else ""
     return "; put a value with a unit in quotes" if re.search(r"=\s*[-+.\d]+\s*[^\W\d_]", line) else ""
 
 
 def load_toml(path: Path, cue_file: Callable[[Path], Cue]) -> Cue | Scene | SideStrike:
-    """The cue or scene of a TOML file; ``cue_file`` loads the cue file that a scene names."""
+    """Load the cue or scene of a TOML file; ``cue_file`` loads the cue file of a scene."""
     tables = read_tables(path)
     if {"segments", "shaft"} & {*tables} and "cue" not in tables:
         return _cue(tables, path, "")
     if "striker" in tables:
         return _side_strike(tables, path, cue_file)
-    return scene_of_tables(tables, path, cue_file)
+    return scene_from_tables(tables, path, cue_file)
 
 
-def drawn_cue(path: Path, cue_file: Callable[[Path], Cue]) -> Cue | LumpedCue:
-    """The cue of a scene's file as it is drawn, with the leather that a `LeatherTip` replaces in the scene."""
+def cue_as_drawn(path: Path, cue_file: Callable[[Path], Cue]) -> Cue | LumpedCue:
+    """The drawn cue of a scene's file, with the leather that a `LeatherTip` replaces in the scene."""
     return _scene_cue(read_tables(path)["cue"], path, cue_file)
 
 
 def load_cue(path: Path) -> Cue:
-    """The cue of a TOML file that must not be a scene."""
+    """Load the cue of a TOML file; InputError for a scene."""
     tables = read_tables(path)
     if "cue" in tables:
-        raise InputError(
-            path, "cue", "must be absent here: a scene's cue is a cue file, with [[segments]]; got a scene"
-        )
+        raise InputError(path, "cue", "must be absent: the cue of a scene is a cue file with [[segments]]; got a scene")
     return _cue(tables, path, "")
 
 
 def load_accuracy(path: str | Path) -> float | None:
-    """The relative accuracy rtol that a scene file's [accuracy] table asks for; None if there is no such table."""
+    """The relative accuracy rtol of a scene file's [accuracy] table; None without one."""
     path = Path(path)
     tables = read_tables(path) if path.suffix.lower() == ".toml" else {}
     return _accuracy(tables.get("accuracy"), path)
@@ -110,49 +107,49 @@ def _cue(table: dict[str, Any], path: Path, key: str) -> Cue:
     segments = table.get("segments")
     if isinstance(segments, list):
         if len(segments) > MOST_SEGMENTS:
-            problem = f"must hold at most {MOST_SEGMENTS} segments; got {len(segments)}"
-            raise InputError(path, joined(key, "segments"), problem)
-        within = joined(key, "segments")
-        table = {**table, "segments": [_segment(s, path, joined(within, i)) for i, s in enumerate(segments)]}
+            problem = f"must have at most {MOST_SEGMENTS} segments; got {len(segments)}"
+            raise InputError(path, key_path(key, "segments"), problem)
+        within = key_path(key, "segments")
+        table = {**table, "segments": [_segment(s, path, key_path(within, i)) for i, s in enumerate(segments)]}
     weight = table.get("shaft_mass")
     without = {name: value for name, value in table.items() if name != "shaft_mass"}
     cue = build(Cue, without, file=str(path), key=key)
     if weight is None:
         return cue
-    with faults_of(path, joined(key, "shaft_mass")):
+    with faults_of(path, key_path(key, "shaft_mass")):
         return with_shaft_mass(cue, Quantity("kg", "(0, 100]").read(weight))
 
 
 def _of_parts(cue_table: dict[str, Any], path: Path, key: str) -> dict[str, Any]:
-    """A cue's table whose shaft is one of the shelf, with its segments instead of the parts that it names."""
-    told = {name: cue_table[name] for name in keys_of(ShaftParts) if name in cue_table}
-    parts = build(ShaftParts, told, file=str(path), key=key)
+    """A cue's table with the segments of a shaft of the catalogue instead of its parts."""
+    named = {name: cue_table[name] for name in keys_of(ShaftParts) if name in cue_table}
+    parts = build(ShaftParts, named, file=str(path), key=key)
     if "segments" in cue_table:
-        raise InputError(path, joined(key, "segments"), "must be left out beside shaft, which draws them")
-    with faults_of(path, joined(key, "shaft")):
-        cue = assembled(parts.shaft, load_cue, material=parts.material, ferrule=parts.ferrule, bore=parts.bore)
-    rest = {name: value for name, value in cue_table.items() if name not in told}
+        raise InputError(path, key_path(key, "segments"), "must be left out beside shaft, which defines them")
+    with faults_of(path, key_path(key, "shaft")):
+        cue = assemble_shaft(parts.shaft, load_cue, material=parts.material, ferrule=parts.ferrule, bore=parts.bore)
+    rest = {name: value for name, value in cue_table.items() if name not in named}
     return rest | {"segments": [*cue.segments]}
 
 
 def _segment(table: Any, path: Path, key: str) -> Any:
-    """A segment's table with the names of materials looked up."""
+    """A segment's table with materials instead of their names."""
     if not isinstance(table, dict):
         return table
     named = {name: table[name] for name in ("material", "core") if isinstance(table.get(name), str)}
-    return table | {name: named_material(value, path, joined(key, name)) for name, value in named.items()}
+    return table | {name: named_material(value, path, key_path(key, name)) for name, value in named.items()}
 
 
 def named_material(name: str, path: Path, key: str) -> Material:
-    """A material of the table; InputError that suggests similar names if no material has this one."""
+    """The material of this name; InputError with similar names if there is none."""
     try:
         return material(name)
     except ValueError as error:
         raise InputError(path, key, f"{error}; see `cuefem parts`") from None
 
 
-def scene_of_tables(tables: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> Scene:
-    """A scene from a file's tables; ``cue_file`` loads the cue file that it names."""
+def scene_from_tables(tables: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> Scene:
+    """A scene from a file's tables; ``cue_file`` loads its cue file."""
     _check_keys(tables, [*keys_of(Scene), "game", "accuracy"], path)
     if "cue" not in tables:
         raise InputError(path, "cue", "must be given: [[segments]] make a cue, [cue] a scene; got neither")
@@ -164,7 +161,7 @@ def scene_of_tables(tables: dict[str, Any], path: Path, cue_file: Callable[[Path
 
 
 def game_of(tables: dict[str, Any], path: Path) -> str:
-    """The game that a file's tables name, or pool."""
+    """The game of a file's tables, by default pool."""
     game = tables.get("game", DEFAULT_GAME)
     if game not in STROKES:
         hint = nearest(game, STROKES) if isinstance(game, str) else ""
@@ -172,11 +169,11 @@ def game_of(tables: dict[str, Any], path: Path) -> str:
     return str(game)
 
 
-def left_out(tables: dict[str, Any]) -> list[str]:
-    """The keys that a scene's tables leave to its game."""
+def missing_keys(tables: dict[str, Any]) -> list[str]:
+    """The missing keys of a scene's tables, which default to those of the game."""
     missing = [
         f"{part}.{name}"
-        for part, names in OF_GAME.items()
+        for part, names in GAME_KEYS.items()
         for name in names
         if not isinstance(tables.get(part, {}), dict) or name not in tables.get(part, {})
     ]
@@ -184,10 +181,7 @@ def left_out(tables: dict[str, Any]) -> list[str]:
 
 
 def _completed(parts: dict[str, Any], game: str, path: Path) -> dict[str, Any]:
-    """The fields of a scene with what they leave out filled in from a game.
-
-    A spring tip and a lumped cue take no leather.
-    """
+    """The fields of a scene, completed from a game; a spring tip and a lumped cue get no leather tip."""
     known, cue, tip = GAMES[game], parts["cue"], parts.get("tip", {})
     if "effects" not in parts and isinstance(cue, LumpedCue):
         parts = parts | {"effects": []}
@@ -195,51 +189,51 @@ def _completed(parts: dict[str, Any], game: str, path: Path) -> dict[str, Any]:
         parts = parts | {"effects": [*known.effects]}
     elif "effects" not in parts:
         with faults_of(path, ""):
-            usual = usual_scene(cue, game)
-        parts = parts | {"cue": usual.cue, "effects": [*usual.effects]}
+            default = usual_scene(cue, game)
+        parts = parts | {"cue": default.cue, "effects": [*default.effects]}
     of_game = known.ball, known.tip_beside(parts["effects"]), Stroke(known.speed, known.offset)
-    for name, usual_part in zip(OF_GAME, of_game, strict=True):
-        told = parts.get(name, {})
-        if isinstance(told, dict):
-            parts = parts | {name: table(usual_part) | told}
+    for name, default_part in zip(GAME_KEYS, of_game, strict=True):
+        in_file = parts.get(name, {})
+        if isinstance(in_file, dict):
+            parts = parts | {name: table(default_part) | in_file}
     return parts
 
 
 def _check_keys(table: dict[str, Any], names: list[str], path: Path) -> None:
     unknown = [name for name in table if name not in names]
-    if unknown:  # a misspelt key first: beside [[segment]], body_mass is not the fault
+    if unknown:  # misspelt keys first: for [[segment]] and body_mass, report segment
         name = next((name for name in unknown if nearest(name, ["segments", *names])), unknown[0])
         raise unknown_key(name, table[name], ["segments", *names], file=str(path), key="")
 
 
 def _parts(tables: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> dict[str, Any]:
-    """The fields of a scene: its tables, with the cue and the effects made."""
+    """The fields of a scene: its tables, with cue and effects as objects."""
     _accuracy(tables.get("accuracy"), path)
     parts = {name: value for name, value in tables.items() if name != "accuracy"}
     parts["cue"] = _scene_cue(tables["cue"], path, cue_file)
     effects = tables.get("effects")
     if isinstance(effects, list):
-        parts["effects"] = [_effect(e, path, joined("effects", i)) for i, e in enumerate(effects)]
+        parts["effects"] = [_effect(e, path, key_path("effects", i)) for i, e in enumerate(effects)]
     return parts
 
 
 def _side_strike(tables: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> SideStrike:
-    """A strike from the side, which [striker] makes."""
+    """A side strike from tables with [striker]."""
     _check_keys(tables, keys_of(SideStrike), path)
     if "cue" not in tables:
         raise InputError(path, "cue", "must be given: a table or the path of a cue file; got nothing")
     parts = _parts(tables, path, cue_file)
     if isinstance(parts["cue"], LumpedCue):
-        raise InputError(path, "cue", "must be a cue of segments: a lumped cue has no side; got mass and end_mass")
+        raise InputError(path, "cue", "must be a cue of segments for a side strike; got a lumped cue")
     return build(SideStrike, parts, file=str(path), key="")
 
 
 def _check_effects(scene: Scene, path: Path) -> None:
-    """Refuse what only the cue can say: an effect at a position off it."""
+    """InputError for an effect at a position off the cue."""
     for i, effect in enumerate(scene.effects):
         if scene.lumped is None:
             try:
-                effect.check_on(scene.shaft, joined("effects", i))
+                effect.check_on(scene.shaft, key_path("effects", i))
             except ValueError as error:
                 key, _, problem = str(error).partition(" ")
                 raise InputError(path, key, problem) from None
@@ -250,7 +244,7 @@ def _scene_cue(cue: Any, path: Path, cue_file: Callable[[Path], Cue]) -> Cue | L
         try:
             return cue_file(path.parent / cue)
         except InputError as error:
-            if error.key:  # a fault inside the cue file, which has its own key
+            if error.key:  # an error inside the cue file
                 raise
             raise InputError(path, "cue", str(error)) from None
     if not isinstance(cue, dict):
@@ -264,31 +258,31 @@ def _effect(table: Any, path: Path, key: str) -> Effect:
     names = ", ".join(kinds)
     if not isinstance(table, dict) or "type" not in table:
         got = "nothing" if isinstance(table, dict) else shown(table)
-        raise InputError(path, joined(key, "type"), f"must be one of {names}; got {got}")
+        raise InputError(path, key_path(key, "type"), f"must be one of {names}; got {got}")
     name = table["type"]
     if not isinstance(name, str) or name not in kinds:
         problem = f"must be one of {names}; got {shown(name)}{nearest(str(name), kinds)}"
-        raise InputError(path, joined(key, "type"), problem)
+        raise InputError(path, key_path(key, "type"), problem)
     rest = {field: value for field, value in table.items() if field != "type"}
     return build(kinds[name], _spelt_out(kinds[name], rest, path, key), file=str(path), key=key)
 
 
 def _spelt_out(kind: type[Effect], table: dict[str, Any], path: Path, key: str) -> dict[str, Any]:
-    """The table with the fields instead of each word that stands for several, such as the name of a leather."""
+    """The table with the fields instead of a name for several fields, such as the hardness of a leather."""
     marks = {name: mark for name, mark, *_ in quantities(kind)}  # type: ignore[arg-type]
     for word, names in kind.named.items():
         wanted = f"must be one of {', '.join(names)}"
         meant = [*dict.fromkeys(name for values in names.values() for name in values)]
-        here, first = joined(key, word), meant[0]
+        here, first = key_path(key, word), meant[0]
         if word not in table:
             if first not in table and set(table) <= {*keys_of(kind)}:  # a misspelt key is reported first
-                raise InputError(path, here, f"{wanted}, or {first} be given in its place; got nothing")
+                raise InputError(path, here, f"{wanted}, or give {first} instead; got nothing")
             continue
         spelt = table[word].casefold() if isinstance(table[word], str) else table[word]
         if not isinstance(spelt, str) or spelt not in names:
             raise InputError(path, here, f"{wanted}; got {shown(spelt)}{nearest(str(spelt), names)}")
         if twice := [name for name in meant if name in table]:
-            raise InputError(path, joined(key, twice[0]), f"must be left out beside {word}, which gives it")
+            raise InputError(path, key_path(key, twice[0]), f"must be left out beside {word}, which sets it")
         rest = {name: value for name, value in table.items() if name != word}
         table = rest | {name: marks[name].written(value) for name, value in names[spelt].items()}
     return table

@@ -1,4 +1,4 @@
-"""A cue or scene as the text of a TOML file; loaded when one is written, for reading takes another library."""
+"""Writer of cues and scenes as TOML; a separate module, since tomlkit is only needed for writing."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from cuefem.scene import Scene
 
 
 def toml_text(thing: Cue | Scene | SideStrike) -> str:
-    """A cue or scene as TOML that `load_toml` reads back exactly."""
+    """A cue or scene as TOML text that `load_toml` converts back exactly."""
     document = tomlkit.document()
-    if isinstance(thing, Scene) and not thing.effects:  # left out, they would be those of pool
+    if isinstance(thing, Scene) and not thing.effects:  # without the key they would be those of pool
         document.add("effects", tomlkit.array())
     for name, value in table(thing).items():
         document.add(name, _item(value))
@@ -24,7 +24,7 @@ def toml_text(thing: Cue | Scene | SideStrike) -> str:
 
 
 def _item(value: Any, *, inside: bool = False) -> Any:
-    """Segments and effects as [[tables]], what lies inside them in one line."""
+    """Segments and effects as [[tables]], their own tables in one line."""
     if isinstance(value, dict):
         made = tomlkit.inline_table() if inside else tomlkit.table()
         for name, inner in value.items():

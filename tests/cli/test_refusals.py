@@ -58,9 +58,9 @@ strike shaft.toml --leather sofd | got 'sofd'
 strike shaft.toml --restitution 0.05 | Tip.restitution must be in [0.1, 1] beside LeatherTip
 modes shaft.toml --tip-height 40mm | got 40 mm (options: --tip-height, --dome)
 strike shaft.toml --leather 1MPa | (--tip-height, --leather, --speed)
-modes lumped.toml --material ash | is a lumped cue, which has no material
-modes good.toml --begins ferrule | has its own leather: begins is for .csv
-modes bare.csv --begins leather | begins must be "ferrule" or the leather with its height
+modes lumped.toml --material ash | is a lumped cue, without material
+modes good.toml --begins ferrule | has its own leather: begins is only for .csv
+modes bare.csv --begins leather | begins must be "ferrule" or leather with a height
 modes bare.csv --begins 'leather 40 mm' | begins must have at most 30 mm of leather
 modes bare.csv --ferrule melamine | ferrule must be a length and a material
 modes bare.csv --ferrule '25 mm cheese' | no material is called 'cheese'

@@ -105,7 +105,7 @@ FILES = [
     (STUDY, '"cue.segments[0].butt_bore"', '"ball.mass"', "path must name fields of one unit"),
     (STUDY, '"ash"]', '"ahs"]', "vary[2].values[1]: no material is called 'ahs'"),
     (STUDY, '"ash"]', "5]", "vary[2].values[1]: must be the name of a material"),
-    (STUDY, 'values = ["hard maple", "ash"]', 'low = "ash"', "vary[2]: must have values, names"),
+    (STUDY, 'values = ["hard maple", "ash"]', 'low = "ash"', "vary[2]: must have values, a list"),
     (STUDY, "count = 16", 'count = 16\nvalues = ["1 mm"]', "or middle and sd; got values, and low and high"),
     (STUDY, 'values = ["0.8 ms", "1.2 ms"]', "", "or middle and sd; got none of them"),
     (STUDY, "count = 16", 'count = 16\nspacing = "log"', "must be linear or logarithmic"),
@@ -131,17 +131,17 @@ FILES = [
     (STRUCK, RANGE, 'middle = "9 mm"\nsd = "1 mm"\nspacing = "logarithmic"', "vary[0].sd: must be a bare number"),
     (SCATTER, '[["E", "density", 0.4]]', "0.4", "tolerances.correlations: must be an array"),
     (SCATTER, "0.4]]", '"high"]]', "correlations[0]: must be [name, name, number]"),
-    (SCATTER, "0.4]]", '0.4], ["E", "density", 0.3]]', "must be said once; got E and density twice"),
+    (SCATTER, "0.4]]", '0.4], ["E", "density", 0.3]]', "must be the only one of its pair; got E and density"),
     (SCATTER, 'wood = ["E", "density"]', 'wood = "E"', "tolerances.groups.wood: must be an array"),
     (SCATTER, '{ wood = ["E", "density"] }', "5", "tolerances.groups: must be a table"),
-    (SCATTER, "[tolerances]", '[objective]\nminimize = "mass"\n[tolerances]', "a study is of one kind"),
+    (SCATTER, "[tolerances]", '[objective]\nminimize = "mass"\n[tolerances]', "a study has one kind"),
     (SCATTER, 'middle = "12 GPa"', 'middle = "3 GPa"', "designs have no answer: narrow the ranges"),
     (OPTIMUM, 'minimize = "squirt_slope"', 'minimise = "squirt_slope"', "objective.minimise: must be one of the keys"),
     (OPTIMUM, '"tip_stiffness"', '"stiffness"', "limit[0].response: must be one of"),
     (OPTIMUM, LEAST, "", "limit on tip_stiffness must have low <= high, one finite; got -inf and inf"),
     (OPTIMUM, LEAST, "low = 300", "limit[0].low: needs a unit"),
     (OPTIMUM, BETWEEN, 'middle = "5 mm"\nsd = "1 mm"', "bore must have low and high"),
-    (OPTIMUM, '"cue.segments[0].tip_bore"', '"cue.segments[0].material"', "which have no low and high"),
+    (OPTIMUM, '"cue.segments[0].tip_bore"', '"cue.segments[0].material"', "materials have no low and high"),
     (OPTIMUM, OPTIMUM[OPTIMUM.index("[[vary]]") :], "", "vary: must be given, an array of tables"),
 ]
 
@@ -160,7 +160,9 @@ def test_files(tmp_path: Path, good: str, old: str, new: str, message: str) -> N
 )
 def test_a_drawing_or_a_scene_in_the_place_of_a_study(tmp_path: Path, name: str, text: str, what: str) -> None:
     (tmp_path / name).write_text(text)
-    wanted = f'{name}: must be a study, with scene = "{name}" and [[vary]] tables, as studies/sweeps/bore.toml is; got '
+    wanted = (
+        f'{name}: must be a study, with scene = "{name}" and [[vary]] tables, such as studies/sweeps/bore.toml; got '
+    )
     untouched(tmp_path, wanted + what, "study", tmp_path / name)
 
 

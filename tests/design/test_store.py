@@ -169,7 +169,7 @@ def test_edited_study_computes_each_design_once(tmp_path: Path) -> None:
 def test_another_version_computes_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     study = written(tmp_path, GRID)
     assert [told(study)["evaluated"], told(study)["evaluated"]] == [8, 0]
-    monkeypatch.setattr("cuefem.io.store.code", lambda: "another")
+    monkeypatch.setattr("cuefem.io.store.code_digest", lambda: "another")
     assert told(study)["evaluated"] == 8
 
 
@@ -218,7 +218,7 @@ def test_studies_in_one_store_are_read_by_their_names(tmp_path: Path) -> None:
     for name, text in (("grid", GRID), ("quick", STRUCK.replace("count = 150", "count = 16"))):
         said("study", written(tmp_path, text, name=f"{name}.toml"), "--store", store)
     assert [len(rows_of(store, name)) for name in (None, "grid")] == [16, 8]
-    with pytest.raises(InputError, match="must hold a study other; got quick, grid"):
+    with pytest.raises(InputError, match="must contain a study other; got quick, grid"):
         rows_of(store, "other")
 
 
@@ -226,9 +226,9 @@ REFUSED = [
     ("PRAGMA application_id = 7", "must be a store of `cuefem study`; got another database"),
     (
         """UPDATE designs SET answer = replace(answer, '0.0', '0.1') WHERE design = 3""",
-        "is damaged: design 3 is not as",
+        "is damaged: design 3 was altered",
     ),
-    ("UPDATE designs SET answer = (SELECT answer FROM designs WHERE design = 2) WHERE design = 3", "design 3 is not"),
+    ("UPDATE designs SET answer = (SELECT answer FROM designs WHERE design = 2) WHERE design = 3", "design 3 was"),
 ]
 
 

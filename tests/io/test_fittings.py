@@ -1,4 +1,4 @@
-"""What is told beside a drawing (material, ferrule, bore, where it begins) draws what the same columns draw."""
+"""Additions to a drawing by options: material, ferrule, bore, leather front, body mass."""
 
 from pathlib import Path
 
@@ -23,7 +23,7 @@ def shaft(folder: Path, text: str = BARE) -> Path:
 
 
 @given(st.floats(2, 59), st.sampled_from(["abs", "Melamine", "carbon fibre", "brass"]), st.booleans())
-def test_a_ferrule_is_where_it_is_told(length: float, name: str, backwards: bool) -> None:
+def test_ferrule_by_text_has_its_length_and_material(length: float, name: str, backwards: bool) -> None:
     text = f"{name} ferrule {length!r} mm" if backwards else f"{length!r} mm {name}"
     cue = fitted(CONE, ferrule=f"{text}, tenon 8 mm")
     front, behind = cue.segments
@@ -31,7 +31,7 @@ def test_a_ferrule_is_where_it_is_told(length: float, name: str, backwards: bool
     assert (front.material, front.core, behind.material) == (material(name), MAPLE, MAPLE)
     assert cue.length == pytest.approx(0.7, rel=1e-12)
     other = [segment.length for segment in fitted(cue, ferrule="20 mm nylon").segments if segment.core]
-    assert sum(other) == pytest.approx(0.02, rel=1e-9)  # the first is off
+    assert sum(other) == pytest.approx(0.02, rel=1e-9)  # the first ferrule is replaced
     assert fitted(CONE, ferrule=f"{text}, no tenon").segments[0].core is None
 
 
@@ -39,13 +39,13 @@ def test_a_ferrule_is_where_it_is_told(length: float, name: str, backwards: bool
     "text",
     ["6.35 mm wide, 127 mm deep", "127 mm deep, 6.35 mm wide", "1/4 in x 5 in", "5 in by 1/4 in", "6.35 mm × 127 mm"],
 )
-def test_a_bore_as_people_say_it(text: str) -> None:
+def test_bore_by_text_in_common_notations_is_the_same(text: str) -> None:
     front, behind = fitted(CONE, bore=text).segments
     assert (front.length, front.tip_bore, front.butt_bore) == pytest.approx((0.127, 0.00635, 0.00635), rel=1e-9)
     assert behind.tip_bore == 0
 
 
-def test_a_bore_begins_behind_the_tenon_of_a_ferrule() -> None:
+def test_bore_with_ferrule_starts_behind_the_tenon() -> None:
     leather, ferrule, bored, rest = fitted(
         CONE, begins="leather 6 mm", ferrule="1 in melamine", bore="6 mm wide, 100 mm deep"
     ).segments
@@ -55,21 +55,21 @@ def test_a_bore_begins_behind_the_tenon_of_a_ferrule() -> None:
     assert (bored.tip_bore, bored.core, rest.tip_bore) == (0.006, None, 0)
 
 
-def test_the_same_words_change_a_drawing_and_a_scene(tmp_path: Path) -> None:
+def test_load_options_on_drawing_and_scene_agree(tmp_path: Path) -> None:
     drawing = Path("meshes/pool_maple.toml")
-    told = {"material": "ash", "ferrule": "13 mm abs", "bore": "6 mm wide, 100 mm deep"}
-    cue = cf.load(drawing, **told)
+    options = {"material": "ash", "ferrule": "13 mm abs", "bore": "6 mm wide, 100 mm deep"}
+    cue = cf.load(drawing, **options)
     assert isinstance(cue, cf.Cue)
     assert [segment.material for segment in cue.segments[:3]] == [material("leather"), ABS, ASH]
     assert (cue.segments[1].core, cue.segments[2].tip_bore) == (ASH, 0.006)
     scene = tmp_path / "scene.toml"
     cf.save(cf.Scene(cf.load(drawing)), scene)  # type: ignore[arg-type]
-    changed = cf.load(scene, **told)
+    changed = cf.load(scene, **options)
     assert isinstance(changed, cf.Scene)
     assert changed.cue == cue
 
 
-def test_body_mass_of_load_is_that_of_the_option(tmp_path: Path) -> None:
+def test_load_body_mass_equals_the_option(tmp_path: Path) -> None:
     csv, ounces = shaft(tmp_path), 15 * 0.028349523125
     assert [cf.load(csv, body_mass=mass).body_mass for mass in ("15 oz", ounces, 0)] == pytest.approx(
         [ounces, ounces, 0]
@@ -83,8 +83,8 @@ def test_body_mass_of_load_is_that_of_the_option(tmp_path: Path) -> None:
             cf.load(csv, body_mass=bad)
 
 
-def test_a_ferrule_says_what_was_put_inside_it(tmp_path: Path) -> None:
-    told = [
+def test_ferrule_without_tenon_text_reports_the_default_tenon(tmp_path: Path) -> None:
+    assumed = [
         as_json("modes", shaft(tmp_path), "--ferrule", f"25 mm melamine{end}")["assumed"] for end in ("", ", no tenon")
     ]
-    assert ["tenon" in " ".join(each) for each in told] == [True, False]
+    assert ["tenon" in " ".join(each) for each in assumed] == [True, False]

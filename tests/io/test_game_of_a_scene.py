@@ -1,4 +1,4 @@
-"""What a scene file leaves out is that of its game, pool's where none is named; files of before are told so."""
+"""Missing keys of a scene file default to those of its game."""
 
 import warnings
 from dataclasses import replace
@@ -47,19 +47,19 @@ def loaded(folder: Path, text: str) -> cf.Scene:
 
 
 @settings(max_examples=25)
-@given(told=st.sets(st.sampled_from(KEYS)), effects=st.booleans(), game=st.sampled_from([*GAMES]))
-def test_what_is_told_stays_and_the_rest_is_the_games(folder: Path, told, effects, game) -> None:
+@given(present=st.sets(st.sampled_from(KEYS)), effects=st.booleans(), game=st.sampled_from([*GAMES]))
+def test_scene_missing_keys_default_to_the_game(folder: Path, present, effects, game) -> None:
     rows = [f'game = "{game}"', 'cue = "cue.toml"', *(["effects = []"] if effects else [])]
     for part in WHOLE:
-        inside = [f"{name} = {WHOLE[part][name]}" for other, name in sorted(told) if other == part]
+        inside = [f"{name} = {WHOLE[part][name]}" for other, name in sorted(present) if other == part]
         rows += [f"[{part}]", *inside] if inside else []
     found, usual = loaded(folder, "\n".join(rows)), cf.usual_scene(cue_of(folder), game)
-    if effects:  # without waves along the cue the tip has the whole cue's restitution
-        bounce = replace(usual.tip, restitution=GAMES[game].restitution)
-        usual = replace(usual, cue=cue_of(folder), tip=bounce, effects=())
+    if effects:  # without axial waves the tip has the restitution of the whole cue
+        tip = replace(usual.tip, restitution=GAMES[game].restitution)
+        usual = replace(usual, cue=cue_of(folder), tip=tip, effects=())
     values = {"mass": 0.165, "radius": 0.028, "restitution": 0.8, "friction": 0.55, "speed": 2.5, "offset": 0.21}
     for part in WHOLE:
-        changes = {name: values[name] for other, name in told if other == part}
+        changes = {name: values[name] for other, name in present if other == part}
         usual = replace(usual, **{part: replace(getattr(usual, part), **changes)})
     assert found == usual
     cf.save(found, folder / "again.toml")
@@ -68,7 +68,7 @@ def test_what_is_told_stays_and_the_rest_is_the_games(folder: Path, told, effect
         assert cf.load(folder / "again.toml") == found
 
 
-def test_a_tip_that_is_told_as_a_spring_takes_no_leather(folder: Path) -> None:
+def test_scene_with_spring_tip_gets_no_leather(folder: Path) -> None:
     found = loaded(folder, 'game = "pool"\ncue = "cue.toml"\n[tip]\ncontact_time = "1.1 ms"')
     assert [type(effect).__name__ for effect in found.effects] == ["AxialWaves", "GeometricStiffness"]
     assert found.cue == cue_of(folder)

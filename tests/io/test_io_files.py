@@ -1,4 +1,4 @@
-"""Reference files of every kind: what `load` makes of them, exactly (regression)."""
+"""Reference files of every kind load and save exactly (regression)."""
 
 import math
 from dataclasses import replace
@@ -31,7 +31,7 @@ accuracy = { rtol = 1e-4 }
 """
 
 
-def test_scene_file_finds_its_cue_beside_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_load_scene_finds_its_cue_by_relative_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "cues").mkdir()
     (tmp_path / "cues" / "kim.toml").write_text(KIM_TOML)
     (tmp_path / "scene.toml").write_text(SCENE_TOML)
@@ -45,7 +45,7 @@ def test_scene_file_finds_its_cue_beside_it(tmp_path: Path, monkeypatch: pytest.
 PROFILE = "# a shaft\nx [mm],diameter [in]\n10,0.5\n110,0.5\n210,0.5\n\n310,0.6\n410,0.7\n710,0.8\n"
 
 
-def test_lathe_profile_merges_straight_tapers(tmp_path: Path) -> None:
+def test_load_profile_merges_straight_tapers(tmp_path: Path) -> None:
     (tmp_path / "shaft.csv").write_text(PROFILE)
     cue = cf.load(tmp_path / "shaft.csv")
     ash = cf.load(tmp_path / "shaft.csv", material="ash")
@@ -57,7 +57,7 @@ def test_lathe_profile_merges_straight_tapers(tmp_path: Path) -> None:
     assert replace(ash.segments[1], material=cue.segments[1].material) == cue.segments[1]
 
 
-def test_a_mesh_says_what_the_cue_is(tmp_path: Path) -> None:
+def test_save_vtu_contains_the_cue(tmp_path: Path) -> None:
     path = tmp_path / "kim.vtu"
     cf.save(cf.Cue((SEGMENT, replace(SEGMENT, core=MAPLE, kappa=None)), 0.42), path)
     mesh = meshio.vtu.read(path)
@@ -68,7 +68,7 @@ def test_a_mesh_says_what_the_cue_is(tmp_path: Path) -> None:
     assert mesh.cell_data["body_mass"][0].tolist() == [0.42, 0.42]
 
 
-def test_a_saved_drawing_reads_as_one_is_written(tmp_path: Path) -> None:
+def test_save_toml_uses_readable_units_and_names(tmp_path: Path) -> None:
     maple, made_up = material("hard maple"), cf.Material(13.5e9, 1.2e9, 700.0)
     shaft = (cf.Segment(0.0762, 0.0127, 0.0128, made_up, 0.003, 0.003, maple), cf.Segment(0.66, 0.0128, 0.021, maple))
     cf.save(cf.Scene(cf.Cue(shaft, 0.42), effects=(cf.Elevation(math.radians(3)),)), tmp_path / "scene.toml")
@@ -97,7 +97,7 @@ material = "hard maple"
     assert text.endswith('"\n') or not text.endswith("\n\n")
 
 
-def test_saving_over_a_file_replaces_it_or_leaves_it(tmp_path: Path) -> None:
+def test_save_over_file_replaces_it(tmp_path: Path) -> None:
     path = tmp_path / "cue.toml"
     path.write_text("before")
     cf.save(cf.Cue((SEGMENT, SEGMENT)), path)
@@ -114,13 +114,13 @@ def test_saving_over_a_file_replaces_it_or_leaves_it(tmp_path: Path) -> None:
         (KIM, "nowhere/cue.vtu", r"cannot be written: No such file or directory"),
     ],
 )
-def test_what_cannot_be_saved(tmp_path: Path, thing: cf.Cue | cf.Scene, name: str, message: str) -> None:
+def test_save_to_invalid_path_is_rejected(tmp_path: Path, thing: cf.Cue | cf.Scene, name: str, message: str) -> None:
     with pytest.raises(InputError, match=f"{name}: {message}"):
         cf.save(thing, tmp_path / name)
     assert not list(tmp_path.iterdir())
 
 
-def test_a_failed_save_leaves_nothing_behind(tmp_path: Path) -> None:
+def test_save_failure_leaves_no_file(tmp_path: Path) -> None:
     folder = tmp_path / "cue.toml"
     folder.mkdir()
     with pytest.raises(InputError, match=r"cue\.toml: cannot be written: Is a directory"):
@@ -128,14 +128,14 @@ def test_a_failed_save_leaves_nothing_behind(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [folder]
 
 
-def test_every_mesh_agrees_with_its_toml(tmp_path: Path) -> None:
+def test_stored_meshes_equal_their_toml(tmp_path: Path) -> None:
     folder = Path(__file__).parents[2] / "meshes"
     cues = sorted(folder.glob("*.toml"))
     assert cues
     for path in cues:  # where this fails: cuefem convert meshes/NAME.toml meshes/NAME.vtu --force
         cf.save(cf.load(path), tmp_path / "made.vtu")
-        made, kept = (meshio.vtu.read(mesh) for mesh in (tmp_path / "made.vtu", path.with_suffix(".vtu")))
-        assert made.points.tolist() == kept.points.tolist()
+        made, stored = (meshio.vtu.read(mesh) for mesh in (tmp_path / "made.vtu", path.with_suffix(".vtu")))
+        assert made.points.tolist() == stored.points.tolist()
         assert {name: value[0].tolist() for name, value in made.cell_data.items()} == {
-            name: value[0].tolist() for name, value in kept.cell_data.items()
+            name: value[0].tolist() for name, value in stored.cell_data.items()
         }

@@ -1,4 +1,4 @@
-"""Properties of files: what is saved loads back identical, and whatever is not read is clearly refused."""
+"""Properties of files: saved objects load back identical, and any other content is rejected."""
 
 import math
 import tempfile
@@ -91,7 +91,7 @@ def saved_and_loaded(thing: cf.Cue | cf.Scene, name: str) -> cf.Cue | cf.Scene:
 
 @given(CUES | SCENES)
 @settings(max_examples=40)
-def test_toml_reads_back_to_twelve_digits(thing: cf.Cue | cf.Scene) -> None:
+def test_save_and_load_preserve_twelve_digits(thing: cf.Cue | cf.Scene) -> None:
     close(saved_and_loaded(thing, "thing.toml"), thing)
 
 
@@ -110,7 +110,7 @@ def close(found: Any, wanted: Any) -> None:
 
 @given(FINITE, st.sampled_from(sorted(EXAMPLES)))
 @settings(max_examples=200)
-def test_every_number_is_written_so_that_it_reads_back(value: float, unit: str) -> None:
+def test_written_number_reads_back(value: float, unit: str) -> None:
     assert number(text(value, unit), unit) == pytest.approx(value, rel=2e-12, abs=0)
 
 
@@ -145,17 +145,17 @@ Hz: Hz, hz, Hertz = 1.0; kHz = 1000.0; MHz = 1000000.0; 1/s = 1.0; 1/min = 1/60
 
 
 @pytest.mark.parametrize("wanted", TYPED)
-def test_what_people_type_is_what_it_is_elsewhere(wanted: str) -> None:
+def test_typed_quantity_equals_reference(wanted: str) -> None:
     for unit, size in TYPED[wanted].items():
         assert number(f"1 {unit}", wanted) == pytest.approx(size, rel=1e-15), unit
         assert unit[0] == "1" or number(f"1{unit}", wanted) == number(f"1 {unit}", wanted)
 
 
-def test_every_unit_of_the_table_is_compared() -> None:
+def test_reference_quantities_cover_every_unit() -> None:
     assert {UNITS[name] for units in TYPED.values() for name in units if name in UNITS} == {*UNITS.values()}
 
 
-def test_files_are_written_in_units_of_the_table() -> None:
+def test_written_units_are_known() -> None:
     assert EXAMPLES.keys() <= TYPED.keys()
     for unit, (_, example, *_) in EXAMPLES.items():
         assert number(f"1 {example.split(' ', 1)[1]}", unit) > 0
@@ -169,7 +169,7 @@ def test_files_are_written_in_units_of_the_table() -> None:
         *(("12 rad/(N m", "rad/(N m)"), ("12 rad/(N/m)", "rad/(N m)"), ("12 1", "rad"), ("12 mm 3", "m"), ("12", "m")),
     ],
 )
-def test_no_unit_is_guessed(text: str, unit: str) -> None:
+def test_ambiguous_unit_is_rejected(text: str, unit: str) -> None:
     with pytest.raises(ValueError, match="unit"):
         number(text, unit)
 
@@ -177,7 +177,7 @@ def test_no_unit_is_guessed(text: str, unit: str) -> None:
 @pytest.mark.heavy
 @given(st.text(max_size=30) | st.from_regex(r"[0-9.]{1,4} ?[a-zA-Z*/^0-9()]{0,12}", fullmatch=True))
 @settings(max_examples=400, deadline=None)
-def test_no_text_is_more_than_refused(given_text: str) -> None:
+def test_load_any_text_loads_or_is_rejected(given_text: str) -> None:
     wanted = Quantity("m", "(0, inf)")
     value, refusal = outcome(lambda: wanted.read(given_text))
     told = ("must be a length", "must be more than 0", "needs a unit: ")
@@ -186,7 +186,7 @@ def test_no_text_is_more_than_refused(given_text: str) -> None:
 
 @given(st.binary(max_size=80), st.sampled_from([".toml", ".csv", ".ply"]))
 @settings(max_examples=80)
-def test_no_file_is_more_than_refused(content: bytes, suffix: str) -> None:
+def test_load_any_bytes_loads_or_is_rejected(content: bytes, suffix: str) -> None:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"file{suffix}"
         path.write_bytes(content)
@@ -197,7 +197,7 @@ def test_no_file_is_more_than_refused(content: bytes, suffix: str) -> None:
 
 @given(data=st.data())
 @settings(max_examples=50)
-def test_a_damaged_file_is_refused_or_read(data: st.DataObject) -> None:
+def test_load_damaged_file_loads_or_is_rejected(data: st.DataObject) -> None:
     maple = cf.Material(12.6e9, 0.84e9, 782.0)
     cue = cf.Cue((cf.Segment(0.3, 0.012, 0.014, maple), cf.Segment(0.4, 0.014, 0.021, maple, core=maple)), 0.42)
     with tempfile.TemporaryDirectory() as folder:

@@ -1,4 +1,4 @@
-"""Files that unpack, nest or compute without end: one clear line, soon (regression)."""
+"""Files that would take unlimited time or memory are rejected in one line within seconds (regression)."""
 
 import os
 import re
@@ -13,7 +13,7 @@ import pytest
 import cuefem as cf
 from tests.helpers.command_line import call
 
-SOON = 20.0  # s of the processor, where less than 1 is needed: a busy machine changes nothing
+SOON = 20.0  # s of processor time; less than 1 is needed, so that a busy machine has no effect
 PIECE = '[[segments]]\nlength = "{}"\ntip_diameter = "{}"\nbutt_diameter = "21 mm"\nmaterial = "hard maple"\n'
 GOOD = PIECE.format("700 mm", "12 mm")
 TIP = 'cue = "good.toml"\n[stroke]\noffset = 0.3\n[tip]\n'
@@ -24,7 +24,7 @@ FILES = {
     "long.toml": (PIECE.format("1e9 m", "12 mm"), LONG),
     "wide.toml": (PIECE.format("700 mm", "99999 mm"), WIDE),
     "short.toml": (TIP + 'contact_time = "1e-12 s"\n', SHORT),
-    "many.toml": (PIECE.format("1 mm", "12 mm") * 2001, "segments: must hold at most 2000 segments; got 2001"),
+    "many.toml": (PIECE.format("1 mm", "12 mm") * 2001, "segments: must have at most 2000 segments; got 2001"),
     "more.toml": (PIECE.format("1 mm", "12 mm") * 40_000, "must be a file of at most 1 MB; got 4"),
     "blank.toml": (PIECE.format("700" + 200_000 * " " + "x", "12 mm"), "segments[0].length: must be a length"),
 }
@@ -36,8 +36,8 @@ values = ["{}"]
 """
 
 
-def refused(*arguments: object) -> str:
-    """The one line on stderr of a command that refuses in time."""
+def rejection(*arguments: object) -> str:
+    """The line on stderr of a command that rejects its input in time."""
     begun = time.process_time()
     status, out, err = call(*arguments)
     assert time.process_time() - begun < SOON
@@ -53,16 +53,16 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_what_would_not_end_is_refused(folder: Path, name: str) -> None:
-    """By a command and by a study on it."""
+def test_commands_on_unbounded_sizes_reject_them(folder: Path, name: str) -> None:
+    """By three commands, one of them on a study of the file."""
     content, line = FILES[name]
     Path(name).write_text(content)
     Path("study.toml").write_text(STUDY.format(name, "0.7 m"))
     for command in (("modes", name), ("convert", name, "made.toml"), ("study", "study.toml")):
-        assert refused(*command).startswith(f"{name}: {line}")
+        assert rejection(*command).startswith(f"{name}: {line}")
 
 
-def test_python_has_the_same_bounds() -> None:
+def test_constructors_beyond_bounds_raise() -> None:
     ash = cf.Material(12e9, 8e8, 680.0)
     for make, line in (
         (lambda: cf.Segment(1e9, 0.012, 0.021, ash), "Segment.length must be in (0, 1000] m; got 1000000000.0"),
@@ -76,19 +76,19 @@ def test_python_has_the_same_bounds() -> None:
             make()
 
 
-def test_the_longest_drawing_takes_its_butt() -> None:
+def test_longest_drawing_with_axial_waves_accepts_a_butt() -> None:
     wood = cf.Material(12e9, 8e8, 680.0)
     drawn = cf.Cue((cf.Segment(0.7 / 2000, 0.012, 0.012, wood),) * 2000, body_mass=0.43)
     assert len(cf.AxialWaves(1.47, 0.03, 4430.0).with_butt(drawn).segments) == 2001
 
 
 def stiff(stiffness: float) -> cf.Scene:
-    """A shaft struck with a tip of a stiffness."""
+    """A scene whose tip has this stiffness."""
     ash = cf.Material(12e9, 8e8, 680.0)
     return cf.Scene(cf.Cue((cf.Segment(0.7, 0.012, 0.021, ash),)), tip=cf.Tip(stiffness=stiffness))
 
 
-def test_a_profile_of_many_points_on_a_line_is_read_soon(tmp_path: Path) -> None:
+def test_load_profile_of_many_points_is_fast(tmp_path: Path) -> None:
     path = tmp_path / "shaft.csv"
     rows = "".join(f"{i * 0.01:.2f},{12 + i * 0.00015:.5f}\n" for i in range(5_001))
     path.write_text("x [mm],diameter [mm]\n" + rows)
@@ -105,10 +105,10 @@ LIMITS = {"toml": 1, "csv": 1, "stl": 100, "ply": 100, "obj": 100, "wav": 100}  
 
 @pytest.fixture
 def soon() -> Iterator[None]:
-    """Ends a test that waits: who opens a pipe does so for ever."""
+    """Ends a test that blocks, as opening a pipe does."""
 
     def late(*_: object) -> None:
-        raise TimeoutError("it waits")
+        raise TimeoutError("blocked")
 
     before = signal.signal(signal.SIGALRM, late)
     signal.alarm(int(SOON))
@@ -118,7 +118,7 @@ def soon() -> Iterator[None]:
 
 
 def commands_on(name: str) -> list[list[str]]:
-    """Command lines that read a file of this name, by itself or because another file names it."""
+    """Command lines that read a file of this name, by itself or through another file."""
     if name.endswith("wav"):
         Path("measured").mkdir(exist_ok=True)
         Path("measured/cue.toml").write_text(f'body_mass = "420 g"\n{GOOD}')
@@ -129,7 +129,7 @@ def commands_on(name: str) -> list[list[str]]:
     return [["modes", name], ["modes", "names.toml"], ["study", "study.toml"], ["convert", name, "made.toml"]]
 
 
-def made_of_no_file(name: str, kind: str) -> None:
+def make_special_file(name: str, kind: str) -> None:
     if kind == "a folder":
         Path(name).mkdir()
     else:
@@ -138,22 +138,22 @@ def made_of_no_file(name: str, kind: str) -> None:
 
 @pytest.mark.parametrize("kind", ["a folder", "a pipe or a device"])
 @pytest.mark.parametrize("suffix", KINDS)
-def test_what_is_no_file_is_never_opened(folder: Path, soon: None, suffix: str, kind: str) -> None:
+def test_commands_on_folder_or_pipe_reject_it(folder: Path, soon: None, suffix: str, kind: str) -> None:
     name = f"cue.{suffix}"
-    made_of_no_file(name, kind)
+    make_special_file(name, kind)
     for command in commands_on(name):
-        assert refused(*command).endswith(f"{name}: must be a file; got {kind}\n")
+        assert rejection(*command).endswith(f"{name}: must be a file; got {kind}\n")
     assert not Path("made.toml").exists()
 
 
 @pytest.mark.parametrize("suffix", KINDS)
-def test_a_file_that_is_too_large_is_not_read(folder: Path, suffix: str) -> None:
+def test_commands_on_too_large_file_do_not_read_it(folder: Path, suffix: str) -> None:
     name = f"cue.{suffix}"
     with open(name, "wb") as file:
         file.truncate(1_500_000_000)
     begun, before = time.process_time(), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     for command in commands_on(name):
         line = f"{name}: must be a file of at most {LIMITS[suffix]} MB; got 1500"
-        assert refused(*command).endswith(f"{line}\n")
+        assert rejection(*command).endswith(f"{line}\n")
     assert time.process_time() - begun < SOON / 4
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 100_000  # kB: none of it was read

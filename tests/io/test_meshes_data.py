@@ -18,13 +18,13 @@ def load(name: str) -> cf.Cue:
     return cue
 
 
-def test_these_are_all() -> None:
+def test_meshes_readme_lists_all_cues() -> None:
     assert sorted(path.stem for path in FOLDER.glob("*.toml")) == sorted(CUES)
     text = (FOLDER / "README.md").read_text()
     assert all(f"{name}.toml" in text for name in CUES)
 
 
-def test_kim() -> None:
+def test_kim_mesh_has_published_dimensions() -> None:
     """[Kim] sec. 4: radius 6 to 10.5 mm over 0.70 m, 120 g, a cue of 540 g; E 12.6 GPa, G = E/15."""
     cue = load("kim")
     (cone,) = cue.segments
@@ -38,7 +38,7 @@ def test_kim() -> None:
     ("name", "grams", "centre"),
     [("pool_maple", 99.98, 17.04), ("pool_hollow", 89.69, 18.17), ("carbon", 90.26, 19.26)],
 )
-def test_pool_shafts(name: str, grams: float, centre: float) -> None:
+def test_pool_meshes_have_stated_masses(name: str, grams: float, centre: float) -> None:
     """29 in long, 3 to 4 oz, on a cue of 20 oz, 0.846 in at the joint; centre of mass in inches from the tip."""
     cue = load(name)
     assert cue.length == pytest.approx(29 * INCH, rel=1e-12)
@@ -49,7 +49,7 @@ def test_pool_shafts(name: str, grams: float, centre: float) -> None:
     assert cue.balance_point == pytest.approx(centre * INCH, abs=0.005 * INCH)
 
 
-def test_whole_cue() -> None:
+def test_whole_cue_mesh_has_stated_mass_and_balance() -> None:
     """58 in, near 19 oz, balanced 18 to 19 in from the butt, nothing left to body_mass."""
     cue = load("whole_cue")
     assert cue.body_mass == 0

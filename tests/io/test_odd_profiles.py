@@ -1,4 +1,4 @@
-"""Odd but honest CSVs: each is read as it was meant (`test_refusals` has those that are refused)."""
+"""Unusual but unambiguous CSVs are read as meant (`test_refusals` has the rejected ones)."""
 
 import itertools
 from pathlib import Path
@@ -17,7 +17,7 @@ INCHES = ((0.0, 12.7), (330.2, 13.208), (736.6, 21.59))
 PLAIN = "x [mm],diameter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n"
 GERMAN = "x [mm];Durchmesser [mm]\n0,0;12,75\n330,0;13,2\n736,6;21,5\n"
 TABS = PLAIN.replace(",", "\t")
-# Each file, the points that it means (mm), and what is said of it; a file alone means MEANT, and nothing is said.
+# Each file, its points (mm) and the notes on it; a file alone has the points MEANT and no notes.
 READ = {
     "plain": PLAIN,
     "semicolons and decimal commas": GERMAN,
@@ -48,19 +48,19 @@ READ = {
     "it begins after 0": (
         "x [mm],diameter [mm]\n10,12.75\n340,13.2\n746.6,21.5\n",
         MEANT,
-        ("the shaft begins at its first point, x = 10 mm: nothing is drawn before it",),
+        ("the shaft begins at its first point, x = 10 mm",),
     ),
     "a line of units": "x,diameter\nmm,mm\n0,12.75\n330,13.2\n736.6,21.5\n",
     "units beside the numbers": "x,diameter\n0 mm,12.75 mm\n330 mm,13.2mm\n736.6 mm,21.5 mm\n",
     "titles above": (
         "Shaft 12; maple\nmeasured by Ann; 3 May\n\n" + GERMAN,
         MEANT,
-        ("lines 1, 2 passed over: no numbers of the table",),
+        ("lines 1, 2 skipped: no numbers of the table",),
     ),
     "notes below": (
         PLAIN.replace("\n330", "\n--- 13 in ---\n330") + "Note: dry, cold, and straight\n",
         MEANT,
-        ("lines 3, 6 passed over: no numbers of the table",),
+        ("lines 3, 6 skipped: no numbers of the table",),
     ),
     "the unit first": ("inches from tip,thick in inches\n0,0.5\n13,0.52\n29,0.85\n", INCHES, ()),
     "German words": GERMAN.replace("x [mm];Durchmesser [mm]", "mm von der Spitze;Dicke mm"),
@@ -69,7 +69,7 @@ READ = {
     "from the butt": (
         "distance from joint [mm],diameter [mm]\n0,21.5\n406.6,13.2\n736.6,12.75\n",
         MEANT,
-        ("x is measured from the butt, as 'distance from joint [mm]' says",),
+        ("x is measured from the butt ('distance from joint [mm]')",),
     ),
     "fractions of an inch": (
         'x [in],diameter [in]\n0,1/2"\n14 1/2,17/32\n29,27/32\n',
@@ -103,7 +103,7 @@ FERRULED = """x [mm],Diameter [mm],Bore [mm],Material,Core
 """
 
 
-def test_bore_ferrule_and_core_stand_in_columns(tmp_path: Path) -> None:
+def test_profile_columns_bore_material_core_make_segments(tmp_path: Path) -> None:
     """A material holds from its row on, bore and core for their row; a bore tapers within the same materials."""
     path = written(tmp_path, FERRULED)
     leather, melamine, foam = map(material, ("leather", "melamine", "foam"))
@@ -123,8 +123,8 @@ def test_bore_ferrule_and_core_stand_in_columns(tmp_path: Path) -> None:
         meant = [value / 1e3 for value in (x1 - x0, d0, d1, b0, b1)]
         assert numbers == pytest.approx(meant, rel=1e-12, abs=1e-15)
         assert (segment.material, segment.core) == (wood, core)
-    told = in_words(assumed_drawing(path, found, {"body_mass": 0.4}))
-    assert told == [
+    texts = in_words(assumed_drawing(path, found, {"body_mass": 0.4}))
+    assert texts == [
         "bored 8 mm from 6 to 31 mm and filled with hard maple",
         "bored 6 to 5 mm from 31 to 150 mm and filled with foam",
         "bored 5 mm from 150 to 200 mm and filled with foam",
@@ -133,11 +133,11 @@ def test_bore_ferrule_and_core_stand_in_columns(tmp_path: Path) -> None:
     assert cf.load(tmp_path / "cue.toml") == found
 
 
-def test_ferrule_with_its_length_in_a_cell_is_the_option(tmp_path: Path) -> None:
-    """The cell as the help writes the option; behind leather it begins at its row."""
-    told = cf.load(written(tmp_path, PLAIN), ferrule="25 mm melamine")
+def test_profile_ferrule_cell_equals_the_option(tmp_path: Path) -> None:
+    """The cell has the notation of the option; behind leather the ferrule starts at its row."""
+    by_option = cf.load(written(tmp_path, PLAIN), ferrule="25 mm melamine")
     text = "x [mm],diameter [mm],ferrule\n0,12.75,25 mm melamine\n330,13.2,\n736.6,21.5,\n"
-    assert cf.load(written(tmp_path, text)) == told
+    assert cf.load(written(tmp_path, text)) == by_option
     behind = "x [mm],diameter [mm],material,ferrule\n0,12.75,leather,\n6,12.75,ash,1 in abs\n330,13.2\n736.6,21.5\n"
     found = cf.load(written(tmp_path, behind))
     assert isinstance(found, cf.Cue)
@@ -155,7 +155,7 @@ ENDED = {
 
 
 @pytest.mark.parametrize("row", ENDED.values(), ids=[*ENDED])
-def test_core_ends_with_its_row(row: str, tmp_path: Path) -> None:
+def test_profile_core_applies_to_its_row(row: str, tmp_path: Path) -> None:
     text = "x [mm],diameter [mm],bore [mm],material,core\n0,12.75,8,melamine,hard maple\n" + row
     cue = cf.load(written(tmp_path, text + "152,12.95\n736.6,21.5\n"))
     assert isinstance(cue, cf.Cue)
@@ -166,20 +166,20 @@ def test_core_ends_with_its_row(row: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", READ)
-def test_read_as_meant(name: str, tmp_path: Path) -> None:
+def test_profile_in_unusual_format_is_read(name: str, tmp_path: Path) -> None:
     odd = READ[name]
-    content, points, said = odd if isinstance(odd, tuple) else (odd, MEANT, ())
+    content, points, notes = odd if isinstance(odd, tuple) else (odd, MEANT, ())
     found = cf.load(written(tmp_path, content))
     assert isinstance(found, cf.Cue)
     for segment, (a, b) in zip(found.segments, itertools.pairwise(points), strict=True):
         sizes = segment.length, segment.tip_diameter, segment.butt_diameter
         assert sizes == pytest.approx(((b[0] - a[0]) / 1e3, a[1] / 1e3, b[1] / 1e3), rel=1e-12, abs=0)
-    told = assumed_drawing(tmp_path / "shaft.csv", found, {"material": "ash", "body_mass": 0.4})
-    assert told[: len(said)] == [("", note) for note in said]
-    assert [key for key, _ in told[len(said) :]] == ["ferrule", "bore", "begins"]
+    assumed = assumed_drawing(tmp_path / "shaft.csv", found, {"material": "ash", "body_mass": 0.4})
+    assert assumed[: len(notes)] == [("", note) for note in notes]
+    assert [key for key, _ in assumed[len(notes) :]] == ["ferrule", "bore", "begins"]
 
 
-def test_the_unit_of_a_profile_that_names_none(tmp_path: Path) -> None:
+def test_profile_without_unit_takes_length_unit(tmp_path: Path) -> None:
     path = written(tmp_path, "x,diameter\n0,0.5\n13,0.52\n29,0.85\n")
     found = cf.load(path, length_unit="in")
     assert found == cf.load(written(tmp_path, "x [in],diameter [in]\n0,0.5\n13,0.52\n29,0.85\n"))

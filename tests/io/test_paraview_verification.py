@@ -1,4 +1,4 @@
-"""What ParaView is given, read back: modes and motion as the library has them, times and files (verification)."""
+"""Files for ParaView, read back: modes and motion equal those of the library (verification)."""
 
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
@@ -12,7 +12,7 @@ import pytest
 import cuefem as cf
 from cuefem.contact.trajectory import motion
 from cuefem.io import InputError
-from cuefem.io.paraview import AROUND, ball_surface, shaft_surface, vectors
+from cuefem.io.paraview import RING_POINTS, ball_surface, displacements, shaft_surface
 from tests.helpers.refusals import refuses
 
 MAPLE = cf.Material(12.6e9, 0.84e9, 782.3284453057836)
@@ -28,11 +28,11 @@ def area_and_volume(points: np.ndarray, cells: dict[str, np.ndarray]) -> tuple[f
     return np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2, np.einsum("ij,ij->", a, np.cross(b, c)) / 6
 
 
-def test_the_shaft_is_closed_and_faces_outward() -> None:
+def test_shaft_surface_is_closed_and_oriented_outwards() -> None:
     surface = shaft_surface(CUE)
     _, volume = area_and_volume(surface.points, dict(surface.cells))
     frusta = [(0.025, 0.0125, 0.0128), (0.7, 0.012, 0.021)]
-    prism = AROUND / (2 * np.pi) * np.sin(2 * np.pi / AROUND)  # of the circle's area, what the polygon holds
+    prism = RING_POINTS / (2 * np.pi) * np.sin(2 * np.pi / RING_POINTS)  # of the circle's area, what the polygon holds
     expected = prism * np.pi / 12 * sum(length * (d**2 + d * D + D**2) for length, d, D in frusta)
     assert volume == pytest.approx(expected, rel=1e-12)
     edges = np.concatenate([np.stack([c, np.roll(c, -1, axis=1)], axis=-1).reshape(-1, 2) for _, c in surface.cells])
@@ -41,7 +41,7 @@ def test_the_shaft_is_closed_and_faces_outward() -> None:
     assert len(there) == len(edges)
 
 
-def test_the_ball_is_round() -> None:
+def test_ball_surface_is_a_sphere() -> None:
     surface = ball_surface(0.03)
     np.testing.assert_allclose(np.linalg.norm(surface.points, axis=1), 0.03, rtol=1e-14)
     area, volume = area_and_volume(surface.points, dict(surface.cells))
@@ -49,19 +49,19 @@ def test_the_ball_is_round() -> None:
     assert volume == pytest.approx(4 / 3 * np.pi * 0.03**3, rel=0.02)
 
 
-def test_a_rigid_turn_keeps_the_distances() -> None:
+def test_displacements_of_rigid_rotation_preserve_distances() -> None:
     """The sign of the rotation: a rigid motion of the beam is one of its surface, to first order."""
     surface = shaft_surface(CUE)
     found = cf.modes(CUE)
     for vector in found.rigid_vectors.T:
         w, theta = found.system.interpolate(vector[:, None], surface.x)
-        moved = vectors(surface, w[0], theta[0])
+        moved = displacements(surface, w[0], theta[0])
         ends = surface.points[:-1:7], surface.points[1::7][: len(surface.points[:-1:7])]
         u = moved[:-1:7], moved[1::7][: len(ends[0])]
         np.testing.assert_allclose(np.sum((ends[1] - ends[0]) * (u[1] - u[0]), axis=1), 0, atol=1e-15)
 
 
-def test_the_modes(tmp_path: Path) -> None:
+def test_save_motion_modes_equal_the_library(tmp_path: Path) -> None:
     cf.save_motion(SCENE, tmp_path / "seen", count=4, frames=2)
     read = meshio.read(tmp_path / "seen/modes.vtu")
     found = cf.modes(CUE, 4)
@@ -74,7 +74,7 @@ def test_the_modes(tmp_path: Path) -> None:
     np.testing.assert_array_equal(read.points[:, 0], -read.point_data["x"])
 
 
-def test_the_strike(tmp_path: Path) -> None:
+def test_save_motion_strike_equals_the_library(tmp_path: Path) -> None:
     scale, folder = 20.0, tmp_path / "seen"
     cf.save_motion(SCENE, folder, frames=5, scale=scale)
     times = np.linspace(0, 3 * motion(SCENE, [0.0]).duration, 5)
@@ -92,9 +92,9 @@ def test_the_strike(tmp_path: Path) -> None:
         np.testing.assert_array_equal(read.point_data["w"], w[i])
         np.testing.assert_array_equal(read.point_data["theta"], theta[i])
         np.testing.assert_array_equal(
-            read.point_data["displacement"], vectors(shaft, w[i], theta[i], along=found.along[i])
+            read.point_data["displacement"], displacements(shaft, w[i], theta[i], along=found.along[i])
         )
-        drawn = vectors(shaft, scale * w[i], scale * theta[i], along=found.along[i])
+        drawn = displacements(shaft, scale * w[i], scale * theta[i], along=found.along[i])
         np.testing.assert_array_equal(read.points, shaft.points + drawn)
         ball = meshio.read(folder / sets[2 * i + 1]["file"])
         np.testing.assert_allclose(ball.points.reshape(-1, 3)[36:-36].mean(axis=0), [*found.centre[i], 0], atol=1e-15)
@@ -106,7 +106,7 @@ def test_the_strike(tmp_path: Path) -> None:
     np.testing.assert_array_equal(found.force[2:], 0)
 
 
-def test_effects_and_the_time_of_the_last_frame(tmp_path: Path) -> None:
+def test_save_motion_with_effects_ends_at_until(tmp_path: Path) -> None:
     scene = replace(SCENE, effects=(cf.TipDome(0.0095), cf.Support(0.25, stiffness=1e4)))
     cf.save_motion(scene, tmp_path / "seen", frames=2, until=4e-3)
     read = meshio.read(tmp_path / "seen/modes.vtu")
@@ -116,7 +116,7 @@ def test_effects_and_the_time_of_the_last_frame(tmp_path: Path) -> None:
     assert [float(entry.attrib["timestep"]) for entry in collection.iter("DataSet")] == [0, 0, 0.004, 0.004]
 
 
-def test_a_failed_save_leaves_no_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_save_motion_failure_leaves_no_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
@@ -136,11 +136,11 @@ CALLS = [
     (lambda: cf.save_motion(SCENE, "seen", until=0.0), "save_motion: until must be in (0, inf) s; got 0.0"),
     (lambda: cf.save_motion(SCENE, "seen", scale=np.nan), "save_motion: scale must be finite; got nan"),
     (lambda: cf.save_motion(RAISED, "seen"), "motion takes strokes in the plane of cue and ball; got Elevation"),
-    (lambda: cf.save_motion(SCENE, Path(__file__)), "must be a new folder; there is one, or a file, of that name"),
+    (lambda: cf.save_motion(SCENE, Path(__file__)), "must be a new folder; a folder or file of this name exists"),
     (lambda: cf.save_motion(SCENE, "none/seen", frames=2), "seen: cannot be written: No such file or directory"),
 ]
 
 
 @pytest.mark.parametrize(("ask", "message"), CALLS)
-def test_refusals(ask: Callable[[], object], message: str) -> None:
+def test_save_motion_invalid_arguments_are_rejected(ask: Callable[[], object], message: str) -> None:
     refuses(ask, message)

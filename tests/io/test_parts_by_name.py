@@ -1,4 +1,4 @@
-"""Cues that are put together from parts by name: the shapes, and the words in every place."""
+"""Cues from parts of the catalogue: shapes, options and files."""
 
 import json
 import re
@@ -21,7 +21,7 @@ def written(tmp_path: Path, text: str) -> Path:
     return path
 
 
-def test_a_cue_from_parts_is_the_csv_with_the_same_options(tmp_path: Path) -> None:
+def test_cue_from_parts_equals_csv_with_options(tmp_path: Path) -> None:
     own = written(
         tmp_path, f'{CONE}material = "ash"\nferrule = "melamine ferrule 25 mm"\nbore = "6 mm wide, 127 mm deep"'
     )
@@ -34,19 +34,19 @@ def test_a_cue_from_parts_is_the_csv_with_the_same_options(tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("name", SHAFTS)
-def test_every_shaft_is_struck_and_names_what_is_assumed(name: str, tmp_path: Path) -> None:
+def test_catalogue_shaft_strikes_and_documents_assumptions(name: str, tmp_path: Path) -> None:
     own = written(tmp_path, f'shaft = "{name}"\nbody_mass = "15 oz"')
     assert call("strike", own)[::2] == (0, "")
     assert 0.01 < cf.strike(cf.usual_scene(cf.load(own))).squirt < 0.05
     assert "assumed" in SHAFTS[name].source or "usual" in SHAFTS[name].source
 
 
-def test_a_ready_shaft_is_the_drawing_without_its_leather(tmp_path: Path) -> None:
+def test_catalogue_shaft_from_drawing_has_no_leather(tmp_path: Path) -> None:
     ready = cf.load(ROOT / "meshes" / "pool_hollow.toml")
     assert cf.load(written(tmp_path, 'shaft = "Low Deflection"')).segments == ready.segments[1:]
 
 
-def test_a_tip_by_its_name_in_option_and_file(tmp_path: Path) -> None:
+def test_tip_by_name_in_option_and_file_agree(tmp_path: Path) -> None:
     own = written(tmp_path, CONE)
     said = [call("strike", own, "--leather", tip) for tip in ("Kamui Soft", "soft", "medium")]
     assert [status for status, *_ in said] == [0] * 3
@@ -58,7 +58,7 @@ def test_a_tip_by_its_name_in_option_and_file(tmp_path: Path) -> None:
     assert cf.load(scene).effects[0].E == LEATHERS["hard"].E
 
 
-def test_the_list_has_every_part_with_its_source() -> None:
+def test_parts_command_lists_every_part_with_source() -> None:
     record = json.loads(call("parts", "--json")[1])
     assert {*record["shafts"]} == {*SHAFTS}
     assert {*record["tips"]} == {*LEATHERS, *TIPS}

@@ -20,7 +20,7 @@ FILES: dict[str, tuple[str, bool, Callable[[bytes], bytes]]] = {
     "tabs": ("stl", False, lambda text: text.replace(b"  ", b"\t")),
     "a name like a corner": ("stl", False, lambda text: re.sub(b"solid[^\n]*", b"solid vertex 1 2 3", text, count=1)),
     "binary": ("stl", True, lambda text: text),
-    "binary that begins as text": ("stl", True, lambda text: b"solid shaft".ljust(80) + text[80:]),
+    "binary with an ASCII header": ("stl", True, lambda text: b"solid shaft".ljust(80) + text[80:]),
     "colours": ("stl", True, lambda text: text[:84] + re.sub(b"(.{48})..", b"\\1\xff\x8f", text[84:], flags=re.DOTALL)),
     "ply": ("ply", False, lambda text: text),
     "binary ply": ("ply", True, lambda text: text),
@@ -34,7 +34,7 @@ FILES: dict[str, tuple[str, bool, Callable[[bytes], bytes]]] = {
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_the_command_reads_it(tmp_path: Path, name: str) -> None:
+def test_surface_of_any_program_is_read(tmp_path: Path, name: str) -> None:
     suffix, binary, change = FILES[name]
     path, made = written(tmp_path / f"shaft.{suffix}", *SHAFT, binary=binary), tmp_path / "made.toml"
     path.write_bytes(change(path.read_bytes()))

@@ -1,4 +1,4 @@
-"""Slices of closed surfaces against the exact polygons, and the shafts that files of them load as (verification)."""
+"""Slices of closed surfaces against exact polygons, and the shafts loaded from them (verification)."""
 
 from itertools import pairwise
 from pathlib import Path
@@ -9,7 +9,7 @@ import pytest
 import cuefem as cf
 from cuefem.cue.materials import material
 from cuefem.io.assumed import assumed_drawing, in_words
-from cuefem.io.slices import TOLERANCE, sliced, surface
+from cuefem.io.slices import TOLERANCE, aligned_surface, section_shaft
 from tests.helpers.orders import assert_order
 from tests.helpers.surfaces import outline_of, revolved, written
 
@@ -37,9 +37,9 @@ def polygon(radius: float, facets: int) -> tuple[float, float]:
 
 @pytest.mark.parametrize("facets", [7, 64])
 @pytest.mark.parametrize("name", CUES)
-def test_slices_are_the_polygons_own(name: str, facets: int) -> None:
+def test_slices_equal_exact_polygons(name: str, facets: int) -> None:
     cue = CUES[name]
-    body = surface(*revolved(outline_of(cue), facets))
+    body = aligned_surface(*revolved(outline_of(cue), facets))
     assert body.flats == pytest.approx(np.unique(cue.nodes)[[0, *body_jumps(cue), -1]], abs=1e-12)
     for x in (0.0, 0.01, 0.1, 0.1459, 0.1461, 0.2999, 0.3001, 0.49):
         i = np.searchsorted(cue.nodes, x, side="right") - 1
@@ -65,10 +65,10 @@ def body_jumps(cue: cf.Cue) -> list[int]:
 
 
 @pytest.mark.parametrize("name", CUES)
-def test_a_surface_of_straight_pieces_gives_the_drawing_back(name: str) -> None:
+def test_surface_of_conical_pieces_recovers_the_drawing(name: str) -> None:
     """Lengths to rounding; diameters those of the polygon's area, and of its second moment too where it is bored."""
     cue, facets = CUES[name], 64
-    found = sliced(surface(*revolved(outline_of(cue), facets)))
+    found = section_shaft(aligned_surface(*revolved(outline_of(cue), facets)))
     assert [p.length for p in found.pieces] == pytest.approx([s.length for s in cue.segments], rel=1e-9)
     shrunk = np.sqrt(polygon(1, facets)[0] / np.pi)
     for piece, segment in zip(found.pieces, cue.segments, strict=True):
@@ -78,23 +78,23 @@ def test_a_surface_of_straight_pieces_gives_the_drawing_back(name: str) -> None:
     assert found.facets == pytest.approx(widest / 2 * (1 - shrunk), rel=1e-6)
 
 
-def test_facets_converge_with_the_second_order() -> None:
+def test_facets_refined_converge_with_second_order() -> None:
     """Inscribed facets, N a turn, make diameters small by (2 pi/N)^2/12 and frequencies with them."""
     facets = np.array([16, 32, 64])
     off = []
     for n in facets:
-        pieces = sliced(surface(*revolved(outline_of(KIM), int(n)))).pieces
+        pieces = section_shaft(aligned_surface(*revolved(outline_of(KIM), int(n)))).pieces
         cue = cf.Cue(tuple(cf.Segment(p.length, *p.outer, MAPLE, *p.bore) for p in pieces))
         off.append(1 - cf.modes(cue, 1).frequencies[0] / cf.modes(KIM, 1).frequencies[0])
     assert_order(2, 1 / facets, off, within=0.02)
     assert off[-1] == pytest.approx((2 * np.pi / 64) ** 2 / 12, rel=0.02)
 
 
-def test_a_curved_profile_is_followed_within_the_tolerance() -> None:
+def test_curved_profile_is_within_the_tolerance() -> None:
     """A pro taper's smooth curve: straight pieces keep within the tolerance of every slice."""
     x = np.linspace(0, 0.7, 141)
     radius = 0.006 + 0.005 * (x / 0.7) ** 3
-    found = sliced(surface(*revolved([(0, 0), *zip(x, radius, strict=True), (0.7, 0)], 48)))
+    found = section_shaft(aligned_surface(*revolved([(0, 0), *zip(x, radius, strict=True), (0.7, 0)], 48)))
     ends = np.concatenate([[0.0], np.cumsum([p.length for p in found.pieces])])
     outer = np.array([found.pieces[0].outer[0], *(p.outer[1] for p in found.pieces)])
     exact = 2 * radius * np.sqrt(polygon(1, 48)[0] / np.pi)
@@ -104,17 +104,17 @@ def test_a_curved_profile_is_followed_within_the_tolerance() -> None:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_place_and_direction_do_not_matter(seed: int) -> None:
+def test_surface_moved_and_rotated_gives_the_same_shaft(seed: int) -> None:
     rng = np.random.default_rng(seed)
     turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
     points, faces = revolved(outline_of(HOLLOW), 24)
-    straight = sliced(surface(points, faces))
-    moved = sliced(surface(points @ turn.T + rng.normal(size=3), faces if seed else faces[:, ::-1]))
+    straight = section_shaft(aligned_surface(points, faces))
+    moved = section_shaft(aligned_surface(points @ turn.T + rng.normal(size=3), faces if seed else faces[:, ::-1]))
     for here, there in zip(moved.pieces, straight.pieces, strict=True):
         assert np.hstack(here) == pytest.approx(np.hstack(there), rel=1e-6, abs=1e-12)
 
 
-def test_polygons_are_cut_into_triangles(tmp_path: Path) -> None:
+def test_polygon_faces_are_triangulated(tmp_path: Path) -> None:
     turn = 2 * np.pi * np.arange(12) / 12
     corners = [f"v {x} {6 * np.cos(t)} {6 * np.sin(t)}" for x in (0, 500) for t in turn]
     sides = [f"f {i + 1} {(i + 1) % 12 + 1} {12 + (i + 1) % 12 + 1} {12 + i + 1}" for i in range(12)]
@@ -125,7 +125,7 @@ def test_polygons_are_cut_into_triangles(tmp_path: Path) -> None:
     assert segment.tip_diameter == pytest.approx(2 * np.sqrt(polygon(0.006, 12)[0] / np.pi), rel=1e-6)
 
 
-def test_unit_of_length_and_endings_in_capitals(tmp_path: Path) -> None:
+def test_surface_length_unit_and_uppercase_extension_are_read(tmp_path: Path) -> None:
     """As CAD programs on other systems write them; by a scene too."""
     points, faces = revolved(outline_of(KIM), 16)
     inches = written(tmp_path / "inches.stl", points, faces, unit=0.0254)

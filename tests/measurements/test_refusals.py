@@ -126,9 +126,9 @@ def test_template_write_failure_leaves_nothing(tmp_path: Path, monkeypatch: pyte
 def test_invalid_folders_are_rejected(tmp_path: Path) -> None:
     command_refuses("got no folder", "compare", tmp_path / "none")
     (empty := tmp_path / "empty").mkdir()
-    command_refuses("must hold the shaft's drawing, cue.toml or cue.csv; got none", "compare", empty)
+    command_refuses("must contain the shaft's drawing, cue.toml or cue.csv; got none", "compare", empty)
     untouched(tmp_path, "cannot be written: No such file", "compare", tmp_path / "no" / "folder", "--template")
     scene = f"game = 'kim'\n[cue]\n{DRAWING.replace('[[segments]]', '[[cue.segments]]')}"
     of_scene = folder(tmp_path / "scene", SOME, scene)
-    command_refuses("this file is the drawing; ball and tip stand in measured.toml", "compare", of_scene)
+    command_refuses("this file is the drawing; ball and tip belong in measured.toml", "compare", of_scene)
     untouched(tmp_path, "cannot be written", "compare", folder(tmp_path / "cue"), "-o", tmp_path / "no" / "page.html")
