@@ -59,8 +59,10 @@ class Response:
         """The response in tables and on pages: "squirt at b/R 0.3", "natural frequency 2"."""
         kind = self.result
         if self.argument is not None:
-            return f"{kind.in_short} {'' if kind.argument == 'mode' else 'at b/R '}{self.argument}"
-        return f"{kind.in_short} at the stroke's offset" if kind.argument and not kind.limit else kind.in_short
+            return f"{kind.column_heading} {'' if kind.argument == 'mode' else 'at b/R '}{self.argument}"
+        return (
+            f"{kind.column_heading} at the stroke's offset" if kind.argument and not kind.limit else kind.column_heading
+        )
 
     @property
     def unit(self) -> str:

@@ -142,13 +142,13 @@ def numbers_sheet(step: Step, results: Results) -> Sheet | None:
 
 def _names(numbers: Mapping[str, Any], offset: float) -> list[tuple[str, str]]:
     masses = [(f"end_mass_{name}", f"end mass, {known.label_at(offset)}") for name, known in DEFINITIONS.items()]
-    own = [(name, RESULTS[name].words) for name in numbers if name in RESULTS and name != "frequencies"]
+    own = [(name, RESULTS[name].label) for name in numbers if name in RESULTS and name != "frequencies"]
     return [*own, *masses]
 
 
 def _number_row(name: str, values: Sequence[Any], words: str, difference: Record | None = None) -> tuple[str, ...]:
     result = RESULTS[name if name in RESULTS else "end_mass"]
-    cells = [result.written(each) for each in values]
+    cells = [result.format(each) for each in values]
     if len(values) < 2:
         return (words, *cells)
     mine, other = values[:2]

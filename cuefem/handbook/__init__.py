@@ -97,7 +97,7 @@ def _every_response() -> str:
 
     rows = [
         f"| `{name}{ARGUMENTS[result.argument]}` | {TRADE.get(result.unit, (1, result.unit))[1]} "
-        f"| {result.about or result.words} | {result.better} |"
+        f"| {result.about or result.label} | {result.better} |"
         for name, result in asked().items()
     ]
     names = ", ".join(f"`{known.name}`" for known in PARAMETERS.values())

@@ -70,7 +70,7 @@ def comparison_sheet(record: Record) -> Sheet:
 def _label(name: str) -> str:
     if name.startswith("frequency_"):
         return f"natural frequency {name.removeprefix('frequency_')}"
-    return _WORDS.get(name) or RESULTS[name].words
+    return _WORDS.get(name) or RESULTS[name].label
 
 
 def _value(name: str, value: float) -> str:

@@ -137,7 +137,7 @@ def strike_sheet(record: Record, scene: Record) -> Sheet:
         values = [model.get(name) for model in record["models"].values()]
         if any(value is not None for value in values):
             parts = (value if value is None or part is None else value[part] for value in values)
-            rows.append((RESULTS[name].words + component, *(written(name, value) for value in parts)))
+            rows.append((RESULTS[name].label + component, *(written(name, value) for value in parts)))
     miscue = [MISCUE] if coupled["regime"] == "miscue" else []
     accuracy = (
         ", numerical error of squirt at most 0.1 % for 95 % of default strikes"
@@ -156,7 +156,7 @@ def strike_sheet(record: Record, scene: Record) -> Sheet:
         assumptions(scene),
         f"coupled: vibrating shaft in time{accuracy}; two-part and A.31: two masses, with the end mass of a tip that "
         f"sticks ({offset}; `cuefem end-mass`)",
-        *([f"natural pivot length: {PIVOT}"] if any(row[0] == RESULTS["pivot_length"].words for row in rows) else []),
+        *([f"natural pivot length: {PIVOT}"] if any(row[0] == RESULTS["pivot_length"].label for row in rows) else []),
         *([] if miscue else [f"contact: {REGIMES[coupled['regime']]}"]),
         *_on_speed(record, scene),
         OFF,

@@ -21,7 +21,7 @@ from cuefem.quantity.fields import Quantity, check_kind
 from cuefem.scene import MOST_STEPS, Outcome, Resolution, Scene
 from cuefem.scene.solved_scene import MOST, ended_tip_modes
 
-FIRST, FIRST_STEPS = 12, 100  # modes and steps of the first level
+FIRST_MODES, FIRST_STEPS = 12, 100  # modes and steps of the first level
 JUDGED_BY = 2  # previous levels
 PERIODS = 3  # that the first level's modes have at least in a contact
 # Squirt is judged against no less than this part of sin(phi), rad: where it vanishes a relative error means nothing.
@@ -166,6 +166,6 @@ def _tips(scene: Scene) -> Iterator[tuple[Resolution, TipModes]]:
 
 
 def mode_counts(least: int) -> list[int]:
-    """Numbers of modes of the levels: from ``least`` or `FIRST` on, each twice the one before, and at last `MOST`."""
-    first = min(max(FIRST, least), MOST // 8)
+    """Numbers of modes of the levels: from ``least`` or `FIRST_MODES` on, doubled each time; the last is `MOST`."""
+    first = min(max(FIRST_MODES, least), MOST // 8)
     return [*(first * 2**k for k in range(10) if first * 2**k < 0.75 * MOST), MOST]

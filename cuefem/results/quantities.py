@@ -37,16 +37,15 @@ TRADE = {
 class Result:
     """A quantity of a scene: its label, its SI unit ("" for a pure number or a text), and how it is computed.
 
-    words: its label. decimals: in the display unit; None for ``digits`` significant digits. heading: its column
-    heading, by default the label. about: a one-line definition. of: its value for a solved design, at an argument
-    (None: at the scene's own offset), or a ValueError with the reason why it is undefined; without it, only records
-    have it and compute it. argument: its argument in brackets, "", "mode" or "offset". segments: whether it needs cue
-    segments. limit: whether without an offset it is the limit of small offsets. better: "lower" or "higher", the
-    direction in which a summary ranks designs. listed: whether a report and the designer list it (not if it has its own
-    table).
+    label: in texts. decimals: in the display unit; None for ``digits`` significant digits. heading: its column heading,
+    by default the label. about: a one-line definition. of: its value for a solved design, at an argument (None: at the
+    scene's own offset), or a ValueError with the reason why it is undefined; without it, only records have it and
+    compute it. argument: its argument in brackets, "", "mode" or "offset". segments: whether it needs cue segments.
+    limit: whether without an offset it is the limit of small offsets. better: "lower" or "higher", the direction in
+    which a summary ranks designs. listed: whether a report and the designer list it (not if it has its own table).
     """
 
-    words: str
+    label: str
     unit: str = ""
     decimals: int | None = None
     _: KW_ONLY
@@ -61,9 +60,9 @@ class Result:
     listed: bool = True
 
     @property
-    def in_short(self) -> str:
+    def column_heading(self) -> str:
         """Its name over a column."""
-        return self.heading or self.words
+        return self.heading or self.label
 
     @property
     def scale(self) -> float:
@@ -76,7 +75,7 @@ class Result:
             return significant(self.scale * value, self.digits)
         return f"{self.scale * value:.{self.decimals - (brief and self.decimals > 2)}f}"
 
-    def written(self, value: Any, *, brief: bool = False) -> str:
+    def format(self, value: Any, *, brief: bool = False) -> str:
         """A value with its unit; a dash if there is no value; words unchanged."""
         if isinstance(value, str):
             return value
@@ -295,4 +294,4 @@ def units_of(*names: str) -> dict[str, str]:
 
 def written(name: str, value: Any, *, brief: bool = False) -> str:
     """A value of the quantity of that name, with its unit."""
-    return RESULTS[name].written(value, brief=brief)
+    return RESULTS[name].format(value, brief=brief)

@@ -51,7 +51,7 @@ def sheet(
 
 def by_words(*names: str) -> dict[str, Entry]:
     """Columns of quantities, each under its name in full."""
-    return {RESULTS[name].words: name for name in names}
+    return {RESULTS[name].label: name for name in names}
 
 
 def _cell(entry: Entry, row: Mapping[str, Any]) -> str:
@@ -98,7 +98,7 @@ def value_rows(record: Mapping[str, Any], names: Iterable[str] | None = None) ->
     """Name in full and value with its unit of a record's quantities, or of those of the names that have a value."""
     if names is not None:
         record = {name: record[name] for name in names if record[name] is not None}
-    return [(RESULTS[name].words, written(name, value, brief=True)) for name, value in record.items()]
+    return [(RESULTS[name].label, written(name, value, brief=True)) for name, value in record.items()]
 
 
 def plain(value: Any) -> Any:

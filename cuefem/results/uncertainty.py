@@ -19,10 +19,12 @@ from cuefem.scene.solved_scene import Solved
 # Model error, relative: the scatter of published squirt less the uncertainty of those cues' inputs, which were not
 # measured either. Few series determine it only to an interval; these are its upper ends, for a leather tip and for a
 # spring without a dome. studies/measured/uncertainty.py derives them, and tests/results/test_uncertainty.py again.
-MODEL, MODEL_OF_SPRING = 0.18, 0.29
+MODEL = 0.18
+MODEL_OF_SPRING = 0.29
 # The error of the logarithm of a ratio of squirt as a part of that logarithm: of two shafts (upper end, from pairs of
 # shafts in one series, their inputs included), and of a shaft with and without a mass on it (31 places of two masses).
-SHAFTS, MASSES = 0.31, 0.54
+SHAFTS = 0.31
+MASSES = 0.54
 FLOOR = 0.01  # relative, of any ratio of squirt: calipers and numerical error
 COMPUTED = 0.002  # of squirt at the default resolution: 0.19 % at most (studies/accuracy/accuracy.md)
 

@@ -1,9 +1,9 @@
 """The weak forms of a solid of revolution in a Fourier harmonic, and their matrices.
 
 With t the angle about the axis, the harmonic m is u_r = U(r, z) cos mt, u_t = V(r, z) sin mt, u_z = W(r, z) cos mt:
-bending of a cue is m = 1, its motion along the axis m = 0. Every strain is a function of (r, z) times cos mt or sin mt,
-and the integral over t leaves pi (2 pi of m = 0). The unknowns are U, S and W with S = V, but S = U + V if m = 1: on
-the axis S = W = 0 then, so that nothing is singular there (handbook: The solid).
+bending of a cue is m = 1, axial motion m = 0. Every strain is a function of (r, z) times cos mt or sin mt, and the
+integral over t is pi (2 pi for m = 0). The fields are U, S and W with S = V, but S = U + V if m = 1: then S = W = 0 on
+the axis, which removes the singularity there (handbook: The solid).
 """
 
 from __future__ import annotations
@@ -18,11 +18,14 @@ from skfem import Basis
 
 from cuefem.cue import Array
 
-SAME = 1e-9  # points of the mesh closer than this are one
+SAME = 1e-9  # m: points of the mesh closer than this coincide
 
 
 def strains(m: int, U: Any, S: Any, W: Any, r: Any) -> list[Any]:
-    """Strains (rr, tt, zz, 2 rz, 2 rt, 2 tz) without their cos mt or sin mt; U, S, W: value, d/dz and d/dr each."""
+    """Amplitudes of the strains (rr, tt, zz, 2 rz, 2 rt, 2 tz), the factors of cos mt or sin mt.
+
+    U, S, W: value, d/dz and d/dr each.
+    """
     V = displacements(m, U, S, W)[1]
     return [
         U[2],
@@ -35,13 +38,13 @@ def strains(m: int, U: Any, S: Any, W: Any, r: Any) -> list[Any]:
 
 
 def displacements(m: int, U: Any, S: Any, W: Any) -> list[Any]:
-    """U, V and W."""
+    """The displacement amplitudes U, V and W."""
     return [U, S - U if m == 1 else S, W]
 
 
 def stiffness(E: float, nu: float, G: float, E_across: float, nu_across: float) -> Array:
-    """The stress of strains (rr, tt, zz, 2 rz, 2 rt, 2 tz), Pa, (6, 6), of a material transversely isotropic about the
-    axis."""
+    """Stiffness matrix, Pa, (6, 6), from strains (rr, tt, zz, 2 rz, 2 rt, 2 tz) to stresses, of a material that is
+    transversely isotropic about the axis."""
     compliance = np.diag([1 / E_across, 1 / E_across, 1 / E, 1 / G, 2 * (1 + nu_across) / E_across, 1 / G])
     compliance[0, 1] = compliance[1, 0] = -nu_across / E_across
     compliance[:2, 2] = compliance[2, :2] = -nu / E
@@ -56,10 +59,9 @@ def stiffness(E: float, nu: float, G: float, E_across: float, nu_across: float) 
 def matrices(
     basis: Basis, m: int, stiff: Sequence[Array], heavy: Sequence[float]
 ) -> tuple[sp.csc_matrix, sp.csc_matrix]:
-    """K and M of the unknowns U, S, W of a basis of one field; stiff, heavy: `stiffness` and density of its cells.
+    """K and M of the fields U, S, W from a basis of one field; stiff, heavy: `stiffness` and density of each cell.
 
-    scikit-fem's own assembly calls a form for each pair of functions, which takes a hundred times as long at the orders
-    used here.
+    scikit-fem's own assembly calls a form for each pair of functions, which takes 100 times as long at these orders.
     """
     value = np.array([np.broadcast_to(np.asarray(f[0]), basis.dx.shape) for f in basis.basis])
     slopes = np.moveaxis(np.array([f[0].grad for f in basis.basis]), 1, 0)
@@ -83,13 +85,13 @@ def matrices(
 
 
 def boundary(basis: Basis, coordinate: int, at: float) -> NDArray[np.intp]:
-    """Unknowns of one field on the part of the boundary where z (0) or r (1) is ``at``."""
+    """Degrees of freedom of one field on the part of the boundary where z (coordinate 0) or r (1) is ``at``."""
     facets = basis.mesh.facets_satisfying(lambda x: np.abs(x[coordinate] - at) < SAME, boundaries_only=True)
     return np.asarray(basis.get_dofs(facets).all())
 
 
 def free(basis: Basis, m: int, *fixed: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Unknowns that are neither ``fixed`` nor zero on the axis, as every smooth field of the harmonic is there."""
+    """Degrees of freedom that are neither ``fixed`` nor zero on the axis because of the harmonic's regularity."""
     axis, N = boundary(basis, 1, 0.0), basis.N
     zero = {0: [axis, N + np.arange(N)], 1: [N + axis, 2 * N + axis]}.get(m, [axis, N + axis, 2 * N + axis])
     return np.setdiff1d(np.arange(3 * N), np.concatenate([*zero, *fixed]))

@@ -1,4 +1,4 @@
-"""The half-section of a cue, (z, r), as a mesh: rows of conical quadrilaterals, graded towards every end."""
+"""Mesh of the meridian half-section of a cue, (z, r): conical quadrilaterals, graded towards both ends of a segment."""
 
 from __future__ import annotations
 
@@ -13,16 +13,19 @@ from skfem import MeshQuad
 
 from cuefem.cue import Array, Cue, Material
 
-SAME = 1e-9  # m: radii closer than this are one line of the mesh
-THINNEST = 1e-6  # m: no wall of a cue is thinner, and elements across one would be too flat to compute with
+SAME = 1e-9  # m: radii closer than this share a line of the mesh
+THINNEST = 1e-6  # m: elements across a thinner wall would be too flat
 MOST_MEMORY = 2**31  # bytes
-# Bytes for each entry of the cells' matrices: the triplets, the sparse matrices and their factors.
+# For each entry of the cells' matrices: triplets, sparse matrices and their factors.
 BYTES_EACH = 120
 
 
 class Fineness(NamedTuple):
-    """order: of the polynomials. finest: length of the elements at the ends of a piece, in radii there; they grow
-    by ``growth`` each to ``longest`` m. layers: elements across a layer of material."""
+    """Element sizes of a solid shaft.
+
+    order: of the polynomials. finest: length of the elements at both ends of a segment, in radii there; each next one
+    is ``growth`` times as long, up to ``longest`` m. layers: elements across a layer of material.
+    """
 
     order: int = 6
     finest: float = 0.4
@@ -32,11 +35,10 @@ class Fineness(NamedTuple):
 
 
 def lines(cue: Cue) -> tuple[Array, NDArray[np.intp], NDArray[np.intp]]:
-    """The lines of the mesh along a cue, each from tip to butt and straight within a piece.
+    """The lines of the mesh along a cue, each from tip to butt and straight within a segment.
 
-    radii: (lines, stations) m, rising with the line; bore, outer: (pieces,) the line that bounds a piece inside (-1: it
-    is solid) and outside. Lines run on through pieces that they do not bound. ValueError if no order of the lines is
-    the same at both ends of every piece.
+    Returns radii, (lines, stations) m, ascending with the line, and for each segment the line of its bore (0: solid)
+    and of its outer surface. A line continues through segments that it does not bound. ValueError if the lines cross.
     """
     pieces = cue.segments
     ends = [[(s.tip_bore / 2, s.butt_bore / 2), (s.tip_diameter / 2, s.butt_diameter / 2)] for s in pieces]
@@ -73,19 +75,19 @@ def lines(cue: Cue) -> tuple[Array, NDArray[np.intp], NDArray[np.intp]]:
 
 
 def steps(length: float, near: tuple[float, float], how: Fineness) -> Array:
-    """Positions in [0, 1] of the ends of elements along a piece of ``length``, radii ``near`` its two ends."""
+    """Ends of elements along a segment of ``length``, m, in [0, 1]; near: radii at both ends, m."""
     grown = [how.finest * r * how.growth ** np.arange(40) for r in near]
     left, right = (np.cumsum(g[g < how.longest]) for g in grown)
     left, right = left[left < 0.5 * length], length - right[right < 0.5 * length][::-1]
     first, last = [0.0, *left], [*right, length]
     if len(first) > 1 and last[0] - first[-1] < 0.5 * (first[-1] - first[-2]):
-        first.pop()  # two rows that all but meet in the middle
+        first.pop()  # the two graded parts almost meet
     count = max(1, int(np.ceil((last[0] - first[-1]) / how.longest - SAME)))
     return np.concatenate([first, np.linspace(first[-1], last[0], count + 1)[1:-1], last]) / length
 
 
 class Block(NamedTuple):
-    """One layer of one piece, between two lines of the mesh: ``along``, the ends of its elements in [0, 1]."""
+    """One layer of one segment, between two lines of the mesh; along: the ends of its elements in [0, 1]."""
 
     piece: int
     layer: int
@@ -94,7 +96,7 @@ class Block(NamedTuple):
 
 
 def blocks(cue: Cue, how: Fineness) -> Iterator[Block]:
-    """Every layer of material of every piece."""
+    """Every layer of material of every segment."""
     radii, bore, outer = lines(cue)
     for i, piece in enumerate(cue.segments):
         along = steps(piece.length, (radii[outer[i], i], radii[outer[i], i + 1]), how)
@@ -105,7 +107,7 @@ def blocks(cue: Cue, how: Fineness) -> Iterator[Block]:
 
 
 def check_size(cue: Cue, how: Fineness) -> None:
-    """ValueError if a wall is too thin to be meshed, or if the solid would need over 2 GiB."""
+    """ValueError if a wall is too thin for the mesh, or if the solid needs more than 2 GiB."""
     for i, piece in enumerate(cue.segments):
         for end in ("tip", "butt"):
             bore, outer = getattr(piece, f"{end}_bore"), getattr(piece, f"{end}_diameter")
@@ -124,7 +126,7 @@ def check_size(cue: Cue, how: Fineness) -> None:
 
 
 def half_section(cue: Cue, how: Fineness) -> tuple[MeshQuad, list[Material]]:
-    """Quadrilaterals in (z, r), and their materials."""
+    """The mesh in (z, r) and the material of each cell."""
     radii, _, _ = lines(cue)
     corners: list[Array] = []  # of each block, (quadrilaterals, 4, 2)
     materials: list[Material] = []

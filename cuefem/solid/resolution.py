@@ -1,4 +1,4 @@
-"""How finely a cue is computed as a solid; without scikit-fem, which only the computing itself loads."""
+"""The resolution of a solid cue, in a module of its own that does not import scikit-fem."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from cuefem.quantity.fields import check_count
 
 @dataclass(frozen=True)
 class Solid:
-    """A cue computed as a solid of revolution, by 3-D elasticity, instead of a beam.
+    """Resolution of a cue that is computed as a solid of revolution, by 3-D elasticity, instead of a beam.
 
     Parameters
     ----------
-    order
+    order : int
         Polynomial degree of the elements, 2 to 12.
-    modes
-        Number of flexible bending modes kept. The rigid ones are always kept.
+    modes : int
+        Number of flexible bending modes, 1 to 400. The two rigid-body modes are always included.
 
     Raises
     ------
     TypeError
-        If a number is not whole.
+        If a number is not an integer.
     ValueError
         If a number is out of bounds.
 

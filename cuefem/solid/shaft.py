@@ -1,7 +1,7 @@
-"""A cue as a solid body: 3-D elasticity of its bending and of its motion along the axis (handbook: The solid).
+"""A cue as a solid body: 3-D elasticity of bending and axial motion (handbook: The solid).
 
-The weak forms are those of `cuefem.solid.elasticity`: bending is the harmonic 1, motion along the axis 0. Elements are
-scikit-fem's quadrilaterals of any order.
+The weak forms are in `cuefem.solid.elasticity`; bending is harmonic 1, axial motion harmonic 0. The elements are
+scikit-fem's quadrilaterals of arbitrary order.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from cuefem.solid.meridian_mesh import SAME, Fineness, check_size, half_section
 from cuefem.solid.resolution import Solid
 
 BENDING, AXIAL = 1, 0  # Fourier harmonics
-# A square frequency, (rad/s)^2, well below the first mode of every cue: K is singular, K plus it times M is not.
+# (rad/s)^2, far below the first natural frequency of every cue: K is singular, K + SHIFT M is not.
 SHIFT = (2 * np.pi * 30.0) ** 2
 
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """The solid of a cue, meshed, in the motion of a Fourier harmonic."""
+    """The meshed solid of a cue in one Fourier harmonic."""
 
     cue: Cue
     how: Fineness
@@ -40,29 +40,28 @@ class Body:
 
     @cached_property
     def cells(self) -> tuple[MeshQuad, list[Material]]:
-        """Quadrilaterals in (z, r), and their materials."""
+        """The mesh in (z, r) and the material of each cell."""
         return half_section(self.cue, self.how)
 
     @cached_property
     def basis(self) -> Basis:
-        """scikit-fem's basis of one unknown field."""
+        """scikit-fem's basis of one field."""
         return Basis(self.cells[0], ElementQuadP(self.how.order), intorder=2 * self.how.order + 2)
 
     @cached_property
     def matrices(self) -> tuple[sp.csc_matrix, sp.csc_matrix]:
-        """K and M of all unknowns."""
+        """K and M of all degrees of freedom."""
         stiff = {m: elasticity.stiffness(m.E, m.nu, m.G, m.E_across, m.nu_in_plane) for m in self.cells[1]}
         return elasticity.matrices(
             self.basis, self.harmonic, [stiff[m] for m in self.cells[1]], [m.rho for m in self.cells[1]]
         )
 
     def free(self, *fixed: NDArray[np.intp]) -> NDArray[np.intp]:
-        """Unknowns that are neither ``fixed`` nor zero on the axis."""
+        """Degrees of freedom that are neither ``fixed`` nor zero on the axis."""
         return elasticity.free(self.basis, self.harmonic, *fixed)
 
     def _mean(self, z: float, fields: tuple[float, float, float], power: int = 0) -> Array:
-        """The mean over an end's face of r^power times a sum of fields, a row on the unknowns; power 2: over that of
-        r^2 too."""
+        """Row of the mean over an end face of r^power times a sum of the fields, over the mean of r^(2 power)."""
         ends = self.cells[0].facets_satisfying(lambda x: np.abs(x[0] - z) < SAME, boundaries_only=True)
         face = FacetBasis(self.cells[0], self.basis.elem, facets=ends, intorder=2 * self.how.order + 2)
         row = LinearForm(lambda v, w: w.x[1] ** (1 + power) * v).assemble(face)
@@ -71,28 +70,31 @@ class Body:
 
     @cached_property
     def tip(self) -> Array:
-        """The mean displacement of the tip's face, a row on the unknowns: of u_x = U - S/2 in bending, of W along."""
+        """Row of the mean displacement of the tip's face: u_x = U - S/2 in bending, W in axial motion."""
         return self._deflection(0.0)
 
     def _deflection(self, z: float) -> Array:
         return self._mean(z, (1.0, -0.5, 0.0) if self.harmonic == BENDING else (0.0, 0.0, 1.0))
 
     @cached_property
-    def turning(self) -> Array:
-        """The rotation of the tip's face in bending, a row on the unknowns: -u_z over the distance from its axis, by
-        least squares."""
+    def rotation(self) -> Array:
+        """Row of the rotation of the tip's face in bending: the least-squares slope of -u_z over the distance from the
+        axis."""
         return self._mean(0.0, (0.0, 0.0, -1.0), 1)
 
     def modes(self, count: int, *, supported: bool = False, mass: float = 0.0) -> SolidModes:
-        """The ``count`` lowest modes, those without frequency included; supported: no motion within both end faces,
-        where a standing wave has its nodes. mass: kg, spread over the tip's face."""
+        """The ``count`` lowest modes, including rigid-body modes.
+
+        supported: no motion within both end faces, where a standing wave has its nodes. mass: kg, distributed over the
+        tip's face.
+        """
         N, fixed = self.basis.N, np.zeros(0, dtype=np.intp)
         if supported:
             faces = [elasticity.boundary(self.basis, 0, z) for z in (0.0, self.cue.length)]
             fixed = np.concatenate([*faces, *(N + face for face in faces)])
         free = self.free(fixed)
         if not count < len(free):
-            raise ValueError(f"Solid.modes must be below {len(free)}, the unknowns of the solid; got {count}")
+            raise ValueError(f"Solid.modes must be below {len(free)}, the degrees of freedom of the solid; got {count}")
         K, M = (m[free][:, free] for m in self.matrices)
         tip, rigid = self.tip[free], 0 if supported else 1 + self.harmonic
         if mass:
@@ -102,13 +104,15 @@ class Body:
         omega = np.sqrt(np.abs(squares))
         omega[:rigid] = 0.0
         sign = np.where(tip @ vectors < 0, -1.0, 1.0)
-        turning = self.turning[free] @ vectors * sign if self.harmonic == BENDING else np.zeros(count)
-        return SolidModes(omega, tip @ vectors * sign, turning, rigid)
+        rotation = self.rotation[free] @ vectors * sign if self.harmonic == BENDING else np.zeros(count)
+        return SolidModes(omega, tip @ vectors * sign, rotation, rigid)
 
     @property
     def give(self) -> float:
-        """Mean displacement of the tip's face under one newton spread over it, m/N, while the butt's face stays plane,
-        upright and, in the mean, where it is."""
+        """Static compliance at the tip, m/N: mean displacement of its face by a distributed unit force.
+
+        The butt's face remains plane and upright, and does not move on average.
+        """
         free = self.free(2 * self.basis.N + elasticity.boundary(self.basis, 0, self.cue.length))
         K = self.matrices[0][free][:, free]
         load = self.tip[free]
@@ -120,15 +124,15 @@ class Body:
 
 @dataclass(frozen=True, eq=False)
 class SolidModes:
-    """Modes of a solid cue, the rigid ones first, ascending in frequency, mass-normalised.
+    """Mass-normalised modes of a solid cue, ascending in frequency, the rigid-body modes first.
 
-    omega: (n,) rad/s. tip: (n,) mean displacement of the tip's face, 1/sqrt(kg), positive. turning: (n,) its rotation,
-    1/(m sqrt(kg)). rigid: how many of them are rigid motions.
+    omega: (n,) rad/s. tip: (n,) mean displacement of the tip's face, 1/sqrt(kg), positive. rotation: (n,) of the face,
+    1/(m sqrt(kg)). rigid: number of rigid-body modes.
     """
 
     omega: Array
     tip: Array
-    turning: Array
+    rotation: Array
     rigid: int
 
     def __repr__(self) -> str:
@@ -136,26 +140,26 @@ class SolidModes:
 
     @property
     def frequencies(self) -> Array:
-        """Hz, the rigid motions left out."""
+        """Natural frequencies, Hz, without the rigid-body modes."""
         return self.omega[self.rigid :] / (2 * np.pi)
 
     @property
     def at_tip(self) -> tuple[Array, Array]:
-        """Deflection, 1/sqrt(kg), and rotation, 1/(m sqrt(kg)), of the tip in the rigid motions, then in the modes."""
-        return self.tip, self.turning
+        """Deflection, 1/sqrt(kg), and rotation, 1/(m sqrt(kg)), of the tip in every mode, rigid-body modes first."""
+        return self.tip, self.rotation
 
 
 def solid_modes(cue: Cue, count: int = 6, at: Solid | None = None) -> SolidModes:
-    """Flexible bending modes of a cue that is computed as a solid, and its two rigid motions.
+    """Bending modes of a cue by 3-D elasticity: the two rigid-body modes and the lowest flexible ones.
 
     Parameters
     ----------
-    cue
-        A `Cue` of segments; the shear coefficients that its segments may have are not asked for.
-    count
-        How many flexible modes.
-    at
-        How finely; of a `Solid` the order counts.
+    cue : Cue
+        Its segments; their shear coefficients have no effect.
+    count : int
+        Number of flexible modes.
+    at : Solid, optional
+        Resolution; only its ``order`` has an effect.
 
     Returns
     -------
@@ -188,5 +192,5 @@ def solid_modes(cue: Cue, count: int = 6, at: Solid | None = None) -> SolidModes
 
 
 def face_loaded_modes(cue: Cue, at: Solid, mass: float) -> SolidModes:
-    """As many modes of a cue as ``at`` asks for, with a mass on the tip's face, kg."""
+    """Modes of a cue at a resolution, with a mass on the tip's face, kg."""
     return Body(cue, Fineness(at.order)).modes(at.modes + 2, mass=mass)

@@ -1,8 +1,8 @@
-"""Tips that the table does not hold: each is computed once, and kept as a file in the user's cache folder.
+"""Cache of tips that the table does not cover: each is computed once and stored in the user's cache folder.
 
-A file is named by what the tip is and by `VERSION`, is written beside its place and moved there whole, and is computed
-again if it cannot be read or holds arrays of other shapes. Where nothing can be written, or the user has no home
-folder, tips are computed anew by every process.
+The file's name is a hash of the tip and of `VERSION`. A file is written under another name and then renamed. A table is
+computed again if its file cannot be read or has arrays of other shapes, and by every process if the folder is not
+writable.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ import platformdirs
 
 from cuefem.solid.tip_table import LeatherTable, OwnTip, TipTable, table
 
-VERSION = 2  # of what a file holds, and of how it is computed
+VERSION = 2  # of the file's contents and of their computation
 
 
 def folder() -> Path | None:
-    """Where tables of tips are kept; None if the user has no home folder."""
+    """The folder of stored tables; None if the user has no home folder."""
     try:
         return platformdirs.user_cache_path("cuefem") / "tips"
     except RuntimeError:
@@ -32,13 +32,13 @@ def folder() -> Path | None:
 def announcement() -> str:
     """The message printed while a tip is computed."""
     if folder() is None:
-        return "computing this tip (about 10 s); it is not kept, for there is no home folder (XDG_CACHE_HOME gives one)"
+        return "computing this tip (about 10 s); not stored: no home folder (XDG_CACHE_HOME sets the cache folder)"
     return "computing this tip once (about 10 s)"
 
 
 @lru_cache(maxsize=64)
 def own_table(tip: OwnTip) -> TipTable:
-    """The table of one tip, read or computed."""
+    """The table of one tip, from its file or computed."""
     computed = read(tip)
     if computed is None:
         from cuefem.solid.tip_compliance import own_tip
@@ -49,12 +49,12 @@ def own_table(tip: OwnTip) -> TipTable:
 
 
 def file_of(tip: OwnTip, place: Path) -> Path:
-    """Where the table of a tip is kept in a folder."""
+    """The file of a tip's table in a folder."""
     return place / f"{hashlib.sha256(repr((VERSION, *tip)).encode()).hexdigest()[:32]}.npz"
 
 
 def read(tip: OwnTip) -> TipTable | None:
-    """The table of a tip that was computed before; None if there is no file, or none that can be read."""
+    """The stored table of a tip; None if its file is missing or invalid."""
     if place := folder():
         with suppress(Exception), file_of(tip, place).open("rb") as stream, np.load(stream) as file:
             parts = LeatherTable(*(np.asarray(file[name], float) for name in LeatherTable._fields))
@@ -65,7 +65,7 @@ def read(tip: OwnTip) -> TipTable | None:
 
 
 def write(tip: OwnTip, computed: TipTable) -> None:
-    """Keep the table of a tip, if there is a place for it."""
+    """Store the table of a tip, if the folder is writable."""
     if place := folder():
         with suppress(OSError):
             place.mkdir(parents=True, exist_ok=True)

@@ -92,7 +92,7 @@ def test_a_tip_without_a_home_folder_is_computed_and_not_kept(
     scene.write_text(SCENE.replace('"9.5 mm"', 'inf\nheight = "1.5 mm"'), encoding="utf-8")
     status, _, told = call("strike", scene)
     assert (status, len(quick), cache.exists()) == (0, 1, False)
-    assert "not kept" in told.splitlines()[0]
+    assert "not stored" in told.splitlines()[0]
 
 
 @pytest.mark.parametrize(
