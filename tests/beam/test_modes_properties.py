@@ -9,7 +9,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cuefem import Ball, Cue, Material, Resolution, Scene, Segment, Tip, end_mass, modes
-from cuefem.beam.waves import modes_below
 from tests.helpers.cues import scaled
 
 WOOD, SOFT, STIFF = Material(12e9, 0.8e9, 700.0), Material(0.1e9, 0.036e9, 1000.0), Material(200e9, 77e9, 7850.0)
@@ -73,12 +72,3 @@ def test_frequencies_rise_with_stiffness_and_fall_with_mass(cue: Cue, factor: fl
     assert np.all(stiff >= plain * (1 - 1e-12))
     assert np.all(stiff <= plain * factor**0.5 * (1 + 1e-12))
     np.testing.assert_allclose(both, plain / factor**0.5, rtol=1e-11)
-
-
-@given(cues(), st.floats(0.0, 8000.0), st.integers(1, 5))
-@settings(max_examples=20)
-def test_modes_near_frequency_are_the_nearest(cue: Cue, near: float, count: int) -> None:
-    many = modes_below(cue, 2 * np.pi * near) + count + 6
-    every = modes(cue, many).frequencies
-    wanted = np.sort(every[np.argsort(np.abs(every - near), kind="stable")[:count]])
-    np.testing.assert_allclose(modes(cue, count, near=near).frequencies, wanted, rtol=1e-6)

@@ -55,7 +55,7 @@ strike spring.toml --game pool | --game: does not apply: FILE is a scene
 strike spring.toml --dome dime | --dome: does not apply: the scene has no LeatherTip
 strike shaft.toml --dome penny | or "dime", "nickel", "flat"; got 'penny'
 strike shaft.toml --leather sofd | got 'sofd'
-strike shaft.toml --restitution 0.05 | Tip.restitution must be in [0.1, 1] beside LeatherTip
+strike shaft.toml --restitution 0.05 | Tip.restitution must be in [0.1, 1]
 modes shaft.toml --tip-height 40mm | got 40 mm (options: --tip-height, --dome)
 strike shaft.toml --leather 1MPa | (--tip-height, --leather, --speed)
 modes lumped.toml --material ash | is a lumped cue, without material
@@ -78,7 +78,6 @@ modes lumped.toml --body-mass '1 kg' | lumped.toml: --body-mass: does not apply
 strike of_bad.toml | cuefem: bad.toml: segments[0].length: must be more than 0
 report off.toml -o page.html | cuefem: off.toml: effects[0].position: must be 0 to 700 mm, on the cue
 convert good.toml kept.toml | already exists; --force overwrites it
-modes shaft.toml -o none/modes.html | cuefem: none/modes.html: cannot be written: No such file or directory
 report lumped.toml -o page.pdf | page.pdf: --output: must end in .html or .json
 report lumped.toml -o page.html --json | page.html: --output: cannot be combined with --json
 strike spring.toml --format pooltool --offset 0 | [A.31] has no squirt at offset 0
@@ -138,7 +137,6 @@ def test_output_that_cannot_be_written() -> None:
     ("command", "was", "size", "words"),
     [
         ("strike", "700 mm", "1e-300 m", "overflow"),
-        ("strike", "782 kg/m^3", "1e308 kg/m^3", "overflow"),
         ("report", "12 mm", "0.012 mm", "a leather tip on 0.012 mm must be 0.0006 to 0.036 mm high; got 6 mm"),
     ],
 )

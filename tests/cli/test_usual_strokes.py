@@ -84,8 +84,3 @@ def one_of_two_fails(scene: str, vary: str, words: str) -> None:
     done = json.loads(call("study", "study.toml", "--json")[1])
     assert (done["designs"], done["failed"]) == (2, 1)
     assert words in done["first_failure"]
-
-
-def test_an_offset_is_a_length_over_the_radius_of_the_ball(folder: Path) -> None:
-    scene = as_json("strike", "shaft.toml", "--game", "carom", "--offset", "-0.25 in")["scene"]
-    assert scene["stroke"]["offset"] == pytest.approx(-6.35 / 30.75, rel=1e-12)

@@ -36,7 +36,7 @@ from tests.helpers.strike_scenes import (
 
 pytestmark = pytest.mark.kernel
 AT = cf.Resolution(2, 10, 8)
-# Energy residual at the default steps on a cue with any dampers; its order in the step: test_step_convergence.py.
+# How well energy closes at the default steps of a cue with dampers; its fall with the step: test_step_convergence.py
 ACCOUNT = 1e-4
 HERE = 0.213  # m
 PLACE = st.floats(0.01, 0.69)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import cuefem as cf
 from cuefem.effects import Effect
 from studies.strokes import DOME, NAMES, SHEAR, cue
@@ -57,8 +55,3 @@ def bare_scenes() -> list[cf.Scene]:
 
 def family() -> list[cf.Scene]:
     return bare_scenes() + [scene(name, T, b, effects=effects) for name, T, b, effects in WITH_EFFECTS]
-
-
-def endless_friction() -> cf.Scene:
-    """A tip that never slips: the ball takes a blow aside at first touch."""
-    return scene("kim", 1e-3, 0.3, friction=math.inf)

@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from cuefem import LumpedCue, Scene, impulse, resolve, resolve_end_mass
 from cuefem.results.convergence import mode_counts
 from cuefem.scene.solved_scene import MOST
-from tests.helpers.accuracy_scenes import endless_friction, scene
-from tests.helpers.strike_scenes import lumped_scenes, sound
+from tests.helpers.accuracy_scenes import scene
+from tests.helpers.strike_scenes import lumped_scenes
 
 KIM = scene("kim", 1e-3, 0.3)
 
@@ -30,10 +30,6 @@ def test_better_is_never_cheaper() -> None:
     assert [outcome.unknowns for outcome in found] == sorted(outcome.unknowns for outcome in found)
     errors = [outcome.error for outcome in found]
     assert all(error is not None and error <= rtol for error, rtol in zip(errors, (0.5, 1e-2, 1e-3, 3e-4), strict=True))
-
-
-def test_endless_friction_resolves() -> None:
-    sound(resolve(endless_friction(), 1e-2))
 
 
 def test_levels_double_their_modes() -> None:

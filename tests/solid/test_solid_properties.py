@@ -20,15 +20,6 @@ SCENE = cf.Scene(cf.Cue((CONE,), body_mass=0.42), tip=cf.Tip(contact_time=1e-3),
 COARSE = cf.Solid(order=3, modes=20)
 
 
-@pytest.mark.heavy
-def test_a_strike_on_the_solid_is_near_that_on_the_beam() -> None:
-    """The scene stays the same; as many modes on both sides, and the solid's order is what is left."""
-    beam = cf.strike(SCENE, at=cf.Resolution(3, 16, 20))
-    solid, finer = (cf.strike(SCENE, at=cf.Solid(order, 20)) for order in (5, 6))
-    assert abs(solid.squirt / finer.squirt - 1) < 2e-5
-    assert 0 < abs(beam.squirt / finer.squirt - 1) < 2e-3
-
-
 def test_a_mass_on_the_tip_works_on_a_solid_as_on_a_beam() -> None:
     laden = replace(SCENE, effects=(cf.PointMass(0.0, 2e-3),))
     beam, solid = (

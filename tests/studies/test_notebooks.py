@@ -18,7 +18,6 @@ def test_a_notebook_runs(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(FOLDER)
     cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
     names: dict[str, object] = {}
-    figures = 0
     for cell in (cell for cell in cells if cell["cell_type"] == "code"):
         plt.close("all")
         printed = io.StringIO()
@@ -28,6 +27,4 @@ def test_a_notebook_runs(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         assert printed.getvalue() == "".join(line for out in kept for line in out["text"])
         shown = [out for out in cell["outputs"] if out["output_type"] == "display_data"]
         assert len(plt.get_fignums()) == len(shown)
-        figures += len(shown)
     plt.close("all")
-    assert figures >= 1
