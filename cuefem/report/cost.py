@@ -28,7 +28,7 @@ def cost_record(scene: Scene, *, most: int = MOST, progress: Progress = iter) ->
     run time of all levels up to it, which `cuefem.resolve` takes. ValueError for a lumped cue, which is exact.
     """
     refined = _timed_levels(scene, most, progress)
-    best = refined[-1][0].outcome
+    best = refined[-1][0].result
     rows = [_level_record(scene, level, seconds, best) for level, seconds in refined]
     return {"levels": rows, "wanted": [_recommended(rtol, rows) for rtol in WANTED]}
 

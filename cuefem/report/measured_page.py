@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from cuefem.measurements.estimate import Estimate, InformationGain
-from cuefem.measurements.measured_cue import MeasuredCue, Residual, OffsetZero
+from cuefem.measurements.measured_cue import MeasuredCue, OffsetZero, Residual
 from cuefem.results.quantities import NONE, with_unit
 from cuefem.results.records import Entry, Record, Sheet, sheet
 
@@ -109,7 +109,9 @@ def gain_record(gain: InformationGain) -> Record:
     return about | {name: value for name, value in gain._asdict().items() if name != "measurement"}
 
 
-def estimate_record(estimate: Estimate, gains: Sequence[InformationGain], squirt: tuple[float, float], offset: float) -> Record:
+def estimate_record(
+    estimate: Estimate, gains: Sequence[InformationGain], squirt: tuple[float, float], offset: float
+) -> Record:
     """The uncertain parameters by all measurements, the fit, squirt (value and 1σ, rad) and further measurements."""
     sd = np.sqrt(np.diag(estimate.covariance))
     return {

@@ -23,7 +23,9 @@ def measured_as(cue: MeasuredCue, values: np.ndarray) -> MeasuredCue:
     return replace(cue, measurements=result)
 
 
-def made_up(seed: int, measurements: tuple[Measurement, ...] = blank(), size: float = 1.0) -> tuple[MeasuredCue, np.ndarray]:
+def made_up(
+    seed: int, measurements: tuple[Measurement, ...] = blank(), size: float = 1.0
+) -> tuple[MeasuredCue, np.ndarray]:
     """A cue whose parameters are drawn from their priors, measured with noise; and these parameters."""
     generator = np.random.default_rng(seed)
     cue = measured_cue(*measurements, priors=(CLOSED,))

@@ -54,7 +54,9 @@ def test_invalid_arguments_are_rejected(message: str) -> None:
     refuses(CALLS[message], message)
 
 
-PENDULUM = r"""[[pendulum]]\nball_mass = "8 g"\nthread_length = "1 m"\nrelease = ["200 mm"]\nclamped_rebound = ["162 mm"]\n"""
+PENDULUM = (
+    r"""[[pendulum]]\nball_mass = "8 g"\nthread_length = "1 m"\nrelease = ["200 mm"]\nclamped_rebound = ["162 mm"]\n"""
+)
 PENDULUM += r"""contact_time = "1 ms"\nposition = "10 mm"\n"""
 # A file of the folder, what it holds (P is a pendulum test without the rebound), and a part of the message.
 FILES = r"""
