@@ -1,4 +1,4 @@
-"""Cues as they are drawn, lumped cues, and the materials that a file may name."""
+"""Finite-element cues and their geometry, lumped cues, and the table of materials."""
 
 from cuefem.cue.geometry import (
     SOFT,

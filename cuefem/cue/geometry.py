@@ -1,4 +1,4 @@
-"""Cues: the geometry of a drawing and the section properties that a beam takes from it; and the papers' lumped cues."""
+"""Cues: the geometry of a drawing and the section properties of its beam; and lumped cues."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from cuefem.quantity.slips import CUE_DIAMETER
 
 Array = NDArray[np.float64]
 
-# A material at the tip with a smaller E than this, Pa, counts as leather: leathers have 0.05 to 0.2 GPa, the softest
-# plastics of ferrules 1.2 GPa, woods about 10 GPa.
+# A material at the tip of a smaller E than this, Pa, is leather: leathers have 0.05 to 0.2 GPa, the softest plastics of
+# ferrules 1.2 GPa, woods about 10 GPa.
 SOFT = 1e9
 
 
@@ -38,25 +38,24 @@ class Material:
     E
         Young's modulus along the cue, Pa.
     G
-        Shear modulus in planes that contain the cue's axis, Pa. It need not follow from E and nu; wood's does not.
+        Shear modulus in planes that contain the cue's axis, Pa; independent of E and nu, as in wood.
     rho
         Density, kg/m3.
     loss
-        Loss factor of bending. It counts only in scenes with `StructuralDamping`.
+        Loss factor of bending, for scenes with `StructuralDamping`.
     nu
-        Poisson's ratio of a pull along the axis. Of a beam only the shear coefficient uses it.
+        Poisson's ratio of axial tension. In a beam it only affects the shear coefficient.
     across_ratio
-        Young's modulus across the axis over E, for a material that is the same in all directions across it: wood as a
-        mean over its rings, or a wound tube. Only a cue that is computed as a solid uses it; by default 1.
+        Transverse Young's modulus over E, for a material that is isotropic in the plane across its axis: wood as a mean
+        over its rings, or a wound tube. Only the solid model of a cue uses it; by default 1.
     nu_across
-        Poisson's ratio of a pull across the axis, for the strain across pull and axis. Only a solid uses it; by default
-        nu.
+        Poisson's ratio of transverse tension, for the transverse strain. Only the solid model uses it; by default nu.
 
     Raises
     ------
     ValueError
-        If a number is out of bounds, if 2 nu G/E is not below 1, or if nu_across is not below 1 - 2 nu^2 across_ratio,
-        without which the material would give off energy.
+        If a number is out of bounds, if 2 nu G/E is not below 1, or if nu_across is not below 1 - 2 nu^2 across_ratio:
+        the elastic energy must be positive.
 
     Examples
     --------
@@ -90,12 +89,12 @@ class Material:
 
     @property
     def E_across(self) -> float:
-        """Young's modulus across the axis, Pa."""
+        """Transverse Young's modulus, Pa."""
         return self.E * (1.0 if self.across_ratio is None else self.across_ratio)
 
     @property
     def nu_in_plane(self) -> float:
-        """Poisson's ratio within the plane across the axis."""
+        """Poisson's ratio in the transverse plane."""
         return self.nu if self.nu_across is None else self.nu_across
 
     @property
@@ -178,10 +177,10 @@ class Segment:
 
     def __post_init__(self) -> None:
         check_fields(self)
-        for name, given in (("material", self.material), ("core", self.core)):
-            if isinstance(given, str):
-                hint = f"cuefem.cue.materials.material({given!r}) is the material of that name"
-                raise TypeError(f"Segment.{name} must be a Material; got {given!r}: {hint}")
+        for name, value in (("material", self.material), ("core", self.core)):
+            if isinstance(value, str):
+                hint = f"cuefem.cue.materials.material({value!r}) is the material of that name"
+                raise TypeError(f"Segment.{name} must be a Material; got {value!r}: {hint}")
         check_kind("Segment.material", self.material, Material)
         check_kind("Segment.core", self.core, (Material, type(None)))
         for end in ("tip", "butt"):
@@ -206,7 +205,7 @@ class Segment:
 
     @cached_property
     def constants(self) -> Array:
-        """The piece as one row of numbers in the order of `SegmentRows`, so that many pieces are evaluated together."""
+        """The segment as one row of numbers in the order of `SegmentRows`, to evaluate many segments together."""
         shell, core = self.material, self.core
         inner = (core.E, core.G, core.rho, core.effective_poisson_ratio) if core else (0.0, 0.0, 0.0, 0.0)
         return np.array(
@@ -224,7 +223,7 @@ class Segment:
 
 
 class SegmentRows(NamedTuple):
-    """The numbers of one segment, or arrays of many; nu is the effective Poisson ratio, kappa is nan if not given."""
+    """The numbers of one segment, or arrays of many; nu is the effective Poisson ratio, kappa is nan by default."""
 
     length: Array
     tip_diameter: Array
@@ -269,33 +268,34 @@ def _frustum_moment(length: float, first: float, last: float) -> float:
 
 
 def _shear_coefficients(c: SegmentRows, bore_ratio: Array) -> tuple[Array, Array]:
-    open_ones = np.isnan(c.kappa)
-    if not open_ones.any():
+    default = np.isnan(c.kappa)
+    if not default.any():
         return c.kappa, c.kappa
     shell, core = shear_coefficient(c.nu, bore_ratio), shear_coefficient(c.core_nu)
-    return np.where(open_ones, shell, c.kappa), np.where(open_ones, core, c.kappa)
+    return np.where(default, shell, c.kappa), np.where(default, core, c.kappa)
 
 
 @dataclass(frozen=True)
 class Cue:
-    """A cue drawn as segments from tip to butt, and the mass of the rest.
+    """A cue of segments from tip to butt, and the mass of the rest of the cue.
 
     Parameters
     ----------
     segments
         `Segment`s from the tip on.
     body_mass
-        Mass of the cue that is not drawn, kg. It moves along the cue's axis only ([Kim] sec. 4): a head-on blow feels
-        it, bending does not.
+        Mass of the rest of the cue, kg. It moves axially only ([Kim] sec. 4): it adds to the axial mass, but not to
+        the inertia of bending.
     weighed
-        Whether the density of the main material follows from the shaft's weight, so that no uncertainty counts it.
+        Whether the density of the main material was computed from the measured mass of the shaft. It is then no
+        uncertain parameter.
 
     Raises
     ------
     TypeError
         If the segments are not a sequence of `Segment`.
     ValueError
-        If there is no segment, or more than 2001: a drawing's 2000, and the rest of the cue (see `AxialWaves`).
+        If there is no segment, or more than 2001: 2000 of a drawing, and the rest of the cue (see `AxialWaves`).
 
     Examples
     --------
@@ -320,7 +320,7 @@ class Cue:
             raise TypeError("Cue.segments must be a sequence of Segment; got one Segment")
         object.__setattr__(self, "segments", tuple(self.segments))
         if not self.segments:
-            raise ValueError("Cue.segments must hold at least one Segment; got none, a cue without mass")
+            raise ValueError("Cue.segments must hold at least one Segment; got none")
         most = MOST_SEGMENTS + 1  # of a drawing, and the rest of the cue that `AxialWaves` adds
         if len(self.segments) > most:
             raise ValueError(f"Cue.segments must hold at most {most} segments; got {len(self.segments)}")
@@ -351,7 +351,7 @@ class Cue:
 
     @property
     def mass(self) -> float:
-        """Mass of the segments and the body, kg: what a head-on blow feels."""
+        """Mass of the segments and the rest of the cue, kg: the rigid-body axial mass."""
         return self.shaft_mass + self.body_mass
 
     @property
@@ -361,10 +361,10 @@ class Cue:
         return math.fsum(moments) / self.shaft_mass
 
     def section(self, x: ArrayLike) -> Section:
-        """Section properties at ``x`` in [0, length] m from the tip; where two segments meet, the rear one's."""
+        """Section properties at ``x`` in [0, length] m from the tip; at a jump those of the butt side."""
         x = np.asarray(x, float)
         if not np.all((x >= 0) & (x <= self.length)):
-            raise ValueError(f"Cue.section takes positions in [0, {self.length}] m; got {x}")
+            raise ValueError(f"Cue.section x must be in [0, {self.length}] m; got {x}")
         piece = np.clip(np.searchsorted(self.nodes, x, side="right") - 1, 0, len(self.segments) - 1)
         return self.section_in(piece, x - self.nodes[piece])
 
@@ -379,18 +379,18 @@ class Cue:
 
 @dataclass(frozen=True)
 class LumpedCue:
-    """A cue as two numbers, or three for a domed tip: its inverse mass at the tip.
+    """A cue as its inverse mass at the tip: two numbers, or three for a domed tip.
 
     Parameters
     ----------
     mass
-        Inertia that the ball feels along the cue's axis, kg.
+        Axial inertia at the tip, kg.
     end_mass
-        Inertia that the ball feels across it, kg: the effective end mass m_e. It is not the m_c of [Kim], which is four
-        times as large: see `two_part`.
+        Transverse inertia at the tip, kg: the effective end mass m_e. [Kim]'s m_c is four times as large: see
+        `two_part`.
     coupling
-        Velocity of the tip across the cue per unit of impulse along it, 1/kg; between -1 and 1 over
-        sqrt(mass end_mass). It is meant for positive offsets, and changes sign with the offset.
+        Transverse velocity of the tip per unit of axial impulse, 1/kg; between -1 and 1 over sqrt(mass end_mass). It is
+        defined at positive offsets, and changes sign with the offset.
 
     Raises
     ------
@@ -399,7 +399,7 @@ class LumpedCue:
 
     Notes
     -----
-    Along u and across w the tip's inverse mass is [[1/mass, coupling], [coupling, 1/end_mass]].
+    In axial u and transverse w the tip's inverse mass is [[1/mass, coupling], [coupling, 1/end_mass]].
 
     Examples
     --------
@@ -408,7 +408,7 @@ class LumpedCue:
     0.003
     """
 
-    # No segments: this is how code that draws or describes a cue tells a lumped one from a finite-element one.
+    # Empty: distinguishes a lumped cue from a finite-element one.
     segments: ClassVar[tuple[Segment, ...]] = ()
 
     mass: Annotated[float, Quantity("kg", "(0, inf)").usually(0.1, 1.0)]
@@ -423,15 +423,15 @@ class LumpedCue:
 
     @classmethod
     def two_part(cls, mass: float, cue_end_mass: float, nu_c: float = 1 / 3) -> LumpedCue:
-        """[Kim] sec. 4: the whole ``mass`` moves along the axis, and only a cue end of mass m_c across it.
+        """[Kim] sec. 4: the whole ``mass`` moves axially, and only a cue end of mass m_c transversely.
 
-        cue_end_mass: [Kim]'s m_c, kg; nu_c: inertia factor of the cue end. The tip feels m_e = m_c nu_c/(1 + nu_c).
+        cue_end_mass: [Kim]'s m_c, kg; nu_c: inertia factor of the cue end. The end mass is m_c nu_c/(1 + nu_c).
         """
         return cls(mass, _felt(cue_end_mass, nu_c, "LumpedCue.two_part"))
 
     @classmethod
     def rigid(cls, mass: float, nu_c: float = 0.136) -> LumpedCue:
-        """[Kim] sec. 2: a rigid cue; the tip feels m_e = mass nu_c/(1 + nu_c), with [Kim]'s nu_c of a whole cue."""
+        """[Kim] sec. 2: a rigid cue of end mass mass nu_c/(1 + nu_c), with [Kim]'s nu_c of a whole cue."""
         return cls(mass, _felt(mass, nu_c, "LumpedCue.rigid"))
 
 

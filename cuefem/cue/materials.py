@@ -1,4 +1,4 @@
-"""The materials that cues are made of, the leathers of tips and tips that are sold, by name: `materials.toml`."""
+"""Materials of cues, tip leathers and commercial tips, by name: `materials.toml`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from cuefem.cue.geometry import Material
 
 
 class Documented(NamedTuple):
-    """A material, the ranges in which real pieces of it lie (SI; keys E, G, rho, loss, nu), and its source."""
+    """A material, the ranges of its properties (SI; keys E, G, rho, loss, nu), and its source."""
 
     material: Material
     ranges: Mapping[str, tuple[float, float]]
@@ -25,9 +25,9 @@ class Documented(NamedTuple):
 
 
 class Leather(NamedTuple):
-    """The leather of a tip that is given by its geometry (`cuefem.LeatherTip`), SI, and where its numbers are from.
+    """The leather of a tip (`cuefem.LeatherTip`), SI, and the source of its numbers.
 
-    contact_time: of a head-on blow of a whole cue at 2 m/s, s, which fixes E and the tip's own restitution together.
+    contact_time: of a centre-ball impact of a whole cue at 2 m/s, s; it determines E, with the tip's restitution.
     """
 
     E: float
@@ -57,13 +57,13 @@ def leather_restitution(E: float) -> float:
     return float(np.interp(np.log(E), np.log(moduli), restitutions))
 
 
-# Tips that are sold: of each the name of the leather that stands for it, and the source.
+# Commercial tips: the name of the leather of each, and the source.
 TIPS: Mapping[str, Mapping[str, str]] = MappingProxyType(_TABLES["tips"])
 # Leathers by their own names and by those of tips.
 LEATHER_OF: Mapping[str, Leather] = MappingProxyType(
     {**LEATHERS, **{name: LEATHERS[tip["leather"]] for name, tip in TIPS.items()}}
 )
-# What names a leather in a file, an option and the designer: E, nu and rho by the leather's or the tip's name.
+# E, nu and rho by the name of the leather or the tip, for files, options and the designer.
 LEATHER_NAMES: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {name: {each: getattr(its, each) for each in ("E", "nu", "rho")} for name, its in LEATHER_OF.items()}
 )
@@ -94,7 +94,7 @@ def material_name(material: Material) -> str:
 
 
 def _offer(name: str) -> str:
-    """The materials that a name may mean: of the kind that it names or with its words; or spelt like it."""
+    """The materials nearest to a name: of its kind, with one of its words, or of similar spelling."""
     words = {word for word in name.split() if len(word) > 2}
     kinds = [kind for kind, names in _TABLES["words"].items() if words & {*names}]
     alike = (known for known in _ROWS if words & {*known.split()} or known.startswith(tuple(words)))

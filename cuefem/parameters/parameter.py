@@ -1,9 +1,9 @@
-"""The one way to change a scene: its parameters, by name ("ferrule length") or by path ("cue.segments[0].tip_bore").
+"""Parameters of a scene, and how to change them: by name ("ferrule length") or path ("cue.segments[0].tip_bore").
 
-A parameter holds one number or one material. A path leads through fields; "[*]" stands for every item of a list, and it
-may begin at a part that the drawing tells (`cuefem.parameters.parts`), as in "wood.E". A name of `PARAMETERS` stands
-for a path or a part. Sweeps, optima, scatters, knobs, uncertain parameters and the options of commands all derive from
-that table: an entry there is a new one in each of them.
+A parameter is one number or one material. A path leads through fields; "[*]" means every item of a list. It may begin
+at a part of the drawing (`cuefem.parameters.parts`), as in "wood.E". Each name of `PARAMETERS` refers to a path or a
+part. Sweeps, optima, scatters, knobs, uncertain parameters and the options of commands derive from that table: an entry
+added there appears in all of them.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ Path = tuple[Step, ...]
 _STEP = re.compile(r"\.?([A-Za-z_]\w*)|\[(\d+|\*)\]")
 _TAPER = re.compile(r"taper at (.+)")
 _FIELDS = tuple(field.name for field in fields(Scene))
-# Fields that each fix what others do: setting one clears the others.
+# Alternative fields: setting one clears the others.
 _INSTEAD = {
     ("Tip", "contact_time"): ("stiffness",),
     ("Tip", "stiffness"): ("contact_time",),
@@ -54,30 +54,30 @@ _INSTEAD = {
 
 @dataclass(frozen=True)
 class Parameter:
-    """A named parameter of scenes, declared once for all that vary it.
+    """A named parameter of scenes.
 
     Parameters
     ----------
     name
-        As files and options write it, with blanks or underscores.
+        Its name in files and options, with blanks or underscores.
     label
-        What it is.
+        A short description.
     path
-        The path that it stands for; without one it is a part of its own:
+        Its path; "" if it is a part:
     part
         how its value is read and written, and its quantity.
     materials
-        Those on offer, if it holds a material.
+        The choices, if it is a material.
     spread
         As an uncertain parameter: the standard deviation of its logarithm; None if only a file makes it one.
     below
-        Of a number that is usually at its upper bound: by what part of it less it may be, in a verdict's uncertainty.
+        Relative uncertainty, downwards, of a number that is usually at its upper bound.
     option, help
-        The word for its value in a command's help, "" if it is no option; and what the help says.
+        The metavariable and the text of a command's help; "" if it is no option.
     sets
-        What names of its value set, by paths: its own, and others with it.
+        Values by path for each name of its value: its own, and those of other parameters.
     beside
-        What goes with another value of it where it is uncertain, by paths.
+        Values of other parameters, by path, that depend on it where it is uncertain.
     """
 
     name: str
@@ -98,21 +98,21 @@ class Parameter:
         return self.name.replace(" ", "_")
 
     def steps(self) -> Path:
-        """Its path, as the paths of fields."""
+        """Its path, in steps."""
         return _steps(self.path) if self.path else (self.name,)
 
     def value(self, scene: Scene) -> Any:
-        """What a scene has there; None if it has no such parameter, or an infinite number there."""
+        """Its value in a scene; None if the scene has no such parameter, or if it is infinite."""
         value = value_at(scene, self.steps())
         return None if isinstance(value, float) and not math.isfinite(value) else value
 
     @property
     def of_tip(self) -> bool:
-        """Whether it is the tip's or the butt's, which two shafts may share."""
+        """Whether it belongs to the tip or the butt, which two shafts may share."""
         return self.path.startswith(("leather.", "tip.", "waves.")) or self.part is CONTACT_TIME_OF_SPRING
 
     def scaled(self, scene: Scene, factor: float) -> dict[Path, float]:
-        """Its value in a scene times a factor, and what goes with it, by paths."""
+        """Its value in a scene times a factor, and dependent values, by path."""
         value = factor * self.value(scene)
         return {self.steps(): value} | (self.beside(scene, value) if self.beside else {})
 
@@ -121,14 +121,14 @@ class Parameter:
         return self.spread(scene) if callable(self.spread) else self.spread
 
     def quantity(self, scene: Scene) -> Quantity:
-        """Unit and bounds of its number, and the names that stand for numbers."""
+        """Unit and bounds of its number, and the names of values."""
         known = quantity_at(scene, self.steps())
         if known is None:
-            raise ValueError(f"{self.name} must be a number of this scene; it has none there")
-        return replace(known, words=tuple((n, v[self.path]) for n, v in self.sets.items())) if self.sets else known
+            raise ValueError(f"{self.name} must be a number of this scene; got none")
+        return replace(known, names=tuple((n, v[self.path]) for n, v in self.sets.items())) if self.sets else known
 
     def meant(self, name: str) -> dict[Path, float]:
-        """What a name of its value sets, by paths; nothing if it is no such name."""
+        """The values by path for a name of its value; empty if there is no such name."""
         return {_steps(path): value for path, value in (self.sets or {}).get(name.strip().lower(), {}).items()}
 
 
@@ -136,7 +136,7 @@ class Parameter:
 
 
 def parameter(text: str) -> Parameter | None:
-    """The parameter that a text names; None if it is a path."""
+    """The parameter of a name; None if the text is a path."""
     taper = _TAPER.fullmatch(text.strip())
     if taper:
         try:
@@ -148,7 +148,7 @@ def parameter(text: str) -> Parameter | None:
 
 
 def _part(step: Step) -> Part | None:
-    """The part that a path begins at; None if it begins at a field of scenes."""
+    """The part at which a path begins; None if it begins at a field of scenes."""
     if step in PARTS or step in _FIELDS:
         return PARTS.get(str(step))
     known = parameter(str(step))
@@ -157,7 +157,7 @@ def _part(step: Step) -> Part | None:
 
 @cache
 def _steps(text: str) -> Path:
-    """The steps of a path; those into lists are numbers or "*"."""
+    """The steps of a path: names of fields, and indices of lists or "*"."""
     steps, start = list[Step](), 0
     while start < len(text) or not text:
         step = _STEP.match(text, start)
@@ -171,9 +171,9 @@ def _steps(text: str) -> Path:
 
 
 def paths(scene: Scene, text: str) -> tuple[Path, ...]:
-    """The paths of a scene that a name or a path names, "[*]" spelt out; ValueError if there is none.
+    """The paths of a name or a path in a scene, "[*]" expanded; ValueError, suggesting similar names, if there is none.
 
-    The error suggests similar names. Each leads to a number or a whole material.
+    Each leads to a number or a material.
     """
     known = parameter(text)
     if known is not None and value_at(scene, known.steps()) is None and quantity_at(scene, known.steps()) is None:
@@ -189,14 +189,14 @@ def paths(scene: Scene, text: str) -> tuple[Path, ...]:
 
 
 def _inner(value: Any) -> dict[Step, Any]:
-    """What a value holds, by indices or by the names of fields."""
+    """The items or fields of a value, by index or name."""
     if isinstance(value, tuple):
         return dict(enumerate(value))
     return {field.name: getattr(value, field.name) for field in fields(value)} if is_dataclass(value) else {}
 
 
 def _below(path: Path, value: Any, step: Step, text: str) -> list[tuple[Path, Any]]:
-    """What lies one step below a value; the step is a field's name, an index or "*"."""
+    """The paths and values one step below a value; the step is a field's name, an index or "*"."""
     inner = _inner(value)
     if step == "*" and isinstance(value, tuple):
         return [((*path, i), item) for i, item in inner.items()]
@@ -218,7 +218,7 @@ def spelt(path: Path) -> str:
 
 
 def value_at(scene: Any, path: Path) -> Any:
-    """What stands at a path; None where a scene has no such part."""
+    """The value at a path; None if the scene has no such part."""
     if not path:
         return scene
     part = _part(path[0])
@@ -226,14 +226,14 @@ def value_at(scene: Any, path: Path) -> Any:
 
 
 def _inside(value: Any, path: Path) -> Any:
-    """What stands at a path of fields and indices inside a value; None in what is None."""
+    """The value at a path of fields and indices inside a value; None inside None."""
     for step in path:
         value = None if value is None else value[step] if isinstance(step, int) else getattr(value, step)
     return value
 
 
 def quantity_at(scene: Scene, path: Path) -> Quantity | None:
-    """Unit and bounds of the number at a path; None if no number stands there."""
+    """Unit and bounds of the number at a path; None if it is no number."""
     part = _part(path[0]) if len(path) == 1 else None
     if part is not None:
         return part.quantity if part.quantity and part.read(scene) is not None else None
@@ -244,7 +244,7 @@ def quantity_at(scene: Scene, path: Path) -> Quantity | None:
 
 
 def is_material(scene: Scene, path: Path) -> bool:
-    """Whether a whole material stands, or may stand, at a path."""
+    """Whether the value at a path is, or may be, a material."""
     owner: Any = value_at(scene, path[:-1])
     if len(path) == 1 or not is_dataclass(owner):
         return isinstance(value_at(scene, path), Material)
@@ -253,7 +253,7 @@ def is_material(scene: Scene, path: Path) -> bool:
 
 @cache
 def _kinds(kind: type) -> dict[str, tuple[Any, ...]]:
-    """What each field of a dataclass may hold."""
+    """The types of each field of a dataclass."""
     return {name: (hint, *get_args(hint)) for name, hint in get_type_hints(kind).items()}
 
 
@@ -262,7 +262,7 @@ def _kinds(kind: type) -> dict[str, tuple[Any, ...]]:
 
 @dataclass(frozen=True)
 class _Draft:
-    """A scene in the making, which is checked only when all of its parts are in place."""
+    """A scene under construction, without checks."""
 
     cue: Cue | LumpedCue
     ball: Any
@@ -272,29 +272,29 @@ class _Draft:
 
     @property
     def shaft(self) -> Any:
-        """The cue; parts are only of scenes that have one of segments."""
+        """The cue; only scenes with a cue of segments have parts."""
         return self.cue
 
 
 def varied(scene: Scene, changes: Mapping[str, Any]) -> Scene:
-    """A scene with other values of some parameters: all at once, then checked as when it is made.
+    """A scene with other values of some parameters, changed together and then checked.
 
     Parameters
     ----------
     scene : Scene
-        The scene as it is; it stays.
+        The original scene.
     changes : mapping
-        SI numbers, materials, or names of materials and leathers, by the name or path of their parameters.
+        SI numbers, materials, or names of materials and leathers, by parameter name or path.
 
     Returns
     -------
     Scene
-        With these values; what goes with them moves along.
+        With these values; dependent values change with them.
 
     Raises
     ------
     ValueError
-        If a name is of no parameter of this scene, or no such scene can be made.
+        If this scene has no such parameter, or the new scene is invalid.
 
     Examples
     --------
@@ -317,7 +317,7 @@ def varied(scene: Scene, changes: Mapping[str, Any]) -> Scene:
 
 
 def replaced(scene: Scene, changes: Mapping[Path, Any]) -> Scene:
-    """A scene with the values at some paths replaced: all at once, then checked as when it is made."""
+    """A scene with the values at some paths replaced, changed together and then checked."""
     below: dict[str, dict[Path, Any]] = {}
     for (head, *rest), value in changes.items():
         below.setdefault(str(head), {})[tuple(rest)] = value
@@ -330,7 +330,7 @@ def replaced(scene: Scene, changes: Mapping[Path, Any]) -> Scene:
         for head, inner in below.items()
         if head in parts
     }
-    stay = {name for head in wanted for name in parts[head].keeps} - {*wanted}
+    stay = {name for head in wanted for name in parts[head].unchanged} - {*wanted}
     wanted |= {name: parts[name].read(draft) for name in stay}
     for head, part in parts.items():
         if wanted.get(head) is not None:
@@ -339,9 +339,9 @@ def replaced(scene: Scene, changes: Mapping[Path, Any]) -> Scene:
 
 
 def with_fields(thing: Any, changes: Mapping[Path, Any]) -> Any:
-    """A dataclass (or tuple) with the values at some paths replaced: all at once, then checked as when it is made.
+    """A dataclass (or tuple) with the values at some paths replaced, changed together and then checked.
 
-    A whole material goes in before what changes inside it.
+    A material is replaced before its own fields.
     """
     if () in changes:
         inside = {path: value for path, value in changes.items() if path}
@@ -361,7 +361,7 @@ def with_fields(thing: Any, changes: Mapping[Path, Any]) -> Any:
 
 
 def _wood_spread(name: str) -> Callable[[Scene], float | None]:
-    """Half the width of the range in which real pieces of the wood lie, in logarithms; None for a weighed density."""
+    """Half the width of the wood's range, in logarithms; None for a weighed density."""
 
     def spread(scene: Scene) -> float | None:
         if name == "rho" and scene.shaft.weighed:
@@ -374,8 +374,7 @@ def _wood_spread(name: str) -> Callable[[Scene], float | None]:
 
 
 def _leather_spread(scene: Scene) -> float | None:
-    """Of a contact time known to 10 % (1.0 to 1.2 ms) where the leather is one by its name, of an E of its own to 5 %;
-    None without one."""
+    """From a contact time of ±10 % (1.0 to 1.2 ms) for a named leather, ±5 % for a custom E; None without leather."""
     if scene.contact_terms.tip is None:
         return None
     named = any(own.E == scene.leather.E for own in LEATHERS.values())
@@ -383,18 +382,18 @@ def _leather_spread(scene: Scene) -> float | None:
 
 
 def _restitution_beside(scene: Scene, E: float) -> dict[Path, float]:
-    """The tip's restitution with another E of its leather, the rebound of the whole cue the same."""
+    """The tip's restitution for another E of its leather, at the same restitution of the whole cue."""
     change = leather_restitution(E) - leather_restitution(scene.leather.E)
     return {("tip", "restitution"): min(max(float(scene.tip.restitution) + change, 0.1), 1.0)}
 
 
 def _restitution_spread(scene: Scene) -> float | None:
-    """Of a tip whose cue rebounds with 0.71 to 0.75 (`cuefem.identify_tip`: 0.575 to 0.633); None without leather."""
+    """For whole cues of 0.71 to 0.75 (tips 0.575 to 0.633, `cuefem.identify_tip`); None without leather."""
     return None if scene.contact_terms.tip is None else 0.05
 
 
 def _bore_spread(scene: Scene) -> float | None:
-    """Half the range of drilled bores, 6 to 7.5 mm (meshes/README.md), in logarithms; None of a shaft without one."""
+    """Half the range of drilled bores, 6 to 7.5 mm (meshes/README.md), in logarithms; None without a bore."""
     return math.log(7.5 / 6) / 2 if Layout.of(scene.shaft).bore else None
 
 
@@ -406,8 +405,8 @@ _LEATHERS = {
     for name, own in LEATHER_OF.items()
 }
 
-# Parts are written in this order: the weight first, that of the shaft before other changes; materials last, because the
-# ferrule and the shaft are told by theirs.
+# Parts are written in this order: the shaft mass first, because it is measured before other changes; materials last,
+# because ferrule and shaft are identified by theirs.
 PARAMETERS: dict[str, Parameter] = {
     known.key: known
     for known in (
@@ -451,7 +450,7 @@ PARAMETERS: dict[str, Parameter] = {
         ),
         Parameter(
             *("surface restitution", "restitution along the leather's surface", "leather.surface_restitution"),
-            below=0.05,  # nobody measured it; 0.9 is worth 7 % of squirt, and a robot's has it nearer to 1
+            below=0.05,  # not measured: 0.9 changes squirt by 7 %, and a robot's strokes suggest a value near 1
         ),
         # leather 1.0 to 1.2 ms
         Parameter("contact time", "contact time", part=CONTACT_TIME_OF_SPRING, spread=0.1),

@@ -1,13 +1,13 @@
-"""The parts of a cue that no field holds, told by its drawing: what each is, and how another one is put in its place.
+"""Parts of a cue that are identified from its drawing, and how to read and replace each.
 
-- The leather that is drawn is the soft material at the tip. The ferrule is the segment behind it, if that is short and
-  of another material than the segment that follows. The shaft is all that follows, up to the next change of material.
-- A diameter changes at one position, and linearly less towards both ends of the drawing; one at an end, towards
-  `taper_position`. Every segment stays a cone.
-- A longer ferrule takes its length from the wood behind it and ends flush with that wood. The cue stays as long as it
-  was, the cone of the shaft stays where it was, and the bore behind the ferrule stays as deep as it was.
-- The bore is the empty one behind the leather, or behind the ferrule if the ferrule sits on a tenon. Its depth is
-  counted from where it begins. A bore that is filled cannot be varied.
+- Leather is the soft material at the tip. The ferrule is the segment behind it, if that is short and its material
+  differs from that of the next segment. The shaft follows, up to the next change of material.
+- A change of diameter at a position decreases linearly to zero at both ends of the drawing; a change at an end, to
+  `taper_position`. Every segment remains a cone.
+- A longer ferrule replaces wood behind it and ends flush with that wood. The lengths of cue and bore and the cone of
+  the shaft do not change.
+- The bore is the empty one behind the leather, or behind the ferrule if the ferrule is on a tenon. Its depth is
+  measured from where it begins. A filled bore cannot be varied.
 """
 
 from __future__ import annotations
@@ -29,20 +29,20 @@ SAME = 1e-9  # relative to a length: positions closer than this are the same
 
 
 class Part(NamedTuple):
-    """A part of a scene that no field holds.
+    """A part of a scene, identified from its drawing or its effects.
 
-    read: what the scene has there: an effect, a material or, with its ``quantity``, a number; None if it has no such
-    part. write: the scene with another one in its place. keeps: parameters that stay as they were where it changes.
+    read: its value in a scene: an effect, a material or, with its ``quantity``, a number; None if there is none. write:
+    the scene with another value. unchanged: parameters that a change of it must not change.
     """
 
     read: Callable[[Any], Any]
     write: Callable[[Any, Any], Any]
     quantity: Quantity | None = None
-    keeps: tuple[str, ...] = ()
+    unchanged: tuple[str, ...] = ()
 
 
 class Layout(NamedTuple):
-    """Where a cue's parts are, by its segments' indices. ferrule: empty without one. bore: None if it is filled."""
+    """Segment indices of a cue's parts. ferrule: empty without one. bore: None if it is filled."""
 
     ferrule: range
     shaft: range
@@ -50,7 +50,7 @@ class Layout(NamedTuple):
 
     @classmethod
     def of(cls, cue: Cue) -> Layout:
-        """The layout, told by the drawing."""
+        """The layout of a drawing."""
         segments = cue.segments
         last = len(segments) - 1
         front = next((i for i, s in enumerate(segments) if s.material.E >= SOFT), last)
@@ -64,7 +64,7 @@ class Layout(NamedTuple):
 
 
 def _next_material(segments: Sequence[Segment], first: int) -> int:
-    """Where another material begins."""
+    """Index of the next segment of another material."""
     same = segments[first].material
     return next((i for i in range(first, len(segments)) if segments[i].material != same), len(segments))
 
@@ -78,7 +78,7 @@ def _width(segment: Segment) -> float:
 
 
 def taper_position(cue: Cue) -> float:
-    """Where the middle of the `Diameters` is measured, m from the tip."""
+    """Position of the taper diameter, m from the tip."""
     return TAPER_AT if cue.length >= 2 * TAPER_AT else cue.length / 2
 
 
@@ -89,7 +89,7 @@ def bore_mouth(cue: Cue) -> float:
 
 
 def deepest_bore(cue: Cue) -> float:
-    """How deep the bore can be, m from its mouth: up to what is filled, or the cue's end."""
+    """Maximum depth of the bore, m from its mouth: up to a filled bore, or the end of the cue."""
     bore = Layout.of(cue).bore
     if bore is None:
         return 0.0
@@ -111,7 +111,7 @@ def with_segments(scene: Any, segments: Sequence[Segment]) -> Any:
 
 
 def with_material(cue: Cue, old: Material, new: Material) -> Cue:
-    """The cue with a material replaced wherever it stands, cores included."""
+    """The cue with a material replaced in all segments and cores."""
     pieces = (
         replace(s, material=new if s.material == old else s.material, core=new if s.core == old else s.core)
         for s in cue.segments
@@ -127,13 +127,13 @@ def main_material(cue: Cue) -> Material:
     return max(lengths, key=lambda material: lengths[material])
 
 
-# --- the weight ----------------------------------------------------------------------------
+# --- the mass ------------------------------------------------------------------------------
 
 
 def with_shaft_mass(cue: Cue, mass: float) -> Cue:
-    """The cue with the density of its main material such that what is drawn weighs ``mass``, kg.
+    """The cue with the density of its main material for which its segments weigh ``mass``, kg.
 
-    ValueError if the other materials weigh as much, or if no material has such a density.
+    ValueError if that density is out of bounds.
     """
     wood = main_material(cue)
     half = with_material(cue, wood, replace(wood, rho=wood.rho / 2)).shaft_mass
@@ -143,14 +143,14 @@ def with_shaft_mass(cue: Cue, mass: float) -> Cue:
     if not LEAST_DENSITY <= rho <= MOST_DENSITY:
         least, most = (1e3 * (others + volume * end) for end in (LEAST_DENSITY, MOST_DENSITY))
         raise ValueError(
-            f"must be {least:.4g} to {most:.4g} g, with which its main material has {LEAST_DENSITY:g} to "
-            f"{MOST_DENSITY:g} kg/m3; got {1e3 * mass:.4g} g"
+            f"must be {least:.4g} to {most:.4g} g (density of its main material {LEAST_DENSITY:g} to "
+            f"{MOST_DENSITY:g} kg/m3); got {1e3 * mass:.4g} g"
         )
     return replace(with_material(cue, wood, replace(wood, rho=rho)), weighed=True)
 
 
 def _tip_mass(scene: Any) -> float:
-    """The mass of a leather tip in front of what is drawn, kg."""
+    """The mass of a leather tip in front of the drawing, kg."""
     leather = _leather(scene)
     return 0.0 if leather is None else float(leather.mass_on(scene.shaft))
 
@@ -162,7 +162,7 @@ WEIGHT = Part(
 )
 
 
-# --- the ferrule, and what ferrule and shaft are made of ----------------------------------
+# --- the ferrule, and the materials of ferrule and shaft ----------------------------------
 
 
 def _ferrule_length(scene: Any) -> float | None:
@@ -182,7 +182,7 @@ def _with_ferrule_length(scene: Any, length: float) -> Any:
             f"the ferrule must be more than {least:.6g} and less than {most:.6g} mm long, as its neighbours allow; "
             f"got {1e3 * length:.6g} mm"
         )
-    onward = -more / behind.length  # of the cone behind the ferrule, which keeps its line
+    onward = -more / behind.length  # along the unchanged cone behind the ferrule
     outer = behind.tip_diameter + (behind.tip_diameter - behind.butt_diameter) * onward
     bore = max(0.0, behind.tip_bore + (behind.tip_bore - behind.butt_bore) * onward)
     flush = ferrule.butt_diameter + outer - behind.tip_diameter
@@ -237,14 +237,14 @@ def _grown(scene: Any, positions: Sequence[float], more: Sequence[float]) -> Any
         first, last = np.interp([start, start + segment.length], positions, more)
         ends = segment.tip_diameter + float(first), segment.butt_diameter + float(last)
         if min(ends) <= 0:
-            raise ValueError(f"the cue must be thicker than nothing; got {1e3 * min(ends):.4g} mm")
+            raise ValueError(f"the cue's diameter must be more than 0 mm; got {1e3 * min(ends):.4g} mm")
         return replace(segment, tip_diameter=ends[0], butt_diameter=ends[1])
 
     return with_segments(scene, [grown(segment, float(x)) for segment, x in zip(cue.segments, cue.nodes, strict=False)])
 
 
 def diameter_at(position: Callable[[Cue], float]) -> Part:
-    """The outer diameter at a position, m from the tip, which moves alone: towards the ends the rest stays as it is."""
+    """The outer diameter at a position, m from the tip; a change decreases linearly towards the ends."""
 
     def read(scene: Any) -> float | None:
         x = position(scene.shaft)
@@ -279,7 +279,7 @@ GROWTH = Part(_growth, _with_growth, DIAMETER)
 
 
 def _bore(scene: Any) -> tuple[float, float] | None:
-    """Depth from its mouth and width, m; of a cue without a bore, no depth and the width of a new one."""
+    """Depth from its mouth and width, m; without a bore, 0 and the width of a new one."""
     cue, bore = scene.shaft, Layout.of(scene.shaft).bore
     if bore is None:
         return None
@@ -288,7 +288,7 @@ def _bore(scene: Any) -> tuple[float, float] | None:
 
 
 def _with_bore(scene: Any, depth: float | None = None, width: float | None = None) -> Any:
-    """The bore with another depth or width: its shape is widened, and continued as wide as it ends."""
+    """The scene with another depth or width of the bore; a deeper one continues with the width at its end."""
     cue, old = scene.shaft, _bore(scene)
     if old is None or (depth in (None, old[0]) and width in (None, old[1])):
         return scene
@@ -303,11 +303,11 @@ def _with_bore(scene: Any, depth: float | None = None, width: float | None = Non
     end = mouth + min(depth, deepest)
 
     def bored(segment: Segment, start: float) -> Segment:
-        was, is_now = (mouth - near <= start < stop - near for stop in (old_end, end))
-        if not (was or is_now):
+        before, after = (mouth - near <= start < stop - near for stop in (old_end, end))
+        if not (before or after):
             return segment
         widened = (wider * segment.tip_bore, wider * segment.butt_bore)
-        ends = (0.0, 0.0) if not is_now else widened if was else (onward, onward)
+        ends = (0.0, 0.0) if not after else widened if before else (onward, onward)
         for inner, outer in zip(ends, (segment.tip_diameter, segment.butt_diameter), strict=True):
             if inner >= outer:
                 raise ValueError(
@@ -351,18 +351,18 @@ BORE_WIDTH = Part(_of_bore(1), lambda scene, width: _with_bore(scene, width=widt
 
 
 def _leather(scene: Any) -> Any:
-    """The effect that is a whole leather tip; None if there is none."""
+    """The `LeatherTip` effect; None if there is none."""
     return next((effect for effect in scene.effects if effect.whole_tip), None)
 
 
 def _waves(scene: Any) -> Any:
-    """The effect that sees the rest of the cue as a rod; None if there is none."""
+    """The effect that models the rest of the cue as a rod; None if there is none."""
     rods = (effect for effect in scene.effects if getattr(effect, "wave_speed", None) is not None)
     return next((effect for effect in rods if effect.with_butt(scene.shaft) is not scene.shaft), None)
 
 
 def _effect(read: Callable[[Any], Any]) -> Part:
-    """The effect that ``read`` tells, for which another one is exchanged."""
+    """The part whose value is the effect ``read`` from a scene."""
 
     def write(scene: Any, new: Any) -> Any:
         old = read(scene)
@@ -382,7 +382,7 @@ def _with_spring_time(scene: Any, time: float) -> Any:
 CONTACT_TIME_OF_SPRING = Part(_spring_time, _with_spring_time, CONTACT_TIME)
 
 
-# Where a path may begin beside the fields of a scene.
+# Heads of paths, in addition to the fields of a scene.
 PARTS: dict[str, Part] = {
     "leather": _effect(_leather),
     "waves": _effect(_waves),

@@ -1,4 +1,4 @@
-"""How objects, values and messages show themselves: short, and in printable characters."""
+"""Short text of objects, values and messages, in printable characters."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ LONGEST = 60  # characters of an echoed value
 MOST = 8  # names of a list
 
 _LONG = re.compile(
-    rf"(?P<quote>['\"])(?P<said>[^'\"]{{{LONGEST}}})[^'\"]+(?P=quote)|(?P<word>[^\s/'\"]{{{LONGEST}}})[^\s/'\"]+"
+    rf"(?P<quote>['\"])(?P<quoted>[^'\"]{{{LONGEST}}})[^'\"]+(?P=quote)|(?P<word>[^\s/'\"]{{{LONGEST}}})[^\s/'\"]+"
 )
 
 
 def brief(value: Any) -> str:
-    """A value in a few letters: numbers to four digits, arrays by their shape unless they are short."""
-    if hasattr(value, "ndim"):  # numpy's, which commands that print no number do not load
+    """A short representation of a value: numbers to four digits, long arrays by their shape."""
+    if hasattr(value, "ndim"):  # of numpy, which is not imported here: commands that print no number do not load it
         if value.ndim == 0:
             return brief(value.item())
         return f"[{', '.join(map(brief, value))}]" if value.shape < (9,) and value.ndim == 1 else f"array{value.shape}"
@@ -34,12 +34,12 @@ def said(kind: str, fields: Iterable[tuple[str, Any]]) -> str:
 
 @cache
 def _shown_fields(kind: type) -> tuple[str, ...]:
-    """The names of a dataclass's fields that it shows."""
+    """The names of a dataclass's fields with ``repr``."""
     return tuple(field.name for field in dataclasses.fields(kind) if field.repr)
 
 
 def spelt_out(thing: Any) -> str:
-    """All that an object holds, as dataclasses write themselves: what tells two of them apart."""
+    """The full representation of an object, equal for equal objects."""
     if type(thing) is float:
         return repr(thing)
     if getattr(thing, "ndim", 0):
@@ -53,17 +53,17 @@ def spelt_out(thing: Any) -> str:
 
 
 def one_line(text: str) -> str:
-    """The text in one line of printable characters, long values cut and long lists of names ended; paths stay whole."""
+    """The text in one line of printable characters, with long values and lists shortened; paths stay whole."""
 
     def cut(match: re.Match[str]) -> str:
         quote = match["quote"] or ""
-        return f"{quote}{match['said'] or match['word']}...{quote}"
+        return f"{quote}{match['quoted'] or match['word']}...{quote}"
 
     return "; ".join(map(_ended, _LONG.sub(cut, printable(text)).split("; ")))
 
 
 def _ended(part: str) -> str:
-    """A part of a message whose list of names ends after `MOST`, and what stands behind the list with "or"."""
+    """A part of a message whose list of names is cut after `MOST`; a final item with "or" remains."""
     names = part.split(", ")
     rest = next((i for i, name in enumerate(names) if i >= MOST and name.startswith("or ")), len(names))
     return part if rest <= MOST else ", ".join([*names[:MOST], "...", *names[rest:]])

@@ -1,4 +1,4 @@
-"""Fields with a unit and bounds, declared once: the checks of a dataclass, units in files and JSON schema follow."""
+"""Declaration of fields with unit and bounds, for the checks of dataclasses, units in files and the schema of files."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ class Quantity:
     """The SI unit of a field ("" for a pure number) and the interval in which its value must lie.
 
     ``interval`` is written as in mathematics, "(0, inf)" or "[0, 1]". A round bracket excludes its end, so infinity is
-    allowed only by an interval that closes with "inf]". NaN lies in no interval. ``words``: names that a file or an
-    option may give for a value, each with the value. ``usual``: between which numbers it lies of real cues.
+    allowed only by an interval that closes with "inf]". NaN lies in no interval. ``names``: names of values in files or
+    options, each with its value. ``usual``: the range of real cues.
     """
 
     unit: str
     interval: str = "(-inf, inf)"
-    words: tuple[tuple[str, float], ...] = ()
+    names: tuple[tuple[str, float], ...] = ()
     usual: tuple[float, float] | None = None
 
     def usually(self, least: float, most: float) -> Quantity:
-        """The same quantity of a field that lies between these numbers in real cues."""
+        """The same quantity with the range of real cues."""
         return dataclasses.replace(self, usual=(least, most))
 
     @functools.cached_property
@@ -68,21 +68,21 @@ class Quantity:
     def example(self) -> str:
         """What the unit measures, with an example: 'a length with its unit, such as "12 mm"'."""
         what, example, *_ = example_of(self.unit)
-        if self.unit == "Pa" and self.words:  # a leather's
+        if self.unit == "Pa" and self.names:  # a leather's
             example = "200 MPa"
         return f'{what} with its unit, such as "{example}"{self._named}'
 
     @property
     def _named(self) -> str:
-        return ", or " + ", ".join(f'"{word}"' for word, _ in self.words) if self.words else ""
+        return ", or " + ", ".join(f'"{name}"' for name, _ in self.names) if self.names else ""
 
     @property
     def wanted(self) -> str:
-        """What a file or an option must say: a number with its unit, or a bare one within its bounds."""
+        """The value that a file or an option must have: a number with its unit, or a bare one within its bounds."""
         return self.example if self.unit else f"a bare number, {self.bounds_in('')}"
 
     def bounds_in(self, unit: str) -> str:
-        """The bounds in words and in a unit of their kind, or in SI if they are out of proportion in it."""
+        """The bounds as text in a unit of their dimension, or in SI if they are too large or too small in it."""
         per = float(scale(unit, self.unit)) if self.unit else 1.0
         if any(end and math.isfinite(end) and not 1e-4 <= abs(end) / per < 1e6 for end in self.ends):
             unit, per = self.unit, 1.0
@@ -95,10 +95,10 @@ class Quantity:
         return _WORDS[self.interval[0] + self.interval[-1]].format(low, high) + unit
 
     def read(self, value: Any) -> float:
-        """What is in a file as a checked SI number; ValueError says what is wrong in the words of who wrote it."""
+        """The value of a file or an option as a checked SI number; ValueError in the units of the file."""
         if self.unit == "":
             return self._bare(value)
-        known = dict(self.words) | ({"inf": math.inf} if self.interval.endswith("inf]") else {})
+        known = dict(self.names) | ({"inf": math.inf} if self.interval.endswith("inf]") else {})
         word = str(value).strip().lower()
         if word in known:
             return known[word]
@@ -115,7 +115,7 @@ class Quantity:
         return result
 
     def _why(self, error: ValueError, value: Any, unit: str) -> str:
-        """What is wrong with the unit of a text."""
+        """The error in the unit of a text."""
         if not unit or _comma(value):
             return _comma(value)
         if not isinstance(error, UnknownUnit):
@@ -136,7 +136,7 @@ class Quantity:
         return result
 
     def written(self, value: float) -> str | float:
-        """A number as it is in a file: text with a unit, or a bare number if it has no dimension."""
+        """A number as written in a file: text with a unit, or a bare number without one."""
         if self.unit:
             return text(value, self.unit)
         rounded = float(f"{value:.13g}")
@@ -155,7 +155,7 @@ class Quantity:
         return number
 
     def check_all(self, name: str, values: Any) -> NDArray[np.float64]:
-        """``values`` as a float array, likewise."""
+        """``values`` as a float array; the errors name field, bound, unit and value."""
         try:
             array = np.array(values, dtype=float)
         except (TypeError, ValueError):
@@ -181,7 +181,7 @@ def _comma(value: Any) -> str:
 
 
 class OutOfBounds(ValueError):
-    """A number outside bounds that hang on other fields: in SI units for Python, `in_words` for who wrote a file."""
+    """A number outside bounds that depend on other fields; the message is in SI units, `in_words` in those of files."""
 
     def __init__(self, name: str, bounds: Quantity, value: float, why: str = "") -> None:
         self.name, self.bounds, self.value, self.why = name, bounds, value, why
@@ -189,16 +189,16 @@ class OutOfBounds(ValueError):
 
     @property
     def in_words(self) -> str:
-        """The same without the name, in the unit that files are written in."""
+        """The message without the name, in the units of files."""
         got = str(self.bounds.written(self.value))
         return f"must be {self.bounds.bounds_in(got.partition(' ')[2])}{self.why}; got {got}"
 
 
-# Bounds of a cue and a blow, so that a wrong unit is refused before it costs hours. Each bound is far from anything
-# real, so that scaled and extreme scenes can still be computed.
+# Bounds of a cue and an impact reject wrong units before they cost hours. Each bound is far from real values, so that
+# scaled and extreme scenes can be computed.
 LENGTH = Quantity("m", "(0, 1000]")  # of a segment: a cue is 1.5 m long
 DIAMETER = Quantity("m", "(0, 10]")  # a cue is 0.03 m wide
-CONTACT_TIME = Quantity("s", "[1e-6, 10]")  # leather's is 1e-3 s; in 1e-6 s sound goes through 4 mm of wood
+CONTACT_TIME = Quantity("s", "[1e-6, 10]")  # leather: 1e-3 s; in 1e-6 s sound travels through 4 mm of wood
 MOST_SEGMENTS = 2000  # of a drawing: one every 0.7 mm
 MOST_UNKNOWNS = 50_000  # of a beam: a cue of 30 segments takes 10,000 for the modes of the shortest contact
 
@@ -232,7 +232,7 @@ def check_fields(instance: Any) -> None:
 
 
 def check_kind(name: str, value: Any, kind: type | tuple[type, ...]) -> None:
-    """TypeError unless ``value`` is an instance of ``kind``; if one of its fields is, the message names that field."""
+    """TypeError unless ``value`` is an instance of ``kind``; the message names a field of it that is one."""
     if not isinstance(value, kind):
         wanted = " or ".join(k.__name__ for k in (kind if isinstance(kind, tuple) else (kind,)))
         raise TypeError(f"{name} must be {_a(wanted)}; got {_in_short(value, kind)}")
@@ -243,7 +243,7 @@ def _a(noun: str) -> str:
 
 
 def _in_short(value: Any, kind: type | tuple[type, ...]) -> str:
-    """A value for a message: numbers and texts as they are, others by type; for a dataclass, the field to pass."""
+    """A value for a message: numbers and texts by value, others by type; of a dataclass also the field to pass."""
     if not dataclasses.is_dataclass(value) or isinstance(value, type):
         return shown(value)
     meant = [field.name for field in dataclasses.fields(value) if isinstance(getattr(value, field.name), kind)]
@@ -251,13 +251,13 @@ def _in_short(value: Any, kind: type | tuple[type, ...]) -> str:
 
 
 def shown(value: Any) -> str:
-    """A value for a message: text in quotes, and cut if it is long."""
+    """A value for a message, cut if it is long."""
     text = repr(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def nearest(name: str, names: Iterable[str]) -> str:
-    """A hint at the valid name that was probably meant, or nothing."""
+    """A hint at the most similar valid name, or "" if none is similar."""
     known = {known.casefold(): known for known in names}
     close = difflib.get_close_matches(name.casefold(), known, n=1, cutoff=0.5)
     return f"; did you mean {known[close[0]]!r}?" if close else ""

@@ -1,4 +1,4 @@
-"""The one table of units, and text with a unit as a number and back: "29 in" is 0.7366 m, to the last bit."""
+"""The table of units, and the conversion of text with a unit to a number and back: "29 in" is exactly 0.7366 m."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import re
 from decimal import Decimal, DecimalException
 from typing import NamedTuple
 
-# What an SI unit of this package measures, and examples, first in the unit that files are written in.
+# The dimension of each SI unit of this package, and examples, the first in the unit of files.
 EXAMPLES = {
     "m": ("a length", "12 mm", "0.5 in"),
     "kg": ("a mass", "150 g", "15 oz"),
@@ -31,13 +31,13 @@ Powers = tuple[int, int, int, int]  # of m, kg, s and rad
 
 
 class Unit(NamedTuple):
-    """A unit that is read: how many SI units it is, and what it measures as powers of m, kg, s and rad."""
+    """A unit: its size in SI units, and its dimension as powers of m, kg, s and rad."""
 
     scale: Decimal
     powers: Powers
 
 
-# All units that stand alone, by what they measure: how many SI units one is, and its names, that for messages first.
+# All single units by dimension: size in SI units, and names, that for messages first.
 # Products, powers and quotients of them ("lb/in^3", "N mm/rad") need no entry.
 _TABLE: dict[Powers, str] = {
     (1, 0, 0, 0): """0.001 mm millimetre millimetres millimeter millimeters; 1 m metre metres meter meters;
@@ -74,8 +74,8 @@ _TEXT = re.compile(
     rf"\s*({FRACTION.pattern}|[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?|[+-]?inf|nan)\s*(.*?)\s*",
     re.IGNORECASE,
 )
-SAME = 1e-12  # relative: numbers that a file need not tell apart
-LONGEST_TEXT = 200  # letters of a number and its unit: beyond it matching takes the square of them
+SAME = 1e-12  # relative: numbers closer than this are equal in files
+LONGEST_TEXT = 200  # characters of a number and its unit: the cost of matching grows like the square
 _SIGNS = re.compile(r"\s*([*/·])\s*|\s+")
 _FACTOR = re.compile(r"([^\W\d_]+|[°\"″”']+)(?:\^(-?[0-9])|([23]))?")
 _BELOW = re.compile(r"(.*?)(?:/\s*\(([^/()]*)\))?", re.DOTALL)  # the bracket behind a slash: rad/(N m)
@@ -84,7 +84,7 @@ _POWERS = str.maketrans({"²": "^2", "³": "^3"})
 
 
 class UnknownUnit(ValueError):
-    """A unit with a name in it that the table does not have; ``name`` is that name."""
+    """A unit with a name, ``name``, that is not in the table."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -93,7 +93,7 @@ class UnknownUnit(ValueError):
 
 @functools.lru_cache(maxsize=1024)
 def unit_of(text: str) -> Unit:
-    """The unit that a text such as "g/cm^3" names; UnknownUnit if the table does not have it."""
+    """The unit of a text such as "g/cm^3"; UnknownUnit if it is not in the table."""
     above, below = _BELOW.fullmatch(text.strip().translate(_POWERS).replace("**", "^")).groups()  # type: ignore[union-attr]
     scale, powers = _NO_UNIT
     for part, turned in ((above, 1), (below, -1)):
@@ -119,9 +119,9 @@ def _factor(text: str) -> Unit:
 
 
 def scale(unit: str, wanted: str) -> Decimal:
-    """How many ``wanted`` one ``unit`` is; ValueError if it is unknown or of another kind.
+    """The factor from ``unit`` to ``wanted``; ValueError if it is unknown or has another dimension.
 
-    An angle may be left out where one is wanted (N m for N m/rad), and is never put in: 1 rad/s is not 1 Hz.
+    An angle may be omitted (N m for N m/rad), but not added: 1 rad/s is not 1 Hz.
     """
     own, other = unit_of(unit), unit_of(wanted)
     if own.powers != other.powers and (own.powers != (*other.powers[:3], 0) or not any(own.powers)):
@@ -130,35 +130,35 @@ def scale(unit: str, wanted: str) -> Decimal:
 
 
 def example_of(unit: str) -> tuple[str, ...]:
-    """What an SI unit measures, and examples, the first in a unit that reads well."""
+    """The dimension of an SI unit, and examples, the first in a convenient unit."""
     return EXAMPLES.get(unit, ("a quantity", f"3 {unit}"))
 
 
 def kind_of(unit: str) -> str:
-    """What a unit measures: "a mass"."""
+    """The dimension of a unit: "a mass"."""
     powers = unit_of(unit).powers
     return next((what for si, (what, *_) in EXAMPLES.items() if unit_of(si).powers == powers), "something else")
 
 
 def first_name(unit: str) -> str:
-    """The first of the names that the table has for a unit; the unit itself if it is not in the table."""
+    """The first name of a unit in the table; the unit itself if it is not there."""
     return next((name for name in UNITS if UNITS[name] == unit_of(unit)), unit)
 
 
 def units_like(unit: str) -> list[str]:
-    """The units of the table that measure the same as one, each by its first name, or that of an example."""
+    """The first names of the units with the dimension of ``unit``, or that of an example."""
     names = {UNITS[name]: name for name in reversed(UNITS) if UNITS[name].powers == unit_of(unit).powers}
     return [*reversed(names.values())] or [example_of(unit)[1].split(" ", 1)[1]]
 
 
 def parted(text: str) -> tuple[str, str]:
-    """The number and the unit of a text, each "" if it has none."""
+    """The number and the unit of a text, each "" if it is missing."""
     parts = _TEXT.fullmatch(text) if len(text) <= LONGEST_TEXT else None
     return (parts[1], parts[5]) if parts else ("", "")
 
 
 def decimal(digits: str) -> Decimal:
-    """The number that digits or a fraction say."""
+    """The value of digits or a fraction."""
     if fraction := FRACTION.fullmatch(digits):
         whole, above, below = fraction.groups(default="0")
         return Decimal(whole) + Decimal(above) / Decimal(below)
@@ -166,7 +166,7 @@ def decimal(digits: str) -> Decimal:
 
 
 def number(text: str, unit: str) -> float:
-    """The number of ``unit`` that ``text`` ("12 mm", "5/16 in") says; ValueError if its unit is missing or wrong."""
+    """The value of ``text`` ("12 mm", "5/16 in") in ``unit``; ValueError if its unit is missing or wrong."""
     digits, own = parted(text)
     if not own:
         raise ValueError("a number and a unit")
@@ -177,9 +177,9 @@ def number(text: str, unit: str) -> float:
 
 
 def text(value: float, unit: str) -> str:
-    """A number in a unit that reads well ("12 mm"), with the fewest digits that are right to `SAME`.
+    """A number in a convenient unit ("12 mm"), with the fewest digits that are exact to `SAME`.
 
-    Where those are more than in SI (0.1 rad), it is written in SI.
+    If SI needs fewer digits (0.1 rad), it is in SI.
     """
     friendly = example_of(unit)[1].split(" ", 1)[1]
     if math.isfinite(value):

@@ -11,7 +11,7 @@ FIELDS = {"E", "G", "rho", "loss", "nu"}
 
 
 @pytest.mark.parametrize("name", MATERIALS)
-def test_every_entry_names_its_source_and_may_have_any_number_of_its_ranges(name: str) -> None:
+def test_material_has_source_and_valid_ranges(name: str) -> None:
     known = MATERIALS[name]
     assert name == name.lower().strip()
     assert len(known.source) > 20
@@ -33,12 +33,12 @@ def test_every_entry_names_its_source_and_may_have_any_number_of_its_ranges(name
         ("yellow birch", 15.29e9, 1.08559e9, 694.4, 0.4385),
     ],
 )
-def test_woods_from_the_wood_handbook(name: str, E: float, G: float, rho: float, nu: float) -> None:
+def test_wood_equals_wood_handbook(name: str, E: float, G: float, rho: float, nu: float) -> None:
     wood = material(name)
     assert (wood.E, wood.G, wood.rho, wood.nu) == pytest.approx((E, G, rho, nu), rel=1e-12)
 
 
-def test_carbon_from_its_plies() -> None:
+def test_carbon_equals_laminate_theory() -> None:
     """Classical lamination theory, rebuilt: membrane stiffness of 50 % at 0, 30 % at +-45, 20 % at 90 degrees."""
     E1, E2, G12, nu12 = 135e9, 10e9, 5e9, 0.3
     d = 1 - nu12**2 * E2 / E1
@@ -54,7 +54,7 @@ def test_carbon_from_its_plies() -> None:
     assert found.nu == pytest.approx(A12 / A22, rel=0.02)
 
 
-def test_leather_range_of_modulus_is_soft_to_hard() -> None:
+def test_leather_ranges_are_soft_to_hard() -> None:
     """The stiffness of a 1 ms contact as the entry's source states it; E and loss from soft to hard leather."""
     scene = cf.Scene(cf.LumpedCue(0.567, 0.008), cf.Ball(0.170, 0.028575), cf.Tip(0.73, 0.7, contact_time=1e-3))
     assert scene.stiffness == pytest.approx(0.97e6, rel=0.01)
@@ -77,7 +77,7 @@ OFFERS = {
 SPELT = {"Hard Maple": "hard maple", " HARD_MAPLE": "hard maple", "sugar maple": "hard maple", "aluminum": "aluminium"}
 
 
-def test_an_unknown_name_offers_near_ones_and_another_spelling_is_known() -> None:
+def test_material_unknown_name_suggests_and_spelling_variant_is_found() -> None:
     for name, offer in OFFERS.items():
         with pytest.raises(ValueError, match=f"no material is called {name!r}; nearest: .*{offer}"):
             material(name)

@@ -28,7 +28,7 @@ CUE = 'body_mass = "430 g"\n' + "".join(
 OF_CUE = 'game = "pool"\ncue = "cue.toml"\n[stroke]\nspeed = "3 m/s"\n'
 # What each path varies: segment and field of the scene, value in the file, m, and the piece that the output names.
 FERRULE, BORE = "ferrule of melamine, 0 to 20 mm", "bored shaft of hard maple, 20 to 146 mm"
-PLACES = {
+PATHS = {
     "cue.segments[1].length": (0, "length", 0.020, FERRULE),
     "segments[2].tip_bore": (1, "tip_bore", 0.006, BORE),
     "ferrule length": (0, "length", 0.020, FERRULE),
@@ -43,9 +43,9 @@ def varying(folder: Path, path: str, *, of: str = "cue.toml", more: str = "") ->
 
 
 @pytest.mark.parametrize("of", ["cue.toml", "scene.toml"])
-@pytest.mark.parametrize("path", PLACES)
+@pytest.mark.parametrize("path", PATHS)
 def test_segments_count_as_in_the_file(path: str, of: str, tmp_path: Path) -> None:
-    i, field, before, piece = PLACES[path]
+    i, field, before, piece = PATHS[path]
     wanted = load_study(file := varying(tmp_path, path, of=of))
     assert getattr(wanted.base.cue.segments[i], field) == pytest.approx(before)
     for value in (0.005, 0.007):

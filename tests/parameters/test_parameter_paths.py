@@ -1,4 +1,4 @@
-"""Paths of a scene: what they find, set and refuse (properties)."""
+"""Paths of a scene: values, changes and errors (properties)."""
 
 from dataclasses import replace
 
@@ -22,7 +22,7 @@ BASE = Scene(low_deflection(), tip=Tip(contact_time=1.2e-3), stroke=Stroke(2.0, 
         ("cue.segments[0].kappa", None),
     ],
 )
-def test_a_path_finds_its_field(path: str, value: float) -> None:
+def test_path_leads_to_its_field(path: str, value: float) -> None:
     (found,) = paths(BASE, path)
     assert value_at(BASE, found) == value
     assert spelt(found) == path
@@ -40,13 +40,13 @@ def test_a_path_finds_its_field(path: str, value: float) -> None:
         ("cue..length", "must be a path such as cue.segments[0].tip_bore"),
     ],
 )
-def test_a_path_that_names_no_field_is_refused(path: str, words: str) -> None:
+def test_path_without_field_raises(path: str, words: str) -> None:
     with pytest.raises(ValueError, match="must") as error:
         paths(BASE, path)
     assert words in str(error.value)
 
 
-def test_values_are_replaced_all_at_once() -> None:
+def test_replaced_values_change_together() -> None:
     """A bore may be wider than the shaft was, where the shaft grows with it; nothing else changes."""
     (bore,), (outer,) = paths(BASE, "cue.segments[2].tip_bore"), paths(BASE, "cue.segments[2].tip_diameter")
     found = replaced(BASE, {bore: 0.0126, outer: 0.014})
@@ -54,7 +54,7 @@ def test_values_are_replaced_all_at_once() -> None:
     assert replaced(found, {bore: 0.008, outer: 0.0125}) == BASE
 
 
-def test_a_contact_time_takes_a_stiffness_out() -> None:
+def test_replaced_contact_time_clears_stiffness() -> None:
     hard = replace(BASE, tip=Tip(stiffness=1e6))
     (time,) = paths(hard, "tip.contact_time")
     assert replaced(hard, {time: 2e-3}).tip == Tip(contact_time=2e-3)

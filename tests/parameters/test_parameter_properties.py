@@ -1,4 +1,4 @@
-"""Every named place of every ready cue is set and reads back, alone and with others, in any order (properties)."""
+"""Every named parameter of every reference cue: set and read, alone and together, in any order (properties)."""
 
 from typing import Any
 
@@ -15,27 +15,27 @@ from cuefem.parameters.parts import outer_diameter
 
 SCENES = {preset.name: opened(preset) for preset in PRESETS}
 FIRST = SCENES[PRESETS[0].name]
-IDLE = {"bore_width"}  # what has no depth has no width
+IDLE = {"bore_width"}  # without effect where the bore has no depth
 
 
 def numbers(scene: cf.Scene) -> dict[str, float]:
-    """The values of all places that hold a number above 0."""
+    """The values of all numerical parameters above 0."""
     values = {key: known.value(scene) for key, known in PARAMETERS.items() if not known.materials}
     return {key: value for key, value in values.items() if value}
 
 
-def beside(key: str, value: float, part: float) -> float:
-    """A value a part away, downwards where the number is at its upper bound."""
+def changed(key: str, value: float, part: float) -> float:
+    """A value changed by a part of it, downwards where it is at its upper bound."""
     return value * (1 - abs(part) if PARAMETERS[key].below else 1 + part)
 
 
 @pytest.mark.parametrize("name", SCENES)
 @settings(max_examples=5)
 @given(permille=st.integers(-10, 10))
-def test_every_place_is_set_and_reads_back(name: str, permille: int) -> None:
+def test_parameter_set_reads_back(name: str, permille: int) -> None:
     scene = SCENES[name]
     for key, value in numbers(scene).items():
-        wanted = beside(key, value, permille / 1000)
+        wanted = changed(key, value, permille / 1000)
         made = varied(scene, {PARAMETERS[key].name: wanted})
         if key not in IDLE:
             assert PARAMETERS[key].value(made) == pytest.approx(wanted, rel=1e-9), key
@@ -45,15 +45,15 @@ def test_every_place_is_set_and_reads_back(name: str, permille: int) -> None:
 
 @settings(max_examples=20)
 @given(name=st.sampled_from(sorted(SCENES)), data=st.data())
-def test_the_order_of_changes_does_not_matter(name: str, data: Any) -> None:
+def test_parameters_changed_in_any_order_agree(name: str, data: Any) -> None:
     scene = SCENES[name]
     keys = data.draw(st.lists(st.sampled_from(sorted(numbers(scene))), min_size=2, max_size=5, unique=True))
-    changes = {key: beside(key, numbers(scene)[key], 0.01) for key in keys}
+    changes = {key: changed(key, numbers(scene)[key], 0.01) for key in keys}
     assert varied(scene, changes) == varied(scene, dict(reversed(changes.items())))
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_a_place_is_named_in_many_ways(name: str) -> None:
+def test_parameter_name_variants_agree(name: str) -> None:
     scene = SCENES[name]
     assert varied(scene, {"butt diameter": 0.03}) == varied(scene, {"butt_diameter": 0.03})
     assert varied(scene, {"speed": 3.0}) == varied(scene, {"stroke.speed": 3.0})
@@ -62,7 +62,7 @@ def test_a_place_is_named_in_many_ways(name: str) -> None:
 
 @settings(max_examples=30)
 @given(x=st.floats(0.05, 0.7), more=st.floats(1e-8, 5e-4).flatmap(lambda size: st.sampled_from((size, -size))))
-def test_the_taper_at_a_position_moves_between_the_ends_alone(x: float, more: float) -> None:
+def test_taper_at_position_changes_diameters_linearly(x: float, more: float) -> None:
     name = f"taper at {1e3 * x!r} mm"
     there = outer_diameter(FIRST.cue, x)
     made = varied(FIRST, {name: there + more}).cue
@@ -71,7 +71,7 @@ def test_the_taper_at_a_position_moves_between_the_ends_alone(x: float, more: fl
         assert outer_diameter(made, at) == pytest.approx(outer_diameter(FIRST.cue, at) + hat, rel=1e-9)
 
 
-def test_names_stand_for_materials_and_leathers() -> None:
+def test_parameter_material_and_leather_names_set_values() -> None:
     made = varied(FIRST, {"wood": "ash", "wood.E": 13e9, "leather": "soft", "ferrule material": "nylon"})
     assert {s.material.rho for s in made.cue.segments} >= {material("ash").rho, material("nylon").rho}
     assert all(s.material.E == 13e9 for s in made.cue.segments if s.material.rho == material("ash").rho)
@@ -81,7 +81,7 @@ def test_names_stand_for_materials_and_leathers() -> None:
     assert varied(FIRST, {"leather": "soft", "restitution": 0.7}).tip.restitution == 0.7
 
 
-def test_a_spring_has_a_contact_time_or_a_stiffness() -> None:
+def test_contact_time_of_spring_clears_stiffness() -> None:
     spring = cf.Scene(FIRST.cue, tip=cf.Tip(stiffness=1e6))
     assert varied(spring, {"contact time": 1e-3}).tip == cf.Tip(contact_time=1e-3)
     assert varied(spring, {"tip.contact_time": 1e-3}).tip == cf.Tip(contact_time=1e-3)
@@ -98,8 +98,8 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("case", REFUSED)
-def test_what_is_no_place_is_refused_in_words(case: str) -> None:
-    text, words = REFUSED[case]
-    with pytest.raises(ValueError, match="got") as refused:
+def test_unknown_parameter_raises(case: str) -> None:
+    text, message = REFUSED[case]
+    with pytest.raises(ValueError, match="got") as error:
         varied(FIRST, {text: 1.0})
-    assert words in str(refused.value)
+    assert message in str(error.value)

@@ -1,4 +1,4 @@
-"""The weight of a shaft sets the density of its wood, and no uncertainty counts that density any more."""
+"""The mass of a shaft sets the density of its wood, which is then no uncertain parameter."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -30,7 +30,7 @@ def test_shaft_mass_sets_the_main_density_alone(mass: float) -> None:
     assert cue.segments[1].core == wood
 
 
-def test_weight_counts_the_leather_tip_and_precedes_other_changes() -> None:
+def test_shaft_mass_includes_tip_and_precedes_other_changes() -> None:
     scene = cf.usual_scene(pool())
     weighed = varied(scene, {"shaft mass": 0.112})
     tip = scene.leather.mass_on(scene.shaft)
@@ -41,7 +41,7 @@ def test_weight_counts_the_leather_tip_and_precedes_other_changes() -> None:
     assert not varied(weighed, {"shaft material": "ash"}).shaft.weighed
 
 
-def test_weighed_density_is_no_input_of_the_uncertainty() -> None:
+def test_weighed_density_is_not_uncertain() -> None:
     scene = cf.usual_scene(pool())
     inputs = [
         squirt_changes(Solved(each), cf.strike(each).squirt) for each in (scene, varied(scene, {"shaft mass": 0.112}))
@@ -50,14 +50,14 @@ def test_weighed_density_is_no_input_of_the_uncertainty() -> None:
     assert {*inputs[0]} - {*inputs[1]} == {"rho"}
 
 
-def test_option_and_file_key_agree_and_are_kept(tmp_path: Path) -> None:
+def test_shaft_mass_option_and_file_key_agree(tmp_path: Path) -> None:
     (csv := tmp_path / "my.csv").write_text(CSV)
     toml = tmp_path / "my.toml"
     assert call("convert", csv, toml, "--shaft-mass", "112 g")[0] == 0
     cue = cf.load(toml)
     assert isinstance(cue, cf.Cue)
     assert cue.weighed
-    assert 0.111 < cue.shaft_mass < 0.112  # the tip, which is not drawn, weighs the rest
+    assert 0.111 < cue.shaft_mass < 0.112  # the rest is the tip, which is not drawn
     assert as_json("modes", csv, "--shaft-mass", "112 g")["scene"]["cue"]["shaft_mass"] == pytest.approx(
         cue.shaft_mass, rel=1e-11
     )
@@ -67,12 +67,12 @@ def test_option_and_file_key_agree_and_are_kept(tmp_path: Path) -> None:
     assert main_material(other).rho == pytest.approx(main_material(cue).rho, rel=1e-12)
 
 
-@pytest.mark.parametrize("told", [{"material": "ash"}, {"bore": "6 mm wide, 127 mm deep"}, {"ferrule": "25 mm abs"}])
-def test_what_is_told_of_a_weighed_shaft_keeps_its_weight(told: dict[str, str], tmp_path: Path) -> None:
+@pytest.mark.parametrize("options", [{"material": "ash"}, {"bore": "6 mm wide, 127 mm deep"}, {"ferrule": "25 mm abs"}])
+def test_load_weighed_shaft_with_options_preserves_mass(options: dict[str, str], tmp_path: Path) -> None:
     bare = cf.Cue((cf.Segment(0.73, 0.0127, 0.0215, main_material(pool())),), 0.42)
     for thing in (with_shaft_mass(bare, 0.112), cf.Scene(with_shaft_mass(bare, 0.112))):
         cf.save(thing, tmp_path / "weighed.toml")
-        loaded = cf.load(tmp_path / "weighed.toml", **told)
+        loaded = cf.load(tmp_path / "weighed.toml", **options)
         cue = loaded if isinstance(loaded, cf.Cue) else loaded.cue
         assert isinstance(cue, cf.Cue)
         assert (cue.weighed, cue.shaft_mass) == (True, pytest.approx(0.112, rel=1e-12))
@@ -80,15 +80,15 @@ def test_what_is_told_of_a_weighed_shaft_keeps_its_weight(told: dict[str, str], 
 
 
 @pytest.mark.parametrize(
-    ("mass", "words"),
+    ("mass", "message"),
     [("112", "needs a unit"), ("0 g", "must be more than 0"), ("1 g", "must be 2.8"), ("9 kg", "to 3257 g")],
 )
-def test_impossible_weights_are_refused(mass: str, words: str, tmp_path: Path) -> None:
+def test_shaft_mass_out_of_bounds_raises(mass: str, message: str, tmp_path: Path) -> None:
     (csv := tmp_path / "my.csv").write_text(CSV)
     for command in (("strike", csv), ("convert", csv, tmp_path / "out.toml")):
         status, out, err = call(*command, "--shaft-mass", mass)
         assert (status, out, err.count("\n")) == (2, "", 1)
-    assert words in err
+    assert message in err
     assert not (tmp_path / "out.toml").exists()
     cf.save(pool(), path := tmp_path / "cue.toml")
     path.write_text(f'shaft_mass = "{mass}"\n' + path.read_text())
@@ -96,8 +96,8 @@ def test_impossible_weights_are_refused(mass: str, words: str, tmp_path: Path) -
         cf.load(path)
 
 
-@pytest.mark.parametrize(("mass", "said"), [("112 g", False), ("300 g", True), ("60 g", True)])
-def test_a_density_that_no_such_wood_has_is_told(mass: str, said: bool, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("mass", "noted"), [("112 g", False), ("300 g", True), ("60 g", True)])
+def test_shaft_mass_implausible_density_is_noted(mass: str, noted: bool, tmp_path: Path) -> None:
     (csv := tmp_path / "my.csv").write_text(CSV)
     status, _, err = call("strike", csv, "--body-mass", "15 oz", "--shaft-mass", mass)
-    assert (status, "density of its hard maple" in err) == (0, said)
+    assert (status, "density of its hard maple" in err) == (0, noted)

@@ -1,6 +1,6 @@
-"""Every declared field refuses what it cannot be, in Python and in a file, by its name and its bound (properties).
+"""Invalid values of every declared field raise an error with name and bound, in Python and in files (properties).
 
-In Python beyond both ends, nan and another kind; in a file also without a unit, in a wrong one, misspelt and missing.
+In Python: out of bounds, nan and wrong type; in a file also missing unit, wrong unit, misspelt key and missing key.
 """
 
 import copy
@@ -22,7 +22,7 @@ from cuefem.quantity.fields import Quantity, quantities
 
 WOOD = cf.Material(12.6e9, 0.84e9, 700.0)
 LEATHER = cf.LeatherTip(6e-3, 9.5e-3, 140e6)
-# What is made with the fewest words; effects with no field that must be given are made by their class.
+# An instance of each class with declared fields.
 MADE: list[Any] = [
     *(WOOD, cf.Segment(0.7, 0.012, 0.021, WOOD), cf.Ball(), cf.Tip(), cf.Stroke()),
     *(cf.LumpedCue(0.54, 0.01), cf.PointMass(0.1, 0.01), cf.Support(0.1, 1e3), cf.Joint(0.1, 1e-3), LEATHER),
@@ -44,7 +44,7 @@ def beyond(mark: Quantity) -> Iterator[float]:
 
 
 @pytest.mark.parametrize("made", MADE, ids=lambda made: type(made).__name__)
-def test_in_python(made: Any) -> None:
+def test_field_invalid_value_in_python_raises(made: Any) -> None:
     kind = type(made)
     for name, mark, optional in quantities(kind):
         said = f"{kind.__name__}.{name} must be "
@@ -58,7 +58,7 @@ def test_in_python(made: Any) -> None:
             assert str(told.value).startswith(f"{said}a number in {mark.bounds}; got "), name
 
 
-def test_every_effect_is_tried() -> None:
+def test_every_effect_has_an_instance() -> None:
     tried = {type(made).__name__ for made in MADE}
     kinds = {name: kind for name, kind in effect_kinds().items() if kind.__module__.startswith("cuefem.")}
     assert {name for name, kind in kinds.items() if fields(kind)} <= tried
@@ -86,7 +86,7 @@ TABLES = {
 
 
 def in_a_file(mark: Quantity) -> Iterator[tuple[Any, str]]:
-    """Values of a file that a field does not take, each with what is said of it."""
+    """Invalid values in a file, each with a part of its error message."""
     for end, way in zip(mark.ends, (-1, 1), strict=True):
         if math.isfinite(end):
             wrong = end + way * max(1.0, abs(end))
@@ -99,7 +99,7 @@ def in_a_file(mark: Quantity) -> Iterator[tuple[Any, str]]:
 
 
 @pytest.mark.parametrize("key", TABLES)
-def test_in_a_file(tmp_path: Path, key: str) -> None:
+def test_field_invalid_value_in_file_raises(tmp_path: Path, key: str) -> None:
     path, kind = tmp_path / "scene.toml", TABLES[key]
 
     def said(name: str, value: Any) -> str:

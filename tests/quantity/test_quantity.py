@@ -1,4 +1,4 @@
-"""Properties of quantities: intervals, messages, what `check` lets through and what it keeps out."""
+"""Quantities: intervals, messages, and checks of fields (properties)."""
 
 import math
 import re
@@ -17,7 +17,7 @@ INTERVALS = ["(0, inf)", "[0, inf)", "[0, inf]", "[0, 1]", "(-1, 1)", "(-inf, in
 
 
 @given(st.sampled_from(INTERVALS), st.floats(allow_nan=False) | st.sampled_from([0.0, -0.0, 1.0, -1.0, math.inf]))
-def test_holds_as_mathematics_means_it(interval: str, value: float) -> None:
+def test_quantity_interval_contains_its_numbers(interval: str, value: float) -> None:
     low, high = (float(end) for end in interval[1:-1].split(","))
     inside = low < value < high or (value == low and interval[0] == "[") or (value == high and interval[-1] == "]")
     assert bool(Quantity("m", interval).holds(value)) == inside
@@ -33,7 +33,7 @@ class Thing:
         check_fields(self)
 
 
-def test_fields_are_found_and_checked() -> None:
+def test_dataclass_fields_are_checked() -> None:
     assert [(name, q.unit, optional) for name, q, optional in quantities(Thing)] == [
         ("size", "m", False),
         ("part", "", True),
@@ -48,7 +48,7 @@ def test_fields_are_found_and_checked() -> None:
 
 
 MASS, SIZE = Quantity("kg", "[0, inf)"), Quantity("m", "(0, 10]")
-# What stands in a file or an option, and what is said of it.
+# Invalid values of a file or an option, and the end of the error message.
 READ = [
     (MASS, "15", 'needs a unit: "150 g" or "15 oz"; got \'15\''),
     (MASS, 15, 'needs a unit: "150 g" or "15 oz"; got 15'),
@@ -77,21 +77,21 @@ READ = [
 ]
 
 
-@pytest.mark.parametrize(("wanted", "value", "words"), READ)
-def test_what_is_wrong_is_said_in_the_words_of_who_wrote_it(wanted: Quantity, value: object, words: str) -> None:
-    with pytest.raises(ValueError, match=f"{re.escape(words)}$"):
-        wanted.read(value)
+@pytest.mark.parametrize(("quantity", "value", "message"), READ)
+def test_read_invalid_value_raises_in_units_of_file(quantity: Quantity, value: object, message: str) -> None:
+    with pytest.raises(ValueError, match=f"{re.escape(message)}$"):
+        quantity.read(value)
 
 
-def test_bounds_that_hang_on_another_field_are_told_in_both_ways() -> None:
-    words = r"^Segment.tip_bore must be in \[0, 0.012\) m, its outer diameter; got 0.013"
-    with pytest.raises(OutOfBounds, match=words) as error:
+def test_dependent_bound_error_has_si_and_file_units() -> None:
+    message = r"^Segment.tip_bore must be in \[0, 0.012\) m, its outer diameter; got 0.013"
+    with pytest.raises(OutOfBounds, match=message) as error:
         Segment(0.7, 0.012, 0.021, Material(12.6e9, 0.84e9, 782.0), tip_bore=0.013)
     assert error.value.in_words == "must be at least 0 and less than 12 mm, its outer diameter; got 13 mm"
 
 
 @pytest.mark.parametrize(("text", "inches"), [("5/16 in", 0.3125), ("1 1/4 in", 1.25), ('29 1/2"', 29.5)])
-def test_a_fraction_is_a_number(text: str, inches: float) -> None:
+def test_fraction_is_parsed(text: str, inches: float) -> None:
     assert number(text, "m") == pytest.approx(25.4e-3 * inches, rel=1e-15)
     with pytest.raises(ValueError, match="needs a unit"):
         Quantity("m").read(text.rstrip('in" '))

@@ -1,4 +1,4 @@
-"""How objects show themselves: short in a terminal; what `dir` lists (regression)."""
+"""Representations of objects: short in a terminal, and full (regression)."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ THINGS = {
 
 
 @pytest.mark.parametrize("name", THINGS)
-def test_short_in_a_terminal(name: str) -> None:
+def test_repr_is_one_short_line(name: str) -> None:
     make, begins = THINGS[name]
     shown = repr(make())
     assert shown.startswith(begins)
@@ -34,7 +34,7 @@ def test_short_in_a_terminal(name: str) -> None:
     assert "\n" not in shown
 
 
-def test_all_of_an_object_can_still_be_written_out() -> None:
-    """What tells studies apart; `eval` makes the same object of it."""
+def test_full_repr_evaluates_to_equal_object() -> None:
+    """Studies are compared by it."""
     names = {name: getattr(cf, name) for name in dir(cf)} | {"inf": float("inf")}
     assert eval(spelt_out(SCENE), names) == SCENE

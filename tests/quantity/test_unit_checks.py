@@ -1,4 +1,4 @@
-"""Numbers that look like another unit are remarked in Python, and no others (properties)."""
+"""Warnings for numbers in another unit, and for no others (properties)."""
 
 import dataclasses
 import math
@@ -28,21 +28,21 @@ SLIPS: dict[str, Callable[[], object]] = {
 }
 
 
-@pytest.mark.parametrize("words", SLIPS)
-def test_a_slip_of_units_is_remarked_where_it_stands(words: str) -> None:
-    with pytest.warns(cf.Unusual) as told:
-        SLIPS[words]()
-    assert str(told[0].message).startswith(words)
-    assert {Path(one.filename).name for one in told} == {Path(__file__).name}
+@pytest.mark.parametrize("message", SLIPS)
+def test_number_in_other_unit_warns_at_caller(message: str) -> None:
+    with pytest.warns(cf.Unusual) as caught:
+        SLIPS[message]()
+    assert str(caught[0].message).startswith(message)
+    assert {Path(one.filename).name for one in caught} == {Path(__file__).name}
 
 
-def test_a_shaft_that_is_struck_without_the_rest_of_its_cue() -> None:
-    """At the scene, where the mass counts, and not at the shaft, which may be tapped; a model to scale may be light."""
+def test_scene_of_shaft_without_butt_warns() -> None:
+    """Only a scene, in which the mass matters, warns; a scale model may be light."""
     with pytest.warns(
-        cf.Unusual, match=r"^Cue.body_mass is 0 kg, so the whole cue weighs 0.107 kg; 0.4 to 0.7"
-    ) as told:
+        cf.Unusual, match=r"^Cue.body_mass is 0 kg, so the whole cue weighs 0.107 kg; expected 0.4 to 0.7"
+    ) as caught:
         cf.Scene(cf.Cue((SEGMENT,)))
-    assert {Path(one.filename).name for one in told} == {Path(__file__).name}
+    assert {Path(one.filename).name for one in caught} == {Path(__file__).name}
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         cf.modes(cf.Cue((SEGMENT,)), 2)
@@ -50,7 +50,7 @@ def test_a_shaft_that_is_struck_without_the_rest_of_its_cue() -> None:
         cf.Scene(cf.Cue((dataclasses.replace(SEGMENT, length=0.07),)))
 
 
-def test_limits_and_scales_pass_without_a_word() -> None:
+def test_limits_and_scale_models_do_not_warn() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for made in (cf.TipDome(1.0), cf.TipDome(1e3), cf.Tip(contact_time=1e-6), cf.Ball(1e6)):
@@ -59,15 +59,15 @@ def test_limits_and_scales_pass_without_a_word() -> None:
             assert made
 
 
-def test_a_file_s_slip_is_told_to_the_one_who_loads_it(tmp_path: Path) -> None:
+def test_file_number_in_other_unit_warns_at_load(tmp_path: Path) -> None:
     shutil.copy(ROOT / "meshes" / "pool_maple.toml", tmp_path / "cue.toml")
     path = tmp_path / "scene.toml"
     ball = '[stroke]\noffset = 0.3\n[ball]\nmass = "170 g"\nradius = "28.575 mm"\n'
     path.write_text(f'game = "kim"\ncue = "cue.toml"\n{ball}[[effects]]\ntype = "TipDome"\nradius = "9.5 m"\n')
-    with pytest.warns(cf.Unusual, match="is it 9.5 mm") as told:
+    with pytest.warns(cf.Unusual, match="is it 9.5 mm") as caught:
         cf.load(path)
-    assert Path(told[0].filename).name == Path(__file__).name
+    assert Path(caught[0].filename).name == Path(__file__).name
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        status, _, err = call("strike", path)  # says it in its own words
+        status, _, err = call("strike", path)
     assert (status, err[:35]) == (0, "unusual: dome radius 9500 mm; expec")
