@@ -152,7 +152,7 @@ def possible(cue: MeasuredCue, i: int, z: float) -> bool:
 
 @pytest.mark.parametrize("name", ["E", pytest.param("bore width", marks=pytest.mark.heavy), "taper"])
 def test_estimate_at_limits_of_geometry_stays_finite(name: str) -> None:
-    """Differences are one-sided at a limit; a parameter without a limit within 12 standard deviations of its prior is not limited."""
+    """Differences are one-sided at a limit; no limit within 12 standard deviations of the prior: not limited."""
     cue = MeasuredCue("a cue", SCENE, CHEAP, (Prior("taper", 0.1),))
     i, parameter = next((i, each) for i, each in enumerate(cue.parameters) if each.name == name)
     for outside in (side for side in (-12.0, 12.0) if not possible(cue, i, side)):
