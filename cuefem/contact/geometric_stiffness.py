@@ -1,8 +1,8 @@
-"""How a cue bends while it is struck: the few rows of slopes that carry its geometric stiffness.
+"""The reduced slope basis that carries a cue's geometric stiffness during the contact.
 
-With G the geometric stiffness of all modes (`TipModes.geometric`), what the contact needs of it are rows g_a over the
-modes with q'Gq = sum of (g_a q)^2 for every q that a blow at the tip brings about. They come from a proper orthogonal
-decomposition in G of the modes' motion under half-sine pushes of the tip, across and as a couple.
+With G the geometric stiffness of all modes (`TipModes.geometric`), the contact needs rows g_a over the modes with
+q'Gq = sum of (g_a q)^2 for every modal displacement q that an impact at the tip causes. They come from a proper
+orthogonal decomposition in G of the modal responses to half-sine pulses at the tip, a lateral force and a couple.
 """
 
 from __future__ import annotations
@@ -14,38 +14,38 @@ import numpy as np
 from cuefem.beam.tip import TipModes
 from cuefem.cue import Array
 
-# The half-sine pushes last these parts of the contact time. The modes' motion under each is sampled LOOKS times from
-# the first touch up to UNTIL contact times.
-PUSHES, LOOKS, UNTIL = (0.5, 0.75, 1.0), 16, 1.5
-# Of the decomposition, rows that carry less than this part of the greatest one's q'Gq are dropped, and all beyond MOST.
-LEAST_PART, MOST = 1e-12, 12
+# Durations of the half-sine pulses, in contact times. Each response is sampled SAMPLES times from the first touch up to
+# SAMPLED_TIME contact times.
+PULSE_LENGTHS, SAMPLES, SAMPLED_TIME = (0.5, 0.75, 1.0), 16, 1.5
+# The decomposition drops rows whose share of the largest row's q'Gq is smaller, and all beyond MAX_ROWS.
+MIN_SHARE, MAX_ROWS = 1e-12, 12
 
 
 class BentTooFar(ValueError):
-    """The thrust bends the shaft further than its second-order theory holds."""
+    """The axial force bends the shaft beyond the range of the second-order theory."""
 
 
 def half_octave(time: float) -> float:
-    """The nearest power of the root of two: strokes of about the same length share their rows."""
+    """The nearest power of the square root of two: contacts of similar duration share their rows."""
     return float(2.0 ** (round(2 * math.log2(time)) / 2))
 
 
 def slope_rows(tip: TipModes, time: float, until: float) -> Array:
     """Rows over the modes, (rows, n), 1/sqrt(m kg), and as the last one the tip's rotation, 1/(m sqrt(kg)).
 
-    time: about how long the contact lasts, s. until: how long cue and ball are followed, s, where that is longer than
-    the contact. (0, n) for a cue without thrust.
+    time: approximate contact time, s. until: end of the simulated time, s, where that is later than the contact. (0, n)
+    without geometric stiffness.
     """
     if tip.geometric is None:
         return np.zeros((0, len(tip.omega)))
-    times = np.linspace(0.0, max(UNTIL * time, until), LOOKS + 1)[1:]
-    moved = [_pushed(tip.omega, part * time, times) for part in PUSHES]
+    times = np.linspace(0.0, max(SAMPLED_TIME * time, until), SAMPLES + 1)[1:]
+    moved = [_pushed(tip.omega, part * time, times) for part in PULSE_LENGTHS]
     shapes = [load[:, None] * each for load in (tip.amplitude[:, 1], tip.rotation) for each in moved]
     shapes = [shape / math.sqrt(np.sum(shape * (tip.geometric @ shape))) for shape in shapes if shape.any()]
     together = np.concatenate(shapes, axis=1)
     onto = tip.geometric @ together
     parts, ways = np.linalg.eigh(together.T @ onto)
-    strongest = np.flatnonzero(parts > LEAST_PART * parts[-1])[-MOST:]
+    strongest = np.flatnonzero(parts > MIN_SHARE * parts[-1])[-MAX_ROWS:]
     return np.concatenate([(onto @ (ways[:, strongest] / np.sqrt(parts[strongest]))).T[::-1], tip.rotation[None]])
 
 

@@ -1,8 +1,8 @@
-"""The modes of a cue as the contact moves them: each turns by itself, and a load at the tip drives them.
+"""Modal propagation: the exact response of a cue's modes to loads at its tip.
 
-An undamped mode of angular frequency omega is one complex coordinate xi = v + i omega q, with xi' = i omega xi + drive.
-Modes that a damper couples are replaced by the eigenvectors of their group. What the contact feels is read off them,
-y = Re(readings xi), and all of it belongs to the cue alone: strikes at other speeds and offsets share it.
+An undamped mode of angular frequency omega is one complex coordinate xi = v + i omega q, with xi' = i omega xi + input.
+Modes that a damper couples are replaced by the eigenvectors of their group. The contact sees y = Re(output_rows xi).
+All of it depends on the cue alone, so that strikes at other speeds and offsets share it.
 """
 
 from __future__ import annotations
@@ -23,20 +23,19 @@ from cuefem.cue import Array
 
 Complex = NDArray[np.complex128]
 Index = NDArray[np.intp]
-# Eigenvectors of coupled modes whose condition number is above DEFECTIVE would lose digits. The diagonal is then
-# changed by up to NUDGE of the norm, which parts rates that are equal.
-DEFECTIVE, NUDGE = 1e7, 1e-9
+# Above MAX_CONDITION the eigenvectors of coupled modes lose accuracy. The diagonal is then shifted by up to
+# DIAGONAL_SHIFT of the norm, which separates equal rates.
+MAX_CONDITION, DIAGONAL_SHIFT = 1e7, 1e-9
 
 
 class ModalPropagator:
-    """Tip modes with their ports, as the coordinates that the compiled kernel steps.
+    """Tip modes and their ports in the complex coordinates that the compiled kernel propagates.
 
-    rows: (ports, modes), what each port reads of the modes' velocities, and pushes. slopes: (slopes, modes), likewise,
-    of the bent cue (`cuefem.contact.geometric_stiffness`); none without thrust. omega, approach: of the modes.
-    rates: (coordinates,) 1/s.
-    displacements, velocities: (modes, coordinates), which give omega q and the velocities of the modes. onto:
-    (coordinates, modes), from the modes' velocities. lossy: how many of the dampers' rows lose energy; the others
-    radiate it.
+    rows: (ports, modes), output and input matrix of the ports, 1/sqrt(kg). slopes: (slopes, modes), the same for the
+    slopes of the bent cue (`cuefem.contact.geometric_stiffness`); empty without geometric stiffness. omega, approach:
+    of the modes. rates: (coordinates,), 1/s. displacements, velocities: (modes, coordinates), from the coordinates to
+    omega q and the modal velocities. onto: (coordinates, modes), from modal velocities to coordinates. n_dissipative:
+    number of the dampers' rows that dissipate energy; the other rows radiate it.
     """
 
     def __init__(self, tip: TipModes, rows: Array, slopes: Array) -> None:
@@ -59,33 +58,33 @@ class ModalPropagator:
             self.onto[here, part.modes] = part.onto
             first = here.stop
         dampers = [_rows_of_power(damping) for damping in (tip.damping, tip.radiation) if damping is not None]
-        self.lossy = len(dampers[0]) if tip.damping is not None else 0
+        self.n_dissipative = len(dampers[0]) if tip.damping is not None else 0
         self.dampers = np.concatenate([np.zeros((0, count)), *dampers])
 
     @property
-    def pushed(self) -> Array:
-        """All rows that forces push: those of the ports, then the slopes, (ports + slopes, modes)."""
+    def loaded_rows(self) -> Array:
+        """Input rows of the ports, then of the slopes, (ports + slopes, modes)."""
         return np.concatenate([self.rows, self.slopes])
 
     @cached_property
-    def approaching(self) -> Complex:
-        """The coordinates of a cue that moves along its axis at 1 m/s."""
+    def approach_state(self) -> Complex:
+        """Coordinates of a cue that moves along its axis at 1 m/s."""
         return np.asarray(self.onto @ self.approach, complex)
 
     @property
     def mobility(self) -> Array:
-        """Rates of the ports' velocities per load, (ports, ports), 1/kg."""
+        """Inverse masses of the ports, (ports, ports), 1/kg."""
         return np.asarray(self.rows @ self.rows.T)
 
     @cached_property
-    def readings(self) -> Complex:
+    def output_rows(self) -> Complex:
         """From the coordinates to the velocities of ports and slopes, (ports + slopes, coordinates), as real parts."""
-        return np.ascontiguousarray(self.pushed @ self.velocities)
+        return np.ascontiguousarray(self.loaded_rows @ self.velocities)
 
     @cached_property
-    def drives(self) -> Complex:
-        """What unit impulses on ports and slopes add to the coordinates, (ports + slopes, coordinates)."""
-        return np.ascontiguousarray((self.onto @ self.pushed.T).T)
+    def input_rows(self) -> Complex:
+        """Change of the coordinates per unit impulse on ports and slopes, (ports + slopes, coordinates)."""
+        return np.ascontiguousarray((self.onto @ self.loaded_rows.T).T)
 
     @cached_property
     def _damped(self) -> Complex:
@@ -101,16 +100,17 @@ class ModalPropagator:
         ends, means = (xi @ self._damped).real, np.zeros((len(lengths), len(self.dampers)))
         for length in np.unique(lengths[lengths > 0]):
             here = np.flatnonzero(lengths == length)
-            turned, first, second = responses(self.rates * length)
+            turned, first, second = phi_functions(self.rates * length)
             before, after = (first - turned * second / first)[:, None], (second / first)[:, None]
             means[here] = (xi[here] @ (before * self._damped) + xi[here + 1] @ (after * self._damped)).real
         v, w = ends[:-1], ends[1:]
         squares = (4 * v**2 + 4 * w**2 - 2 * v * w) / 30 + means * (6 * means - v - w) / 5
         squares *= lengths[:, None]
-        return np.column_stack([squares[:, : self.lossy].sum(axis=1), squares[:, self.lossy :].sum(axis=1)])
+        lost, radiated = np.split(squares, [self.n_dissipative], axis=1)
+        return np.column_stack([lost.sum(axis=1), radiated.sum(axis=1)])
 
 
-def responses(z: Complex) -> tuple[Complex, Complex, Complex]:
+def phi_functions(z: Complex) -> tuple[Complex, Complex, Complex]:
     """exp(z), phi_1 = (exp(z) - 1)/z and phi_2 = (phi_1 - 1)/z, of a mode's response to a constant load."""
     large = np.abs(z) > 0.5
     safe = np.where(large, z, 1.0)
@@ -121,7 +121,7 @@ def responses(z: Complex) -> tuple[Complex, Complex, Complex]:
 
 
 class _Group(NamedTuple):
-    """Modes by themselves, or coupled by dampers, as coordinates that turn by themselves (`ModalPropagator`)."""
+    """Uncoupled modes, or a group coupled by dampers, in uncoupled coordinates (`ModalPropagator`)."""
 
     modes: Index
     rates: Complex
@@ -144,8 +144,8 @@ def _coupled(omega: Array, resistance: Array, modes: Index) -> _Group:
     states[count:, count:] = -resistance[modes[:, None], modes]
     states[np.arange(count), count + vibrating], states[count + vibrating, np.arange(count)] = turning, -turning
     rates, right = np.linalg.eig(states)
-    if np.linalg.cond(right, "fro") > DEFECTIVE:  # two rates are one, as of a critically damped mode: part them
-        nudge = NUDGE * np.linalg.norm(states) * np.diag(np.linspace(-1.0, 0.0, len(states)))
+    if np.linalg.cond(right, "fro") > MAX_CONDITION:  # two rates are one, as of a critically damped mode: part them
+        nudge = DIAGONAL_SHIFT * np.linalg.norm(states) * np.diag(np.linspace(-1.0, 0.0, len(states)))
         rates, right = np.linalg.eig(states + nudge)
     left = np.linalg.inv(right).astype(complex)
     upper = np.flatnonzero(rates.imag >= 0)

@@ -17,24 +17,24 @@ from cuefem.scene import Scene
 
 # A tip of a small restitution e unloads 1/e times as fast as it loads, and takes as many steps. Such tips are refused
 # below the first number, and leather, which rings on the ball then, below the second.
-LEAST_RESTITUTION, LEAST_OF_LEATHER = 0.05, 0.1
-RINGS, DEEPER = 120, 1.05  # even in the root of the indentation, up to so many times a head-on blow's greatest
+MIN_RESTITUTION, MIN_LEATHER_RESTITUTION = 0.05, 0.1
+ANNULI, TABLE_MARGIN = 120, 1.05  # even in the root of the indentation, up to so many times a head-on blow's greatest
 RIGID_PATCH, SPRING_PATCH, PARTIAL_SLIP = range(3)
 
 
 @dataclass(frozen=True, eq=False)
 class ContactModel:
-    """A contact as the kernel takes it.
+    """Input of the contact kernel.
 
-    propagator: the cue's modes and ports. facing: (forces, ports + ball), from the velocities of the ports to those of
-    the contact at the first touch. inverse_masses: (n,), of the ball's velocities; ball: these at the first touch, m/s.
-    law: the force along the normal. terms, arrays: what `kernel/contact.h` names, by name. axes: right, forward and up
-    in (t, n, p), (3, 3), above a table; None for a level cue. side: of the ball that is struck, 1 or -1; all else is
-    that of the stroke on the side 1. radius: of the ball, m.
+    propagator: the cue's modes and ports. kinematics: (forces, ports + ball), from the velocities of ports and ball to
+    those of the contact at the first touch. inverse_masses: (n,), of the ball's velocities. ball: these velocities at
+    the first touch, m/s. law: the force-indentation law. terms, arrays: further fields of `kernel/contact.h`, by name.
+    axes: right, forward and up in (t, n, p), (3, 3), above a table; None for a level cue. side: of the ball that is
+    struck, 1 or -1; all else is that of the stroke on the side 1. radius: of the ball, m.
     """
 
     propagator: ModalPropagator
-    facing: Array
+    kinematics: Array
     inverse_masses: Array
     ball: Array
     phi: float
@@ -57,14 +57,14 @@ class ContactModel:
     def inverse_mass(self) -> Array:
         """Rates of the contact's velocities per force at the first touch, (forces, forces), 1/kg."""
         ports = len(self.propagator.rows)
-        of_cue, of_ball = self.facing[:, :ports], self.facing[:, ports:]
+        of_cue, of_ball = self.kinematics[:, :ports], self.kinematics[:, ports:]
         return np.asarray(of_cue @ self.propagator.mobility @ of_cue.T + (of_ball * self.inverse_masses) @ of_ball.T)
 
     @property
     def approach(self) -> Array:
         """Velocities of the contact (t, n) at the first touch, m/s."""
         cue = self.propagator.rows @ self.propagator.approach * self.speed
-        return np.asarray(self.facing @ np.concatenate([cue, self.ball]))[:2]
+        return np.asarray(self.kinematics @ np.concatenate([cue, self.ball]))[:2]
 
     @property
     def jams(self) -> bool:
@@ -84,8 +84,8 @@ class ContactModel:
     def unknowns(self) -> int:
         """Of the model: the modes' displacements and velocities, the ball's, and the states of the tip."""
         omega = self.propagator.omega
-        forces = len(self.facing)
-        turns, gives = bool(self.terms.get("rolls")), self.patch != RIGID_PATCH
+        forces = len(self.kinematics)
+        turns, gives = bool(self.terms.get("rolling")), self.patch != RIGID_PATCH
         of_tip = {2: 3 + 2 * turns + gives, 6: 8}[forces]
         return len(omega) + int(np.count_nonzero(omega)) + of_tip
 
@@ -110,7 +110,7 @@ def model_of(scene: Scene, tip: TipModes) -> ContactModel:
         "window": terms.window,
     }
     check_restitution(
-        "Tip.restitution", model["restitution"], LEAST_RESTITUTION if terms.tip is None else LEAST_OF_LEATHER
+        "Tip.restitution", model["restitution"], MIN_RESTITUTION if terms.tip is None else MIN_LEATHER_RESTITUTION
     )
     raised = terms.table is not None
     if raised and (terms.compliance or terms.turns or terms.window is not None or terms.tip is not None):
@@ -131,20 +131,20 @@ def model_of(scene: Scene, tip: TipModes) -> ContactModel:
         planes = 1 + raised
         weights = np.append(np.ones(len(propagator.slopes) // planes - 1), ahead)
         model["arrays"] |= {"slope_weights": np.tile(weights, planes)}
-    facing = _level(model["phi"], u, w)
+    kinematics = _level(model["phi"], u, w)
     if terms.turns:
-        arm_t, arm_n = -facing[:, 2]
-        model["terms"] |= {"rolls": 1, "dome": dome, "rim": min(rim, math.pi), "radius": model["radius"]}
+        arm_t, arm_n = -kinematics[:, 2]
+        model["terms"] |= {"rolling": 1, "dome": dome, "rim": min(rim, math.pi), "radius": model["radius"]}
         model["terms"] |= {"arm_t": arm_t, "arm_n": arm_n}
     if ports == "straight":
-        facing = facing[:, [0, 1, 3, 4, 5]]
+        kinematics = kinematics[:, [0, 1, 3, 4, 5]]
     if terms.table is not None:
         model["axes"] = _table_axes(model["phi"], terms.table.angle)
         model["terms"] |= {"table_friction": terms.table.friction}
-        facing = _raised(model["phi"], model["axes"])
+        kinematics = _raised(model["phi"], model["axes"])
     moves, turns = 1 / model["ball_mass"], 1 / (model["inertia"] * model["ball_mass"])
     inverse_masses = np.array([moves] * 3 + [turns] * 3 if raised else [moves, moves, turns])
-    return ContactModel(propagator, facing, inverse_masses, 0 * inverse_masses, **model)
+    return ContactModel(propagator, kinematics, inverse_masses, 0 * inverse_masses, **model)
 
 
 def _level(phi: float, u: float, w: float) -> Array:
@@ -166,16 +166,16 @@ def _raised(phi: float, axes: Array) -> Array:
     ball's lowest point upwards, aside and ahead; the ball's are its velocity and R times its spin.
     """
     s, c, (right, forward, up) = math.sin(phi), math.cos(phi), axes
-    facing = np.zeros((6, 9))
-    facing[0, [0, 1]], facing[1, [0, 1]], facing[2, 2] = (-s, -c), (-c, s), -1.0
-    facing[[0, 1, 2], [3, 4, 5]] = 1.0
-    facing[0, 8], facing[2, 6] = 1.0, -1.0
-    facing[3:, 3:6] = up, right, forward
-    facing[4, 6:], facing[5, 6:] = -np.cross(up, right), -np.cross(up, forward)
-    return facing
+    kinematics = np.zeros((6, 9))
+    kinematics[0, [0, 1]], kinematics[1, [0, 1]], kinematics[2, 2] = (-s, -c), (-c, s), -1.0
+    kinematics[[0, 1, 2], [3, 4, 5]] = 1.0
+    kinematics[0, 8], kinematics[2, 6] = 1.0, -1.0
+    kinematics[3:, 3:6] = up, right, forward
+    kinematics[4, 6:], kinematics[5, 6:] = -np.cross(up, right), -np.cross(up, forward)
+    return kinematics
 
 
-def check_restitution(name: str, restitution: float, least: float = LEAST_RESTITUTION) -> None:
+def check_restitution(name: str, restitution: float, least: float = MIN_RESTITUTION) -> None:
     """ValueError for a restitution near 0."""
     if restitution < least:
         raise ValueError(
@@ -187,13 +187,18 @@ def check_restitution(name: str, restitution: float, least: float = LEAST_RESTIT
 def _leather(scene: Scene, whole: WholeTip, common: dict[str, Any]) -> dict[str, Any]:
     """The terms of a whole tip, whose patch slips annulus by annulus."""
     law = whole.law(common["radius"], abs(float(scene.stroke.offset)), common["restitution"])
-    terms = {"law": 1, "most": law.most, "terms": len(law.force_terms), "rings": RINGS}
+    terms = {"law": 1, "depth_limit": law.depth_limit, "terms": len(law.force_terms), "annuli": ANNULI}
     terms["surface_restitution"] = whole.surface_restitution
     arrays = {"force_terms": np.array(law.force_terms), "compliance_terms": np.array(law.give_terms)}
     # the last ring has what lies beyond
-    edges = min(law.most, DEEPER * scene.deepest) * np.linspace(0.0, 1.0, RINGS + 1) ** 2
+    edges = min(law.depth_limit, TABLE_MARGIN * scene.deepest) * np.linspace(0.0, 1.0, ANNULI + 1) ** 2
     force, stiffness = law.at(edges)
-    arrays |= {"ring_edges": edges, "ring_forces": force, "ring_stiffness": stiffness, "ring_slopes": law.slope(edges)}
+    arrays |= {
+        "annulus_edges": edges,
+        "annulus_forces": force,
+        "annulus_stiffness": stiffness,
+        "annulus_slopes": law.slope(edges),
+    }
     return {"law": law, "patch": PARTIAL_SLIP, "terms": terms, "arrays": arrays}
 
 

@@ -21,9 +21,9 @@ GROSS_SLIP_SHARE, MISCUE_SHARE, MISCUE_SHARE_AT_END = 0.25, 0.5, 1 / 3
 # Friction loss over the ball's kinetic energy above which parts of a patch slip through much of the impulse: squirt of
 # a leather tip, in proportion to b/R closer to the centre, is then 7 to 15 % above that line and rises fast.
 PARTIAL_SLIP_LOSS = 0.05
-SLIPS = ("slip", "slip back")
+SLIP_STATES = ("slip", "slip back")
 # The grip of a blow, and grip and press of a flight, in which ball and tip are apart before they touch again.
-BLOW, FLIGHT = "blow", ("apart", "free")
+IMPACT, SEPARATION = "blow", ("apart", "free")
 
 
 class Phase(NamedTuple):
@@ -134,7 +134,7 @@ def slips_at_end(outcome: Outcome) -> bool:
 
 def _slip_shares(phases: Sequence[Phase]) -> tuple[float, float]:
     """Parts of the normal impulse that are given while the tip slips: in all, and without a break up to the end."""
-    given = [(phase.grip in SLIPS, abs(phase.impulse[1])) for phase in phases]
+    given = [(phase.grip in SLIP_STATES, abs(phase.impulse[1])) for phase in phases]
     whole = sum(impulse for _, impulse in given) or 1.0
     last = takewhile(lambda each: each[0] or each[1] < 1e-3 * whole, reversed(given))
     return sum(impulse for slips, impulse in given if slips) / whole, sum(impulse for _, impulse in last) / whole
@@ -142,7 +142,7 @@ def _slip_shares(phases: Sequence[Phase]) -> tuple[float, float]:
 
 def end_of_first_slip(phases: Sequence[Phase]) -> str:
     """How the slip at the first touch ended, in the words of the impulse solver."""
-    first_touch = list(takewhile(lambda phase: phase[:2] != FLIGHT, phases))
+    first_touch = list(takewhile(lambda phase: phase[:2] != SEPARATION, phases))
     held = next((i for i, phase in enumerate(first_touch) if phase.grip != "slip"), None)
     if held is None:
         return "miscue"

@@ -24,7 +24,7 @@ from cuefem.quantity.fields import sine_cosine
 from cuefem.scene import Outcome, Scene
 
 # Stands for endless friction: slip then ends after 1e-100 of the blow, and the square is still a number.
-ENDLESS = 1e100
+INFINITE_FRICTION = 1e100
 
 REGIMES = np.array(["stick", "late stick", "miscue", "slip reversal"])
 SLIPPING = 2  # from this index on, the tip slips at separation
@@ -83,7 +83,7 @@ class _Course(NamedTuple):
 
 def _course(B: InverseMass, v_t: Array, v_n: Array, *, mu: Array, e: Array) -> _Course:
     """The course of contacts that start with v_t = -s <= 0 and v_n = -c < 0, unit speed along the cue."""
-    endless, mu = np.isinf(mu), np.minimum(mu, ENDLESS)
+    endless, mu = np.isinf(mu), np.minimum(mu, INFINITE_FRICTION)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         mu_c = -B.tn / B.tt
         stuck = B.det / B.tt  # dv_n/dp in stick

@@ -29,7 +29,7 @@ from cuefem.scene import Resolution, equal_fields
 from cuefem.scene.solved_scene import modes_for
 
 # Hertz's force grows with this power of the compression: F = 4/3 E* sqrt(R) d^(3/2).
-HERTZ = 1.5
+HERTZ_EXPONENT = 1.5
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ class Striker:
     def law(self) -> TipLaw:
         """Force over compression: a power law, F = stiffness d^exponent while it is pressed."""
         if self.modulus is not None and self.radius is not None:
-            return TipLaw(4 / 3 * self.modulus * math.sqrt(self.radius), HERTZ, self.restitution)
+            return TipLaw(4 / 3 * self.modulus * math.sqrt(self.radius), HERTZ_EXPONENT, self.restitution)
         if self.stiffness is not None:
             return TipLaw(self.stiffness, 1.0, self.restitution)
         assert self.contact_time is not None
@@ -287,7 +287,7 @@ def side_strike(scene: SideStrike, at: Resolution | None = None) -> SideOutcome:
     3.999
     """
     check_kind("side_strike scene", scene, SideStrike)
-    solved = solved_side(scene, at)
+    solved = solve_side_contact(scene, at)
     m, e = scene.striker.mass, scene.striker.restitution
     rebound = float(solved.ball[1])
     apparent = rebound / scene.speed
@@ -305,15 +305,15 @@ def side_strike(scene: SideStrike, at: Resolution | None = None) -> SideOutcome:
     )
 
 
-def solved_side(scene: SideStrike, at: Resolution | None = None) -> SolvedContact:
+def solve_side_contact(scene: SideStrike, at: Resolution | None = None) -> SolvedContact:
     """The contact of the strike when it is over: one along the normal alone, of a body that comes in."""
     striker, law, time = scene.striker, scene.striker.law, scene.contact_time
     if not CONTACT_TIME.holds(time):
         raise ValueError(f"SideStrike must make a contact time in {CONTACT_TIME.bounds}; got {time:.3g} s")
     check_restitution("Striker.restitution", striker.restitution)
     model = ContactModel(
-        propagator_of(_place_modes(scene, at), time=time),
-        facing=np.array([[0.0, -1.0, 1.0, 0.0, 1.0], [-1.0, 0.0, 0.0, 1.0, 0.0]]),
+        propagator_of(_position_modes(scene, at), time=time),
+        kinematics=np.array([[0.0, -1.0, 1.0, 0.0, 1.0], [-1.0, 0.0, 0.0, 1.0, 0.0]]),
         inverse_masses=np.full(3, 1 / striker.mass),
         ball=np.array([0.0, -scene.speed, 0.0]),
         phi=0.0,
@@ -330,7 +330,7 @@ def solved_side(scene: SideStrike, at: Resolution | None = None) -> SolvedContac
     return solve_contact(model, steps=None if at is None else at.steps)
 
 
-def _place_modes(scene: SideStrike, at: Resolution | None) -> TipModes:
+def _position_modes(scene: SideStrike, at: Resolution | None) -> TipModes:
     """Frequencies of the beam, and the struck point's displacement in each mode; truncation is corrected by default."""
     fineness = at or modes_for(scene.cue, scene.contact_time)
     system = assemble(scene.cue, fineness, scene.cue_effects, places=[scene.position])

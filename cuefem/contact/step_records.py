@@ -15,21 +15,21 @@ from cuefem.contact.geometric_stiffness import BentTooFar
 from cuefem.contact.kernel.library import STEP, KernelContact, library
 from cuefem.contact.modal_response import Complex
 from cuefem.contact.model import PARTIAL_SLIP, RIGID_PATCH, ContactModel
-from cuefem.contact.outcome import BLOW, FLIGHT, History, Phase, contact_state
+from cuefem.contact.outcome import IMPACT, SEPARATION, History, Phase, contact_state
 from cuefem.cue import Array
 from cuefem.effects.force_law import LeatherLaw
 from cuefem.scene import Outcome
 
-GRIPS = {0: "stick", 1: "slip", -1: "slip back", 2: BLOW, 3: FLIGHT[0]}
-PRESSES = ("load", "unload", "free")
+FRICTION_STATES = {0: "stick", 1: "slip", -1: "slip back", 2: IMPACT, 3: SEPARATION[0]}
+NORMAL_PHASES = ("load", "unload", "free")
 # Steps in a head-on contact time: squirt of a default strike is then right to 0.1 %
 # (tests/contact/test_stored_answers.py).
 STEPS = 400
-ENDLESS = 1e12  # friction, as the kernel takes it
-CHUNK = 2048  # steps that the kernel takes at a call
-LONGEST = 200  # head-on contact times, after which a contact is given up
-MOST = 2_000_000  # steps that a strike is followed for, 0.4 GB of records
-_RUNNING, _ENDED, _, _TOO_DEEP, _BENT_TOO_FAR, _UNSOLVED, _NO_MEMORY = range(7)
+INFINITE_FRICTION = 1e12  # friction, as the kernel takes it
+STEPS_PER_CALL = 2048  # steps that the kernel takes at a call
+MAX_CONTACT_TIMES = 200  # head-on contact times, after which a contact is given up
+MAX_RECORDED_STEPS = 2_000_000  # steps that a strike is followed for, 0.4 GB of records
+_RUNNING, _ENDED, _, _INDENTATION_OUT_OF_RANGE, _SLOPE_OUT_OF_RANGE, _UNSOLVED, _NO_MEMORY = range(7)
 
 
 Steps = NDArray[np.void]
@@ -81,11 +81,11 @@ class SolvedContact:
     def phases(self) -> tuple[Phase, ...]:
         """Runs of steps with one grip and one press, each from the end of the one before."""
         steps, model = self.steps, self.model
-        grip, press = steps["grip"], steps["press"]
+        grip, press = steps["friction_state"], steps["phase"]
         ends = np.append(np.flatnonzero(np.diff(8 * grip + press)), len(steps) - 1)
         times = [0.0, *steps["time"][ends].tolist()]
         given = model.momentum(np.vstack([model.ball, steps["ball"][ends, : len(model.ball)]])) * [model.side, 1.0]
-        names = [(GRIPS[int(g)], PRESSES[int(p)]) for g, p in zip(grip[ends], press[ends], strict=True)]
+        names = [(FRICTION_STATES[int(g)], NORMAL_PHASES[int(p)]) for g, p in zip(grip[ends], press[ends], strict=True)]
         spans = zip(names, pairwise(times), np.diff(given, axis=0).tolist(), strict=True)
         return tuple(Phase(*name, start, end, (p_t, p_n)) for name, (start, end), (p_t, p_n) in spans)
 
@@ -155,7 +155,7 @@ class SolvedContact:
             "tip loss": losses["tip"],
             "friction loss": losses["friction"],
         }
-        if model.propagator.lossy:
+        if model.propagator.n_dissipative:
             account["damping loss"] = losses["damping"]
         if model.patch != RIGID_PATCH:
             account["tip shear"] = losses["shear"]
@@ -167,20 +167,20 @@ class SolvedContact:
         return {name: float(joules) for name, joules in account.items()}
 
 
-def solve_contact(model: ContactModel, *, steps: int | None = None, course: bool = False) -> SolvedContact:
+def solve_contact(model: ContactModel, *, steps: int | None = None, keep_states: bool = False) -> SolvedContact:
     """Follow a contact from touch to separation, and what comes after it within its window.
 
-    steps: in a head-on contact time. course: whether the modes' coordinates are kept. RuntimeError if the ball does
-    not leave the cue; ValueError where leather or a bent cue leave the range of their theory.
+    steps: per central-impact contact time. keep_states: store the modal coordinates after every step. RuntimeError if
+    the ball does not separate; ValueError where leather or a bent shaft leave the range of their theory.
     """
     kernel, propagator, level = library(), model.propagator, model.axes is None
     arrays = {
         "rates": propagator.rates,
-        "rows": propagator.readings,
-        "drives": propagator.drives,
-        "facing": model.facing,
+        "rows": propagator.output_rows,
+        "drives": propagator.input_rows,
+        "kinematics": model.kinematics,
         "inverse_masses": model.inverse_masses,
-        "xi": propagator.approaching * model.speed,
+        "xi": propagator.approach_state * model.speed,
         "ball": model.ball.copy(),
         **model.arrays,
     }
@@ -189,47 +189,50 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, course: bool
         "modes": len(propagator.rates),
         "ports": len(propagator.rows),
         "slopes": len(propagator.slopes),
-        "forces": len(model.facing),
+        "forces": len(model.kinematics),
         "speeds": len(model.ball),
         "planes": 1 if level else 2,
         "patch": model.patch,
         "phi": model.phi,
         "restitution": model.restitution,
-        "friction": min(model.friction, ENDLESS),
+        "friction": min(model.friction, INFINITE_FRICTION),
         "step": model.time / (steps or STEPS),
-        "longest": LONGEST * model.time,
+        "max_time": MAX_CONTACT_TIMES * model.time,
         "window": model.window or 0.0,
     }
     c = KernelContact(**numbers | model.terms | {name: array.ctypes.data for name, array in arrays.items()})
     records, states, dissipated = [], [arrays["xi"][None].copy()], []
-    watched = course or len(propagator.dampers) > 0
+    watched = keep_states or len(propagator.dampers) > 0
     work = kernel.contact_new(ctypes.byref(c))
     if not work:
         raise MemoryError("no memory for the steps of a contact")
     try:
         while c.status == _RUNNING:
-            if c.steps >= MOST:
+            if c.steps >= MAX_RECORDED_STEPS:
                 raise RuntimeError(
-                    f"the strike takes more than {MOST} steps, of {c.step:.3g} s: it is followed for {c.time:.3g} s so "
-                    "far; take fewer steps (Resolution.steps), or a shorter window of SecondHit"
+                    f"the strike takes more than {MAX_RECORDED_STEPS} steps of {c.step:.3g} s, for {c.time:.3g} s so "
+                    "far: lower Resolution.steps, or the window of SecondHit"
                 )
-            rows, after = np.empty(CHUNK, STEP), np.empty((CHUNK if watched else 0, 2, len(propagator.rates)))
-            count = kernel.contact_steps(work, CHUNK, rows.ctypes.data, after.ctypes.data if watched else None)
+            rows, after = (
+                np.empty(STEPS_PER_CALL, STEP),
+                np.empty((STEPS_PER_CALL if watched else 0, 2, len(propagator.rates))),
+            )
+            count = kernel.contact_steps(work, STEPS_PER_CALL, rows.ctypes.data, after.ctypes.data if watched else None)
             records.append(rows[:count])
             if watched:
                 states.append(after[:count, 0] + 1j * after[:count, 1])
                 xi = np.concatenate([states[-2][-1:], states[-1]])
                 dissipated.append(propagator.dissipated(xi, rows["length"][:count]))
-                states = states if course else states[-1:]
+                states = states if keep_states else states[-1:]
     finally:
         kernel.contact_free(work)
     if c.status != _ENDED:
         raise _failure(model, c)
     tangential = c.work[0] + c.work[2]
-    shear = tangential if model.patch == PARTIAL_SLIP and model.friction >= ENDLESS else c.shear_loss
-    damping, radiated = np.concatenate([*dissipated, np.zeros((1, 2))])[: c.pressed].sum(axis=0).tolist()
+    shear = tangential if model.patch == PARTIAL_SLIP and model.friction >= INFINITE_FRICTION else c.shear_loss
+    damping, radiated = np.concatenate([*dissipated, np.zeros((1, 2))])[: c.steps_in_contact].sum(axis=0).tolist()
     losses = {
-        "tip": model.law.loss(c.deepest),
+        "tip": model.law.loss(c.max_depth),
         "friction": tangential - shear,
         "shear": shear,
         "table": sum(c.work[3:]),
@@ -238,8 +241,8 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, course: bool
     }
     return SolvedContact(
         model,
-        np.concatenate(records)[: c.pressed],
-        np.concatenate(states)[: c.pressed + 1] if course else None,
+        np.concatenate(records)[: c.steps_in_contact],
+        np.concatenate(states)[: c.steps_in_contact + 1] if keep_states else None,
         arrays["xi"],
         arrays["ball"],
         losses,
@@ -250,19 +253,19 @@ def _failure(model: ContactModel, c: KernelContact) -> Exception:
     """What a contact that did not end reports."""
     if c.status == _NO_MEMORY:
         return MemoryError("no memory for the steps of a contact")
-    if c.status == _TOO_DEEP and isinstance(model.law, LeatherLaw):
+    if c.status == _INDENTATION_OUT_OF_RANGE and isinstance(model.law, LeatherLaw):
         return model.law.too_deep(c.depth)
-    if c.status == _BENT_TOO_FAR:
+    if c.status == _SLOPE_OUT_OF_RANGE:
         return BentTooFar(
-            f"the axial force of {c.thrust:.4g} N bends the shaft by {c.steepest:.3g} rad at its tip, beyond the range "
-            "of GeometricStiffness: lower the speed, or stiffen the shaft"
+            f"the axial force of {c.axial_force:.4g} N bends the shaft by {c.max_slope:.3g} rad at its tip, beyond the "
+            "range of GeometricStiffness: lower the speed, or stiffen the shaft"
         )
     if c.status == _UNSOLVED:
         return RuntimeError(
             f"the forces of the contact have no solution after {c.time:.6g} s and {c.steps} steps, in "
-            f"{GRIPS[c.grip]}; take more steps, or keep fewer modes"
+            f"{FRICTION_STATES[c.friction_state]}; take more steps, or fewer modes"
         )
     return RuntimeError(
         f"the ball does not leave the cue: after {c.time:.6g} s (head-on contact time {model.time:.6g} s) the tip is "
-        f"pressed by {c.depth:.3g} m, in {GRIPS[c.grip]}; check restitution, contact time and masses"
+        f"indented by {c.depth:.3g} m, in {FRICTION_STATES[c.friction_state]}; check restitution, contact time, masses"
     )

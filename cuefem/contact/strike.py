@@ -16,7 +16,7 @@ from cuefem.scene import Outcome, Resolution, Scene, several
 from cuefem.scene.solved_scene import strike_modes_kept, tip_modes_of, turning
 from cuefem.solid.resolution import Solid
 
-NUMBERS = ("squirt", "ball_velocity", "ball_speed", "spin", "cue_speed", "impulse", "duration", "regime", "jam")
+BATCH_FIELDS = ("squirt", "ball_velocity", "ball_speed", "spin", "cue_speed", "impulse", "duration", "regime", "jam")
 
 
 def strike(scene: Scene, at: Resolution | Solid | None = None) -> Outcome:
@@ -132,7 +132,7 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None) -> Outco
             raise kind(f"scene {i}: {error}") from error
     names = dict.fromkeys(name for outcome in results for name in outcome.energy)
     energy = {name: np.array([outcome.energy.get(name, 0.0) for outcome in results]) for name in names}
-    columns = {name: np.array([getattr(outcome, name) for outcome in results]) for name in NUMBERS}
+    columns = {name: np.array([getattr(outcome, name) for outcome in results]) for name in BATCH_FIELDS}
     unknowns = max(outcome.unknowns for outcome in results)
     return Outcome(**columns, phases=(), energy=energy, unknowns=unknowns)  # type: ignore[arg-type]
 

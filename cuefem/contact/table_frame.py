@@ -19,7 +19,7 @@ from cuefem.quantity.fields import Quantity
 from cuefem.scene import Ball, Outcome
 
 # How far the offset of an outcome may lie from that of the point it is placed at.
-SAME_OFFSET = 1e-9
+OFFSET_TOLERANCE = 1e-9
 
 _COORDINATE, _COMPONENT = Quantity("m"), Quantity("")
 
@@ -87,7 +87,7 @@ def place(outcome: Outcome, point: ArrayLike, direction: ArrayLike, *, ball: Bal
     ball = Ball() if ball is None else ball
     offset, axis, along = _geometry(point, direction, ball)
     angle = outcome.squirt + math.atan2(*outcome.ball_velocity)  # phi, as the outcome was computed
-    if not abs(offset - abs(math.sin(angle))) <= SAME_OFFSET:
+    if not abs(offset - abs(math.sin(angle))) <= OFFSET_TOLERANCE:
         raise ValueError(
             f"outcome must be that of a stroke at the offset of point and direction, {offset:.10g} or {-offset:.10g}; "
             f"got one at {math.sin(angle):.10g}"

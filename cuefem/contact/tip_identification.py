@@ -14,9 +14,9 @@ from cuefem.quantity.fields import CONTACT_TIME, Quantity
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import tip_modes_of
 
-CLOSE = 1e-8  # of ln E and of the restitution
+TOLERANCE = 1e-8  # of ln E and of the restitution
 MODULI = 1e6, 2e10  # Pa, between which E is sought: softer and stiffer than any tip
-LEAST, ENDLESS = 0.1, 10.0  # restitution of leather, of which a strike takes no less; s
+MIN_RESTITUTION, NO_SEPARATION = 0.1, 10.0  # restitution of leather, of which a strike takes no less; s
 REBOUND = Quantity("", "[0.1, 1]")
 
 
@@ -80,20 +80,20 @@ def identify_tip(scene: Scene, contact_time: float, rebound: float) -> Identifie
             made = with_tip(scene, IdentifiedTip(math.exp(log_E), e))
             outcome = strike_modes(_centred(made), tip)
         except TooDeep:
-            return ENDLESS, 0.0
-        return float(outcome.duration), rebound_of(outcome, made)
+            return NO_SEPARATION, 0.0
+        return float(outcome.duration), rebound_of_outcome(outcome, made)
 
     def misses(guess: Any) -> Any:
-        tried = np.clip(guess, [lowest, LEAST], [highest, 1.0])  # beyond these ends the miss goes on growing
+        tried = np.clip(guess, [lowest, MIN_RESTITUTION], [highest, 1.0])  # beyond these ends the miss goes on growing
         time, found = blow(*tried)
         return [math.log(time / contact_time), found - rebound] + np.array([-1.0, 1.0]) * (guess - tried)
 
     first = [math.log(GUESS.E) - 3 * math.log(contact_time / GUESS_TIME), GUESS.restitution]
-    near = root(misses, np.clip(first, [lowest, LEAST], [highest, 1.0]), tol=CLOSE)
-    if near.success and lowest < near.x[0] < highest and LEAST <= near.x[1] <= 1:
+    near = root(misses, np.clip(first, [lowest, MIN_RESTITUTION], [highest, 1.0]), tol=TOLERANCE)
+    if near.success and lowest < near.x[0] < highest and MIN_RESTITUTION <= near.x[1] <= 1:
         return IdentifiedTip(math.exp(near.x[0]), float(near.x[1]))
 
-    E, e = np.clip(near.x, [lowest, LEAST], [highest, 1.0])
+    E, e = np.clip(near.x, [lowest, MIN_RESTITUTION], [highest, 1.0])
     time, found = blow(E, e)
     raise ValueError(
         f"identify_tip: no leather has a contact time of {contact_time:g} s and a rebound of {rebound:g} on this cue; "
@@ -131,13 +131,13 @@ def rebound(scene: Scene) -> float:
     >>> cf.rebound(cf.Scene(cue, tip=cf.Tip(0.73, contact_time=1e-3), effects=(waves,))) > 0.73
     True
     """
-    return rebound_of(strike(_centred(scene)), scene)
+    return rebound_of_outcome(strike(_centred(scene)), scene)
 
 
 def _centred(scene: Scene) -> Scene:
     return replace(scene, stroke=replace(scene.stroke, offset=0.0))
 
 
-def rebound_of(outcome: Outcome, scene: Scene) -> float:
+def rebound_of_outcome(outcome: Outcome, scene: Scene) -> float:
     """How fast ball and cue part after a head-on blow, over the stroke's speed."""
     return float((outcome.ball_speed - outcome.cue_speed) / scene.stroke.speed)

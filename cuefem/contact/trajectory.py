@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from cuefem.beam.modes import Modes
 from cuefem.beam.tip import TipModes
-from cuefem.contact.modal_response import Complex, responses
+from cuefem.contact.modal_response import Complex, phi_functions
 from cuefem.contact.model import model_of
 from cuefem.contact.step_records import SolvedContact, solve_contact
 from cuefem.contact.strike import steps_of
@@ -125,7 +125,7 @@ def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Moti
         raise ValueError("motion takes strokes in the plane of cue and ball; got Elevation")
     solved = Solved(scene, at)
     bending, tip = solved.modes, solved.tip
-    contact = solve_contact(model_of(scene, tip), steps=steps_of(at), course=True)
+    contact = solve_contact(model_of(scene, tip), steps=steps_of(at), keep_states=True)
     return _read(scene, bending, tip, solved=contact, times=times)
 
 
@@ -186,7 +186,7 @@ def _path(solved: SolvedContact, times: Array) -> tuple[Array, Array]:
     t, h = (times - ends[which])[:, None], lengths[pressed, None]
     balls = np.vstack([model.ball, steps["ball"][:, : len(model.ball)]])
     loads, pulls = np.zeros_like(solved.course), np.zeros_like(balls)
-    turned, first, _ = responses(p.rates * h)
+    turned, first, _ = phi_functions(p.rates * h)
     loads[pressed] = (solved.course[pressed + 1] - turned * solved.course[pressed]) / (h * first)
     pulls[pressed] = (balls[pressed + 1] - balls[pressed]) / h
     xi, summed = _driven(solved.course[which], loads[which], p.rates, t)
@@ -200,5 +200,5 @@ def _path(solved: SolvedContact, times: Array) -> tuple[Array, Array]:
 
 def _driven(xi: Complex, loads: Complex, rates: Complex, t: Array) -> tuple[Complex, Complex]:
     """Coordinates after times t, (n, 1), from ``xi`` under constant loads, and their integrals, (n, coordinates)."""
-    turned, first, second = responses(rates * t)
+    turned, first, second = phi_functions(rates * t)
     return turned * xi + t * first * loads, t * first * xi + t**2 * second * loads

@@ -91,7 +91,7 @@ class LeatherLaw:
     force_terms: tuple[float, ...]
     give_terms: tuple[float, ...]
     restitution: float
-    most: float
+    depth_limit: float
 
     def __post_init__(self) -> None:
         if len(self.force_terms) != len(self.give_terms):  # the kernel reads as many of one as of the other
@@ -145,7 +145,7 @@ class LeatherLaw:
         mass, speed = np.broadcast_arrays(np.asarray(mass, float), np.asarray(speed, float))
         energy = mass * speed**2 / 2
         deepest = self._deepest(energy)
-        if np.max(deepest) > self.most:
+        if np.max(deepest) > self.depth_limit:
             raise self.too_deep(float(np.max(deepest)))
         cosine, sine = np.cos(_ANGLES), np.sin(_ANGLES)
         left = self.work(deepest)[..., None] - self.work(deepest[..., None] * cosine**2)
@@ -155,7 +155,7 @@ class LeatherLaw:
 
     def _deepest(self, energy: Array) -> Array:
         """The compression that takes this work, by Newton's method in logarithms, where the law is nearly straight."""
-        depth = np.full(energy.shape, self.most)
+        depth = np.full(energy.shape, self.depth_limit)
         for _ in range(60):
             work = self.work(depth)
             step = np.log(work / energy) * work / (depth * self.at(depth.ravel())[0].reshape(depth.shape))
@@ -168,7 +168,7 @@ class LeatherLaw:
         """The error of a tip that is compressed further than its curves go."""
         return TooDeep(
             f"the tip's leather is compressed by {1e3 * depth:.3g} mm, further than its law is known "
-            f"({1e3 * self.most:.3g} mm): give LeatherTip a larger height or E, or Stroke a lower speed"
+            f"({1e3 * self.depth_limit:.3g} mm): give LeatherTip a larger height or E, or Stroke a lower speed"
         )
 
 

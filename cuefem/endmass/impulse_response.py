@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cuefem.beam.tip import TipModes
-from cuefem.contact.modal_response import Complex, propagator_of, responses
+from cuefem.contact.modal_response import Complex, phi_functions, propagator_of
 from cuefem.cue import Array
 
 # Steps of a contact. Against closed forms at the same 120 modes (100 random cues, 0.5 to 3 ms, free and damped, "stick"
@@ -33,7 +33,7 @@ class ImpulseResponse(NamedTuple):
     def of(cls, tip: TipModes) -> ImpulseResponse:
         """The response of tip modes; ValueError if the tip is clamped."""
         propagator = propagator_of(tip.straight)
-        weights = propagator.readings[1] * propagator.drives[1]
+        weights = propagator.output_rows[1] * propagator.input_rows[1]
         active = weights != 0
         if not active.any():
             raise ValueError("end_mass: the tip is clamped transversely, so its end mass is infinite")
@@ -56,7 +56,7 @@ class ImpulseResponse(NamedTuple):
         """
         h = T / STEPS
         z = self.rates * h
-        _, mean, own = responses(z)
+        _, mean, own = phi_functions(z)
         within, rows = np.exp(z[:, None] * np.arange(ROW)), np.exp(z * np.arange(0, STEPS, ROW)[:, None])
 
         def summed(weights: Complex) -> Array:
@@ -73,7 +73,7 @@ class ImpulseResponse(NamedTuple):
 
     def half_sine_velocity(self, T: float) -> float:
         """Velocity of the tip at the end of a half-sine force of amplitude 1 N and duration T, m/s per N."""
-        lower, upper = (responses((self.rates + side * 1j * np.pi / T) * T)[1] for side in (-1, 1))
+        lower, upper = (phi_functions((self.rates + side * 1j * np.pi / T) * T)[1] for side in (-1, 1))
         return float((self.weights * T * (upper - lower) / 2j).real.sum())
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from cuefem.report.charts import Axis, Chart, Curve, chart
-from cuefem.results.convergence import MOST, Level, levels, relative_error
+from cuefem.results.convergence import MAX_MODES, Level, levels, relative_error
 from cuefem.results.quantities import scaled, significant
 from cuefem.results.records import Entry, Record, Sheet, sheet
 from cuefem.scene import Scene
@@ -20,7 +20,7 @@ WANTED = (1e-2, 1e-3, 1e-4, 1e-6)
 Progress = Callable[[Sequence[Any]], Iterable[Any]]
 
 
-def cost_record(scene: Scene, *, most: int = MOST, progress: Progress = iter) -> Record:
+def cost_record(scene: Scene, *, most: int = MAX_MODES, progress: Progress = iter) -> Record:
     """Refinement levels up to ``most`` modes with error and run time, and the recommendation for each of `WANTED`.
 
     Keys of a level: "modes", "steps", "elements", "order"; "unknowns", the number of degrees of freedom; "estimate",

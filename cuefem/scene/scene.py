@@ -27,7 +27,7 @@ from cuefem.quantity.fields import (
 from cuefem.quantity.slips import remark_light
 
 DEFAULT_CONTACT_TIME = 2e-3  # s, [Kim] sec. 4
-LEAST_STEPS, MOST_STEPS = 20, 1_000_000  # of a contact, in a head-on contact time
+MIN_STEPS, MOST_STEPS = 20, 1_000_000  # of a contact, in a head-on contact time
 
 
 @dataclass(frozen=True)
@@ -377,7 +377,7 @@ class Resolution:
 
     def __post_init__(self) -> None:
         if self.steps is not None:
-            check_count("Resolution.steps", self.steps, LEAST_STEPS, MOST_STEPS)
+            check_count("Resolution.steps", self.steps, MIN_STEPS, MOST_STEPS)
         for name in ("elements", "order", "modes"):
             check_count(f"Resolution.{name}", getattr(self, name), 1)
 

@@ -27,29 +27,29 @@ if TYPE_CHECKING:
     from cuefem.beam.modes import Modes
 
 # Modes are kept up to this many periods in a contact, with a tail; a plain sum wants more, the carbon cue's is 1 % off
-# even with a hundred. But never fewer than LEAST, however long the contact.
-PERIODS_KEPT, PLAIN_PERIODS, LEAST = 30, 60, 40
+# even with a hundred. But never fewer than MIN_MODES, however long the contact.
+PERIODS, PLAIN_PERIODS, MIN_MODES = 30, 60, 40
 # The same for a strike with a whole tip, which gives along its surface too, so that the shaft's end feels no step: over
 # 70 random cues the modes left out change squirt by 2e-5 at most, for 2.5e-3 with a bare tip and twice as many.
-PERIODS_OF_TIP, LEAST_OF_TIP = 15, 24
+LEATHER_PERIODS, MIN_LEATHER_MODES = 15, 24
 # The end mass of a tip that sticks needs more: its velocity begins with a step, whose front comes back from the butt
 # at 2 L/c with frequencies of 10 to 80 kHz, whatever the contact time. A tip that is pushed or led from rest starts no
-# such front, and its end mass takes a strike's modes. The mesh holds the first MESHED of them; the rest only stand for
-# what is stiffer, and need no accuracy: the end mass is as right as on a mesh for 160 (50 shafts, 50 whole cues).
-# What these numbers hold: studies/accuracy/accuracy.md.
-LEAST_STUCK, MESHED = 160, 120
+# such front, and its end mass takes a strike's modes. The mesh resolves the first MESHED_MODES of them; the
+# others only add compliance: the end mass is as accurate as on a mesh for 160 (50 shafts, 50 whole cues).
+# Accuracy with these numbers: studies/accuracy/accuracy.md.
+MIN_STICK_MODES, MESHED_MODES = 160, 120
 # Never more than this by default, which a contact of a fraction of a millisecond would ask for: the tail does the rest,
-# and more would take over a second. MOST is the last rung of `resolve`.
-MOST_KEPT, MOST = 160, 400
+# and more would take over a second. MAX_MODES is the last rung of `resolve`.
+MAX_DEFAULT_MODES, MAX_MODES = 160, 400
 
 
 def strike_modes_kept(scene: Scene) -> int:
     """The number of modes that a strike takes by default."""
     whole = scene.contact_terms.tip is not None
-    return default_modes(scene, **({"periods": PERIODS_OF_TIP, "least": LEAST_OF_TIP} if whole else {}))
+    return default_modes(scene, **({"periods": LEATHER_PERIODS, "least": MIN_LEATHER_MODES} if whole else {}))
 
 
-def default_modes(scene: Scene, *, periods: float = PERIODS_KEPT, least: int = LEAST) -> int:
+def default_modes(scene: Scene, *, periods: float = PERIODS, least: int = MIN_MODES) -> int:
     """The number of modes up to the frequency ``periods`` / contact time, at least ``least``."""
     # a contact time that the user gave is in bounds; one that follows from a stiffness or a whole tip may not be
     if not CONTACT_TIME.holds(scene.contact_time):
@@ -58,9 +58,9 @@ def default_modes(scene: Scene, *, periods: float = PERIODS_KEPT, least: int = L
     return modes_for(scene.shaft, scene.contact_time, periods=periods, least=least)
 
 
-def modes_for(cue: Cue, time: float, *, periods: float = PERIODS_KEPT, least: int = LEAST) -> int:
+def modes_for(cue: Cue, time: float, *, periods: float = PERIODS, least: int = MIN_MODES) -> int:
     """The number of modes up to the frequency ``periods`` / time, at least ``least``."""
-    return min(max(modes_below(cue, 2 * np.pi * periods / time), least), MOST_KEPT)
+    return min(max(modes_below(cue, 2 * np.pi * periods / time), least), MAX_DEFAULT_MODES)
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,18 +99,18 @@ class Solved:
 
     @cached_property
     def tip_stuck(self) -> TipModes:
-        """Tip modes for an end mass whose drive begins with a step: at least `LEAST_STUCK` of them by default."""
-        return self._at_least(LEAST_STUCK)
+        """Tip modes for an end mass whose drive begins with a step: at least `MIN_STICK_MODES` of them by default."""
+        return self._at_least(MIN_STICK_MODES)
 
     @property
     def tip_smooth(self) -> TipModes:
-        """Tip modes for an end mass whose drive begins smoothly: at least `LEAST`, or `tip_stuck` on a leather segment.
+        """Tip modes for an end mass whose drive begins smoothly: `MIN_MODES` or more; on a leather segment `tip_stuck`.
 
         A leather segment of the drawing has resonances far above the modes of a strike, and a push of a millisecond
         still excites them: with a strike's modes alone, the end mass by force was 0.9 % off for leather before brass.
         """
         lumped = self.scene.lumped is not None
-        return self._at_least(LEAST) if lumped or not self.scene.shaft.leather else self.tip_stuck
+        return self._at_least(MIN_MODES) if lumped or not self.scene.shaft.leather else self.tip_stuck
 
     def _at_least(self, least: int) -> TipModes:
         if self.at is not None or self.scene.lumped is not None:
@@ -118,7 +118,7 @@ class Solved:
         return tip_modes_from(self._default(default_modes(self.scene, least=least)), self.scene)
 
     def _default(self, count: int) -> Modes:
-        return self._bending(count, ended=True, meshed=min(count, MESHED))
+        return self._bending(count, ended=True, meshed=min(count, MESHED_MODES))
 
     def _bending(self, at: Resolution | int, *, ended: bool, meshed: int | None = None) -> Modes:
         """Bending modes at a resolution, or a number of them; each solved once.

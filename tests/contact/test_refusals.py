@@ -108,25 +108,25 @@ def test_contact_input_at_bound_is_accepted() -> None:
 
 
 def test_strike_without_separation_raises_with_its_state(monkeypatch) -> None:
-    monkeypatch.setattr("cuefem.contact.step_records.LONGEST", 0.3)
+    monkeypatch.setattr("cuefem.contact.step_records.MAX_CONTACT_TIMES", 0.3)
     message = (
-        r"does not leave the cue: after .* s \(head-on contact time .* s\) the tip is pressed by .* m, in stick; check"
+        r"does not leave the cue: after .* s \(head-on contact time .* s\) the tip is indented by .* m, in stick; check"
     )
     with pytest.raises(RuntimeError, match=message):
         cf.strike(cf.Scene(cf.LumpedCue(0.54, 0.003), stroke=cf.Stroke(offset=0.3)))
 
 
 def test_strike_of_too_many_steps_raises(monkeypatch) -> None:
-    monkeypatch.setattr("cuefem.contact.step_records.MOST", 3000)
+    monkeypatch.setattr("cuefem.contact.step_records.MAX_RECORDED_STEPS", 3000)
     once = cf.Scene(cf.LumpedCue(0.54, 0.003), stroke=cf.Stroke(offset=0.3))
     assert cf.strike(replace(once, effects=(cf.SecondHit(2e-3),))) == cf.strike(once)
-    with pytest.raises(RuntimeError, match=r"the strike takes more than 3000 steps, of 5e-06 s: it is followed for"):
+    with pytest.raises(RuntimeError, match=r"the strike takes more than 3000 steps of 5e-06 s, for"):
         cf.strike(replace(once, effects=(cf.SecondHit(1.0),)))
 
 
 def test_strike_with_nan_force_raises_in_its_step() -> None:
     scene = cf.Scene(cf.LumpedCue(0.54, 0.003), stroke=cf.Stroke(offset=0.3), effects=(cf.Elevation(0.2),))
     model = model_of(scene, lumped_tip_modes(scene.cue))
-    model.facing[2, 2] = nan  # out of the plane of the stroke
+    model.kinematics[2, 2] = nan  # out of the plane of the stroke
     with pytest.raises(RuntimeError, match=r"the forces of the contact have no solution after .* s and 1 steps"):
         solve_contact(model)

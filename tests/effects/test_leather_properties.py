@@ -74,9 +74,9 @@ def test_leather_law_stiffness_of_every_annulus_is_positive(tip: LeatherTip, dia
     falls by up to 0.9 % (30 of 4632 such tips).
     """
     law = whole_tip(possible(tip, diameter), diameter).law(0.028575, offset, 0.7)
-    depth = law.most * np.linspace(0.0, 1.0, 1000) ** 2
+    depth = law.depth_limit * np.linspace(0.0, 1.0, 1000) ** 2
     slope, stiffness = law.slope(depth), law.at(depth)[1]
-    assert np.all(np.diff(slope)[depth[1:] < 0.8 * law.most] > 0)
+    assert np.all(np.diff(slope)[depth[1:] < 0.8 * law.depth_limit] > 0)
     rim = tip.lever(math.pi / 2, diameter)[1] / diameter  # where the dome ends
     part = 0.02 if -rim < 0.03 else 2e-3
     assert np.all(stiffness > (1 - part) * np.maximum.accumulate(stiffness) - 1e-9)

@@ -33,5 +33,5 @@ def test_better_is_never_cheaper() -> None:
 
 
 def test_levels_double_their_modes() -> None:
-    assert mode_counts(1) == [12, 24, 48, 96, 192, MOST]
-    assert mode_counts(MOST) == [50, 100, 200, MOST]
+    assert mode_counts(1) == [12, 24, 48, 96, 192, MAX_MODES]
+    assert mode_counts(MAX_MODES) == [50, 100, 200, MAX_MODES]

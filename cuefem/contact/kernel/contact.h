@@ -43,48 +43,48 @@ enum {
     SPEEDS = 6,
     WIDE = READS + SPEEDS,
     FORCES = 6,
-    RINGS = 256
+    ANNULI = 256
 };
 enum {
     T,
     N,
     P,
     UP,
-    ASIDE,
-    AHEAD
+    LATERAL,
+    FORWARD
 }; /* of the tip: tangential, normal, out of the plane; of the ball on the table */
-enum { STICK = 0, SLIP = 1, SLIP_BACK = -1, BLOW = 2, SEPARATED = 3 };
+enum { STICK = 0, SLIP = 1, SLIP_BACK = -1, IMPACT = 2, SEPARATED = 3 };
 enum { LOADING, UNLOADING, FREE };
 enum { RIGID_PATCH, SPRING_PATCH, PARTIAL_SLIP };
 enum { POWER_LAW, LEATHER_LAW };
-enum { RUNNING, ENDED, LATE, TOO_DEEP, BENT_TOO_FAR, UNSOLVED, NO_MEMORY };
+enum { RUNNING, ENDED, LATE, INDENTATION_OUT_OF_RANGE, SLOPE_OUT_OF_RANGE, UNSOLVED, NO_MEMORY };
 
 /* A step that was taken, or a blow: a step of no length whose F is an impulse, N s. */
 typedef struct {
-    double time, length, grip, press, angle; /* at the end of the step */
+    double time, length, friction_state, phase, angle; /* at the end of the step */
     double F[FORCES], v[FORCES],
         ball[SPEEDS]; /* over the step; of the ball against the tip, and of the ball, at its end */
 } Step;
 
 typedef struct {
-    int modes, ports, slopes, forces, speeds, planes, rolls, law, terms, patch, rings;
+    int modes, ports, slopes, forces, speeds, planes, rolling, law, terms, patch, annuli;
     const double *rates, *rows, *drives;   /* complex: (modes,), and (ports + slopes, modes) twice */
-    const double *facing, *inverse_masses; /* C of the first touch, (forces, ports + speeds); of the ball */
+    const double *kinematics, *inverse_masses; /* C of the first touch, (forces, ports + speeds); of the ball */
     const double *slope_weights;           /* (slopes,): what of the tip's way along the cue a slope takes */
     const double *force_terms, *compliance_terms; /* of leather: series in the root of the indentation */
-    const double *ring_edges, *ring_forces, *ring_slopes,
-        *ring_stiffness; /* (rings + 1,), at the indentations edges */
+    const double *annulus_edges, *annulus_forces, *annulus_slopes,
+        *annulus_stiffness; /* (annuli + 1,), at the indentations edges */
     double *xi, *ball;   /* before the first touch, and after the last separation */
-    double restitution, friction, table_friction, stiffness, exponent, most, compliance, surface_restitution;
-    double phi, dome, rim, radius, arm_t, arm_n, step, longest, window;
-    double time, depth, deepest, angle, height, shear_loss, thrust, steepest,
+    double restitution, friction, table_friction, stiffness, exponent, depth_limit, compliance, surface_restitution;
+    double phi, dome, rim, radius, arm_t, arm_n, step, max_time, window;
+    double time, depth, max_depth, angle, height, shear_loss, axial_force, max_slope,
         work[FORCES];                         /* work: taken by each force */
-    int status, grip, steps, pressed; /* pressed: steps up to the last separation */
+    int status, friction_state, steps, steps_in_contact; /* steps_in_contact: steps up to the last separation */
 } Contact;
 
 /* What modes do over a step of one length: rows of 2 modes, the real parts and then the imaginary ones. */
 typedef struct {
-    double h, *turn, *ends, *means, *push, end[READS][READS], mean[READS][READS];
+    double h, *propagator, *ends, *means, *push, end[READS][READS], mean[READS][READS];
 } Tables;
 
 typedef struct {
@@ -96,9 +96,9 @@ typedef struct {
     double C[FORCES][WIDE], v[FORCES], u[FORCES], rest[FORCES], V[FORCES][FORCES],
         W[FORCES][FORCES]; /* contact_matrices */
     double end_free[READS], mean_free[READS], F[FORCES];
-    double rolling, shift, shift_mid, origin, virtual_mid, virtual_now, lost, ring_F[RINGS], ring_now[RINGS];
-    double until, longest;
-    int press, side, held, up_held, table_held, last;
+    double rolling_rate, shift, shift_mid, origin, virtual_mid, virtual_now, lost, annulus_force[ANNULI], annulus_force_now[ANNULI];
+    double until, max_time;
+    int phase, side, held, up_held, table_held, last;
 } Work;
 
 static inline double larger(double a, double b) { return a > b ? a : b; }
@@ -107,24 +107,24 @@ static inline double larger(double a, double b) { return a > b ? a : b; }
 int tabulate(Work *w, double h);
 void free_motion(Work *w);
 void advance_modes(Work *w, const double *loads);
-void strike_modes(Work *w, const double *impulses);
+void apply_impulses(Work *w, const double *impulses);
 double mobility(const Work *w, int p, int q);
 
 /* laws.c */
-double tip_force(const Contact *c, int press, double depth, double *slope, double *virtual);
-double unloaded(const Contact *c);
-double give(const Contact *c, int press);
+double tip_force(const Contact *c, int phase, double depth, double *slope, double *virtual);
+double residual_depth(const Contact *c);
+double unloading_scale(const Contact *c, int phase);
 double tangential_stiffness(const Contact *c, double depth);
-void face(const Work *w, double angle, const double *slopes, double C[FORCES][WIDE]);
+void contact_kinematics(const Work *w, double angle, const double *slopes, double C[FORCES][WIDE]);
 
 /* partial_slip.c */
-double shift_rings(Work *w, double depth, double shift, double *stuck, double *slid);
+double shift_annuli(Work *w, double depth, double shift, double *stuck, double *slid);
 
 /* forces.c */
 void contact_matrices(Work *w);
 void velocities(const Work *w, double *end, double *mean);
 int level_forces(Work *w);
 int raised_forces(Work *w);
-int blow(Work *w, Step *row);
+int impact(Work *w, Step *row);
 
 #endif

@@ -15,7 +15,7 @@ void contact_matrices(Work *w)
     const double h = w->t.h;
     double bent[SLOPES], end[FORCES][READS], mean[FORCES][READS];
     for (int a = 0; a < c->slopes; a++) bent[a] = w->slopes[a] + h / 2 * w->rates[c->ports + a];
-    face(w, c->angle + h / 2 * w->rolling, bent, w->C);
+    contact_kinematics(w, c->angle + h / 2 * w->rolling_rate, bent, w->C);
     for (int f = 0; f < n; f++) {
         const double *C = w->C[f];
         w->v[f] = w->u[f] = 0;
@@ -60,12 +60,12 @@ static int newton(Work *w, int side)
     for (int round = 0; round < ROUNDS; round++) {
         double slope, stuck, slid, g[2], J[2][2];
         velocities(w, v, u);
-        double force = tip_force(c, w->press, c->depth - half * u[N], &slope, &w->virtual_now),
+        double force = tip_force(c, w->phase, c->depth - half * u[N], &slope, &w->virtual_now),
                shift = w->shift - half * u[T];
         g[N] = w->F[N] - force, J[N][T] = slope * half * w->W[N][T], J[N][N] = 1 + slope * half * w->W[N][N];
         if (c->patch == PARTIAL_SLIP) {
-            g[T] = w->F[T] - shift_rings(w, w->virtual_now, shift - w->shift_mid, &stuck, &slid);
-            slid /= w->virtual_now < c->deepest ? give(c, w->press) : 1;
+            g[T] = w->F[T] - shift_annuli(w, w->virtual_now, shift - w->shift_mid, &stuck, &slid);
+            slid /= w->virtual_now < c->max_depth ? unloading_scale(c, w->phase) : 1;
             for (int f = 0; f < 2; f++) J[T][f] = (f == T) + half * (stuck * w->W[T][f] + slid * w->W[N][f]);
         } else if (side)
             g[T] = w->F[T] - side * c->friction * w->F[N], J[T][T] = 1, J[T][N] = -side * c->friction;
@@ -125,7 +125,7 @@ static int plane_friction(Work *w, int a, int b, double bound)
 /* Forces of a raised cue over a table, which never pulls: solved in turns, point after point, until nothing
    changes; or the impulses of its blow, which stops the tip along the ball and the ball into the table.
    bound: of the tip's friction; mu F_n where it is negative. */
-static int settle(Work *w, int strikes, double bound)
+static int solve_in_turns(Work *w, int strikes, double bound)
 {
     const Contact *c = w->c;
     double *F = w->F, half = w->t.h / 2, off = 1, size = 1;
@@ -136,7 +136,7 @@ static int settle(Work *w, int strikes, double bound)
         for (int i = 0; i < ROUNDS && !strikes; i++) {
             double u = w->u[N], slope, unused;
             for (int f = 0; f < FORCES; f++) u += w->W[N][f] * F[f];
-            double by = (F[N] - tip_force(c, w->press, c->depth - half * u, &slope, &unused)) /
+            double by = (F[N] - tip_force(c, w->phase, c->depth - half * u, &slope, &unused)) /
                         (1 + slope * half * w->W[N][N]);
             F[N] -= by;
             if (fabs(by) <= CLOSE * fabs(F[N])) break;
@@ -145,7 +145,7 @@ static int settle(Work *w, int strikes, double bound)
         double u = w->u[UP] - w->W[UP][UP] * F[UP]; /* without the table */
         for (int f = 0; f < FORCES; f++) u += w->W[UP][f] * F[f];
         F[UP] = c->height > 0 && c->height + w->t.h * u > 0 ? 0 : larger(0, (w->rest[UP] - u) / w->W[UP][UP]);
-        rests = plane_friction(w, ASIDE, AHEAD, c->table_friction * F[UP]);
+        rests = plane_friction(w, LATERAL, FORWARD, c->table_friction * F[UP]);
         off = 0, size = 1e-9;
         for (int f = 0; f < FORCES; f++)
             off = larger(off, fabs(F[f] - before[f])), size = larger(size, fabs(F[f]));
@@ -158,12 +158,12 @@ static int settle(Work *w, int strikes, double bound)
    the turns then go to and fro about the bound that is mu F_n, which lies between none and what it holds. */
 int raised_forces(Work *w)
 {
-    if (settle(w, 0, -1)) return 1;
-    int solved = settle(w, 0, HUGE_VAL);
+    if (solve_in_turns(w, 0, -1)) return 1;
+    int solved = solve_in_turns(w, 0, HUGE_VAL);
     double low = 0, high = hypot(w->F[T], w->F[P]);
     for (int i = 0; i < HALVINGS && solved; i++) {
         double bound = (low + high) / 2;
-        solved = settle(w, 0, bound);
+        solved = solve_in_turns(w, 0, bound);
         if (w->c->friction * w->F[N] > bound)
             low = bound;
         else
@@ -175,12 +175,12 @@ int raised_forces(Work *w)
 /* The blow of endless friction as ball and tip touch: it stops the tip's velocity along the ball, and the
    ball's into the table, which rubs. Whether the two stay together; where the blow alone throws them apart it
    ends at e times their approach. */
-int blow(Work *w, Step *row)
+int impact(Work *w, Step *row)
 {
     Contact *c = w->c;
     const int Q = c->ports + c->slopes, wide = Q + c->speeds;
     double loads[WIDE] = {0}, *F = w->F;
-    face(w, c->angle, w->slopes, w->C);
+    contact_kinematics(w, c->angle, w->slopes, w->C);
     for (int f = 0; f < c->forces; f++) {
         w->v[f] = w->rest[f] = 0;
         for (int p = 0; p < wide; p++) w->v[f] += w->C[f][p] * (p < Q ? w->rates[p] : w->ball[p - Q]);
@@ -195,7 +195,7 @@ int blow(Work *w, Step *row)
     }
     if (c->forces == 2)
         F[T] = -w->v[T] / w->V[T][T];
-    else if (!settle(w, 1, HUGE_VAL))
+    else if (!solve_in_turns(w, 1, HUGE_VAL))
         c->status = UNSOLVED;
     double turned = 0, unused[FORCES];
     for (int f = 0; f < c->forces; f++) turned += w->V[N][f] * F[f];
@@ -207,7 +207,7 @@ int blow(Work *w, Step *row)
         for (int p = 0; p < wide; p++) loads[p] += w->C[f][p] * F[f];
     }
     memcpy(row->F, F, sizeof row->F), memset(F, 0, sizeof w->F);
-    strike_modes(w, loads);
+    apply_impulses(w, loads);
     for (int b = 0; b < c->speeds; b++) w->ball[b] += c->inverse_masses[b] * loads[Q + b];
     w->held = w->up_held = 1;
     return !parts;

@@ -1,21 +1,21 @@
 /* Force and stiffness of the tip over its indentation, and where the contact lies on the cue.
 
-   On the way back from the deepest point D the indentation d of the loading curve is scaled by e^2, from the
+   On the way back from the max_depth point D the indentation d of the loading curve is scaled by e^2, from the
    rest (1 - e^2) D on, so that e^2 of the work is given back: (d - rest)/e^2 is called the virtual
    indentation. */
 #include "contact.h"
 
-double give(const Contact *c, int press) { return press == LOADING ? 1 : c->restitution * c->restitution; }
+double unloading_scale(const Contact *c, int phase) { return phase == LOADING ? 1 : c->restitution * c->restitution; }
 
-/* Indentation at which an unloaded tip has lost its force. */
-double unloaded(const Contact *c) { return (1 - c->restitution * c->restitution) * c->deepest; }
+/* Indentation at which an residual_depth tip has lost its force. */
+double residual_depth(const Contact *c) { return (1 - c->restitution * c->restitution) * c->max_depth; }
 
 /* The tip's force, its slope over the indentation, and the virtual indentation; beyond D a tip is loaded
  * again. */
-double tip_force(const Contact *c, int press, double depth, double *slope, double *virtual)
+double tip_force(const Contact *c, int phase, double depth, double *slope, double *virtual)
 {
-    int loads = press == LOADING || depth > c->deepest;
-    double d = loads ? depth : (depth - unloaded(c)) / give(c, press), F = 0, rise = 0;
+    int loads = phase == LOADING || depth > c->max_depth;
+    double d = loads ? depth : (depth - residual_depth(c)) / unloading_scale(c, phase), F = 0, rise = 0;
     *virtual = d;
     if (d > 0 && c->law == POWER_LAW)
         F = c->stiffness * (c->exponent == 1 ? d : pow(d, c->exponent)), rise = c->exponent * F / d;
@@ -25,7 +25,7 @@ double tip_force(const Contact *c, int press, double depth, double *slope, doubl
             F = F * y + c->force_terms[i], rise = rise * y + (i + 3) * c->force_terms[i];
         F *= d * y, rise *= y / 2;
     }
-    *slope = loads ? rise : rise / give(c, press);
+    *slope = loads ? rise : rise / unloading_scale(c, phase);
     return F;
 }
 
@@ -40,15 +40,15 @@ double tangential_stiffness(const Contact *c, double depth)
 /* C when the contact has rolled by an angle over ball and dome, and the cue is bent by slopes: a bent cue
    takes its tip back by the sum of weight slope^2/2, so that its port along the cue reads the sum of weight
    slope slope' less. */
-void face(const Work *w, double angle, const double *slopes, double C[FORCES][WIDE])
+void contact_kinematics(const Work *w, double angle, const double *slopes, double C[FORCES][WIDE])
 {
     const Contact *c = w->c;
     const int ports = c->ports, Q = ports + c->slopes, wide = ports + c->speeds;
     for (int f = 0; f < c->forces; f++) {
-        memcpy(C[f], c->facing + f * wide, ports * sizeof(double));
-        memcpy(C[f] + Q, c->facing + f * wide + ports, c->speeds * sizeof(double));
+        memcpy(C[f], c->kinematics + f * wide, ports * sizeof(double));
+        memcpy(C[f] + Q, c->kinematics + f * wide + ports, c->speeds * sizeof(double));
     }
-    if (c->rolls) {
+    if (c->rolling) {
         double at = c->phi + angle, s = sin(at), cs = cos(at), sa = sin(angle), ca = cos(angle);
         double from = fmin(c->phi, c->rim),
                to = copysign(fmin(fabs(at), c->rim), at); /* beyond the rim the edge stays */

@@ -9,17 +9,17 @@ import numpy as np
 
 from cuefem.contact.kernel import BINARY, BUILD, KernelError, check
 
-_INTEGERS = "modes ports slopes forces speeds planes rolls law terms patch rings"
+_INTEGERS = "modes ports slopes forces speeds planes rolling law terms patch annuli"
 _ARRAYS = (
-    "rates rows drives facing inverse_masses slope_weights force_terms compliance_terms ring_edges ring_forces "
-    "ring_slopes ring_stiffness xi ball"
+    "rates rows drives kinematics inverse_masses slope_weights force_terms compliance_terms annulus_edges "
+    "annulus_forces annulus_slopes annulus_stiffness xi ball"
 )
 _NUMBERS = (
-    "restitution friction table_friction stiffness exponent most compliance surface_restitution phi dome rim radius "
-    "arm_t arm_n step longest window time depth deepest angle height shear_loss thrust steepest"
+    "restitution friction table_friction stiffness exponent depth_limit compliance surface_restitution phi dome rim "
+    "radius arm_t arm_n step max_time window time depth max_depth angle height shear_loss axial_force max_slope"
 )
 # A step that was taken; the last three are of the forces at the tip and on the table, and of the ball.
-_ONE, _SIX = ("time", "length", "grip", "press", "angle"), ("F", "v", "ball")
+_ONE, _SIX = ("time", "length", "friction_state", "phase", "angle"), ("F", "v", "ball")
 STEP = np.dtype([*((name, float) for name in _ONE), *((name, float, 6) for name in _SIX)])
 
 
@@ -31,7 +31,7 @@ class KernelContact(ctypes.Structure):
         *((name, ctypes.c_void_p) for name in _ARRAYS.split()),
         *((name, ctypes.c_double) for name in _NUMBERS.split()),
         ("work", ctypes.c_double * 6),
-        *((name, ctypes.c_int) for name in ("status", "grip", "steps", "pressed")),
+        *((name, ctypes.c_int) for name in ("status", "friction_state", "steps", "steps_in_contact")),
     )
 
 

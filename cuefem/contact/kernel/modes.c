@@ -34,15 +34,15 @@ FAST int tabulate(Work *w, double h)
 {
     Tables *t = &w->t;
     const int K = w->c->modes, Q = w->c->ports + w->c->slopes, wide = 2 * K;
-    if (!t->turn) t->turn = malloc((size_t)(4 * Q + 1) * wide * sizeof(double));
-    if (!t->turn) return 0;
-    double *glide = t->turn + (size_t)(1 + 3 * Q) * wide;
-    t->h = h, t->ends = t->turn + wide, t->means = t->ends + Q * wide, t->push = t->means + Q * wide;
+    if (!t->propagator) t->propagator = malloc((size_t)(4 * Q + 1) * wide * sizeof(double));
+    if (!t->propagator) return 0;
+    double *glide = t->propagator + (size_t)(1 + 3 * Q) * wide;
+    t->h = h, t->ends = t->propagator + wide, t->means = t->ends + Q * wide, t->push = t->means + Q * wide;
     for (int k = 0; k < K; k++) {
         double complex z = h * (w->c->rates[2 * k] + I * w->c->rates[2 * k + 1]), second = phi_2(z),
                        first = 1 + z * second;
         double complex turned = 1 + z * first;
-        t->turn[k] = creal(turned), t->turn[K + k] = cimag(turned);
+        t->propagator[k] = creal(turned), t->propagator[K + k] = cimag(turned);
         for (int q = 0; q < Q; q++) {
             multiply(t->ends + q * wide, w->rows + q * wide, K, k, turned, -1);
             multiply(t->means + q * wide, w->rows + q * wide, K, k, first, -1);
@@ -74,7 +74,7 @@ FAST void free_motion(Work *w)
 FAST void advance_modes(Work *w, const double *loads)
 {
     const int K = w->c->modes, Q = w->c->ports + w->c->slopes;
-    const double *re = w->t.turn, *im = re + K;
+    const double *re = w->t.propagator, *im = re + K;
     double *restrict x = w->state, *restrict y = x + K;
     for (int k = 0; k < K; k++) {
         double before = x[k];
@@ -87,7 +87,7 @@ FAST void advance_modes(Work *w, const double *loads)
 }
 
 /* What impulses on ports and slopes do at once. */
-void strike_modes(Work *w, const double *impulses)
+void apply_impulses(Work *w, const double *impulses)
 {
     const int Q = w->c->ports + w->c->slopes, wide = 2 * w->c->modes;
     for (int q = 0; q < Q; q++)

@@ -2,7 +2,7 @@
    superposition).
 
    Where the patch grows from the indentation x to x + dx while the surfaces shift by d(delta), the tractions
-   of a stuck punch of that size are added: the tangential force is a sum over rings, each strained by what
+   of a stuck punch of that size are added: the tangential force is a sum over annuli, each strained by what
    the surfaces have shifted since it touched. So is the normal force. A ring between two edges of the
    indentation has the stiffness k and the normal force N of the law between them; it bears f, |f| <= mu N:
 
@@ -14,7 +14,7 @@
 
 /* A ring's stiffness, on the mean over the indentations of a step: it grows from one edge of the ring to the
    other, and is constant beyond. Half the sum of both ends would be wrong by much where a step crosses many
-   rings, as the first one does. */
+   annuli, as the first one does. */
 static double mean_stiffness(double in, double out, double from, double to, double k_from, double k_to)
 {
     if (k_from == k_to || from == to) return k_to;
@@ -23,21 +23,21 @@ static double mean_stiffness(double in, double out, double from, double to, doub
     return ((k_from + k_to) / 2 * (ends - begins) + top * (high - ends)) / (high - low);
 }
 
-/* Take the rings from the middle of the last step to a virtual indentation, after a shift: their force, and
+/* Take the annuli from the middle of the last step to a virtual indentation, after a shift: their force, and
    its slopes over the shift and over the virtual indentation. */
-FAST double shift_rings(Work *w, double depth, double shift, double *stuck, double *slid)
+FAST double shift_annuli(Work *w, double depth, double shift, double *stuck, double *slid)
 {
     const Contact *c = w->c;
-    const double *edge = c->ring_edges, *F = c->ring_forces, *S = c->ring_slopes, *K = c->ring_stiffness,
-                 *was = w->ring_F;
-    double *now = w->ring_now, e2 = c->surface_restitution * c->surface_restitution, mu = c->friction,
+    const double *edge = c->annulus_edges, *F = c->annulus_forces, *S = c->annulus_slopes, *K = c->annulus_stiffness,
+                 *was = w->annulus_force;
+    double *now = w->annulus_force_now, e2 = c->surface_restitution * c->surface_restitution, mu = c->friction,
            before = w->virtual_mid;
     double unused, rise, force = tip_force(c, LOADING, depth, &rise, &unused), sum = 0, holds = 0, slides = 0,
                          lost = 0;
     double K_now = tangential_stiffness(c, depth), K_before = tangential_stiffness(c, before);
-    for (int r = 0; r < c->rings; r++) {
+    for (int r = 0; r < c->annuli; r++) {
         double in = edge[r],
-               out = r + 1 < c->rings ? edge[r + 1] : HUGE_VAL; /* the last ring has all that lies beyond */
+               out = r + 1 < c->annuli ? edge[r + 1] : HUGE_VAL; /* the last ring has all that lies beyond */
         if (depth <= in) {
             now[r] = 0;
             continue;

@@ -2,9 +2,9 @@
 #include "contact.h"
 
 /* The tip turns this far at most, rad: beyond that w'^2/2 is no measure of how the cue shortens. */
-static const double STEEPEST = 0.25;
-/* A tip of a restitution e unloads 1/e times as fast as it loads: below SOFT with steps of e/SOFT. */
-static const double SOFT = 0.5;
+static const double SLOPE_LIMIT = 0.25;
+/* A tip of a restitution e unloads 1/e times as fast as it loads: below MIN_STEP_RESTITUTION with steps of e/MIN_STEP_RESTITUTION. */
+static const double MIN_STEP_RESTITUTION = 0.5;
 static const double ENDLESS = 1e12; /* friction */
 
 static void read_modes(Work *w)
@@ -18,7 +18,7 @@ static void read_modes(Work *w)
 
 EXPORTED void contact_free(Work *w)
 {
-    if (w) free(w->t.turn), free(w->rows), free(w);
+    if (w) free(w->t.propagator), free(w->rows), free(w);
 }
 
 /* A contact at its first touch; NULL without memory. */
@@ -37,7 +37,7 @@ EXPORTED Work *contact_new(Contact *c)
         }
     }
     memcpy(w->ball, c->ball, c->speeds * sizeof(double));
-    w->until = HUGE_VAL, w->longest = c->longest;
+    w->until = HUGE_VAL, w->max_time = c->max_time;
     read_modes(w);
     if (!tabulate(w, c->step)) return contact_free(w), NULL;
     return w;
@@ -47,38 +47,38 @@ EXPORTED Work *contact_new(Contact *c)
 static void separate(Work *w, double shift)
 {
     Contact *c = w->c;
-    if (c->patch == SPRING_PATCH && c->steps > c->pressed) {
+    if (c->patch == SPRING_PATCH && c->steps > c->steps_in_contact) {
         double F = w->side ? w->F[T] : (shift - w->origin) / c->compliance;
         c->shear_loss += c->compliance * F * F / 2;
     }
-    c->pressed = c->steps, w->longest = c->longest + c->time;
-    w->press = FREE, w->last = 0, w->held = 0, w->virtual_mid = 0, w->origin = w->shift_mid = shift;
-    memset(w->ring_F, 0, sizeof w->ring_F), memset(w->F, 0, sizeof w->F);
+    c->steps_in_contact = c->steps, w->max_time = c->max_time + c->time;
+    w->phase = FREE, w->last = 0, w->held = 0, w->virtual_mid = 0, w->origin = w->shift_mid = shift;
+    memset(w->annulus_force, 0, sizeof w->annulus_force), memset(w->F, 0, sizeof w->F);
     for (int k = 0; k < c->modes; k++) c->xi[2 * k] = w->state[k], c->xi[2 * k + 1] = w->state[c->modes + k];
     memcpy(c->ball, w->ball, c->speeds * sizeof(double));
     if (!isfinite(w->until)) w->until = c->time + c->window;
 }
 
-static int lengthen(Work *w, double h) { return w->t.h == h || tabulate(w, h); }
+static int set_step(Work *w, double h) { return w->t.h == h || tabulate(w, h); }
 
 /* What follows a step at whose end ball and tip move apart by v_n. */
-static void follow(Work *w, double v_n)
+static void next_phase(Work *w, double v_n)
 {
     Contact *c = w->c;
-    double soft = c->restitution < SOFT ? c->step * c->restitution / SOFT : c->step, h = w->t.h;
-    if (w->press == LOADING && v_n > 0) {
-        c->deepest = larger(c->deepest, c->depth), w->press = UNLOADING, h = soft;
-    } else if (w->press == UNLOADING && (w->last || c->depth <= unloaded(c)))
+    double soft = c->restitution < MIN_STEP_RESTITUTION ? c->step * c->restitution / MIN_STEP_RESTITUTION : c->step, h = w->t.h;
+    if (w->phase == LOADING && v_n > 0) {
+        c->max_depth = larger(c->max_depth, c->depth), w->phase = UNLOADING, h = soft;
+    } else if (w->phase == UNLOADING && (w->last || c->depth <= residual_depth(c)))
         separate(w, w->shift), h = c->step;
-    else if (w->press == UNLOADING && c->depth > c->deepest)
-        w->press = LOADING, h = c->step;
-    else if (w->press == FREE && (w->last || c->depth > unloaded(c)))
-        w->press = UNLOADING, w->last = 0, h = soft;
-    if (!lengthen(w, h)) c->status = NO_MEMORY;
+    else if (w->phase == UNLOADING && c->depth > c->max_depth)
+        w->phase = LOADING, h = c->step;
+    else if (w->phase == FREE && (w->last || c->depth > residual_depth(c)))
+        w->phase = UNLOADING, w->last = 0, h = soft;
+    if (!set_step(w, h)) c->status = NO_MEMORY;
 }
 
 /* How the contact grips, at a mean velocity u along the surface. */
-static int grip_of(const Work *w, double u)
+static int friction_state_of(const Work *w, double u)
 {
     const Contact *c = w->c;
     if (c->friction == 0 && c->forces == 2) return u < 0 ? SLIP : u > 0 ? SLIP_BACK : STICK;
@@ -86,7 +86,7 @@ static int grip_of(const Work *w, double u)
     if (c->patch != PARTIAL_SLIP)
         return !stops || w->rest[T] == 0 ? w->side : w->rest[T] < 0 ? SLIP : SLIP_BACK;
     if (fabs(w->F[T]) < c->friction * w->F[N] * (1 - 1e-6)) return STICK;
-    return w->F[T] > 0 ? SLIP : w->F[T] < 0 ? SLIP_BACK : c->grip;
+    return w->F[T] > 0 ? SLIP : w->F[T] < 0 ? SLIP_BACK : c->friction_state;
 }
 
 /* One step; 0 where it is too long, as ball and tip part or touch before its end, and a shorter one is ready.
@@ -99,10 +99,10 @@ static int take_step(Work *w, Step *row)
     double loads[WIDE] = {0}, v[FORCES], u[FORCES], turned = 0, spin = w->ball[2];
     free_motion(w);
     contact_matrices(w);
-    if (w->press != FREE && !(c->forces == 2 ? level_forces(w) : raised_forces(w))) c->status = UNSOLVED;
+    if (w->phase != FREE && !(c->forces == 2 ? level_forces(w) : raised_forces(w))) c->status = UNSOLVED;
     velocities(w, v, u);
-    double left = c->depth - unloaded(c), then = left - h * u[N];
-    int crosses = w->press == UNLOADING ? then < 0 : w->press == FREE && left < 0 && then > 0;
+    double left = c->depth - residual_depth(c), then = left - h * u[N];
+    int crosses = w->phase == UNLOADING ? then < 0 : w->phase == FREE && left < 0 && then > 0;
     if (crosses && w->last != 1) {
         w->last = 1;
         if (!tabulate(w, h * larger(left / (h * u[N]), 1e-6))) c->status = NO_MEMORY;
@@ -121,45 +121,45 @@ static int take_step(Work *w, Step *row)
         w->rates[p] = end;
     }
     for (int b = 0; b < c->speeds; b++) w->ball[b] += h * c->inverse_masses[b] * loads[Q + b];
-    if (c->rolls) { /* the contact moves on over ball and dome by their rolling and slipping; on a rim by the
+    if (c->rolling) { /* the contact moves on over ball and dome by their rolling and slipping; on a rim by the
                        ball's alone */
         double dome = fabs(c->phi + c->angle) < c->rim ? c->dome : 0;
-        w->rolling = ((spin + w->ball[2]) / 2 - u[T] + dome * turned) / (c->radius + dome);
-        c->angle += h * w->rolling;
+        w->rolling_rate = ((spin + w->ball[2]) / 2 - u[T] + dome * turned) / (c->radius + dome);
+        c->angle += h * w->rolling_rate;
     }
     double middle = w->shift - h / 2 * u[T];
-    if (w->press != FREE) {
+    if (w->phase != FREE) {
         if (w->side && c->patch == SPRING_PATCH) w->origin = middle - c->compliance * w->F[T];
         if (c->patch == PARTIAL_SLIP)
-            memcpy(w->ring_F, w->ring_now, sizeof w->ring_F), c->shear_loss += w->lost;
+            memcpy(w->annulus_force, w->annulus_force_now, sizeof w->annulus_force), c->shear_loss += w->lost;
         w->virtual_mid = w->virtual_now;
-        c->grip = grip_of(w, u[T]), w->held = !w->side;
+        c->friction_state = friction_state_of(w, u[T]), w->held = !w->side;
     } else
-        c->grip = SEPARATED,
+        c->friction_state = SEPARATED,
         middle = w->origin = w->shift - h * u[T]; /* a patch that touches is not strained */
     w->shift -= h * u[T], w->shift_mid = middle, c->depth -= h * u[N], c->time += h;
     if (c->forces > 2) c->height = larger(0, c->height + h * u[UP]);
-    *row = (Step){.time = c->time, .length = h, .grip = c->grip, .press = w->press, .angle = c->angle};
+    *row = (Step){.time = c->time, .length = h, .friction_state = c->friction_state, .phase = w->phase, .angle = c->angle};
     memcpy(row->F, w->F, sizeof row->F), memcpy(row->v, v, c->forces * sizeof(double));
     return 1;
 }
 
 /* Why a contact that goes on cannot. */
-static int trouble(Work *w)
+static int failure_status(Work *w)
 {
     Contact *c = w->c;
     for (int a = c->slopes / c->planes; a && a <= c->slopes;
          a += c->slopes / c->planes) { /* the tip's slope is the last */
         double turned = fabs(w->slopes[a - 1]);
-        if (turned > c->steepest) c->steepest = turned, c->thrust = w->F[N];
+        if (turned > c->max_slope) c->max_slope = turned, c->axial_force = w->F[N];
     }
     double together = c->depth + c->time;
     for (int f = 0; f < c->forces; f++) together += w->F[f];
     if (!isfinite(together)) return UNSOLVED;
-    if (c->law == LEATHER_LAW && c->depth > c->most) return TOO_DEEP;
-    if (c->steepest > STEEPEST) return BENT_TOO_FAR;
-    if (w->press == FREE) return c->time >= w->until ? ENDED : RUNNING;
-    return c->time > w->longest ? LATE : RUNNING;
+    if (c->law == LEATHER_LAW && c->depth > c->depth_limit) return INDENTATION_OUT_OF_RANGE;
+    if (c->max_slope > SLOPE_LIMIT) return SLOPE_OUT_OF_RANGE;
+    if (w->phase == FREE) return c->time >= w->until ? ENDED : RUNNING;
+    return c->time > w->max_time ? LATE : RUNNING;
 }
 
 /* Up to so many steps more, each with a row and the modes' coordinates after it (course may be NULL): how
@@ -170,15 +170,15 @@ EXPORTED int contact_steps(Work *w, int most, Step *rows, double *course)
     int done = 0;
     while (done < most && c->status == RUNNING) {
         if (!c->steps && c->friction >= ENDLESS && c->patch == RIGID_PATCH && c->phi > 0) {
-            rows[done] = (Step){.grip = BLOW};
-            int stays = blow(w, rows + done);
+            rows[done] = (Step){.friction_state = IMPACT};
+            int stays = impact(w, rows + done);
             read_modes(w);
             c->steps++;
             if (!stays && c->status == RUNNING) separate(w, w->shift), c->status = ENDED;
         } else if (take_step(w, rows + done)) {
             c->steps++;
-            follow(w, rows[done].v[N]);
-            if (c->status == RUNNING) c->status = trouble(w);
+            next_phase(w, rows[done].v[N]);
+            if (c->status == RUNNING) c->status = failure_status(w);
         } else
             continue;
         memcpy(rows[done].ball, w->ball, sizeof w->ball);
