@@ -82,7 +82,7 @@ def resolve(scene: Scene, rtol: float) -> Outcome:
 
 
 def levels(scene: Scene, rtol: float) -> Iterator[Level]:
-    """Strikes at ever more modes and steps, up to the first whose error is within ``rtol``, or up to `MAX_MODES` modes."""
+    """Strikes at ever more modes and steps, up to the first with an error within ``rtol``, or `MAX_MODES` modes."""
     strike = lambda tip, at: strike_modes(scene, tip, steps=at.steps)  # noqa: E731
     return _refined(scene, rtol, strike, lambda outcome, best: relative_error(outcome, best, scene))
 
@@ -166,6 +166,6 @@ def _tips(scene: Scene) -> Iterator[tuple[Resolution, TipModes]]:
 
 
 def mode_counts(least: int) -> list[int]:
-    """Numbers of modes of the levels: from ``least`` or `FIRST_MODES` on, doubled each time; the last is `MAX_MODES`."""
+    """Numbers of modes of the levels: from ``least`` or `FIRST_MODES`, doubled each time; the last is `MAX_MODES`."""
     first = min(max(FIRST_MODES, least), MAX_MODES // 8)
     return [*(first * 2**k for k in range(10) if first * 2**k < 0.75 * MAX_MODES), MAX_MODES]
