@@ -6,7 +6,7 @@ import pytest
 
 from cuefem import end_mass
 from cuefem.endmass.definitions import definition_of
-from cuefem.scene.solved_scene import ended_tip_modes
+from cuefem.scene.solved_scene import MAX_MODES, ended_tip_modes
 from tests.helpers.cues import scene
 
 mpl.use("Agg")
@@ -30,4 +30,15 @@ def test_the_modes_of_a_strike_hold_the_end_masses_of_smooth_drives(number: int)
         assert end_mass(found, "velocity") == pytest.approx(definition_of("velocity").of(exact, found), rel=5e-6)
         wanted = definition_of("force").of(exact, found)
         assert end_mass(found, "force") == pytest.approx(wanted, rel=5e-3 if leather else 1e-3)
-        assert end_mass(found, "stick") == pytest.approx(definition_of("stick").of(exact, found), rel=2e-3)
+
+
+@pytest.mark.nightly
+def test_stick_end_mass_random_cues_keeps_the_promise() -> None:
+    """0.1 % in 95 %, against the most modes: leather, ferrules, tubes and bores, contacts of 0.5 to 3 ms."""
+    draw, errors = np.random.default_rng(9), []
+    for _ in range(60):
+        made = scene(random_cue(draw), float(draw.uniform(0.5e-3, 3e-3)))
+        exact = definition_of("stick").of(ended_tip_modes(made, MAX_MODES), made)
+        errors.append(abs(end_mass(made) / exact - 1))
+    assert np.quantile(errors, 0.95) < 1e-3
+    assert max(errors) < 2e-3

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 
 from cuefem import LumpedCue, Scene, impulse, resolve, resolve_end_mass
 from cuefem.results.convergence import mode_counts
+from cuefem.scene.solved_scene import MAX_MODES
 from tests.helpers.accuracy_scenes import scene
 from tests.helpers.strike_scenes import lumped_scenes
 
