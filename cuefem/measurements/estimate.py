@@ -45,14 +45,14 @@ class InformationGain(NamedTuple):
     """Information gain of a further measurement.
 
     bits: about all parameters. parameter: the one whose error it reduces most; error_ratio: its error after over
-    before. squirt_error: the relative error of squirt after it.
+    before. relative_squirt_error: the relative error of squirt after it.
     """
 
     measurement: Measurement
     bits: float
     parameter: str
     error_ratio: float
-    squirt_error: float
+    relative_squirt_error: float
 
 
 class UncheckedMeasurement(NamedTuple):
@@ -151,7 +151,7 @@ class Estimate:
             made.append(
                 InformationGain(measurement, float(bits), self.cue.parameters[i].label, float(left[i]), relative)
             )
-        return tuple(sorted(made, key=lambda gain: gain.squirt_error))
+        return tuple(sorted(made, key=lambda gain: gain.relative_squirt_error))
 
 
 def predicted_squirt(cue: MeasuredCue) -> Squirt:

@@ -155,7 +155,7 @@ def estimate_sheets(record: Record) -> list[Sheet | str]:
                 "1σ": lambda gain: with_unit(gain["error"], gain["unit"]) if gain["unit"] else NONE,
                 "narrows most": "{parameter}",
                 "to": "{error_ratio:.0 %}",
-                "squirt then": "± {squirt_error:.1 %}",
+                "squirt then": "± {relative_squirt_error:.1 %}",
             },
             record["recommended"],
             "Sorted by the remaining relative uncertainty (1σ) of squirt, squirt then.",

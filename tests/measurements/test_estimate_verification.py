@@ -132,7 +132,7 @@ def test_next_measurement_added_gives_predicted_gain() -> None:
     assert predicted.error_ratio == pytest.approx(float(ratio.min()), rel=0.05)
     bits = 0.5 * np.log2(np.linalg.det(before.covariance) / np.linalg.det(after.covariance))
     assert predicted.bits == pytest.approx(bits, rel=0.05)
-    assert [gain.squirt_error for gain in gains] == sorted(gain.squirt_error for gain in gains)
+    assert [gain.relative_squirt_error for gain in gains] == sorted(gain.relative_squirt_error for gain in gains)
 
 
 CHEAP = (
@@ -152,7 +152,7 @@ def possible(cue: MeasuredCue, i: int, z: float) -> bool:
 
 @pytest.mark.parametrize("name", ["E", pytest.param("bore width", marks=pytest.mark.heavy), "taper"])
 def test_estimate_at_limits_of_geometry_stays_finite(name: str) -> None:
-    """Differences are one-sided at a limit; no limit within 12 standard deviations of the prior: not limited."""
+    """Differences are one-sided at a limit, which is sought within 12 standard deviations of the prior."""
     cue = MeasuredCue("a cue", SCENE, CHEAP, (Prior("taper", 0.1),))
     i, parameter = next((i, each) for i, each in enumerate(cue.parameters) if each.name == name)
     for outside in (side for side in (-12.0, 12.0) if not possible(cue, i, side)):
