@@ -1,4 +1,4 @@
-"""What measured cues compute: exact static stiffness, errors from priors, residuals, the zero of the offset."""
+"""Values of measurements: exact static stiffness, errors from priors, residuals, the zero of the offset."""
 
 from dataclasses import replace
 
@@ -7,7 +7,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.cue import shear_coefficient
-from cuefem.measurements.measured_cue import compare, zeros
+from cuefem.measurements.measured_cue import compare, offset_zeros
 from cuefem.measurements.measurement_types import (
     AddedMass,
     Balance,
@@ -25,27 +25,27 @@ from tests.helpers.measured_cues import SCENE, WOOD, blank, measured_cue
 ROD = replace(SCENE, cue=cf.Cue((cf.Segment(0.7, 0.014, 0.014, WOOD),)))
 
 
-@pytest.mark.parametrize("free", [None, 0.7, 0.3, 0.1])
-def test_stiffness_of_a_rod_is_exact(free: float | None) -> None:
-    L, second, A = free or 0.7, np.pi / 64 * 0.014**4, np.pi / 4 * 0.014**2
+@pytest.mark.parametrize("free_length", [None, 0.7, 0.3, 0.1])
+def test_stiffness_of_rod_is_exact(free_length: float | None) -> None:
+    L, second, A = free_length or 0.7, np.pi / 64 * 0.014**4, np.pi / 4 * 0.014**2
     shear = float(shear_coefficient(WOOD.effective_poisson_ratio)) * WOOD.G * A
     exact = 1 / (L**3 / (3 * WOOD.E * second) + L / shear)
-    found = Stiffness(free_length=free, value=1.0, error=1.0).computed(Setup(ROD))
-    assert found == pytest.approx(exact, rel=1e-8)
+    result = Stiffness(free_length=free_length, value=1.0, error=1.0).computed(Setup(ROD))
+    assert result == pytest.approx(exact, rel=1e-8)
 
 
-def test_weight_and_balance_hold_the_tip() -> None:
+def test_weight_and_balance_with_leather_tip_include_it() -> None:
     scene = leather_scene()
     tip = scene.leather.mass_on(scene.shaft)
-    found = predictions_of(scene)
-    assert found.shaft_mass == pytest.approx(scene.shaft.shaft_mass + tip, rel=1e-14)
-    assert Weight(of="cue", value=1.0, error=1.0).computed(Setup(scene)) == pytest.approx(scene.shaft.mass + tip)
+    result = predictions_of(scene)
+    assert result.shaft_mass == pytest.approx(scene.shaft.shaft_mass + tip, rel=1e-14)
+    assert Weight(part="cue", value=1.0, error=1.0).computed(Setup(scene)) == pytest.approx(scene.shaft.mass + tip)
     moment = scene.shaft.shaft_mass * scene.shaft.balance_point
-    expected = scene.leather.height + moment / found.shaft_mass
+    expected = scene.leather.height + moment / result.shaft_mass
     assert Balance(value=1.0, error=1.0).computed(Setup(scene)) == pytest.approx(expected, rel=1e-14)
 
 
-def test_squirt_and_time_are_those_of_a_strike() -> None:
+def test_squirt_and_contact_time_equal_a_strike() -> None:
     for scene in (SCENE, leather_scene()):
         struck = cf.strike(replace(scene, stroke=cf.Stroke(1.5, 0.25)))
         one = Squirt(offset=0.25, value=0.03, error=1e-3, speed=1.5)
@@ -56,43 +56,43 @@ def test_squirt_and_time_are_those_of_a_strike() -> None:
         assert time.computed(Setup(scene)) == pytest.approx(head_on.duration, rel=1e-12)
 
 
-def test_pivot_length_is_that_of_the_strike_s_squirt_and_of_the_dome() -> None:
+def test_pivot_length_follows_from_squirt_and_dome() -> None:
     """TP B.1 by hand: turned by psi about the bridge, the cue's axis points beside the centre by (R + r) b/R."""
     for scene, dome in ((SCENE, 0.0), (leather_scene(), leather_scene().leather.dome_radius)):
         one, radius = PivotLength(offset=0.25, value=0.3, error=0.01, speed=1.5), float(scene.ball.radius)
         for factor in (1.0, 1.1):
             turned = factor * cf.strike(replace(scene, stroke=cf.Stroke(1.5, 0.25))).squirt
-            found = one.computed(Setup(scene, squirt_factor=factor))
-            assert (radius + found) * np.sin(turned) == pytest.approx((radius + dome) * 0.25, rel=1e-12)
+            result = one.computed(Setup(scene, squirt_factor=factor))
+            assert (radius + result) * np.sin(turned) == pytest.approx((radius + dome) * 0.25, rel=1e-12)
     assert measured_cue(one).parameters[-1].name == "squirt model"
 
 
-def test_an_added_mass_stands_behind_the_leather() -> None:
+def test_added_mass_position_counts_from_the_leather() -> None:
     scene = leather_scene()
-    lump = cf.PointMass(0.05 - scene.leather.height, 5e-3)
-    heavy = replace(scene, effects=(*scene.effects, lump), stroke=cf.Stroke(scene.stroke.speed, 0.3))
+    added = cf.PointMass(0.05 - scene.leather.height, 5e-3)
+    heavy = replace(scene, effects=(*scene.effects, added), stroke=cf.Stroke(scene.stroke.speed, 0.3))
     plain = replace(scene, stroke=cf.Stroke(scene.stroke.speed, 0.3))
     one = AddedMass(mass=5e-3, position=0.05, value=0.05, baseline=0.04, error=1e-3, offset=0.3)
     assert one.computed(Setup(scene)) == pytest.approx(cf.strike(heavy).squirt / cf.strike(plain).squirt, rel=1e-12)
     assert one.measured == pytest.approx(1.25)
 
 
-def test_a_zero_of_the_offset_moves_one_side_alone() -> None:
-    """One side is at another offset; the mean of both is not, and their difference tells the zero."""
-    radius, aside = float(SCENE.ball.radius), 1e-3
-    setup = Setup(SCENE, {"a": aside})
-    both = [cf.strike(replace(SCENE, stroke=cf.Stroke(2.0, 0.3 + side * aside / radius))).squirt for side in (1, -1)]
+def test_offset_zero_moves_one_side_and_not_the_mean() -> None:
+    """One side is at another offset; the mean of both is not, and the zero follows from their difference."""
+    radius, shift = float(SCENE.ball.radius), 1e-3
+    setup = Setup(SCENE, {"a": shift})
+    both = [cf.strike(replace(SCENE, stroke=cf.Stroke(2.0, 0.3 + side * shift / radius))).squirt for side in (1, -1)]
     alone = Squirt(offset=0.3, value=0.03, error=1e-3, series="a", zero_error=1e-3)
     sides = Squirt(offset=0.3, left=both[0], right=both[1], error=1e-3, series="a")
     assert alone.computed(setup) == pytest.approx(both[0], rel=1e-12)
     assert sides.computed(setup) == pytest.approx(cf.strike(SCENE).squirt, rel=1e-12)
     cue = measured_cue(sides)
-    (told,) = zeros(cue, compare(cue))
-    assert told.zero == pytest.approx(aside, rel=0.2)
-    assert told.error > 0
+    (result,) = offset_zeros(cue, compare(cue))
+    assert result.zero == pytest.approx(shift, rel=0.2)
+    assert result.error > 0
 
 
-def test_residuals_are_in_errors() -> None:
+def test_residuals_are_in_units_of_errors() -> None:
     rows = compare(measured_cue(*blank()))
     for row in rows:
         assert row.residual == pytest.approx((row.measured - row.computed) / row.error)
