@@ -1,18 +1,19 @@
-/* One contact of ball and tip by equal steps (handbook: The contact).
+/* One contact of ball and tip by fixed time steps (handbook: The contact).
 
-   Between the forces of the contact, cue and ball move linearly. Over a step of length h the forces are
-   constant; every mode of the cue answers them exactly. The tip's force follows its law at the middle of the
-   step, and Coulomb's friction is a return mapping, as in plasticity: stick is tried, and a force beyond mu
-   F_n is brought back to it. Second order in h; no event is located. J. J. Moreau, Unilateral contact and dry
-   friction in finite freedom dynamics (1988); M. Jean, The non-smooth contact dynamics method, Comput.
-   Methods Appl. Mech. Engrg. 177 (1999) 235.
+   Between the contact's forces, cue and ball move linearly. Over a step of length h the forces are constant,
+   and every mode of the cue answers them exactly (modal propagation). The normal force follows the
+   force-indentation law at mid-step. Coulomb friction is a return mapping, as in plasticity: trial stick,
+   then |F_t| is projected onto mu F_n. Second order in h; no event is located. J. J. Moreau, Unilateral
+   contact and dry friction in finite freedom dynamics (1988); M. Jean, The non-smooth contact dynamics
+   method, Comput. Methods Appl. Mech. Engrg. 177 (1999) 235.
 
-   A mode is one complex coordinate xi, xi' = rate xi + drive . loads. The cue is read and loaded through
-   ports (the velocities of its tip along and across it, and its turning) and through the slopes of the bent
-   cue; the ball through its velocities. A matrix C takes all these velocities y to those of the contact, v =
-   C y, and the contact's forces to loads, C' F, so that no energy is made on the way.
+   A mode is one complex coordinate xi with xi' = rate xi + drive . loads. The cue has ports (axial and
+   lateral velocity of its tip, rotation rate) and the slopes of the bent shaft; the ball has its velocities.
+   With y all these velocities, the contact's velocities are v = C y and its forces F load them by C' F, so
+   that energy is conserved.
 
-   Python fills a Contact, asks for steps until its status is no longer RUNNING, and reads it. */
+   Python fills a Contact, calls contact_steps until the status is no longer RUNNING, and reads the results.
+ */
 #ifndef CUEFEM_CONTACT_H
 #define CUEFEM_CONTACT_H
 
@@ -27,8 +28,7 @@
 #define EXPORTED __attribute__((visibility("default")))
 #endif
 
-/* A copy of a function for processors with AVX2, chosen when the library is loaded, where that is possible.
- */
+/* Function versions for AVX2 and AVX-512, selected at load time, where the platform supports it. */
 #if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GLIBC__) && defined(__GNUC__) &&              \
     !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
 #define FAST __attribute__((target_clones("arch=skylake-avx512", "avx2", "default")))
@@ -52,37 +52,40 @@ enum {
     UP,
     LATERAL,
     FORWARD
-}; /* of the tip: tangential, normal, out of the plane; of the ball on the table */
+}; /* at the tip: tangential, normal, out of the plane; at the ball's point on the table: the rest */
 enum { STICK = 0, SLIP = 1, SLIP_BACK = -1, IMPACT = 2, SEPARATED = 3 };
 enum { LOADING, UNLOADING, FREE };
 enum { RIGID_PATCH, SPRING_PATCH, PARTIAL_SLIP };
 enum { POWER_LAW, LEATHER_LAW };
 enum { RUNNING, ENDED, LATE, INDENTATION_OUT_OF_RANGE, SLOPE_OUT_OF_RANGE, UNSOLVED, NO_MEMORY };
 
-/* A step that was taken, or a blow: a step of no length whose F is an impulse, N s. */
+/* One step, or an impact: a step of zero length whose F is an impulse, N s. */
 typedef struct {
     double time, length, friction_state, phase, angle; /* at the end of the step */
     double F[FORCES], v[FORCES],
-        ball[SPEEDS]; /* over the step; of the ball against the tip, and of the ball, at its end */
+        ball[SPEEDS]; /* F: over the step. v, ball: at its end, of the contact and of the ball */
 } Step;
 
 typedef struct {
     int modes, ports, slopes, forces, speeds, planes, rolling, law, terms, patch, annuli;
-    const double *rates, *rows, *drives;   /* complex: (modes,), and (ports + slopes, modes) twice */
-    const double *kinematics, *inverse_masses; /* C of the first touch, (forces, ports + speeds); of the ball */
-    const double *slope_weights;           /* (slopes,): what of the tip's way along the cue a slope takes */
-    const double *force_terms, *compliance_terms; /* of leather: series in the root of the indentation */
+    const double *rates, *rows, *drives; /* complex: (modes,), and (ports + slopes, modes) twice */
+    const double *kinematics,
+        *inverse_masses;         /* C of the first touch, (forces, ports + speeds); of the ball */
+    const double *slope_weights; /* (slopes,): weight of each slope in the tip's axial shortening */
+    const double *force_terms, *compliance_terms; /* leather: series in the square root of the indentation */
     const double *annulus_edges, *annulus_forces, *annulus_slopes,
-        *annulus_stiffness; /* (annuli + 1,), at the indentations edges */
-    double *xi, *ball;   /* before the first touch, and after the last separation */
-    double restitution, friction, table_friction, stiffness, exponent, depth_limit, compliance, surface_restitution;
+        *annulus_stiffness; /* (annuli + 1,), at the indentations annulus_edges */
+    double *xi, *ball;      /* before the first touch, and after the last separation */
+    double restitution, friction, table_friction, stiffness, exponent, depth_limit, compliance,
+        surface_restitution;
     double phi, dome, rim, radius, arm_t, arm_n, step, max_time, window;
     double time, depth, max_depth, angle, height, shear_loss, axial_force, max_slope,
-        work[FORCES];                         /* work: taken by each force */
-    int status, friction_state, steps, steps_in_contact; /* steps_in_contact: steps up to the last separation */
+        work[FORCES]; /* work: dissipated by each force */
+    int status, friction_state, steps,
+        steps_in_contact; /* steps_in_contact: number up to the last separation */
 } Contact;
 
-/* What modes do over a step of one length: rows of 2 modes, the real parts and then the imaginary ones. */
+/* Modal propagation over a step of one length: rows of 2 modes, first the real, then the imaginary parts. */
 typedef struct {
     double h, *propagator, *ends, *means, *push, end[READS][READS], mean[READS][READS];
 } Tables;
@@ -92,11 +95,12 @@ typedef struct {
     Tables t;
     double *rows, *drives, *state;
     double ball[SPEEDS], rates[READS],
-        slopes[SLOPES]; /* rates: readings now; slopes: how far the cue is bent */
+        slopes[SLOPES]; /* rates: velocities of ports and slopes now; slopes: those of the bent shaft */
     double C[FORCES][WIDE], v[FORCES], u[FORCES], rest[FORCES], V[FORCES][FORCES],
         W[FORCES][FORCES]; /* contact_matrices */
     double end_free[READS], mean_free[READS], F[FORCES];
-    double rolling_rate, shift, shift_mid, origin, virtual_mid, virtual_now, lost, annulus_force[ANNULI], annulus_force_now[ANNULI];
+    double rolling_rate, shift, shift_mid, origin, virtual_mid, virtual_now, lost, annulus_force[ANNULI],
+        annulus_force_now[ANNULI];
     double until, max_time;
     int phase, side, held, up_held, table_held, last;
 } Work;

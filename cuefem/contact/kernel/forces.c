@@ -1,13 +1,13 @@
-/* The forces of a step: the tip's law at mid-step, and friction as a return mapping. */
+/* The forces of a step: force-indentation law at mid-step, friction as a return mapping. */
 #include "contact.h"
 
 enum { ROUNDS = 40, SWEEPS = 1000, HALVINGS = 60 };
 static const double CLOSE = 1e-12,
-                    NEAR = 1e-7; /* of the forces: where iterations end; what is still an answer */
+                    NEAR = 1e-7; /* relative change of the forces at convergence; largest accepted */
 
-/* C at mid-step; with it the velocities of the contact without forces at the end (v) and on the mean (u) of
-   the step, and what forces add to them (V, W). rest: the mean velocity of what sticks: none, or half of that
-   at the start where it slipped before and comes to rest. */
+/* C at mid-step; with it the contact's velocities without forces at the end (v) and on average over the step
+   (u), and their change per force (V, W). rest: mean velocity of a sticking point: 0, or half of the initial
+   velocity where it slipped before and comes to rest. */
 void contact_matrices(Work *w)
 {
     const Contact *c = w->c;
@@ -41,7 +41,7 @@ void contact_matrices(Work *w)
         }
 }
 
-/* Of the contact, at the end of the step and on the mean over it, under the forces F. */
+/* Velocities of the contact at the end of the step and on average over it, under the forces F. */
 void velocities(const Work *w, double *end, double *mean)
 {
     for (int f = 0; f < w->c->forces; f++) {
@@ -51,7 +51,7 @@ void velocities(const Work *w, double *end, double *mean)
     }
 }
 
-/* Newton's method for (F_t, F_n); side: of slip, or STICK. Whether it found them. */
+/* Newton's method for (F_t, F_n); side: direction of slip, or STICK. Returns whether it converged. */
 static int newton(Work *w, int side)
 {
     const Contact *c = w->c;
@@ -85,7 +85,7 @@ static int newton(Work *w, int side)
     return off <= NEAR * size;
 }
 
-/* Forces of a level cue: stick, and where that is too much for friction, slip. */
+/* Level cue: trial stick, and slip where the trial exceeds mu F_n. */
 int level_forces(Work *w)
 {
     const Contact *c = w->c;
@@ -98,8 +98,8 @@ int level_forces(Work *w)
     return newton(w, w->side);
 }
 
-/* Friction of a point in the plane of two forces a and b, |F| <= bound: whether it sticks. Where it slips the
-   force is against the mean velocity, found by steps of projection on the disc of the bound. */
+/* Friction in the plane of two forces a and b, |F| <= bound: whether the point sticks. A slipping force
+   opposes the mean velocity, found by projected-gradient steps on the disc of the bound. */
 static int plane_friction(Work *w, int a, int b, double bound)
 {
     const double (*W)[FORCES] = w->W;
@@ -122,8 +122,8 @@ static int plane_friction(Work *w, int a, int b, double bound)
     return sticks;
 }
 
-/* Forces of a raised cue over a table, which never pulls: solved in turns, point after point, until nothing
-   changes; or the impulses of its blow, which stops the tip along the ball and the ball into the table.
+/* Raised cue over a table that never pulls: block Gauss-Seidel over the contact points until the forces
+   converge; or the impulses of its impact, which stops the tip along the ball and the ball into the table.
    bound: of the tip's friction; mu F_n where it is negative. */
 static int solve_in_turns(Work *w, int strikes, double bound)
 {
@@ -154,8 +154,8 @@ static int solve_in_turns(Work *w, int strikes, double bound)
     return off <= NEAR * size;
 }
 
-/* Forces of a raised cue. Strong friction may hold so much that F_n is gone, without which it holds nothing:
-   the turns then go to and fro about the bound that is mu F_n, which lies between none and what it holds. */
+/* Raised cue. Strong friction may hold so much that F_n vanishes, and with it mu F_n: the iteration then
+   alternates. The bound mu F_n lies between 0 and the force of full stick, and is found by bisection. */
 int raised_forces(Work *w)
 {
     if (solve_in_turns(w, 0, -1)) return 1;
@@ -172,9 +172,9 @@ int raised_forces(Work *w)
     return solved;
 }
 
-/* The blow of endless friction as ball and tip touch: it stops the tip's velocity along the ball, and the
-   ball's into the table, which rubs. Whether the two stay together; where the blow alone throws them apart it
-   ends at e times their approach. */
+/* Impact of infinite friction at the first touch: an impulse stops the tip's velocity along the ball, and the
+   ball's into the table, where it rubs. Returns whether they stay in contact; if the impulse alone separates
+   them, it ends at e times their approach velocity. */
 int impact(Work *w, Step *row)
 {
     Contact *c = w->c;
@@ -200,7 +200,8 @@ int impact(Work *w, Step *row)
     double turned = 0, unused[FORCES];
     for (int f = 0; f < c->forces; f++) turned += w->V[N][f] * F[f];
     int parts = w->v[N] + turned > 0;
-    for (int f = 0; f < c->forces && parts; f++) F[f] *= fmin(1, (1 + c->restitution) * fabs(w->v[N] / turned));
+    for (int f = 0; f < c->forces && parts; f++)
+        F[f] *= fmin(1, (1 + c->restitution) * fabs(w->v[N] / turned));
     velocities(w, row->v, unused);
     for (int f = 0; f < c->forces; f++) {
         c->work[f] -= F[f] * (w->v[f] + row->v[f]) / 2;

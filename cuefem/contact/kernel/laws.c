@@ -1,17 +1,18 @@
-/* Force and stiffness of the tip over its indentation, and where the contact lies on the cue.
+/* Force-indentation law of the tip, and the kinematics of the contact.
 
-   On the way back from the max_depth point D the indentation d of the loading curve is scaled by e^2, from the
-   rest (1 - e^2) D on, so that e^2 of the work is given back: (d - rest)/e^2 is called the virtual
-   indentation. */
+   Unloading from the maximum indentation D follows the loading curve at the virtual indentation (d - d0)/e^2
+   with the residual indentation d0 = (1 - e^2) D, so that a part e^2 of the work is returned. */
 #include "contact.h"
 
-double unloading_scale(const Contact *c, int phase) { return phase == LOADING ? 1 : c->restitution * c->restitution; }
+double unloading_scale(const Contact *c, int phase)
+{
+    return phase == LOADING ? 1 : c->restitution * c->restitution;
+}
 
-/* Indentation at which an residual_depth tip has lost its force. */
+/* Residual indentation d0, where the unloading force vanishes. */
 double residual_depth(const Contact *c) { return (1 - c->restitution * c->restitution) * c->max_depth; }
 
-/* The tip's force, its slope over the indentation, and the virtual indentation; beyond D a tip is loaded
- * again. */
+/* Normal force, its slope dF/dd and the virtual indentation; beyond D the tip loads again. */
 double tip_force(const Contact *c, int phase, double depth, double *slope, double *virtual)
 {
     int loads = phase == LOADING || depth > c->max_depth;
@@ -29,7 +30,7 @@ double tip_force(const Contact *c, int phase, double depth, double *slope, doubl
     return F;
 }
 
-/* Stiffness of a leather patch along the surface, N/m, at a virtual indentation. */
+/* Tangential stiffness of a leather patch, N/m, at a virtual indentation. */
 double tangential_stiffness(const Contact *c, double depth)
 {
     double y = sqrt(larger(depth, 0)), compliance = 0;
@@ -37,9 +38,9 @@ double tangential_stiffness(const Contact *c, double depth)
     return y / compliance;
 }
 
-/* C when the contact has rolled by an angle over ball and dome, and the cue is bent by slopes: a bent cue
-   takes its tip back by the sum of weight slope^2/2, so that its port along the cue reads the sum of weight
-   slope slope' less. */
+/* C after the contact has rolled by an angle over ball and dome, with the shaft bent by slopes. Bending
+   shortens the cue by the sum of weight slope^2/2 (second-order theory), so that the axial port loses weight
+   slope slope'. */
 void contact_kinematics(const Work *w, double angle, const double *slopes, double C[FORCES][WIDE])
 {
     const Contact *c = w->c;
@@ -51,7 +52,7 @@ void contact_kinematics(const Work *w, double angle, const double *slopes, doubl
     if (c->rolling) {
         double at = c->phi + angle, s = sin(at), cs = cos(at), sa = sin(angle), ca = cos(angle);
         double from = fmin(c->phi, c->rim),
-               to = copysign(fmin(fabs(at), c->rim), at); /* beyond the rim the edge stays */
+               to = copysign(fmin(fabs(at), c->rim), at); /* beyond the rim the edge is in contact */
         double along = c->dome * (sin(from) - sin(to)), across = c->dome * (cos(from) - cos(to));
         C[T][0] = -s, C[T][1] = -cs, C[N][0] = -cs, C[N][1] = s;
         if (ports > 2) {

@@ -1,9 +1,8 @@
-/* The modes of the cue under loads that are constant over a step: tables of a step's length, and the step
-   itself.
+/* Modal propagation: the modes of the cue under loads that are constant over a step.
 
-   With z = rate h, a load that drives xi by d for the time h adds d h phi_1(z) to xi, whose mean over the
-   step is raised by d h phi_2(z); a free mode becomes exp(z) xi, of the mean phi_1(z) xi; phi_1 = (exp(z) -
-   1)/z, phi_2 = (phi_1 - 1)/z. */
+   With z = rate h, a load that drives xi by d adds d h phi_1(z) to xi and d h phi_2(z) to its mean over the
+   step. A free mode becomes exp(z) xi, with the mean phi_1(z) xi. phi_1 = (exp(z) - 1)/z, phi_2 = (phi_1 -
+   1)/z. */
 #include "contact.h"
 
 FAST static double product(const double *a, const double *b, int count)
@@ -13,8 +12,8 @@ FAST static double product(const double *a, const double *b, int count)
     return sum;
 }
 
-/* a phi, of complex numbers a by parts; sign: -1 for a row, whose imaginary part is stored with the other
- * sign. */
+/* Product a phi of complex numbers stored by parts; sign -1: a row, whose imaginary part is stored negated.
+ */
 static void multiply(double *to, const double *a, int modes, int k, double complex phi, int sign)
 {
     double re = a[k], im = sign * a[modes + k];
@@ -29,7 +28,7 @@ static double complex phi_2(double complex z)
     return sum;
 }
 
-/* Tables of steps of length h; 0 where there is no memory. */
+/* Tables for steps of length h; 0 if memory runs out. */
 FAST int tabulate(Work *w, double h)
 {
     Tables *t = &w->t;
@@ -58,7 +57,7 @@ FAST int tabulate(Work *w, double h)
     return 1;
 }
 
-/* What the ports and slopes would read at the end of the step, and on the mean over it, without loads. */
+/* Velocities of ports and slopes without loads, at the end of the step and on average over it. */
 FAST void free_motion(Work *w)
 {
     const int Q = w->c->ports + w->c->slopes, wide = 2 * w->c->modes;
@@ -70,7 +69,7 @@ FAST void free_motion(Work *w)
     }
 }
 
-/* Take the modes to the end of the step under loads on ports and slopes. */
+/* Advance the modes over the step under loads on ports and slopes. */
 FAST void advance_modes(Work *w, const double *loads)
 {
     const int K = w->c->modes, Q = w->c->ports + w->c->slopes;
@@ -86,7 +85,7 @@ FAST void advance_modes(Work *w, const double *loads)
     }
 }
 
-/* What impulses on ports and slopes do at once. */
+/* Apply impulses on ports and slopes. */
 void apply_impulses(Work *w, const double *impulses)
 {
     const int Q = w->c->ports + w->c->slopes, wide = 2 * w->c->modes;
@@ -94,7 +93,7 @@ void apply_impulses(Work *w, const double *impulses)
         for (int i = 0; i < wide; i++) w->state[i] += impulses[q] * w->drives[q * wide + i];
 }
 
-/* Velocity at port p per unit of impulse on port q, 1/kg. */
+/* Mobility: velocity of port p per unit impulse on port q, 1/kg. */
 double mobility(const Work *w, int p, int q)
 {
     const int wide = 2 * w->c->modes;

@@ -1,20 +1,21 @@
-/* A patch of leather that sticks and slips annulus by annulus (Cattaneo, Mindlin and Deresiewicz; Jaeger's
+/* Partial slip of a leather patch, annulus by annulus (Cattaneo; Mindlin and Deresiewicz; Jaeger's
    superposition).
 
-   Where the patch grows from the indentation x to x + dx while the surfaces shift by d(delta), the tractions
-   of a stuck punch of that size are added: the tangential force is a sum over annuli, each strained by what
-   the surfaces have shifted since it touched. So is the normal force. A ring between two edges of the
-   indentation has the stiffness k and the normal force N of the law between them; it bears f, |f| <= mu N:
+   While the indentation grows from x to x + dx and the surfaces shift by d(delta), the tractions of a
+   sticking punch of that size are superposed. The tangential force is the sum over annuli, each strained by
+   the shift since it first touched; the normal force is a sum over the same annuli. An annulus between two
+   edges of the indentation has the stiffness k and the normal force N of the law between them. Its force f is
+   a return mapping onto |f| <= mu N:
 
        f -> clip(f min(k after/k before, 1) + k d(delta), +-mu N).
 
-   Leather that dissipates a part of the work has the slope k/e^2 while |f| falls, e the restitution along the
-   surface: of the work f d(delta) that strains a ring it stores e^2, f^2 e^2/2k in all. */
+   Leather that dissipates energy along its surface has the slope k/e^2 while |f| decreases, e the surface
+   restitution: of the work f d(delta) it stores e^2, in all f^2 e^2/2k. */
 #include "contact.h"
 
-/* A ring's stiffness, on the mean over the indentations of a step: it grows from one edge of the ring to the
-   other, and is constant beyond. Half the sum of both ends would be wrong by much where a step crosses many
-   annuli, as the first one does. */
+/* Mean stiffness of an annulus over the indentations of a step: it grows from one edge of the annulus to the
+   other and is constant beyond. The mean of both ends fails where a step crosses many annuli, as the first
+   one does. */
 static double mean_stiffness(double in, double out, double from, double to, double k_from, double k_to)
 {
     if (k_from == k_to || from == to) return k_to;
@@ -23,21 +24,21 @@ static double mean_stiffness(double in, double out, double from, double to, doub
     return ((k_from + k_to) / 2 * (ends - begins) + top * (high - ends)) / (high - low);
 }
 
-/* Take the annuli from the middle of the last step to a virtual indentation, after a shift: their force, and
-   its slopes over the shift and over the virtual indentation. */
+/* Update the annuli from the middle of the last step to a virtual indentation, after a shift. Returns their
+   force; stuck and slid: its derivatives by the shift and by the virtual indentation. */
 FAST double shift_annuli(Work *w, double depth, double shift, double *stuck, double *slid)
 {
     const Contact *c = w->c;
-    const double *edge = c->annulus_edges, *F = c->annulus_forces, *S = c->annulus_slopes, *K = c->annulus_stiffness,
-                 *was = w->annulus_force;
-    double *now = w->annulus_force_now, e2 = c->surface_restitution * c->surface_restitution, mu = c->friction,
-           before = w->virtual_mid;
+    const double *edge = c->annulus_edges, *F = c->annulus_forces, *S = c->annulus_slopes,
+                 *K = c->annulus_stiffness, *was = w->annulus_force;
+    double *now = w->annulus_force_now, e2 = c->surface_restitution * c->surface_restitution,
+           mu = c->friction, before = w->virtual_mid;
     double unused, rise, force = tip_force(c, LOADING, depth, &rise, &unused), sum = 0, holds = 0, slides = 0,
                          lost = 0;
     double K_now = tangential_stiffness(c, depth), K_before = tangential_stiffness(c, before);
     for (int r = 0; r < c->annuli; r++) {
         double in = edge[r],
-               out = r + 1 < c->annuli ? edge[r + 1] : HUGE_VAL; /* the last ring has all that lies beyond */
+               out = r + 1 < c->annuli ? edge[r + 1] : HUGE_VAL; /* the last annulus holds all beyond */
         if (depth <= in) {
             now[r] = 0;
             continue;

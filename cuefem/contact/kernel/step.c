@@ -1,11 +1,12 @@
-/* A contact from touch to separation, and what comes after it within its window, step by step. */
+/* Time stepping of a contact from first touch to separation, and through the window for a second hit. */
 #include "contact.h"
 
-/* The tip turns this far at most, rad: beyond that w'^2/2 is no measure of how the cue shortens. */
+/* Largest slope of the tip, rad: beyond it the shortening w'^2/2 of the second-order theory is inaccurate. */
 static const double SLOPE_LIMIT = 0.25;
-/* A tip of a restitution e unloads 1/e times as fast as it loads: below MIN_STEP_RESTITUTION with steps of e/MIN_STEP_RESTITUTION. */
+/* A tip of restitution e unloads 1/e times as fast as it loads: below this one, steps are shortened by e over
+ * it. */
 static const double MIN_STEP_RESTITUTION = 0.5;
-static const double ENDLESS = 1e12; /* friction */
+static const double ENDLESS = 1e12; /* infinite friction */
 
 static void read_modes(Work *w)
 {
@@ -21,7 +22,7 @@ EXPORTED void contact_free(Work *w)
     if (w) free(w->t.propagator), free(w->rows), free(w);
 }
 
-/* A contact at its first touch; NULL without memory. */
+/* A contact at its first touch; NULL if memory runs out. */
 EXPORTED Work *contact_new(Contact *c)
 {
     const int K = c->modes, Q = c->ports + c->slopes, wide = 2 * K;
@@ -43,7 +44,7 @@ EXPORTED Work *contact_new(Contact *c)
     return w;
 }
 
-/* Ball and tip are apart: what the patch stores is lost, and their state is that of the end so far. */
+/* Separation: the strain energy of the patch is lost, and the state is stored as the final one so far. */
 static void separate(Work *w, double shift)
 {
     Contact *c = w->c;
@@ -61,11 +62,13 @@ static void separate(Work *w, double shift)
 
 static int set_step(Work *w, double h) { return w->t.h == h || tabulate(w, h); }
 
-/* What follows a step at whose end ball and tip move apart by v_n. */
+/* Normal phase of the next step; v_n: velocity of separation at the end of this one. */
 static void next_phase(Work *w, double v_n)
 {
     Contact *c = w->c;
-    double soft = c->restitution < MIN_STEP_RESTITUTION ? c->step * c->restitution / MIN_STEP_RESTITUTION : c->step, h = w->t.h;
+    double soft = c->restitution < MIN_STEP_RESTITUTION ? c->step * c->restitution / MIN_STEP_RESTITUTION
+                                                        : c->step,
+           h = w->t.h;
     if (w->phase == LOADING && v_n > 0) {
         c->max_depth = larger(c->max_depth, c->depth), w->phase = UNLOADING, h = soft;
     } else if (w->phase == UNLOADING && (w->last || c->depth <= residual_depth(c)))
@@ -77,20 +80,20 @@ static void next_phase(Work *w, double v_n)
     if (!set_step(w, h)) c->status = NO_MEMORY;
 }
 
-/* How the contact grips, at a mean velocity u along the surface. */
+/* Friction state of the contact, at a mean tangential velocity u. */
 static int friction_state_of(const Work *w, double u)
 {
     const Contact *c = w->c;
     if (c->friction == 0 && c->forces == 2) return u < 0 ? SLIP : u > 0 ? SLIP_BACK : STICK;
-    int stops = !w->side && !w->held && c->patch == RIGID_PATCH; /* within the step: it slips still */
+    int stops =
+        !w->side && !w->held && c->patch == RIGID_PATCH; /* stick begins within the step: counted as slip */
     if (c->patch != PARTIAL_SLIP)
         return !stops || w->rest[T] == 0 ? w->side : w->rest[T] < 0 ? SLIP : SLIP_BACK;
     if (fabs(w->F[T]) < c->friction * w->F[N] * (1 - 1e-6)) return STICK;
     return w->F[T] > 0 ? SLIP : w->F[T] < 0 ? SLIP_BACK : c->friction_state;
 }
 
-/* One step; 0 where it is too long, as ball and tip part or touch before its end, and a shorter one is ready.
- */
+/* One step; 0 where ball and tip separate or touch before its end, with a shorter step prepared. */
 static int take_step(Work *w, Step *row)
 {
     Contact *c = w->c;
@@ -116,13 +119,13 @@ static int take_step(Work *w, Step *row)
     for (int p = 0; p < Q; p++) {
         double end = w->end_free[p], mean = w->mean_free[p];
         for (int q = 0; q < Q; q++) end += w->t.end[p][q] * loads[q], mean += w->t.mean[p][q] * loads[q];
-        if (p == 2 && c->ports > 2) turned = mean; /* of the tip's section, or out of the plane */
+        if (p == 2 && c->ports > 2) turned = mean; /* rotation of the tip's section, or out of the plane */
         if (p >= c->ports) w->slopes[p - c->ports] += h * mean;
         w->rates[p] = end;
     }
     for (int b = 0; b < c->speeds; b++) w->ball[b] += h * c->inverse_masses[b] * loads[Q + b];
-    if (c->rolling) { /* the contact moves on over ball and dome by their rolling and slipping; on a rim by the
-                       ball's alone */
+    if (c->rolling) { /* rolling and slip move the contact over ball and dome; on the rim over the ball alone
+                       */
         double dome = fabs(c->phi + c->angle) < c->rim ? c->dome : 0;
         w->rolling_rate = ((spin + w->ball[2]) / 2 - u[T] + dome * turned) / (c->radius + dome);
         c->angle += h * w->rolling_rate;
@@ -136,15 +139,19 @@ static int take_step(Work *w, Step *row)
         c->friction_state = friction_state_of(w, u[T]), w->held = !w->side;
     } else
         c->friction_state = SEPARATED,
-        middle = w->origin = w->shift - h * u[T]; /* a patch that touches is not strained */
+        middle = w->origin = w->shift - h * u[T]; /* a patch is unstrained at touch */
     w->shift -= h * u[T], w->shift_mid = middle, c->depth -= h * u[N], c->time += h;
     if (c->forces > 2) c->height = larger(0, c->height + h * u[UP]);
-    *row = (Step){.time = c->time, .length = h, .friction_state = c->friction_state, .phase = w->phase, .angle = c->angle};
+    *row = (Step){.time = c->time,
+                  .length = h,
+                  .friction_state = c->friction_state,
+                  .phase = w->phase,
+                  .angle = c->angle};
     memcpy(row->F, w->F, sizeof row->F), memcpy(row->v, v, c->forces * sizeof(double));
     return 1;
 }
 
-/* Why a contact that goes on cannot. */
+/* Status after a step: RUNNING, ENDED, or the reason why the contact cannot continue. */
 static int failure_status(Work *w)
 {
     Contact *c = w->c;
@@ -162,8 +169,8 @@ static int failure_status(Work *w)
     return c->time > w->max_time ? LATE : RUNNING;
 }
 
-/* Up to so many steps more, each with a row and the modes' coordinates after it (course may be NULL): how
-   many there were. The status is RUNNING where there is more to come. */
+/* Take up to `most` steps, each with a record and the modal coordinates after it (course may be NULL).
+   Returns their number. The status stays RUNNING until the contact has ended. */
 EXPORTED int contact_steps(Work *w, int most, Step *rows, double *course)
 {
     Contact *c = w->c;
