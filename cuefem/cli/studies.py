@@ -17,7 +17,7 @@ from cuefem.cli.progress import bar
 from cuefem.design import Study
 from cuefem.design.optimum import Problem, Round
 from cuefem.design.scatter import Scatter
-from cuefem.design.study_result import StudyResult, found
+from cuefem.design.study_result import StudyResult, compute_study
 from cuefem.design.sweep import pool_of
 from cuefem.io import InputError, save, write_whole
 from cuefem.io.store import SqliteStore, write_table
@@ -80,7 +80,7 @@ def study(
     kept = None
     if isinstance(asked, Problem):
         with blaming(file), _rounds(asked, iterations) as tell_round:
-            result = found(asked, rounds=iterations, progress=tell_round)
+            result = compute_study(asked, rounds=iterations, progress=tell_round)
     else:
         kept = SqliteStore(store or file.with_suffix(".sqlite"), designs, file.stem)
         result = _kept(file, asked, kept, **where)
@@ -111,7 +111,7 @@ def _kept(
         progress.begin(designs.done)
         try:
             with blaming(file):
-                return found(asked, store=designs, pool=pool, progress=lambda rows: progress.to(designs.done))
+                return compute_study(asked, store=designs, pool=pool, progress=lambda rows: progress.to(designs.done))
         except (KeyboardInterrupt, RuntimeError) as error:
             progress.end()
             kept = f"{len([*designs.rows()])} of {designs.study.size} designs are stored in {designs.path}"

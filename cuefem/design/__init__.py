@@ -1,4 +1,4 @@
-"""Design studies: many scenes at once, what varies in them, and sweeps that nothing can lose."""
+"""Design studies: sweeps, optima, tolerance analyses and sensitivities, with stored designs."""
 
 from cuefem.design.evaluation import Response, evaluate
 from cuefem.design.ranges import Levels, Normal, Sample, Span

@@ -1,4 +1,4 @@
-"""What a maker can change on a cue, and what each change alone is worth by the coupled strike."""
+"""Design changes of a cue, and the effect of each on its own by the coupled strike."""
 
 from __future__ import annotations
 
@@ -24,37 +24,38 @@ from cuefem.scene.solved_scene import Solved
 MM = 1e-3
 WIDER, DEEPER, SHORTER, LOWER, THINNER = 1 * MM, 25 * MM, 5 * MM, 1 * MM, 0.5 * MM
 NEW_BORE, NEW_DEPTH = 6 * MM, 127 * MM  # of meshes/pool_hollow.toml, 5 in deep
-LEAST_WALL = 0.8 * MM  # a thinner wall splits: of carbon tubes, the thinnest (meshes/README.md)
-LEAST_FERRULE, LEAST_TIP = 5 * MM, 2 * MM  # after the change
+LEAST_WALL = 0.8 * MM  # the thinnest of carbon tubes (meshes/README.md); a thinner wall splits
+LEAST_FERRULE = 5 * MM  # length after the change
+LEAST_TIP = 2 * MM  # height after the change
 CARBON_WALL = 1.5 * MM  # the middle of meshes/carbon.toml
 PRO_GAIN = 0.5 * MM  # from the tip to the taper's position, as in meshes/pool_maple.toml
-FERRULES = ("abs", "melamine", "phenolic")  # that are sold for cues; brass and steel only where they stand already
-COSTS = 0.05  # less stiffness that one feels
-LITTLE = 0.002  # of squirt: an input that changes it by less leaves nothing open in a change
+FERRULES = ("abs", "melamine", "phenolic")  # sold for cues; brass and steel are not suggested
+COSTS = 0.05  # perceptible relative loss of stiffness
+LITTLE = 0.002  # of squirt: smaller contributions to its uncertainty are neglected in a change
 NUMBERS = tuple(map(Response.of, ("squirt", "tip_stiffness", "shaft_mass", "frequency(1)")))
 WOOD = ("E", "G", "rho")
 Follow = Callable[[Sequence[Any]], Iterable[Any]]
 
 
 class Advice(NamedTuple):
-    """A change: what it is in words, and the values that it sets, SI or names of materials, by their places.
+    """A change: its label, and the values that it sets, SI or names of materials, by parameter.
 
-    new: the inputs whose own value goes with it, so that the error of the new one does not cancel the old one's.
+    replaced: uncertain parameters whose value it replaces, so that the error of the new one is independent.
     """
 
-    words: str
-    places: dict[str, Any]
-    new: tuple[str, ...] = ()
+    label: str
+    values: dict[str, Any]
+    replaced: tuple[str, ...] = ()
 
 
 def changes_of(scene: Scene) -> list[Advice]:
-    """The changes to try on this cue; `design_changes` drops those that its shape does not allow."""
+    """Candidate changes of this cue; `design_changes` drops those that its geometry does not allow."""
     own = {key: known.value(scene) for key, known in PARAMETERS.items()}
     return [
         *_bores(own),
         *_fronts(own),
         *_tips(own),
-        *(_woods_and_tapers(scene.shaft, own)),
+        *_woods_and_tapers(scene.shaft, own),
     ]
 
 
@@ -91,7 +92,7 @@ def _tips(own: Record) -> Iterator[Advice]:
 
 
 def _woods_and_tapers(cue: Cue, own: Record) -> Iterator[Advice]:
-    """Of a wooden shaft: a tube is made on a mandrel, and is neither turned nor exchanged for solid wood."""
+    """Changes of a wooden shaft; a tube is made on a mandrel, and is neither turned nor replaced by solid wood."""
     if table_name(own["shaft_material"]) != "carbon fibre":
         yield from _tapers(cue, own)
         yield from _woods(cue)
@@ -131,29 +132,29 @@ def _from_to(old: float, new: float) -> str:
 
 
 def design_changes(scene: Scene, *, solved: Solved | None = None, follow: Follow = list) -> Record:
-    """What a maker can change on a cue, and what each change alone does to it.
+    """The design changes of a cue, and the effect of each on its own.
 
     Parameters
     ----------
     scene : Scene
-        A stroke with a cue of segments, such as `usual_scene` makes of a drawing. A central stroke is taken at the
-        game's usual offset.
+        A stroke with a cue of segments, such as that of `usual_scene`. A centre-ball stroke is computed at the game's
+        default offset.
     solved, follow : optional
-        The scene's modes, if they are known, and what shows the progress of the work.
+        The solved scene, if it is known; and a function of the list of changes that shows progress.
 
     Returns
     -------
     dict
         "offset", b/R; "regime", the contact's (`Outcome.regime`); "own", the cue's squirt (rad), tip
-        stiffness (N/m), shaft mass (kg) and first natural frequency (Hz); "changes", a list of dicts with the least
-        squirt first: "change" in words, "set" for `cuefem.parameters.parameter.varied`, the four numbers, relative
+        stiffness (N/m), shaft mass (kg) and first natural frequency (Hz); "changes", a list of dicts sorted by squirt,
+        lowest first: "change", the label, "set" for `cuefem.parameters.parameter.varied`, the four numbers, relative
         changes of squirt (with "squirt_change_error", 1 sigma) and stiffness, absolute ones of mass and frequency, and
         a "verdict": a change of squirt that is smaller than its error is "within uncertainty".
 
     Raises
     ------
     ValueError
-        If the cue is lumped, and so has no shape to change.
+        If the cue is lumped.
 
     Examples
     --------
@@ -171,14 +172,14 @@ def design_changes(scene: Scene, *, solved: Solved | None = None, follow: Follow
     rows = []
     for change in follow(changes_of(struck)):
         try:
-            made = varied(struck, change.places)
+            made = varied(struck, change.values)
             if _wall(made) < min(LEAST_WALL, _wall(struck)):
                 continue
             new = Solved(made)
             numbers = _numbers(new)
             after = squirt_changes(new, numbers["squirt"], before)
-            left = (_left_open(before.get(key, 0.0), after.get(key, 0.0), key in change.new) for key in before)
-            error = ratio_error(numbers["squirt"] / own["squirt"], model_share(struck, made), *left)
+            residual = (_residual(before.get(key, 0.0), after.get(key, 0.0), key in change.replaced) for key in before)
+            error = ratio_error(numbers["squirt"] / own["squirt"], model_share(struck, made), *residual)
             rows.append(_row(change, own, numbers, error))
         except (ValueError, RuntimeError):
             continue
@@ -192,17 +193,17 @@ def _numbers(solved: Solved) -> Record:
 
 
 def _wall(scene: Scene) -> float:
-    """The thinnest wall of what is bored and empty, m."""
+    """The thinnest wall of an empty bore, m; inf without one."""
     empty = [s for s in scene.shaft.segments if s.core is None and max(s.tip_bore, s.butt_bore) > 0]
     return min((min(s.tip_diameter - s.tip_bore, s.butt_diameter - s.butt_bore) / 2 for s in empty), default=np.inf)
 
 
-def _left_open(before: float, after: float, new: bool) -> float:
-    """What an input leaves open in the logarithm of the ratio after over before; new: the change replaces its value.
+def _residual(before: float, after: float, replaced: bool) -> float:
+    """Uncertainty of an uncertain parameter in ln(after/before); replaced: the change replaces its value.
 
-    An input that only the changed cue has, such as the width of a bore that the maker drills, is known.
+    A parameter of the changed cue alone, such as the width of a drilled bore, is known.
     """
-    return math.hypot(before, after) if new else after - before
+    return math.hypot(before, after) if replaced else after - before
 
 
 def _row(change: Advice, own: Record, made: Record, error: float) -> Record:
@@ -210,7 +211,7 @@ def _row(change: Advice, own: Record, made: Record, error: float) -> Record:
     absolute = {name: made[name] - own[name] for name in ("shaft_mass", "frequency")}
     changes = {f"{name}_change": value for name, value in (relative | absolute).items()}
     verdict = {"squirt_change_error": error, "verdict": _verdict(relative, error)}
-    return {"change": change.words, "set": change.places} | made | changes | verdict
+    return {"change": change.label, "set": change.values} | made | changes | verdict
 
 
 def _verdict(relative: Record, error: float) -> str:

@@ -1,4 +1,4 @@
-"""Designs in, numbers out: what can be asked of a design, and the answers of many, each failing by itself."""
+"""Responses of designs, and their evaluation for many designs, each of which may fail on its own."""
 
 from __future__ import annotations
 
@@ -18,17 +18,16 @@ from cuefem.results.solved_design import SolvedDesign, asked
 from cuefem.scene import Resolution, Scene
 from cuefem.scene.solved_scene import Solved
 
-# A design may fail because it cannot be made, has no answer, or its numbers overflow.
+# A design may fail because it is invalid, has no response, or its numbers overflow.
 Failed = (ValueError, RuntimeError, ArithmeticError)
 _NAME = re.compile(r"(\w+)(?:\(\s*([^()\s]+)\s*\))?")
 
 
 @dataclass(frozen=True)
 class Response:
-    """One number asked of every design: the name of a result, and the number of the mode or the offset b/R.
+    """One number computed for every design: the name of a result, and the number of the mode or the offset b/R.
 
-    Without an offset, a strike is at the scene's own; "pivot_length" and "end_mass" are then the limits of small
-    offsets.
+    Without an offset, a strike has the scene's own; "pivot_length" and "end_mass" are then the limits of small offsets.
     """
 
     kind: str
@@ -46,12 +45,12 @@ class Response:
 
     @property
     def result(self) -> Result:
-        """What is asked, as it is declared."""
+        """The declaration of the result."""
         return asked()[self.kind]
 
     @property
     def name(self) -> str:
-        """The response as text that `of` reads back."""
+        """The response as text, the inverse of `of`."""
         return self.kind if self.argument is None else f"{self.kind}({self.argument!r})"
 
     @property
@@ -71,7 +70,7 @@ class Response:
 
     @property
     def heading(self) -> str:
-        """The label with the unit that people read it in."""
+        """The label with its display unit."""
         return with_heading(self.label, self.unit)
 
     def value(self, design: SolvedDesign) -> float:
@@ -95,7 +94,7 @@ def _argument(kind: str, argument: str | None, text: str) -> float | int | None:
     if argument is None and wanted != "mode":
         return None
     if wanted == "":
-        raise ValueError(f"must be {kind}, which takes nothing in brackets; got {text!r}")
+        raise ValueError(f"must be {kind}, without brackets; got {text!r}")
     try:
         number = float(argument or "nan")
     except ValueError:
@@ -125,9 +124,9 @@ def evaluate(
 ) -> Evaluation:
     """The responses of every scene, each as the call for one scene computes it.
 
-    at: one resolution for all scenes; by default each has its own, that of `cuefem.strike` and `cuefem.end_mass`. A
-    scene solves its modes once for all responses, and so do scenes in a row that have one cue with the same effects on
-    it. A response that fails leaves the others their values. ValueError if no response has one of the names.
+    at: one resolution for all scenes; by default each has its own, that of `cuefem.strike` and `cuefem.end_mass`. The
+    modes of a scene are solved once for all responses, and once for consecutive scenes with equal cue and effects on
+    it. A failed response does not affect the others. ValueError for an unknown name.
     """
     wanted = [Response.of(response) if isinstance(response, str) else response for response in responses]
     values, reasons = np.full((len(scenes), len(wanted)), np.nan), list[str | None]([None] * len(scenes))

@@ -1,7 +1,7 @@
-"""The best design within limits: what a sweep varies and asks for, searched instead of tabulated.
+"""Optimization of a design within limits on its responses.
 
-SLSQP on differences starts at the base design; where it ends without a design within the limits, differential evolution
-searches the ranges and SLSQP goes on from there. Values in a list (names of materials) are tried one by one.
+SLSQP on finite differences starts at the base design. If it ends outside the limits, differential evolution searches
+the ranges and SLSQP continues from there. Values in a list (names of materials) are tried one by one.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from cuefem.design.study import Study, StudyDesign, Vary
 from cuefem.parameters.parameter import value_at
 from cuefem.scene import Resolution, Scene
 
-TOLERANCE = 1e-6  # relative to a limit's own size (1 if it is 0): a value nearer than this makes the limit active
+TOLERANCE = 1e-6  # relative to a limit's own size (1 if it is 0): a closer value makes the limit active
 EXCLUDED = 1e9  # score of a design that breaks a limit: worse than any within the limits
-FAR = 1e3  # the scaled objective of a design that SLSQP tries and that cannot be made
-STEP = 1e-4  # of differences, as a part of a range: rounding of a strike in time (1e-6) is a hundredth of what it shows
+FAR = 1e3  # scaled objective of an invalid design in SLSQP
+STEP = 1e-4  # of differences, relative to a range: the numerical error of a strike (1e-6) is a hundredth of it
 POPULATION = 15  # designs a variable of differential evolution
 
 
@@ -48,8 +48,8 @@ class Limit:
 
 
 class Round(NamedTuple):
-    """How far a search is: the listed values that it tries, the rounds and designs so far, and the best objective among
-    those within the limits, nan until there is one."""
+    """Progress of a search: its listed values, rounds and designs so far, and the best objective within the limits (nan
+    without one)."""
 
     choice: dict[str, Value]
     number: int
@@ -58,7 +58,7 @@ class Round(NamedTuple):
 
 
 class TriedValues(NamedTuple):
-    """Listed values that were tried: the best objective with them, nan and the reason if there is none."""
+    """Result for one combination of listed values: the best objective, or nan and the reason."""
 
     values: dict[str, Value]
     objective: float
@@ -67,11 +67,11 @@ class TriedValues(NamedTuple):
 
 @dataclass(frozen=True)
 class Optimum(StudyDesign):
-    """The best design found.
+    """The best design of an optimization.
 
-    active: the limits and ends of ranges that hold it, as "tip_stiffness >= 1500". evaluations: how many designs were
-    computed. unfinished: why the search stopped before it had converged, "" if it converged. choices: one for each
-    combination of listed values, if there are any.
+    active: active limits and ends of ranges, such as "tip_stiffness >= 1500". evaluations: number of designs computed.
+    unfinished: why the search stopped without convergence, "" if it converged. choices: one for each combination of
+    listed values, if there are any.
     """
 
     active: tuple[str, ...] = ()
@@ -82,10 +82,10 @@ class Optimum(StudyDesign):
 
 @dataclass(frozen=True)
 class Problem:
-    """What to make as small (or, with ``largest``, as large) as possible, by varying what, within which limits.
+    """An optimization: objective to minimize (maximize, if ``largest``), variables and limits.
 
-    at: as of a `Study`. chosen: values of what varies over a list,
-    by the number of the variable; left out, the base's own. Points hold the other variables, those with low and high.
+    at: as of a `Study`. listed: values of the variables over a list, by index; by default those of the base. Points are
+    values of the other variables, those with low and high.
     """
 
     base: Scene
@@ -94,32 +94,32 @@ class Problem:
     limits: tuple[Limit, ...] = ()
     at: Resolution | None = None
     largest: bool = False
-    chosen: Mapping[int, Value] = field(default_factory=dict)
+    listed: Mapping[int, Value] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for vary in self.vary:
             if isinstance(vary.range, Normal):
-                raise ValueError(f"{vary.name} must have low and high, or values, among which an optimum is sought")
+                raise ValueError(f"{vary.name} must have low and high, or values, in an optimization")
         _ = self.study  # checks fields and responses
 
     @cached_property
     def study(self) -> Study:
         """The same variables and responses as a study, the objective first."""
-        asked = dict.fromkeys((self.objective, *(limit.response for limit in self.limits)))
-        return Study(self.base, self.vary, tuple(asked), at=self.at)
+        responses = dict.fromkeys((self.objective, *(limit.response for limit in self.limits)))
+        return Study(self.base, self.vary, tuple(responses), at=self.at)
 
     @property
     def spans(self) -> dict[int, Span]:
-        """The ranges of the variables with low and high, by their numbers."""
+        """The ranges of the variables with low and high, by index."""
         return {i: vary.range for i, vary in enumerate(self.vary) if isinstance(vary.range, Span)}
 
     def choices(self) -> list[Problem]:
         """The problem with every combination of the values in lists."""
         lists = {i: vary.range.values for i, vary in enumerate(self.vary) if isinstance(vary.range, Levels)}
-        return [replace(self, chosen=dict(zip(lists, v, strict=True))) for v in product(*lists.values())]
+        return [replace(self, listed=dict(zip(lists, v, strict=True))) for v in product(*lists.values())]
 
     def points(self, parts: Array) -> Array:
-        """Points from parts in [0, 1] of the ranges, (..., variables); logarithmic spacing goes in equal ratios."""
+        """Points from fractions in [0, 1] of the ranges, (..., variables); of logarithms for logarithmic spacing."""
         return _each(Span.quantile, self.spans, parts)
 
     def parts(self, points: Array) -> Array:
@@ -128,7 +128,7 @@ class Problem:
 
     @property
     def start(self) -> Array:
-        """The base design as a point, (variables,), moved into the ranges, or their middle if it has no value."""
+        """The base design as a point, (variables,), clipped to the ranges, or their middle if it has no value."""
         point = list[float]()
         for i, span in self.spans.items():
             vary = self.vary[i]
@@ -137,12 +137,12 @@ class Problem:
         return np.array(point)
 
     def design(self, point: Array) -> tuple[Value, ...]:
-        """The values of what varies at a point."""
-        values = {**self.chosen, **dict(zip(self.spans, point.tolist(), strict=True))}
+        """The values of all variables at a point."""
+        values = {**self.listed, **dict(zip(self.spans, point.tolist(), strict=True))}
         return tuple(values[i] for i in range(len(self.vary)))
 
     def scene(self, point: Array) -> Scene:
-        """The design at a point; ValueError if it cannot be made."""
+        """The design at a point; ValueError if it is invalid."""
         return self.study.scene(self.design(point))
 
     def values(self, points: Array) -> Array:
@@ -150,16 +150,16 @@ class Problem:
         return self.study.evaluated([self.design(point) for point in points]).values
 
     def room(self, values: Array) -> Array:
-        """How far values (n, responses) lie inside the limits, relative to each limit's size: (n, sides).
+        """Margins of values (n, responses) to the limits, relative to each limit: (n, sides).
 
-        Negative outside, and where a response has no value.
+        Negative outside, and for a missing response.
         """
-        rooms = [
+        margins = [
             sign * (values[:, self.study.responses.index(limit.response)] - bound) / (abs(bound) or 1.0)
             for limit in self.limits
             for sign, bound in limit.sides
         ]
-        return np.nan_to_num(np.reshape(rooms, (-1, len(values))).T, nan=-EXCLUDED)
+        return np.nan_to_num(np.reshape(margins, (-1, len(values))).T, nan=-EXCLUDED)
 
 
 def _each(of: Callable[[Span, float], float], spans: Mapping[int, Span], values: Array) -> Array:
@@ -181,11 +181,11 @@ def optimum(
     Parameters
     ----------
     problem : Problem
-        What varies, what is asked, and the limits. Each combination of values in lists is a search of its own.
+        Variables, objective and limits. Each combination of listed values is a separate search.
     start : array, optional
         The point to start from; the default is the base design.
     rounds : int
-        At most so many steps of SLSQP, and generations of differential evolution.
+        Maximum number of steps of SLSQP, and of generations of differential evolution.
     seed : int
         Of differential evolution.
     progress : callable, optional
@@ -194,47 +194,47 @@ def optimum(
     Returns
     -------
     Optimum
-        A local optimum where SLSQP alone found it: another ``start`` shows whether a better one lies elsewhere.
+        A local optimum if SLSQP converged from the base: try another ``start`` to search for a better one.
 
     Raises
     ------
     ValueError
-        If no design is within the limits; the message names the limits that are broken.
+        If no design is within the limits; the message names the violated limits.
 
     Notes
     -----
     SLSQP (`scipy.optimize.minimize`) in numbers scaled to their ranges (their logarithms, if the spacing is
     logarithmic); its gradients are forward differences of `STEP`, all of a step in one batch. Differential evolution
-    (`scipy.optimize.differential_evolution`) prefers, among designs that break a limit, those that break it least.
+    (`scipy.optimize.differential_evolution`) prefers, among designs that violate a limit, the smallest violation.
     """
     found, choices, reasons = list[Optimum](), list[TriedValues](), list[str]()
-    sign, seen = -1 if problem.largest else 1, 0
+    sign, count = -1 if problem.largest else 1, 0
     for chosen in problem.choices():
-        search = _Search(chosen, progress, seen)
+        search = _Search(chosen, progress, count)
         first = chosen.parts(chosen.start if start is None else np.asarray(start, float))
         try:
             found.append(search.optimum(first, rounds, seed))
-            choices.append(TriedValues(search.words, found[-1].responses[problem.objective.name]))
+            choices.append(TriedValues(search.listed, found[-1].responses[problem.objective.name]))
         except ValueError as error:
             reasons.append(str(error))
-            choices.append(TriedValues(search.words, np.nan, str(error)))
-        seen = search.evaluations
+            choices.append(TriedValues(search.listed, np.nan, str(error)))
+        count = search.evaluations
     if not found:
         raise ValueError(reasons[0])
     best = min(found, key=lambda each: sign * each.responses[problem.objective.name])
-    return replace(best, evaluations=seen, choices=tuple(choices) if len(choices) > 1 else ())
+    return replace(best, evaluations=count, choices=tuple(choices) if len(choices) > 1 else ())
 
 
 class _NoDesign(Exception):
-    """A point whose design cannot be made, or lacks a response."""
+    """A point whose design is invalid or lacks a response."""
 
 
 class _Search:
-    """One search: points are parts in [0, 1] of the ranges; evaluations counts on from ``seen``."""
+    """One search: points are fractions in [0, 1] of the ranges; evaluations start at ``count``."""
 
-    def __init__(self, problem: Problem, progress: Callable[[Round], object], seen: int) -> None:
-        self.problem, self.progress, self.evaluations = problem, progress, seen
-        self.words = {problem.vary[i].name: value for i, value in problem.chosen.items()}
+    def __init__(self, problem: Problem, progress: Callable[[Round], object], count: int) -> None:
+        self.problem, self.progress, self.evaluations = problem, progress, count
+        self.listed = {problem.vary[i].name: value for i, value in problem.listed.items()}
         self.rounds, self.best, self.scale = 0, np.inf, -1.0 if problem.largest else 1.0
         self._known, self._slopes = dict[bytes, Array](), dict[bytes, Array]()
 
@@ -246,16 +246,16 @@ class _Search:
         return values
 
     def scores(self, values: Array) -> Array:
-        """What is to be small: the objective, or how far a design breaks the limits."""
-        missing = np.minimum(self.problem.room(values) + TOLERANCE, 0).sum(axis=1)
+        """The scores to minimize: the objective, or `EXCLUDED` plus the violation of the limits."""
+        violation = np.minimum(self.problem.room(values) + TOLERANCE, 0).sum(axis=1)
         own = np.nan_to_num(self.scale * values[:, 0], nan=EXCLUDED)
-        return np.asarray(np.where(missing < 0, EXCLUDED - missing, own))
+        return np.asarray(np.where(violation < 0, EXCLUDED - violation, own))
 
-    def tell(self, *_: Any, **__: Any) -> None:
-        """Count a round."""
+    def report(self, *_: Any, **__: Any) -> None:
+        """Count a round and report progress."""
         self.rounds += 1
         best = self.best / self.scale if self.best < EXCLUDED else np.nan
-        self.progress(Round(self.words, self.rounds, self.evaluations, best))
+        self.progress(Round(self.listed, self.rounds, self.evaluations, best))
 
     def optimum(self, start: Array, rounds: int, seed: int) -> Optimum:
         """The best design; ValueError if none is within the limits."""
@@ -277,7 +277,7 @@ class _Search:
             self.problem.scene(point),
             dict(zip((vary.name for vary in self.problem.vary), self.problem.design(point), strict=True)),
             dict(zip((response.name for response in study.responses), self.at(u).tolist(), strict=True)),
-            tuple(words for words, room in self.sides(u) if room < TOLERANCE),
+            tuple(text for text, margin in self.sides(u) if margin < TOLERANCE),
             self.evaluations,
             unfinished,
         )
@@ -291,7 +291,7 @@ class _Search:
         return self._known[key]
 
     def slopes(self, u: Array) -> Array:
-        """Derivatives of the responses to the parts by forward differences into the ranges, (responses, variables)."""
+        """Derivatives of the responses by forward differences into the ranges, (responses, variables)."""
         u = np.clip(u, 0, 1)
         key = u.tobytes()
         if key not in self._slopes:
@@ -302,13 +302,13 @@ class _Search:
         return self._slopes[key]
 
     def by_differences(self, start: Array, rounds: int) -> tuple[Array, str]:
-        """(The end of SLSQP; why it stopped too early, or "")."""
+        """(The last point of SLSQP; why it stopped without convergence, or "")."""
         from scipy.optimize import minimize  # loaded when used: a second
 
         responses, last = self.problem.study.responses, start
 
         def value(u: Array, k: int, missing: float) -> float:
-            """A response; ``missing`` where a design has none, from which a step is shortened."""
+            """A response; ``missing`` for a design without one, so that SLSQP shortens the step."""
             nonlocal last
             values = self.at(u)
             last = u if np.isfinite(values).all() else last
@@ -335,14 +335,14 @@ class _Search:
                     for side in limit.sides
                 ],
                 options={"maxiter": rounds, "ftol": 1e-9},
-                callback=self.tell,
+                callback=self.report,
             )
         except _NoDesign:
-            return last, "a design in the ranges cannot be made"
+            return last, "a design in the ranges is invalid"
         return np.clip(result.x, 0, 1), "" if result.success else result.message.rstrip(".")
 
     def by_evolution(self, start: Array, rounds: int, seed: int) -> tuple[Array, str]:
-        """The same of differential evolution."""
+        """The same for differential evolution."""
         from scipy.optimize import differential_evolution
 
         result = differential_evolution(
@@ -356,20 +356,20 @@ class _Search:
             vectorized=True,
             updating="deferred",
             polish=False,
-            callback=self.tell,
+            callback=self.report,
         )
         return result.x, "" if result.success else result.message.rstrip(".")
 
     def sides(self, u: Array) -> list[tuple[str, float]]:
-        """(words, how far inside relative to its size) of every limit and every end of a range."""
+        """(text, relative margin) of every limit and every end of a range."""
         bounds = [(limit.response.name, *side) for limit in self.problem.limits for side in limit.sides]
-        words = [f"{name} {'>=' if sign > 0 else '<='} {bound:g}" for name, sign, bound in bounds]
-        rooms = list(zip(words, self.problem.room(self.at(u)[None])[0].tolist(), strict=True))
+        texts = [f"{name} {'>=' if sign > 0 else '<='} {bound:g}" for name, sign, bound in bounds]
+        margins = list(zip(texts, self.problem.room(self.at(u)[None])[0].tolist(), strict=True))
         for (i, span), part in zip(self.problem.spans.items(), u.tolist(), strict=True):
             name = self.problem.vary[i].name
-            rooms += [(f"{name} >= {span.low:g}", part), (f"{name} <= {span.high:g}", 1 - part)]
-        return rooms
+            margins += [(f"{name} >= {span.low:g}", part), (f"{name} <= {span.high:g}", 1 - part)]
+        return margins
 
     def broken(self, u: Array) -> list[str]:
-        """The limits that a point breaks."""
-        return [words for words, room in self.sides(u) if not room >= -TOLERANCE]
+        """The limits that a point violates."""
+        return [text for text, margin in self.sides(u) if not margin >= -TOLERANCE]

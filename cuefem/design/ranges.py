@@ -1,4 +1,4 @@
-"""Ranges of values, and how designs are drawn from them: lists, intervals, distributions, quasi-random samples."""
+"""Ranges of values and sampling of designs: lists, intervals, distributions, quasi-random samples."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ import numpy as np
 
 from cuefem.quantity.fields import check_count
 
-# The most points of a Sobol sequence of 30 bits; the most levels of an interval; points that are made at a time.
-MOST, MOST_LEVELS, BLOCK = 2**30, 2**20, 256
-# Standard deviations at which a normal distribution is cut: it takes 0.05 % off its standard deviation.
-CUT, STANDARD = 4.0, NormalDist()
+MOST = 2**30  # points of a Sobol sequence of 30 bits
+MOST_LEVELS = 2**20  # of an interval
+BLOCK = 256  # points computed at a time
+CUT = 4.0  # standard deviations at which a normal distribution is truncated: its own decreases by 0.05 %
+STANDARD = NormalDist()
 
 Value = float | str
 
@@ -40,7 +41,7 @@ class Levels:
 
     @property
     def ends(self) -> tuple[Value, ...]:
-        """All of them: any may be the extreme one."""
+        """All values: any may be the extreme one."""
         return self.values
 
 
@@ -87,7 +88,7 @@ class Span:
 
 @dataclass(frozen=True)
 class Normal:
-    """A normal distribution of numbers in SI, cut `CUT` standard deviations from its middle; a grid has the middle.
+    """A normal distribution of numbers in SI, truncated at `CUT` standard deviations; a grid has only the middle.
 
     logarithmic: the number's natural logarithm is normal. Then ``middle`` is its median, and ``sd`` a pure number, that
     of the logarithm: nearly the coefficient of variation.
@@ -105,7 +106,7 @@ class Normal:
 
     @property
     def levels(self) -> tuple[float, ...]:
-        """The middle, which alone is in a grid."""
+        """The middle: the only value of a grid."""
         return (self.middle,)
 
     def quantile(self, u: float) -> float:
@@ -117,7 +118,7 @@ class Normal:
 
     @property
     def ends(self) -> tuple[float, ...]:
-        """Where it is cut."""
+        """The truncation limits."""
         return self._at(-CUT), self._at(CUT)
 
     def _at(self, deviations: float) -> float:
@@ -129,7 +130,7 @@ class Normal:
 class Sample:
     """A quasi-random sample of ``count`` designs instead of the grid; method: one of `METHODS` (scipy.stats.qmc).
 
-    Points are made as they are used; only those of "latin hypercube" are all made at the start (8 bytes a number).
+    Points are computed on demand, but all at once for "latin hypercube" (8 bytes a number).
     """
 
     method: str
@@ -147,7 +148,7 @@ class Sample:
         from scipy.stats import qmc  # loaded when used: half a second
 
         engine = getattr(qmc, METHODS[self.method])(dimensions, seed=np.random.default_rng(self.seed))
-        size = self.count if self.method == "latin hypercube" else BLOCK  # a part of a hypercube is none
+        size = self.count if self.method == "latin hypercube" else BLOCK  # a hypercube cannot be computed in parts
         for start in range(0, self.count, size):  # whole blocks: powers of two keep Sobol points balanced
             yield from engine.random(size)[: self.count - start].tolist()
 

@@ -1,11 +1,11 @@
-"""How much a design scatters because wood, turning and strokes do, and which of them drives it.
+"""Tolerance analysis: uncertainty propagation from wood, turning and strokes to responses, with Sobol indices.
 
 The ranges of a study (`cuefem.design`) are distributions: `Normal`, `Span` (uniform), `Levels` (equally likely). Normal
-scores z = L n, n independent and L L' their correlations (a Gaussian copula), give the numbers by each range's quantile
-at the share below z. Sobol indices need independent causes, so correlated numbers are one cause, a group, whose numbers
-are drawn together. A group's first-order index is the part of the variance that would vanish if all its numbers were
-known; its total index is the part that would remain if all other numbers were. Single numbers of a group have no index
-of their own.
+scores z = L n, n independent and L L' their correlations (a Gaussian copula), determine the numbers: the quantile of
+each range at the cumulative probability of z. Sobol indices need independent causes, so correlated numbers are one
+cause, a group, and are drawn together. A group's first-order index is the part of the variance that would vanish if all
+its numbers were known; its total index is the part that would remain if all other numbers were known. Single numbers of
+a group have no index of their own.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ class Scatter:
         Its ranges are the distributions; its own sample is not used.
     correlations : mapping, optional
         {(name, name): r}, with r in (-1, 1) between the normal scores of two numbers. For normal numbers, and for the
-        logarithms of logarithmic ones, r is the correlation itself; other numbers get the rank correlation
+        logarithms of logarithmic ones, r is the correlation itself; other numbers have the rank correlation
         6/pi asin(r/2).
     groups : mapping, optional
-        {name: names of what varies}, each counted as one cause. Correlated numbers must share a group; without one
+        {name: names of parameters}, each one cause. Correlated numbers must share a group; without one
         they form a group of their own.
     count : int
         Designs of a sample, a power of two.
@@ -51,7 +51,7 @@ class Scatter:
     Raises
     ------
     ValueError
-        If a name is unknown, correlations contradict one another, or a group separates correlated numbers.
+        If a name is unknown, the correlation matrix is not positive definite, or a group separates correlated numbers.
     """
 
     study: Study
@@ -66,19 +66,19 @@ class Scatter:
         if self.count & (self.count - 1):
             near = 1 << (self.count.bit_length() - 1)
             raise ValueError(f"count must be a power of two; got {self.count}: take {near} or {2 * near}")
-        seen: set[frozenset[str]] = set()
+        pairs: set[frozenset[str]] = set()
         for pair, r in self.correlations.items():
             self._check_names("a correlation", pair)
             lists = [name for name in pair if isinstance(self.study.vary[self.names.index(name)].range, Levels)]
             if lists:
-                raise ValueError(f"a correlation is between numbers; got {lists[0]!r}, which is a list of values")
-            if frozenset(pair) in seen or len(set(pair)) != 2:
-                raise ValueError(f"a correlation is between two numbers, said once; got {' and '.join(pair)}")
+                raise ValueError(f"a correlation must be between numbers; got {lists[0]!r}, which is a list of values")
+            if frozenset(pair) in pairs or len(set(pair)) != 2:
+                raise ValueError(f"a correlation must be of two numbers, listed once; got {' and '.join(pair)}")
             if not -1 < r < 1:
                 raise ValueError(f"the correlation of {' and '.join(pair)} must be in (-1, 1); got {r}")
-            seen.add(frozenset(pair))
+            pairs.add(frozenset(pair))
         if np.linalg.eigvalsh(self.matrix)[0] < 1e-9:
-            raise ValueError("the correlations contradict one another: their matrix is not positive definite")
+            raise ValueError("the correlations must have a positive definite matrix: some contradict others")
         self._check_groups()
 
     def _check_groups(self) -> None:
@@ -87,25 +87,25 @@ class Scatter:
             self._check_names(f"group {group!r}", names)
         twice = [name for name in grouped if grouped.count(name) > 1]
         if twice:
-            raise ValueError(f"what varies is in one group; got {twice[0]!r} in two")
+            raise ValueError(f"a parameter must be in one group; got {twice[0]!r} in two")
         for members in self.members:
             own = {self.names[i] for i in members}
             for group, names in self.groups.items():
                 if own & set(names) and own != set(names):
-                    beside = ", ".join(sorted(own - set(names)))
-                    raise ValueError(f"group {group!r} must hold all that is correlated with it; it lacks {beside}")
+                    missing = ", ".join(sorted(own - set(names)))
+                    raise ValueError(f"group {group!r} must include all correlated parameters; it lacks {missing}")
         if len(set(self.causes)) < len(self.members):
             raise ValueError(f"causes must have different names; got {', '.join(self.causes)}")
 
     def _check_names(self, what: str, names: tuple[str, ...]) -> None:
         for name in names:
             if name not in self.names:
-                there = ", ".join(self.names)
-                raise ValueError(f"{what} is of what varies: nothing is called {name!r}; there are {there}")
+                known = ", ".join(self.names)
+                raise ValueError(f"{what} must name parameters of the study, {known}; got {name!r}")
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of what varies."""
+        """Names of the parameters."""
         return tuple(vary.name for vary in self.study.vary)
 
     @cached_property
@@ -119,31 +119,31 @@ class Scatter:
 
     @cached_property
     def members(self) -> tuple[tuple[int, ...], ...]:
-        """Indices of what varies, a cause each, in order of their first."""
+        """Parameter indices of each cause, in order of the first."""
         joined = self.matrix != 0
         for names in self.groups.values():
             rows = [self.names.index(name) for name in names]
             joined[np.ix_(rows, rows)] = True
-        for _ in self.names:  # whatever hangs together over others
+        for _ in self.names:  # transitive closure
             joined = joined @ joined
         return tuple(dict.fromkeys(tuple(int(i) for i in np.flatnonzero(row)) for row in joined))
 
     @property
     def causes(self) -> tuple[str, ...]:
-        """Names of what is drawn independently: groups, and what varies alone."""
-        called = {self.names.index(name): group for group, names in self.groups.items() for name in names}
-        return tuple(called.get(each[0], " + ".join(self.names[i] for i in each)) for each in self.members)
+        """Names of the independent causes: groups and single parameters."""
+        groups = {self.names.index(name): group for group, names in self.groups.items() for name in names}
+        return tuple(groups.get(each[0], " + ".join(self.names[i] for i in each)) for each in self.members)
 
     @property
     def designs(self) -> Study:
-        """The study whose designs the Sobol indices take: two independent samples, and the first one with each cause
-        in turn from the second."""
+        """The study of the designs for Sobol indices: two independent samples, and the first with each cause in turn
+        from the second."""
         return replace(self.study, sample=_Points(self))
 
 
 @dataclass(frozen=True)
 class _Points:
-    """The shares of what varies below its values: a scrambled Sobol sequence in both samples, then mixed."""
+    """Cumulative probabilities of the parameters: a scrambled Sobol sequence for both samples, then the mixed ones."""
 
     scatter: Scatter
 
@@ -167,7 +167,7 @@ class _Points:
 
 @dataclass(frozen=True)
 class Drivers:
-    """Sobol indices: the parts of each response's variance that causes have.
+    """Sobol indices: the part of each response's variance due to each cause.
 
     first, total: (causes, responses). first_interval, total_interval: (2, causes, responses), bootstrapped, 95 %.
     """
@@ -183,16 +183,16 @@ def drivers_of(scatter: Scatter, rows: Sequence[Row]) -> Drivers:
     """Sobol indices from the rows of `Scatter.designs`.
 
     Estimators of Saltelli et al. (Comput. Phys. Commun. 181 (2010) 259, table 2 b, f) as scipy.stats has them; error
-    about 1/sqrt(count) or less, see the intervals. ValueError if a design has no answer, naming the first reason, or
-    a response does not scatter.
+    about 1/sqrt(count) or less, see the intervals. ValueError if a design has no response, with the first reason, or
+    if a response is constant.
     """
     failed = [row.failure for row in rows if row.failure]
     if failed:
-        raise ValueError(f"{len(failed)} of {len(rows)} designs have no answer: narrow the ranges; first: {failed[0]}")
+        raise ValueError(f"{len(failed)} of {len(rows)} designs failed: narrow the ranges; first: {failed[0]}")
     results = np.array([row.responses for row in rows]).reshape(-1, scatter.count, len(scatter.study.responses))
     for response, column in zip(scatter.study.responses, np.moveaxis(results[:2], -1, 0), strict=True):
         if column.std() <= 1e-12 * abs(column.mean()):
-            raise ValueError(f"{response.name} does not scatter: nothing that varies changes it")
+            raise ValueError(f"{response.name} is constant: no parameter of the study changes it")
     return Drivers(scatter.causes, *indices(results.swapaxes(1, 2), seed=scatter.seed))
 
 

@@ -1,4 +1,4 @@
-"""What a design study is: a base scene, what varies in it and how, and what is asked of every design."""
+"""A design study: a base scene, its parameters with their ranges, and the responses of every design."""
 
 from __future__ import annotations
 
@@ -21,24 +21,24 @@ from cuefem.scene import Resolution, Scene
 
 
 class Sampled(Protocol):
-    """Points in the unit cube that stand for designs, such as a `Sample`; its repr tells it from others."""
+    """Points in the unit cube, one a design, such as a `Sample`; different samples have different reprs."""
 
     @property
     def count(self) -> int:
-        """How many."""
+        """Number of points."""
 
     def points(self, dimensions: int) -> Iterator[list[float]]:
-        """The points, each of so many numbers."""
+        """The points, each of ``dimensions`` numbers."""
 
 
 @dataclass(frozen=True)
 class Vary:
-    """What varies: fields, and the range of values that they take together.
+    """A parameter of a study: fields, and the range of their common values.
 
     Parameters
     ----------
     paths : tuple of str
-        The fields, as in "cue.segments[0].tip_bore"; "[*]" stands for every item of a list.
+        The fields, as in "cue.segments[0].tip_bore"; "[*]" means every item of a list.
     range : Levels, Span or Normal
         The values: SI numbers (pure numbers for a factor) or names of materials.
     name : str
@@ -48,8 +48,8 @@ class Vary:
     shift : bool
         Add the value to the fields, instead of setting them to it.
     taken_from : tuple of str
-        Fields that lose what the first of the paths gains: if a length is taken from the next segment's, the cue stays
-        as long as it was, and the joint between the two moves.
+        Fields that decrease by the increase of the first path: a length that is compensated by the next segment's
+        leaves the length of the cue unchanged.
     """
 
     paths: tuple[str, ...]
@@ -63,57 +63,57 @@ class Vary:
         if not self.paths:
             raise ValueError("path must name a field; got none")
         if self.factor and self.shift:
-            raise ValueError("factor and shift: give one")
+            raise ValueError("factor and shift must not both be set")
         object.__setattr__(self, "name", self.name or ", ".join(self.paths))
 
     def fields(self, base: Scene) -> tuple[Path, ...]:
         """The fields of a scene that vary; ValueError if a path names no field, or a value does not fit the field."""
-        places = tuple(path for text in self.paths for path in paths(base, text))
-        for path in places:
+        fields = tuple(path for text in self.paths for path in paths(base, text))
+        for path in fields:
             self._check_field(base, path)
-        return places
+        return fields
 
     def givers(self, base: Scene) -> tuple[Path, ...]:
-        """The fields of `taken_from`; ValueError if one holds no number, or has another unit than what varies."""
-        places = tuple(path for text in self.taken_from for path in paths(base, text))
-        gainer = self.fields(base)[0]
-        for path in places:
-            numbers = all(isinstance(value_at(base, each), float) for each in (path, gainer))
-            if not numbers or quantity_at(base, path).unit != quantity_at(base, gainer).unit:  # type: ignore[union-attr]
-                raise ValueError(f"taken_from must name numbers of the unit of what varies; got {spelt(path)}")
-        return places
+        """The fields of `taken_from`; ValueError if one is no number, or has another unit than the paths."""
+        fields = tuple(path for text in self.taken_from for path in paths(base, text))
+        first = self.fields(base)[0]
+        for path in fields:
+            numbers = all(isinstance(value_at(base, each), float) for each in (path, first))
+            if not numbers or quantity_at(base, path).unit != quantity_at(base, first).unit:  # type: ignore[union-attr]
+                raise ValueError(f"taken_from must name numbers of the unit of path; got {spelt(path)}")
+        return fields
 
     def _check_field(self, base: Scene, path: Path) -> None:
-        wanted, values = quantity_at(base, path), self.range.ends
+        quantity, values = quantity_at(base, path), self.range.ends
         moves = "factor must multiply" if self.factor else "shift must move" if self.shift else ""
-        if moves and (wanted is None or value_at(base, path) is None):
-            raise ValueError(f"{moves} a number; got {spelt(path)}, which holds none")
-        if wanted is None and not all(isinstance(value, str) for value in values):
-            raise ValueError(f"{spelt(path)} takes names of materials; got {values[0]!r}")
-        if wanted is not None and any(isinstance(value, str) for value in values):
-            raise ValueError(f"{spelt(path)} takes numbers in {wanted.bounds}; got {values[0]!r}")
+        if moves and (quantity is None or value_at(base, path) is None):
+            raise ValueError(f"{moves} a number; got {spelt(path)}, which is none")
+        if quantity is None and not all(isinstance(value, str) for value in values):
+            raise ValueError(f"{spelt(path)} must be names of materials; got {values[0]!r}")
+        if quantity is not None and any(isinstance(value, str) for value in values):
+            raise ValueError(f"{spelt(path)} must be numbers in {quantity.bounds}; got {values[0]!r}")
 
     def unit(self, base: Scene) -> str:
         """SI unit of its values, "" for factors and names; ValueError if its fields have different units."""
-        wanted = [quantity_at(base, path) for path in self.fields(base)]
-        units = sorted({"" if self.factor or quantity is None else quantity.unit for quantity in wanted})
+        quantities = [quantity_at(base, path) for path in self.fields(base)]
+        units = sorted({"" if self.factor or quantity is None else quantity.unit for quantity in quantities})
         if len(units) > 1:
             raise ValueError(f"path must name fields of one unit; got {' and '.join(map(repr, units))}")
         return units[0]
 
     @property
-    def how(self) -> str:
-        """What is done with its value: "set", "factor" or "shift"."""
+    def operation(self) -> str:
+        """How its value changes the fields: "set", "factor" or "shift"."""
         return "factor" if self.factor else "shift" if self.shift else "set"
 
     def applied(self, value: float, before: Any) -> float:
-        """The new value of a field that held ``before``, for this value of the range."""
+        """The new value of a field, from its value ``before`` and the value of the range."""
         return before * value if self.factor else before + value if self.shift else value
 
 
 @dataclass(frozen=True)
 class StudyDesign:
-    """A design of a study: its scene, the values of what varies and its responses by their names, in SI units."""
+    """A design of a study: its scene, and the values of its parameters and responses by name, in SI units."""
 
     scene: Scene
     values: dict[str, Value]
@@ -122,18 +122,18 @@ class StudyDesign:
 
 @dataclass(frozen=True)
 class Study:
-    """A design study: a base scene, what varies in it, and what is asked of every design.
+    """A design study: a base scene, its parameters, and the responses of every design.
 
     Parameters
     ----------
     base : Scene
         The scene in which fields vary.
     vary : tuple of Vary
-        What varies. Without a sample, all combinations are designs (a grid), the last of ``vary`` running fastest.
+        The parameters. Without a sample, all combinations are designs (a grid); the last one varies fastest.
     responses : tuple of Response
-        What is asked of every design.
+        The responses of every design.
     sample : Sample, optional
-        A quasi-random sample in place of the grid; any object with its ``count`` and ``points``.
+        A quasi-random sample instead of the grid; any object with its ``count`` and ``points``.
     at : Resolution, optional
         One resolution for all designs. By default each design has its own, that of `cuefem.strike` and
         `cuefem.end_mass`.
@@ -152,7 +152,7 @@ class Study:
 
     def __post_init__(self) -> None:
         if not self.vary or not self.responses:
-            raise ValueError("a study varies something and asks something; got nothing")
+            raise ValueError("a study must have parameters and responses; got none")
         self._check_fields()
         names = [name.casefold() for name in (*self.columns, "design", "failure")]
         twice = [name for name in names if names.count(name) > 1]
@@ -163,18 +163,18 @@ class Study:
             raise ValueError(f"{drawn[0]} needs a cue of segments; got a lumped cue")
 
     def _check_fields(self) -> None:
-        seen: set[tuple[Path, str]] = set()
+        changed: set[tuple[Path, str]] = set()
         for vary in self.vary:
             vary.unit(self.base)
             vary.givers(self.base)
             for path in vary.fields(self.base):
-                if (path, vary.how) in seen:
-                    raise ValueError(f"a field varies once; got {spelt(path)} twice")
-                seen.add((path, vary.how))
+                if (path, vary.operation) in changed:
+                    raise ValueError(f"a field must vary once; got {spelt(path)} twice")
+                changed.add((path, vary.operation))
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Names of what varies and of the responses."""
+        """Names of the parameters and the responses."""
         return (*(vary.name for vary in self.vary), *(response.name for response in self.responses))
 
     @property
@@ -188,7 +188,7 @@ class Study:
         return self.sample.count if self.sample else math.prod(len(vary.range.levels) for vary in self.vary)
 
     def designs(self) -> Iterator[tuple[Value, ...]]:
-        """The values of all designs, made one after the other."""
+        """The parameter values of each design, computed on demand."""
         ranges = [vary.range for vary in self.vary]
         if not self.sample:
             yield from product(*(each.levels for each in ranges))
@@ -205,9 +205,9 @@ class Study:
         return tuple(vary.givers(self.base) for vary in self.vary)
 
     def scene(self, values: tuple[Value, ...]) -> Scene:
-        """The design with these values; ValueError if it cannot be made, such as a bore wider than its shaft.
+        """The design with these values; ValueError if it is invalid, such as a bore wider than its shaft.
 
-        Whole materials come first, then numbers, then factors, then shifts, and last what is taken.
+        Order: materials, numbers, factors, shifts, and last the compensating fields.
         """
         named = {p: material(v) for i, v in enumerate(values) if isinstance(v, str) for p in self._fields[i]}
         scene: Scene = replaced(self.base, named) if named else self.base
@@ -216,10 +216,10 @@ class Study:
         def now(path: Path) -> Any:
             return numbers.get(path, value_at(scene, path))
 
-        for how in ("set", "factor", "shift"):
+        for operation in ("set", "factor", "shift"):
             for i, value in enumerate(values):
                 vary, fields = self.vary[i], self._fields[i]
-                if isinstance(value, str) or vary.how != how:
+                if isinstance(value, str) or vary.operation != operation:
                     continue
                 before = [now(path) for path in fields]
                 numbers |= {p: vary.applied(value, old) for p, old in zip(fields, before, strict=True)}
@@ -229,22 +229,22 @@ class Study:
         return replaced(scene, numbers) if numbers else scene
 
     def evaluated(self, designs: Sequence[tuple[Value, ...]]) -> Evaluation:
-        """The responses of designs with these values; one that cannot be made has none, and the reason."""
+        """The responses of designs with these values; nan and a reason for an invalid one."""
         scenes, reasons = dict[int, Scene](), dict[int, str | None]()
         for i, values in enumerate(designs):
             try:
                 scenes[i] = self.scene(values)
             except Failed as error:
                 reasons[i] = one_line(str(error))
-        found, numbers = evaluate([*scenes.values()], self.responses, at=self.at), [np.nan] * len(self.responses)
-        answers = dict(zip(scenes, found.values.tolist(), strict=True))
-        reasons |= dict(zip(scenes, found.reasons, strict=True))
+        valid, missing = evaluate([*scenes.values()], self.responses, at=self.at), [np.nan] * len(self.responses)
+        rows = dict(zip(scenes, valid.values.tolist(), strict=True))
+        reasons |= dict(zip(scenes, valid.reasons, strict=True))
         every = range(len(designs))
-        return Evaluation(np.array([answers.get(i, numbers) for i in every]), tuple(reasons[i] for i in every))
+        return Evaluation(np.array([rows.get(i, missing) for i in every]), tuple(reasons[i] for i in every))
 
     @property
     def record(self) -> dict[str, Any]:
-        """All that its numbers depend on, in a form that JSON can hold."""
+        """Everything that its numbers depend on, for JSON."""
         return {
             "cuefem": version("cuefem"),
             "scene": spelt_out(self.base),

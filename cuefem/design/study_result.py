@@ -1,4 +1,4 @@
-"""What a study found: its designs and responses with their units, the best of them, and how much they scatter."""
+"""The result of a study: designs and responses with units, the best designs, and the spread of the responses."""
 
 from __future__ import annotations
 
@@ -21,53 +21,52 @@ SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of the designs below a quantile
 
 @dataclass(frozen=True, repr=False)
 class StudyResult:
-    """What a study found.
+    """The result of a study.
 
     Parameters
     ----------
-    asked : Study, Scatter or Problem
+    definition : Study, Scatter or Problem
         The study.
     rows : tuple of Row
-        A row a design, in the order of the designs; of an optimum the best design alone.
+        One row per design, in order; of an optimization only the best design.
     optimum : Optimum, optional
-        Of a study with an objective: its best design, and which limits hold it.
+        Of a study with an objective: the best design and its active limits.
     drivers : Drivers, optional
-        Of a study with tolerances: which part of each response's variance which cause has (Sobol indices).
+        Of a study with tolerances: Sobol indices of each response.
 
     Attributes
     ----------
     kind : str
         "sweep", "scatter" or "optimum".
     units : dict
-        SI units by the names of what varies and of the responses, "" for pure numbers and names.
+        SI units by the names of parameters and responses, "" for pure numbers and names.
     designs : dict
-        What varies by its name, arrays (designs,).
+        Parameter values by name, arrays (designs,).
     responses : dict
-        Responses by their names, arrays (designs,), nan where one is missing.
+        Responses by name, arrays (designs,), nan if missing.
     failures : dict
-        Why a design lacks a response, by the number of the design.
+        Reasons for missing responses, by the number of the design.
     best : dict
-        The best design by the name of the response that it is best for: its ``scene``, ``values`` and ``responses``.
-        Of a scatter, which is no choice, empty.
+        The best design for each response, by its name: ``scene``, ``values`` and ``responses``. Empty for a scatter.
     spread : dict
         Mean, standard deviation ("sd") and quantiles ("5 %", ...) of each response over the designs, of a scatter over
         its two independent samples.
     """
 
-    asked: Study | Scatter | Problem
+    definition: Study | Scatter | Problem
     rows: tuple[Row, ...]
     optimum: Optimum | None = None
     drivers: Drivers | None = None
 
     @property
     def kind(self) -> str:
-        """Of which kind the study is."""
+        """ "sweep", "scatter" or "optimum"."""
         return "optimum" if self.optimum else "scatter" if self.drivers else "sweep"
 
     @property
     def study(self) -> Study:
-        """What varies, and what is asked."""
-        return self.asked if isinstance(self.asked, Study) else self.asked.study
+        """Parameters and responses."""
+        return self.definition if isinstance(self.definition, Study) else self.definition.study
 
     @property
     def units(self) -> dict[str, str]:
@@ -76,7 +75,7 @@ class StudyResult:
 
     @cached_property
     def designs(self) -> dict[str, np.ndarray]:
-        """What varies."""
+        """Parameter values."""
         columns = zip(*(row.values for row in self.rows), strict=True)
         return {vary.name: np.array(column) for vary, column in zip(self.study.vary, columns, strict=True)}
 
@@ -88,22 +87,22 @@ class StudyResult:
 
     @property
     def failures(self) -> dict[int, str]:
-        """Why designs lack a response."""
+        """Reasons for missing responses."""
         return {row.design: row.failure for row in self.rows if row.failure}
 
     @cached_property
     def best(self) -> dict[str, StudyDesign]:
-        """The best design for each response of which one way is better; for all, the lowest, if there is none."""
+        """The best design for each response with a preferred direction; if none has one, the lowest of each."""
         if self.optimum or self.drivers:
             return {self.study.responses[0].name: self.optimum} if self.optimum else {}
-        judged = [response for response in self.study.responses if response.result.better] or self.study.responses
-        found = dict[str, StudyDesign]()
-        for response in judged:
+        ranked = [response for response in self.study.responses if response.result.better] or self.study.responses
+        best = dict[str, StudyDesign]()
+        for response in ranked:
             column = self.responses[response.name]
             if np.isfinite(column).any():
                 i = int(np.nanargmax(column) if response.result.better == "higher" else np.nanargmin(column))
-                found[response.name] = self._design(i)
-        return found
+                best[response.name] = self._design(i)
+        return best
 
     def _design(self, i: int) -> StudyDesign:
         row, names = self.rows[i], [vary.name for vary in self.study.vary]
@@ -112,8 +111,8 @@ class StudyResult:
 
     @cached_property
     def spread(self) -> dict[str, dict[str, float]]:
-        """How the responses are distributed."""
-        independent = slice(2 * self.asked.count if isinstance(self.asked, Scatter) else None)
+        """Mean, standard deviation and quantiles of the responses."""
+        independent = slice(2 * self.definition.count if isinstance(self.definition, Scatter) else None)
         columns = {name: column[independent] for name, column in self.responses.items()}
         columns = {name: column[np.isfinite(column)] for name, column in columns.items()}
         return {
@@ -124,7 +123,7 @@ class StudyResult:
         }
 
     def _lines(self) -> list[tuple[str, ...]]:
-        """A line a response: its name, what there is of it, and the design where it is the best."""
+        """A line per response: its name, its best value or mean, and the best design."""
         lines = list[tuple[str, ...]]()
         for response in self.study.responses:
             best = self.best.get(response.name) or self.optimum
@@ -140,14 +139,14 @@ class StudyResult:
         return lines
 
     def __repr__(self) -> str:
-        failed = f", {len(self.failures)} without an answer" if self.failures else ""
+        failed = f", {len(self.failures)} failed" if self.failures else ""
         count = self.optimum.evaluations if self.optimum else len(self.rows)
         head = f"StudyResult({self.kind} of {count} designs{failed})"
         return "\n  ".join([head, *(f"{name}: {value}, {at}" for name, value, at in self._lines())])
 
 
-def found(
-    asked: Study | Scatter | Problem,
+def compute_study(
+    definition: Study | Scatter | Problem,
     *,
     store: Store | None = None,
     pool: Pool | None = None,
@@ -156,16 +155,16 @@ def found(
 ) -> StudyResult:
     """Compute a study.
 
-    store: where designs go, and what is known already; by default they end with the result. pool: as in `sweep`.
-    progress: called with the rows of each block, of an optimum with each `Round`. rounds: of an optimum. An optimum
-    takes neither store nor pool.
+    store: stored designs; by default none. pool: as in `sweep`. progress: called with the rows of each block, in an
+    optimization with each `Round`. rounds: of an optimization, which has neither store nor pool.
     """
-    if isinstance(asked, Problem):
-        best = optimum(asked, rounds=rounds, progress=progress)
+    if isinstance(definition, Problem):
+        best = optimum(definition, rounds=rounds, progress=progress)
         row = Row(0, tuple(best.values.values()), tuple(best.responses.values()), None)
-        return StudyResult(asked, (row,), best)
-    designs = asked.designs if isinstance(asked, Scatter) else asked
+        return StudyResult(definition, (row,), best)
+    designs = definition.designs if isinstance(definition, Scatter) else definition
     store = MemoryStore() if store is None else store
     sweep(designs, store, pool=pool, progress=progress)
     rows = tuple(store.rows())
-    return StudyResult(asked, rows, None, drivers_of(asked, rows) if isinstance(asked, Scatter) else None)
+    drivers = drivers_of(definition, rows) if isinstance(definition, Scatter) else None
+    return StudyResult(definition, rows, None, drivers)

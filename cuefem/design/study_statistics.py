@@ -11,14 +11,14 @@ from cuefem.cue import Array
 from cuefem.design.evaluation import Response
 from cuefem.design.study_result import StudyResult
 
-MOST_LEVELS = 24  # values of a parameter that are groups of their own; of more, each group is a range
-RANGES = 12  # so many then
-CLEAR = 0.2  # the least rank correlation that is called a trend
+MOST_LEVELS = 24  # maximum number of values of a parameter that are separate groups
+RANGES = 12  # maximum number of groups, each a range, of a parameter with more values
+CLEAR = 0.2  # minimum rank correlation of a trend
 
 
 @dataclass(frozen=True)
 class SweepStatistics:
-    """Designs that have all responses.
+    """Designs with all responses.
 
     names, units: of the parameters. numbers: of the designs. values: of each parameter, numbers or names.
     results: (designs, responses).
@@ -42,14 +42,14 @@ class SweepStatistics:
         return [[_trend(column, result) for result in self.results.T] for column in self.values]
 
     @cached_property
-    def judged(self) -> list[int]:
-        """The responses of which one way is better; all of them if there is none."""
+    def ranked(self) -> list[int]:
+        """The responses with a preferred direction; all of them if there is none."""
         every = range(len(self.responses))
         return [k for k in every if self.responses[k].result.better] or [*every]
 
     @cached_property
     def losses(self) -> Array:
-        """The results, with the sign that makes less better."""
+        """The results, negative where higher is better."""
         return self.results * [-1.0 if response.result.better == "higher" else 1.0 for response in self.responses]
 
     def best(self, k: int) -> int:
@@ -58,14 +58,14 @@ class SweepStatistics:
 
     @cached_property
     def pair(self) -> tuple[int, int] | None:
-        """The first response that is judged, and the one that is most opposed to it; None if there is one alone."""
-        first, *others = self.judged
-        against = [_rank_correlation(self.losses[:, first], self.losses[:, k]) for k in others]
-        return (first, others[int(np.argmin(against))]) if others else None
+        """The first ranked response and the one with the strongest trade-off; None if there is only one."""
+        first, *others = self.ranked
+        correlations = [_rank_correlation(self.losses[:, first], self.losses[:, k]) for k in others]
+        return (first, others[int(np.argmin(correlations))]) if others else None
 
     @cached_property
     def front(self) -> list[int]:
-        """Rows that no other row beats in both responses of the pair (Pareto), by the first response."""
+        """Rows on the Pareto front of the pair of responses, in order of the first."""
         if self.pair is None:
             return []
         first, second = self.losses[:, self.pair].T
@@ -86,9 +86,9 @@ def sweep_statistics(result: StudyResult) -> SweepStatistics | None:
 
 
 def explained(column: np.ndarray, results: Array) -> Array:
-    """Variance of the means over equal values, or over ranges of values, over the whole variance, (responses,).
+    """Variance of the means over equal values, or over ranges of values, over the total variance, (responses,).
 
-    The share of ranges is less what chance alone gives them.
+    For ranges it is corrected for the share expected by chance.
     """
     levels, group = np.unique(column, return_inverse=True)
     chance = len(levels) > MOST_LEVELS and column.dtype.kind in "fi"

@@ -1,4 +1,4 @@
-"""A study's designs, computed a block at a time, here, in processes or on a Dask cluster, and handed to a store."""
+"""Computation of a study's designs, block by block, in this process, worker processes or a Dask cluster."""
 
 from __future__ import annotations
 
@@ -20,11 +20,10 @@ from cuefem.design.ranges import Value
 from cuefem.design.study import Study
 
 BLOCK = 16  # designs that are evaluated, and written, at a time
-# A pool that breaks is opened again; this often in a row without a block done is too often.
-ATTEMPTS = 3
-# A Dask scheduler that does not answer for so long is not there; how often one is asked while nothing comes, s.
-PATIENCE, GLANCE = 10.0, 1.0
-# What writes to stderr when a scheduler is gone, which `dask` tells in one line.
+ATTEMPTS = 3  # to open a broken pool again, without a block in between
+PATIENCE = 10.0  # s, without a Dask scheduler
+GLANCE = 1.0  # s, between checks of a scheduler while no task ends
+# Loggers that write to stderr when a scheduler is lost, for which `dask` raises a one-line error.
 LOGS = ("distributed", "distributed.client", "tornado.application")
 
 T = TypeVar("T")
@@ -33,7 +32,7 @@ P = ParamSpec("P")
 
 
 class Row(NamedTuple):
-    """A design: its number, what varied, its responses in SI (None if missing), and why one is missing, or None."""
+    """A design: its number, parameter values, responses in SI (None if missing), and the first error, or None."""
 
     design: int
     values: tuple[Value, ...]
@@ -42,10 +41,10 @@ class Row(NamedTuple):
 
 
 class Store(Protocol):
-    """Where a study's rows go, and what is known already."""
+    """Stored rows of a study."""
 
-    def take(self, designs: dict[int, tuple[Value, ...]]) -> dict[int, tuple[Value, ...]]:
-        """What is left to compute of a block, designs by number."""
+    def missing(self, designs: dict[int, tuple[Value, ...]]) -> dict[int, tuple[Value, ...]]:
+        """The designs of a block, by number, that are not stored."""
 
     def write(self, rows: list[Row]) -> None:
         """Store the rows of a task, all or none of them."""
@@ -56,27 +55,27 @@ class Store(Protocol):
 
 @dataclass
 class MemoryStore:
-    """A store that ends with the process."""
+    """A store in memory."""
 
-    kept: list[Row] = field(default_factory=list)
+    stored: list[Row] = field(default_factory=list)
 
-    def take(self, designs: dict[int, tuple[Value, ...]]) -> dict[int, tuple[Value, ...]]:
-        """All of them."""
+    def missing(self, designs: dict[int, tuple[Value, ...]]) -> dict[int, tuple[Value, ...]]:
+        """All designs."""
         return designs
 
     def write(self, rows: list[Row]) -> None:
         """Store rows."""
-        self.kept += rows
+        self.stored += rows
 
     def rows(self) -> Iterator[Row]:
         """All rows in the order of the designs."""
-        return iter(sorted(self.kept, key=lambda row: row.design))
+        return iter(sorted(self.stored, key=lambda row: row.design))
 
 
 def computed(study: Study, designs: dict[int, tuple[Value, ...]]) -> list[Row]:
-    """The rows of designs. The same designs give the same bits, whatever else is in the block."""
-    found = study.evaluated([*designs.values()])
-    answers = zip(designs.items(), found.values.tolist(), found.reasons, strict=True)
+    """The rows of designs, bit for bit independent of the other designs of the block."""
+    evaluation = study.evaluated([*designs.values()])
+    answers = zip(designs.items(), evaluation.values.tolist(), evaluation.reasons, strict=True)
     return [
         Row(design, values, tuple(None if x != x else x for x in numbers), reason)
         for (design, values), numbers, reason in answers
@@ -86,37 +85,37 @@ def computed(study: Study, designs: dict[int, tuple[Value, ...]]) -> list[Row]:
 def sweep(
     study: Study, store: Store, *, pool: Pool | None = None, progress: Callable[[list[Row]], object] = lambda rows: None
 ) -> None:
-    """Compute the designs of a study that the store does not hold yet, and write them, a block at a time.
+    """Compute the designs of a study that are not stored, and store them, block by block.
 
     Parameters
     ----------
     study : Study
-        What to compute.
+        The study.
     store : Store
-        Where the rows go. Blocks may come in any order.
+        The store. Blocks are written in any order.
     pool : Pool, optional
         Executors that compute the blocks; by default this process does.
     progress : callable, optional
-        Called with the rows of every block once they are written.
+        Called with the rows of every block after they are stored.
 
     Raises
     ------
     RuntimeError
-        If the pool breaks time after time, or its scheduler is gone. What was written stays.
+        If the pool breaks repeatedly, or its scheduler is lost. Stored rows remain.
     """
     designs = enumerate(study.designs())
     blocks = iter(lambda: dict(islice(designs, BLOCK)), {})
-    for rows in in_parallel(partial(computed, study), filter(None, map(store.take, blocks)), pool):
+    for rows in in_parallel(partial(computed, study), filter(None, map(store.missing, blocks)), pool):
         store.write(rows)
         progress(rows)
 
 
 @dataclass(frozen=True)
 class Pool:
-    """How to open an executor, and reopen it if it breaks, and how many tasks to hand out ahead.
+    """How to open an executor, again if it breaks, and how many tasks to submit ahead.
 
-    open: what it gives cancels, when it closes, the tasks that have not begun.
-    check: called about every `GLANCE` seconds while no task ends; raises an exception if none ever will.
+    open: its context manager cancels, on exit, the tasks that have not begun.
+    check: called about every `GLANCE` seconds while no task ends; raises if the workers are lost.
     """
 
     open: Callable[[], AbstractContextManager[Executor]]
@@ -125,7 +124,7 @@ class Pool:
 
 
 def in_parallel(work: Callable[[T], R], tasks: Iterable[T], pool: Pool | None) -> Iterator[R]:
-    """The results of tasks as they end: never more than a few tasks ahead, so that memory does not grow with them."""
+    """The results of tasks as they end, with a bounded number of tasks submitted ahead."""
     if pool is None:
         yield from map(work, tasks)
         return
@@ -150,20 +149,20 @@ def in_parallel(work: Callable[[T], R], tasks: Iterable[T], pool: Pool | None) -
                         yield result
         except (BrokenExecutor, CancelledError):
             queue, failures = chain(pending.values(), queue), failures + 1
-    raise RuntimeError(f"worker processes died {ATTEMPTS} times without a block done: out of memory, or killed")
+    raise RuntimeError(f"worker processes ended {ATTEMPTS} times without a result: out of memory, or killed")
 
 
 def processes(number: int) -> Pool:
-    """That many worker processes of this machine. They end when the process that opened them does, killed or not.
+    """A pool of worker processes on this machine, which end with this process, even if it is killed.
 
-    They are spawned, since a fork would copy locks that threads of this process hold.
+    They are spawned: a fork would copy locks of the threads of this process.
     """
 
     @contextmanager
     def opened() -> Iterator[Executor]:
         executor = ProcessPoolExecutor(number, mp_context=get_context("spawn"), initializer=_follow)
-        resource_tracker.ensure_running()  # whoever starts it lets Ctrl-C through again: not in the midst of `submit`
-        with _without_interrupts():  # which workers inherit: Ctrl-C is this process's to answer, while they start too
+        resource_tracker.ensure_running()  # starting it enables Ctrl-C again: not during `submit`
+        with _without_interrupts():  # inherited by workers: only this process handles Ctrl-C
             for _ in range(number):  # a submission starts a worker while none is idle
                 executor.submit(int)
         try:
@@ -177,7 +176,7 @@ def processes(number: int) -> Pool:
 
 @contextmanager
 def _without_interrupts() -> Iterator[None]:
-    """Ignore Ctrl-C for a moment, where this thread may."""
+    """Ignore Ctrl-C, in the main thread."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -189,7 +188,7 @@ def _without_interrupts() -> Iterator[None]:
 
 
 def _follow() -> None:
-    """End this worker when its parent has, killed or by Ctrl-C, and not by itself."""
+    """End this worker when its parent ends, and ignore Ctrl-C."""
     parent = parent_process()
     assert parent is not None
 
@@ -203,9 +202,9 @@ def _follow() -> None:
 
 @contextmanager
 def pool_of(workers: int | None, address: str | None) -> Iterator[Pool | None]:
-    """The worker processes, or the Dask cluster, to work on; None for this process; ValueError if both are asked."""
+    """Worker processes or a Dask cluster; None for this process; ValueError for both."""
     if workers and address:
-        raise ValueError("workers are for this machine, dask for a cluster: give one")
+        raise ValueError("workers and dask must not both be set: this machine, or a cluster")
     if address:
         with dask(address) as pool:
             yield pool
@@ -225,15 +224,15 @@ def dask(address: str) -> Iterator[Pool]:
     try:
         client = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:
-        raise ValueError(f"no Dask scheduler answers at {address!r}: {error}") from None
+        raise ValueError(f"no Dask scheduler responds at {address!r}: {error}") from None
     lost = 0.0
 
     def check() -> None:
-        """RuntimeError if the scheduler has not been there for `PATIENCE` seconds."""
+        """RuntimeError if the scheduler has been lost for `PATIENCE` seconds."""
         nonlocal lost
         lost = 0.0 if client.status == "running" else lost + GLANCE
         if lost >= PATIENCE:
-            raise RuntimeError(f"the Dask scheduler at {address!r} answers no more")
+            raise RuntimeError(f"the Dask scheduler at {address!r} no longer responds")
 
     @contextmanager
     def opened() -> Iterator[Executor]:

@@ -1,4 +1,4 @@
-"""What each effect is worth: the scene without each effect it lists, and with each it does not list, one at a time."""
+"""Effect sensitivity: the scene without each of its effects, and with each other effect, one at a time."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from typing import Any
 from cuefem.effects import Effect, effect_kinds
 from cuefem.scene import Outcome, Scene
 
-# Effects that have no usual value: they say what is on this cue, and no cue has one of them as a matter of course.
-NO_USUAL_VALUE = "no usual value to try"
+# Effects without a default describe an individual cue, such as a point mass.
+NO_USUAL_VALUE = "no default value"
 
 
 @dataclass(frozen=True)
 class Variant:
     """A scene that differs by one effect.
 
-    name: of the effect. effect: the one that was dropped or added; None if it has no usual value to add. listed:
-    whether the scene lists it. scene: the other scene; None if it cannot be made; reason: why not.
+    name: of the effect. effect: the one removed or added; None if it has no default. listed: whether the scene lists
+    it. scene: the other scene; None if it is invalid; reason: why.
     """
 
     name: str
@@ -28,9 +28,9 @@ class Variant:
 
 
 def variants(scene: Scene) -> tuple[Variant, ...]:
-    """The scene without each effect it lists, then with each kind it does not list, at the values that are usual.
+    """The scene without each of its effects, then with each other kind of effect, at typical values.
 
-    A kind without usual values (`Effect.usual`) is tried at its defaults, if every field has one.
+    A kind without typical values (`Effect.usual`) is added at its defaults, if every field has one.
     """
     dropped = [_without(scene, i) for i in range(len(scene.effects))]
     listed = {type(effect).__name__ for effect in scene.effects}
@@ -49,25 +49,25 @@ def _with(scene: Scene, name: str, kind: type[Effect]) -> Variant:
     effect = kind(**(kind.usual.values if kind.usual else {}))
     try:
         return Variant(name, effect, False, replace(scene, effects=(*scene.effects, effect)))
-    except ValueError as error:  # it does not go with this cue or with another effect
+    except ValueError as error:  # incompatible with this cue or with another effect
         return Variant(name, effect, False, None, _reason(scene, effect, error))
 
 
 def _reason(scene: Scene, effect: Effect, error: ValueError) -> str:
-    """Why the effect cannot be added, without the place in a list that it never stood in."""
+    """Why the effect cannot be added, without an index in the list of effects."""
     name = type(effect).__name__
     if effect.needs_beam and not scene.cue.segments:
-        return "needs a cue of segments"
+        return "requires a cue of segments"
     others = [other for other in scene.effects if name in other.excludes or type(other).__name__ in effect.excludes]
     if others:
-        return f"does not go with {', '.join(type(other).__name__ for other in others)}"
+        return f"is incompatible with {', '.join(type(other).__name__ for other in others)}"
     return str(error).replace(f"Scene.effects[{len(scene.effects)}]", name)
 
 
 @dataclass(frozen=True)
 class Change:
-    """What became of a strike, variant less scene: squirt, rad; ball_speed, m/s; spin, rad/s; and relative to the
-    scene's own, by the same names. Head on, squirt and spin are zero by symmetry and left out."""
+    """Change of a strike, variant minus scene: squirt, rad; ball_speed, m/s; spin, rad/s; and relative to the scene's
+    own, by the same names. At the centre, squirt and spin are zero by symmetry and omitted."""
 
     squirt: float
     ball_speed: float
@@ -81,7 +81,7 @@ class Change:
 
 
 def change(outcome: Outcome, base: Outcome, *, offset: Any) -> Change:
-    """What the effect that outcome's scene has, or lacks, changes of the outcome ``base`` at ``offset`` b/R."""
+    """The change from the outcome ``base`` of a scene to that of a variant, at ``offset`` b/R."""
     names = ("squirt", "ball_speed", "spin") if offset else ("ball_speed",)
     gaps = dict.fromkeys(("squirt", "ball_speed", "spin"), 0.0)
     gaps |= {name: float(getattr(outcome, name) - getattr(base, name)) for name in names}

@@ -128,7 +128,7 @@ class SqliteStore:
     def __exit__(self, *error: Any) -> bool | None:
         return self._open.__exit__(*error)
 
-    def take(self, designs: dict[int, tuple[Value, ...]]) -> dict[int, tuple[Value, ...]]:
+    def missing(self, designs: dict[int, tuple[Value, ...]]) -> dict[int, tuple[Value, ...]]:
         """The designs of a block that must be computed; known designs of other studies in the file are copied."""
         query = "SELECT design FROM designs WHERE study = ? AND design BETWEEN ? AND ?"
         there = {row[0] for row in self._file.execute(query, (self._id, min(designs), max(designs)))}

@@ -15,7 +15,7 @@ from typing import Any
 from cuefem.design import Levels, Normal, Response, Sample, Span, Study, Vary
 from cuefem.design.optimum import Limit, Problem
 from cuefem.design.scatter import Scatter
-from cuefem.design.study_result import StudyResult, found
+from cuefem.design.study_result import StudyResult, compute_study
 from cuefem.design.sweep import pool_of
 from cuefem.io import load_stroke, replaced_segments
 from cuefem.io.assumed import assumed, in_words
@@ -187,12 +187,12 @@ def study(
     if isinstance(problem, Problem):
         if store or workers or dask:
             raise ValueError("an optimum takes no store, workers or dask: it computes one design after the other")
-        return found(problem)
+        return compute_study(problem)
     designs = problem.designs if isinstance(problem, Scatter) else problem
     with ExitStack() as opened:
         pool = opened.enter_context(pool_of(workers, dask))
         stored = opened.enter_context(SqliteStore(store, designs)) if store else None
-        return found(problem, store=stored, pool=pool)
+        return compute_study(problem, store=stored, pool=pool)
 
 
 def _problem(tables: StudyTable, objective: ObjectiveTable, base: Scene, vary: tuple[Vary, ...], path: Path) -> Problem:
@@ -220,7 +220,7 @@ def _correlations(listed: tuple[Any, ...], path: Path) -> dict[tuple[str, str], 
         match entry:
             case [str(one), str(other), int() | float() as r] if not isinstance(r, bool):
                 if (one, other) in correlations:
-                    raise InputError(path, key, f"must be the only one of its pair; got {one} and {other} twice")
+                    raise InputError(path, key, f"must be listed once; got {one} and {other} twice")
                 correlations[one, other] = float(r)
             case _:
                 raise InputError(path, key, f"must be [name, name, number]; got {shown(entry)}")

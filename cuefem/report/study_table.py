@@ -109,10 +109,10 @@ def shown(value: Any, unit: str) -> str:
 
 def study_record(result: StudyResult) -> Record:
     """The results of a study, SI."""
-    if isinstance(result.asked, Problem) and result.optimum:
-        return optimum_record(result.asked, result.optimum)
-    if isinstance(result.asked, Scatter) and result.drivers:
-        about = {"count": result.asked.count, "seed": result.asked.seed}
+    if isinstance(result.definition, Problem) and result.optimum:
+        return optimum_record(result.definition, result.optimum)
+    if isinstance(result.definition, Scatter) and result.drivers:
+        about = {"count": result.definition.count, "seed": result.definition.seed}
         return about | {"responses": scatter_record(result, result.drivers)}
     sweep, failed = sweep_statistics(result), [*result.failures.values()]
     counts = {"designs": len(result.rows), "failed": len(failed), "first_failure": failed[0] if failed else None}
@@ -122,10 +122,10 @@ def study_record(result: StudyResult) -> Record:
 def study_sheets(result: StudyResult) -> list[Sheet | str]:
     """The tables of a study: its varied parameters, and its results by kind."""
     varies = varied_sheet(result.study)
-    if isinstance(result.asked, Problem) and result.optimum:
-        return [varies, *optimum_sheets(result.asked, result.optimum)]
-    if isinstance(result.asked, Scatter) and result.drivers:
-        return [varies, *scatter_sheets(result, result.asked, result.drivers)]
+    if isinstance(result.definition, Problem) and result.optimum:
+        return [varies, *optimum_sheets(result.definition, result.optimum)]
+    if isinstance(result.definition, Scatter) and result.drivers:
+        return [varies, *scatter_sheets(result, result.definition, result.drivers)]
     sweep, failures = sweep_statistics(result), [*result.failures.items()]
     lines = [f"{len(failures)} failed, the first of them design {n}: {reason}" for n, reason in failures[:1]]
     return [*lines, varies, *([] if sweep is None else sweep_sheets(sweep))]
@@ -141,7 +141,7 @@ def sweep_record(sweep: SweepStatistics) -> Record:
         return {"design": sweep.numbers[i], "values": values, "responses": responses}
 
     record: Record = {
-        "best": {names[k]: {"better": sweep.responses[k].result.better, **design(sweep.best(k))} for k in sweep.judged},
+        "best": {names[k]: {"better": sweep.responses[k].result.better, **design(sweep.best(k))} for k in sweep.ranked},
         "sensitivities": {
             name: {
                 column: {"share": sweep.shares[j, k], "trend": sweep.trends[j][k] or None}
@@ -165,7 +165,7 @@ def sweep_sheets(sweep: SweepStatistics) -> list[Sheet | str]:
         return [*results, *(shown(column[i], unit) for column, unit in zip(sweep.values, sweep.units, strict=True))]
 
     best, sensitivities = list[tuple[str, ...]](), list[tuple[str, ...]]()
-    for k in sweep.judged:
+    for k in sweep.ranked:
         response, i = sweep.responses[k], sweep.best(k)
         ends = " to ".join(shown(end(sweep.results[:, k]), response.unit) for end in (np.min, np.max))
         which = f"{response.result.better} is better" if response.result.better else "the lowest"

@@ -1,4 +1,4 @@
-"""What a maker can change: each row is the strike of a cue that `varied` makes, and can be taken over (properties)."""
+"""Design changes: each row is the strike of a changed cue, and can be saved (properties)."""
 
 import math
 from pathlib import Path
@@ -16,11 +16,11 @@ from tests.helpers.command_line import as_json, call
 from tests.helpers.refusals import command_refuses
 
 ROOT = Path(__file__).parents[2]
-READY = ("kim", "pool_hollow", "carbon")
+REFERENCE = ("kim", "pool_hollow", "carbon")
 
 
 def scene_of(name: str) -> cf.Scene:
-    """The usual stroke of a ready cue; of Kim's with a spring as tip, which is solved sooner."""
+    """The default stroke of a reference cue; of Kim's with a spring tip, which is solved faster."""
     cue = cf.load(ROOT / "meshes" / f"{name}.toml")
     return (
         cf.Scene(cue, tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(2.0, 0.3))
@@ -30,29 +30,29 @@ def scene_of(name: str) -> cf.Scene:
 
 
 @pytest.fixture(
-    scope="module", params=[pytest.param(n, marks=pytest.mark.heavy if n in READY[1:] else ()) for n in READY]
+    scope="module", params=[pytest.param(n, marks=pytest.mark.heavy if n in REFERENCE[1:] else ()) for n in REFERENCE]
 )
-def found(request: pytest.FixtureRequest) -> tuple[cf.Scene, dict]:
+def computed(request: pytest.FixtureRequest) -> tuple[cf.Scene, dict]:
     scene = scene_of(request.param)
     return scene, design_changes(scene)
 
 
-def test_every_row_is_the_strike_of_the_changed_cue(found: tuple[cf.Scene, dict]) -> None:
-    scene, record = found
+def test_design_changes_rows_equal_strikes_of_changed_cues(computed: tuple[cf.Scene, dict]) -> None:
+    scene, record = computed
     own = cf.strike(scene)
-    tone = cf.modes(scene.cue, effects=scene.cue_effects).frequencies[0]
+    frequency = cf.modes(scene.cue, effects=scene.cue_effects).frequencies[0]
     assert record["own"]["squirt"] == pytest.approx(own.squirt, rel=1e-9)
     assert record["changes"]
     for row in record["changes"]:
         made = varied(scene, row["set"])
         assert row["squirt_change"] == pytest.approx(cf.strike(made).squirt / own.squirt - 1, abs=1e-8)
         assert row["shaft_mass_change"] == pytest.approx(made.cue.shaft_mass - scene.cue.shaft_mass, abs=1e-12)
-        heard = cf.modes(made.cue, effects=made.cue_effects).frequencies[0]
-        assert row["frequency_change"] == pytest.approx(heard - tone, abs=1e-6 * tone)
+        changed = cf.modes(made.cue, effects=made.cue_effects).frequencies[0]
+        assert row["frequency_change"] == pytest.approx(changed - frequency, abs=1e-6 * frequency)
 
 
-def test_the_least_squirt_comes_first_and_what_is_worthwhile_says_so(found: tuple[cf.Scene, dict]) -> None:
-    rows = found[1]["changes"]
+def test_design_changes_are_sorted_with_verdicts(computed: tuple[cf.Scene, dict]) -> None:
+    rows = computed[1]["changes"]
     changes = [row["squirt_change"] for row in rows]
     assert changes == sorted(changes)
     for row in rows:
@@ -64,8 +64,7 @@ def test_the_least_squirt_comes_first_and_what_is_worthwhile_says_so(found: tupl
 
 
 @pytest.mark.heavy
-def test_the_error_of_a_change_is_that_of_the_two_cues_compared() -> None:
-    """As `compare` has it for one shaft before and after."""
+def test_design_change_error_equals_comparison_of_same_shaft() -> None:
     scene = scene_of("pool_maple")
     (row,) = (row for row in design_changes(scene)["changes"] if row["change"] == "ferrule of abs")
     pair = {"before": scene, "after": varied(scene, row["set"])}
@@ -73,31 +72,32 @@ def test_the_error_of_a_change_is_that_of_the_two_cues_compared() -> None:
     assert row["squirt_change_error"] == pytest.approx(error, rel=0.01)
 
 
-def test_no_wall_is_thinner_than_one_can_make(found: tuple[cf.Scene, dict]) -> None:
-    scene, record = found
+def test_design_changes_walls_are_thick_enough(computed: tuple[cf.Scene, dict]) -> None:
+    scene, record = computed
     for row in record["changes"]:
         bored = [s for s in varied(scene, row["set"]).cue.segments if s.core is None and max(s.tip_bore, s.butt_bore)]
         walls = [min(s.tip_diameter - s.tip_bore, s.butt_diameter - s.butt_bore) / 2 for s in bored]
         assert min(walls, default=np.inf) >= LEAST_WALL
 
 
-def test_a_tube_is_neither_turned_nor_filled_with_wood() -> None:
-    words = [change.words for change in changes_of(scene_of("carbon"))]
-    assert not any("taper" in each or "shaft" in each or "thinner" in each for each in words)
-    (tube,) = (change for change in changes_of(scene_of("pool_maple")) if "carbon" in change.words)
-    made = varied(scene_of("pool_maple"), tube.places)
+def test_design_changes_of_tube_exclude_tapers_and_woods() -> None:
+    labels = [change.label for change in changes_of(scene_of("carbon"))]
+    assert not any("taper" in each or "shaft" in each or "thinner" in each for each in labels)
+    (tube,) = (change for change in changes_of(scene_of("pool_maple")) if "carbon" in change.label)
+    made = varied(scene_of("pool_maple"), tube.values)
     assert {s.core for s in made.cue.segments[1:]} == {material("foam")}
 
 
-def test_a_row_that_is_taken_is_saved_and_replaces_no_file(tmp_path: Path, found: tuple[cf.Scene, dict]) -> None:
-    """Row 2 of the command, which lists the rows of the function."""
+def test_improve_take_saves_row_and_replaces_no_file(tmp_path: Path, computed: tuple[cf.Scene, dict]) -> None:
     path, target = tmp_path / "scene.toml", tmp_path / "better.toml"
-    cf.save(found[0], path)
+    cf.save(computed[0], path)
     rows = as_json("improve", path)["changes"]
-    assert [row["squirt"] for row in rows] == pytest.approx([row["squirt"] for row in found[1]["changes"]], rel=1e-12)
-    code, told, said = call("improve", path, "--take", "2", "-o", target)
-    assert (code, said) == (0, "")
-    assert f"cuefem compare {path} {target}" in told
+    assert [row["squirt"] for row in rows] == pytest.approx(
+        [row["squirt"] for row in computed[1]["changes"]], rel=1e-12
+    )
+    code, out, err = call("improve", path, "--take", "2", "-o", target)
+    assert (code, err) == (0, "")
+    assert f"cuefem compare {path} {target}" in out
     assert cf.strike(cf.load(target)).squirt == pytest.approx(rows[1]["squirt"], rel=1e-9)
     command_refuses("--force", "improve", path, "--take", "2", "-o", target)
     command_refuses("--take ROW requires -o FILE.toml", "improve", path, "--take", "1")

@@ -1,4 +1,4 @@
-"""The optimum of a study: what the committed one finds, limits that hold it, names, the fall-back (verification)."""
+"""Optimization: the committed study, active limits, listed values, differential evolution (verification)."""
 
 import json
 from dataclasses import replace
@@ -21,7 +21,7 @@ from tests.helpers.refusals import command_refuses
 from tests.helpers.sweeps import OPTIMUM, written
 
 STUDY = STUDIES / "design" / "optimum.toml"
-FOUND = {
+OPTIMAL = {
     "bore": 7e-3,
     "bore depth": 0.20449269,
     "ferrule length": 5e-3,
@@ -56,14 +56,14 @@ def best() -> Optimum:
     return optimum(PROBLEM)
 
 
-def test_committed_study_finds_the_design_of_exact_gradients(tmp_path: Path) -> None:
-    """The design that exact gradients found before; the scene that is written is as stiff as was asked."""
+def test_committed_study_equals_optimum_of_exact_gradients(tmp_path: Path) -> None:
+    """The design of the former exact gradients; the saved scene has the required stiffness."""
     goal = tmp_path / "best.toml"
     told = json.loads(said("study", STUDY, "--json", "-o", goal))
     assert (told["kind"], told["objective"], told["unfinished"]) == ("optimum", {"minimize": "squirt_slope"}, "")
     # by the closed form of the end mass; equal steps leave 2e-7 of it
     assert told["value"] == pytest.approx(0.03951969007, rel=1e-6)
-    assert told["values"] == pytest.approx(FOUND, rel=1e-6)
+    assert told["values"] == pytest.approx(OPTIMAL, rel=1e-6)
     assert told["active"][:2] == ["tip_stiffness >= 386.7", "wall >= 0.002"]
     assert told["responses"] == pytest.approx({"squirt_slope": told["value"], "tip_stiffness": 386.7, "wall": 0.002})
     written_best = cf.load(goal)
@@ -73,18 +73,18 @@ def test_committed_study_finds_the_design_of_exact_gradients(tmp_path: Path) -> 
 
 
 @pytest.mark.heavy
-def test_strike_in_time_converges_to_the_same_design() -> None:
+def test_optimum_of_strike_converges_to_same_design() -> None:
     """Squirt of a strike at b/R 0.3, for which differential evolution takes thousands of strikes."""
-    problem, told = replace(load_study(STUDY), objective=Response("squirt", 0.3)), list[Round]()
-    found = optimum(problem, progress=told.append)
-    assert (found.unfinished, told[-1].evaluations < 200) == ("", True)
+    problem, rounds = replace(load_study(STUDY), objective=Response("squirt", 0.3)), list[Round]()
+    found = optimum(problem, progress=rounds.append)
+    assert (found.unfinished, rounds[-1].evaluations < 200) == ("", True)
     assert found.responses["squirt(0.3)"] == pytest.approx(0.010864, abs=2e-6)
-    assert found.values == pytest.approx(FOUND, rel=1e-4)
+    assert found.values == pytest.approx(OPTIMAL, rel=1e-4)
 
 
 @pytest.mark.heavy
-def test_named_limits_hold_the_optimum() -> None:
-    """Without a limit named active there is a better design; without one that is not, there is none."""
+def test_active_limits_constrain_the_optimum() -> None:
+    """Only without an active limit is there a better design."""
     point = np.array([best().values[v.name] for v in PROBLEM.vary])
     assert PROBLEM.room(PROBLEM.values(point[None])).min() == pytest.approx(0.0, abs=1e-6)
     assert (best().scene, best().unfinished) == (PROBLEM.scene(point), "")
@@ -97,7 +97,7 @@ def test_named_limits_hold_the_optimum() -> None:
         assert (gained < 1 - 1e-5) == named or (named and gained == pytest.approx(1, abs=1e-6)), limit
 
 
-def test_largest_under_the_limit_of_the_least() -> None:
+def test_maximum_under_limit_equals_minimum_under_limit() -> None:
     """Stiffness as large as a limit on squirt allows: as much as the least squirt of so stiff a shaft has."""
     least = optimum(Problem(SCENE, (BORE, TIP, TAPER), SQUIRT, (Limit(STIFFNESS, low=430.0),), PROBLEM.at))
     bound = Limit(SQUIRT, high=least.responses["squirt_slope"])
@@ -106,8 +106,8 @@ def test_largest_under_the_limit_of_the_least() -> None:
 
 
 @pytest.mark.heavy
-def test_start_that_cannot_be_made_is_searched_by_evolution_and_then_refined() -> None:
-    """A bore wider than the tip: SLSQP cannot begin there; the optimum is the one from a design that can be made."""
+def test_invalid_start_uses_evolution_then_slsqp() -> None:
+    """A bore wider than the tip: SLSQP cannot start there; the optimum equals that of a valid start."""
     wide = replace(BORE, range=Span(0.002, 0.014))
     problem = Problem(SCENE, (wide, TIP), SQUIRT, (Limit(WALL, low=0.0015),), cf.Resolution(1, 6, 8))
     good, bad = (optimum(problem, start=np.array([x, 0.0125]), rounds=15) for x in (0.005, 0.0139))
@@ -119,7 +119,7 @@ NAMES = OPTIMUM + '[[vary]]\npath = "cue.segments[0].material"\nvalues = ["hard 
 
 
 @pytest.mark.heavy
-def test_listed_names_are_tried_one_by_one(tmp_path: Path) -> None:
+def test_listed_values_are_searched_one_by_one(tmp_path: Path) -> None:
     problem = load_study(written(tmp_path, NAMES.replace("300 N/m", "700 N/m")))
     found = optimum(problem, rounds=8)
     each = {str(choice.values["cue.segments[0].material"]): choice for choice in found.choices}
@@ -133,7 +133,7 @@ def test_listed_names_are_tried_one_by_one(tmp_path: Path) -> None:
     assert found.scene.cue.segments[0].material == material(found.values["cue.segments[0].material"])
 
 
-def test_values_alone_are_an_optimum_too(tmp_path: Path) -> None:
+def test_optimum_of_listed_values_alone(tmp_path: Path) -> None:
     head, *_, last = NAMES.split("[[vary]]")
     found = cf.study(written(tmp_path, f"{head}[[vary]]{last}")).optimum
     assert found.evaluations == len(found.choices) == 3
@@ -145,7 +145,7 @@ def of(cue: cf.Cue, name: str) -> cf.Segment:
     return replace(cue.segments[0], material=material(name))
 
 
-def test_output_has_units_limits_and_rounds(tmp_path: Path) -> None:
+def test_optimum_output_has_units_limits_and_rounds(tmp_path: Path) -> None:
     out = said("study", written(tmp_path, OPTIMUM))
     assert {"bore 9 mm", "tip 10 mm"} <= {" ".join(line.split()) for line in out.splitlines()}
     assert "active constraints: bore <= 9 mm, tip >= 10 mm" in out

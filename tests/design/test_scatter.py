@@ -1,4 +1,4 @@
-"""Scatter: exact indices and moments, correlations in the sample, seeds and causes (verification)."""
+"""Tolerance analysis: exact indices and moments, correlations of the samples, causes (verification)."""
 
 import math
 from dataclasses import replace
@@ -32,7 +32,7 @@ def designs(scatter: Scatter) -> np.ndarray:
     return np.array([*scatter.designs.designs()])
 
 
-def test_indices_of_ishigami() -> None:
+def test_sobol_indices_ishigami_equal_closed_form() -> None:
     """sin x + 7 sin^2 y + z^4 sin(x)/10 on (-pi, pi)^3: indices in closed form (Saltelli et al. 2008, p. 197)."""
     a, b, pi4 = 7.0, 0.1, math.pi**4
     parts = np.array([(1 + b * pi4 / 5) ** 2 / 2, a**2 / 8, 0.0])
@@ -65,7 +65,7 @@ DENSITIES = (
 
 
 @pytest.mark.heavy
-def test_sum_of_correlated_numbers() -> None:
+def test_sobol_indices_of_correlated_sum_equal_closed_form() -> None:
     """The mass of a shaft is a sum of densities times volumes: indices of independent ones, and of groups, exact."""
     r = {("front", "middle"): 0.8, ("middle", "rear"): -0.5}
     study = Study(BASE, DENSITIES, (Response.of("shaft_mass"),), at=COARSE)
@@ -90,7 +90,7 @@ def test_sum_of_correlated_numbers() -> None:
 
 
 @pytest.mark.heavy
-def test_spread_is_that_of_plain_monte_carlo() -> None:
+def test_spread_equals_monte_carlo() -> None:
     """Independent draws of NumPy, correlated by NumPy, of a shaft's wood, bore and contact time."""
     vary = (replace(VARY[0], range=Normal(1.0, 0.2, logarithmic=True)), VARY[1], VARY[3])
     study = Study(BASE, vary, (Response.of("end_mass"), Response.of("squirt_slope")), at=COARSE)
@@ -106,7 +106,7 @@ def test_spread_is_that_of_plain_monte_carlo() -> None:
 
 
 @pytest.mark.parametrize(("one", "other", "third"), [(0.5, -0.3, 0.5), (-0.55, 0.55, 0.1)])
-def test_correlations_are_in_every_sample(one: float, other: float, third: float) -> None:
+def test_samples_have_the_correlations(one: float, other: float, third: float) -> None:
     """Of logarithms and of normal numbers the correlation, of a uniform one the rank correlation 6/pi asin(r/2)."""
     pairs = {("E", "rho"): one, ("rho", "G"): other, ("E", "time"): third}
     for values in np.split(designs(Scatter(STUDY, pairs, count=1024, seed=1)), 3):  # two samples, and one of both
@@ -118,25 +118,25 @@ def test_correlations_are_in_every_sample(one: float, other: float, third: float
         assert [E.std(), rho.std(), G.std()] == pytest.approx([0.22, 0.1, 0.15], rel=0.02)
 
 
-def test_correlated_numbers_are_one_cause() -> None:
+def test_correlated_parameters_are_one_cause() -> None:
     assert Scatter(STUDY).causes == ("E", "rho", "G", "time")
     assert Scatter(STUDY, {("G", "E"): 0.5}).causes == ("E + G", "rho", "time")
     assert Scatter(STUDY, {("G", "E"): 0.5, ("time", "G"): 0.1}).causes == ("E + G + time", "rho")
     assert Scatter(STUDY, {("G", "E"): 0.5}, {"wood": ("E", "rho", "G")}).causes == ("wood", "time")
 
 
-def test_command_prints_what_the_function_gives(tmp_path: Path) -> None:
+def test_command_equals_function(tmp_path: Path) -> None:
     study = written(tmp_path, SCATTER)
     assert load_study(study).correlations == {("E", "density"): 0.4}
     result = cf.study(study)
-    told = as_json("study", study, "-o", tmp_path / "all.csv")
-    stiffness, spread = told["responses"]["tip_stiffness"], result.spread["tip_stiffness"]
-    assert (told["kind"], told["count"], told["seed"]) == ("scatter", 16, 5)
+    record = as_json("study", study, "-o", tmp_path / "all.csv")
+    stiffness, spread = record["responses"]["tip_stiffness"], result.spread["tip_stiffness"]
+    assert (record["kind"], record["count"], record["seed"]) == ("scatter", 16, 5)
     assert {name: stiffness[name] for name in spread} == spread
     assert stiffness["causes"]["wood"]["first"] == result.drivers.first[0, 1]
     assert stiffness["causes"]["time"]["total_interval"] == [0, 0]
     assert len((tmp_path / "all.csv").read_text(encoding="utf-8").splitlines()) == 1 + 16 * 4
-    assert as_json("study", study)["evaluated"] == 0  # designs are kept
+    assert as_json("study", study)["evaluated"] == 0  # designs are stored
     out = " ".join(said("study", study).split())
     assert f"end mass, g {1e3 * result.spread['end_mass']['mean']:.3f}" in out
     assert "the strongest cause is wood (" in out  # time changes no stiffness

@@ -80,7 +80,7 @@ def multiplied(cue: Cue, constant: str, factor: float) -> Cue:
 
 @CUES
 @pytest.mark.parametrize(("constant", "names"), [("E", ["EI"]), ("G", ["kGA"]), ("rho", ["rhoA", "rhoI"])])
-def test_a_constant_of_all_materials(cue: Cue, constant: str, names: list[str]) -> None:
+def test_sensitivity_to_material_constant_equals_difference(cue: Cue, constant: str, names: list[str]) -> None:
     """nu = 0 makes the shear coefficient free of E and G; a denser cue is heavier along the axis too."""
     cue = multiplied(cue, constant, 1.0)
     found = sensitivity(scene(cue), AT)

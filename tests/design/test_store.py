@@ -1,4 +1,4 @@
-"""A study loses nothing, does nothing twice, and its table does not depend on how it came about (properties)."""
+"""Stored designs: interruption, resumption, edits, damage; the table depends on the study alone (properties)."""
 
 import csv
 import json
@@ -40,8 +40,8 @@ values = ["12 mm", "12.5 mm"]
 """
 
 
-def told(study: Path, *options: object) -> dict[str, Any]:
-    """What `study --json` says."""
+def record_of(study: Path, *options: object) -> dict[str, Any]:
+    """The record of `study --json`."""
     return dict(json.loads(said("study", study, "--json", *options)))
 
 
@@ -52,47 +52,50 @@ def command(study: Path, *more: str) -> list[str]:
 def started(study: Path, *more: str) -> subprocess.Popen[bytes]:
     quiet = subprocess.PIPE
     return subprocess.Popen(
-        command(study, *more), env=ENVIRONMENT, stdout=quiet, stderr=quiet, start_new_session=True, preexec_fn=heard
+        command(study, *more),
+        env=ENVIRONMENT,
+        stdout=quiet,
+        stderr=quiet,
+        start_new_session=True,
+        preexec_fn=interruptible,
     )
 
 
-def heard() -> None:
-    """Ctrl-C reaches the command, although what runs in the background of a shell is made deaf to it."""
+def interruptible() -> None:
+    """Enable Ctrl-C, which shells disable in background processes."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def waited_for(store: Path, run: subprocess.Popen[bytes], rows: int) -> int:
-    """Wait until so many rows are there, or the study has ended; how many there are."""
-    begun, there = time.monotonic(), 0
-    while run.poll() is None and there < rows and time.monotonic() - begun < 60:
+    """Wait until so many rows are stored, or the study has ended; the number of rows."""
+    begun, count = time.monotonic(), 0
+    while run.poll() is None and count < rows and time.monotonic() - begun < 60:
         time.sleep(0.02)
         try:
-            there = len(rows_of(store)) if store.exists() else 0
-        except InputError:  # it is just being made
-            there = 0
-    return there
+            count = len(rows_of(store)) if store.exists() else 0
+        except InputError:  # it is being created
+            count = 0
+    return count
 
 
 # --- kill -9, Ctrl-C, edits ------------------------------------------------------------------------------------------
 @pytest.mark.heavy
 @pytest.mark.parametrize("workers", [(), ("--workers", "2")], ids=["alone", "two workers"])
-def test_killed_at_three_moments_and_resumed_then_edited_and_resumed_gives_the_same_table(
-    tmp_path: Path, workers: tuple[str, ...]
-) -> None:
+def test_study_killed_edited_and_resumed_has_same_table(tmp_path: Path, workers: tuple[str, ...]) -> None:
     """200 designs; kill -9 after 1, 5 and 9 blocks and a random while."""
     study, store = written(tmp_path, STRUCK.replace("count = 150", "count = 200")), tmp_path / "study.sqlite"
-    kept, rng = [0], random.Random(len(workers))
+    stored, rng = [0], random.Random(len(workers))
     for blocks in (1, 5, 9):
         run = started(study, *workers)
         waited_for(store, run, 16 * blocks)
         time.sleep(rng.uniform(0, 0.05))
         os.killpg(run.pid, signal.SIGKILL)
         run.communicate()
-        kept.append(len(rows_of(store)))
-    assert 0 < kept[1] <= kept[2] <= kept[3]
+        stored.append(len(rows_of(store)))
+    assert 0 < stored[1] <= stored[2] <= stored[3]
     whole, own = tmp_path / "whole.csv", tmp_path / "own.csv"
     made = len(rows_of(store))
-    assert told(study, "-o", whole)["evaluated"] == 200 - made
+    assert record_of(study, "-o", whole)["evaluated"] == 200 - made
     study = written(tmp_path, study.read_text(encoding="utf-8").replace("high = 1.3", "high = 1.4"), name="edited.toml")
     said("study", study, "--store", store, "-o", tmp_path / "edited.csv")
     for name, path in (("study", whole), ("edited", tmp_path / "edited.csv")):
@@ -103,7 +106,7 @@ def test_killed_at_three_moments_and_resumed_then_edited_and_resumed_gives_the_s
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("workers", [(), ("--workers", "2")], ids=["alone", "two workers"])
-def test_interrupt_prints_one_line_and_the_same_command_goes_on(tmp_path: Path, workers: tuple[str, ...]) -> None:
+def test_study_interrupted_prints_one_line_and_stores_designs(tmp_path: Path, workers: tuple[str, ...]) -> None:
     study, store = written(tmp_path, STRUCK.replace("count = 150", "count = 3000")), tmp_path / "study.sqlite"
     run = started(study, *workers)
     waited_for(store, run, 100)
@@ -111,27 +114,26 @@ def test_interrupt_prints_one_line_and_the_same_command_goes_on(tmp_path: Path, 
     out, err = run.communicate(timeout=60)
     count = len(rows_of(store))
     assert (run.returncode, out) == (130, b"")
-    kept = f"{count} of 3000 designs are stored in {store}"
-    assert err.decode() == f"cuefem: interrupted; {kept}; run the same command to resume\n"
+    stored = f"{count} of 3000 designs are stored in {store}"
+    assert err.decode() == f"cuefem: interrupted; {stored}; run the same command to resume\n"
     assert 100 <= count < 3000
 
 
 @pytest.mark.heavy
-def test_cluster_of_two_workers_gives_the_same_table(tmp_path: Path) -> None:
-    """By the command on a Dask cluster; without its scheduler it ends in one line."""
+def test_dask_cluster_has_same_table(tmp_path: Path) -> None:
     LocalCluster = pytest.importorskip("distributed").LocalCluster
     study = written(tmp_path, STRUCK)
     alone = swept(study, tmp_path / "alone.sqlite")
-    asked = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": ":0", "local_directory": str(tmp_path)}
-    with LocalCluster(**asked) as cluster:
+    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": ":0", "local_directory": str(tmp_path)}
+    with LocalCluster(**options) as cluster:
         run = started(study, "--dask", cluster.scheduler_address)
         assert (run.communicate()[1], run.returncode) == (b"", 0)
     assert rows_of(tmp_path / "study.sqlite") == alone
-    command_refuses("no Dask scheduler answers at 'tcp://127.0.0.1:9'", "study", study, "--dask", "tcp://127.0.0.1:9")
+    command_refuses("no Dask scheduler responds at 'tcp://127.0.0.1:9'", "study", study, "--dask", "tcp://127.0.0.1:9")
 
 
 @pytest.mark.heavy
-def test_killed_worker_is_replaced(tmp_path: Path) -> None:
+def test_study_killed_worker_is_replaced(tmp_path: Path) -> None:
     study = written(tmp_path, STRUCK)
     run = started(study, "--workers", "2")
     waited_for(tmp_path / "study.sqlite", run, 32)
@@ -141,7 +143,7 @@ def test_killed_worker_is_replaced(tmp_path: Path) -> None:
     assert rows_of(tmp_path / "study.sqlite") == swept(study, tmp_path / "alone.sqlite")
 
 
-EDITS = [  # what the study becomes, its designs, and how many of them were not there
+EDITS = [  # the edit of the study, its designs, and how many of them are new
     (("", ""), 8, 8),
     (('"3 mm"', '"3 mm", "4 mm"'), 10, 2),
     (('"12 mm", "12.5 mm"', '"12.5 mm", "12 mm", "13 mm"'), 12, 4),
@@ -152,35 +154,34 @@ EDITS = [  # what the study becomes, its designs, and how many of them were not 
 ]
 
 
-def test_edited_study_computes_each_design_once(tmp_path: Path) -> None:
-    """In one store, whatever the study is called; its table is the one of a store of its own."""
+def test_edited_study_computes_only_new_designs(tmp_path: Path) -> None:
     store = tmp_path / "all.sqlite"
     for (old, new), size, fresh in EDITS:
         study = written(tmp_path, GRID.replace(old, new))
-        found = told(study, "--store", store)
-        assert (found["designs"], found["evaluated"]) == (size, fresh), new
+        record = record_of(study, "--store", store)
+        assert (record["designs"], record["evaluated"]) == (size, fresh), new
         (tmp_path / "own.sqlite").unlink(missing_ok=True)
         assert rows_of(store) == swept(study, tmp_path / "own.sqlite")
     moved = SCENE.replace('tip_diameter = "12 mm"', 'tip_diameter = "12.5 mm"')
-    assert told(written(tmp_path, GRID, moved), "--store", store)["evaluated"] == 0  # by another way the same designs
-    assert told(written(tmp_path, GRID, SCENE.replace("420 g", "421 g")), "--store", store)["evaluated"] == 8
+    assert record_of(written(tmp_path, GRID, moved), "--store", store)["evaluated"] == 0  # the same designs
+    assert record_of(written(tmp_path, GRID, SCENE.replace("420 g", "421 g")), "--store", store)["evaluated"] == 8
 
 
-def test_another_version_computes_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_study_of_other_version_computes_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     study = written(tmp_path, GRID)
-    assert [told(study)["evaluated"], told(study)["evaluated"]] == [8, 0]
-    monkeypatch.setattr("cuefem.io.store.code_digest", lambda: "another")
-    assert told(study)["evaluated"] == 8
+    assert [record_of(study)["evaluated"], record_of(study)["evaluated"]] == [8, 0]
+    monkeypatch.setattr("cuefem.io.store.code", lambda: "another")
+    assert record_of(study)["evaluated"] == 8
 
 
 # --- damage ----------------------------------------------------------------------------------------------------------
-def test_any_flipped_byte_is_refused_in_one_line_or_does_no_harm(tmp_path: Path) -> None:
+def test_store_flipped_byte_raises_or_is_harmless(tmp_path: Path) -> None:
     store, rng = tmp_path / "study.sqlite", random.Random(1)
     table = swept(written(tmp_path, GRID), store)
     data, flipped, lines = store.read_bytes(), tmp_path / "flipped.sqlite", list[str]()
     for _ in range(120):
-        place, bit = rng.randrange(len(data)), rng.randrange(1, 256)
-        flipped.write_bytes(data[:place] + bytes([data[place] ^ bit]) + data[place + 1 :])
+        position, bit = rng.randrange(len(data)), rng.randrange(1, 256)
+        flipped.write_bytes(data[:position] + bytes([data[position] ^ bit]) + data[position + 1 :])
         try:
             assert rows_of(flipped) == table
         except InputError as error:
@@ -191,29 +192,29 @@ def test_any_flipped_byte_is_refused_in_one_line_or_does_no_harm(tmp_path: Path)
 
 # --- the table -------------------------------------------------------------------------------------------------------
 @pytest.mark.parametrize("text", [STUDY, STRUCK.replace("count = 150", "count = 40")], ids=["grid", "sample"])
-def test_csv_holds_every_design_to_the_last_bit(text: str, tmp_path: Path) -> None:
-    """Each evaluated alone gives the same; one that cannot be made says why, and only its responses are empty."""
+def test_csv_has_every_design_exactly(text: str, tmp_path: Path) -> None:
+    """Equal to each design evaluated alone; an invalid design has a reason and no responses."""
     study = written(tmp_path, text)
-    asked = load_study(study)
+    definition = load_study(study)
     said("study", study, "-o", tmp_path / "out.csv")
     with (tmp_path / "out.csv").open(newline="", encoding="utf-8") as file:
         head, *lines = csv.reader(file)
-    units = zip(asked.columns, asked.units, strict=True)
+    units = zip(definition.columns, definition.units, strict=True)
     assert head == ["design", *(f"{name} [{unit}]" if unit else name for name, unit in units), "failure"]
-    assert [int(line[0]) for line in lines] == list(range(asked.size))
-    for line, values in zip(lines, asked.designs(), strict=True):
+    assert [int(line[0]) for line in lines] == list(range(definition.size))
+    for line, values in zip(lines, definition.designs(), strict=True):
         inside, responses = line[1 : 1 + len(values)], line[1 + len(values) : -1]
         assert inside == [value if isinstance(value, str) else repr(value) for value in values]
         if values[0] >= 0.012:
             assert line[-1].startswith("Segment.tip_bore must be in [0, 0.012) m, its outer diameter; got 0.01")
             assert set(responses) == {""}
         else:
-            (alone,) = evaluate([asked.scene(values)], asked.responses, at=asked.at).values
+            (alone,) = evaluate([definition.scene(values)], definition.responses, at=definition.at).values
             assert [float(x) for x in responses] == pytest.approx(alone, rel=1e-12)
             assert line[-1] == ""
 
 
-def test_studies_in_one_store_are_read_by_their_names(tmp_path: Path) -> None:
+def test_store_of_several_studies_reads_by_name(tmp_path: Path) -> None:
     store = tmp_path / "all.sqlite"
     for name, text in (("grid", GRID), ("quick", STRUCK.replace("count = 150", "count = 16"))):
         said("study", written(tmp_path, text, name=f"{name}.toml"), "--store", store)
@@ -233,7 +234,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("statement", "message"), REFUSED)
-def test_altered_store_is_refused_and_left_as_it_is(tmp_path: Path, statement: str, message: str) -> None:
+def test_store_altered_raises_and_is_unchanged(tmp_path: Path, statement: str, message: str) -> None:
     study, store = written(tmp_path, GRID), tmp_path / "study.sqlite"
     swept(study, store)
     changed(store, statement)

@@ -1,4 +1,4 @@
-"""Files of studies: places count as in the cue's file, a cue alone has its game's stroke (properties)."""
+"""Files of studies: segments are numbered as in the cue's file; a cue has the stroke of its game (properties)."""
 
 from pathlib import Path
 
@@ -44,7 +44,7 @@ def varying(folder: Path, path: str, *, of: str = "cue.toml", more: str = "") ->
 
 @pytest.mark.parametrize("of", ["cue.toml", "scene.toml"])
 @pytest.mark.parametrize("path", PATHS)
-def test_segments_count_as_in_the_file(path: str, of: str, tmp_path: Path) -> None:
+def test_study_segments_are_numbered_as_in_file(path: str, of: str, tmp_path: Path) -> None:
     i, field, before, piece = PATHS[path]
     wanted = load_study(file := varying(tmp_path, path, of=of))
     assert getattr(wanted.base.cue.segments[i], field) == pytest.approx(before)
@@ -53,7 +53,7 @@ def test_segments_count_as_in_the_file(path: str, of: str, tmp_path: Path) -> No
     assert as_json("study", file)["varied"] == {path: [piece]}
 
 
-def test_length_taken_from_a_segment_of_the_file(tmp_path: Path) -> None:
+def test_study_compensated_length_of_segment_in_file(tmp_path: Path) -> None:
     wanted = load_study(varying(tmp_path, "cue.segments[1].length", more='taken_from = "cue.segments[2].length"\n'))
     lengths = [segment.length for segment in wanted.scene((0.005,)).cue.segments]
     assert lengths == pytest.approx([0.005, 0.141, 0.55])
@@ -63,12 +63,12 @@ def test_length_taken_from_a_segment_of_the_file(tmp_path: Path) -> None:
     ("path", "words"),
     [("cue.segments[0].length", "must not name the drawn leather"), ("cue.segments[4].length", "cue's file, 0 to 3")],
 )
-def test_segments_off_the_modelled_cue_are_refused(path: str, words: str, tmp_path: Path) -> None:
+def test_study_segment_off_the_modelled_cue_raises(path: str, words: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=words):
         load_study(varying(tmp_path, path))
 
 
-def test_a_cue_alone_has_the_stroke_of_the_game_and_without_one_that_of_pool(tmp_path: Path) -> None:
+def test_study_of_cue_has_default_stroke_of_game(tmp_path: Path) -> None:
     for game, usual in (("kim", lambda cue: cf.Scene(cue, stroke=cf.Stroke(offset=0.3))), ("", cf.usual_scene)):
         file = varying(tmp_path, "bore width")
         file.write_text((f'game = "{game}"\n' if game else "") + file.read_text(encoding="utf-8"), encoding="utf-8")
@@ -80,7 +80,7 @@ def test_a_cue_alone_has_the_stroke_of_the_game_and_without_one_that_of_pool(tmp
     command_refuses("study.toml: game: must be left out: scene.toml is a scene", "study", of_scene)
 
 
-def test_a_file_says_all_that_a_range_can_be(tmp_path: Path) -> None:
+def test_study_file_ranges_are_read(tmp_path: Path) -> None:
     text = STRUCK.replace('low = "0 mm"\nhigh = "13 mm"', 'middle = "5 mm"\nsd = "1 mm"')
     text = text.replace("low = 0.7\nhigh = 1.3", 'middle = 1\nsd = 0.2\nspacing = "logarithmic"')
     text += '[[vary]]\npath = "cue.segments[0].length"\nlow = "-5 mm"\nhigh = "5 mm"\nshift = true\n'

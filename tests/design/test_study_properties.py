@@ -1,4 +1,4 @@
-"""Paths, ranges, studies and their evaluation: what holds for any of them (properties)."""
+"""Ranges, samples, studies and their evaluation (properties)."""
 
 import math
 from dataclasses import replace
@@ -39,7 +39,7 @@ def varied(path: str, *values: float | str, factor: bool = False, name: str = ""
 
 
 @given(low=st.floats(1e-6, 1e3), ratio=st.floats(1.01, 100), count=st.integers(2, 50), log=st.booleans())
-def test_a_span_runs_from_end_to_end(low: float, ratio: float, count: int, log: bool) -> None:
+def test_span_levels_are_evenly_spaced(low: float, ratio: float, count: int, log: bool) -> None:
     span = Span(low, low * ratio, count, log)
     levels = np.array(span.levels)
     assert levels[0] == low
@@ -52,8 +52,7 @@ def test_a_span_runs_from_end_to_end(low: float, ratio: float, count: int, log: 
 
 
 @pytest.mark.parametrize("method", ["sobol", "halton", "latin hypercube"])
-def test_a_sample_fills_the_cube_evenly(method: str) -> None:
-    """Every seed in its own way; beyond the points that are made at a time."""
+def test_sample_is_uniform_and_depends_on_seed(method: str) -> None:
     points, others = (np.array([*Sample(method, 300, seed).points(3)]) for seed in (7, 8))
     assert points.shape == (300, 3)
     assert np.all((points >= 0) & (points < 1))
@@ -61,13 +60,13 @@ def test_a_sample_fills_the_cube_evenly(method: str) -> None:
     assert not np.array_equal(points, others)
 
 
-def test_a_grid_runs_through_all_levels_the_last_fastest() -> None:
+def test_grid_last_parameter_varies_fastest() -> None:
     found = study(varied("cue.body_mass", 0.1, 0.2), Vary(("ball.mass",), Span(0.16, 0.2, 3)))
     assert [*found.designs()] == [(b, m) for b in (0.1, 0.2) for m in (0.16, 0.18, 0.2)]
     assert found.size == 6
 
 
-def test_a_scene_of_values_factors_and_materials() -> None:
+def test_study_scene_applies_materials_numbers_and_factors() -> None:
     found = study(
         varied("cue.segments[3].material", "ash"),
         varied("cue.segments[*].material.E", 0.5, factor=True, name="factor"),
@@ -79,7 +78,7 @@ def test_a_scene_of_values_factors_and_materials() -> None:
         assert made[i].material == replace(BASE.cue.segments[i].material, E=BASE.cue.segments[i].material.E * 0.5)
 
 
-def test_records_tell_studies_apart() -> None:
+def test_study_records_of_different_studies_differ() -> None:
     one = study(varied("ball.mass", 0.2))
     others = [
         study(varied("ball.mass", math.nextafter(0.2, 1))),
@@ -92,7 +91,7 @@ def test_records_tell_studies_apart() -> None:
     assert study(varied("ball.mass", 0.2)).record == one.record
 
 
-def test_names_of_responses_read_back() -> None:
+def test_response_name_is_inverse_of_of() -> None:
     for one in ALL:
         assert Response.of(one.name) == one
     assert {one.kind for one in ALL} == set(asked()) > set(asked()) & set(RESULTS)
@@ -135,7 +134,7 @@ EFFECTS = {
 
 
 @pytest.mark.parametrize(("at", "effects"), EFFECTS.values(), ids=EFFECTS.keys())
-def test_responses_are_those_of_single_calls(at: cf.Resolution | None, effects: tuple[Any, ...]) -> None:
+def test_responses_equal_single_calls(at: cf.Resolution | None, effects: tuple[Any, ...]) -> None:
     """Two cues, and one of them struck at another offset, which shares its modes."""
     scenes = [replace(BASE, effects=effects), replace(BASE, cue=pool(), effects=effects)]
     scenes.append(struck_at(scenes[1], 0.25))
@@ -152,16 +151,16 @@ def test_responses_are_those_of_single_calls(at: cf.Resolution | None, effects: 
             assert by_name["squirt_slope"] == pytest.approx(slope, rel=1e-4)
 
 
-def test_designs_that_fail_disturb_no_other() -> None:
-    """One that cannot be solved, one so light that no end mass has its squirt: others are as they are without them."""
+def test_evaluate_failed_design_does_not_affect_others() -> None:
+    """One design cannot be solved; one is so light that no end mass has its squirt."""
     feather = replace(kim().segments[0], material=replace(MAPLE, rho=1e-310))
     light = cf.Cue((cf.Segment(0.33, 0.00317, 0.0174, cf.Material(9e9, 0.64e9, 660.0)),))
     long = replace(BASE, tip=cf.Tip(contact_time=2e-3))
     scenes = [BASE, replace(BASE, cue=replace(kim(), segments=(feather,))), replace(long, cue=light), long]
-    asked = ("end_mass", "squirt_slope", "mass")
+    names = ("end_mass", "squirt_slope", "mass")
     with np.errstate(all="ignore"):
-        found = evaluate(scenes, asked, at=AT)
-    np.testing.assert_array_equal(found.values[[0, 3]], evaluate([scenes[0], scenes[3]], asked, at=AT).values)
+        found = evaluate(scenes, names, at=AT)
+    np.testing.assert_array_equal(found.values[[0, 3]], evaluate([scenes[0], scenes[3]], names, at=AT).values)
     assert [reason is None for reason in found.reasons] == [True, False, False, True]
     assert np.isnan(found.values[1, 0])
     assert np.isnan(found.values[2]).tolist() == [True, False, False]
@@ -173,7 +172,7 @@ DEPTH = Vary(("cue.segments[2].length",), Span(0.05, 0.25), "bore depth", taken_
 
 
 @given(st.floats(0.05, 0.25))
-def test_a_length_taken_from_the_neighbour_keeps_the_cue_as_long(depth: float) -> None:
+def test_study_compensated_length_preserves_cue_length(depth: float) -> None:
     made = study(DEPTH).scene((depth,)).cue
     assert made.segments[2].length == depth
     assert made.length == pytest.approx(BASE.cue.length, rel=1e-15)
@@ -181,8 +180,8 @@ def test_a_length_taken_from_the_neighbour_keeps_the_cue_as_long(depth: float) -
     assert made.segments[:2] + made.segments[4:] == rest
 
 
-def test_two_takers_of_one_giver_and_a_shift_in_either_order() -> None:
-    """Ferrule and bored wood both grow, the one into the other, the other into the solid wood; numbers come before."""
+def test_study_compensated_lengths_in_any_order_agree() -> None:
+    """The ferrule grows into the bored wood, which grows into the solid wood."""
     ferrule = Vary(("cue.segments[1].length",), Span(-0.005, 0.01), "ferrule", False, True, ("cue.segments[2].length",))
     for order in (1, -1):
         values = (0.004, 0.1)[::order]
@@ -191,7 +190,7 @@ def test_two_takers_of_one_giver_and_a_shift_in_either_order() -> None:
         assert lengths == pytest.approx([0.016, 0.096, 0.2], rel=1e-14)
 
 
-def test_factors_and_shifts_of_what_was_set() -> None:
+def test_study_applies_factor_and_shift_after_value() -> None:
     path = ("tip.contact_time",)
     numbers = (Levels((1e-3, 2e-3)), Levels((1.5,)), Levels((1e-4,)))
     set_, factor, shift = (replace(Vary(path, range), name=name) for name, range in zip("abc", numbers, strict=True))
@@ -200,7 +199,7 @@ def test_factors_and_shifts_of_what_was_set() -> None:
 
 
 @given(st.floats(-5, 5), st.floats(0.01, 3), st.floats(0, 1))
-def test_normal_ranges_are_normal_and_cut(middle: float, sd: float, u: float) -> None:
+def test_normal_range_is_truncated_normal(middle: float, sd: float, u: float) -> None:
     drawn = Normal(middle, sd)
     low, high = drawn.ends
     assert (low, high) == (middle - 4 * sd, middle + 4 * sd)
@@ -212,7 +211,7 @@ def test_normal_ranges_are_normal_and_cut(middle: float, sd: float, u: float) ->
     assert np.log(logarithmic.quantile(u)) == pytest.approx(drawn.quantile(u), rel=1e-9, abs=1e-9)
 
 
-def test_a_lumped_cue_has_what_needs_no_segments() -> None:
+def test_evaluate_lumped_cue_has_responses_without_segments() -> None:
     lumped = cf.Scene(cf.LumpedCue(0.5, 0.005))
     found = evaluate([lumped, lumped], ["mass", "frequency(1)"])
     assert found.values[:, 0].tolist() == [0.5, 0.5]

@@ -4,7 +4,7 @@ import sqlite3
 from pathlib import Path
 from typing import Any
 
-from cuefem.design.study_result import found
+from cuefem.design.study_result import compute_study
 from cuefem.io.store import SqliteStore, read_table
 from cuefem.io.study_files import load_study
 
@@ -70,7 +70,7 @@ def written(folder: Path, study: str = STUDY, scene: str = SCENE, name: str = "s
 def swept(study: Path, output: Path, **more: Any) -> list[tuple[Any, ...]]:
     """The table of a study, computed into a store."""
     with SqliteStore(output, load_study(study), study.stem) as store:
-        found(store.study, store=store, **more)
+        compute_study(store.study, store=store, **more)
     return rows_of(output)
 
 
