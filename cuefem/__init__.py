@@ -1,7 +1,6 @@
 """From a cue shaft's drawing to its effective end mass and squirt.
 
-The public names stand in `__init__.pyi`; each is loaded when it is first used, so that `import cuefem` costs next to
-nothing.
+`__init__.pyi` lists the public names. Each is imported at its first use, which keeps `import cuefem` fast.
 """
 
 import lazy_loader as _lazy_loader

@@ -151,7 +151,7 @@ def _judged(outcome: Outcome) -> Array:
 
 
 def _tips(scene: Scene) -> Iterator[tuple[Resolution, TipModes]]:
-    """Resolutions and tip modes of the levels; a lumped cue has no modes, so that the step alone is halved."""
+    """Resolutions and tip modes of the levels; for a lumped cue, which has no modes, only the step is halved."""
     steps = FIRST_STEPS
     if scene.lumped is not None:
         tip = lumped_tip_modes(scene.lumped)

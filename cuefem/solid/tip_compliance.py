@@ -1,10 +1,10 @@
-"""The compliance of a leather tip's surface, from 3-D elasticity of a domed cylinder; whatever tip, with its layers.
+"""Surface compliance of any leather tip with its layers, from 3-D elasticity of a domed cylinder.
 
-The weak forms are those of `cuefem.solid.elasticity`, in every harmonic. A square (y, x) carries the mesh and is mapped
-onto the section, r = sin(pi x/2) D/2 and z = y H(r), z from the base, which is held, to the apex; flat layers under the
-leather keep z = y H(0), and the leather is mapped from there on. What counts is the compliance of the top surface, on
-which each patch of load is a quadratic form. The unit of length is the diameter, that of stress is Young's modulus of
-the leather on top.
+The weak forms are those of `cuefem.solid.elasticity`, in every harmonic. The mesh is a square (y, x), mapped onto the
+section by r = sin(pi x/2) D/2 and z = y H(r), with z from the clamped base to the apex; flat layers under the leather
+have z = y H(0), and the leather's map begins on top of them. The result is the compliance of the top surface; the
+compliance of a loaded patch is a quadratic form of it. The unit of length is the diameter, that of stress Young's
+modulus of the leather.
 """
 
 from __future__ import annotations
@@ -25,14 +25,17 @@ from cuefem.solid import elasticity
 from cuefem.solid import tip_table as tt
 
 SOLVED = (10, 12, 15, 18, 22, 26, 31)  # harmonics above 8 that are computed; the others are interpolated
-ROWS = (0.0, 0.25, 0.75, 1.0)  # where elements end within a layer
+ROWS = (0.0, 0.25, 0.75, 1.0)  # ends of the elements within a layer
 POINTS = 48  # Gauss points along a ray of a patch, and over each part of the half circle of rays
-PLACES, RADII, HEAD_ON = 13, 11, 8  # nodes of the table
+PLACES, RADII, HEAD_ON = 13, 11, 8  # numbers of nodes of the table
 
 
 class TipFineness(NamedTuple):
-    """order: of the polynomials; across, up: where elements end along the radius and the axis, from 0 to 1, ``up``
-    within the leather; harmonics: the highest m."""
+    """Element sizes of a tip.
+
+    order: of the polynomials. across, up: ends of the elements along the radius and, within the leather, along the
+    axis, from 0 to 1. harmonics: the highest m.
+    """
 
     order: int
     across: tuple[float, ...]
@@ -41,7 +44,7 @@ class TipFineness(NamedTuple):
 
 
 def usual(order: int = 4, radial: int = 6, up: int = 5, harmonics: int = 30) -> TipFineness:
-    """Elements that shrink towards the rim, and towards base and top."""
+    """Elements graded towards the rim, the base and the top."""
     x, y = np.linspace(0, 1, radial + 1), np.linspace(0, 1, up + 1)
     y = 0.5 * y + 0.25 * (1 - np.cos(np.pi * y))
     return TipFineness(order, tuple(x.tolist()), tuple(y.tolist()), harmonics)
@@ -51,7 +54,7 @@ TABLE = usual(5, 6, 5, 36)
 
 
 def fitted(height: float, radius: float, order: int = 5) -> TipFineness:
-    """For the axisymmetric contact of a radius over D: elements end at its edge, shrink towards it and to the top."""
+    """Elements for an axisymmetric contact of a radius, over D, graded towards its edge and the top."""
     edge = 2 * radius
     out = [edge]
     step = 0.15 * edge
@@ -69,8 +72,11 @@ def fitted(height: float, radius: float, order: int = 5) -> TipFineness:
 
 
 class Shape(NamedTuple):
-    """A domed cylinder of unit diameter: its whole height, the dome's curvature D/r in [0, 2], and the flat layers
-    under the leather, from the base up, together lower than the dome's rim."""
+    """A domed cylinder of unit diameter.
+
+    height: with the layers. curvature: of the dome, D/r in [0, 2]. layers: flat, under the leather, from the base up;
+    their sum is below the dome's rim.
+    """
 
     height: float
     curvature: float
@@ -78,7 +84,7 @@ class Shape(NamedTuple):
 
     @property
     def leather(self) -> float:
-        """Height of the leather over D, the dome included."""
+        """Height of the leather over D, with the dome."""
         return self.height - sum(height for height, _, _ in self.layers)
 
 
@@ -93,12 +99,12 @@ def _across(radius: Array | float) -> Array:
 
 
 def surface_nodes(how: TipFineness) -> Array:
-    """x of the surface's nodes: Chebyshev's of every element."""
+    """x of the surface's nodes: the Chebyshev nodes of every element."""
     return np.append([tt.nodes(a, b, how.order + 1)[:-1] for a, b in pairwise(how.across)], 1.0)
 
 
 def lagrange(radius: Array, how: TipFineness) -> Array:
-    """Values at ``radius``, over D, of the functions that are 1 at one node and 0 at the others, (points, nodes)."""
+    """Values of the Lagrange polynomials of the surface's nodes at ``radius``, over D; (points, nodes)."""
     x = _across(radius)
     cell = np.clip(np.searchsorted(how.across, x, side="right") - 1, 0, len(how.across) - 2)
     values = np.zeros((len(x), (len(how.across) - 1) * how.order + 1))
@@ -108,7 +114,7 @@ def lagrange(radius: Array, how: TipFineness) -> Array:
 
 
 class TipSolid:
-    """A domed cylinder on a held base, meshed: the rows of ``how`` within the leather, and three within every layer."""
+    """A meshed domed cylinder on a clamped base: the given rows within the leather, three rows within every layer."""
 
     def __init__(self, shape: Shape, how: TipFineness) -> None:
         ends = np.append(0.0, np.cumsum([height for height, _, _ in shape.layers]) / shape.height)
@@ -125,7 +131,10 @@ class TipSolid:
         self.layer = np.searchsorted(ends[1:], square.p[0, square.t].mean(axis=0))
 
     def surface(self, nu: float, m: int) -> Array:
-        """Displacements (U, V, W) of the surface's nodes per unit load on them, E = 1, (3 nodes, 3 nodes)."""
+        """Compliance of the surface in harmonic m with E = 1, (3 nodes, 3 nodes).
+
+        Displacements (U, V, W) of the nodes per unit load on them.
+        """
         basis, trace, none = self.basis, self.trace, 0 * self.trace
         bodies = [*((E, ratio) for _, E, ratio in self.shape.layers), (1.0, nu)]
         stiff = [elasticity.stiffness(E, ratio, E / (2 * (1 + ratio)), E, ratio) for E, ratio in bodies]
@@ -141,7 +150,7 @@ class TipSolid:
 def surfaces(solid: TipSolid, nu: float) -> list[Array]:
     """`TipSolid.surface` for all harmonics.
 
-    m times it hardly changes from one high m to the next, so it is interpolated; patches get little from those.
+    High harmonics contribute little to a patch, and m times the compliance varies slowly with m: it is interpolated.
     """
     highest = solid.how.harmonics
     solved = sorted({m for m in (*range(9), *SOLVED, highest) if m <= highest})
@@ -154,17 +163,17 @@ def surfaces(solid: TipSolid, nu: float) -> list[Array]:
 
 
 class Patch(NamedTuple):
-    """Where a patch is: distance of its centre from the axis, over the tip's radius, and its radius over D."""
+    """A loaded patch: distance of its centre from the axis, over the tip's radius, and its radius over D."""
 
     place: float
     radius: float
 
 
 def loads(shape: Shape, patch: Patch, how: TipFineness) -> Array:
-    """Loads of one newton on the surface's nodes along n and along t, of every harmonic; (m, 2, 3 nodes).
+    """Unit loads of a patch on the surface's nodes along n and t, in every harmonic; (m, 2, 3 nodes).
 
     The traction is Hertz's, (1 - q^2/a^2)^(1/2) with q the distance from the patch's centre in the tangent plane there.
-    What lies beyond the rim is cut off and the rest scaled up. n points into the leather, t away from the axis.
+    The part beyond the rim is cut off and the rest scaled up. n points into the leather, t away from the axis.
     """
     k, a, centre = shape.curvature, patch.radius, patch.place / 2
     sin, rim = k * centre, k / 2
@@ -189,7 +198,7 @@ def loads(shape: Shape, patch: Patch, how: TipFineness) -> Array:
     last = np.arcsin(np.minimum(reach(angle) / a, 1.0))  # q = a sin(beta)
     beta = last[:, None] * (g + 1) / 2
     q = a * np.sin(beta)
-    level = np.sqrt(1 - np.square(k * q))  # over it, for the dome's surface is meant, not the tangent plane
+    level = np.sqrt(1 - np.square(k * q))  # divides, because the area is that of the dome, not of the tangent plane
     flat = turn[:, None] * (last[:, None] * w / 2) * q / level
     x = centre + q * np.cos(angle)[:, None] * cos - k * q * q / (1 + level) * sin
     y = q * np.sin(angle)[:, None]
@@ -208,17 +217,17 @@ def loads(shape: Shape, patch: Patch, how: TipFineness) -> Array:
 
 
 def compliance(surfaces: Sequence[Array], load: Array) -> Array:
-    """E D times the mean displacement, weighted with the loads, per load; surfaces: of the harmonics 0, 1, ..."""
+    """E D times the load-weighted mean displacement per unit load; surfaces: of the harmonics 0, 1, ..."""
     return np.asarray(sum(f @ S @ f.T for f, S in zip(load, surfaces, strict=True)))
 
 
 def head_on(shape: Shape, surface: Array, radius: float, how: TipFineness, terms: int = 5) -> Array:
-    """Of the contact of radius ``radius``, over D, with a rigid ball: forces and depths, (2, 3), for unit gaps.
+    """Forces and depths, (2, 3), of a central contact of ``radius``, over D, with a rigid ball, for three unit gaps.
 
-    The gaps between undeformed ball and tip are, at the distance p from the axis: the depth of the dome over its
+    The gaps between undeformed ball and tip at the distance p from the axis are the depth of the dome over its
     curvature, p^2/2 and p^4/8. surface: that of harmonic 0. The pressure is (1 - p^2/a^2)^(1/2) times a polynomial in
-    p^2/a^2, so it vanishes at the edge as that of two smooth bodies does; force and depth are linear in the gap.
-    It acts along the axis, between the normal of the dome and that of the ball. Galerkin's method, tested with these
+    p^2/a^2, which vanishes at the edge as between smooth bodies; force and depth are linear in the gap. It acts along
+    the axis, between the normals of dome and ball. Galerkin's method, tested with these
     pressures and with a punch's.
     """
     g, w = np.polynomial.legendre.leggauss(160)
@@ -238,7 +247,7 @@ def head_on(shape: Shape, surface: Array, radius: float, how: TipFineness, terms
 
 
 def tip_table(shape: Shape, nu: float) -> tt.TipTable:
-    """The table of one tip, with whatever layers it has."""
+    """The table of one tip with its layers."""
     places, radii = table_patches(shape.curvature)
     solid = TipSolid(shape, TABLE)
     surface = surfaces(solid, nu)
@@ -263,12 +272,12 @@ def table_patches(curvature: float) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=1)
 def table_loads(curvature: float) -> list[Array]:
-    """The loads of these patches on `TABLE`, the same for tips of all heights."""
+    """Loads of these patches on `TABLE`; they do not depend on the tip's height."""
     places, radii = table_patches(curvature)
     return [loads(Shape(1.0, curvature), Patch(s, a), TABLE) for s in places for a in radii]
 
 
 def own_tip(tip: tt.OwnTip) -> tt.TipTable:
-    """The table of one tip, by itself."""
+    """The table of a tip that the package's table does not cover."""
     height = max(tip.height, tt.sag(tip.curvature) + tt.WALL)
     return tip_table(Shape(height, tip.curvature, tip.layers), tip.nu)

@@ -2,10 +2,10 @@
 
 A tip outside the table, or with layers, is computed and stored by `cuefem.solid.tip_cache`.
 
-Lengths are over the tip's diameter D and moduli over Young's modulus E here. A tip is its height, its dome's curvature
-D/r (0: flat) and Poisson's ratio nu; a patch is the place of its centre, the distance from the axis over D/2, and its
-radius. The table is one grid of Chebyshev's nodes in `PANELS` of the curvature, height, nu, place and radius; it holds
-logarithms of the compliance over a half-space's, in which nothing is singular.
+Lengths here are over the tip's diameter D, moduli over Young's modulus E. A tip is given by height, curvature of the
+dome D/r (0: flat) and Poisson's ratio nu; a patch by the distance of its centre from the axis over D/2, its place, and
+its radius. The table is a grid of Chebyshev nodes in `PANELS` of the curvature, height, nu, place and radius, with the
+logarithms of the compliance over that of a half-space, which have no singularity.
 
 Error of a compliance against the solid on a finer mesh (36 random tips, 5,062 patches up to the rim, radii of 0.06 D
 and more): median 0.06 %, 95th percentile 0.32 %, maximum 1.1 %; over 1,200 patches of 20 others
@@ -26,21 +26,21 @@ from cuefem.cue import Array
 # What the table covers: height over D, D over the dome's radius, Poisson's ratio, radius of the patch over D.
 HEIGHT, CURVATURE, POISSON, RADIUS = (2 / 15, 1.5), (0.0, 2.0), (0.2, 0.45), (0.06, 0.5)
 HEAD_ON_RADIUS = (0.04, 0.45)
-# Curvatures between which everything is smooth: at the first the lowest tip becomes one without a side below its dome,
-# from the second on patches are kept where sin(phi) is at most half of it.
+# Curvatures between which the table is smooth: above 1 the lowest tip has no side below its dome; above 1.5 the places
+# end where sin(phi) is 0.75.
 PANELS = (0.0, 1.0, 1.5, 2.0)
-WALL = 0.002  # over D: the least height of the side below the dome; lower ones are taken for it
-SOFTENED = 0.1  # over D: heights enter as log(side + this)
-AXIS = 0.01  # place: C_nt over the place is wanted on the axis as well
+WALL = 0.002  # over D: the least height of the side below the dome; lower ones count as this
+SOFTENED = 0.1  # over D: the coordinate of the height is log(side + this)
+AXIS = 0.01  # place: the innermost node, not 0, because C_nt is stored over the place
 
 
 def nodes(low: float, high: float, count: int) -> Array:
-    """Chebyshev's nodes of an interval, both ends among them."""
+    """Chebyshev nodes of an interval, with both ends."""
     return np.asarray((low + high) / 2 - (high - low) / 2 * np.cos(np.pi * np.arange(count) / (count - 1)))
 
 
 def weights(x: Array | float, low: float, high: float, count: int) -> Array:
-    """What the values at `nodes` weigh in the polynomial through them at ``x``, (..., count)."""
+    """Weights of the values at `nodes` in their interpolating polynomial at ``x``, (..., count)."""
     sign = (-1.0) ** np.arange(count)
     sign[[0, -1]] /= 2
     gap = np.clip(x, low, high)[..., None] - nodes(low, high, count)
@@ -50,37 +50,37 @@ def weights(x: Array | float, low: float, high: float, count: int) -> Array:
 
 
 def sag(curvature: float) -> float:
-    """Depth of the dome."""
+    """Height of the dome over D."""
     return curvature / 4 / (1 + math.sqrt(1 - curvature**2 / 4))
 
 
 def steepness(curvature: float) -> float:
-    """The coordinate that stands for the curvature: the angle of the dome at its rim."""
+    """The coordinate of the curvature: the dome's angle at its rim, rad."""
     return math.asin(min(curvature / 2, 1.0))
 
 
 def panel_of(curvature: float) -> int:
-    """Which of the PANELS a curvature is in."""
+    """Index of the panel of a curvature."""
     return sum(curvature > end for end in PANELS[1:-1])
 
 
 def farthest(curvature: float) -> float:
-    """The outermost place in the table: the rim, or on a steep dome where sin(phi) is 0.75."""
+    """The outermost place in the table: the rim, or on a steep dome the place where sin(phi) is 0.75."""
     return min(1.0, PANELS[2] / max(curvature, 1e-9))
 
 
 def heights(curvature: float) -> tuple[float, float]:
-    """Range of the coordinate that stands for the height."""
+    """Range of the coordinate of the height."""
     return height_coordinate(HEIGHT[0], curvature), height_coordinate(HEIGHT[1], curvature)
 
 
 def height_coordinate(height: float, curvature: float) -> float:
-    """The coordinate that stands for a height."""
+    """The coordinate of a height."""
     return math.log(max(height - sag(curvature), WALL) + SOFTENED)
 
 
 def poisson_coordinate(nu: float) -> float:
-    """The coordinate that stands for Poisson's ratio: leather that does not change its volume is infinitely far off."""
+    """The coordinate of Poisson's ratio, infinite for an incompressible material."""
     return -math.log1p(-2 * nu)
 
 
@@ -90,15 +90,15 @@ LOG_HEAD_ON = (math.log(HEAD_ON_RADIUS[0]), math.log(HEAD_ON_RADIUS[1]))
 
 
 def half_space(nu: float, radius: Array) -> Array:
-    """E D times the normal and the tangential compliance of a Hertz-weighted patch on a half-space, (..., 2)."""
+    """E D times the normal and the tangential compliance of a Hertz-weighted patch on a half-space; (..., 2)."""
     parts = np.array([0.6 * (1 - nu**2), 0.3 * (1 - nu / 2) * 2 * (1 + nu)])
     return np.asarray(parts / np.asarray(radius)[..., None])
 
 
 def half_space_head_on(nu: float, radius: Array) -> Array:
-    """Force, over E D^2, and depth of contacts on a half-space with gaps p^2/2, p^2/2 and p^4/8; (..., 2, 3).
+    """Force over E D^2 and depth over D of contacts on a half-space with the gaps p^2/2, p^2/2 and p^4/8; (..., 2, 3).
 
-    A gap B p^n gives the depth k B a^n and the force 2 E/(1 - nu^2) n/(n + 1) k B a^(n + 1); k is 2 for n = 2 and 8/3
+    A gap B p^n has the depth k B a^n and the force 2 E/(1 - nu^2) n/(n + 1) k B a^(n + 1); k is 2 for n = 2 and 8/3
     for n = 4.
     """
     a = np.asarray(radius)[..., None]
@@ -122,7 +122,7 @@ class LeatherTable(NamedTuple):
 
 @cache
 def table() -> LeatherTable:
-    """The table that belongs to cuefem."""
+    """The package's table."""
     with np.load(Path(__file__).with_suffix(".npz")) as file:
         return LeatherTable(*(file[name].astype(float) for name in LeatherTable._fields))
 
@@ -140,8 +140,10 @@ Flat = tuple[float, float, float]  # a layer's height over D, Young's modulus ov
 
 
 class OwnTip(NamedTuple):
-    """A tip that the table does not hold, lengths over its diameter: the height of leather and layers, the dome's
-    curvature, the leather's Poisson's ratio, and the layers from the ferrule up."""
+    """A tip that the table does not cover, lengths over its diameter.
+
+    height: of leather and layers. curvature: of the dome. nu: of the leather. layers: from the ferrule up.
+    """
 
     height: float
     curvature: float
@@ -150,13 +152,13 @@ class OwnTip(NamedTuple):
 
 
 def covers(height: float, nu: float) -> bool:
-    """Whether the table has the height, over D, and Poisson's ratio of a tip."""
+    """Whether the table covers the height, over D, and Poisson's ratio of a tip."""
     return HEIGHT[0] * (1 - 1e-9) <= height <= HEIGHT[1] * (1 + 1e-9) and POISSON[0] <= nu <= POISSON[1]
 
 
 @lru_cache(maxsize=64)
 def of_tip(height: float, curvature: float, nu: float) -> TipTable:
-    """The table of one tip."""
+    """The table of one tip, interpolated."""
     panel, (patches, head) = panel_of(curvature), table()
     low, high = (steepness(end) for end in PANELS[panel : panel + 2])
     at = (
@@ -171,16 +173,16 @@ def of_tip(height: float, curvature: float, nu: float) -> TipTable:
 
 
 def reach(curvature: float, place: float) -> float:
-    """Radius of the patch around ``place`` that reaches the rim, in the tangent plane of its centre."""
+    """Distance from ``place`` to the rim, over D, in the tangent plane there."""
     here, rim = curvature * place / 2, curvature / 2
     return (0.25 - place**2 / 4) / (0.5 * math.sqrt(1 - here**2) + place / 2 * math.sqrt(1 - rim**2))
 
 
 def compliance(tip: TipTable, place: float, radius: Array) -> Array:
-    """E D times the compliance in (n, t) of Hertz-weighted patches, at radii up to 1/2; (radii, 2, 2).
+    """E D times the compliance in (n, t) of Hertz-weighted patches of radii up to 1/2; (radii, 2, 2).
 
-    Below the table's radii the half-space's compliance is added that lies between; of patches over the rim a part in
-    proportion to 1/radius, from the two smallest radii.
+    Below the table's radii the difference of a half-space's compliance is added; for patches over the rim a part in
+    proportion to 1/radius, extrapolated from the two smallest radii.
     """
     at = np.maximum(radius, RADIUS[0])
     matrices = _read(tip, place, at)
@@ -192,7 +194,7 @@ def compliance(tip: TipTable, place: float, radius: Array) -> Array:
 
 
 def _read(tip: TipTable, place: float, radius: Array) -> Array:
-    """E D times the compliance at radii that the table has."""
+    """E D times the compliance at radii within the table."""
     places, radii, _ = tip.patches.shape
     here = np.tensordot(weights(place**2, AXIS**2, farthest(tip.curvature) ** 2, places), tip.patches, 1)
     logarithms = weights(np.log(radius), *LOG_RADIUS, radii) @ here
@@ -202,12 +204,12 @@ def _read(tip: TipTable, place: float, radius: Array) -> Array:
 
 
 def rigid_patch_gain(nu: float, curvature: float, below: float, radius: Array) -> Array:
-    """E D times the compliance along t by which a rigid patch that sticks is stiffer than a Hertz-weighted one.
+    """E D times the difference in compliance along t between a Hertz-weighted patch and a rigid sticking one.
 
-    A sixth of the compliance on a half-space; less where the patch is wide beside the tip, and beside the leather's
-    height ``below`` it; more on a dome, whose edge of the patch moves less than its middle where the tip bends. Fitted
-    to the solid, on the axis (studies/beam/leather.md): the compliance of the rigid patch is right to 0.4 % for pool
-    tips (domes to nickel and dime, heights 0.3 to 0.7, nu 0.3 and more, radii 0.08 to 0.25).
+    On a half-space it is 1/6 of the compliance. It is less for a patch that is wide relative to the tip or to the
+    leather's height ``below`` it, and more on a dome, where the patch's edge moves less than its middle as the tip
+    bends. Fitted to the solid on the axis (studies/beam/leather.md): error of the rigid patch's compliance at most
+    0.4 % for pool tips (dome flat to dime, heights 0.3 to 0.7, nu 0.3 to 0.45, radii 0.08 to 0.25).
     """
     wide, thin = (2 * radius) ** 3, (radius / below) ** 2
     flat = (1 - (1.09 - 0.57 * nu) * wide) * (1 - 0.11 * thin / (1 + 0.26 * thin))
@@ -216,9 +218,9 @@ def rigid_patch_gain(nu: float, curvature: float, below: float, radius: Array) -
 
 
 def head_on(tip: TipTable, radius: Array, ball: float) -> Array:
-    """Force over E D^2 and depth over D of the contact with a ball of radius ``ball``, at the radii; (radii, 2)."""
+    """Force over E D^2 and depth over D of a central contact with a ball of radius ``ball``, by radius; (radii, 2)."""
     at = np.maximum(radius, HEAD_ON_RADIUS[0])
     ratio = np.tensordot(weights(np.log(at), *LOG_HEAD_ON, len(tip.head_on)), tip.head_on, 1)
-    ratio = ratio * (radius / at)[:, None, None]  # it goes to zero with the radius
+    ratio = ratio * (radius / at)[:, None, None]  # vanishes with the radius
     gaps = np.array([tip.curvature, 1 / ball, 1 / ball**3])
     return np.asarray((half_space_head_on(tip.nu, radius) * np.exp(ratio)) @ gaps)
