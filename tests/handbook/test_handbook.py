@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 from cuefem.design.worth import effect_kinds
-from cuefem.endmass.definitions import DEFINITIONS, end_mass
 from cuefem.handbook import CHAPTERS, LINES, chapters, effect_lines
 from cuefem.handbook.page import page
 from tests.helpers.command_line import said
@@ -103,12 +102,3 @@ def test_guide_with_invalid_arguments_exits_with_message(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     untouched(tmp_path, message, "guide", *arguments.split())
-
-
-def test_end_mass_chapter_and_docstring_list_every_definition() -> None:
-    """The chapter and the docstring of `end_mass` list every definition, in the order of the table."""
-    chapter = (ROOT / "cuefem" / "handbook" / "end_mass.md").read_text(encoding="utf-8")
-    assert re.findall(r"^- \*\*(\w+)\*\*", chapter, re.MULTILINE) == [*DEFINITIONS]
-    assert re.findall(r'^ +- "(\w+)": ', end_mass.__doc__ or "", re.MULTILINE) == [*DEFINITIONS]
-    numbers = {5: "five", 6: "six", 7: "seven"}
-    assert f"there are {numbers[len(DEFINITIONS)]} definitions" in chapter

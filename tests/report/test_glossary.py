@@ -34,11 +34,6 @@ def test_terms_in_headings_and_controls_have_no_button(tag: str) -> None:
     assert len(buttons(explained(f"{inside}<p>squirt</p>"))) == 1
 
 
-def test_term_repeated_in_section_has_one_button() -> None:
-    section = "<section><p>squirt, squirt</p><p>spin and squirt</p></section>"
-    assert [words for _, words in buttons(explained(2 * section))] == 2 * ["squirt", "spin"]
-
-
 @given(st.lists(st.sampled_from([*WORDS, "<p>", "</p>", "<b>", "</b>", " ", ", ", "the", "&amp;", "3 mm"])))
 def test_term_buttons_preserve_text(parts: list[str]) -> None:
     markup = "".join(parts)

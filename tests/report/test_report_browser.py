@@ -16,7 +16,7 @@ from cuefem.report.report_page import PAGE_OFFSETS, page
 from cuefem.report.squirt import squirt_record
 from cuefem.report.study_table import sweep_sheets
 from cuefem.report.templates import plain_page
-from tests.helpers.designer_browser import BROWSER, launched
+from tests.helpers.designer_browser import BROWSER, launched, watched
 
 pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
 axe = pytest.importorskip(
@@ -41,14 +41,8 @@ def browser() -> Iterator[Any]:
 
 @pytest.fixture
 def opened(browser: Any) -> Iterator[Any]:
-    context = browser.new_context(viewport={"width": 1280, "height": 900})
-    made = context.new_page()
-    messages: list[str] = []
-    made.on("console", lambda message: messages.append(message.text))
-    made.on("pageerror", lambda error: messages.append(str(error)))
-    yield made
-    context.close()
-    assert messages == []
+    with watched(browser) as page:
+        yield page
 
 
 def test_report_by_keyboard_shows_values_and_definitions_and_prints(opened: Any) -> None:
