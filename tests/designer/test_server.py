@@ -1,4 +1,4 @@
-"""The designer's command and server: what they refuse, what they let in, and how they end (bad input)."""
+"""The designer's command and server: rejected and accepted requests, errors (bad input)."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ import pytest
 
 pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
 import cuefem as cf
-from cuefem.designer.page import LARGEST_FILE, file_name
+from cuefem.designer.page import MAX_FILE, file_name
 from cuefem.designer.server import REJECTED, RequestValidation
 from tests.helpers.designer_browser import await_listening
 from tests.helpers.refusals import command_refuses
 
 OWN = "http://127.0.0.1:8470"
-PIECE = 1_000_000  # bytes of a body that come together
+PIECE = 1_000_000  # bytes of a chunk of a body
 
 
-def asked(kind: str, headers: dict[str, str], pieces: int = 0) -> tuple[list[dict[str, Any]], int]:
-    """What a request gets at the door of an application that reads it all and answers 200, and the bytes read."""
+def response_to(kind: str, headers: dict[str, str], pieces: int = 0) -> tuple[list[dict[str, Any]], int]:
+    """Messages sent for a request to an application that reads it all and answers 200, and the bytes read."""
     sent: list[dict[str, Any]] = []
     left = pieces
 
@@ -63,54 +63,54 @@ def asked(kind: str, headers: dict[str, str], pieces: int = 0) -> tuple[list[dic
 @pytest.mark.parametrize(
     "origin", ["http://elsewhere.example", "null", "http://127.0.0.1:9", "https://127.0.0.1:8470", ""]
 )
-def test_other_pages_are_refused(origin: str) -> None:
-    assert asked("websocket", {"origin": origin})[0] == [{"type": "websocket.close", "code": 1008}]
-    sent, read = asked("http", {"origin": origin}, 3)
+def test_request_of_other_page_is_rejected(origin: str) -> None:
+    assert response_to("websocket", {"origin": origin})[0] == [{"type": "websocket.close", "code": 1008}]
+    sent, read = response_to("http", {"origin": origin}, 3)
     assert (sent[0]["status"], read) == (403, 0)
 
 
 @pytest.mark.parametrize("headers", [{}, {"origin": OWN}, {"origin": "http://localhost:8470"}])
-def test_its_own_page_and_programs_are_let_in(headers: dict[str, str]) -> None:
-    assert asked("websocket", headers)[0] == [{"type": "websocket.accept"}]
-    sent, read = asked("http", headers, 5)
+def test_request_of_own_page_or_program_passes(headers: dict[str, str]) -> None:
+    assert response_to("websocket", headers)[0] == [{"type": "websocket.accept"}]
+    sent, read = response_to("http", headers, 5)
     assert (sent[0]["status"], read) == (200, 5 * PIECE)
 
 
-def test_a_big_body_is_refused_and_not_read() -> None:
-    sent, read = asked("http", {"content-length": "60000000"}, 60)
+def test_large_body_is_rejected_unread() -> None:
+    sent, read = response_to("http", {"content-length": "60000000"}, 60)
     assert (sent[0]["status"], sent[1]["body"], read) == (413, REJECTED.encode(), 0)
     for length in ("-1", "many", "9" * 400):
-        assert asked("http", {"content-length": length}, 1)[0][0]["status"] == 413
-    sent, read = asked("http", {}, 60)  # its length is not said
+        assert response_to("http", {"content-length": length}, 1)[0][0]["status"] == 413
+    sent, read = response_to("http", {}, 60)  # without content-length
     assert sent[0]["status"] == 413
-    assert read <= LARGEST_FILE + 2 * PIECE
+    assert read <= MAX_FILE + 2 * PIECE
 
 
 @pytest.mark.parametrize("name", [None, "", " ", ".", "..", "../..", "a\0.toml", "a\n.toml", "é" * 150 + ".toml"])
-def test_a_name_that_no_file_has(name: str | None) -> None:
+def test_invalid_file_name_raises(name: str | None) -> None:
     with pytest.raises(ValueError, match=r"^a file must have a name of at most 255 bytes; got "):
         file_name(name)
 
 
-def test_names() -> None:
+def test_file_name_drops_folders() -> None:
     assert file_name("../../etc/cue.toml") == "cue.toml"
     assert file_name("C:\\cues\\Löffel.toml") == "Löffel.toml"
 
 
-def test_without_the_library_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_designer_without_nicegui_names_install_command(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delitem(sys.modules, "cuefem.designer.server", raising=False)
     monkeypatch.setitem(sys.modules, "nicegui", None)
     command_refuses("the designer needs nicegui: pip install '.[designer]' in the clone", "designer", "--no-open")
 
 
-def test_a_cue_of_too_many_segments_is_refused(tmp_path: Path) -> None:
+def test_designer_with_too_many_segments_exits_with_message(tmp_path: Path) -> None:
     piece = cf.Segment(1.8e-3, 0.012, 0.012, cf.Material(12.6e9, 0.84e9, 700.0))
     cf.save(cf.Cue((piece,) * 301, body_mass=0.45), tmp_path / "many.toml")
     message = "many.toml: the designer takes a cue of at most 300 segments; got 301"
     command_refuses(message, "designer", "--no-open", tmp_path / "many.toml")
 
 
-def test_a_port_in_use() -> None:
+def test_designer_with_port_in_use_exits_with_message() -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
         message = f"--port {port} is not available"
@@ -119,7 +119,7 @@ def test_a_port_in_use() -> None:
 
 @pytest.mark.heavy
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows sends Ctrl-C to whole groups of processes")
-def test_ctrl_c_ends_it_quietly() -> None:
+def test_ctrl_c_stops_server_without_output() -> None:
     command = [sys.executable, "-m", "cuefem", "designer", "--no-open", "--port", "0"]
     outside = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST")}
     running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=outside)
