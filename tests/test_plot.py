@@ -1,4 +1,4 @@
-"""Figures for researchers: axes with what the numbers say (properties)."""
+"""Figures for researchers: the drawn lines agree with the functions (properties)."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -28,7 +28,7 @@ def line(axes: Axes, i: int = 0) -> tuple[np.ndarray, np.ndarray]:
     return np.asarray(x), np.asarray(y)
 
 
-def test_a_shaft_is_as_long_and_wide_as_drawn() -> None:
+def test_shaft_figure_has_drawn_dimensions() -> None:
     axes = cf.plot.shaft(SCENE)
     assert axes.get_xlim()[1] == pytest.approx(736.6, rel=1e-12)
     corners = np.concatenate([path.vertices for made in axes.collections for path in made.get_paths()])
@@ -37,7 +37,7 @@ def test_a_shaft_is_as_long_and_wide_as_drawn() -> None:
     assert len(colours) == 4  # leather, ferrule, wood, and the bore
 
 
-def test_modes_are_those_of_the_cue() -> None:
+def test_modes_figure_lists_frequencies_of_cue() -> None:
     axes = cf.plot.modes(HOLLOW, 3)
     named = [text.get_text() for text in axes.get_legend().get_texts()]
     assert named == [f"{f:.0f} Hz" for f in cf.modes(HOLLOW, 3).frequencies]
@@ -46,7 +46,7 @@ def test_modes_are_those_of_the_cue() -> None:
     assert [text.get_text() for text in held.get_legend().get_texts()] != named
 
 
-def test_squirt_is_that_of_strikes_and_ends_at_a_miscue() -> None:
+def test_squirt_figure_equals_strikes_and_ends_at_miscue() -> None:
     axes = cf.plot.squirt({"hollow": SCENE}, [0.0, 0.3, 0.8], at=AT)
     x, y = line(axes)
     assert x.tolist() == [0.0, 0.3, 0.8]
@@ -55,7 +55,7 @@ def test_squirt_is_that_of_strikes_and_ends_at_a_miscue() -> None:
     assert line(axes, 1)[0].tolist() == [0.8]
 
 
-def test_forces_add_up_to_the_impulse() -> None:
+def test_forces_figure_integrates_to_impulse() -> None:
     outcome = cf.strike(SCENE, AT)
     for axes in (cf.plot.forces(outcome), cf.plot.forces(SCENE, at=AT)):
         for i, part in enumerate(outcome.impulse[::-1]):
@@ -65,13 +65,13 @@ def test_forces_add_up_to_the_impulse() -> None:
         cf.plot.forces(cf.impulse(cf.Scene(cf.LumpedCue(0.5, 0.006))))
 
 
-def test_where_end_mass_lives_behind_a_leather_tip() -> None:
-    """As of the ferrule's end with the tip's contact time; the title says what is left out."""
+def test_end_mass_figure_behind_leather_tip_equals_bare_shaft() -> None:
+    """With the tip's contact time; the title states the excluded mass of the leather."""
     scene = cf.usual_scene(SCENE.shaft)
     axes = cf.plot.end_mass(scene, at=AT)
     bare = cf.Scene(scene.cue, scene.ball, replace(scene.tip, contact_time=scene.contact_time), scene.stroke)
     np.testing.assert_allclose(line(axes)[1], line(cf.plot.end_mass(bare, at=AT))[1], rtol=1e-12)
     assert axes.get_title().endswith(" g of its leather")
     assert "without" not in cf.plot.end_mass(bare, at=AT).get_title()
-    with pytest.raises(ValueError, match=r"takes a scene without effects, LeatherTip apart; got TipDome"):
+    with pytest.raises(ValueError, match=r"takes a scene without effects other than LeatherTip; got TipDome"):
         cf.plot.end_mass(replace(SCENE, effects=(cf.TipDome(0.0095),)))

@@ -93,7 +93,7 @@ def test_study_result_has_designs_responses_units_best_and_spread(tmp_path: Path
     assert best.scene.cue.segments[0].tip_bore == best.values["bore"]
     assert set(found.best) == {"end_mass", "tip_stiffness"}
     assert found.spread["end_mass"]["5 %"] < found.spread["end_mass"]["mean"] < found.spread["end_mass"]["95 %"]
-    assert repr(found).splitlines()[0] == "StudyResult(sweep of 64 designs, 16 without an answer)"
+    assert repr(found).splitlines()[0] == "StudyResult(sweep of 64 designs, 16 failed)"
     again = cf.study(tmp_path / "study.toml", store=tmp_path / "some.sqlite", workers=1)  # all designs are stored
     assert again.rows == found.rows
 
