@@ -1,1 +1,1 @@
-"""What the former engine answered: the data, how they were made, and how a test reads them."""
+"""Stored answers of the former engine, and the code that reads them for tests."""

@@ -1,9 +1,9 @@
-"""Reads the stored answers of the former engine: strikes with their inputs, end masses and frequencies.
+"""Reader of the stored answers of the former engine: strikes with their inputs, end masses and frequencies.
 
-They were made once, by tests/data/make.py of commit e00ebcc with the engine of commit 1e8a581: collocation of order 14,
-rings solved to 1e-9, scenes drawn at random over every law and effect, 20 of a kind. They are not made again.
-A strike is stored with the numbers that its contact is given: the tip modes, and the terms of a leather tip's law. So a
-test compares the contact alone; a change of mesh or of the tip's elasticity does not reach it.
+tests/data/make.py of commit e00ebcc computed them with the engine of commit 1e8a581 (collocation of order 14, rings
+solved to 1e-9) for random scenes over every law and effect, 20 of each kind. Never regenerate them.
+A strike is stored with the inputs of its contact, the tip modes and the terms of a leather tip's law. A test therefore
+compares only the contact; changes of the mesh or of the tip's elasticity have no effect on it.
 """
 
 from __future__ import annotations

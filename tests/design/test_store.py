@@ -170,7 +170,7 @@ def test_edited_study_computes_only_new_designs(tmp_path: Path) -> None:
 def test_study_of_other_version_computes_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     study = written(tmp_path, GRID)
     assert [record_of(study)["evaluated"], record_of(study)["evaluated"]] == [8, 0]
-    monkeypatch.setattr("cuefem.io.store.code", lambda: "another")
+    monkeypatch.setattr("cuefem.io.store.code_digest", lambda: "another")
     assert record_of(study)["evaluated"] == 8
 
 
