@@ -111,7 +111,7 @@ def test_an_effect_at_the_tip() -> None:
     assert split.squirt == pytest.approx(whole.squirt, rel=1e-9)
     assert whole.squirt != cf.strike(struck(*others, cf.TipDome(0.007)), AT).squirt
     assert struck(cap(0.002)).bare == struck()
-    with pytest.raises(ValueError, match="takes a tip without give sideways, a fixed normal and a single"):
+    with pytest.raises(ValueError, match="takes a tip without tangential compliance, a fixed normal"):
         cf.strike(struck(cap(0.0, give=1.0), cf.Elevation(0.1)), AT)
     with pytest.raises(ValueError, match=r"Scene\.effects must give the contact one window for a second hit; got"):
         struck(cf.SecondHit(), cap(0.0, window=1e-3))

@@ -1,4 +1,4 @@
-"""From a scene's contact terms to the law and the numbers that the kernel takes; what no contact can do is refused."""
+"""The contact model: from a scene's contact terms to the kernel's input; combinations that cannot act are rejected."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from cuefem.effects.contact_settings import ContactTerms, HeadOn, WholeTip
 from cuefem.effects.force_law import LeatherLaw, TipLaw
 from cuefem.scene import Scene
 
-# A tip of a small restitution e unloads 1/e times as fast as it loads, and takes as many steps. Such tips are refused
-# below the first number, and leather, which rings on the ball then, below the second.
+# A tip of small restitution e unloads 1/e times as fast as it loads, and takes as many steps. Lower bounds of spring
+# tips and of leather, which vibrates on the ball below its bound.
 MIN_RESTITUTION, MIN_LEATHER_RESTITUTION = 0.05, 0.1
-ANNULI, TABLE_MARGIN = 120, 1.05  # even in the root of the indentation, up to so many times a head-on blow's greatest
+ANNULI, TABLE_MARGIN = 120, 1.05  # annuli uniform in the root of the indentation, up to 1.05 of a central impact's
 RIGID_PATCH, SPRING_PATCH, PARTIAL_SLIP = range(3)
 
 
@@ -68,7 +68,7 @@ class ContactModel:
 
     @property
     def jams(self) -> bool:
-        """Whether slip at the first touch drives the contact's normal velocity further in."""
+        """Whether slip at the first touch increases the normal approach velocity (jam)."""
         B = self.inverse_mass
         return bool(B[1, 1] + self.friction * B[0, 1] < 0)
 
@@ -82,7 +82,7 @@ class ContactModel:
 
     @property
     def unknowns(self) -> int:
-        """Of the model: the modes' displacements and velocities, the ball's, and the states of the tip."""
+        """Number of state variables: modal displacements and velocities, the ball's, and the tip's."""
         omega = self.propagator.omega
         forces = len(self.kinematics)
         turns, gives = bool(self.terms.get("rolling")), self.patch != RIGID_PATCH
@@ -91,9 +91,9 @@ class ContactModel:
 
 
 def model_of(scene: Scene, tip: TipModes) -> ContactModel:
-    """The contact of a scene at an offset >= 0, a negative one being its mirror image.
+    """The contact of a scene at an offset >= 0; a negative one is its mirror image.
 
-    ValueError for what no contact honours together, and for a tip of too low a restitution.
+    ValueError for effects that cannot act together, and for a restitution below its bound.
     """
     offset, terms = scene.stroke.offset, scene.contact_terms
     tip = tip if offset else tip.uncoupled
@@ -114,12 +114,12 @@ def model_of(scene: Scene, tip: TipModes) -> ContactModel:
     )
     raised = terms.table is not None
     if raised and (terms.compliance or terms.turns or terms.window is not None or terms.tip is not None):
-        raise ValueError("a raised cue (Elevation) takes a tip without give sideways, a fixed normal and a single hit")
+        raise ValueError("Elevation takes a tip without tangential compliance, a fixed normal and a single hit")
     model |= _power_tip(scene, terms, model) if terms.tip is None else _leather(scene, terms.tip, model)
     if model["patch"] == RIGID_PATCH and terms.window is not None and math.isinf(model["friction"]):
         raise ValueError(
-            "Tip.friction must be finite beside SecondHit, or the tip give along the surface (TipShear, LeatherTip): "
-            "the blows of endless friction throw ball and tip apart again and again; got inf"
+            "Tip.friction must be finite beside SecondHit, unless the tip has tangential compliance (TipShear, "
+            "LeatherTip): impacts of infinite friction separate ball and tip again and again; got inf"
         )
     (u, w), dome, rim = terms.lever(model["phi"]), terms.dome_radius, math.inf if terms.tip is None else terms.tip.rim
     if raised and (u or w):
@@ -179,7 +179,7 @@ def check_restitution(name: str, restitution: float, least: float = MIN_RESTITUT
     """ValueError for a restitution near 0."""
     if restitution < least:
         raise ValueError(
-            f"{name} must be in [{least:g}, 1] where a contact is followed in time; got {restitution:g} "
+            f"{name} must be in [{least:g}, 1] for a contact computed in time; got {restitution:g} "
             "(cuefem.impulse takes any)"
         )
 
@@ -203,7 +203,7 @@ def _leather(scene: Scene, whole: WholeTip, common: dict[str, Any]) -> dict[str,
 
 
 def _power_tip(scene: Scene, terms: ContactTerms, common: dict[str, Any]) -> dict[str, Any]:
-    """What a tip with a power law gives a contact, the effects' or the linear one; its patch is rigid or a spring."""
+    """The terms of a power-law tip, that of an effect or the linear one; its patch is rigid or a spring."""
     law, time = TipLaw(float(scene.stiffness), 1.0, common["restitution"]), float(common["time"])
     if terms.law is not None:
         law, time = terms.law(HeadOn(scene.head_on_mass, common["restitution"], time, common["speed"]))
@@ -219,5 +219,5 @@ def _power_tip(scene: Scene, terms: ContactTerms, common: dict[str, Any]) -> dic
 
 
 def power_law(law: TipLaw) -> dict[str, float]:
-    """A power law as the kernel takes it."""
+    """Kernel fields of a power law."""
     return {"stiffness": float(law.stiffness), "exponent": float(law.exponent)}

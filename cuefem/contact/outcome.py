@@ -1,4 +1,4 @@
-"""What a contact leaves behind: its phases, the forces at any time of it, and the state of the contact."""
+"""Results of a contact: its phases, force and velocity histories, and the contact state."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from numpy.typing import ArrayLike
 from cuefem.cue import Array
 from cuefem.scene import Outcome, equal_fields
 
-# Parts of the normal impulse that are given while the tip slips. Above the first it is gross slip. Above the second in
-# all, or the third without a break up to the end, squirt grows fast, and this is a miscue. Both are needed: a bare tip
-# that slid through the first 79 % and then held squirts a fifth more than closer to the centre (after 46 % hardly
-# more), and leather that slid through the last 39 % three quarters more.
+# Shares of the normal impulse during slip. Gross slip: above the first. Miscue: above the second in all, or the third
+# without a break up to the end; squirt then grows fast. Both are needed: a bare tip that slips through the first 79 %
+# and then sticks squirts 20 % more than closer to the centre (after 46 % hardly more), and leather that slips through
+# the last 39 % squirts 75 % more.
 GROSS_SLIP_SHARE, MISCUE_SHARE, MISCUE_SHARE_AT_END = 0.25, 0.5, 1 / 3
 # Friction loss over the ball's kinetic energy above which parts of a patch slip through much of the impulse: squirt of
 # a leather tip, in proportion to b/R closer to the centre, is then 7 to 15 % above that line and rises fast.
 PARTIAL_SLIP_LOSS = 0.05
 SLIP_STATES = ("slip", "slip back")
-# The grip of a blow, and grip and press of a flight, in which ball and tip are apart before they touch again.
+# State of an impact of infinite friction; state and normal phase between separation and a second hit.
 IMPACT, SEPARATION = "blow", ("apart", "free")
 
 
@@ -32,10 +32,10 @@ class Phase(NamedTuple):
     Attributes
     ----------
     grip : str
-        "slip", "stick" or "slip back"; "blow" for the blow of endless friction, "apart" between two hits. A patch of
-        rings (`LeatherTip`) slips where all of them slide.
+        Friction state: "slip", "stick" or "slip back"; "blow" for the impact of infinite friction, "apart" between two
+        hits. A patch of annuli (`LeatherTip`) slips where all of them slip.
     press : str
-        How the tip is pressed: "load", "unload", "free" between two hits.
+        Normal phase: "load", "unload", or "free" between two hits.
     start, end : float
         Times from first touch, s.
     impulse : tuple of float
@@ -96,7 +96,7 @@ class History:
         """Interpolate the steps by straight lines."""
         time = np.asarray(time, float)
         if len(self.ends) < 2:
-            raise ValueError("History takes times in [0, duration] s; this contact is a blow, without any")
+            raise ValueError("History takes times in [0, duration] s; this contact is an impact of zero duration")
         if not np.all((time >= 0) & (time <= self.duration * (1 + 1e-12))):
             raise ValueError(f"History takes times in [0, {self.duration}] s, the contact's; got {time}")
         named = {"force": (self.middles, self.forces), "velocity": (self.ends, self.velocities)}
@@ -108,9 +108,9 @@ class History:
 
 
 def contact_state(phases: Sequence[Phase], energy: Mapping[str, float]) -> str:
-    """The state of a contact, by its phases and energies (J): the `regime` of its outcome.
+    """The contact state from phases and energies, J: the `regime` of an outcome.
 
-    Soft leather takes up its load along the ball slowly, so that it sticks at every offset at first and slips only
+    The tangential force of soft leather builds up slowly, so that it sticks at first touch at every offset and slips
     later.
     """
     state = end_of_first_slip(phases)
@@ -126,14 +126,14 @@ def contact_state(phases: Sequence[Phase], energy: Mapping[str, float]) -> str:
 
 
 def slips_at_end(outcome: Outcome) -> bool:
-    """Whether the tip slips through the last third of the normal impulse: then friction makes squirt, not the cue."""
+    """Whether the tip slips through the last third of the normal impulse: squirt then depends on friction alone."""
     if outcome.duration is None:  # of the impulse solver, which has no phases in time
         return bool(outcome.regime == "miscue")
     return _slip_shares(outcome.phases)[1] > MISCUE_SHARE_AT_END
 
 
 def _slip_shares(phases: Sequence[Phase]) -> tuple[float, float]:
-    """Parts of the normal impulse that are given while the tip slips: in all, and without a break up to the end."""
+    """Shares of the normal impulse during slip: in all, and without a break up to the end."""
     given = [(phase.grip in SLIP_STATES, abs(phase.impulse[1])) for phase in phases]
     whole = sum(impulse for _, impulse in given) or 1.0
     last = takewhile(lambda each: each[0] or each[1] < 1e-3 * whole, reversed(given))
@@ -141,7 +141,7 @@ def _slip_shares(phases: Sequence[Phase]) -> tuple[float, float]:
 
 
 def end_of_first_slip(phases: Sequence[Phase]) -> str:
-    """How the slip at the first touch ended, in the words of the impulse solver."""
+    """How the slip at first touch ended, by the regimes of the impulse solver."""
     first_touch = list(takewhile(lambda phase: phase[:2] != SEPARATION, phases))
     held = next((i for i, phase in enumerate(first_touch) if phase.grip != "slip"), None)
     if held is None:

@@ -1,4 +1,4 @@
-"""A contact solved: the kernel takes its steps, and their records become phases, losses, a history and an outcome."""
+"""Solution of a contact: kernel steps, and from their records phases, losses, history and outcome."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ NORMAL_PHASES = ("load", "unload", "free")
 # (tests/contact/test_stored_answers.py).
 STEPS = 400
 INFINITE_FRICTION = 1e12  # friction, as the kernel takes it
-STEPS_PER_CALL = 2048  # steps that the kernel takes at a call
-MAX_CONTACT_TIMES = 200  # head-on contact times, after which a contact is given up
-MAX_RECORDED_STEPS = 2_000_000  # steps that a strike is followed for, 0.4 GB of records
+STEPS_PER_CALL = 2048  # of the kernel
+MAX_CONTACT_TIMES = 200  # without separation, after which the strike raises an error; head-on contact times
+MAX_RECORDED_STEPS = 2_000_000  # 0.4 GB of records
 _RUNNING, _ENDED, _, _INDENTATION_OUT_OF_RANGE, _SLOPE_OUT_OF_RANGE, _UNSOLVED, _NO_MEMORY = range(7)
 
 
@@ -37,11 +37,11 @@ Steps = NDArray[np.void]
 
 @dataclass(frozen=True, eq=False)
 class SolvedContact:
-    """A contact that is over.
+    """The solution of a contact.
 
-    steps: its records (`STEP`) up to the last separation. course: (steps + 1, coordinates), the modes' coordinates
-    before and after each; None where they were not asked for. xi: these at the end. ball: its velocities there, m/s
-    (raised: and its spins times R). losses: J by name.
+    steps: records (`STEP`) up to the last separation. course: (steps + 1, coordinates), modal coordinates before and
+    after each step; None unless stored. xi: final modal coordinates. ball: its final velocities, m/s (raised: also R
+    times its spins). losses: J by name.
     """
 
     model: ContactModel
@@ -58,19 +58,19 @@ class SolvedContact:
 
     @property
     def impulse(self) -> tuple[float, float]:
-        """The momentum (t, n) of the ball after the contact, N s: the impulse on it if it was at rest before."""
+        """Final momentum (t, n) of the ball, N s: the impulse on a ball initially at rest."""
         p_t, p_n = self.model.momentum(self.ball).tolist()
         return p_t, p_n
 
     @property
     def velocity(self) -> tuple[float, float]:
-        """Of ball against tip (t, n) as they part, m/s."""
+        """Velocity of the ball relative to the tip (t, n) at separation, m/s."""
         v_t, v_n = self.steps["v"][-1, :2].tolist()
         return v_t, v_n
 
     @property
     def cue_energy(self) -> tuple[float, float]:
-        """Of the cue's rigid motions and of its vibration, J."""
+        """Energies of the cue's rigid-body modes and of its vibration, J."""
         propagator = self.model.propagator
         stretched, moving = (propagator.displacements @ self.xi).real, (propagator.velocities @ self.xi).real
         rigid = propagator.omega == 0
@@ -79,7 +79,7 @@ class SolvedContact:
 
     @cached_property
     def phases(self) -> tuple[Phase, ...]:
-        """Runs of steps with one grip and one press, each from the end of the one before."""
+        """Runs of steps in one friction state and one normal phase."""
         steps, model = self.steps, self.model
         grip, press = steps["friction_state"], steps["phase"]
         ends = np.append(np.flatnonzero(np.diff(8 * grip + press)), len(steps) - 1)
@@ -141,7 +141,7 @@ class SolvedContact:
         )
 
     def _regime(self, energy: dict[str, float]) -> str:
-        if self.time == 0:  # thrown apart by the blow of endless friction, which stopped the slip at last or did not
+        if self.time == 0:  # separated by the impact of infinite friction, which stopped the slip or did not
             return "late stick" if abs(self.velocity[0]) <= 1e-12 * self.model.speed else "miscue"
         return contact_state(self.phases, energy)
 
@@ -168,7 +168,7 @@ class SolvedContact:
 
 
 def solve_contact(model: ContactModel, *, steps: int | None = None, keep_states: bool = False) -> SolvedContact:
-    """Follow a contact from touch to separation, and what comes after it within its window.
+    """Solve a contact from first touch to separation, and through the window of a second hit.
 
     steps: per central-impact contact time. keep_states: store the modal coordinates after every step. RuntimeError if
     the ball does not separate; ValueError where leather or a bent shaft leave the range of their theory.
@@ -250,7 +250,7 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, keep_states:
 
 
 def _failure(model: ContactModel, c: KernelContact) -> Exception:
-    """What a contact that did not end reports."""
+    """The error of a contact that did not end."""
     if c.status == _NO_MEMORY:
         return MemoryError("no memory for the steps of a contact")
     if c.status == _INDENTATION_OUT_OF_RANGE and isinstance(model.law, LeatherLaw):

@@ -20,16 +20,16 @@ BATCH_FIELDS = ("squirt", "ball_velocity", "ball_speed", "spin", "cue_speed", "i
 
 
 def strike(scene: Scene, at: Resolution | Solid | None = None) -> Outcome:
-    """Strike a ball with a vibrating cue, and follow the contact in time.
+    """Strike a ball with a vibrating cue and compute the contact in time.
 
     Parameters
     ----------
     scene : Scene
         What is there and which physics acts.
     at : Resolution or Solid, optional
-        How finely the cue is computed: the plain sum over the modes asked for, of a beam or of a solid. By default
-        modes of a beam are kept by frequency and completed, so that squirt is within 0.1 % for 95 % of default
-        strikes (what was measured: studies/accuracy/accuracy.md). A lumped cue needs none.
+        Resolution of the cue: a truncated sum over the requested modes of a beam or a solid. By default the modes of a
+        beam are chosen by frequency and the truncated ones corrected, so that squirt is within 0.1 % for 95 % of
+        default strikes (studies/accuracy/accuracy.md). A lumped cue needs none.
 
     Returns
     -------
@@ -41,16 +41,16 @@ def strike(scene: Scene, at: Resolution | Solid | None = None) -> Outcome:
     Raises
     ------
     ValueError
-        For effects that no contact honours together, or a restitution below 0.05 (0.1 beside
-        `LeatherTip`); `cuefem.impulse` takes any.
+        For effects that cannot act together, or a restitution below 0.05 (0.1 beside `LeatherTip`); `cuefem.impulse`
+        takes any.
     RuntimeError
-        If the ball does not leave the cue.
+        If the ball does not separate from the cue.
 
     Notes
     -----
     The cue's modes, the tip and the ball are one system. Over a step the forces of the contact are constant, and the
-    modes answer them exactly; the tip's law is taken at mid-step and friction is a return mapping (Moreau 1988, Jean
-    1999). Second order in the step; what the default steps leave: handbook: The contact.
+    modes answer them exactly; the force-indentation law acts at mid-step and friction is a return mapping (Moreau 1988,
+    Jean 1999). Second order in the step; the error of the default steps: handbook: The contact.
 
     Examples
     --------
@@ -69,12 +69,12 @@ def strike(scene: Scene, at: Resolution | Solid | None = None) -> Outcome:
 
 
 def steps_of(at: Resolution | Solid | None) -> int | None:
-    """The steps that a resolution asks for; None for the default."""
+    """Steps of a resolution; None for the default."""
     return at.steps if isinstance(at, Resolution) else None
 
 
 def strike_modes(scene: Scene, tip: TipModes, *, steps: int | None = None) -> Outcome:
-    """The coupled strike of a cue that is given by its tip modes, as `strike`; steps: `Resolution.steps`.
+    """The strike of a cue represented by its tip modes, as `strike`; steps: `Resolution.steps`.
 
     Strikes with the same tip modes share what belongs to the cue.
     """
@@ -82,21 +82,21 @@ def strike_modes(scene: Scene, tip: TipModes, *, steps: int | None = None) -> Ou
 
 
 def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None) -> Outcome:
-    """Strike many balls with vibrating cues: the numbers of `cuefem.strike`, as arrays.
+    """Strike many balls with vibrating cues: the results of `cuefem.strike` as arrays.
 
     Parameters
     ----------
     scenes
-        One scene a strike, of any cues and effects. The modes of scenes that differ in ball, tip and stroke alone are
-        solved once, as long as the same resolution is meant for them.
+        One scene a strike, of any cues and effects. Scenes that differ only in ball, tip and stroke share their modes
+        at the same resolution.
     at
         As in `cuefem.strike`, for all; by default each scene's own.
 
     Returns
     -------
     Outcome
-        Every field an array with one entry a scene, vectors (scenes, 2). ``energy`` has every name that a scene has,
-        zero where another one has none. ``phases`` and ``history`` are left out, ``unknowns`` is the largest.
+        Every field an array with one entry a scene, vectors (scenes, 2). ``energy`` has the names of all scenes, zero
+        where a scene lacks one. ``phases`` is empty, ``history`` None, ``unknowns`` the maximum.
 
     Raises
     ------
@@ -107,7 +107,7 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None) -> Outco
 
     Notes
     -----
-    What a strike costs beside its modes is in studies/accuracy/speed.md.
+    Times of strikes and modes: studies/accuracy/speed.md.
 
     Examples
     --------
@@ -138,7 +138,7 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None) -> Outco
 
 
 def _modes_of(scene: Scene, at: Resolution | None) -> tuple[Any, ...]:
-    """What the tip modes of a scene depend on."""
+    """Inputs that determine the tip modes of a scene."""
     if scene.lumped is not None:
         return (scene.lumped,)
     return scene.cue, scene.cue_effects, float(scene.axial_mass), turning(scene), at or strike_modes_kept(scene)

@@ -1,4 +1,4 @@
-"""Where cue and ball are at any time of a strike and after it.
+"""Motion of cue and ball at any time of a strike and after it.
 
 Over a step the contact's forces are constant and the modes answer them exactly, so the motion is known at every time
 from the states at the ends of the steps.
@@ -42,14 +42,14 @@ class Motion:
     fields : (unknowns, n) array
         The beam's motion, in the unknowns of ``modes``; `deflection` reads it anywhere.
     along : (n,) array
-        Way of the tip along the cue, m. Waves in the shaft's length (`AxialWaves`) are in it, and what a bent shaft is
-        shorter by (`GeometricStiffness`); their shape along the shaft is not given.
+        Axial displacement of the tip, m, with axial waves (`AxialWaves`) and the shortening of the bent shaft
+        (`GeometricStiffness`); neither is resolved along the shaft.
     centre : (n, 2) array
         The ball's centre (u, w), m.
     turned : (n,) array
-        Angle that the ball has turned through about u x w, rad.
+        Rotation of the ball about u x w, rad.
     force : (n, 2) array
-        Force on the ball (u, w), N; zero where endless friction gives a blow.
+        Force on the ball (u, w), N; zero for an impact of infinite friction.
     """
 
     times: Array
@@ -81,7 +81,7 @@ class Motion:
 
 
 def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Motion:
-    """Follow cue and ball through a strike and after it.
+    """Compute the motion of cue and ball during a strike and after it.
 
     Parameters
     ----------
@@ -99,14 +99,14 @@ def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Moti
     Raises
     ------
     ValueError
-        For a lumped cue, which has no shape; for a raised one (`Elevation`), which leaves the plane; for times that do
-        not ascend.
+        For a lumped cue, which has no shape; for a raised cue (`Elevation`), which moves out of the plane; for times
+        that do not ascend.
 
     Notes
     -----
     u points along the cue in the direction of the stroke and w across it, to the side that is struck at a positive
-    offset; the origin is the tip's centre at first touch. Between the contact's forces the modes turn exactly, so that
-    the motion is as accurate as the strike at every time.
+    offset; the origin is the tip's centre at first touch. The modes are integrated exactly between the contact's
+    forces, so that the motion is as accurate as the strike at every time.
 
     Examples
     --------

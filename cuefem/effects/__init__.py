@@ -1,7 +1,7 @@
-"""Opt-in physics: an effect is a frozen dataclass that adds its term; a scene that lists none pays nothing.
+"""Optional physics: an effect is a frozen dataclass that adds its terms; effects that a scene omits cost nothing.
 
-Every effect adds to what is there and overwrites nothing, so their order does not matter. Each docstring has the same
-five notes: what the effect adds, when it matters, when it is wrong, the limit in which it vanishes, and its source.
+Effects add terms and overwrite none, so their order does not matter. Each docstring has five notes: what the effect
+adds, when it matters, when it is wrong, the limit in which it vanishes, and its source.
 """
 
 from cuefem.effects.at_tip import PowerLawTip, RollingContact, TipDome, TipShear

@@ -13,7 +13,7 @@ from cuefem.quantity.fields import Quantity
 
 @dataclass(frozen=True)
 class TipDome(TipEffect):
-    """The round end of the tip: the contact lies off the cue's axis, so that a force along the axis bends the shaft.
+    """The round end of the tip: the contact lies off the cue's axis, so that an axial force bends the shaft.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ class TipDome(TipEffect):
 
     Matters when: Always. In a contact of 1 ms a dome of 9 mm raises squirt by 10 % (carbon) to 63 % (Kim's shaft) at
     b/R 0.02, by 28 to 75 % at 0.3.
-    A plain sum over modes then converges very slowly.
+    A truncated modal sum then converges very slowly.
 
     Wrong when: The leather shears or flattens so much that its surface does not follow the end section.
 
@@ -55,7 +55,7 @@ class TipDome(TipEffect):
     radius: Annotated[float, Quantity("m", "[0, inf)").usually(0.005, 0.02)]
 
     def add_to_contact(self, terms: ContactTerms) -> None:
-        """The dome: the levers of two domes add, and so do their radii."""
+        """The dome: moment arms and radii of two domes add."""
         terms.add_dome(self.radius)
 
 
@@ -71,13 +71,13 @@ class TipShear(TipEffect):
 
     Notes
     -----
-    Adds: One state, the force of a lossless spring along the surface, whose size Coulomb friction limits to mu F_n.
+    Adds: One state, the force of a lossless tangential spring, which Coulomb friction limits to mu F_n.
 
     Matters when: The strike is off centre. At first touch F_t/F_n is ratio tan(phi), so the tip does not slip at first
     as long as that is below mu. Squirt falls strongly as the ratio falls.
 
-    Wrong when: The leather is no perfect spring, part of the contact patch slips while the rest sticks, or a leather
-    segment drawn into the cue gives way sideways as well.
+    Wrong when: The leather dissipates tangential work, part of the contact patch slips while the rest sticks, or a
+    leather segment drawn into the cue adds lateral compliance.
 
     Limit: The effect vanishes as 1/ratio as the ratio goes to infinity. With infinite friction it does not, because
     nothing damps the vibration of the patch there.
@@ -98,13 +98,13 @@ class TipShear(TipEffect):
     ratio: Annotated[float, Quantity("", "(0, inf)")]
 
     def add_to_contact(self, terms: ContactTerms) -> None:
-        """The patch's spring: springs in series, so that compliances add."""
+        """The tangential spring; compliances of springs in series add."""
         terms.add_compliance(1 / self.ratio)
 
 
 @dataclass(frozen=True)
 class PowerLawTip(TipEffect):
-    """A tip that stiffens as it is compressed: its force is a power of the compression.
+    """A tip that stiffens with indentation: its force is a power of the indentation.
 
     Parameters
     ----------
@@ -115,16 +115,16 @@ class PowerLawTip(TipEffect):
 
     Notes
     -----
-    Adds: While the tip is loaded its force is F = k' d^exponent instead of k d. The constant k' is chosen such that a
-    head-on stroke at `speed` has the tip's contact time. The tip unloads on the same curve with its compression scaled
-    by e^2, F = F_peak ((d - d0)/(e^2 d_peak))^exponent with d0 = (1 - e^2) d_peak, which returns exactly the part e^2
-    of the work; below the old peak it is loaded again on that curve. A `TipShear` keeps its constant spring, ratio
+    Adds: During loading the force is F = k' d^exponent instead of k d. The constant k' makes the contact time of a
+    central impact at `speed` that of the tip. The tip unloads on the same curve with the indentation scaled by e^2,
+    F = F_peak ((d - d0)/(e^2 d_peak))^exponent with d0 = (1 - e^2) d_peak, which returns exactly the part e^2 of the
+    work; below the former peak it reloads on that curve. A `TipShear` keeps its constant spring, ratio
     times the base model's k.
 
     Matters when: The speed of the stroke varies. The contact time falls with the speed as U^((1 - exponent)/(1 +
     exponent)), and squirt falls with it.
 
-    Wrong when: The restitution itself falls with speed, or the leather is compressed so far that it bottoms out.
+    Wrong when: The restitution falls with speed, or the indentation approaches the height of the leather.
 
     Limit: The effect vanishes as the exponent goes to 1.
 
@@ -156,7 +156,7 @@ class PowerLawTip(TipEffect):
 
 @dataclass(frozen=True)
 class RollingContact(TipEffect):
-    """The contact point moves over ball and tip while they touch, and the direction of the contact turns with it.
+    """The contact point rolls over ball and tip, which turns the direction of the contact.
 
     Notes
     -----
@@ -167,8 +167,8 @@ class RollingContact(TipEffect):
     Matters when: The stroke is fast. The effect is small: squirt and spin change in proportion to U T/R, by about 1 %
     at 1 m/s and 1 ms.
 
-    Wrong when: The leather gives so far, or is so wide, that its contact is no point. The compression is neglected
-    beside R + r, which changes the effect itself by a part of the order U T/R, and so is the turning of the cue.
+    Wrong when: The contact patch is not small. The indentation is neglected beside R + r, a relative error of the
+    effect of the order U T/R, and so is the rotation of the cue.
 
     Limit: The effect vanishes in proportion to U T/R, as the stroke becomes slow or the contact short.
 

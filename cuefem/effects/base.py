@@ -1,4 +1,4 @@
-"""What every effect is, and what a scene asks of its effects together."""
+"""The base classes of effects, and the checks of a scene's effects together."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from cuefem.effects.axial import RodModes
     from cuefem.effects.contact_settings import ContactTerms
 
-# Positions are on the cue up to this part of its length: a sum of lengths differs from their total by rounding.
+# Tolerance of positions on the cue, relative to its length: round-off of summed lengths.
 NEAR = 1e-9
 
 
 class Usual(NamedTuple):
-    """The values, SI, at which an effect is tried on a scene that does not list it, and where they come from."""
+    """Values, SI, at which commands try an effect on a scene that does not list it, and their source."""
 
     values: dict[str, float]
     source: str
@@ -30,24 +30,24 @@ class Usual(NamedTuple):
 
 @dataclass(frozen=True)
 class Effect:
-    """What every effect is: its fields are checked quantities, and it may add mass that a head-on blow feels."""
+    """An effect: its fields are checked quantities, and it may add axial mass."""
 
-    # Whether it needs a finite-element cue, whether a scene may list it once at most, and beside which effects (their
-    # names) a scene may not list it.
+    # Whether it needs a finite-element cue, whether a scene may list it only once, and the names of effects that cannot
+    # act beside it.
     needs_beam: ClassVar[bool] = False
     once: ClassVar[bool] = False
     excludes: ClassVar[tuple[str, ...]] = ()
-    # The values at which commands try the effect on a scene that does not list it. None for an effect whose fields all
-    # have defaults, and for one that describes this very cue, as a point mass does: it is not tried.
+    # Values at which commands try the effect on a scene that does not list it. None for an effect whose fields all have
+    # defaults, and for one that describes an individual cue, such as a point mass: it is not tried.
     usual: ClassVar[Usual | None] = None
-    # Whether it acts at the tip (the cue without it is `Scene.bare`), and whether it is part of a cue that lies free.
+    # Whether it acts at the tip (`Scene.bare` removes it), and whether it is part of a freely suspended cue.
     at_tip: ClassVar[bool] = False
     part_of_cue: ClassVar[bool] = False
-    # Whether it changes how the cue moves across its axis when nothing presses along the axis.
+    # Whether it changes the cue's bending vibration without axial force.
     across: ClassVar[bool] = True
-    # Whether it gives the whole tip, so that the `Tip` has no contact time of its own.
+    # Whether it defines the tip's force-indentation law, so that `Tip` has no contact time of its own.
     whole_tip: ClassVar[bool] = False
-    # Words in a file that stand for several fields: for each key the names it may hold, for each name the fields, SI.
+    # Keys of a file that set several fields: for each key its names, for each name the fields, SI.
     named: ClassVar[Mapping[str, Mapping[str, Mapping[str, float]]]] = MappingProxyType({})
 
     def __post_init__(self) -> None:
@@ -55,7 +55,7 @@ class Effect:
 
     @property
     def axial_mass(self) -> float:
-        """Mass that the effect adds to the cue's motion along its axis, kg, at its first position."""
+        """Axial mass that the effect adds to the cue, kg, at its first position."""
         return 0.0
 
     @property
@@ -64,15 +64,15 @@ class Effect:
         return ()
 
     def mass_on(self, cue: Cue) -> float:
-        """Mass that the effect adds to the motion of this cue along its axis, kg."""
+        """Axial mass that the effect adds to this cue, kg."""
         return self.axial_mass
 
     def left_on(self, cue: Cue) -> tuple[Effect, ...]:
-        """What is left of the effect on a cue whose tip is bare (`Scene.bare`)."""
+        """The effects that remain of it in `Scene.bare`."""
         return () if self.at_tip else (self,)
 
     def check_on(self, cue: Cue, name: str) -> None:
-        """ValueError, in the words of ``name``, unless the effect's positions lie on the cue."""
+        """ValueError, which begins with ``name``, unless the effect's positions lie on the cue."""
         for x in self.positions:
             if not 0 <= x <= cue.length * (1 + NEAR):
                 raise OutOfBounds(f"{name}.position", Quantity("m", f"[0, {cue.length}]"), x, ", on the cue")
@@ -94,14 +94,14 @@ class CueEffect(Effect):
 
     @property
     def clamps(self) -> tuple[tuple[str, float], ...]:
-        """What the effect takes out: (name of the field that is infinite, position in m)."""
+        """Degrees of freedom that the effect removes: (name of the infinite field, position in m)."""
         return ()
 
     def add_to(self, terms: Terms) -> None:
         """Add the effect's point terms to the beam's."""
 
     def mass_on_face(self, cue: Cue) -> float | None:
-        """Mass that the effect puts on the tip's face, kg, if that is all it does; None if it does anything else."""
+        """Mass that the effect adds to the tip's face, kg, if it does nothing else; otherwise None."""
         return None
 
     def vibrations(self, bending: Modes, cue: Cue, effects: Sequence[CueEffect]) -> tuple[RodModes, ...]:
@@ -109,7 +109,7 @@ class CueEffect(Effect):
         return ()
 
     def geometric_stiffness(self, bending: Modes, cue: Cue, effects: Sequence[CueEffect]) -> Array | None:
-        """What thrust at the tip does to the ``bending`` modes, rigid ones first (`TipModes.geometric`)."""
+        """Geometric stiffness of the ``bending`` modes, rigid-body modes first (`TipModes.geometric`)."""
         return None
 
     def damp(self, tip: TipModes, families: Sequence[tuple[Cue, Modes | RodModes]]) -> TipModes:
@@ -130,7 +130,7 @@ def acting_on_cue(effects: Iterable[Effect]) -> tuple[CueEffect, ...]:
 
 
 def effect_kinds() -> dict[str, type[Effect]]:
-    """Every effect by its name, which stands as ``type`` in a file; classes that effects derive from are left out."""
+    """Every effect by its name, the ``type`` in a file; without base classes."""
 
     def below(kind: type[Effect]) -> Iterator[type[Effect]]:
         children = kind.__subclasses__()
@@ -175,7 +175,7 @@ def _check_excluded(effects: tuple[Effect, ...], scene: str) -> None:
 
 
 def _check_clamps(cue: Cue, effects: tuple[Effect, ...], scene: str) -> None:
-    """Two clamps of one unknown at one place are a slip of the pen: nothing is left for the second to hold."""
+    """ValueError for a second clamp of the same degree of freedom at one position."""
     clamps = [(i, *clamp) for i, e in enumerate(effects) if isinstance(e, CueEffect) for clamp in e.clamps]
     for n, (i, name, x) in enumerate(clamps):
         first = next((j for j, other, at in clamps[:n] if other == name and abs(at - x) <= NEAR * cue.length), None)

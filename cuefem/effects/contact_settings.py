@@ -1,4 +1,4 @@
-"""What effects add at the contact of tip and ball, and what they make of the stroke there."""
+"""Terms that effects add to the contact of tip and ball."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class HeadOn(NamedTuple):
-    """A head-on blow: reduced mass, kg; restitution; the base model's contact time, s; the stroke's speed, m/s."""
+    """A central impact: reduced mass, kg; restitution; contact time of the base model, s; stroke speed, m/s."""
 
     mass: float
     restitution: float
@@ -24,7 +24,7 @@ class HeadOn(NamedTuple):
 
 @dataclass(frozen=True)
 class WholeTip:
-    """A tip that gives everything at the contact: where this is on the cue, and the forces there.
+    """A complete tip model: the position of the contact on the cue, and its forces.
 
     diameter: m. dome_radius: m; 0 for a flat tip. rim: the contact's angle at which the dome ends, rad; beyond it the
     ball rolls on an edge. surface_restitution: square root of the part of the tangential strain energy that the leather
@@ -40,7 +40,7 @@ class WholeTip:
     law: Callable[[float, float, float], LeatherLaw]
 
 
-# Makes a tip's law along the normal from its head-on blow, and tells about how long the contact takes, s.
+# From a central impact to the force-indentation law and the approximate contact time, s.
 MakeLaw = Callable[[HeadOn], tuple[TipLaw, float]]
 
 
@@ -51,7 +51,7 @@ class Table(NamedTuple):
     friction: float
 
 
-# What a contact has once, by its name among the terms.
+# Terms that a contact has once, with their labels in messages.
 ONCE = {
     "law": "law of the tip",
     "tip": "whole tip",
@@ -64,10 +64,10 @@ ONCE = {
 class ContactTerms:
     """Terms of the contact; each effect of a scene adds its own (`Effect.add_to_contact`), in any order.
 
-    tip_diameter: of the cue's end, m; None for a lumped cue, which has none. law: makes the tip's law along the normal
-    instead of the linear one. tip: a whole tip. turns: whether the normal turns as the contact moves over ball and
-    tip. table: that under the ball of a raised cue. window: how long cue and ball are followed after their first
-    separation, s. `cuefem.contact.model` makes of them the law that the contact follows.
+    tip_diameter: of the cue's end, m; None for a lumped cue. law: makes the force-indentation law, by default linear.
+    tip: a complete tip model. turns: whether the normal turns as the contact rolls over ball and tip. table: under the
+    ball of a raised cue. window: simulated time after the first separation, s. `cuefem.contact.model` makes of them the
+    kernel's input.
     """
 
     def __init__(self, tip_diameter: float | None = None) -> None:
@@ -89,15 +89,15 @@ class ContactTerms:
         return terms
 
     def add_dome(self, radius: float) -> None:
-        """Round the tip: a dome of ``radius``, m, tied to the end section; radii add, as their levers do."""
+        """Add a rigid dome of ``radius``, m, on the end section; radii add, and so do their moment arms."""
         self.dome_radii.append(radius)
 
     def add_compliance(self, part: float) -> None:
-        """Let the tip give sideways, by ``part`` of what it gives along the normal while it is loaded; parts add."""
+        """Add tangential compliance, relative to the normal loading compliance; compliances in series add."""
         self.compliances.append(part)
 
     def give(self, name: str, value: Any) -> None:
-        """Give a term that a contact has `ONCE`; ValueError the second time."""
+        """Set a term that a contact has `ONCE`; ValueError the second time."""
         if getattr(self, name) is not None:
             raise ValueError(f"Scene.effects must give the contact one {ONCE[name]}; got a second one")
         setattr(self, name, value)
@@ -109,7 +109,7 @@ class ContactTerms:
 
     @property
     def compliance(self) -> float:
-        """Tangential compliance of the tip, as a part of 1/(loading stiffness); 0 for a rigid patch."""
+        """Tangential compliance of the tip over its normal loading compliance; 0 for a rigid patch."""
         return math.fsum(self.compliances)
 
     def lever(self, phi: float) -> tuple[float, float]:

@@ -1,9 +1,9 @@
-"""Laws of the tip: a power law along the normal; of leather, the force and the stiffness along the surface.
+"""Force-indentation laws of the tip: a power law; of leather, normal force and tangential stiffness.
 
-Those of leather are fitted in y, the root of the compression: Hertz's contact of two spheres has the force y^3 and the
-patch y, and what the leather's finite height and width add is a power series in the patch over the height: F = y^3 (f0
-+ f1 y + ...), and for the give along the surface, that of a half-space in series with the rest, y/k_t = g0 + g1 y +
-... Both are smooth from the first touch on.
+The laws of leather are series in y, the square root of the indentation: Hertz's contact of two spheres has the force
+y^3 and the patch radius y, and the leather's finite height and width add a power series in the patch over the height.
+F = y^3 (f0 + f1 y + ...); tangential compliance y/k_t = g0 + g1 y + ..., a half-space in series with the rest. Both are
+smooth from the first touch on.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from cuefem.cue import Array
 
 @dataclass(frozen=True)
 class TipLaw:
-    """A power law (the effect PowerLawTip; exponent 1 is the base model's): F = stiffness d^exponent while loaded, N.
+    """A power law (`PowerLawTip`; exponent 1 is the base model's): F = stiffness d^exponent during loading, N.
 
-    Unloading follows the loading curve with its compression scaled by e^2, so that the work given back is e^2 of that
-    spent; e is the restitution.
+    Unloading follows the loading curve with the indentation scaled by e^2, which returns the part e^2 of the work; e is
+    the restitution.
     """
 
     stiffness: float
@@ -32,7 +32,7 @@ class TipLaw:
 
     @classmethod
     def timed(cls, exponent: float, restitution: float, *, mass: float, speed: float, time: float) -> TipLaw:
-        """The law with which a head-on blow of a reduced mass, kg, at a speed, m/s, lasts ``time``, s.
+        """The law whose central impact of a reduced mass, kg, at a speed, m/s, lasts ``time``, s.
 
         Loading to the depth D takes D/U times `loading_time`, unloading e times that; D^(n + 1) = (n + 1) m U^2/(2 k').
         """
@@ -40,7 +40,7 @@ class TipLaw:
         return cls((exponent + 1) * mass * speed**2 / (2 * depth ** (exponent + 1)), exponent, restitution)
 
     def loss(self, deepest: float) -> float:
-        """Work that loading to a compression, m, took and unloading did not give back, J."""
+        """Energy dissipated by loading to an indentation, m, and unloading, J."""
         power = self.exponent + 1
         return (1 - self.restitution**2) * self.stiffness * deepest**power / power
 
@@ -66,13 +66,13 @@ _ANGLES = (1 + _GAUSS) * math.pi / 4
 
 
 class TooDeep(ValueError):
-    """A tip of leather is compressed further than its law is known: there is no contact to speak of."""
+    """A leather tip is indented beyond the range of its law."""
 
 
 class Curves(NamedTuple):
-    """What a tip of leather gives, (n,) each, ascending, without zero.
+    """Computed curves of a leather tip, (n,) each, ascending, without zero.
 
-    depth, force: of a head-on blow, m and N. shear: stiffness along the surface, N/m, of the patch that it then has.
+    depth, force: of a central impact, m and N. shear: tangential stiffness of the patch at that depth, N/m.
     """
 
     depth: Array
@@ -82,10 +82,10 @@ class Curves(NamedTuple):
 
 @dataclass(frozen=True)
 class LeatherLaw:
-    """A tip's law: the series of F and k_t in the root of the compression, the restitution e, and how deep they hold.
+    """The law of leather: series of F and k_t in the root of the indentation, restitution e, and range of validity, m.
 
-    Unloading follows the loading curve with its compression scaled by e^2, so that the work given back is e^2 of that
-    spent. The compression that the loading curve has at the same force is called the virtual one.
+    Unloading follows the loading curve with the indentation scaled by e^2, which returns the part e^2 of the work. The
+    virtual indentation is that of the loading curve at the same force.
     """
 
     force_terms: tuple[float, ...]
@@ -119,29 +119,29 @@ class LeatherLaw:
         return np.asarray(np.multiply.accumulate(powers, axis=0, out=powers))
 
     def at(self, depth: Array) -> tuple[Array, Array]:
-        """(F, k_t), N and N/m, at virtual compressions, m, (n,): zero where these are negative."""
+        """(F, k_t), N and N/m, at virtual indentations, m, (n,); zero where negative."""
         powers = self._powers(depth)
         force, give = self._terms @ powers
         return force, powers[1] / (give + TINY)
 
     def slope(self, depth: Array) -> Array:
-        """Slope of F over the virtual compression, N/m, (n,)."""
+        """Slope of F over the virtual indentation, N/m, (n,)."""
         powers = self._powers(depth)
         force = self._terms[0] * np.arange(1, len(powers) + 1) @ powers  # y times what it is over y
         by = 2 * powers[1]
         return np.divide(force, by, out=np.zeros_like(force), where=by > 0)
 
     def work(self, depth: Any) -> Any:
-        """Work that loading to a compression takes, J."""
+        """Work of loading to an indentation, J."""
         y = np.sqrt(np.maximum(depth, 0.0))
         return sum(2 / (5 + k) * term * y ** (5 + k) for k, term in enumerate(self.force_terms))
 
     def loss(self, deepest: float) -> float:
-        """Work that loading to ``deepest`` took and unloading did not give back, J."""
+        """Energy dissipated by loading to ``deepest``, m, and unloading, J."""
         return (1 - self.restitution**2) * float(self.work(deepest))
 
     def blow(self, mass: Any, speed: Any) -> tuple[Any, Any]:
-        """(maximum indentation, m, time to it, s) of a head-on blow of a reduced mass, kg, at a speed, m/s."""
+        """(maximum indentation, m, time to it, s) of a central impact of a reduced mass, kg, at a speed, m/s."""
         mass, speed = np.broadcast_arrays(np.asarray(mass, float), np.asarray(speed, float))
         energy = mass * speed**2 / 2
         deepest = self._deepest(energy)
@@ -154,7 +154,7 @@ class LeatherLaw:
         return deepest[()], time[()]
 
     def _deepest(self, energy: Array) -> Array:
-        """The compression that takes this work, by Newton's method in logarithms, where the law is nearly straight."""
+        """Indentation of this loading work, by Newton's method in logarithms, where the law is nearly straight."""
         depth = np.full(energy.shape, self.depth_limit)
         for _ in range(60):
             work = self.work(depth)
@@ -165,15 +165,15 @@ class LeatherLaw:
         return depth
 
     def too_deep(self, depth: float) -> TooDeep:
-        """The error of a tip that is compressed further than its curves go."""
+        """The error of an indentation beyond the law's range."""
         return TooDeep(
-            f"the tip's leather is compressed by {1e3 * depth:.3g} mm, further than its law is known "
-            f"({1e3 * self.depth_limit:.3g} mm): give LeatherTip a larger height or E, or Stroke a lower speed"
+            f"the tip's leather is indented by {1e3 * depth:.3g} mm, beyond the range of its law "
+            f"({1e3 * self.depth_limit:.3g} mm): raise LeatherTip.height or E, or lower Stroke.speed"
         )
 
 
 def _series(y: Array, values: Array, *, lowest: int) -> tuple[float, ...]:
-    """Coefficients of y^lowest and up that reach the values with the least relative differences."""
+    """Coefficients of y^lowest and up by least squares of relative differences."""
     scale = float(y[-1])
     powers = lowest + np.arange(min(TERMS, len(y)))
     rows = (y[:, None] / scale) ** powers / values[:, None]

@@ -1,4 +1,4 @@
-"""The leather tip from its geometry: a domed cylinder of leather on the ferrule."""
+"""The leather tip by its geometry: a domed cylinder of leather on the ferrule."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ from cuefem.solid.tip_table import (
 if TYPE_CHECKING:
     from cuefem.beam.mesh import Terms
 
-# Words for the radius of a dome, m: half of the coin's diameter (United States Mint: 17.91 and 21.21 mm).
+# Names of dome radii, m: half of the coin's diameter (United States Mint: 17.91 and 21.21 mm).
 DOMES = {"dime": 8.955e-3, "nickel": 10.605e-3, "flat": math.inf}
-RADII = np.linspace(0.0, 0.5, 101)  # over D: radii of the patches at which curves are given
-HEIGHTS = (0.05, 3.0)  # over D: what a tip can be computed for; `covers` says what the table has
-MODULI = (1e-3, 1e4)  # over E: of what is under the leather
+RADII = np.linspace(0.0, 0.5, 101)  # over D: patch radii of the stiffness curve
+HEIGHTS = (0.05, 3.0)  # over D: computable heights; `covers` has the table's range
+MODULI = (1e-3, 1e4)  # over E: of the layers
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ class TipLayer:
 
 @dataclass(frozen=True)
 class LeatherTip(CueEffect):
-    """A tip by what one can measure of it: its height, its dome and its leather.
+    """A leather tip by measurable properties: its height, its dome and its leather.
 
     Parameters
     ----------
@@ -96,49 +96,48 @@ class LeatherTip(CueEffect):
     rho : float, default 1000.0
         Density of the leather, kg/m^3.
     rolls : bool, default True
-        Whether the normal turns as the contact rolls over ball and dome; False for comparison.
+        Whether the contact rolls over ball and dome, which turns its normal; False for comparison.
     surface_restitution : float, default 1.0
-        The root of the part of the work that the leather gives back along its surface, in [0.1, 1]: what the tip's
-        restitution is along the normal.
+        Square root of the part of the tangential work that the leather returns, in [0.1, 1]; along the normal this is
+        the tip's restitution.
     layers : tuple of TipLayer, optional
-        What is glued under the leather, from the ferrule up, within ``height`` and below the dome.
+        Layers under the leather, from the ferrule up, within ``height`` and below the dome.
     diameter : float, optional
         Diameter of the tip, m, where it is smaller than the end of the ferrule; by default it is flush.
 
     Raises
     ------
     ValueError
-        If a number is out of bounds; by the methods, if the tip cannot be on a shaft of that diameter, or if its
-        layers reach into the dome.
+        If a number is out of bounds; by the methods, if the tip does not fit a shaft of that diameter, or if its layers
+        reach into the dome.
 
     Notes
     -----
-    Adds: The static give of a short domed cylinder of leather in 3-D elasticity, its base held on the ferrule: the
-    normal force over the depth of the ball's contact, the stiffness of the patch along the surface, the lever of the
-    contact about the ferrule's end, and the mass of the leather, lumped there. It is the whole tip: the cue is drawn
+    Adds: The static compliance of a short domed cylinder of leather in 3-D elasticity, its base fixed on the ferrule:
+    the normal force over the indentation, the tangential stiffness of the patch, the moment arm of the contact about
+    the ferrule's end, and the mass of the leather, lumped there. It defines the tip completely: the cue is drawn
     without its leather, and contact time and stiffness of the `Tip` follow from it. The tip unloads along the curve of
-    its normal force with the depth scaled by e^2, which gives back e^2 of the work. Along the surface the patch holds,
-    slides and lets go ring by ring, in the manner of Mindlin and Deresiewicz: each ring is strained by what the
-    surfaces have shifted since it touched, and bears mu times its part of F_n at most. The normal turns as the contact
-    rolls over ball and dome. `Outcome.energy` has "friction loss", what the rings that slide lose, and
-    "tip shear", what the leather keeps of the work along its surface where ``surface_restitution`` is below 1 (with
-    endless friction what the rings lose as the patch shrinks).
+    its normal force with the indentation scaled by e^2, which returns the part e^2 of the work. The patch sticks and
+    slips annulus by annulus (Mindlin and Deresiewicz): each annulus is strained by the shift of the surfaces since it
+    touched, and its force is at most mu times its part of F_n. The normal turns as the contact rolls over ball and
+    dome. `Outcome.energy` has "friction loss", dissipated by slipping annuli, and "tip shear", dissipated by tangential
+    strain where ``surface_restitution`` is below 1 (with infinite friction, lost as the patch shrinks).
 
-    Matters when: Always. The whole tip gives sideways two to three times as much as along the normal, where the patch
-    alone gives 4/3 times as much, and the contact grows stiffer and shorter with the speed of the stroke.
+    Matters when: Always. The tip's tangential compliance is two to three times its normal one, where the patch alone
+    has 4/3, and the contact grows stiffer and shorter with the speed of the stroke.
 
     Wrong when: The leather is strained far (it is linear here), or loose, or its patch grows over the rim,
     where the pressure is cut off. The end section of the ferrule stays plane: its own compliance under the tip lowers
     squirt by 0.06 % (maple, a ferrule of 8.6 GPa) to 0.4 % (carbon, 2.3 GPa). The annuli are exact on a half-space; on
     a bonded layer of 6 mm squirt is off by 0.04, 0.3 and 1.1 % at b/R 0.187, 0.375 and 0.453.
 
-    Limit: The give vanishes in proportion to 1/E; with a stiff leather the dome's lever is what is left.
+    Limit: The compliance vanishes in proportion to 1/E; a stiff leather keeps the moment arm of its dome.
 
     Source: handbook: Effects; studies/beam/leather.py; K. L. Johnson, Contact Mechanics (1985),
     chapters 3 and 4.
 
-    The package has a table for plain tips of nu 0.2 to 0.45, 2/15 to 3/2 of the diameter high. Any other is computed
-    once, in about ten seconds, and kept in the user's cache folder.
+    The package has a table for tips without layers of nu 0.2 to 0.45, 2/15 to 3/2 of the diameter high. Any other is
+    computed once, in about ten seconds, and stored in the user's cache folder.
 
     The offset b/R is the sine of the angle phi between the cue's axis and the normal of the contact. The contact lies
     r sin(phi) off the axis, or on the rim where the dome ends before that. Elastic methods take a ``diameter``, that
@@ -189,7 +188,7 @@ class LeatherTip(CueEffect):
         return (0.0,)
 
     def check_on(self, cue: Cue, name: str) -> None:
-        """ValueError if the cue is drawn with its leather, or the tip cannot be on it."""
+        """ValueError if the cue is drawn with its leather, or the tip does not fit it."""
         if cue.leather:
             raise ValueError(
                 f"{name} must be the only leather: draw the cue without its first {1e3 * cue.leather:.4g} mm, which "
@@ -218,18 +217,18 @@ class LeatherTip(CueEffect):
         return self.mass_on(cue)
 
     def left_on(self, cue: Cue) -> tuple[Effect, ...]:
-        """The mass of the leather stays on a cue whose tip is bare."""
+        """The mass of the leather remains."""
         return (PointMass(0.0, self.mass_on(cue)),)
 
     def add_to_contact(self, terms: ContactTerms) -> None:
-        """The whole tip, and the normal that turns."""
+        """The complete tip model, and the rolling contact."""
         if terms.tip_diameter is not None:  # a lumped cue is refused in words
             terms.give("tip", whole_tip(self, self.diameter_on(terms.tip_diameter)))
         if self.rolls:
             terms.give("turns", True)
 
     def check_diameter(self, diameter: float) -> None:
-        """Refuse a tip that cannot be on a shaft, or that is too flat or too high to compute.
+        """Check that the tip fits a shaft, and that its height is computable.
 
         Parameters
         ----------
@@ -239,7 +238,7 @@ class LeatherTip(CueEffect):
         Raises
         ------
         ValueError
-            In one line, with the bound.
+            If it does not; the message states the bound.
         """
         DIAMETER.check("diameter", diameter)
         if self.dome_radius < diameter / 2:
@@ -286,7 +285,7 @@ class LeatherTip(CueEffect):
         return self.rho * (math.pi * rim**2 * (self.height - deep) + dome) + math.pi * rim**2 * more
 
     def lever(self, phi: float, diameter: float) -> tuple[float, float]:
-        """Where the contact is, about the end of the ferrule.
+        """Moment arm of the contact about the end of the ferrule.
 
         Parameters
         ----------
@@ -305,7 +304,7 @@ class LeatherTip(CueEffect):
         return -math.copysign(off, phi), -(self.height - self._drop(off))
 
     def compliance(self, diameter: float, offset: float, patch: ArrayLike) -> Array:
-        """The mean displacement of a patch under a load in proportion to Hertz's pressure, weighted with the load.
+        """Compliance of a patch under Hertz's pressure: its mean displacement weighted with the load.
 
         Parameters
         ----------
@@ -335,7 +334,7 @@ class LeatherTip(CueEffect):
         return np.asarray(matrices.reshape(*radii.shape, 2, 2))
 
     def head_on(self, diameter: float, ball_radius: float) -> tuple[Array, Array, Array]:
-        """The force over the depth of a ball that is pressed on the dome, without friction.
+        """Normal force over the indentation of a ball on the dome, without friction.
 
         Parameters
         ----------
@@ -363,7 +362,7 @@ class LeatherTip(CueEffect):
         return np.append(0.0, radius * diameter), depth, force
 
     def shear_stiffness(self, diameter: float, offset: float) -> tuple[Array, Array]:
-        """The stiffness along the surface of a patch that sticks to the ball and moves as one.
+        """Tangential stiffness of a patch that sticks to the ball.
 
         Parameters
         ----------
@@ -406,7 +405,7 @@ class LeatherTip(CueEffect):
         return min(diameter / self.dome_radius, CURVATURE[1])
 
     def _own(self, diameter: float) -> OwnTip | None:
-        """The tip that the table does not hold, lengths over its diameter; None for one that it does."""
+        """The tip, lengths over its diameter, if the table does not cover it; else None."""
         height = self.height / diameter
         if not self.layers and covers(height, self.nu):
             return None
@@ -414,7 +413,7 @@ class LeatherTip(CueEffect):
         return OwnTip(height, self._curvature(diameter), self.nu, layers)
 
     def at_hand(self, diameter: float) -> bool:
-        """Whether the tip's elasticity is known: from the table, or because it was computed once.
+        """Whether the tip's elasticity is in the table or in the cache.
 
         Parameters
         ----------
@@ -424,7 +423,7 @@ class LeatherTip(CueEffect):
         Returns
         -------
         bool
-            False if the next question takes about ten seconds.
+            False if the next use takes about ten seconds of computation.
         """
         self.check_diameter(diameter)
         own = self._own(diameter)
@@ -449,7 +448,7 @@ class LeatherTip(CueEffect):
 
 
 def whole_tip(tip: LeatherTip, diameter: float) -> WholeTip:
-    """What a contact asks of a tip of leather on a cue, whose own diameter is this one, m."""
+    """Tip model of a leather tip of this diameter, m."""
     ends = tip.dome_radius > diameter / 2  # the dome ends at a rim
     return WholeTip(
         diameter=diameter,
@@ -463,7 +462,7 @@ def whole_tip(tip: LeatherTip, diameter: float) -> WholeTip:
 
 @lru_cache(maxsize=64)
 def _pressed(tip: LeatherTip, diameter: float, ball_radius: float) -> tuple[Array, Array, Array]:
-    """Patch, depth and force of a head-on blow, without zero, which the laws of all offsets ask for."""
+    """Patch radius, indentation and force of a central impact, without zero, shared by the laws of all offsets."""
     patch, depth, force = tip.head_on(diameter, ball_radius)
     for part in (patch, depth, force):
         part.flags.writeable = False
@@ -472,7 +471,7 @@ def _pressed(tip: LeatherTip, diameter: float, ball_radius: float) -> tuple[Arra
 
 @lru_cache(maxsize=256)
 def _law(tip: LeatherTip, diameter: float, ball_radius: float, offset: float, restitution: float) -> LeatherLaw:
-    """The law of a tip; scenes ask for it again and again."""
+    """The force-indentation law of a tip."""
     patch, depth, force = _pressed(tip, diameter, ball_radius)
     radius, shear = tip.shear_stiffness(diameter, offset)
     of_patch = patch * np.interp(patch, radius[1:], shear[1:] / radius[1:])  # nearly straight, other than the stiffness

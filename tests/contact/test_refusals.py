@@ -26,7 +26,7 @@ R = BALL.radius
 GOOD = (0.3 * R, R)
 STRUCK = cf.impulse(cf.Scene(cf.LumpedCue(0.54, 0.004), BALL, cf.Tip(0.75, 0.7), cf.Stroke(2.0, 0.3)))
 LUMPED = cf.Scene(cf.LumpedCue(0.54, 0.006, 3.0), stroke=cf.Stroke(offset=0.3))
-DEAD = "Tip.restitution must be in [0.05, 1] where a contact is followed in time; got "
+DEAD = "Tip.restitution must be in [0.05, 1] for a contact computed in time; got "
 
 
 def placed(point: Any = GOOD, direction: Any = NORTH, ball: cf.Ball = BALL) -> Callable[[], object]:
@@ -55,9 +55,9 @@ CALLS: list[Any] = [
     # strikes
     (
         struck(leather_scene(e=0.05)),
-        "Tip.restitution must be in [0.1, 1] where a contact",
+        "Tip.restitution must be in [0.1, 1] for a contact",
     ),
-    (struck(leather_scene(speed=60.0)), "mm): give LeatherTip a larger height or E, or Stroke a lower speed"),
+    (struck(leather_scene(speed=60.0)), "mm): raise LeatherTip.height or E, or lower Stroke.speed"),
     (struck(kim_scene(restitution=0.049), effects=(cf.Elevation(0.1),)), f"{DEAD}0.049 (cuefem.impulse takes any)"),
     (struck(kim_scene(friction=inf), effects=(cf.SecondHit(),)), "Tip.friction must be finite beside SecondHit"),
     (lambda: cf.Resolution(4, 8, 0), "Resolution.modes"),
