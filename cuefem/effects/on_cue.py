@@ -1,4 +1,4 @@
-"""Effects that act on the cue: lumps, supports, joints, damping, waves along the axis."""
+"""Effects on the cue: point masses, supports, joints, damping, axial waves, geometric stiffness."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from cuefem.beam.tip import TipModes
     from cuefem.effects.axial import RodModes
 
-SHORTEST_REST = 0.05  # m: what is left behind a drawing is a rod from this length on
+SHORTEST_REST = 0.05  # m: shortest butt behind a drawing that is a rod
 BUTT = "cue_length, butt_diameter and wave_speed"
 
 
@@ -36,13 +36,13 @@ class PointMass(CueEffect):
     rotary_inertia : float, default 0
         Moment of inertia against turning with the cue, kg m^2.
     axial_share : float, default 1
-        Part of the mass that moves along the axis with the cue: 1 for a piece fixed to it, 0 for a bridge hand, through
-        which the cue slides.
+        Part of the mass that moves axially with the cue: 1 for a piece fixed to it, 0 for a bridge hand, through which
+        the cue slides.
 
     Notes
     -----
-    Adds: The mass takes part in the bending motion, its axial share in the motion along the axis; the rotary inertia
-    takes part in the rotation of the section.
+    Adds: The mass to the bending motion, its axial share to the axial motion, and the rotary inertia to the rotation of
+    the section.
 
     Matters when: The piece sits near the tip, within the distance that bending waves travel during the contact.
 
@@ -70,7 +70,7 @@ class PointMass(CueEffect):
 
     @property
     def axial_mass(self) -> float:
-        """What of the mass moves along the axis with the cue."""
+        """The axial share of the mass, kg."""
         return self.axial_share * self.mass
 
     @property
@@ -89,7 +89,7 @@ class PointMass(CueEffect):
 
 @dataclass(frozen=True)
 class Support(CueEffect):
-    """Something that holds the cue from the side: a bridge hand, a grip, or a clamp in a test stand.
+    """A lateral support of the cue: a bridge hand, a grip, or a clamp in a test stand.
 
     Parameters
     ----------
@@ -104,8 +104,8 @@ class Support(CueEffect):
 
     Notes
     -----
-    Adds: Two springs and a dashpot act across the cue; an infinite stiffness removes the unknown that it clamps.
-    Nothing acts along the axis.
+    Adds: Two springs and a dashpot act on deflection and rotation; an infinite stiffness removes the degree of freedom
+    that it clamps. Nothing acts along the axis.
 
     Matters when: The support is stiff and near the tip. A hand (up to 1e4 N/m) 8 in behind the tip changes squirt by at
     most 1 %; a support of 1e6 N/m changes it by up to a quarter.
@@ -155,7 +155,7 @@ class Support(CueEffect):
 
 @dataclass(frozen=True)
 class Joint(CueEffect):
-    """A joint of the cue that gives a little: a pin with its collars, or a loose ferrule.
+    """A compliant joint of the cue: a pin with its collars, or a loose ferrule.
 
     Parameters
     ----------
@@ -168,8 +168,8 @@ class Joint(CueEffect):
 
     Notes
     -----
-    Adds: Rotation and deflection may jump at the joint, which takes two more unknowns; a compliance of zero removes its
-    unknown again. Other effects at the same place are attached to the butt side.
+    Adds: Rotation and deflection may jump at the joint, two more degrees of freedom; a compliance of zero removes its
+    own again. Other effects at the same position are attached to the butt side.
 
     Matters when: The joint lies within the distance that bending waves travel during the contact; the joint in the
     middle of a cue hardly matters.
@@ -214,14 +214,14 @@ class Joint(CueEffect):
             )
 
     def add_to(self, terms: Terms) -> None:
-        """Add the compliances; those of several joints at one place add up."""
+        """Add the compliances; those of several joints at one position add."""
         if self.splits:
             terms.join(self.position, self.shear_compliance, self.rotational_compliance)
 
 
 @dataclass(frozen=True)
 class StructuralDamping(CueEffect):
-    """The energy that the materials of the cue lose in every vibration.
+    """Dissipation of the cue's vibration by the loss factors of its materials.
 
     Parameters
     ----------
@@ -234,11 +234,11 @@ class StructuralDamping(CueEffect):
     half-power width. The mode's loss factor is the mean of the materials' loss factors, weighted by the strain energy
     that each material stores in this mode. Springs and joints store energy without loss.
 
-    Matters when: You ask how long the cue rings. Within one contact it hardly matters: with maple's 0.012 an
-    oscillation loses 4 % of its amplitude in a period.
+    Matters when: The decay of the free vibration is computed. Within one contact it hardly matters: with maple's 0.012
+    an oscillation loses 4 % of its amplitude in a period.
 
-    Wrong when: The loss factors of E and G differ or vary with frequency, or the damping couples the modes. Damping
-    proportional to stiffness is not used because it damps high modes far too much.
+    Wrong when: The loss factors of E and G differ or vary with frequency, or the damping couples the modes.
+    Stiffness-proportional damping is not used because it damps high modes far too much.
 
     Limit: The effect vanishes in proportion to the loss factors as they go to zero.
 
@@ -266,14 +266,14 @@ class StructuralDamping(CueEffect):
 
 @dataclass(frozen=True)
 class AxialWaves(CueEffect):
-    """Waves along the cue: the cue is an elastic rod along its axis instead of a rigid one.
+    """Axial waves: the cue is an elastic rod along its axis instead of a rigid body.
 
     Parameters
     ----------
     cue_length : float, optional
-        Length of the whole cue, m. Behind what is drawn, `Cue.body_mass` is then a rod that tapers from the end of the
-        drawing to the butt; within 5 cm of that length, and by default, that mass is rigid, at the end of the drawing.
-        The rod is solid behind a bored segment too: along the axis its mass, length and wave speed alone count.
+        Length of the whole cue, m. `Cue.body_mass` is then a rod that tapers from the end of the drawing to the butt.
+        By default, and if the rod would be shorter than 5 cm, that mass is rigid at the end of the drawing. The rod is
+        solid behind a bored segment too: only its mass, length and wave speed matter.
     butt_diameter : float, optional
         Diameter at the end of the butt, m; with ``cue_length``.
     wave_speed : float, optional
@@ -281,21 +281,21 @@ class AxialWaves(CueEffect):
 
     Notes
     -----
-    Adds: Rod modes join the rigid motion along the axis, as many as lie below the highest bending frequency that is
-    kept, and with a tail if the bending modes have one. Nothing else sees the rod behind the drawing: bending, weights
-    and recordings are those of the drawing (if it bent too, squirt would change by 0.01 %). Point masses
-    sit at their places. Leather drawn at the tip (`Cue.leather`) moves as one piece along the axis, because the tip's
-    force law holds its give already; its mass stays.
+    Adds: Rod modes below the highest bending frequency join the rigid axial motion, with a truncation correction if the
+    bending modes have one. Only axial motion uses the rod behind the drawing: bending, weights and natural frequencies
+    are those of the drawing (if the rod bent too, squirt would change by 0.01 %). Point masses act at their positions.
+    Leather drawn at the tip (`Cue.leather`) is rigid along the axis, because the force-indentation law contains its
+    compliance; its mass remains.
 
     Matters when: The contact is long enough for waves to run along the cue; in 1 ms they run 4.2 m in maple. The
     contact lasts longer, because the tip's stiffness is still defined with the rigid axial mass, and the ball leaves a
-    little faster, because the rod gives back all the energy that it takes. Head on, 1.1 ms and a restitution of 0.73
-    become 1.27 ms and 0.78 on meshes/pool_maple.toml. A rigid mass at the joint throws waves back after 0.33 ms, a butt
-    after 0.66 ms.
+    little faster, because the rod returns all of its energy. In a central impact, 1.1 ms and a restitution of 0.73
+    become 1.27 ms and 0.78 on meshes/pool_maple.toml. A rigid mass at the joint reflects waves after 0.33 ms, a butt
+    after 0.66 ms: with the rigid mass squirt is off by up to 6 %.
 
     Wrong when: The butt's mass is uneven, as with a heavy pin or bolt. A support or a joint acts
-    along the axis; here neither does. A hard tip drawn into the cue (phenolic, above 1 GPa) gives in the tip's force
-    law and again, by about 1 % of that, in the rod.
+    along the axis; here neither does. The compliance of a hard tip drawn into the cue (phenolic, above 1 GPa) counts
+    in the force-indentation law and again, by about 1 % of that, in the rod.
 
     Limit: The effect vanishes as the axial stiffness EA goes to infinity; the longer contact and the changed squirt
     fall as 1/EA.
@@ -329,7 +329,7 @@ class AxialWaves(CueEffect):
             raise ValueError(f"AxialWaves must be given {BUTT} together, or none of them; got {self}")
 
     def with_butt(self, cue: Cue) -> Cue:
-        """The cue with its rest as a segment; as it is if nothing, or too little length, is behind it."""
+        """The cue with its butt as a segment; unchanged without a butt, or with one that is too short."""
         if self.cue_length is None or self.butt_diameter is None or self.wave_speed is None or not cue.body_mass:
             return cue
         length, last = self.cue_length - cue.length, cue.segments[-1]
@@ -353,23 +353,23 @@ class AxialWaves(CueEffect):
 
 @dataclass(frozen=True)
 class GeometricStiffness(CueEffect):
-    """Thrust on the bent shaft: the blow's force along the cue pushes where the shaft is bent, and bends it further.
+    """Geometric stiffness: the axial force of the impact bends the bent shaft further (P-delta).
 
     Notes
     -----
-    Adds: The second-order theory of a beam-column (geometric stiffness, P-delta). As the shaft bends, the tip goes back
-    along the cue by half the integral of p w'^2, p being the share of the cue's mass behind each place, and the thrust,
-    of which each place bears the share p, pushes the bending modes in proportion to their slopes. No energy is made
-    or lost. Slopes of rigid turning count, and so does the piece from the end of the shaft to the centre of the dome.
+    Adds: The second-order theory of a beam-column (geometric stiffness, P-delta). Bending shortens the cue by half the
+    integral of p w'^2, where p is the share of the cue's mass behind each position and of the axial force there. The
+    axial force loads the bending modes in proportion to their slopes. Energy is conserved. Slopes of rigid-body
+    rotation count, and so does the piece from the end of the shaft to the centre of the dome.
 
     Matters when: Always for squirt, the more the harder the stroke: in proportion to speed, on a maple shaft with a
     leather tip at b/R 0.375 about 2 % less squirt at 0.8 m/s, 5 % at 2 m/s and 16 % at 7 m/s.
 
-    Wrong when: The shaft bends by more than a quarter of a radian, which is refused. The share p is that of a cue that
-    moves as one along its axis: with `AxialWaves` squirt changes by another 0.1 to 0.4 % of itself. Tones,
-    blows from the side and end masses but "squirt" have no thrust. A joint that gives sideways is taken as thin.
+    Wrong when: The slope of the shaft exceeds 0.25 rad, which raises an error. The share p is that of a cue that is
+    rigid along its axis: with `AxialWaves` squirt changes by another 0.1 to 0.4 %. Natural frequencies, side strikes
+    and end masses other than "squirt" are without axial force. A joint with shear compliance has no length.
 
-    Limit: The effect vanishes in proportion to the thrust, so to the speed of the stroke.
+    Limit: The effect vanishes in proportion to the axial force, that is to the speed of the stroke.
 
     Source: handbook: The strike; S. P. Timoshenko and J. M. Gere, Theory of Elastic Stability (1961), chapters 1 and 2.
 
@@ -390,12 +390,12 @@ class GeometricStiffness(CueEffect):
     usual: ClassVar[Usual | None] = Usual({}, "the cue's own shape and mass")
 
     def geometric_stiffness(self, bending: Modes, cue: Cue, effects: Sequence[CueEffect]) -> Array | None:
-        """That of the bending modes for a newton of thrust."""
+        """Geometric stiffness of the bending modes per newton of axial force."""
         vectors = np.concatenate([bending.rigid_vectors, bending.vectors], axis=1)
         return bending.system.geometric_stiffness(vectors, lumps_on(cue, effects))
 
 
 def lumps_on(cue: Cue, effects: Sequence[CueEffect]) -> list[tuple[float, float]]:
-    """(position m, mass kg) of everything on a cue that is heavy and has no length."""
+    """(position m, mass kg) of all point masses on a cue, with its body mass."""
     masses = [(effect.positions[0], effect.mass_on(cue)) for effect in effects if effect.mass_on(cue)]
     return [*masses, (cue.length, cue.body_mass)]

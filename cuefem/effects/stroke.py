@@ -13,24 +13,24 @@ from cuefem.quantity.fields import Quantity
 
 @dataclass(frozen=True)
 class SecondHit(Effect):
-    """The tip catches up with the ball and strikes it again. It acts once.
+    """Double hit: the tip catches up with the ball and strikes it again. It acts once.
 
     Parameters
     ----------
     window : float, default 5e-3
-        Time after the first separation, s, within which a further contact counts.
+        Time after the first separation, s, within which a further contact is computed.
 
     Notes
     -----
     Adds: After each separation cue and ball move freely in their plane, and a new contact begins wherever they touch
-    again within the window. Its phases follow a phase ("apart", "free") in `Outcome.phases`. The tip keeps the
-    compression that it had as the ball left, and is loaded anew on the curve on which it was unloaded.
+    again within the window. Its phases follow a phase ("apart", "free") in `Outcome.phases`. The tip retains its
+    residual indentation and reloads on its unloading curve.
 
-    Matters when: The tip is soft or dead on a shaft that vibrates, or the cue is heavy.
+    Matters when: The tip is soft or of low restitution on a shaft that vibrates, or the cue is heavy.
 
-    Wrong when: The leather recovers its shape between the hits, or the player's hand pushes or holds the cue. Gravity
-    and the table are left out, and the direction of the contact stays that of the first touch unless `RollingContact`
-    turns it. Infinite friction takes a tip that gives along the surface.
+    Wrong when: The leather recovers its shape between the hits, or the player's hand accelerates or holds the cue.
+    Gravity and the table are neglected, and the direction of the contact is that of the first touch unless
+    `RollingContact` turns it. Infinite friction requires a tip with tangential compliance.
 
     Limit: The effect vanishes as the window goes to zero; it changes nothing if the tip does not reach the ball again.
 
@@ -50,13 +50,13 @@ class SecondHit(Effect):
     window: Annotated[float, Quantity("s", "(0, 1]").usually(1e-3, 0.1)] = 5e-3
 
     def add_to_contact(self, terms: ContactTerms) -> None:
-        """The time in which tip and ball may touch again."""
+        """The simulated time after the first separation."""
         terms.give("window", self.window)
 
 
 @dataclass(frozen=True)
 class Elevation(Effect):
-    """A raised cue: it points downwards, and the table pushes back while the tip presses the ball onto it.
+    """A raised cue: it points downwards, and the table supports the ball during the contact.
 
     Parameters
     ----------
@@ -68,15 +68,15 @@ class Elevation(Effect):
     Notes
     -----
     Adds: The third dimension. The stroke's offset is sideways, and the plane of the cue's axis and the ball's centre is
-    tilted by the angle; in that plane the contact is the level one. The rigid table keeps the ball from going down
-    without bouncing it, and rubs at its lowest point. The tip's friction therefore acts in two directions, and the cue
-    bends in two planes with the same modes and without twist. Squirt, speed and `ball_velocity` are then along the
-    table and spin is about the vertical; `Outcome.history` has the rest (`velocity` and `spin`, x right, y forward, z
-    up).
+    tilted by the angle; in that plane the contact is the level one. The rigid table stops the ball's downward motion
+    without restitution, with Coulomb friction at its lowest point. The tip's friction therefore acts in two directions,
+    and the cue bends in two planes with the same modes and without twist. Squirt, speed and `ball_velocity` are then in
+    the plane of the table and spin is about the vertical; `Outcome.history` has all components (`velocity` and `spin`,
+    x right, y forward, z up).
 
-    Matters when: The cue is raised by even a few degrees. The ball then spins about level axes too, the friction of the
-    cloth takes speed from it in proportion to the angle, and its squirt changes with the square of the angle. The curve
-    of the ball after the stroke is not included.
+    Matters when: The cue is raised by even a few degrees. The ball then spins about horizontal axes too, friction on
+    the cloth reduces its speed in proportion to the angle, and squirt changes with the square of the angle. The curve
+    of the ball after the stroke (swerve) is not included.
 
     Wrong when: The stroke is a jump shot, which needs the bounce of cloth and slate, or the ball is frozen to another
     one. It cannot be used with TipShear, RollingContact or SecondHit.

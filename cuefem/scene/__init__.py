@@ -1,4 +1,4 @@
-"""What is struck, how, and with what result: scenes, their default for a game, resolutions and outcomes."""
+"""Scenes, default scenes of games, resolutions and outcomes."""
 
 from cuefem.scene.scene import (
     DEFAULT_CONTACT_TIME,

@@ -1,4 +1,4 @@
-"""What people usually play with, by the game: the ball, tip and stroke that a drawing of a cue alone is given."""
+"""Default ball, tip and stroke of each game, for a cue without a scene."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ class Game:
     leather
         Name of the leather in `cuefem.cue.materials.LEATHERS`.
     restitution
-        Of the whole cue head on, as it is measured: that of a tip on a cue without axial waves.
+        Of the whole cue in a central impact, as measured: that of the tip without axial waves.
     cue_length, butt_diameter
-        Of a whole cue, m: where a drawing ends at the joint, waves along the cue go on in a butt to there.
+        Of a whole cue, m: axial waves run in a butt up to there if the drawing ends at the joint.
     friction
         Of tip and ball.
     speed
         Speed of the cue, m/s.
     offset
-        Where the ball is hit, b/R: well off centre, and far from a miscue.
+        Tip offset b/R: well off centre, and far from a miscue.
     source
         Where each number comes from. A number marked "usual" has no single source: players and shops agree on it.
     """
@@ -57,24 +57,24 @@ class Game:
 
     @property
     def tip(self) -> LeatherTip:
-        """The usual tip."""
+        """The default tip."""
         leather = LEATHERS[self.leather]
         return LeatherTip(self.height, self.dome_radius, leather.E, leather.nu, leather.rho)
 
     @property
     def tip_restitution(self) -> float:
-        """Of the usual tip by itself, which axial waves raise to about that of the whole cue."""
+        """Restitution of the default tip by itself; axial waves raise it to about that of the whole cue."""
         return LEATHERS[self.leather].restitution
 
     def tip_beside(self, effects: Sequence[Effect]) -> Tip:
-        """A tip of the leather's own restitution where axial waves act; else of the whole cue's."""
+        """Tip with the leather's own restitution beside axial waves; otherwise that of the whole cue."""
         E = next((effect.E for effect in effects if isinstance(effect, LeatherTip)), LEATHERS[self.leather].E)
         waves = any(isinstance(effect, AxialWaves) for effect in effects)
         return Tip(leather_restitution(E) if waves else self.restitution, self.friction)
 
     @property
     def effects(self) -> tuple[Effect, ...]:
-        """What acts in a default stroke beside the tip: axial waves and geometric stiffness."""
+        """Effects of a default stroke beside the tip: axial waves and geometric stiffness."""
         return AxialWaves(self.cue_length, self.butt_diameter, WAVE_SPEED), GeometricStiffness()
 
 
@@ -116,7 +116,7 @@ def without_leather(cue: Cue) -> Cue:
 
 
 def usual_tip(cue: Cue, game: str = DEFAULT_GAME) -> LeatherTip:
-    """The game's usual tip, as high as the leather that the cue is drawn with, if it is.
+    """The default tip of a game, with the height of the leather drawn on the cue, if any.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def usual_tip(cue: Cue, game: str = DEFAULT_GAME) -> LeatherTip:
     Returns
     -------
     LeatherTip
-        Of the game's usual dome and leather.
+        With the game's default dome and leather.
 
     Raises
     ------
@@ -147,30 +147,30 @@ def usual_tip(cue: Cue, game: str = DEFAULT_GAME) -> LeatherTip:
 
 
 def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = None) -> Scene:
-    """A game's default stroke with a cue: what the commands give to the drawing of a cue alone.
+    """The default stroke of a game with a cue, which the commands use for a cue without a scene.
 
     Parameters
     ----------
     cue
-        A drawing. Leather that is drawn at its tip is replaced by the tip; a drawing without
-        leather ends at the ferrule, and the tip is put on it.
+        A drawing. The tip replaces leather drawn on it; a drawing without leather ends at the ferrule, and the tip is
+        added in front of it.
     game
-        "pool", "carom" or "snooker": `GAMES` has their numbers and where these are from. "kim" is ``Scene(cue)``, the
-        cue as it is drawn with the ball, tip and stroke of Kim's paper and without effects.
+        "pool", "carom" or "snooker": `GAMES` has their values and sources. "kim" is ``Scene(cue)``, the cue as drawn
+        with the ball, tip and stroke of Kim's paper and without effects.
     tip
         Instead of `usual_tip`; not with "kim".
 
     Returns
     -------
     Scene
-        The cue with the game's ball, tip, speed and offset, with waves along the cue and thrust on the bent shaft.
-        Waves go on behind the drawing, in a butt of ``cue.body_mass``, which bending does not see.
-        Its tip has the restitution of its leather, which axial waves raise to about that of whole cues.
+        The cue with the game's ball, tip, speed and offset, axial waves and geometric stiffness. Axial waves continue
+        behind the drawing, in a butt of ``cue.body_mass``, which does not bend. The tip has the restitution of its
+        leather, which axial waves raise to about that of whole cues.
 
     Raises
     ------
     ValueError
-        If no game has that name, or the tip cannot be on this cue.
+        If no game has that name, or the tip does not fit this cue.
 
     Examples
     --------

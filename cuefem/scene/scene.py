@@ -1,4 +1,4 @@
-"""A scene (ball, tip, stroke, cue and effects), how finely it is computed, and the outcome of its strike."""
+"""Scene (cue, ball, tip, stroke, effects), resolution of its computation, and outcome of its strike."""
 
 from __future__ import annotations
 
@@ -73,9 +73,9 @@ class Tip:
     friction
         Coulomb's mu between tip and ball; inf for a tip that never slips.
     contact_time
-        Duration of a head-on blow, s. By default 2 ms ([Kim] sec. 4), unless a stiffness is given.
+        Contact time of a central impact, s. By default 2 ms ([Kim] sec. 4), unless a stiffness is given.
     stiffness
-        Stiffness of the tip while it is loaded, N/m, instead of a contact time: each fixes the other.
+        Loading stiffness of the tip, N/m, instead of a contact time: each determines the other.
 
     Raises
     ------
@@ -84,7 +84,7 @@ class Tip:
 
     Notes
     -----
-    A strike that is followed in time takes a restitution of 0.05 or more; `cuefem.impulse` takes any.
+    `cuefem.strike` takes a restitution of 0.05 or more; `cuefem.impulse` takes any.
 
     Examples
     --------
@@ -101,7 +101,7 @@ class Tip:
         check_fields(self)
         if self.contact_time is not None and self.stiffness is not None:
             raise ValueError(
-                "Tip takes contact_time (s) or stiffness (N/m), each fixes the other; "
+                "Tip takes contact_time (s) or stiffness (N/m), each determines the other; "
                 f"got both, {self.contact_time} s and {self.stiffness} N/m"
             )
 
@@ -115,7 +115,7 @@ class Stroke:
     speed
         Speed of the cue along its axis, m/s.
     offset
-        Where it hits: the distance b of the contact from the ball's centre line over the ball's radius R, in (-1, 1).
+        Tip offset b/R: distance b of the contact from the ball's centre line over the ball's radius R, in (-1, 1).
 
     Raises
     ------
@@ -144,24 +144,24 @@ class Stroke:
 
 @dataclass(frozen=True)
 class Scene:
-    """A stroke: cue, ball and tip, how the ball is struck, and which effects act beyond the base model.
+    """A scene: cue, ball, tip, stroke, and the effects beyond the base model.
 
     Parameters
     ----------
     cue
         A `Cue` of segments, which vibrates, or a `LumpedCue`.
     ball, tip, stroke
-        By default those of Kim's paper: a carom ball, a tip with a contact time of 2 ms, and a head-on blow at 1 m/s.
+        By default those of Kim's paper: a carom ball, a tip with a contact time of 2 ms, and a central impact at 1 m/s.
         `cuefem.usual_scene` has those of a game.
     effects
-        Effects such as `TipDome` or `PointMass`, in any order. What is not listed costs nothing.
+        Effects such as `TipDome` or `PointMass`, in any order.
 
     Raises
     ------
     TypeError
         If a field is of another kind.
     ValueError
-        If an effect does not go with the cue or with another effect.
+        If an effect cannot act on the cue, or beside another effect.
 
     Examples
     --------
@@ -201,14 +201,14 @@ class Scene:
 
     @property
     def shaft(self) -> Cue:
-        """The finite-element cue, for what needs its modes or shape; ValueError for a lumped cue, which has none."""
+        """The finite-element cue; ValueError for a lumped cue, which has neither modes nor shape."""
         if isinstance(self.cue, LumpedCue):
             raise ValueError("Scene.cue must be a Cue of segments: its modes or its shape are needed; got a LumpedCue")
         return self.cue
 
     @property
     def lumped(self) -> LumpedCue | None:
-        """The lumped cue, for what takes its numbers as they are; None if the cue is of finite elements."""
+        """The lumped cue; None if the cue is of finite elements."""
         return self.cue if isinstance(self.cue, LumpedCue) else None
 
     @property
@@ -223,7 +223,7 @@ class Scene:
 
     @property
     def bare(self) -> Scene:
-        """The scene without its effects at the tip: the mass and the contact time of a whole tip stay."""
+        """The scene without its effects at the tip; mass and contact time of a leather tip remain."""
         if self.lumped is not None:
             return replace(self, effects=tuple(effect for effect in self.effects if not effect.at_tip))
         effects = tuple(chain.from_iterable(effect.left_on(self.shaft) for effect in self.effects))
@@ -232,12 +232,12 @@ class Scene:
 
     @property
     def contact_terms(self) -> ContactTerms:
-        """What the effects add at the contact."""
+        """Terms that the effects add to the contact."""
         return ContactTerms.of(self.effects, self._end_diameter)
 
     @property
     def tip_diameter(self) -> float:
-        """Diameter of the tip, m: that of a whole tip, or else of the shaft's end; ValueError for a lumped cue."""
+        """Diameter of the leather tip, or else of the shaft's end, m; ValueError for a lumped cue."""
         whole = self.contact_terms.tip
         return self.shaft.segments[0].tip_diameter if whole is None else float(whole.diameter)
 
@@ -247,27 +247,26 @@ class Scene:
 
     @property
     def axial_mass(self) -> float:
-        """Mass m_a that a head-on blow feels, kg: the cue's mass and the mass that effects add."""
+        """Axial mass m_a, kg: the cue's mass and that of its effects."""
         added = (effect.axial_mass if self.lumped else effect.mass_on(self.shaft) for effect in self.effects)
         return self.cue.mass + math.fsum(added)
 
     @property
     def dome_radius(self) -> float:
-        """Radius of the tip's dome, m: the sum over all effects, 0 if none adds to it."""
+        """Radius of the tip's dome, m: the sum over all effects; 0 without a dome."""
         return self.contact_terms.dome_radius
 
     @property
     def head_on_mass(self) -> float:
-        """The m_n of 1/m_n = 1/M + 1/m_a, kg."""
+        """Reduced mass m_n of a central impact, 1/m_n = 1/M + 1/m_a, kg."""
         return 1 / (1 / self.ball.mass + 1 / self.axial_mass)
 
     @cached_property
     def contact_time(self) -> float:
-        """Duration T of a head-on blow, s, given or from the tip's stiffness (handbook: The strike).
+        """Contact time T of a central impact, s, given or from the tip's stiffness (handbook: The strike).
 
-        A whole tip (`LeatherTip`) has it from its own law, at the stroke's speed, on a cue that is rigid along its
-        axis; with the stiffness it is what stands for such a tip where a linear one is asked for: in end masses, in the
-        choice of modes, in reports.
+        For a `LeatherTip` it follows from the force-indentation law, at the stroke's speed, on an axially rigid cue.
+        With the stiffness it defines the equivalent linear tip for end masses, the choice of modes, and reports.
         """
         if self.contact_terms.tip is not None:
             return (1 + self.tip.restitution) * self._pressed[1]
@@ -277,7 +276,7 @@ class Scene:
 
     @property
     def known_contact_time(self) -> float | None:
-        """The `contact_time`, or None for leather that the blow presses further than its law is known."""
+        """The `contact_time`, or None for leather that the impact indents beyond the range of its law."""
         try:
             return self.contact_time
         except TooDeep:
@@ -285,14 +284,14 @@ class Scene:
 
     @property
     def stiffness(self) -> float:
-        """Loading stiffness k of the tip, N/m, given or from the head-on contact time (handbook: The strike)."""
+        """Loading stiffness k of the tip, N/m, given or from the contact time (handbook: The strike)."""
         if self.tip.stiffness is not None:
             return self.tip.stiffness
         return (math.pi / 2 * (1 + self.tip.restitution) / self.contact_time) ** 2 * self.head_on_mass
 
     @property
     def leather(self) -> LeatherTip:
-        """The scene's tip of leather; ValueError if it has none."""
+        """The scene's `LeatherTip`; ValueError without one."""
         leather = next((effect for effect in self.effects if isinstance(effect, LeatherTip)), None)
         if leather is None:
             raise ValueError("Scene.effects must hold a LeatherTip; got none")
@@ -300,12 +299,12 @@ class Scene:
 
     @property
     def tip_at_hand(self) -> bool:
-        """Whether the elasticity of the scene's tip is known; False if its first blow computes it for seconds."""
+        """Whether the tip's elasticity is cached; False if the first strike takes seconds to compute it."""
         tips = [] if self._end_diameter is None else [e for e in self.effects if isinstance(e, LeatherTip)]
         return all(tip.at_hand(tip.diameter_on(self._end_diameter or 0.0)) for tip in tips)
 
     def tip_law(self, restitution: float = 1.0, offset: float = 0.0) -> LeatherLaw:
-        """The law of a whole tip (`LeatherTip`) on this cue and ball; ValueError if the scene has none."""
+        """The force-indentation law of the `LeatherTip` on this cue and ball; ValueError without one."""
         whole = self.contact_terms.tip
         if whole is None:
             raise ValueError("Scene.effects must hold a LeatherTip, whose law is asked for; got none")
@@ -313,12 +312,12 @@ class Scene:
 
     @property
     def deepest(self) -> float:
-        """The maximum indentation of a whole tip (`LeatherTip`) by a head-on blow, m; ValueError without one."""
+        """Maximum indentation of the `LeatherTip` in a central impact, m; ValueError without one."""
         return self._pressed[0]
 
     @property
     def _pressed(self) -> tuple[float, float]:
-        """Greatest compression, m, of a whole tip by a head-on blow, and the time to it, s."""
+        """Maximum indentation of the `LeatherTip` in a central impact, m, and the time to it, s."""
         return _pressed(self.tip_law(), self.head_on_mass, self.stroke.speed)
 
 
@@ -337,14 +336,14 @@ def several(name: str, scenes: Any) -> tuple[Scene, ...]:
 
 @lru_cache(maxsize=256)
 def _pressed(law: LeatherLaw, mass: float, speed: float) -> tuple[float, float]:
-    """The blow of a law, computed once for all strokes of a sweep at one speed."""
+    """Maximum indentation and the time to it, cached for all strokes of a sweep at one speed."""
     deepest, time = law.blow(mass, speed)
     return float(deepest), float(time)
 
 
 @dataclass(frozen=True)
 class Resolution:
-    """How finely a finite-element cue is computed.
+    """Resolution of a finite-element cue and of its contact.
 
     Parameters
     ----------
@@ -353,7 +352,7 @@ class Resolution:
     order
         Polynomial degree p of the rotation; the deflection has degree p + 1.
     modes
-        Number of flexible bending modes kept. The rigid ones are always kept.
+        Number of flexible bending modes; the rigid-body modes are always included.
     steps
         Steps of the contact in a head-on contact time, 20 to 1,000,000; by default 400.
 
@@ -383,7 +382,7 @@ class Resolution:
 
 
 def equal_fields(this: Any, other: Any) -> bool:
-    """Whether two dataclasses of one class hold equal fields, arrays among them: their ``__eq__``."""
+    """Whether two dataclasses of one class have equal fields, arrays included: their ``__eq__``."""
     if type(this) is not type(other):
         return NotImplemented
     pairs = ((getattr(this, field.name), getattr(other, field.name)) for field in fields(this))
@@ -398,7 +397,7 @@ def _equal(this: Any, other: Any) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """What a strike leaves behind.
+    """Result of a strike.
 
     Of many strokes every field is an array, (strokes,); vectors have one axis more.
 
@@ -428,13 +427,13 @@ class Outcome:
     jam : bool or array
         Whether friction pressed ball and tip together at first, so that they closed faster: usual for a light end mass.
     phases : tuple
-        The course of the contact.
+        Phases of the contact.
     energy : dict
         J by name: "initial", and the parts that add up to it.
     unknowns : int
-        Of the model that was solved.
+        Number of state variables of the model.
     error : float or None
-        Estimated relative error; None if nothing estimated it.
+        Estimated relative error; None without an estimate.
     history : History or None
         Forces and velocities during the contact, at any time (`cuefem.contact.outcome.History`); None from the impulse
         solver.
