@@ -40,8 +40,9 @@ class Effect:
     # Values at which commands try the effect on a scene that does not list it. None for an effect whose fields all have
     # defaults, and for one that describes an individual cue, such as a point mass: it is not tried.
     usual: ClassVar[Usual | None] = None
-    # Whether it acts at the tip (`Scene.bare` removes it), and whether it is part of a freely suspended cue.
+    # Whether it acts at the tip (`Scene.bare` removes it).
     at_tip: ClassVar[bool] = False
+    # Whether it is part of a freely suspended cue.
     part_of_cue: ClassVar[bool] = False
     # Whether it changes the cue's bending vibration without axial force.
     across: ClassVar[bool] = True

@@ -66,8 +66,8 @@ class ContactTerms:
 
     tip_diameter: of the cue's end, m; None for a lumped cue. law: makes the force-indentation law, by default linear.
     tip: a complete tip model. turns: whether the normal turns as the contact rolls over ball and tip. table: under the
-    ball of a raised cue. window: simulated time after the first separation, s. `cuefem.contact.model` makes of them the
-    kernel's input.
+    ball of a raised cue. window: simulated time after the first separation, s. They become the kernel's input in
+    `cuefem.contact.model`.
     """
 
     def __init__(self, tip_diameter: float | None = None) -> None:
