@@ -1,9 +1,9 @@
-"""Reader of the stored answers of the former engine: strikes with their inputs, end masses and frequencies.
+"""Reads the stored results of the former engine: strikes with their inputs, end masses and frequencies.
 
-tests/data/make.py of commit e00ebcc computed them with the engine of commit 1e8a581 (collocation of order 14, rings
-solved to 1e-9) for random scenes over every law and effect, 20 of each kind. Never regenerate them.
-A strike is stored with the inputs of its contact, the tip modes and the terms of a leather tip's law. A test therefore
-compares only the contact; changes of the mesh or of the tip's elasticity have no effect on it.
+They were computed once, by tests/data/make.py of commit e00ebcc with the engine of commit 1e8a581: collocation of order
+14, rings solved to 1e-9, scenes drawn at random over every law and effect, 20 of a kind. They are never recomputed.
+A strike is stored with the inputs of its contact: the tip modes, and the terms of a leather tip's law. A test therefore
+compares the contact alone, independently of the mesh and of the tip's elasticity.
 """
 
 from __future__ import annotations
@@ -57,13 +57,13 @@ PARTS = ("omega", "amplitude", "approach", "rotation", "damping", "radiation", "
 
 
 def rebuilt(parts: dict[str, Any]) -> TipModes:
-    """Tip modes from their parts, of which the matrices are rows whose squares add up to them."""
+    """Tip modes from their stored parts; a matrix is stored as its square root, rows^T rows."""
     squares = {name: rows.T @ rows for name in PARTS[4:] if (rows := parts.get(name)) is not None}
     return TipModes(*(parts[name] for name in PARTS[:4]), **squares)
 
 
 def scene_of(row: dict[str, Any]) -> Scene:
-    """The scene of a row; its cue has the mass and the tip's diameter of the one that was struck, and nothing else."""
+    """The scene of a row; its cue has only the mass and the tip diameter of the original."""
     numbers = row["scene"]
     if "lumped" in numbers:
         cue: cf.Cue | cf.LumpedCue = cf.LumpedCue(*numbers["lumped"])
@@ -83,7 +83,7 @@ def tip_of(row: dict[str, Any]) -> TipModes:
 
 @contextmanager
 def stored_law(row: dict[str, Any]) -> Iterator[None]:
-    """The row's leather tip has the stored law; nothing is computed in 3-D elasticity."""
+    """Replaces the leather tip's law by the stored one, without 3-D elasticity."""
     if "law" not in row:
         yield
         return

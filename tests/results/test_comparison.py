@@ -1,4 +1,4 @@
-"""Cues side by side: differences are those of the strikes, and errors that cues share cancel (properties)."""
+"""Comparison of cues: differences agree with strikes, and shared errors cancel (properties)."""
 
 import math
 from dataclasses import replace
@@ -25,7 +25,7 @@ def both() -> dict[str, Any]:
     return comparison_record({"plain": SCENE, "bored": BORED})
 
 
-def test_differences_are_those_of_the_cues_alone(both: dict[str, Any]) -> None:
+def test_comparison_differences_agree_with_single_cues(both: dict[str, Any]) -> None:
     squirts = [float(cf.strike(scene).squirt) for scene in (SCENE, BORED)]
     assert [both["cues"][name]["squirt"] for name in ("plain", "bored")] == pytest.approx(squirts, rel=1e-9)
     assert both["cues"]["plain"]["end_mass_squirt"] == pytest.approx(cf.end_mass(SCENE, "squirt"), rel=1e-9)
@@ -34,7 +34,7 @@ def test_differences_are_those_of_the_cues_alone(both: dict[str, Any]) -> None:
     assert squirt["error"] > abs(squirt["difference"]) * SHAFTS / 1.1
 
 
-def test_the_verdict_is_the_same_in_either_order(both: dict[str, Any]) -> None:
+def test_comparison_reversed_order_has_same_significance(both: dict[str, Any]) -> None:
     other = comparison_record({"bored": BORED, "plain": SCENE})["differences"]["plain"]
     for name, each in both["differences"]["bored"].items():
         sizes = [one["difference"] / (one["error"] or math.inf) for one in (each, other[name])]
@@ -44,13 +44,13 @@ def test_the_verdict_is_the_same_in_either_order(both: dict[str, Any]) -> None:
 TWIN = {"a": SCENE, "b": replace(SCENE)}
 
 
-def test_of_a_cue_beside_itself_only_the_floor_is_left() -> None:
+def test_comparison_of_equal_cues_has_error_floor() -> None:
     same = comparison_record(TWIN, same_shaft=True)["differences"]["b"]
     assert same["squirt"]["error"] == pytest.approx(FLOOR, rel=1e-9)
     assert same["shaft_mass"]["error"] == same["frequency_1"]["error"] == pytest.approx(OTHER_FLOOR, rel=1e-9)
 
 
-def test_of_two_pieces_of_wood_the_root_of_two_of_each_input_is_left() -> None:
+def test_comparison_of_two_woods_adds_input_errors() -> None:
     record = comparison_record(TWIN)
     two = record["differences"]["b"]
     assert "not distinct" in comparison_sentences(record)[0]
@@ -60,7 +60,7 @@ def test_of_two_pieces_of_wood_the_root_of_two_of_each_input_is_left() -> None:
 
 
 @pytest.mark.heavy
-def test_a_weight_makes_a_difference_surer_and_all_are_struck_like_the_first() -> None:
+def test_comparison_with_shaft_masses_has_smaller_error() -> None:
     faster = replace(SCENE, stroke=cf.Stroke(4.0, 0.1))
     light, heavy = (varied(scene, {"shaft mass": mass}) for scene, mass in ((SCENE, 0.112), (faster, 0.128)))
     weighed = comparison_record({"light": light, "heavy": heavy})
@@ -72,15 +72,15 @@ def test_a_weight_makes_a_difference_surer_and_all_are_struck_like_the_first() -
 
 
 @pytest.mark.heavy
-def test_a_mass_on_one_shaft_is_less_sure_than_two_shafts() -> None:
-    """The model's part of a ratio with a mass on the shaft is that of the measured masses."""
+def test_comparison_with_point_mass_has_larger_error() -> None:
+    """The model error of the ratio is that of the measured masses."""
     clip = replace(SCENE, effects=(*SCENE.effects, cf.PointMass(0.05, 0.011)))
     squirt = comparison_record({"plain": SCENE, "clip": clip}, same_shaft=True)["differences"]["clip"]["squirt"]
     assert squirt["error"] >= MASSES * squirt["difference"] > SHAFTS * squirt["difference"]
 
 
-def test_the_command_compares_files_each_by_a_name_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Ball and stroke are those of the first; the page draws both, and has the squirt of each alone."""
+def test_compare_files_of_one_name_takes_first_ball_and_stroke(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The page draws both cues."""
     (tmp_path / "old").mkdir()
     cf.save(SCENE, tmp_path / "cue.toml")
     cf.save(replace(BORED, ball=cf.Ball(0.17, 0.028575), stroke=cf.Stroke(3.0, 0.4)), tmp_path / "old" / "cue.toml")
@@ -93,7 +93,7 @@ def test_the_command_compares_files_each_by_a_name_of_its_own(tmp_path: Path, mo
     assert Path("both.html").read_text(encoding="utf-8").count("<svg") >= 4
 
 
-def test_a_miscue_is_not_compared() -> None:
+def test_comparison_miscue_has_no_squirt() -> None:
     far = {name: replace(scene, stroke=cf.Stroke(2.0, 0.8)) for name, scene in (("a", SCENE), ("b", BORED))}
     record = comparison_record(far)
     assert record["cues"]["a"]["squirt"] != record["cues"]["a"]["squirt"]
@@ -115,7 +115,9 @@ def test_a_miscue_is_not_compared() -> None:
         (["nowhere"], "got no folder"),
     ],
 )
-def test_refusals(arguments: list[str], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_compare_invalid_input_prints_one_line(
+    arguments: list[str], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     cf.save(kim(), tmp_path / "cue.toml")
     cf.save(cf.Scene(cf.LumpedCue(0.54, 0.006)), tmp_path / "lumped.toml")
     cf.save(varied(SCENE, {"wood": "ash"}).shaft, tmp_path / "ash.toml")

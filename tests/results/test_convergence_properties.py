@@ -1,4 +1,4 @@
-"""What holds of `resolve` for every scene: limits, mirrors, refusals, the same answer twice (properties)."""
+"""`resolve` and `resolve_end_mass`: lumped cues, cost against accuracy, levels (properties)."""
 
 from dataclasses import replace
 
@@ -15,23 +15,23 @@ KIM = scene("kim", 1e-3, 0.3)
 
 @settings(max_examples=8, deadline=None)
 @given(lumped_scenes())
-def test_a_lumped_cue_takes_steps_alone(lumped: Scene) -> None:
+def test_resolve_lumped_cue_agrees_with_impulse(lumped: Scene) -> None:
     found, exact = resolve(lumped, 1e-3), impulse(lumped)
     assert found.error <= 1e-3
     assert abs(found.squirt - exact.squirt) <= 1e-3 * max(abs(exact.squirt), abs(lumped.stroke.angle))
 
 
-def test_a_lumped_cue_answers_its_own_end_mass() -> None:
+def test_resolve_end_mass_lumped_cue_is_its_own() -> None:
     assert resolve_end_mass(replace(KIM, cue=LumpedCue(0.5, 0.006)), "force", 1e-3) == (0.006, 0.0)
 
 
-def test_better_is_never_cheaper() -> None:
+def test_resolve_smaller_rtol_takes_more_degrees_of_freedom() -> None:
     found = [resolve(KIM, rtol) for rtol in (0.5, 1e-2, 1e-3, 3e-4)]
     assert [outcome.unknowns for outcome in found] == sorted(outcome.unknowns for outcome in found)
     errors = [outcome.error for outcome in found]
     assert all(error is not None and error <= rtol for error, rtol in zip(errors, (0.5, 1e-2, 1e-3, 3e-4), strict=True))
 
 
-def test_levels_double_their_modes() -> None:
+def test_mode_counts_double() -> None:
     assert mode_counts(1) == [12, 24, 48, 96, 192, MAX_MODES]
     assert mode_counts(MAX_MODES) == [50, 100, 200, MAX_MODES]

@@ -1,4 +1,4 @@
-"""The tail of the modes against sums over all of them, and the errors that `resolve` promises against references
+"""The truncation correction against sums over all modes, and the error estimates of `resolve` against references
 (verification)."""
 
 import numpy as np
@@ -17,7 +17,7 @@ from tests.helpers.accuracy_scenes import family, scene
 
 
 def all_modes(scene: cf.Scene, count: int) -> Modes:
-    """Every mode of a mesh that holds ``count``."""
+    """All modes of a mesh for ``count`` modes."""
     assert isinstance(scene.cue, cf.Cue)
     system = assemble(scene.cue, count, scene.cue_effects)
     return solve(system, system.size - system.rigid.shape[1])
@@ -49,8 +49,8 @@ def moment(found: Modes, power: int, *, past: int) -> np.ndarray:
 
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("effects", [(), (cf.Support(0.2, stiffness=np.inf),), (cf.Joint(0.3, 1e-3),)], ids=str)
-def test_tail_holds_the_moments_of_every_mode_left_out(name: str, effects: tuple) -> None:
-    """Two steps of Lanczos hold four moments; with a force alone, those of the deflection alone."""
+def test_truncation_correction_conserves_moments_of_truncated_modes(name: str, effects: tuple) -> None:
+    """Two Lanczos steps conserve four moments; with a force alone, those of the deflection."""
     whole = all_modes(scene(name, 1e-3, 0.3, effects=effects), 40)
     for loads in (2, 1):
         ended, part = solve(whole.system, 20, ended=loads), slice(loads)
@@ -61,7 +61,7 @@ def test_tail_holds_the_moments_of_every_mode_left_out(name: str, effects: tuple
             np.testing.assert_allclose(found / scale, wanted / scale, rtol=0, atol=1e-7)
 
 
-def test_end_masses_to_an_accuracy() -> None:
+def test_resolve_end_mass_error_is_within_rtol() -> None:
     here = scene("kim", 1e-3, 0.3)
     tip = tip_modes_from(solve(assemble(here.shaft, 140), 130, ended=1), here)
     for drive in ("stick", "velocity", "force"):
@@ -72,8 +72,8 @@ def test_end_masses_to_an_accuracy() -> None:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("number", range(0, 40, 3))
-def test_the_estimated_error_holds_on_the_family(number: int) -> None:
-    """The true error is known no better than two references agree; where that is coarser, it cannot contradict."""
+def test_refinement_levels_error_estimate_bounds_true_error(number: int) -> None:
+    """The tolerance includes the difference of two references, which is the uncertainty of the true error."""
     here = family()[number]
     best, rougher = reference(here, 300), reference(here, 230)
     known = float((np.abs(rougher - best) / np.abs(best)).max())

@@ -1,4 +1,4 @@
-"""Uncertain inputs, and the model's own errors as the published series give them (properties, validation)."""
+"""Uncertain inputs, and the model errors against published series (properties, validation)."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -14,7 +14,7 @@ from studies.measured import uncertainty
 MESHES = Path(__file__).parents[2] / "meshes"
 
 
-def test_leather_s_loss_along_its_surface_is_an_input_downwards() -> None:
+def test_squirt_changes_surface_restitution_is_one_sided() -> None:
     """0.95 for the 1 that stands there: 4 % more squirt. It is the tip's, which two shafts share."""
     scene = cf.usual_scene(cf.load(MESHES / "pool_maple.toml"))
     own = float(cf.strike(scene).squirt)
@@ -28,15 +28,15 @@ def test_leather_s_loss_along_its_surface_is_an_input_downwards() -> None:
 
 
 @pytest.mark.heavy
-def test_the_model_s_errors_are_those_of_the_published_series() -> None:
-    """The constants of the package are the upper ends of what the series leave, as the study derives them."""
+def test_model_errors_agree_with_published_series() -> None:
+    """The constants are the upper ends of the intervals that the study derives."""
     errors = [uncertainty.model_error(model).high for model in ("whole", "bare")]
     assert [*errors, *uncertainty.ratio_errors()] == pytest.approx([MODEL, MODEL_OF_SPRING, SHAFTS, MASSES], abs=5.1e-3)
 
 
 @pytest.mark.heavy
-def test_published_rows_lie_within_an_uncertainty_set_without_their_series() -> None:
-    """At least as many as 1 sigma asks of squirt and of two shafts; the series of 3 g fails, and the page says so."""
+def test_uncertainty_covers_published_rows() -> None:
+    """At least 68 % of the rows of squirt and of two shafts; the series of 3 g has fewer, as the page states."""
     within = {name: (inside, rows) for name, rows, inside, _ in uncertainty.coverage()}
     cues = [pair for name, pair in within.items() if " g on a shaft" not in name]
     inside, rows = map(sum, zip(*cues, strict=True))

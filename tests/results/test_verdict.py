@@ -1,4 +1,4 @@
-"""The verdict: a squirt, its uncertainty, its place among the ready cues, each as the strike gives it (properties)."""
+"""The verdict: squirt, its uncertainty and the reference cues agree with strikes (properties)."""
 
 import math
 from dataclasses import replace
@@ -20,14 +20,14 @@ RECORD = verdict_record(SCENE, cf.strike(SCENE), ready_cues())
 
 
 @pytest.mark.parametrize("name", SCALE)
-def test_each_ready_cue_is_struck_the_same_way(name: str) -> None:
+def test_verdict_reference_cues_agree_with_strikes(name: str) -> None:
     struck = cf.strike(replace(SCENE, cue=without_leather(cf.load(ROOT / SCALE[name]))))
     among = RECORD["among"][name]
     assert among["squirt"] == pytest.approx(struck.squirt, rel=1e-12)
     assert among["difference"] == pytest.approx(cf.strike(SCENE).squirt / struck.squirt - 1, abs=1e-12)
 
 
-def test_the_uncertainty_is_its_parts_in_quadrature() -> None:
+def test_verdict_uncertainty_is_quadrature_sum_of_parts() -> None:
     band = RECORD["uncertainty"]
     parts = [band[name] for name in ("model", "inputs", "computation")]
     assert all(part > 0 for part in parts)
@@ -42,7 +42,7 @@ def test_the_uncertainty_is_its_parts_in_quadrature() -> None:
     [{"shaft mass": 1.0001 * SCENE.shaft.shaft_mass}, {"leather": 1.0001 * SCENE.leather.E}],
     ids=["shaft", "tip"],
 )
-def test_a_weighed_shaft_or_a_known_tip_makes_the_uncertainty_smaller(known: dict[str, float]) -> None:
+def test_verdict_known_input_has_smaller_uncertainty(known: dict[str, float]) -> None:
     scene = varied(SCENE, known)
     record = verdict_record(scene, cf.strike(scene), {})
     assert record["uncertainty"]["model"] == RECORD["uncertainty"]["model"]
@@ -50,7 +50,7 @@ def test_a_weighed_shaft_or_a_known_tip_makes_the_uncertainty_smaller(known: dic
 
 
 @pytest.mark.parametrize(("depth", "distinct"), [(0.01, False), (0.1, True)])
-def test_a_difference_within_its_error_is_not_told_apart(depth: float, distinct: bool) -> None:
+def test_verdict_difference_within_error_is_not_distinct(depth: float, distinct: bool) -> None:
     maple = cf.load(ROOT / SCALE["plain maple"])
     bored = varied(cf.usual_scene(maple), {"bore depth": depth, "bore width": 0.006})
     record = verdict_record(bored, cf.strike(bored), {"plain maple": maple})
@@ -60,7 +60,7 @@ def test_a_difference_within_its_error_is_not_told_apart(depth: float, distinct:
     assert ("less squirt" in standing(record)[0]) == distinct
 
 
-def test_what_is_fixed_to_the_cue_stays_with_it() -> None:
+def test_same_stroke_excludes_effects_on_own_cue() -> None:
     more = (cf.PointMass(0.1, 0.011), cf.Support(0.2, 1e3), cf.Support(0.72, 1e3))
     scene = replace(SCENE, effects=(*SCENE.effects, *more))
     short = replace(SCENE.cue, segments=SCENE.cue.segments[:-1])
@@ -69,7 +69,7 @@ def test_what_is_fixed_to_the_cue_stays_with_it() -> None:
     assert sum(isinstance(effect, cf.Support) for effect in same_stroke(scene, short).effects) == 1
 
 
-def test_the_scale_is_in_order_and_compares_every_cue_with_plain_maple() -> None:
+def test_reference_scale_is_ascending_and_relative_to_maple() -> None:
     rows, among = scale(RECORD), RECORD["among"]
     assert [row.at for row in rows] == sorted(row.at for row in rows)
     assert all(0 <= row.low <= row.at <= row.high <= 100 for row in rows)
@@ -84,6 +84,6 @@ def test_the_scale_is_in_order_and_compares_every_cue_with_plain_maple() -> None
 @pytest.mark.parametrize(
     ("squirt", "error", "words"), [(1.847, 0.31, "1.85°"), (0.4, 0.042, "0.40°"), (0.04, 0.0042, "0.040°")]
 )
-def test_squirt_has_the_digits_of_the_tables(squirt: float, error: float, words: str) -> None:
+def test_squirt_text_has_digits_of_tables(squirt: float, error: float, words: str) -> None:
     record = {"squirt": math.radians(squirt), "squirt_error": math.radians(error)}
     assert squirt_words(record)[0] == words

@@ -1,4 +1,4 @@
-"""Solid cues through the public doors: a strike, masses on the tip, files, refusals in words (properties)."""
+"""Solid cues: strike, mass on the tip, modes, invalid input, model error (properties)."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SCENE = cf.Scene(cf.Cue((CONE,), body_mass=0.42), tip=cf.Tip(contact_time=1e-3),
 COARSE = cf.Solid(order=3, modes=20)
 
 
-def test_a_mass_on_the_tip_works_on_a_solid_as_on_a_beam() -> None:
+def test_strike_point_mass_on_solid_agrees_with_beam() -> None:
     laden = replace(SCENE, effects=(cf.PointMass(0.0, 2e-3),))
     beam, solid = (
         cf.strike(laden, at=at).squirt / cf.strike(SCENE, at=at).squirt for at in (cf.Resolution(3, 16, 20), COARSE)
@@ -28,7 +28,7 @@ def test_a_mass_on_the_tip_works_on_a_solid_as_on_a_beam() -> None:
     assert solid == pytest.approx(beam, rel=2e-3)
 
 
-def test_the_modes_of_a_solid_are_those_of_the_beam() -> None:
+def test_solid_modes_agree_with_beam() -> None:
     beam, solid = cf.modes(SCENE.cue, 4), cf.solid_modes(SCENE.cue, 4)
     assert solid.rigid == beam.rigid == 2
     np.testing.assert_allclose(solid.frequencies, beam.frequencies, rtol=2e-4)
@@ -40,7 +40,7 @@ def test_the_modes_of_a_solid_are_those_of_the_beam() -> None:
 BORES = (0.004, 0.0119999999)  # one within the other
 CROSSING = cf.Cue(tuple(cf.Segment(0.1, 0.012, 0.012, WOOD, bore, bore) for bore in BORES))
 FINE = tuple(cf.Segment(0.002, 0.012, 0.013, WOOD) for _ in range(300))
-REFUSED: list[tuple[Callable[[], object], str]] = [
+INVALID: list[tuple[Callable[[], object], str]] = [
     (lambda: replace(WOOD, nu_across=0.98), r"Material.nu_across must be in \(0, 0.9"),
     (lambda: replace(WOOD, across_ratio=4.0), "Material.nu_across must be in .* across_ratio = 4.0"),
     (lambda: cf.solid_modes(CROSSING), "wall of 1 um or more"),
@@ -53,19 +53,19 @@ REFUSED: list[tuple[Callable[[], object], str]] = [
 ]
 
 
-@pytest.mark.parametrize(("ask", "message"), REFUSED, ids=[message for _, message in REFUSED])
-def test_what_no_solid_can_be_is_refused_in_words(
+@pytest.mark.parametrize(("ask", "message"), INVALID, ids=[message for _, message in INVALID])
+def test_solid_invalid_input_raises_before_assembly(
     ask: Callable[[], object], message: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Before anything is assembled, which is what takes seconds."""
+    """Assembly takes seconds."""
     monkeypatch.setattr(Body, "matrices", property(lambda body: pytest.fail("a solid was assembled")))
     with pytest.raises(ValueError, match=message):
         ask()
 
 
 @pytest.mark.heavy
-def test_check_and_report_say_how_far_beam_theory_is_off() -> None:
-    """Of a short cone, whose solid is computed soon: rows, the sentence, and the effects that are left out."""
+def test_model_error_short_cone_lists_quantities_and_exclusions() -> None:
+    """Rows, summary, and effects that a solid excludes; a short cone is fast."""
     short = cf.Cue((cf.Segment(0.12, 0.012, 0.014, WOOD),), body_mass=0.42)
     scene = replace(SCENE, cue=short, effects=(cf.AxialWaves(), cf.PointMass(0.0, 1e-3)))
     record = model_error_record(scene, list)
@@ -86,8 +86,8 @@ def test_check_and_report_say_how_far_beam_theory_is_off() -> None:
     assert "AxialWaves" in sheet.notes[-1]
 
 
-def test_a_report_says_how_far_beam_theory_is_off(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Once, if `--check` asks for it; of the scene that is reported."""
+def test_report_with_check_states_model_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Once, and for the scene of the report."""
     asked: list[cf.Scene] = []
 
     def record(scene: cf.Scene, follow: object) -> dict[str, object]:

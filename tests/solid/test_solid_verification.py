@@ -69,14 +69,14 @@ def standing_wave(halves: int, motion: int, how: Fineness) -> float:
 
 @pytest.mark.parametrize("halves", [1, 2, 3])
 @pytest.mark.parametrize("motion", [BENDING, AXIAL], ids=["bending", "axial"])
-def test_a_cylinder_carries_the_waves_of_pochhammer_and_chree(motion: int, halves: int) -> None:
+def test_solid_cylinder_agrees_with_pochhammer_chree_waves(motion: int, halves: int) -> None:
     measured = standing_wave(halves, motion, Fineness(8, 1.0, 0.01))
     assert measured == pytest.approx(exact_wave(halves, motion), rel=1e-9)
 
 
 @pytest.mark.parametrize("order", [2, 3])
 @pytest.mark.parametrize("motion", [BENDING, AXIAL], ids=["bending", "axial"])
-def test_frequencies_converge_with_twice_the_order(motion: int, order: int) -> None:
+def test_solid_frequencies_converge_at_twice_the_order(motion: int, order: int) -> None:
     elements = np.array([2, 4, 8])
     waves = [standing_wave(1, motion, Fineness(order, 1e3, LENGTH / n, layers=n // 2)) for n in elements]
     errors = np.array(waves) / exact_wave(1, motion) - 1
@@ -85,7 +85,7 @@ def test_frequencies_converge_with_twice_the_order(motion: int, order: int) -> N
 
 
 @pytest.mark.parametrize("wood", [STEEL, MAPLE], ids=["steel", "maple"])
-def test_bending_by_couples_is_exact(wood: Material) -> None:
+def test_solid_pure_bending_energy_is_exact(wood: Material) -> None:
     """u_x = (z^2 + nu (x^2 - y^2))/2, u_y = nu x y, u_z = -x z: no stress but E x along the grain."""
     rod = Cue((Segment(LENGTH, 2 * RADIUS, 2 * RADIUS, wood),))
     body = Body(rod, Fineness(2, 1.0, 0.01, layers=2))
@@ -96,7 +96,7 @@ def test_bending_by_couples_is_exact(wood: Material) -> None:
 
 
 @pytest.mark.parametrize("wood", [STEEL, MAPLE], ids=["steel", "maple"])
-def test_a_pulled_rod_is_as_stiff_as_its_section(wood: Material) -> None:
+def test_solid_rod_axial_compliance_agrees_with_section(wood: Material) -> None:
     rod = Cue((Segment(LENGTH, 2 * RADIUS, 2 * RADIUS, wood, RADIUS, RADIUS),))
     give = LENGTH / float(rod.section(0.0).EA)
     assert Body(rod, Fineness(4, 1.0, 0.01), AXIAL).give == pytest.approx(give, rel=1e-10)

@@ -1,4 +1,4 @@
-"""Tips that the table does not hold: what they give, where they are kept, and what is refused."""
+"""Tips that the table does not cover: their cache and invalid input (properties)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.helpers.refusals import command_refuses
 
 D = 12.75e-3
 PLAIN = cf.LeatherTip(height=6e-3, dome_radius=9.5e-3, E=100e6)
-FLAT = cf.LeatherTip(height=1.5e-3, dome_radius=np.inf, E=100e6)  # lower than the table's, and the soonest computed
+FLAT = cf.LeatherTip(height=1.5e-3, dome_radius=np.inf, E=100e6)  # lower than the table covers, and fastest to compute
 PATCHES = np.array([1e-3, 2e-3, 3e-3])
 
 SCENE = """
@@ -31,14 +31,14 @@ E = "100 MPa"
 
 @pytest.fixture
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty cache folder; what this process knows of tips is forgotten."""
+    """An empty cache folder; the process has no table in memory."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     own_table.cache_clear()
     return tmp_path / "cache" / "cuefem" / "tips"
 
 
-def gives(tip: cf.LeatherTip) -> list[np.ndarray]:
-    """Everything that a contact asks of a tip."""
+def contact_inputs(tip: cf.LeatherTip) -> list[np.ndarray]:
+    """Everything that a contact takes from a tip: compliance, forces and depths, tangential stiffness."""
     return [
         tip.compliance(D, 0.375, PATCHES),
         np.array(tip.head_on(D, 0.0286)[1:])[:, 1:],
@@ -47,8 +47,8 @@ def gives(tip: cf.LeatherTip) -> list[np.ndarray]:
 
 
 @pytest.fixture
-def quick(cache: Path, monkeypatch: pytest.MonkeyPatch) -> list[OwnTip]:
-    """Tips whose computation was asked for; in its place stands the package's table of the lowest tip."""
+def computed_tips(cache: Path, monkeypatch: pytest.MonkeyPatch) -> list[OwnTip]:
+    """The computed tips; each gets the package's table of the lowest tip instead of its own."""
     computed: list[OwnTip] = []
 
     def own_tip(tip: OwnTip) -> TipTable:
@@ -59,30 +59,30 @@ def quick(cache: Path, monkeypatch: pytest.MonkeyPatch) -> list[OwnTip]:
     return computed
 
 
-def test_a_table_is_kept_and_computed_again_when_its_file_is_spoilt(cache: Path, quick: list[OwnTip]) -> None:
-    """The file gives what was computed, bit by bit; a torn, an empty, a foreign one and other shapes are as none."""
+def test_tip_cache_invalid_file_is_computed_again(cache: Path, computed_tips: list[OwnTip]) -> None:
+    """A stored table equals the computed one; truncated, empty, foreign files and other shapes are computed again."""
     assert not FLAT.at_hand(D)
-    first = gives(FLAT)
+    first = contact_inputs(FLAT)
     (file,) = cache.iterdir()
     own_table.cache_clear()
-    for again, before in zip(gives(FLAT), first, strict=True):
+    for again, before in zip(contact_inputs(FLAT), first, strict=True):
         np.testing.assert_array_equal(again, before)
     content, half = file.read_bytes(), len(file.read_bytes()) // 2
-    with np.load(file) as kept:
-        parts = dict(kept)
-    torn = [content[:half], b"", b"hello", content[:half] + b"\0" * 40 + content[half + 40 :]]
-    for spoilt in (*torn, *({name: parts[name][..., :1]} for name in ("patches", "head_on"))):
-        file.write_bytes(spoilt) if isinstance(spoilt, bytes) else np.savez(file, **parts | spoilt)
+    with np.load(file) as stored:
+        parts = dict(stored)
+    invalid = [content[:half], b"", b"hello", content[:half] + b"\0" * 40 + content[half + 40 :]]
+    for damaged in (*invalid, *({name: parts[name][..., :1]} for name in ("patches", "head_on"))):
+        file.write_bytes(damaged) if isinstance(damaged, bytes) else np.savez(file, **parts | damaged)
         own_table.cache_clear()
         assert not FLAT.at_hand(D)
-        for again, before in zip(gives(FLAT), first, strict=True):
+        for again, before in zip(contact_inputs(FLAT), first, strict=True):
             np.testing.assert_array_equal(again, before)
         assert FLAT.at_hand(D)
-    assert len(quick) == 7
+    assert len(computed_tips) == 7
 
 
-def test_a_tip_without_a_home_folder_is_computed_and_not_kept(
-    cache: Path, quick: list[OwnTip], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_tip_cache_without_home_folder_stores_nothing(
+    cache: Path, computed_tips: list[OwnTip], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def homeless(*_: object) -> Path:
         raise RuntimeError("could not determine the home directory")
@@ -90,9 +90,9 @@ def test_a_tip_without_a_home_folder_is_computed_and_not_kept(
     monkeypatch.setattr("platformdirs.user_cache_path", homeless)
     scene = tmp_path / "scene.toml"
     scene.write_text(SCENE.replace('"9.5 mm"', 'inf\nheight = "1.5 mm"'), encoding="utf-8")
-    status, _, told = call("strike", scene)
-    assert (status, len(quick), cache.exists()) == (0, 1, False)
-    assert "not stored" in told.splitlines()[0]
+    status, _, err = call("strike", scene)
+    assert (status, len(computed_tips), cache.exists()) == (0, 1, False)
+    assert "not stored" in err.splitlines()[0]
 
 
 @pytest.mark.parametrize(
@@ -109,7 +109,7 @@ def test_a_tip_without_a_home_folder_is_computed_and_not_kept(
         ('height = "6 mm"\nnu = 0.5', "nu: must be 0 to 0.49; got 0.5"),
     ],
 )
-def test_refusals(tmp_path: Path, more: str, words: str) -> None:
+def test_leather_tip_invalid_input_prints_one_line(tmp_path: Path, more: str, words: str) -> None:
     """In one line, with status 2, before anything is computed."""
     file = tmp_path / "scene.toml"
     file.write_text(SCENE + more + "\n")
