@@ -36,7 +36,11 @@ class _Compared(NamedTuple):
 
 
 def comparison_record(
-    scenes: Mapping[str, Scene], *, same_shaft: bool = False, names: Sequence[str] = ALL, follow: Follow = list
+    scenes: Mapping[str, Scene],
+    *,
+    same_shaft: bool = False,
+    names: Sequence[str] = ALL,
+    follow: Follow = list,
 ) -> Record:
     """Numbers of some cues, SI, and the relative differences of the others from the first with their uncertainty.
 
@@ -113,8 +117,11 @@ def _differences(first: _Compared, other: _Compared, *, same_shaft: bool) -> dic
         ratio = other.numbers[name] / own
         if not ratio > 0:
             continue
-        errors = [_of_input(first, other, key, name, same_shaft=same_shaft) for key in {**first.inputs, **other.inputs}]
-        share, floor = (model_share(first.scene, other.scene), FLOOR) if name in OF_SQUIRT else (0.0, OTHER_FLOOR)
+        inputs = {**first.inputs, **other.inputs}
+        errors = [_of_input(first, other, key, name, same_shaft=same_shaft) for key in inputs]
+        share, floor = 0.0, OTHER_FLOOR
+        if name in OF_SQUIRT:
+            share, floor = model_share(first.scene, other.scene), FLOOR
         difference = difference_record(ratio, share, *errors, floor=floor)
         if not math.isnan(difference["error"]):  # a strike at a limit of an input's range is a miscue
             made[name] = difference

@@ -29,7 +29,7 @@ def verdict_record(scene: Scene, outcome: Outcome, ready: Mapping[str, Cue], *, 
     """Squirt at the stroke's offset, its uncertainty, and the squirt of each reference cue by the same stroke.
 
     A head-on stroke, which has no squirt, is computed at the default offset instead. "inputs": by how much each changes
-    squirt. "among": squirt, own squirt over it less 1, the error of that, and whether the two are "distinct". ready:
+    squirt. "among": squirt, own squirt over it less 1, its error, and whether the two are "distinct". ready:
     the first is the reference of the text. solved: the scene's default modes, if already computed.
     """
     struck = off_centre(scene)
