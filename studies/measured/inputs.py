@@ -20,7 +20,7 @@ from cuefem.contact.tip_identification import MIN_RESTITUTION
 from cuefem.cue.materials import LEATHERS
 from cuefem.results.closed_forms import pivot_length
 from studies import pages, strokes
-from studies.measured.squirt import INCHES, mass_ratios
+from studies.measured.published import INCHES, mass_ratios
 from studies.pages import table
 from studies.strokes import INCH, at_offset, cue, hollow, squirt, whole, with_tip
 

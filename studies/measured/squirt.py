@@ -11,8 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import cache, partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
@@ -20,115 +19,13 @@ from scipy.optimize import brentq
 import cuefem as cf
 from cuefem.cue.materials import material
 from cuefem.design import evaluate
-from cuefem.io.measured_folder import load_measured
-from cuefem.measurements.measured_cue import MeasuredCue
-from cuefem.measurements.measurement_types import AddedMass, Measurement, PivotLength, Setup, Squirt
-from cuefem.parameters.parameter import parameter
 from cuefem.results.closed_forms import natural_pivot_length
-from cuefem.results.uncertainty import changes_by_input
 from studies import pages, strokes
+from studies.measured.published import INCHES, MODELS, PLAYERS, RADIUS, Row, mass_ratios, measured, rows, series
 from studies.pages import table
 from studies.strokes import INCH, at_offset, cue, hollow, pool_scene, squirt, whole
 
-HOME = pages.STUDIES / "measured"
-PLAYERS, PREDATOR, STINGER = CUES = ("players_maple", "predator_z", "stinger")
-MODELS = ("bare", "whole")
-INCHES = (2, 3, 4, 5, 6, 6.5, 7, 8, 9, 10)
 DIME = 8.96e-3  # m, the dome of TP B.1
-RADIUS = strokes.POOL.radius
-
-
-@cache
-def measured(folder: str, model: str, kinds: tuple[type, ...] = (Squirt, PivotLength)) -> MeasuredCue:
-    """A published cue in a model, with its measurements of some kinds."""
-    found, _ = load_measured(HOME / folder)
-    scene = found.scene
-    if model == "bare":
-        scene = replace(scene.bare, tip=replace(scene.bare.tip, restitution=0.85 if folder == STINGER else 0.73))
-    return replace(found, scene=scene, measurements=tuple(m for m in found.measurements if isinstance(m, kinds)))
-
-
-class Row(NamedTuple):
-    """A published value and the model's, SI.
-
-    difference: logarithm of measured over computed, as squirt. inputs: what each uncertain input changes in it.
-    """
-
-    folder: str
-    name: str
-    series: str
-    offset: float
-    pivot: bool
-    measured: float
-    computed: float
-    difference: float
-    inputs: dict[str, float]
-
-    def over(self, other: Row) -> tuple[float, float]:
-        """Measured and computed logarithm of this squirt over another that was measured in the same way.
-
-        Of pivot lengths that of squirt by offset: p + R goes as 1/sin(squirt).
-        """
-        ratios = ((self.measured, other.measured), (self.computed, other.computed))
-        if self.pivot:
-            ratios = tuple((b + RADIUS, a + RADIUS) for a, b in ratios)
-        measured, computed = (math.log(a / b) for a, b in ratios)
-        return measured, computed
-
-    @property
-    def told(self) -> tuple[str, str, str]:
-        """Offset, measured and computed value as they are published."""
-        values = (self.measured, self.computed)
-        written = (f"{v / INCH:.1f} in" if self.pivot else f"{math.degrees(v):.2f}°" for v in values)
-        return (f"{self.offset:.3f}", *written)
-
-
-def as_squirt(measurement: Measurement, value: float) -> float:
-    """A value that is proportional to squirt: a pivot length p as 1/(p + R)."""
-    return 1 / (value + RADIUS) if isinstance(measurement, PivotLength) else value
-
-
-def squirts(own: MeasuredCue, scene: cf.Scene) -> dict[str, float]:
-    """The measurements of a cue as squirts, computed with another scene."""
-    return {str(i): as_squirt(m, float(m.computed(Setup(scene)))) for i, m in enumerate(own.measurements)}
-
-
-@cache
-def rows(model: str) -> tuple[Row, ...]:
-    """Every published squirt and pivot length."""
-    found = []
-    for folder in CUES:
-        own = measured(folder, model)
-        spreads = {known.key: each.spread for each in own.parameters if (known := parameter(each.name))}
-        at = own.computed().tolist()
-        base = {str(i): as_squirt(m, value) for i, (m, value) in enumerate(zip(own.measurements, at, strict=True))}
-        changes = changes_by_input(own.scene, base, partial(squirts, own), spreads=spreads)
-        for i, (m, value) in enumerate(zip(own.measurements, at, strict=True)):
-            assert isinstance(m, Squirt | PivotLength)
-            pivot = isinstance(m, PivotLength)
-            difference = math.log(as_squirt(m, m.measured) / base[str(i)])
-            inputs = {key: change[str(i)] for key, change in changes.items()}
-            by_hand = isinstance(m, Squirt) and m.series == "2007"
-            series = own.name if folder != PLAYERS else "angles, 2007" if by_hand else "robot, 2008"
-            found.append(Row(folder, own.name, series, m.offset, pivot, m.measured, value, difference, inputs))
-    return tuple(found)
-
-
-def series(model: str) -> dict[str, tuple[Row, ...]]:
-    """The rows by independent series."""
-    names = dict.fromkeys(row.series for row in rows(model))
-    return {name: tuple(row for row in rows(model) if row.series == name) for name in names}
-
-
-@cache
-def mass_ratios(model: str = "whole") -> dict[tuple[int, float], tuple[float, float]]:
-    """Measured and computed squirt ratio of the Players shaft by the mass on it, g, and its distance, in."""
-    own = measured(PLAYERS, model, (AddedMass,))
-    return {
-        (round(1e3 * m.mass), round(m.position / INCH, 2)): (m.measured, float(value))
-        for m, value in zip(own.measurements, own.computed(), strict=True)
-        if isinstance(m, AddedMass)
-    }
 
 
 def both() -> list[tuple[Row, Row]]:

@@ -17,7 +17,7 @@ from scipy.stats import chi2
 
 from cuefem.results.uncertainty import FLOOR
 from studies import pages
-from studies.measured.squirt import MODELS, PLAYERS, PREDATOR, STINGER, Row, mass_ratios, rows, series
+from studies.measured.published import MODELS, PLAYERS, PREDATOR, STINGER, Row, mass_ratios, rows, series
 from studies.pages import table
 
 

@@ -9,7 +9,6 @@ from cuefem.quantity.fields import Quantity
 _OFFSET, _RATIO = Quantity("", "(-1, 1)"), Quantity("", "(0, inf)")
 _QUANTITIES = {
     "offset": _OFFSET,
-    "force_line_offset": _OFFSET,
     "mass": Quantity("kg", "(0, inf)"),
     "end_mass": Quantity("kg", "(0, inf)"),
     "ball_mass": Quantity("kg", "(0, inf)"),

@@ -13,14 +13,8 @@ from studies.paper.closed_forms.arguments import checked
 def shepard(offset: Any, *, mass_ratio: Any, inertia: Any = 0.4) -> Any:
     """[Shepard] as [Kim] prints it: squirt, rad, with b/R measured to the force's line; mass_ratio M/m_e.
 
-    tan psi = (sin cos/nu)/(1 + M/m_e + sin^2/nu): [A.31] exactly, with the b of `force_line_offset`.
+    tan psi = (sin cos/nu)/(1 + M/m_e + sin^2/nu): [A.31] exactly, with b the offset of the line of force.
     """
     offset, ratio, nu = checked(offset=offset, mass_ratio=mass_ratio, inertia=inertia)
     s, c = sine_cosine(offset)
     return np.arctan(s * c / nu / (1 + ratio + s**2 / nu))
-
-
-def force_line_offset(offset: Any, squirt: Any) -> Any:
-    """b'/R = sin(phi - psi): how far the line of the force, the ball's path, passes from the ball's centre."""
-    offset, squirt = checked(offset=offset, squirt=squirt)
-    return np.sin(np.arcsin(offset) - squirt)
