@@ -80,12 +80,12 @@ def blaming(file: Path, options: Collection[str] = ()) -> Iterator[None]:
 
 
 def scene_of(
-    file: Path, options: dict[str, Any], *, blow: bool = True, remarked: bool = True
+    file: Path, options: dict[str, Any], *, with_impact: bool = True, warn: bool = True
 ) -> tuple[Scene, list[str]]:
     """The scene of a command, and the assumptions: values set neither in the file nor by options.
 
-    A cue alone gets a game's default stroke (`cuefem.scene.default_scene`). blow: whether ball, tip and stroke matter
-    to the command, so that assumptions on them are listed too. remarked: whether to warn of unusual numbers.
+    A cue alone gets a game's default stroke (`cuefem.scene.default_scene`). with_impact: whether ball, tip and stroke
+    matter to the command, so that assumptions on them are listed too. warn: whether to warn of unusual numbers.
     """
     opened = load_stroke(file, **fittings_of(options))
     if isinstance(opened, Scene):
@@ -98,11 +98,11 @@ def scene_of(
             remark(Scene(opened), with_impact=False)
             raise
     given = {name: value for name, value in options.items() if value is not None}
-    notes = in_words(assumed(file, scene, given), options, with_impact=blow)
+    notes = in_words(assumed(file, scene, given), options, with_impact=with_impact)
     with blaming(file):
         compute_tip(scene)
-    if remarked:
-        remark(scene, with_impact=blow)
+    if warn:
+        remark(scene, with_impact=with_impact)
     return scene, notes
 
 
@@ -125,28 +125,28 @@ def show(
     results: Callable[[Scene], Any],
     sheets: Callable[..., Any],
     *,
-    blow: bool = True,
+    with_impact: bool = True,
 ) -> Record:
     """Compute all of it first, then print it all: as JSON, or as a heading and tables; or write these into a file.
 
-    blow: see `scene_of`.
+    with_impact: see `scene_of`.
     """
     page = options.pop("output", None)
-    scene, notes = scene_of(file, options, blow=blow)
+    scene, notes = scene_of(file, options, with_impact=with_impact)
     with blaming(file, options):
         about, answer = scene_record(scene), results(scene)
-    struck = about if blow else {name: value for name, value in about.items() if name in ("cue", "effects")}
-    record = whole_record(file, notes, scene, answer, blow=blow, scene=struck)
+    struck = about if with_impact else {name: value for name, value in about.items() if name in ("cue", "effects")}
+    record = whole_record(file, notes, scene, answer, with_impact=with_impact, scene=struck)
     lines = [head_line(file, about), "", *sheets(answer, about), "", *basis_lines(scene.effects, notes)]
     tell(options["as_json"], record, lines, page, f"{file.name}: {click.get_current_context().info_name}")
     return record
 
 
 def whole_record(
-    file: Path, notes: Sequence[str], solved: Scene, record: Record, *, blow: bool = True, **more: Any
+    file: Path, notes: Sequence[str], solved: Scene, record: Record, *, with_impact: bool = True, **more: Any
 ) -> Record:
     """The JSON record: the file, assumptions, unusual values, the scene, the result, the units."""
-    warnings = unusual(solved, with_impact=blow)
+    warnings = unusual(solved, with_impact=with_impact)
     about = {"file": str(file), "assumed": notes, "unusual": warnings, "scene": scene_record(solved)}
     return about | more | record | {"units": UNITS | record.get("units", {})}
 

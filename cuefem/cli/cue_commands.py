@@ -185,7 +185,7 @@ def modes(file: Path, near: str | None, count: int, **options: Any) -> None:
         return modes_record(scene, count=count, near=hertz)
 
     hertz = None if near is None else _hertz(file, near)
-    show(file, options, results, lambda record, about: [modes_sheet(record)], blow=False)
+    show(file, options, results, lambda record, about: [modes_sheet(record)], with_impact=False)
 
 
 def _hertz(file: Path, near: str) -> float:

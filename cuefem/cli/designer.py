@@ -47,7 +47,7 @@ def designer(scene: Path | None, port: int, show: bool, as_json: bool, **options
             raise ValueError(f"{option(name)} needs a SCENE, whose cue or stroke it changes; got none")
         first = reference_design(PRESETS[0])
     else:
-        read, _ = scene_of(scene, options, remarked=False)
+        read, _ = scene_of(scene, options, warn=False)
         with blaming(scene):
             first = design_of_file(scene, scene.stem, read, given)
         remark(first.scene)

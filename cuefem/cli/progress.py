@@ -32,18 +32,18 @@ class Progress:
         self.bar, self.total = bar, total
         self.task = bar.add_task("choosing modes", total=None, rate="") if bar else None
 
-    def begin(self, done: int) -> None:
+    def start(self, done: int) -> None:
         """Start the bar; some designs may be finished already."""
         if self.bar:
             self.bar.update(self.task, description="designs", total=self.total, completed=done)
 
-    def to(self, done: int) -> None:
+    def update(self, done: int) -> None:
         """Set the number of finished designs."""
         if self.bar:
             speed = self.bar.tasks[0].speed
             self.bar.update(self.task, completed=done, rate=f"{speed:.3g} designs/s" if speed else "")
 
-    def end(self) -> None:
+    def stop(self) -> None:
         """Remove the bar."""
         if self.bar:
             self.bar.stop()

@@ -108,12 +108,14 @@ def _kept(
         progress = opened.enter_context(bar(designs.study.size))
         pool = opened.enter_context(pool_of(workers, dask))
         opened.enter_context(designs)
-        progress.begin(designs.done)
+        progress.start(designs.done)
         try:
             with blaming(file):
-                return compute_study(asked, store=designs, pool=pool, progress=lambda rows: progress.to(designs.done))
+                return compute_study(
+                    asked, store=designs, pool=pool, progress=lambda rows: progress.update(designs.done)
+                )
         except (KeyboardInterrupt, RuntimeError) as error:
-            progress.end()
+            progress.stop()
             kept = f"{len([*designs.rows()])} of {designs.study.size} designs are stored in {designs.path}"
             if isinstance(error, RuntimeError):
                 raise RuntimeError(f"{error}; {kept}; run the same command to resume") from None
