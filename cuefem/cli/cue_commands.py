@@ -127,14 +127,14 @@ def improve(file: Path, take: int | None, output: Path | None, force: bool, **op
         show(
             file,
             {**options, "output": output},
-            lambda scene: design_changes(scene, follow=followed),
+            lambda scene: design_changes(scene, progress=followed),
             lambda record, about: [advice_sheet(record)],
         )
         return
     check_free(output, force=force)
     scene, _ = scene_of(file, options)
     with blaming(file, options):
-        rows = design_changes(scene, follow=followed)["changes"]
+        rows = design_changes(scene, progress=followed)["changes"]
     if take > len(rows):
         raise InputError(file, "--take", f"must be a row of the table, 1 to {len(rows)}; got {take}")
     row = rows[take - 1]

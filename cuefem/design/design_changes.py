@@ -34,7 +34,7 @@ COSTS = 0.05  # perceptible relative loss of stiffness
 LITTLE = 0.002  # of squirt: smaller contributions to its uncertainty are neglected in a change
 NUMBERS = tuple(map(Response.of, ("squirt", "tip_stiffness", "shaft_mass", "frequency(1)")))
 WOOD = ("E", "G", "rho")
-Follow = Callable[[Sequence[Any]], Iterable[Any]]
+Progress = Callable[[Sequence[Any]], Iterable[Any]]
 
 
 class Advice(NamedTuple):
@@ -131,7 +131,7 @@ def _from_to(old: float, new: float) -> str:
     return f"{scaled(old, 'm'):.4g} → {with_unit(new, 'm')}"
 
 
-def design_changes(scene: Scene, *, solved: Solved | None = None, follow: Follow = list) -> Record:
+def design_changes(scene: Scene, *, solved: Solved | None = None, progress: Progress = list) -> Record:
     """The design changes of a cue, and the effect of each on its own.
 
     Parameters
@@ -139,7 +139,7 @@ def design_changes(scene: Scene, *, solved: Solved | None = None, follow: Follow
     scene : Scene
         A stroke with a cue of segments, such as that of `usual_scene`. A centre-ball stroke is computed at the game's
         default offset.
-    solved, follow : optional
+    solved, progress : optional
         The solved scene, if it is known; and a function of the list of changes that shows progress.
 
     Returns
@@ -170,7 +170,7 @@ def design_changes(scene: Scene, *, solved: Solved | None = None, follow: Follow
     own, regime = _numbers(solved), SolvedDesign(solved).strike().regime
     before = {key: x for key, x in squirt_changes(solved, own["squirt"]).items() if abs(x) > LITTLE}
     rows = []
-    for change in follow(changes_of(struck)):
+    for change in progress(changes_of(struck)):
         try:
             made = varied(struck, change.values)
             if _wall(made) < min(LEAST_WALL, _wall(struck)):
