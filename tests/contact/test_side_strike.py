@@ -161,7 +161,7 @@ def test_side_strike_file_round_trip_is_equal(tmp_path: Path, striker: Striker) 
     scene = replace(SCENE, striker=striker)
     cf.save(scene, tmp_path / "side.toml")
     assert cf.load(tmp_path / "side.toml") == scene
-    command_refuses("striker: must be absent here: ", "strike", tmp_path / "side.toml")
+    command_refuses("striker: must be absent: ", "strike", tmp_path / "side.toml")
 
 
 CALLS: list[tuple[Callable[[], object], str]] = [
