@@ -1,7 +1,7 @@
 from . import frames as frames, plot as plot
 from .results.convergence import resolve as resolve, resolve_end_mass as resolve_end_mass
 from .beam.modes import modes as modes
-from .contact.trajectory import motion as motion
+from .contact.motion_history import motion as motion
 from .contact.table_frame import Placed as Placed, place as place
 from .contact.side_strike import (
     SideOutcome as SideOutcome,
@@ -38,7 +38,7 @@ from .io import load as load, save as save
 from .io.paraview import save_motion as save_motion
 from .io.study_files import study as study
 from .report.verdict_table import verdict as verdict
-from .quantity.slips import Unusual as Unusual
+from .quantity.unit_checks import PlausibilityWarning as PlausibilityWarning
 from .solid.resolution import Solid as Solid
 from .solid.shaft import SolidModes as SolidModes, solid_modes as solid_modes
 from .scene.scene import (

@@ -24,10 +24,10 @@ from cuefem.contact.strike import strike
 from cuefem.cue import Cue, Material
 from cuefem.design.sensitivity import sensitivity
 from cuefem.quantity.fields import check_count, check_kind
-from cuefem.results.quantities import scaled, with_heading, with_unit
-from cuefem.results.solved_design import coupled_curve, course
+from cuefem.results.quantities import to_display, with_heading, with_unit
+from cuefem.results.solved_design import coupled_curve, time_history
 from cuefem.scene import Outcome, Resolution, Scene
-from cuefem.scene.solved_scene import Solved
+from cuefem.scene.solved_scene import SolvedScene
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -88,14 +88,14 @@ def shaft(cue: Cue | Scene, ax: Axes | None = None) -> Axes:
     """
     drawn, axes = _cue_of(cue), _axes(ax)
     for segment, x in zip(drawn.segments, drawn.nodes, strict=False):
-        ends = scaled([x, x + segment.length], "m")
-        outer = scaled([segment.tip_diameter / 2, segment.butt_diameter / 2], "m")
-        bore = scaled([segment.tip_bore / 2, segment.butt_bore / 2], "m")
+        ends = to_display([x, x + segment.length], "m")
+        outer = to_display([segment.tip_diameter / 2, segment.butt_diameter / 2], "m")
+        bore = to_display([segment.tip_bore / 2, segment.butt_bore / 2], "m")
         axes.fill_between(ends, -outer, outer, facecolor=_colour(segment.material), edgecolor="#555", linewidth=0.6)
         if bore.any():
             inside = "white" if segment.core is None else _colour(segment.core)
             axes.fill_between(ends, -bore, bore, facecolor=inside, edgecolor="#555", linewidth=0.4)
-    axes.set(xlabel=FROM_TIP, ylabel=with_heading("radius", "m"), xlim=(0, scaled(drawn.length, "m")))
+    axes.set(xlabel=FROM_TIP, ylabel=with_heading("radius", "m"), xlim=(0, to_display(drawn.length, "m")))
     return axes
 
 
@@ -123,9 +123,9 @@ def modes(cue: Cue | Scene, count: int = 4, ax: Axes | None = None, *, at: Resol
     solved = solved_modes(drawn, count, effects=cue.cue_effects if isinstance(cue, Scene) else (), at=at)
     x = np.linspace(0, drawn.length, 400)
     for frequency, deflection in zip(solved.frequencies, solved.shape(x)[0], strict=True):
-        axes.plot(scaled(x, "m"), deflection / np.abs(deflection).max(), label=f"{frequency:.0f} Hz")
+        axes.plot(to_display(x, "m"), deflection / np.abs(deflection).max(), label=f"{frequency:.0f} Hz")
     axes.axhline(0, color="#888", linewidth=0.6)
-    axes.set(xlabel=FROM_TIP, ylabel="deflection", xlim=(0, scaled(drawn.length, "m")))
+    axes.set(xlabel=FROM_TIP, ylabel="deflection", xlim=(0, to_display(drawn.length, "m")))
     axes.legend(ncols=2)
     return axes
 
@@ -159,10 +159,10 @@ def squirt(
     axes = _axes(ax)
     for name, scene in named.items():
         check_kind(f"scenes[{name!r}]" if name else "scenes", scene, Scene)
-        tip = Solved(scene, at).tip
+        tip = SolvedScene(scene, at).tip
         curve = coupled_curve(scene, offsets, tip)
         miscue = np.array(curve["regime"]) == "miscue"
-        (line,) = axes.plot(offsets, np.where(miscue, np.nan, scaled(curve["squirt"], "rad")), label=name or None)
+        (line,) = axes.plot(offsets, np.where(miscue, np.nan, to_display(curve["squirt"], "rad")), label=name or None)
         if miscue.any():
             axes.plot(np.asarray(offsets)[miscue][:1], [0], "x", color=line.get_color(), clip_on=False)
     axes.set(xlabel="offset b/R", ylabel="squirt, degrees")
@@ -198,10 +198,10 @@ def forces(stroke: Scene | Outcome, ax: Axes | None = None, *, at: Resolution | 
     if outcome.history is None:
         raise ValueError("forces needs an outcome of strike; got one without a time history")
     axes, times = _axes(ax), np.linspace(0, outcome.duration, 400)
-    for label, force in course(outcome, "force", times).items():
-        axes.plot(scaled(times, "s"), force, label=label)
+    for label, force in time_history(outcome, "force", times).items():
+        axes.plot(to_display(times, "s"), force, label=label)
     axes.axhline(0, color="#888", linewidth=0.6)
-    axes.set(xlabel=TIME, ylabel=with_heading("force on the ball", "N"), xlim=(0, scaled(outcome.duration, "s")))
+    axes.set(xlabel=TIME, ylabel=with_heading("force on the ball", "N"), xlim=(0, to_display(outcome.duration, "s")))
     axes.legend()
     return axes
 
@@ -232,19 +232,21 @@ def end_mass(scene: Scene, ax: Axes | None = None, *, at: Resolution | None = No
         If the scene has other effects.
     """
     check_kind("scene", scene, Scene)
-    if others := [effect for effect in scene.effects if effect.across and not effect.whole_tip]:
+    if others := [effect for effect in scene.effects if effect.changes_bending and not effect.defines_tip]:
         names = ", ".join(sorted({type(effect).__name__ for effect in others}))
         raise ValueError(f"plot.end_mass takes a scene without effects other than LeatherTip; got {names}")
     bare, excluded = scene, ""
     if scene.effects:
-        bare = replace(scene.bare, effects=())
+        bare = replace(scene.without_tip_effects, effects=())
         excluded = f", without the {with_unit(scene.axial_mass - bare.axial_mass, 'kg', 2)} of its leather"
     drivers, axes = sensitivity(bare, at=at), _axes(ax)
     behind = drivers.x > scene.shaft.leather + _LOCAL
-    axes.plot(scaled(drivers.x[behind], "m"), (drivers.rhoA + drivers.axial_mass)[behind])
+    axes.plot(to_display(drivers.x[behind], "m"), (drivers.rhoA + drivers.axial_mass)[behind])
     axes.axhline(0, color="#888", linewidth=0.6)
     axes.set(
-        xlabel=FROM_TIP, ylabel=with_heading("end mass added by 1 g", "kg"), xlim=(0, scaled(scene.shaft.length, "m"))
+        xlabel=FROM_TIP,
+        ylabel=with_heading("end mass added by 1 g", "kg"),
+        xlim=(0, to_display(scene.shaft.length, "m")),
     )
     axes.set_title(f"end mass {with_unit(drivers.end_mass, 'kg', 3)}{excluded}", fontsize="medium")
     return axes

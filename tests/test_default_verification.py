@@ -6,7 +6,7 @@ import pytest
 
 from cuefem import end_mass
 from cuefem.endmass.definitions import definition_of
-from cuefem.scene.solved_scene import MAX_MODES, ended_tip_modes
+from cuefem.scene.solved_scene import MAX_MODES, corrected_tip_modes
 from tests.helpers.cues import scene
 
 mpl.use("Agg")
@@ -23,7 +23,7 @@ def test_the_modes_of_a_strike_hold_the_end_masses_of_smooth_drives(number: int)
     E = cue.segments[0].material.E
     leather = E < 1e9
     found = scene(cue, 1e-3)
-    exact = ended_tip_modes(found, MANY)
+    exact = corrected_tip_modes(found, MANY)
     shortest = 1e-3 if E < 150e6 else 0.5e-3
     for T in draw.uniform(shortest, 5e-3, 8):
         found = scene(cue, float(T))
@@ -38,7 +38,7 @@ def test_stick_end_mass_random_cues_keeps_the_promise() -> None:
     draw, errors = np.random.default_rng(9), []
     for _ in range(60):
         made = scene(random_cue(draw), float(draw.uniform(0.5e-3, 3e-3)))
-        exact = definition_of("stick").of(ended_tip_modes(made, MAX_MODES), made)
+        exact = definition_of("stick").of(corrected_tip_modes(made, MAX_MODES), made)
         errors.append(abs(end_mass(made) / exact - 1))
     assert np.quantile(errors, 0.95) < 1e-3
     assert max(errors) < 2e-3

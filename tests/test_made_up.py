@@ -13,13 +13,22 @@ import pytest
 
 import cuefem as cf
 from cuefem.design import Levels, Response, Study, Vary, evaluate
-from cuefem.design.worth import variants
+from cuefem.design.effect_sensitivity import variants
 from cuefem.effects import effect_kinds
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.measurements.uncertain_parameters import parameters_of
-from cuefem.parameters.parameter import PARAMETERS, paths, varied
+from cuefem.parameters.parameter import PARAMETERS, paths, with_parameters
 from cuefem.results.quantities import RESULTS
-from tests.helpers.made_up import PLACE, PUSH, RIGID, SPOT, cap_effect, collar_effect, faces, missing
+from tests.helpers.made_up import (
+    DEFINITION,
+    DRAWING_RESULT,
+    PARAMETER,
+    STRIKE_RESULT,
+    cap_effect,
+    collar_effect,
+    faces,
+    missing,
+)
 from tests.helpers.strike_scenes import imbalance, kim_scene
 
 AT = cf.Resolution(2, 8, 12)
@@ -39,7 +48,7 @@ def _forgotten() -> Iterator[None]:
 
 
 def test_a_parameter(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(PARAMETERS, PLACE.key, PLACE)
+    monkeypatch.setitem(PARAMETERS, PARAMETER.key, PARAMETER)
     scene = cf.usual_scene(RINGED)
     study = Study(scene, (Vary(("collar length",), Levels((0.005, 0.025))),), (Response.of("shaft_mass"),))
     assert study.units[0] == "m"
@@ -52,8 +61,8 @@ def test_a_parameter(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_result(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setitem(RESULTS, "sweet_spot", SPOT)
-    monkeypatch.setitem(RESULTS, "push", PUSH)
+    monkeypatch.setitem(RESULTS, "sweet_spot", DRAWING_RESULT)
+    monkeypatch.setitem(RESULTS, "push", STRIKE_RESULT)
     scene = kim_scene(0.3)
     assert missing("sweet spot", faces(scene, tmp_path, "designer")) == []
     numbers = json.loads(faces(scene, tmp_path, "json")["json"])["numbers"]
@@ -66,7 +75,7 @@ def test_a_result(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
 
 def test_a_definition_of_the_end_mass(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setitem(DEFINITIONS, RIGID.name, RIGID)
+    monkeypatch.setitem(DEFINITIONS, DEFINITION.name, DEFINITION)
     scene = kim_scene(0.3)
     felt = cf.end_mass(scene, "rigid", AT)
     assert cf.resolve_end_mass(scene, "rigid", 1e-3)[0] == pytest.approx(felt, rel=1e-6)
@@ -91,7 +100,7 @@ def test_an_effect_on_the_cue(tmp_path: Path) -> None:
     assert (added.listed, added.scene) == (False, scene)
     study = Study(scene, (Vary(("effects[0].mass",), Levels((0.0, 4e-3))),), (Response.of("squirt"),))
     assert (study.scene((4e-3,)), study.units[0]) == (scene, "kg")
-    assert varied(scene, {"effects[0].mass": 5e-3}).effects == (made(0.03, 5e-3),)
+    assert with_parameters(scene, {"effects[0].mass": 5e-3}).effects == (made(0.03, 5e-3),)
 
 
 @pytest.mark.usefixtures("_forgotten")
@@ -104,13 +113,13 @@ def test_an_effect_at_the_tip() -> None:
     others = (cf.PowerLawTip(1.5), cf.RollingContact())
     aside, back = 0.009 * 0.4, 0.009 * (1 - np.sqrt(1 - 0.4**2))
     terms = struck(cf.TipDome(0.007), cap(0.002)).contact_terms
-    assert terms.lever(float(np.arcsin(0.4))) == pytest.approx((-aside, back), rel=1e-12)
+    assert terms.moment_arm(float(np.arcsin(0.4))) == pytest.approx((-aside, back), rel=1e-12)
     whole = cf.strike(struck(cap(0.002), *others, cf.TipDome(0.007)), AT)
     split = cf.strike(struck(*others, cap(0.0005), cf.TipDome(0.007), cap(0.0015)), AT)
     assert imbalance(whole) < 1e-6
     assert split.squirt == pytest.approx(whole.squirt, rel=1e-9)
     assert whole.squirt != cf.strike(struck(*others, cf.TipDome(0.007)), AT).squirt
-    assert struck(cap(0.002)).bare == struck()
+    assert struck(cap(0.002)).without_tip_effects == struck()
     with pytest.raises(ValueError, match="takes a tip without tangential compliance, a fixed normal"):
         cf.strike(struck(cap(0.0, give=1.0), cf.Elevation(0.1)), AT)
     with pytest.raises(ValueError, match=r"Scene\.effects must give the contact one window for a second hit; got"):

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from cuefem.cue import Array
 
-MORE_POINTS = 4  # than the order: Gauss's rule is then exact for cones, whose matrices have the degree 2 order + 6
+EXTRA_POINTS = 4  # than the order: Gauss's rule is then exact for cones, whose matrices have the degree 2 order + 6
 
 
 def line_basis(degree: int, points: Array) -> tuple[Array, Array]:
@@ -54,13 +54,13 @@ def element_basis(order: int, values: Array, slopes: Array, length: float = 1.0)
 
 
 @functools.cache
-def gauss(count: int) -> tuple[Array, Array]:
+def gauss_rule(count: int) -> tuple[Array, Array]:
     """Gauss's points and weights on [0, 1]."""
     points, weights = leggauss(count)
     return (points + 1) / 2, weights / 2
 
 
 @functools.cache
-def line_table(order: int) -> tuple[Array, Array]:
+def tabulated_line_basis(order: int) -> tuple[Array, Array]:
     """The line basis of degree ``order`` + 1 and its derivatives at Gauss points of one segment."""
-    return line_basis(order + 1, gauss(order + MORE_POINTS)[0])
+    return line_basis(order + 1, gauss_rule(order + EXTRA_POINTS)[0])

@@ -9,20 +9,20 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from cuefem.beam.waves import LONGEST, mode_phases, orders_for
+from cuefem.beam.wave_phases import MAX_PHASE, mode_phases, orders_for
 from cuefem.cue import Array, Cue
-from cuefem.quantity.fields import MOST_UNKNOWNS
+from cuefem.quantity.fields import MAX_DOF
 
 # Two points count as one if they are closer than this fraction of the cue's length.
-NEAR = 1e-9
+POSITION_TOLERANCE = 1e-9
 # An element continues across the end of a segment if the section there differs from the mean of its neighbourhood by
 # less than this, relative. A smooth profile cut into many segments then needs few elements.
-SMOOTH = 2e-3
+JUMP_TOLERANCE = 2e-3
 # A joint with less compliance than this, relative to the whole shaft's, is rigid: its spring would add round-off error.
-RIGID = 1e-9
+MIN_COMPLIANCE = 1e-9
 
 
-class ActsOnCue(Protocol):
+class BeamEffect(Protocol):
     """Interface of an effect that acts on the cue."""
 
     @property
@@ -36,7 +36,7 @@ class ActsOnCue(Protocol):
     def check_on(self, cue: Cue, name: str) -> None:
         """ValueError, naming the effect ``name``, unless all its positions lie on the cue."""
 
-    def add_to(self, terms: Terms) -> None:
+    def add_to(self, terms: PointTerms) -> None:
         """Add the effect's point terms."""
 
 
@@ -75,49 +75,51 @@ class Mesh:
         """Degree of freedom of the deflection at each element's butt end: (elements,)."""
         return self.first + 2 * self.orders + 1
 
-    def unknowns_at(self, node: int) -> tuple[int, int]:
+    def dofs_at(self, node: int) -> tuple[int, int]:
         """Degrees of freedom (w, theta) of a node; at a joint, those of the butt side."""
         first = int(self.first[node]) if node < len(self.first) else self.unknowns - 2
         return first, first + 1
 
-    def unknowns_before(self, node: int) -> tuple[int, int]:
+    def dofs_before(self, node: int) -> tuple[int, int]:
         """Degrees of freedom (w, theta) on the tip side of a node inside the cue."""
         last = int(self.last[node - 1])
         return last, last + 1
 
 
-def mesh_cue(cue: Cue, at: int | MeshOptions, effects: Sequence[ActsOnCue] = (), places: Sequence[float] = ()) -> Mesh:
-    """Mesh a cue, with nodes at ``places``, m from the tip, and at the positions of effects.
+def mesh_cue(
+    cue: Cue, at: int | MeshOptions, effects: Sequence[BeamEffect] = (), positions: Sequence[float] = ()
+) -> Mesh:
+    """Mesh a cue, with nodes at ``positions``, m from the tip, and at the positions of effects.
 
     at: how many of the lowest flexible modes the mesh must resolve; or the user's resolution, with a node at the end of
     every segment. A joint splits its node.
     """
     for effect in effects:
         effect.check_on(cue, type(effect).__name__)
-    wanted = np.unique([cue.leather, *places, *(x for effect in effects for x in effect.positions)])
+    wanted = np.unique([cue.leather, *positions, *(x for effect in effects for x in effect.positions)])
     for x in wanted:
-        if not 0 <= x <= cue.length * (1 + NEAR):
+        if not 0 <= x <= cue.length * (1 + POSITION_TOLERANCE):
             raise ValueError(f"an effect's position must be in [0, {cue.length}] m, on the cue; got {x}")
     if isinstance(at, int):
         nodes, orders = _by_rule(cue, mode_phases(cue, at), _snapped(cue, wanted))
     else:
         ends = np.unique(np.append(cue.nodes, _snapped(cue, wanted)))
         pieces = len(ends) - 1
-        check_work(pieces * at.elements * (2 * at.order + 1), f"{pieces} pieces")
+        check_mesh_size(pieces * at.elements * (2 * at.order + 1), f"{pieces} pieces")
         nodes = _divided(ends, np.full(pieces, at.elements))
         orders = np.full(pieces * at.elements, at.order)
     return _numbered(nodes, orders, [x for effect in effects for x in effect.splits])
 
 
-def mesh_for(cue: Cue, phases: Array, places: Sequence[float]) -> Mesh:
-    """Mesh a cue for waves of ``phases`` rad over its segments, with a node at each of ``places`` and no splits."""
-    return _numbered(*_by_rule(cue, phases, _snapped(cue, np.array([cue.leather, *places]))), [])
+def mesh_for_phases(cue: Cue, phases: Array, positions: Sequence[float]) -> Mesh:
+    """Mesh a cue for waves of ``phases`` rad over its segments, with a node at each of ``positions`` and no splits."""
+    return _numbered(*_by_rule(cue, phases, _snapped(cue, np.array([cue.leather, *positions]))), [])
 
 
 def _snapped(cue: Cue, places: Array) -> Array:
     """The positions, moved to the end of a segment where they coincide with it."""
     nearest = cue.nodes[np.argmin(np.abs(places[:, None] - cue.nodes), axis=1)]
-    return np.where(np.abs(places - nearest) > NEAR * cue.length, places, nearest)
+    return np.where(np.abs(places - nearest) > POSITION_TOLERANCE * cue.length, places, nearest)
 
 
 def _numbered(nodes: Array, orders: NDArray[np.intp], splits: Sequence[float]) -> Mesh:
@@ -126,19 +128,19 @@ def _numbered(nodes: Array, orders: NDArray[np.intp], splits: Sequence[float]) -
     for node in {int(np.argmin(np.abs(nodes - x))) for x in splits}:
         first[node:] += 2
     unknowns = int(first[-1] + strides[-1]) + 2
-    check_work(unknowns, f"{len(orders)} elements")
+    check_mesh_size(unknowns, f"{len(orders)} elements")
     return Mesh(nodes, orders, first, unknowns)
 
 
 def _by_rule(cue: Cue, phases: Array, places: Array) -> tuple[Array, NDArray[np.intp]]:
     """Nodes and orders for waves of ``phases`` rad over the segments: elements of equal phase."""
-    check_work(2 * phases.sum(), f"waves of {phases.sum():.6g} rad")
+    check_mesh_size(2 * phases.sum(), f"waves of {phases.sum():.6g} rad")
     sides = cue.section_in(np.arange(len(phases))[:, None], np.diff(cue.nodes)[:, None] * np.array([0.0, 1.0]))
     logs = np.log([sides.EA, sides.EI, sides.kGA, sides.rhoA])
     ends = _ends(cue, places, logs, np.diff(cue.nodes) / phases)
     along, steep = (np.append(0.0, np.cumsum(each)) for each in (phases, np.abs(np.diff(logs[0])[:, 0])))
     here = np.interp(ends, cue.nodes, along)
-    counts = np.ceil(np.diff(here) / LONGEST).astype(int)
+    counts = np.ceil(np.diff(here) / MAX_PHASE).astype(int)
     nodes = np.interp(_divided(here, counts), along, cue.nodes)
     nodes[np.append(0, np.cumsum(counts))] = ends
     phase, taper = (np.diff(np.interp(nodes, cue.nodes, each)) for each in (along, steep))
@@ -153,7 +155,7 @@ def _ends(cue: Cue, places: Array, logs: Array, reach: Array) -> Array:
     sections at equal distances before and behind, within reach and no further than the next nodes.
     """
     profile, logs = np.repeat(cue.nodes, 2)[1:-1], logs.reshape(len(logs), -1)
-    jumps = np.abs(np.diff(logs)[:, 1::2]).max(axis=0) > 2 * SMOOTH
+    jumps = np.abs(np.diff(logs)[:, 1::2]).max(axis=0) > 2 * JUMP_TOLERANCE
     fixed = np.unique(np.concatenate([[0.0, cue.length], places, cue.nodes[1:-1][jumps]]))
     ends, last = fixed.tolist(), 0.0
     for i in np.flatnonzero(~jumps) + 1:
@@ -164,7 +166,7 @@ def _ends(cue: Cue, places: Array, logs: Array, reach: Array) -> Array:
         k = np.searchsorted(profile, near) // 2 * 2  # the tip side of the segment that holds it
         part = (near - profile[k]) / (profile[k + 1] - profile[k])
         mean = (logs[:, k] + part * (logs[:, k + 1] - logs[:, k])).mean(axis=1)
-        if np.abs(logs[:, 2 * i - 1 : 2 * i + 1] - mean[:, None]).max() > SMOOTH:
+        if np.abs(logs[:, 2 * i - 1 : 2 * i + 1] - mean[:, None]).max() > JUMP_TOLERANCE:
             ends.append(x)
             last = x
     return np.unique(ends)
@@ -176,15 +178,15 @@ def _divided(ends: Array, counts: NDArray[np.intp]) -> Array:
     return np.append(np.concatenate(steps), ends[-1])
 
 
-def check_work(unknowns: float, what: str) -> None:
+def check_mesh_size(unknowns: float, what: str) -> None:
     """ValueError if a mesh has more degrees of freedom than can be solved in reasonable time and memory."""
-    if unknowns > MOST_UNKNOWNS:
+    if unknowns > MAX_DOF:
         remedy = "request fewer modes or elements, draw fewer segments, or check sizes and materials"
-        limit = f"the mesh must have at most {MOST_UNKNOWNS} degrees of freedom"
+        limit = f"the mesh must have at most {MAX_DOF} degrees of freedom"
         raise ValueError(f"{limit}; got {unknowns:.6g}, of {what}: {remedy}")
 
 
-class Terms:
+class PointTerms:
     """What effects add at nodes: springs, dashpots, masses and clamps, and compliances between the sides of a joint.
 
     At a joint, the degrees of freedom of the node are those of the butt side.
@@ -201,7 +203,7 @@ class Terms:
     def add(self, x: float, kind: str, w: float, theta: float) -> None:
         """Add diagonal terms at position ``x``: ``w`` for the deflection, ``theta`` for the rotation; inf clamps."""
         terms: dict[int, float] = getattr(self, kind)
-        for unknown, value in zip(self.mesh.unknowns_at(self.mesh.node(x)), (w, theta), strict=True):
+        for unknown, value in zip(self.mesh.dofs_at(self.mesh.node(x)), (w, theta), strict=True):
             if np.isinf(value):
                 if unknown in self.fixed:
                     raise ValueError(f"a clamp must be the only one at its position; got two at {x} m")
@@ -212,7 +214,7 @@ class Terms:
     def join(self, x: float, w: float, theta: float) -> None:
         """Add a joint at position ``x`` with compliances ``w`` (m/N) and ``theta`` (rad/(N m)); zero: no jump."""
         node, section = self.mesh.node(x), self.cue.section(min(x, self.cue.length))
-        pairs = zip(self.mesh.unknowns_before(node), self.mesh.unknowns_at(node), strict=True)
+        pairs = zip(self.mesh.dofs_before(node), self.mesh.dofs_at(node), strict=True)
         for pair, value, stiffness in zip(pairs, (w, theta), (section.kGA, section.EI), strict=True):
-            compliant = value * stiffness > RIGID * self.cue.length
+            compliant = value * stiffness > MIN_COMPLIANCE * self.cue.length
             self.compliance[pair] = self.compliance.get(pair, 0.0) + (value if compliant else 0.0)

@@ -8,17 +8,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cuefem.beam.mesh import ActsOnCue
-from cuefem.beam.spectrum import Spectrum, spectrum
+from cuefem.beam.eigensolver import EigenSolution, solve_eigenproblem
+from cuefem.beam.mesh import BeamEffect
 from cuefem.beam.system import Points, System, assemble
-from cuefem.beam.waves import modes_below
+from cuefem.beam.wave_phases import modes_below
 from cuefem.cue import Array, Cue, Section
 from cuefem.quantity.display import brief
 from cuefem.quantity.fields import Quantity, check_count, check_kind
 
 
 @dataclass(frozen=True, eq=False)
-class Modes(Spectrum):
+class Modes(EigenSolution):
     """Undamped flexible bending modes of a cue, with their motion at one node, the tip by default.
 
     system: the assembled beam. rigid_vectors: (free, rigid), the mass-normalised rigid-body modes of zero frequency.
@@ -53,7 +53,7 @@ class Modes(Spectrum):
 
         If the loads act at another node, of that node.
         """
-        w, theta = np.concatenate([self.loads.T @ self.rigid_vectors, self.felt], axis=1)
+        w, theta = np.concatenate([self.loads.T @ self.rigid_vectors, self.participation], axis=1)
         return w, theta / self.system.length
 
     def shape(self, x: ArrayLike) -> tuple[Array, Array]:
@@ -143,7 +143,7 @@ def modes(
     return _nearest(solve(system, min(wanted, system.size - system.rigid.shape[1])), count, near)
 
 
-def _on_the_cue(effects: tuple[Any, ...]) -> tuple[ActsOnCue, ...]:
+def _on_the_cue(effects: tuple[Any, ...]) -> tuple[BeamEffect, ...]:
     """The effects that act on the cue; effects at the tip do not change its modes."""
     for effect in effects:
         if not hasattr(effect, "axial_mass"):
@@ -151,22 +151,24 @@ def _on_the_cue(effects: tuple[Any, ...]) -> tuple[ActsOnCue, ...]:
     return tuple(effect for effect in effects if hasattr(effect, "add_to"))
 
 
-def solve(system: System, count: int, *, ended: int = 0, position: float = 0.0) -> Modes:
+def solve(system: System, count: int, *, corrected: int = 0, position: float = 0.0) -> Modes:
     """The lowest ``count`` flexible modes of an assembled beam; the rigid-body modes need no eigenproblem.
 
-    ended: number of loads with a truncation correction (`cuefem.beam.tail`): 1 for a force at ``position``, a node, m
-    from the tip; 2 for a couple too, as where the contact lies off the cue's axis; 0 for none.
+    corrected: number of loads with a truncation correction (`cuefem.beam.truncation`): 1 for a force at ``position``, a
+    node, m from the tip; 2 for a couple too, as where the contact lies off the cue's axis; 0 for none.
     """
     most = system.size - system.rigid.shape[1]
     if count > most:
         raise ValueError(f"modes count must be at most {most} on this mesh; got {count}: use more elements")
-    rigid = normalised(system)
-    loads = system.forces_at(position)
-    found = spectrum(system.K, system.M, loads, shift=system.shift, rigid=rigid.shape[1], count=count, ended=ended)
+    rigid = rigid_body_modes(system)
+    loads = system.unit_loads_at(position)
+    found = solve_eigenproblem(
+        system.K, system.M, loads, shift=system.shift, rigid=rigid.shape[1], count=count, corrected=corrected
+    )
     return Modes(**vars(found), system=system, rigid_vectors=rigid)
 
 
-def normalised(system: System) -> Array:
+def rigid_body_modes(system: System) -> Array:
     """The exact rigid-body modes, orthonormal in the mass."""
     rigid = system.rigid
     if rigid.shape[1] == 0:
@@ -176,4 +178,4 @@ def normalised(system: System) -> Array:
 
 def _nearest(candidates: Modes, count: int, near: float) -> Modes:
     ranked = np.argsort(np.abs(candidates.frequencies - near), kind="stable")[:count]
-    return candidates.those(np.sort(ranked))
+    return candidates.subset(np.sort(ranked))

@@ -10,8 +10,8 @@ import lazy_loader
 import numpy as np
 from numpy.typing import NDArray
 
-from cuefem.beam.basis import MORE_POINTS, element_basis, gauss, line_basis, line_table
-from cuefem.beam.mesh import NEAR, ActsOnCue, Mesh, MeshOptions, Terms, mesh_cue
+from cuefem.beam.basis import EXTRA_POINTS, element_basis, gauss_rule, line_basis, tabulated_line_basis
+from cuefem.beam.mesh import POSITION_TOLERANCE, BeamEffect, Mesh, MeshOptions, PointTerms, mesh_cue
 from cuefem.cue import Array, Cue, Section
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ scipy = lazy_loader.load("scipy")  # loaded when used: few cues need sparse matr
 # Below DENSE_LIMIT dof a dense one is always faster.
 EVEN, DENSE_LIMIT = 145, 220
 # A spring softer than this, relative to the first mode, leaves the cue free: its mode would be round-off error.
-SOFT = 1e-10
+MIN_STIFFNESS = 1e-10
 
 
 class Points(NamedTuple):
@@ -51,7 +51,7 @@ class Points(NamedTuple):
         """scikit-fem's hierarchical line basis in an element at its points, and its derivatives, 1/m: (degrees, q)."""
         start, end = self.mesh.nodes[e : e + 2]
         if self.tabulated[e]:
-            values, slopes = line_table(int(self.mesh.orders[e]))
+            values, slopes = tabulated_line_basis(int(self.mesh.orders[e]))
         else:
             values, slopes = line_basis(int(self.mesh.orders[e]) + 1, (self.x[self.element(e)] - start) / (end - start))
         return values, slopes / (end - start)
@@ -70,10 +70,10 @@ class Fields(NamedTuple):
 class System:
     """The assembled beam: K q = omega^2 M q, in w (m) and theta times the cue's length (m).
 
-    K, M: (free, free), arrays or sparse (`suits_dense`). index: (unknowns,) the free degree of freedom of each one of
-    the mesh, -1 if clamped; the two sides of a rigid joint are one. rigid: (free, r), the exact rigid-body modes that
-    no support resists (two for a free cue). dashpots: (free,) diagonal of the viscous matrix, None without dashpots.
-    shift: rad2/s2, of the order of the lowest mode's squared frequency; it makes K + shift M regular.
+    K, M: (free, free), arrays or sparse (`is_dense_faster`). index: (unknowns,) the free degree of freedom of each one
+    of the mesh, -1 if clamped; the two sides of a rigid joint are one. rigid: (free, r), the exact rigid-body modes
+    that no support resists (two for a free cue). dashpots: (free,) diagonal of the viscous matrix, None without
+    dashpots. shift: rad2/s2, of the order of the lowest mode's squared frequency; it makes K + shift M regular.
     """
 
     cue: Cue
@@ -100,15 +100,15 @@ class System:
         """All degrees of freedom of the mesh, (unknowns, k), from the free ones ``vectors`` (free, k)."""
         return np.asarray(np.concatenate([vectors, np.zeros((1, vectors.shape[1]))])[self.index])
 
-    def forces_at(self, x: float) -> Array:
+    def unit_loads_at(self, x: float) -> Array:
         """A unit force and a unit couple over the length at the node ``x``, m, (free, 2); zero where clamped."""
         forces = np.zeros((self.size + 1, 2))
-        forces[self.index[list(self.mesh.unknowns_at(self.mesh.node(x)))], [0, 1]] = 1.0
+        forces[self.index[list(self.mesh.dofs_at(self.mesh.node(x)))], [0, 1]] = 1.0
         return forces[:-1]
 
     def static_stiffness(self, x: float) -> float:
         """Force over deflection at the node ``x``, N/m, of a supported cue."""
-        force = self.forces_at(x)[:, 0]
+        force = self.unit_loads_at(x)[:, 0]
         solve = np.linalg.solve if isinstance(self.K, np.ndarray) else scipy.sparse.linalg.spsolve
         return float(1 / (force @ solve(self.K, force)))
 
@@ -162,14 +162,14 @@ def _fields(length: float, points: Points, unknowns: Array) -> Fields:
 
 def gauss_points(cue: Cue, mesh: Mesh) -> Points:
     """Gauss points between the nodes and the ends of segments, exact for a cone that is one element."""
-    ends = cue.nodes[np.min(np.abs(cue.nodes[:, None] - mesh.nodes), axis=1) > NEAR * cue.length]
+    ends = cue.nodes[np.min(np.abs(cue.nodes[:, None] - mesh.nodes), axis=1) > POSITION_TOLERANCE * cue.length]
     x = np.sort(np.append(mesh.nodes, ends))
     sizes = np.diff(x)
     element = np.searchsorted(mesh.nodes, (x[:-1] + x[1:]) / 2) - 1
     # polynomials vary fastest near the ends of an element: like cos(n arccos x)
     part = np.sqrt(sizes / np.diff(mesh.nodes)[element])
-    counts = np.ceil(mesh.orders[element] * part - NEAR).astype(int) + MORE_POINTS
-    rules = [gauss(n) for n in counts.tolist()]
+    counts = np.ceil(mesh.orders[element] * part - POSITION_TOLERANCE).astype(int) + EXTRA_POINTS
+    rules = [gauss_rule(n) for n in counts.tolist()]
     return _points(
         cue,
         mesh,
@@ -190,17 +190,17 @@ def _points(cue: Cue, mesh: Mesh, x: Array, weights: Array, tabulated: list[bool
 def assemble(
     cue: Cue,
     at: int | MeshOptions,
-    effects: tuple[ActsOnCue, ...] = (),
+    effects: tuple[BeamEffect, ...] = (),
     count: int | None = None,
-    places: Sequence[float] = (),
+    positions: Sequence[float] = (),
 ) -> System:
     """Assemble a cue with the effects that act on it.
 
-    at, places: as in `mesh_cue`. count: how many modes will be computed, by default those of ``at``, or few.
+    at, positions: as in `mesh_cue`. count: how many modes will be computed, by default those of ``at``, or few.
     """
-    mesh = mesh_cue(cue, at, effects, places)
+    mesh = mesh_cue(cue, at, effects, positions)
     points = gauss_points(cue, mesh)
-    terms = Terms(mesh, cue)
+    terms = PointTerms(mesh, cue)
     for effect in effects:
         effect.add_to(terms)
     scale = np.ones(mesh.unknowns)
@@ -234,11 +234,11 @@ def assemble(
         return diagonal[:-1]
 
     springs = point(terms.stiffness)
-    dense = suits_dense(size, count or (at if isinstance(at, int) else 0))
-    K, M = gather(stiff, springs, dense), gather(heavy, point(terms.mass), dense)
+    dense = is_dense_faster(size, count or (at if isinstance(at, int) else 0))
+    K, M = assemble_blocks(stiff, springs, dense), assemble_blocks(heavy, point(terms.mass), dense)
     dashpots = point(terms.dashpot) if terms.dashpot else None
     shift, mass = _shift(cue, points), float(points.weights @ points.section.rhoA)
-    rigid = _free_rigid_modes(mesh, cue.length, index, springs > SOFT * shift * mass)
+    rigid = _free_rigid_modes(mesh, cue.length, index, springs > MIN_STIFFNESS * shift * mass)
     return System(cue, mesh, points, K, M, index, rigid, dashpots, shift)
 
 
@@ -247,12 +247,14 @@ def _shift(cue: Cue, points: Points) -> float:
     return float(500 * (points.weights @ points.section.EI) / (points.weights @ points.section.rhoA) / cue.length**4)
 
 
-def suits_dense(unknowns: int, count: int) -> bool:
+def is_dense_faster(unknowns: int, count: int) -> bool:
     """Whether a dense eigenproblem computes the lowest ``count`` modes faster than a sparse one."""
     return unknowns <= DENSE_LIMIT or count > (unknowns / EVEN) ** 3
 
 
-def gather(blocks: Iterable[tuple[NDArray[np.intp], Array]], diagonal: Array, dense: bool) -> Array | sp.csc_matrix:
+def assemble_blocks(
+    blocks: Iterable[tuple[NDArray[np.intp], Array]], diagonal: Array, dense: bool
+) -> Array | sp.csc_matrix:
     """The sum of ``blocks``, each with its indices (-1: omitted), and a ``diagonal``, as a matrix."""
     size = len(diagonal)
     if dense:

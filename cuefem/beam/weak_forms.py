@@ -14,7 +14,7 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike
 from skfem import Basis, BilinearForm, ElementLinePp, MeshLine
 
-from cuefem.beam.mesh import NEAR, RIGID, ActsOnCue
+from cuefem.beam.mesh import MIN_COMPLIANCE, POSITION_TOLERANCE, BeamEffect
 from cuefem.cue import Array, Cue
 
 
@@ -41,7 +41,7 @@ class _PointTerms:
 
     def at(self, x: float) -> Any:
         """Degrees of freedom (w, theta) of the nodes at ``x``: (1 or 2, 2)."""
-        return self.unknowns[abs(self.x - x) < NEAR * self.cue.length]
+        return self.unknowns[abs(self.x - x) < POSITION_TOLERANCE * self.cue.length]
 
     def add(self, x: float, kind: str, *values: float) -> None:
         """Springs, masses or dashpots to the ground, for deflection and rotation; inf clamps."""
@@ -56,21 +56,21 @@ class _PointTerms:
         section = self.cue.section(min(x, self.cue.length))
         stiffness = (section.kGA, section.EI)
         for (before, after), compliance, own in zip(self.at(x).T, compliances, stiffness, strict=True):
-            if compliance * own > RIGID * self.cue.length:
+            if compliance * own > MIN_COMPLIANCE * self.cue.length:
                 self.stiffness[np.ix_([before, after], [before, after])] += np.array([[1, -1], [-1, 1]]) / compliance
             else:
                 self.source[before] = after
 
 
 def assemble(
-    cue: Cue, nodes: ArrayLike, *, order: int, effects: tuple[ActsOnCue, ...] = ()
+    cue: Cue, nodes: ArrayLike, *, order: int, effects: tuple[BeamEffect, ...] = ()
 ) -> tuple[sp.csc_matrix, sp.csc_matrix]:
     """K and M of the free degrees of freedom (w in m, theta in rad) of a cue on elements between ``nodes``, m.
 
     w has the polynomial degree order + 1, theta order. Nodes must lie at the ends of segments and at effects.
     """
     x = np.sort(np.append(nodes, [split for effect in effects for split in effect.splits]))
-    elements = np.flatnonzero(np.diff(x) > NEAR * cue.length)
+    elements = np.flatnonzero(np.diff(x) > POSITION_TOLERANCE * cue.length)
     mesh = MeshLine(x[None], np.array([elements, elements + 1]))
     # a taper's EI has degree 4
     basis = Basis(mesh, ElementLinePp(order + 1) * ElementLinePp(order), intorder=2 * order + 6)

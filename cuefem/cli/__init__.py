@@ -15,7 +15,7 @@ from click.shell_completion import CompletionItem
 
 from cuefem.contact.kernel import KernelError
 from cuefem.quantity.display import one_line
-from cuefem.quantity.slips import Unusual
+from cuefem.quantity.unit_checks import PlausibilityWarning
 
 # Before NumPy is loaded: small dense matrices gain nothing from BLAS threads, and two of them on a busy machine can be
 # a hundred times slower than one.
@@ -31,18 +31,22 @@ COMMANDS = {
     "end-mass": ("cuefem.cli.cue_commands:end_mass", CUE, "Effective end mass, by five definitions."),
     "strike": ("cuefem.cli.cue_commands:strike", CUE, "Squirt, ball speed, spin and pivot length of one stroke."),
     "compare": ("cuefem.cli.compare_command:compare", CUE, "Compare cues, or computed and measured values."),
-    "effects": ("cuefem.cli.how_sure:effects", SURE, "Sensitivity to each physical effect, removed or added."),
-    "cost": ("cuefem.cli.how_sure:cost", SURE, "Convergence study, and the resolution it recommends."),
-    "check": ("cuefem.cli.how_sure:check", SURE, "Error of the beam model against a 3-D elastic solid."),
+    "effects": ("cuefem.cli.accuracy_commands:effects", SURE, "Sensitivity to each physical effect, removed or added."),
+    "cost": ("cuefem.cli.accuracy_commands:cost", SURE, "Convergence study, and the resolution it recommends."),
+    "check": ("cuefem.cli.accuracy_commands:check", SURE, "Error of the beam model against a 3-D elastic solid."),
     "study": (
-        "cuefem.cli.studies:study",
+        "cuefem.cli.study_command:study",
         STUDIES,
         "Sweep, tolerance analysis or optimum of a STUDY (.toml).",
     ),
-    "parts": ("cuefem.cli.files:parts", FILES, "Catalogue of shafts, materials and tips, with sources."),
-    "convert": ("cuefem.cli.files:convert", FILES, "Convert a drawing to .toml or .vtu."),
-    "guide": ("cuefem.cli.guide:guide", FILES, "Handbook: pages for makers, physics, glossary."),
-    "designer": ("cuefem.cli.designer:designer", PAGE, "Browser page with sliders: squirt updates as they move."),
+    "parts": ("cuefem.cli.file_commands:parts", FILES, "Catalogue of shafts, materials and tips, with sources."),
+    "convert": ("cuefem.cli.file_commands:convert", FILES, "Convert a drawing to .toml or .vtu."),
+    "guide": ("cuefem.cli.guide_command:guide", FILES, "Handbook: pages for makers, physics, glossary."),
+    "designer": (
+        "cuefem.cli.designer_command:designer",
+        PAGE,
+        "Browser page with sliders: squirt updates as they move.",
+    ),
 }
 
 
@@ -105,7 +109,9 @@ class _OneLine(_Commands):
 
         try:
             with np.errstate(over="raise", divide="raise", invalid="raise"), warnings.catch_warnings():
-                warnings.filterwarnings("ignore", category=Unusual)  # commands print their own warning: `remark`
+                warnings.filterwarnings(
+                    "ignore", category=PlausibilityWarning
+                )  # commands print their own warning: `warn`
                 return super().invoke(ctx)
         except click.UsageError as error:
             _refuse_usage(error)

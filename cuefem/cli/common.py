@@ -9,18 +9,26 @@ from typing import Any
 
 import click
 
-from cuefem.cli.printing import assumed_lines, json_option, shared_option, tell
-from cuefem.cli.strokes import blow_options, offset_option, option, parameter_options, refuse_game, usual, with_options
-from cuefem.effects.force_law import TooDeep
-from cuefem.io import InputError, check_place, load_stroke
-from cuefem.io.assumed import assumed, in_words
-from cuefem.io.fittings import FITTINGS
-from cuefem.report.scene_words import cue_line, effect_words, scene_record
-from cuefem.report.unusual import unusual
+from cuefem.cli.output import assumed_lines, json_option, print_result, shared_option
+from cuefem.cli.scene_options import (
+    impact_options,
+    offset_option,
+    option,
+    parameter_options,
+    refuse_game,
+    scene_from_cue,
+    with_options,
+)
+from cuefem.effects.force_law import IndentationOutOfRange
+from cuefem.io import InputError, check_writable, load_stroke
+from cuefem.io.defaults_report import assumption_texts, assumptions
+from cuefem.io.shaft_additions import SHAFT_ADDITIONS
+from cuefem.report.plausibility import plausibility_warnings
+from cuefem.report.scene_summary import cue_line, effect_text, scene_record
 from cuefem.results.quantities import UNITS
-from cuefem.results.records import Record, plain
+from cuefem.results.records import Record, json_value
 from cuefem.scene import Scene
-from cuefem.solid.tip_cache import announcement
+from cuefem.solid.tip_cache import computing_message
 
 
 def file_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -30,7 +38,7 @@ def file_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 def stroke_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The file argument, and the options of every command on one stroke of its cue."""
-    return file_options(blow_options(offset_option(command)))
+    return file_options(impact_options(offset_option(command)))
 
 
 def cue_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -39,15 +47,15 @@ def cue_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The options that supplement or replace values of a drawing: the masses, and `FITTINGS`."""
-    for name, known in reversed(FITTINGS.items()):
+    """The options that supplement or replace values of a drawing: the masses, and `SHAFT_ADDITIONS`."""
+    for name, known in reversed(SHAFT_ADDITIONS.items()):
         command = shared_option("Cue", option(name), metavar=known.metavar, help=known.help)(command)
     return parameter_options("Cue", "body_mass", "shaft_mass")(command)
 
 
-def fittings_of(options: Mapping[str, Any]) -> dict[str, str | None]:
+def shaft_additions_of(options: Mapping[str, Any]) -> dict[str, str | None]:
     """Arguments of `load` by these options."""
-    return {name: options.get(name) for name in FITTINGS}
+    return {name: options.get(name) for name in SHAFT_ADDITIONS}
 
 
 def force_option(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -55,15 +63,15 @@ def force_option(command: Callable[..., Any]) -> Callable[..., Any]:
     return shared_option("Output", "--force", is_flag=True, help="Overwrite an existing drawing.")(command)
 
 
-def check_free(drawing: Path, *, force: bool) -> None:
+def check_overwrite(drawing: Path, *, force: bool) -> None:
     """Reject overwriting a drawing without --force; pages and figures can be regenerated."""
     if drawing.exists() and not drawing.is_dir() and not force:
         raise InputError(drawing, "", "already exists; --force overwrites it")
-    check_place(drawing)
+    check_writable(drawing)
 
 
 @contextmanager
-def blaming(file: Path, options: Collection[str] = ()) -> Iterator[None]:
+def errors_name_file(file: Path, options: Collection[str] = ()) -> Iterator[None]:
     """Prefix errors of the computation with the file name, such as an effect beyond the cue.
 
     options: those of the command, which the error names where they help.
@@ -74,7 +82,9 @@ def blaming(file: Path, options: Collection[str] = ()) -> Iterator[None]:
         raise
     except ValueError as error:
         help_words = (
-            " (--tip-height, --leather, --speed)" if isinstance(error, TooDeep) and "leather" in options else ""
+            " (--tip-height, --leather, --speed)"
+            if isinstance(error, IndentationOutOfRange) and "leather" in options
+            else ""
         )
         raise InputError(file, "", f"{error}{help_words}") from None
 
@@ -87,39 +97,39 @@ def scene_of(
     A cue alone gets a game's default stroke (`cuefem.scene.default_scene`). with_impact: whether ball, tip and stroke
     matter to the command, so that assumptions on them are listed too. warn: whether to warn of unusual numbers.
     """
-    opened = load_stroke(file, **fittings_of(options))
+    opened = load_stroke(file, **shaft_additions_of(options))
     if isinstance(opened, Scene):
         refuse_game(file, options)
         scene = with_options(opened, file, options)
     else:
         try:
-            scene = usual(opened, file, options)
+            scene = scene_from_cue(opened, file, options)
         except InputError:
-            remark(Scene(opened), with_impact=False)
+            print_warnings(Scene(opened), with_impact=False)
             raise
     given = {name: value for name, value in options.items() if value is not None}
-    notes = in_words(assumed(file, scene, given), options, with_impact=with_impact)
-    with blaming(file):
+    notes = assumption_texts(assumptions(file, scene, given), options, with_impact=with_impact)
+    with errors_name_file(file):
         compute_tip(scene)
     if warn:
-        remark(scene, with_impact=with_impact)
+        print_warnings(scene, with_impact=with_impact)
     return scene, notes
 
 
 def compute_tip(scene: Scene) -> None:
     """Compute the scene's leather tip unless it is tabulated or cached, and announce the waiting time."""
-    if not scene.tip_at_hand:
-        click.echo(announcement(), err=True)
+    if not scene.tip_is_cached:
+        click.echo(computing_message(), err=True)
         scene.tip_law()
 
 
-def remark(scene: Scene, *, with_impact: bool = True) -> None:
+def print_warnings(scene: Scene, *, with_impact: bool = True) -> None:
     """Warn on stderr of unusual numbers; a wrong unit is the most common reason."""
-    for line in unusual(scene, with_impact=with_impact):
+    for line in plausibility_warnings(scene, with_impact=with_impact):
         click.echo(f"unusual: {line}", err=True)
 
 
-def show(
+def run_on_scene(
     file: Path,
     options: dict[str, Any],
     results: Callable[[Scene], Any],
@@ -133,30 +143,30 @@ def show(
     """
     page = options.pop("output", None)
     scene, notes = scene_of(file, options, with_impact=with_impact)
-    with blaming(file, options):
+    with errors_name_file(file, options):
         about, answer = scene_record(scene), results(scene)
     struck = about if with_impact else {name: value for name, value in about.items() if name in ("cue", "effects")}
-    record = whole_record(file, notes, scene, answer, with_impact=with_impact, scene=struck)
+    record = full_record(file, notes, scene, answer, with_impact=with_impact, scene=struck)
     lines = [head_line(file, about), "", *sheets(answer, about), "", *basis_lines(scene.effects, notes)]
-    tell(options["as_json"], record, lines, page, f"{file.name}: {click.get_current_context().info_name}")
+    print_result(options["as_json"], record, lines, page, f"{file.name}: {click.get_current_context().info_name}")
     return record
 
 
-def whole_record(
+def full_record(
     file: Path, notes: Sequence[str], solved: Scene, record: Record, *, with_impact: bool = True, **more: Any
 ) -> Record:
     """The JSON record: the file, assumptions, unusual values, the scene, the result, the units."""
-    warnings = unusual(solved, with_impact=with_impact)
+    warnings = plausibility_warnings(solved, with_impact=with_impact)
     about = {"file": str(file), "assumed": notes, "unusual": warnings, "scene": scene_record(solved)}
     return about | more | record | {"units": UNITS | record.get("units", {})}
 
 
 def head_line(file: Path, about: dict[str, Any]) -> str:
     """The heading of a command's tables: the file and its cue."""
-    return f"{file.name}: {cue_line(plain(about['cue']))}"
+    return f"{file.name}: {cue_line(json_value(about['cue']))}"
 
 
 def basis_lines(effects: Sequence[Any], notes: Sequence[str]) -> list[str]:
     """The lines below a command's tables: the effects, and the assumptions."""
-    acting = [f"effects: {', '.join(map(effect_words, effects))}"] if effects else []
+    acting = [f"effects: {', '.join(map(effect_text, effects))}"] if effects else []
     return [*acting, *assumed_lines(notes)]

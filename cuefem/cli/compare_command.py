@@ -8,24 +8,28 @@ from typing import Any
 
 import click
 
-from cuefem.cli.common import blaming, cue_options, remark, scene_of, whole_record
-from cuefem.cli.printing import assumed_lines, command, page_option, tell
-from cuefem.cli.progress import followed
-from cuefem.cli.strokes import blow_options, offset_option, option
+from cuefem.cli.common import cue_options, errors_name_file, full_record, print_warnings, scene_of
+from cuefem.cli.output import assumed_lines, command, page_option, print_result
+from cuefem.cli.progress import with_progress_bar
+from cuefem.cli.scene_options import impact_options, offset_option, option
 from cuefem.io import InputError
 from cuefem.io.measured_folder import load_measured, write_template
 from cuefem.measurements.estimate import estimate as estimated
 from cuefem.measurements.estimate import predicted_squirt
 from cuefem.measurements.measured_cue import compare as compared
 from cuefem.measurements.measured_cue import offset_zeros
-from cuefem.report.comparison_table import comparison_figures, comparison_sentences, comparison_sheet
-from cuefem.report.measured_page import compare_record, compare_sheets, estimate_record, estimate_sheets
-from cuefem.report.scene_words import scene_record
-from cuefem.results.comparison import comparison_record, struck_alike
+from cuefem.report.comparison_table import comparison_figures, comparison_sentences, tabulate_comparison
+from cuefem.report.measurement_tables import estimate_record, measured_record, tabulate_estimate, tabulate_measured
+from cuefem.report.scene_summary import scene_record
+from cuefem.results.comparison import comparison_record, with_same_stroke
 from cuefem.results.quantities import UNITS
 
-MOST_CUES = 5
-STRUCK = ("ball ", "cue speed ", "offset ")  # assumptions on ball and stroke, which are those of the first cue
+MAX_CUES = 5
+SHARED_ASSUMPTIONS = (
+    "ball ",
+    "cue speed ",
+    "offset ",
+)  # assumptions on ball and stroke, which are those of the first cue
 
 
 @command()
@@ -43,7 +47,7 @@ STRUCK = ("ball ", "cue speed ", "offset ")  # assumptions on ball and stroke, w
 @click.option("--template", is_flag=True, help="Create FOLDER with example files to fill in.")
 @page_option
 @cue_options
-@blow_options
+@impact_options
 @offset_option
 def compare(
     files: tuple[Path, ...], same_shaft: bool, estimate: bool, template: bool, output: Path | None, **options: Any
@@ -75,8 +79,8 @@ def compare(
 
 def _side_by_side(files: Sequence[Path], options: dict[str, Any], output: Path | None, *, same_shaft: bool) -> None:
     """Print or write the comparison of cues."""
-    if len(files) > MOST_CUES:
-        raise InputError(files[MOST_CUES], "", f"must be one of at most {MOST_CUES} cues; got {len(files)}")
+    if len(files) > MAX_CUES:
+        raise InputError(files[MAX_CUES], "", f"must be one of at most {MAX_CUES} cues; got {len(files)}")
     if options["shaft_mass"] is not None:
         problem = (
             "must be set in each cue's file (shaft_mass) when cues are compared; `cuefem convert` writes such a .toml"
@@ -85,19 +89,25 @@ def _side_by_side(files: Sequence[Path], options: dict[str, Any], output: Path |
     loaded = [scene_of(file, options) for file in files]
     scenes = {name: scene for name, (scene, _) in zip(_names(files), loaded, strict=True)}
     notes = [f"{name}: {note}" for name, (_, own) in zip(scenes, loaded, strict=True) for note in own]
-    shared = [note for note in loaded[0][1] if note.startswith(STRUCK) or all(note in own for _, own in loaded)]
-    notes = shared + [
-        note for note in notes if not (own := note.partition(": ")[2]).startswith(STRUCK) and own not in shared
+    shared = [
+        note for note in loaded[0][1] if note.startswith(SHARED_ASSUMPTIONS) or all(note in own for _, own in loaded)
     ]
-    with blaming(files[0], options):
-        record = comparison_record(scenes, same_shaft=same_shaft, follow=followed)
+    notes = shared + [
+        note
+        for note in notes
+        if not (own := note.partition(": ")[2]).startswith(SHARED_ASSUMPTIONS) and own not in shared
+    ]
+    with errors_name_file(files[0], options):
+        record = comparison_record(scenes, same_shaft=same_shaft, follow=with_progress_bar)
     about: dict[str, Any] = {"files": [str(file) for file in files], "assumed": notes}
-    about |= {"scenes": {name: scene_record(scene) for name, scene in struck_alike(scenes).items()}}
-    things: list[Any] = [*comparison_sentences(record), "", comparison_sheet(record)]
+    about |= {"scenes": {name: scene_record(scene) for name, scene in with_same_stroke(scenes).items()}}
+    things: list[Any] = [*comparison_sentences(record), "", tabulate_comparison(record)]
     if output is not None and output.suffix == ".html":
         things += comparison_figures(scenes, record)
     title = f"{', '.join([*scenes][:-1])} and {[*scenes][-1]}"
-    tell(options["as_json"], about | record | {"units": UNITS}, [*things, "", *assumed_lines(notes)], output, title)
+    print_result(
+        options["as_json"], about | record | {"units": UNITS}, [*things, "", *assumed_lines(notes)], output, title
+    )
 
 
 def _names(files: Sequence[Path]) -> list[str]:
@@ -112,15 +122,15 @@ def _names(files: Sequence[Path]) -> list[str]:
 def _with_measurements(folder: Path, output: Path | None, *, as_json: bool, estimate: bool) -> None:
     """Print or write the comparison with measurements, or the estimate from them."""
     cue, notes = load_measured(folder)
-    remark(cue.scene)
-    with blaming(folder):
+    print_warnings(cue.scene)
+    with errors_name_file(folder):
         if estimate:
-            found, target = estimated(cue, track=followed), predicted_squirt(cue)
+            found, target = estimated(cue, track=with_progress_bar), predicted_squirt(cue)
             record = estimate_record(found, found.next_measurements(), found.predict(target), target.offset)
-            sheets = estimate_sheets(record)
+            sheets = tabulate_estimate(record)
         else:
-            rows = compared(cue, track=followed)
-            record = compare_record(cue, rows, offset_zeros(cue, rows))
-            sheets = compare_sheets(record)
-    whole = whole_record(folder, notes, cue.scene, record)
-    tell(as_json, whole, [cue.name, "", *sheets, "", *assumed_lines(notes)], output)
+            rows = compared(cue, track=with_progress_bar)
+            record = measured_record(cue, rows, offset_zeros(cue, rows))
+            sheets = tabulate_measured(record)
+    whole = full_record(folder, notes, cue.scene, record)
+    print_result(as_json, whole, [cue.name, "", *sheets, "", *assumed_lines(notes)], output)

@@ -11,33 +11,41 @@ from typing import Any
 import click
 
 import cuefem.report
-from cuefem.cli.common import blaming, check_free, file_options, force_option, scene_of, show, stroke_options
-from cuefem.cli.printing import Command, command, output_option, page_option, print_all
-from cuefem.cli.progress import followed
-from cuefem.cli.strokes import blow_options, option, tip_options, with_options
+from cuefem.cli.common import (
+    check_overwrite,
+    errors_name_file,
+    file_options,
+    force_option,
+    run_on_scene,
+    scene_of,
+    stroke_options,
+)
+from cuefem.cli.output import Command, command, output_option, page_option, print_tables
+from cuefem.cli.progress import with_progress_bar
+from cuefem.cli.scene_options import impact_options, option, tip_options, with_options
 from cuefem.design.design_changes import design_changes
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.io import InputError, load_accuracy, save, save_page
-from cuefem.io.fittings import FITTINGS
-from cuefem.parameters.parameter import varied
+from cuefem.io.shaft_additions import SHAFT_ADDITIONS
+from cuefem.parameters.parameter import with_parameters
 from cuefem.parameters.parts import main_material
 from cuefem.quantity.fields import Quantity
-from cuefem.quantity.units import number
+from cuefem.quantity.units import parse_number
 from cuefem.report import (
     end_mass_record,
-    end_mass_sheet,
     modes_record,
-    modes_sheet,
     report_record,
-    report_sheets,
     strike_record,
-    strike_sheet,
+    tabulate_end_masses,
+    tabulate_modes,
+    tabulate_report,
+    tabulate_strike,
 )
-from cuefem.report.advice_table import advice_sheet
-from cuefem.report.simulator_export import pooltool_record, pooltool_sheets
-from cuefem.report.unusual import unusual
+from cuefem.report.design_changes_table import tabulate_design_changes
+from cuefem.report.plausibility import plausibility_warnings
+from cuefem.report.simulator_export import pooltool_record, tabulate_pooltool
 from cuefem.results.convergence import resolve
-from cuefem.results.records import Record, Sheet
+from cuefem.results.records import Record, Table
 from cuefem.scene import Scene
 
 
@@ -70,14 +78,14 @@ def report(file: Path, output: Path | None, check: bool, **options: Any) -> None
         return record | ({"model_error": _model_error(scene)} if checked else {})
 
     if output is None:
-        show(file, options, results, partial(_sheets, file))
+        run_on_scene(file, options, results, partial(_sheets, file))
     else:
         _write_page(file, output, options, check=check)
 
 
-def _sheets(file: Path, record: Record, about: Record) -> list[Sheet | str]:
+def _sheets(file: Path, record: Record, about: Record) -> list[Table | str]:
     """The tables, followed by suggested commands."""
-    sheets = report_sheets(record, about)
+    sheets = tabulate_report(record, about)
     return (
         [*sheets, "", f"Design changes: cuefem improve {file}, with the same options"]
         if "verdict" in record and "modes" in record  # a lumped cue has nothing that a maker can change
@@ -86,7 +94,7 @@ def _sheets(file: Path, record: Record, about: Record) -> list[Sheet | str]:
 
 
 def _model_error(scene: Scene) -> Record:
-    return cuefem.report.model_error_record(scene, followed)  # loads scikit-fem, which other reports need not
+    return cuefem.report.model_error_record(scene, with_progress_bar)  # loads scikit-fem, which other reports need not
 
 
 def _write_page(file: Path, output: Path, options: dict[str, Any], *, check: bool) -> None:
@@ -97,10 +105,10 @@ def _write_page(file: Path, output: Path, options: dict[str, Any], *, check: boo
     if options["as_json"]:
         raise InputError(output, "--output", "cannot be combined with --json")
     scene, notes = scene_of(file, options)
-    with blaming(file, options):
+    with errors_name_file(file, options):
         checks = [_model_error(scene)["summary"]] if check else []
-        more: dict[str, Any] = {"rtol": load_accuracy(file), "warnings": unusual(scene), "checks": checks}
-        text, line = page_and_headline(file.name, scene, notes=notes, progress=followed, **more)
+        more: dict[str, Any] = {"rtol": load_accuracy(file), "warnings": plausibility_warnings(scene), "checks": checks}
+        text, line = page_and_headline(file.name, scene, notes=notes, progress=with_progress_bar, **more)
     save_page(text, output)
     click.echo(f"{line}\nwrote {output}")
 
@@ -124,21 +132,21 @@ def improve(file: Path, take: int | None, output: Path | None, force: bool, **op
     if (take is not None) != drawing:
         raise InputError(file, "--take", "--take ROW requires -o FILE.toml, and -o FILE.toml requires --take ROW")
     if take is None or output is None:
-        show(
+        run_on_scene(
             file,
             {**options, "output": output},
-            lambda scene: design_changes(scene, progress=followed),
-            lambda record, about: [advice_sheet(record)],
+            lambda scene: design_changes(scene, progress=with_progress_bar),
+            lambda record, about: [tabulate_design_changes(record)],
         )
         return
-    check_free(output, force=force)
+    check_overwrite(output, force=force)
     scene, _ = scene_of(file, options)
-    with blaming(file, options):
-        rows = design_changes(scene, progress=followed)["changes"]
+    with errors_name_file(file, options):
+        rows = design_changes(scene, progress=with_progress_bar)["changes"]
     if take > len(rows):
         raise InputError(file, "--take", f"must be a row of the table, 1 to {len(rows)}; got {take}")
     row = rows[take - 1]
-    changed = varied(scene, row["set"])
+    changed = with_parameters(scene, row["set"])
     save(changed, output)
     click.echo(f"wrote {output}: {row['change']}")
     for line in _comparing(file, output, options, (scene, changed)):
@@ -151,7 +159,7 @@ def _comparing(file: Path, output: Path, options: dict[str, Any], scenes: tuple[
     Options that change only the drawing are converted first, since options apply to both files.
     """
     given = {name: value for name, value in options.items() if isinstance(value, str)}
-    drawn = {name: given.pop(name) for name in (*FITTINGS, "shaft_mass") if name in given}
+    drawn = {name: given.pop(name) for name in (*SHAFT_ADDITIONS, "shaft_mass") if name in given}
     try:
         alike = "game" not in given and with_options(scenes[1], output, given) == scenes[1]
     except InputError:  # the options do not go with the changed cue
@@ -185,7 +193,7 @@ def modes(file: Path, near: str | None, count: int, **options: Any) -> None:
         return modes_record(scene, count=count, near=hertz)
 
     hertz = None if near is None else _hertz(file, near)
-    show(file, options, results, lambda record, about: [modes_sheet(record)], with_impact=False)
+    run_on_scene(file, options, results, lambda record, about: [tabulate_modes(record)], with_impact=False)
 
 
 def _hertz(file: Path, near: str) -> float:
@@ -193,19 +201,21 @@ def _hertz(file: Path, near: str) -> float:
     wanted = Quantity("Hz", "[0, inf)")
     for text in (near, f"{near} Hz"):
         with suppress(ValueError):
-            if wanted.holds(hertz := number(text, "Hz")):
+            if wanted.contains(hertz := parse_number(text, "Hz")):
                 return hertz
     raise InputError(file, "--near", f'must be {wanted.bounds_in("Hz")}, such as 250 or "0.25 kHz"; got {near!r}')
 
 
 @command("end-mass", cls=WithDefinitions)
 @file_options
-@blow_options
+@impact_options
 @page_option
 @click.option("--paper", is_flag=True, help="Also show m_c (the end mass of Kim's paper) and eps.")
 def end_mass(file: Path, paper: bool, **options: Any) -> None:
     """Compute the effective end mass: the transverse inertia of the cue at its tip, by five definitions."""
-    show(file, options, end_mass_record, lambda record, about: [end_mass_sheet(record, about, paper=paper)])
+    run_on_scene(
+        file, options, end_mass_record, lambda record, about: [tabulate_end_masses(record, about, paper=paper)]
+    )
 
 
 @command()
@@ -228,15 +238,15 @@ def strike(file: Path, simulator: str | None, **options: Any) -> None:
         return strike_record(scene, None if rtol is None else resolve(scene, rtol))
 
     if simulator is None:
-        show(file, options, results, lambda record, about: [strike_sheet(record, about)])
+        run_on_scene(file, options, results, lambda record, about: [tabulate_strike(record, about)])
         return
     output = options["output"]
     to_file = output is not None and output.suffix == ".json"
-    record = show(
+    record = run_on_scene(
         file,
         options,
         lambda scene: pooltool_record(file.stem, scene, str(output) if to_file else "cue.json"),
-        lambda record, about: pooltool_sheets(record, written=to_file),
+        lambda record, about: tabulate_pooltool(record, written=to_file),
     )
     if to_file:
-        print_all(pooltool_sheets(record, written=True))
+        print_tables(tabulate_pooltool(record, written=True))

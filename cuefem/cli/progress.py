@@ -19,7 +19,7 @@ from rich.progress import (
 from rich.progress import Progress as Bar
 
 
-def followed(work: Sequence[Any]) -> Iterable[Any]:
+def with_progress_bar(work: Sequence[Any]) -> Iterable[Any]:
     """Iterate with a progress bar if stderr is a terminal."""
     console = Console(stderr=True)
     return track(work, "computing", console=console, transient=True) if console.is_terminal else work
@@ -50,7 +50,7 @@ class Progress:
 
 
 @contextmanager
-def bar(total: int) -> Iterator[Progress]:
+def progress_bar(total: int) -> Iterator[Progress]:
     """A progress bar, if stderr is a terminal."""
     console = Console(stderr=True)
     if not console.is_terminal:

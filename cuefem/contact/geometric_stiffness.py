@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from cuefem.beam.tip import TipModes
+from cuefem.beam.tip_modes import TipModes
 from cuefem.cue import Array
 
 # Durations of the half-sine pulses, in contact times. Each response is sampled SAMPLES times from the first touch up to
@@ -21,7 +21,7 @@ PULSE_LENGTHS, SAMPLES, SAMPLED_TIME = (0.5, 0.75, 1.0), 16, 1.5
 MIN_SHARE, MAX_ROWS = 1e-12, 12
 
 
-class BentTooFar(ValueError):
+class SlopeOutOfRange(ValueError):
     """The axial force bends the shaft beyond the range of the second-order theory."""
 
 

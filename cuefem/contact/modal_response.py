@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cuefem.beam.tip import TipModes
+from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.geometric_stiffness import half_octave, slope_rows
 from cuefem.cue import Array
 
@@ -41,7 +41,7 @@ class ModalPropagator:
     def __init__(self, tip: TipModes, rows: Array, slopes: Array) -> None:
         self.rows, self.slopes, self.omega, self.approach = rows, slopes, tip.omega, tip.approach
         omega, count = tip.omega, len(tip.omega)
-        resistance = np.zeros((count, count)) if tip.resistance is None else tip.resistance
+        resistance = np.zeros((count, count)) if tip.total_damping is None else tip.total_damping
         coupled = resistance != 0
         parts = [_alone(omega, np.flatnonzero(~coupled.any(axis=1)))]
         parts += [_coupled(omega, resistance, group) for group in _coupled_groups(coupled)]

@@ -31,10 +31,10 @@ class Phase(NamedTuple):
 
     Attributes
     ----------
-    grip : str
+    state : str
         Friction state: "slip", "stick" or "slip back"; "blow" for the impact of infinite friction, "apart" between two
         hits. A patch of annuli (`LeatherTip`) slips where all of them slip.
-    press : str
+    normal_phase : str
         Normal phase: "load", "unload", or "free" between two hits.
     start, end : float
         Times from first touch, s.
@@ -42,8 +42,8 @@ class Phase(NamedTuple):
         Impulse (t, n) on the ball in this phase, N s, with the signs of `Outcome.impulse`, of which it is a part.
     """
 
-    grip: str
-    press: str
+    state: str
+    normal_phase: str
     start: float
     end: float
     impulse: tuple[float, float]
@@ -58,8 +58,8 @@ class History:
 
     Attributes
     ----------
-    middles : (n + 2,) array
-        The first touch, the middles of the steps and the last separation, s.
+    force_times : (n + 2,) array
+        The first touch, the force_times of the steps and the last separation, s.
     forces : (n + 2, 2) array
         (t, n) there, N.
     ends : (n + 1,) array
@@ -77,7 +77,7 @@ class History:
     ['force_n', 'force_t', 'velocity_n', 'velocity_t']
     """
 
-    middles: Array
+    force_times: Array
     forces: Array
     ends: Array
     velocities: Array
@@ -99,7 +99,7 @@ class History:
             raise ValueError("History takes times in [0, duration] s; this contact is an impact of zero duration")
         if not np.all((time >= 0) & (time <= self.duration * (1 + 1e-12))):
             raise ValueError(f"History takes times in [0, {self.duration}] s, the contact's; got {time}")
-        named = {"force": (self.middles, self.forces), "velocity": (self.ends, self.velocities)}
+        named = {"force": (self.force_times, self.forces), "velocity": (self.ends, self.velocities)}
         return {
             f"{name}_{axis}": np.asarray(np.interp(time, known, values[:, i]))
             for name, (known, values) in named.items()
@@ -134,7 +134,7 @@ def slips_at_end(outcome: Outcome) -> bool:
 
 def _slip_shares(phases: Sequence[Phase]) -> tuple[float, float]:
     """Shares of the normal impulse during slip: in all, and without a break up to the end."""
-    given = [(phase.grip in SLIP_STATES, abs(phase.impulse[1])) for phase in phases]
+    given = [(phase.state in SLIP_STATES, abs(phase.impulse[1])) for phase in phases]
     whole = sum(impulse for _, impulse in given) or 1.0
     last = takewhile(lambda each: each[0] or each[1] < 1e-3 * whole, reversed(given))
     return sum(impulse for slips, impulse in given if slips) / whole, sum(impulse for _, impulse in last) / whole
@@ -143,9 +143,9 @@ def _slip_shares(phases: Sequence[Phase]) -> tuple[float, float]:
 def end_of_first_slip(phases: Sequence[Phase]) -> str:
     """How the slip at first touch ended, by the regimes of the impulse solver."""
     first_touch = list(takewhile(lambda phase: phase[:2] != SEPARATION, phases))
-    held = next((i for i, phase in enumerate(first_touch) if phase.grip != "slip"), None)
+    held = next((i for i, phase in enumerate(first_touch) if phase.state != "slip"), None)
     if held is None:
         return "miscue"
-    if first_touch[held].grip == "slip back":
+    if first_touch[held].state == "slip back":
         return "slip reversal"
-    return "stick" if all(phase.press == "load" for phase in first_touch[: held + 1]) else "late stick"
+    return "stick" if all(phase.normal_phase == "load" for phase in first_touch[: held + 1]) else "late stick"

@@ -14,19 +14,19 @@ import numpy as np
 
 from cuefem.beam.modes import solve
 from cuefem.beam.system import assemble
-from cuefem.beam.tip import TipModes, side_modes
+from cuefem.beam.tip_modes import TipModes, side_modes
+from cuefem.contact.contact_model import ContactModel, check_restitution, power_law
 from cuefem.contact.modal_response import propagator_of
-from cuefem.contact.model import ContactModel, check_restitution, power_law
 from cuefem.contact.outcome import Phase
 from cuefem.contact.step_records import SolvedContact, solve_contact
 from cuefem.cue import Cue
 from cuefem.effects import CueEffect, Effect, acting_on_cue, check_effects
-from cuefem.effects.base import NEAR
-from cuefem.effects.contact_settings import ContactTerms
+from cuefem.effects.contact_terms import ContactTerms
+from cuefem.effects.effect import POSITION_TOLERANCE
 from cuefem.effects.force_law import TipLaw, loading_time
 from cuefem.quantity.fields import CONTACT_TIME, Quantity, check_fields, check_kind
 from cuefem.scene import Resolution, equal_fields
-from cuefem.scene.solved_scene import modes_for
+from cuefem.scene.solved_scene import mode_count_for
 
 # Hertz's force grows with this power of the compression: F = 4/3 E* sqrt(R) d^(3/2).
 HERTZ_EXPONENT = 1.5
@@ -103,9 +103,9 @@ class Striker:
 
     def wall_time(self, speed: float) -> float:
         """How long the striker touches a wall that does not give, s; speed: m/s, which only Hertz's law depends on."""
-        return self.time_on(math.inf, speed)
+        return self.contact_time_on(math.inf, speed)
 
-    def time_on(self, mass: float, speed: float) -> float:
+    def contact_time_on(self, mass: float, speed: float) -> float:
         """How long the striker touches a free rigid body of ``mass``, kg, head on at ``speed``, m/s: a time in s."""
         law, felt = self.law, 1 / (1 / self.mass + 1 / mass)
         power = law.exponent + 1
@@ -164,7 +164,7 @@ class SideStrike:
         if isinstance(self.effects, Effect):
             raise TypeError(f"SideStrike.effects must be a sequence of effects; got one, {self.effects!r}")
         object.__setattr__(self, "effects", tuple(self.effects))
-        if self.position > self.cue.length * (1 + NEAR):
+        if self.position > self.cue.length * (1 + POSITION_TOLERANCE):
             bounds = f"[0, {self.cue.length}] m, on the cue"
             raise ValueError(f"SideStrike.position must be in {bounds}; got {self.position}")
         check_effects(self.cue, self.effects, "SideStrike")
@@ -189,7 +189,7 @@ class SideStrike:
     def rigid_mass(self) -> float:
         """Effective mass at the position if the beam were rigid and free, kg."""
         massive = tuple(effect for effect in self.cue_effects if effect.mass_on(self.cue))
-        system = assemble(self.cue, Resolution(1, 4, 1), massive, places=[self.position])
+        system = assemble(self.cue, Resolution(1, 4, 1), massive, positions=[self.position])
         modes = solve(system, 1, position=self.position)
         motion = side_modes(modes).amplitude[: modes.rigid, 0]
         return 1 / float(motion @ motion)
@@ -197,7 +197,7 @@ class SideStrike:
     @property
     def contact_time(self) -> float:
         """Duration of the contact if the beam were rigid and free, s: the scale of time in which modes are chosen."""
-        return self.striker.time_on(self.rigid_mass, self.speed)
+        return self.striker.contact_time_on(self.rigid_mass, self.speed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -308,7 +308,7 @@ def side_strike(scene: SideStrike, at: Resolution | None = None) -> SideOutcome:
 def solve_side_contact(scene: SideStrike, at: Resolution | None = None) -> SolvedContact:
     """The contact of the strike when it is over: one along the normal alone, of a body that comes in."""
     striker, law, time = scene.striker, scene.striker.law, scene.contact_time
-    if not CONTACT_TIME.holds(time):
+    if not CONTACT_TIME.contains(time):
         raise ValueError(f"SideStrike must make a contact time in {CONTACT_TIME.bounds}; got {time:.3g} s")
     check_restitution("Striker.restitution", striker.restitution)
     model = ContactModel(
@@ -332,10 +332,10 @@ def solve_side_contact(scene: SideStrike, at: Resolution | None = None) -> Solve
 
 def _position_modes(scene: SideStrike, at: Resolution | None) -> TipModes:
     """Frequencies of the beam, and the struck point's displacement in each mode; truncation is corrected by default."""
-    fineness = at or modes_for(scene.cue, scene.contact_time)
-    system = assemble(scene.cue, fineness, scene.cue_effects, places=[scene.position])
+    fineness = at or mode_count_for(scene.cue, scene.contact_time)
+    system = assemble(scene.cue, fineness, scene.cue_effects, positions=[scene.position])
     count = (fineness if isinstance(fineness, int) else fineness.modes) + 2 - system.rigid.shape[1]
-    modes = solve(system, count, ended=int(at is None), position=scene.position)
+    modes = solve(system, count, corrected=int(at is None), position=scene.position)
     place = side_modes(modes)
     for effect in scene.cue_effects:
         place = effect.damp(place, ((scene.cue, modes),))

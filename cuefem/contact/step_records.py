@@ -11,10 +11,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from cuefem.contact.geometric_stiffness import BentTooFar
+from cuefem.contact.contact_model import PARTIAL_SLIP, RIGID_PATCH, ContactModel
+from cuefem.contact.geometric_stiffness import SlopeOutOfRange
 from cuefem.contact.kernel.library import STEP, KernelContact, library
 from cuefem.contact.modal_response import Complex
-from cuefem.contact.model import PARTIAL_SLIP, RIGID_PATCH, ContactModel
 from cuefem.contact.outcome import IMPACT, SEPARATION, History, Phase, contact_state
 from cuefem.cue import Array
 from cuefem.effects.force_law import LeatherLaw
@@ -24,7 +24,7 @@ FRICTION_STATES = {0: "stick", 1: "slip", -1: "slip back", 2: IMPACT, 3: SEPARAT
 NORMAL_PHASES = ("load", "unload", "free")
 # Steps in a head-on contact time: squirt of a default strike is then right to 0.1 %
 # (tests/contact/test_stored_answers.py).
-STEPS = 400
+DEFAULT_STEPS = 400
 INFINITE_FRICTION = 1e12  # friction, as the kernel takes it
 STEPS_PER_CALL = 2048  # of the kernel
 MAX_CONTACT_TIMES = 200  # without separation, after which the strike raises an error; head-on contact times
@@ -95,15 +95,15 @@ class SolvedContact:
         model, blows = self.model, int(np.sum(self.steps["length"] == 0))  # which take no time
         steps = self.steps[self.steps["length"] > 0] if blows else self.steps
         ends, side = np.append(0.0, steps["time"]), np.array([model.side, 1.0])
-        middles = np.concatenate([[0.0], ends[1:] - steps["length"] / 2, [self.time]])
+        force_times = np.concatenate([[0.0], ends[1:] - steps["length"] / 2, [self.time]])
         forces = np.zeros((len(steps) + 2, 2))  # none at the touch, and none as the two part
         forces[1:-1] = steps["F"][:, :2] * side
         velocities = np.vstack([model.approach, steps["v"][:, :2]]) * side
         if model.axes is None:
-            return History(middles, forces, ends, velocities)
+            return History(force_times, forces, ends, velocities)
         moving, turning = model.axes @ self.ball[:3], model.axes @ self.ball[3:] / model.radius
         sides = np.array([model.side, 1.0, 1.0])
-        return History(middles, forces, ends, velocities, moving * sides, turning * sides * model.side)
+        return History(force_times, forces, ends, velocities, moving * sides, turning * sides * model.side)
 
     @property
     def outcome(self) -> Outcome:
@@ -133,7 +133,7 @@ class SolvedContact:
             impulse=np.array([side * p_t, p_n]),
             duration=self.time,
             regime=self._regime(energy),
-            jam=self.phases[0].grip == "slip" and model.jams,
+            jam=self.phases[0].state == "slip" and model.jams,
             phases=self.phases,
             energy=energy,
             unknowns=model.unknowns,
@@ -196,7 +196,7 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, keep_states:
         "phi": model.phi,
         "restitution": model.restitution,
         "friction": min(model.friction, INFINITE_FRICTION),
-        "step": model.time / (steps or STEPS),
+        "step": model.time / (steps or DEFAULT_STEPS),
         "max_time": MAX_CONTACT_TIMES * model.time,
         "window": model.window or 0.0,
     }
@@ -256,7 +256,7 @@ def _failure(model: ContactModel, c: KernelContact) -> Exception:
     if c.status == _INDENTATION_OUT_OF_RANGE and isinstance(model.law, LeatherLaw):
         return model.law.too_deep(c.depth)
     if c.status == _SLOPE_OUT_OF_RANGE:
-        return BentTooFar(
+        return SlopeOutOfRange(
             f"the axial force of {c.axial_force:.4g} N bends the shaft by {c.max_slope:.3g} rad at its tip, beyond the "
             "range of GeometricStiffness: lower the speed, or stiffen the shaft"
         )

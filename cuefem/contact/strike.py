@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.beam.tip import TipModes
-from cuefem.contact.model import model_of
+from cuefem.beam.tip_modes import TipModes
+from cuefem.contact.contact_model import model_of
 from cuefem.contact.step_records import solve_contact
 from cuefem.cue import Cue
 from cuefem.quantity.fields import check_kind
-from cuefem.scene import Outcome, Resolution, Scene, several
-from cuefem.scene.solved_scene import strike_modes_kept, tip_modes_of, turning
+from cuefem.scene import Outcome, Resolution, Scene, as_scenes
+from cuefem.scene.solved_scene import has_moment_arm, strike_mode_count, tip_modes_of
 from cuefem.solid.resolution import Solid
 
 BATCH_FIELDS = ("squirt", "ball_velocity", "ball_speed", "spin", "cue_speed", "impulse", "duration", "regime", "jam")
@@ -119,7 +119,7 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None) -> Outco
     >>> outcome.squirt.shape, bool(outcome.squirt[2] > outcome.squirt[1])
     ((3,), True)
     """
-    scenes = several("batch_strike scenes", scenes)
+    scenes = as_scenes("batch_strike scenes", scenes)
     tips: dict[Any, TipModes] = {}
     results = []
     for i, scene in enumerate(scenes):
@@ -141,4 +141,4 @@ def _modes_of(scene: Scene, at: Resolution | None) -> tuple[Any, ...]:
     """Inputs that determine the tip modes of a scene."""
     if scene.lumped is not None:
         return (scene.lumped,)
-    return scene.cue, scene.cue_effects, float(scene.axial_mass), turning(scene), at or strike_modes_kept(scene)
+    return scene.cue, scene.cue_effects, float(scene.axial_mass), has_moment_arm(scene), at or strike_mode_count(scene)

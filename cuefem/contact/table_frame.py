@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cuefem.cue import Array
-from cuefem.quantity.display import said
+from cuefem.quantity.display import brief_repr
 from cuefem.quantity.fields import Quantity
 from cuefem.scene import Ball, Outcome
 
@@ -40,7 +40,7 @@ class Placed:
     spin: Array
 
     def __repr__(self) -> str:
-        return said("Placed", vars(self).items())
+        return brief_repr("Placed", vars(self).items())
 
 
 def place(outcome: Outcome, point: ArrayLike, direction: ArrayLike, *, ball: Ball | None = None) -> Placed:

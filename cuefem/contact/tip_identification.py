@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.contact.strike import strike, strike_modes
-from cuefem.effects.force_law import TooDeep
+from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.quantity.fields import CONTACT_TIME, Quantity
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import tip_modes_of
@@ -79,7 +79,7 @@ def identify_tip(scene: Scene, contact_time: float, rebound: float) -> Identifie
         try:
             made = with_tip(scene, IdentifiedTip(math.exp(log_E), e))
             outcome = strike_modes(_centred(made), tip)
-        except TooDeep:
+        except IndentationOutOfRange:
             return NO_SEPARATION, 0.0
         return float(outcome.duration), rebound_of_outcome(outcome, made)
 

@@ -1,7 +1,7 @@
 """Finite-element cues and their geometry, lumped cues, and the table of materials."""
 
 from cuefem.cue.geometry import (
-    SOFT,
+    MAX_LEATHER_MODULUS,
     Array,
     Cue,
     LumpedCue,
@@ -14,7 +14,7 @@ from cuefem.cue.geometry import (
 )
 
 __all__ = [
-    "SOFT",
+    "MAX_LEATHER_MODULUS",
     "Array",
     "Cue",
     "LumpedCue",

@@ -14,19 +14,19 @@ from numpy.typing import ArrayLike, NDArray
 from cuefem.quantity.fields import (
     DIAMETER,
     LENGTH,
-    MOST_SEGMENTS,
+    MAX_SEGMENTS,
     OutOfBounds,
     Quantity,
     check_fields,
     check_kind,
 )
-from cuefem.quantity.slips import CUE_DIAMETER
+from cuefem.quantity.unit_checks import CUE_DIAMETER
 
 Array = NDArray[np.float64]
 
 # A material at the tip of a smaller E than this, Pa, is leather: leathers have 0.05 to 0.2 GPa, the softest plastics of
 # ferrules 1.2 GPa, woods about 10 GPa.
-SOFT = 1e9
+MAX_LEATHER_MODULUS = 1e9
 
 
 @dataclass(frozen=True)
@@ -45,17 +45,17 @@ class Material:
         Loss factor of bending, for scenes with `StructuralDamping`.
     nu
         Poisson's ratio of axial tension. In a beam it only affects the shear coefficient.
-    across_ratio
+    transverse_ratio
         Transverse Young's modulus over E, for a material that is isotropic in the plane across its axis: wood as a mean
         over its rings, or a wound tube. Only the solid model of a cue uses it; by default 1.
-    nu_across
+    nu_transverse
         Poisson's ratio of transverse tension, for the transverse strain. Only the solid model uses it; by default nu.
 
     Raises
     ------
     ValueError
-        If a number is out of bounds, if 2 nu G/E is not below 1, or if nu_across is not below 1 - 2 nu^2 across_ratio:
-        the elastic energy must be positive.
+        If a number is out of bounds, if 2 nu G/E is not below 1, or if nu_transverse is not below 1 - 2 nu^2
+        transverse_ratio: the elastic energy must be positive.
 
     Examples
     --------
@@ -67,35 +67,35 @@ class Material:
     ValueError: Material.G must be in (0, inf) Pa; got -1.0
     """
 
-    E: Annotated[float, Quantity("Pa", "(0, inf)").usually(5e6, 6e11)]
-    G: Annotated[float, Quantity("Pa", "(0, inf)").usually(5e6, 6e11)]
-    rho: Annotated[float, Quantity("kg/m^3", "(0, inf)").usually(40.0, 2e4)]
+    E: Annotated[float, Quantity("Pa", "(0, inf)").with_typical_range(5e6, 6e11)]
+    G: Annotated[float, Quantity("Pa", "(0, inf)").with_typical_range(5e6, 6e11)]
+    rho: Annotated[float, Quantity("kg/m^3", "(0, inf)").with_typical_range(40.0, 2e4)]
     loss: Annotated[float, Quantity("", "[0, 1)")] = 0.0
     nu: Annotated[float, Quantity("", "[0, 0.5]")] = 0.3
-    across_ratio: Annotated[float | None, Quantity("", "(0, inf)")] = None
-    nu_across: Annotated[float | None, Quantity("", "(0, 1)")] = None
+    transverse_ratio: Annotated[float | None, Quantity("", "(0, inf)")] = None
+    nu_transverse: Annotated[float | None, Quantity("", "(0, 1)")] = None
 
     def __post_init__(self) -> None:
         check_fields(self)
         if 2 * self.nu * self.G >= self.E:
             why = f", E/(2 nu) of E = {self.E} Pa, nu = {self.nu}"
             raise OutOfBounds("Material.G", Quantity("Pa", f"(0, {self.E / (2 * self.nu)})"), self.G, why)
-        if self.across_ratio is None and self.nu_across is None:
+        if self.transverse_ratio is None and self.nu_transverse is None:
             return
-        limit = 1 - 2 * self.nu**2 * self.E_across / self.E
+        limit = 1 - 2 * self.nu**2 * self.E_transverse / self.E
         if not self.nu_in_plane < limit:
-            why = f", 1 - 2 nu^2 across_ratio of nu = {self.nu}, across_ratio = {self.E_across / self.E}"
-            raise OutOfBounds("Material.nu_across", Quantity("", f"(0, {limit})"), self.nu_in_plane, why)
+            why = f", 1 - 2 nu^2 transverse_ratio of nu = {self.nu}, transverse_ratio = {self.E_transverse / self.E}"
+            raise OutOfBounds("Material.nu_transverse", Quantity("", f"(0, {limit})"), self.nu_in_plane, why)
 
     @property
-    def E_across(self) -> float:
+    def E_transverse(self) -> float:
         """Transverse Young's modulus, Pa."""
-        return self.E * (1.0 if self.across_ratio is None else self.across_ratio)
+        return self.E * (1.0 if self.transverse_ratio is None else self.transverse_ratio)
 
     @property
     def nu_in_plane(self) -> float:
         """Poisson's ratio in the transverse plane."""
-        return self.nu if self.nu_across is None else self.nu_across
+        return self.nu if self.nu_transverse is None else self.nu_transverse
 
     @property
     def effective_poisson_ratio(self) -> float:
@@ -166,12 +166,12 @@ class Segment:
     0.1074
     """
 
-    length: Annotated[float, LENGTH.usually(0.002, 1.6)]
-    tip_diameter: Annotated[float, DIAMETER.usually(*CUE_DIAMETER)]
-    butt_diameter: Annotated[float, DIAMETER.usually(*CUE_DIAMETER)]
+    length: Annotated[float, LENGTH.with_typical_range(0.002, 1.6)]
+    tip_diameter: Annotated[float, DIAMETER.with_typical_range(*CUE_DIAMETER)]
+    butt_diameter: Annotated[float, DIAMETER.with_typical_range(*CUE_DIAMETER)]
     material: Material
-    tip_bore: Annotated[float, Quantity("m", "[0, inf)").usually(0.001, 0.03)] = 0.0
-    butt_bore: Annotated[float, Quantity("m", "[0, inf)").usually(0.001, 0.03)] = 0.0
+    tip_bore: Annotated[float, Quantity("m", "[0, inf)").with_typical_range(0.001, 0.03)] = 0.0
+    butt_bore: Annotated[float, Quantity("m", "[0, inf)").with_typical_range(0.001, 0.03)] = 0.0
     core: Material | None = None
     kappa: Annotated[float | None, Quantity("", "(0, 1]")] = None
 
@@ -307,7 +307,7 @@ class Cue:
     """
 
     segments: tuple[Segment, ...]
-    body_mass: Annotated[float, Quantity("kg", "[0, inf)").usually(0.05, 0.8)] = 0.0
+    body_mass: Annotated[float, Quantity("kg", "[0, inf)").with_typical_range(0.05, 0.8)] = 0.0
     weighed: bool = False
 
     def __repr__(self) -> str:
@@ -321,7 +321,7 @@ class Cue:
         object.__setattr__(self, "segments", tuple(self.segments))
         if not self.segments:
             raise ValueError("Cue.segments must hold at least one Segment; got none")
-        most = MOST_SEGMENTS + 1  # of a drawing, and the rest of the cue that `AxialWaves` adds
+        most = MAX_SEGMENTS + 1  # of a drawing, and the rest of the cue that `AxialWaves` adds
         if len(self.segments) > most:
             raise ValueError(f"Cue.segments must hold at most {most} segments; got {len(self.segments)}")
         for i, segment in enumerate(self.segments):
@@ -340,7 +340,7 @@ class Cue:
     @property
     def leather(self) -> float:
         """Length of the leather tip, m: of the first segments with E below `SOFT`; 0 if the whole cue is that soft."""
-        soft = takewhile(lambda segment: segment.material.E < SOFT, self.segments)
+        soft = takewhile(lambda segment: segment.material.E < MAX_LEATHER_MODULUS, self.segments)
         count = sum(1 for _ in soft)
         return float(self.nodes[count]) if count < len(self.segments) else 0.0
 
@@ -411,8 +411,8 @@ class LumpedCue:
     # Empty: distinguishes a lumped cue from a finite-element one.
     segments: ClassVar[tuple[Segment, ...]] = ()
 
-    mass: Annotated[float, Quantity("kg", "(0, inf)").usually(0.1, 1.0)]
-    end_mass: Annotated[float, Quantity("kg", "(0, inf)").usually(1e-3, 0.1)]
+    mass: Annotated[float, Quantity("kg", "(0, inf)").with_typical_range(0.1, 1.0)]
+    end_mass: Annotated[float, Quantity("kg", "(0, inf)").with_typical_range(1e-3, 0.1)]
     coupling: Annotated[float, Quantity("1/kg", "(-inf, inf)")] = 0.0
 
     def __post_init__(self) -> None:

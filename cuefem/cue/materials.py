@@ -15,7 +15,7 @@ import numpy as np
 from cuefem.cue.geometry import Material
 
 
-class Documented(NamedTuple):
+class MaterialEntry(NamedTuple):
     """A material, the ranges of its properties (SI; keys E, G, rho, loss, nu), and its source."""
 
     material: Material
@@ -24,7 +24,7 @@ class Documented(NamedTuple):
     note: str
 
 
-class Leather(NamedTuple):
+class LeatherEntry(NamedTuple):
     """The leather of a tip (`cuefem.LeatherTip`), SI, and the source of its numbers.
 
     contact_time: of a centre-ball impact of a whole cue at 2 m/s, s; it determines E, with the tip's restitution.
@@ -38,17 +38,19 @@ class Leather(NamedTuple):
     source: str
 
 
-def _documented(row: Mapping[str, Any]) -> Documented:
+def _documented(row: Mapping[str, Any]) -> MaterialEntry:
     numbers = {field.name: row[field.name] for field in fields(Material) if field.name in row}
     ranges = {name: (low, high) for name, (low, high) in row["ranges"].items()}
-    return Documented(Material(**numbers), MappingProxyType(ranges), row["source"], row.get("note", ""))
+    return MaterialEntry(Material(**numbers), MappingProxyType(ranges), row["source"], row.get("note", ""))
 
 
 _TABLES = tomllib.loads(Path(__file__).with_name("materials.toml").read_text(encoding="utf-8"))
 _ROWS = _TABLES["materials"]
-MATERIALS: Mapping[str, Documented] = MappingProxyType({name: _documented(row) for name, row in _ROWS.items()})
+MATERIALS: Mapping[str, MaterialEntry] = MappingProxyType({name: _documented(row) for name, row in _ROWS.items()})
 WOODS = tuple(name for name, row in _ROWS.items() if row["kind"] == "wood")
-LEATHERS: Mapping[str, Leather] = MappingProxyType({name: Leather(**row) for name, row in _TABLES["leathers"].items()})
+LEATHERS: Mapping[str, LeatherEntry] = MappingProxyType(
+    {name: LeatherEntry(**row) for name, row in _TABLES["leathers"].items()}
+)
 
 
 def leather_restitution(E: float) -> float:
@@ -60,12 +62,12 @@ def leather_restitution(E: float) -> float:
 # Commercial tips: the name of the leather of each, and the source.
 TIPS: Mapping[str, Mapping[str, str]] = MappingProxyType(_TABLES["tips"])
 # Leathers by their own names and by those of tips.
-LEATHER_OF: Mapping[str, Leather] = MappingProxyType(
+LEATHER_BY_NAME: Mapping[str, LeatherEntry] = MappingProxyType(
     {**LEATHERS, **{name: LEATHERS[tip["leather"]] for name, tip in TIPS.items()}}
 )
 # E, nu and rho by the name of the leather or the tip, for files, options and the designer.
 LEATHER_NAMES: Mapping[str, Mapping[str, float]] = MappingProxyType(
-    {name: {each: getattr(its, each) for each in ("E", "nu", "rho")} for name, its in LEATHER_OF.items()}
+    {name: {each: getattr(its, each) for each in ("E", "nu", "rho")} for name, its in LEATHER_BY_NAME.items()}
 )
 _ALSO = {other: name for name, row in _ROWS.items() for other in row.get("also", ())}
 

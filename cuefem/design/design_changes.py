@@ -12,32 +12,32 @@ from cuefem.cue import Cue
 from cuefem.cue.materials import MATERIALS, WOODS, table_name
 from cuefem.design.evaluation import Response
 from cuefem.effects.leather_tip import DOMES
-from cuefem.parameters.parameter import PARAMETERS, varied
+from cuefem.parameters.parameter import PARAMETERS, with_parameters
 from cuefem.parameters.parts import Layout, taper_position
-from cuefem.results.quantities import scaled, with_unit
+from cuefem.results.quantities import to_display, with_unit
 from cuefem.results.records import Record
 from cuefem.results.solved_design import SolvedDesign, off_centre
 from cuefem.results.uncertainty import model_share, ratio_error, squirt_changes
 from cuefem.scene import Scene
-from cuefem.scene.solved_scene import Solved
+from cuefem.scene.solved_scene import SolvedScene
 
 MM = 1e-3
 WIDER, DEEPER, SHORTER, LOWER, THINNER = 1 * MM, 25 * MM, 5 * MM, 1 * MM, 0.5 * MM
 NEW_BORE, NEW_DEPTH = 6 * MM, 127 * MM  # of meshes/pool_hollow.toml, 5 in deep
-LEAST_WALL = 0.8 * MM  # the thinnest of carbon tubes (meshes/README.md); a thinner wall splits
-LEAST_FERRULE = 5 * MM  # length after the change
-LEAST_TIP = 2 * MM  # height after the change
+MIN_WALL = 0.8 * MM  # the thinnest of carbon tubes (meshes/README.md); a thinner wall splits
+MIN_FERRULE = 5 * MM  # length after the change
+MIN_TIP = 2 * MM  # height after the change
 CARBON_WALL = 1.5 * MM  # the middle of meshes/carbon.toml
 PRO_GAIN = 0.5 * MM  # from the tip to the taper's position, as in meshes/pool_maple.toml
 FERRULES = ("abs", "melamine", "phenolic")  # sold for cues; brass and steel are not suggested
-COSTS = 0.05  # perceptible relative loss of stiffness
-LITTLE = 0.002  # of squirt: smaller contributions to its uncertainty are neglected in a change
+MIN_STIFFNESS_LOSS = 0.05  # perceptible relative loss of stiffness
+MIN_CONTRIBUTION = 0.002  # of squirt: smaller contributions to its uncertainty are neglected in a change
 NUMBERS = tuple(map(Response.of, ("squirt", "tip_stiffness", "shaft_mass", "frequency(1)")))
 WOOD = ("E", "G", "rho")
 Progress = Callable[[Sequence[Any]], Iterable[Any]]
 
 
-class Advice(NamedTuple):
+class DesignChange(NamedTuple):
     """A change: its label, and the values that it sets, SI or names of materials, by parameter.
 
     replaced: uncertain parameters whose value it replaces, so that the error of the new one is independent.
@@ -48,7 +48,7 @@ class Advice(NamedTuple):
     replaced: tuple[str, ...] = ()
 
 
-def changes_of(scene: Scene) -> list[Advice]:
+def changes_of(scene: Scene) -> list[DesignChange]:
     """Candidate changes of this cue; `design_changes` drops those that its geometry does not allow."""
     own = {key: known.value(scene) for key, known in PARAMETERS.items()}
     return [
@@ -59,62 +59,64 @@ def changes_of(scene: Scene) -> list[Advice]:
     ]
 
 
-def _bores(own: Record) -> Iterator[Advice]:
+def _bores(own: Record) -> Iterator[DesignChange]:
     depth, width = own["bore_depth"], own["bore_width"]
     if depth is None:
         return
     if depth <= 0:
         new = {"bore depth": NEW_DEPTH, "bore width": NEW_BORE}
-        yield Advice(f"a bore, {with_unit(NEW_BORE, 'm')} wide and {with_unit(NEW_DEPTH, 'm')} deep", new)
+        yield DesignChange(f"a bore, {with_unit(NEW_BORE, 'm')} wide and {with_unit(NEW_DEPTH, 'm')} deep", new)
         return
-    yield Advice(f"bore wider, {_from_to(width, width + WIDER)}", {"bore width": width + WIDER})
-    yield Advice(f"bore deeper, {_from_to(depth, depth + DEEPER)}", {"bore depth": depth + DEEPER})
+    yield DesignChange(f"bore wider, {_from_to(width, width + WIDER)}", {"bore width": width + WIDER})
+    yield DesignChange(f"bore deeper, {_from_to(depth, depth + DEEPER)}", {"bore depth": depth + DEEPER})
 
 
-def _fronts(own: Record) -> Iterator[Advice]:
+def _fronts(own: Record) -> Iterator[DesignChange]:
     length, material = own["ferrule_length"], own["ferrule_material"]
     if length is None:
         return
-    if length - SHORTER >= LEAST_FERRULE:
-        yield Advice(f"ferrule shorter, {_from_to(length, length - SHORTER)}", {"ferrule length": length - SHORTER})
+    if length - SHORTER >= MIN_FERRULE:
+        yield DesignChange(
+            f"ferrule shorter, {_from_to(length, length - SHORTER)}", {"ferrule length": length - SHORTER}
+        )
     for name in FERRULES:
         if MATERIALS[name].material != material:
-            yield Advice(f"ferrule of {name}", {"ferrule material": name})
+            yield DesignChange(f"ferrule of {name}", {"ferrule material": name})
 
 
-def _tips(own: Record) -> Iterator[Advice]:
+def _tips(own: Record) -> Iterator[DesignChange]:
     height, dome = own["tip_height"], own["dome"]
-    if height is not None and height - LOWER >= LEAST_TIP:
-        yield Advice(f"leather lower, {_from_to(height, height - LOWER)}", {"tip height": height - LOWER})
+    if height is not None and height - LOWER >= MIN_TIP:
+        yield DesignChange(f"leather lower, {_from_to(height, height - LOWER)}", {"tip height": height - LOWER})
     for name in ("dime", "nickel"):
         if dome is not None and abs(DOMES[name] - dome) > 0.1 * MM:
-            yield Advice(f"dome of a {name}", {"dome": DOMES[name]}, ("dome",))
+            yield DesignChange(f"dome of a {name}", {"dome": DOMES[name]}, ("dome",))
 
 
-def _woods_and_tapers(cue: Cue, own: Record) -> Iterator[Advice]:
+def _woods_and_tapers(cue: Cue, own: Record) -> Iterator[DesignChange]:
     """Changes of a wooden shaft; a tube is made on a mandrel, and is neither turned nor replaced by solid wood."""
     if table_name(own["shaft_material"]) != "carbon fibre":
         yield from _tapers(cue, own)
         yield from _woods(cue)
 
 
-def _tapers(cue: Cue, own: Record) -> Iterator[Advice]:
+def _tapers(cue: Cue, own: Record) -> Iterator[DesignChange]:
     tip, taper, end = (own[f"{name}_diameter"] for name in ("tip", "taper", "butt"))
     x = taper_position(cue)
     thinner = {"tip diameter": tip - THINNER, "taper diameter": taper - THINNER}
-    yield Advice(f"{with_unit(THINNER, 'm')} thinner from the tip to {with_unit(x, 'm')}", thinner)
+    yield DesignChange(f"{with_unit(THINNER, 'm')} thinner from the tip to {with_unit(x, 'm')}", thinner)
     cone, pro = tip + (end - tip) * x / cue.length, tip + PRO_GAIN
     for name, wanted in (("straight taper, a cone", cone), ("pro taper", pro)):
         if abs(wanted - taper) > 0.2 * MM:
-            yield Advice(f"{name}, {with_unit(wanted, 'm')} at {with_unit(x, 'm')}", {"taper diameter": wanted})
+            yield DesignChange(f"{name}, {with_unit(wanted, 'm')} at {with_unit(x, 'm')}", {"taper diameter": wanted})
 
 
-def _woods(cue: Cue) -> Iterator[Advice]:
+def _woods(cue: Cue) -> Iterator[DesignChange]:
     shaft = Layout.of(cue).shaft
     own = table_name(cue.segments[shaft.start].material)
     for name in WOODS:
         if name != own:
-            yield Advice(f"shaft of {name}", {"shaft material": name}, WOOD)
+            yield DesignChange(f"shaft of {name}", {"shaft material": name}, WOOD)
     tube: dict[str, Any] = {}
     for i in shaft:
         segment = cue.segments[i]
@@ -124,14 +126,14 @@ def _woods(cue: Cue) -> Iterator[Advice]:
             f"cue.segments[{i}].tip_bore": segment.tip_diameter - 2 * CARBON_WALL,
             f"cue.segments[{i}].butt_bore": segment.butt_diameter - 2 * CARBON_WALL,
         }
-    yield Advice(f"shaft a carbon tube, wall {with_unit(CARBON_WALL, 'm')}, foam inside", tube, WOOD)
+    yield DesignChange(f"shaft a carbon tube, wall {with_unit(CARBON_WALL, 'm')}, foam inside", tube, WOOD)
 
 
 def _from_to(old: float, new: float) -> str:
-    return f"{scaled(old, 'm'):.4g} → {with_unit(new, 'm')}"
+    return f"{to_display(old, 'm'):.4g} → {with_unit(new, 'm')}"
 
 
-def design_changes(scene: Scene, *, solved: Solved | None = None, progress: Progress = list) -> Record:
+def design_changes(scene: Scene, *, solved: SolvedScene | None = None, progress: Progress = list) -> Record:
     """The design changes of a cue, and the effect of each on its own.
 
     Parameters
@@ -166,16 +168,16 @@ def design_changes(scene: Scene, *, solved: Solved | None = None, progress: Prog
     True
     """
     struck = off_centre(scene)
-    solved = Solved(struck) if solved is None or struck is not scene else solved
+    solved = SolvedScene(struck) if solved is None or struck is not scene else solved
     own, regime = _numbers(solved), SolvedDesign(solved).strike().regime
-    before = {key: x for key, x in squirt_changes(solved, own["squirt"]).items() if abs(x) > LITTLE}
+    before = {key: x for key, x in squirt_changes(solved, own["squirt"]).items() if abs(x) > MIN_CONTRIBUTION}
     rows = []
     for change in progress(changes_of(struck)):
         try:
-            made = varied(struck, change.values)
-            if _wall(made) < min(LEAST_WALL, _wall(struck)):
+            made = with_parameters(struck, change.values)
+            if _wall(made) < min(MIN_WALL, _wall(struck)):
                 continue
-            new = Solved(made)
+            new = SolvedScene(made)
             numbers = _numbers(new)
             after = squirt_changes(new, numbers["squirt"], before)
             residual = (_residual(before.get(key, 0.0), after.get(key, 0.0), key in change.replaced) for key in before)
@@ -187,7 +189,7 @@ def design_changes(scene: Scene, *, solved: Solved | None = None, progress: Prog
     return {"offset": float(struck.stroke.offset), "regime": regime, "own": own, "changes": rows}
 
 
-def _numbers(solved: Solved) -> Record:
+def _numbers(solved: SolvedScene) -> Record:
     design = SolvedDesign(solved)
     return {response.kind: response.value(design) for response in NUMBERS}
 
@@ -206,7 +208,7 @@ def _residual(before: float, after: float, replaced: bool) -> float:
     return math.hypot(before, after) if replaced else after - before
 
 
-def _row(change: Advice, own: Record, made: Record, error: float) -> Record:
+def _row(change: DesignChange, own: Record, made: Record, error: float) -> Record:
     relative = {name: made[name] / own[name] - 1 for name in ("squirt", "tip_stiffness")}
     absolute = {name: made[name] - own[name] for name in ("shaft_mass", "frequency")}
     changes = {f"{name}_change": value for name, value in (relative | absolute).items()}
@@ -219,4 +221,4 @@ def _verdict(relative: Record, error: float) -> str:
         return "within uncertainty"
     if relative["squirt"] > 0:
         return "more squirt"
-    return "worthwhile, costs stiffness" if relative["tip_stiffness"] < -COSTS else "worthwhile"
+    return "worthwhile, costs stiffness" if relative["tip_stiffness"] < -MIN_STIFFNESS_LOSS else "worthwhile"

@@ -14,9 +14,9 @@ from cuefem.beam.modes import Modes
 from cuefem.cue import Array
 from cuefem.quantity.display import one_line
 from cuefem.results.quantities import Result, with_heading
-from cuefem.results.solved_design import SolvedDesign, asked
+from cuefem.results.solved_design import SolvedDesign, computable_results
 from cuefem.scene import Resolution, Scene
-from cuefem.scene.solved_scene import Solved
+from cuefem.scene.solved_scene import SolvedScene
 
 # A design may fail because it is invalid, has no response, or its numbers overflow.
 Failed = (ValueError, RuntimeError, ArithmeticError)
@@ -37,16 +37,16 @@ class Response:
     def of(cls, text: str) -> Response:
         """Read text such as "squirt(0.3)"; ValueError, suggesting similar names, if no response matches."""
         match = _NAME.fullmatch(text.strip())
-        if not match or match[1] not in asked():
-            close = difflib.get_close_matches(text.partition("(")[0], asked(), n=3, cutoff=0.5)
+        if not match or match[1] not in computable_results():
+            close = difflib.get_close_matches(text.partition("(")[0], computable_results(), n=3, cutoff=0.5)
             hint = f"; did you mean {' or '.join(close)}?" if close else ""
-            raise ValueError(f"must be one of {', '.join(map(_usage, asked()))}; got {text!r}{hint}")
+            raise ValueError(f"must be one of {', '.join(map(_usage, computable_results()))}; got {text!r}{hint}")
         return cls(match[1], _argument(match[1], match[2], text))
 
     @property
     def result(self) -> Result:
         """The declaration of the result."""
-        return asked()[self.kind]
+        return computable_results()[self.kind]
 
     @property
     def name(self) -> str:
@@ -85,12 +85,12 @@ class Response:
 
 
 def _usage(kind: str) -> str:
-    argument = asked()[kind].argument
+    argument = computable_results()[kind].argument
     return f"{kind}({argument})" if argument == "mode" else f"{kind}[({argument})]" if argument else kind
 
 
 def _argument(kind: str, argument: str | None, text: str) -> float | int | None:
-    wanted = asked()[kind].argument
+    wanted = computable_results()[kind].argument
     if argument is None and wanted != "mode":
         return None
     if wanted == "":
@@ -135,7 +135,7 @@ def evaluate(
     for i, scene in enumerate(scenes):
         on_cue = scene.cue, scene.cue_effects
         before, known = on_cue, known if on_cue == before else {}
-        design = SolvedDesign(Solved(scene, at, known))
+        design = SolvedDesign(SolvedScene(scene, at, known))
         for j, response in enumerate(wanted):
             try:
                 values[i, j] = response.value(design)

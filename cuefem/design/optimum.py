@@ -16,7 +16,7 @@ import numpy as np
 
 from cuefem.cue import Array
 from cuefem.design.evaluation import Response
-from cuefem.design.ranges import Levels, Normal, Span, Value
+from cuefem.design.sampling import Levels, Normal, Span, Value
 from cuefem.design.study import Study, StudyDesign, Vary
 from cuefem.parameters.parameter import value_at
 from cuefem.scene import Resolution, Scene
@@ -57,7 +57,7 @@ class Round(NamedTuple):
     best: float
 
 
-class TriedValues(NamedTuple):
+class ListedValues(NamedTuple):
     """Result for one combination of listed values: the best objective, or nan and the reason."""
 
     values: dict[str, Value]
@@ -77,12 +77,12 @@ class Optimum(StudyDesign):
     active: tuple[str, ...] = ()
     evaluations: int = 0
     unfinished: str = ""
-    choices: tuple[TriedValues, ...] = ()
+    choices: tuple[ListedValues, ...] = ()
 
 
 @dataclass(frozen=True)
 class Problem:
-    """An optimization: objective to minimize (maximize, if ``largest``), variables and limits.
+    """An optimization: objective to minimize (maximize, if ``maximize``), variables and limits.
 
     at: as of a `Study`. listed: values of the variables over a list, by index; by default those of the base. Points are
     values of the other variables, those with low and high.
@@ -93,7 +93,7 @@ class Problem:
     objective: Response
     limits: tuple[Limit, ...] = ()
     at: Resolution | None = None
-    largest: bool = False
+    maximize: bool = False
     listed: Mapping[int, Value] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -149,7 +149,7 @@ class Problem:
         """Responses of the study at points (n, variables): (n, responses), nan if there is none."""
         return self.study.evaluated([self.design(point) for point in points]).values
 
-    def room(self, values: Array) -> Array:
+    def margins(self, values: Array) -> Array:
         """Margins of values (n, responses) to the limits, relative to each limit: (n, sides).
 
         Negative outside, and for a missing response.
@@ -207,17 +207,17 @@ def optimum(
     logarithmic); its gradients are forward differences of `STEP`, all of a step in one batch. Differential evolution
     (`scipy.optimize.differential_evolution`) prefers, among designs that violate a limit, the smallest violation.
     """
-    found, choices, reasons = list[Optimum](), list[TriedValues](), list[str]()
-    sign, count = -1 if problem.largest else 1, 0
+    found, choices, reasons = list[Optimum](), list[ListedValues](), list[str]()
+    sign, count = -1 if problem.maximize else 1, 0
     for chosen in problem.choices():
         search = _Search(chosen, progress, count)
         first = chosen.parts(chosen.start if start is None else np.asarray(start, float))
         try:
             found.append(search.optimum(first, rounds, seed))
-            choices.append(TriedValues(search.listed, found[-1].responses[problem.objective.name]))
+            choices.append(ListedValues(search.listed, found[-1].responses[problem.objective.name]))
         except ValueError as error:
             reasons.append(str(error))
-            choices.append(TriedValues(search.listed, np.nan, str(error)))
+            choices.append(ListedValues(search.listed, np.nan, str(error)))
         count = search.evaluations
     if not found:
         raise ValueError(reasons[0])
@@ -235,7 +235,7 @@ class _Search:
     def __init__(self, problem: Problem, progress: Callable[[Round], object], count: int) -> None:
         self.problem, self.progress, self.evaluations = problem, progress, count
         self.listed = {problem.vary[i].name: value for i, value in problem.listed.items()}
-        self.rounds, self.best, self.scale = 0, np.inf, -1.0 if problem.largest else 1.0
+        self.rounds, self.best, self.scale = 0, np.inf, -1.0 if problem.maximize else 1.0
         self._known, self._slopes = dict[bytes, Array](), dict[bytes, Array]()
 
     def rows(self, parts: Array) -> Array:
@@ -247,7 +247,7 @@ class _Search:
 
     def scores(self, values: Array) -> Array:
         """The scores to minimize: the objective, or `EXCLUDED` plus the violation of the limits."""
-        violation = np.minimum(self.problem.room(values) + TOLERANCE, 0).sum(axis=1)
+        violation = np.minimum(self.problem.margins(values) + TOLERANCE, 0).sum(axis=1)
         own = np.nan_to_num(self.scale * values[:, 0], nan=EXCLUDED)
         return np.asarray(np.where(violation < 0, EXCLUDED - violation, own))
 
@@ -364,7 +364,7 @@ class _Search:
         """(text, relative margin) of every limit and every end of a range."""
         bounds = [(limit.response.name, *side) for limit in self.problem.limits for side in limit.sides]
         texts = [f"{name} {'>=' if sign > 0 else '<='} {bound:g}" for name, sign, bound in bounds]
-        margins = list(zip(texts, self.problem.room(self.at(u)[None])[0].tolist(), strict=True))
+        margins = list(zip(texts, self.problem.margins(self.at(u)[None])[0].tolist(), strict=True))
         for (i, span), part in zip(self.problem.spans.items(), u.tolist(), strict=True):
             name = self.problem.vary[i].name
             margins += [(f"{name} >= {span.low:g}", part), (f"{name} <= {span.high:g}", 1 - part)]

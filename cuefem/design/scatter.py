@@ -19,7 +19,7 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from cuefem.cue import Array
-from cuefem.design.ranges import Levels
+from cuefem.design.sampling import Levels
 from cuefem.design.study import Study
 from cuefem.design.sweep import Row
 from cuefem.quantity.fields import check_count
@@ -166,7 +166,7 @@ class _Points:
 
 
 @dataclass(frozen=True)
-class Drivers:
+class SobolIndices:
     """Sobol indices: the part of each response's variance due to each cause.
 
     first, total: (causes, responses). first_interval, total_interval: (2, causes, responses), bootstrapped, 95 %.
@@ -179,7 +179,7 @@ class Drivers:
     total_interval: Array
 
 
-def drivers_of(scatter: Scatter, rows: Sequence[Row]) -> Drivers:
+def sobol_indices_of(scatter: Scatter, rows: Sequence[Row]) -> SobolIndices:
     """Sobol indices from the rows of `Scatter.designs`.
 
     Estimators of Saltelli et al. (Comput. Phys. Commun. 181 (2010) 259, table 2 b, f) as scipy.stats has them; error
@@ -193,7 +193,7 @@ def drivers_of(scatter: Scatter, rows: Sequence[Row]) -> Drivers:
     for response, column in zip(scatter.study.responses, np.moveaxis(results[:2], -1, 0), strict=True):
         if column.std() <= 1e-12 * abs(column.mean()):
             raise ValueError(f"{response.name} is constant: no parameter of the study changes it")
-    return Drivers(scatter.causes, *indices(results.swapaxes(1, 2), seed=scatter.seed))
+    return SobolIndices(scatter.causes, *indices(results.swapaxes(1, 2), seed=scatter.seed))
 
 
 def indices(values: Array, *, seed: int) -> tuple[Array, Array, Array, Array]:

@@ -20,10 +20,10 @@ import numpy as np
 from cuefem.beam.modes import solve
 from cuefem.beam.system import System, assemble
 from cuefem.cue import Array
-from cuefem.endmass.impulse_response import STEPS, ImpulseResponse, toeplitz_solution
+from cuefem.endmass.impulse_response import STEPS, ImpulseResponse, solve_toeplitz
 from cuefem.endmass.sticking_contact import StickLimit
 from cuefem.scene import Resolution, Scene
-from cuefem.scene.solved_scene import PLAIN_PERIODS, default_modes
+from cuefem.scene.solved_scene import TRUNCATED_SUM_PERIODS, default_mode_count
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ def sensitivity(scene: Scene, at: Resolution | int | None = None) -> Sensitivity
     """
     if scene.effects:
         raise ValueError(f"sensitivity scene must have no effects; got {len(scene.effects)}")
-    at = at or default_modes(scene, periods=PLAIN_PERIODS)
+    at = at or default_mode_count(scene, periods=TRUNCATED_SUM_PERIODS)
     system, count = assemble(scene.shaft, at), at if isinstance(at, int) else at.modes
     bending = solve(system, system.size - system.rigid.shape[1])
     squares, phi = bending.omega**2, bending.vectors[0]
@@ -133,7 +133,7 @@ def _densities(system: System, vectors: Array, stiff: Array, heavy: Array, gradi
 
 
 def _stick(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
-    """Derivatives of the stick end mass, by the adjoint of the linear solve for its J (`ImpulseResponse.held`).
+    """Derivatives of the stick end mass, by the adjoint of the linear solve for its J (`velocity_step_impulse`).
 
     J is a sum of ``edges`` times the impulse at the edges of the steps. The mean velocities over the steps are linear
     in the modes' phi^2; a response R(omega) is the derivative of J to the phi^2 of a mode of this frequency.
@@ -142,14 +142,14 @@ def _stick(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
     T, c, K = float(limit.T), float(limit.c), float(limit.K)
     tip = ImpulseResponse(np.append(rigid, phi**2).astype(complex), 1j * np.append(0.0, omega))
     h, t = T / STEPS, T / STEPS * np.arange(STEPS)
-    after_blow, column = tip.means_with_ball(c, T)
+    after_blow, column = tip.mean_velocities_with_ball(c, T)
     blow = 1 / (float(phi @ phi) + rigid + c)
-    force = toeplitz_solution(column, 1 - blow * after_blow)
+    force = solve_toeplitz(column, 1 - blow * after_blow)
     given = -np.diff(limit.normal_impulse(T - np.append(t, T)))
     normal = (np.append(given, 0.0) + np.append(0.0, given)) / 2  # of the edges in the part of J that goes with K
     edges = K * normal
     edges[-1] -= 1
-    adjoint = toeplitz_solution(column, h * np.cumsum(edges[:0:-1]))[::-1]
+    adjoint = solve_toeplitz(column, h * np.cumsum(edges[:0:-1]))[::-1]
     of_column = -np.correlate(adjoint, force, "full")[STEPS - 1 :]
     of_column[0] /= 2
     of_blow = -(blow**2) * (float(edges.sum()) - float(adjoint @ after_blow))
@@ -165,7 +165,7 @@ def _stick(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
     J, to_K, still = float(edges @ impulses), float(normal @ impulses), float(R(np.full(1, 1e-9 / T))[0])
     m = float(limit.end_mass(J))
     scale = m**2 * (K - 1) / J**2  # dm/dJ at fixed c and K
-    M, m_a, head_on = scene.ball.mass, scene.axial_mass, limit.head_on_mass
+    M, m_a, head_on = scene.ball.mass, scene.axial_mass, limit.reduced_mass
     # K = (1 + e)(c + 1/m_a)/(1/M + 1/m_a), c proportional to 1/M
     dc_dM = -c / M
     dK_dM = (1 + limit.e) * head_on * dc_dM + K * head_on / M**2

@@ -14,13 +14,13 @@ import numpy as np
 
 from cuefem.cue.materials import material
 from cuefem.design.evaluation import Evaluation, Failed, Response, evaluate
-from cuefem.design.ranges import Levels, Normal, Span, Value
-from cuefem.parameters.parameter import Path, paths, quantity_at, replaced, spelt, value_at
-from cuefem.quantity.display import one_line, spelt_out
+from cuefem.design.sampling import Levels, Normal, Span, Value
+from cuefem.parameters.parameter import Path, path_text, paths, quantity_at, value_at, with_values_at
+from cuefem.quantity.display import full_repr, one_line
 from cuefem.scene import Resolution, Scene
 
 
-class Sampled(Protocol):
+class DesignSample(Protocol):
     """Points in the unit cube, one a design, such as a `Sample`; different samples have different reprs."""
 
     @property
@@ -47,7 +47,7 @@ class Vary:
         Multiply the fields by the value, instead of setting them to it.
     shift : bool
         Add the value to the fields, instead of setting them to it.
-    taken_from : tuple of str
+    compensating_path : tuple of str
         Fields that decrease by the increase of the first path: a length that is compensated by the next segment's
         leaves the length of the cue unchanged.
     """
@@ -57,7 +57,7 @@ class Vary:
     name: str = ""
     factor: bool = False
     shift: bool = False
-    taken_from: tuple[str, ...] = ()
+    compensating_path: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.paths:
@@ -73,25 +73,25 @@ class Vary:
             self._check_field(base, path)
         return fields
 
-    def givers(self, base: Scene) -> tuple[Path, ...]:
-        """The fields of `taken_from`; ValueError if one is no number, or has another unit than the paths."""
-        fields = tuple(path for text in self.taken_from for path in paths(base, text))
+    def compensating_fields(self, base: Scene) -> tuple[Path, ...]:
+        """The fields of `compensating_path`; ValueError if one is no number, or has another unit than the paths."""
+        fields = tuple(path for text in self.compensating_path for path in paths(base, text))
         first = self.fields(base)[0]
         for path in fields:
             numbers = all(isinstance(value_at(base, each), float) for each in (path, first))
             if not numbers or quantity_at(base, path).unit != quantity_at(base, first).unit:  # type: ignore[union-attr]
-                raise ValueError(f"taken_from must name numbers of the unit of path; got {spelt(path)}")
+                raise ValueError(f"compensating_path must name numbers of the unit of path; got {path_text(path)}")
         return fields
 
     def _check_field(self, base: Scene, path: Path) -> None:
         quantity, values = quantity_at(base, path), self.range.ends
         moves = "factor must multiply" if self.factor else "shift must move" if self.shift else ""
         if moves and (quantity is None or value_at(base, path) is None):
-            raise ValueError(f"{moves} a number; got {spelt(path)}, which is none")
+            raise ValueError(f"{moves} a number; got {path_text(path)}, which is none")
         if quantity is None and not all(isinstance(value, str) for value in values):
-            raise ValueError(f"{spelt(path)} must be names of materials; got {values[0]!r}")
+            raise ValueError(f"{path_text(path)} must be names of materials; got {values[0]!r}")
         if quantity is not None and any(isinstance(value, str) for value in values):
-            raise ValueError(f"{spelt(path)} must be numbers in {quantity.bounds}; got {values[0]!r}")
+            raise ValueError(f"{path_text(path)} must be numbers in {quantity.bounds}; got {values[0]!r}")
 
     def unit(self, base: Scene) -> str:
         """SI unit of its values, "" for factors and names; ValueError if its fields have different units."""
@@ -147,7 +147,7 @@ class Study:
     base: Scene
     vary: tuple[Vary, ...]
     responses: tuple[Response, ...]
-    sample: Sampled | None = None
+    sample: DesignSample | None = None
     at: Resolution | None = None
 
     def __post_init__(self) -> None:
@@ -166,10 +166,10 @@ class Study:
         changed: set[tuple[Path, str]] = set()
         for vary in self.vary:
             vary.unit(self.base)
-            vary.givers(self.base)
+            vary.compensating_fields(self.base)
             for path in vary.fields(self.base):
                 if (path, vary.operation) in changed:
-                    raise ValueError(f"a field must vary once; got {spelt(path)} twice")
+                    raise ValueError(f"a field must vary once; got {path_text(path)} twice")
                 changed.add((path, vary.operation))
 
     @property
@@ -201,8 +201,8 @@ class Study:
         return tuple(vary.fields(self.base) for vary in self.vary)
 
     @cached_property
-    def _givers(self) -> tuple[tuple[Path, ...], ...]:
-        return tuple(vary.givers(self.base) for vary in self.vary)
+    def _compensating_fields(self) -> tuple[tuple[Path, ...], ...]:
+        return tuple(vary.compensating_fields(self.base) for vary in self.vary)
 
     def scene(self, values: tuple[Value, ...]) -> Scene:
         """The design with these values; ValueError if it is invalid, such as a bore wider than its shaft.
@@ -210,7 +210,7 @@ class Study:
         Order: materials, numbers, factors, shifts, and last the compensating fields.
         """
         named = {p: material(v) for i, v in enumerate(values) if isinstance(v, str) for p in self._fields[i]}
-        scene: Scene = replaced(self.base, named) if named else self.base
+        scene: Scene = with_values_at(self.base, named) if named else self.base
         numbers, shifts = dict[Path, Any](), list[tuple[Path, Any]]()
 
         def now(path: Path) -> Any:
@@ -223,10 +223,10 @@ class Study:
                     continue
                 before = [now(path) for path in fields]
                 numbers |= {p: vary.applied(value, old) for p, old in zip(fields, before, strict=True)}
-                shifts += [(path, numbers[fields[0]] - before[0]) for path in self._givers[i]]
+                shifts += [(path, numbers[fields[0]] - before[0]) for path in self._compensating_fields[i]]
         for path, gain in shifts:
             numbers[path] = now(path) - gain
-        return replaced(scene, numbers) if numbers else scene
+        return with_values_at(scene, numbers) if numbers else scene
 
     def evaluated(self, designs: Sequence[tuple[Value, ...]]) -> Evaluation:
         """The responses of designs with these values; nan and a reason for an invalid one."""
@@ -247,7 +247,7 @@ class Study:
         """Everything that its numbers depend on, for JSON."""
         return {
             "cuefem": version("cuefem"),
-            "scene": spelt_out(self.base),
+            "scene": full_repr(self.base),
             "vary": [repr(vary) for vary in self.vary],
             "responses": [response.name for response in self.responses],
             "sample": repr(self.sample),

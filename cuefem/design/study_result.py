@@ -11,7 +11,7 @@ import numpy as np
 
 from cuefem.cue import Array
 from cuefem.design.optimum import Optimum, Problem, optimum
-from cuefem.design.scatter import Drivers, Scatter, drivers_of
+from cuefem.design.scatter import Scatter, SobolIndices, sobol_indices_of
 from cuefem.design.study import Study, StudyDesign
 from cuefem.design.sweep import MemoryStore, Pool, Row, Store, sweep
 from cuefem.results.quantities import with_unit
@@ -31,7 +31,7 @@ class StudyResult:
         One row per design, in order; of an optimization only the best design.
     optimum : Optimum, optional
         Of a study with an objective: the best design and its active limits.
-    drivers : Drivers, optional
+    sobol_indices : SobolIndices, optional
         Of a study with tolerances: Sobol indices of each response.
 
     Attributes
@@ -56,12 +56,12 @@ class StudyResult:
     definition: Study | Scatter | Problem
     rows: tuple[Row, ...]
     optimum: Optimum | None = None
-    drivers: Drivers | None = None
+    sobol_indices: SobolIndices | None = None
 
     @property
     def kind(self) -> str:
         """ "sweep", "scatter" or "optimum"."""
-        return "optimum" if self.optimum else "scatter" if self.drivers else "sweep"
+        return "optimum" if self.optimum else "scatter" if self.sobol_indices else "sweep"
 
     @property
     def study(self) -> Study:
@@ -93,7 +93,7 @@ class StudyResult:
     @cached_property
     def best(self) -> dict[str, StudyDesign]:
         """The best design for each response with a preferred direction; if none has one, the lowest of each."""
-        if self.optimum or self.drivers:
+        if self.optimum or self.sobol_indices:
             return {self.study.responses[0].name: self.optimum} if self.optimum else {}
         ranked = [response for response in self.study.responses if response.result.better] or self.study.responses
         best = dict[str, StudyDesign]()
@@ -166,5 +166,5 @@ def compute_study(
     store = MemoryStore() if store is None else store
     sweep(designs, store, pool=pool, progress=progress)
     rows = tuple(store.rows())
-    drivers = drivers_of(definition, rows) if isinstance(definition, Scatter) else None
+    drivers = sobol_indices_of(definition, rows) if isinstance(definition, Scatter) else None
     return StudyResult(definition, rows, None, drivers)

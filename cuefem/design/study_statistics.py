@@ -11,9 +11,9 @@ from cuefem.cue import Array
 from cuefem.design.evaluation import Response
 from cuefem.design.study_result import StudyResult
 
-MOST_LEVELS = 24  # maximum number of values of a parameter that are separate groups
-RANGES = 12  # maximum number of groups, each a range, of a parameter with more values
-CLEAR = 0.2  # minimum rank correlation of a trend
+MAX_LEVELS = 24  # maximum number of values of a parameter that are separate groups
+MAX_GROUPS = 12  # maximum number of groups, each a range, of a parameter with more values
+MIN_TREND = 0.2  # minimum rank correlation of a trend
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class SweepStatistics:
     @cached_property
     def shares(self) -> Array:
         """Part of the variance of each response that each parameter explains alone, (parameters, responses)."""
-        return np.array([explained(column, self.results) for column in self.values])
+        return np.array([explained_variance(column, self.results) for column in self.values])
 
     @cached_property
     def trends(self) -> list[list[str]]:
@@ -85,15 +85,15 @@ def sweep_statistics(result: StudyResult) -> SweepStatistics | None:
     return SweepStatistics(names, units, result.study.responses, numbers, columns, results)
 
 
-def explained(column: np.ndarray, results: Array) -> Array:
+def explained_variance(column: np.ndarray, results: Array) -> Array:
     """Variance of the means over equal values, or over ranges of values, over the total variance, (responses,).
 
     For ranges it is corrected for the share expected by chance.
     """
     levels, group = np.unique(column, return_inverse=True)
-    chance = len(levels) > MOST_LEVELS and column.dtype.kind in "fi"
+    chance = len(levels) > MAX_LEVELS and column.dtype.kind in "fi"
     if chance:
-        count = max(2, min(RANGES, len(column) // 8))
+        count = max(2, min(MAX_GROUPS, len(column) // 8))
         edges = np.quantile(column, np.arange(1, count) / count)
         group = np.unique(np.searchsorted(edges, column, side="right"), return_inverse=True)[1]
     member = np.eye(group.max() + 1)[group]
@@ -111,4 +111,4 @@ def _rank_correlation(first: Array, other: Array) -> float:
 
 def _trend(column: np.ndarray, result: Array) -> str:
     correlation = _rank_correlation(column, result) if column.dtype.kind in "fi" else 0.0
-    return "rises" if correlation > CLEAR else "falls" if correlation < -CLEAR else ""
+    return "rises" if correlation > MIN_TREND else "falls" if correlation < -MIN_TREND else ""

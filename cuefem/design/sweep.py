@@ -16,14 +16,14 @@ from itertools import chain, count, islice
 from multiprocessing import get_context, parent_process, resource_tracker
 from typing import NamedTuple, ParamSpec, Protocol, TypeVar
 
-from cuefem.design.ranges import Value
+from cuefem.design.sampling import Value
 from cuefem.design.study import Study
 
 BLOCK = 16  # designs that are evaluated, and written, at a time
 ATTEMPTS = 3  # to open a broken pool again, without a block in between
-PATIENCE = 10.0  # s, without a Dask scheduler
-GLANCE = 1.0  # s, between checks of a scheduler while no task ends
-# Loggers that write to stderr when a scheduler is lost, for which `dask` raises a one-line error.
+SCHEDULER_TIMEOUT = 10.0  # s, without a Dask scheduler
+POLL_INTERVAL = 1.0  # s, between checks of a scheduler while no task ends
+# Loggers that write to stderr when a scheduler is lost, for which `dask_pool` raises a one-line error.
 LOGS = ("distributed", "distributed.client", "tornado.application")
 
 T = TypeVar("T")
@@ -72,7 +72,7 @@ class MemoryStore:
         return iter(sorted(self.stored, key=lambda row: row.design))
 
 
-def computed(study: Study, designs: dict[int, tuple[Value, ...]]) -> list[Row]:
+def compute_rows(study: Study, designs: dict[int, tuple[Value, ...]]) -> list[Row]:
     """The rows of designs, bit for bit independent of the other designs of the block."""
     evaluation = study.evaluated([*designs.values()])
     answers = zip(designs.items(), evaluation.values.tolist(), evaluation.reasons, strict=True)
@@ -105,7 +105,7 @@ def sweep(
     """
     designs = enumerate(study.designs())
     blocks = iter(lambda: dict(islice(designs, BLOCK)), {})
-    for rows in in_parallel(partial(computed, study), filter(None, map(store.missing, blocks)), pool):
+    for rows in in_parallel(partial(compute_rows, study), filter(None, map(store.missing, blocks)), pool):
         store.write(rows)
         progress(rows)
 
@@ -115,7 +115,7 @@ class Pool:
     """How to open an executor, again if it breaks, and how many tasks to submit ahead.
 
     open: its context manager cancels, on exit, the tasks that have not begun.
-    check: called about every `GLANCE` seconds while no task ends; raises if the workers are lost.
+    check: called about every `POLL_INTERVAL` seconds while no task ends; raises if the workers are lost.
     """
 
     open: Callable[[], AbstractContextManager[Executor]]
@@ -139,7 +139,7 @@ def in_parallel(work: Callable[[T], R], tasks: Iterable[T], pool: Pool | None) -
                         running[executor.submit(work, task)] = number
                     if not running:
                         return
-                    done, _ = wait_for(running, timeout=GLANCE, return_when=FIRST_COMPLETED)
+                    done, _ = wait_for(running, timeout=POLL_INTERVAL, return_when=FIRST_COMPLETED)
                     if not done:
                         pool.check()
                     for future in done:
@@ -152,7 +152,7 @@ def in_parallel(work: Callable[[T], R], tasks: Iterable[T], pool: Pool | None) -
     raise RuntimeError(f"worker processes ended {ATTEMPTS} times without a result: out of memory, or killed")
 
 
-def processes(number: int) -> Pool:
+def process_pool(number: int) -> Pool:
     """A pool of worker processes on this machine, which end with this process, even if it is killed.
 
     They are spawned: a fork would copy locks of the threads of this process.
@@ -201,19 +201,19 @@ def _follow() -> None:
 
 
 @contextmanager
-def pool_of(workers: int | None, address: str | None) -> Iterator[Pool | None]:
+def open_pool(workers: int | None, address: str | None) -> Iterator[Pool | None]:
     """Worker processes or a Dask cluster; None for this process; ValueError for both."""
     if workers and address:
         raise ValueError("workers and dask must not both be set: this machine, or a cluster")
     if address:
-        with dask(address) as pool:
+        with dask_pool(address) as pool:
             yield pool
     else:
-        yield processes(workers) if workers else None
+        yield process_pool(workers) if workers else None
 
 
 @contextmanager
-def dask(address: str) -> Iterator[Pool]:
+def dask_pool(address: str) -> Iterator[Pool]:
     """The workers of the Dask scheduler at an address; ValueError if the library or the scheduler is missing."""
     try:
         from distributed import Client
@@ -222,16 +222,16 @@ def dask(address: str) -> Iterator[Pool]:
             "a Dask cluster needs the library distributed: pip install '.[distributed]' in the clone"
         ) from None
     try:
-        client = Client(address, timeout=PATIENCE, set_as_default=False)
+        client = Client(address, timeout=SCHEDULER_TIMEOUT, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:
         raise ValueError(f"no Dask scheduler responds at {address!r}: {error}") from None
     lost = 0.0
 
     def check() -> None:
-        """RuntimeError if the scheduler has been lost for `PATIENCE` seconds."""
+        """RuntimeError if the scheduler has been lost for `SCHEDULER_TIMEOUT` seconds."""
         nonlocal lost
-        lost = 0.0 if client.status == "running" else lost + GLANCE
-        if lost >= PATIENCE:
+        lost = 0.0 if client.status == "running" else lost + POLL_INTERVAL
+        if lost >= SCHEDULER_TIMEOUT:
             raise RuntimeError(f"the Dask scheduler at {address!r} no longer responds")
 
     @contextmanager
@@ -249,6 +249,6 @@ def dask(address: str) -> Iterator[Pool]:
         workers = sum(client.nthreads().values())
         yield Pool(opened, 2 * max(workers, 1) + 1, check)
     finally:
-        client.close(timeout=GLANCE)
+        client.close(timeout=POLL_INTERVAL)
         for log, level in levels.items():
             log.setLevel(level)

@@ -21,15 +21,15 @@ from cuefem.cue import Array
 from cuefem.design.design_changes import design_changes
 from cuefem.design.sensitivity import sensitivity
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.io.ready import ready_cues
+from cuefem.io.reference_cues import reference_cues
 from cuefem.parameters.parts import main_material
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.comparison import comparison_record
 from cuefem.results.records import Record
-from cuefem.results.solved_design import TONES, SolvedDesign, coupled_curve, listed
+from cuefem.results.solved_design import MIN_SOLVED_MODES, SolvedDesign, coupled_curve, listed
 from cuefem.results.verdict import verdict_record
 from cuefem.scene import Outcome, Scene
-from cuefem.scene.solved_scene import Solved, default_modes
+from cuefem.scene.solved_scene import SolvedScene, default_mode_count
 
 TIME_LIMIT = 60.0  # s, time limit of a result; playing cues need less than a tenth
 CACHED_DESIGNS = 12  # designs whose results are cached, for undo and comparison
@@ -42,14 +42,14 @@ MASS_RANGE = 0.3  # m from the tip
 class SolvedStrike:
     """A scene's modes, and its strike without the time history."""
 
-    solved: Solved
+    solved: SolvedScene
     outcome: Outcome
 
 
 @lru_cache(CACHED_DESIGNS)
 def solved_strike(scene: Scene) -> SolvedStrike:
     """The coupled strike, sufficient for the first numbers."""
-    solved = Solved(scene)
+    solved = SolvedScene(scene)
     outcome = strike_modes(scene, solved.tip)
     return SolvedStrike(solved, replace(outcome, history=None))
 
@@ -67,11 +67,11 @@ def numbers(scene: Scene) -> dict[str, Any]:
     strike = solved_strike(scene)
     design = SolvedDesign(strike.solved, strike.outcome)
     masses = {f"end_mass_{name}": _end_mass(name, strike.solved) for name in DEFINITIONS}
-    frequencies = [design.frequency(mode) for mode in range(1, TONES + 1)]
+    frequencies = [design.frequency(mode) for mode in range(1, MIN_SOLVED_MODES + 1)]
     return first_numbers(scene) | listed(design) | masses | {"frequencies": frequencies}
 
 
-def _end_mass(name: str, solved: Solved) -> float | None:
+def _end_mass(name: str, solved: SolvedScene) -> float | None:
     try:
         return float(DEFINITIONS[name].of_solved(solved))
     except ValueError:
@@ -82,7 +82,7 @@ def _end_mass(name: str, solved: Solved) -> float | None:
 def verdict(scene: Scene) -> Record:
     """Squirt with its uncertainty, compared with the reference cues."""
     strike = solved_strike(scene)
-    return verdict_record(scene, strike.outcome, ready_cues(), solved=strike.solved)
+    return verdict_record(scene, strike.outcome, reference_cues(), solved=strike.solved)
 
 
 def with_stroke_of(scene: Scene, other: Scene) -> Scene:
@@ -106,7 +106,7 @@ def curve(scene: Scene) -> dict[str, Any]:
 def end_mass_distribution(scene: Scene) -> tuple[Array, Array]:
     """Positions along the cue without tip effects, m, and the increase of the end mass by a mass of 1 g there, g."""
     bare = replace(scene, effects=())
-    effect = sensitivity(bare, min(default_modes(bare), MAX_MASS_MODES))
+    effect = sensitivity(bare, min(default_mode_count(bare), MAX_MASS_MODES))
     near = effect.x <= MASS_RANGE
     return effect.x[near], effect.rhoA[near]
 

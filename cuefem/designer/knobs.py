@@ -12,11 +12,11 @@ from nicegui import ui
 from cuefem.cue import Cue, Segment
 from cuefem.cue.materials import LEATHERS, material_name, table_name
 from cuefem.designer.state import FAILURES, Design, Step, one_line
-from cuefem.io.fittings import fitted
-from cuefem.parameters.parameter import PARAMETERS, varied
-from cuefem.parameters.parts import Layout, bore_mouth, deepest_bore, halves, taper_position
+from cuefem.io.shaft_additions import with_additions
+from cuefem.parameters.parameter import PARAMETERS, with_parameters
+from cuefem.parameters.parts import Layout, bore_mouth, deepest_bore, split_segment, taper_position
 from cuefem.quantity.fields import Quantity
-from cuefem.quantity.units import parted, unit_of
+from cuefem.quantity.units import split_quantity, unit_of
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import GAMES, usual_scene, without_leather
 
@@ -79,7 +79,7 @@ KNOBS = {
     "offset": Knob("Stroke", "Tip offset b/R", Range("", 1.0, 0, 0.9, 0.01, -0.95, 0.95)),
     "ball_mass": Knob("Stroke", "Ball weight", Range("g", 1e3, 0, 0, 1, 1, 10_000)),
     "ball_diameter": Knob("Stroke", "Ball diameter", _mm(0, 0, 0.05, 1, 1000)),
-    "begins": Knob("", "Drawing begins at"),
+    "front": Knob("", "Front of the drawing"),
 }
 GROUPS = ("Shaft", "Tip", "Stroke")
 SI = {"mm": "m", "g": "kg", "ms": "s"}
@@ -115,7 +115,7 @@ def value(key: str, scene: Scene) -> Any:
         return E and next((n for n, known in LEATHERS.items() if known.E == E), f"E {E / 1e6:.4g} MPa")
     if key == "game":
         return next((name for name, game in GAMES.items() if game.ball == scene.ball), "another ball")
-    if key == "begins":
+    if key == "front":
         return None if PARAMETERS["tip_height"].value(scene) is None else FERRULE_BEGINS
     if key in ("ball_mass", "ball_diameter"):
         return scene.ball.mass if key == "ball_mass" else 2 * scene.ball.radius
@@ -134,7 +134,7 @@ def options(key: str, scene: Scene) -> list[str]:
         "bore": (NONE, DRILLED),
         "leather": (*LEATHERS,),
         "game": (*GAMES,),
-        "begins": (FERRULE_BEGINS, LEATHER_BEGINS),
+        "front": (FERRULE_BEGINS, LEATHER_BEGINS),
     }[key]
     own = value(key, scene)
     return [*offered] if own in offered or own is None else [own, *offered]
@@ -155,7 +155,7 @@ def _merged(cue: Cue) -> Cue:
         last = segments[-1]
         length = last.length + piece.length
         whole = replace(piece, length=length, tip_diameter=last.tip_diameter, tip_bore=last.tip_bore)
-        front, back = halves(whole, last.length / length)
+        front, back = split_segment(whole, last.length / length)
         ends = zip(_sizes(front) + _sizes(back), _sizes(last) + _sizes(piece), strict=True)
         alike = (last.material, last.core, last.kappa) == (piece.material, piece.core, piece.kappa)
         if alike and all(math.isclose(a, b, rel_tol=1e-9, abs_tol=1e-12) for a, b in ends):
@@ -174,25 +174,28 @@ def _with_value(scene: Scene, key: str, new: Any) -> Scene:
         return _with_ferrule(scene, new)
     if key == "bore":
         depth = min(NEW_DEPTH, deepest_bore(scene.shaft))
-        return varied(scene, {"bore depth": 0.0} if new == NONE else {"bore depth": depth, "bore width": NEW_BORE})
+        return with_parameters(
+            scene, {"bore depth": 0.0} if new == NONE else {"bore depth": depth, "bore width": NEW_BORE}
+        )
     if key == "game":
         return _with_game(scene, new)
-    if key == "begins":
+    if key == "front":
         height = f"leather {PARAMETERS['tip_height'].value(scene):.9g} m"
         return replace(
-            scene, cue=without_leather(fitted(scene.shaft, begins=height if new == LEATHER_BEGINS else "ferrule"))
+            scene,
+            cue=without_leather(with_additions(scene.shaft, front=height if new == LEATHER_BEGINS else "ferrule")),
         )
     if key == "ball_diameter":
-        return varied(scene, {"ball.radius": new / 2})
-    return varied(scene, {{"ball_mass": "ball.mass"}.get(key, key): new})
+        return with_parameters(scene, {"ball.radius": new / 2})
+    return with_parameters(scene, {{"ball_mass": "ball.mass"}.get(key, key): new})
 
 
 def _with_ferrule(scene: Scene, name: str) -> Scene:
     """The scene with a ferrule of a material, a new one on a tenon; or with wood instead of it."""
     layout = Layout.of(scene.shaft)
     if name == NONE or not layout.ferrule:
-        return fitted(scene, ferrule=name if name == NONE else f"{NEW_FERRULE} {name}")
-    return varied(scene, {"ferrule material": name})
+        return with_additions(scene, ferrule=name if name == NONE else f"{NEW_FERRULE} {name}")
+    return with_parameters(scene, {"ferrule material": name})
 
 
 def _with_game(scene: Scene, name: str) -> Scene:
@@ -232,7 +235,7 @@ def with_unit(key: str, text: str, last: str = "") -> str:
     unit = range_of(key).unit
     if not unit or not _UNITLESS.fullmatch(text.replace(",", ".").replace("−", "-")):
         return text
-    typed = parted(last.replace(",", "."))[1] or unit
+    typed = split_quantity(last.replace(",", "."))[1] or unit
     if unit == "mm" and "/" in text and unit_of(typed) != unit_of("in"):
         raise ValueError(f"{text.strip()} in or {text.strip()} {typed}?")
     return f"{text} {typed}"

@@ -29,19 +29,19 @@ from cuefem.designer.state import (
     read_design,
     reference_design,
 )
-from cuefem.io.assumed import tenon
-from cuefem.io.ready import PRESETS, SCALE
-from cuefem.io.toml_text import toml_text
-from cuefem.parameters.parameter import parameter, varied
+from cuefem.io.defaults_report import tenon_assumption
+from cuefem.io.reference_cues import PRESETS, REFERENCE_FILES
+from cuefem.io.toml_writer import toml_text
+from cuefem.parameters.parameter import parameter, with_parameters
 from cuefem.report.first_screen import Shown, drawings_markup, headline_markup, parts_line, scale_markup, tiles_markup
-from cuefem.report.glossary import definitions, explained
+from cuefem.report.glossary import definitions, with_term_buttons
+from cuefem.report.renderers import csv_text
 from cuefem.report.report_page import page as report_page
 from cuefem.report.strike_table import regime_warning
-from cuefem.report.table import csv_text
 from cuefem.report.templates import chart_script, page_style
-from cuefem.results.verdict import same_stroke
+from cuefem.results.verdict import with_cue
 from cuefem.scene import Scene
-from cuefem.solid.tip_cache import announcement
+from cuefem.solid.tip_cache import computing_message
 
 MAX_FILE = 5_000_000  # bytes
 KINDS = (".toml", ".csv", ".stl", ".ply", ".obj")
@@ -161,7 +161,7 @@ class Page:
     def _notes(self) -> list[str]:
         return [
             *self.step.design.notes,
-            *(f"{words} (change it in File)" for _, words in tenon(self.step.design.scene.shaft)),
+            *(f"{words} (change it in File)" for _, words in tenon_assumption(self.step.design.scene.shaft)),
         ]
 
     def _parts(self) -> dict[str, float]:
@@ -215,7 +215,9 @@ class Page:
     def _try(self, places: Mapping[str, Any]) -> None:
         design = self.step.design
         keys = {known.key for name in places if (known := parameter(name))}
-        self._attempt(lambda: self.push(Step(design.changed(varied(design.scene, places), keys, {}), self.step.other)))
+        self._attempt(
+            lambda: self.push(Step(design.changed(with_parameters(design.scene, places), keys, {}), self.step.other))
+        )
 
     def _applied(self, read: Design) -> None:
         design = self.step.design
@@ -304,7 +306,7 @@ class Page:
         return report_page(design.name, design.scene, notes=notes, other=beside)
 
     def _table(self) -> None:
-        made = panels.numbers_sheet(self.step, self.results)
+        made = panels.tabulate_numbers(self.step, self.results)
         if made is not None:
             ui.download.content("\ufeff" + csv_text(made.head, made.rows), f"{_stem(self.step.design.name)}.csv")
 
@@ -319,8 +321,8 @@ class Page:
             self.show()
         elif name == NOTHING:
             self.push(Step(step.design))
-        elif name in SCALE:
-            preset = next(preset for preset in PRESETS if preset.file == SCALE[name])
+        elif name in REFERENCE_FILES:
+            preset = next(preset for preset in PRESETS if preset.file == REFERENCE_FILES[name])
             self.push(Step(step.design, ComparedDesign("reference", replace(reference_design(preset), name=name))))
         else:
             kind = next(kind for kind, words in OPTIONS.items() if words == name)
@@ -351,7 +353,7 @@ class Page:
         for row in self.rows:
             row.show()
         chosen = _other_name(other)
-        offered = [NOTHING, *OPTIONS.values(), *SCALE, FILE]
+        offered = [NOTHING, *OPTIONS.values(), *REFERENCE_FILES, FILE]
         offered = offered if chosen in offered else [chosen, *offered]
         if (self.compare.options, self.compare.value) != (offered, chosen):
             self.compare.set_options(offered, value=chosen)
@@ -375,7 +377,7 @@ class Page:
             return
         warning = regime_warning(self.results.own["solved_strike"].outcome.regime) or ""
         difference = self.results.difference
-        self.headline.set_content(explained(headline_markup(own, other, difference, warning)))
+        self.headline.set_content(with_term_buttons(headline_markup(own, other, difference, warning)))
         self.scale.set_content(scale_markup(own, other))
         self.tiles.set_content(tiles_markup(own, other))
         count = len(self._assumed()) + len(self._notes())
@@ -395,7 +397,7 @@ class Page:
         assert self.step.other is not None
         mine, other = self.step.design.scene, self.step.other.design.scene
         return (
-            same_stroke(mine, other.shaft)
+            with_cue(mine, other.shaft)
             if self.step.other.kind == "reference"
             else computation.with_stroke_of(mine, other)
         )
@@ -406,9 +408,9 @@ class Page:
         elif self.tab == "Changes":
             self.changes.refresh()
         elif self.tab == "Numbers":
-            self.numbers.set_content(panels.sheets_markup([panels.numbers_sheet(self.step, self.results)]))
+            self.numbers.set_content(panels.tables_markup([panels.tabulate_numbers(self.step, self.results)]))
         elif self.tab == "Check":
-            self.check.set_content(panels.sheets_markup(panels.check_sheet(self.step, self.results)))
+            self.check.set_content(panels.tables_markup(panels.tabulate_check(self.step, self.results)))
 
     def _opened(self, event: Any) -> None:
         self.tab = str(event.value)
@@ -445,10 +447,10 @@ class Page:
         step, results = self.step, Results()
         other = None if step.other is None else self._compared_scene()
         scenes = [(step.design.scene, results.own), *([] if other is None else [(other, results.other)])]
-        waits = not all(scene.tip_at_hand for scene, _ in scenes)
+        waits = not all(scene.tip_is_cached for scene, _ in scenes)
         with self.client:
             if waits:
-                self.show_message(announcement())
+                self.show_message(computing_message())
             failures = list[str]()
             for name in (*FIRST, *OF_TAB.get(self.tab, ())):
                 for scene, side in scenes:

@@ -14,16 +14,16 @@ from cuefem.designer.computation import CURVE_OFFSETS
 from cuefem.designer.knobs import KNOBS, label, value, value_text
 from cuefem.designer.state import Design, Step
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.report.advice_table import advice_sheet
 from cuefem.report.charts import Axis, Curve, chart
-from cuefem.report.squirt import SHADED, offset_charts
+from cuefem.report.design_changes_table import tabulate_design_changes
+from cuefem.report.plausibility import plausibility_warnings
+from cuefem.report.squirt_table import SHADED, offset_charts
 from cuefem.report.strike_table import regime_warning
-from cuefem.report.templates import chart_markup, sheet_markup
-from cuefem.report.unusual import unusual
-from cuefem.report.verdict_table import difference_words
-from cuefem.results.quantities import NONE, RESULTS, signed
-from cuefem.results.records import Record, Sheet
-from cuefem.results.uncertainty import SHAFTS
+from cuefem.report.templates import chart_markup, table_markup
+from cuefem.report.verdict_table import difference_text
+from cuefem.results.quantities import DASH, RESULTS, format_change
+from cuefem.results.records import Record, Table
+from cuefem.results.uncertainty import SHAFT_ERROR
 from cuefem.scene import Scene
 
 HALF = 0.5 * (CURVE_OFFSETS[1] - CURVE_OFFSETS[0])
@@ -92,7 +92,7 @@ def changes_panel(step: Step, results: Results, attempt: Callable[[Mapping[str, 
     if record is None:
         ui.html(COMPUTING, sanitize=False)
         return
-    made = advice_sheet(record)
+    made = tabulate_design_changes(record)
     ui.label(f"Changes to {step.design.name}, each alone").classes("h2")
     around = ui.element("div").classes("scroll").props('tabindex=0 role=region aria-label="Design changes"')
     with around, ui.element("table").classes("changes"):
@@ -119,7 +119,7 @@ def _cell(kind: str, content: str, *, text: bool = False) -> None:
         cell.props("scope=col")
 
 
-def numbers_sheet(step: Step, results: Results) -> Sheet | None:
+def tabulate_numbers(step: Step, results: Results) -> Table | None:
     """Every number of the design and of the other one, and their differences."""
     if "numbers" not in results.own:
         return None
@@ -133,11 +133,11 @@ def numbers_sheet(step: Step, results: Results) -> Sheet | None:
     scenes = [design.scene for _, design in shown[: len(sides)]]
     for key, knob in KNOBS.items():
         cells = [_knob_text(key, scene) for scene in scenes]
-        if knob.group and any(cell != NONE for cell in cells):
+        if knob.group and any(cell != DASH for cell in cells):
             alike = ["same" if cells[0] == cells[-1] else ""] if len(cells) > 1 else []
             rows.append((label(key, scenes[0]), *cells, *alike))
     head = ("", *(name for name, _ in shown[: len(sides)]), *(["difference"] if len(sides) > 1 else []))
-    return Sheet(f"Numbers of {step.design.name}", head, tuple(rows))
+    return Table(f"Numbers of {step.design.name}", head, tuple(rows))
 
 
 def _names(numbers: Mapping[str, Any], offset: float) -> list[tuple[str, str]]:
@@ -153,17 +153,17 @@ def _number_row(name: str, values: Sequence[Any], words: str, difference: Record
         return (words, *cells)
     mine, other = values[:2]
     if name == "squirt" and difference:
-        return (words, *cells, difference_words(difference["difference"], difference["error"]))
-    part = NONE if not mine or not other else signed(100 * (mine / other - 1), 1, "%")
+        return (words, *cells, difference_text(difference["difference"], difference["error"]))
+    part = DASH if not mine or not other else format_change(100 * (mine / other - 1), 1, "%")
     return (words, *cells, part)
 
 
 def _knob_text(key: str, scene: Scene) -> str:
     own = value(key, scene)
-    return NONE if own is None else own if KNOBS[key].range is None else value_text(key, own, scene)
+    return DASH if own is None else own if KNOBS[key].range is None else value_text(key, own, scene)
 
 
-def check_sheet(step: Step, results: Results) -> list[Sheet]:
+def tabulate_check(step: Step, results: Results) -> list[Table]:
     """Checks of the design, and beam against solid once that is computed."""
     rows = []
     if "verdict" in results.own:
@@ -172,16 +172,16 @@ def check_sheet(step: Step, results: Results) -> list[Sheet]:
             ("calculation error of squirt", f"{100 * uncertainty['computation']:.1g} %"),
             ("model error, RMS of published strokes", f"{100 * uncertainty['model']:.0f} %"),
             ("wood and tip, not measured", f"{100 * uncertainty['inputs']:.0f} %"),
-            ("a change of squirt, relative uncertainty", f"{100 * SHAFTS:.0f} %"),
+            ("a change of squirt, relative uncertainty", f"{100 * SHAFT_ERROR:.0f} %"),
         ]
     if "solved_strike" in results.own:
         rows.append(("tip contact", regime_warning(results.own["solved_strike"].outcome.regime) or "no miscue"))
-    rows += [("unusual", line) for line in unusual(step.design.scene)] or [("unusual values", "none")]
-    first = Sheet(f"Check of {step.design.name}", ("check", "result"), tuple(rows), texts=(0, 1))
+    rows += [("unusual", line) for line in plausibility_warnings(step.design.scene)] or [("unusual values", "none")]
+    first = Table(f"Check of {step.design.name}", ("check", "result"), tuple(rows), texts=(0, 1))
     solid = results.own.get("solid")
-    return [first] if solid is None else [first, cuefem.report.model_error_sheet(solid)]
+    return [first] if solid is None else [first, cuefem.report.tabulate_model_error(solid)]
 
 
-def sheets_markup(sheets: Sequence[Sheet | None]) -> str:
+def tables_markup(sheets: Sequence[Table | None]) -> str:
     """Tables in the report's format."""
-    return "".join(COMPUTING if each is None else sheet_markup(each) for each in sheets)
+    return "".join(COMPUTING if each is None else table_markup(each) for each in sheets)

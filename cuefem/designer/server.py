@@ -15,7 +15,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from cuefem.designer.page import KINDS, MAX_FILE, Page, is_open
 from cuefem.designer.state import Design
 from cuefem.handbook.page import page as handbook
-from cuefem.quantity.slips import Unusual
+from cuefem.quantity.unit_checks import PlausibilityWarning
 
 HOST = "127.0.0.1"
 FORM_SIZE = 10_000  # bytes of a form beside its file
@@ -24,7 +24,7 @@ REJECTED = f"a file must be a {', '.join(KINDS[:-1])} or {KINDS[-1]} of at most 
 
 def serve(first: Design, *, port: int, show: bool, announce: Callable[[str], None]) -> None:
     """Serve the page on this computer only until stopped. show: open it in the browser."""
-    warnings.filterwarnings("ignore", category=Unusual)  # the page's Check lists what is unusual
+    warnings.filterwarnings("ignore", category=PlausibilityWarning)  # the page's Check lists what is unusual
 
     @ui.page("/")
     async def index() -> None:

@@ -12,11 +12,11 @@ from typing import Any, NamedTuple
 
 from cuefem.cue import Cue
 from cuefem.io import load_stroke
-from cuefem.io.assumed import assumed
-from cuefem.io.ready import Preset, opened, ready_cue
-from cuefem.io.shelf import folder
-from cuefem.parameters.parameter import varied
-from cuefem.quantity.units import number
+from cuefem.io.defaults_report import assumptions
+from cuefem.io.parts_catalogue import data_folder
+from cuefem.io.reference_cues import Preset, preset_scene, reference_cue_file
+from cuefem.parameters.parameter import with_parameters
+from cuefem.quantity.units import parse_number
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, usual_scene
 
@@ -116,23 +116,23 @@ class History:
         return True
 
 
-def design_of_file(path: Path, name: str, scene: Scene, options: Mapping[str, Any] = MappingProxyType({})) -> Design:
+def design_from_file(path: Path, name: str, scene: Scene, options: Mapping[str, Any] = MappingProxyType({})) -> Design:
     """A scene read from a file, and its assumptions.
 
     options: the values of options that supplement the file, by name. A shape without body_mass gets
     `DEFAULT_BUTT`.
     """
-    found = assumed(path, scene, options)
+    found = assumptions(path, scene, options)
     keys = {{"material": "shaft_material"}.get(key, key) for key, _ in found if key}
     if "body_mass" in keys:
-        scene = varied(scene, {"body mass": number(DEFAULT_BUTT, "kg")})
+        scene = with_parameters(scene, {"body mass": parse_number(DEFAULT_BUTT, "kg")})
     return Design(name[:MAX_NAME], scene, frozenset(keys), {}, tuple(words for key, words in found if not key))
 
 
 def reference_design(preset: Preset) -> Design:
     """A reference cue."""
-    path = folder() / preset.file
-    return design_of_file(path, path.stem, opened(preset))
+    path = data_folder() / preset.file
+    return design_from_file(path, path.stem, preset_scene(preset))
 
 
 def read_design(name: str, content: bytes, game: str = DEFAULT_GAME) -> Design:
@@ -146,7 +146,7 @@ def read_design(name: str, content: bytes, game: str = DEFAULT_GAME) -> Design:
             path.write_bytes(_with_reference_cue(name, content, Path(place)))
             thing = load_stroke(path)
             scene = usual_scene(thing, game) if isinstance(thing, Cue) else thing
-            return design_of_file(path, path.stem, scene)
+            return design_from_file(path, path.stem, scene)
         except (*FAILURES, RecursionError) as error:
             raise ValueError(one_line(error).replace(f"{place}/", "")) from None
 
@@ -155,7 +155,7 @@ def _with_reference_cue(name: str, content: bytes, beside: Path) -> bytes:
     """The content of a scene, with the reference cue that it names beside it."""
     text = content.decode(errors="replace") if name.lower().endswith(".toml") else ""
     match = _CUE.search(text)
-    found = ready_cue(match[1]) if match and "meshes/" in match[1] else None
+    found = reference_cue_file(match[1]) if match and "meshes/" in match[1] else None
     if match is None or found is None:
         return content
     file = f"reference_{Path(match[1]).name}"

@@ -4,19 +4,19 @@ Effects add terms and overwrite none, so their order does not matter. Each docst
 adds, when it matters, when it is wrong, the limit in which it vanishes, and its source.
 """
 
-from cuefem.effects.at_tip import PowerLawTip, RollingContact, TipDome, TipShear
-from cuefem.effects.base import (
+from cuefem.effects.cue_effects import AxialWaves, GeometricStiffness, Joint, PointMass, StructuralDamping, Support
+from cuefem.effects.effect import (
     CueEffect,
     Effect,
     TipEffect,
-    Usual,
+    TrialValues,
     acting_on_cue,
     check_effects,
     effect_kinds,
 )
 from cuefem.effects.leather_tip import LeatherTip, TipLayer
-from cuefem.effects.on_cue import AxialWaves, GeometricStiffness, Joint, PointMass, StructuralDamping, Support
-from cuefem.effects.stroke import Elevation, SecondHit
+from cuefem.effects.stroke_effects import Elevation, SecondHit
+from cuefem.effects.tip_effects import PowerLawTip, RollingContact, TipDome, TipShear
 
 __all__ = [
     "AxialWaves",
@@ -36,7 +36,7 @@ __all__ = [
     "TipEffect",
     "TipLayer",
     "TipShear",
-    "Usual",
+    "TrialValues",
     "acting_on_cue",
     "check_effects",
     "effect_kinds",

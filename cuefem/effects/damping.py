@@ -9,9 +9,9 @@ import numpy as np
 
 from cuefem.beam.modes import Modes
 from cuefem.beam.system import Points
-from cuefem.beam.tip import TipModes
+from cuefem.beam.tip_modes import TipModes
 from cuefem.cue import Array, Cue, Section, Segment, SegmentRows, section_properties
-from cuefem.effects.axial import RodModes
+from cuefem.effects.rod_modes import RodModes
 
 
 def damped(tip: TipModes, families: Sequence[tuple[Cue, Modes | RodModes]], *, loss: float | None) -> TipModes:

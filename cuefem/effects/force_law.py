@@ -31,7 +31,7 @@ class TipLaw:
     restitution: float
 
     @classmethod
-    def timed(cls, exponent: float, restitution: float, *, mass: float, speed: float, time: float) -> TipLaw:
+    def for_contact_time(cls, exponent: float, restitution: float, *, mass: float, speed: float, time: float) -> TipLaw:
         """The law whose central impact of a reduced mass, kg, at a speed, m/s, lasts ``time``, s.
 
         Loading to the depth D takes D/U times `loading_time`, unloading e times that; D^(n + 1) = (n + 1) m U^2/(2 k').
@@ -53,7 +53,7 @@ def loading_time(exponent: float) -> float:
     return float(math.sqrt(math.pi) * gamma(1 + power) / gamma(0.5 + power))
 
 
-def slowed(exponent: float, ratio: float) -> float:
+def contact_time_ratio(exponent: float, ratio: float) -> float:
     """Contact time at ``ratio`` times a speed, over that at the speed: ratio^((1 - n)/(1 + n))."""
     return float(ratio ** ((1 - exponent) / (1 + exponent)))
 
@@ -65,7 +65,7 @@ _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(48)
 _ANGLES = (1 + _GAUSS) * math.pi / 4
 
 
-class TooDeep(ValueError):
+class IndentationOutOfRange(ValueError):
     """A leather tip is indented beyond the range of its law."""
 
 
@@ -89,14 +89,14 @@ class LeatherLaw:
     """
 
     force_terms: tuple[float, ...]
-    give_terms: tuple[float, ...]
+    compliance_terms: tuple[float, ...]
     restitution: float
     depth_limit: float
 
     def __post_init__(self) -> None:
-        if len(self.force_terms) != len(self.give_terms):  # the kernel reads as many of one as of the other
-            counts = f"{len(self.force_terms)} and {len(self.give_terms)}"
-            raise ValueError(f"LeatherLaw takes as many force_terms as give_terms; got {counts}")
+        if len(self.force_terms) != len(self.compliance_terms):  # the kernel reads as many of one as of the other
+            counts = f"{len(self.force_terms)} and {len(self.compliance_terms)}"
+            raise ValueError(f"LeatherLaw takes as many force_terms as compliance_terms; got {counts}")
 
     @classmethod
     def fitted(cls, curves: Curves, restitution: float) -> LeatherLaw:
@@ -109,7 +109,7 @@ class LeatherLaw:
     def _terms(self) -> Array:
         """F and y^2/k_t in the powers of y, 1 and up: (2, powers)."""
         terms = np.zeros((2, 2 + len(self.force_terms)))
-        terms[0, 2:], terms[1, : len(self.give_terms)] = self.force_terms, self.give_terms
+        terms[0, 2:], terms[1, : len(self.compliance_terms)] = self.force_terms, self.compliance_terms
         return terms
 
     def _powers(self, depth: Array) -> Array:
@@ -140,7 +140,7 @@ class LeatherLaw:
         """Energy dissipated by loading to ``deepest``, m, and unloading, J."""
         return (1 - self.restitution**2) * float(self.work(deepest))
 
-    def blow(self, mass: Any, speed: Any) -> tuple[Any, Any]:
+    def central_impact(self, mass: Any, speed: Any) -> tuple[Any, Any]:
         """(maximum indentation, m, time to it, s) of a central impact of a reduced mass, kg, at a speed, m/s."""
         mass, speed = np.broadcast_arrays(np.asarray(mass, float), np.asarray(speed, float))
         energy = mass * speed**2 / 2
@@ -164,9 +164,9 @@ class LeatherLaw:
                 break
         return depth
 
-    def too_deep(self, depth: float) -> TooDeep:
+    def too_deep(self, depth: float) -> IndentationOutOfRange:
         """The error of an indentation beyond the law's range."""
-        return TooDeep(
+        return IndentationOutOfRange(
             f"the tip's leather is indented by {1e3 * depth:.3g} mm, beyond the range of its law "
             f"({1e3 * self.depth_limit:.3g} mm): raise LeatherTip.height or E, or lower Stroke.speed"
         )

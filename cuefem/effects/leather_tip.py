@@ -11,30 +11,30 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cuefem.cue import SOFT, Array, Cue
+from cuefem.cue import MAX_LEATHER_MODULUS, Array, Cue
 from cuefem.cue.materials import LEATHER_NAMES
-from cuefem.effects.base import CueEffect, Effect
-from cuefem.effects.contact_settings import ContactTerms, WholeTip
+from cuefem.effects.contact_terms import ContactTerms, TipModel
+from cuefem.effects.cue_effects import PointMass
+from cuefem.effects.effect import CueEffect, Effect
 from cuefem.effects.force_law import Curves, LeatherLaw
-from cuefem.effects.on_cue import PointMass
 from cuefem.quantity.fields import DIAMETER, OutOfBounds, Quantity, check_fields, check_kind
-from cuefem.solid.tip_cache import own_table, read
+from cuefem.solid.tip_cache import cached_table, read_table
 from cuefem.solid.tip_table import (
     CURVATURE,
     HEAD_ON_RADIUS,
-    WALL,
-    OwnTip,
+    MIN_SIDE,
     TipTable,
+    UntabulatedTip,
     compliance,
-    covers,
-    farthest,
     head_on,
-    of_tip,
+    is_tabulated,
+    max_place,
     rigid_patch_gain,
+    table_of_tip,
 )
 
 if TYPE_CHECKING:
-    from cuefem.beam.mesh import Terms
+    from cuefem.beam.mesh import PointTerms
 
 # Names of dome radii, m: half of the coin's diameter (United States Mint: 17.91 and 21.21 mm).
 DOMES = {"dime": 8.955e-3, "nickel": 10.605e-3, "flat": math.inf}
@@ -95,7 +95,7 @@ class LeatherTip(CueEffect):
         Poisson's ratio of the leather, in [0, 0.49].
     rho : float, default 1000.0
         Density of the leather, kg/m^3.
-    rolls : bool, default True
+    rolling : bool, default True
         Whether the contact rolls over ball and dome, which turns its normal; False for comparison.
     surface_restitution : float, default 1.0
         Square root of the part of the tangential work that the leather returns, in [0.1, 1]; along the normal this is
@@ -156,16 +156,16 @@ class LeatherTip(CueEffect):
     once: ClassVar[bool] = True
     at_tip: ClassVar[bool] = True
     part_of_cue: ClassVar[bool] = True
-    whole_tip: ClassVar[bool] = True
+    defines_tip: ClassVar[bool] = True
     excludes: ClassVar[tuple[str, ...]] = ("TipDome", "TipShear", "PowerLawTip", "RollingContact", "Elevation")
-    named: ClassVar[Mapping[str, Mapping[str, Mapping[str, float]]]] = {"leather": LEATHER_NAMES}
+    presets: ClassVar[Mapping[str, Mapping[str, Mapping[str, float]]]] = {"leather": LEATHER_NAMES}
 
-    height: Annotated[float, Quantity("m", "(0, inf)").usually(0.001, 0.015)]
-    dome_radius: Annotated[float, Quantity("m", "(0, inf]", tuple(DOMES.items())).usually(0.005, 0.02)]
-    E: Annotated[float, Quantity("Pa", "(0, inf)").usually(5e6, 1e9)]
+    height: Annotated[float, Quantity("m", "(0, inf)").with_typical_range(0.001, 0.015)]
+    dome_radius: Annotated[float, Quantity("m", "(0, inf]", tuple(DOMES.items())).with_typical_range(0.005, 0.02)]
+    E: Annotated[float, Quantity("Pa", "(0, inf)").with_typical_range(5e6, 1e9)]
     nu: Annotated[float, Quantity("", "[0, 0.49]")] = 0.4
-    rho: Annotated[float, Quantity("kg/m^3", "(0, inf)").usually(40.0, 2e4)] = 1000.0
-    rolls: bool = True
+    rho: Annotated[float, Quantity("kg/m^3", "(0, inf)").with_typical_range(40.0, 2e4)] = 1000.0
+    rolling: bool = True
     surface_restitution: Annotated[float, Quantity("", "[0.1, 1]")] = 1.0
     layers: tuple[TipLayer, ...] = ()
     diameter: Annotated[float | None, DIAMETER] = None
@@ -180,7 +180,7 @@ class LeatherTip(CueEffect):
             if not low <= layer.E <= high:
                 bounds = Quantity("Pa", f"[{low:.6g}, {high:.6g}]")
                 raise OutOfBounds(f"LeatherTip.layers[{i}].E", bounds, layer.E, ", 1e-3 to 1e4 of the leather's E")
-        check_kind("LeatherTip.rolls", self.rolls, bool)
+        check_kind("LeatherTip.rolling", self.rolling, bool)
 
     @property
     def positions(self) -> tuple[float, ...]:
@@ -192,7 +192,7 @@ class LeatherTip(CueEffect):
         if cue.leather:
             raise ValueError(
                 f"{name} must be the only leather: draw the cue without its first {1e3 * cue.leather:.4g} mm, which "
-                f"have an E below {SOFT / 1e9:g} GPa; got a {type(self).__name__} before them"
+                f"have an E below {MAX_LEATHER_MODULUS / 1e9:g} GPa; got a {type(self).__name__} before them"
             )
         end = cue.segments[0].tip_diameter
         if self.diameter is not None and self.diameter > end * (1 + 1e-9):
@@ -204,7 +204,7 @@ class LeatherTip(CueEffect):
         """Diameter of the tip, m, on a ferrule whose end has this one, m."""
         return end if self.diameter is None else self.diameter
 
-    def add_to(self, terms: Terms) -> None:
+    def add_to(self, terms: PointTerms) -> None:
         """Add the mass of the leather, lumped at the end of the ferrule."""
         terms.add(0.0, "mass", self.mass_on(terms.cue), 0.0)
 
@@ -216,16 +216,16 @@ class LeatherTip(CueEffect):
         """The mass of the leather."""
         return self.mass_on(cue)
 
-    def left_on(self, cue: Cue) -> tuple[Effect, ...]:
+    def without_tip(self, cue: Cue) -> tuple[Effect, ...]:
         """The mass of the leather remains."""
         return (PointMass(0.0, self.mass_on(cue)),)
 
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The complete tip model, and the rolling contact."""
         if terms.tip_diameter is not None:  # a lumped cue is refused in words
-            terms.give("tip", whole_tip(self, self.diameter_on(terms.tip_diameter)))
-        if self.rolls:
-            terms.give("turns", True)
+            terms.set_once("tip", tip_model(self, self.diameter_on(terms.tip_diameter)))
+        if self.rolling:
+            terms.set_once("turns", True)
 
     def check_diameter(self, diameter: float) -> None:
         """Check that the tip fits a shaft, and that its height is computable.
@@ -253,9 +253,9 @@ class LeatherTip(CueEffect):
                 f"dome; got {1e3 * self.height:.4g} mm"
             )
         below = math.fsum(layer.height for layer in self.layers)
-        if self.layers and below > self.height - deep - WALL * diameter:
+        if self.layers and below > self.height - deep - MIN_SIDE * diameter:
             raise ValueError(
-                f"the layers of a leather tip must be at most {1e3 * (self.height - deep - WALL * diameter):.4g} mm "
+                f"layers of a leather tip must be at most {1e3 * (self.height - deep - MIN_SIDE * diameter):.4g} mm "
                 f"high together, to end below its dome; got {1e3 * below:.4g} mm"
             )
         low, high = (part * diameter for part in HEIGHTS)
@@ -284,7 +284,7 @@ class LeatherTip(CueEffect):
         more = math.fsum((layer.rho - self.rho) * layer.height for layer in self.layers)  # instead of leather
         return self.rho * (math.pi * rim**2 * (self.height - deep) + dome) + math.pi * rim**2 * more
 
-    def lever(self, phi: float, diameter: float) -> tuple[float, float]:
+    def moment_arm(self, phi: float, diameter: float) -> tuple[float, float]:
         """Moment arm of the contact about the end of the ferrule.
 
         Parameters
@@ -399,20 +399,24 @@ class LeatherTip(CueEffect):
     def _table(self, diameter: float) -> TipTable:
         self.check_diameter(diameter)
         own = self._own(diameter)
-        return of_tip(self.height / diameter, self._curvature(diameter), self.nu) if own is None else own_table(own)
+        return (
+            table_of_tip(self.height / diameter, self._curvature(diameter), self.nu)
+            if own is None
+            else cached_table(own)
+        )
 
     def _curvature(self, diameter: float) -> float:
         return min(diameter / self.dome_radius, CURVATURE[1])
 
-    def _own(self, diameter: float) -> OwnTip | None:
+    def _own(self, diameter: float) -> UntabulatedTip | None:
         """The tip, lengths over its diameter, if the table does not cover it; else None."""
         height = self.height / diameter
-        if not self.layers and covers(height, self.nu):
+        if not self.layers and is_tabulated(height, self.nu):
             return None
         layers = tuple((layer.height / diameter, layer.E / self.E, layer.nu) for layer in self.layers)
-        return OwnTip(height, self._curvature(diameter), self.nu, layers)
+        return UntabulatedTip(height, self._curvature(diameter), self.nu, layers)
 
-    def at_hand(self, diameter: float) -> bool:
+    def is_cached(self, diameter: float) -> bool:
         """Whether the tip's elasticity is in the table or in the cache.
 
         Parameters
@@ -427,14 +431,14 @@ class LeatherTip(CueEffect):
         """
         self.check_diameter(diameter)
         own = self._own(diameter)
-        return own is None or read(own) is not None
+        return own is None or read_table(own) is not None
 
     def _place(self, diameter: float, offset: float) -> tuple[float, float]:
         """Distance of the patch's centre from the axis over the tip's radius, and by how much the contact's angle
         exceeds that of the dome there, rad."""
         Quantity("", "(-1, 1)").check("offset", offset)
         phi, curvature = math.asin(abs(offset)), diameter / self.dome_radius
-        place = min(2 * self._off_axis(phi) / diameter, farthest(min(curvature, CURVATURE[1])))
+        place = min(2 * self._off_axis(phi) / diameter, max_place(min(curvature, CURVATURE[1])))
         return place, phi - math.asin(min(curvature * place / 2, 1.0))
 
     def _compliance(self, diameter: float, offset: float, radii: Array) -> Array:
@@ -447,15 +451,15 @@ class LeatherTip(CueEffect):
         return matrices * np.array([[1, math.copysign(1, offset)], [math.copysign(1, offset), 1]])
 
 
-def whole_tip(tip: LeatherTip, diameter: float) -> WholeTip:
+def tip_model(tip: LeatherTip, diameter: float) -> TipModel:
     """Tip model of a leather tip of this diameter, m."""
     ends = tip.dome_radius > diameter / 2  # the dome ends at a rim
-    return WholeTip(
+    return TipModel(
         diameter=diameter,
         dome_radius=tip.dome_radius if math.isfinite(tip.dome_radius) else 0.0,
         rim=math.asin(diameter / 2 / tip.dome_radius) if ends else math.pi / 2,
         surface_restitution=tip.surface_restitution,
-        lever=lambda phi: tip.lever(phi, diameter),
+        moment_arm=lambda phi: tip.moment_arm(phi, diameter),
         law=lambda ball_radius, offset, restitution: _law(tip, diameter, ball_radius, offset, restitution),
     )
 

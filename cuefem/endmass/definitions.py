@@ -15,9 +15,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cuefem.beam.tip import TipModes
+from cuefem.beam.tip_modes import TipModes
+from cuefem.contact.impulse_solver import impact, impulse_inputs
 from cuefem.contact.outcome import slips_at_end
-from cuefem.contact.rigid_impact import impact, numbers_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, LumpedCue
 from cuefem.effects import Effect
@@ -25,14 +25,14 @@ from cuefem.endmass.impulse_response import ImpulseResponse
 from cuefem.endmass.sticking_contact import StickLimit
 from cuefem.quantity.fields import check_kind
 from cuefem.scene import Outcome, Resolution, Scene, Stroke
-from cuefem.scene.solved_scene import Solved
+from cuefem.scene.solved_scene import SolvedScene
 
 # The squirts of this many lumped cues are computed in one call, which costs as much as two single ones. The root is
 # then bracketed by two neighbours and refined in the same way.
-MANY = 500
-ZOOMS = 6  # rounds of refinement
-NEAR = 1e-5  # b/R in the limit of small offsets
-FLAT = 1e-12  # rad: squirts that differ by less are equal
+SEARCH_POINTS = 500
+SEARCH_ROUNDS = 6  # rounds of refinement
+SMALL_OFFSET = 1e-5  # b/R in the limit of small offsets
+SQUIRT_TOLERANCE = 1e-12  # rad: squirts that differ by less are equal
 
 
 def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -> float:
@@ -88,7 +88,7 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
     definition = definition_of(drive)
     if scene.lumped is not None:
         return scene.lumped.end_mass
-    return definition.of_solved(Solved(scene, at))
+    return definition.of_solved(SolvedScene(scene, at))
 
 
 def _couples(tip: TipModes, scene: Scene) -> bool:
@@ -139,7 +139,7 @@ def stick_at_offset(tip: TipModes, scene: Scene) -> float:
     b = abs(scene.stroke.offset)
     if _couples(tip, scene):
         here = replace(scene, stroke=Stroke(scene.stroke.speed, b))
-        return _with_squirt(sticking_squirt(tip, here), _gripping(here), "offset") if b else stick(tip, here)
+        return _with_squirt(sticking_squirt(tip, here), without_slip(here), "offset") if b else stick(tip, here)
     mass = float(_uncoupled(tip, scene, np.array([b]))[0])
     if math.isnan(mass):
         raise ValueError(f"end_mass drive 'offset': no end mass has the squirt of a sticking tip; got offset {b:g}")
@@ -162,7 +162,7 @@ def stick_at_offsets(tip: TipModes, scene: Scene, offsets: Sequence[float]) -> l
 
 def _uncoupled(tip: TipModes, scene: Scene, offsets: Array) -> Array:
     limit = limit_at(scene, offsets)
-    J = limit.transverse_impulse(_held(tip, StickLimit.of(scene)), scene.contact_time)
+    J = limit.transverse_impulse(_step_impulse(tip, StickLimit.of(scene)), scene.contact_time)
     rest = np.divide(limit.K - 1, J, out=np.full(len(J), np.nan), where=J > 0) - limit.c
     return np.divide(1.0, rest, out=np.full(len(J), np.nan), where=rest > 0)
 
@@ -178,8 +178,8 @@ def limit_at(scene: Scene, offset: Any) -> StickLimit:
     return replace(limit, K=limit.K * share, T=limit.T * np.sqrt((1 - offset**2) * share))
 
 
-def _held(tip: TipModes, limit: StickLimit) -> Array:
-    return ImpulseResponse.of(tip).held(limit.c, limit.T)
+def _step_impulse(tip: TipModes, limit: StickLimit) -> Array:
+    return ImpulseResponse.of(tip).velocity_step_impulse(limit.c, limit.T)
 
 
 def small_offset_slope(tip: TipModes, scene: Scene) -> float:
@@ -191,14 +191,14 @@ def small_offset_slope(tip: TipModes, scene: Scene) -> float:
     """
     if scene.lumped is None and not _couples(tip, scene):
         limit = StickLimit.of(scene)
-        return float(limit.slope(limit.transverse_impulse(_held(tip, limit), limit.T)))
-    small = _aside(scene)
+        return float(limit.slope(limit.transverse_impulse(_step_impulse(tip, limit), limit.T)))
+    small = _near_centre(scene)
     return sticking_squirt(tip, small) / float(small.stroke.angle)
 
 
-def _aside(scene: Scene) -> Scene:
+def _near_centre(scene: Scene) -> Scene:
     """The scene's stroke at an offset so small that squirt is proportional to it."""
-    return replace(scene, stroke=Stroke(scene.stroke.speed, NEAR))
+    return replace(scene, stroke=Stroke(scene.stroke.speed, SMALL_OFFSET))
 
 
 def sticking_squirt(tip: TipModes, scene: Scene) -> float:
@@ -206,11 +206,11 @@ def sticking_squirt(tip: TipModes, scene: Scene) -> float:
 
     Geometric stiffness is excluded, as for all end masses but "squirt": it would make them fall with the speed.
     """
-    p_t, p_n = strike_modes(_gripping(scene), tip.straight).impulse
+    p_t, p_n = strike_modes(without_slip(scene), tip.without_geometric_stiffness).impulse
     return float(abs(scene.stroke.angle) - math.atan2(p_t * np.sign(scene.stroke.offset), p_n))
 
 
-def _gripping(scene: Scene) -> Scene:
+def without_slip(scene: Scene) -> Scene:
     """The scene with infinite friction, without the table and double hits, which do not belong to an end mass."""
 
     def of_contact(effect: Effect) -> bool:
@@ -225,7 +225,7 @@ def squirt_equivalent(tip: TipModes, scene: Scene) -> float:
 
     ValueError if there is none: see `equivalent_end_mass`.
     """
-    off_centre = scene if scene.stroke.offset else _aside(scene)
+    off_centre = scene if scene.stroke.offset else _near_centre(scene)
     return equivalent_end_mass(strike_modes(off_centre, tip), off_centre)
 
 
@@ -243,26 +243,28 @@ def equivalent_end_mass(outcome: Outcome, scene: Scene) -> float:
 
 def _with_squirt(squirt: float, scene: Scene, drive: str) -> float:
     """The lumped end mass, kg, whose impulse-solver squirt is ``squirt``, rad, away from the side struck."""
-    side, numbers = np.sign(scene.stroke.offset), numbers_of(scene, LumpedCue(scene.axial_mass, scene.axial_mass))
+    side, numbers = np.sign(scene.stroke.offset), impulse_inputs(scene, LumpedCue(scene.axial_mass, scene.axial_mass))
 
     def excess(log_mass: Any) -> Any:
         return side * impact(numbers | {"end_mass": np.exp(log_mass)}).squirt - squirt
 
-    log_masses = np.linspace(math.log(1e-9), math.log(1e3), MANY)
+    log_masses = np.linspace(math.log(1e-9), math.log(1e3), SEARCH_POINTS)
     excesses = excess(log_masses)
-    if not excesses[0] < -FLAT < FLAT < excesses[-1]:  # for all light end masses the tip slides at one squirt
+    if (
+        not excesses[0] < -SQUIRT_TOLERANCE < SQUIRT_TOLERANCE < excesses[-1]
+    ):  # for all light end masses the tip slides at one squirt
         raise ValueError(
             f"end_mass drive {drive!r}: no single lumped end mass in [1e-9, 1e3] kg has the squirt {squirt:.6g} rad"
         )
-    return math.exp(zoomed_root(excess, log_masses))
+    return math.exp(bracketed_root(excess, log_masses))
 
 
-def zoomed_root(function: Callable[[Array], Array], places: Array) -> float:
-    """First root, to round-off error, of a function that is negative at the first of ``places``, (n,) ascending."""
-    for _ in range(ZOOMS):
-        above = int(np.argmax(function(places) >= 0))
-        places = np.linspace(places[above - 1], places[above], len(places))
-    return float(places[-1])
+def bracketed_root(function: Callable[[Array], Array], points: Array) -> float:
+    """First root, to round-off error, of a function that is negative at the first of ``points``, (n,) ascending."""
+    for _ in range(SEARCH_ROUNDS):
+        above = int(np.argmax(function(points) >= 0))
+        points = np.linspace(points[above - 1], points[above], len(points))
+    return float(points[-1])
 
 
 class Definition(NamedTuple):
@@ -270,7 +272,7 @@ class Definition(NamedTuple):
 
     name: the ``drive`` of `end_mass`. label: a short title. meaning: one sentence. value: the end mass of a vibrating
     cue, kg, from its tip modes and its scene. at_offset: whether it is the end mass at the scene's own offset.
-    counts_tip: whether it includes effects at the tip. smooth: whether the tip starts without a step of its velocity,
+    includes_tip: whether it includes effects at the tip. smooth: whether the tip starts without a step of its velocity,
     so that a strike's modes suffice.
     """
 
@@ -279,14 +281,14 @@ class Definition(NamedTuple):
     meaning: str
     value: Callable[[TipModes, Scene], Any]
     at_offset: bool = False
-    counts_tip: bool = False
+    includes_tip: bool = False
     smooth: bool = False
 
-    def tip_of(self, solved: Solved) -> TipModes:
+    def tip_of(self, solved: SolvedScene) -> TipModes:
         """The tip modes of a solved scene for this definition."""
-        return solved.tip_smooth if self.smooth else solved.tip_stuck
+        return solved.smooth_tip if self.smooth else solved.stick_tip
 
-    def of_solved(self, solved: Solved) -> Any:
+    def of_solved(self, solved: SolvedScene) -> Any:
         """The end mass of a solved scene, kg."""
         return self.of(self.tip_of(solved), solved.scene)
 
@@ -307,14 +309,14 @@ DEFINITIONS: dict[str, Definition] = {
             *("stick", "stick, small offsets"),
             "transverse inertia of the cue at the tip in the coupled strike, in the limit of small offsets",
             stick,
-            counts_tip=True,
+            includes_tip=True,
         ),
         Definition(
             *("offset", "stick"),
             "transverse inertia of the cue at the tip in a coupled strike at this offset whose tip never slips",
             stick_at_offset,
             at_offset=True,
-            counts_tip=True,
+            includes_tip=True,
         ),
         Definition(
             *("velocity", "velocity"),
@@ -333,7 +335,7 @@ DEFINITIONS: dict[str, Definition] = {
             "the end mass whose squirt in the impulse solver (restitution, friction) is that of the coupled strike",
             squirt_equivalent,
             at_offset=True,
-            counts_tip=True,
+            includes_tip=True,
         ),
     )
 }

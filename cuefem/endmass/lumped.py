@@ -8,13 +8,20 @@ from dataclasses import replace
 
 import numpy as np
 
-from cuefem.beam.tip import TipModes
-from cuefem.contact.rigid_impact import impact, numbers_of
+from cuefem.beam.tip_modes import TipModes
+from cuefem.contact.impulse_solver import impact, impulse_inputs
 from cuefem.cue import Array, LumpedCue
-from cuefem.endmass.definitions import MANY, _gripping, end_mass, stick_at_offset, sticking_squirt, zoomed_root
+from cuefem.endmass.definitions import (
+    SEARCH_POINTS,
+    bracketed_root,
+    end_mass,
+    stick_at_offset,
+    sticking_squirt,
+    without_slip,
+)
 from cuefem.quantity.fields import check_kind
-from cuefem.scene import Outcome, Resolution, Scene, several
-from cuefem.scene.solved_scene import Solved
+from cuefem.scene import Outcome, Resolution, Scene, as_scenes
+from cuefem.scene.solved_scene import SolvedScene
 
 
 def lump(scene: Scene, at: Resolution | None = None) -> LumpedCue:
@@ -49,14 +56,14 @@ def lump(scene: Scene, at: Resolution | None = None) -> LumpedCue:
     (4.4, 0.0)
     """
     check_kind("lump scene", scene, Scene)
-    return scene.lumped or lump_modes(scene, Solved(scene, at).tip_stuck)
+    return scene.lumped or lump_modes(scene, SolvedScene(scene, at).stick_tip)
 
 
 def lump_modes(scene: Scene, tip: TipModes) -> LumpedCue:
     """As `lump`, from the scene's tip modes."""
     if scene.lumped is not None:
         return scene.lumped
-    cue = LumpedCue(scene.axial_mass, stick_at_offset(tip, scene.bare))
+    cue = LumpedCue(scene.axial_mass, stick_at_offset(tip, scene.without_tip_effects))
     if not scene.at_tip or scene.stroke.offset == 0:
         return cue
     return replace(cue, coupling=_coupling(cue, scene, sticking_squirt(tip, scene)))
@@ -65,16 +72,16 @@ def lump_modes(scene: Scene, tip: TipModes) -> LumpedCue:
 def _coupling(cue: LumpedCue, scene: Scene, squirt: float) -> float:
     """The coupling, 1/kg, of a lumped cue without slip whose squirt is ``squirt``, rad."""
     most, side = (1 - 1e-9) / math.sqrt(cue.mass * cue.end_mass), np.sign(scene.stroke.offset)
-    numbers = numbers_of(_gripping(scene), cue)
+    numbers = impulse_inputs(without_slip(scene), cue)
 
     def excess(part: Array) -> Array:
         return np.asarray(side * impact(numbers | {"coupling": part * most}).squirt - squirt)
 
-    parts = np.linspace(-1.0, 1.0, MANY)
+    parts = np.linspace(-1.0, 1.0, SEARCH_POINTS)
     excesses = excess(parts)
     if not excesses[0] < 0 < excesses[-1]:
         raise ValueError(f"lump: no coupling of a lumped cue has the squirt {squirt:.6g} rad of a sticking tip")
-    return most * zoomed_root(excess, parts)
+    return most * bracketed_root(excess, parts)
 
 
 def impulse(scene: Scene | Sequence[Scene]) -> Outcome:
@@ -90,7 +97,7 @@ def impulse(scene: Scene | Sequence[Scene]) -> Outcome:
     -------
     Outcome
         Of a sequence of scenes every field is an array, (scenes,), vectors (scenes, 2). See
-        `cuefem.contact.rigid_impact.impact` for phases and energies.
+        `cuefem.contact.impulse_solver.impact` for phases and energies.
 
     Raises
     ------
@@ -112,7 +119,7 @@ def impulse(scene: Scene | Sequence[Scene]) -> Outcome:
     """
     if isinstance(scene, Scene):
         return impact(_lumped_numbers(scene))
-    each = [_lumped_numbers(one) for one in several("impulse scene", scene)]
+    each = [_lumped_numbers(one) for one in as_scenes("impulse scene", scene)]
     return impact({name: np.array([numbers[name] for numbers in each]) for name in each[0]})
 
 
@@ -120,4 +127,4 @@ def _lumped_numbers(scene: Scene) -> dict[str, float]:
     if scene.effects and scene.lumped is not None:
         names = ", ".join(type(effect).__name__ for effect in scene.effects)
         raise ValueError(f"impulse scene must have no effects on a LumpedCue (use strike for them); got {names}")
-    return numbers_of(scene, scene.lumped or LumpedCue(scene.axial_mass, end_mass(scene, "offset")))
+    return impulse_inputs(scene, scene.lumped or LumpedCue(scene.axial_mass, end_mass(scene, "offset")))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.endmass.impulse_response import means
+from cuefem.endmass.impulse_response import step_means
 from cuefem.scene import Scene
 
 
@@ -17,7 +17,7 @@ class StickLimit:
     """The limit b -> 0 of the coupled strike: the tip sticks to the ball from the first touch.
 
     The tip's velocity relative to the ball is K P(t) - 1 times its initial value, P the fraction of the normal impulse.
-    c = (1 + 1/nu)/M, 1/kg. K = (1 + e)(1 + 1/nu + 1/Q0)/(1 + 1/Q0). T: contact time, s. e: restitution. head_on_mass,
+    c = (1 + 1/nu)/M, 1/kg. K = (1 + e)(1 + 1/nu + 1/Q0)/(1 + 1/Q0). T: contact time, s. e: restitution. reduced_mass,
     kg. K and T may be arrays (offsets,). J, kg, is the transverse impulse over U phi.
     """
 
@@ -25,7 +25,7 @@ class StickLimit:
     K: Any
     e: Any
     T: Any
-    head_on_mass: Any
+    reduced_mass: Any
 
     @classmethod
     def of(cls, scene: Scene) -> StickLimit:
@@ -33,8 +33,8 @@ class StickLimit:
         M, nu = scene.ball.mass, scene.ball.inertia
         e, axial_mass = scene.tip.restitution, scene.axial_mass
         c = (1 + 1 / nu) / M
-        head_on_mass = 1 / (1 / M + 1 / axial_mass)
-        return cls(c, (1 + e) * head_on_mass * (c + 1 / axial_mass), e, scene.contact_time, head_on_mass)
+        reduced_mass = 1 / (1 / M + 1 / axial_mass)
+        return cls(c, (1 + e) * reduced_mass * (c + 1 / axial_mass), e, scene.contact_time, reduced_mass)
 
     def normal_impulse(self, t: Array) -> Array:
         """P at times t, s, (..., times): the impulse of the bilinear tip in a centre-ball impact over its total.
@@ -48,22 +48,22 @@ class StickLimit:
         return np.asarray(np.where(x < np.pi / 2, 1 - np.cos(x), 1 + e * unloaded) / (1 + e))
 
     def transverse_impulse(self, step_impulse: Array, until: float) -> Any:
-        """J, kg, from the impulse of a velocity step over 0..until s (`ImpulseResponse.held`).
+        """J, kg, from the impulse of a velocity step over 0..until s (`ImpulseResponse.velocity_step_impulse`).
 
         The contacts end by then.
         """
         u = until * np.linspace(0.0, 1.0, len(step_impulse))
         P = self.normal_impulse(np.asarray(self.T)[..., None] - u)
-        swung = -(np.diff(P, axis=-1) * means(step_impulse)).sum(axis=-1)
+        swung = -(np.diff(P, axis=-1) * step_means(step_impulse)).sum(axis=-1)
         return self.K * swung - np.interp(self.T, u, step_impulse)
 
     def impulse(self, slope: Any) -> Any:
         """J of a strike whose squirt is ``slope`` times phi, kg."""
-        return slope * (1 + self.e) * self.head_on_mass
+        return slope * (1 + self.e) * self.reduced_mass
 
     def slope(self, J: Any) -> Any:
         """Squirt over phi of a strike with the transverse impulse J."""
-        return J / ((1 + self.e) * self.head_on_mass)
+        return J / ((1 + self.e) * self.reduced_mass)
 
     def end_mass(self, J: Any) -> Any:
         """The end mass of a lumped cue with the transverse impulse J, kg: (K - 1)/J = 1/m + c.

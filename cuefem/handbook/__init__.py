@@ -79,7 +79,7 @@ def effect_lines(effect: type) -> dict[str, str]:
 
 def _every_effect() -> str:
     """The effects as markdown: a heading, the summary and the five lines of each."""
-    from cuefem.design.worth import effect_kinds  # loaded when used: the list of chapters needs no numpy
+    from cuefem.design.effect_sensitivity import effect_kinds  # loaded when used: the list of chapters needs no numpy
 
     parts = []
     for name, kind in effect_kinds().items():
@@ -92,13 +92,13 @@ def _every_effect() -> str:
 def _every_response() -> str:
     """The responses of studies as a table: name, display unit, definition, and which direction is better."""
     from cuefem.parameters.parameter import PARAMETERS
-    from cuefem.results.quantities import TRADE
-    from cuefem.results.solved_design import asked
+    from cuefem.results.quantities import DISPLAY_UNITS
+    from cuefem.results.solved_design import computable_results
 
     rows = [
-        f"| `{name}{ARGUMENTS[result.argument]}` | {TRADE.get(result.unit, (1, result.unit))[1]} "
+        f"| `{name}{ARGUMENTS[result.argument]}` | {DISPLAY_UNITS.get(result.unit, (1, result.unit))[1]} "
         f"| {result.about or result.label} | {result.better} |"
-        for name, result in asked().items()
+        for name, result in computable_results().items()
     ]
     names = ", ".join(f"`{known.name}`" for known in PARAMETERS.values())
     table = "\n".join(["| response | unit | what it is | better |", "|---|---|---|---|", *rows])

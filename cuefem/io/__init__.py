@@ -12,29 +12,28 @@ from typing import Any
 
 from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue
-from cuefem.io.errors import InputError, faults_of, os_error_text, shown
-from cuefem.io.fittings import fitted, with_shaft_material
-from cuefem.io.profile import DEFAULT_MATERIAL, SHAPE_EXTENSIONS, SPREADSHEET_EXTENSIONS, read_profile
-from cuefem.io.toml import cue_as_drawn, load_accuracy, load_cue, load_toml, named_material
+from cuefem.io.errors import InputError, as_input_error, os_error_text, quote
+from cuefem.io.lathe_profile import DEFAULT_MATERIAL, SHAPE_EXTENSIONS, SPREADSHEET_EXTENSIONS, read_profile
+from cuefem.io.shaft_additions import with_additions, with_shaft_material
+from cuefem.io.toml_reader import cue_as_drawn, load_accuracy, load_cue, load_toml, named_material
 from cuefem.parameters.parameter import with_fields
 from cuefem.parameters.parts import with_shaft_mass
 from cuefem.quantity.fields import Quantity
-from cuefem.quantity.units import number
 from cuefem.scene import Scene
 
 __all__ = [
     "DEFAULT_MATERIAL",
     "InputError",
     "check_new_folder",
-    "check_place",
+    "check_writable",
     "load",
     "load_accuracy",
     "load_stroke",
     "number",
     "save",
     "save_page",
+    "write_atomically",
     "write_folder_atomically",
-    "write_whole",
 ]
 
 MESH = ".vtu"
@@ -45,7 +44,7 @@ def load(
     *,
     material: str | None = None,
     length_unit: str | None = None,
-    begins: str | None = None,
+    front: str | None = None,
     ferrule: str | None = None,
     bore: str | None = None,
     body_mass: str | float | None = None,
@@ -60,7 +59,7 @@ def load(
         Name of the material of the shaft; for a lathe profile or a surface "hard maple" by default.
     length_unit : str, optional
         Unit of a surface's coordinates, "mm" by default, or of a lathe profile without units.
-    begins : str, optional
+    front : str, optional
         Front of a lathe profile or a surface: "ferrule" (default) or "leather 6 mm".
     ferrule : str, optional
         A ferrule at the front, such as "25 mm melamine", on a wooden tenon of 0.62 of its diameter. The tenon may be
@@ -93,7 +92,7 @@ def load(
     """
     path = Path(path)
     shape = path.suffix.lower() in SHAPE_EXTENSIONS
-    for name, value, whose in (("length_unit", length_unit, "units of length"), ("begins", begins, "leather")):
+    for name, value, whose in (("length_unit", length_unit, "units of length"), ("front", front, "leather")):
         if value is not None and not shape:
             files = f"{', '.join(SHAPE_EXTENSIONS[:-1])} and {SHAPE_EXTENSIONS[-1]}"
             raise InputError(path, "", f"has its own {whose}: {name} is only for {files} files; got {value!r}")
@@ -101,18 +100,18 @@ def load(
         loaded = load_toml(path, _load_cue)
     else:
         loaded = _load_cue(path, material if shape else None, length_unit)
-    additions = {"begins": begins, "ferrule": ferrule, "bore": bore}
+    additions = {"front": front, "ferrule": ferrule, "bore": bore}
     changed = any(additions.values()) or (material is not None and not shape)
     if (changed or body_mass is not None) and isinstance(loaded, Scene) and loaded.lumped:
         raise InputError(path, "cue", "is a lumped cue, without material, ferrule, bore or body mass")
     cue = loaded if isinstance(loaded, Cue) else loaded.cue
     weight = cue.shaft_mass if isinstance(cue, Cue) and cue.weighed else 0.0
-    with faults_of(path, ""):
+    with as_input_error(path, ""):
         if material is not None and not shape:
             named_material(material, path, "material")
             loaded = with_shaft_material(loaded, material)
         if changed:
-            loaded = fitted(loaded, **additions)
+            loaded = with_additions(loaded, **additions)
         if changed and weight:  # options on a shaft do not change its measured mass
             shaft: Any = loaded if isinstance(loaded, Cue) else loaded.cue
             weighed = with_shaft_mass(shaft, weight)
@@ -122,7 +121,7 @@ def load(
 
 def with_body_mass(thing: Any, path: Path, key: str, mass: str | float) -> Any:
     """The cue, scene or side strike with another mass behind the drawing: a text with its unit, or a number in kg."""
-    with faults_of(path, key):
+    with as_input_error(path, key):
         value = Quantity("kg", "[0, inf)").read(mass if isinstance(mass, str) else f"{mass!r} kg")
     return with_fields(thing, {("body_mass",) if isinstance(thing, Cue) else ("cue", "body_mass"): value})
 
@@ -135,7 +134,7 @@ def _load_cue(path: Path, material: str | None = None, length_unit: str | None =
         wood = named_material(material or DEFAULT_MATERIAL, path, "material")
         if ending == ".csv":
             return read_profile(path, wood, length_unit)[0]
-        from cuefem.io.surface import load_surface
+        from cuefem.io.surface_reader import load_surface
 
         return load_surface(path, wood, length_unit)
     if os.path.isdir(path):  # does not raise for a name that is too long, unlike Path.is_dir
@@ -185,17 +184,17 @@ def save(obj: Cue | Scene | SideStrike, path: str | os.PathLike[str]) -> None:
     See `load`.
     """
     if not isinstance(obj, Cue | Scene | SideStrike):
-        raise TypeError(f"save writes a Cue, a Scene or a SideStrike; got {shown(obj)}")
+        raise TypeError(f"save writes a Cue, a Scene or a SideStrike; got {quote(obj)}")
     path = Path(path)
     if path.suffix.lower() == ".toml":
-        from cuefem.io.toml_text import toml_text
+        from cuefem.io.toml_writer import toml_text
 
         content = toml_text(obj)
-        write_whole(path, lambda temporary: temporary.write_text(content, encoding="utf-8"))
+        write_atomically(path, lambda temporary: temporary.write_text(content, encoding="utf-8"))
     elif path.suffix.lower() == MESH and isinstance(obj, Cue):
         from cuefem.io.line_mesh import save_line_mesh
 
-        write_whole(path, lambda temporary: save_line_mesh(obj, temporary))
+        write_atomically(path, lambda temporary: save_line_mesh(obj, temporary))
     else:
         allowed = ".toml or .vtu" if isinstance(obj, Cue) else ".toml, for a scene"
         raise InputError(path, "", f"must end in {allowed}; got {path.suffix!r}")
@@ -206,10 +205,10 @@ def save_page(text: str, path: str | os.PathLike[str]) -> None:
     path = Path(path)
     if path.suffix != ".html":
         raise InputError(path, "", f"must end in .html; got {path.suffix!r}")
-    write_whole(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+    write_atomically(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
 
 
-def write_whole(path: Path, write: Callable[[Path], object]) -> None:
+def write_atomically(path: Path, write: Callable[[Path], object]) -> None:
     """Write a temporary file beside ``path`` and rename it to ``path``, so that no partial file appears."""
     goal = Path(os.path.realpath(path))
     temporary = goal.with_name(f".{goal.stem}.{os.getpid()}{goal.suffix}")
@@ -242,7 +241,7 @@ def write_folder_atomically(folder: Path, write: Callable[[Path], object]) -> No
         shutil.rmtree(temporary, ignore_errors=True)
 
 
-def check_place(path: Path) -> None:
+def check_writable(path: Path) -> None:
     """InputError if no file can be written at ``path``; called before the computation."""
     goal = Path(os.path.realpath(path))
     exists = goal.parent.is_dir()

@@ -10,9 +10,18 @@ from os import PathLike
 from pathlib import Path
 
 from cuefem.quantity.display import one_line, printable
-from cuefem.quantity.fields import nearest, shown
+from cuefem.quantity.fields import quote, suggestion
 
-__all__ = ["InputError", "check_size", "faults_of", "file_state", "nearest", "os_error_text", "read_bytes", "shown"]
+__all__ = [
+    "InputError",
+    "as_input_error",
+    "check_size",
+    "file_state",
+    "os_error_text",
+    "quote",
+    "read_bytes",
+    "suggestion",
+]
 
 
 LARGEST_TEXT = 1_000_000  # bytes: five times a file of the largest number of segments
@@ -31,7 +40,7 @@ class InputError(ValueError):
 
 
 @contextmanager
-def faults_of(path: str | PathLike[str], key: str) -> Iterator[None]:
+def as_input_error(path: str | PathLike[str], key: str) -> Iterator[None]:
     """Turn a TypeError or ValueError into an InputError with file and key; an InputError passes unchanged."""
     try:
         yield

@@ -9,7 +9,7 @@ import meshio
 import numpy as np
 
 from cuefem.cue import Cue, Material, Segment
-from cuefem.quantity.fields import quantities
+from cuefem.quantity.fields import quantity_fields
 
 
 def save_line_mesh(cue: Cue, path: Path) -> None:
@@ -20,7 +20,7 @@ def save_line_mesh(cue: Cue, path: Path) -> None:
         ("", Material, [segment.material for segment in cue.segments]),
         ("core_", Material, [segment.core for segment in cue.segments]),
     ):
-        for name, *_ in quantities(kind):
+        for name, *_ in quantity_fields(kind):
             data[f"{prefix}{name}"] = [np.array([getattr(thing, name, None) or 0.0 for thing in things])]
     data["body_mass"] = [np.full(len(cue.segments), cue.body_mass)]
     points = np.column_stack([cue.nodes, np.zeros((len(cue.nodes), 2))])

@@ -16,11 +16,11 @@ from typing import Any
 from scipy.io import wavfile
 
 from cuefem.io import InputError, load, write_folder_atomically
-from cuefem.io.assumed import assumptions_of_tables, in_words
-from cuefem.io.cells import read_text
-from cuefem.io.errors import faults_of, nearest, read_bytes, shown
-from cuefem.io.schema import build, key_path, mark_of, member_types, types_of, unknown_key
-from cuefem.io.toml import GAME_KEYS, game_of, missing_keys, read_tables, scene_from_tables
+from cuefem.io.csv_reader import read_text
+from cuefem.io.defaults_report import assumption_texts, assumptions_of_tables
+from cuefem.io.errors import as_input_error, quote, read_bytes, suggestion
+from cuefem.io.schema import build, field_types, key_path, member_types, quantity_of, unknown_key
+from cuefem.io.toml_reader import GAME_KEYS, game_of, missing_keys, read_tables, scene_from_tables
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Setup, Tone
 from cuefem.measurements.pendulum import Pendulum
@@ -57,7 +57,7 @@ def load_measured(folder: Path) -> tuple[MeasuredCue, list[str]]:
     measurements = (*_measurements(folder, path, tables), *_readings(folder, path, tables, scene))
     priors = tuple(_priors(path, tables, scene))
     name, source = (_text(path, tables, key) for key in ("name", "source"))
-    with faults_of(path, ""):
+    with as_input_error(path, ""):
         made = MeasuredCue(name or folder.resolve().name, scene, measurements, priors, source)
     return made, [*notes, *_examples(folder)]
 
@@ -87,7 +87,7 @@ def _examples(folder: Path) -> list[str]:
 def _text(path: Path, tables: dict[str, Any], key: str) -> str:
     value = tables.get(key, "")
     if not isinstance(value, str):
-        raise InputError(path, key, f"must be text; got {shown(value)}")
+        raise InputError(path, key, f"must be text; got {quote(value)}")
     return value
 
 
@@ -105,7 +105,7 @@ def _scene(folder: Path, path: Path, tables: dict[str, Any]) -> tuple[Scene, lis
     scene = scene_from_tables(parts, path, _drawing)
     if scene.lumped is not None:
         raise InputError(path, "cue", "must be a cue of segments; got a lumped cue")
-    return scene, in_words(assumptions_of_tables(parts, folder, scene, {"offset": None}))
+    return scene, assumption_texts(assumptions_of_tables(parts, folder, scene, {"offset": None}))
 
 
 def _drawing(path: Path) -> Any:
@@ -124,14 +124,14 @@ def _measurements(folder: Path, path: Path, tables: dict[str, Any]) -> Iterator[
     for other in sorted(folder.glob("*.csv")):
         if other.name not in DRAWINGS and other.stem not in MEASUREMENT_TYPES:
             names = ", ".join(f"{key}.csv" for key in MEASUREMENT_TYPES)
-            raise InputError(other, "", f"must be one of {names}{nearest(other.stem, MEASUREMENT_TYPES)}")
+            raise InputError(other, "", f"must be one of {names}{suggestion(other.stem, MEASUREMENT_TYPES)}")
 
 
 def _tables(path: Path, tables: dict[str, Any], key: str) -> list[dict[str, Any]]:
     """The tables [[key]]."""
     rows = tables.get(key, [])
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
-        raise InputError(path, key, f"must be tables, [[{key}]]; got {shown(rows)}")
+        raise InputError(path, key, f"must be tables, [[{key}]]; got {quote(rows)}")
     return rows
 
 
@@ -148,7 +148,7 @@ def _readings(folder: Path, path: Path, tables: dict[str, Any], scene: Scene) ->
     tones: list[Tone] = []
     for recording in _rows(path, tables, "recording", Recording):
         sound = folder / recording.file
-        with faults_of(sound, ""):
+        with as_input_error(sound, ""):
             samples, rate = _sound(sound)
             source = recording.source or recording.file
             tones += tones_in(samples, rate, Setup(scene).predictions.frequencies, source)
@@ -184,21 +184,21 @@ def _series(path: Path, kind: type) -> Iterator[Measurement]:
         if len(cells) != len(columns):
             raise InputError(path, f"line {line}", f"must have {len(columns)} cells, one per heading; got {len(cells)}")
         filled = [(*column, cell.strip()) for column, cell in zip(columns, cells, strict=True) if cell.strip()]
-        table = {name: _cell(cell, unit, types_of(kind)[name]) for name, unit, cell in filled}
+        table = {name: _cell(cell, unit, field_types(kind)[name]) for name, unit, cell in filled}
         yield build(kind, table, file=str(path), key=f"line {line}")
 
 
 def _column(path: Path, line: int, heading: str, kind: type) -> tuple[str, str]:
     """Key and unit of a heading such as "value [deg]"."""
-    match, hints = _COLUMN.fullmatch(heading), types_of(kind)
+    match, hints = _COLUMN.fullmatch(heading), field_types(kind)
     if not match or match[1] not in hints:
-        hint = nearest(heading.partition("[")[0].strip(), hints)
-        raise InputError(path, f"line {line}", f"must have headings {', '.join(hints)}; got {shown(heading)}{hint}")
-    name, unit, mark = match[1], match[2] or "", mark_of(hints[match[1]])
+        hint = suggestion(heading.partition("[")[0].strip(), hints)
+        raise InputError(path, f"line {line}", f"must have headings {', '.join(hints)}; got {quote(heading)}{hint}")
+    name, unit, mark = match[1], match[2] or "", quantity_of(hints[match[1]])
     wanted = mark.unit if mark else ""
     if bool(wanted) != bool(unit):
         example = f'"{name} [{wanted}]"' if wanted else f'"{name}"'
-        raise InputError(path, f"line {line}, {name}", f"must be the heading {example}; got {shown(heading)}")
+        raise InputError(path, f"line {line}, {name}", f"must be the heading {example}; got {quote(heading)}")
     return name, unit
 
 
@@ -207,7 +207,7 @@ def _cell(cell: str, unit: str, hint: Any) -> Any:
     if unit:
         return f"{cell} {unit}"
     with suppress(ValueError):
-        return int(cell) if int in member_types(hint) else float(cell) if mark_of(hint) else cell
+        return int(cell) if int in member_types(hint) else float(cell) if quantity_of(hint) else cell
     return cell
 
 
@@ -215,10 +215,10 @@ def _priors(path: Path, tables: dict[str, Any], scene: Scene) -> Iterator[Prior]
     """The [[prior]] tables; low and high have the unit of the parameter."""
     for i, row in enumerate(_tables(path, tables, "prior")):
         key, name, read = key_path("prior", i), row.get("name"), dict(row)
-        with faults_of(path, key):
+        with as_input_error(path, key):
             known = parameter(name) if isinstance(name, str) else None
             unit = known.quantity(scene).unit if known and {"low", "high"} & {*row} else ""
         for end in [end for end in ("low", "high") if known and end in row]:
-            with faults_of(path, key_path(key, end)):
+            with as_input_error(path, key_path(key, end)):
                 read[end] = Quantity(unit, "(0, inf)").read(row[end])
         yield build(Prior, read, file=str(path), key=key)

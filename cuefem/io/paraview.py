@@ -17,7 +17,7 @@ import meshio
 import numpy as np
 
 from cuefem.beam.modes import Modes, modes
-from cuefem.contact.trajectory import Motion, motion
+from cuefem.contact.motion_history import Motion, motion
 from cuefem.cue import Array, Cue
 from cuefem.io import check_new_folder, write_folder_atomically
 from cuefem.scene import Scene

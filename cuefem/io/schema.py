@@ -12,7 +12,7 @@ from typing import Any, TypeVar, cast
 from cuefem.cue import Material
 from cuefem.cue.materials import MATERIALS
 from cuefem.effects import Effect
-from cuefem.io.errors import InputError, faults_of, nearest, shown
+from cuefem.io.errors import InputError, as_input_error, quote, suggestion
 from cuefem.quantity.fields import OutOfBounds, Quantity
 
 Kind = TypeVar("Kind")
@@ -30,9 +30,9 @@ def _read(hint: Any, value: Any, file: str, key: str) -> Any:
     """A file's value converted to the type of a field."""
     if hint is Any:
         return value
-    quantity = mark_of(hint)
+    quantity = quantity_of(hint)
     if quantity is not None:
-        with faults_of(file, key):
+        with as_input_error(file, key):
             return quantity.read(value)
     for choice in member_types(hint):
         if typing.get_origin(choice) is tuple:
@@ -47,19 +47,19 @@ def _read(hint: Any, value: Any, file: str, key: str) -> Any:
             return value
         elif isinstance(value, dict) and is_dataclass(choice):
             return _made(cast(type, choice), value, file, key)
-    raise InputError(file, key, f"must be {_expected(hint)}; got {shown(value)}")
+    raise InputError(file, key, f"must be {_expected(hint)}; got {quote(value)}")
 
 
 def _made(kind: type, table: dict[str, Any], file: str, key: str) -> Any:
     """A dataclass from a table; unknown keys are reported first, since a missing key is often misspelt."""
-    values, known = {}, types_of(kind)
+    values, known = {}, field_types(kind)
     for name, value in table.items():
         if name not in known:
             raise unknown_key(name, value, keys_of(kind), file=file, key=key)
     for name, hint in known.items():
         if name in table:
             values[name] = _read(hint, table[name], file, key_path(key, name))
-        elif name in needed(kind):
+        elif name in required_keys(kind):
             raise InputError(file, key_path(key, name), f"must be given, {_expected(hint)}; got nothing")
     try:
         return kind(**values)
@@ -68,18 +68,18 @@ def _made(kind: type, table: dict[str, Any], file: str, key: str) -> Any:
 
 
 @functools.cache
-def types_of(kind: type) -> dict[str, Any]:
+def field_types(kind: type) -> dict[str, Any]:
     """The types of a dataclass's fields, with their annotations."""
     hints = typing.get_type_hints(kind, include_extras=True)
     return {field.name: hints[field.name] for field in fields(cast(Any, kind))}
 
 
-def needed(kind: type) -> list[str]:
+def required_keys(kind: type) -> list[str]:
     """The names of fields without a default."""
     return [f.name for f in fields(cast(Any, kind)) if f.default is MISSING and f.default_factory is MISSING]
 
 
-def mark_of(hint: Any) -> Quantity | None:
+def quantity_of(hint: Any) -> Quantity | None:
     """Unit and bounds of a numeric field; None for other fields."""
     return next((quantity for quantity in getattr(hint, "__metadata__", ()) if isinstance(quantity, Quantity)), None)
 
@@ -103,21 +103,21 @@ def key_path(key: str, part: str | int) -> str:
 def keys_of(kind: type) -> list[str]:
     """The valid keys of a table of ``kind``."""
     names = [field.name for field in fields(kind)] if is_dataclass(kind) else []
-    return [*names, *(kind.named if issubclass(kind, Effect) else ())]
+    return [*names, *(kind.presets if issubclass(kind, Effect) else ())]
 
 
 def unknown_key(name: str, value: Any, names: list[str], *, file: str, key: str) -> InputError:
     """The error for a key that is not among ``names``."""
     wanted = f"must be one of the keys {', '.join(names)}"
     half = name == "diameter" and "radius" in names
-    hint = "; did you mean 'radius', half of it?" if half else nearest(name, names)
-    return InputError(file, key_path(key, name), f"{wanted}; got {name} = {shown(value)}{hint}")
+    hint = "; did you mean 'radius', half of it?" if half else suggestion(name, names)
+    return InputError(file, key_path(key, name), f"{wanted}; got {name} = {quote(value)}{hint}")
 
 
 def _key_and_problem(error: TypeError | ValueError, path: str) -> tuple[str, str]:
     """Key path and problem of a dataclass's error "Segment.tip_bore must be ..."."""
     if isinstance(error, OutOfBounds):
-        return key_path(path, error.name.partition(".")[2]), error.in_words
+        return key_path(path, error.name.partition(".")[2]), error.file_message
     message = str(error)
     parts = re.fullmatch(r"[A-Z]\w*\.(\S+) (.*)", message, re.DOTALL)
     return (key_path(path, parts[1]), parts[2]) if parts else (path, message)
@@ -125,9 +125,9 @@ def _key_and_problem(error: TypeError | ValueError, path: str) -> tuple[str, str
 
 def _expected(hint: Any) -> str:
     """Description of the valid values of a field."""
-    quantity, first = mark_of(hint), member_types(hint)[0]
+    quantity, first = quantity_of(hint), member_types(hint)[0]
     if quantity is not None:
-        return quantity.wanted
+        return quantity.expected
     if is_dataclass(first):
         named = " or a name from `cuefem parts`" if first is Material else ""
         return f"a table with the keys {', '.join(keys_of(cast(type, first)))}{named}"
@@ -142,7 +142,7 @@ def _expected(hint: Any) -> str:
 
 def table(instance: Any) -> dict[str, Any]:
     """A dataclass as a table that `build` converts back exactly: texts with units, numbers, tables, lists."""
-    entries = {name: (getattr(instance, name), hint) for name, hint in types_of(cast(Any, type(instance))).items()}
+    entries = {name: (getattr(instance, name), hint) for name, hint in field_types(cast(Any, type(instance))).items()}
     return {
         name: _entry(f"{type(instance).__name__}.{name}", value, hint)
         for name, (value, hint) in entries.items()
@@ -153,9 +153,9 @@ def table(instance: Any) -> dict[str, Any]:
 
 
 def _entry(name: str, value: Any, hint: Any) -> Any:
-    quantity = mark_of(hint)
+    quantity = quantity_of(hint)
     if quantity is not None:
-        return quantity.written(value)
+        return quantity.as_text(value)
     if isinstance(value, Effect):
         return {"type": type(value).__name__, **table(value)}
     if isinstance(value, Material) and value in MATERIAL_NAMES:

@@ -21,9 +21,9 @@ from typing import Any, NamedTuple, Self
 
 from cuefem.design import Row, Study
 from cuefem.design.evaluation import Failed
-from cuefem.design.ranges import Value
+from cuefem.design.sampling import Value
 from cuefem.io.errors import InputError, file_state
-from cuefem.quantity.display import spelt_out
+from cuefem.quantity.display import full_repr
 
 APPLICATION_ID = 0x43754665  # SQLite's application_id in the header of the file
 LOCK_TIMEOUT = 60.0  # s, to wait for another study that writes to the file
@@ -99,7 +99,7 @@ class SqliteStore:
     """
 
     def __init__(self, path: str | PathLike[str], study: Study, name: str = "") -> None:
-        if " at 0x" in spelt_out(study.base):  # a memory address, which does not identify its content
+        if " at 0x" in full_repr(study.base):  # a memory address, which does not identify its content
             raise InputError(path, "", "cannot store designs of a scene with a function")
         self.path, self.study, self.done, self.computed = Path(path), study, 0, 0
         self._names, self._scenes = [response.name for response in study.responses], dict[int, str]()
@@ -135,7 +135,7 @@ class SqliteStore:
         left, known = {design: values for design, values in designs.items() if design not in there}, list[Row]()
         for design, values in [*left.items()]:
             try:
-                scene = spelt_out(self.study.scene(values))
+                scene = full_repr(self.study.scene(values))
             except Failed:  # the computation reports the reason
                 continue
             self._scenes[design] = digest(code_digest(), scene, repr(self.study.at))

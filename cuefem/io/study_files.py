@@ -16,14 +16,14 @@ from cuefem.design import Levels, Normal, Response, Sample, Span, Study, Vary
 from cuefem.design.optimum import Limit, Problem
 from cuefem.design.scatter import Scatter
 from cuefem.design.study_result import StudyResult, compute_study
-from cuefem.design.sweep import pool_of
+from cuefem.design.sweep import open_pool
 from cuefem.io import load_stroke, replaced_segments
-from cuefem.io.assumed import assumed, in_words
-from cuefem.io.errors import InputError, faults_of, file_state, shown
-from cuefem.io.profile import SHAPE_EXTENSIONS
+from cuefem.io.defaults_report import assumption_texts, assumptions
+from cuefem.io.errors import InputError, as_input_error, file_state, quote
+from cuefem.io.lathe_profile import SHAPE_EXTENSIONS
 from cuefem.io.schema import build, key_path
 from cuefem.io.store import SqliteStore
-from cuefem.io.toml import game_of, named_material, read_tables
+from cuefem.io.toml_reader import game_of, named_material, read_tables
 from cuefem.parameters.parameter import paths, quantity_at
 from cuefem.quantity.fields import Quantity
 from cuefem.scene import Resolution, Scene, Stroke
@@ -50,11 +50,11 @@ class VaryTable:
     spacing: str = "linear"
     factor: bool = False
     shift: bool = False
-    taken_from: Texts = ()
+    compensating_path: Texts = ()
 
     def __post_init__(self) -> None:
         if self.spacing not in ("linear", "logarithmic"):
-            raise ValueError(f"VaryTable.spacing must be linear or logarithmic; got {shown(self.spacing)}")
+            raise ValueError(f"VaryTable.spacing must be linear or logarithmic; got {quote(self.spacing)}")
 
 
 @dataclass(frozen=True)
@@ -125,13 +125,13 @@ def load_study(path: str | PathLike[str]) -> Study | Scatter | Problem:
     if tables.objective is not None:
         return _problem(tables, tables.objective, base, vary, path)
     responses = tuple(_response(text, path, key_path("responses", i)) for i, text in enumerate(tables.responses))
-    with faults_of(path, ""):
+    with as_input_error(path, ""):
         study = Study(base, vary, responses, tables.sample, tables.resolution)
     if tables.tolerances is None:
         return study
     tolerances = tables.tolerances
     correlations = _correlations(tolerances.correlations, path)
-    with faults_of(path, "tolerances"):
+    with as_input_error(path, "tolerances"):
         return Scatter(study, correlations, tolerances.groups, tolerances.count, tolerances.seed)
 
 
@@ -190,7 +190,7 @@ def study(
         return compute_study(problem)
     designs = problem.designs if isinstance(problem, Scatter) else problem
     with ExitStack() as opened:
-        pool = opened.enter_context(pool_of(workers, dask))
+        pool = opened.enter_context(open_pool(workers, dask))
         stored = opened.enter_context(SqliteStore(store, designs)) if store else None
         return compute_study(problem, store=stored, pool=pool)
 
@@ -199,8 +199,8 @@ def _problem(tables: StudyTable, objective: ObjectiveTable, base: Scene, vary: t
     aim = "maximize" if objective.minimize is None else "minimize"
     response = _response(getattr(objective, aim), path, key_path("objective", aim))
     limits = tuple(_limit(table, path, key_path("limit", i)) for i, table in enumerate(tables.limit))
-    with faults_of(path, ""):
-        return Problem(base, vary, response, limits, tables.resolution, largest=aim == "maximize")
+    with as_input_error(path, ""):
+        return Problem(base, vary, response, limits, tables.resolution, maximize=aim == "maximize")
 
 
 def _limit(tables: LimitTable, path: Path, key: str) -> Limit:
@@ -209,7 +209,7 @@ def _limit(tables: LimitTable, path: Path, key: str) -> Limit:
     bounds = {
         side: _number(value, unit, path, key_path(key, side)) for side, value in sides.items() if value is not None
     }
-    with faults_of(path, key):
+    with as_input_error(path, key):
         return Limit(response, **bounds)
 
 
@@ -223,7 +223,7 @@ def _correlations(listed: tuple[Any, ...], path: Path) -> dict[tuple[str, str], 
                     raise InputError(path, key, f"must be listed once; got {one} and {other} twice")
                 correlations[one, other] = float(r)
             case _:
-                raise InputError(path, key, f"must be [name, name, number]; got {shown(entry)}")
+                raise InputError(path, key, f"must be [name, name, number]; got {quote(entry)}")
     return correlations
 
 
@@ -242,11 +242,11 @@ def _study_tables(path: Path) -> dict[str, Any]:
 def _base(tables: StudyTable, path: Path) -> Scene:
     base, game = load_stroke(path.parent / tables.scene), _game(tables, path)
     if not isinstance(base, Scene):
-        with faults_of(path, "game"):
+        with as_input_error(path, "game"):
             return Scene(base, stroke=Stroke(offset=OFFSET)) if game == KIM else usual_scene(base, game)
     if tables.game is not None:
         problem = f"must be left out: {tables.scene} is a scene, which has its own ball, tip and stroke"
-        raise InputError(path, "game", f"{problem}; got {shown(game)}")
+        raise InputError(path, "game", f"{problem}; got {quote(game)}")
     return base
 
 
@@ -254,14 +254,16 @@ def _game(tables: StudyTable, path: Path) -> str:
     return game_of({} if tables.game is None else {"game": tables.game}, path)
 
 
-def assumed_base(path: Path, base: Scene) -> list[str]:
+def base_assumptions(path: Path, base: Scene) -> list[str]:
     """Texts of the assumptions for the base file of a study."""
     tables = read_tables(path)
-    return in_words(assumed(path.parent / tables["scene"], base, {k: tables[k] for k in ("game",) if k in tables}))
+    return assumption_texts(
+        assumptions(path.parent / tables["scene"], base, {k: tables[k] for k in ("game",) if k in tables})
+    )
 
 
 def _response(text: str, path: Path, key: str) -> Response:
-    with faults_of(path, key):
+    with as_input_error(path, key):
         return Response.of(text)
 
 
@@ -295,17 +297,17 @@ def _in_scene(text: str, base: Scene, replaced: int, path: Path, key: str) -> st
 
 def _vary(tables: VaryTable, base: Scene, replaced: int, path: Path, i: int, grid: bool) -> Vary:
     key = key_path("vary", i)
-    fields, givers = (
+    fields, compensating_fields = (
         tuple(_in_scene(text, base, replaced, path, key_path(key, name)) for text in _listed(texts))
-        for name, texts in (("path", tables.path), ("taken_from", tables.taken_from))
+        for name, texts in (("path", tables.path), ("compensating_path", tables.compensating_path))
     )
     quantity = _quantity(fields, base, tables, path, key_path(key, "path"))
     drawn = _range(tables, quantity, path, key, grid)
     name = tables.name or ", ".join(_listed(tables.path))
-    with faults_of(path, key):
-        made = Vary(fields, drawn, name, tables.factor, tables.shift, givers)
-    for name, check in (("path", made.unit), ("taken_from", made.givers)):
-        with faults_of(path, key_path(key, name)):
+    with as_input_error(path, key):
+        made = Vary(fields, drawn, name, tables.factor, tables.shift, compensating_fields)
+    for name, check in (("path", made.unit), ("compensating_path", made.compensating_fields)):
+        with as_input_error(path, key_path(key, name)):
             check(base)
     return made
 
@@ -316,7 +318,7 @@ def _listed(texts: Texts) -> tuple[str, ...]:
 
 def _quantity(texts: tuple[str, ...], base: Scene, tables: VaryTable, path: Path, key: str) -> Quantity | None:
     """Unit and bounds of the values; None for materials."""
-    with faults_of(path, key):
+    with as_input_error(path, key):
         field = next((place for text in texts for place in paths(base, text)), None)
         if field is None:
             raise ValueError("must name a field; got none")
@@ -337,7 +339,7 @@ def _range(tables: VaryTable, quantity: Quantity | None, path: Path, key: str, g
         levels = tuple(
             _level(v, quantity, path, key_path(key_path(key, "values"), i)) for i, v in enumerate(tables.values)
         )
-        with faults_of(path, key_path(key, "values")):
+        with as_input_error(path, key_path(key, "values")):
             return Levels(levels)
     normal, logarithmic = tables.low is None and tables.high is None, tables.spacing == "logarithmic"
     if quantity is None:
@@ -354,14 +356,14 @@ def _range(tables: VaryTable, quantity: Quantity | None, path: Path, key: str, g
     deviation = Quantity("" if logarithmic else quantity.unit, "(0, inf)")
     marks = zip(present[0], (quantity, deviation if normal else quantity), strict=True)
     first, last = (_number(getattr(tables, name), mark, path, key_path(key, name)) for name, mark in marks)
-    with faults_of(path, key):
+    with as_input_error(path, key):
         if normal:
             return Normal(first, last, logarithmic)
         return Span(first, last, 1 if tables.count is None else tables.count, logarithmic)
 
 
 def _number(value: Any, quantity: Quantity, path: Path, key: str) -> float:
-    with faults_of(path, key):
+    with as_input_error(path, key):
         return quantity.read(value)
 
 
@@ -369,6 +371,6 @@ def _level(value: Any, quantity: Quantity | None, path: Path, key: str) -> float
     if quantity is not None:
         return _number(value, quantity, path, key)
     if not isinstance(value, str):
-        raise InputError(path, key, f"must be the name of a material (see `cuefem parts`); got {shown(value)}")
+        raise InputError(path, key, f"must be the name of a material (see `cuefem parts`); got {quote(value)}")
     named_material(value, path, key)
     return value

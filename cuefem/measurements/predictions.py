@@ -15,7 +15,7 @@ from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, Cue
 from cuefem.effects import Effect, PointMass, Support
 from cuefem.scene import Outcome, Scene, Stroke
-from cuefem.scene.solved_scene import Solved
+from cuefem.scene.solved_scene import SolvedScene
 
 N_FREQUENCIES = 8  # natural frequencies that are solved together
 STATIC_MODES = 8  # modes that the mesh of a static load resolves: error 1e-8
@@ -26,7 +26,7 @@ class Predictions:
     """Computed values of the measurements on a scene's cue."""
 
     scene: Scene
-    _solved: dict[tuple[Effect, ...], Solved] = field(default_factory=dict, init=False, repr=False)
+    _solved: dict[tuple[Effect, ...], SolvedScene] = field(default_factory=dict, init=False, repr=False)
     _outcomes: dict[Scene, Outcome] = field(default_factory=dict, init=False, repr=False)
 
     @property
@@ -80,7 +80,7 @@ class Predictions:
 
     def end_mass(self, striker: Striker, position: float) -> float:
         """Effective transverse mass, kg, of the freely suspended shaft; position: m from the end of the tip."""
-        effects = tuple(effect for effect in self.scene.bare.cue_effects if effect.part_of_cue)
+        effects = tuple(effect for effect in self.scene.without_tip_effects.cue_effects if effect.part_of_cue)
         at = self.drawing_position(position, "end_mass position")
         return side_strike(SideStrike(self.scene.shaft, striker, at, effects=effects)).effective_mass
 
@@ -106,7 +106,7 @@ class Predictions:
             mass, position = added_mass
             at = self.drawing_position(position, "added_mass position")
             scene = replace(scene, effects=(*scene.effects, PointMass(at, mass)))
-        self._solved.setdefault(scene.effects, Solved(scene))
+        self._solved.setdefault(scene.effects, SolvedScene(scene))
         return scene
 
 

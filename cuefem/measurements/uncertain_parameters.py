@@ -14,7 +14,7 @@ from typing import Annotated, Any
 
 from cuefem.cue import Material
 from cuefem.measurements.measurement_types import EndMass, Measurement, PivotLength, Setup, Squirt
-from cuefem.parameters.parameter import PARAMETERS, Path, parameter, replaced
+from cuefem.parameters.parameter import PARAMETERS, Path, parameter, with_values_at
 from cuefem.quantity.fields import Quantity, check_fields
 from cuefem.results.uncertainty import model_error
 from cuefem.scene import Scene
@@ -137,7 +137,7 @@ def _prior(prior: Prior | None, usual: float, spread: float) -> tuple[float, flo
 
 
 def _on_scene(path: Path) -> Callable[[Setup, float], Setup]:
-    return lambda setup, value: setup._replace(scene=replaced(setup.scene, {path: value}))
+    return lambda setup, value: setup._replace(scene=with_values_at(setup.scene, {path: value}))
 
 
 def _zero(name: str) -> Callable[[Setup, float], Setup]:

@@ -17,7 +17,7 @@ from functools import cache
 from typing import Any, get_args, get_type_hints
 
 from cuefem.cue import Cue, LumpedCue, Material
-from cuefem.cue.materials import LEATHER_OF, LEATHERS, MATERIALS, WOODS, leather_restitution, table_name
+from cuefem.cue.materials import LEATHER_BY_NAME, LEATHERS, MATERIALS, WOODS, leather_restitution, table_name
 from cuefem.cue.materials import material as named_material
 from cuefem.parameters.parts import (
     BORE_DEPTH,
@@ -35,8 +35,8 @@ from cuefem.parameters.parts import (
     main_material,
     taper_position,
 )
-from cuefem.quantity.fields import Quantity, quantities
-from cuefem.quantity.units import number
+from cuefem.quantity.fields import Quantity, quantity_fields
+from cuefem.quantity.units import parse_number
 from cuefem.scene import Scene
 
 Step = str | int
@@ -90,7 +90,7 @@ class Parameter:
     option: str = ""
     help: str = ""
     sets: Mapping[str, Mapping[str, float]] | None = None
-    beside: Callable[[Scene, float], dict[Path, float]] | None = None
+    dependent_values: Callable[[Scene, float], dict[Path, float]] | None = None
 
     @property
     def key(self) -> str:
@@ -107,14 +107,14 @@ class Parameter:
         return None if isinstance(value, float) and not math.isfinite(value) else value
 
     @property
-    def of_tip(self) -> bool:
+    def is_shareable(self) -> bool:
         """Whether it belongs to the tip or the butt, which two shafts may share."""
         return self.path.startswith(("leather.", "tip.", "waves.")) or self.part is CONTACT_TIME_OF_SPRING
 
     def scaled(self, scene: Scene, factor: float) -> dict[Path, float]:
         """Its value in a scene times a factor, and dependent values, by path."""
         value = factor * self.value(scene)
-        return {self.steps(): value} | (self.beside(scene, value) if self.beside else {})
+        return {self.steps(): value} | (self.dependent_values(scene, value) if self.dependent_values else {})
 
     def spread_in(self, scene: Scene) -> float | None:
         """Its spread in a scene."""
@@ -127,7 +127,7 @@ class Parameter:
             raise ValueError(f"{self.name} must be a number of this scene; got none")
         return replace(known, names=tuple((n, v[self.path]) for n, v in self.sets.items())) if self.sets else known
 
-    def meant(self, name: str) -> dict[Path, float]:
+    def named_value(self, name: str) -> dict[Path, float]:
         """The values by path for a name of its value; empty if there is no such name."""
         return {_steps(path): value for path, value in (self.sets or {}).get(name.strip().lower(), {}).items()}
 
@@ -140,7 +140,7 @@ def parameter(text: str) -> Parameter | None:
     taper = _TAPER.fullmatch(text.strip())
     if taper:
         try:
-            position = number(taper[1], "m")
+            position = parse_number(taper[1], "m")
         except ValueError:
             raise ValueError(f'must name a position such as "taper at 330 mm"; got {text!r}') from None
         return Parameter(text.strip(), f"diameter {taper[1]} from the tip", part=diameter_at(lambda cue: position))
@@ -204,7 +204,7 @@ def _below(path: Path, value: Any, step: Step, text: str) -> list[tuple[Path, An
         return [((*path, step), inner[step])]
     if not path and (part := _part(step)):
         return [((step,), part.read(value))]
-    here, names = spelt(path) or "the scene", [name for name in inner if isinstance(name, str)]
+    here, names = path_text(path) or "the scene", [name for name in inner if isinstance(name, str)]
     offered = names if path else [*names, *(known.name for known in PARAMETERS.values()), *PARTS]
     close = difflib.get_close_matches(str(step), offered, n=3, cutoff=0.5)
     holds = ", ".join(names) if names else f"{len(inner)} items"
@@ -212,7 +212,7 @@ def _below(path: Path, value: Any, step: Step, text: str) -> list[tuple[Path, An
     raise ValueError(f"must name a field of the scene; got {text!r}{hint}")
 
 
-def spelt(path: Path) -> str:
+def path_text(path: Path) -> str:
     """A path as text."""
     return "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in path).removeprefix(".")
 
@@ -240,7 +240,7 @@ def quantity_at(scene: Scene, path: Path) -> Quantity | None:
     owner: Any = value_at(scene, path[:-1])
     if not is_dataclass(owner):
         return None
-    return next((quantity for name, quantity, *_ in quantities(type(owner)) if name == path[-1]), None)  # type: ignore[arg-type]
+    return next((quantity for name, quantity, *_ in quantity_fields(type(owner)) if name == path[-1]), None)  # type: ignore[arg-type]
 
 
 def is_material(scene: Scene, path: Path) -> bool:
@@ -276,7 +276,7 @@ class _Draft:
         return self.cue
 
 
-def varied(scene: Scene, changes: Mapping[str, Any]) -> Scene:
+def with_parameters(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     """A scene with other values of some parameters, changed together and then checked.
 
     Parameters
@@ -309,14 +309,14 @@ def varied(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     values = dict[Path, Any]()
     for text, value in changes.items():
         known = parameter(text)
-        beside: dict[Path, Any] = known.meant(value) if known and isinstance(value, str) else {}
+        beside: dict[Path, Any] = known.named_value(value) if known and isinstance(value, str) else {}
         for path in paths(scene, text):
             whole = is_material(scene, path) and isinstance(value, str)
             values |= beside if beside else {path: named_material(value) if whole else value}
-    return replaced(scene, values)
+    return with_values_at(scene, values)
 
 
-def replaced(scene: Scene, changes: Mapping[Path, Any]) -> Scene:
+def with_values_at(scene: Scene, changes: Mapping[Path, Any]) -> Scene:
     """A scene with the values at some paths replaced, changed together and then checked."""
     below: dict[str, dict[Path, Any]] = {}
     for (head, *rest), value in changes.items():
@@ -381,7 +381,7 @@ def _leather_spread(scene: Scene) -> float | None:
     return CONTACT_TIME_POWER * (0.1 if named else 0.05)
 
 
-def _restitution_beside(scene: Scene, E: float) -> dict[Path, float]:
+def _dependent_restitution(scene: Scene, E: float) -> dict[Path, float]:
     """The tip's restitution for another E of its leather, at the same restitution of the whole cue."""
     change = leather_restitution(E) - leather_restitution(scene.leather.E)
     return {("tip", "restitution"): min(max(float(scene.tip.restitution) + change, 0.1), 1.0)}
@@ -402,7 +402,7 @@ CONTACT_TIME_POWER = 3.5  # a leather's E goes as that power of 1/contact time (
 FERRULES = tuple(name for name in MATERIALS if name not in (*SHAFTS, "foam", "leather"))
 _LEATHERS = {
     name: {"leather.E": own.E, "leather.nu": own.nu, "leather.rho": own.rho, "tip.restitution": own.restitution}
-    for name, own in LEATHER_OF.items()
+    for name, own in LEATHER_BY_NAME.items()
 }
 
 # Parts are written in this order: the shaft mass first, because it is measured before other changes; materials last,
@@ -431,7 +431,7 @@ PARAMETERS: dict[str, Parameter] = {
         Parameter(
             *("leather", "E of the leather", "leather.E"),
             spread=_leather_spread,
-            beside=_restitution_beside,
+            dependent_values=_dependent_restitution,
             option="LEATHER",
             help='Leather of the tip: soft, medium, hard, a tip of `cuefem parts`, or its E, e.g. "200 MPa".',
             sets=_LEATHERS,

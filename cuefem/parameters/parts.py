@@ -18,14 +18,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cuefem.cue import SOFT, Cue, Material, Segment
+from cuefem.cue import MAX_LEATHER_MODULUS, Cue, Material, Segment
 from cuefem.quantity.fields import CONTACT_TIME, DIAMETER, LENGTH, Quantity
 
-LONGEST_FERRULE = 0.06  # m
+MAX_FERRULE = 0.06  # m
 TAPER_AT = 0.3302  # m, 13 in: so far pool shafts stay nearly straight; half the length of a cue shorter than twice that
-USUAL_BORE = 0.006  # m, the width of a new bore, where the front is wide enough
-LEAST_DENSITY, MOST_DENSITY = 20.0, 23_000.0  # kg/m3, foam and platinum: of a material that a weight determines
-SAME = 1e-9  # relative to a length: positions closer than this are the same
+DEFAULT_BORE = 0.006  # m, the width of a new bore, where the front is wide enough
+MIN_DENSITY, MAX_DENSITY = 20.0, 23_000.0  # kg/m3, foam and platinum: of a material that a weight determines
+SAME_POSITION = 1e-9  # relative to a length: positions closer than this are the same
 
 
 class Part(NamedTuple):
@@ -53,9 +53,9 @@ class Layout(NamedTuple):
         """The layout of a drawing."""
         segments = cue.segments
         last = len(segments) - 1
-        front = next((i for i, s in enumerate(segments) if s.material.E >= SOFT), last)
+        front = next((i for i, s in enumerate(segments) if s.material.E >= MAX_LEATHER_MODULUS), last)
         first = _next_material(segments, front)
-        if first > last or cue.nodes[first] - cue.nodes[front] > LONGEST_FERRULE * (1 + SAME):
+        if first > last or cue.nodes[first] - cue.nodes[front] > MAX_FERRULE * (1 + SAME_POSITION):
             first = front
         mouth = front if _is_bored(segments[front]) else first
         closed = next((i for i in range(mouth, len(segments)) if not _is_bored(segments[i])), len(segments))
@@ -140,11 +140,11 @@ def with_shaft_mass(cue: Cue, mass: float) -> Cue:
     volume = (cue.shaft_mass - half) / (wood.rho / 2)  # m3 of that material
     others = cue.shaft_mass - volume * wood.rho
     rho = (mass - others) / volume
-    if not LEAST_DENSITY <= rho <= MOST_DENSITY:
-        least, most = (1e3 * (others + volume * end) for end in (LEAST_DENSITY, MOST_DENSITY))
+    if not MIN_DENSITY <= rho <= MAX_DENSITY:
+        least, most = (1e3 * (others + volume * end) for end in (MIN_DENSITY, MAX_DENSITY))
         raise ValueError(
-            f"must be {least:.4g} to {most:.4g} g (density of its main material {LEAST_DENSITY:g} to "
-            f"{MOST_DENSITY:g} kg/m3); got {1e3 * mass:.4g} g"
+            f"must be {least:.4g} to {most:.4g} g (density of its main material {MIN_DENSITY:g} to "
+            f"{MAX_DENSITY:g} kg/m3); got {1e3 * mass:.4g} g"
         )
     return replace(with_material(cue, wood, replace(wood, rho=rho)), weighed=True)
 
@@ -230,7 +230,7 @@ SHAFT_MATERIAL = Part(_material_of("shaft"), _with_shaft_material)
 def _grown(scene: Any, positions: Sequence[float], more: Sequence[float]) -> Any:
     """The scene with diameters that are larger by ``more`` at the cue's ends and one position between them."""
     cue, (_, middle, end) = scene.shaft, positions
-    if abs(more[1] - np.interp(middle, [0, end], [more[0], more[2]])) > SAME * end:
+    if abs(more[1] - np.interp(middle, [0, end], [more[0], more[2]])) > SAME_POSITION * end:
         cue = split_at(cue, middle)
 
     def grown(segment: Segment, start: float) -> Segment:
@@ -283,7 +283,7 @@ def _bore(scene: Any) -> tuple[float, float] | None:
     cue, bore = scene.shaft, Layout.of(scene.shaft).bore
     if bore is None:
         return None
-    new = min(USUAL_BORE, 0.9 * outer_diameter(cue, bore_mouth(cue)))
+    new = min(DEFAULT_BORE, 0.9 * outer_diameter(cue, bore_mouth(cue)))
     return float(cue.nodes[bore.stop] - cue.nodes[bore.start]), _width(cue.segments[bore.start]) if bore else new
 
 
@@ -293,7 +293,7 @@ def _with_bore(scene: Any, depth: float | None = None, width: float | None = Non
     if old is None or (depth in (None, old[0]) and width in (None, old[1])):
         return scene
     depth, new_width = old[0] if depth is None else depth, old[1] if width is None else width
-    bore, deepest, near = Layout.of(cue).bore or range(0), deepest_bore(cue), SAME * cue.length
+    bore, deepest, near = Layout.of(cue).bore or range(0), deepest_bore(cue), SAME_POSITION * cue.length
     mouth = bore_mouth(cue)
     old_end = mouth + old[0]
     if depth > deepest + near:
@@ -321,14 +321,14 @@ def _with_bore(scene: Any, depth: float | None = None, width: float | None = Non
 
 def split_at(cue: Cue, x: float) -> Cue:
     """The same cue with a segment's end at x m from the tip."""
-    if np.abs(cue.nodes - x).min() <= SAME * cue.length or not 0 < x < cue.length:
+    if np.abs(cue.nodes - x).min() <= SAME_POSITION * cue.length or not 0 < x < cue.length:
         return cue
     i = int(np.searchsorted(cue.nodes, x)) - 1
-    front, back = halves(cue.segments[i], float(x - cue.nodes[i]) / cue.segments[i].length)
+    front, back = split_segment(cue.segments[i], float(x - cue.nodes[i]) / cue.segments[i].length)
     return replace(cue, segments=(*cue.segments[:i], front, back, *cue.segments[i + 1 :]))
 
 
-def halves(segment: Segment, share: float) -> tuple[Segment, Segment]:
+def split_segment(segment: Segment, share: float) -> tuple[Segment, Segment]:
     """A segment cut in two pieces of the same cone, the front one with a share of its length."""
     outer = segment.tip_diameter + (segment.butt_diameter - segment.tip_diameter) * share
     bore = segment.tip_bore + (segment.butt_bore - segment.tip_bore) * share
@@ -352,7 +352,7 @@ BORE_WIDTH = Part(_of_bore(1), lambda scene, width: _with_bore(scene, width=widt
 
 def _leather(scene: Any) -> Any:
     """The `LeatherTip` effect; None if there is none."""
-    return next((effect for effect in scene.effects if effect.whole_tip), None)
+    return next((effect for effect in scene.effects if effect.defines_tip), None)
 
 
 def _waves(scene: Any) -> Any:

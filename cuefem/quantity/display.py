@@ -27,7 +27,7 @@ def brief(value: Any) -> str:
     return repr(value)
 
 
-def said(kind: str, fields: Iterable[tuple[str, Any]]) -> str:
+def brief_repr(kind: str, fields: Iterable[tuple[str, Any]]) -> str:
     """``Kind(name=value, ...)`` with brief values."""
     return f"{kind}({', '.join(f'{name}={brief(value)}' for name, value in fields)})"
 
@@ -38,17 +38,17 @@ def _shown_fields(kind: type) -> tuple[str, ...]:
     return tuple(field.name for field in dataclasses.fields(kind) if field.repr)
 
 
-def spelt_out(thing: Any) -> str:
+def full_repr(thing: Any) -> str:
     """The full representation of an object, equal for equal objects."""
     if type(thing) is float:
         return repr(thing)
     if getattr(thing, "ndim", 0):
         return f"array({thing.tolist()!r}, {thing.dtype})"
     if dataclasses.is_dataclass(thing) and not isinstance(thing, type):
-        inner = ", ".join(f"{name}={spelt_out(getattr(thing, name))}" for name in _shown_fields(type(thing)))
+        inner = ", ".join(f"{name}={full_repr(getattr(thing, name))}" for name in _shown_fields(type(thing)))
         return f"{type(thing).__qualname__}({inner})"
     if type(thing) is tuple:
-        return f"({', '.join(map(spelt_out, thing))}{',' if len(thing) == 1 else ''})"
+        return f"({', '.join(map(full_repr, thing))}{',' if len(thing) == 1 else ''})"
     return repr(thing)
 
 

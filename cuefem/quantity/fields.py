@@ -14,17 +14,17 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cuefem.quantity.slips import remark, slip
+from cuefem.quantity.unit_checks import unit_hint, warn
 from cuefem.quantity.units import (
     UNITS,
     UnknownUnit,
-    example_of,
-    kind_of,
-    number,
-    parted,
+    dimension_of,
+    examples_of,
+    format_number,
+    parse_number,
     scale,
-    text,
-    units_like,
+    split_quantity,
+    units_of_dimension,
 )
 
 
@@ -34,17 +34,17 @@ class Quantity:
 
     ``interval`` is written as in mathematics, "(0, inf)" or "[0, 1]". A round bracket excludes its end, so infinity is
     allowed only by an interval that closes with "inf]". NaN lies in no interval. ``names``: names of values in files or
-    options, each with its value. ``usual``: the range of real cues.
+    options, each with its value. ``typical_range``: the range of real cues.
     """
 
     unit: str
     interval: str = "(-inf, inf)"
     names: tuple[tuple[str, float], ...] = ()
-    usual: tuple[float, float] | None = None
+    typical_range: tuple[float, float] | None = None
 
-    def usually(self, least: float, most: float) -> Quantity:
+    def with_typical_range(self, least: float, most: float) -> Quantity:
         """The same quantity with the range of real cues."""
-        return dataclasses.replace(self, usual=(least, most))
+        return dataclasses.replace(self, typical_range=(least, most))
 
     @functools.cached_property
     def ends(self) -> tuple[float, float]:
@@ -52,7 +52,7 @@ class Quantity:
         low, high = self.interval[1:-1].split(",")
         return float(low), float(high)
 
-    def holds(self, value: Any) -> Any:
+    def contains(self, value: Any) -> Any:
         """Whether ``value`` (a number or an array) lies in the interval, elementwise."""
         low, high = self.ends
         above = value >= low if self.interval[0] == "[" else value > low
@@ -67,7 +67,7 @@ class Quantity:
     @property
     def example(self) -> str:
         """What the unit measures, with an example: 'a length with its unit, such as "12 mm"'."""
-        what, example, *_ = example_of(self.unit)
+        what, example, *_ = examples_of(self.unit)
         if self.unit == "Pa" and self.names:  # a leather's
             example = "200 MPa"
         return f'{what} with its unit, such as "{example}"{self._named}'
@@ -77,7 +77,7 @@ class Quantity:
         return ", or " + ", ".join(f'"{name}"' for name, _ in self.names) if self.names else ""
 
     @property
-    def wanted(self) -> str:
+    def expected(self) -> str:
         """The value that a file or an option must have: a number with its unit, or a bare one within its bounds."""
         return self.example if self.unit else f"a bare number, {self.bounds_in('')}"
 
@@ -102,15 +102,15 @@ class Quantity:
         word = str(value).strip().lower()
         if word in known:
             return known[word]
-        digits, unit = parted(str(value)) if isinstance(value, str | int | float) else ("", "")
+        digits, unit = split_quantity(str(value)) if isinstance(value, str | int | float) else ("", "")
         if digits and not unit and digits[-3:].lower() not in ("inf", "nan"):
-            named = " or ".join(f'"{text}"' for text in example_of(self.unit)[1:])
-            raise ValueError(f"needs a unit: {named}{self._named}; got {shown(value)}")
+            named = " or ".join(f'"{text}"' for text in examples_of(self.unit)[1:])
+            raise ValueError(f"needs a unit: {named}{self._named}; got {quote(value)}")
         try:
-            result = number(str(value), self.unit)
+            result = parse_number(str(value), self.unit)
         except ValueError as error:
-            raise ValueError(f"must be {self.example}; got {shown(value)}{self._why(error, value, unit)}") from None
-        if not self.holds(result):
+            raise ValueError(f"must be {self.example}; got {quote(value)}{self._why(error, value, unit)}") from None
+        if not self.contains(result):
             raise ValueError(f"must be {self.bounds_in(unit)}; got {digits} {unit}")
         return result
 
@@ -119,28 +119,28 @@ class Quantity:
         if not unit or _comma(value):
             return _comma(value)
         if not isinstance(error, UnknownUnit):
-            return f", which is {kind_of(unit)}"
-        like = units_like(self.unit)
-        near = nearest(error.name, like) or nearest(error.name, UNITS) or f"; there are {', '.join(like)}"
-        return f": no unit is called {shown(error.name)}{near}"
+            return f", which is {dimension_of(unit)}"
+        like = units_of_dimension(self.unit)
+        near = suggestion(error.name, like) or suggestion(error.name, UNITS) or f"; there are {', '.join(like)}"
+        return f": no unit is called {quote(error.name)}{near}"
 
     def _bare(self, value: Any) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise ValueError(f"must be {self.wanted}; got {shown(value)}{_comma(value)}")
+            raise ValueError(f"must be {self.expected}; got {quote(value)}{_comma(value)}")
         try:
             result = float(value)
         except OverflowError:
             result = math.nan
-        if not self.holds(result):
-            raise ValueError(f"must be {self.bounds_in('')}; got {shown(value)}")
+        if not self.contains(result):
+            raise ValueError(f"must be {self.bounds_in('')}; got {quote(value)}")
         return result
 
-    def written(self, value: float) -> str | float:
+    def as_text(self, value: float) -> str | float:
         """A number as written in a file: text with a unit, or a bare number without one."""
         if self.unit:
-            return text(value, self.unit)
+            return format_number(value, self.unit)
         rounded = float(f"{value:.13g}")
-        return rounded if self.holds(rounded) else value
+        return rounded if self.contains(rounded) else value
 
     def check(self, name: str, value: Any) -> float:
         """``value`` as a float; the errors name field, bound, unit and value."""
@@ -149,8 +149,8 @@ class Quantity:
                 raise TypeError
             number = float(value)
         except (TypeError, ValueError):
-            raise TypeError(f"{name} must be a number in {self.bounds}; got {shown(value)}") from None
-        if not self.holds(number):
+            raise TypeError(f"{name} must be a number in {self.bounds}; got {quote(value)}") from None
+        if not self.contains(number):
             raise ValueError(f"{name} must be in {self.bounds}; got {value}")
         return number
 
@@ -159,8 +159,8 @@ class Quantity:
         try:
             array = np.array(values, dtype=float)
         except (TypeError, ValueError):
-            raise TypeError(f"{name} must be numbers in {self.bounds}; got {shown(values)}") from None
-        if not np.all(inside := self.holds(array)):
+            raise TypeError(f"{name} must be numbers in {self.bounds}; got {quote(values)}") from None
+        if not np.all(inside := self.contains(array)):
             where, (value,) = first_failure(inside, array)
             raise ValueError(f"{name} must be in {self.bounds}; got {value}{where}")
         return array
@@ -181,16 +181,16 @@ def _comma(value: Any) -> str:
 
 
 class OutOfBounds(ValueError):
-    """A number outside bounds that depend on other fields; the message is in SI units, `in_words` in those of files."""
+    """A number outside bounds that depend on other fields; the message is in SI, `file_message` in units of files."""
 
     def __init__(self, name: str, bounds: Quantity, value: float, why: str = "") -> None:
         self.name, self.bounds, self.value, self.why = name, bounds, value, why
         super().__init__(f"{name} must be in {bounds.bounds}{why}; got {value}")
 
     @property
-    def in_words(self) -> str:
+    def file_message(self) -> str:
         """The message without the name, in the units of files."""
-        got = str(self.bounds.written(self.value))
+        got = str(self.bounds.as_text(self.value))
         return f"must be {self.bounds.bounds_in(got.partition(' ')[2])}{self.why}; got {got}"
 
 
@@ -199,12 +199,12 @@ class OutOfBounds(ValueError):
 LENGTH = Quantity("m", "(0, 1000]")  # of a segment: a cue is 1.5 m long
 DIAMETER = Quantity("m", "(0, 10]")  # a cue is 0.03 m wide
 CONTACT_TIME = Quantity("s", "[1e-6, 10]")  # leather: 1e-3 s; in 1e-6 s sound travels through 4 mm of wood
-MOST_SEGMENTS = 2000  # of a drawing: one every 0.7 mm
-MOST_UNKNOWNS = 50_000  # of a beam: a cue of 30 segments takes 10,000 for the modes of the shortest contact
+MAX_SEGMENTS = 2000  # of a drawing: one every 0.7 mm
+MAX_DOF = 50_000  # of a beam: a cue of 30 segments takes 10,000 for the modes of the shortest contact
 
 
 @functools.cache
-def quantities(kind: type) -> tuple[tuple[str, Quantity, bool], ...]:
+def quantity_fields(kind: type) -> tuple[tuple[str, Quantity, bool], ...]:
     """The dimensioned fields of a dataclass: (name, quantity, whether None is allowed)."""
     hints = typing.get_type_hints(kind, include_extras=True)
     listed = []
@@ -220,13 +220,13 @@ def quantities(kind: type) -> tuple[tuple[str, Quantity, bool], ...]:
 def check_fields(instance: Any) -> None:
     """Check every dimensioned field of a frozen dataclass; store it as float (in __post_init__)."""
     kind = type(instance)
-    for name, quantity, optional in quantities(kind):  # type: ignore[arg-type]
+    for name, quantity, optional in quantity_fields(kind):  # type: ignore[arg-type]
         value = getattr(instance, name)
         if value is None and optional:
             continue
         checked = quantity.check(f"{kind.__name__}.{name}", value)
-        if quantity.usual and isinstance(checked, float):
-            remark(slip(f"{kind.__name__}.{name}", checked, quantity.unit, quantity.usual))
+        if quantity.typical_range and isinstance(checked, float):
+            warn(unit_hint(f"{kind.__name__}.{name}", checked, quantity.unit, quantity.typical_range))
         if checked is not value:
             object.__setattr__(instance, name, checked)
 
@@ -245,18 +245,18 @@ def _a(noun: str) -> str:
 def _in_short(value: Any, kind: type | tuple[type, ...]) -> str:
     """A value for a message: numbers and texts by value, others by type; of a dataclass also the field to pass."""
     if not dataclasses.is_dataclass(value) or isinstance(value, type):
-        return shown(value)
+        return quote(value)
     meant = [field.name for field in dataclasses.fields(value) if isinstance(getattr(value, field.name), kind)]
     return _a(type(value).__name__) + (f": pass its {meant[0]}" if meant else "")
 
 
-def shown(value: Any) -> str:
+def quote(value: Any) -> str:
     """A value for a message, cut if it is long."""
     text = repr(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
-def nearest(name: str, names: Iterable[str]) -> str:
+def suggestion(name: str, names: Iterable[str]) -> str:
     """A hint at the most similar valid name, or "" if none is similar."""
     known = {known.casefold(): known for known in names}
     close = difflib.get_close_matches(name.casefold(), known, n=1, cutoff=0.5)
@@ -267,7 +267,7 @@ def check_count(name: str, value: Any, least: int, most: int | None = None) -> N
     """TypeError or ValueError unless ``value`` is a whole number of at least ``least``, and at most ``most``."""
     bounds = f">= {least}" if most is None else f"in [{least}, {most}]"
     if isinstance(value, bool) or not isinstance(value, int | np.integer):
-        raise TypeError(f"{name} must be a whole number {bounds}; got {shown(value)}")
+        raise TypeError(f"{name} must be a whole number {bounds}; got {quote(value)}")
     if value < least or (most is not None and value > most):
         raise ValueError(f"{name} must be a whole number {bounds}; got {value}")
 

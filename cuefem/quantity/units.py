@@ -74,8 +74,8 @@ _TEXT = re.compile(
     rf"\s*({FRACTION.pattern}|[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?|[+-]?inf|nan)\s*(.*?)\s*",
     re.IGNORECASE,
 )
-SAME = 1e-12  # relative: numbers closer than this are equal in files
-LONGEST_TEXT = 200  # characters of a number and its unit: the cost of matching grows like the square
+ROUND_TRIP_TOLERANCE = 1e-12  # relative: numbers closer than this are equal in files
+MAX_TEXT = 200  # characters of a number and its unit: the cost of matching grows like the square
 _SIGNS = re.compile(r"\s*([*/·])\s*|\s+")
 _FACTOR = re.compile(r"([^\W\d_]+|[°\"″”']+)(?:\^(-?[0-9])|([23]))?")
 _BELOW = re.compile(r"(.*?)(?:/\s*\(([^/()]*)\))?", re.DOTALL)  # the bracket behind a slash: rad/(N m)
@@ -129,12 +129,12 @@ def scale(unit: str, wanted: str) -> Decimal:
     return own.scale / other.scale
 
 
-def example_of(unit: str) -> tuple[str, ...]:
+def examples_of(unit: str) -> tuple[str, ...]:
     """The dimension of an SI unit, and examples, the first in a convenient unit."""
     return EXAMPLES.get(unit, ("a quantity", f"3 {unit}"))
 
 
-def kind_of(unit: str) -> str:
+def dimension_of(unit: str) -> str:
     """The dimension of a unit: "a mass"."""
     powers = unit_of(unit).powers
     return next((what for si, (what, *_) in EXAMPLES.items() if unit_of(si).powers == powers), "something else")
@@ -145,19 +145,19 @@ def first_name(unit: str) -> str:
     return next((name for name in UNITS if UNITS[name] == unit_of(unit)), unit)
 
 
-def units_like(unit: str) -> list[str]:
+def units_of_dimension(unit: str) -> list[str]:
     """The first names of the units with the dimension of ``unit``, or that of an example."""
     names = {UNITS[name]: name for name in reversed(UNITS) if UNITS[name].powers == unit_of(unit).powers}
-    return [*reversed(names.values())] or [example_of(unit)[1].split(" ", 1)[1]]
+    return [*reversed(names.values())] or [examples_of(unit)[1].split(" ", 1)[1]]
 
 
-def parted(text: str) -> tuple[str, str]:
+def split_quantity(text: str) -> tuple[str, str]:
     """The number and the unit of a text, each "" if it is missing."""
-    parts = _TEXT.fullmatch(text) if len(text) <= LONGEST_TEXT else None
+    parts = _TEXT.fullmatch(text) if len(text) <= MAX_TEXT else None
     return (parts[1], parts[5]) if parts else ("", "")
 
 
-def decimal(digits: str) -> Decimal:
+def parse_decimal(digits: str) -> Decimal:
     """The value of digits or a fraction."""
     if fraction := FRACTION.fullmatch(digits):
         whole, above, below = fraction.groups(default="0")
@@ -165,28 +165,28 @@ def decimal(digits: str) -> Decimal:
     return Decimal(digits)
 
 
-def number(text: str, unit: str) -> float:
+def parse_number(text: str, unit: str) -> float:
     """The value of ``text`` ("12 mm", "5/16 in") in ``unit``; ValueError if its unit is missing or wrong."""
-    digits, own = parted(text)
+    digits, own = split_quantity(text)
     if not own:
         raise ValueError("a number and a unit")
     try:
-        return float(decimal(digits) * scale(own, unit))
+        return float(parse_decimal(digits) * scale(own, unit))
     except (DecimalException, OverflowError):
         return math.nan  # beyond every decimal: in no interval
 
 
-def text(value: float, unit: str) -> str:
-    """A number in a convenient unit ("12 mm"), with the fewest digits that are exact to `SAME`.
+def format_number(value: float, unit: str) -> str:
+    """A number in a convenient unit ("12 mm"), with the fewest digits that are exact to `ROUND_TRIP_TOLERANCE`.
 
     If SI needs fewer digits (0.1 rad), it is in SI.
     """
-    friendly = example_of(unit)[1].split(" ", 1)[1]
+    friendly = examples_of(unit)[1].split(" ", 1)[1]
     if math.isfinite(value):
         exact, per = Decimal(repr(value)), scale(friendly, unit)
         for digits in range(len(exact.normalize().as_tuple().digits)):
             written = f"{_plain(Decimal(f'{exact / per:.{digits}e}'))} {friendly}"
-            if math.isclose(number(written, unit), value, rel_tol=SAME):
+            if math.isclose(parse_number(written, unit), value, rel_tol=ROUND_TRIP_TOLERANCE):
                 return written
     return f"{value!r} {unit}"
 

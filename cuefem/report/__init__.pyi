@@ -1,29 +1,29 @@
 """Output of the commands: records of SI numbers for programs, and tables of them for people."""
 
-from .effects import DEFAULT_RTOL, effects_record, effects_sheet
-from .end_mass import end_mass_record, end_mass_sheet
-from .everything import report_record, report_sheets
-from .model_error import model_error_record, model_error_sheet
-from .modes_table import modes_record, modes_sheet
-from .scene_words import cue_record
-from .squirt import squirt_record, squirt_sheet
-from .strike_table import strike_record, strike_sheet
+from .effects_table import DEFAULT_RTOL, effects_record, tabulate_effects
+from .end_mass_table import end_mass_record, tabulate_end_masses
+from .report_sections import report_record, tabulate_report
+from .model_error_table import model_error_record, tabulate_model_error
+from .modes_table import modes_record, tabulate_modes
+from .scene_summary import cue_record
+from .squirt_table import squirt_record, tabulate_squirt
+from .strike_table import strike_record, tabulate_strike
 
 __all__ = [
     "DEFAULT_RTOL",
     "cue_record",
     "effects_record",
-    "effects_sheet",
     "end_mass_record",
-    "end_mass_sheet",
     "model_error_record",
-    "model_error_sheet",
     "modes_record",
-    "modes_sheet",
     "report_record",
-    "report_sheets",
     "squirt_record",
-    "squirt_sheet",
     "strike_record",
-    "strike_sheet",
+    "tabulate_effects",
+    "tabulate_end_masses",
+    "tabulate_model_error",
+    "tabulate_modes",
+    "tabulate_report",
+    "tabulate_squirt",
+    "tabulate_strike",
 ]

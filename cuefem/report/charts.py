@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-WIDE = 440.0
+WIDTH = 440.0
 
 
 class Tick(NamedTuple):
@@ -132,11 +132,11 @@ def chart(
     height: float = 260.0,
 ) -> Chart:
     """A chart of curves, clipped at the ends of the axes."""
-    left, top, right, bottom = 50.0, 22.0 if marks else 10.0, WIDE - 8, height - 36
+    left, top, right, bottom = 50.0, 22.0 if marks else 10.0, WIDTH - 8, height - 36
     x_scale = x.scale_for([curve.x for curve in curves])
     y_scale = y.scale_for([curve.y for curve in curves])
     lines = tuple(Tick(float(x_scale.position(mark.at, left, right)), mark.label) for mark in marks)
-    positions = apart([line.at for line in lines], left, right)
+    positions = spread_labels([line.at for line in lines], left, right)
     return Chart(
         title,
         x.label,
@@ -157,7 +157,7 @@ def chart(
     )
 
 
-def apart(positions: Sequence[float], first: float, last: float, *, gap: float = 14.0) -> list[float]:
+def spread_labels(positions: Sequence[float], first: float, last: float, *, gap: float = 14.0) -> list[float]:
     """Ascending positions moved to be at least ``gap`` apart, from ``first`` to ``last``."""
     moved: list[float] = []
     for position in positions:

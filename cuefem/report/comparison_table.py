@@ -6,17 +6,17 @@ import math
 from collections.abc import Mapping
 
 from cuefem.report.charts import Chart
-from cuefem.report.drawings import ACROSS, CueDrawing, cue_drawing
-from cuefem.report.end_mass import SQUIRT_END_MASS
-from cuefem.report.squirt import offset_charts
+from cuefem.report.drawings import DIAMETER_SCALE, CueDrawing, cue_drawing
+from cuefem.report.end_mass_table import SQUIRT_END_MASS
+from cuefem.report.squirt_table import offset_charts
 from cuefem.report.strike_table import regime_warning
-from cuefem.report.verdict_table import difference_words, squirt_difference
-from cuefem.results.comparison import struck_alike
-from cuefem.results.quantities import NONE, RESULTS, with_unit, written
-from cuefem.results.records import Record, Sheet
+from cuefem.report.verdict_table import difference_text, squirt_difference
+from cuefem.results.comparison import with_same_stroke
+from cuefem.results.quantities import DASH, RESULTS, format_value, with_unit
+from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import coupled_curve
 from cuefem.scene import Scene
-from cuefem.scene.solved_scene import Solved
+from cuefem.scene.solved_scene import SolvedScene
 
 CURVE_OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 13))  # b/R
 STYLES = ("c1", "c2", "c3", "c4", "c5")
@@ -40,16 +40,16 @@ def comparison_sentences(record: Record) -> list[str]:
     return made
 
 
-def comparison_sheet(record: Record) -> Sheet:
+def tabulate_comparison(record: Record) -> Table:
     """A row for each quantity: its value for each cue, and the differences of the others from the first."""
     first, *others = record["cues"]
     rows = []
     for name, own in record["cues"][first].items():
         cells = [_label(name), _value(name, own)]
         for other in others:
-            text = NONE
+            text = DASH
             if difference := record["differences"][other].get(name):
-                text = difference_words(difference["difference"], difference["error"])
+                text = difference_text(difference["difference"], difference["error"])
                 text += "" if difference["distinct"] else " *"
             cells += [_value(name, record["cues"][other][name]), text]
         rows.append(tuple(cells))
@@ -64,7 +64,7 @@ def comparison_sheet(record: Record) -> Sheet:
         *(f"{name}: {warning}" for name, regime in record["regimes"].items() if (warning := regime_warning(regime))),
         "* smaller than its uncertainty: the cues are not distinct in this quantity.",
     )
-    return Sheet("Side by side", head, tuple(rows), notes)
+    return Table("Side by side", head, tuple(rows), notes)
 
 
 def _label(name: str) -> str:
@@ -76,18 +76,20 @@ def _label(name: str) -> str:
 def _value(name: str, value: float) -> str:
     """A value with its unit."""
     quantity = "frequency" if name.startswith("frequency_") else "end_mass" if name in _WORDS else name
-    return written(quantity, value)
+    return format_value(quantity, value)
 
 
 def _lateral(squirt: float) -> str:
-    return NONE if math.isnan(squirt) else with_unit(math.tan(squirt), "m", decimals=0)
+    return DASH if math.isnan(squirt) else with_unit(math.tan(squirt), "m", decimals=0)
 
 
 def comparison_figures(scenes: Mapping[str, Scene], record: Record) -> list[Chart | CueDrawing]:
     """Charts of squirt and natural pivot length against the offset, and a drawing of each cue."""
     lines = []
-    for style, (name, scene) in zip(STYLES, struck_alike(scenes).items(), strict=False):
-        lines.append((name, style, coupled_curve(scene, CURVE_OFFSETS, Solved(scene).tip)))
+    for style, (name, scene) in zip(STYLES, with_same_stroke(scenes).items(), strict=False):
+        lines.append((name, style, coupled_curve(scene, CURVE_OFFSETS, SolvedScene(scene).tip)))
     charts = offset_charts(lines, CURVE_OFFSETS, record["offset"], height=300)
-    drawings = [cue_drawing(scene, f"{name}, diameters {ACROSS:g} times enlarged") for name, scene in scenes.items()]
+    drawings = [
+        cue_drawing(scene, f"{name}, diameters {DIAMETER_SCALE:g} times enlarged") for name, scene in scenes.items()
+    ]
     return [*charts, *drawings]

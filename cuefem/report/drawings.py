@@ -13,12 +13,12 @@ import numpy as np
 from cuefem.beam.modes import modes
 from cuefem.cue import Material, Segment
 from cuefem.cue.materials import MATERIALS, material_name, table_name
-from cuefem.report.charts import WIDE, Axis, Chart, Curve, Tick, chart, path
-from cuefem.results.quantities import scaled, with_heading
+from cuefem.report.charts import WIDTH, Axis, Chart, Curve, Tick, chart, path
+from cuefem.results.quantities import to_display, with_heading
 from cuefem.scene import Scene
 
-ACROSS = 4.0  # enlargement of the diameters in the drawing of a whole cue
-FRONT = 0.16  # m, length of the drawing of the front, true to scale
+DIAMETER_SCALE = 4.0  # enlargement of the diameters in the drawing of a whole cue
+FRONT_LENGTH = 0.16  # m, length of the drawing of the front, true to scale
 MIN_DRAWN = 1e-4  # m, of a segment
 SHAPES = 4  # mode shapes in the chart
 
@@ -43,7 +43,7 @@ class CueDrawing:
     ticks: tuple[Tick, ...]
 
 
-def seen(scene: Scene) -> tuple[Segment, ...]:
+def drawn_segments(scene: Scene) -> tuple[Segment, ...]:
     """The segments of the cue, with the leather and the layers of a `LeatherTip` in front."""
     segments = scene.shaft.segments
     if scene.contact_terms.tip is None:
@@ -58,10 +58,10 @@ def seen(scene: Scene) -> tuple[Segment, ...]:
 
 def legend(scenes: Iterable[Scene]) -> list[tuple[str, str]]:
     """Names and CSS classes of the materials of drawn cues, from tip to butt; and of a bore."""
-    segments = [segment for scene in scenes for segment in seen(scene)]
+    segments = [segment for scene in scenes for segment in drawn_segments(scene)]
     names = [legend_name(of) for segment in segments for of in (segment.material, segment.core) if of is not None]
     hollow = any((s.tip_bore or s.butt_bore) and s.core is None for s in segments)
-    return [(name, style_of(name)) for name in dict.fromkeys(names)] + ([("bore", "hollow")] if hollow else [])
+    return [(name, css_class(name)) for name in dict.fromkeys(names)] + ([("bore", "hollow")] if hollow else [])
 
 
 def legend_name(material: Material) -> str:
@@ -69,20 +69,22 @@ def legend_name(material: Material) -> str:
     return table_name(material) or material_name(material)
 
 
-def style_of(name: str) -> str:
+def css_class(name: str) -> str:
     """The CSS class of a material."""
     return "m-" + name.replace(" ", "-") if name in MATERIALS else "m-other"
 
 
-def cue_drawing(scene: Scene, title: str, length: float | None = None, *, diameter_scale: float = ACROSS) -> CueDrawing:
+def cue_drawing(
+    scene: Scene, title: str, length: float | None = None, *, diameter_scale: float = DIAMETER_SCALE
+) -> CueDrawing:
     """A cue from the side.
 
     length: m from the front of its segments; None for the whole cue. diameter_scale: enlargement of the diameters.
     """
-    segments, own = seen(scene), scene.shaft
+    segments, own = drawn_segments(scene), scene.shaft
     length = own.length if length is None else length
     ahead = sum(segment.length for segment in segments[: len(segments) - len(own.segments)])
-    scale = WIDE / (length + ahead)
+    scale = WIDTH / (length + ahead)
     drawn = _cut(segments, length + ahead)
     widest = max(max(segment.tip_diameter, segment.butt_diameter) for segment in drawn)
     axis = 1 + scale * diameter_scale * widest / 2
@@ -91,7 +93,7 @@ def cue_drawing(scene: Scene, title: str, length: float | None = None, *, diamet
         _piece(segment, x, scale, axis, dome=0.0 if x else scene.dome_radius, diameter_scale=diameter_scale)
         for x, segment in zip(ends, drawn, strict=False)
     )
-    ticks = Axis("mm", 0.0, 1e3 * length).scale_for([np.zeros(1)]).ticks(scale * ahead, WIDE)
+    ticks = Axis("mm", 0.0, 1e3 * length).scale_for([np.zeros(1)]).ticks(scale * ahead, WIDTH)
     return CueDrawing(title, 2 * axis, axis, pieces, ticks)
 
 
@@ -129,9 +131,9 @@ def _piece(segment: Segment, x: float, scale: float, axis: float, *, dome: float
 
     return Piece(
         outline(segment.tip_diameter, segment.butt_diameter, dome),
-        style_of(legend_name(segment.material)),
+        css_class(legend_name(segment.material)),
         outline(segment.tip_bore, segment.butt_bore, 0.0) if max(segment.tip_bore, segment.butt_bore) > 0 else "",
-        "hollow" if segment.core is None else style_of(legend_name(segment.core)),
+        "hollow" if segment.core is None else css_class(legend_name(segment.core)),
     )
 
 
@@ -139,8 +141,8 @@ def modes_chart(scene: Scene) -> Chart:
     """The lowest bending mode shapes, each scaled to its largest deflection."""
     solved, x = modes(scene.shaft, SHAPES, effects=scene.cue_effects), np.linspace(0, scene.shaft.length, 241)
     curves = [
-        Curve(f"{frequency:.4g} Hz", scaled(x, "m"), shape / np.abs(shape).max(), f"c{k}")
+        Curve(f"{frequency:.4g} Hz", to_display(x, "m"), shape / np.abs(shape).max(), f"c{k}")
         for k, (frequency, shape) in enumerate(zip(solved.frequencies, solved.shape(x)[0], strict=True), 1)
     ]
-    along = Axis(with_heading("distance from the tip", "m"), 0.0, float(scaled(x[-1], "m")))
+    along = Axis(with_heading("distance from the tip", "m"), 0.0, float(to_display(x[-1], "m")))
     return chart("Bending mode shapes", curves, x=along, y=Axis("deflection", -1.0, 1.0))

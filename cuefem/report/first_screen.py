@@ -11,10 +11,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from cuefem.report.drawings import ACROSS, FRONT, cue_drawing, legend
+from cuefem.report.drawings import DIAMETER_SCALE, FRONT_LENGTH, cue_drawing, legend
 from cuefem.report.templates import environment
-from cuefem.report.verdict_table import scale, squirt_difference, squirt_words
-from cuefem.results.quantities import NONE, TRADE, with_unit
+from cuefem.report.verdict_table import reference_scale, squirt_difference, squirt_text
+from cuefem.results.quantities import DASH, DISPLAY_UNITS, with_unit
 from cuefem.results.records import Record
 from cuefem.scene import Scene
 
@@ -61,12 +61,12 @@ def headline_markup(own: Shown, other: Shown | None = None, difference: Record |
     """
     verdict = own.verdict
     text, error = (
-        squirt_words(verdict) if verdict else (with_unit(abs(own.numbers["squirt"] or 0.0), "rad", decimals=2), "")
+        squirt_text(verdict) if verdict else (with_unit(abs(own.numbers["squirt"] or 0.0), "rad", decimals=2), "")
     )
     lines = []
     if other is not None:
         lines.append(("compared with" if difference is None else squirt_difference(**difference), other.name))
-    for first, among in [*(verdict["among"].items() if verdict else ())][:1]:
+    for first, among in [*(verdict["references"].items() if verdict else ())][:1]:
         if other is None or other.name != first:
             line = squirt_difference(among["difference"], among["error"], among["distinct"])
             lines.append((line, first))
@@ -78,9 +78,9 @@ def tiles(own: Shown, other: Shown | None = None) -> list[Tile]:
     """The four numbers, each with its difference from the other design's."""
     made = []
     for key, (label, unit, decimals, per, hint) in TILES.items():
-        factor, name = TRADE.get(unit, (1.0, unit))
+        factor, name = DISPLAY_UNITS.get(unit, (1.0, unit))
         value, beside = _value(own, key), None if other is None else _value(other, key)
-        text = NONE if value is None else f"{factor * value:.{decimals}f} {name}{per}"
+        text = DASH if value is None else f"{factor * value:.{decimals}f} {name}{per}"
         more = "" if value is None or beside is None else f"{factor * (value - beside):+.{decimals}f}".replace("-", "−")
         made.append(Tile(key, label, hint, text, value, "±0" if more and not float(more.replace("−", "-")) else more))
     return made
@@ -95,7 +95,7 @@ def _value(design: Shown, key: str) -> float | None:
 def scale_markup(own: Shown, other: Shown | None = None) -> str:
     """The reference cues, this design with its uncertainty, and the other one, sorted by squirt."""
     beside = None if other is None else (other.name, other.numbers["squirt"])
-    return _macro("scale", scale(own.verdict, own.name, beside) if own.verdict else [], other)
+    return _macro("scale", reference_scale(own.verdict, own.name, beside) if own.verdict else [], other)
 
 
 def tiles_markup(own: Shown, other: Shown | None = None) -> str:
@@ -106,19 +106,19 @@ def tiles_markup(own: Shown, other: Shown | None = None) -> str:
 def drawings_markup(designs: Mapping[str, Scene]) -> str:
     """The tip ends of one or two designs, true to scale, and the whole first one with enlarged diameters."""
     first = next(iter(designs.values()))
-    length = min([FRONT, *(scene.shaft.length for scene in designs.values())])
+    length = min([FRONT_LENGTH, *(scene.shaft.length for scene in designs.values())])
     title = f"first {1e3 * length:.0f} mm, true to scale"
     fronts = [
         (name, cue_drawing(scene, f"Tip end of {name}, {title}", length, diameter_scale=1.0))
         for name, scene in designs.items()
     ]
-    whole = cue_drawing(first, f"Whole drawing, diameters {ACROSS:g} times enlarged")
-    return _macro("drawings", fronts, whole, ACROSS, legend(designs.values()))
+    whole = cue_drawing(first, f"Whole drawing, diameters {DIAMETER_SCALE:g} times enlarged")
+    return _macro("drawings", fronts, whole, DIAMETER_SCALE, legend(designs.values()))
 
 
 def parts_line(verdict: Record) -> str:
     """The parts of the uncertainty: "± 0.35° (1σ) is 24 %: model 16 %, wood and tip 18 %"."""
-    _, error = squirt_words(verdict)
+    _, error = squirt_text(verdict)
     parts = verdict["uncertainty"]
     model, inputs = f"{100 * parts['model']:.0f} %", f"{100 * parts['inputs']:.0f} %"
     return f"± {error} (1σ) is {100 * parts['total']:.0f} %: model {model}, wood and tip {inputs}"

@@ -43,7 +43,7 @@ def _words() -> tuple[re.Pattern[str], dict[str, str]]:
     return re.compile(rf"(?<![\w/-])({'|'.join(map(re.escape, longest))})s?(?![\w/-])", re.IGNORECASE), known
 
 
-def explained(markup: str) -> str:
+def with_term_buttons(markup: str) -> str:
     """Markup in which the first occurrence of each term in a section is a button that opens its definition."""
     pattern, known = _words()
     seen: set[str] = set()
@@ -93,8 +93,8 @@ def subscripts(markup: str) -> str:
     return re.sub(r"(?<!\w)(\w)_(\w)(?!\w)", r"\1<sub>\2</sub>", markup)
 
 
-def with_words(page: str) -> str:
+def with_glossary(page: str) -> str:
     """A page with buttons for the terms of the glossary, and their definitions."""
-    text = explained(page)
+    text = with_term_buttons(page)
     used = set(_USED.findall(text))
     return text.replace("<!-- words -->", definitions(used), 1) if used else text

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cuefem.beam.modes import modes
-from cuefem.results.records import Entry, Record, Sheet, sheet
+from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.scene import Scene
 
 
@@ -24,14 +24,14 @@ def modes_record(scene: Scene, *, count: int, near: float | None) -> Record:
     }
 
 
-def modes_sheet(record: Record) -> Sheet:
+def tabulate_modes(record: Record) -> Table:
     """A row for each mode of the cue with the scene's effects on it."""
     near, nearest = record["near"], record["nearest"]
     rows = [
         {"frequency": frequency, "period": 1 / frequency, "at_tip": amplitude}
         for frequency, amplitude in zip(record["frequencies"], record["tip_amplitudes"], strict=True)
     ]
-    columns: dict[str, Entry] = {
+    columns: dict[str, ColumnEntry] = {
         "frequency": "{frequency:frequencies}",
         "period": "{period:s}",
         "tip amplitude": "{at_tip:tip_amplitudes}",
@@ -41,4 +41,4 @@ def modes_sheet(record: Record) -> Sheet:
     motions = "1 rigid-body mode" if record["rigid"] == 1 else f"{record['rigid']} rigid-body modes"
     note = f"{motions} at 0 Hz not listed; tip amplitude: of the mass-normalised mode"
     title = "Natural frequencies" if near is None else f"Natural frequencies nearest {near:g} Hz"
-    return sheet(title, columns, rows, note, texts=())
+    return tabulate(title, columns, rows, note, texts=())

@@ -7,10 +7,10 @@ from dataclasses import asdict
 from typing import Any
 
 from cuefem.cue.materials import LEATHER_NAMES, LEATHERS, MATERIALS, TIPS, WOODS
-from cuefem.io.shelf import SHAFTS
+from cuefem.io.parts_catalogue import CATALOGUE_SHAFTS
 from cuefem.parameters.parameter import FERRULES
 from cuefem.results.quantities import RESULTS, units_of, with_heading
-from cuefem.results.records import Entry, Record, Sheet, sheet
+from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 
 
 def parts_record() -> Record:
@@ -19,7 +19,7 @@ def parts_record() -> Record:
         name: tip["source"] for name, tip in TIPS.items()
     }
     return {
-        "shafts": {name: {"source": known.source} for name, known in SHAFTS.items()},
+        "shafts": {name: {"source": known.source} for name, known in CATALOGUE_SHAFTS.items()},
         "materials": {
             name: {
                 "use": "wood" if name in WOODS else "ferrule" if name in FERRULES else "",
@@ -35,19 +35,21 @@ def parts_record() -> Record:
     }
 
 
-def parts_sheets(record: Record) -> list[Sheet]:
+def tabulate_parts(record: Record) -> list[Table]:
     """A table for each kind of part; the notes show how a file and an option name it."""
-    source: dict[str, Entry] = {"source": "{source}"}
-    moduli: dict[str, Entry] = {with_heading(name, RESULTS[name].unit): _with_range(name) for name in ("E", "G", "rho")}
+    source: dict[str, ColumnEntry] = {"source": "{source}"}
+    moduli: dict[str, ColumnEntry] = {
+        with_heading(name, RESULTS[name].unit): _with_range(name) for name in ("E", "G", "rho")
+    }
     return [
-        sheet(
+        tabulate(
             "Shafts",
             {"name": "{name}", **source},
             _rows(record["shafts"]),
             'shaft = "conical taper" at the top of a .toml',
             texts=(0, 1),
         ),
-        sheet(
+        tabulate(
             "Materials",
             {"name": "{name}", "use": "{use}", **moduli, "loss": "{loss:g}"},
             _rows(record["materials"]),
@@ -57,7 +59,7 @@ def parts_sheets(record: Record) -> list[Sheet]:
             *(f"{name}: {values['source']}" for name, values in record["materials"].items()),
             texts=(0, 1),
         ),
-        sheet(
+        tabulate(
             "Tips",
             {"name": "{name}", "E, MPa": lambda row: f"{1e-6 * row['E']:g}", **source},
             _rows(record["tips"]),
@@ -71,7 +73,7 @@ def _rows(parts: Record) -> list[Record]:
     return [{"name": name, **values} for name, values in parts.items()]
 
 
-def _with_range(name: str) -> Entry:
+def _with_range(name: str) -> ColumnEntry:
     def text(row: Mapping[str, Any]) -> str:
         middle, low, high = (RESULTS[name].scale * value for value in (row[name], *row["ranges"][name]))
         return f"{middle:.4g} ({low:.4g}–{high:.4g})"

@@ -10,13 +10,12 @@ from cuefem.contact.strike import strike_modes
 from cuefem.cue.materials import material_name
 from cuefem.design.design_changes import design_changes
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.report.advice_table import advice_sheet
 from cuefem.report.charts import Chart
-from cuefem.report.comparison_table import comparison_sheet
-from cuefem.report.contact import contact_part
+from cuefem.report.comparison_table import tabulate_comparison
+from cuefem.report.contact_charts import contact_section
+from cuefem.report.design_changes_table import tabulate_design_changes
 from cuefem.report.drawings import modes_chart
-from cuefem.report.end_mass import end_mass_sheet
-from cuefem.report.everything import report_record
+from cuefem.report.end_mass_table import tabulate_end_masses
 from cuefem.report.first_screen import (
     Shown,
     drawings_markup,
@@ -25,22 +24,23 @@ from cuefem.report.first_screen import (
     scale_markup,
     tiles_markup,
 )
-from cuefem.report.glossary import with_words
-from cuefem.report.modes_table import modes_sheet
-from cuefem.report.scene_words import assumptions, effect_words, plain_cue_line, scene_record
-from cuefem.report.squirt import SHADED, offset_charts
-from cuefem.report.strike_table import regime_warning, strike_record, strike_sheet
+from cuefem.report.glossary import with_glossary
+from cuefem.report.impact_table import tabulate_impacts
+from cuefem.report.modes_table import tabulate_modes
+from cuefem.report.report_sections import report_record
+from cuefem.report.scene_summary import assumptions, effect_text, plain_cue_line, scene_record
+from cuefem.report.squirt_table import SHADED, offset_charts
+from cuefem.report.strike_table import regime_warning, strike_record, tabulate_strike
 from cuefem.report.templates import environment
-from cuefem.report.tip_table import tip_sheet
 from cuefem.report.verdict_table import headline, uncertainty_line
 from cuefem.results.closed_forms import alciatore_a31_mass_ratio
 from cuefem.results.comparison import comparison_record
 from cuefem.results.convergence import resolve
-from cuefem.results.quantities import NONE, RESULTS, with_unit, written
-from cuefem.results.records import Record, Sheet, value_rows, values_sheet
+from cuefem.results.quantities import DASH, RESULTS, format_value, with_unit
+from cuefem.results.records import Record, Table, tabulate_values, value_rows
 from cuefem.results.solved_design import coupled_curve
 from cuefem.scene import Outcome, Scene
-from cuefem.scene.solved_scene import Solved
+from cuefem.scene.solved_scene import SolvedScene
 
 PAGE_OFFSETS = tuple(round(0.03 * i, 2) for i in range(1, 21))  # b/R of the curves
 # Notes on the accuracy of the model; its size is in `cuefem.results.uncertainty`.
@@ -101,7 +101,7 @@ def page_and_headline(
     tuple of str
         The page, and squirt with its uncertainty in one line.
     """
-    solved = Solved(scene)
+    solved = SolvedScene(scene)
     stages: dict[str, Callable[[], Any]] = {
         "outcome": lambda: strike_modes(scene, solved.tip) if rtol is None else resolve(scene, rtol),
         "report": lambda: report_record(scene, offsets=PAGE_OFFSETS, solved=solved, outcome=records["outcome"]),
@@ -111,7 +111,7 @@ def page_and_headline(
         stages["advice"] = lambda: design_changes(scene, solved=solved)
     if other is not None:
         stages["comparison"] = lambda: comparison_record({other[0]: other[1], name: scene})
-        stages["other"] = lambda: coupled_curve(other[1], PAGE_OFFSETS, Solved(other[1]).tip)
+        stages["other"] = lambda: coupled_curve(other[1], PAGE_OFFSETS, SolvedScene(other[1]).tip)
     records: Record = {}
     for key, work in progress([*stages.items()]):
         records[key] = work()
@@ -120,9 +120,9 @@ def page_and_headline(
     context = _context(scene, records) | {"screen": _screen(name, scene, records, other), "comparison": None}
     if other is not None:
         curves = {name: records["squirt"]["models"]["coupled, this cue"], other[0]: records["other"]}
-        context |= {"comparison": comparison_sheet(records["comparison"]), "by_offset": _by_offset(curves, scene)}
+        context |= {"comparison": tabulate_comparison(records["comparison"]), "by_offset": _by_offset(curves, scene)}
     text = environment().get_template("page.html.j2").render(name=name, **lines, **context)
-    return with_words(text) + "\n", headline(records["verdict"])
+    return with_glossary(text) + "\n", headline(records["verdict"])
 
 
 def _screen(name: str, scene: Scene, records: Record, other: tuple[str, Scene] | None) -> dict[str, str]:
@@ -153,25 +153,25 @@ def _context(scene: Scene, records: Record) -> Record:
     stroke = f"{assumptions(about)}, offset b/R {scene.stroke.offset:.4g}"
     shaft = "modes" in records
     return {
-        "facts": [plain_cue_line(scene.cue), stroke, *(f"with {effect_words(effect)}" for effect in scene.effects)],
-        "squirt": written("squirt", outcome.squirt, brief=True),
+        "facts": [plain_cue_line(scene.cue), stroke, *(f"with {effect_text(effect)}" for effect in scene.effects)],
+        "squirt": format_value("squirt", outcome.squirt, brief=True),
         "error": "" if outcome.error is None else f"{100.0 * outcome.error:.2g} %",
         "uncertainty": uncertainty_line(records["verdict"]),
-        "advice": advice_sheet(records["advice"]) if "advice" in records else None,
+        "advice": tabulate_design_changes(records["advice"]) if "advice" in records else None,
         "accuracy": (LAW if scene.contact_terms.tip is not None else SPRING, COMPARING),
         "regime_warning": regime_warning(outcome.regime),
         "modes": modes_chart(scene) if shaft else None,
-        "frequencies": modes_sheet(records["modes"]) if shaft else None,
-        "contact": None if outcome.history is None else contact_part(outcome),
+        "frequencies": tabulate_modes(records["modes"]) if shaft else None,
+        "contact": None if outcome.history is None else contact_section(outcome),
         "by_offset": _by_offset(records["squirt"]["models"], scene, regimes),
         "shaded": SHADED,
-        "numbers": values_sheet("Cue and stroke", value_rows(records["numbers"])),
-        "end_masses": end_mass_sheet(records["end_masses"], about),
+        "numbers": tabulate_values("Cue and stroke", value_rows(records["numbers"])),
+        "end_masses": tabulate_end_masses(records["end_masses"], about),
         "meanings": _meanings(scene, outcome),
         "tables": [
             *([_segments(scene)] if shaft else []),
-            strike_sheet(records["strike"], about),
-            *([] if "tip" not in records else [tip_sheet(records["tip"])]),
+            tabulate_strike(records["strike"], about),
+            *([] if "tip" not in records else [tabulate_impacts(records["tip"])]),
             _energy(outcome),
         ],
     }
@@ -180,7 +180,7 @@ def _context(scene: Scene, records: Record) -> Record:
 SEGMENT_COLUMNS = ("at, mm", "length, mm", "diameter, mm", "bore, mm", "mass", "material")
 
 
-def _segments(scene: Scene) -> Sheet:
+def _segments(scene: Scene) -> Table:
     cue = scene.shaft
     position, diameter = RESULTS["position"].number, RESULTS["radius"].number
     rows = (
@@ -188,13 +188,13 @@ def _segments(scene: Scene) -> Sheet:
             position(x),
             position(s.length),
             f"{diameter(s.tip_diameter)} – {diameter(s.butt_diameter)}",
-            f"{diameter(s.tip_bore)} – {diameter(s.butt_bore)}" if s.tip_bore or s.butt_bore else NONE,
-            written("mass", s.mass),
+            f"{diameter(s.tip_bore)} – {diameter(s.butt_bore)}" if s.tip_bore or s.butt_bore else DASH,
+            format_value("mass", s.mass),
             material_name(s.material) + (f", core {material_name(s.core)}" if s.core else ""),
         )
         for x, s in zip(cue.nodes[:-1], cue.segments, strict=True)
     )
-    return Sheet("Segments, from tip to butt", SEGMENT_COLUMNS, tuple(rows), texts=(5,))
+    return Table("Segments, from tip to butt", SEGMENT_COLUMNS, tuple(rows), texts=(5,))
 
 
 def _by_offset(curves: Mapping[str, Record], scene: Scene, regimes: Sequence[str] = ()) -> tuple[Chart, Chart]:
@@ -214,16 +214,16 @@ def _meanings(scene: Scene, outcome: Outcome) -> list[str]:
         return meanings
     return [
         *meanings,
-        f"[A.31]: with {written('mass', mass)} Alciatore's formula (technical proof A.31, billiards.colostate.edu) "
-        "gives this squirt. By this definition alone measured cues have 5.8 to 14 g (handbook: Effective end mass).",
+        f"[A.31]: with {format_value('mass', mass)} Alciatore's formula (technical proof A.31, billiards.colostate.edu)"
+        " gives this squirt. By this definition alone measured cues have 5.8 to 14 g (handbook: Effective end mass).",
     ]
 
 
-def _energy(outcome: Outcome) -> Sheet:
+def _energy(outcome: Outcome) -> Table:
     whole = outcome.energy["initial"]
     rows = (
         (name, f"{100 * value / whole:.2f} %", with_unit(value, "J") if abs(value) > 1e-9 * whole else "0")
         for name, value in outcome.energy.items()
         if name != "initial"
     )
-    return Sheet("Energy balance", ("", "share", "energy"), tuple(rows))
+    return Table("Energy balance", ("", "share", "energy"), tuple(rows))

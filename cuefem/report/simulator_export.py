@@ -12,9 +12,9 @@ from __future__ import annotations
 from cuefem.contact.strike import strike_modes
 from cuefem.results.closed_forms import alciatore_a31, alciatore_a31_mass_ratio
 from cuefem.results.quantities import RESULTS, units_of, with_unit
-from cuefem.results.records import Record, Sheet, sheet
+from cuefem.results.records import Record, Table, tabulate
 from cuefem.scene import Scene
-from cuefem.scene.solved_scene import Solved
+from cuefem.scene.solved_scene import SolvedScene
 
 VERSION = "0.6.0"  # the release whose CueSpecs these are; .ci/pooltool installs it
 INERTIA = 0.4  # its 5/2
@@ -49,7 +49,7 @@ def pooltool_record(name: str, scene: Scene, file: str = "cue.json") -> Record:
     offset, speed = float(scene.stroke.offset), float(scene.stroke.speed)
     if offset == 0:
         raise ValueError("[A.31] has no squirt at offset 0; give another --offset")
-    outcome = strike_modes(scene, Solved(scene).tip)
+    outcome = strike_modes(scene, SolvedScene(scene).tip)
     if outcome.regime == "miscue":
         raise ValueError(f"the stroke is a miscue at offset {offset} and has no end mass")
     mass = float(scene.ball.mass / alciatore_a31_mass_ratio(offset, float(outcome.squirt), inertia=INERTIA))
@@ -101,14 +101,14 @@ def _notes(scene: Scene) -> list[str]:
     return notes
 
 
-def pooltool_sheets(record: Record, written: bool) -> list[Sheet | str]:
+def tabulate_pooltool(record: Record, written: bool) -> list[Table | str]:
     """The end mass beside pooltool's default, and the line that reads the file. written: whether there is a file."""
     stroke = f"b/R {record['offset']:.4g}, {record['speed']:g} m/s, contact {with_unit(record['contact_time'], 's', 3)}"
     rows = [
         ("this cue", record["CueSpecs"]["end_mass"], record["squirt"]),
         ("pooltool's default cue", record["default_end_mass"], record["default_squirt"]),
     ]
-    table = sheet(
+    table = tabulate(
         f"End mass for pooltool, {stroke}",
         {"": "{name}", "end mass": "{mass}", "squirt in pooltool": "squirt"},
         [

@@ -7,18 +7,18 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from cuefem.beam.tip import TipModes
+from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import LumpedCue
 from cuefem.endmass.definitions import stick_at_offsets
 from cuefem.endmass.lumped import impulse, lump_modes
-from cuefem.report.scene_words import assumptions, tip_effect_notes
+from cuefem.report.scene_summary import assumptions, tip_effect_notes
 from cuefem.results.closed_forms import alciatore_a31, pivot_length
-from cuefem.results.quantities import DEFINITION_OF_MISCUE, REGIMES, RESULTS, written
-from cuefem.results.records import Record, Sheet
+from cuefem.results.quantities import MISCUE_DEFINITION, REGIMES, RESULTS, format_value
+from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import at_offset
 from cuefem.scene import Outcome, Scene
-from cuefem.scene.solved_scene import Solved
+from cuefem.scene.solved_scene import SolvedScene
 
 
 def lumped_cues(
@@ -42,7 +42,7 @@ def two_part_cues(scene: Scene, offsets: Sequence[float], tip: TipModes) -> list
     """
     if scene.lumped is not None:
         return [replace(scene.lumped, coupling=0.0)] * len(offsets)
-    masses = stick_at_offsets(tip, scene.bare, offsets)
+    masses = stick_at_offsets(tip, scene.without_tip_effects, offsets)
     return [None if math.isnan(mass) else LumpedCue(scene.axial_mass, mass) for mass in masses]
 
 
@@ -84,7 +84,7 @@ def outcome_record(outcome: Outcome, scene: Scene) -> Record:
     return record | {"pivot_length": pivot_length(scene, outcome.squirt)}
 
 
-def strike_record(scene: Scene, outcome: Outcome | None = None, *, solved: Solved | None = None) -> Record:
+def strike_record(scene: Scene, outcome: Outcome | None = None, *, solved: SolvedScene | None = None) -> Record:
     """One stroke by each model, by the model's name; [A.31] has squirt and pivot length only.
 
     "coupled": the vibrating cue, integrated in time. "two-part" (impulse solver) and "A.31": with the end mass for
@@ -92,9 +92,9 @@ def strike_record(scene: Scene, outcome: Outcome | None = None, *, solved: Solve
     the impulse solver with the coupling by effects at the tip, if any. outcome: of the coupled strike, solved: the
     scene's modes, if already computed.
     """
-    solved = solved or Solved(scene)
+    solved = solved or SolvedScene(scene)
     offset = scene.stroke.offset
-    cues, slope = lumped_cues(scene, [offset], solved.tip_stuck)
+    cues, slope = lumped_cues(scene, [offset], solved.stick_tip)
     models = {"coupled": outcome_record(outcome or strike_modes(scene, solved.tip), scene)}
     models |= {name: outcome_record(lumped_strike(scene, cue), scene) for name, (cue,) in cues.items() if cue}
     (cue,) = cues["two-part"]
@@ -120,8 +120,8 @@ LUMPED = (
     "cue above that of its tip"
 )
 PIVOT = "distance from the tip to the point about which pivoting the cue cancels squirt (back-hand English)"
-OFF = "uncertainty of squirt: cuefem report"
-MISCUE = f"miscue: {DEFINITION_OF_MISCUE}. Ignore squirt and pivot length"
+UNCERTAINTY_NOTE = "uncertainty of squirt: cuefem report"
+MISCUE = f"miscue: {MISCUE_DEFINITION}. Ignore squirt and pivot length"
 
 
 def regime_warning(regime: str) -> str:
@@ -129,7 +129,7 @@ def regime_warning(regime: str) -> str:
     return MISCUE if regime == "miscue" else REGIMES[regime] if regime in ("partial slip", "gross slip") else ""
 
 
-def strike_sheet(record: Record, scene: Record) -> Sheet:
+def tabulate_strike(record: Record, scene: Record) -> Table:
     """A column for each model, a row for each quantity that any model has."""
     coupled = record["models"]["coupled"]
     rows = []
@@ -137,7 +137,7 @@ def strike_sheet(record: Record, scene: Record) -> Sheet:
         values = [model.get(name) for model in record["models"].values()]
         if any(value is not None for value in values):
             parts = (value if value is None or part is None else value[part] for value in values)
-            rows.append((RESULTS[name].label + component, *(written(name, value) for value in parts)))
+            rows.append((RESULTS[name].label + component, *(format_value(name, value) for value in parts)))
     miscue = [MISCUE] if coupled["regime"] == "miscue" else []
     accuracy = (
         ", numerical error of squirt at most 0.1 % for 95 % of default strikes"
@@ -159,10 +159,10 @@ def strike_sheet(record: Record, scene: Record) -> Sheet:
         *([f"natural pivot length: {PIVOT}"] if any(row[0] == RESULTS["pivot_length"].label for row in rows) else []),
         *([] if miscue else [f"contact: {REGIMES[coupled['regime']]}"]),
         *_on_speed(record, scene),
-        OFF,
+        UNCERTAINTY_NOTE,
         *tip_effect_notes(scene, f"two-part and A.31 exclude the effects at the tip{lumped}"),
     )
-    return Sheet(f"Strike at offset b/R = {scene['stroke']['offset']:.4g}", ("", *record["models"]), tuple(rows), notes)
+    return Table(f"Strike at offset b/R = {scene['stroke']['offset']:.4g}", ("", *record["models"]), tuple(rows), notes)
 
 
 def _on_speed(record: Record, scene: Record) -> list[str]:

@@ -17,13 +17,13 @@ from cuefem.cue import Cue
 from cuefem.cue.materials import material_name
 from cuefem.design import Levels, Normal, Span, Study, Vary
 from cuefem.design.optimum import Optimum, Problem
-from cuefem.design.scatter import Drivers, Scatter
+from cuefem.design.scatter import Scatter, SobolIndices
 from cuefem.design.study_result import StudyResult
 from cuefem.design.study_statistics import SweepStatistics, sweep_statistics
 from cuefem.parameters.parameter import Path
 from cuefem.parameters.parts import Layout
-from cuefem.results.quantities import NONE, TRADE, significant, with_heading, with_unit
-from cuefem.results.records import Record, Sheet
+from cuefem.results.quantities import DASH, DISPLAY_UNITS, significant, with_heading, with_unit
+from cuefem.results.records import Record, Table
 from cuefem.scene import Scene
 
 _FIELD = re.compile(rf"({'|'.join(field.name for field in fields(Scene))})(\[[\d*]+\])?(\.\w+(\[[\d*]+\])?)+")
@@ -32,7 +32,7 @@ SHOWN = 7  # designs of a Pareto front
 MIN_SHARE = 0.01  # of the variance: a smaller cause is not named among the strongest
 
 
-def varied_pieces(vary: Sequence[Vary], base: Scene) -> dict[str, list[str]]:
+def varied_segments(vary: Sequence[Vary], base: Scene) -> dict[str, list[str]]:
     """The segments of the cue that each parameter varies, with their extents, by the parameter's name."""
     pieces = {each.name: _segments(base.shaft, each.fields(base)) for each in vary} if base.lumped is None else {}
     return {name: texts for name, texts in pieces.items() if texts}
@@ -54,16 +54,16 @@ def _segments(cue: Cue, paths: Sequence[Path]) -> list[str]:
     return [f"{name}, {1e3 * first:.5g} to {1e3 * last:.5g} mm" for name, (first, last) in pieces.items()]
 
 
-def varied_sheet(study: Study) -> Sheet:
+def tabulate_parameters(study: Study) -> Table:
     """A row for each varied parameter: its name, its range with the unit, and the segments that it varies."""
-    pieces = varied_pieces(study.vary, study.base)
+    pieces = varied_segments(study.vary, study.base)
     rows = tuple(
-        (column_label(vary.name), range_words(vary, unit), ", ".join(pieces.get(vary.name, ())))
+        (column_label(vary.name), range_text(vary, unit), ", ".join(pieces.get(vary.name, ())))
         for vary, unit in zip(study.vary, study.units, strict=False)
     )
     notes = ("positions from the front of the modelled cue",) if pieces else ()
     head = ("parameter", "range", "segments")
-    return Sheet(
+    return Table(
         "Varied parameters",
         head if pieces else head[:2],
         tuple(row[: 2 + bool(pieces)] for row in rows),
@@ -72,9 +72,9 @@ def varied_sheet(study: Study) -> Sheet:
     )
 
 
-def range_words(vary: Vary, unit: str) -> str:
+def range_text(vary: Vary, unit: str) -> str:
     """The values of a varied parameter, with their unit."""
-    scale, name = TRADE.get(unit, (1.0, unit))
+    scale, name = DISPLAY_UNITS.get(unit, (1.0, unit))
     match vary.range:
         case Levels(values):
             text = ", ".join(v if isinstance(v, str) else f"{scale * v:.4g}" for v in values)
@@ -104,31 +104,31 @@ def shown(value: Any, unit: str) -> str:
     """A value in the display unit of an SI unit, without the unit; a name as it is."""
     if isinstance(value, str):
         return str(value)
-    return significant(TRADE.get(unit, (1.0, unit))[0] * float(value))
+    return significant(DISPLAY_UNITS.get(unit, (1.0, unit))[0] * float(value))
 
 
 def study_record(result: StudyResult) -> Record:
     """The results of a study, SI."""
     if isinstance(result.definition, Problem) and result.optimum:
         return optimum_record(result.definition, result.optimum)
-    if isinstance(result.definition, Scatter) and result.drivers:
+    if isinstance(result.definition, Scatter) and result.sobol_indices:
         about = {"count": result.definition.count, "seed": result.definition.seed}
-        return about | {"responses": scatter_record(result, result.drivers)}
+        return about | {"responses": scatter_record(result, result.sobol_indices)}
     sweep, failed = sweep_statistics(result), [*result.failures.values()]
     counts = {"designs": len(result.rows), "failed": len(failed), "first_failure": failed[0] if failed else None}
     return counts | {"summary": sweep and sweep_record(sweep)}
 
 
-def study_sheets(result: StudyResult) -> list[Sheet | str]:
+def tabulate_study(result: StudyResult) -> list[Table | str]:
     """The tables of a study: its varied parameters, and its results by kind."""
-    varies = varied_sheet(result.study)
+    varies = tabulate_parameters(result.study)
     if isinstance(result.definition, Problem) and result.optimum:
-        return [varies, *optimum_sheets(result.definition, result.optimum)]
-    if isinstance(result.definition, Scatter) and result.drivers:
-        return [varies, *scatter_sheets(result, result.definition, result.drivers)]
+        return [varies, *tabulate_optimum(result.definition, result.optimum)]
+    if isinstance(result.definition, Scatter) and result.sobol_indices:
+        return [varies, *tabulate_scatter(result, result.definition, result.sobol_indices)]
     sweep, failures = sweep_statistics(result), [*result.failures.items()]
     lines = [f"{len(failures)} failed, the first of them design {n}: {reason}" for n, reason in failures[:1]]
-    return [*lines, varies, *([] if sweep is None else sweep_sheets(sweep))]
+    return [*lines, varies, *([] if sweep is None else tabulate_sweep(sweep))]
 
 
 def sweep_record(sweep: SweepStatistics) -> Record:
@@ -155,7 +155,7 @@ def sweep_record(sweep: SweepStatistics) -> Record:
     return record
 
 
-def sweep_sheets(sweep: SweepStatistics) -> list[Sheet | str]:
+def tabulate_sweep(sweep: SweepStatistics) -> list[Table | str]:
     """The best design for each response, the sensitivities, and evenly spaced designs of the Pareto front."""
     labels = [*map(column_label, sweep.names)]
     heads = [*map(with_heading, labels, sweep.units)]
@@ -177,9 +177,9 @@ def sweep_sheets(sweep: SweepStatistics) -> list[Sheet | str]:
             for share, trend in zip(sweep.shares[:, k], sweep.trends, strict=True)
         )
         sensitivities.append((response.label, *parts))
-    sheets: list[Sheet | str] = [
-        Sheet("Best designs", ("best for", "value", "all designs", "design", *heads), tuple(best)),
-        Sheet(
+    sheets: list[Table | str] = [
+        Table("Best designs", ("best for", "value", "all designs", "design", *heads), tuple(best)),
+        Table(
             "Sensitivity: share of a result's variance between designs by one parameter alone",
             ("result", *labels),
             tuple(sensitivities),
@@ -201,10 +201,10 @@ def sweep_sheets(sweep: SweepStatistics) -> list[Sheet | str]:
         else f"{two[0].label} and {two[1].label}: one design is the best for both"
     )
     head = ("design", *(response.heading for response in two), *heads)
-    return [*sheets, Sheet(f"Trade-off, {title}", head, rows)]
+    return [*sheets, Table(f"Trade-off, {title}", head, rows)]
 
 
-def scatter_record(result: StudyResult, drivers: Drivers) -> Record:
+def scatter_record(result: StudyResult, drivers: SobolIndices) -> Record:
     """The distribution of each response, and the shares of its causes in the variance."""
     parts = ("first", "first_interval", "total", "total_interval")
     return {
@@ -220,7 +220,7 @@ def scatter_record(result: StudyResult, drivers: Drivers) -> Record:
     }
 
 
-def scatter_sheets(result: StudyResult, scatter: Scatter, drivers: Drivers) -> list[Sheet | str]:
+def tabulate_scatter(result: StudyResult, scatter: Scatter, drivers: SobolIndices) -> list[Table | str]:
     """The spread of each response, the shares of its causes, and a sentence on both."""
     spreads, rows, bold, lines = list[tuple[str, ...]](), list[tuple[str, ...]](), dict[int, str](), list[str]()
     for k, response in enumerate(scatter.study.responses):
@@ -234,7 +234,7 @@ def scatter_sheets(result: StudyResult, scatter: Scatter, drivers: Drivers) -> l
             rows.append((f"  {drivers.causes[i]}", *(_share(value[i, k], ends[:, i, k]) for value, ends in both)))
         total = np.clip(drivers.total[:, k], 0.0, 1.0)  # an estimate may be outside
         most = [f"{drivers.causes[i]} ({100 * total[i]:.0f} %)" for i in strongest[:2] if total[i] >= MIN_SHARE]
-        unit = TRADE.get(response.unit, (1, response.unit))[1]
+        unit = DISPLAY_UNITS.get(response.unit, (1, response.unit))[1]
         ends = f"{response.label}: 90 % of the designs from {numbers['5 %']} to {numbers['95 %']} {unit}".rstrip()
         named = f"the strongest cause{'s are' if len(most) > 1 else ' is'} {' and '.join(most)}"
         lines.append(f"{ends}; {named if most else 'no cause stands out'}")
@@ -246,8 +246,8 @@ def scatter_sheets(result: StudyResult, scatter: Scatter, drivers: Drivers) -> l
         *(f"{cause}: {', '.join(names)}" for cause, names in scatter.groups.items()),
     )
     return [
-        Sheet(f"Spread of {2 * scatter.count} designs", ("response", *numbers), tuple(spreads), (quantiles,)),
-        Sheet(
+        Table(f"Spread of {2 * scatter.count} designs", ("response", *numbers), tuple(spreads), (quantiles,)),
+        Table(
             "Sensitivity: share of the variance, %",
             ("response, cause", "first-order", "total"),
             tuple(rows),
@@ -265,7 +265,7 @@ def _share(value: float, ends: Any) -> str:
 
 def optimum_record(problem: Problem, best: Optimum) -> Record:
     """The best design, its responses and active constraints, and the evaluations."""
-    aim = {"maximize" if problem.largest else "minimize": problem.objective.name}
+    aim = {"maximize" if problem.maximize else "minimize": problem.objective.name}
     return {
         "objective": aim,
         "value": best.responses[problem.objective.name],
@@ -278,7 +278,7 @@ def optimum_record(problem: Problem, best: Optimum) -> Record:
     }
 
 
-def optimum_sheets(problem: Problem, best: Optimum) -> list[Sheet | str]:
+def tabulate_optimum(problem: Problem, best: Optimum) -> list[Table | str]:
     """The best design, its active constraints, and the best design for each choice."""
     units = dict(zip(problem.study.columns, problem.study.units, strict=True))
     labels = {response.name: response.label for response in problem.study.responses}
@@ -288,12 +288,12 @@ def optimum_sheets(problem: Problem, best: Optimum) -> list[Sheet | str]:
 
     both = {**best.responses, **best.values}
     names = {name: labels.get(name) or column_label(name) for name in both}
-    aim = f"{'maximize' if problem.largest else 'minimize'} {problem.objective.label}"
+    aim = f"{'maximize' if problem.maximize else 'minimize'} {problem.objective.label}"
     limits = (limit.rsplit(" ", 2) for limit in best.active)
     active = [f"{names[name]} {sign} {text(name, float(bound))}" for name, sign, bound in limits]
-    tables: list[Sheet | str] = [
+    tables: list[Table | str] = [
         f"{aim}: {best.evaluations} designs computed",
-        Sheet("Best design", ("", "value"), tuple((names[name], text(name, value)) for name, value in both.items())),
+        Table("Best design", ("", "value"), tuple((names[name], text(name, value)) for name, value in both.items())),
         f"active constraints: {', '.join(active) or 'none'}",
     ]
     if best.unfinished:
@@ -303,11 +303,11 @@ def optimum_sheets(problem: Problem, best: Optimum) -> list[Sheet | str]:
         rows = tuple(
             (
                 *(text(name, value) for name, value in choice.values.items()),
-                NONE if choice.reason else shown(choice.objective, problem.objective.unit),
+                DASH if choice.reason else shown(choice.objective, problem.objective.unit),
                 choice.reason,
             )
             for choice in best.choices
         )
         texts = (*range(len(head) - 2), len(head) - 1)
-        tables.append(Sheet("Best design for each choice", head, rows, texts=texts))
+        tables.append(Table("Best design for each choice", head, rows, texts=texts))
     return tables

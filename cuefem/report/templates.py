@@ -12,7 +12,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from cuefem.report.charts import Chart
 from cuefem.report.drawings import CueDrawing
-from cuefem.results.records import Sheet
+from cuefem.results.records import Table
 
 
 @cache
@@ -42,12 +42,12 @@ def chart_markup(drawing: Chart, name: str) -> str:
     return str(_macros().chart(drawing, name))
 
 
-def sheet_markup(sheet: Sheet) -> str:
+def table_markup(sheet: Table) -> str:
     """A table below its title, with its notes."""
     return f"<h2>{escape(sheet.title)}</h2>{_macros().table(sheet)}"
 
 
-def plain_page(name: str, things: Sequence[str | Sheet | Chart | CueDrawing]) -> str:
+def plain_page(name: str, things: Sequence[str | Table | Chart | CueDrawing]) -> str:
     """Lines, tables, charts and drawings as a self-contained page."""
     groups = [[*group] for _, group in groupby(filter(None, things), type)]
     return environment().get_template("plain.html.j2").render(name=name, groups=groups)

@@ -6,13 +6,13 @@ import math
 from typing import NamedTuple
 
 from cuefem.contact.strike import strike_modes
-from cuefem.io.ready import ready_cues
-from cuefem.results.quantities import scaled, signed, with_unit
-from cuefem.results.records import Record, Sheet
-from cuefem.results.uncertainty import SHAFTS
+from cuefem.io.reference_cues import reference_cues
+from cuefem.results.quantities import format_change, to_display, with_unit
+from cuefem.results.records import Record, Table
+from cuefem.results.uncertainty import SHAFT_ERROR
 from cuefem.results.verdict import verdict_record
 from cuefem.scene import Scene
-from cuefem.scene.solved_scene import Solved
+from cuefem.scene.solved_scene import SolvedScene
 
 
 def verdict(scene: Scene) -> Record:
@@ -28,8 +28,8 @@ def verdict(scene: Scene) -> Record:
     dict
         "squirt", rad, and "squirt_error", its uncertainty (1 sigma), rad; "offset", b/R; "uncertainty", its relative
         parts (model, inputs, computation, and their total in quadrature); "inputs", the relative part of each uncertain
-        parameter; "among", for each reference cue its squirt, the relative "difference" of the scene's, its error, and
-        whether the two are "distinct": the difference is larger than its error.
+        parameter; "references", for each reference cue its squirt, the relative "difference" of the scene's, its error,
+        and whether the two are "distinct": the difference is larger than its error.
 
     Raises
     ------
@@ -42,55 +42,55 @@ def verdict(scene: Scene) -> Record:
     >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
     >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43))
     >>> record = cf.verdict(scene)
-    >>> 0.1 < record["squirt_error"] / record["squirt"] < 0.3, "plain maple" in record["among"]
+    >>> 0.1 < record["squirt_error"] / record["squirt"] < 0.3, "plain maple" in record["references"]
     (True, True)
     """
-    solved = Solved(scene)
-    return verdict_record(scene, strike_modes(scene, solved.tip), ready_cues(), solved=solved)
+    solved = SolvedScene(scene)
+    return verdict_record(scene, strike_modes(scene, solved.tip), reference_cues(), solved=solved)
 
 
-def squirt_words(record: Record) -> tuple[str, str]:
+def squirt_text(record: Record) -> tuple[str, str]:
     """Squirt and its uncertainty as text: "1.82°" and "0.31°"."""
     squirt, error = abs(record["squirt"]), record["squirt_error"]
-    decimals = 3 if error and scaled(error, "rad") < 0.01 else 2
+    decimals = 3 if error and to_display(error, "rad") < 0.01 else 2
     return with_unit(squirt, "rad", decimals=decimals), with_unit(error, "rad", decimals=decimals)
 
 
 def headline(record: Record) -> str:
     """Squirt with its uncertainty as one line."""
-    squirt, error = squirt_words(record)
+    squirt, error = squirt_text(record)
     off_line = with_unit(math.tan(abs(record["squirt"])), "m", decimals=0)
-    where = f"at b/R {record['offset']:.4g}, {way_out(record['offset'])}" + (
+    where = f"at b/R {record['offset']:.4g}, {offset_text(record['offset'])}" + (
         "; the stroke itself is head-on" if record["head_on"] else ""
     )
     return f"squirt {squirt.rstrip('°')} ± {error} ({where}): the ball is {off_line} off line after 1 m"
 
 
-def way_out(offset: float) -> str:
+def offset_text(offset: float) -> str:
     """The offset as a share of the radius: "3/10 of the way to the edge"."""
     tenths, percent = round(10 * abs(offset)), 100 * abs(offset)
     part = f"{tenths}/10" if abs(percent - 10 * tenths) < 0.5 else f"{percent:.0f} %"
     return f"{part} of the way to the edge"
 
 
-def difference_words(difference: float, error: float) -> str:
+def difference_text(difference: float, error: float) -> str:
     """A relative difference with its uncertainty: "−3 ± 8 %"."""
     digits = 0 if error >= 0.02 else 1 if error >= 0.002 else 2
-    return signed(100 * difference, digits, f"± {100 * error:.{digits}f} %")
+    return format_change(100 * difference, digits, f"± {100 * error:.{digits}f} %")
 
 
 def squirt_difference(difference: float, error: float, distinct: bool) -> str:
     """A difference of squirt, followed by the name of the other cue: "15 ± 8 % less squirt than"."""
-    text = difference_words(difference, error)
+    text = difference_text(difference, error)
     more = "more" if difference > 0 else "less"
     return f"{text[1:]} {more} squirt than" if distinct else f"{text} squirt, not distinct from"
 
 
-def standing(record: Record) -> list[str]:
+def reference_comparison(record: Record) -> list[str]:
     """Squirt relative to the first reference cue as a sentence; empty without reference cues."""
     return [
         f"{squirt_difference(own['difference'], own['error'], own['distinct'])} a {first} shaft with the same tip."
-        for first, own in [*record["among"].items()][:1]
+        for first, own in [*record["references"].items()][:1]
     ]
 
 
@@ -100,7 +100,7 @@ def uncertainty_line(record: Record) -> str:
     return (
         f"±: uncertainty (1σ): model {parts['model']} (from published squirt), unmeasured wood and tip "
         f"{parts['inputs']}, numerical {parts['computation']}; combined {parts['total']}. Of a difference between "
-        f"two shafts: {_percent(SHAFTS)} of it (model) or that of their wood if larger, and 1 % of squirt."
+        f"two shafts: {_percent(SHAFT_ERROR)} of it (model) or that of their wood if larger, and 1 % of squirt."
     )
 
 
@@ -122,16 +122,18 @@ class ScaleRow(NamedTuple):
     high: float
 
 
-def scale(record: Record, name: str = "yours", other: tuple[str, float | None] | None = None) -> list[ScaleRow]:
+def reference_scale(
+    record: Record, name: str = "yours", other: tuple[str, float | None] | None = None
+) -> list[ScaleRow]:
     """The cues by their squirt, the lowest first, the design with its uncertainty. other: name and squirt, rad, of one
     more cue."""
     mine, error = abs(record["squirt"]), record["squirt_error"]
-    squirts = {cue: abs(values["squirt"]) for cue, values in record["among"].items()}
+    squirts = {cue: abs(values["squirt"]) for cue, values in record["references"].items()}
     first = next(iter(squirts), "")
     compared, squirt = other or ("", None)
     if squirt is not None and not record["head_on"]:
         squirts.setdefault(compared, abs(squirt))
-    text, error_text = squirt_words(record)
+    text, error_text = squirt_text(record)
     decimals = len(text.rstrip("°").partition(".")[2])
     part = 100 / (1.05 * max([mine + error, *squirts.values()]) or 1.0)
     interval = (part * max(0.0, mine - error), part * (mine + error))
@@ -144,15 +146,15 @@ def scale(record: Record, name: str = "yours", other: tuple[str, float | None] |
     return sorted(rows, key=lambda row: row.at)
 
 
-def verdict_things(record: Record) -> list[Sheet | str]:
+def tabulate_verdict(record: Record) -> list[Table | str]:
     """The verdict for the terminal: headline, comparison, and the table of reference cues."""
-    rows = scale(record)
+    rows = reference_scale(record)
     own = {i: "bold" for i, row in enumerate(rows) if row.kind == "own"}
     head = ("cue", "squirt", "less to more squirt", "")
     cells = tuple((row.name, row.text, _bar(row), row.difference) for row in rows)
     title = "Reference pool cues, with the same tip and stroke"
-    table = Sheet(title, head, cells, (uncertainty_line(record),), (0, 2, 3), own)
-    return [headline(record), *standing(record), "", table]
+    table = Table(title, head, cells, (uncertainty_line(record),), (0, 2, 3), own)
+    return [headline(record), *reference_comparison(record), "", table]
 
 
 BAR = 32  # characters of the scale in a terminal

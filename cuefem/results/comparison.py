@@ -11,18 +11,18 @@ from typing import Any, NamedTuple
 from cuefem.parameters.parameter import PARAMETERS
 from cuefem.parameters.parts import main_material
 from cuefem.results.records import Record
-from cuefem.results.solved_design import SolvedDesign, asked, off_centre
-from cuefem.results.uncertainty import FLOOR, changes_by_input, difference_record, model_share
+from cuefem.results.solved_design import SolvedDesign, computable_results, off_centre
+from cuefem.results.uncertainty import RATIO_FLOOR, changes_by_input, difference_record, model_share
 from cuefem.scene import Scene
-from cuefem.scene.solved_scene import Solved
+from cuefem.scene.solved_scene import SolvedScene
 
 # The compared results, by their names in the registry.
-OF_SQUIRT = ("squirt", "end_mass_squirt", "pivot_length")  # derived from squirt: they include the model error
-OF_SHAPE = ("tip_stiffness", "shaft_mass", "mass")
+SQUIRT_RESULTS = ("squirt", "end_mass_squirt", "pivot_length")  # derived from squirt: they include the model error
+SHAPE_RESULTS = ("tip_stiffness", "shaft_mass", "mass")
 N_FREQUENCIES = 3
-ALL = (*OF_SQUIRT, *OF_SHAPE, *(f"frequency_{k}" for k in range(1, N_FREQUENCIES + 1)))
-OTHER_FLOOR = 2e-3  # relative, of shape, weights, frequencies: 0.2 g of 100 g, 0.01 mm of 13 mm to the fourth power
-Follow = Callable[[Sequence[Any]], Iterable[Any]]
+RESULT_NAMES = (*SQUIRT_RESULTS, *SHAPE_RESULTS, *(f"frequency_{k}" for k in range(1, N_FREQUENCIES + 1)))
+SHAPE_FLOOR = 2e-3  # relative, of shape, weights, frequencies: 0.2 g of 100 g, 0.01 mm of 13 mm to the fourth power
+Progress = Callable[[Sequence[Any]], Iterable[Any]]
 
 
 class _Compared(NamedTuple):
@@ -39,8 +39,8 @@ def comparison_record(
     scenes: Mapping[str, Scene],
     *,
     same_shaft: bool = False,
-    names: Sequence[str] = ALL,
-    follow: Follow = list,
+    names: Sequence[str] = RESULT_NAMES,
+    follow: Progress = list,
 ) -> Record:
     """Numbers of some cues, SI, and the relative differences of the others from the first with their uncertainty.
 
@@ -53,7 +53,7 @@ def comparison_record(
     All cues are struck with the ball, the speed and the offset of the first. names: the numbers that are compared.
     follow: shows how far the work is.
     """
-    struck = struck_alike(scenes)
+    struck = with_same_stroke(scenes)
     woods = {main_material(scene.shaft).E for scene in struck.values()}
     if same_shaft and len(woods) > 1:
         found = " and ".join(f"{E / 1e9:.4g} GPa" for E in sorted(woods))
@@ -74,7 +74,7 @@ def comparison_record(
     }
 
 
-def struck_alike(scenes: Mapping[str, Scene]) -> dict[str, Scene]:
+def with_same_stroke(scenes: Mapping[str, Scene]) -> dict[str, Scene]:
     """The scenes with the ball and the stroke of the first, off centre."""
     first = off_centre(next(iter(scenes.values())))
     return {name: replace(scene, ball=first.ball, stroke=first.stroke) for name, scene in scenes.items()}
@@ -84,7 +84,7 @@ def struck_alike(scenes: Mapping[str, Scene]) -> dict[str, Scene]:
 def _compared(scene: Scene, names: tuple[str, ...]) -> _Compared:
     numbers = _numbers(scene, names)
     try:
-        regime = SolvedDesign(Solved(scene)).strike().regime
+        regime = SolvedDesign(SolvedScene(scene)).strike().regime
     except (ValueError, RuntimeError):  # no squirt either
         regime = ""
     return _Compared(scene, numbers, regime, changes_by_input(scene, numbers, lambda made: _numbers(made, names)))
@@ -93,7 +93,7 @@ def _compared(scene: Scene, names: tuple[str, ...]) -> _Compared:
 def _numbers(scene: Scene, names: Sequence[str]) -> dict[str, float]:
     """The compared results of a scene; nan where it has none, such as squirt of a miscue."""
     _ = scene.shaft  # ValueError for a lumped cue, which has no shape
-    design, known = SolvedDesign(Solved(scene)), asked()
+    design, known = SolvedDesign(SolvedScene(scene)), computable_results()
 
     def value(name: str) -> float:
         base, _, mode = name.partition("frequency_")
@@ -101,7 +101,7 @@ def _numbers(scene: Scene, names: Sequence[str]) -> dict[str, float]:
         argument: Any = int(mode) if mode else float(scene.stroke.offset) if name == "pivot_length" else None
         assert of is not None
         try:
-            if name in OF_SQUIRT and design.strike().regime == "miscue":
+            if name in SQUIRT_RESULTS and design.strike().regime == "miscue":
                 return math.nan
             return of(design, argument)
         except (ValueError, RuntimeError):
@@ -118,19 +118,19 @@ def _differences(first: _Compared, other: _Compared, *, same_shaft: bool) -> dic
         if not ratio > 0:
             continue
         inputs = {**first.inputs, **other.inputs}
-        errors = [_of_input(first, other, key, name, same_shaft=same_shaft) for key in inputs]
-        share, floor = 0.0, OTHER_FLOOR
-        if name in OF_SQUIRT:
-            share, floor = model_share(first.scene, other.scene), FLOOR
+        errors = [_input_error(first, other, key, name, same_shaft=same_shaft) for key in inputs]
+        share, floor = 0.0, SHAPE_FLOOR
+        if name in SQUIRT_RESULTS:
+            share, floor = model_share(first.scene, other.scene), RATIO_FLOOR
         difference = difference_record(ratio, share, *errors, floor=floor)
         if not math.isnan(difference["error"]):  # a strike at a limit of an input's range is a miscue
             made[name] = difference
     return made
 
 
-def _of_input(first: _Compared, other: _Compared, key: str, name: str, *, same_shaft: bool) -> float:
+def _input_error(first: _Compared, other: _Compared, key: str, name: str, *, same_shaft: bool) -> float:
     """Uncertainty of the logarithm of a ratio of two cues' results by one input."""
     changes = [each.inputs.get(key, {}).get(name, 0.0) for each in (first, other)]
     known = PARAMETERS[key]
-    shared = known.value(first.scene) == known.value(other.scene) if known.of_tip else same_shaft
+    shared = known.value(first.scene) == known.value(other.scene) if known.is_shareable else same_shaft
     return abs(changes[1] - changes[0]) if shared else math.hypot(*changes)

@@ -12,20 +12,20 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cuefem.beam.tip import TipModes, lumped_tip_modes
-from cuefem.beam.waves import even_mesh_for, modes_below
+from cuefem.beam.tip_modes import TipModes, lumped_tip_modes
+from cuefem.beam.wave_phases import modes_below, uniform_mesh_for
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
 from cuefem.endmass.definitions import definition_of
 from cuefem.quantity.fields import Quantity, check_kind
-from cuefem.scene import MOST_STEPS, Outcome, Resolution, Scene
-from cuefem.scene.solved_scene import MAX_MODES, ended_tip_modes
+from cuefem.scene import MAX_STEPS, Outcome, Resolution, Scene
+from cuefem.scene.solved_scene import MAX_MODES, corrected_tip_modes
 
 FIRST_MODES, FIRST_STEPS = 12, 100  # modes and steps of the first level
-JUDGED_BY = 2  # previous levels
-PERIODS = 3  # that the first level's modes have at least in a contact
+COMPARED_LEVELS = 2  # previous levels
+MIN_PERIODS = 3  # that the first level's modes have at least in a contact
 # Squirt is judged against no less than this part of sin(phi), rad: where it vanishes a relative error means nothing.
-LEAST_SQUIRT = 0.01
+MIN_SQUIRT = 0.01
 
 RTOL = Quantity("", "(0, 1)")
 
@@ -77,11 +77,11 @@ def resolve(scene: Scene, rtol: float) -> Outcome:
     """
     check_kind("resolve scene", scene, Scene)
     rtol = RTOL.check("resolve rtol", rtol)
-    *_, last = levels(scene, rtol)
+    *_, last = refinement_levels(scene, rtol)
     return replace(last.result, error=last.error)
 
 
-def levels(scene: Scene, rtol: float) -> Iterator[Level]:
+def refinement_levels(scene: Scene, rtol: float) -> Iterator[Level]:
     """Strikes at ever more modes and steps, up to the first with an error within ``rtol``, or `MAX_MODES` modes."""
     strike = lambda tip, at: strike_modes(scene, tip, steps=at.steps)  # noqa: E731
     return _refined(scene, rtol, strike, lambda outcome, best: relative_error(outcome, best, scene))
@@ -91,13 +91,13 @@ def _refined(
     scene: Scene, rtol: float, solve: Callable[[TipModes, Resolution], Any], difference: Callable[[Any, Any], float]
 ) -> Iterator[Level]:
     before: list[Any] = []
-    for at, tip in _tips(scene):
+    for at, tip in _level_tip_modes(scene):
         result = solve(tip, at)
-        error = max(difference(each, result) for each in before) if len(before) == JUDGED_BY else None
+        error = max(difference(each, result) for each in before) if len(before) == COMPARED_LEVELS else None
         yield Level(at, result, error)
         if error is not None and error <= rtol:
             return
-        before = [*before, result][-JUDGED_BY:]
+        before = [*before, result][-COMPARED_LEVELS:]
 
 
 def resolve_end_mass(scene: Scene, drive: str = "stick", rtol: float = 1e-4) -> tuple[float, float]:
@@ -140,28 +140,28 @@ def resolve_end_mass(scene: Scene, drive: str = "stick", rtol: float = 1e-4) -> 
 
 def relative_error(outcome: Outcome, best: Outcome, scene: Scene) -> float:
     """Largest relative difference of squirt, ball speed and spin from those of ``best``, as `resolve` counts them."""
-    least = np.array([LEAST_SQUIRT * abs(float(scene.stroke.offset)), 0.0, 0.0])
-    size = np.maximum(np.abs(_judged(best)), least)
+    least = np.array([MIN_SQUIRT * abs(float(scene.stroke.offset)), 0.0, 0.0])
+    size = np.maximum(np.abs(_compared(best)), least)
     size = np.where(size > 0, size, 1.0)  # head on: squirt and spin are zero at every level
-    return float((np.abs(_judged(outcome) - _judged(best)) / size).max())
+    return float((np.abs(_compared(outcome) - _compared(best)) / size).max())
 
 
-def _judged(outcome: Outcome) -> Array:
+def _compared(outcome: Outcome) -> Array:
     return np.array([outcome.squirt, outcome.ball_speed, outcome.spin], float)
 
 
-def _tips(scene: Scene) -> Iterator[tuple[Resolution, TipModes]]:
+def _level_tip_modes(scene: Scene) -> Iterator[tuple[Resolution, TipModes]]:
     """Resolutions and tip modes of the levels; for a lumped cue, which has no modes, only the step is halved."""
     steps = FIRST_STEPS
     if scene.lumped is not None:
         tip = lumped_tip_modes(scene.lumped)
-        while steps <= MOST_STEPS:
+        while steps <= MAX_STEPS:
             yield Resolution(1, 1, 1, steps), tip
             steps *= 2
         return
     cue = scene.shaft
-    for count in mode_counts(modes_below(cue, 2 * np.pi * PERIODS / scene.contact_time)):
-        yield Resolution(*even_mesh_for(cue, count), count, steps), ended_tip_modes(scene, count)
+    for count in mode_counts(modes_below(cue, 2 * np.pi * MIN_PERIODS / scene.contact_time)):
+        yield Resolution(*uniform_mesh_for(cue, count), count, steps), corrected_tip_modes(scene, count)
         steps *= 2
 
 

@@ -20,9 +20,9 @@ from cuefem.scene import Outcome, Scene
 if TYPE_CHECKING:  # at work every command that writes a number would pay for it
     from cuefem.results.solved_design import SolvedDesign
 
-NONE = "–"
+DASH = "–"
 # Display units of SI quantities: the factor from the SI unit, and their name.
-TRADE = {
+DISPLAY_UNITS = {
     "kg": (1e3, "g"),
     "m": (1e3, "mm"),
     "s": (1e3, "ms"),
@@ -67,7 +67,7 @@ class Result:
     @property
     def scale(self) -> float:
         """Factor from the SI unit to the display unit."""
-        return TRADE.get(self.unit, (1.0, self.unit))[0]
+        return DISPLAY_UNITS.get(self.unit, (1.0, self.unit))[0]
 
     def number(self, value: float, *, brief: bool = False) -> str:
         """A value in the display unit, without the unit; brief: one decimal less, of three or more."""
@@ -80,13 +80,13 @@ class Result:
         if isinstance(value, str):
             return value
         if value is None or not math.isfinite(value):
-            return NONE
-        unit = TRADE.get(self.unit, (1.0, self.unit))[1]
+            return DASH
+        unit = DISPLAY_UNITS.get(self.unit, (1.0, self.unit))[1]
         space = "" if unit in ("°", "") else " "
         return f"{self.number(float(value), brief=brief)}{space}{unit}"
 
 
-def signed(change: float, decimals: int, unit: str) -> str:
+def format_change(change: float, decimals: int, unit: str) -> str:
     """A change with its sign and unit; nothing that rounds to zero has a sign."""
     text = f"{change:+.{decimals}f}"
     return f"{text if float(text) else text[1:]}\u00a0{unit}".replace("-", "−")
@@ -102,12 +102,12 @@ def significant(value: float, digits: int = 4) -> str:
 
 
 # Represents the limit b -> 0 in formulas; the error is of its square.
-SMALL = 1e-6
+SMALL_OFFSET = 1e-6
 
 
 def _pivot_length(design: SolvedDesign, offset: float | None) -> float:
     if offset is None:
-        return float(pivot_length(design.scene, design.squirt_slope * math.asin(SMALL), SMALL))
+        return float(pivot_length(design.scene, design.squirt_slope * math.asin(SMALL_OFFSET), SMALL_OFFSET))
     return float(pivot_length(design.scene, design.strike(offset).squirt, offset))
 
 
@@ -250,7 +250,7 @@ RESULTS = {
 }
 UNITS = {name: result.unit for name, result in RESULTS.items() if result.unit}
 # The one definition of a miscue (`cuefem.contact.outcome.contact_state`).
-DEFINITION_OF_MISCUE = "the tip slips for more than half of the normal impulse, or through its last third"
+MISCUE_DEFINITION = "the tip slips for more than half of the normal impulse, or through its last third"
 # The states of the contact (`Outcome.regime`) in full.
 REGIMES = {
     "stick": "the tip sticks to the ball; no miscue",
@@ -258,7 +258,7 @@ REGIMES = {
     "slip reversal": "the tip slips, then slips back",
     "partial slip": "partial slip through much of the normal impulse: squirt rises fast, close to a miscue",
     "gross slip": "gross slip: for more than a quarter of the normal impulse; close to a miscue",
-    "miscue": f"miscue: {DEFINITION_OF_MISCUE}",
+    "miscue": f"miscue: {MISCUE_DEFINITION}",
 }
 
 
@@ -266,7 +266,7 @@ def with_unit(
     value: float, unit: str, digits: int = 4, *, error: float | None = None, decimals: int | None = None
 ) -> str:
     """An SI number in its display unit, to some digits or decimals; with an error, to the error's second digit."""
-    scale, name = TRADE.get(unit, (1.0, unit))
+    scale, name = DISPLAY_UNITS.get(unit, (1.0, unit))
     tail = f" {name}" if name not in ("", "°") else name
     if decimals is not None:
         return f"{scale * value:.{decimals}f}{tail}"
@@ -276,14 +276,14 @@ def with_unit(
     return f"{scale * value:.{decimals}f} ± {scale * error:.{decimals}f}{tail}"
 
 
-def scaled(values: Any, unit: str) -> Array:
+def to_display(values: Any, unit: str) -> Array:
     """SI numbers in their display unit."""
-    return np.asarray(values) * TRADE.get(unit, (1.0, unit))[0]
+    return np.asarray(values) * DISPLAY_UNITS.get(unit, (1.0, unit))[0]
 
 
 def with_heading(words: str, unit: str) -> str:
     """The name of a column with its display unit."""
-    name = TRADE.get(unit, (1.0, unit))[1]
+    name = DISPLAY_UNITS.get(unit, (1.0, unit))[1]
     return f"{words}, {name}" if name else words
 
 
@@ -292,6 +292,6 @@ def units_of(*names: str) -> dict[str, str]:
     return {name: UNITS[name] for name in names}
 
 
-def written(name: str, value: Any, *, brief: bool = False) -> str:
+def format_value(name: str, value: Any, *, brief: bool = False) -> str:
     """A value of the quantity of that name, with its unit."""
     return RESULTS[name].format(value, brief=brief)

@@ -1,7 +1,8 @@
 """Records (SI numbers by the names of their quantities), and the tables that display them.
 
 Programs read records. A sheet declares the column of each number; heading, unit and digits
-of a column are those of its quantity. A terminal, a page and a CSV file show the same sheet (`cuefem.report.table`).
+of a column are those of its quantity. A terminal, a page and a CSV file show the same sheet
+(`cuefem.report.renderers`).
 """
 
 from __future__ import annotations
@@ -14,15 +15,15 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.results.quantities import NONE, RESULTS, TRADE, with_unit, written
+from cuefem.results.quantities import DASH, DISPLAY_UNITS, RESULTS, format_value, with_unit
 
 Record = dict[str, Any]
 # The content of a column of a row: the quantity of that name, a template such as "{swing:m}", or a text of the row.
-Entry = str | Callable[[Mapping[str, Any]], str]
+ColumnEntry = str | Callable[[Mapping[str, Any]], str]
 
 
 @dataclass(frozen=True)
-class Sheet:
+class Table:
     """A table: its title, the head of its columns, rows of texts, and lines that state its assumptions.
 
     texts: indices of the columns with text; the others have numbers. styles: of highlighted rows, "bold" or
@@ -37,27 +38,27 @@ class Sheet:
     styles: Mapping[int, str] | None = None
 
 
-def sheet(
+def tabulate(
     title: str,
-    columns: Mapping[str, Entry],
+    columns: Mapping[str, ColumnEntry],
     rows: Iterable[Mapping[str, Any]],
     *notes: str,
     texts: tuple[int, ...] = (0,),
-) -> Sheet:
+) -> Table:
     """A table with one row per record. columns: the template of each column."""
     cells = tuple(tuple(_cell(entry, row) for entry in columns.values()) for row in rows)
-    return Sheet(title, tuple(columns), cells, notes, texts)
+    return Table(title, tuple(columns), cells, notes, texts)
 
 
-def by_words(*names: str) -> dict[str, Entry]:
+def by_label(*names: str) -> dict[str, ColumnEntry]:
     """Columns of quantities, each under its name in full."""
     return {RESULTS[name].label: name for name in names}
 
 
-def _cell(entry: Entry, row: Mapping[str, Any]) -> str:
+def _cell(entry: ColumnEntry, row: Mapping[str, Any]) -> str:
     if callable(entry):
         return entry(row)
-    return _TEMPLATES.vformat(entry, (), row) if "{" in entry else written(entry, row[entry])
+    return _TEMPLATES.vformat(entry, (), row) if "{" in entry else format_value(entry, row[entry])
 
 
 class _Templates(Formatter):
@@ -76,10 +77,10 @@ class _Templates(Formatter):
     def format_field(self, value: Any, spec: str) -> str:
         """The value in the template's format."""
         if value is None:
-            return NONE
+            return DASH
         if spec in RESULTS:
-            return written(spec, value)
-        if spec in TRADE:
+            return format_value(spec, value)
+        if spec in DISPLAY_UNITS:
             return with_unit(value, spec)
         if spec.endswith(" %"):
             return f"{100 * value:{spec[:-2]}f} %"
@@ -89,26 +90,26 @@ class _Templates(Formatter):
 _TEMPLATES = _Templates()
 
 
-def values_sheet(title: str, rows: Iterable[tuple[str, str]], *notes: str) -> Sheet:
+def tabulate_values(title: str, rows: Iterable[tuple[str, str]], *notes: str) -> Table:
     """A sheet of one record: a name and a value in each row."""
-    return Sheet(title, ("", "value"), tuple(rows), notes)
+    return Table(title, ("", "value"), tuple(rows), notes)
 
 
 def value_rows(record: Mapping[str, Any], names: Iterable[str] | None = None) -> list[tuple[str, str]]:
     """Name in full and value with its unit of a record's quantities, or of those of the names that have a value."""
     if names is not None:
         record = {name: record[name] for name in names if record[name] is not None}
-    return [(RESULTS[name].label, written(name, value, brief=True)) for name, value in record.items()]
+    return [(RESULTS[name].label, format_value(name, value, brief=True)) for name, value in record.items()]
 
 
-def plain(value: Any) -> Any:
+def json_value(value: Any) -> Any:
     """A value for JSON: arrays become lists, infinite and undefined numbers become null."""
     if isinstance(value, dict):
-        return {str(key): plain(inner) for key, inner in value.items()}
+        return {str(key): json_value(inner) for key, inner in value.items()}
     if isinstance(value, np.ndarray | np.generic):
-        return plain(value.tolist())
+        return json_value(value.tolist())
     if isinstance(value, list | tuple):
-        return [plain(inner) for inner in value]
+        return [json_value(inner) for inner in value]
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value

@@ -12,7 +12,7 @@ import numpy as np
 
 from cuefem.beam.modes import modes
 from cuefem.beam.system import assemble
-from cuefem.beam.tip import TipModes
+from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.strike import steps_of, strike_modes
 from cuefem.cue import Array
 from cuefem.effects import Support
@@ -21,10 +21,10 @@ from cuefem.results.closed_forms import pivot_length
 from cuefem.results.quantities import RESULTS, Result
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.default_scene import GAMES
-from cuefem.scene.solved_scene import Solved
+from cuefem.scene.solved_scene import SolvedScene
 
-TONES = 5  # bending modes that are solved for, at least
-USUAL_OFFSET = GAMES["pool"].offset  # b/R
+MIN_SOLVED_MODES = 5  # bending modes that are solved for, at least
+DEFAULT_OFFSET = GAMES["pool"].offset  # b/R
 OFFSETS = (0.1, 0.2, 0.3, 0.4, 0.5)  # b/R of the table of squirt
 
 
@@ -35,15 +35,15 @@ def at_offset(scene: Scene, offset: Any) -> Scene:
 
 def off_centre(scene: Scene) -> Scene:
     """The scene; a head-on stroke, which has no squirt, with the default offset instead."""
-    return scene if scene.stroke.offset else at_offset(scene, USUAL_OFFSET)
+    return scene if scene.stroke.offset else at_offset(scene, DEFAULT_OFFSET)
 
 
-def coupled_curve(scene: Scene, offsets: Sequence[float], tip: TipModes) -> dict[str, Any]:
+def coupled_curve(scene: Scene, offsets: Sequence[float], tip_modes: TipModes) -> dict[str, Any]:
     """Squirt, natural pivot length, and regime of the coupled strike against the offset: every curve of a page.
 
     tip: the cue's tip modes.
     """
-    struck = [strike_modes(at_offset(scene, offset), tip) for offset in offsets]
+    struck = [strike_modes(at_offset(scene, offset), tip_modes) for offset in offsets]
     squirt = np.array([outcome.squirt for outcome in struck])
     return {
         "squirt": squirt,
@@ -52,7 +52,7 @@ def coupled_curve(scene: Scene, offsets: Sequence[float], tip: TipModes) -> dict
     }
 
 
-def course(outcome: Outcome, name: str, times: Array) -> dict[str, Array]:
+def time_history(outcome: Outcome, name: str, times: Array) -> dict[str, Array]:
     """The "force" or the "velocity" between tip and ball at times of a strike, s, by its direction."""
     assert outcome.history is not None
     history = outcome.history(times)
@@ -65,7 +65,7 @@ class SolvedDesign:
     solved: the scene and its modes. outcome: of its own strike, if already computed.
     """
 
-    def __init__(self, solved: Solved, outcome: Outcome | None = None) -> None:
+    def __init__(self, solved: SolvedScene, outcome: Outcome | None = None) -> None:
         self.solved, self.scene = solved, solved.scene
         self._outcomes: dict[float | None, Outcome] = {} if outcome is None else {None: outcome}
         self._frequencies = np.array([])
@@ -75,19 +75,19 @@ class SolvedDesign:
         """Static tip stiffness, N/m: transverse force at the tip over its deflection, the butt end clamped."""
         cue, effects = self.scene.shaft, self.scene.cue_effects
         clamped = (*effects, Support(cue.length, np.inf, np.inf))
-        return assemble(cue, TONES, clamped).static_stiffness(0.0)
+        return assemble(cue, MIN_SOLVED_MODES, clamped).static_stiffness(0.0)
 
     def frequency(self, mode: int) -> float:
         """Natural frequency of a bending mode, Hz; 1 is the lowest."""
         if mode > len(self._frequencies):
-            at, count = self.solved.at, max(mode, TONES)
+            at, count = self.solved.at, max(mode, MIN_SOLVED_MODES)
             self._frequencies = modes(self.scene.shaft, count, effects=self.scene.cue_effects, at=at).frequencies
         return float(self._frequencies[mode - 1])
 
     @cached_property
     def squirt_slope(self) -> float:
         """Squirt over phi in the limit of small offsets."""
-        return small_offset_slope(self.solved.tip_stuck, self.scene)
+        return small_offset_slope(self.solved.stick_tip, self.scene)
 
     def end_mass(self, name: str, offset: float | None) -> float:
         """End mass by a definition, kg, at an offset b/R or at the scene's own."""
@@ -105,7 +105,7 @@ class SolvedDesign:
         return self.scene if offset is None else at_offset(self.scene, offset)
 
 
-def asked() -> dict[str, Result]:
+def computable_results() -> dict[str, Result]:
     """All results of a design, by name: also "end_mass_NAME" for every definition of the end mass."""
     own = {name: result for name, result in RESULTS.items() if result.of is not None}
     return own | {f"end_mass_{name}": _defined(definition) for name, definition in DEFINITIONS.items()}

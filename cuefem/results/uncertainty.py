@@ -11,22 +11,22 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from cuefem.contact.strike import strike_modes
-from cuefem.parameters.parameter import PARAMETERS, replaced
+from cuefem.parameters.parameter import PARAMETERS, with_values_at
 from cuefem.results.records import Record
 from cuefem.scene import Scene
-from cuefem.scene.solved_scene import Solved
+from cuefem.scene.solved_scene import SolvedScene
 
 # Model error, relative: the scatter of published squirt less the uncertainty of those cues' inputs, which were not
 # measured either. Few series determine it only to an interval; these are its upper ends, for a leather tip and for a
 # spring without a dome. studies/measured/uncertainty.py derives them, and tests/results/test_uncertainty.py again.
-MODEL = 0.18
-MODEL_OF_SPRING = 0.29
+MODEL_ERROR = 0.18
+SPRING_ERROR = 0.29
 # The error of the logarithm of a ratio of squirt as a part of that logarithm: of two shafts (upper end, from pairs of
 # shafts in one series, their inputs included), and of a shaft with and without a mass on it (31 places of two masses).
-SHAFTS = 0.31
-MASSES = 0.54
-FLOOR = 0.01  # relative, of any ratio of squirt: calipers and numerical error
-COMPUTED = 0.002  # of squirt at the default resolution: 0.19 % at most (studies/accuracy/accuracy.md)
+SHAFT_ERROR = 0.31
+MASS_ERROR = 0.54
+RATIO_FLOOR = 0.01  # relative, of any ratio of squirt: calipers and numerical error
+NUMERICAL_ERROR = 0.002  # of squirt at the default resolution: 0.19 % at most (studies/accuracy/accuracy.md)
 
 
 class Uncertainty(NamedTuple):
@@ -48,19 +48,19 @@ class Uncertainty(NamedTuple):
 
 def model_error(scene: Scene) -> float:
     """Model error of a scene's squirt, relative: that of a leather tip or of a spring tip."""
-    return MODEL if scene.contact_terms.tip is not None else MODEL_OF_SPRING
+    return MODEL_ERROR if scene.contact_terms.tip is not None else SPRING_ERROR
 
 
-def of_shaft(inputs: Mapping[str, float]) -> float:
+def shaft_uncertainty(inputs: Mapping[str, float]) -> float:
     """The contribution of the shaft's inputs alone, which remains between two shafts with one tip."""
-    return math.hypot(*(share for key, share in inputs.items() if not PARAMETERS[key].of_tip))
+    return math.hypot(*(share for key, share in inputs.items() if not PARAMETERS[key].is_shareable))
 
 
-def squirt_changes(solved: Solved, own: float, of: Iterable[str] = PARAMETERS) -> dict[str, float]:
+def squirt_changes(solved: SolvedScene, own: float, of: Iterable[str] = PARAMETERS) -> dict[str, float]:
     """`changes_by_input` of squirt alone; own: that of the scene, rad."""
     if not own:
         return {}
-    changes = changes_by_input(solved.scene, {"squirt": own}, lambda made: {"squirt": squirt_beside(solved, made)}, of)
+    changes = changes_by_input(solved.scene, {"squirt": own}, lambda made: {"squirt": variant_squirt(solved, made)}, of)
     return {key: change["squirt"] for key, change in changes.items()}
 
 
@@ -85,38 +85,38 @@ def changes_by_input(
         found = []
         for off in ways if known.value(scene) else ():
             with suppress(ValueError, RuntimeError):  # no valid cue there
-                made = of(replaced(scene, known.scaled(scene, math.exp(off))))
+                made = of(with_values_at(scene, known.scaled(scene, math.exp(off))))
                 found.append({name: math.copysign(1.0, off) * (made[name] / own[name] - 1) for name in own})
         if found:
             changes[key] = {name: sum(each[name] for each in found) / len(found) for name in own}
     return changes
 
 
-def squirt_beside(solved: Solved, made: Scene) -> float:
+def variant_squirt(solved: SolvedScene, variant: Scene) -> float:
     """Squirt of a changed scene, rad; it reuses the solved modes if the vibrating cue is unchanged."""
-    if _vibrating(made) == _vibrating(solved.scene):
-        return float(strike_modes(made, solved.tip).squirt)
-    return squirt_of(made)
+    if _vibrating(variant) == _vibrating(solved.scene):
+        return float(strike_modes(variant, solved.tip).squirt)
+    return squirt_of(variant)
 
 
 def _vibrating(scene: Scene) -> tuple[object, ...]:
     """The cue and the effects on it: of a tip only its mass."""
-    return scene.cue, *chain.from_iterable(effect.left_on(scene.shaft) for effect in scene.cue_effects)
+    return scene.cue, *chain.from_iterable(effect.without_tip(scene.shaft) for effect in scene.cue_effects)
 
 
 @lru_cache(maxsize=256)
 def squirt_of(scene: Scene) -> float:
     """Squirt of a scene's coupled strike, rad, cached for repeated scenes, such as reference cues."""
-    return float(strike_modes(scene, Solved(scene).tip).squirt)
+    return float(strike_modes(scene, SolvedScene(scene).tip).squirt)
 
 
 def model_share(first: Scene, other: Scene) -> float:
     """The model's part of the logarithm of a ratio: `MASSES` if the masses on the two shafts differ, else `SHAFTS`."""
     masses = [[effect for effect in scene.effects if effect.axial_mass] for scene in (first, other)]
-    return SHAFTS if masses[0] == masses[1] else MASSES
+    return SHAFT_ERROR if masses[0] == masses[1] else MASS_ERROR
 
 
-def ratio_error(ratio: float, share: float, *inputs: float, floor: float = FLOOR) -> float:
+def ratio_error(ratio: float, share: float, *inputs: float, floor: float = RATIO_FLOOR) -> float:
     """The error of a ratio, 1 sigma: the model's share of its logarithm or the contributions of inputs, and a floor.
 
     The larger of share and inputs counts, because the share includes the inputs of the measured pairs.
@@ -126,7 +126,7 @@ def ratio_error(ratio: float, share: float, *inputs: float, floor: float = FLOOR
     return math.hypot(max(share * abs(ln), math.hypot(*inputs)), floor) * (math.expm1(ln) / ln if ln else 1.0)
 
 
-def difference_record(ratio: float, share: float, *inputs: float, floor: float = FLOOR) -> Record:
+def difference_record(ratio: float, share: float, *inputs: float, floor: float = RATIO_FLOOR) -> Record:
     """The relative difference of a ratio, its error as `ratio_error`, and whether the two are distinct, that is differ
     by more than the error."""
     error = ratio_error(ratio, share, *inputs, floor=floor)

@@ -10,38 +10,40 @@ from cuefem.cue import Cue
 from cuefem.results.records import Record
 from cuefem.results.solved_design import off_centre
 from cuefem.results.uncertainty import (
-    COMPUTED,
+    NUMERICAL_ERROR,
     Uncertainty,
     difference_record,
     model_error,
     model_share,
-    of_shaft,
-    squirt_beside,
+    shaft_uncertainty,
     squirt_changes,
     squirt_of,
+    variant_squirt,
 )
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.default_scene import without_leather
-from cuefem.scene.solved_scene import Solved
+from cuefem.scene.solved_scene import SolvedScene
 
 
-def verdict_record(scene: Scene, outcome: Outcome, ready: Mapping[str, Cue], *, solved: Solved | None = None) -> Record:
+def verdict_record(
+    scene: Scene, outcome: Outcome, ready: Mapping[str, Cue], *, solved: SolvedScene | None = None
+) -> Record:
     """Squirt at the stroke's offset, its uncertainty, and the squirt of each reference cue by the same stroke.
 
     A head-on stroke, which has no squirt, is computed at the default offset instead. "inputs": by how much each changes
-    squirt. "among": squirt, own squirt over it less 1, its error, and whether the two are "distinct". ready:
+    squirt. "references": squirt, own squirt over it less 1, its error, and whether the two are "distinct". ready:
     the first is the reference of the text. solved: the scene's default modes, if already computed.
     """
     struck = off_centre(scene)
     head_on = struck is not scene
-    solved = Solved(struck) if solved is None or head_on else solved
+    solved = SolvedScene(struck) if solved is None or head_on else solved
     # at the resolution of the reference cues, since the outcome may be finer
-    own = squirt_beside(solved, struck) if head_on or outcome.error is not None else float(outcome.squirt)
+    own = variant_squirt(solved, struck) if head_on or outcome.error is not None else float(outcome.squirt)
     squirt = own if head_on else float(outcome.squirt)
     inputs = {key: abs(change) for key, change in squirt_changes(solved, own).items()}
-    computation = COMPUTED if outcome.error is None else outcome.error
+    computation = NUMERICAL_ERROR if outcome.error is None else outcome.error
     uncertainty = Uncertainty(model_error(struck), math.hypot(*inputs.values()), computation)
-    among = {name: _beside(struck, own, cue, of_shaft(inputs)) for name, cue in ready.items()}
+    among = {name: _reference_row(struck, own, cue, shaft_uncertainty(inputs)) for name, cue in ready.items()}
     return {
         "offset": float(struck.stroke.offset),
         "head_on": head_on,
@@ -49,17 +51,17 @@ def verdict_record(scene: Scene, outcome: Outcome, ready: Mapping[str, Cue], *, 
         "uncertainty": uncertainty._asdict() | {"total": uncertainty.total},
         "inputs": inputs,
         "squirt_error": uncertainty.total * abs(squirt),
-        "among": {name: beside for name, beside in among.items() if beside},
+        "references": {name: beside for name, beside in among.items() if beside},
     }
 
 
-def _beside(scene: Scene, squirt: float, cue: Cue, inputs: float) -> Record | None:
+def _reference_row(scene: Scene, squirt: float, cue: Cue, inputs: float) -> Record | None:
     """Another cue with the same stroke; None if this stroke fails with it, or one of the two has no squirt.
 
     inputs: relative uncertainty of squirt by the inputs of the scene's shaft; the other shaft, another piece of wood,
     is taken to have as much.
     """
-    struck = same_stroke(scene, cue)
+    struck = with_cue(scene, cue)
     try:
         other = squirt_of(struck)
     except (ValueError, RuntimeError):
@@ -69,7 +71,7 @@ def _beside(scene: Scene, squirt: float, cue: Cue, inputs: float) -> Record | No
     return {"squirt": other} | difference_record(squirt / other, model_share(scene, struck), inputs, inputs)
 
 
-def same_stroke(scene: Scene, cue: Cue) -> Scene:
+def with_cue(scene: Scene, cue: Cue) -> Scene:
     """The scene's ball, tip, stroke and effects with another cue.
 
     Effects on the scene's own cue (a mass, a joint, a clamp beyond the other's end) are dropped. The other cue

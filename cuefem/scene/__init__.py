@@ -2,26 +2,26 @@
 
 from cuefem.scene.scene import (
     DEFAULT_CONTACT_TIME,
-    MOST_STEPS,
+    MAX_STEPS,
     Ball,
     Outcome,
     Resolution,
     Scene,
     Stroke,
     Tip,
+    as_scenes,
     equal_fields,
-    several,
 )
 
 __all__ = [
     "DEFAULT_CONTACT_TIME",
-    "MOST_STEPS",
+    "MAX_STEPS",
     "Ball",
     "Outcome",
     "Resolution",
     "Scene",
     "Stroke",
     "Tip",
+    "as_scenes",
     "equal_fields",
-    "several",
 ]

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
-from cuefem.cue import SOFT, Cue
+from cuefem.cue import MAX_LEATHER_MODULUS, Cue
 from cuefem.cue.materials import LEATHERS, leather_restitution
 from cuefem.effects import AxialWaves, Effect, GeometricStiffness, LeatherTip
 from cuefem.quantity.fields import check_kind
@@ -66,7 +66,7 @@ class Game:
         """Restitution of the default tip by itself; axial waves raise it to about that of the whole cue."""
         return LEATHERS[self.leather].restitution
 
-    def tip_beside(self, effects: Sequence[Effect]) -> Tip:
+    def tip_with(self, effects: Sequence[Effect]) -> Tip:
         """Tip with the leather's own restitution beside axial waves; otherwise that of the whole cue."""
         E = next((effect.E for effect in effects if isinstance(effect, LeatherTip)), LEATHERS[self.leather].E)
         waves = any(isinstance(effect, AxialWaves) for effect in effects)
@@ -111,11 +111,11 @@ def without_leather(cue: Cue) -> Cue:
     """The cue without the leather that is drawn at its tip (`Cue.leather`)."""
     if not cue.leather:
         return cue
-    first = next(i for i, segment in enumerate(cue.segments) if segment.material.E >= SOFT)
+    first = next(i for i, segment in enumerate(cue.segments) if segment.material.E >= MAX_LEATHER_MODULUS)
     return replace(cue, segments=cue.segments[first:])
 
 
-def usual_tip(cue: Cue, game: str = DEFAULT_GAME) -> LeatherTip:
+def default_tip(cue: Cue, game: str = DEFAULT_GAME) -> LeatherTip:
     """The default tip of a game, with the height of the leather drawn on the cue, if any.
 
     Parameters
@@ -138,8 +138,8 @@ def usual_tip(cue: Cue, game: str = DEFAULT_GAME) -> LeatherTip:
     Examples
     --------
     >>> import cuefem as cf
-    >>> from cuefem.scene.default_scene import usual_tip
-    >>> usual_tip(cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 700.0)),))).height
+    >>> from cuefem.scene.default_scene import default_tip
+    >>> default_tip(cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 700.0)),))).height
     0.006
     """
     tip = _game(game).tip
@@ -158,7 +158,7 @@ def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = 
         "pool", "carom" or "snooker": `GAMES` has their values and sources. "kim" is ``Scene(cue)``, the cue as drawn
         with the ball, tip and stroke of Kim's paper and without effects.
     tip
-        Instead of `usual_tip`; not with "kim".
+        Instead of `default_tip`; not with "kim".
 
     Returns
     -------
@@ -185,9 +185,9 @@ def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = 
     if game == KIM and tip is None:
         return Scene(cue)
     known = _game(game)
-    effects = (usual_tip(cue, game) if tip is None else tip, *known.effects)
+    effects = (default_tip(cue, game) if tip is None else tip, *known.effects)
     stroke = Stroke(known.speed, known.offset)
-    return Scene(without_leather(cue), known.ball, known.tip_beside(effects), stroke, effects)
+    return Scene(without_leather(cue), known.ball, known.tip_with(effects), stroke, effects)
 
 
 def _game(name: str) -> Game:

@@ -13,21 +13,21 @@ import numpy as np
 
 from cuefem.cue import Array, Cue, LumpedCue
 from cuefem.effects import CueEffect, Effect, LeatherTip, acting_on_cue, check_effects
-from cuefem.effects.contact_settings import ContactTerms
-from cuefem.effects.force_law import LeatherLaw, TooDeep
-from cuefem.quantity.display import said
+from cuefem.effects.contact_terms import ContactTerms
+from cuefem.effects.force_law import IndentationOutOfRange, LeatherLaw
+from cuefem.quantity.display import brief_repr
 from cuefem.quantity.fields import (
     CONTACT_TIME,
     Quantity,
     check_count,
     check_fields,
     check_kind,
-    shown,
+    quote,
 )
-from cuefem.quantity.slips import remark_light
+from cuefem.quantity.unit_checks import warn_light_cue
 
 DEFAULT_CONTACT_TIME = 2e-3  # s, [Kim] sec. 4
-MIN_STEPS, MOST_STEPS = 20, 1_000_000  # of a contact, in a head-on contact time
+MIN_STEPS, MAX_STEPS = 20, 1_000_000  # of a contact, in a head-on contact time
 
 
 @dataclass(frozen=True)
@@ -54,8 +54,8 @@ class Ball:
     >>> pool = cf.Ball(mass=0.170, radius=0.028575)
     """
 
-    mass: Annotated[float, Quantity("kg", "(0, inf)").usually(0.08, 0.4)] = 0.210
-    radius: Annotated[float, Quantity("m", "(0, inf)").usually(0.02, 0.04)] = 0.03075
+    mass: Annotated[float, Quantity("kg", "(0, inf)").with_typical_range(0.08, 0.4)] = 0.210
+    radius: Annotated[float, Quantity("m", "(0, inf)").with_typical_range(0.02, 0.04)] = 0.03075
     inertia: Annotated[float, Quantity("", "(0, 1]")] = 0.4
 
     def __post_init__(self) -> None:
@@ -94,7 +94,7 @@ class Tip:
 
     restitution: Annotated[float, Quantity("", "[0, 1]")] = 0.75
     friction: Annotated[float, Quantity("", "[0, inf]")] = 0.7
-    contact_time: Annotated[float | None, CONTACT_TIME.usually(2e-4, 0.01)] = None
+    contact_time: Annotated[float | None, CONTACT_TIME.with_typical_range(2e-4, 0.01)] = None
     stiffness: Annotated[float | None, Quantity("N/m", "(0, inf)")] = None
 
     def __post_init__(self) -> None:
@@ -130,7 +130,7 @@ class Stroke:
     0.3047
     """
 
-    speed: Annotated[float, Quantity("m/s", "(0, inf)").usually(0.01, 30.0)] = 1.0
+    speed: Annotated[float, Quantity("m/s", "(0, inf)").with_typical_range(0.01, 30.0)] = 1.0
     offset: Annotated[float, Quantity("", "(-1, 1)")] = 0.0
 
     def __post_init__(self) -> None:
@@ -189,7 +189,7 @@ class Scene:
         object.__setattr__(self, "effects", tuple(self.effects))
         check_effects(self.cue, self.effects)
         if isinstance(self.cue, Cue) and self.cue.segments and self.cue.body_mass == 0:
-            remark_light(self.cue.mass, self.cue.length)
+            warn_light_cue(self.cue.mass, self.cue.length)
         whole = self.contact_terms.tip is not None  # the terms refuse what may be given only once
         for name, unit in (("contact_time", "s"), ("stiffness", "N/m")):
             value = getattr(self.tip, name)
@@ -222,11 +222,11 @@ class Scene:
         return tuple(effect for effect in self.effects if effect.at_tip)
 
     @property
-    def bare(self) -> Scene:
+    def without_tip_effects(self) -> Scene:
         """The scene without its effects at the tip; mass and contact time of a leather tip remain."""
         if self.lumped is not None:
             return replace(self, effects=tuple(effect for effect in self.effects if not effect.at_tip))
-        effects = tuple(chain.from_iterable(effect.left_on(self.shaft) for effect in self.effects))
+        effects = tuple(chain.from_iterable(effect.without_tip(self.shaft) for effect in self.effects))
         timed = self.tip if self.contact_terms.tip is None else replace(self.tip, contact_time=self.contact_time)
         return replace(self, tip=timed, effects=effects)
 
@@ -257,7 +257,7 @@ class Scene:
         return self.contact_terms.dome_radius
 
     @property
-    def head_on_mass(self) -> float:
+    def reduced_mass(self) -> float:
         """Reduced mass m_n of a central impact, 1/m_n = 1/M + 1/m_a, kg."""
         return 1 / (1 / self.ball.mass + 1 / self.axial_mass)
 
@@ -272,14 +272,14 @@ class Scene:
             return (1 + self.tip.restitution) * self._pressed[1]
         if self.tip.stiffness is None:
             return DEFAULT_CONTACT_TIME if self.tip.contact_time is None else self.tip.contact_time
-        return math.pi / 2 * (1 + self.tip.restitution) * math.sqrt(self.head_on_mass / self.tip.stiffness)
+        return math.pi / 2 * (1 + self.tip.restitution) * math.sqrt(self.reduced_mass / self.tip.stiffness)
 
     @property
     def known_contact_time(self) -> float | None:
         """The `contact_time`, or None for leather that the impact indents beyond the range of its law."""
         try:
             return self.contact_time
-        except TooDeep:
+        except IndentationOutOfRange:
             return None
 
     @property
@@ -287,7 +287,7 @@ class Scene:
         """Loading stiffness k of the tip, N/m, given or from the contact time (handbook: The strike)."""
         if self.tip.stiffness is not None:
             return self.tip.stiffness
-        return (math.pi / 2 * (1 + self.tip.restitution) / self.contact_time) ** 2 * self.head_on_mass
+        return (math.pi / 2 * (1 + self.tip.restitution) / self.contact_time) ** 2 * self.reduced_mass
 
     @property
     def leather(self) -> LeatherTip:
@@ -298,10 +298,10 @@ class Scene:
         return leather
 
     @property
-    def tip_at_hand(self) -> bool:
+    def tip_is_cached(self) -> bool:
         """Whether the tip's elasticity is cached; False if the first strike takes seconds to compute it."""
         tips = [] if self._end_diameter is None else [e for e in self.effects if isinstance(e, LeatherTip)]
-        return all(tip.at_hand(tip.diameter_on(self._end_diameter or 0.0)) for tip in tips)
+        return all(tip.is_cached(tip.diameter_on(self._end_diameter or 0.0)) for tip in tips)
 
     def tip_law(self, restitution: float = 1.0, offset: float = 0.0) -> LeatherLaw:
         """The force-indentation law of the `LeatherTip` on this cue and ball; ValueError without one."""
@@ -311,20 +311,20 @@ class Scene:
         return whole.law(self.ball.radius, abs(offset), restitution)
 
     @property
-    def deepest(self) -> float:
+    def max_indentation(self) -> float:
         """Maximum indentation of the `LeatherTip` in a central impact, m; ValueError without one."""
         return self._pressed[0]
 
     @property
     def _pressed(self) -> tuple[float, float]:
         """Maximum indentation of the `LeatherTip` in a central impact, m, and the time to it, s."""
-        return _pressed(self.tip_law(), self.head_on_mass, self.stroke.speed)
+        return _pressed(self.tip_law(), self.reduced_mass, self.stroke.speed)
 
 
-def several(name: str, scenes: Any) -> tuple[Scene, ...]:
+def as_scenes(name: str, scenes: Any) -> tuple[Scene, ...]:
     """A sequence of scenes, one or more, as a tuple."""
     if isinstance(scenes, Scene) or not isinstance(scenes, Iterable):
-        got = "one Scene: write [scene]" if isinstance(scenes, Scene) else shown(scenes)
+        got = "one Scene: write [scene]" if isinstance(scenes, Scene) else quote(scenes)
         raise TypeError(f"{name} must be a sequence of Scene; got {got}")
     scenes = tuple(scenes)
     for scene in scenes:
@@ -337,7 +337,7 @@ def several(name: str, scenes: Any) -> tuple[Scene, ...]:
 @lru_cache(maxsize=256)
 def _pressed(law: LeatherLaw, mass: float, speed: float) -> tuple[float, float]:
     """Maximum indentation and the time to it, cached for all strokes of a sweep at one speed."""
-    deepest, time = law.blow(mass, speed)
+    deepest, time = law.central_impact(mass, speed)
     return float(deepest), float(time)
 
 
@@ -376,7 +376,7 @@ class Resolution:
 
     def __post_init__(self) -> None:
         if self.steps is not None:
-            check_count("Resolution.steps", self.steps, MIN_STEPS, MOST_STEPS)
+            check_count("Resolution.steps", self.steps, MIN_STEPS, MAX_STEPS)
         for name in ("elements", "order", "modes"):
             check_count(f"Resolution.{name}", getattr(self, name), 1)
 
@@ -458,7 +458,7 @@ class Outcome:
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        return said("Outcome", self._shown())
+        return brief_repr("Outcome", self._shown())
 
     def _shown(self) -> list[tuple[str, Any]]:
         names = ("squirt", "ball_speed", "spin", "cue_speed", "duration", "regime", "error")

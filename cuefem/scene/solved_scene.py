@@ -2,8 +2,8 @@
 
 The tip modes are all that an impact sees of a cue. A lumped cue is two of them, of zero frequency. A finite-element cue
 is solved: where a Resolution is given, the modes asked for are summed plainly. By default modes are kept by frequency
-and ended by a tail (`cuefem.beam.tail`), without which no bound on their frequency holds every cue to half a percent.
-The beam's solver is loaded when a finite-element cue is solved, not before.
+and ended by a tail (`cuefem.beam.truncation`), without which no bound on their frequency holds every cue to half a
+percent. The beam's solver is loaded when a finite-element cue is solved, not before.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cuefem.beam.tip import TipModes, free_tip_modes, lumped_tip_modes, tip_modes
-from cuefem.beam.waves import modes_below
+from cuefem.beam.tip_modes import TipModes, free_tip_modes, lumped_tip_modes, tip_modes
+from cuefem.beam.wave_phases import modes_below
 from cuefem.cue import Cue
 from cuefem.quantity.fields import CONTACT_TIME
 from cuefem.scene import Resolution, Scene
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 # Modes are kept up to this many periods in a contact, with a tail; a plain sum wants more, the carbon cue's is 1 % off
 # even with a hundred. But never fewer than MIN_MODES, however long the contact.
-PERIODS, PLAIN_PERIODS, MIN_MODES = 30, 60, 40
+PERIODS, TRUNCATED_SUM_PERIODS, MIN_MODES = 30, 60, 40
 # The same for a strike with a whole tip, which gives along its surface too, so that the shaft's end feels no step: over
 # 70 random cues the modes left out change squirt by 2e-5 at most, for 2.5e-3 with a bare tip and twice as many.
 LEATHER_PERIODS, MIN_LEATHER_MODES = 15, 24
@@ -43,32 +43,32 @@ MIN_STICK_MODES, MESHED_MODES = 160, 120
 MAX_DEFAULT_MODES, MAX_MODES = 160, 400
 
 
-def strike_modes_kept(scene: Scene) -> int:
+def strike_mode_count(scene: Scene) -> int:
     """The number of modes that a strike takes by default."""
     whole = scene.contact_terms.tip is not None
-    return default_modes(scene, **({"periods": LEATHER_PERIODS, "least": MIN_LEATHER_MODES} if whole else {}))
+    return default_mode_count(scene, **({"periods": LEATHER_PERIODS, "least": MIN_LEATHER_MODES} if whole else {}))
 
 
-def default_modes(scene: Scene, *, periods: float = PERIODS, least: int = MIN_MODES) -> int:
+def default_mode_count(scene: Scene, *, periods: float = PERIODS, least: int = MIN_MODES) -> int:
     """The number of modes up to the frequency ``periods`` / contact time, at least ``least``."""
     # a contact time that the user gave is in bounds; one that follows from a stiffness or a whole tip may not be
-    if not CONTACT_TIME.holds(scene.contact_time):
+    if not CONTACT_TIME.contains(scene.contact_time):
         got = f"{scene.stiffness:.6g} N/m, {scene.contact_time:.3g} s"
         raise ValueError(f"Tip.stiffness must make a head-on contact time in {CONTACT_TIME.bounds}; got {got}")
-    return modes_for(scene.shaft, scene.contact_time, periods=periods, least=least)
+    return mode_count_for(scene.shaft, scene.contact_time, periods=periods, least=least)
 
 
-def modes_for(cue: Cue, time: float, *, periods: float = PERIODS, least: int = MIN_MODES) -> int:
+def mode_count_for(cue: Cue, time: float, *, periods: float = PERIODS, least: int = MIN_MODES) -> int:
     """The number of modes up to the frequency ``periods`` / time, at least ``least``."""
     return min(max(modes_below(cue, 2 * np.pi * periods / time), least), MAX_DEFAULT_MODES)
 
 
 @dataclass(frozen=True, eq=False)
-class Solved:
+class SolvedScene:
     """A scene and its modes, each eigenproblem solved when it is first asked for, and once.
 
     Nothing here depends on the stroke: one solved scene serves strikes at every speed and offset. at: the resolution of
-    all modes; by default the modes of `strike_modes_kept`, ended by a tail. known: modes that are solved already, which
+    all modes; by default the modes of `strike_mode_count`, ended by a tail. known: modes that are solved already, which
     scenes of one cue with the same effects on it share.
     """
 
@@ -82,8 +82,8 @@ class Solved:
         if isinstance(self.at, Solid):
             raise ValueError("at must be a Resolution, for this asks for the shapes of a beam; got a Solid")
         if self.at is not None:
-            return self._bending(self.at, ended=False)
-        return self._default(strike_modes_kept(self.scene))
+            return self._bending(self.at, corrected=False)
+        return self._default(strike_mode_count(self.scene))
 
     @cached_property
     def tip(self) -> TipModes:
@@ -98,35 +98,36 @@ class Solved:
         return tip_modes_from(self.modes, self.scene)
 
     @cached_property
-    def tip_stuck(self) -> TipModes:
+    def stick_tip(self) -> TipModes:
         """Tip modes for an end mass whose drive begins with a step: at least `MIN_STICK_MODES` of them by default."""
         return self._at_least(MIN_STICK_MODES)
 
     @property
-    def tip_smooth(self) -> TipModes:
-        """Tip modes for an end mass whose drive begins smoothly: `MIN_MODES` or more; on a leather segment `tip_stuck`.
+    def smooth_tip(self) -> TipModes:
+        """Tip modes for an end mass whose drive begins smoothly: `MIN_MODES` or more; on a leather segment `stick_tip`.
 
         A leather segment of the drawing has resonances far above the modes of a strike, and a push of a millisecond
         still excites them: with a strike's modes alone, the end mass by force was 0.9 % off for leather before brass.
         """
         lumped = self.scene.lumped is not None
-        return self._at_least(MIN_MODES) if lumped or not self.scene.shaft.leather else self.tip_stuck
+        return self._at_least(MIN_MODES) if lumped or not self.scene.shaft.leather else self.stick_tip
 
     def _at_least(self, least: int) -> TipModes:
         if self.at is not None or self.scene.lumped is not None:
             return self.tip
-        return tip_modes_from(self._default(default_modes(self.scene, least=least)), self.scene)
+        return tip_modes_from(self._default(default_mode_count(self.scene, least=least)), self.scene)
 
     def _default(self, count: int) -> Modes:
-        return self._bending(count, ended=True, meshed=min(count, MESHED_MODES))
+        return self._bending(count, corrected=True, meshed=min(count, MESHED_MODES))
 
-    def _bending(self, at: Resolution | int, *, ended: bool, meshed: int | None = None) -> Modes:
+    def _bending(self, at: Resolution | int, *, corrected: bool, meshed: int | None = None) -> Modes:
         """Bending modes at a resolution, or a number of them; each solved once.
 
-        ended: by a tail, or summed plainly. meshed: how many of them the mesh must hold, by default all.
+        corrected: with a truncation correction, or a truncated sum. meshed: how many of them the mesh must hold, by
+        default all.
         """
         scene = self.scene
-        loads = 0 if not ended else 2 if turning(scene) else 1
+        loads = 0 if not corrected else 2 if has_moment_arm(scene) else 1
         if (at, loads) not in self.known:
             from cuefem.beam import modes, system
 
@@ -134,23 +135,23 @@ class Solved:
             beam = system.assemble(scene.shaft, meshed or at, scene.cue_effects, wanted)
             # a support makes rigid modes flexible; the number of modes in all stays the same, so that its limits
             # are continuous
-            self.known[at, loads] = modes.solve(beam, wanted + 2 - beam.rigid.shape[1], ended=loads)
+            self.known[at, loads] = modes.solve(beam, wanted + 2 - beam.rigid.shape[1], corrected=loads)
         return self.known[at, loads]
 
 
 def tip_modes_of(scene: Scene, at: Resolution | Solid | None = None) -> TipModes:
     """Tip modes of any scene's cue, with its effects, that a strike takes."""
-    return Solved(scene, at).tip
+    return SolvedScene(scene, at).tip
 
 
-def ended_tip_modes(scene: Scene, count: int) -> TipModes:
+def corrected_tip_modes(scene: Scene, count: int) -> TipModes:
     """Tip modes of a finite-element cue from ``count`` bending modes ended by a tail."""
-    return tip_modes_from(Solved(scene)._bending(count, ended=True), scene)
+    return tip_modes_from(SolvedScene(scene)._bending(count, corrected=True), scene)
 
 
-def turning(scene: Scene) -> bool:
+def has_moment_arm(scene: Scene) -> bool:
     """Whether an effect takes the contact off the cue's axis, so that the tip's rotation moves it."""
-    return any(scene.contact_terms.lever(math.pi / 6))
+    return any(scene.contact_terms.moment_arm(math.pi / 6))
 
 
 def tip_modes_from(bending: Modes, scene: Scene) -> TipModes:
@@ -162,9 +163,9 @@ def tip_modes_from(bending: Modes, scene: Scene) -> TipModes:
     ]
     if bent:  # the first of the tip modes moves along the axis
         tip = replace(tip, geometric=np.pad(sum(bent[1:], bent[0]), (1, 0)))
-    along = tuple(chain.from_iterable(effect.vibrations(bending, cue, effects) for effect in effects))
+    along = tuple(chain.from_iterable(effect.axial_modes(bending, cue, effects) for effect in effects))
     for family in along:
-        tip = tip.beside(family.omega, family.along, family.radiation)
+        tip = tip.with_axial_modes(family.omega, family.along, family.radiation)
     for effect in effects:
         tip = effect.damp(tip, [(cue, bending), *((rod.cue, rod) for rod in along)])
     return tip.ascending() if along else tip

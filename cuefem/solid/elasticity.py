@@ -18,7 +18,7 @@ from skfem import Basis
 
 from cuefem.cue import Array
 
-SAME = 1e-9  # m: points of the mesh closer than this coincide
+SAME_POINT = 1e-9  # m: points of the mesh closer than this coincide
 
 
 def strains(m: int, U: Any, S: Any, W: Any, r: Any) -> list[Any]:
@@ -42,22 +42,24 @@ def displacements(m: int, U: Any, S: Any, W: Any) -> list[Any]:
     return [U, S - U if m == 1 else S, W]
 
 
-def stiffness(E: float, nu: float, G: float, E_across: float, nu_across: float) -> Array:
+def stiffness(E: float, nu: float, G: float, E_transverse: float, nu_transverse: float) -> Array:
     """Stiffness matrix, Pa, (6, 6), from strains (rr, tt, zz, 2 rz, 2 rt, 2 tz) to stresses, of a material that is
     transversely isotropic about the axis."""
-    compliance = np.diag([1 / E_across, 1 / E_across, 1 / E, 1 / G, 2 * (1 + nu_across) / E_across, 1 / G])
-    compliance[0, 1] = compliance[1, 0] = -nu_across / E_across
+    compliance = np.diag(
+        [1 / E_transverse, 1 / E_transverse, 1 / E, 1 / G, 2 * (1 + nu_transverse) / E_transverse, 1 / G]
+    )
+    compliance[0, 1] = compliance[1, 0] = -nu_transverse / E_transverse
     compliance[:2, 2] = compliance[2, :2] = -nu / E
     if np.linalg.eigvalsh(compliance * np.sqrt(np.outer(1 / compliance.diagonal(), 1 / compliance.diagonal())))[0] <= 0:
         raise ValueError(
-            "Material must store energy under every strain, (1 - nu_across) > 2 nu^2 across_ratio; got "
-            f"nu = {nu}, nu_across = {nu_across}, across_ratio = {E_across / E:.6g}"
+            "Material must store energy under every strain, (1 - nu_transverse) > 2 nu^2 transverse_ratio; got "
+            f"nu = {nu}, nu_transverse = {nu_transverse}, transverse_ratio = {E_transverse / E:.6g}"
         )
     return np.linalg.inv(compliance)
 
 
 def matrices(
-    basis: Basis, m: int, stiff: Sequence[Array], heavy: Sequence[float]
+    basis: Basis, m: int, stiffnesses: Sequence[Array], densities: Sequence[float]
 ) -> tuple[sp.csc_matrix, sp.csc_matrix]:
     """K and M of the fields U, S, W from a basis of one field; stiff, heavy: `stiffness` and density of each cell.
 
@@ -68,7 +70,7 @@ def matrices(
     functions = np.array([value, *slopes])  # (value and slopes, functions, cells, points)
     radius, none = np.asarray(basis.global_coordinates())[1], np.zeros((3, *value.shape[::2]))
     rows, columns, entries = [], [], []
-    for cell, (C, rho) in enumerate(zip(stiff, heavy, strict=True)):
+    for cell, (C, rho) in enumerate(zip(stiffnesses, densities, strict=True)):
         f, r = functions[:, :, cell], radius[cell]
         fields: list[tuple[Array, Array, Array]] = [(f, none, none), (none, f, none), (none, none, f)]
         root = np.sqrt((np.pi if m else 2 * np.pi) * r * basis.dx[cell])
@@ -84,14 +86,14 @@ def matrices(
     return K, M
 
 
-def boundary(basis: Basis, coordinate: int, at: float) -> NDArray[np.intp]:
+def boundary_dofs(basis: Basis, coordinate: int, at: float) -> NDArray[np.intp]:
     """Degrees of freedom of one field on the part of the boundary where z (coordinate 0) or r (1) is ``at``."""
-    facets = basis.mesh.facets_satisfying(lambda x: np.abs(x[coordinate] - at) < SAME, boundaries_only=True)
+    facets = basis.mesh.facets_satisfying(lambda x: np.abs(x[coordinate] - at) < SAME_POINT, boundaries_only=True)
     return np.asarray(basis.get_dofs(facets).all())
 
 
-def free(basis: Basis, m: int, *fixed: NDArray[np.intp]) -> NDArray[np.intp]:
+def free_dofs(basis: Basis, m: int, *fixed: NDArray[np.intp]) -> NDArray[np.intp]:
     """Degrees of freedom that are neither ``fixed`` nor zero on the axis because of the harmonic's regularity."""
-    axis, N = boundary(basis, 1, 0.0), basis.N
+    axis, N = boundary_dofs(basis, 1, 0.0), basis.N
     zero = {0: [axis, N + np.arange(N)], 1: [N + axis, 2 * N + axis]}.get(m, [axis, N + axis, 2 * N + axis])
     return np.setdiff1d(np.arange(3 * N), np.concatenate([*zero, *fixed]))

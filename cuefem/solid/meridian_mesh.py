@@ -14,10 +14,10 @@ from skfem import MeshQuad
 from cuefem.cue import Array, Cue, Material
 
 SAME = 1e-9  # m: radii closer than this share a line of the mesh
-THINNEST = 1e-6  # m: elements across a thinner wall would be too flat
-MOST_MEMORY = 2**31  # bytes
+MIN_WALL = 1e-6  # m: elements across a thinner wall would be too flat
+MAX_MEMORY = 2**31  # bytes
 # For each entry of the cells' matrices: triplets, sparse matrices and their factors.
-BYTES_EACH = 120
+BYTES_PER_ENTRY = 120
 
 
 class Fineness(NamedTuple):
@@ -34,7 +34,7 @@ class Fineness(NamedTuple):
     layers: int = 1
 
 
-def lines(cue: Cue) -> tuple[Array, NDArray[np.intp], NDArray[np.intp]]:
+def mesh_lines(cue: Cue) -> tuple[Array, NDArray[np.intp], NDArray[np.intp]]:
     """The lines of the mesh along a cue, each from tip to butt and straight within a segment.
 
     Returns radii, (lines, stations) m, ascending with the line, and for each segment the line of its bore (0: solid)
@@ -74,15 +74,15 @@ def lines(cue: Cue) -> tuple[Array, NDArray[np.intp], NDArray[np.intp]]:
     return radii, bore, np.array([1 + ranks[name[i, 1]] for i in range(len(pieces))])
 
 
-def steps(length: float, near: tuple[float, float], how: Fineness) -> Array:
+def element_ends(length: float, radii: tuple[float, float], fineness: Fineness) -> Array:
     """Ends of elements along a segment of ``length``, m, in [0, 1]; near: radii at both ends, m."""
-    grown = [how.finest * r * how.growth ** np.arange(40) for r in near]
-    left, right = (np.cumsum(g[g < how.longest]) for g in grown)
+    grown = [fineness.finest * r * fineness.growth ** np.arange(40) for r in radii]
+    left, right = (np.cumsum(g[g < fineness.longest]) for g in grown)
     left, right = left[left < 0.5 * length], length - right[right < 0.5 * length][::-1]
     first, last = [0.0, *left], [*right, length]
     if len(first) > 1 and last[0] - first[-1] < 0.5 * (first[-1] - first[-2]):
         first.pop()  # the two graded parts almost meet
-    count = max(1, int(np.ceil((last[0] - first[-1]) / how.longest - SAME)))
+    count = max(1, int(np.ceil((last[0] - first[-1]) / fineness.longest - SAME)))
     return np.concatenate([first, np.linspace(first[-1], last[0], count + 1)[1:-1], last]) / length
 
 
@@ -95,43 +95,43 @@ class Block(NamedTuple):
     along: Array
 
 
-def blocks(cue: Cue, how: Fineness) -> Iterator[Block]:
+def blocks(cue: Cue, fineness: Fineness) -> Iterator[Block]:
     """Every layer of material of every segment."""
-    radii, bore, outer = lines(cue)
+    radii, bore, outer = mesh_lines(cue)
     for i, piece in enumerate(cue.segments):
-        along = steps(piece.length, (radii[outer[i], i], radii[outer[i], i + 1]), how)
+        along = element_ends(piece.length, (radii[outer[i], i], radii[outer[i], i + 1]), fineness)
         for layer in range(outer[i]):
             material = piece.core if layer < bore[i] else piece.material
             if material is not None:
                 yield Block(i, layer, material, along)
 
 
-def check_size(cue: Cue, how: Fineness) -> None:
+def check_mesh_size(cue: Cue, fineness: Fineness) -> None:
     """ValueError if a wall is too thin for the mesh, or if the solid needs more than 2 GiB."""
     for i, piece in enumerate(cue.segments):
         for end in ("tip", "butt"):
             bore, outer = getattr(piece, f"{end}_bore"), getattr(piece, f"{end}_diameter")
-            if outer - bore < 2 * THINNEST:
+            if outer - bore < 2 * MIN_WALL:
                 raise ValueError(
-                    f"Segment.{end}_bore of segments[{i}] must leave a wall of {1e6 * THINNEST:g} um or more for a "
+                    f"Segment.{end}_bore of segments[{i}] must leave a wall of {1e6 * MIN_WALL:g} um or more for a "
                     f"solid; got {1e6 * (outer - bore) / 2:.3g} um"
                 )
-    cells = how.layers * sum(len(block.along) - 1 for block in blocks(cue, how))
-    needed = BYTES_EACH * cells * (3 * (how.order + 1) ** 2) ** 2
-    if needed > MOST_MEMORY:
+    cells = fineness.layers * sum(len(block.along) - 1 for block in blocks(cue, fineness))
+    needed = BYTES_PER_ENTRY * cells * (3 * (fineness.order + 1) ** 2) ** 2
+    if needed > MAX_MEMORY:
         raise ValueError(
-            f"Solid.order must be lower for this drawing, whose solid of {cells} elements of order {how.order} needs "
-            f"more than 2 GiB; got {needed / 2**30:.1f} GiB"
+            f"Solid.order must be lower for this drawing, whose solid of {cells} elements of order {fineness.order} "
+            f"needs more than 2 GiB; got {needed / 2**30:.1f} GiB"
         )
 
 
-def half_section(cue: Cue, how: Fineness) -> tuple[MeshQuad, list[Material]]:
+def half_section(cue: Cue, fineness: Fineness) -> tuple[MeshQuad, list[Material]]:
     """The mesh in (z, r) and the material of each cell."""
-    radii, _, _ = lines(cue)
+    radii, _, _ = mesh_lines(cue)
     corners: list[Array] = []  # of each block, (quadrilaterals, 4, 2)
     materials: list[Material] = []
-    across = np.arange(how.layers + 1)[:, None] / how.layers
-    for i, layer, material, along in blocks(cue, how):
+    across = np.arange(fineness.layers + 1)[:, None] / fineness.layers
+    for i, layer, material, along in blocks(cue, fineness):
         below, above = (radii[k, i] * (1 - along) + radii[k, i + 1] * along for k in (layer, layer + 1))
         r = below * (1 - across) + above * across
         z = np.broadcast_to(cue.nodes[i] * (1 - along) + cue.nodes[i + 1] * along, r.shape)

@@ -19,7 +19,7 @@ from cuefem.cue import Array, Cue, Material
 from cuefem.quantity.display import brief
 from cuefem.quantity.fields import check_count, check_kind
 from cuefem.solid import elasticity
-from cuefem.solid.meridian_mesh import SAME, Fineness, check_size, half_section
+from cuefem.solid.meridian_mesh import SAME, Fineness, check_mesh_size, half_section
 from cuefem.solid.resolution import Solid
 
 BENDING, AXIAL = 1, 0  # Fourier harmonics
@@ -28,7 +28,7 @@ SHIFT = (2 * np.pi * 30.0) ** 2
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class SolidBody:
     """The meshed solid of a cue in one Fourier harmonic."""
 
     cue: Cue
@@ -36,7 +36,7 @@ class Body:
     harmonic: int = BENDING
 
     def __post_init__(self) -> None:
-        check_size(self.cue, self.how)
+        check_mesh_size(self.cue, self.how)
 
     @cached_property
     def cells(self) -> tuple[MeshQuad, list[Material]]:
@@ -51,14 +51,14 @@ class Body:
     @cached_property
     def matrices(self) -> tuple[sp.csc_matrix, sp.csc_matrix]:
         """K and M of all degrees of freedom."""
-        stiff = {m: elasticity.stiffness(m.E, m.nu, m.G, m.E_across, m.nu_in_plane) for m in self.cells[1]}
+        stiff = {m: elasticity.stiffness(m.E, m.nu, m.G, m.E_transverse, m.nu_in_plane) for m in self.cells[1]}
         return elasticity.matrices(
             self.basis, self.harmonic, [stiff[m] for m in self.cells[1]], [m.rho for m in self.cells[1]]
         )
 
     def free(self, *fixed: NDArray[np.intp]) -> NDArray[np.intp]:
         """Degrees of freedom that are neither ``fixed`` nor zero on the axis."""
-        return elasticity.free(self.basis, self.harmonic, *fixed)
+        return elasticity.free_dofs(self.basis, self.harmonic, *fixed)
 
     def _mean(self, z: float, fields: tuple[float, float, float], power: int = 0) -> Array:
         """Row of the mean over an end face of r^power times a sum of the fields, over the mean of r^(2 power)."""
@@ -90,7 +90,7 @@ class Body:
         """
         N, fixed = self.basis.N, np.zeros(0, dtype=np.intp)
         if supported:
-            faces = [elasticity.boundary(self.basis, 0, z) for z in (0.0, self.cue.length)]
+            faces = [elasticity.boundary_dofs(self.basis, 0, z) for z in (0.0, self.cue.length)]
             fixed = np.concatenate([*faces, *(N + face for face in faces)])
         free = self.free(fixed)
         if not count < len(free):
@@ -108,12 +108,12 @@ class Body:
         return SolidModes(omega, tip @ vectors * sign, rotation, rigid)
 
     @property
-    def give(self) -> float:
+    def compliance(self) -> float:
         """Static compliance at the tip, m/N: mean displacement of its face by a distributed unit force.
 
         The butt's face remains plane and upright, and does not move on average.
         """
-        free = self.free(2 * self.basis.N + elasticity.boundary(self.basis, 0, self.cue.length))
+        free = self.free(2 * self.basis.N + elasticity.boundary_dofs(self.basis, 0, self.cue.length))
         K = self.matrices[0][free][:, free]
         load = self.tip[free]
         if self.harmonic == BENDING:
@@ -188,9 +188,9 @@ def solid_modes(cue: Cue, count: int = 6, at: Solid | None = None) -> SolidModes
     check_kind("solid_modes at", at, (Solid, type(None)))
     check_count("solid_modes count", count, 1)
     order = Solid().order if at is None else at.order
-    return Body(cue, Fineness(order)).modes(count + 2)
+    return SolidBody(cue, Fineness(order)).modes(count + 2)
 
 
 def face_loaded_modes(cue: Cue, at: Solid, mass: float) -> SolidModes:
     """Modes of a cue at a resolution, with a mass on the tip's face, kg."""
-    return Body(cue, Fineness(at.order)).modes(at.modes + 2, mass=mass)
+    return SolidBody(cue, Fineness(at.order)).modes(at.modes + 2, mass=mass)

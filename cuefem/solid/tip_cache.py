@@ -16,12 +16,12 @@ from pathlib import Path
 import numpy as np
 import platformdirs
 
-from cuefem.solid.tip_table import LeatherTable, OwnTip, TipTable, table
+from cuefem.solid.tip_table import LeatherTable, TipTable, UntabulatedTip, table
 
 VERSION = 2  # of the file's contents and of their computation
 
 
-def folder() -> Path | None:
+def cache_folder() -> Path | None:
     """The folder of stored tables; None if the user has no home folder."""
     try:
         return platformdirs.user_cache_path("cuefem") / "tips"
@@ -29,34 +29,34 @@ def folder() -> Path | None:
         return None
 
 
-def announcement() -> str:
+def computing_message() -> str:
     """The message printed while a tip is computed."""
-    if folder() is None:
+    if cache_folder() is None:
         return "computing this tip (about 10 s); not stored: no home folder (XDG_CACHE_HOME sets the cache folder)"
     return "computing this tip once (about 10 s)"
 
 
 @lru_cache(maxsize=64)
-def own_table(tip: OwnTip) -> TipTable:
+def cached_table(tip: UntabulatedTip) -> TipTable:
     """The table of one tip, from its file or computed."""
-    computed = read(tip)
+    computed = read_table(tip)
     if computed is None:
-        from cuefem.solid.tip_compliance import own_tip
+        from cuefem.solid.tip_compliance import compute_tip_table
 
-        computed = own_tip(tip)
-        write(tip, computed)
+        computed = compute_tip_table(tip)
+        write_table(tip, computed)
     return computed
 
 
-def file_of(tip: OwnTip, place: Path) -> Path:
+def cache_file(tip: UntabulatedTip, place: Path) -> Path:
     """The file of a tip's table in a folder."""
     return place / f"{hashlib.sha256(repr((VERSION, *tip)).encode()).hexdigest()[:32]}.npz"
 
 
-def read(tip: OwnTip) -> TipTable | None:
+def read_table(tip: UntabulatedTip) -> TipTable | None:
     """The stored table of a tip; None if its file is missing or invalid."""
-    if place := folder():
-        with suppress(Exception), file_of(tip, place).open("rb") as stream, np.load(stream) as file:
+    if place := cache_folder():
+        with suppress(Exception), cache_file(tip, place).open("rb") as stream, np.load(stream) as file:
             parts = LeatherTable(*(np.asarray(file[name], float) for name in LeatherTable._fields))
             like = all(part.shape == whole.shape[4:] for part, whole in zip(parts, table(), strict=True))
             if like and all(np.all(np.isfinite(part)) for part in parts):
@@ -64,11 +64,11 @@ def read(tip: OwnTip) -> TipTable | None:
     return None
 
 
-def write(tip: OwnTip, computed: TipTable) -> None:
+def write_table(tip: UntabulatedTip, computed: TipTable) -> None:
     """Store the table of a tip, if the folder is writable."""
-    if place := folder():
+    if place := cache_folder():
         with suppress(OSError):
             place.mkdir(parents=True, exist_ok=True)
-            partial = file_of(tip, place).with_suffix(f".{os.getpid()}.npz")
+            partial = cache_file(tip, place).with_suffix(f".{os.getpid()}.npz")
             np.savez_compressed(partial, patches=computed.patches, head_on=computed.head_on)
-            partial.replace(file_of(tip, place))
+            partial.replace(cache_file(tip, place))

@@ -24,9 +24,9 @@ from cuefem.cue import Array
 from cuefem.solid import elasticity
 from cuefem.solid import tip_table as tt
 
-SOLVED = (10, 12, 15, 18, 22, 26, 31)  # harmonics above 8 that are computed; the others are interpolated
-ROWS = (0.0, 0.25, 0.75, 1.0)  # ends of the elements within a layer
-POINTS = 48  # Gauss points along a ray of a patch, and over each part of the half circle of rays
+COMPUTED_HARMONICS = (10, 12, 15, 18, 22, 26, 31)  # harmonics above 8 that are computed; the others are interpolated
+LAYER_ROWS = (0.0, 0.25, 0.75, 1.0)  # ends of the elements within a layer
+GAUSS_POINTS = 48  # Gauss points along a ray of a patch, and over each part of the half circle of rays
 PLACES, RADII, HEAD_ON = 13, 11, 8  # numbers of nodes of the table
 
 
@@ -43,17 +43,17 @@ class TipFineness(NamedTuple):
     harmonics: int
 
 
-def usual(order: int = 4, radial: int = 6, up: int = 5, harmonics: int = 30) -> TipFineness:
+def graded_fineness(order: int = 4, radial: int = 6, up: int = 5, harmonics: int = 30) -> TipFineness:
     """Elements graded towards the rim, the base and the top."""
     x, y = np.linspace(0, 1, radial + 1), np.linspace(0, 1, up + 1)
     y = 0.5 * y + 0.25 * (1 - np.cos(np.pi * y))
     return TipFineness(order, tuple(x.tolist()), tuple(y.tolist()), harmonics)
 
 
-TABLE = usual(5, 6, 5, 36)
+TABLE_FINENESS = graded_fineness(5, 6, 5, 36)
 
 
-def fitted(height: float, radius: float, order: int = 5) -> TipFineness:
+def contact_fineness(height: float, radius: float, order: int = 5) -> TipFineness:
     """Elements for an axisymmetric contact of a radius, over D, graded towards its edge and the top."""
     edge = 2 * radius
     out = [edge]
@@ -88,7 +88,7 @@ class Shape(NamedTuple):
         return self.height - sum(height for height, _, _ in self.layers)
 
 
-def drop(radius: Array | float, curvature: float) -> Array | float:
+def dome_depth(radius: Array | float, curvature: float) -> Array | float:
     """Depth of a sphere's surface below its apex at a distance ``radius`` from the axis."""
     return curvature * np.square(radius) / (1 + np.sqrt(np.maximum(1 - np.square(curvature * np.asarray(radius)), 0)))
 
@@ -100,7 +100,7 @@ def _across(radius: Array | float) -> Array:
 
 def surface_nodes(how: TipFineness) -> Array:
     """x of the surface's nodes: the Chebyshev nodes of every element."""
-    return np.append([tt.nodes(a, b, how.order + 1)[:-1] for a, b in pairwise(how.across)], 1.0)
+    return np.append([tt.chebyshev_nodes(a, b, how.order + 1)[:-1] for a, b in pairwise(how.across)], 1.0)
 
 
 def lagrange(radius: Array, how: TipFineness) -> Array:
@@ -109,7 +109,7 @@ def lagrange(radius: Array, how: TipFineness) -> Array:
     cell = np.clip(np.searchsorted(how.across, x, side="right") - 1, 0, len(how.across) - 2)
     values = np.zeros((len(x), (len(how.across) - 1) * how.order + 1))
     for k, (a, b) in enumerate(pairwise(how.across)):
-        values[cell == k, k * how.order : (k + 1) * how.order + 1] = tt.weights(x[cell == k], a, b, how.order + 1)
+        values[cell == k, k * how.order : (k + 1) * how.order + 1] = tt.node_weights(x[cell == k], a, b, how.order + 1)
     return values
 
 
@@ -118,13 +118,13 @@ class TipSolid:
 
     def __init__(self, shape: Shape, how: TipFineness) -> None:
         ends = np.append(0.0, np.cumsum([height for height, _, _ in shape.layers]) / shape.height)
-        spans = [(a + np.array(ROWS[:-1]) * (b - a)) for a, b in pairwise(ends)]
+        spans = [(a + np.array(LAYER_ROWS[:-1]) * (b - a)) for a, b in pairwise(ends)]
         rows = np.concatenate([*spans, ends[-1] + (1 - ends[-1]) * np.array(how.up)])
         square = MeshQuad.init_tensor(rows, np.array(how.across))
         curved = MeshQuad2.from_mesh(square)
         y, x = curved.doflocs
         r, within = np.sin(np.pi / 2 * x) / 2, np.maximum(y - ends[-1], 0.0) / (1 - ends[-1])
-        mesh = MeshQuad2(np.array([shape.height * y - within * drop(r, shape.curvature), r]), curved.t)
+        mesh = MeshQuad2(np.array([shape.height * y - within * dome_depth(r, shape.curvature), r]), curved.t)
         element, nodes = ElementQuadP(how.order), surface_nodes(how)
         self.shape, self.how, self.basis = shape, how, Basis(mesh, element, intorder=2 * how.order + 2)
         self.trace = Basis(square, element).probes(np.array([np.ones_like(nodes), nodes])).tocsr()
@@ -139,21 +139,21 @@ class TipSolid:
         bodies = [*((E, ratio) for _, E, ratio in self.shape.layers), (1.0, nu)]
         stiff = [elasticity.stiffness(E, ratio, E / (2 * (1 + ratio)), E, ratio) for E, ratio in bodies]
         K, _ = elasticity.matrices(basis, m, [stiff[i] for i in self.layer], [1.0] * len(self.layer))
-        base = elasticity.boundary(basis, 0, 0.0)
-        free = elasticity.free(basis, m, base, basis.N + base, 2 * basis.N + base)
+        base = elasticity.boundary_dofs(basis, 0, 0.0)
+        free = elasticity.free_dofs(basis, m, base, basis.N + base, 2 * basis.N + base)
         turned = -trace if m == 1 else none  # V = S - U
         top = sp.bmat([[trace, none, none], [turned, trace, none], [none, none, trace]]).tocsc()[:, free]
         symmetric = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
         return np.asarray(top @ sla.splu(K[free][:, free], **symmetric).solve(top.T.toarray()))
 
 
-def surfaces(solid: TipSolid, nu: float) -> list[Array]:
+def surface_compliances(solid: TipSolid, nu: float) -> list[Array]:
     """`TipSolid.surface` for all harmonics.
 
     High harmonics contribute little to a patch, and m times the compliance varies slowly with m: it is interpolated.
     """
     highest = solid.how.harmonics
-    solved = sorted({m for m in (*range(9), *SOLVED, highest) if m <= highest})
+    solved = sorted({m for m in (*range(9), *COMPUTED_HARMONICS, highest) if m <= highest})
     known = {m: solid.surface(nu, m) for m in solved}
     for low, high in pairwise(solved):
         for m in range(low + 1, high):
@@ -169,7 +169,7 @@ class Patch(NamedTuple):
     radius: float
 
 
-def loads(shape: Shape, patch: Patch, how: TipFineness) -> Array:
+def patch_loads(shape: Shape, patch: Patch, how: TipFineness) -> Array:
     """Unit loads of a patch on the surface's nodes along n and t, in every harmonic; (m, 2, 3 nodes).
 
     The traction is Hertz's, (1 - q^2/a^2)^(1/2) with q the distance from the patch's centre in the tangent plane there.
@@ -192,7 +192,7 @@ def loads(shape: Shape, patch: Patch, how: TipFineness) -> Array:
             middle = (low + high) / 2
             low, high = (middle, high) if reach(np.array([middle]))[0] < a else (low, middle)
         knots.insert(1, low)
-    g, w = np.polynomial.legendre.leggauss(POINTS)
+    g, w = np.polynomial.legendre.leggauss(GAUSS_POINTS)
     angle = np.concatenate([(q - p) / 2 * g + (p + q) / 2 for p, q in pairwise(knots)])
     turn = np.concatenate([(q - p) / 2 * w for p, q in pairwise(knots)])
     last = np.arcsin(np.minimum(reach(angle) / a, 1.0))  # q = a sin(beta)
@@ -221,7 +221,7 @@ def compliance(surfaces: Sequence[Array], load: Array) -> Array:
     return np.asarray(sum(f @ S @ f.T for f, S in zip(load, surfaces, strict=True)))
 
 
-def head_on(shape: Shape, surface: Array, radius: float, how: TipFineness, terms: int = 5) -> Array:
+def central_contact(shape: Shape, surface: Array, radius: float, how: TipFineness, terms: int = 5) -> Array:
     """Forces and depths, (2, 3), of a central contact of ``radius``, over D, with a rigid ball, for three unit gaps.
 
     The gaps between undeformed ball and tip at the distance p from the axis are the depth of the dome over its
@@ -249,35 +249,35 @@ def head_on(shape: Shape, surface: Array, radius: float, how: TipFineness, terms
 def tip_table(shape: Shape, nu: float) -> tt.TipTable:
     """The table of one tip with its layers."""
     places, radii = table_patches(shape.curvature)
-    solid = TipSolid(shape, TABLE)
-    surface = surfaces(solid, nu)
+    solid = TipSolid(shape, TABLE_FINENESS)
+    surface = surface_compliances(solid, nu)
     flat = [compliance(surface, load) for load in table_loads(shape.curvature)]
     C = np.reshape(flat, (PLACES, RADII, 2, 2))
     direct = np.diagonal(C, axis1=2, axis2=3)
     across = C[..., 0, 1] / places[:, None] / np.sqrt(direct.prod(axis=-1))
     patches = np.concatenate([np.log(direct / tt.half_space(nu, radii)), across[..., None]], -1)
     head = np.zeros((HEAD_ON, 2, 3))
-    for i, a in enumerate(np.exp(tt.nodes(*tt.LOG_HEAD_ON, HEAD_ON))):
-        solid = TipSolid(shape, fitted(shape.leather, a))
-        forces = head_on(shape, solid.surface(nu, 0), a, solid.how)
+    for i, a in enumerate(np.exp(tt.chebyshev_nodes(*tt.LOG_HEAD_ON, HEAD_ON))):
+        solid = TipSolid(shape, contact_fineness(shape.leather, a))
+        forces = central_contact(shape, solid.surface(nu, 0), a, solid.how)
         head[i] = np.log(forces / tt.half_space_head_on(nu, a))
     return tt.TipTable(shape.curvature, nu, patches, head)
 
 
 def table_patches(curvature: float) -> tuple[Array, Array]:
     """Places and radii of the patches in the table of a tip."""
-    places = np.sqrt(tt.nodes(tt.AXIS**2, tt.farthest(curvature) ** 2, PLACES))
-    return places, np.exp(tt.nodes(*tt.LOG_RADIUS, RADII))
+    places = np.sqrt(tt.chebyshev_nodes(tt.MIN_PLACE**2, tt.max_place(curvature) ** 2, PLACES))
+    return places, np.exp(tt.chebyshev_nodes(*tt.LOG_RADIUS, RADII))
 
 
 @lru_cache(maxsize=1)
 def table_loads(curvature: float) -> list[Array]:
     """Loads of these patches on `TABLE`; they do not depend on the tip's height."""
     places, radii = table_patches(curvature)
-    return [loads(Shape(1.0, curvature), Patch(s, a), TABLE) for s in places for a in radii]
+    return [patch_loads(Shape(1.0, curvature), Patch(s, a), TABLE_FINENESS) for s in places for a in radii]
 
 
-def own_tip(tip: tt.OwnTip) -> tt.TipTable:
+def compute_tip_table(tip: tt.UntabulatedTip) -> tt.TipTable:
     """The table of a tip that the package's table does not cover."""
-    height = max(tip.height, tt.sag(tip.curvature) + tt.WALL)
+    height = max(tip.height, tt.dome_height(tip.curvature) + tt.MIN_SIDE)
     return tip_table(Shape(height, tip.curvature, tip.layers), tip.nu)

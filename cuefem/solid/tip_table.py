@@ -28,45 +28,45 @@ HEIGHT, CURVATURE, POISSON, RADIUS = (2 / 15, 1.5), (0.0, 2.0), (0.2, 0.45), (0.
 HEAD_ON_RADIUS = (0.04, 0.45)
 # Curvatures between which the table is smooth: above 1 the lowest tip has no side below its dome; above 1.5 the places
 # end where sin(phi) is 0.75.
-PANELS = (0.0, 1.0, 1.5, 2.0)
-WALL = 0.002  # over D: the least height of the side below the dome; lower ones count as this
-SOFTENED = 0.1  # over D: the coordinate of the height is log(side + this)
-AXIS = 0.01  # place: the innermost node, not 0, because C_nt is stored over the place
+CURVATURE_PANELS = (0.0, 1.0, 1.5, 2.0)
+MIN_SIDE = 0.002  # over D: the least height of the side below the dome; lower ones count as this
+HEIGHT_SHIFT = 0.1  # over D: the coordinate of the height is log(side + this)
+MIN_PLACE = 0.01  # place: the innermost node, not 0, because C_nt is stored over the place
 
 
-def nodes(low: float, high: float, count: int) -> Array:
+def chebyshev_nodes(low: float, high: float, count: int) -> Array:
     """Chebyshev nodes of an interval, with both ends."""
     return np.asarray((low + high) / 2 - (high - low) / 2 * np.cos(np.pi * np.arange(count) / (count - 1)))
 
 
-def weights(x: Array | float, low: float, high: float, count: int) -> Array:
+def node_weights(x: Array | float, low: float, high: float, count: int) -> Array:
     """Weights of the values at `nodes` in their interpolating polynomial at ``x``, (..., count)."""
     sign = (-1.0) ** np.arange(count)
     sign[[0, -1]] /= 2
-    gap = np.clip(x, low, high)[..., None] - nodes(low, high, count)
+    gap = np.clip(x, low, high)[..., None] - chebyshev_nodes(low, high, count)
     hit = gap == 0
     terms = np.where(hit.any(axis=-1, keepdims=True), hit, sign / np.where(hit, 1.0, gap))
     return np.asarray(terms / terms.sum(axis=-1, keepdims=True))
 
 
-def sag(curvature: float) -> float:
+def dome_height(curvature: float) -> float:
     """Height of the dome over D."""
     return curvature / 4 / (1 + math.sqrt(1 - curvature**2 / 4))
 
 
-def steepness(curvature: float) -> float:
+def rim_angle(curvature: float) -> float:
     """The coordinate of the curvature: the dome's angle at its rim, rad."""
     return math.asin(min(curvature / 2, 1.0))
 
 
 def panel_of(curvature: float) -> int:
     """Index of the panel of a curvature."""
-    return sum(curvature > end for end in PANELS[1:-1])
+    return sum(curvature > end for end in CURVATURE_PANELS[1:-1])
 
 
-def farthest(curvature: float) -> float:
+def max_place(curvature: float) -> float:
     """The outermost place in the table: the rim, or on a steep dome the place where sin(phi) is 0.75."""
-    return min(1.0, PANELS[2] / max(curvature, 1e-9))
+    return min(1.0, CURVATURE_PANELS[2] / max(curvature, 1e-9))
 
 
 def heights(curvature: float) -> tuple[float, float]:
@@ -76,7 +76,7 @@ def heights(curvature: float) -> tuple[float, float]:
 
 def height_coordinate(height: float, curvature: float) -> float:
     """The coordinate of a height."""
-    return math.log(max(height - sag(curvature), WALL) + SOFTENED)
+    return math.log(max(height - dome_height(curvature), MIN_SIDE) + HEIGHT_SHIFT)
 
 
 def poisson_coordinate(nu: float) -> float:
@@ -139,7 +139,7 @@ class TipTable(NamedTuple):
 Flat = tuple[float, float, float]  # a layer's height over D, Young's modulus over that of the leather, Poisson's ratio
 
 
-class OwnTip(NamedTuple):
+class UntabulatedTip(NamedTuple):
     """A tip that the table does not cover, lengths over its diameter.
 
     height: of leather and layers. curvature: of the dome. nu: of the leather. layers: from the ferrule up.
@@ -151,28 +151,28 @@ class OwnTip(NamedTuple):
     layers: tuple[Flat, ...]
 
 
-def covers(height: float, nu: float) -> bool:
+def is_tabulated(height: float, nu: float) -> bool:
     """Whether the table covers the height, over D, and Poisson's ratio of a tip."""
     return HEIGHT[0] * (1 - 1e-9) <= height <= HEIGHT[1] * (1 + 1e-9) and POISSON[0] <= nu <= POISSON[1]
 
 
 @lru_cache(maxsize=64)
-def of_tip(height: float, curvature: float, nu: float) -> TipTable:
+def table_of_tip(height: float, curvature: float, nu: float) -> TipTable:
     """The table of one tip, interpolated."""
     panel, (patches, head) = panel_of(curvature), table()
-    low, high = (steepness(end) for end in PANELS[panel : panel + 2])
+    low, high = (rim_angle(end) for end in CURVATURE_PANELS[panel : panel + 2])
     at = (
-        (steepness(curvature), low, high),
+        (rim_angle(curvature), low, high),
         (height_coordinate(height, curvature), *heights(curvature)),
         (poisson_coordinate(nu), *NU),
     )
     parts = [patches[panel], head[panel]]
     for x, low, high in at:
-        parts = [np.tensordot(weights(x, low, high, len(part)), part, 1) for part in parts]
+        parts = [np.tensordot(node_weights(x, low, high, len(part)), part, 1) for part in parts]
     return TipTable(curvature, nu, *parts)
 
 
-def reach(curvature: float, place: float) -> float:
+def distance_to_rim(curvature: float, place: float) -> float:
     """Distance from ``place`` to the rim, over D, in the tangent plane there."""
     here, rim = curvature * place / 2, curvature / 2
     return (0.25 - place**2 / 4) / (0.5 * math.sqrt(1 - here**2) + place / 2 * math.sqrt(1 - rim**2))
@@ -185,19 +185,19 @@ def compliance(tip: TipTable, place: float, radius: Array) -> Array:
     proportion to 1/radius, extrapolated from the two smallest radii.
     """
     at = np.maximum(radius, RADIUS[0])
-    matrices = _read(tip, place, at)
-    if reach(tip.curvature, place) >= RADIUS[0]:
+    matrices = _interpolated(tip, place, at)
+    if distance_to_rim(tip.curvature, place) >= RADIUS[0]:
         more = half_space(tip.nu, radius) - half_space(tip.nu, at)
         return np.asarray(matrices + more[:, None] * np.eye(2))
-    first, second = _read(tip, place, np.array([1.0, 1.5]) * RADIUS[0])
+    first, second = _interpolated(tip, place, np.array([1.0, 1.5]) * RADIUS[0])
     return np.asarray(matrices + 3 * (first - second) * (RADIUS[0] / radius - RADIUS[0] / at)[:, None, None])
 
 
-def _read(tip: TipTable, place: float, radius: Array) -> Array:
+def _interpolated(tip: TipTable, place: float, radius: Array) -> Array:
     """E D times the compliance at radii within the table."""
     places, radii, _ = tip.patches.shape
-    here = np.tensordot(weights(place**2, AXIS**2, farthest(tip.curvature) ** 2, places), tip.patches, 1)
-    logarithms = weights(np.log(radius), *LOG_RADIUS, radii) @ here
+    here = np.tensordot(node_weights(place**2, MIN_PLACE**2, max_place(tip.curvature) ** 2, places), tip.patches, 1)
+    logarithms = node_weights(np.log(radius), *LOG_RADIUS, radii) @ here
     normal, shear = (np.exp(logarithms[:, :2]) * half_space(tip.nu, radius)).T
     across = logarithms[:, 2] * place * np.sqrt(normal * shear)
     return np.array([[normal, across], [across, shear]]).transpose(2, 0, 1)
@@ -220,7 +220,7 @@ def rigid_patch_gain(nu: float, curvature: float, below: float, radius: Array) -
 def head_on(tip: TipTable, radius: Array, ball: float) -> Array:
     """Force over E D^2 and depth over D of a central contact with a ball of radius ``ball``, by radius; (radii, 2)."""
     at = np.maximum(radius, HEAD_ON_RADIUS[0])
-    ratio = np.tensordot(weights(np.log(at), *LOG_HEAD_ON, len(tip.head_on)), tip.head_on, 1)
+    ratio = np.tensordot(node_weights(np.log(at), *LOG_HEAD_ON, len(tip.head_on)), tip.head_on, 1)
     ratio = ratio * (radius / at)[:, None, None]  # vanishes with the radius
     gaps = np.array([tip.curvature, 1 / ball, 1 / ball**3])
     return np.asarray((half_space_head_on(tip.nu, radius) * np.exp(ratio)) @ gaps)

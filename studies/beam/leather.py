@@ -21,19 +21,19 @@ import numpy as np
 from cuefem.cue import Array
 from cuefem.solid import tip_table as tt
 from cuefem.solid.tip_compliance import (
-    TABLE,
+    TABLE_FINENESS,
     Patch,
     Shape,
     TipFineness,
     TipSolid,
+    central_contact,
     compliance,
-    fitted,
-    head_on,
+    contact_fineness,
+    graded_fineness,
     lagrange,
-    loads,
-    surfaces,
+    patch_loads,
+    surface_compliances,
     tip_table,
-    usual,
 )
 from studies import pages
 from studies.pages import table
@@ -44,21 +44,21 @@ COUNTS = {"curvature": 6, "height": 8, "nu": 4}
 
 
 def shape_at(curvature: float, coordinate: float) -> Shape:
-    return Shape(np.exp(coordinate) - tt.SOFTENED + tt.sag(curvature), curvature)
+    return Shape(np.exp(coordinate) - tt.HEIGHT_SHIFT + tt.dome_height(curvature), curvature)
 
 
 def curvatures(panel: int, count: int) -> Array:
-    return 2 * np.sin(tt.nodes(*(tt.steepness(end) for end in tt.PANELS[panel : panel + 2]), count))
+    return 2 * np.sin(tt.chebyshev_nodes(*(tt.rim_angle(end) for end in tt.CURVATURE_PANELS[panel : panel + 2]), count))
 
 
 def build() -> tt.LeatherTable:
     """The whole table."""
-    nus = (1 - np.exp(-tt.nodes(*tt.NU, COUNTS["nu"]))) / 2
+    nus = (1 - np.exp(-tt.chebyshev_nodes(*tt.NU, COUNTS["nu"]))) / 2
     panels = []
-    for panel in range(len(tt.PANELS) - 1):
+    for panel in range(len(tt.CURVATURE_PANELS) - 1):
         domes = []
         for k in curvatures(panel, COUNTS["curvature"]):
-            shapes = [shape_at(k, v) for v in tt.nodes(*tt.heights(k), COUNTS["height"])]
+            shapes = [shape_at(k, v) for v in tt.chebyshev_nodes(*tt.heights(k), COUNTS["height"])]
             tips = [[tip_table(shape, nu) for nu in nus] for shape in shapes]
             domes.append([[[tip[part] for tip in row] for row in tips] for part in (2, 3)])
             print(f"curvature {k:.3f} done", file=sys.stderr, flush=True)
@@ -69,21 +69,21 @@ def build() -> tt.LeatherTable:
 # The page
 
 
-def solved(shape: Shape, nu: float, patch: Patch, how: TipFineness = TABLE) -> Array:
+def solved(shape: Shape, nu: float, patch: Patch, how: TipFineness = TABLE_FINENESS) -> Array:
     """E D times the compliance of one Hertz-weighted patch, by the solid itself."""
-    return compliance(surfaces(TipSolid(shape, how), nu), loads(shape, patch, how))
+    return compliance(surface_compliances(TipSolid(shape, how), nu), patch_loads(shape, patch, how))
 
 
 def exact() -> Iterator[list[str | float]]:
     """The solid over exact solutions, less 1."""
-    how = usual(4, 4, 6, 1)
+    how = graded_fineness(4, 4, 6, 1)
     short, long, slender = (solved(Shape(h, 0.0), 0.3, Patch(0.0, 0.45), how) for h in (4.0, 6.0, 30.0))
     yield ["rod, EA/h, from the difference of two lengths", (long - short)[0, 0] * np.pi / 8 - 1]
     case = "cantilever 30 diameters long, 3EI/h^3 (shear and local compliance: 0.001)"
     yield [case, slender[1, 1] * np.pi / 64 / 9e3 - 1]
     for part in (16, 32, 64):
         radius = 0.5 / part
-        found = solved(Shape(0.5, 0.0), 0.4, Patch(0.0, radius), fitted(0.5, radius)._replace(harmonics=1))
+        found = solved(Shape(0.5, 0.0), 0.4, Patch(0.0, radius), contact_fineness(0.5, radius)._replace(harmonics=1))
         n, t = np.diagonal(found) / tt.half_space(0.4, np.array(radius)) - 1
         yield [f"half-space, contact radius 1/{part} of the height, normal", n]
         yield [f"half-space, contact radius 1/{part} of the height, tangential", t]
@@ -95,7 +95,7 @@ def stuck(shape: Shape, nu: float, radius: float) -> tuple[float, float]:
     The rigid patch's traction is the sum of Hertz's and a punch's that gives least (least complementary energy). On a
     mesh that ends at its edge: on the table's, a punch's compliance is 3 % too low.
     """
-    how = fitted(shape.height, radius)
+    how = contact_fineness(shape.height, radius)
     g, w = np.polynomial.legendre.leggauss(200)
     beta = np.pi / 4 * (g + 1)
     q = radius * np.sin(beta)
@@ -119,7 +119,7 @@ def sticking() -> Iterator[list[str | float]]:
             yield [name, f"{nu:g}", f"{min(off):+.2f}", f"{max(off):+.2f}"]
 
 
-MESHES = (usual(4, 5, 4, 24), usual(4, 6, 5, 36), TABLE, usual(6, 8, 6, 48))
+MESHES = (graded_fineness(4, 5, 4, 24), graded_fineness(4, 6, 5, 36), TABLE_FINENESS, graded_fineness(6, 8, 6, 48))
 
 
 def refined() -> Iterator[list[str | float]]:
@@ -128,7 +128,7 @@ def refined() -> Iterator[list[str | float]]:
     for how in MESHES:
         C = solved(shape, 0.4, patch, how) * 1e6 / (100e6 * 12.75e-3)
         mesh = f"{len(how.across) - 1} x {len(how.up) - 1} of order {how.order}, {how.harmonics} harmonics"
-        yield [mesh + (", the table's" if how is TABLE else ""), C[0, 0], C[1, 1], C[0, 1]]
+        yield [mesh + (", the table's" if how is TABLE_FINENESS else ""), C[0, 0], C[1, 1], C[0, 1]]
 
 
 class Errors(NamedTuple):
@@ -147,23 +147,23 @@ def errors(tips: int = 20, seed: int = 1) -> Errors:
         h, D, r, nu = rng.uniform((2.0, 8.0, 6.0, 0.2), (12.0, 15.0, 15.0, 0.45))
         k = D / r if rng.random() < 0.9 else 0.0
         shape, a = Shape(h / D, k), rng.uniform(0.05, 0.44)
-        if k > 2 or shape.height < max(tt.sag(k), tt.HEIGHT[0]):
+        if k > 2 or shape.height < max(tt.dome_height(k), tt.HEIGHT[0]):
             continue
-        tip, how = tt.of_tip(shape.height, k, nu), usual(6, 7, 6, 44)
-        solution = surfaces(TipSolid(shape, how), nu)
+        tip, how = tt.table_of_tip(shape.height, k, nu), graded_fineness(6, 7, 6, 44)
+        solution = surface_compliances(TipSolid(shape, how), nu)
         for _ in range(60):
-            place, radius = tt.farthest(k) * rng.random(), rng.uniform(0.06, 0.5)
-            direct = compliance(solution, loads(shape, Patch(place, radius), how))
+            place, radius = tt.max_place(k) * rng.random(), rng.uniform(0.06, 0.5)
+            direct = compliance(solution, patch_loads(shape, Patch(place, radius), how))
             read = tt.compliance(tip, place, np.array([radius]))[0]
             scale = np.sqrt(np.outer(np.diagonal(direct), np.diagonal(direct)))
             off = ((read - direct) / scale)[[0, 1, 0], [0, 1, 1]]
-            part = "within" if radius <= tt.reach(k, place) else "cut"
+            part = "within" if radius <= tt.distance_to_rim(k, place) else "cut"
             found = found._replace(**{part: np.vstack([getattr(found, part), off])})
-        how = fitted(shape.height, a, 6)
+        how = contact_fineness(shape.height, a, 6)
         gaps, ball = np.array([k, D / 28.575, (D / 28.575) ** 3]), 28.575 / D
-        direct = head_on(shape, TipSolid(shape, how).surface(nu, 0), a, how) @ gaps
+        direct = central_contact(shape, TipSolid(shape, how).surface(nu, 0), a, how) @ gaps
         off = tt.head_on(tip, np.array([a]), ball)[0] / direct - 1
-        found = found._replace(head_on=np.vstack([found.head_on, off]))
+        found = found._replace(central_contact=np.vstack([found.head_on, off]))
     return found
 
 

@@ -19,7 +19,7 @@ import cuefem as cf
 from cuefem.cue import shear_coefficient
 from cuefem.cue.materials import material
 from cuefem.solid.meridian_mesh import Fineness
-from cuefem.solid.shaft import Body
+from cuefem.solid.shaft import SolidBody
 from studies import pages
 from studies.pages import table
 from studies.strokes import cue
@@ -28,7 +28,7 @@ from studies.strokes import scene as scene_of
 COUNT = 6
 WOOD, CARBON, MELAMINE = material("hard maple"), material("carbon fibre"), material("melamine")
 KIM = cue("kim").segments[0]
-KIM_WOOD = replace(KIM.material, across_ratio=WOOD.across_ratio, nu_across=WOOD.nu_across)
+KIM_WOOD = replace(KIM.material, transverse_ratio=WOOD.transverse_ratio, nu_transverse=WOOD.nu_transverse)
 ISOTROPIC = replace(KIM.material, G=KIM_WOOD.E / 2.6)
 SECTIONS = {"solid, nu 0.3": (ISOTROPIC, 0.0), "solid, maple": (WOOD, 0.0), "bore 0.5, maple": (WOOD, 0.5)} | {
     "bore 0.95, maple": (WOOD, 0.95),
@@ -61,7 +61,7 @@ def coefficient_table() -> str:
         s, nu = whole.section(0.0), wood.effective_poisson_ratio
         for slenderness in (48.0, 68.0, 96.0, 136.0):
             length = slenderness * 0.0064
-            body = Body(rod(wood, length, ratio * 0.0128), Fineness(8, slenderness / 8, length / 6, 1.5, 1))
+            body = SolidBody(rod(wood, length, ratio * 0.0128), Fineness(8, slenderness / 8, length / 6, 1.5, 1))
             points.append((math.pi / length, float(body.modes(1, supported=True).omega[0])))
         k2, omega2 = np.array(points).T ** 2
         kGA = s.rhoA * omega2 * (s.EI * k2 - omega2 * s.rhoI) / (s.EI * k2**2 - omega2 * (s.rhoA + s.rhoI * k2))
@@ -74,7 +74,7 @@ def coefficient_table() -> str:
 @cache
 def compared(struck: cf.Cue) -> np.ndarray:
     """Six free frequencies of the beam over those of the solid, less 1."""
-    solid = Body(cf.Cue(tuple(replace(piece, kappa=None) for piece in struck.segments)), Fineness(8, 0.2, 0.03))
+    solid = SolidBody(cf.Cue(tuple(replace(piece, kappa=None) for piece in struck.segments)), Fineness(8, 0.2, 0.03))
     return np.asarray(cf.modes(struck, COUNT).frequencies / solid.modes(COUNT + 2).frequencies - 1)
 
 

@@ -16,7 +16,7 @@ import numpy as np
 import scipy.linalg as la
 
 import cuefem as cf
-from cuefem.scene.solved_scene import Solved
+from cuefem.scene.solved_scene import SolvedScene
 from studies.strokes import cue, whole
 
 RINGS, STEP = 200, 1e-6
@@ -38,7 +38,7 @@ class Leather:
 
 def plain(offset: float, speed: float = 2.0) -> cf.Scene:
     """The stroke that `stepped` makes: the leather's rings on a bending shaft, alone."""
-    scene = whole(cue("pool_maple"), offset, speed, rolls=False)
+    scene = whole(cue("pool_maple"), offset, speed, rolling=False)
     return replace(scene, effects=scene.effects[:1])
 
 
@@ -46,7 +46,7 @@ def stepped(scene: cf.Scene, leather: Leather) -> tuple[float, float, float]:
     """Squirt, deg, contact time, s, and speed of the ball over the cue's. The package's loss where nothing relaxes."""
     tip, at, own = scene.leather, scene.stroke, scene.tip.restitution
     diameter, mass = scene.tip_diameter, scene.ball.mass
-    law, modes = scene.tip_law(own, at.offset), Solved(scene).tip
+    law, modes = scene.tip_law(own, at.offset), SolvedScene(scene).tip
     edges = law.depth_limit * np.linspace(0, 1, RINGS + 1) ** 2
     begin, stiff = (edges[1:] + edges[:-1]) / 2, np.array([np.diff(law.slope(edges)), np.diff(law.at(edges)[1])])
     radius, depth_, _ = tip.head_on(diameter, scene.ball.radius)
@@ -55,12 +55,12 @@ def stepped(scene: cf.Scene, leather: Leather) -> tuple[float, float, float]:
     n, omega = len(modes.omega), modes.omega
     turn = np.zeros((3 * n, 3 * n))  # of q, omega q and q'
     turn[:n, 2 * n :], turn[n : 2 * n, 2 * n :], turn[2 * n :, n : 2 * n] = np.eye(n), np.diag(omega), np.diag(-omega)
-    if modes.resistance is not None:
-        turn[2 * n :, 2 * n :] = -modes.resistance
+    if modes.total_damping is not None:
+        turn[2 * n :, 2 * n :] = -modes.total_damping
     turn, fade = la.expm(turn * STEP), math.exp(-STEP / leather.time)
     phi = math.asin(at.offset)
     t, normal = np.array([math.sin(phi), math.cos(phi)]), np.array([math.cos(phi), -math.sin(phi)])
-    reach = modes.amplitude + np.outer(modes.rotation, tip.lever(phi, diameter))
+    reach = modes.amplitude + np.outer(modes.rotation, tip.moment_arm(phi, diameter))
     z, velocity, spin = np.concatenate([np.zeros(2 * n), at.speed * modes.approach]), np.zeros(2), 0.0
     share = leather.share * np.array([1.0, float(leather.surface)])[:, None]
     strain, slow = np.zeros((2, RINGS)), np.zeros((2, RINGS))  # along the normal and the surface; what relaxes of it

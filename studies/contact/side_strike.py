@@ -112,7 +112,7 @@ SPEED, WINDOW = 0.5, 6e-3  # m/s, s: assumed, because those of the experiments w
 
 def touches(phases: Sequence[Any]) -> tuple[tuple[float, float], ...]:
     """Contacts (start, duration), s: phases of contact without separation between them."""
-    held = [list(part) for apart, part in groupby(phases, lambda phase: phase.grip == "apart") if not apart]
+    held = [list(part) for apart, part in groupby(phases, lambda phase: phase.state == "apart") if not apart]
     return tuple((part[0].start, part[-1].end - part[0].start) for part in held)
 
 
@@ -133,7 +133,7 @@ def fall() -> tuple[tuple[tuple[float, float], ...], tuple[float, float, float]]
     often = replace(once, striker=spring, effects=(*held, cf.SecondHit(WINDOW)))
     found = touches(cf.side_strike(often).phases)
     first = cf.side_strike(once, cf.Resolution(2, 16, 20)).duration
-    return found, (first, hertz.time_on(beam.shaft_mass, SPEED), wall)
+    return found, (first, hertz.contact_time_on(beam.shaft_mass, SPEED), wall)
 
 
 SOURCES = """\

@@ -33,7 +33,10 @@ def measured(folder: str, model: str, kinds: tuple[type, ...] = (Squirt, PivotLe
     found, _ = load_measured(HOME / folder)
     scene = found.scene
     if model == "bare":
-        scene = replace(scene.bare, tip=replace(scene.bare.tip, restitution=0.85 if folder == STINGER else 0.73))
+        scene = replace(
+            scene.without_tip_effects,
+            tip=replace(scene.without_tip_effects.tip, restitution=0.85 if folder == STINGER else 0.73),
+        )
     return replace(found, scene=scene, measurements=tuple(m for m in found.measurements if isinstance(m, kinds)))
 
 

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.stats import chi2
 
-from cuefem.results.uncertainty import FLOOR
+from cuefem.results.uncertainty import RATIO_FLOOR
 from studies import pages
 from studies.measured.published import MODELS, PLAYERS, PREDATOR, STINGER, Row, mass_ratios, rows, series
 from studies.pages import table
@@ -114,7 +114,7 @@ def coverage() -> Iterator[tuple[str, int, int, float]]:
 def within(share: float, pair: tuple[float, ...]) -> bool:
     """Whether a measured logarithm lies within the uncertainty of the computed one; pair: both, and what inputs do."""
     measured, ours, *inputs = pair
-    return abs(measured - ours) <= math.hypot(max(share * abs(ours), math.hypot(*inputs)), FLOOR)
+    return abs(measured - ours) <= math.hypot(max(share * abs(ours), math.hypot(*inputs)), RATIO_FLOOR)
 
 
 def squirt_table() -> str:

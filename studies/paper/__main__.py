@@ -4,8 +4,8 @@ from collections import Counter
 
 from rich.console import Console
 
-from cuefem.report.table import terminal
-from cuefem.results.records import sheet
+from cuefem.report.renderers import terminal
+from cuefem.results.records import tabulate
 from studies.pages import number
 from studies.paper.claims import Claim, gap
 from studies.paper.kim import claims
@@ -24,7 +24,7 @@ def main() -> None:
     found: list[Claim] = claims()
     console = Console(highlight=False)
     console.width = console.width if console.is_terminal else 120
-    console.print(terminal(sheet("Claims of [Kim], checked", COLUMNS, found, texts=(0, 1))), crop=False)
+    console.print(terminal(tabulate("Claims of [Kim], checked", COLUMNS, found, texts=(0, 1))), crop=False)
     counts = Counter(claim.verdict for claim in found)
     print(", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items())))
     print("`cuefem guide accuracy` explains the verdicts, studies/paper/kim.md gives the causes.")

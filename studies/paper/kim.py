@@ -657,7 +657,7 @@ def shaft_scene(*effects: Effect) -> Scene:
 def slip_again(outcome: Outcome) -> float:
     """The time at which slip begins again, over the duration of the contact."""
     last = outcome.phases[-1]
-    return float(last.start / outcome.duration) if last.grip != "stick" else 1.0
+    return float(last.start / outcome.duration) if last.state != "stick" else 1.0
 
 
 def four(value: float) -> float:

@@ -10,7 +10,7 @@ import pytest
 
 import cuefem as cf
 from studies.paper.closed_forms import alciatore_a31, natural_pivot_length
-from tests.helpers.command_line import as_json, said
+from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.cues import kim as kims_shaft
 
 KIM = kims_shaft()
@@ -66,12 +66,12 @@ def test_a_scene_file_uses_its_own_and_options_replace_what_it_says(folder: Path
 
 
 def test_convert(folder: Path) -> None:
-    assert said("convert", "cue.toml", "cue.vtu") == "wrote cue.vtu\n"
-    said("convert", "cue.toml", "new.toml", "--body-mass", "15 oz")
+    assert stdout_of("convert", "cue.toml", "cue.vtu") == "wrote cue.vtu\n"
+    stdout_of("convert", "cue.toml", "new.toml", "--body-mass", "15 oz")
     assert cf.load("new.toml") == replace(cf.load("cue.toml"), body_mass=0.425242846875)
-    assert said("convert", "shaft.csv", "shaft.toml", "--material", "ash").startswith("assumed:\n  no mass behind")
+    assert stdout_of("convert", "shaft.csv", "shaft.toml", "--material", "ash").startswith("assumed:\n  no mass behind")
     assert cf.load("shaft.toml") == cf.load("shaft.csv", material="ash")
-    said("convert", "scene.toml", "shaft.toml", "--body-mass", "0.4 kg", "--force")
+    stdout_of("convert", "scene.toml", "shaft.toml", "--body-mass", "0.4 kg", "--force")
     scene = cf.load("scene.toml")
     assert cf.load("shaft.toml") == replace(scene, cue=replace(scene.cue, body_mass=0.4))
 

@@ -10,7 +10,7 @@ from cuefem.io.measured_folder import TEMPLATE, load_measured
 from cuefem.measurements.estimate import estimate
 from cuefem.measurements.measured_cue import compare
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES
-from tests.helpers.command_line import as_json, call, said
+from tests.helpers.command_line import as_json, call, stdout_of
 from tests.helpers.measured_cues import SOME, folder
 from tests.helpers.refusals import command_refuses
 
@@ -23,7 +23,7 @@ def test_numbers_and_the_page(tmp_path: Path) -> None:
         assert told["label"] == row.measurement.label
         assert [told[name] for name in ("computed", "spread", "pull")] == [row.computed, row.spread, row.pull]
     assert (found["name"], found["missing"]) == ("a cue", cue.missing)
-    out = said("compare", place)
+    out = stdout_of("compare", place)
     assert all(words in out for words in ("weight of the shaft", "100.00 ± 0.50 g", "not measured, and what that"))
     assert call("compare", place, "-o", page) == (0, f"wrote {page}\n", "")
     text = page.read_text(encoding="utf-8")

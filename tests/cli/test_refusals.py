@@ -59,9 +59,9 @@ strike shaft.toml --restitution 0.05 | Tip.restitution must be in [0.1, 1]
 modes shaft.toml --tip-height 40mm | got 40 mm (options: --tip-height, --dome)
 strike shaft.toml --leather 1MPa | (--tip-height, --leather, --speed)
 modes lumped.toml --material ash | is a lumped cue, without material
-modes good.toml --begins ferrule | has its own leather: begins is only for .csv
-modes bare.csv --begins leather | begins must be "ferrule" or leather with a height
-modes bare.csv --begins 'leather 40 mm' | begins must have at most 30 mm of leather
+modes good.toml --front ferrule | has its own leather: front is only for .csv
+modes bare.csv --front leather | front must be "ferrule" or leather with a height
+modes bare.csv --front 'leather 40 mm' | front must have at most 30 mm of leather
 modes bare.csv --ferrule melamine | ferrule must be a length and a material
 modes bare.csv --ferrule '25 mm cheese' | no material is called 'cheese'
 modes bare.csv --ferrule '70 mm abs' | ferrule must be at most 60 mm long

@@ -11,7 +11,7 @@ import pytest
 from click.shell_completion import ShellComplete
 
 from cuefem.cli import COMMANDS, main
-from cuefem.cli.printing import Output
+from cuefem.cli.output import Output
 from tests.helpers.command_line import call
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cuefem import Ball, LumpedCue, Outcome, Scene, Stroke, Tip, impulse
-from cuefem.contact.rigid_impact import numbers_of
+from cuefem.contact.impulse_solver import impulse_inputs
 from studies.paper import closed_forms as squirt
 from tests.helpers.impulse_oracle import exact, regime_of
 
@@ -55,7 +55,7 @@ def everything(out: Outcome) -> dict[str, object]:
 
 def columns(singles: list[Scene]) -> dict[str, np.ndarray]:
     """The numbers that the solver takes."""
-    rows = [numbers_of(each, each.cue) for each in singles]
+    rows = [impulse_inputs(each, each.cue) for each in singles]
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 

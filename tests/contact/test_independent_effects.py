@@ -161,7 +161,7 @@ MANY = [pytest.param(name, range(40), 2 * STEPS, marks=pytest.mark.nightly) for 
 
 def flights(outcome: cf.Outcome) -> list[Phase]:
     """The phases in which ball and tip are apart before they touch again."""
-    return [phase for phase in outcome.phases if phase.press == "free"]
+    return [phase for phase in outcome.phases if phase.normal_phase == "free"]
 
 
 @pytest.mark.parametrize(("kind", "seeds", "steps"), [*DAILY, *HEAVY, *MANY])

@@ -15,7 +15,7 @@ from scipy.integrate import quad
 
 import cuefem as cf
 from cuefem import strike
-from tests.helpers.orders import falls_with_the_step
+from tests.helpers.orders import assert_error_falls_with_the_step
 from tests.oracle.ring_stepper import LEATHER, stepped, struck_scene
 
 WITHIN = 5e-3
@@ -34,9 +34,11 @@ def test_leather_strike_on_maple_equals_exact_chain(speed: float, chain: float) 
 @pytest.mark.parametrize("speed", [1.0, 2.0, 5.0])
 def test_leather_central_impact_contact_time_equals_quadrature(speed: float) -> None:
     scene, at = struck_scene(0.0, speed), cf.Resolution(2, 10, 10)
-    falls_with_the_step(lambda steps: abs(strike(scene, replace(at, steps=steps)).duration / scene.contact_time - 1))
-    law, mass = scene.tip_law(), scene.head_on_mass
-    deepest, loading = law.blow(mass, speed)
+    assert_error_falls_with_the_step(
+        lambda steps: abs(strike(scene, replace(at, steps=steps)).duration / scene.contact_time - 1)
+    )
+    law, mass = scene.tip_law(), scene.reduced_mass
+    deepest, loading = law.central_impact(mass, speed)
     assert law.work(deepest) == pytest.approx(mass * speed**2 / 2, rel=1e-12)
 
     def slowness(s: float) -> float:  # depth = deepest (1 - s^2), so that it stays finite

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.contact.trajectory import Motion, motion
+from cuefem.contact.motion_history import Motion, motion
 from tests.helpers.strike_scenes import KIM
 
 SCENE = cf.Scene(KIM, cf.Ball(0.17, 0.028575), cf.Tip(0.75, 0.7, 1e-3), cf.Stroke(2.0, 0.3))

@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 import cuefem as cf
-from cuefem.beam.tip import lumped_tip_modes
-from cuefem.contact.model import model_of
+from cuefem.beam.tip_modes import lumped_tip_modes
+from cuefem.contact.contact_model import model_of
 from cuefem.contact.step_records import solve_contact
-from cuefem.scene.solved_scene import default_modes
+from cuefem.scene.solved_scene import default_mode_count
 from tests.helpers.leather_scenes import leather_scene
 from tests.helpers.refusals import refuses
 from tests.helpers.strike_scenes import kim_scene
@@ -45,7 +45,7 @@ CALLS: list[Any] = [
     (lambda: cf.LumpedCue(0.25, 0.25, 4.0), "LumpedCue.coupling must be in (-4.0, 4.0) 1/kg; got 4.0"),
     (lambda: cf.strike(3), "TypeError: strike scene must be a Scene; got 3"),  # type: ignore[arg-type]
     (lambda: cf.impulse(3), "TypeError: impulse scene must be a sequence of Scene; got 3"),  # type: ignore[arg-type]
-    *((ask, "must be a Cue of segments: ") for ask in (lambda: LUMPED.shaft, lambda: default_modes(LUMPED))),
+    *((ask, "must be a Cue of segments: ") for ask in (lambda: LUMPED.shaft, lambda: default_mode_count(LUMPED))),
     (lambda: cf.Scene("cue"), "TypeError: Scene.cue must be a Cue or LumpedCue; got 'cue'"),
     (lambda: cf.Scene(cf.LumpedCue(0.5, 0.003), tip=0.7), "TypeError: Scene.tip must be a Tip"),
     (

@@ -14,16 +14,16 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.beam.tip import TipModes, lumped_tip_modes
-from cuefem.contact.model import model_of
+from cuefem.beam.tip_modes import TipModes, lumped_tip_modes
+from cuefem.contact.contact_model import model_of
+from cuefem.contact.impulse_solver import inverse_mass
 from cuefem.contact.outcome import end_of_first_slip
-from cuefem.contact.rigid_impact import inverse_mass
 from cuefem.contact.step_records import solve_contact
 from cuefem.contact.strike import strike_modes
 from cuefem.scene.solved_scene import tip_modes_of
 from tests.data.stored import scene_of, stored_law, strikes, tip_of
 from tests.helpers.cues import rod, stiff_ferrule
-from tests.helpers.orders import falls_with_the_step
+from tests.helpers.orders import assert_error_falls_with_the_step
 from tests.helpers.strike_scenes import (
     CLOSED,
     KIM,
@@ -221,7 +221,7 @@ def test_infinite_friction_impact_may_separate_at_once(e: float, regime: str) ->
     cue = cf.LumpedCue(0.05, 0.02, -0.8 / math.sqrt(0.05 * 0.02))
     scene = cf.Scene(cue, tip=cf.Tip(e, math.inf, contact_time=1e-3), stroke=cf.Stroke(1.0, 0.95))
     outcome, exact = cf.strike(scene), cf.impulse(scene)
-    assert [phase.grip for phase in outcome.phases] == ["blow"]
+    assert [phase.state for phase in outcome.phases] == ["blow"]
     assert (outcome.regime, exact.regime, outcome.duration) == (regime, regime, 0)
     for name in ("squirt", "ball_speed", "spin", "cue_speed"):
         assert getattr(outcome, name) == pytest.approx(getattr(exact, name), rel=1e-12)
@@ -244,7 +244,7 @@ def test_central_impact_contact_time_falls_with_speed(exponent, speed, e):
         leaves = outcome.ball_speed / (speed * (1 + e) * Q0 / (1 + Q0))
         return max(abs(outcome.duration / time - 1), abs(leaves - 1))
 
-    falls_with_the_step(error)
+    assert_error_falls_with_the_step(error)
 
 
 def test_elevation_table_friction_of_sliding_ball_equals_closed_form():

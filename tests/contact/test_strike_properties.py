@@ -66,7 +66,7 @@ LEVEL = (
 )
 RAISED = st.builds(cf.Elevation, st.floats(0.0, 1.2), st.sampled_from([0.0, 0.2, 3.0]))
 WHOLE_TIP = st.builds(
-    lambda E, rolls, lost: replace(LEATHER, E=E, rolls=rolls, surface_restitution=lost),
+    lambda E, rolls, lost: replace(LEATHER, E=E, rolling=rolls, surface_restitution=lost),
     st.floats(1.5e8, 6e8),
     st.booleans(),
     st.just(1.0) | st.floats(0.3, 1.0),
@@ -110,7 +110,7 @@ def test_strike_conserves_energy_mirrors_and_ignores_effect_order(examples: int)
     @given(strikes(), st.integers(0, 5))
     @example(replace(kim_scene(0.3, restitution=0.05), effects=(cf.Support(0.25, dashpot=5.0),)), 0)
     @example(replace(kim_scene(0.3, restitution=0.05), effects=(cf.AxialWaves(),)), 0)
-    @example(leather_scene(0.0, e=0.716796875, friction=inf, leather=replace(LEATHER, E=142981276.0, rolls=False)), 0)
+    @example(leather_scene(0.0, e=0.716796875, friction=inf, leather=replace(LEATHER, E=142981276.0, rolling=False)), 0)
     @example(leather_scene(0.2309, speed=3.8607, e=0.883, friction=0.17, leather=replace(LEATHER, E=3.9e8)), 0)
     def everywhere(scene: cf.Scene, turn: int) -> None:
         if (found := strike(scene)) is None:
@@ -224,20 +224,20 @@ def struck(name: str) -> cf.Outcome:
 def test_history_forces_obey_friction_and_integrate_to_impulse(name: str) -> None:
     scene, outcome = COURSES[name], struck(name)
     history, side, mu = outcome.history, np.sign(scene.stroke.offset), scene.tip.friction
-    middles, force, lengths = history.middles[1:-1], history.forces[1:-1], np.diff(history.ends)
+    force_times, force, lengths = history.force_times[1:-1], history.forces[1:-1], np.diff(history.ends)
     assert np.all(force[:, 1] >= 0)
     for phase in outcome.phases:
-        here = (middles > phase.start) & (middles < phase.end)
+        here = (force_times > phase.start) & (force_times < phase.end)
         if not here.any():
-            assert (phase.grip, phase.start) == ("blow", phase.end)
+            assert (phase.state, phase.start) == ("blow", phase.end)
             continue
         f_t, f_n = force[here].T
         given_by = [lengths[here] @ f_t, lengths[here] @ f_n]
         np.testing.assert_allclose(given_by, phase.impulse, rtol=0, atol=1e-10 * outcome.impulse[1])
         if not isinf(mu):
             assert np.all(np.abs(f_t) <= mu * f_n * (1 + 1e-9))
-        if phase.grip != "stick":
-            way = side * (1 if phase.grip == "slip" else -1)
+        if phase.state != "stick":
+            way = side * (1 if phase.state == "slip" else -1)
             last = slice(None, -1)  # in a phase's last step it may come to rest
             assert np.abs(f_t - way * mu * f_n)[last].max() < 1e-9 * f_n.max()
             assert np.all(way * history.velocities[1:][here][last, 0] < 1e-3 * scene.stroke.speed)

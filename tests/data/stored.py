@@ -21,7 +21,7 @@ from unittest import mock
 import numpy as np
 
 import cuefem as cf
-from cuefem.beam.tip import TipModes, lumped_tip_modes
+from cuefem.beam.tip_modes import TipModes, lumped_tip_modes
 from cuefem.effects import leather_tip
 from cuefem.effects.force_law import LeatherLaw
 from cuefem.scene import Scene
@@ -87,13 +87,13 @@ def stored_law(row: dict[str, Any]) -> Iterator[None]:
     if "law" not in row:
         yield
         return
-    real, laws = leather_tip.whole_tip, row["law"]
+    real, laws = leather_tip.tip_model, row["law"]
 
     def law(radius: float, offset: float, restitution: float) -> LeatherLaw:
         force, give, most = laws["at offset" if offset else "head on"]
         return LeatherLaw(tuple(force), tuple(give), restitution, most)
 
-    with mock.patch.object(leather_tip, "whole_tip", lambda tip, diameter: replace(real(tip, diameter), law=law)):
+    with mock.patch.object(leather_tip, real.__name__, lambda tip, diameter: replace(real(tip, diameter), law=law)):
         yield
 
 

@@ -8,10 +8,10 @@ import pytest
 
 import cuefem as cf
 from cuefem.cue.materials import material
-from cuefem.design.design_changes import COSTS, LEAST_WALL, changes_of, design_changes
-from cuefem.parameters.parameter import varied
+from cuefem.design.design_changes import MIN_STIFFNESS_LOSS, MIN_WALL, changes_of, design_changes
+from cuefem.parameters.parameter import with_parameters
 from cuefem.results.comparison import comparison_record
-from cuefem.results.uncertainty import FLOOR, SHAFTS
+from cuefem.results.uncertainty import RATIO_FLOOR, SHAFT_ERROR
 from tests.helpers.command_line import as_json, call
 from tests.helpers.refusals import command_refuses
 
@@ -44,7 +44,7 @@ def test_design_changes_rows_equal_strikes_of_changed_cues(computed: tuple[cf.Sc
     assert record["own"]["squirt"] == pytest.approx(own.squirt, rel=1e-9)
     assert record["changes"]
     for row in record["changes"]:
-        made = varied(scene, row["set"])
+        made = with_parameters(scene, row["set"])
         assert row["squirt_change"] == pytest.approx(cf.strike(made).squirt / own.squirt - 1, abs=1e-8)
         assert row["shaft_mass_change"] == pytest.approx(made.cue.shaft_mass - scene.cue.shaft_mass, abs=1e-12)
         changed = cf.modes(made.cue, effects=made.cue_effects).frequencies[0]
@@ -58,16 +58,20 @@ def test_design_changes_are_sorted_with_verdicts(computed: tuple[cf.Scene, dict]
     for row in rows:
         worthwhile = row["squirt_change"] < -row["squirt_change_error"]
         assert ("worthwhile" in row["verdict"]) == worthwhile
-        assert ("costs stiffness" in row["verdict"]) == (worthwhile and row["tip_stiffness_change"] < -COSTS)
+        assert ("costs stiffness" in row["verdict"]) == (
+            worthwhile and row["tip_stiffness_change"] < -MIN_STIFFNESS_LOSS
+        )
         assert (row["verdict"] == "within uncertainty") == (abs(row["squirt_change"]) <= row["squirt_change_error"])
-        assert row["squirt_change_error"] >= math.hypot(FLOOR, SHAFTS * math.log1p(row["squirt_change"])) / 1.15
+        assert (
+            row["squirt_change_error"] >= math.hypot(RATIO_FLOOR, SHAFT_ERROR * math.log1p(row["squirt_change"])) / 1.15
+        )
 
 
 @pytest.mark.heavy
 def test_design_change_error_equals_comparison_of_same_shaft() -> None:
     scene = scene_of("pool_maple")
     (row,) = (row for row in design_changes(scene)["changes"] if row["change"] == "ferrule of abs")
-    pair = {"before": scene, "after": varied(scene, row["set"])}
+    pair = {"before": scene, "after": with_parameters(scene, row["set"])}
     error = comparison_record(pair, same_shaft=True)["differences"]["after"]["squirt"]["error"]
     assert row["squirt_change_error"] == pytest.approx(error, rel=0.01)
 
@@ -75,16 +79,20 @@ def test_design_change_error_equals_comparison_of_same_shaft() -> None:
 def test_design_changes_walls_are_thick_enough(computed: tuple[cf.Scene, dict]) -> None:
     scene, record = computed
     for row in record["changes"]:
-        bored = [s for s in varied(scene, row["set"]).cue.segments if s.core is None and max(s.tip_bore, s.butt_bore)]
+        bored = [
+            s
+            for s in with_parameters(scene, row["set"]).cue.segments
+            if s.core is None and max(s.tip_bore, s.butt_bore)
+        ]
         walls = [min(s.tip_diameter - s.tip_bore, s.butt_diameter - s.butt_bore) / 2 for s in bored]
-        assert min(walls, default=np.inf) >= LEAST_WALL
+        assert min(walls, default=np.inf) >= MIN_WALL
 
 
 def test_design_changes_of_tube_exclude_tapers_and_woods() -> None:
     labels = [change.label for change in changes_of(scene_of("carbon"))]
     assert not any("taper" in each or "shaft" in each or "thinner" in each for each in labels)
     (tube,) = (change for change in changes_of(scene_of("pool_maple")) if "carbon" in change.label)
-    made = varied(scene_of("pool_maple"), tube.values)
+    made = with_parameters(scene_of("pool_maple"), tube.values)
     assert {s.core for s in made.cue.segments[1:]} == {material("foam")}
 
 

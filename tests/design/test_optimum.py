@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.cli.studies import round_words
+from cuefem.cli.study_command import round_text
 from cuefem.cue.materials import material
 from cuefem.design import Response, Span, Vary, evaluate
 from cuefem.design.optimum import Limit, Optimum, Problem, Round, optimum
 from cuefem.io.study_files import load_study
 from studies.pages import STUDIES
-from tests.helpers.command_line import said
+from tests.helpers.command_line import stdout_of
 from tests.helpers.cues import low_deflection
 from tests.helpers.refusals import command_refuses
 from tests.helpers.sweeps import OPTIMUM, written
@@ -32,12 +32,14 @@ SCENE = cf.Scene(low_deflection(), tip=cf.Tip(contact_time=1e-3))
 SQUIRT, WALL, STIFFNESS = Response("squirt_slope"), Response("wall"), Response("tip_stiffness")
 
 
-def vary(name: str, low: float, high: float, *fields: str, taken_from: tuple[str, ...] = ()) -> Vary:
-    return Vary(tuple(f"cue.segments{field}" for field in fields), Span(low, high), name, taken_from=taken_from)
+def vary(name: str, low: float, high: float, *fields: str, compensating_path: tuple[str, ...] = ()) -> Vary:
+    return Vary(
+        tuple(f"cue.segments{field}" for field in fields), Span(low, high), name, compensating_path=compensating_path
+    )
 
 
 BORE = vary("bore", 0.002, 0.010, *(f"[{i}].{end}_bore" for i in (1, 2) for end in ("tip", "butt")))
-DEPTH = vary("bore depth", 0.03, 0.25, "[2].length", taken_from=("cue.segments[3].length",))
+DEPTH = vary("bore depth", 0.03, 0.25, "[2].length", compensating_path=("cue.segments[3].length",))
 TIP = vary("tip", 0.011, 0.0135, *(f"[{i}].{e}_diameter" for i in (0, 1) for e in ("tip", "butt")), "[2].tip_diameter")
 TAPER = vary("taper end", 0.0127, 0.016, "[3].butt_diameter", "[4].tip_diameter")
 LIMITS = (
@@ -59,7 +61,7 @@ def best() -> Optimum:
 def test_committed_study_equals_optimum_of_exact_gradients(tmp_path: Path) -> None:
     """The design of the former exact gradients; the saved scene has the required stiffness."""
     goal = tmp_path / "best.toml"
-    told = json.loads(said("study", STUDY, "--json", "-o", goal))
+    told = json.loads(stdout_of("study", STUDY, "--json", "-o", goal))
     assert (told["kind"], told["objective"], told["unfinished"]) == ("optimum", {"minimize": "squirt_slope"}, "")
     # by the closed form of the end mass; equal steps leave 2e-7 of it
     assert told["value"] == pytest.approx(0.03951969007, rel=1e-6)
@@ -86,7 +88,7 @@ def test_optimum_of_strike_converges_to_same_design() -> None:
 def test_active_limits_constrain_the_optimum() -> None:
     """Only without an active limit is there a better design."""
     point = np.array([best().values[v.name] for v in PROBLEM.vary])
-    assert PROBLEM.room(PROBLEM.values(point[None])).min() == pytest.approx(0.0, abs=1e-6)
+    assert PROBLEM.margins(PROBLEM.values(point[None])).min() == pytest.approx(0.0, abs=1e-6)
     assert (best().scene, best().unfinished) == (PROBLEM.scene(point), "")
     assert best().active
     for limit in LIMITS:
@@ -101,7 +103,7 @@ def test_maximum_under_limit_equals_minimum_under_limit() -> None:
     """Stiffness as large as a limit on squirt allows: as much as the least squirt of so stiff a shaft has."""
     least = optimum(Problem(SCENE, (BORE, TIP, TAPER), SQUIRT, (Limit(STIFFNESS, low=430.0),), PROBLEM.at))
     bound = Limit(SQUIRT, high=least.responses["squirt_slope"])
-    stiffest = optimum(Problem(SCENE, (BORE, TIP, TAPER), STIFFNESS, (bound,), PROBLEM.at, largest=True))
+    stiffest = optimum(Problem(SCENE, (BORE, TIP, TAPER), STIFFNESS, (bound,), PROBLEM.at, maximize=True))
     assert stiffest.responses["tip_stiffness"] == pytest.approx(least.responses["tip_stiffness"], rel=1e-4)
 
 
@@ -146,11 +148,11 @@ def of(cue: cf.Cue, name: str) -> cf.Segment:
 
 
 def test_optimum_output_has_units_limits_and_rounds(tmp_path: Path) -> None:
-    out = said("study", written(tmp_path, OPTIMUM))
+    out = stdout_of("study", written(tmp_path, OPTIMUM))
     assert {"bore 9 mm", "tip 10 mm"} <= {" ".join(line.split()) for line in out.splitlines()}
     assert "active constraints: bore <= 9 mm, tip >= 10 mm" in out
-    assert "not finished: " in said("study", tmp_path / "study.toml", "--iterations", 1)
+    assert "not finished: " in stdout_of("study", tmp_path / "study.toml", "--iterations", 1)
     problem = load_study(tmp_path / "study.toml")
-    words = [round_words(problem, Round({"wood": "ash"}, 3, 30, best), 60) for best in (np.nan, 0.0412345678)]
+    words = [round_text(problem, Round({"wood": "ash"}, 3, 30, best), 60) for best in (np.nan, 0.0412345678)]
     assert words[0].endswith("no design within the limits yet")
     assert words[1].endswith("squirt slope 0.0412346 so far")

@@ -13,7 +13,7 @@ import cuefem as cf
 from cuefem.design import Normal, Response, Span, Study, Vary, evaluate
 from cuefem.design.scatter import Scatter, indices
 from cuefem.io.study_files import load_study
-from tests.helpers.command_line import as_json, said
+from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.sweeps import SCATTER, written
 
 MAPLE = cf.load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml")
@@ -72,7 +72,7 @@ def test_sobol_indices_of_correlated_sum_equal_closed_form() -> None:
     scatter = Scatter(study, r, {"wood": ("front", "middle", "rear")}, 128, 1)
     assert scatter.causes == ("ferrule", "wood")
     result = cf.study(scatter)
-    found = result.drivers
+    found = result.sobol_indices
     per_rho = np.array([segment.mass / segment.material.rho for segment in MAPLE.segments[1:]])
     ferrule = MAPLE.segments[1]
     hole = math.pi / 4 * ferrule.length * ferrule.tip_bore**2
@@ -84,7 +84,7 @@ def test_sobol_indices_of_correlated_sum_equal_closed_form() -> None:
     assert found.first[:, 0] == pytest.approx(parts / parts.sum(), abs=0.03)
     assert found.total[:, 0] == pytest.approx(parts / parts.sum(), abs=0.03)
     assert result.spread["shaft_mass"]["sd"] == pytest.approx(math.sqrt(parts.sum()), rel=0.03)
-    apart = cf.study(Scatter(study, count=128, seed=1)).drivers
+    apart = cf.study(Scatter(study, count=128, seed=1)).sobol_indices
     assert apart.causes == ("ferrule", "front", "middle", "rear")
     assert apart.first[:, 0] == pytest.approx(terms**2 / (terms**2).sum(), abs=0.03)
 
@@ -133,10 +133,10 @@ def test_command_equals_function(tmp_path: Path) -> None:
     stiffness, spread = record["responses"]["tip_stiffness"], result.spread["tip_stiffness"]
     assert (record["kind"], record["count"], record["seed"]) == ("scatter", 16, 5)
     assert {name: stiffness[name] for name in spread} == spread
-    assert stiffness["causes"]["wood"]["first"] == result.drivers.first[0, 1]
+    assert stiffness["causes"]["wood"]["first"] == result.sobol_indices.first[0, 1]
     assert stiffness["causes"]["time"]["total_interval"] == [0, 0]
     assert len((tmp_path / "all.csv").read_text(encoding="utf-8").splitlines()) == 1 + 16 * 4
     assert as_json("study", study)["evaluated"] == 0  # designs are stored
-    out = " ".join(said("study", study).split())
+    out = " ".join(stdout_of("study", study).split())
     assert f"end mass, g {1e3 * result.spread['end_mass']['mean']:.3f}" in out
     assert "the strongest cause is wood (" in out  # time changes no stiffness

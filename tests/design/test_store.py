@@ -17,7 +17,7 @@ import pytest
 from cuefem.design import evaluate
 from cuefem.io import InputError
 from cuefem.io.study_files import load_study
-from tests.helpers.command_line import said
+from tests.helpers.command_line import stdout_of
 from tests.helpers.refusals import command_refuses, untouched
 from tests.helpers.sweeps import SCENE, STRUCK, STUDY, changed, rows_of, swept, written
 
@@ -42,7 +42,7 @@ values = ["12 mm", "12.5 mm"]
 
 def record_of(study: Path, *options: object) -> dict[str, Any]:
     """The record of `study --json`."""
-    return dict(json.loads(said("study", study, "--json", *options)))
+    return dict(json.loads(stdout_of("study", study, "--json", *options)))
 
 
 def command(study: Path, *more: str) -> list[str]:
@@ -97,9 +97,9 @@ def test_study_killed_edited_and_resumed_has_same_table(tmp_path: Path, workers:
     made = len(rows_of(store))
     assert record_of(study, "-o", whole)["evaluated"] == 200 - made
     study = written(tmp_path, study.read_text(encoding="utf-8").replace("high = 1.3", "high = 1.4"), name="edited.toml")
-    said("study", study, "--store", store, "-o", tmp_path / "edited.csv")
+    stdout_of("study", study, "--store", store, "-o", tmp_path / "edited.csv")
     for name, path in (("study", whole), ("edited", tmp_path / "edited.csv")):
-        said("study", tmp_path / f"{name}.toml", "--store", tmp_path / f"fresh_{name}.sqlite", "-o", own)
+        stdout_of("study", tmp_path / f"{name}.toml", "--store", tmp_path / f"fresh_{name}.sqlite", "-o", own)
         assert path.read_bytes() == own.read_bytes()
         assert len(own.read_bytes().splitlines()) == 201
 
@@ -196,7 +196,7 @@ def test_csv_has_every_design_exactly(text: str, tmp_path: Path) -> None:
     """Equal to each design evaluated alone; an invalid design has a reason and no responses."""
     study = written(tmp_path, text)
     definition = load_study(study)
-    said("study", study, "-o", tmp_path / "out.csv")
+    stdout_of("study", study, "-o", tmp_path / "out.csv")
     with (tmp_path / "out.csv").open(newline="", encoding="utf-8") as file:
         head, *lines = csv.reader(file)
     units = zip(definition.columns, definition.units, strict=True)
@@ -217,7 +217,7 @@ def test_csv_has_every_design_exactly(text: str, tmp_path: Path) -> None:
 def test_store_of_several_studies_reads_by_name(tmp_path: Path) -> None:
     store = tmp_path / "all.sqlite"
     for name, text in (("grid", GRID), ("quick", STRUCK.replace("count = 150", "count = 16"))):
-        said("study", written(tmp_path, text, name=f"{name}.toml"), "--store", store)
+        stdout_of("study", written(tmp_path, text, name=f"{name}.toml"), "--store", store)
     assert [len(rows_of(store, name)) for name in (None, "grid")] == [16, 8]
     with pytest.raises(InputError, match="must contain a study other; got quick, grid"):
         rows_of(store, "other")

@@ -54,7 +54,9 @@ def test_study_segments_are_numbered_as_in_file(path: str, of: str, tmp_path: Pa
 
 
 def test_study_compensated_length_of_segment_in_file(tmp_path: Path) -> None:
-    wanted = load_study(varying(tmp_path, "cue.segments[1].length", more='taken_from = "cue.segments[2].length"\n'))
+    wanted = load_study(
+        varying(tmp_path, "cue.segments[1].length", more='compensating_path = "cue.segments[2].length"\n')
+    )
     lengths = [segment.length for segment in wanted.scene((0.005,)).cue.segments]
     assert lengths == pytest.approx([0.005, 0.141, 0.55])
 
@@ -84,10 +86,14 @@ def test_study_file_ranges_are_read(tmp_path: Path) -> None:
     text = STRUCK.replace('low = "0 mm"\nhigh = "13 mm"', 'middle = "5 mm"\nsd = "1 mm"')
     text = text.replace("low = 0.7\nhigh = 1.3", 'middle = 1\nsd = 0.2\nspacing = "logarithmic"')
     text += '[[vary]]\npath = "cue.segments[0].length"\nlow = "-5 mm"\nhigh = "5 mm"\nshift = true\n'
-    text += 'taken_from = "cue.segments[1].length"\n'
+    text += 'compensating_path = "cue.segments[1].length"\n'
     two = SCENE.replace("[tip]", SCENE[SCENE.index("[[") : SCENE.index("[tip]")] + "[tip]")
     found = load_study(written(tmp_path, text, two))
     bore, modulus, length = found.vary
     assert (bore.range, modulus.range) == (Normal(5e-3, 1e-3), Normal(1, 0.2, logarithmic=True))
-    assert (length.range, length.shift, length.taken_from) == (Span(-5e-3, 5e-3), True, ("cue.segments[1].length",))
+    assert (length.range, length.shift, length.compensating_path) == (
+        Span(-5e-3, 5e-3),
+        True,
+        ("cue.segments[1].length",),
+    )
     assert found.units[:3] == ("m", "", "m")

@@ -15,7 +15,7 @@ from cuefem.cue.materials import material
 from cuefem.design import Levels, Normal, Response, Sample, Span, Study, Vary, evaluate
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.results.quantities import RESULTS
-from cuefem.results.solved_design import asked
+from cuefem.results.solved_design import computable_results
 from studies.paper.closed_forms import natural_pivot_length
 from tests.helpers.cues import MAPLE, kim, low_deflection, pool
 
@@ -94,7 +94,7 @@ def test_study_records_of_different_studies_differ() -> None:
 def test_response_name_is_inverse_of_of() -> None:
     for one in ALL:
         assert Response.of(one.name) == one
-    assert {one.kind for one in ALL} == set(asked()) > set(asked()) & set(RESULTS)
+    assert {one.kind for one in ALL} == set(computable_results()) > set(computable_results()) & set(RESULTS)
 
 
 def singly(scene: cf.Scene, at: cf.Resolution | None) -> dict[str, float]:
@@ -168,7 +168,7 @@ def test_evaluate_failed_design_does_not_affect_others() -> None:
     assert f"a squirt of {found.values[2, 1]:.4g} phi" in found.reasons[2]
 
 
-DEPTH = Vary(("cue.segments[2].length",), Span(0.05, 0.25), "bore depth", taken_from=("cue.segments[3].length",))
+DEPTH = Vary(("cue.segments[2].length",), Span(0.05, 0.25), "bore depth", compensating_path=("cue.segments[3].length",))
 
 
 @given(st.floats(0.05, 0.25))

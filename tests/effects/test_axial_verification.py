@@ -10,7 +10,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.cue.materials import MATERIALS
-from cuefem.effects.axial import rod_modes
+from cuefem.effects.rod_modes import rod_modes
 
 MESHES = Path(__file__).parents[2] / "meshes"
 MAPLE = MATERIALS["hard maple"].material

@@ -9,13 +9,13 @@ from scipy.optimize import brentq
 
 import cuefem as cf
 from cuefem.beam.system import assemble
-from cuefem.beam.tip import TipModes
+from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.strike import strike_modes
 from cuefem.effects import Effect
-from cuefem.effects.axial import rod_modes
+from cuefem.effects.rod_modes import rod_modes
 from cuefem.scene.solved_scene import tip_modes_of
 from tests.helpers.cues import MAPLE, kim
-from tests.helpers.orders import falls_with_the_step
+from tests.helpers.orders import assert_error_falls_with_the_step
 from tests.helpers.strike_scenes import KIM, kim_scene
 
 HERE = 0.213  # m, between the nodes of every mesh used here
@@ -46,7 +46,7 @@ def test_joint_compliance_adds_in_series(compliances, order):
 
     def give(*effects: Effect) -> float:
         system = assemble(KIM, cf.Resolution(3, order, 1), (cf.Support(0.7, inf, inf), *effects))
-        force = system.forces_at(0.0)[:, 0]
+        force = system.unit_loads_at(0.0)[:, 0]
         return force @ np.linalg.solve(system.K, force)
 
     rotational, shear = compliances
@@ -135,7 +135,7 @@ def test_dome_on_rigid_body_equals_lumped_cue_with_coupling(offset, restitution,
     scene = replace(kim_scene(offset, restitution=restitution, friction=friction), cue=stub)
     domed = replace(scene, effects=(cf.TipDome(RADIUS),))
     tip, expected = (
-        tip_modes_of(domed, cf.Resolution(1, 4, 1)).those(np.arange(3)),
+        tip_modes_of(domed, cf.Resolution(1, 4, 1)).subset(np.arange(3)),
         cf.impulse(replace(scene, cue=lumped)),
     )
 
@@ -144,6 +144,6 @@ def test_dome_on_rigid_body_equals_lumped_cue_with_coupling(offset, restitution,
         given_by = np.abs(coupled.impulse - expected.impulse).max() / expected.impulse[1]
         return float(max(abs(coupled.squirt - expected.squirt), given_by))
 
-    falls_with_the_step(error, most=1e-3)
+    assert_error_falls_with_the_step(error, most=1e-3)
     flat = cf.impulse(replace(scene, cue=replace(lumped, coupling=0.0)))
     assert abs(expected.squirt - flat.squirt) > 1e-4 or friction == 0.2

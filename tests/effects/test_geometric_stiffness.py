@@ -11,7 +11,7 @@ import pytest
 import scipy.linalg
 
 import cuefem as cf
-from cuefem.beam.tip import TipModes
+from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.strike import strike_modes
 from cuefem.scene.solved_scene import tip_modes_of
 from tests.oracle.chain import Chain, chain_squirt

@@ -63,7 +63,7 @@ def test_dome_radius_by_coin_length_or_flat_is_read(file: Path, text: str, radiu
         ({"dome_radius": "'penny'"}, 'such as "12 mm", or "dime", "nickel", "flat"; got \'penny\''),
         ({"dome_radius": "9.5"}, 'needs a unit: "12 mm" or "0.5 in", or "dime", "nickel", "flat"; got 9.5'),
         ({"height": "inf"}, "effects[0].height: must be a length with its unit"),
-        ({"rolls": "'no'"}, "effects[0].rolls: must be true or false; got 'no'"),
+        ({"rolling": "'no'"}, "effects[0].rolling: must be true or false; got 'no'"),
     ],
 )
 def test_refusals(file: Path, entries: dict[str, str | None], message: str) -> None:

@@ -10,7 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from cuefem import LeatherTip
-from cuefem.effects.leather_tip import whole_tip
+from cuefem.effects.leather_tip import tip_model
 
 DIAMETERS = st.floats(8e-3, 15e-3)
 TIPS = st.builds(
@@ -51,7 +51,7 @@ def test_leather_compliance_is_symmetric_and_positive(
 @given(TIPS, DIAMETERS, st.floats(-0.6, 0.6))
 def test_leather_moment_arm_lies_on_dome_or_rim(tip: LeatherTip, diameter: float, phi: float) -> None:
     """The contact lies on the dome or on its rim, and the mass is between that of cylinders."""
-    along, across = possible(tip, diameter).lever(phi, diameter)
+    along, across = possible(tip, diameter).moment_arm(phi, diameter)
     assert abs(along) <= diameter / 2
     assert math.copysign(1, along) == -math.copysign(1, phi)
     assert -tip.height <= across < 0
@@ -69,14 +69,14 @@ def test_leather_moment_arm_lies_on_dome_or_rim(tip: LeatherTip, diameter: float
 def test_leather_law_stiffness_of_every_annulus_is_positive(tip: LeatherTip, diameter: float, offset: float) -> None:
     """The force stiffens, so that a ring's share of it is not negative; with the whole tip in touch it may level off.
 
-    Near the rim the patch's stiffness levels off too: it falls by less than two thousandths of its greatest. Only where
-    the dome ends within 3 % of a diameter above the ferrule, and the patch is at that rim, its series of seven terms
-    falls by up to 0.9 % (30 of 4632 such tips).
+    Near the rim the patch's stiffness levels off too: it falls by less than 0.2 % of its maximum, on flat domes (radius
+    above 3.5 diameters) by less than 0.4 % (85,102 random tips). Only where the dome ends within 3 % of a diameter over
+    the ferrule, and the patch is at that rim, its series of seven terms falls by up to 0.9 % (30 of 4632 such tips).
     """
-    law = whole_tip(possible(tip, diameter), diameter).law(0.028575, offset, 0.7)
+    law = tip_model(possible(tip, diameter), diameter).law(0.028575, offset, 0.7)
     depth = law.depth_limit * np.linspace(0.0, 1.0, 1000) ** 2
     slope, stiffness = law.slope(depth), law.at(depth)[1]
     assert np.all(np.diff(slope)[depth[1:] < 0.8 * law.depth_limit] > 0)
-    rim = tip.lever(math.pi / 2, diameter)[1] / diameter  # where the dome ends
-    part = 0.02 if -rim < 0.03 else 2e-3
+    rim = tip.moment_arm(math.pi / 2, diameter)[1] / diameter  # where the dome ends
+    part = 0.02 if -rim < 0.03 else 4e-3 if tip.dome_radius > 3.5 * diameter else 2e-3
     assert np.all(stiffness > (1 - part) * np.maximum.accumulate(stiffness) - 1e-9)

@@ -33,7 +33,7 @@ def with_tip(tip: cf.Tip, *effects: cf.Effect, **more: Any) -> Callable[[], cf.S
 
 
 CALLS: list[tuple[Callable[[], object], str]] = [  # a line a raise, its first words
-    (lambda: LeatherLaw((1.0, 2.0), (1.0,), 0.7, 1e-3), "as many force_terms as give_terms; got 2 and 1"),
+    (lambda: LeatherLaw((1.0, 2.0), (1.0,), 0.7, 1e-3), "as many force_terms as compliance_terms; got 2 and 1"),
     (listed(SHEAR, RAISED), "TipShear; got Elevation, which does not"),
     (lambda: replace(LEATHER, dome_radius=6e-3).mass(0.013), "must have a radius of 6.5 mm or more, half of"),
     (lambda: replace(LEATHER, height=2e-3).mass(0.01275), "must be higher than 2.457 mm, the depth"),
@@ -62,7 +62,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [  # a line a raise, its first w
     (with_tip(cf.Tip(), replace(LEATHER, dome_radius=5e-3)), "the dome of a leather tip on 12 mm must have a radius"),
     (lambda: cf.modes(KIM, 3, effects=(3,)), "TypeError: modes effects must be effects"),  # type: ignore[arg-type]
     (lambda: replace(kim_scene(), effects=SHEAR), "TypeError: Scene.effects must be a sequence of effects"),  # type: ignore[arg-type]
-    (lambda: replace(LEATHER, rolls="no"), "TypeError: LeatherTip.rolls must be a bool; got 'no'"),
+    (lambda: replace(LEATHER, rolling="no"), "TypeError: LeatherTip.rolling must be a bool; got 'no'"),
     (listed(SHEAR, "TipDome"), "TypeError: Scene.effects[1] must be an Effect; got 'TipDome'"),  # type: ignore[arg-type]
 ]
 

@@ -12,9 +12,9 @@ from scipy.integrate import quad
 from cuefem import Cue, LumpedCue, Resolution, Scene, end_mass, modes
 from cuefem.beam.modes import solve
 from cuefem.beam.system import assemble
-from cuefem.beam.tip import TipModes
+from cuefem.beam.tip_modes import TipModes
 from cuefem.endmass.definitions import force, velocity
-from cuefem.scene.solved_scene import default_modes, tip_modes_from, tip_modes_of
+from cuefem.scene.solved_scene import default_mode_count, tip_modes_from, tip_modes_of
 from tests.helpers.cues import cone, kim, rod, scaled, scene
 
 
@@ -64,7 +64,7 @@ def long_rod() -> tuple[TipModes, Scene, float]:
     cue, T = rod(3000.0, diameter=1e-3), 5e-4
     s = cue.section(0.0)
     found = scene(cue, T)
-    count = default_modes(found, periods=45)
+    count = default_mode_count(found, periods=45)
     tip = tip_modes_from(solve(assemble(cue, count), count), found)
     return tip, found, float(s.rhoA) * math.sqrt(T * math.sqrt(float(s.EI / s.rhoA)))
 

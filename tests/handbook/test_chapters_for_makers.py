@@ -10,8 +10,8 @@ import pytest
 
 import cuefem as cf
 from cuefem.handbook import MAKERS, chapters
-from cuefem.parameters.parameter import varied
-from cuefem.results.uncertainty import MODEL, SHAFTS
+from cuefem.parameters.parameter import with_parameters
+from cuefem.results.uncertainty import MODEL_ERROR, SHAFT_ERROR
 from tests.helpers.command_line import call
 from tests.helpers.maker_pictures import FOLDER, PICTURES, answers, ready
 
@@ -50,9 +50,9 @@ def test_numbers_in_makers_chapters_equal_computation() -> None:
     for name in ("low deflection", "carbon"):  # "about a fifth less"
         assert 0.18 < 1 - known[name] / known["plain maple"] < 0.24
     assert verdict["uncertainty"]["total"] == pytest.approx(0.2, abs=0.025)  # "off by about 20 %"
-    assert f"The model's own is {100 * MODEL:.0f} %" in TEXTS["read_the_report"]
-    assert f"its uncertainty is {100 * SHAFTS:.0f} % of the difference for the model" in TEXTS["read_the_report"]
-    assert f"{100 * SHAFTS:.0f} % of the change for the model" in TEXTS["change_it"]
+    assert f"The model's own is {100 * MODEL_ERROR:.0f} %" in TEXTS["read_the_report"]
+    assert f"its uncertainty is {100 * SHAFT_ERROR:.0f} % of the difference for the model" in TEXTS["read_the_report"]
+    assert f"{100 * SHAFT_ERROR:.0f} % of the change for the model" in TEXTS["change_it"]
     assert 0.13 < verdict["inputs"]["rho"] / 0.1 < 0.2  # "by about a sixth as much", of wood heavier by a tenth
 
 
@@ -67,7 +67,7 @@ def test_deeper_bore_changes_squirt_as_stated(name: str, least: float, most: flo
     """From 5 to 7 in: less than 1 % under the light ferrule of one, a loss under the other's; deeper no gain."""
     scene = cf.usual_scene(cf.load(Path("meshes") / f"{name}.toml"))
     of = {
-        inches: cf.strike(varied(scene, {"bore depth": 0.0254 * inches, "bore width": 0.006})).squirt
+        inches: cf.strike(with_parameters(scene, {"bore depth": 0.0254 * inches, "bore width": 0.006})).squirt
         for inches in (5, 7, 9, 12, 16)
     }
     change = {inches: 100 * (squirt / of[5] - 1) for inches, squirt in of.items()}

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from cuefem.design.worth import effect_kinds
+from cuefem.design.effect_sensitivity import effect_kinds
 from cuefem.handbook import CHAPTERS, LINES, chapters, effect_lines
 from cuefem.handbook.page import page
-from tests.helpers.command_line import said
+from tests.helpers.command_line import stdout_of
 from tests.helpers.page_reader import Reader
 from tests.helpers.refusals import untouched
 
@@ -75,17 +75,17 @@ def test_handbook_page_is_self_contained_with_valid_links() -> None:
 @pytest.mark.parametrize("there", [True, False])
 def test_guide_command_opens_prints_and_writes(there: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     opened: list[str] = []
-    monkeypatch.setattr(import_module("cuefem.cli.guide"), "page", whole)
+    monkeypatch.setattr(import_module("cuefem.cli.guide_command"), "page", whole)
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     monkeypatch.setattr(webbrowser, "open", lambda address: opened.append(address) or there)
-    assert said("guide", "glossary").startswith("opened file:" if there else "no browser found")
+    assert stdout_of("guide", "glossary").startswith("opened file:" if there else "no browser found")
     (made,) = tmp_path.glob("cuefem-guide-*.html")
     assert opened == [f"{made.as_uri()}#glossary"]
-    assert said("guide", "-o", tmp_path / "guide.html") == f"wrote {tmp_path / 'guide.html'}\n"
+    assert stdout_of("guide", "-o", tmp_path / "guide.html") == f"wrote {tmp_path / 'guide.html'}\n"
     assert made.read_text(encoding="utf-8") == (tmp_path / "guide.html").read_text(encoding="utf-8") == whole()
-    printed = said("guide", "glossary", "--print")
+    printed = stdout_of("guide", "glossary", "--print")
     assert ("effective end mass" in printed, "Hutchinson" in printed) == (True, False)
-    listed = " ".join(said("guide", "--help").split())
+    listed = " ".join(stdout_of("guide", "--help").split())
     assert [name for name in CHAPTERS if name not in listed] == []
 
 

@@ -10,7 +10,7 @@ from cuefem.handbook import chapters
 from cuefem.io import study_files
 from cuefem.io.schema import keys_of
 from cuefem.io.study_files import load_study
-from cuefem.results.solved_design import asked
+from cuefem.results.solved_design import computable_results
 
 (TEXT,) = (chapter.text for chapter in chapters() if chapter.name == "study")
 EXAMPLES = {
@@ -44,7 +44,7 @@ def test_study_chapter_lists_every_key_and_response() -> None:
     tables = {"`vary`", "`sample`", "`tolerances`", "`objective`", "`limit`", "`resolution`"}
     assert sorted(key for key in keys - tables if key not in TEXT) == []
     assert sorted(key for key in tables if f"[{key[1:-1]}]" not in TEXT) == []
-    assert [name for name in asked() if f"| `{name}" not in TEXT] == []
+    assert [name for name in computable_results() if f"| `{name}" not in TEXT] == []
 
 
 @pytest.mark.heavy

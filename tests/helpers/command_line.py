@@ -18,7 +18,7 @@ def call(*arguments: object) -> tuple[object, str, str]:
     return ended.value.code, out.getvalue(), err.getvalue()
 
 
-def said(*arguments: object) -> str:
+def stdout_of(*arguments: object) -> str:
     """What a command prints that ends well and has no remark."""
     status, out, err = call(*arguments)
     assert (status, err) == (0, "")
@@ -31,4 +31,4 @@ def as_json(*arguments: object) -> Any:
     def no_constant(name: str) -> None:
         raise AssertionError(f"{name} is no JSON")
 
-    return json.loads(said(*arguments, "--json"), parse_constant=no_constant)
+    return json.loads(stdout_of(*arguments, "--json"), parse_constant=no_constant)

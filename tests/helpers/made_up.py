@@ -11,10 +11,10 @@ import numpy as np
 
 import cuefem as cf
 from cuefem.designer.computation import numbers
-from cuefem.designer.panels import Results, numbers_sheet, sheets_markup
+from cuefem.designer.panels import Results, tables_markup, tabulate_numbers
 from cuefem.designer.state import Design, Step
-from cuefem.effects import CueEffect, TipEffect, Usual
-from cuefem.effects.contact_settings import ContactTerms
+from cuefem.effects import CueEffect, TipEffect, TrialValues
+from cuefem.effects.contact_terms import ContactTerms
 from cuefem.endmass.definitions import Definition
 from cuefem.parameters.parameter import Parameter
 from cuefem.parameters.parts import Part
@@ -33,7 +33,7 @@ def faces(scene: cf.Scene, folder: Path, *names: str) -> dict[str, str]:
             return call("report", file, "--json")[1]
         if name == "designer":
             results = Results({"numbers": numbers.__wrapped__(scene)})
-            return sheets_markup([numbers_sheet(Step(Design("this", scene)), results)])
+            return tables_markup([tabulate_numbers(Step(Design("this", scene)), results)])
         return call(name, file)[1]
 
     return {name: " ".join(re.sub("<[^>]*>", "", shown(name)).split()) for name in names}
@@ -54,20 +54,20 @@ def _with_length(scene: Any, value: float) -> Any:
     return replace(scene, cue=replace(scene.shaft, segments=(front, replace(collar, length=value), rest)))
 
 
-PLACE = Parameter(
+PARAMETER = Parameter(
     *("collar length", "length of the collar"),
     part=Part(_length, _with_length, LENGTH),
     spread=0.1,
     option="LENGTH",
 )
-SPOT = Result(
+DRAWING_RESULT = Result(
     *("sweet spot, from the tip", "m", 2),
     heading="sweet spot",
     of=of_drawing(lambda scene: scene.shaft.length / 5),
     better="higher",
 )
-PUSH = Result("push", "m/s", 3, of=of_strike(lambda outcome: 2 * outcome.ball_speed), argument="offset")
-RIGID = Definition(
+STRIKE_RESULT = Result("push", "m/s", 3, of=of_strike(lambda outcome: 2 * outcome.ball_speed), argument="offset")
+DEFINITION = Definition(
     *("rigid", "rigid body", "the inertia of the tip as a rigid body, plus one gram"),
     lambda tip, _: 1e-3 + 1 / float(np.sum(tip.amplitude[tip.omega == 0, 1] ** 2)),
     True,
@@ -81,7 +81,7 @@ def collar_effect() -> type[CueEffect]:
     class Collar(CueEffect):
         """A ring on the shaft."""
 
-        usual: ClassVar[Usual | None] = Usual({"position": 0.03, "mass": 4e-3}, "made up")
+        trial_values: ClassVar[TrialValues | None] = TrialValues({"position": 0.03, "mass": 4e-3}, "made up")
         position: Annotated[float, Quantity("m", "[0, inf)")]
         mass: Annotated[float, Quantity("kg", "[0, inf)")]
 
@@ -114,6 +114,6 @@ def cap_effect() -> type[TipEffect]:
             if self.give:
                 terms.add_compliance(self.give)
             if self.window:
-                terms.give("window", self.window)
+                terms.set_once("window", self.window)
 
     return Cap

@@ -39,7 +39,7 @@ def changes() -> dict[str, float]:
 
 def ready() -> dict[str, float]:
     """Squirt of the ready cues, degrees."""
-    return {name: math.degrees(row["squirt"]) for name, row in answers("report")["verdict"]["among"].items()}
+    return {name: math.degrees(row["squirt"]) for name, row in answers("report")["verdict"]["references"].items()}
 
 
 def picture(height: int, label: str, *inside: str) -> str:

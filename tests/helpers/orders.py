@@ -19,7 +19,7 @@ def assert_order(expected: float, steps: ArrayLike, errors: ArrayLike, *, within
     assert np.all(np.abs(found - expected) <= within), found
 
 
-def falls_with_the_step(error: Callable[[int], float], *, most: float = 1e-4) -> None:
+def assert_error_falls_with_the_step(error: Callable[[int], float], *, most: float = 1e-4) -> None:
     """AssertionError unless the error at 400 steps a contact is below ``most``, and a tenth of it or 1e-6 at 3200.
 
     A second order makes it a 64th; where in its step an event falls is chance.

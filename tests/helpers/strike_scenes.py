@@ -10,7 +10,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from cuefem import Ball, Cue, LumpedCue, Material, Outcome, Resolution, Scene, Segment, Stroke, Tip
-from cuefem.beam.tip import TipModes
+from cuefem.beam.tip_modes import TipModes
 from tests.helpers.cues import kim
 
 # How well the account of energy closes at the default steps, relative.
@@ -86,7 +86,7 @@ def sound(outcome: Outcome, within: float = CLOSED) -> None:
     initial = outcome.energy["initial"]
     assert all(part >= -CLOSED * initial for part in outcome.energy.values())
     assert imbalance(outcome) < within
-    thrown = [phase.grip for phase in outcome.phases] == ["blow"]  # apart by endless friction alone
+    thrown = [phase.state for phase in outcome.phases] == ["blow"]  # apart by endless friction alone
     assert outcome.impulse[1] == 0 if thrown else outcome.impulse[1] > 0
     assert abs(outcome.impulse[0]) >= 0
     times = [(phase.start, phase.end) for phase in outcome.phases]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.contact.trajectory import motion
+from cuefem.contact.motion_history import motion
 from cuefem.io import InputError
 from cuefem.io.paraview import RING_POINTS, ball_surface, displacements, shaft_surface
 from tests.helpers.refusals import refuses

@@ -8,8 +8,8 @@ import pytest
 
 import cuefem as cf
 from cuefem.cue.materials import material
-from cuefem.io.assumed import assumed_drawing, in_words
-from cuefem.io.slices import TOLERANCE, aligned_surface, section_shaft
+from cuefem.io.defaults_report import assumption_texts, drawing_assumptions
+from cuefem.io.surface_sections import TOLERANCE, aligned_surface, section_shaft
 from tests.helpers.orders import assert_order
 from tests.helpers.surfaces import outline_of, revolved, written
 
@@ -135,5 +135,5 @@ def test_surface_length_unit_and_uppercase_extension_are_read(tmp_path: Path) ->
     assert cf.load(path, material="ash").segments[0].material == material("ash")
     (tmp_path / "SCENE.TOML").write_text(f"game = 'kim'\ncue = '{path.name}'\n")
     assert cf.load(tmp_path / "SCENE.TOML").cue == loaded
-    told = in_words(assumed_drawing(path, loaded, {"body_mass": 0.4}))
+    told = assumption_texts(drawing_assumptions(path, loaded, {"body_mass": 0.4}))
     assert [words.split(" ")[0] for words in told[:5]] == ["lengths", "1", "facets", "the", "material"]

@@ -11,7 +11,7 @@ import cuefem as cf
 from cuefem.io.measured_folder import load_measured
 from cuefem.measurements.measurement_types import EndMass, Setup
 from cuefem.measurements.pendulum import GRAVITY, Pendulum
-from tests.helpers.command_line import as_json, said
+from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.measured_cues import SCENE, folder
 
 TEXT = """[[pendulum]]
@@ -98,4 +98,4 @@ def test_compare_contradiction_with_drawing_is_reported(tmp_path: Path) -> None:
     assert (1e3 * row["measured"], 1e3 * row["computed"]) == pytest.approx((8.95, 6.06), abs=0.02)
     assert row["residual"] > 15
     assert row["pull"] > 5
-    assert "contradicts the drawing" in said("compare", place)
+    assert "contradicts the drawing" in stdout_of("compare", place)

@@ -77,15 +77,15 @@ def stepped(scene: Scene, step: float = 1e-6) -> float:
     assert isinstance(leather, LeatherTip)
     law = scene.tip_law(tip.restitution, at.offset)
     modes = tip_modes_of(scene)
-    deepest = float(law.blow(scene.head_on_mass, at.speed)[0])
+    deepest = float(law.central_impact(scene.reduced_mass, at.speed)[0])
     most = min(law.depth_limit, 1.3 * deepest)
     patch = Patch(law, tip.friction, most, leather.surface_restitution)
     n, omega = len(modes.omega), modes.omega
     turn = np.zeros((3 * n, 3 * n))  # of q, omega q and q'
     turn[:n, 2 * n :] = np.eye(n)
     turn[n : 2 * n, 2 * n :], turn[2 * n :, n : 2 * n] = np.diag(omega), np.diag(-omega)
-    if modes.resistance is not None:
-        turn[2 * n :, 2 * n :] = -modes.resistance
+    if modes.total_damping is not None:
+        turn[2 * n :, 2 * n :] = -modes.total_damping
     turn = la.expm(turn * step)
     z = np.concatenate([np.zeros(2 * n), at.speed * modes.approach])
     velocity, spin, inertia = np.zeros(2), 0.0, ball.inertia * ball.mass
@@ -95,7 +95,7 @@ def stepped(scene: Scene, step: float = 1e-6) -> float:
 
     def directions() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         t, normal = np.array([math.sin(phi), math.cos(phi)]), np.array([math.cos(phi), -math.sin(phi)])
-        reach = modes.amplitude + np.outer(modes.rotation, leather.lever(phi, diameter))
+        reach = modes.amplitude + np.outer(modes.rotation, leather.moment_arm(phi, diameter))
         return t, normal, reach
 
     def turned(moved: np.ndarray, by_ball: np.ndarray) -> float:

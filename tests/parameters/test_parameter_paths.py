@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from cuefem import Scene, Stroke, Tip
-from cuefem.parameters.parameter import paths, replaced, spelt, value_at
+from cuefem.parameters.parameter import path_text, paths, value_at, with_values_at
 from tests.helpers.cues import MAPLE, low_deflection
 
 BASE = Scene(low_deflection(), tip=Tip(contact_time=1.2e-3), stroke=Stroke(2.0, 0.3))
@@ -25,7 +25,7 @@ BASE = Scene(low_deflection(), tip=Tip(contact_time=1.2e-3), stroke=Stroke(2.0, 
 def test_path_leads_to_its_field(path: str, value: float) -> None:
     (found,) = paths(BASE, path)
     assert value_at(BASE, found) == value
-    assert spelt(found) == path
+    assert path_text(found) == path
 
 
 @pytest.mark.parametrize(
@@ -49,12 +49,12 @@ def test_path_without_field_raises(path: str, words: str) -> None:
 def test_replaced_values_change_together() -> None:
     """A bore may be wider than the shaft was, where the shaft grows with it; nothing else changes."""
     (bore,), (outer,) = paths(BASE, "cue.segments[2].tip_bore"), paths(BASE, "cue.segments[2].tip_diameter")
-    found = replaced(BASE, {bore: 0.0126, outer: 0.014})
+    found = with_values_at(BASE, {bore: 0.0126, outer: 0.014})
     assert found.cue.segments[2] == replace(BASE.cue.segments[2], tip_bore=0.0126, tip_diameter=0.014)
-    assert replaced(found, {bore: 0.008, outer: 0.0125}) == BASE
+    assert with_values_at(found, {bore: 0.008, outer: 0.0125}) == BASE
 
 
 def test_replaced_contact_time_clears_stiffness() -> None:
     hard = replace(BASE, tip=Tip(stiffness=1e6))
     (time,) = paths(hard, "tip.contact_time")
-    assert replaced(hard, {time: 2e-3}).tip == Tip(contact_time=2e-3)
+    assert with_values_at(hard, {time: 2e-3}).tip == Tip(contact_time=2e-3)

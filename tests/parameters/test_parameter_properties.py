@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.cue.materials import LEATHERS, material
-from cuefem.io.ready import PRESETS, opened
-from cuefem.parameters.parameter import PARAMETERS, paths, varied
+from cuefem.io.reference_cues import PRESETS, preset_scene
+from cuefem.parameters.parameter import PARAMETERS, paths, with_parameters
 from cuefem.parameters.parts import outer_diameter
 
-SCENES = {preset.name: opened(preset) for preset in PRESETS}
+SCENES = {preset.name: preset_scene(preset) for preset in PRESETS}
 FIRST = SCENES[PRESETS[0].name]
 IDLE = {"bore_width"}  # without effect where the bore has no depth
 
@@ -36,7 +36,7 @@ def test_parameter_set_reads_back(name: str, permille: int) -> None:
     scene = SCENES[name]
     for key, value in numbers(scene).items():
         wanted = changed(key, value, permille / 1000)
-        made = varied(scene, {PARAMETERS[key].name: wanted})
+        made = with_parameters(scene, {PARAMETERS[key].name: wanted})
         if key not in IDLE:
             assert PARAMETERS[key].value(made) == pytest.approx(wanted, rel=1e-9), key
         assert made.ball == scene.ball
@@ -49,14 +49,14 @@ def test_parameters_changed_in_any_order_agree(name: str, data: Any) -> None:
     scene = SCENES[name]
     keys = data.draw(st.lists(st.sampled_from(sorted(numbers(scene))), min_size=2, max_size=5, unique=True))
     changes = {key: changed(key, numbers(scene)[key], 0.01) for key in keys}
-    assert varied(scene, changes) == varied(scene, dict(reversed(changes.items())))
+    assert with_parameters(scene, changes) == with_parameters(scene, dict(reversed(changes.items())))
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_parameter_name_variants_agree(name: str) -> None:
     scene = SCENES[name]
-    assert varied(scene, {"butt diameter": 0.03}) == varied(scene, {"butt_diameter": 0.03})
-    assert varied(scene, {"speed": 3.0}) == varied(scene, {"stroke.speed": 3.0})
+    assert with_parameters(scene, {"butt diameter": 0.03}) == with_parameters(scene, {"butt_diameter": 0.03})
+    assert with_parameters(scene, {"speed": 3.0}) == with_parameters(scene, {"stroke.speed": 3.0})
     assert paths(scene, "segments[0].length") == paths(scene, "cue.segments[0].length")
 
 
@@ -65,26 +65,26 @@ def test_parameter_name_variants_agree(name: str) -> None:
 def test_taper_at_position_changes_diameters_linearly(x: float, more: float) -> None:
     name = f"taper at {1e3 * x!r} mm"
     there = outer_diameter(FIRST.cue, x)
-    made = varied(FIRST, {name: there + more}).cue
+    made = with_parameters(FIRST, {name: there + more}).cue
     for at in np.linspace(0, made.length, 15):
         hat = np.interp(at, [0, x, made.length], [0, more, 0])
         assert outer_diameter(made, at) == pytest.approx(outer_diameter(FIRST.cue, at) + hat, rel=1e-9)
 
 
 def test_parameter_material_and_leather_names_set_values() -> None:
-    made = varied(FIRST, {"wood": "ash", "wood.E": 13e9, "leather": "soft", "ferrule material": "nylon"})
+    made = with_parameters(FIRST, {"wood": "ash", "wood.E": 13e9, "leather": "soft", "ferrule material": "nylon"})
     assert {s.material.rho for s in made.cue.segments} >= {material("ash").rho, material("nylon").rho}
     assert all(s.material.E == 13e9 for s in made.cue.segments if s.material.rho == material("ash").rho)
     soft = LEATHERS["soft"]
     assert (made.leather.E, made.leather.nu, made.leather.rho) == (soft.E, soft.nu, soft.rho)
     assert made.tip.restitution == soft.restitution
-    assert varied(FIRST, {"leather": "soft", "restitution": 0.7}).tip.restitution == 0.7
+    assert with_parameters(FIRST, {"leather": "soft", "restitution": 0.7}).tip.restitution == 0.7
 
 
 def test_contact_time_of_spring_clears_stiffness() -> None:
     spring = cf.Scene(FIRST.cue, tip=cf.Tip(stiffness=1e6))
-    assert varied(spring, {"contact time": 1e-3}).tip == cf.Tip(contact_time=1e-3)
-    assert varied(spring, {"tip.contact_time": 1e-3}).tip == cf.Tip(contact_time=1e-3)
+    assert with_parameters(spring, {"contact time": 1e-3}).tip == cf.Tip(contact_time=1e-3)
+    assert with_parameters(spring, {"tip.contact_time": 1e-3}).tip == cf.Tip(contact_time=1e-3)
 
 
 REFUSED = {
@@ -101,5 +101,5 @@ REFUSED = {
 def test_unknown_parameter_raises(case: str) -> None:
     text, message = REFUSED[case]
     with pytest.raises(ValueError, match="got") as error:
-        varied(FIRST, {text: 1.0})
+        with_parameters(FIRST, {text: 1.0})
     assert message in str(error.value)

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.io import InputError
-from cuefem.parameters.parameter import varied
+from cuefem.parameters.parameter import with_parameters
 from cuefem.parameters.parts import main_material, with_shaft_mass
 from cuefem.results.uncertainty import squirt_changes
-from cuefem.scene.solved_scene import Solved
+from cuefem.scene.solved_scene import SolvedScene
 from tests.helpers.command_line import as_json, call
 from tests.helpers.cues import pool
 
@@ -32,19 +32,20 @@ def test_shaft_mass_sets_the_main_density_alone(mass: float) -> None:
 
 def test_shaft_mass_includes_tip_and_precedes_other_changes() -> None:
     scene = cf.usual_scene(pool())
-    weighed = varied(scene, {"shaft mass": 0.112})
+    weighed = with_parameters(scene, {"shaft mass": 0.112})
     tip = scene.leather.mass_on(scene.shaft)
     assert weighed.shaft.shaft_mass + tip == pytest.approx(0.112, rel=1e-12)
-    bored = varied(scene, {"shaft mass": 0.112, "bore depth": 0.1})
-    assert bored == varied(weighed, {"bore depth": 0.1})
+    bored = with_parameters(scene, {"shaft mass": 0.112, "bore depth": 0.1})
+    assert bored == with_parameters(weighed, {"bore depth": 0.1})
     assert bored.shaft.shaft_mass < weighed.shaft.shaft_mass
-    assert not varied(weighed, {"shaft material": "ash"}).shaft.weighed
+    assert not with_parameters(weighed, {"shaft material": "ash"}).shaft.weighed
 
 
 def test_weighed_density_is_not_uncertain() -> None:
     scene = cf.usual_scene(pool())
     inputs = [
-        squirt_changes(Solved(each), cf.strike(each).squirt) for each in (scene, varied(scene, {"shaft mass": 0.112}))
+        squirt_changes(SolvedScene(each), cf.strike(each).squirt)
+        for each in (scene, with_parameters(scene, {"shaft mass": 0.112}))
     ]
     assert inputs[0]["rho"] > 0.02
     assert {*inputs[0]} - {*inputs[1]} == {"rho"}

@@ -17,8 +17,8 @@ import tomlkit
 import cuefem as cf
 from cuefem.effects import effect_kinds
 from cuefem.io import InputError
-from cuefem.io.schema import mark_of, needed, types_of
-from cuefem.quantity.fields import Quantity, quantities
+from cuefem.io.schema import field_types, quantity_of, required_keys
+from cuefem.quantity.fields import Quantity, quantity_fields
 
 WOOD = cf.Material(12.6e9, 0.84e9, 700.0)
 LEATHER = cf.LeatherTip(6e-3, 9.5e-3, 140e6)
@@ -46,7 +46,7 @@ def beyond(mark: Quantity) -> Iterator[float]:
 @pytest.mark.parametrize("made", MADE, ids=lambda made: type(made).__name__)
 def test_field_invalid_value_in_python_raises(made: Any) -> None:
     kind = type(made)
-    for name, mark, optional in quantities(kind):
+    for name, mark, optional in quantity_fields(kind):
         said = f"{kind.__name__}.{name} must be "
         for wrong in beyond(mark):
             with pytest.raises(ValueError, match=r"must be in") as refused:
@@ -116,8 +116,8 @@ def test_field_invalid_value_in_file_raises(tmp_path: Path, key: str) -> None:
         assert "\n" not in line
         return line.removeprefix(f"{path}: ")
 
-    for name, hint in types_of(kind).items():
-        mark = mark_of(hint)
+    for name, hint in field_types(kind).items():
+        mark = quantity_of(hint)
         for value, words in in_a_file(mark) if mark else [(3, "must be ")]:
             line = said(name, value)
             assert line.startswith(f"{key}.{name}: "), line
@@ -125,5 +125,5 @@ def test_field_invalid_value_in_file_raises(tmp_path: Path, key: str) -> None:
         line = said(f"{name}x", 1)
         assert line.startswith(f"{key}.{name}x: must be one of the keys "), line
         assert len(name) < 4 or line.endswith(f"; did you mean '{name}'?"), line
-        if name in needed(kind):
+        if name in required_keys(kind):
             assert said(name, None).startswith(f"{key}.{name}: must be given, ")

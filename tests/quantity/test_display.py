@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.quantity.display import spelt_out
+from cuefem.quantity.display import full_repr
 
 ROOT = Path(__file__).parents[2]
 CUE = cf.load(ROOT / "meshes" / "pool_hollow.toml")
@@ -37,4 +37,4 @@ def test_repr_is_one_short_line(name: str) -> None:
 def test_full_repr_evaluates_to_equal_object() -> None:
     """Studies are compared by it."""
     names = {name: getattr(cf, name) for name in dir(cf)} | {"inf": float("inf")}
-    assert eval(spelt_out(SCENE), names) == SCENE
+    assert eval(full_repr(SCENE), names) == SCENE

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cuefem.cue import Material, Segment
-from cuefem.quantity.fields import OutOfBounds, Quantity, check_fields, quantities
-from cuefem.quantity.units import number
+from cuefem.quantity.fields import OutOfBounds, Quantity, check_fields, quantity_fields
+from cuefem.quantity.units import parse_number
 
 INTERVALS = ["(0, inf)", "[0, inf)", "[0, inf]", "[0, 1]", "(-1, 1)", "(-inf, inf)"]
 
@@ -20,7 +20,7 @@ INTERVALS = ["(0, inf)", "[0, inf)", "[0, inf]", "[0, 1]", "(-1, 1)", "(-inf, in
 def test_quantity_interval_contains_its_numbers(interval: str, value: float) -> None:
     low, high = (float(end) for end in interval[1:-1].split(","))
     inside = low < value < high or (value == low and interval[0] == "[") or (value == high and interval[-1] == "]")
-    assert bool(Quantity("m", interval).holds(value)) == inside
+    assert bool(Quantity("m", interval).contains(value)) == inside
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Thing:
 
 
 def test_dataclass_fields_are_checked() -> None:
-    assert [(name, q.unit, optional) for name, q, optional in quantities(Thing)] == [
+    assert [(name, q.unit, optional) for name, q, optional in quantity_fields(Thing)] == [
         ("size", "m", False),
         ("part", "", True),
     ]
@@ -87,11 +87,11 @@ def test_dependent_bound_error_has_si_and_file_units() -> None:
     message = r"^Segment.tip_bore must be in \[0, 0.012\) m, its outer diameter; got 0.013"
     with pytest.raises(OutOfBounds, match=message) as error:
         Segment(0.7, 0.012, 0.021, Material(12.6e9, 0.84e9, 782.0), tip_bore=0.013)
-    assert error.value.in_words == "must be at least 0 and less than 12 mm, its outer diameter; got 13 mm"
+    assert error.value.file_message == "must be at least 0 and less than 12 mm, its outer diameter; got 13 mm"
 
 
 @pytest.mark.parametrize(("text", "inches"), [("5/16 in", 0.3125), ("1 1/4 in", 1.25), ('29 1/2"', 29.5)])
 def test_fraction_is_parsed(text: str, inches: float) -> None:
-    assert number(text, "m") == pytest.approx(25.4e-3 * inches, rel=1e-15)
+    assert parse_number(text, "m") == pytest.approx(25.4e-3 * inches, rel=1e-15)
     with pytest.raises(ValueError, match="needs a unit"):
         Quantity("m").read(text.rstrip('in" '))

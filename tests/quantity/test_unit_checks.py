@@ -30,7 +30,7 @@ SLIPS: dict[str, Callable[[], object]] = {
 
 @pytest.mark.parametrize("message", SLIPS)
 def test_number_in_other_unit_warns_at_caller(message: str) -> None:
-    with pytest.warns(cf.Unusual) as caught:
+    with pytest.warns(cf.PlausibilityWarning) as caught:
         SLIPS[message]()
     assert str(caught[0].message).startswith(message)
     assert {Path(one.filename).name for one in caught} == {Path(__file__).name}
@@ -39,7 +39,7 @@ def test_number_in_other_unit_warns_at_caller(message: str) -> None:
 def test_scene_of_shaft_without_butt_warns() -> None:
     """Only a scene, in which the mass matters, warns; a scale model may be light."""
     with pytest.warns(
-        cf.Unusual, match=r"^Cue.body_mass is 0 kg, so the whole cue weighs 0.107 kg; expected 0.4 to 0.7"
+        cf.PlausibilityWarning, match=r"^Cue.body_mass is 0 kg, so the whole cue weighs 0.107 kg; expected 0.4 to 0.7"
     ) as caught:
         cf.Scene(cf.Cue((SEGMENT,)))
     assert {Path(one.filename).name for one in caught} == {Path(__file__).name}
@@ -64,7 +64,7 @@ def test_file_number_in_other_unit_warns_at_load(tmp_path: Path) -> None:
     path = tmp_path / "scene.toml"
     ball = '[stroke]\noffset = 0.3\n[ball]\nmass = "170 g"\nradius = "28.575 mm"\n'
     path.write_text(f'game = "kim"\ncue = "cue.toml"\n{ball}[[effects]]\ntype = "TipDome"\nradius = "9.5 m"\n')
-    with pytest.warns(cf.Unusual, match="is it 9.5 mm") as caught:
+    with pytest.warns(cf.PlausibilityWarning, match="is it 9.5 mm") as caught:
         cf.load(path)
     assert Path(caught[0].filename).name == Path(__file__).name
     with warnings.catch_warnings():

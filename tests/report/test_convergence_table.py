@@ -5,32 +5,32 @@ from pathlib import Path
 import pytest
 
 from cuefem import resolve
-from cuefem.report.cost import WANTED, cost_record
+from cuefem.report.convergence_table import RECOMMENDED_RTOLS, convergence_record
 from studies.strokes import MESHES
 from tests.helpers.accuracy_scenes import scene
-from tests.helpers.command_line import said
+from tests.helpers.command_line import stdout_of
 
 KIM = MESHES / "kim.toml"
 
 
 @pytest.fixture(scope="module")
 def record() -> dict:
-    return cost_record(scene("kim", 1e-3, 0.3), most=60)
+    return convergence_record(scene("kim", 1e-3, 0.3), most=60)
 
 
 def test_recommended_resolution_equals_resolve(record: dict) -> None:
-    assert [row["rtol"] for row in record["wanted"]] == list(WANTED)
-    for row in record["wanted"]:
+    assert [row["rtol"] for row in record["recommended"]] == list(RECOMMENDED_RTOLS)
+    for row in record["recommended"]:
         if row["reached"]:
             found = resolve(scene("kim", 1e-3, 0.3), row["rtol"])
             assert (found.unknowns, found.error) == (row["unknowns"], row["estimate"])
-    assert [row["reached"] for row in record["wanted"]] == [True, False, False, False]
+    assert [row["reached"] for row in record["recommended"]] == [True, False, False, False]
     best = min(level["estimate"] for level in record["levels"] if level["estimate"] is not None)
-    assert record["wanted"][-1]["estimate"] == best
+    assert record["recommended"][-1]["estimate"] == best
 
 
 def test_cost_command_prints_table_and_draws_chart(tmp_path: Path) -> None:
-    assert "1e-06, not reached" in said("cost", KIM, "--most", 24)
-    said("cost", KIM, "--most", 24, "--output", tmp_path / "cost.html")
+    assert "1e-06, not reached" in stdout_of("cost", KIM, "--most", 24)
+    stdout_of("cost", KIM, "--most", 24, "--output", tmp_path / "cost.html")
     text = (tmp_path / "cost.html").read_text(encoding="utf-8")
     assert text.count('<path class="curve c3" d="M') == 2  # with its legend

@@ -6,10 +6,10 @@ from typing import Any
 import pytest
 
 import cuefem as cf
-from cuefem.design.worth import variants
+from cuefem.design.effect_sensitivity import variants
 from cuefem.effects import effect_kinds
 from cuefem.report import effects_record
-from cuefem.report.effects import MARGIN
+from cuefem.report.effects_table import MARGIN
 from cuefem.results.convergence import resolve
 from tests.helpers.strike_scenes import KIM
 
@@ -62,9 +62,9 @@ def test_effect_change_equals_difference_of_strikes(record: Any, name: str) -> N
 
 @pytest.mark.heavy
 def test_recommendation_depends_on_tolerance(record: Any) -> None:
-    worth = record["worth"]
+    worth = record["recommendation"]
     assert worth["remove"] == ["Support (position 203.2 mm, stiffness 5000 N/m)"]
     assert "TipDome (radius 9.5 mm)" in worth["keep"]
     assert "TipShear (ratio 0.75)" in worth["add"]
     loose = effects_record(cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=cf.Stroke(offset=0.3)), rtol=0.9)
-    assert loose["worth"] == {"keep": [], "remove": [], "add": []}
+    assert loose["recommendation"] == {"keep": [], "remove": [], "add": []}

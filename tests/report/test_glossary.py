@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cuefem.report.glossary import definitions, entries, explained
+from cuefem.report.glossary import definitions, entries, with_term_buttons
 
 WORDS = [word for entry in entries() for word in entry.words]
 TAGS = re.compile(r"<[^>]*>")
@@ -20,8 +20,8 @@ def buttons(markup: str) -> list[tuple[str, str]]:
 def test_every_term_has_button_of_its_entry() -> None:
     for entry in entries():
         for word in entry.words:
-            assert buttons(explained(f"<p>The {word} of it.</p>")) == [(entry.id, word)]
-            assert buttons(explained(f"<p>{word.capitalize()}s</p>")) == [(entry.id, f"{word.capitalize()}s")]
+            assert buttons(with_term_buttons(f"<p>The {word} of it.</p>")) == [(entry.id, word)]
+            assert buttons(with_term_buttons(f"<p>{word.capitalize()}s</p>")) == [(entry.id, f"{word.capitalize()}s")]
         assert f'<div popover id="{entry.id}" class="word"><b>{", ".join(entry.words)}</b>' in definitions()
     assert len({entry.id for entry in entries()}) == len(entries()) > 30
 
@@ -30,11 +30,11 @@ def test_every_term_has_button_of_its_entry() -> None:
 def test_terms_in_headings_and_controls_have_no_button(tag: str) -> None:
     markup = f"<{tag}>squirt <b>spin</b></{tag}>"
     inside = f"<head>{markup}</head>" if tag == "title" else markup
-    assert explained(inside) == inside
-    assert len(buttons(explained(f"{inside}<p>squirt</p>"))) == 1
+    assert with_term_buttons(inside) == inside
+    assert len(buttons(with_term_buttons(f"{inside}<p>squirt</p>"))) == 1
 
 
 @given(st.lists(st.sampled_from([*WORDS, "<p>", "</p>", "<b>", "</b>", " ", ", ", "the", "&amp;", "3 mm"])))
 def test_term_buttons_preserve_text(parts: list[str]) -> None:
     markup = "".join(parts)
-    assert TAGS.sub("", explained(markup)) == TAGS.sub("", markup)
+    assert TAGS.sub("", with_term_buttons(markup)) == TAGS.sub("", markup)

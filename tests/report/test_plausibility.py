@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.report.unusual import unusual
+from cuefem.report.plausibility import plausibility_warnings
 from tests.helpers.command_line import call
 
 ROOT = Path(__file__).parents[2]
@@ -38,7 +38,7 @@ def warnings_of(path: Path) -> list[str]:
     found = cf.load(path)
     if isinstance(found, cf.Cue) and not found.body_mass and path.suffix != ".toml":  # a profile has no other mass
         found = replace(found, body_mass=0.43)
-    return unusual(found if isinstance(found, cf.Scene) else cf.Scene(found))
+    return plausibility_warnings(found if isinstance(found, cf.Scene) else cf.Scene(found))
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
@@ -82,7 +82,7 @@ def test_strike_of_shaft_without_butt_warns(tmp_path: Path) -> None:
     shaft.write_text(PROFILE)
     light = cf.load(shaft)
     assert isinstance(light, cf.Cue)
-    (line,) = unusual(cf.Scene(light))
+    (line,) = plausibility_warnings(cf.Scene(light))
     assert line.startswith(f"mass of the whole cue {1e3 * light.mass:.6g} g{LEFT_OUT}")
     status, out, err = call("strike", shaft, "--json")
     assert (status, err.splitlines()) == (0, [f"unusual: {json.loads(out)['unusual'][0]}"])
@@ -94,5 +94,5 @@ def test_strike_of_shaft_without_butt_warns(tmp_path: Path) -> None:
 def test_solid_carbon_rod_warns(tmp_path: Path) -> None:
     """A lathe profile has no bore: carbon in it is a rod of twice a shaft's mass."""
     (shaft := tmp_path / "shaft.csv").write_text(PROFILE)
-    (line,) = unusual(cf.Scene(cf.load(shaft, material="carbon fibre", body_mass="15 oz")))
+    (line,) = plausibility_warnings(cf.Scene(cf.load(shaft, material="carbon fibre", body_mass="15 oz")))
     assert line.startswith("a solid rod as stiff as carbon fibre, drawn mass 2")

@@ -9,15 +9,15 @@ from typing import Any
 
 from rich.console import Console
 
-from cuefem.report.table import csv_text, json_text, terminal
+from cuefem.report.renderers import csv_text, json_text, terminal
 from cuefem.report.templates import environment
-from cuefem.results.quantities import NONE
-from cuefem.results.records import Sheet, sheet
+from cuefem.results.quantities import DASH
+from cuefem.results.records import Table, tabulate
 
 ROWS = [{"at": 0.01, "felt": 0.0062, "part": 0.25}, {"at": 0.02, "felt": None, "part": -0.5}]
 
 
-def cells(made: Sheet) -> dict[str, list[list[str]]]:
+def cells(made: Table) -> dict[str, list[list[str]]]:
     """The cells of a table by medium."""
     console = Console(width=200, file=io.StringIO())
     with console.capture() as captured:
@@ -34,14 +34,14 @@ def cells(made: Sheet) -> dict[str, list[list[str]]]:
 
 def test_table_in_every_medium_has_same_cells() -> None:
     columns = {"place": "{at:m}", "felt <there>": "{felt:end_mass}", "part": "{part:.1 %}"}
-    made = sheet("Where", columns, ROWS, texts=())
-    whole = [["place", "felt <there>", "part"], ["10 mm", "6.200 g", "25.0 %"], ["20 mm", NONE, "-50.0 %"]]
+    made = tabulate("Where", columns, ROWS, texts=())
+    whole = [["place", "felt <there>", "part"], ["10 mm", "6.200 g", "25.0 %"], ["20 mm", DASH, "-50.0 %"]]
     assert cells(made) == dict.fromkeys(("terminal", "page", "spreadsheet"), whole)
 
 
 def test_missing_value_is_dash_and_nonfinite_is_null() -> None:
-    made = sheet("", {"error": "{plain[error]:error}"}, [{"plain": {"error": 1e-3}}, {"plain": None}])
-    assert made.rows == (("0.0010",), (NONE,))
+    made = tabulate("", {"error": "{plain[error]:error}"}, [{"plain": {"error": 1e-3}}, {"plain": None}])
+    assert made.rows == (("0.0010",), (DASH,))
     numbers = json.loads(json_text({"a": float("inf"), "b": [float("nan"), 1.0], "c": {"d": 2}}))
     assert numbers == {"a": None, "b": [None, 1.0], "c": {"d": 2}}
     assert csv_text(["=1+1"], [["-2"], ["-x"]]).split() == ["'=1+1", "-2", "'-x"]  # none is taken for a formula
@@ -57,7 +57,7 @@ def rendered(things: list[Any], width: int) -> str:
 
 def test_table_in_narrow_terminal_wraps_headings_first_and_numbers_never() -> None:
     table = terminal(
-        Sheet("A title", ("what", "a long heading", "another one"), (("[words] of text", "-1.2345 m/s", "3.4e-12"),))
+        Table("A title", ("what", "a long heading", "another one"), (("[words] of text", "-1.2345 m/s", "3.4e-12"),))
     )
 
     def lines(width: int) -> list[str]:

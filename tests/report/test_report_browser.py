@@ -13,8 +13,8 @@ import cuefem as cf
 from cuefem.design import Response
 from cuefem.design.study_statistics import SweepStatistics
 from cuefem.report.report_page import PAGE_OFFSETS, page
-from cuefem.report.squirt import squirt_record
-from cuefem.report.study_table import sweep_sheets
+from cuefem.report.squirt_table import squirt_record
+from cuefem.report.study_table import tabulate_sweep
 from cuefem.report.templates import plain_page
 from tests.helpers.designer_browser import BROWSER, launched, watched
 
@@ -73,7 +73,7 @@ def study_of_ten_columns() -> str:
     names, units = ("bore", "bore depth", "tip.contact_time"), ("m", "m", "s")
     values = (1e-3 * bore, 1e-3 * deep, 1e-3 * time)
     table = SweepStatistics(names, units, tuple(map(Response.of, kinds)), np.arange(12), values, results)
-    return plain_page("bore", ["12 designs", *sweep_sheets(table)])
+    return plain_page("bore", ["12 designs", *tabulate_sweep(table)])
 
 
 @pytest.mark.parametrize("width", [1280, 390])

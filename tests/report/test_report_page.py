@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.report.charts import WIDE, Axis, round_step
-from cuefem.report.drawings import ACROSS, cue_drawing
+from cuefem.report.charts import WIDTH, Axis, round_step
+from cuefem.report.drawings import DIAMETER_SCALE, cue_drawing
 from cuefem.report.report_page import page
 from tests.helpers.page_reader import Reader
 
@@ -102,11 +102,11 @@ def test_cue_drawing_has_segments_at_their_positions(stroke: cf.Scene, front: tu
     sizes = [(height, 10e-3, 0.0) for height in front]
     sizes += [(s.length, max(s.tip_diameter, s.butt_diameter), max(s.tip_bore, s.butt_bore)) for s in segments]
     ends = np.cumsum([0.0, *(length for length, *_ in sizes)])
-    scale = WIDE / ends[-1]
+    scale = WIDTH / ends[-1]
     for piece, x, (length, wide, bore) in zip(drawing.pieces, ends[:-1], sizes, strict=True):
         along = [scale * x, scale * (x + length)]
         for outline, width in ((piece.outline, wide), (piece.bore, bore)):
-            across = drawing.axis + scale * ACROSS * width / 2 * np.array([-1, 1])
+            across = drawing.axis + scale * DIAMETER_SCALE * width / 2 * np.array([-1, 1])
             assert (outline == "") == (width == 0)
             assert not outline or box(outline) == pytest.approx([*along, *across], abs=0.02)
     at = scale * (0.2 + sum(front))  # positions are from behind the leather

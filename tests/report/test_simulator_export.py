@@ -17,7 +17,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.report.simulator_export import DEFAULT, VERSION, pooltool_record
-from tests.helpers.command_line import as_json, said
+from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.cues import kim
 
 KIM = kim()
@@ -58,7 +58,9 @@ def test_pooltool_export_writes_cue_specs(scene: Path, tmp_path: Path) -> None:
     expected = {"brand": "scene", "M": mass, "length": 1.4732, "tip_radius": 0.0095, "shaft_radius_at_tip": 0.006}
     assert {name: found["CueSpecs"][name] for name in expected} == expected
     assert tuple(found["CueSpecs"]) == CUE_SPECS
-    assert f"{1e3 * found['CueSpecs']['end_mass']:.3f} g" in said("strike", scene, "--format", "pooltool", "-o", goal)
+    assert f"{1e3 * found['CueSpecs']['end_mass']:.3f} g" in stdout_of(
+        "strike", scene, "--format", "pooltool", "-o", goal
+    )
     written = json.loads(goal.read_text(encoding="utf-8"))
     assert written["CueSpecs"] == found["CueSpecs"]
     assert written["line"] == f'CueSpecs(**json.load(open("{goal}"))["CueSpecs"])'

@@ -14,7 +14,7 @@ import cuefem as cf
 from cuefem.design import Response
 from cuefem.design.study_statistics import SweepStatistics
 from cuefem.report.study_table import column_label
-from tests.helpers.command_line import as_json, said
+from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.refusals import command_refuses
 from tests.helpers.sweeps import STUDY, written
 
@@ -65,7 +65,7 @@ def test_pareto_front_has_undominated_designs(numbers: np.ndarray) -> None:
 
 def test_study_command_prints_summary_and_writes_page(tmp_path: Path) -> None:
     study, (page, best) = written(tmp_path), (tmp_path / name for name in ("page.html", "best.toml"))
-    out = " ".join(said("study", study, "-o", page, "-o", best).split())
+    out = " ".join(stdout_of("study", study, "-o", page, "-o", best).split())
     assert "16 failed, the first of them design 48: Segment.tip_bore must be in [0, 0.012)" in out
     assert "bore 0 to 15 mm" in out
     record = as_json("study", study)

@@ -8,16 +8,16 @@ from typing import Any
 import pytest
 
 import cuefem as cf
-from cuefem.parameters.parameter import varied
+from cuefem.parameters.parameter import with_parameters
 from cuefem.parameters.parts import main_material
 from cuefem.report.comparison_table import comparison_sentences
-from cuefem.results.comparison import OTHER_FLOOR, comparison_record
-from cuefem.results.uncertainty import FLOOR, MASSES, SHAFTS
+from cuefem.results.comparison import SHAPE_FLOOR, comparison_record
+from cuefem.results.uncertainty import MASS_ERROR, RATIO_FLOOR, SHAFT_ERROR
 from tests.helpers.command_line import as_json, call
 from tests.helpers.cues import kim
 
 SCENE = cf.Scene(kim(), tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(2.0, 0.3))
-BORED = varied(SCENE, {"bore depth": 0.1, "bore width": 0.006})
+BORED = with_parameters(SCENE, {"bore depth": 0.1, "bore width": 0.006})
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +31,7 @@ def test_comparison_differences_agree_with_single_cues(both: dict[str, Any]) -> 
     assert both["cues"]["plain"]["end_mass_squirt"] == pytest.approx(cf.end_mass(SCENE, "squirt"), rel=1e-9)
     squirt = both["differences"]["bored"]["squirt"]
     assert squirt["difference"] == pytest.approx(squirts[1] / squirts[0] - 1, rel=1e-9)
-    assert squirt["error"] > abs(squirt["difference"]) * SHAFTS / 1.1
+    assert squirt["error"] > abs(squirt["difference"]) * SHAFT_ERROR / 1.1
 
 
 def test_comparison_reversed_order_has_same_significance(both: dict[str, Any]) -> None:
@@ -46,8 +46,8 @@ TWIN = {"a": SCENE, "b": replace(SCENE)}
 
 def test_comparison_of_equal_cues_has_error_floor() -> None:
     same = comparison_record(TWIN, same_shaft=True)["differences"]["b"]
-    assert same["squirt"]["error"] == pytest.approx(FLOOR, rel=1e-9)
-    assert same["shaft_mass"]["error"] == same["frequency_1"]["error"] == pytest.approx(OTHER_FLOOR, rel=1e-9)
+    assert same["squirt"]["error"] == pytest.approx(RATIO_FLOOR, rel=1e-9)
+    assert same["shaft_mass"]["error"] == same["frequency_1"]["error"] == pytest.approx(SHAPE_FLOOR, rel=1e-9)
 
 
 def test_comparison_of_two_woods_adds_input_errors() -> None:
@@ -55,19 +55,19 @@ def test_comparison_of_two_woods_adds_input_errors() -> None:
     two = record["differences"]["b"]
     assert "not distinct" in comparison_sentences(record)[0]
     assert not any(each["distinct"] for each in two.values())
-    heavier = varied(SCENE, {"rho": main_material(SCENE.shaft).rho * math.exp(0.1)})
+    heavier = with_parameters(SCENE, {"rho": main_material(SCENE.shaft).rho * math.exp(0.1)})
     assert two["shaft_mass"]["error"] > 0.9 * (heavier.shaft.shaft_mass / SCENE.shaft.shaft_mass - 1)
 
 
 @pytest.mark.heavy
 def test_comparison_with_shaft_masses_has_smaller_error() -> None:
     faster = replace(SCENE, stroke=cf.Stroke(4.0, 0.1))
-    light, heavy = (varied(scene, {"shaft mass": mass}) for scene, mass in ((SCENE, 0.112), (faster, 0.128)))
+    light, heavy = (with_parameters(scene, {"shaft mass": mass}) for scene, mass in ((SCENE, 0.112), (faster, 0.128)))
     weighed = comparison_record({"light": light, "heavy": heavy})
     assert (weighed["speed"], weighed["offset"]) == (SCENE.stroke.speed, SCENE.stroke.offset)
     mass = weighed["differences"]["heavy"]["shaft_mass"]
     assert (mass["error"] < 0.01, mass["distinct"]) == (True, True)
-    bare = comparison_record({"light": SCENE, "heavy": varied(SCENE, {"rho": 880.0})})
+    bare = comparison_record({"light": SCENE, "heavy": with_parameters(SCENE, {"rho": 880.0})})
     assert bare["differences"]["heavy"]["squirt"]["error"] > weighed["differences"]["heavy"]["squirt"]["error"]
 
 
@@ -76,7 +76,7 @@ def test_comparison_with_point_mass_has_larger_error() -> None:
     """The model error of the ratio is that of the measured masses."""
     clip = replace(SCENE, effects=(*SCENE.effects, cf.PointMass(0.05, 0.011)))
     squirt = comparison_record({"plain": SCENE, "clip": clip}, same_shaft=True)["differences"]["clip"]["squirt"]
-    assert squirt["error"] >= MASSES * squirt["difference"] > SHAFTS * squirt["difference"]
+    assert squirt["error"] >= MASS_ERROR * squirt["difference"] > SHAFT_ERROR * squirt["difference"]
 
 
 def test_compare_files_of_one_name_takes_first_ball_and_stroke(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -120,7 +120,7 @@ def test_compare_invalid_input_prints_one_line(
 ) -> None:
     cf.save(kim(), tmp_path / "cue.toml")
     cf.save(cf.Scene(cf.LumpedCue(0.54, 0.006)), tmp_path / "lumped.toml")
-    cf.save(varied(SCENE, {"wood": "ash"}).shaft, tmp_path / "ash.toml")
+    cf.save(with_parameters(SCENE, {"wood": "ash"}).shaft, tmp_path / "ash.toml")
     monkeypatch.chdir(tmp_path)
     status, out, err = call("compare", *arguments)
     assert (status, out, err.count("\n")) == (2, "", 1)

@@ -7,11 +7,11 @@ import pytest
 import cuefem as cf
 from cuefem.beam.modes import Modes, solve
 from cuefem.beam.system import assemble
-from cuefem.beam.waves import even_mesh_for
+from cuefem.beam.wave_phases import uniform_mesh_for
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.definitions import definition_of
-from cuefem.results.convergence import levels
-from cuefem.scene.solved_scene import tip_modes_from, turning
+from cuefem.results.convergence import refinement_levels
+from cuefem.scene.solved_scene import has_moment_arm, tip_modes_from
 from studies.strokes import NAMES
 from tests.helpers.accuracy_scenes import family, scene
 
@@ -30,9 +30,9 @@ def judged(outcome: cf.Outcome) -> np.ndarray:
 def reference(scene: cf.Scene, modes: int) -> np.ndarray:
     """Squirt, ball speed and spin from far more modes, on another mesh of another order."""
     assert isinstance(scene.cue, cf.Cue)
-    elements, order = even_mesh_for(scene.cue, modes)
+    elements, order = uniform_mesh_for(scene.cue, modes)
     system = assemble(scene.cue, cf.Resolution(elements + 1, order, modes), scene.cue_effects)
-    found = solve(system, modes, ended=2 if turning(scene) else 1)
+    found = solve(system, modes, corrected=2 if has_moment_arm(scene) else 1)
     return judged(strike_modes(scene, tip_modes_from(found, scene), steps=3200))
 
 
@@ -43,7 +43,7 @@ def true_error(outcome: cf.Outcome, best: np.ndarray, scene: cf.Scene) -> float:
 
 def moment(found: Modes, power: int, *, past: int) -> np.ndarray:
     """Sum of [w, theta][w, theta]' / (omega^2 + shift)^power over the modes from number ``past`` on."""
-    rows = found.felt[:, past:] / (found.omega[past:] ** 2 + found.system.shift) ** (power / 2)
+    rows = found.participation[:, past:] / (found.omega[past:] ** 2 + found.system.shift) ** (power / 2)
     return np.asarray(rows @ rows.T)
 
 
@@ -53,7 +53,7 @@ def test_truncation_correction_conserves_moments_of_truncated_modes(name: str, e
     """Two Lanczos steps conserve four moments; with a force alone, those of the deflection."""
     whole = all_modes(scene(name, 1e-3, 0.3, effects=effects), 40)
     for loads in (2, 1):
-        ended, part = solve(whole.system, 20, ended=loads), slice(loads)
+        ended, part = solve(whole.system, 20, corrected=loads), slice(loads)
         assert len(ended.omega) == 20 + 2 * loads
         for power in (1, 2, 3, 4):
             found, wanted = (moment(each, power, past=20)[part, part] for each in (ended, whole))
@@ -63,7 +63,7 @@ def test_truncation_correction_conserves_moments_of_truncated_modes(name: str, e
 
 def test_resolve_end_mass_error_is_within_rtol() -> None:
     here = scene("kim", 1e-3, 0.3)
-    tip = tip_modes_from(solve(assemble(here.shaft, 140), 130, ended=1), here)
+    tip = tip_modes_from(solve(assemble(here.shaft, 140), 130, corrected=1), here)
     for drive in ("stick", "velocity", "force"):
         value, error = cf.resolve_end_mass(here, drive, 1e-3)
         assert error <= 1e-3
@@ -77,7 +77,7 @@ def test_refinement_levels_error_estimate_bounds_true_error(number: int) -> None
     here = family()[number]
     best, rougher = reference(here, 300), reference(here, 230)
     known = float((np.abs(rougher - best) / np.abs(best)).max())
-    for level in levels(here, 0.0):
+    for level in refinement_levels(here, 0.0):
         error = level.error
         if error is not None:
             assert true_error(level.result, best, here) <= 2 * error + known

@@ -6,9 +6,16 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.parameters.parameter import varied
-from cuefem.results.uncertainty import MASSES, MODEL, MODEL_OF_SPRING, SHAFTS, of_shaft, squirt_changes
-from cuefem.scene.solved_scene import Solved
+from cuefem.parameters.parameter import with_parameters
+from cuefem.results.uncertainty import (
+    MASS_ERROR,
+    MODEL_ERROR,
+    SHAFT_ERROR,
+    SPRING_ERROR,
+    shaft_uncertainty,
+    squirt_changes,
+)
+from cuefem.scene.solved_scene import SolvedScene
 from studies.measured import uncertainty
 
 MESHES = Path(__file__).parents[2] / "meshes"
@@ -18,21 +25,21 @@ def test_squirt_changes_surface_restitution_is_one_sided() -> None:
     """0.95 for the 1 that stands there: 4 % more squirt. It is the tip's, which two shafts share."""
     scene = cf.usual_scene(cf.load(MESHES / "pool_maple.toml"))
     own = float(cf.strike(scene).squirt)
-    lossy = varied(scene, {"leather.surface_restitution": 0.95})
-    inputs = {key: abs(change) for key, change in squirt_changes(Solved(scene), own).items()}
+    lossy = with_parameters(scene, {"leather.surface_restitution": 0.95})
+    inputs = {key: abs(change) for key, change in squirt_changes(SolvedScene(scene), own).items()}
     assert inputs["surface_restitution"] == pytest.approx(cf.strike(lossy).squirt / own - 1, rel=1e-6)
     assert 0.03 < inputs["surface_restitution"] < 0.05
     others = {key: share for key, share in inputs.items() if key != "surface_restitution"}
-    assert of_shaft(inputs) == of_shaft(others)
+    assert shaft_uncertainty(inputs) == shaft_uncertainty(others)
     spring = replace(scene, effects=())
-    assert "surface_restitution" not in squirt_changes(Solved(spring), own)
+    assert "surface_restitution" not in squirt_changes(SolvedScene(spring), own)
 
 
 @pytest.mark.heavy
 def test_model_errors_agree_with_published_series() -> None:
     """The constants are the upper ends of the intervals that the study derives."""
     errors = [uncertainty.model_error(model).high for model in ("whole", "bare")]
-    constants = [MODEL, MODEL_OF_SPRING, SHAFTS, MASSES]
+    constants = [MODEL_ERROR, SPRING_ERROR, SHAFT_ERROR, MASS_ERROR]
     assert [*errors, *uncertainty.ratio_errors()] == pytest.approx(constants, abs=5.1e-3)
 
 

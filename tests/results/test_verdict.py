@@ -7,22 +7,22 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.io.ready import SCALE, ready_cues
-from cuefem.parameters.parameter import varied
-from cuefem.report.verdict_table import scale, squirt_words, standing
-from cuefem.results.uncertainty import FLOOR
-from cuefem.results.verdict import same_stroke, verdict_record
+from cuefem.io.reference_cues import REFERENCE_FILES, reference_cues
+from cuefem.parameters.parameter import with_parameters
+from cuefem.report.verdict_table import reference_comparison, reference_scale, squirt_text
+from cuefem.results.uncertainty import RATIO_FLOOR
+from cuefem.results.verdict import verdict_record, with_cue
 from cuefem.scene.default_scene import without_leather
 
 ROOT = Path(__file__).parents[2]
 SCENE = cf.usual_scene(cf.load(ROOT / "meshes" / "pool_hollow.toml"))
-RECORD = verdict_record(SCENE, cf.strike(SCENE), ready_cues())
+RECORD = verdict_record(SCENE, cf.strike(SCENE), reference_cues())
 
 
-@pytest.mark.parametrize("name", SCALE)
+@pytest.mark.parametrize("name", REFERENCE_FILES)
 def test_verdict_reference_cues_agree_with_strikes(name: str) -> None:
-    struck = cf.strike(replace(SCENE, cue=without_leather(cf.load(ROOT / SCALE[name]))))
-    among = RECORD["among"][name]
+    struck = cf.strike(replace(SCENE, cue=without_leather(cf.load(ROOT / REFERENCE_FILES[name]))))
+    among = RECORD["references"][name]
     assert among["squirt"] == pytest.approx(struck.squirt, rel=1e-12)
     assert among["difference"] == pytest.approx(cf.strike(SCENE).squirt / struck.squirt - 1, abs=1e-12)
 
@@ -43,7 +43,7 @@ def test_verdict_uncertainty_is_quadrature_sum_of_parts() -> None:
     ids=["shaft", "tip"],
 )
 def test_verdict_known_input_has_smaller_uncertainty(known: dict[str, float]) -> None:
-    scene = varied(SCENE, known)
+    scene = with_parameters(SCENE, known)
     record = verdict_record(scene, cf.strike(scene), {})
     assert record["uncertainty"]["model"] == RECORD["uncertainty"]["model"]
     assert record["uncertainty"]["total"] < RECORD["uncertainty"]["total"]
@@ -51,26 +51,26 @@ def test_verdict_known_input_has_smaller_uncertainty(known: dict[str, float]) ->
 
 @pytest.mark.parametrize(("depth", "distinct"), [(0.01, False), (0.1, True)])
 def test_verdict_difference_within_error_is_not_distinct(depth: float, distinct: bool) -> None:
-    maple = cf.load(ROOT / SCALE["plain maple"])
-    bored = varied(cf.usual_scene(maple), {"bore depth": depth, "bore width": 0.006})
+    maple = cf.load(ROOT / REFERENCE_FILES["plain maple"])
+    bored = with_parameters(cf.usual_scene(maple), {"bore depth": depth, "bore width": 0.006})
     record = verdict_record(bored, cf.strike(bored), {"plain maple": maple})
-    among = record["among"]["plain maple"]
+    among = record["references"]["plain maple"]
     assert among["distinct"] == distinct == (abs(among["difference"]) > among["error"])
-    assert among["error"] >= FLOOR
-    assert ("less squirt" in standing(record)[0]) == distinct
+    assert among["error"] >= RATIO_FLOOR
+    assert ("less squirt" in reference_comparison(record)[0]) == distinct
 
 
 def test_same_stroke_excludes_effects_on_own_cue() -> None:
     more = (cf.PointMass(0.1, 0.011), cf.Support(0.2, 1e3), cf.Support(0.72, 1e3))
     scene = replace(SCENE, effects=(*SCENE.effects, *more))
     short = replace(SCENE.cue, segments=SCENE.cue.segments[:-1])
-    kept = {type(effect).__name__ for effect in same_stroke(scene, short).effects}
+    kept = {type(effect).__name__ for effect in with_cue(scene, short).effects}
     assert kept == {"LeatherTip", "Support", "AxialWaves", "GeometricStiffness"}
-    assert sum(isinstance(effect, cf.Support) for effect in same_stroke(scene, short).effects) == 1
+    assert sum(isinstance(effect, cf.Support) for effect in with_cue(scene, short).effects) == 1
 
 
 def test_reference_scale_is_ascending_and_relative_to_maple() -> None:
-    rows, among = scale(RECORD), RECORD["among"]
+    rows, among = reference_scale(RECORD), RECORD["references"]
     assert [row.at for row in rows] == sorted(row.at for row in rows)
     assert all(0 <= row.low <= row.at <= row.high <= 100 for row in rows)
     assert [row.name for row in rows if row.kind == "own"] == ["yours"]
@@ -86,4 +86,4 @@ def test_reference_scale_is_ascending_and_relative_to_maple() -> None:
 )
 def test_squirt_text_has_digits_of_tables(squirt: float, error: float, words: str) -> None:
     record = {"squirt": math.radians(squirt), "squirt_error": math.radians(error)}
-    assert squirt_words(record)[0] == words
+    assert squirt_text(record)[0] == words

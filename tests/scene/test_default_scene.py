@@ -7,7 +7,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.cue.materials import LEATHERS, material
-from cuefem.scene.default_scene import GAMES, usual_tip
+from cuefem.scene.default_scene import GAMES, default_tip
 from tests.helpers.refusals import refuses
 
 ROOT = Path(__file__).parents[2]
@@ -37,7 +37,7 @@ def test_default_tip_has_height_of_drawn_leather() -> None:
     scene = cf.usual_scene(drawn)
     assert scene.cue == cf.Cue((WOOD,), 0.4)
     assert scene.leather == replace(GAMES["pool"].tip, height=5e-3)
-    assert usual_tip(drawn, "snooker").height == 5e-3
+    assert default_tip(drawn, "snooker").height == 5e-3
     assert cf.usual_scene(drawn, tip=replace(scene.leather, height=7e-3)).leather.height == 7e-3
 
 
@@ -46,7 +46,7 @@ def test_default_tip_restitution_with_axial_waves_is_leather_s() -> None:
     tip = replace(GAMES["pool"].tip, E=hard.E)
     scene = cf.usual_scene(cue, tip=tip)
     assert scene.tip.restitution == hard.restitution
-    assert GAMES["pool"].tip_beside((tip,)) == cf.Tip(0.73, 0.7)
+    assert GAMES["pool"].tip_with((tip,)) == cf.Tip(0.73, 0.7)
 
 
 @pytest.mark.parametrize("game", GAMES)
@@ -61,7 +61,7 @@ def test_refusals() -> None:
     refuses(
         lambda: cf.usual_scene(cf.Cue((WOOD,)), "croquet"), "game must be one of pool, carom, snooker; got 'croquet'"
     )
-    refuses(lambda: usual_tip(cf.Cue((WOOD,)), "golf"), "game must be one of pool, carom, snooker; got 'golf'")
+    refuses(lambda: default_tip(cf.Cue((WOOD,)), "golf"), "game must be one of pool, carom, snooker; got 'golf'")
     refuses(
         lambda: cf.usual_scene(cf.LumpedCue(0.5, 0.01)), "TypeError: usual_scene cue must be a Cue; got a LumpedCue"
     )
@@ -83,7 +83,7 @@ def test_restitution_of_stated_modulus_lies_between_named_leathers() -> None:
 
     def own(E: float) -> float:
         effects = (replace(GAMES["pool"].tip, E=E), cf.AxialWaves())
-        return float(GAMES["pool"].tip_beside(effects).restitution)
+        return float(GAMES["pool"].tip_with(effects).restitution)
 
     for leather in LEATHERS.values():
         assert own(leather.E) == leather.restitution

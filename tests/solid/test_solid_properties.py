@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.report.model_error import model_error_record, model_error_sheet
-from cuefem.solid.shaft import Body
+from cuefem.report.model_error_table import model_error_record, tabulate_model_error
+from cuefem.solid.shaft import SolidBody
 from tests.helpers.command_line import call
 
-WOOD = cf.Material(E=12.6e9, G=1.1e9, rho=700.0, nu=0.45, across_ratio=0.0985, nu_across=0.52)
+WOOD = cf.Material(E=12.6e9, G=1.1e9, rho=700.0, nu=0.45, transverse_ratio=0.0985, nu_transverse=0.52)
 CONE = cf.Segment(0.7, 0.012, 0.021, WOOD)
 SCENE = cf.Scene(cf.Cue((CONE,), body_mass=0.42), tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(offset=0.3))
 COARSE = cf.Solid(order=3, modes=20)
@@ -41,8 +41,8 @@ BORES = (0.004, 0.0119999999)  # one within the other
 CROSSING = cf.Cue(tuple(cf.Segment(0.1, 0.012, 0.012, WOOD, bore, bore) for bore in BORES))
 FINE = tuple(cf.Segment(0.002, 0.012, 0.013, WOOD) for _ in range(300))
 INVALID: list[tuple[Callable[[], object], str]] = [
-    (lambda: replace(WOOD, nu_across=0.98), r"Material.nu_across must be in \(0, 0.9"),
-    (lambda: replace(WOOD, across_ratio=4.0), "Material.nu_across must be in .* across_ratio = 4.0"),
+    (lambda: replace(WOOD, nu_transverse=0.98), r"Material.nu_transverse must be in \(0, 0.9"),
+    (lambda: replace(WOOD, transverse_ratio=4.0), "Material.nu_transverse must be in .* transverse_ratio = 4.0"),
     (lambda: cf.solid_modes(CROSSING), "wall of 1 um or more"),
     (lambda: cf.solid_modes(cf.Cue(FINE), at=cf.Solid(order=12)), "2 GiB"),
     (lambda: cf.Solid(order=40), r"order must be in \[2, 12\]"),
@@ -58,7 +58,7 @@ def test_solid_invalid_input_raises_before_assembly(
     ask: Callable[[], object], message: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Assembly takes seconds."""
-    monkeypatch.setattr(Body, "matrices", property(lambda body: pytest.fail("a solid was assembled")))
+    monkeypatch.setattr(SolidBody, "matrices", property(lambda body: pytest.fail("a solid was assembled")))
     with pytest.raises(ValueError, match=message):
         ask()
 
@@ -79,7 +79,7 @@ def test_model_error_short_cone_lists_quantities_and_exclusions() -> None:
     assert 0 < abs(rows["natural frequency 1"]["solid"] / laden - 1) < 0.1
     assert record["summary"].startswith("Error of the beam model for this shaft: ")
     assert record["excluded_effects"] == ["AxialWaves"]
-    sheet = model_error_sheet(record)
+    sheet = tabulate_model_error(record)
     assert [row[0].removesuffix(" *") for row in sheet.rows[:-1]] == list(rows)
     assert abs(record["scikit_fem"]["difference"]) < 1e-9
     assert sheet.rows[-1][0] == "natural frequency 1, same beam by scikit-fem"

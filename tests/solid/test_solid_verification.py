@@ -13,7 +13,7 @@ from scipy.special import iv, ivp
 from cuefem import Cue, Material, Segment
 from cuefem.cue.materials import material
 from cuefem.solid.meridian_mesh import Fineness
-from cuefem.solid.shaft import AXIAL, BENDING, Body
+from cuefem.solid.shaft import AXIAL, BENDING, SolidBody
 from tests.helpers.orders import assert_order
 
 STEEL = Material(200e9, 200e9 / 2.6, 7850.0)
@@ -63,7 +63,7 @@ def exact_wave(halves: int, motion: int) -> float:
 
 def standing_wave(halves: int, motion: int, how: Fineness) -> float:
     """The mode with so many half waves between faces that do not move within their planes."""
-    omega = Body(CYLINDER, how, motion).modes(5, supported=True).omega
+    omega = SolidBody(CYLINDER, how, motion).modes(5, supported=True).omega
     return float(omega[halves - (motion == BENDING)])
 
 
@@ -88,7 +88,7 @@ def test_solid_frequencies_converge_at_twice_the_order(motion: int, order: int) 
 def test_solid_pure_bending_energy_is_exact(wood: Material) -> None:
     """u_x = (z^2 + nu (x^2 - y^2))/2, u_y = nu x y, u_z = -x z: no stress but E x along the grain."""
     rod = Cue((Segment(LENGTH, 2 * RADIUS, 2 * RADIUS, wood),))
-    body = Body(rod, Fineness(2, 1.0, 0.01, layers=2))
+    body = SolidBody(rod, Fineness(2, 1.0, 0.01, layers=2))
     fields = (lambda x: (x[0] ** 2 + wood.nu * x[1] ** 2) / 2, lambda x: wood.nu * x[1] ** 2, lambda x: -x[1] * x[0])
     bent = np.concatenate([body.basis.project(field) for field in fields])
     K, _ = body.matrices
@@ -99,4 +99,4 @@ def test_solid_pure_bending_energy_is_exact(wood: Material) -> None:
 def test_solid_rod_axial_compliance_agrees_with_section(wood: Material) -> None:
     rod = Cue((Segment(LENGTH, 2 * RADIUS, 2 * RADIUS, wood, RADIUS, RADIUS),))
     give = LENGTH / float(rod.section(0.0).EA)
-    assert Body(rod, Fineness(4, 1.0, 0.01), AXIAL).give == pytest.approx(give, rel=1e-10)
+    assert SolidBody(rod, Fineness(4, 1.0, 0.01), AXIAL).compliance == pytest.approx(give, rel=1e-10)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.solid.tip_cache import own_table
-from cuefem.solid.tip_table import HEIGHT, OwnTip, TipTable, of_tip
+from cuefem.solid.tip_cache import cached_table
+from cuefem.solid.tip_table import HEIGHT, TipTable, UntabulatedTip, table_of_tip
 from tests.helpers.command_line import call
 from tests.helpers.refusals import command_refuses
 
@@ -33,7 +33,7 @@ E = "100 MPa"
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty cache folder; the process has no table in memory."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    own_table.cache_clear()
+    cached_table.cache_clear()
     return tmp_path / "cache" / "cuefem" / "tips"
 
 
@@ -47,24 +47,24 @@ def contact_inputs(tip: cf.LeatherTip) -> list[np.ndarray]:
 
 
 @pytest.fixture
-def computed_tips(cache: Path, monkeypatch: pytest.MonkeyPatch) -> list[OwnTip]:
+def computed_tips(cache: Path, monkeypatch: pytest.MonkeyPatch) -> list[UntabulatedTip]:
     """The computed tips; each gets the package's table of the lowest tip instead of its own."""
-    computed: list[OwnTip] = []
+    computed: list[UntabulatedTip] = []
 
-    def own_tip(tip: OwnTip) -> TipTable:
+    def compute_tip_table(tip: UntabulatedTip) -> TipTable:
         computed.append(tip)
-        return of_tip(HEIGHT[0], 0.0, 0.4)
+        return table_of_tip(HEIGHT[0], 0.0, 0.4)
 
-    monkeypatch.setattr("cuefem.solid.tip_compliance.own_tip", own_tip)
+    monkeypatch.setattr("cuefem.solid.tip_compliance.compute_tip_table", compute_tip_table)
     return computed
 
 
-def test_tip_cache_invalid_file_is_computed_again(cache: Path, computed_tips: list[OwnTip]) -> None:
+def test_tip_cache_invalid_file_is_computed_again(cache: Path, computed_tips: list[UntabulatedTip]) -> None:
     """A stored table equals the computed one; truncated, empty, foreign files and other shapes are computed again."""
-    assert not FLAT.at_hand(D)
+    assert not FLAT.is_cached(D)
     first = contact_inputs(FLAT)
     (file,) = cache.iterdir()
-    own_table.cache_clear()
+    cached_table.cache_clear()
     for again, before in zip(contact_inputs(FLAT), first, strict=True):
         np.testing.assert_array_equal(again, before)
     content, half = file.read_bytes(), len(file.read_bytes()) // 2
@@ -73,16 +73,16 @@ def test_tip_cache_invalid_file_is_computed_again(cache: Path, computed_tips: li
     invalid = [content[:half], b"", b"hello", content[:half] + b"\0" * 40 + content[half + 40 :]]
     for damaged in (*invalid, *({name: parts[name][..., :1]} for name in ("patches", "head_on"))):
         file.write_bytes(damaged) if isinstance(damaged, bytes) else np.savez(file, **parts | damaged)
-        own_table.cache_clear()
-        assert not FLAT.at_hand(D)
+        cached_table.cache_clear()
+        assert not FLAT.is_cached(D)
         for again, before in zip(contact_inputs(FLAT), first, strict=True):
             np.testing.assert_array_equal(again, before)
-        assert FLAT.at_hand(D)
+        assert FLAT.is_cached(D)
     assert len(computed_tips) == 7
 
 
 def test_tip_cache_without_home_folder_stores_nothing(
-    cache: Path, computed_tips: list[OwnTip], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    cache: Path, computed_tips: list[UntabulatedTip], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def homeless(*_: object) -> Path:
         raise RuntimeError("could not determine the home directory")

@@ -1,0 +1,175 @@
+"""The lowest modes of K q = omega^2 M q and their participation in given loads; mode shapes are computed on demand.
+
+`eigh(K, M)` would lose the low modes in the round-off error of the high ones. This solves the inverse form
+M q = mu (K + shift M) q, whose largest mu = 1/(omega^2 + shift) are the lowest modes. LAPACK reduces it to a
+tridiagonal matrix, which determines the frequencies and the participation of loads, all that a strike needs, in half
+the time of an eigenproblem with vectors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+import scipy.linalg as la
+from numpy.typing import NDArray
+from scipy.linalg import lapack
+
+from cuefem.beam.system import is_dense_faster
+from cuefem.beam.truncation import LANCZOS_STEPS, truncation_correction
+from cuefem.cue import Array
+
+# If the tridiagonal matrix begins at the only load, its leading part determines the lowest modes. With LEADING times
+# as many rows as modes, and SPARE more, the rest changes none of them by more than the square of ROUNDING; otherwise
+# the whole matrix is solved. The truncated modes have the same first moments in mu as those of the whole.
+LEADING, SPARE, ROUNDING = 2.2, 12, 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class EigenSolution:
+    """Mass-normalised modes of ascending frequency, those of the truncation correction last.
+
+    omega: (n,) rad/s. loads: (free, loads). felt: (loads, n), the work of each load on each mode. highest: rad/s, of
+    the retained modes. radiation: (k, k) of the k correction modes, 1/s; None without a correction. shapes: computes
+    the vectors.
+    """
+
+    omega: Array
+    loads: Array
+    participation: Array
+    highest: float
+    radiation: Array | None
+    shapes: Callable[[], Array]
+
+    @cached_property
+    def vectors(self) -> Array:
+        """Mode shapes, (free, n)."""
+        return self.shapes()
+
+    def subset(self, index: NDArray[np.intp]) -> Self:
+        """The modes of these indices, without a truncation correction."""
+        omega, felt = self.omega[index], self.participation[:, index]
+        return replace(
+            self,
+            omega=omega,
+            participation=felt,
+            highest=omega[-1],
+            radiation=None,
+            shapes=lambda: self.vectors[:, index],
+        )
+
+
+def solve_eigenproblem(
+    K: Any, M: Any, loads: Array, *, shift: float, rigid: int, count: int, below: float = np.inf, corrected: int = 0
+) -> EigenSolution:
+    """The ``count`` lowest flexible modes, or those of them up to ``below`` rad/s.
+
+    loads: (free, loads). rigid: number of modes of zero frequency, which come first and are not returned. corrected:
+    number of loads with a truncation correction; 0 for none.
+    """
+    if not isinstance(K, np.ndarray) and is_dense_faster(K.shape[0], count):
+        K, M = K.toarray(), M.toarray()
+    taken = np.flatnonzero(loads[:, :corrected].any(axis=0))  # loads on clamped degrees of freedom are zero
+    if isinstance(K, np.ndarray):
+        form = _Tridiagonal(K, M, shift)
+        mu, z = form.eigen(rigid + count, leading=len(taken) == 1 and not loads[1:, taken].any())
+        felt, vectors = form.loads(loads)[: len(z)].T @ z, lambda mix: form.vectors(z @ mix)
+    else:
+        mu, basis = _sparse(K, M, loads[:, taken], shift, rigid + count)
+        felt, vectors = loads.T @ basis, lambda mix: basis @ mix
+    last = rigid + int(np.sum(1 / mu[rigid : rigid + count] - shift <= below**2))
+    if last == rigid and np.isinf(below):
+        raise np.linalg.LinAlgError("no mode has a frequency that is a number: check sizes and materials")
+    # on a nearly vanishing support, the squared frequency is round-off error
+    omega = np.sqrt(np.maximum(1 / mu[rigid:last] - shift, np.finfo(float).eps * shift))
+    mix = np.eye(len(mu), last)[:, rigid:] / np.sqrt(mu[rigid:last]) * np.where(felt[0, rigid:last] < 0, -1.0, 1.0)
+    highest, radiation = float(omega[-1]) if np.isinf(below) else below, None
+    if len(taken):
+        rest = truncation_correction(mu[last:], felt[taken, last:].T, shift=shift, highest=highest)
+        omega, radiation = np.append(omega, rest.omega), rest.radiation
+        mix = np.concatenate([mix, np.concatenate([np.zeros((last, len(rest.omega))), rest.mix])], axis=1)
+    return EigenSolution(omega, loads, felt @ mix, highest, radiation, lambda: vectors(mix))
+
+
+def _sparse(K: Any, M: Any, loads: Array, shift: float, count: int) -> tuple[Array, Array]:
+    """(mu, q), q' (K + shift M) q = 1, of the ``count`` lowest modes, then of a few that replace all others.
+
+    These are Ritz vectors of the static deflections under the loads, and under the inertia of those, orthogonal to the
+    modes. A truncation correction is the same with them as with all other modes.
+    """
+    from scipy.sparse.linalg import eigsh, splu
+
+    start = np.ones(K.shape[0])  # a fixed start, so that the same input gives the same numbers
+    squares, vectors = eigsh(K, count, M, sigma=-shift, v0=start)
+    order = np.argsort(squares)
+    mu, vectors = 1 / (squares[order] + shift), vectors[:, order]
+    if not loads.size:
+        return mu, vectors * np.sqrt(mu)
+    S, steps, forces = K + shift * M, [], loads
+    deflect = splu(S.tocsc()).solve
+    for _ in range(LANCZOS_STEPS):
+        step = deflect(forces)
+        for _ in range(2):  # the second pass removes round-off error
+            step -= vectors @ ((M @ vectors).T @ step)
+        steps.append(step / np.sqrt(np.sum(step * (M @ step), axis=0)))
+        forces = M @ steps[-1]
+    rest = np.concatenate(steps, axis=1)
+    own, mix = la.eigh(rest.T @ (M @ rest), rest.T @ (S @ rest))
+    return np.append(mu, own[::-1]), np.concatenate([vectors * np.sqrt(mu), rest @ mix[:, ::-1]], axis=1)
+
+
+class _Tridiagonal:
+    """M q = mu S q with S = K + shift M as a tridiagonal problem T y = mu shift y: y = Q' U q, U' U = S, y' y = q' S q.
+
+    U factors S in reverse order, so that y begins with the first degree of freedom's load, which Q does not change.
+    """
+
+    def __init__(self, K: Array, M: Array, shift: float) -> None:
+        # a symmetric array copied by rows has LAPACK's order when transposed; each step overwrites its input, because
+        # fresh memory costs a quarter of the time
+        self.shift, self.upper, heavy = shift, K[::-1, ::-1].copy().T, M[::-1, ::-1].copy().T
+        heavy *= shift
+        self.upper += heavy
+        _done(lapack.dpotrf(self.upper, lower=0, clean=0, overwrite_a=1))
+        _done(lapack.dsygst(heavy, self.upper, lower=0, overwrite_a=1))
+        size, whole = len(M), heavy.T[::-1, ::-1].copy().T
+        # wider blocks take longer for matrices of this size
+        found = _done(lapack.dsytrd(whole, lower=1, lwork=10 * size, overwrite_a=1))
+        _, self.diagonal, self.off, self.tau = found
+        self.reflectors = whole.T.ravel()[1 : 1 + size * (size - 1)].reshape(size - 1, size).T  # whole[1:], unmoved
+
+    def eigen(self, count: int, *, leading: bool) -> tuple[Array, Array]:
+        """(mu, y) with descending mu, (m,), (m, m), of the whole or the leading part; the first ``count`` are exact."""
+        size = len(self.diagonal)
+        part = min(int(LEADING * count) + SPARE, size) if leading else size
+        mu, y = (each[..., ::-1] for each in _done(lapack.dstevd(self.diagonal[:part], self.off[: part - 1])))
+        if part < size and np.any(abs(self.off[part - 1] * y[-1, :count]) > ROUNDING * mu[:count]):
+            return self.eigen(count, leading=False)
+        return mu / self.shift, y
+
+    def loads(self, loads: Array) -> Array:
+        """y of loads (free, k): Q' U'^-1 loads."""
+        y = _done(lapack.dtrtrs(self.upper, loads[::-1], trans=1))[::-1].copy()
+        return self._turned(y, "T")
+
+    def vectors(self, y: Array) -> Array:
+        """q (free, k) of y (rows of the leading part, k): U^-1 Q y."""
+        whole = np.zeros((len(self.upper), y.shape[1]))
+        whole[: len(y)] = y
+        return np.asarray(_done(lapack.dtrtrs(self.upper, self._turned(whole, "N")[::-1]))[::-1])
+
+    def _turned(self, y: Array, trans: str) -> Array:
+        if len(y) > 1 and y.shape[1]:
+            y[1:] = lapack.dormqr("L", trans, self.reflectors, self.tau, y[1:], 64 * y.shape[1])[0]
+        return y
+
+
+def _done(answer: tuple[Any, ...]) -> Any:
+    """The outputs of a LAPACK routine; LinAlgError if it failed."""
+    *found, failed = answer
+    if failed:
+        raise np.linalg.LinAlgError(f"the eigenproblem of the modes has no solution (LAPACK {failed})")
+    return found[0] if len(found) == 1 else found

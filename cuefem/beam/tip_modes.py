@@ -1,0 +1,136 @@
+"""Tip modes: the motion of a cue's modes at the tip, which determines an impact. This file needs numpy alone."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cuefem.cue import Array, LumpedCue
+
+if TYPE_CHECKING:
+    from cuefem.beam.modes import Modes
+
+
+@dataclass(frozen=True, eq=False)
+class TipModes:
+    """Modes of a cue at the contact: the inverse mass there is B(t) = sum of a_k a_k' cos(omega_k t).
+
+    omega: (n,) rad/s, rigid-body modes (zero) first. amplitude: (n, 2), mass-normalised axial and transverse
+    displacement (u, w) of the contact, 1/sqrt(kg). approach: (n,), modal velocities of a cue that moves axially at 1
+    m/s, sqrt(kg). rotation: (n,) of the tip's section, 1/(m sqrt(kg)). damping: (n, n) viscous, 1/s, of the modal
+    equations q'' + damping q' + omega^2 q = f, or None. radiation: (n, n), likewise, but its energy is not dissipated:
+    waves carry it into the truncated modes. geometric: (n, n), 1/(m kg), the decrease of the modal stiffness per newton
+    of axial force, or None. A lumped cue has omega = 0 throughout.
+    """
+
+    omega: Array
+    amplitude: Array
+    approach: Array
+    rotation: Array
+    damping: Array | None = None
+    radiation: Array | None = None
+    geometric: Array | None = None
+
+    @property
+    def total_damping(self) -> Array | None:
+        """Damping and radiation together, (n, n), 1/s; None without either."""
+        parts = [part for part in (self.damping, self.radiation) if part is not None]
+        return sum(parts[1:], parts[0]) if parts else None
+
+    @cached_property
+    def without_geometric_stiffness(self) -> TipModes:
+        """These modes without geometric stiffness."""
+        return self if self.geometric is None else replace(self, geometric=None)
+
+    def subset(self, index: NDArray[np.intp]) -> TipModes:
+        """The modes of these indices, in their order."""
+        pairs = (self.damping, self.radiation, self.geometric)
+        parts = (None if part is None else part[np.ix_(index, index)] for part in pairs)
+        damping, radiation, geometric = (part if part is not None and part.any() else None for part in parts)
+        omega, amplitude, approach, rotation = self.omega, self.amplitude, self.approach, self.rotation
+        return TipModes(omega[index], amplitude[index], approach[index], rotation[index], damping, radiation, geometric)
+
+    def with_axial_modes(self, omega: Array, along: Array, radiation: Array | None = None) -> TipModes:
+        """These modes followed by n undamped axial modes of tip amplitude ``along``, (n,), 1/sqrt(kg).
+
+        radiation: of the last of them, if they have a truncation correction.
+        """
+        n, before = len(omega), len(self.omega)
+        own = None if self.radiation is None else np.pad(self.radiation, (0, n))
+        if radiation is not None:
+            theirs = np.pad(radiation, (before + n - len(radiation), 0))
+            own = theirs if own is None else own + theirs
+        return TipModes(
+            np.concatenate([self.omega, omega]),
+            np.concatenate([self.amplitude, np.column_stack([along, np.zeros(n)])]),
+            np.concatenate([self.approach, np.zeros(n)]),
+            np.concatenate([self.rotation, np.zeros(n)]),
+            None if self.damping is None else np.pad(self.damping, (0, n)),
+            own,
+            None if self.geometric is None else np.pad(self.geometric, (0, n)),
+        )
+
+    def ascending(self) -> TipModes:
+        """The same modes in the order of their frequencies."""
+        return self.subset(np.argsort(self.omega, kind="stable"))
+
+    @property
+    def uncoupled(self) -> TipModes:
+        """The modes for a centre-ball impact, where a lumped cue's coupling is 0: it changes sign with the offset."""
+        if not np.any(self.amplitude[:, 0] * self.amplitude[:, 1]):
+            return self
+        along, across = np.sqrt(np.sum(self.amplitude**2, axis=0))
+        return replace(self, amplitude=np.diag([along, across]), approach=np.array([1 / along, 0.0]))
+
+
+def lumped_tip_modes(cue: LumpedCue) -> TipModes:
+    """The two modes of zero frequency of a lumped cue."""
+    root = math.sqrt(cue.mass)
+    across = math.sqrt(1 / cue.end_mass - cue.coupling**2 * cue.mass)
+    amplitude = np.array([[1 / root, cue.coupling * root], [0.0, across]])
+    return TipModes(np.zeros(2), amplitude, np.linalg.solve(amplitude.T, [1.0, 0.0]), np.zeros(2))
+
+
+def tip_modes(bending: Modes, axial_mass: float) -> TipModes:
+    """Tip modes from bending modes and a rigid-body axial mode of ``axial_mass`` kg, which comes first."""
+    omega = np.concatenate([np.zeros(bending.rigid), bending.omega])
+    damping, radiation = _resistances(bending, 1 + len(omega))
+    return replace(free_tip_modes(omega, *bending.at_tip, axial_mass), damping=damping, radiation=radiation)
+
+
+def free_tip_modes(omega: Array, deflection: Array, rotation: Array, axial_mass: float) -> TipModes:
+    """Tip modes from bending modes, rigid-body modes included, and a rigid-body axial mode of ``axial_mass`` kg."""
+    amplitude = np.zeros((1 + len(deflection), 2))
+    amplitude[0, 0], amplitude[1:, 1] = axial_mass**-0.5, deflection
+    approach = np.zeros(len(amplitude))
+    approach[0] = axial_mass**0.5
+    return TipModes(np.append(0.0, omega), amplitude, approach, np.append(0.0, rotation))
+
+
+def side_modes(bending: Modes) -> TipModes:
+    """Modes at the contact of a body that strikes the resting beam from the side, at the node of the modes' loads.
+
+    The first direction of the contact is that of the body's rebound, opposite to the deflection w of the beam; the
+    second does not move.
+    """
+    deflection, turning = bending.at_tip
+    omega = np.concatenate([np.zeros(bending.rigid), bending.omega])
+    damping, radiation = _resistances(bending, len(omega))
+    amplitude = np.column_stack([-deflection, np.zeros(len(omega))])
+    return TipModes(omega, amplitude, np.zeros(len(omega)), turning, damping, radiation)
+
+
+def _resistances(bending: Modes, count: int) -> tuple[Array | None, Array | None]:
+    """Damping by dashpots and radiation of ``count`` modes, of which the ``bending`` ones are the last."""
+    damping = None
+    if bending.system.dashpots is not None:
+        vectors = np.concatenate([bending.rigid_vectors, bending.vectors], axis=1)
+        own = vectors.T @ (bending.system.dashpots[:, None] * vectors)
+        damping = np.pad(own, (count - len(own), 0))
+    radiation = None if bending.radiation is None else np.pad(bending.radiation, (count - len(bending.radiation), 0))
+    return damping, radiation

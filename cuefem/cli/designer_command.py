@@ -1,0 +1,67 @@
+"""`cuefem designer`: serve and open the designer's page."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import click
+
+from cuefem.cli.common import cue_options, errors_name_file, print_warnings, scene_of
+from cuefem.cli.output import command, print_json
+from cuefem.cli.scene_options import option
+from cuefem.io.reference_cues import PRESETS
+
+
+@command()
+@click.argument("scene", type=click.Path(path_type=Path), required=False)
+@click.option(
+    "--port",
+    type=click.IntRange(0, 65535),
+    default=8470,
+    show_default=True,
+    help="Port of the page; 0: any free port.",
+)
+@click.option("--open/--no-open", "show", default=True, help="Open the page in the browser.", show_default=True)
+@cue_options
+def designer(scene: Path | None, port: int, show: bool, as_json: bool, **options: Any) -> None:
+    """Open a browser page with sliders: squirt, end mass, stiffness and natural frequencies update as they move.
+
+    SCENE is a cue or scene file (default: a maple pool shaft). A cue alone gets the default stroke of the game. The
+    rest of a profile's cue weighs 15 oz unless --body-mass sets it. The page is served on this computer only.
+    """
+    try:
+        from cuefem.designer.server import serve
+        from cuefem.designer.state import design_from_file, reference_design
+    except ModuleNotFoundError as error:
+        if error.name is None or error.name.startswith("cuefem"):
+            raise
+        raise ValueError(f"the designer needs {error.name}: pip install '.[designer]' in the clone") from None
+
+    given = {name: value for name, value in options.items() if value is not None}
+    if scene is None:
+        for name in given:
+            raise ValueError(f"{option(name)} needs a SCENE, whose cue or stroke it changes; got none")
+        first = reference_design(PRESETS[0])
+    else:
+        read, _ = scene_of(scene, options, warn=False)
+        with errors_name_file(scene):
+            first = design_from_file(scene, scene.stem, read, given)
+        print_warnings(first.scene)
+    told: Callable[[str], None] = (lambda address: print_json({"address": address})) if as_json else click.echo
+    with suppress(KeyboardInterrupt):  # Ctrl-C is how one ends it
+        serve(first, port=_free(port), show=show, announce=told)
+
+
+def _free(port: int) -> int:
+    """The port if it is available; any available one for 0."""
+    with socket.socket() as tried:
+        tried.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            tried.bind(("127.0.0.1", port))
+        except OSError as error:
+            raise ValueError(f"--port {port} is not available ({error.strerror}); 0 takes any free port") from None
+        return int(tried.getsockname()[1])

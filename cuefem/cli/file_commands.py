@@ -1,0 +1,49 @@
+"""Commands on files and parts: convert, parts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from cuefem.cli.common import check_overwrite, force_option, shaft_additions_of, shape_options
+from cuefem.cli.output import assumed_lines, command, json_option, page_option, print_json, print_result
+from cuefem.cli.scene_options import with_body_option, with_shaft_mass_option
+from cuefem.cue import Cue
+from cuefem.io import load, save
+from cuefem.io.defaults_report import assumption_texts, drawing_assumptions
+from cuefem.report.parts_table import parts_record, tabulate_parts
+
+
+@command()
+@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("output", type=click.Path(path_type=Path))
+@shape_options
+@json_option
+@force_option
+def convert(file: Path, output: Path, force: bool, as_json: bool, **options: str | None) -> None:
+    """Convert FILE to OUTPUT, whose extension sets the format: .toml or .vtu."""
+    check_overwrite(output, force=force)
+    given = {name: value for name, value in options.items() if value is not None}
+    body_mass, shaft_mass = options["body_mass"], options["shaft_mass"]
+    drawing = load(file, **shaft_additions_of(options))
+    if body_mass is not None:
+        drawing = with_body_option(drawing, file, body_mass)
+    if shaft_mass is not None:
+        drawing = with_shaft_mass_option(drawing, file, shaft_mass)
+    save(drawing, output)
+    notes = assumption_texts(drawing_assumptions(file, drawing, given), options) if isinstance(drawing, Cue) else []
+    if as_json:
+        print_json({"written": str(output), "assumed": notes})
+        return
+    for line in (*assumed_lines(notes), f"wrote {output}"):
+        click.echo(line)
+
+
+@command()
+@page_option
+@json_option
+def parts(as_json: bool, output: Path | None) -> None:
+    """List the shafts, materials (wood, ferrule) and tips that a file can name, with their sources."""
+    record = parts_record()
+    print_result(as_json, record, tabulate_parts(record), output)

@@ -1,0 +1,134 @@
+"""Output of commands: tables and text in the terminal, pages, and JSON."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import click
+from rich.console import Console
+
+from cuefem.io import InputError, check_writable, save_page, write_atomically
+from cuefem.report.renderers import json_text, terminal
+
+# The heading of an option that many commands share, in the order of a command's help.
+HEADINGS = ("Cue", "Tip", "Stroke", "Output")
+
+
+class SharedOption(click.Option):
+    """An option listed under a heading, below the command's own options."""
+
+    def __init__(self, *names: Any, heading: str, **about: Any) -> None:
+        super().__init__(*names, **about)
+        self.heading = heading
+
+
+class Command(click.Command):
+    """A command whose help shows its own options first and shared ones under their headings."""
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the options, a group under each heading."""
+        for heading in ("", *HEADINGS):
+            options = [p for p in self.get_params(ctx) if isinstance(p, click.Option)]
+            records = (p.get_help_record(ctx) for p in options if getattr(p, "heading", "") == heading)
+            if rows := [record for record in records if record]:
+                with formatter.section(heading or "Options"):
+                    formatter.write_dl(rows)
+
+
+def shared_option(heading: str, *names: str, **about: Any) -> Callable[[Any], Any]:
+    """An option under a heading."""
+    return click.option(*names, cls=SharedOption, heading=heading, **about)
+
+
+command = partial(click.command, cls=Command)
+
+# The option of every command, for programs.
+json_option = shared_option("Output", "--json", "as_json", is_flag=True, help="Print JSON (SI units).")
+
+# What a file of each ending is that commands write.
+FORMATS = {
+    ".html": "a page",
+    ".toml": "a drawing or scene",
+    ".json": "JSON",
+    ".csv": "a table",
+}
+
+
+class Output(click.Path):
+    """A file to write; its extension sets the format. ValueError before the computation if it cannot be written."""
+
+    def __init__(self, endings: Sequence[str]) -> None:
+        super().__init__(path_type=Path)
+        self.endings = endings
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The path, if the command writes its extension."""
+        path = Path(os.fsdecode(super().convert(value, param, ctx)))
+        if path.suffix not in self.endings:
+            wanted = " or ".join(self.endings)
+            more = "; --store names the file of stored designs" if path.suffix == ".sqlite" else ""
+            more = "; a page (.html) has the figures" if path.suffix in (".png", ".svg", ".pdf") else more
+            raise InputError(path, "--output", f"must end in {wanted}; got {path.suffix!r}{more}")
+        if path.suffix != ".toml":  # a command that writes a drawing checks it itself
+            check_writable(path)
+        return path
+
+
+def output_option(*endings: str, required: bool = False, many: bool = False) -> Callable[..., Any]:
+    """The option -o of every command, with the formats by extension; many: whether it is repeatable."""
+    kinds = dict.fromkeys(FORMATS[ending] for ending in endings)
+    said = "; ".join(f"{kind} ({', '.join(e for e in endings if FORMATS[e] == kind)})" for kind in kinds)
+    said = f"Write {said}; the extension sets the format{'. Repeatable' if many else ''}."
+    return shared_option(
+        "Output", *("-o", "--output"), type=Output(endings), metavar="FILE", help=said, required=required, multiple=many
+    )
+
+
+# Of commands whose page is their tables.
+page_option = output_option(".html", ".json")
+
+
+def assumed_lines(notes: Sequence[str]) -> list[str]:
+    """The assumptions, one per line, each with its option; empty without assumptions."""
+    return ["assumed:", *(f"  {note}" for note in notes)] if notes else []
+
+
+def print_json(record: Any) -> None:
+    """Print a record as JSON."""
+    click.echo(json_text(record))
+
+
+def print_result(as_json: bool, record: Any, things: Sequence[Any], page: Path | None = None, title: str = "") -> None:
+    """Print a record as JSON, or as text and tables.
+
+    page: a file to write instead; title: of a page, by default the file's name.
+    """
+    if page is not None:
+        write_result(page, record, things, title)
+    if as_json:
+        print_json(record)
+    else:
+        print_tables(things if page is None else [f"wrote {page}"])
+
+
+def write_result(path: Path, record: Any, things: Sequence[Any], title: str = "") -> None:
+    """Write a record as .json, or text and tables as a page."""
+    if path.suffix == ".json":
+        write_atomically(path, lambda temporary: temporary.write_text(json_text(record) + "\n", encoding="utf-8"))
+    else:
+        from cuefem.report.templates import plain_page  # templates take 0.1 s to load
+
+        save_page(plain_page(title or path.stem, things), path)
+
+
+def print_tables(things: Sequence[Any]) -> None:
+    """Print text and tables."""
+    console = Console(highlight=False, emoji=False)
+    if not console.is_terminal:
+        console.width = 120  # files and pipes have no width: do not cut tables
+    for thing in things:
+        console.print(thing, markup=False) if isinstance(thing, str) else console.print(terminal(thing), crop=False)

@@ -1,0 +1,161 @@
+"""`cuefem study`: a sweep, a tolerance analysis (scatter) or an optimum."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import click
+from rich.console import Console
+
+from cuefem.cli.common import check_overwrite, errors_name_file, force_option, print_warnings
+from cuefem.cli.output import assumed_lines, command, json_option, output_option, print_result, write_result
+from cuefem.cli.progress import progress_bar
+from cuefem.design import Study
+from cuefem.design.optimum import Problem, Round
+from cuefem.design.scatter import Scatter
+from cuefem.design.study_result import StudyResult, compute_study
+from cuefem.design.sweep import open_pool
+from cuefem.io import InputError, save, write_atomically
+from cuefem.io.store import SqliteStore, write_table
+from cuefem.io.study_files import base_assumptions, load_study
+from cuefem.parameters.parameter import value_at, with_values_at
+from cuefem.report.study_table import study_record, tabulate_study, varied_segments
+from cuefem.results.quantities import with_unit
+from cuefem.scene import Scene
+
+
+@command()
+@click.argument("file", metavar="STUDY", type=click.Path(path_type=Path))
+@click.option(
+    "--store", type=click.Path(path_type=Path), metavar="FILE", help="File of stored designs (default: STUDY.sqlite)."
+)
+@click.option(
+    "--workers", type=click.IntRange(min=1), help="Number of worker processes (default: none, all in this one)."
+)
+@click.option(
+    "--dask", metavar="ADDRESS", help='Address of a Dask scheduler that computes the designs, e.g. "tcp://host:8786".'
+)
+@click.option(
+    "--iterations",
+    type=click.IntRange(min=1),
+    default=60,
+    show_default=True,
+    help="Largest number of rounds of an optimum.",
+)
+@output_option(".html", ".csv", ".json", ".toml", many=True)
+@force_option
+@json_option
+def study(
+    file: Path, output: tuple[Path, ...], force: bool, as_json: bool, iterations: int, store: Path | None, **where: Any
+) -> None:
+    """Compute the designs of STUDY (.toml), which lists parameters and responses (`cuefem guide study` has the format).
+
+    With [objective]: an optimum, the best design within ranges and limits. With [tolerances]: a tolerance analysis
+    (scatter), the spread of each response and the contribution of each parameter (Sobol indices). Otherwise: a sweep,
+    the best designs, the main parameter of each response, and the trade-offs.
+
+    Sweeps and tolerance analyses store their designs in a SQLite file. An interrupted run resumes with the same
+    command; an edited study computes only its new designs. -o FILE.toml writes the best design (of a sweep: by its
+    first response).
+    """
+    asked = load_study(file)
+    designs = asked if isinstance(asked, Study) else asked.designs if isinstance(asked, Scatter) else asked.study
+    notes = base_assumptions(file, designs.base)
+    if isinstance(asked, Problem) and (store or any(where.values())):
+        raise click.UsageError("--store, --workers and --dask do not apply to an optimum, which runs in one process")
+    if all(where.values()):
+        raise click.UsageError("--workers (this machine) and --dask (a cluster) cannot be combined")
+    for path in output:
+        if path.suffix == ".toml":
+            if isinstance(asked, Scatter):
+                raise InputError(
+                    path, "--output", "must end in .html, .csv or .json: a tolerance analysis has no best design"
+                )
+            check_overwrite(path, force=force)
+    print_warnings(designs.base)
+    kept = None
+    if isinstance(asked, Problem):
+        with errors_name_file(file), _rounds(asked, iterations) as tell_round:
+            result = compute_study(asked, rounds=iterations, progress=tell_round)
+    else:
+        kept = SqliteStore(store or file.with_suffix(".sqlite"), designs, file.stem)
+        result = _kept(file, asked, kept, **where)
+    record: dict[str, Any] = {"file": str(file), "kind": result.kind, "assumed": notes, "units": result.units}
+    record |= {"varied": varied_segments(designs.vary, designs.base), "resolution": designs.at and vars(designs.at)}
+    stored = []
+    if kept:
+        record |= {"store": str(kept.path), "evaluated": kept.computed}
+        before = len(result.rows) - kept.computed
+        stored.append(
+            f"{len(result.rows)} designs in {kept.path}" + (f", {before} of them from before" if before else "")
+        )
+    record |= study_record(result)
+    title, things = f"{file.name}: {result.kind}", [*tabulate_study(result), "", *assumed_lines(notes)]
+    for path in output:
+        _write(path, result, record, things, title)
+    print_result(as_json, record, [title, *stored, *things, *(f"wrote {path}" for path in output)])
+
+
+def _kept(
+    file: Path, asked: Study | Scatter, designs: SqliteStore, *, workers: int | None, dask: str | None
+) -> StudyResult:
+    """The result of a sweep or a scatter; an interrupted one prints which designs are stored."""
+    with ExitStack() as opened:
+        progress = opened.enter_context(progress_bar(designs.study.size))
+        pool = opened.enter_context(open_pool(workers, dask))
+        opened.enter_context(designs)
+        progress.start(designs.done)
+        try:
+            with errors_name_file(file):
+                return compute_study(
+                    asked, store=designs, pool=pool, progress=lambda rows: progress.update(designs.done)
+                )
+        except (KeyboardInterrupt, RuntimeError) as error:
+            progress.stop()
+            kept = f"{len([*designs.rows()])} of {designs.study.size} designs are stored in {designs.path}"
+            if isinstance(error, RuntimeError):
+                raise RuntimeError(f"{error}; {kept}; run the same command to resume") from None
+            click.echo(f"cuefem: interrupted; {kept}; run the same command to resume", err=True)
+            raise click.exceptions.Exit(130) from None
+
+
+def _write(path: Path, result: StudyResult, record: Any, things: list[Any], title: str) -> None:
+    """Write the tables as a page, the record, the designs as a table, or the best design."""
+    if path.suffix == ".csv":
+        write_atomically(path, lambda temporary: write_table(result.study, result.rows, temporary))
+    elif path.suffix != ".toml":
+        write_result(path, record, things, title)
+    elif not result.best:
+        raise InputError(path, "--output", "has no design to write: every design failed")
+    else:
+        save(_rounded(next(iter(result.best.values())).scene, result.study), path)
+
+
+def _rounded(scene: Scene, study: Study) -> Scene:
+    """The scene with varied numbers rounded to nine digits, far within the tolerance of the limits."""
+    moved = {path for vary in study.vary for path in (*vary.fields(scene), *vary.compensating_fields(scene))}
+    numbers = {path: value_at(scene, path) for path in moved}
+    return with_values_at(scene, {path: float(f"{x:.9g}") for path, x in numbers.items() if isinstance(x, float)})
+
+
+@contextmanager
+def _rounds(problem: Problem, most: int) -> Iterator[Callable[[Round], object]]:
+    """The iterations of a search and its best result on stderr, if it is a terminal."""
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield lambda reached: None
+        return
+    with console.status("choosing modes") as status:
+        yield lambda reached: status.update(round_text(problem, reached, most))
+
+
+def round_text(problem: Problem, reached: Round, most: int) -> str:
+    """A round of a search: "round 3 of at most 60, 45 designs, squirt slope 0.0412346 so far"."""
+    choice = "".join(f"{value if isinstance(value, str) else f'{value:g}'}: " for value in reached.choice.values())
+    best = f"{problem.objective.label} {with_unit(reached.best, problem.objective.unit, 6)} so far"
+    best = best if isfinite(reached.best) else "no design within the limits yet"
+    return f"{choice}round {reached.number} of at most {most}, {reached.evaluations} designs, {best}"

@@ -1,0 +1,204 @@
+"""Motion of cue and ball at any time of a strike and after it.
+
+Over a step the contact's forces are constant and the modes answer them exactly, so the motion is known at every time
+from the states at the ends of the steps.
+Coordinates: u along the cue in the direction of the stroke and w across it, on the side that is struck at a positive
+offset; their origin is the tip's centre at first touch.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cuefem.beam.modes import Modes
+from cuefem.beam.tip_modes import TipModes
+from cuefem.contact.contact_model import model_of
+from cuefem.contact.modal_response import Complex, phi_functions
+from cuefem.contact.step_records import SolvedContact, solve_contact
+from cuefem.contact.strike import steps_of
+from cuefem.cue import Array
+from cuefem.quantity.fields import check_kind
+from cuefem.scene import Resolution, Scene
+from cuefem.scene.solved_scene import SolvedScene
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Cue and ball at given times of a strike.
+
+    Attributes
+    ----------
+    times : (n,) array
+        Times from first touch, s.
+    duration : float
+        When the last contact ends, s.
+    modes : Modes
+        The bending modes of the cue.
+    fields : (unknowns, n) array
+        The beam's motion, in the unknowns of ``modes``; `deflection` reads it anywhere.
+    along : (n,) array
+        Axial displacement of the tip, m, with axial waves (`AxialWaves`) and the shortening of the bent shaft
+        (`GeometricStiffness`); neither is resolved along the shaft.
+    centre : (n, 2) array
+        The ball's centre (u, w), m.
+    turned : (n,) array
+        Rotation of the ball about u x w, rad.
+    force : (n, 2) array
+        Force on the ball (u, w), N; zero for an impact of infinite friction.
+    """
+
+    times: Array
+    duration: float
+    modes: Modes
+    fields: Array
+    along: Array
+    centre: Array
+    turned: Array
+    force: Array
+
+    def __repr__(self) -> str:
+        return f"Motion({len(self.times)} times to {self.times[-1]:.4g} s, duration={self.duration:.4g} s)"
+
+    def deflection(self, x: ArrayLike) -> tuple[Array, Array]:
+        """Shape of the cue.
+
+        Parameters
+        ----------
+        x : array_like
+            Positions, m from the tip.
+
+        Returns
+        -------
+        w, theta : arrays of shape (n, *x.shape)
+            Deflection, m, and rotation, rad, at each time.
+        """
+        return self.modes.system.interpolate(self.fields, np.asarray(x, float))
+
+
+def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Motion:
+    """Compute the motion of cue and ball during a strike and after it.
+
+    Parameters
+    ----------
+    scene : Scene
+        A level stroke of a cue of segments.
+    times : array_like
+        Ascending times, s from first touch, >= 0. After the contact cue and ball fly freely.
+    at : Resolution, optional
+        As in `strike`.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    ValueError
+        For a lumped cue, which has no shape; for a raised cue (`Elevation`), which moves out of the plane; for times
+        that do not ascend.
+
+    Notes
+    -----
+    u points along the cue in the direction of the stroke and w across it, to the side that is struck at a positive
+    offset; the origin is the tip's centre at first touch. The modes are integrated exactly between the contact's
+    forces, so that the motion is as accurate as the strike at every time.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> cue = cf.Cue((cf.Segment(0.74, 0.012, 0.0215, wood),), body_mass=0.42)
+    >>> moved = cf.motion(cf.Scene(cue, stroke=cf.Stroke(offset=0.3)), [0.0, 1e-3], cf.Resolution(2, 8, 6))
+    >>> moved.centre.shape
+    (2, 2)
+    >>> bool(moved.along[1] > moved.along[0])
+    True
+    """
+    check_kind("motion scene", scene, Scene)
+    times = ascending(times)
+    if scene.contact_terms.table is not None:
+        raise ValueError("motion takes strokes in the plane of cue and ball; got Elevation")
+    solved = SolvedScene(scene, at)
+    bending, tip = solved.modes, solved.tip
+    contact = solve_contact(model_of(scene, tip), steps=steps_of(at), keep_states=True)
+    return _read(scene, bending, tip, solved=contact, times=times)
+
+
+def ascending(times: ArrayLike) -> Array:
+    """Times as an array, (n,); ValueError unless they ascend from zero or later."""
+    times = np.atleast_1d(np.asarray(times, float))
+    if not (times.ndim == 1 and times.size and np.all(np.isfinite(times)) and np.all(np.diff(times, prepend=0) >= 0)):
+        raise ValueError(f"motion takes ascending times in [0, inf) s; got {times}")
+    return times
+
+
+def _read(scene: Scene, bending: Modes, tip: TipModes, *, solved: SolvedContact, times: Array) -> Motion:
+    phi, side = solved.model.phi, math.copysign(1.0, scene.stroke.offset)
+    tangent, normal = np.array([math.sin(phi), math.cos(phi)]), np.array([math.cos(phi), -math.sin(phi)])
+    modes, ball = _path(solved, times)
+    vectors, across = _bending(bending, tip)
+    R, pressed = scene.ball.radius, solved.steps["length"] > 0
+    aside, back = scene.contact_terms.moment_arm(phi)  # where on the cue's end the contact lies
+    centre = R * normal + [-back, aside] + ball[:, :2] @ np.array([tangent, normal])
+    angle = phi + np.interp(times, np.append(0.0, solved.steps["time"]), np.append(0.0, solved.steps["angle"]))
+    s, c, force = np.sin(angle), np.cos(angle), np.zeros((2, len(times)))
+    if pressed.any():
+        history = solved.history(np.minimum(times, solved.time))
+        force = np.where(times < solved.time, [side * history["force_t"], history["force_n"]], 0.0)
+    F_t, F_n = force
+    shorter = 0.0 if tip.geometric is None else np.einsum("it,ij,jt->t", modes, tip.geometric, modes) / 2
+    return Motion(
+        times,
+        solved.time,
+        bending,
+        fields=side * vectors @ modes[across],
+        along=tip.amplitude[:, 0] @ modes - shorter,
+        centre=centre * [1.0, side],
+        turned=-side * ball[:, 2] / R,
+        force=np.column_stack([s * F_t + c * F_n, side * (c * F_t - s * F_n)]),
+    )
+
+
+def _bending(bending: Modes, tip: TipModes) -> tuple[Array, Any]:
+    """Vectors of the bending modes, (unknowns, k), and which of the tip modes they are."""
+    vectors = np.concatenate([bending.rigid_vectors, bending.vectors], axis=1)
+    columns = np.argsort(np.concatenate([np.zeros(bending.rigid), bending.omega]), kind="stable")
+    across = np.flatnonzero(tip.amplitude[:, 0] == 0)
+    return vectors[:, columns], across[np.argsort(tip.omega[across], kind="stable")]
+
+
+def _path(solved: SolvedContact, times: Array) -> tuple[Array, Array]:
+    """The modes' displacements, (modes, times), and the way of the ball along each of its velocities, m, (times, n).
+
+    Under a load that is constant over a step of length h, xi = exp(rate t) xi_0 + a (exp(rate t) - 1)/rate, and its
+    integral follows; a is known from xi at the step's end. After the contact cue and ball fly freely.
+    """
+    assert solved.course is not None
+    p, model, steps = solved.model.propagator, solved.model, solved.steps
+    ends, rigid = np.append(0.0, steps["time"]), p.omega == 0
+    lengths, pressed = np.append(steps["length"], 0.0), np.flatnonzero(steps["length"])
+    which = np.searchsorted(ends, times, side="right") - 1  # the step of each time; behind the last, the flight
+    t, h = (times - ends[which])[:, None], lengths[pressed, None]
+    balls = np.vstack([model.ball, steps["ball"][:, : len(model.ball)]])
+    loads, pulls = np.zeros_like(solved.course), np.zeros_like(balls)
+    turned, first, _ = phi_functions(p.rates * h)
+    loads[pressed] = (solved.course[pressed + 1] - turned * solved.course[pressed]) / (h * first)
+    pulls[pressed] = (balls[pressed + 1] - balls[pressed]) / h
+    xi, summed = _driven(solved.course[which], loads[which], p.rates, t)
+    before = _driven(solved.course[:-1], loads[:-1], p.rates, lengths[:-1, None])[1] @ p.velocities[rigid].T
+    gone = np.vstack([np.zeros(int(rigid.sum())), np.cumsum(before.real, axis=0)])
+    ways = np.vstack([0 * balls[:1], np.cumsum(lengths[:-1, None] * (balls[1:] + balls[:-1]) / 2, axis=0)])
+    displaced = (xi @ p.displacements.T).real / np.where(rigid, 1.0, p.omega)
+    displaced[:, rigid] = gone[which] + (summed @ p.velocities[rigid].T).real
+    return displaced.T, ways[which] + t * (balls[which] + t * pulls[which] / 2)
+
+
+def _driven(xi: Complex, loads: Complex, rates: Complex, t: Array) -> tuple[Complex, Complex]:
+    """Coordinates after times t, (n, 1), from ``xi`` under constant loads, and their integrals, (n, coordinates)."""
+    turned, first, second = phi_functions(rates * t)
+    return turned * xi + t * first * loads, t * first * xi + t**2 * second * loads

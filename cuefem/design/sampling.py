@@ -1,0 +1,156 @@
+"""Ranges of values and sampling of designs: lists, intervals, distributions, quasi-random samples."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from statistics import NormalDist
+
+import numpy as np
+
+from cuefem.quantity.fields import check_count
+
+MAX_POINTS = 2**30  # points of a Sobol sequence of 30 bits
+MAX_LEVELS = 2**20  # of an interval
+BLOCK = 256  # points computed at a time
+CUT_DEVIATIONS = 4.0  # standard deviations at which a normal distribution is truncated: its own decreases by 0.05 %
+STANDARD = NormalDist()
+
+Value = float | str
+
+
+@dataclass(frozen=True)
+class Levels:
+    """A list of values: numbers in SI, or names of materials."""
+
+    values: tuple[Value, ...]
+
+    def __post_init__(self) -> None:
+        if not self.values:
+            raise ValueError("values must hold at least one; got an empty range")
+
+    @property
+    def levels(self) -> tuple[Value, ...]:
+        """The values of a grid."""
+        return self.values
+
+    def quantile(self, u: float) -> Value:
+        """The value at ``u`` in [0, 1) of the list."""
+        return self.values[min(int(u * len(self.values)), len(self.values) - 1)]
+
+    @property
+    def ends(self) -> tuple[Value, ...]:
+        """All values: any may be the extreme one."""
+        return self.values
+
+
+@dataclass(frozen=True)
+class Span:
+    """An interval of numbers in SI, both ends included, in ``count`` steps of a grid; logarithmic: in equal ratios."""
+
+    low: float
+    high: float
+    count: int = 1
+    logarithmic: bool = False
+
+    def __post_init__(self) -> None:
+        check_count("count", self.count, 1, MAX_LEVELS)
+        if not self.low < self.high:
+            raise ValueError(f"low must be below high; got the empty range {self.low} to {self.high}")
+        if self.logarithmic and self.low <= 0:
+            raise ValueError(f"low must be above 0 where the spacing is logarithmic; got {self.low}")
+
+    @property
+    def levels(self) -> tuple[float, ...]:
+        """The ``count`` values of a grid; the middle if there is only one."""
+        last = self.count - 1
+        return tuple(self.quantile(i / last) for i in range(self.count)) if last else (self.quantile(0.5),)
+
+    def quantile(self, u: float) -> float:
+        """The value at ``u`` in [0, 1] of the interval."""
+        if u in (0.0, 1.0):  # exactly
+            return self.ends[int(u)]
+        if self.logarithmic:
+            return math.exp((1 - u) * math.log(self.low) + u * math.log(self.high))
+        return (1 - u) * self.low + u * self.high
+
+    def share(self, value: float) -> float:
+        """The inverse of `quantile`, at most 1 and at least 0."""
+        low, high, at = (math.log(x) if self.logarithmic else x for x in (self.low, self.high, value))
+        return min(max((at - low) / (high - low), 0.0), 1.0)
+
+    @property
+    def ends(self) -> tuple[float, ...]:
+        """The two ends."""
+        return self.low, self.high
+
+
+@dataclass(frozen=True)
+class Normal:
+    """A normal distribution of numbers in SI, truncated at `CUT_DEVIATIONS` standard deviations; a grid has its middle.
+
+    logarithmic: the number's natural logarithm is normal. Then ``middle`` is its median, and ``sd`` a pure number, that
+    of the logarithm: nearly the coefficient of variation.
+    """
+
+    middle: float
+    sd: float
+    logarithmic: bool = False
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.middle) and math.isfinite(self.sd) and self.sd > 0):
+            raise ValueError(f"sd must be above 0, and it and the middle finite; got {self.middle} and {self.sd}")
+        if self.logarithmic and self.middle <= 0:
+            raise ValueError(f"middle must be above 0 where the spacing is logarithmic; got {self.middle}")
+
+    @property
+    def levels(self) -> tuple[float, ...]:
+        """The middle: the only value of a grid."""
+        return (self.middle,)
+
+    def quantile(self, u: float) -> float:
+        """The value below which a share ``u`` in [0, 1] of all lies."""
+        if u in (0.0, 1.0):  # exactly
+            return self.ends[int(u)]
+        tail = STANDARD.cdf(-CUT_DEVIATIONS)
+        return self._at(STANDARD.inv_cdf(tail + u * (1 - 2 * tail)))
+
+    @property
+    def ends(self) -> tuple[float, ...]:
+        """The truncation limits."""
+        return self._at(-CUT_DEVIATIONS), self._at(CUT_DEVIATIONS)
+
+    def _at(self, deviations: float) -> float:
+        moved = self.sd * deviations
+        return self.middle * math.exp(moved) if self.logarithmic else self.middle + moved
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A quasi-random sample of ``count`` designs instead of the grid; method: one of `METHODS` (scipy.stats.qmc).
+
+    Points are computed on demand, but all at once for "latin hypercube" (8 bytes a number).
+    """
+
+    method: str
+    count: int
+    seed: int
+
+    def __post_init__(self) -> None:
+        if self.method not in METHODS:
+            raise ValueError(f"method must be one of grid, {', '.join(METHODS)}; got {self.method!r}")
+        check_count("count", self.count, 1, MAX_POINTS)
+        check_count("seed", self.seed, 0)
+
+    def points(self, dimensions: int) -> Iterator[list[float]]:
+        """The points of the designs, each of numbers in [0, 1)."""
+        from scipy.stats import qmc  # loaded when used: half a second
+
+        engine = getattr(qmc, METHODS[self.method])(dimensions, seed=np.random.default_rng(self.seed))
+        size = self.count if self.method == "latin hypercube" else BLOCK  # a hypercube cannot be computed in parts
+        for start in range(0, self.count, size):  # whole blocks: powers of two keep Sobol points balanced
+            yield from engine.random(size)[: self.count - start].tolist()
+
+
+METHODS = {"sobol": "Sobol", "halton": "Halton", "latin hypercube": "LatinHypercube"}

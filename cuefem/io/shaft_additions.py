@@ -1,0 +1,188 @@
+"""Additions to a drawing: material of the shaft, front of leather, ferrule, bore.
+
+`SHAFT_ADDITIONS` declares them; the options of the commands and the fields of the designer follow from it.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+from cuefem.cue import MAX_LEATHER_MODULUS, Cue, Material, Segment
+from cuefem.cue.materials import material as material_of
+from cuefem.parameters.parameter import with_parameters
+from cuefem.parameters.parts import MAX_FERRULE, SAME_POSITION, Layout, split_at
+from cuefem.quantity.units import parse_number
+from cuefem.scene import Scene
+
+MAX_LEATHER = 0.03  # m, of leather
+TENON_RATIO = 0.62  # of a ferrule's width: 5/16 in in a pool ferrule of 12.75 mm
+FERRULE, BORE, LEATHER = "25 mm melamine", "6 mm wide, 127 mm deep", "leather 6 mm"
+
+_SIZE = re.compile(r"[\d.,/ ]*\d\s*(?:mm|cm|m|in|inch|inches|\"|″)(?!\w)")
+_BETWEEN, _DEEP = re.compile(r",|;|×|\bx\b|\band\b|\bby\b"), re.compile(r"deep|depth|long")
+_WORDS = re.compile(r"\b(wide|deep|across|diameter|width|depth|long)\b")
+
+
+class ShaftAddition(NamedTuple):
+    """An addition to a drawing: metavar and help of its option, title and example of its field."""
+
+    metavar: str
+    title: str
+    help: str
+    example: str = ""
+
+
+SHAFT_ADDITIONS = {
+    "material": ShaftAddition(
+        "NAME", "Material of the shaft", "Material of the shaft, instead of the one in FILE (see `cuefem parts`)."
+    ),
+    "length_unit": ShaftAddition(
+        "UNIT", "Unit of length", "Length unit of a CAD surface (default: mm), or of a .csv whose header names none."
+    ),
+    "front": ShaftAddition(
+        "WHERE",
+        "Front of the drawing",
+        f'What the front of the .csv profile or CAD surface is: "ferrule" (default) or "{LEATHER}".',
+        "ferrule",
+    ),
+    "ferrule": ShaftAddition(
+        "FERRULE",
+        "Ferrule",
+        f'Ferrule at the front, e.g. "{FERRULE}", on a wooden tenon ("tenon 8 mm", "no tenon"); "none" removes it.',
+        f"none; or such as {FERRULE}",
+    ),
+    "bore": ShaftAddition(
+        "BORE",
+        "Bore",
+        f'Bore, drilled from behind the tenon of the ferrule, or from the front: "{BORE}".',
+        f"none; or such as {BORE}",
+    ),
+}
+
+
+def with_additions(thing: Any, *, front: str | None = None, ferrule: str | None = None, bore: str | None = None) -> Any:
+    """The cue or scene with a leather front, a ferrule and a bore given as texts; ValueError if one is impossible."""
+    if isinstance(thing, Cue):
+        return with_additions(Scene(thing), front=front, ferrule=ferrule, bore=bore).cue
+    if front is not None:
+        thing = replace(thing, cue=_with_leather(thing.shaft, front))
+    if ferrule is not None:
+        thing = replace(thing, cue=_with_ferrule(thing.shaft, ferrule))
+    return thing if bore is None else _bored(thing, bore)
+
+
+def with_shaft_material(thing: Any, name: str) -> Any:
+    """The cue or scene with shaft and tenon of another material."""
+    if isinstance(thing, Cue):
+        return with_shaft_material(Scene(thing), name).cue
+    return with_parameters(thing, {"shaft material": name})
+
+
+def _with_leather(cue: Cue, text: str) -> Cue:
+    """The cue with leather of the height in the text at its front; unchanged for "ferrule"."""
+    words = text.strip().casefold()
+    if words == "ferrule":
+        return cue
+    height = words.removeprefix("leather").strip()
+    if height in (words, ""):
+        raise ValueError(f'front must be "ferrule" or leather with a height, such as "{LEATHER}"; got {text!r}')
+    if cue.leather:
+        raise ValueError("front must be left out: the drawing already has leather")
+    end = _length("front", height)
+    if end > MAX_LEATHER:
+        raise ValueError(f"front must have at most {1e3 * MAX_LEATHER:g} mm of leather; got {text!r}")
+    cue = split_at(cue, end)
+    stop = next(i for i, x in enumerate(cue.nodes) if x >= end * (1 - SAME_POSITION))
+    front = (
+        replace(s, material=material_of("leather"), tip_bore=0.0, butt_bore=0.0, core=None) for s in cue.segments[:stop]
+    )
+    return replace(cue, segments=(*front, *cue.segments[stop:]))
+
+
+def _with_ferrule(cue: Cue, text: str) -> Cue:
+    """The cue with a ferrule behind its leather: on a tenon of the shaft's wood, or bored where the shaft is."""
+    layout = Layout.of(cue)
+    wood = cue.segments[layout.shaft.start].material
+    bare = [_without_tenon(s, wood) if i in layout.ferrule else s for i, s in enumerate(cue.segments)]
+    if text.strip().casefold() == "none":
+        return replace(cue, segments=tuple(bare))
+    length, ferrule_material, tenon = _ferrule_of(text)
+    first = next(i for i, s in enumerate(bare) if s.material.E >= MAX_LEATHER_MODULUS)
+    start = float(cue.nodes[first])
+    longest = min(MAX_FERRULE, 0.9 * (cue.length - start))
+    if not 0 < length <= longest:
+        raise ValueError(f"ferrule must be at most {1e3 * longest:.3g} mm long; got {text!r}")
+    cue = split_at(replace(cue, segments=tuple(bare)), start + length)
+    stop = next(i for i, x in enumerate(cue.nodes) if x >= (start + length) * (1 - SAME_POSITION))
+    front = (ferrule_on_tenon(s, ferrule_material, wood, tenon) for s in cue.segments[first:stop])
+    return replace(cue, segments=(*cue.segments[:first], *front, *cue.segments[stop:]))
+
+
+def _without_tenon(ferrule: Segment, wood: Material) -> Segment:
+    """A segment of the ferrule replaced by the wood of the shaft, its tenon included."""
+    filled: dict[str, Any] = {} if ferrule.core is None else {"tip_bore": 0.0, "butt_bore": 0.0, "core": None}
+    return replace(ferrule, material=wood, **filled)
+
+
+def ferrule_on_tenon(
+    segment: Segment, ferrule_material: Material, wood: Material, tenon: float | None = None
+) -> Segment:
+    """The segment as a ferrule on a wooden tenon, m wide, by default `TENON_RATIO` of its width; bores stay."""
+    if tenon and (segment.tip_bore or segment.butt_bore):
+        raise ValueError("ferrule must have no tenon: the shaft is bored there")
+    if segment.tip_bore or segment.butt_bore or tenon == 0:
+        return replace(segment, material=ferrule_material)
+    first, last = (
+        round(TENON_RATIO * d, 9) if tenon is None else tenon for d in (segment.tip_diameter, segment.butt_diameter)
+    )
+    return replace(segment, material=ferrule_material, tip_bore=first, butt_bore=last, core=wood)
+
+
+def has_length(text: str) -> bool:
+    """Whether the text of a ferrule has a length, as in "25 mm melamine"."""
+    return _SIZE.search(text.casefold()) is not None
+
+
+def _ferrule_of(text: str) -> tuple[float, Material, float | None]:
+    """Length, material and diameter of the tenon of a ferrule, m; the tenon is None if the text has none."""
+    first, *more = (piece.strip() for piece in text.casefold().split(","))
+    size = _SIZE.search(first)
+    name = _SIZE.sub(" ", first).replace("ferrule", " ").strip()
+    if size is None or not name:
+        raise ValueError(f'ferrule must be a length and a material, such as "{FERRULE}"; got {text!r}')
+    tenon = None
+    for piece in more:
+        if "tenon" not in piece:
+            raise ValueError(f'ferrule must be such as "{FERRULE}, tenon 8 mm" or "{FERRULE}, no tenon"; got {text!r}')
+        width = piece.replace("tenon", " ").strip()
+        tenon = 0.0 if width == "no" else _length("the ferrule's tenon", width)
+    return _length("ferrule", size[0]), material_of(" ".join(name.split())), tenon
+
+
+def _bored(scene: Any, text: str) -> Any:
+    """The scene with the bore of a text; of two lengths without words the smaller is the width."""
+    pieces = [piece for piece in _BETWEEN.split(text.casefold()) if piece.strip()]
+    if len(pieces) != 2:
+        raise ValueError(f'bore must be a width and a depth, such as "{BORE}"; got {text!r}')
+    first, second = (_length("bore", _WORDS.sub("", piece)) for piece in pieces)
+    swapped = _DEEP.search(pieces[0]) or (first > second and not _DEEP.search(pieces[1]))
+    width, depth = (second, first) if swapped else (first, second)
+    if Layout.of(scene.shaft).bore is None:
+        raise ValueError("bore must be left out: the drawing has a filled bore")
+    return with_parameters(scene, {"bore depth": depth, "bore width": width})
+
+
+def _length(name: str, text: str) -> float:
+    """A length above 0, m, of a text such as "25 mm" or "1/4 in"."""
+    length = math.nan
+    with suppress(ValueError):
+        length = parse_number(text, "m")
+    if not 0 < length < math.inf:
+        raise ValueError(
+            f'{name} must have lengths above 0 with a unit, such as "25 mm" or "1 in"; got {text.strip()!r}'
+        )
+    return length

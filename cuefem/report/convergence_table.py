@@ -1,0 +1,115 @@
+"""Convergence study of a scene (`cuefem cost`): error against run time and DOF, and recommended resolutions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from cuefem.report.charts import Axis, Chart, Curve, chart
+from cuefem.results.convergence import MAX_MODES, Level, refinement_levels, relative_error
+from cuefem.results.quantities import significant, to_display
+from cuefem.results.records import ColumnEntry, Record, Table, tabulate
+from cuefem.scene import Scene
+
+RECOMMENDED_RTOLS = (1e-2, 1e-3, 1e-4, 1e-6)
+
+Progress = Callable[[Sequence[Any]], Iterable[Any]]
+
+
+def convergence_record(scene: Scene, *, most: int = MAX_MODES, progress: Progress = iter) -> Record:
+    """Refinement levels up to ``most`` modes with error and run time, and the recommendation for each of `WANTED`.
+
+    Keys of a level: "modes", "steps", "elements", "order"; "unknowns", the number of degrees of freedom; "estimate",
+    its estimated relative error (None on the first two); "difference", relative, from the last level; "seconds", the
+    run time of all levels up to it, which `cuefem.resolve` takes. ValueError for a lumped cue, which is exact.
+    """
+    refined = _timed_levels(scene, most, progress)
+    best = refined[-1][0].result
+    rows = [_level_record(scene, level, seconds, best) for level, seconds in refined]
+    return {"levels": rows, "recommended": [_recommended(rtol, rows) for rtol in RECOMMENDED_RTOLS]}
+
+
+def _timed_levels(scene: Scene, most: int, progress: Progress) -> list[tuple[Level, float]]:
+    """Levels with the run time, s, up to each: to ``most`` modes or the smallest of `WANTED`.
+
+    A second run of the sequence is timed, so that the time includes nothing that a process does only once.
+    """
+    refined: list[Level] = []
+    for level in refinement_levels(scene, min(RECOMMENDED_RTOLS)):
+        if len(refined) > 2 and level.at.modes > most:
+            break
+        refined.append(level)
+    again, start = refinement_levels(scene, min(RECOMMENDED_RTOLS)), perf_counter()
+    return [(next(again), perf_counter() - start) for _ in progress(refined)]
+
+
+def _level_record(scene: Scene, level: Level, seconds: float, best: Any) -> Record:
+    return {
+        "modes": level.at.modes,
+        "steps": level.at.steps,
+        "elements": level.at.elements,
+        "order": level.at.order,
+        "unknowns": level.result.unknowns,
+        "estimate": level.error,
+        "difference": None if level.result is best else relative_error(level.result, best, scene),
+        "seconds": seconds,
+    }
+
+
+def _recommended(rtol: float, rows: Sequence[Record]) -> Record:
+    """The first level with an estimated error of at most ``rtol``; otherwise the last, with "reached" False."""
+    estimated = [row for row in rows if row["estimate"] is not None]
+    first = next((row for row in estimated if row["estimate"] <= rtol), None)
+    names = ("modes", "steps", "elements", "order", "unknowns", "estimate", "seconds")
+    last = estimated[-1] if estimated else rows[-1]
+    return {"rtol": rtol, "reached": first is not None, **{name: (first or last)[name] for name in names}}
+
+
+def tabulate_convergence(record: Record) -> list[Table]:
+    """The refinement levels, and the recommended resolutions."""
+    sizes: dict[str, ColumnEntry] = {"modes": "{modes}", "steps": "{steps}", "elements x order": _mesh}
+    errors = {"estimate": "{estimate:error}", "difference": "{difference:error}"}
+    times: dict[str, ColumnEntry] = {
+        "ms, sequence": lambda row: significant(float(to_display(row["seconds"], "s")), 3),
+    }
+    last: dict[str, ColumnEntry] = {"estimate": "{estimate:error}", "ms": times["ms, sequence"]}
+    return [
+        tabulate(
+            "Convergence",
+            sizes | errors | times,
+            record["levels"],
+            "Relative error, the largest of squirt, ball speed and spin: estimate, and difference from the last row.",
+            "ms, sequence: time of all rows down to this one, which `resolve` runs.",
+            "elements: number for all segments together; order: degree of their polynomials.",
+        ),
+        tabulate(
+            "Recommended resolution",
+            {"accuracy": _accuracy} | sizes | last,
+            record["recommended"],
+            "With the truncation correction, as `resolve(scene, rtol)` and the rtol of a file's [accuracy] table.",
+        ),
+    ]
+
+
+def _accuracy(row: Mapping[str, Any]) -> str:
+    return f"{row['rtol']:.0e}" + ("" if row["reached"] else ", not reached; the best:")
+
+
+def _mesh(row: Mapping[str, Any]) -> str:
+    elements = row["elements"]
+    return f"{sum(elements) if isinstance(elements, list) else elements} x {row['order']}"
+
+
+def convergence_charts(record: Record) -> list[Chart]:
+    """Error against run time, for a page."""
+    levels = record["levels"]
+    ms = [math.log10(to_display(row["seconds"], "s")) for row in levels]
+    curves = [
+        Curve(name, ms, np.log10([row[name] or np.nan for row in levels]), style)
+        for name, style in (("estimate", "c1"), ("difference", "c3"))
+    ]
+    return [chart("Error against time", curves, x=Axis("time in ms, log10"), y=Axis("relative error, log10"))]

@@ -1,0 +1,63 @@
+"""Central impacts of a leather tip on a rigid cue: record and table."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from cuefem.results.quantities import DASH, format_value, significant
+from cuefem.results.records import Record, Table, by_label, tabulate
+from cuefem.scene import Scene
+
+SPEEDS = (0.5, 1.0, 2.0, 3.0, 5.0, 8.0)  # m/s
+
+
+def impact_record(scene: Scene) -> Record:
+    """Central impacts of a leather tip at several speeds, on an axially rigid cue.
+
+    Contact time, s, maximum force, N, and at that force indentation, m, stiffness, N/m, and contact diameter, m; None
+    at a speed with an indentation beyond the valid range of the force law.
+    """
+    leather = scene.leather
+    diameter = leather.diameter_on(scene.shaft.segments[0].tip_diameter)
+    law = scene.tip_law(float(scene.tip.restitution))
+    patches, depths, _ = leather.head_on(diameter, float(scene.ball.radius))
+
+    def impact(speed: float) -> Record:
+        try:
+            indentation, loading = law.central_impact(scene.reduced_mass, speed)
+        except ValueError:
+            return dict.fromkeys(("contact_time", "force", "depth", "stiffness", "patch")) | {"speed": speed}
+        at = np.array([indentation])
+        return {
+            "speed": speed,
+            "contact_time": (1 + law.restitution) * loading,
+            "force": float(law.at(at)[0][0]),
+            "depth": float(indentation),
+            "stiffness": float(law.slope(at)[0]),
+            "patch": 2 * float(np.interp(indentation, depths, patches)),
+        }
+
+    impacts = [impact(speed) for speed in sorted({*SPEEDS, float(scene.stroke.speed)})]
+    return {"tip_mass": leather.mass(diameter), "E": leather.E, "impacts": impacts}
+
+
+def tabulate_impacts(record: Record) -> Table:
+    """A row for each speed."""
+    outside = any(impact["force"] is None for impact in record["impacts"])
+    return tabulate(
+        "Leather tip, head-on impact",
+        {"speed": "{speed:g} m/s", **by_label("contact_time", "force", "depth", "patch"), "stiffness": _stiffness},
+        record["impacts"],
+        f"leather of {format_value('mass', record['tip_mass'])}, E {significant(record['E'] / 1e6)} MPa; force, "
+        "indentation, contact diameter and stiffness at maximum indentation; rigid cue (without axial waves)",
+        *([f"{DASH}: indentation beyond the valid range of the force law"] if outside else []),
+        texts=(),
+    )
+
+
+def _stiffness(impact: Mapping[str, Any]) -> str:
+    value = impact["stiffness"]
+    return DASH if value is None else f"{significant(1e-6 * value)} kN/mm"

@@ -1,0 +1,198 @@
+"""A measured cue: measured values beside computed ones, and the estimate of its uncertain parameters."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from cuefem.measurements.estimate import Estimate, InformationGain
+from cuefem.measurements.measured_cue import MeasuredCue, OffsetZero, Residual
+from cuefem.results.quantities import DASH, with_unit
+from cuefem.results.records import ColumnEntry, Record, Table, tabulate
+
+LARGE_RESIDUAL = 3.0  # in combined standard deviations: a contradiction
+UNITS = {"residual": "", "pull": "", "zero": "m", "squirt_error": "rad"}
+OUTLIER = 0.2  # probability of a wrong measurement that gets a note
+
+
+def row_record(row: Residual) -> Record:
+    """A measurement beside the model's value."""
+    measurement = row.measurement
+    names = ("measured", "error", "computed", "spread", "residual", "pull")
+    return {
+        "kind": measurement.key,
+        "label": measurement.label,
+        "unit": measurement.unit,
+        "source": measurement.source,
+    } | {name: getattr(row, name) for name in names}
+
+
+def measured_record(cue: MeasuredCue, rows: Sequence[Residual], zeros: Sequence[OffsetZero]) -> Record:
+    """Every measurement beside its computed value, the offset zeros, and what was not measured."""
+    return {
+        "name": cue.name,
+        "source": cue.source,
+        "rows": [row_record(row) for row in rows],
+        "rms_pull": float(np.sqrt(np.mean([row.pull**2 for row in rows]))) if rows else None,
+        "zeros": [{"label": zero.measurement.label, "zero": zero.zero, "error": zero.error} for zero in zeros],
+        "uncertain_parameters": [parameter.label for parameter in cue.parameters],
+        "missing": cue.missing,
+        "units": UNITS,
+    }
+
+
+def tabulate_measured(record: Record) -> list[Table | str]:
+    """Measured and computed values, contradictions, the offset zero, and missing measurements."""
+    sourced = ["source"] if any(row["source"] for row in record["rows"]) else []
+    made: list[Table | str] = []
+    if record["rows"]:
+        made.append(_tabulate_fit("Measured and computed", record, "pull", *sourced))
+    made += [*contradictions(record), *zero_lines(record)]
+    if record["missing"]:
+        made += ["not measured, and what that costs:", *(f"  {line}" for line in record["missing"])]
+    return made
+
+
+def _tabulate_fit(title: str, record: Record, *more: str) -> Table:
+    """A row for each measurement with its computed value. more: of "pull" and "source"."""
+    columns: dict[str, ColumnEntry] = {"measurement": "{label}"}
+    columns |= {value: _with_error(value, error) for value, error in PAIRS} | {"residual": "{residual:+.1f}"}
+    columns |= {heading: entry for heading, entry in MORE.items() if heading in more}
+    return tabulate(title, columns, record["rows"], *(captions(record) if more else ()), texts=(0, 5))
+
+
+def _with_error(value: str, error: str) -> ColumnEntry:
+    return lambda row: with_unit(row[value], row["unit"], error=row[error])
+
+
+MORE = {"pull": "{pull:+.1f}", "source": "{source}"}
+PAIRS = (("measured", "error"), ("computed", "spread"))
+
+
+def captions(record: Record) -> list[str]:
+    """Definitions of the table's columns."""
+    return [
+        "±: 1σ; that of a computed value comes from the uncertain parameters of the drawing: "
+        f"{', '.join(record['uncertain_parameters'])}.",
+        "Residual: measured minus computed, over the measurement's 1σ; pull: over the 1σ of both combined "
+        f"(RMS {record['rms_pull']:.2f}).",
+    ]
+
+
+def contradictions(record: Record) -> list[str]:
+    """The measurements whose residual is large for their errors and the uncertain parameters combined."""
+    lines = []
+    for row in record["rows"]:
+        if abs(row["pull"]) > LARGE_RESIDUAL:
+            measured, computed = (with_unit(row[value], row["unit"], error=row[error]) for value, error in PAIRS)
+            difference = f"measured {measured}, computed {computed}, a difference of {abs(row['pull']):.1f} σ"
+            lines.append(f"{row['label']} contradicts the drawing: {difference}")
+    return lines
+
+
+def zero_lines(record: Record) -> list[str]:
+    """The error of the offset's zero, from strokes on the left and on the right."""
+    if not record["zeros"]:
+        return []
+    weights = np.array([1 / zero["error"] ** 2 for zero in record["zeros"]])
+    mean = float(weights @ [zero["zero"] for zero in record["zeros"]] / weights.sum())
+    zero, side = with_unit(abs(mean), "m", error=float(weights.sum() ** -0.5)), "left" if mean > 0 else "right"
+    return [f"The strokes hit {zero} to the {side} of their aim; the mean of left and right is free of it"]
+
+
+def gain_record(gain: InformationGain) -> Record:
+    """A further measurement, and the uncertainty that it would remove."""
+    measurement = gain.measurement
+    about = {"kind": measurement.key, "label": measurement.label, "unit": measurement.unit, "error": measurement.sd}
+    return about | {name: value for name, value in gain._asdict().items() if name != "measurement"}
+
+
+def estimate_record(
+    estimate: Estimate, gains: Sequence[InformationGain], squirt: tuple[float, float], offset: float
+) -> Record:
+    """The uncertain parameters by all measurements, the fit, squirt (value and 1σ, rad) and further measurements."""
+    sd = np.sqrt(np.diag(estimate.covariance))
+    return {
+        "name": estimate.cue.name,
+        "values": [value._asdict() for value in estimate.values],
+        "correlations": (estimate.covariance / np.outer(sd, sd)).tolist(),
+        "rows": [row_record(row) for row in estimate.residuals],
+        "misfit": estimate.misfit,
+        "measurements": len(estimate.cue.measurements),
+        "outlier_probability": estimate.outlier_probability.tolist(),
+        "unchecked": [
+            {"label": each.measurement.label, "without": each.without._asdict()} for each in estimate.unchecked
+        ],
+        "converged": estimate.converged,
+        "squirt": squirt[0],
+        "squirt_error": squirt[1],
+        "offset": offset,
+        "recommended": [gain_record(gain) for gain in gains],
+        "units": UNITS,
+    }
+
+
+def tabulate_estimate(record: Record) -> list[Table | str]:
+    """The uncertain parameters, the fit of the measurements, squirt, and recommended measurements."""
+    squirt = with_unit(record["squirt"], "rad", error=record["squirt_error"])
+    return [
+        tabulate(
+            "Estimated parameters",
+            {"uncertain parameter": "{label}", "drawing": _value("drawing"), "estimate": _value("value")} | _INTERVAL,
+            record["values"],
+            *_estimate_notes(record),
+        ),
+        _tabulate_fit("Measured and computed with the estimate", record),
+        "",
+        f"squirt at b/R {record['offset']:.4g} by the model with these parameters: {squirt}",
+        "",
+        tabulate(
+            "Recommended measurements",
+            {
+                "measurement": "{label}",
+                "1σ": lambda gain: with_unit(gain["error"], gain["unit"]) if gain["unit"] else DASH,
+                "narrows most": "{parameter}",
+                "to": "{error_ratio:.0 %}",
+                "squirt then": "± {relative_squirt_error:.1 %}",
+            },
+            record["recommended"],
+            "Sorted by the remaining relative uncertainty (1σ) of squirt, squirt then.",
+        ),
+    ]
+
+
+def _value(name: str) -> ColumnEntry:
+    return lambda value: with_unit(value[name], value["unit"])
+
+
+_INTERVAL: dict[str, ColumnEntry] = {
+    "68 %": lambda value: " to ".join(with_unit(value[end], value["unit"]) for end in ("low", "high")),
+    "remaining": "{error_ratio:.0 %}",
+}
+
+
+def _estimate_notes(record: Record) -> list[str]:
+    misfit, count = record["misfit"], record["measurements"]
+    notes = [f"Misfit {misfit:.1f} (chi-square of {count} measurements and the priors); expected about {count}."]
+    if misfit > count + 3 * math.sqrt(2 * count):
+        notes.append("It is too large: a measurement, an error or the model is wrong.")
+    for row, probability in zip(record["rows"], record["outlier_probability"], strict=True):
+        if probability > OUTLIER:
+            notes.append(
+                f"{row['label']} contradicts the others: outlier with a probability of {100 * probability:.0f} %, and "
+                "its weight is reduced."
+            )
+    for each in record["unchecked"]:
+        without = each["without"]
+        low, high = (with_unit(without[end], without["unit"]) for end in ("low", "high"))
+        notes.append(
+            f"No other measurement checks {each['label']}, and the intervals include no mistake in it: without it, "
+            f"{without['label']} is {low} to {high} (68 %)."
+        )
+    if not record["converged"]:
+        notes.append(
+            "The estimate did not converge: the measurements contradict each other, and the intervals are too narrow."
+        )
+    return [*notes, "68 %: interval of 1σ; remaining: its width over that before any measurement."]

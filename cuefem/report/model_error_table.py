@@ -1,0 +1,169 @@
+"""Error of the beam model against the elastic solid, for one shaft: record and table of `cuefem check`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from cuefem.beam import weak_forms
+from cuefem.beam.modes import Modes, modes
+from cuefem.beam.tip_modes import TipModes, free_tip_modes, tip_modes
+from cuefem.contact.strike import strike_modes
+from cuefem.cue import Cue
+from cuefem.effects.effect import CueEffect
+from cuefem.endmass.definitions import DEFINITIONS
+from cuefem.results.quantities import DISPLAY_UNITS, to_display
+from cuefem.results.records import Record, Table, tabulate
+from cuefem.scene import Scene
+from cuefem.scene.solved_scene import mass_on_face
+from cuefem.solid.meridian_mesh import Fineness, blocks, check_mesh_size
+from cuefem.solid.shaft import AXIAL, SolidBody
+
+MODES, N_FREQUENCIES = 40, 6  # flexible modes of either model; natural frequencies in the table
+ORDER, LARGE_ORDER, LARGE = 6, 4, 150  # a mesh of more than LARGE elements has LARGE_ORDER
+# The beam that scikit-fem assembles: its longest element, m, its order, and the smallest relative difference printed.
+MAX_ELEMENT, SCIKIT_FEM_ORDER, MIN_DIFFERENCE = 0.03, 6, 1e-9
+Progress = Callable[[Sequence[Any]], Iterable[Any]]
+
+
+def fineness(cue: Cue) -> Fineness:
+    """The finer of the two meshes of a cue; the order of the coarser is lower by 1."""
+    mesh = Fineness(ORDER, 0.8, 0.05)
+    cells = sum(len(block.along) - 1 for block in blocks(cue, mesh))
+    return mesh if cells <= LARGE else mesh._replace(order=LARGE_ORDER)
+
+
+def checked_scene(scene: Scene) -> tuple[Scene, list[str]]:
+    """The scene without the effects that the solid model does not include, and the names of these effects."""
+    excluded = [e for e in scene.effects if isinstance(e, CueEffect) and e.mass_on_face(scene.shaft) is None]
+    rest = tuple(effect for effect in scene.effects if effect not in excluded)
+    return (replace(scene, effects=rest) if excluded else scene), [type(effect).__name__ for effect in excluded]
+
+
+def model_error_record(scene: Scene, progress: Progress = iter) -> Record:
+    """Frequencies, stiffness, end masses and squirt by beam and solid, with the discretisation error.
+
+    "excluded_effects": effects that the solid does not include, removed from both models. "scikit_fem": the first
+    natural frequency of the same beam, assembled by scikit-fem. progress: iterates over the work with a progress bar.
+    """
+    scene, excluded = checked_scene(scene)
+    bending = modes(scene.shaft, MODES, effects=scene.cue_effects)
+    mesh = fineness(scene.shaft)
+    check_mesh_size(scene.shaft, mesh)
+    work = (lambda: _by_beam(scene, bending), lambda: _by_solid(scene, mesh))
+    coarser = mesh._replace(order=mesh.order - 1)
+    beam, solid, coarse = (compute() for compute in progress([*work, lambda: _by_solid(scene, coarser)]))
+    rows = [
+        {
+            "quantity": name,
+            "unit": unit,
+            "beam": beam[name, unit],
+            "solid": value,
+            "difference": beam[name, unit] / value - 1,
+            "discretisation_error": abs(coarse[name, unit] / value - 1),
+        }
+        for (name, unit), value in solid.items()
+        if value
+    ]
+    return {
+        "rows": rows,
+        "scikit_fem": _by_scikit_fem(scene, bending),
+        "modes": MODES,
+        "order": mesh.order,
+        "excluded_effects": excluded,
+        "summary": _summary(rows),
+    }
+
+
+Numbers = dict[tuple[str, str], float]
+
+
+def _by_scikit_fem(scene: Scene, bending: Modes) -> Record:
+    """First natural frequency, Hz, of the beam, and of the same beam assembled by scikit-fem on another mesh."""
+    ends, shift = scene.shaft.nodes, bending.system.shift
+    pieces = [np.linspace(a, b, int(np.ceil((b - a) / MAX_ELEMENT)) + 1)[:-1] for a, b in pairwise(ends)]
+    nodes = np.concatenate([*pieces, ends[-1:]])
+    K, M = weak_forms.assemble(scene.shaft, nodes, order=SCIKIT_FEM_ORDER, effects=scene.cue_effects)
+    ours, theirs = bending.frequencies[0], weak_forms.frequencies(K, M, shift=shift)[bending.rigid]
+    return {"beam": float(ours), "scikit_fem": float(theirs), "difference": float(ours / theirs - 1)}
+
+
+def _by_beam(scene: Scene, bending: Modes) -> Numbers:
+    cue = scene.shaft
+    tip = tip_modes(bending, scene.axial_mass)
+    # a transverse unit force at the tip has the bending moment x and the shear force 1
+    x, weights = np.polynomial.legendre.leggauss(40)
+    pieces = [(s.section((x + 1) / 2 * s.length), weights * s.length / 2) for s in cue.segments]
+    axial = sum(float(w @ (1 / section.EA)) for section, w in pieces)
+    transverse = sum(
+        float(w @ ((at + (x + 1) / 2 * s.length) ** 2 / section.EI + 1 / section.kGA))
+        for (section, w), s, at in zip(pieces, cue.segments, cue.nodes, strict=False)
+    )
+    return _numbers(scene, tip, transverse, axial)
+
+
+def _by_solid(scene: Scene, mesh: Fineness) -> Numbers:
+    body = SolidBody(scene.shaft, mesh)
+    bending = body.modes(MODES + 2, mass=mass_on_face(scene))
+    tip = free_tip_modes(bending.omega, *bending.at_tip, scene.axial_mass)
+    return _numbers(scene, tip, body.compliance, SolidBody(scene.shaft, mesh, AXIAL).compliance)
+
+
+def _numbers(scene: Scene, tip: TipModes, transverse: float, axial: float) -> Numbers:
+    """The compared quantities by name and unit. transverse, axial: compliance at the tip, m/N, butt clamped."""
+    omega, amplitude = tip.omega[3:], tip.amplitude[3:, 1]
+    frequencies = omega[:N_FREQUENCIES] / (2 * np.pi)
+    numbers = {(f"natural frequency {k}", "Hz"): float(frequency) for k, frequency in enumerate(frequencies, 1)}
+    numbers["transverse stiffness at the tip, butt clamped", "N/m"] = 1 / transverse
+    numbers["axial stiffness at the tip, butt clamped", "N/m"] = 1 / axial
+    numbers["tip compliance, free cue", "m/N"] = float(np.sum((amplitude / omega) ** 2))
+    for definition in DEFINITIONS.values():
+        with suppress(ValueError):  # a miscue has no squirt-equivalent end mass
+            numbers[f"end mass, {definition.label_at(scene.stroke.offset)}", "kg"] = float(definition.of(tip, scene))
+    numbers["squirt", "rad"] = float(strike_modes(scene, tip).squirt)
+    return numbers
+
+
+def _percent(part: float, digits: int, sign: str = "-") -> str:
+    """A relative difference in per cent, to so many significant digits; large ones without exponent."""
+    return f"{100 * part:{sign}.{digits}g} %" if abs(part) < 0.1 else f"{100 * part:{sign}.0f} %"
+
+
+def _summary(rows: Sequence[Record]) -> str:
+    """The error of the beam model in squirt, as a sentence."""
+    row = next((row for row in rows if row["quantity"] == "squirt"), None) or rows[-1]
+    difference, mesh = abs(row["difference"]), row["discretisation_error"]
+    size = _percent(max(difference, mesh), 2 if mesh < 0.05 * difference else 1)
+    error = f"less than {size}" if difference < mesh else size
+    return f"Error of the beam model for this shaft: {error} in {row['quantity']}."
+
+
+def tabulate_model_error(record: Record) -> Table:
+    """Beam and solid side by side."""
+    without = " *" if record["excluded_effects"] else ""
+    of_strike = ("end mass", "squirt")
+    columns: Any = {
+        "": lambda row: row["quantity"] + (without if row["quantity"].startswith(of_strike) else ""),
+        "unit": lambda row: DISPLAY_UNITS.get(row["unit"], (1.0, row["unit"]))[1],
+        "beam": lambda row: f"{to_display(row['beam'], row['unit']):.6g}",
+        "solid": lambda row: f"{to_display(row['solid'], row['unit']):.6g}",
+        "error of the beam": lambda row: _percent(row["difference"], 2, "+"),
+        "discretisation error": lambda row: _percent(row["discretisation_error"], 1),
+    }
+    notes = [
+        f"both from {record['modes']} bending modes without a truncation correction, which `cuefem end-mass` and "
+        f"`cuefem strike` have; discretisation error: change from elements of order {record['order'] - 1} to "
+        f"{record['order']}"
+    ]
+    if excluded := record["excluded_effects"]:
+        notes.append(f"* without {', '.join(excluded)}, which the solid model does not include; `cuefem end-mass` does")
+    made = tabulate("Beam and solid models", columns, record["rows"], *notes, texts=(0, 1))
+    same = record["scikit_fem"]
+    error = "< 1e-07 %" if abs(same["difference"]) < MIN_DIFFERENCE else _percent(same["difference"], 2, "+")
+    row = ("natural frequency 1, same beam by scikit-fem", "Hz", f"{same['beam']:.6g}", "", error, "")
+    return replace(made, rows=(*made.rows, row))

@@ -1,0 +1,119 @@
+"""Warnings of implausible values of a scene, such as a wrong unit or a diameter entered as a radius causes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from math import inf
+from typing import Any
+
+from cuefem.cue import Cue, Segment
+from cuefem.cue.materials import MATERIALS, table_name
+from cuefem.effects import TipDome
+from cuefem.parameters.parts import main_material
+from cuefem.quantity.fields import quantity_fields
+from cuefem.quantity.unit_checks import CUE_DIAMETER, CUE_LENGTH, MIN_CUE_MASS
+from cuefem.results.quantities import to_display
+from cuefem.scene import Ball, Scene, Stroke, Tip
+
+MAX_STEP = 1.5  # ratio of the diameters at the joint of two segments
+MIN_DRAWN_MASS = 0.02  # kg
+DENSITY_MARGIN = 0.1  # relative, beyond the density range of a wood
+LONG, STIFF, LIGHT = 0.3, 3e10, 2500.0  # m, Pa, kg/m3: a long segment, stiffer than wood and lighter than metal
+
+
+Check = tuple[str, Any, tuple[float, float], str, str]  # name, value, plausible range, unit, hint
+
+
+def _usual(kind: type, name: str) -> tuple[float, float]:
+    """The plausible range of a field."""
+    return next(
+        known.typical_range for field, known, *_ in quantity_fields(kind) if field == name and known.typical_range
+    )
+
+
+def _of_stroke(scene: Scene) -> Iterator[Check]:
+    leather, ball = "expected 0.001 to 0.002 s for leather", scene.ball
+    yield "head-on contact time", scene.known_contact_time, _usual(Tip, "contact_time"), "s", leather
+    diameter = "expected 26 to 31 mm; is this the diameter?"
+    yield "ball radius", ball.radius, _usual(Ball, "radius"), "mm", diameter
+    yield "ball mass", ball.mass, _usual(Ball, "mass"), "g", "expected 140 to 210 g"
+    yield "stroke speed", scene.stroke.speed, _usual(Stroke, "speed"), "m/s", "expected 0.5 to 12 m/s"
+    dome = "expected 9 to 10.6 mm, dime to nickel"
+    yield "dome radius", scene.dome_radius or None, _usual(TipDome, "radius"), "mm", dome
+
+
+def _of_drawing(cue: Cue) -> Iterator[Check]:
+    yield "drawn length", cue.length, CUE_LENGTH, "mm", "check the unit of the lengths"
+    ends = (
+        (f"segments[{i}].{end}", getattr(segment, end))
+        for i, segment in enumerate(cue.segments)
+        for end in ("tip_diameter", "butt_diameter")
+    )
+    radii = "expected 8.5 to 14 mm at the tip; check the unit: are these radii?"
+    for name, diameter in [end for end in ends if not CUE_DIAMETER[0] <= end[1] <= CUE_DIAMETER[1]][:1]:
+        yield name, diameter, CUE_DIAMETER, "mm", radii
+    yield "drawn mass", cue.shaft_mass, (MIN_DRAWN_MASS, inf), "g", "check the sizes and the densities"
+    wood = main_material(cue)
+    known = table_name(wood)
+    if cue.weighed and known is not None:
+        low, high = MATERIALS[known].ranges["rho"]
+        own = f"by the weight of the shaft the density of its {known} is"
+        joint = "does the measured mass include a joint or the rest of the cue?"
+        yield own, wood.rho, ((1 - DENSITY_MARGIN) * low, (1 + DENSITY_MARGIN) * high), "kg/m3", joint
+    if any(
+        segment.length > LONG and segment.material.E > STIFF and segment.material.rho < LIGHT
+        for segment in cue.segments
+        if not max(segment.tip_bore, segment.butt_bore)
+    ):
+        tubes = "carbon shafts are tubes; add the bore (--bore, or `cuefem guide files`)"
+        yield "a solid rod as stiff as carbon fibre, drawn mass", cue.shaft_mass, (0.0, 0.0), "g", tubes
+
+
+def _of_mass(scene: Scene) -> Iterator[Check]:
+    name, mass = "mass of the whole cue", float(scene.cue.mass)
+    yield name, mass, (0.0, 1.0), "kg", "expected 0.4 to 0.7 kg"
+    if not scene.cue.segments or scene.shaft.shaft_mass >= MIN_DRAWN_MASS:  # else the drawing itself is too light
+        body = 'expected 400 to 700 g; add the rest of the cue with --body-mass "15 oz" (body_mass in a file)'
+        yield name, mass, (MIN_CUE_MASS, inf), "g", body
+
+
+SCALES = {"mm": 1e3, "g": 1e3}  # of the SI unit; others: 1
+
+
+def plausibility_warnings(scene: Scene, *, with_impact: bool = True) -> list[str]:
+    """Warnings of implausible values, one line each; empty for ordinary scenes.
+
+    with_impact: also check ball, tip, stroke and the mass of the whole cue.
+    """
+    drawn = scene.cue.segments
+    checks = [
+        *(_of_stroke(scene) if with_impact else ()),
+        *(_of_drawing(scene.shaft) if drawn else ()),
+        *(_of_mass(scene) if with_impact else ()),
+    ]
+    outside = [
+        f"{name} {SCALES.get(unit, 1) * value:.6g} {unit}; {hint}"
+        for name, value, (low, high), unit, hint in checks
+        if value is not None and not low <= value <= high
+    ]
+    return [*outside, *_of_outline(drawn)]
+
+
+def _of_outline(segments: tuple[Segment, ...]) -> list[str]:
+    """Warnings of a cue's outline: steps of the diameter, butt first, and bores that end inside a segment."""
+    lines = []
+    for i, (near, other) in enumerate(pairwise(segments)):
+        ends = near.butt_diameter, other.tip_diameter
+        if max(ends) > MAX_STEP * min(ends):
+            sizes = " to ".join(f"{to_display(end, 'm'):.4g}" for end in ends)
+            lines.append(f"the diameter jumps from {sizes} mm between segments[{i}] and segments[{i + 1}]")
+    if segments and segments[0].tip_diameter > segments[-1].butt_diameter:
+        ends = segments[0].tip_diameter, segments[-1].butt_diameter
+        sizes = " and ".join(f"{to_display(end, 'm'):.4g}" for end in ends)
+        lines.append(f"the tip is thicker than the butt, {sizes} mm; is the profile butt first?")
+    for i, segment in enumerate(segments):
+        bores = {"tip": segment.tip_bore, "butt": segment.butt_bore}
+        missing = [end for end, bore in bores.items() if bore == 0 < max(bores.values())]
+        lines += [f"the bore of segments[{i}] tapers to zero; is {end}_bore missing?" for end in missing]
+    return lines

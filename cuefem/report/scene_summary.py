@@ -1,0 +1,101 @@
+"""Summaries of a cue, a scene and its effects: as records, and as a line of text each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, fields
+from typing import Any
+
+from cuefem.cue import Cue, LumpedCue
+from cuefem.effects import Effect
+from cuefem.io.schema import table as file_table
+from cuefem.results.quantities import format_value, with_unit
+from cuefem.results.records import Record
+from cuefem.scene import Scene
+
+
+def cue_record(cue: Cue | LumpedCue) -> Record:
+    """Length, masses, balance point and number of segments of a cue, or the parameters of a lumped cue, SI."""
+    if not cue.segments:
+        return {name: getattr(cue, name) for name in ("mass", "end_mass", "coupling")}
+    names = ("length", "mass", "shaft_mass", "body_mass", "balance_point")
+    return {name: getattr(cue, name) for name in names} | {"segments": len(cue.segments)}
+
+
+def scene_record(scene: Scene) -> Record:
+    """The cue, ball, tip, stroke and effects of a scene, SI."""
+    return {
+        "cue": cue_record(scene.cue),
+        "ball": asdict(scene.ball),
+        "tip": {name: value for name, value in asdict(scene.tip).items() if value is not None}
+        | {"contact_time": scene.known_contact_time},
+        "stroke": asdict(scene.stroke),
+        "effects": [{"type": type(effect).__name__, **asdict(effect)} for effect in scene.effects],
+        "effects_at_tip": [type(effect).__name__ for effect in scene.at_tip],
+    }
+
+
+def assumptions(scene: Record) -> str:
+    """Ball, tip and stroke as one line of text."""
+    ball, tip, stroke = scene["ball"], scene["tip"], scene["stroke"]
+    return ", ".join(
+        [
+            f"ball {format_value('mass', ball['mass'])}, {with_unit(2 * ball['radius'], 'm')}",
+            f"head-on contact time {_milliseconds(tip['contact_time'])} (rigid cue)",
+            f"tip restitution {tip['restitution']:g}",
+            f"friction {tip['friction']:g}".replace("inf", "∞"),
+            f"speed {stroke['speed']:g} m/s",
+        ]
+    )
+
+
+def _milliseconds(time: float | None) -> str:
+    return "unknown" if time is None else with_unit(time, "s")
+
+
+def cue_line(cue: Record) -> str:
+    """The record of a cue as one line of text."""
+    if "length" not in cue:
+        return f"lumped cue, {format_value('mass', cue['mass'])}, end mass {format_value('mass', cue['end_mass'])}"
+    pieces = f"{cue['segments']} segment" + ("s" if cue["segments"] > 1 else "")
+    masses = f"as drawn {format_value('mass', cue['shaft_mass'])}, rest {format_value('mass', cue['body_mass'])}"
+    return f"{with_unit(cue['length'], 'm')} in {pieces}, cue {format_value('mass', cue['mass'])} ({masses})"
+
+
+def plain_cue_line(cue: Cue | LumpedCue) -> str:
+    """A cue as one line of text."""
+    return cue_line(cue_record(cue))
+
+
+def effect_text(effect: Effect) -> str:
+    """An effect and its values other than defaults: "PointMass (position 100 mm, mass 5 g)"."""
+    defaults = {field.name: field.default for field in fields(effect)}
+    entered = {name: value for name, value in file_table(effect).items() if getattr(effect, name) != defaults[name]}
+    entries = [f"{name.replace('_', ' ')} {_short(value)}" for name, value in entered.items()]
+    return type(effect).__name__ + (f" ({', '.join(entries)})" if entries else "")
+
+
+def _short(value: Any) -> str:
+    """A number with its unit to six digits, a Boolean, or a table or list of them, as text."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, list):
+        return " and ".join(map(_short, value))
+    if isinstance(value, dict):
+        return "of " + ", ".join(f"{name} {_short(number)}" for name, number in value.items())
+    number_text, _, unit = str(value).partition(" ")
+    number = float(number_text)
+    if unit == "GPa" and abs(number) < 1:  # the usual unit of leather
+        number, unit = 1e3 * number, "MPa"
+    return f"{number:.6g} {unit}".rstrip()
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names as a list in a sentence: "stick, offset and squirt"."""
+    *others, last = names
+    return f"{', '.join(others)} and {last}" if others else last
+
+
+def tip_effect_notes(scene: Record, note: str) -> list[str]:
+    """The note, if the scene has effects at the tip."""
+    return [note] if scene["effects_at_tip"] else []
