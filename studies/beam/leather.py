@@ -163,7 +163,7 @@ def errors(tips: int = 20, seed: int = 1) -> Errors:
         gaps, ball = np.array([k, D / 28.575, (D / 28.575) ** 3]), 28.575 / D
         direct = central_contact(shape, TipSolid(shape, how).surface(nu, 0), a, how) @ gaps
         off = tt.head_on(tip, np.array([a]), ball)[0] / direct - 1
-        found = found._replace(central_contact=np.vstack([found.head_on, off]))
+        found = found._replace(head_on=np.vstack([found.head_on, off]))
     return found
 
 
