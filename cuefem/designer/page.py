@@ -23,8 +23,8 @@ from cuefem.designer.state import (
     MAX_NAME,
     ComparedDesign,
     Design,
-    History,
     Step,
+    UndoHistory,
     one_line,
     read_design,
     reference_design,
@@ -65,7 +65,7 @@ class Page:
     """The content of a tab, and the actions of its controls."""
 
     def __init__(self, first: Design) -> None:
-        self.history = History(first)
+        self.history = UndoHistory(first)
         self.listed = (self._assumed(), self._notes())  # the assumptions that are on the page
         self.version = 0  # of the design in work: results of an older one are dropped
         self.results = Results()
@@ -430,7 +430,7 @@ class Page:
         if not await is_open(self.client):
             return
         saved = app.storage.tab.get("history")
-        if isinstance(saved, History):
+        if isinstance(saved, UndoHistory):
             self.history = saved
             self.show()
         app.storage.tab["history"] = self.history

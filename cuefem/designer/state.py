@@ -77,7 +77,7 @@ class Step(NamedTuple):
     other: ComparedDesign | None = None
 
 
-class History:
+class UndoHistory:
     """All steps of a tab, and the displayed one; the server retains them while the tab is open or reloaded."""
 
     def __init__(self, first: Design) -> None:

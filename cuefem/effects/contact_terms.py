@@ -44,7 +44,7 @@ class TipModel:
 TipLawFactory = Callable[[CentralImpact], tuple[TipLaw, float]]
 
 
-class Table(NamedTuple):
+class BilliardTable(NamedTuple):
     """The table under the ball of a cue that points down by ``angle``, rad, and its friction with the ball."""
 
     angle: float
@@ -77,7 +77,7 @@ class ContactTerms:
         self.law: TipLawFactory | None = None
         self.tip: TipModel | None = None
         self.turns: bool | None = None
-        self.table: Table | None = None
+        self.table: BilliardTable | None = None
         self.window: float | None = None
 
     @classmethod

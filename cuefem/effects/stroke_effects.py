@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-from cuefem.effects.contact_terms import ContactTerms, Table
+from cuefem.effects.contact_terms import BilliardTable, ContactTerms
 from cuefem.effects.effect import Effect, TrialValues
 from cuefem.quantity.fields import Quantity
 
@@ -107,4 +107,4 @@ class Elevation(Effect):
 
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The table under the ball."""
-        terms.set_once("table", Table(self.angle, self.friction))
+        terms.set_once("table", BilliardTable(self.angle, self.friction))
