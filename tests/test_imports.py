@@ -49,7 +49,6 @@ HOMES = {
     "jinja2": {"report"},
     "markdown_it": {"handbook"},
     "sqlite3": {"io"},
-    "distributed": {"design"},
     "nicegui": {"designer"},
     "starlette": {"designer"},
 }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,6 @@ from cuefem.design import Study
 from cuefem.design.optimum import Problem, Round
 from cuefem.design.scatter import Scatter
 from cuefem.design.study_result import StudyResult, compute_study
-from cuefem.design.sweep import open_pool
 from cuefem.io import InputError, save, write_atomically
 from cuefem.io.store import SqliteStore, write_table
 from cuefem.io.study_files import base_assumptions, load_study
@@ -37,9 +36,6 @@ from cuefem.scene import Scene
     "--workers", type=click.IntRange(min=1), help="Number of worker processes (default: none, all in this one)."
 )
 @click.option(
-    "--dask", metavar="ADDRESS", help='Address of a Dask scheduler that computes the designs, e.g. "tcp://host:8786".'
-)
-@click.option(
     "--iterations",
     type=click.IntRange(min=1),
     default=60,
@@ -50,7 +46,13 @@ from cuefem.scene import Scene
 @force_option
 @json_option
 def study(
-    file: Path, output: tuple[Path, ...], force: bool, as_json: bool, iterations: int, store: Path | None, **where: Any
+    file: Path,
+    output: tuple[Path, ...],
+    force: bool,
+    as_json: bool,
+    iterations: int,
+    store: Path | None,
+    workers: int | None,
 ) -> None:
     """Compute the designs of STUDY (.toml), which lists parameters and responses (`cuefem guide study` has the format).
 
@@ -65,10 +67,8 @@ def study(
     asked = load_study(file)
     designs = asked if isinstance(asked, Study) else asked.designs if isinstance(asked, Scatter) else asked.study
     notes = base_assumptions(file, designs.base)
-    if isinstance(asked, Problem) and (store or any(where.values())):
-        raise click.UsageError("--store, --workers and --dask do not apply to an optimum, which runs in one process")
-    if all(where.values()):
-        raise click.UsageError("--workers (this machine) and --dask (a cluster) cannot be combined")
+    if isinstance(asked, Problem) and (store or workers):
+        raise click.UsageError("--store and --workers do not apply to an optimum, which runs in one process")
     for path in output:
         if path.suffix == ".toml":
             if isinstance(asked, Scatter):
@@ -83,7 +83,7 @@ def study(
             result = compute_study(asked, rounds=iterations, progress=tell_round)
     else:
         kept = SqliteStore(store or file.with_suffix(".sqlite"), designs, file.stem)
-        result = _kept(file, asked, kept, **where)
+        result = _kept(file, asked, kept, workers)
     record: dict[str, Any] = {"file": str(file), "kind": result.kind, "assumed": notes, "units": result.units}
     record |= {"varied": varied_segments(designs.vary, designs.base), "resolution": designs.at and vars(designs.at)}
     stored = []
@@ -100,19 +100,14 @@ def study(
     print_result(as_json, record, [title, *stored, *things, *(f"wrote {path}" for path in output)])
 
 
-def _kept(
-    file: Path, asked: Study | Scatter, designs: SqliteStore, *, workers: int | None, dask: str | None
-) -> StudyResult:
+def _kept(file: Path, asked: Study | Scatter, designs: SqliteStore, workers: int | None) -> StudyResult:
     """The result of a sweep or a scatter; an interrupted one prints which designs are stored."""
-    with ExitStack() as opened:
-        progress = opened.enter_context(progress_bar(designs.study.size))
-        pool = opened.enter_context(open_pool(workers, dask))
-        opened.enter_context(designs)
+    with progress_bar(designs.study.size) as progress, designs:
         progress.start(designs.done)
         try:
             with errors_name_file(file):
                 return compute_study(
-                    asked, store=designs, pool=pool, progress=lambda rows: progress.update(designs.done)
+                    asked, store=designs, workers=workers, progress=lambda rows: progress.update(designs.done)
                 )
         except (KeyboardInterrupt, RuntimeError) as error:
             progress.stop()

@@ -13,7 +13,7 @@ from cuefem.cue import Array
 from cuefem.design.optimum import Optimum, Problem, optimum
 from cuefem.design.scatter import Scatter, SobolIndices, sobol_indices_of
 from cuefem.design.study import Study, StudyDesign
-from cuefem.design.sweep import MemoryStore, Pool, Row, Store, sweep
+from cuefem.design.sweep import MemoryStore, Row, Store, sweep
 from cuefem.results.quantities import with_unit
 
 SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of the designs below a quantile
@@ -149,14 +149,14 @@ def compute_study(
     definition: Study | Scatter | Problem,
     *,
     store: Store | None = None,
-    pool: Pool | None = None,
+    workers: int | None = None,
     progress: Callable[[Any], object] = lambda reached: None,
     rounds: int = 60,
 ) -> StudyResult:
     """Compute a study.
 
-    store: stored designs; by default none. pool: as in `sweep`. progress: called with the rows of each block, in an
-    optimization with each `Round`. rounds: of an optimization, which has neither store nor pool.
+    store: stored designs; by default none. workers: as in `sweep`. progress: called with the rows of each block, in an
+    optimization with each `Round`. rounds: of an optimization, which has neither store nor workers.
     """
     if isinstance(definition, Problem):
         best = optimum(definition, rounds=rounds, progress=progress)
@@ -164,7 +164,7 @@ def compute_study(
         return StudyResult(definition, (row,), best)
     designs = definition.designs if isinstance(definition, Scatter) else definition
     store = MemoryStore() if store is None else store
-    sweep(designs, store, pool=pool, progress=progress)
+    sweep(designs, store, workers=workers, progress=progress)
     rows = tuple(store.rows())
     drivers = sobol_indices_of(definition, rows) if isinstance(definition, Scatter) else None
     return StudyResult(definition, rows, None, drivers)

@@ -6,7 +6,7 @@ The handbook's chapter on studies lists every key.
 from __future__ import annotations
 
 import re
-from contextlib import ExitStack
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
@@ -16,7 +16,6 @@ from cuefem.design import Levels, Normal, Response, Sample, Span, Study, Vary
 from cuefem.design.optimum import Limit, Problem
 from cuefem.design.scatter import Scatter
 from cuefem.design.study_result import StudyResult, compute_study
-from cuefem.design.sweep import open_pool
 from cuefem.io import load_stroke, replaced_segments
 from cuefem.io.defaults_report import assumption_texts, assumptions
 from cuefem.io.errors import InputError, as_input_error, file_state, quote
@@ -140,7 +139,6 @@ def study(
     *,
     store: str | PathLike[str] | None = None,
     workers: int | None = None,
-    dask: str | None = None,
 ) -> StudyResult:
     """Compute a study: a sweep over designs, a scatter with tolerances, or an optimum within limits.
 
@@ -152,8 +150,6 @@ def study(
         A file (.sqlite) for the designs, with which an interrupted or edited study resumes. Not for an optimum.
     workers : int, optional
         Number of worker processes; by default none.
-    dask : str, optional
-        The address of a Dask scheduler, instead of workers, such as "tcp://host:8786".
 
     Returns
     -------
@@ -167,7 +163,7 @@ def study(
     ValueError
         If the file is not a study, a response does not exist, or no design is within the limits.
     RuntimeError
-        If worker processes die repeatedly, or the connection to the scheduler is lost.
+        If worker processes die repeatedly.
 
     Examples
     --------
@@ -185,14 +181,12 @@ def study(
     """
     problem = load_study(what) if isinstance(what, str | PathLike) else what
     if isinstance(problem, Problem):
-        if store or workers or dask:
-            raise ValueError("an optimum takes no store, workers or dask: it computes one design after the other")
+        if store or workers:
+            raise ValueError("an optimum takes no store or workers: it computes one design after the other")
         return compute_study(problem)
     designs = problem.designs if isinstance(problem, Scatter) else problem
-    with ExitStack() as opened:
-        pool = opened.enter_context(open_pool(workers, dask))
-        stored = opened.enter_context(SqliteStore(store, designs)) if store else None
-        return compute_study(problem, store=stored, pool=pool)
+    with SqliteStore(store, designs) if store else nullcontext() as stored:
+        return compute_study(problem, store=stored, workers=workers)
 
 
 def _problem(tables: StudyTable, objective: ObjectiveTable, base: Scene, vary: tuple[Vary, ...], path: Path) -> Problem:

@@ -1,6 +1,5 @@
 """Invalid design studies: one line per `raise`, calls and files, each with the beginning of its error message."""
 
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -79,10 +78,7 @@ CALLS: dict[str, Callable[[], object]] = {
     "a study must have parameters and responses": lambda: replace(PROBLEM, vary=()),
     "E must have low and high, or values": lambda: replace(PROBLEM, vary=(E,)),
     "no design within tip_stiffness >= 1000 was found": lambda: optimum(STIFF, rounds=2),
-    "an optimum takes no store, workers or dask": lambda: cf.study(PROBLEM, workers=2),
-    "workers and dask must not both be set": lambda: cf.study(
-        varying("ball.mass", 0.2), workers=2, dask="tcp://localhost:1"
-    ),
+    "an optimum takes no store or workers": lambda: cf.study(PROBLEM, workers=2),
     "Scene.cue must be a Cue of segments": lambda: sensitivity(LUMPED),
     "sensitivity scene must have no effects": lambda: sensitivity(replace(MAPLE, effects=(cf.PointMass(0.1, 1e-3),))),
 }
@@ -174,8 +170,6 @@ FOLDERS: list[tuple[bytes, list[str], str]] = [
     (b"", ["-o", "out.xlsx"], "must end in .html or .csv or .json or .toml; got '.xlsx'"),
     (b"", ["-o", "out.sqlite"], "--store names the file of stored designs"),
     (b"", ["-o", "nowhere/out.csv"], "No such file or directory"),
-    (b"", ["--dask", "tcp://localhost:1"], "pip install '.[distributed]' in the clone"),
-    (b"", ["--workers", "2", "--dask", "tcp://localhost:1"], "cannot be combined"),
 ]
 
 
@@ -183,8 +177,7 @@ FOLDERS: list[tuple[bytes, list[str], str]] = [
 def test_study_invalid_options_change_no_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, store: bytes, options: list[str], message: str
 ) -> None:
-    """Errors before the run; the library distributed is made unavailable."""
-    monkeypatch.setitem(sys.modules, "distributed", None)
+    """Errors before the run."""
     file = written(tmp_path)
     if store:
         (tmp_path / "study.sqlite").write_bytes(store)

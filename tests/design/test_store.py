@@ -18,7 +18,7 @@ from cuefem.design import evaluate
 from cuefem.io import InputError
 from cuefem.io.study_files import load_study
 from tests.helpers.command_line import stdout_of
-from tests.helpers.refusals import command_refuses, untouched
+from tests.helpers.refusals import untouched
 from tests.helpers.sweeps import SCENE, STRUCK, STUDY, changed, rows_of, swept, written
 
 ROOT = str(Path(__file__).parents[2])
@@ -117,19 +117,6 @@ def test_study_interrupted_prints_one_line_and_stores_designs(tmp_path: Path, wo
     stored = f"{count} of 3000 designs are stored in {store}"
     assert err.decode() == f"cuefem: interrupted; {stored}; run the same command to resume\n"
     assert 100 <= count < 3000
-
-
-@pytest.mark.heavy
-def test_dask_cluster_has_same_table(tmp_path: Path) -> None:
-    LocalCluster = pytest.importorskip("distributed").LocalCluster
-    study = written(tmp_path, STRUCK)
-    alone = swept(study, tmp_path / "alone.sqlite")
-    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": ":0", "local_directory": str(tmp_path)}
-    with LocalCluster(**options) as cluster:
-        run = started(study, "--dask", cluster.scheduler_address)
-        assert (run.communicate()[1], run.returncode) == (b"", 0)
-    assert rows_of(tmp_path / "study.sqlite") == alone
-    command_refuses("no Dask scheduler responds at 'tcp://127.0.0.1:9'", "study", study, "--dask", "tcp://127.0.0.1:9")
 
 
 @pytest.mark.heavy
