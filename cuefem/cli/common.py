@@ -95,7 +95,7 @@ def scene_of(
     """The scene of a command, and the assumptions: values set neither in the file nor by options.
 
     A cue alone gets a game's default stroke (`cuefem.scene.default_scene`). with_impact: whether ball, tip and stroke
-    matter to the command, so that assumptions on them are listed too. warn: whether to warn of unusual numbers.
+    matter to the command, so that assumptions on them are listed too. warn: whether to warn of implausible numbers.
     """
     opened = load_stroke(file, **shaft_additions_of(options))
     if isinstance(opened, Scene):
@@ -124,9 +124,9 @@ def compute_tip(scene: Scene) -> None:
 
 
 def print_warnings(scene: Scene, *, with_impact: bool = True) -> None:
-    """Warn on stderr of unusual numbers; a wrong unit is the most common reason."""
+    """Warn on stderr of implausible numbers; a wrong unit is the most common reason."""
     for line in plausibility_warnings(scene, with_impact=with_impact):
-        click.echo(f"unusual: {line}", err=True)
+        click.echo(f"warning: {line}", err=True)
 
 
 def run_on_scene(
@@ -155,9 +155,9 @@ def run_on_scene(
 def full_record(
     file: Path, notes: Sequence[str], solved: Scene, record: Record, *, with_impact: bool = True, **more: Any
 ) -> Record:
-    """The JSON record: the file, assumptions, unusual values, the scene, the result, the units."""
+    """The JSON record: the file, assumptions, warnings, the scene, the result, the units."""
     warnings = plausibility_warnings(solved, with_impact=with_impact)
-    about = {"file": str(file), "assumed": notes, "unusual": warnings, "scene": scene_record(solved)}
+    about = {"file": str(file), "assumed": notes, "warnings": warnings, "scene": scene_record(solved)}
     return about | more | record | {"units": UNITS | record.get("units", {})}
 
 

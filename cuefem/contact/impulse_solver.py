@@ -23,7 +23,7 @@ from cuefem.cue import Array, LumpedCue
 from cuefem.quantity.fields import sine_cosine
 from cuefem.scene import Outcome, Scene
 
-# Stands for endless friction: slip then ends after 1e-100 of the blow, and the square is still a number.
+# Replaces infinite friction: slip then ends after 1e-100 of the normal impulse, and the square is still finite.
 INFINITE_FRICTION = 1e100
 
 REGIMES = np.array(["stick", "late stick", "miscue", "slip reversal"])
@@ -172,7 +172,7 @@ def _strokes(
     p_w = (v_w - c * p_t / (nu * M) - coupling * p_u) / (1 / M + 1 / m_e)
     # which rounds like m_e; c p_t - s p_n rounds like m, and is as good as mu itself while the tip slips
     p_w = np.where(np.less(m_e, m) & (course.regime < SLIPPING), p_w, c * p_t - s * p_n)
-    # the cue's tip velocity after the blow in (u, w), and kinetic energies with the inverse of B_cue
+    # the cue's tip velocity after the impact in (u, w), and kinetic energies with the inverse of B_cue
     tip_u, tip_w = U - p_u / m - coupling * p_w, -coupling * p_u - p_w / m_e
     free = 1 - coupling**2 * m * m_e  # m/free: the axial inertia of a cue that moves as one along its axis
     cue_energy = (m * tip_u**2 + m_e * tip_w**2 - 2 * coupling * m * m_e * tip_u * tip_w) / (2 * free)

@@ -23,7 +23,7 @@ GROSS_SLIP_SHARE, MISCUE_SHARE, MISCUE_SHARE_AT_END = 0.25, 0.5, 1 / 3
 PARTIAL_SLIP_LOSS = 0.05
 SLIP_STATES = ("slip", "slip back")
 # State of an impact of infinite friction; state and normal phase between separation and a second hit.
-IMPACT, SEPARATION = "blow", ("apart", "free")
+IMPACT, SEPARATION = "impulse", ("separated", "free")
 
 
 class Phase(NamedTuple):
@@ -32,8 +32,8 @@ class Phase(NamedTuple):
     Attributes
     ----------
     state : str
-        Friction state: "slip", "stick" or "slip back"; "blow" for the impact of infinite friction, "apart" between two
-        hits. A patch of annuli (`LeatherTip`) slips where all of them slip.
+        Friction state: "slip", "stick" or "slip back"; "impulse" for the impact of infinite friction, "separated"
+        between two hits. A patch of annuli (`LeatherTip`) slips where all of them slip.
     normal_phase : str
         Normal phase: "load", "unload", or "free" between two hits.
     start, end : float

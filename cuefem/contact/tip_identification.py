@@ -1,4 +1,4 @@
-"""From a measured head-on blow to the tip: the leather's E and its own restitution, from contact time and rebound."""
+"""Identification of a tip: the leather's E and its own restitution from a measured contact time and rebound."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ GUESS, GUESS_TIME = IdentifiedTip(230e6, 0.6), 1.135e-3  # s: medium leather, wh
 
 
 def identify_tip(scene: Scene, contact_time: float, rebound: float) -> IdentifiedTip:
-    """The leather with which a head-on blow lasts a given time and the whole cue rebounds with a given restitution.
+    """The leather with which a central impact lasts a given time and the whole cue rebounds with a given restitution.
 
     Parameters
     ----------
     scene
-        A scene with a `LeatherTip`, of which neither E, the tip's restitution nor the offset matters. The blow has the
-        scene's cue, ball, speed and other effects: with `AxialWaves` it lasts longer and rebounds faster.
+        A scene with a `LeatherTip`, of which neither E, the tip's restitution nor the offset matters. The impact
+        has the scene's cue, ball, speed and other effects: with `AxialWaves` it lasts longer and rebounds faster.
     contact_time
         How long ball and tip touch, s.
     rebound
@@ -55,7 +55,7 @@ def identify_tip(scene: Scene, contact_time: float, rebound: float) -> Identifie
 
     Notes
     -----
-    A stiffer leather shortens the blow, one of less restitution shortens it too and lowers the rebound. Waves along the
+    A stiffer leather shortens the contact, one of less restitution does so too and lowers the rebound. Waves along the
     cue bound both: no leather, however stiff, is shorter in contact than the wood.
 
     Examples
@@ -74,7 +74,7 @@ def identify_tip(scene: Scene, contact_time: float, rebound: float) -> Identifie
     tip = tip_modes_of(with_tip(scene, IdentifiedTip(1e9, 0.5)))  # neither number changes the modes of the cue
     lowest, highest = map(math.log, MODULI)
 
-    def blow(log_E: float, e: float) -> tuple[float, float]:
+    def central_impact(log_E: float, e: float) -> tuple[float, float]:
         """Contact time and rebound; endless and none where the leather is pressed in further than its law is known."""
         try:
             made = with_tip(scene, IdentifiedTip(math.exp(log_E), e))
@@ -85,7 +85,7 @@ def identify_tip(scene: Scene, contact_time: float, rebound: float) -> Identifie
 
     def misses(guess: Any) -> Any:
         tried = np.clip(guess, [lowest, MIN_RESTITUTION], [highest, 1.0])  # beyond these ends the miss goes on growing
-        time, found = blow(*tried)
+        time, found = central_impact(*tried)
         return [math.log(time / contact_time), found - rebound] + np.array([-1.0, 1.0]) * (guess - tried)
 
     first = [math.log(GUESS.E) - 3 * math.log(contact_time / GUESS_TIME), GUESS.restitution]
@@ -94,7 +94,7 @@ def identify_tip(scene: Scene, contact_time: float, rebound: float) -> Identifie
         return IdentifiedTip(math.exp(near.x[0]), float(near.x[1]))
 
     E, e = np.clip(near.x, [lowest, MIN_RESTITUTION], [highest, 1.0])
-    time, found = blow(E, e)
+    time, found = central_impact(E, e)
     raise ValueError(
         f"identify_tip: no leather has a contact time of {contact_time:g} s and a rebound of {rebound:g} on this cue; "
         f"the nearest tried, E {math.exp(E) / 1e6:.4g} MPa and e {e:.3g}, has {time:.3g} s and {found:.3g}"
@@ -109,7 +109,7 @@ def with_tip(scene: Scene, tip: IdentifiedTip) -> Scene:
 
 
 def rebound(scene: Scene) -> float:
-    """How fast ball and cue part after a head-on blow, over the stroke's speed: the restitution of the whole cue.
+    """Restitution of the whole cue: separation speed of ball and cue after a central impact, over the stroke's speed.
 
     Parameters
     ----------
@@ -139,5 +139,5 @@ def _centred(scene: Scene) -> Scene:
 
 
 def rebound_of_outcome(outcome: Outcome, scene: Scene) -> float:
-    """How fast ball and cue part after a head-on blow, over the stroke's speed."""
+    """Separation speed of ball and cue after a central impact, over the stroke's speed."""
     return float((outcome.ball_speed - outcome.cue_speed) / scene.stroke.speed)

@@ -142,9 +142,9 @@ def _stick(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
     T, c, K = float(limit.T), float(limit.c), float(limit.K)
     tip = ImpulseResponse(np.append(rigid, phi**2).astype(complex), 1j * np.append(0.0, omega))
     h, t = T / STEPS, T / STEPS * np.arange(STEPS)
-    after_blow, column = tip.mean_velocities_with_ball(c, T)
-    blow = 1 / (float(phi @ phi) + rigid + c)
-    force = solve_toeplitz(column, 1 - blow * after_blow)
+    velocity_after, column = tip.mean_velocities_with_ball(c, T)
+    first_impulse = 1 / (float(phi @ phi) + rigid + c)
+    force = solve_toeplitz(column, 1 - first_impulse * velocity_after)
     given = -np.diff(limit.normal_impulse(T - np.append(t, T)))
     normal = (np.append(given, 0.0) + np.append(0.0, given)) / 2  # of the edges in the part of J that goes with K
     edges = K * normal
@@ -152,16 +152,16 @@ def _stick(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
     adjoint = solve_toeplitz(column, h * np.cumsum(edges[:0:-1]))[::-1]
     of_column = -np.correlate(adjoint, force, "full")[STEPS - 1 :]
     of_column[0] /= 2
-    of_blow = -(blow**2) * (float(edges.sum()) - float(adjoint @ after_blow))
+    impulse_adjoint = -(first_impulse**2) * (float(edges.sum()) - float(adjoint @ velocity_after))
 
     def R(omega: Any) -> Array:
         half = omega * h / 2
         mean = np.sin(half) / half
-        blown = mean * np.cos(omega * (t[:, None] + h / 2))
+        d_velocity_after = mean * np.cos(omega * (t[:, None] + h / 2))
         pushed = h * mean**2 * np.cos(omega * t[:, None])
-        return np.asarray(of_blow - blow * (adjoint @ blown) + of_column @ pushed)
+        return np.asarray(impulse_adjoint - first_impulse * (adjoint @ d_velocity_after) + of_column @ pushed)
 
-    impulses = np.append(blow, blow + h * np.cumsum(force))
+    impulses = np.append(first_impulse, first_impulse + h * np.cumsum(force))
     J, to_K, still = float(edges @ impulses), float(normal @ impulses), float(R(np.full(1, 1e-9 / T))[0])
     m = float(limit.end_mass(J))
     scale = m**2 * (K - 1) / J**2  # dm/dJ at fixed c and K

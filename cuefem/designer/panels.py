@@ -176,7 +176,7 @@ def tabulate_check(step: Step, results: Results) -> list[Table]:
         ]
     if "solved_strike" in results.own:
         rows.append(("tip contact", regime_warning(results.own["solved_strike"].outcome.regime) or "no miscue"))
-    rows += [("unusual", line) for line in plausibility_warnings(step.design.scene)] or [("unusual values", "none")]
+    rows += [("warning", line) for line in plausibility_warnings(step.design.scene)] or [("warnings", "none")]
     first = Table(f"Check of {step.design.name}", ("check", "result"), tuple(rows), texts=(0, 1))
     solid = results.own.get("solid")
     return [first] if solid is None else [first, cuefem.report.tabulate_model_error(solid)]

@@ -24,7 +24,7 @@ REJECTED = f"a file must be a {', '.join(KINDS[:-1])} or {KINDS[-1]} of at most 
 
 def serve(first: Design, *, port: int, show: bool, announce: Callable[[str], None]) -> None:
     """Serve the page on this computer only until stopped. show: open it in the browser."""
-    warnings.filterwarnings("ignore", category=PlausibilityWarning)  # the page's Check lists what is unusual
+    warnings.filterwarnings("ignore", category=PlausibilityWarning)  # the page's Check lists these warnings
 
     @ui.page("/")
     async def index() -> None:

@@ -23,7 +23,7 @@ class SecondHit(Effect):
     Notes
     -----
     Adds: After each separation cue and ball move freely in their plane, and a new contact begins wherever they touch
-    again within the window. Its phases follow a phase ("apart", "free") in `Outcome.phases`. The tip retains its
+    again within the window. Its phases follow a phase ("separated", "free") in `Outcome.phases`. The tip retains its
     residual indentation and reloads on its unloading curve.
 
     Matters when: The tip is soft or of low restitution on a shaft that vibrates, or the cue is heavy.

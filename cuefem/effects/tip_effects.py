@@ -153,9 +153,11 @@ class PowerLawTip(TipEffect):
         """The power law."""
         terms.set_once("law", self._law)
 
-    def _law(self, blow: CentralImpact) -> tuple[TipLaw, float]:
-        law = TipLaw.for_contact_time(self.exponent, blow.restitution, mass=blow.mass, speed=self.speed, time=blow.time)
-        return law, blow.time * contact_time_ratio(self.exponent, blow.speed / self.speed)
+    def _law(self, impact: CentralImpact) -> tuple[TipLaw, float]:
+        law = TipLaw.for_contact_time(
+            self.exponent, impact.restitution, mass=impact.mass, speed=self.speed, time=impact.time
+        )
+        return law, impact.time * contact_time_ratio(self.exponent, impact.speed / self.speed)
 
 
 @dataclass(frozen=True)

@@ -93,7 +93,7 @@ def text() -> str:
     low, high = robot_speeds()
     soft = pages.change(squirt(whole(cue("pool_maple"), E=E)) for E in (40e6, 100e6, 200e6, 400e6))
     own, usual = model_error("whole"), whole(cue("pool_maple"))
-    tip, blow = usual.leather, cf.strike(at_offset(usual, 0.0))
+    tip, central = usual.leather, cf.strike(at_offset(usual, 0.0))
     farther = [pages.change(found("and axial force", U, b) for U in SPEEDS) for b in (0.3, 0.45)]
     return pages.page(
         "Squirt of a billiard cue from its geometry",
@@ -115,7 +115,7 @@ def text() -> str:
         "## Computed and measured",
         f"A maple shaft of 12.75 mm, tip {1e3 * tip.height:g} mm high, dome {1e3 * tip.dome_radius:g} mm, mu "
         f"{usual.tip.friction:g}. E {tip.E / 1e6:.0f} MPa and e {usual.tip.restitution:.2f} of the leather: a "
-        f"central impact at 2 m/s has a contact time of {1e3 * blow.duration:.2f} ms and a restitution of the whole "
+        f"central impact at 2 m/s has a contact time of {1e3 * central.duration:.2f} ms and a restitution of the whole "
         f"cue of {cf.rebound(usual):.2f}. Squirt at b/R 0.375, degrees, against the cue's speed; the "
         f"robot measured 2.34 to 2.54, the ball at 3.6 to 7.8 mph between two light beams: a cue speed of {low:.1f} to "
         f"{high:.1f} m/s:",

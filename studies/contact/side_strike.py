@@ -112,7 +112,7 @@ SPEED, WINDOW = 0.5, 6e-3  # m/s, s: assumed, because those of the experiments w
 
 def touches(phases: Sequence[Any]) -> tuple[tuple[float, float], ...]:
     """Contacts (start, duration), s: phases of contact without separation between them."""
-    held = [list(part) for apart, part in groupby(phases, lambda phase: phase.state == "apart") if not apart]
+    held = [list(part) for apart, part in groupby(phases, lambda phase: phase.state == "separated") if not apart]
     return tuple((part[0].start, part[-1].end - part[0].start) for part in held)
 
 

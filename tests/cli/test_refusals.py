@@ -148,7 +148,7 @@ def test_sizes_out_of_all_proportion(command: str, was: str, size: str, words: s
     *remarks, last = err.splitlines()
     assert (status, out) == (2, "")
     assert remarks
-    assert all(line.startswith("unusual") for line in remarks)
+    assert all(line.startswith("warning") for line in remarks)
     assert words in last
 
 

@@ -2,8 +2,8 @@
 
 The beam (`tests.oracle.spectral_beam`) is of spectral elements with lumped masses, the contact
 (`tests.oracle.small_steps`) has neither phases nor events: whether the tip slips, sticks, parts or touches again comes
-out of a blow in each of some thousand equal steps. Both keep the same number of modes, so that nothing but the steps
-is between them. Scenes are random: cue, ball, tip, stroke and effect, with slips, sticks and miscues on both sides.
+out of an impulse in each of some thousand equal steps. Both have the same number of modes, so that they differ by the
+steps alone. Scenes are random: cue, ball, tip, stroke and effect, with slips, sticks and miscues on both sides.
 
 With 1,600 steps a contact time the worst of 40 scenes a kind is 2e-5 (on the cue), 9e-5 (a raised cue) and 3e-4 (a
 second hit), over a sensible size (`differences`): the small steps' own, which fall with the steps. Of 40 second hits 23
@@ -100,7 +100,7 @@ def raised(draw: Draw) -> cf.Scene:
 
 
 def raised_and_stuck(draw: Draw) -> cf.Scene:
-    """A steep cue whose tip never slips: its blow presses the ball onto the table, which rubs."""
+    """A steep cue whose tip never slips: its impact presses the ball onto the table, which rubs."""
     tip, lowered = cf.Tip(0.75, math.inf, contact_time=1e-3), cf.Elevation(draw.between(0.4, 0.6), 0.2)
     return cf.Scene(draw.cue(), tip=tip, stroke=cf.Stroke(1.0, draw.between(0.5, 0.7)), effects=(lowered,))
 

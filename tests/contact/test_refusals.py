@@ -76,7 +76,7 @@ CALLS: list[Any] = [
         lambda: cf.batch_strike([kim_scene(), replace(kim_scene(restitution=0.0), effects=(cf.SecondHit(),))]),
         "scene 1: " + DEAD,
     ),
-    # a measured blow
+    # a measured impact
     (lambda: cf.identify_tip(leather_scene(), 0.0, 0.73), "identify_tip contact_time must be in [1e-6, 10] s; got 0"),
     (lambda: cf.identify_tip(leather_scene(), 1e-3, 1.1), "identify_tip rebound must be in [0.1, 1]; got 1.1"),
     (

@@ -148,11 +148,11 @@ def test_side_strike_second_hit_is_computed(law: dict[str, float]) -> None:
     """The end that a heavy striker drove away hits it again; a contact that outlasts the window is the last."""
     scene = SideStrike(kim(), Striker(0.05, 0.8, **law), 0.0)
     once, twice = side_strike(scene, FEW), side_strike(replace(scene, effects=(cf.SecondHit(20e-3),)), FEW)
-    flight = next(phase for phase in twice.phases if phase.state == "apart")
+    flight = next(phase for phase in twice.phases if phase.state == "separated")
     assert twice.rebound_speed > once.rebound_speed
     window = flight.end - once.duration + 1e-6  # ends in the second touch
     cut = side_strike(replace(scene, effects=(cf.SecondHit(window),)), FEW)
-    assert sum(phase.state == "apart" for phase in cut.phases) == 1
+    assert sum(phase.state == "separated" for phase in cut.phases) == 1
     assert cut.duration > once.duration + window
 
 

@@ -217,11 +217,11 @@ def test_friction_at_critical_value_does_not_chatter(end_mass: float) -> None:
 
 @pytest.mark.parametrize(("e", "regime"), [(0.3, "miscue"), (0.9, "late stick")])
 def test_infinite_friction_impact_may_separate_at_once(e: float, regime: str) -> None:
-    """A light cue against endless friction: the blow alone is the contact, as in the impulse solver; at e it ends."""
+    """A light cue with infinite friction: the impulse alone is the contact, as in the impulse solver; at e it ends."""
     cue = cf.LumpedCue(0.05, 0.02, -0.8 / math.sqrt(0.05 * 0.02))
     scene = cf.Scene(cue, tip=cf.Tip(e, math.inf, contact_time=1e-3), stroke=cf.Stroke(1.0, 0.95))
     outcome, exact = cf.strike(scene), cf.impulse(scene)
-    assert [phase.state for phase in outcome.phases] == ["blow"]
+    assert [phase.state for phase in outcome.phases] == ["impulse"]
     assert (outcome.regime, exact.regime, outcome.duration) == (regime, regime, 0)
     for name in ("squirt", "ball_speed", "spin", "cue_speed"):
         assert getattr(outcome, name) == pytest.approx(getattr(exact, name), rel=1e-12)

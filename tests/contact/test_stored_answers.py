@@ -18,7 +18,7 @@ from tests.data.stored import cue_of, cues, scene_of, stored_law, strikes, tip_o
 from tests.helpers.strike_scenes import imbalance
 
 KINDS = tuple(dict.fromkeys(row["kind"] for row in strikes()))
-# Endless friction begins with a blow, whose fronts the steps do not resolve.
+# Infinite friction begins with an impulse, whose wave fronts the steps do not resolve.
 ENDLESS = "endless"
 
 

@@ -229,7 +229,7 @@ def test_history_forces_obey_friction_and_integrate_to_impulse(name: str) -> Non
     for phase in outcome.phases:
         here = (force_times > phase.start) & (force_times < phase.end)
         if not here.any():
-            assert (phase.state, phase.start) == ("blow", phase.end)
+            assert (phase.state, phase.start) == ("impulse", phase.end)
             continue
         f_t, f_n = force[here].T
         given_by = [lengths[here] @ f_t, lengths[here] @ f_n]

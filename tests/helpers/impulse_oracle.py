@@ -48,7 +48,7 @@ def _exact(x: dict[str, Decimal], *, M: Decimal, U: Decimal) -> Told:
     v_t, v_n = -s, -c
     p_t = p_n = normal_work = friction_work = Decimal(0)
     spent, pulls = None, []
-    if mu == Decimal("Infinity") and v_t < 0:  # the limit of ever larger friction: a blow along t alone
+    if mu == Decimal("Infinity") and v_t < 0:  # the limit of ever larger friction: an impulse along t alone
         r_t, r_n = response(Decimal(1), Decimal(0))
         p_t = -v_t / r_t
         friction_work, v_t, v_n = -v_t * p_t / 2, Decimal(0), v_n + r_n * p_t

@@ -86,7 +86,7 @@ def sound(outcome: Outcome, within: float = CLOSED) -> None:
     initial = outcome.energy["initial"]
     assert all(part >= -CLOSED * initial for part in outcome.energy.values())
     assert imbalance(outcome) < within
-    thrown = [phase.state for phase in outcome.phases] == ["blow"]  # apart by endless friction alone
+    thrown = [phase.state for phase in outcome.phases] == ["impulse"]  # separated by infinite friction alone
     assert outcome.impulse[1] == 0 if thrown else outcome.impulse[1] > 0
     assert abs(outcome.impulse[0]) >= 0
     times = [(phase.start, phase.end) for phase in outcome.phases]

@@ -1,7 +1,7 @@
 """A contact of its own for what checks the package: small steps of equal length, without phases and without events.
 
 Cue, ball and table move in three dimensions in the table's frame (x right, y forward, z up). A step is half of the
-free motion (exact), a blow of the contact's forces, and the other half. The tip's force along the normal follows from
+free motion (exact), an impulse of the contact's forces, and the other half. The tip's normal force follows from
 the positions; friction, at the tip and on the table, is what leaves the sliding point at rest at the end of the step,
 or its bound against the sliding. Whoever slips, sticks, lifts off or touches again comes out of that.
 """
@@ -116,7 +116,7 @@ class Steps:
         self.rows = np.array(rows)
 
     def _half_step(self) -> None:
-        """The free motion over half a step, and what a blow at its middle does to the velocities at its end."""
+        """The free motion over half a step, and what an impulse at its middle does to the velocities at its end."""
         n, many = self.size, self.many
         A = np.zeros((2 * n, 2 * n))
         A[:n, n:] = np.eye(n)

@@ -70,4 +70,4 @@ def test_file_number_in_other_unit_warns_at_load(tmp_path: Path) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         status, _, err = call("strike", path)
-    assert (status, err[:35]) == (0, "unusual: dome radius 9500 mm; expec")
+    assert (status, err[:35]) == (0, "warning: dome radius 9500 mm; expec")

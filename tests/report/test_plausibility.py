@@ -85,7 +85,7 @@ def test_strike_of_shaft_without_butt_warns(tmp_path: Path) -> None:
     (line,) = plausibility_warnings(cf.Scene(light))
     assert line.startswith(f"mass of the whole cue {1e3 * light.mass:.6g} g{LEFT_OUT}")
     status, out, err = call("strike", shaft, "--json")
-    assert (status, err.splitlines()) == (0, [f"unusual: {json.loads(out)['unusual'][0]}"])
+    assert (status, err.splitlines()) == (0, [f"warning: {json.loads(out)['warnings'][0]}"])
     assert LEFT_OUT in err
     assert call("strike", shaft, "--body-mass", "15 oz")[2] == ""
     assert call("modes", shaft)[2] == ""  # frequencies do not depend on it
