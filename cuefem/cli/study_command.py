@@ -82,7 +82,7 @@ def study(
         with errors_name_file(file), _rounds(asked, iterations) as tell_round:
             result = compute_study(asked, rounds=iterations, progress=tell_round)
     else:
-        kept = SqliteStore(store or file.with_suffix(".sqlite"), designs, file.stem)
+        kept = SqliteStore(store or file.with_suffix(".sqlite"), designs)
         result = _kept(file, asked, kept, workers)
     record: dict[str, Any] = {"file": str(file), "kind": result.kind, "assumed": notes, "units": result.units}
     record |= {"varied": varied_segments(designs.vary, designs.base), "resolution": designs.at and vars(designs.at)}
@@ -111,7 +111,7 @@ def _kept(file: Path, asked: Study | Scatter, designs: SqliteStore, workers: int
                 )
         except (KeyboardInterrupt, RuntimeError) as error:
             progress.stop()
-            kept = f"{len([*designs.rows()])} of {designs.study.size} designs are stored in {designs.path}"
+            kept = f"{designs.done} of {designs.study.size} designs are stored in {designs.path}"
             if isinstance(error, RuntimeError):
                 raise RuntimeError(f"{error}; {kept}; run the same command to resume") from None
             click.echo(f"cuefem: interrupted; {kept}; run the same command to resume", err=True)

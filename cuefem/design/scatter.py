@@ -147,10 +147,6 @@ class _Points:
 
     scatter: Scatter
 
-    def __repr__(self) -> str:
-        about = self.scatter.count, self.scatter.seed, self.scatter.correlations, self.scatter.groups
-        return f"tolerances {about}"
-
     @property
     def count(self) -> int:
         return (len(self.scatter.causes) + 2) * self.scatter.count

@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from importlib.metadata import version
 from itertools import product
 from typing import Any, Protocol
 
@@ -16,12 +15,12 @@ from cuefem.cue.materials import material
 from cuefem.design.evaluation import Evaluation, Failed, Response, evaluate
 from cuefem.design.sampling import Levels, Normal, Span, Value
 from cuefem.parameters.parameter import Path, path_text, paths, quantity_at, value_at, with_values_at
-from cuefem.quantity.display import full_repr, one_line
+from cuefem.quantity.display import one_line
 from cuefem.scene import Resolution, Scene
 
 
 class DesignSample(Protocol):
-    """Points in the unit cube, one a design, such as a `Sample`; different samples have different reprs."""
+    """Points in the unit cube, one a design, such as a `Sample`."""
 
     @property
     def count(self) -> int:
@@ -241,15 +240,3 @@ class Study:
         reasons |= dict(zip(scenes, valid.reasons, strict=True))
         every = range(len(designs))
         return Evaluation(np.array([rows.get(i, missing) for i in every]), tuple(reasons[i] for i in every))
-
-    @property
-    def record(self) -> dict[str, Any]:
-        """Everything that its numbers depend on, for JSON."""
-        return {
-            "cuefem": version("cuefem"),
-            "scene": full_repr(self.base),
-            "vary": [repr(vary) for vary in self.vary],
-            "responses": [response.name for response in self.responses],
-            "sample": repr(self.sample),
-            "resolution": repr(self.at),
-        }

@@ -78,19 +78,6 @@ def test_study_scene_applies_materials_numbers_and_factors() -> None:
         assert made[i].material == replace(BASE.cue.segments[i].material, E=BASE.cue.segments[i].material.E * 0.5)
 
 
-def test_study_records_of_different_studies_differ() -> None:
-    one = study(varied("ball.mass", 0.2))
-    others = [
-        study(varied("ball.mass", math.nextafter(0.2, 1))),
-        study(varied("ball.mass", 0.2), responses=("mass",)),
-        replace(one, at=cf.Resolution(1, 14, 8)),
-        replace(one, base=replace(BASE, stroke=cf.Stroke(2.0, 0.31))),
-        replace(one, sample=Sample("sobol", 4, 1)),
-    ]
-    assert len({str(each.record) for each in (one, *others)}) == 6
-    assert study(varied("ball.mass", 0.2)).record == one.record
-
-
 def test_response_name_is_inverse_of_of() -> None:
     for one in ALL:
         assert Response.of(one.name) == one
