@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
 import click
-from rich.console import Console
 
 from cuefem.cli.common import check_overwrite, errors_name_file, force_option, print_warnings
 from cuefem.cli.output import assumed_lines, command, json_option, output_option, print_result, write_result
@@ -79,7 +76,12 @@ def study(
     print_warnings(designs.base)
     kept = None
     if isinstance(asked, Problem):
-        with errors_name_file(file), _rounds(asked, iterations) as tell_round:
+        with errors_name_file(file), progress_bar() as bar:
+            task = bar.add_task("first round", total=iterations)
+
+            def tell_round(reached: Round) -> None:
+                bar.update(task, completed=reached.number, description=round_text(asked, reached, iterations))
+
             result = compute_study(asked, rounds=iterations, progress=tell_round)
     else:
         kept = SqliteStore(store or file.with_suffix(".sqlite"), designs)
@@ -102,15 +104,18 @@ def study(
 
 def _kept(file: Path, asked: Study | Scatter, designs: SqliteStore, workers: int | None) -> StudyResult:
     """The result of a sweep or a scatter; an interrupted one prints which designs are stored."""
-    with progress_bar(designs.study.size) as progress, designs:
-        progress.start(designs.done)
+    with progress_bar() as bar, designs:
+        task = bar.add_task("designs", total=designs.study.size)
         try:
             with errors_name_file(file):
                 return compute_study(
-                    asked, store=designs, workers=workers, progress=lambda rows: progress.update(designs.done)
+                    asked,
+                    store=designs,
+                    workers=workers,
+                    progress=lambda rows: bar.update(task, completed=designs.done),
                 )
         except (KeyboardInterrupt, RuntimeError) as error:
-            progress.stop()
+            bar.stop()
             kept = f"{designs.done} of {designs.study.size} designs are stored in {designs.path}"
             if isinstance(error, RuntimeError):
                 raise RuntimeError(f"{error}; {kept}; run the same command to resume") from None
@@ -135,17 +140,6 @@ def _rounded(scene: Scene, study: Study) -> Scene:
     moved = {path for vary in study.vary for path in (*vary.fields(scene), *vary.compensating_fields(scene))}
     numbers = {path: value_at(scene, path) for path in moved}
     return with_values_at(scene, {path: float(f"{x:.9g}") for path, x in numbers.items() if isinstance(x, float)})
-
-
-@contextmanager
-def _rounds(problem: Problem, most: int) -> Iterator[Callable[[Round], object]]:
-    """The iterations of a search and its best result on stderr, if it is a terminal."""
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield lambda reached: None
-        return
-    with console.status("choosing modes") as status:
-        yield lambda reached: status.update(round_text(problem, reached, most))
 
 
 def round_text(problem: Problem, reached: Round, most: int) -> str:
