@@ -194,22 +194,17 @@ class PointTerms:
 
     def __init__(self, mesh: Mesh, cue: Cue) -> None:
         self.mesh, self.cue = mesh, cue
-        self.stiffness: dict[int, float] = {}
-        self.dashpot: dict[int, float] = {}
-        self.mass: dict[int, float] = {}
+        self.stiffness, self.dashpot, self.mass = np.zeros((3, mesh.unknowns))
         self.compliance: dict[tuple[int, int], float] = {}
         self.fixed: set[int] = set()
 
     def add(self, x: float, kind: str, w: float, theta: float) -> None:
         """Add diagonal terms at position ``x``: ``w`` for the deflection, ``theta`` for the rotation; inf clamps."""
-        terms: dict[int, float] = getattr(self, kind)
         for unknown, value in zip(self.mesh.dofs_at(self.mesh.node(x)), (w, theta), strict=True):
             if np.isinf(value):
-                if unknown in self.fixed:
-                    raise ValueError(f"a clamp must be the only one at its position; got two at {x} m")
                 self.fixed.add(unknown)
-            elif value:
-                terms[unknown] = terms.get(unknown, 0.0) + value
+            else:
+                getattr(self, kind)[unknown] += value
 
     def join(self, x: float, w: float, theta: float) -> None:
         """Add a joint at position ``x`` with compliances ``w`` (m/N) and ``theta`` (rad/(N m)); zero: no jump."""

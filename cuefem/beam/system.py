@@ -227,16 +227,13 @@ def assemble(
         if value:
             stiff.append((index[[before, after]], scale[before] / value * np.array([[1.0, -1.0], [-1.0, 1.0]])))
 
-    def point(values: dict[int, float]) -> Array:
-        diagonal = np.zeros(size + 1)
-        for unknown, value in values.items():
-            diagonal[index[unknown]] += value * scale[unknown]
-        return diagonal[:-1]
+    def point(values: Array) -> Array:
+        return np.bincount(index % (size + 1), values * scale, size + 1)[:-1].astype(float)
 
     springs = point(terms.stiffness)
     dense = is_dense_faster(size, count or (at if isinstance(at, int) else 0))
     K, M = assemble_blocks(stiff, springs, dense), assemble_blocks(heavy, point(terms.mass), dense)
-    dashpots = point(terms.dashpot) if terms.dashpot else None
+    dashpots = point(terms.dashpot) if terms.dashpot.any() else None
     shift, mass = _shift(cue, points), float(points.weights @ points.section.rhoA)
     rigid = _free_rigid_modes(mesh, cue.length, index, springs > MIN_STIFFNESS * shift * mass)
     return System(cue, mesh, points, K, M, index, rigid, dashpots, shift)

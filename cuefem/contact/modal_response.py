@@ -8,10 +8,8 @@ All of it depends on the cue alone, so that strikes at other speeds and offsets 
 from __future__ import annotations
 
 import math
-import threading
-import weakref
 from collections.abc import Iterator
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -177,12 +175,6 @@ def _rows_of_power(damping: Array) -> Array:
     return rows
 
 
-_known: weakref.WeakKeyDictionary[TipModes, dict[tuple[str, float, float], ModalPropagator]] = (
-    weakref.WeakKeyDictionary()
-)
-_lock = threading.Lock()
-
-
 def propagator_of(tip: TipModes, ports: str = "straight", time: float = 0.0, window: float = 0.0) -> ModalPropagator:
     """The propagator of tip modes with some ports: "straight" (u, w), "turning" (u, w, the end's turning), or "raised".
 
@@ -190,17 +182,15 @@ def propagator_of(tip: TipModes, ports: str = "straight", time: float = 0.0, win
     (`slope_rows`). Strikes with the same tip modes share it.
     """
     bends = tip.geometric is not None
-    lasting, until = (half_octave(time), half_octave(time) + window) if bends else (0.0, 0.0)
-    key = ports, lasting, until
-    with _lock:
-        of_tip = _known.setdefault(tip, {})
-        if key not in of_tip:
-            rows, slopes = tip.amplitude.T, slope_rows(tip, lasting, until)
-            if ports == "turning":
-                rows = np.concatenate([rows, tip.rotation[None]])
-            parts = _in_two_planes(tip, slopes) if ports == "raised" else (tip, rows, slopes)
-            of_tip[key] = ModalPropagator(*parts)
-        return of_tip[key]
+    return _propagator(tip, ports, *((half_octave(time), half_octave(time) + window) if bends else (0.0, 0.0)))
+
+
+@lru_cache(maxsize=32)
+def _propagator(tip: TipModes, ports: str, time: float, until: float) -> ModalPropagator:
+    rows, slopes = tip.amplitude.T, slope_rows(tip, time, until)
+    if ports == "turning":
+        rows = np.concatenate([rows, tip.rotation[None]])
+    return ModalPropagator(*(_in_two_planes(tip, slopes) if ports == "raised" else (tip, rows, slopes)))
 
 
 def _in_two_planes(tip: TipModes, slopes: Array) -> tuple[TipModes, Array, Array]:

@@ -161,13 +161,10 @@ class SideStrike:
         check_kind("SideStrike.cue", self.cue, Cue)
         check_kind("SideStrike.striker", self.striker, Striker)
         check_fields(self)
-        if isinstance(self.effects, Effect):
-            raise TypeError(f"SideStrike.effects must be a sequence of effects; got one, {self.effects!r}")
-        object.__setattr__(self, "effects", tuple(self.effects))
         if self.position > self.cue.length * (1 + POSITION_TOLERANCE):
             bounds = f"[0, {self.cue.length}] m, on the cue"
             raise ValueError(f"SideStrike.position must be in {bounds}; got {self.position}")
-        check_effects(self.cue, self.effects, "SideStrike")
+        object.__setattr__(self, "effects", check_effects(self.cue, self.effects, "SideStrike"))
         for i, effect in enumerate(self.effects):
             if effect.at_tip and ContactTerms.of((effect,), self.cue.segments[0].tip_diameter).window is None:
                 raise ValueError(

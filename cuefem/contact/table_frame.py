@@ -155,7 +155,6 @@ def _contact(point: ArrayLike, direction: ArrayLike, radius: float) -> tuple[Arr
 
 
 def _vector(name: str, value: ArrayLike, size: int, quantity: Quantity) -> Array:
-    vector = quantity.check_all(name, value)
-    if vector.shape != (size,):
-        raise ValueError(f"{name} must have {size} components; got an array of shape {vector.shape}")
-    return vector
+    if np.shape(value) != (size,):
+        raise ValueError(f"{name} must have {size} components; got an array of shape {np.shape(value)}")
+    return np.array([quantity.check(f"{name}[{i}]", component) for i, component in enumerate(np.asarray(value))])

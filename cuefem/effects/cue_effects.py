@@ -141,12 +141,6 @@ class Support(CueEffect):
         """The position of the support."""
         return (self.position,)
 
-    @property
-    def clamps(self) -> tuple[tuple[str, float], ...]:
-        """Deflection, rotation or both, if their stiffness is infinite."""
-        names = ("stiffness", "rotational_stiffness")
-        return tuple((name, self.position) for name in names if math.isinf(getattr(self, name)))
-
     def add_to(self, terms: PointTerms) -> None:
         """Add the springs and the dashpot."""
         terms.add(self.position, "stiffness", self.stiffness, self.rotational_stiffness)

@@ -93,11 +93,6 @@ class CueEffect(Effect):
         """Positions where deflection and rotation may jump, m from the tip."""
         return ()
 
-    @property
-    def clamps(self) -> tuple[tuple[str, float], ...]:
-        """Degrees of freedom that the effect removes: (name of the infinite field, position in m)."""
-        return ()
-
     def add_to(self, terms: PointTerms) -> None:
         """Add the effect's point terms to the beam's."""
 
@@ -143,28 +138,24 @@ def effect_kinds() -> dict[str, type[Effect]]:
     return {kind.__name__: kind for kind in sorted(below(Effect), key=lambda kind: kind.__name__)}
 
 
-def check_effects(cue: Cue | LumpedCue, effects: tuple[Any, ...], scene: str = "Scene") -> None:
-    """TypeError or ValueError unless the effects go with the cue and with each other.
+def check_effects(cue: Cue | LumpedCue, effects: Any, scene: str = "Scene") -> tuple[Effect, ...]:
+    """The effects of a scene as a tuple.
 
-    Messages name the effect; scene: the name of the class that holds the effects.
+    TypeError or ValueError unless they are effects, on the cue or at its tip, and go together.
     """
-    for i, effect in enumerate(effects):
-        check_kind(f"{scene}.effects[{i}]", effect, Effect)
-        if isinstance(cue, LumpedCue) and effect.needs_beam:
-            raise ValueError(
-                f"{scene}.effects[{i}] must be an effect that a LumpedCue can have, one at its tip alone; "
-                f"got {type(effect).__name__}, which needs a finite-element Cue"
-            )
-        if isinstance(cue, Cue):
-            effect.check_on(cue, f"{scene}.effects[{i}]")
-    _check_excluded(effects, scene)
-    if isinstance(cue, Cue):
-        _check_clamps(cue, effects, scene)
-
-
-def _check_excluded(effects: tuple[Effect, ...], scene: str) -> None:
+    if isinstance(effects, Effect):
+        raise TypeError(f"{scene}.effects must be a sequence of effects; got one, {effects!r}")
+    effects = tuple(effects)
     names = [type(effect).__name__ for effect in effects]
     for i, effect in enumerate(effects):
+        check_kind(f"{scene}.effects[{i}]", effect, Effect)
+        if isinstance(cue, Cue):
+            effect.check_on(cue, f"{scene}.effects[{i}]")
+        elif effect.needs_beam:
+            raise ValueError(
+                f"{scene}.effects[{i}] must be an effect that a LumpedCue can have, one at its tip alone; "
+                f"got {names[i]}, which needs a finite-element Cue"
+            )
         if effect.once and names[i] in names[:i]:
             raise ValueError(f"{scene}.effects[{i}] must be another effect, {names[i]} acts once; got {effect}")
         other = next((name for name in effect.excludes if name in names), None)
@@ -173,18 +164,4 @@ def _check_excluded(effects: tuple[Effect, ...], scene: str) -> None:
                 f"{scene}.effects[{i}] must be an effect that goes with effects[{names.index(other)}], {other}; "
                 f"got {names[i]}, which does not"
             )
-
-
-def _check_clamps(cue: Cue, effects: tuple[Effect, ...], scene: str) -> None:
-    """ValueError for a second clamp of the same degree of freedom at one position."""
-    clamps = [(i, *clamp) for i, e in enumerate(effects) if isinstance(e, CueEffect) for clamp in e.clamps]
-    for n, (i, name, x) in enumerate(clamps):
-        first = next(
-            (j for j, other, at in clamps[:n] if other == name and abs(at - x) <= POSITION_TOLERANCE * cue.length), None
-        )
-        if first is not None:
-            unit = "N/m" if name == "stiffness" else "N m/rad"
-            raise ValueError(
-                f"{scene}.effects[{i}].{name} must be in [0, inf) {unit} at {x} m, "
-                f"where effects[{first}] is a clamp already; got inf"
-            )
+    return effects

@@ -329,9 +329,10 @@ class LeatherTip(CueEffect):
         (b/R > 0.75) the patch is kept where the table ends, short of the rim, and only normal and tangent turn further.
         """
         self.check_diameter(diameter)
-        radii = np.asarray(Quantity("m", f"(0, {diameter / 2}]").check_all("patch", patch)) / diameter
-        matrices = self._compliance(diameter, offset, radii.ravel()) / (self.E * diameter)
-        return np.asarray(matrices.reshape(*radii.shape, 2, 2))
+        bounds, patch = Quantity("m", f"(0, {diameter / 2}]"), np.asarray(patch)
+        radii = np.array([bounds.check("patch", radius) for radius in patch.flat]) / diameter
+        matrices = self._compliance(diameter, offset, radii) / (self.E * diameter)
+        return np.asarray(matrices.reshape(*patch.shape, 2, 2))
 
     def head_on(self, diameter: float, ball_radius: float) -> tuple[Array, Array, Array]:
         """Normal force over the indentation of a ball on the dome, without friction.

@@ -12,7 +12,6 @@ from collections.abc import Iterable
 from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cuefem.quantity.unit_checks import unit_hint, warn
 from cuefem.quantity.units import (
@@ -154,17 +153,6 @@ class Quantity:
             raise ValueError(f"{name} must be in {self.bounds}; got {value}")
         return number
 
-    def check_all(self, name: str, values: Any) -> NDArray[np.float64]:
-        """``values`` as a float array; the errors name field, bound, unit and value."""
-        try:
-            array = np.array(values, dtype=float)
-        except (TypeError, ValueError):
-            raise TypeError(f"{name} must be numbers in {self.bounds}; got {quote(values)}") from None
-        if not np.all(inside := self.contains(array)):
-            where, (value,) = first_failure(inside, array)
-            raise ValueError(f"{name} must be in {self.bounds}; got {value}{where}")
-        return array
-
 
 _WORDS = {
     "()": "between {} and {}",
@@ -270,14 +258,6 @@ def check_count(name: str, value: Any, least: int, most: int | None = None) -> N
         raise TypeError(f"{name} must be a whole number {bounds}; got {quote(value)}")
     if value < least or (most is not None and value > most):
         raise ValueError(f"{name} must be a whole number {bounds}; got {value}")
-
-
-def first_failure(holds: Any, *values: Any) -> tuple[str, tuple[float, ...]]:
-    """Where ``holds`` is false first (" at index 3", "" for a single stroke), and the values there."""
-    holds, *spread = np.broadcast_arrays(holds, *values)
-    index = tuple(int(i) for i in np.argwhere(~holds)[0])
-    where = f" at index {index if len(index) > 1 else index[0]}" if index else ""
-    return where, tuple(float(v[index]) for v in spread)
 
 
 def sine_cosine(offset: Any) -> tuple[Any, Any]:

@@ -184,10 +184,7 @@ class Scene:
         check_kind("Scene.ball", self.ball, Ball)
         check_kind("Scene.tip", self.tip, Tip)
         check_kind("Scene.stroke", self.stroke, Stroke)
-        if isinstance(self.effects, Effect):
-            raise TypeError(f"Scene.effects must be a sequence of effects; got one, {self.effects!r}")
-        object.__setattr__(self, "effects", tuple(self.effects))
-        check_effects(self.cue, self.effects)
+        object.__setattr__(self, "effects", check_effects(self.cue, self.effects))
         if isinstance(self.cue, Cue) and self.cue.segments and self.cue.body_mass == 0:
             warn_light_cue(self.cue.mass, self.cue.length)
         whole = self.contact_terms.tip is not None  # the terms refuse what may be given only once

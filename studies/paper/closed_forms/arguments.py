@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from cuefem.quantity.fields import Quantity
 
 _OFFSET, _RATIO = Quantity("", "(-1, 1)"), Quantity("", "(0, inf)")
@@ -34,4 +36,17 @@ _QUANTITIES = {
 
 def checked(**values: Any) -> tuple[Any, ...]:
     """The values as floats or float arrays, in the order given; ValueError names field, bound, unit and value."""
-    return tuple(_QUANTITIES[name].check_all(name, value) for name, value in values.items())
+    for name, value in values.items():
+        bounds = _QUANTITIES[name]
+        if not np.all(inside := bounds.contains(np.asarray(value, float))):
+            where, (found,) = first_failure(inside, value)
+            raise ValueError(f"{name} must be in {bounds.bounds}; got {found}{where}")
+    return tuple(np.array(value, dtype=float) for value in values.values())
+
+
+def first_failure(holds: Any, *values: Any) -> tuple[str, tuple[float, ...]]:
+    """Where ``holds`` is false first (" at index 3", "" for a single stroke), and the values there."""
+    holds, *spread = np.broadcast_arrays(holds, *values)
+    index = tuple(int(i) for i in np.argwhere(~holds)[0])
+    where = f" at index {index if len(index) > 1 else index[0]}" if index else ""
+    return where, tuple(float(v[index]) for v in spread)

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cuefem.quantity.fields import first_failure, sine_cosine
-from studies.paper.closed_forms.arguments import checked
+from cuefem.quantity.fields import sine_cosine
+from studies.paper.closed_forms.arguments import checked, first_failure
 from studies.paper.closed_forms.coefficients import Coefficients, critical_friction, lumped
 
 
