@@ -25,14 +25,14 @@ from hypothesis import settings  # noqa: E402
 import cuefem  # noqa: E402
 
 # hypothesis draws from the constants of the modules that are loaded: with all of them no worker's order matters
-for found in pkgutil.walk_packages(cuefem.__path__, "cuefem."):
+for module in pkgutil.walk_packages(cuefem.__path__, "cuefem."):
     with suppress(ImportError):  # an extra that is not installed
-        import_module(found.name)
+        import_module(module.name)
 
 settings.register_profile("cuefem", derandomize=True, deadline=None, database=None, print_blob=True)
 settings.load_profile("cuefem")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """`--update` writes golden files anew (tests/test_faces.py)."""
+    """`--update` writes golden files anew (tests/test_golden_files.py)."""
     parser.addoption("--update", action="store_true", help="write the golden files of tests/golden anew")

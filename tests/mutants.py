@@ -82,7 +82,7 @@ def mutants(path: Path) -> Iterator[Mutant]:
         starts.append(starts[-1] + len(row))
     for outer in ast.walk(ast.parse(text)):
         if isinstance(outer, ast.FunctionDef):
-            for node in (found for part in outer.body for found in ast.walk(part)):
+            for node in (inner for part in outer.body for inner in ast.walk(part)):
                 new = None if isinstance(node, ast.FunctionDef) else changed(node)
                 if new is not None and isinstance(node, ast.expr) and node.end_lineno and node.end_col_offset:
                     ends = starts[node.lineno - 1] + node.col_offset, starts[node.end_lineno - 1] + node.end_col_offset
@@ -105,8 +105,8 @@ def is_noticed(tree: Path, mutant: Mutant) -> str:
     command = [sys.executable, "-m", "pytest", "-n", "0", "-x", "--tb=no", "-p", "no:warnings", *dict.fromkeys(tests)]
     try:
         done = subprocess.run(command, cwd=tree, env=environment, capture_output=True, text=True, timeout=900)
-        said = [line for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
-        return "" if done.returncode == 0 else (said or ["does not even start"])[0][:110]
+        failures = [line for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
+        return "" if done.returncode == 0 else (failures or ["does not even start"])[0][:110]
     except subprocess.TimeoutExpired:
         return "does not end"
     finally:
@@ -118,23 +118,23 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="random mutants, and how many of them a test notices")
     for name, value in (("--seed", 1), ("--core", 40), ("--faces", 20)):
         parser.add_argument(name, type=int, default=value)
-    asked = parser.parse_args()
+    options = parser.parse_args()
     files = sorted((ROOT / "cuefem").rglob("*.py"))
     faces = [file for file in files if file.relative_to(ROOT / "cuefem").parts[0] in FACES]
-    drawn: list[Mutant] = []
-    for seed, (part, count) in enumerate(((sorted({*files} - {*faces}), asked.core), (faces, asked.faces))):
-        every = [mutant for file in part for mutant in mutants(file)]
-        drawn += random.Random(f"{asked.seed} {seed}").sample(every, count)
+    sample: list[Mutant] = []
+    for seed, (part, count) in enumerate(((sorted({*files} - {*faces}), options.core), (faces, options.faces))):
+        population = [mutant for file in part for mutant in mutants(file)]
+        sample += random.Random(f"{options.seed} {seed}").sample(population, count)
     noticed = 0
     with tempfile.TemporaryDirectory() as folder:
         tree = Path(folder) / "tree"
         shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns(".git", ".venv*", "__pycache__", "dist", "*.sqlite"))
-        for number, mutant in enumerate(drawn):
+        for number, mutant in enumerate(sample):
             by = is_noticed(tree, mutant)
             noticed += bool(by)
-            place = f"{mutant.path.relative_to(ROOT)}:{mutant.line}"
-            print(number, place, mutant.text, "|", by or "SURVIVES", flush=True)
-    n, z, rate = len(drawn), 1.96, noticed / len(drawn)
+            position = f"{mutant.path.relative_to(ROOT)}:{mutant.line}"
+            print(number, position, mutant.text, "|", by or "SURVIVES", flush=True)
+    n, z, rate = len(sample), 1.96, noticed / len(sample)
     middle = (rate + z**2 / 2 / n) / (1 + z**2 / n)
     half = z * math.sqrt(rate * (1 - rate) / n + z**2 / 4 / n**2) / (1 + z**2 / n)
     print(f"noticed {noticed} of {n}: {rate:.0%}, 95 % interval {middle - half:.0%} to {middle + half:.0%}")

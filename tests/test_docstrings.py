@@ -14,9 +14,9 @@ SLOW = pytest.param("design_changes", marks=pytest.mark.heavy)
 
 
 @pytest.mark.parametrize("name", [SLOW if name == "design_changes" else name for name in cf.__all__])
-def test_examples_run(name: str) -> None:
+def test_docstring_examples_of_public_name_run(name: str) -> None:
     public = getattr(cf, name)
     failures: list[str] = []
-    for found in doctest.DocTestFinder(recurse=False).find(public, name, globs={"cf": cf}):
-        doctest.DocTestRunner(optionflags=FLAGS).run(found, out=failures.append)
+    for example in doctest.DocTestFinder(recurse=False).find(public, name, globs={"cf": cf}):
+        doctest.DocTestRunner(optionflags=FLAGS).run(example, out=failures.append)
     assert "".join(failures) == ""

@@ -97,17 +97,17 @@ SOURCES = sorted(path for path in PACKAGE.rglob("*.py") if path != PACKAGE / "__
 TREES = {path: ast.parse(path.read_bytes()) for path in SOURCES}
 
 
-def test_imports_run_one_way() -> None:
+def test_imports_follow_package_order() -> None:
     """In the order, each library in its home, and few of them inside functions."""
     wrong = {path.name: out_of_order(part_of(path), tree) for path, tree in TREES.items()}
-    assert {name: found for name, found in wrong.items() if found} == {}
+    assert {name: names for name, names in wrong.items() if names} == {}
     assert out_of_order("cue", ast.parse("from cuefem.beam import assemble")) == ["cuefem.beam"]
     assert out_of_order("scene", ast.parse("def f():\n    import pint")) == ["pint"]
     kinds = (ast.Import, ast.ImportFrom)
     assert sum(isinstance(one, kinds) and one.col_offset > 0 for tree in TREES.values() for one in walk(tree)) <= 45
 
 
-def test_public_names_are_there() -> None:
+def test_public_names_are_importable() -> None:
     """Every name of the stub is where it says, `dir` shows it, and it can be imported."""
     assert {"load", "strike", "design_changes"} <= set(dir(cuefem))
     for name in dir(cuefem):
@@ -132,7 +132,7 @@ COMMAND = "from tests.helpers.command_line import call; call("
         ("import cuefem.cli", [name for name in ["numpy", *HEAVY] if name != "click"]),
     ],
 )
-def test_what_is_not_needed_is_not_loaded(statement: str, light: list[str]) -> None:
+def test_import_or_command_loads_no_unneeded_library(statement: str, light: list[str]) -> None:
     program = f"{statement}\nimport sys\nprint(sorted(set({light!r}) & sys.modules.keys()))"
     done = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, cwd=PACKAGE.parent, check=True

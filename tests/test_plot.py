@@ -31,9 +31,9 @@ def line(axes: Axes, i: int = 0) -> tuple[np.ndarray, np.ndarray]:
 def test_shaft_figure_has_drawn_dimensions() -> None:
     axes = cf.plot.shaft(SCENE)
     assert axes.get_xlim()[1] == pytest.approx(736.6, rel=1e-12)
-    corners = np.concatenate([path.vertices for made in axes.collections for path in made.get_paths()])
+    corners = np.concatenate([path.vertices for item in axes.collections for path in item.get_paths()])
     assert corners[:, 1].max() == pytest.approx(21.5 / 2, rel=1e-12)
-    colours = {tuple(made.get_facecolor()[0]) for made in axes.collections}
+    colours = {tuple(item.get_facecolor()[0]) for item in axes.collections}
     assert len(colours) == 4  # leather, ferrule, wood, and the bore
 
 
@@ -42,8 +42,8 @@ def test_modes_figure_lists_frequencies_of_cue() -> None:
     named = [text.get_text() for text in axes.get_legend().get_texts()]
     assert named == [f"{f:.0f} Hz" for f in cf.modes(HOLLOW, 3).frequencies]
     assert all(np.abs(line(axes, i)[1]).max() == 1 for i in range(3))
-    held = cf.plot.modes(cf.Scene(HOLLOW, effects=(cf.Support(0.7, 1e6),)), 3)
-    assert [text.get_text() for text in held.get_legend().get_texts()] != named
+    supported = cf.plot.modes(cf.Scene(HOLLOW, effects=(cf.Support(0.7, 1e6),)), 3)
+    assert [text.get_text() for text in supported.get_legend().get_texts()] != named
 
 
 def test_squirt_figure_equals_strikes_and_ends_at_miscue() -> None:

@@ -18,7 +18,7 @@ import pytest
 
 import cuefem
 from tests.helpers.command_line import call
-from tests.helpers.surfaces import outline_of, revolved, written
+from tests.helpers.surfaces import outline_of, revolve, write_surface
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -40,19 +40,19 @@ def blocks(kind: str) -> list[str]:
 FIRST, OWN_SHAFT, *COMMANDS = blocks("sh")
 
 
-def test_the_sample_is_what_the_command_prints() -> None:
+def test_sample_output_equals_command() -> None:
     (sample,) = re.findall(r"^```text\n(.*?)```", README, flags=re.MULTILINE | re.DOTALL)
     status, out, _ = call("report", ROOT / "meshes" / "pool_maple.toml")
     assert status == 0
     assert " ".join(sample.split()) in " ".join(out.split())
 
 
-def test_every_block_is_of_a_kind_that_runs() -> None:
+def test_code_blocks_are_of_tested_languages() -> None:
     assert {name for name, _ in BLOCKS} == {"sh", "csv", "toml", "python", "text"}  # text: formulas
     assert TEXT.count("```") == 2 * len(BLOCKS)
 
 
-def test_a_shaft_of_ones_own_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_own_shaft_example_writes_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As the README writes it, behind the installation, which `.ci/run` tries."""
     monkeypatch.chdir(tmp_path)
     _, drawing, report = OWN_SHAFT.splitlines()
@@ -62,37 +62,37 @@ def test_a_shaft_of_ones_own_is_reported(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 @pytest.mark.parametrize("block", COMMANDS, ids=lambda block: " ".join(block.split()[:3]))
-def test_commands_run(block: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_command_blocks_run(block: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("meshes", "studies"):
         shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("*.svg", "*.png", "*.py", "data"))
-    written(tmp_path / "my_shaft.stl", *revolved(outline_of(SHAFT), 32))
+    write_surface(tmp_path / "my_shaft.stl", *revolve(outline_of(SHAFT), 32))
     monkeypatch.chdir(tmp_path)
     for line in block.splitlines():
-        program, *words = shlex.split(line, comments=True)
+        program, *arguments = shlex.split(line, comments=True)
         if program == "python":
-            subprocess.run([sys.executable, *words], env=os.environ | {"PYTHONPATH": str(ROOT)}, check=True)
+            subprocess.run([sys.executable, *arguments], env=os.environ | {"PYTHONPATH": str(ROOT)}, check=True)
             continue
         assert program == "cuefem"
-        status, _, err = call(*words)
+        status, _, err = call(*arguments)
         assert (status, err) == (0, "")
-        for option, path in itertools.pairwise(words):
+        for option, path in itertools.pairwise(arguments):
             assert option != "-o" or (tmp_path / path).exists()
 
 
 @pytest.mark.parametrize("code", blocks("python"))
-def test_python_runs(
+def test_python_blocks_run(
     code: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     for name in ("meshes", "studies"):
         (tmp_path / name).symlink_to(ROOT / name)
     monkeypatch.chdir(tmp_path)  # where the code may write
-    said: dict[str, object] = {}
-    exec(compile(code, "README.md", "exec"), said)
+    namespace: dict[str, object] = {}
+    exec(compile(code, "README.md", "exec"), namespace)
     for value in re.findall(r"# (\d+\.\d+) g$", code, flags=re.MULTILINE):
         assert value in capsys.readouterr().out
 
 
-def test_drawings_and_scenes_load(tmp_path: Path) -> None:
+def test_drawing_and_scene_blocks_load(tmp_path: Path) -> None:
     kinds = []
     for kind in ("toml", "csv"):
         for i, text in enumerate(blocks(kind)):
@@ -106,14 +106,14 @@ def test_drawings_and_scenes_load(tmp_path: Path) -> None:
     assert Counter(kinds) == {("csv", "Cue"): 2, ("toml", "Cue"): 2, ("toml", "Scene"): 2}
 
 
-def test_paths_are_there() -> None:
+def test_links_and_paths_exist() -> None:
     assert [link for link in LINKS if not (ROOT / link).exists()] == []
-    said = re.findall(r"`cuefem [^`]*?((?:studies|meshes)/[\w./]+)", TEXT)
-    assert said != []
-    assert [path for path in said if not (ROOT / path).exists()] == []
+    paths = re.findall(r"`cuefem [^`]*?((?:studies|meshes)/[\w./]+)", TEXT)
+    assert paths != []
+    assert [path for path in paths if not (ROOT / path).exists()] == []
 
 
-def test_the_citation_names_this_release() -> None:
+def test_citation_names_current_release() -> None:
     cited = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     keys = dict(re.findall(r"^([a-z-]+): (.+)$", cited, flags=re.MULTILINE))

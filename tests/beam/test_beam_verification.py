@@ -82,8 +82,8 @@ def uniform_frequencies(cue: Cue, count: int) -> np.ndarray:
 
     euler = ((np.arange(1, count + 2) + 0.5) * math.pi / cue.length) ** 2 * math.sqrt(EI / rhoA)
     grid = np.geomspace(0.2 * euler[0], euler[-1], 300 * count)
-    found = roots(lambda omega: sides(omega)[0], grid) + roots(lambda omega: sides(omega)[1], grid)
-    return np.sort(found)[:count] / (2 * math.pi)
+    omegas = roots(lambda omega: sides(omega)[0], grid) + roots(lambda omega: sides(omega)[1], grid)
+    return np.sort(omegas)[:count] / (2 * math.pi)
 
 
 @pytest.mark.parametrize("slenderness", [10, 30, 100, 1e3, 1e4])
@@ -109,7 +109,7 @@ def test_frequency_error_has_order_2p(order: int, mode: int) -> None:
 
 
 @pytest.mark.parametrize(("cue", "most"), [(kim(), 1e-10), (soft_tip(), 1e-10), (stiff_ferrule(), 1e-6)])
-def test_inverse_form_low_modes_lose_no_digits(cue: Cue, most: float) -> None:
+def test_inverse_form_low_modes_have_small_roundoff_error(cue: Cue, most: float) -> None:
     """On every mesh; `eigh(K, M)` has 30 times the error. A 1 mm steel ferrule leaves the round-off error of K."""
     reference = frequencies(cue, 1, 24, 4)
     for elements, order in ((2, 18), (4, 18), (8, 12), (8, 20), (40, 8)):
@@ -120,16 +120,16 @@ def test_inverse_form_low_modes_lose_no_digits(cue: Cue, most: float) -> None:
 
 
 def test_modes_dense_and_sparse_solvers_agree(monkeypatch: pytest.MonkeyPatch) -> None:
-    cue, found = soft_tip(), {}
+    cue, results = soft_tip(), {}
     monkeypatch.setattr(system, "EVEN", 1)  # however many modes are wanted
     for limit in (0, 10**6):
         monkeypatch.setattr(system, "DENSE_LIMIT", limit)
-        found[limit] = modes(cue, 8, effects=(Joint(0.3, 1e-3), Support(0.5, np.inf)), at=Resolution(2, 16, 8))
-    assert isinstance(found[10**6].system.K, np.ndarray)
-    assert not isinstance(found[0].system.K, np.ndarray)
-    np.testing.assert_allclose(found[0].frequencies, found[10**6].frequencies, rtol=1e-9)
+        results[limit] = modes(cue, 8, effects=(Joint(0.3, 1e-3), Support(0.5, np.inf)), at=Resolution(2, 16, 8))
+    assert isinstance(results[10**6].system.K, np.ndarray)
+    assert not isinstance(results[0].system.K, np.ndarray)
+    np.testing.assert_allclose(results[0].frequencies, results[10**6].frequencies, rtol=1e-9)
     x = np.linspace(0, cue.length, 50)
-    for sparse, dense in zip(found[0].shape(x), found[10**6].shape(x), strict=True):
+    for sparse, dense in zip(results[0].shape(x), results[10**6].shape(x), strict=True):
         np.testing.assert_allclose(sparse, dense, rtol=0, atol=1e-7 * np.abs(dense).max())
 
 
@@ -169,9 +169,9 @@ def sliced(cue: Cue, count: int) -> Cue:
 
 def test_mesh_sliced_cone_equals_whole_cone() -> None:
     whole = mesh_cue(COMPOSITE, 12)
-    found = sliced(COMPOSITE, 300)
-    np.testing.assert_allclose(mesh_cue(found, 12).nodes, whole.nodes, rtol=1e-12)
-    np.testing.assert_allclose(modes(found, 12).frequencies, modes(COMPOSITE, 12).frequencies, rtol=1e-6)
+    slices = sliced(COMPOSITE, 300)
+    np.testing.assert_allclose(mesh_cue(slices, 12).nodes, whole.nodes, rtol=1e-12)
+    np.testing.assert_allclose(modes(slices, 12).frequencies, modes(COMPOSITE, 12).frequencies, rtol=1e-6)
 
 
 @pytest.mark.parametrize("n", [100, pytest.param(1000, marks=pytest.mark.heavy)])
@@ -191,5 +191,5 @@ def test_frequencies_alternating_slices_converge_to_mean_material(n: int) -> Non
 def test_joint_negligible_compliance_changes_no_frequency() -> None:
     none = modes(kim(), 3).frequencies
     for least in (3.5e-202, 1e-15):
-        found = modes(kim(), 3, effects=(Joint(0.5, 0.0, least), Joint(0.5, least))).frequencies
-        np.testing.assert_allclose(found, none, rtol=1e-6)
+        result = modes(kim(), 3, effects=(Joint(0.5, 0.0, least), Joint(0.5, least))).frequencies
+        np.testing.assert_allclose(result, none, rtol=1e-6)

@@ -54,9 +54,9 @@ def test_modes_scaled_units_scale(cue: Cue, length: float, time: float, mass: fl
 def test_end_mass_scaled_units_scales(cue: Cue, drive: str, length: float, time: float, mass: float) -> None:
     stiff, heavy = mass / (length * time**2), mass / length**3
     other = replace(scaled(cue, E=stiff, G=stiff, rho=heavy, length=length), body_mass=cue.body_mass * mass)
-    here = Scene(cue, tip=Tip(contact_time=1e-3))
-    there = Scene(other, Ball(mass=0.21 * mass), Tip(contact_time=1e-3 * time))
-    one, two = end_mass(here, drive, AT), end_mass(there, drive, AT)  # type: ignore[arg-type]
+    original = Scene(cue, tip=Tip(contact_time=1e-3))
+    scaled_scene = Scene(other, Ball(mass=0.21 * mass), Tip(contact_time=1e-3 * time))
+    one, two = end_mass(original, drive, AT), end_mass(scaled_scene, drive, AT)  # type: ignore[arg-type]
     np.testing.assert_allclose(two, one * mass, rtol=1e-9)
 
 

@@ -23,11 +23,11 @@ EFFECTS = {
 @pytest.mark.parametrize(
     ("name", "support"), [*((name, "free") for name in NAMES), *(("kim", key) for key in EFFECTS if key != "free")]
 )
-def test_frequencies_equal_those_of_weak_forms(name: str, support: str) -> None:
+def test_frequencies_equal_scikit_fem_of_same_weak_forms(name: str, support: str) -> None:
     """Twelve flexible modes on one mesh, to 1e-9: the bases differ, the spaces are the same."""
-    drawn, order, effects = cue(name), 8, EFFECTS[support]
-    ours = assemble(drawn, Resolution(2, order, 12), effects)
-    found = solve(ours, 12)
-    K, M = weak_forms.assemble(drawn, ours.mesh.nodes, order=order, effects=effects)
-    frequencies = weak_forms.frequencies(K, M, shift=ours.shift)[found.rigid : found.rigid + 12]
-    np.testing.assert_allclose(frequencies, found.frequencies, rtol=1e-9)
+    shaft, order, effects = cue(name), 8, EFFECTS[support]
+    system = assemble(shaft, Resolution(2, order, 12), effects)
+    solution = solve(system, 12)
+    K, M = weak_forms.assemble(shaft, system.mesh.nodes, order=order, effects=effects)
+    frequencies = weak_forms.frequencies(K, M, shift=system.shift)[solution.rigid : solution.rigid + 12]
+    np.testing.assert_allclose(frequencies, solution.frequencies, rtol=1e-9)

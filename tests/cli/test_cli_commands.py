@@ -1,4 +1,4 @@
-"""Commands: their JSON is the library's numbers, and says what was assumed; what they print: tests/test_faces.py."""
+"""Commands: JSON equals the library, and lists assumptions; printed text: tests/test_golden_files.py (regression)."""
 
 import math
 import subprocess
@@ -14,7 +14,7 @@ from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.cues import kim as kims_shaft
 
 KIM = kims_shaft()
-BLOW = cf.Scene(KIM, stroke=cf.Stroke(offset=0.3))
+KIM_SCENE = cf.Scene(KIM, stroke=cf.Stroke(offset=0.3))
 EFFECTS = (cf.PointMass(0.1, 0.005), cf.Elevation(math.radians(5)), cf.AxialWaves(1.45, 0.03, 4400.0))
 SCENE = cf.Scene(KIM, cf.Ball(0.17, 0.028575), cf.Tip(0.8, 0.6, 1e-3), cf.Stroke(2.0, -0.2), EFFECTS)
 CSV = "x [mm],diameter [mm]\n0,12\n700,21\n"
@@ -22,50 +22,50 @@ CSV = "x [mm],diameter [mm]\n0,12\n700,21\n"
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    for name, thing in (("cue", KIM), ("kim", BLOW), ("scene", SCENE)):
-        cf.save(thing, tmp_path / f"{name}.toml")
+    for name, item in (("cue", KIM), ("kim", KIM_SCENE), ("scene", SCENE)):
+        cf.save(item, tmp_path / f"{name}.toml")
     (tmp_path / "shaft.csv").write_text(CSV)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
 
-def test_strike(folder: Path) -> None:
-    found = as_json("strike", "kim.toml")["models"]
-    for name, expected in (("two-part", cf.impulse(BLOW)), ("coupled", cf.strike(BLOW))):
-        model = found[name]
+def test_strike_json_equals_library(folder: Path) -> None:
+    models = as_json("strike", "kim.toml")["models"]
+    for name, expected in (("two-part", cf.impulse(KIM_SCENE)), ("coupled", cf.strike(KIM_SCENE))):
+        model = models[name]
         assert model["ball_velocity"] == pytest.approx(expected.ball_velocity.tolist(), rel=1e-12)
         assert (model["squirt"], model["spin"]) == pytest.approx((expected.squirt, expected.spin), rel=1e-12)
-        pivot = natural_pivot_length(0.3, expected.squirt, radius=BLOW.ball.radius)
+        pivot = natural_pivot_length(0.3, expected.squirt, radius=KIM_SCENE.ball.radius)
         assert model["pivot_length"] == pytest.approx(pivot, rel=1e-12)
-    a31 = alciatore_a31(0.3, mass_ratio=BLOW.ball.mass / cf.end_mass(BLOW, "offset"))
-    assert found["A.31"]["squirt"] == pytest.approx(a31, rel=1e-12)
+    a31 = alciatore_a31(0.3, mass_ratio=KIM_SCENE.ball.mass / cf.end_mass(KIM_SCENE, "offset"))
+    assert models["A.31"]["squirt"] == pytest.approx(a31, rel=1e-12)
     head_on = as_json("strike", "kim.toml", "--offset", "0")["models"]["two-part"]
     assert (head_on["squirt"], head_on["pivot_length"]) == (0, None)
 
 
-def test_report(folder: Path) -> None:
-    """Of a lumped cue; of others: tests/test_faces.py."""
-    cf.save(cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=BLOW.stroke), "lumped.toml")
+def test_report_json_of_lumped_cue_equals_library(folder: Path) -> None:
+    """Of a lumped cue; of others: tests/test_golden_files.py."""
+    cf.save(cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=KIM_SCENE.stroke), "lumped.toml")
     lumped = as_json("report", "lumped.toml")
     assert "modes" not in lumped
     assert lumped["end_masses"]["drives"]["force"]["end_mass"] == 0.006
-    paper = cf.Scene(cf.LumpedCue.two_part(0.54, 0.012), stroke=BLOW.stroke)
-    told = lumped["squirt"]["models"]["two-part, 12 g"]["squirt"][2]
-    assert told == pytest.approx(cf.impulse(paper).squirt, rel=1e-12)
+    paper = cf.Scene(cf.LumpedCue.two_part(0.54, 0.012), stroke=KIM_SCENE.stroke)
+    reported = lumped["squirt"]["models"]["two-part, 12 g"]["squirt"][2]
+    assert reported == pytest.approx(cf.impulse(paper).squirt, rel=1e-12)
 
 
-def test_a_scene_file_uses_its_own_and_options_replace_what_it_says(folder: Path) -> None:
-    found = as_json("strike", "scene.toml")
-    assert found["assumed"] == []
+def test_strike_options_replace_values_of_scene_file(folder: Path) -> None:
+    result = as_json("strike", "scene.toml")
+    assert result["assumed"] == []
     clip = {"type": "PointMass", "position": 0.1, "mass": 0.005, "rotary_inertia": 0, "axial_share": 1}
-    assert found["scene"]["effects"][0] == clip
-    assert found["models"]["coupled"]["squirt"] == pytest.approx(cf.strike(SCENE).squirt, rel=1e-12)
-    told = as_json("strike", "scene.toml", "--offset", "0.1", "--friction", "0.5", "--body-mass", "14 oz")["scene"]
-    assert (told["stroke"]["offset"], told["tip"]["friction"]) == (0.1, 0.5)
-    assert told["cue"]["body_mass"] == 0.39689332375
+    assert result["scene"]["effects"][0] == clip
+    assert result["models"]["coupled"]["squirt"] == pytest.approx(cf.strike(SCENE).squirt, rel=1e-12)
+    changed = as_json("strike", "scene.toml", "--offset", "0.1", "--friction", "0.5", "--body-mass", "14 oz")["scene"]
+    assert (changed["stroke"]["offset"], changed["tip"]["friction"]) == (0.1, 0.5)
+    assert changed["cue"]["body_mass"] == 0.39689332375
 
 
-def test_convert(folder: Path) -> None:
+def test_convert_writes_equal_cue_or_scene(folder: Path) -> None:
     assert stdout_of("convert", "cue.toml", "cue.vtu") == "wrote cue.vtu\n"
     stdout_of("convert", "cue.toml", "new.toml", "--body-mass", "15 oz")
     assert cf.load("new.toml") == replace(cf.load("cue.toml"), body_mass=0.425242846875)
@@ -77,7 +77,7 @@ def test_convert(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("module", ["cuefem", "cuefem.cli"])
-def test_the_package_runs_as_a_program(module: str) -> None:
+def test_package_run_as_module_prints_version(module: str) -> None:
     done = subprocess.run([sys.executable, "-m", module, "--version"], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("cuefem, version ")

@@ -10,7 +10,7 @@ import pytest
 from cuefem import Ball, LumpedCue, Outcome, Scene, Stroke, Tip, impulse
 from cuefem.contact.impulse_solver import impulse_inputs
 from studies.paper import closed_forms as squirt
-from tests.helpers.impulse_oracle import exact, regime_of
+from tests.oracle.decimal_impulse import exact_impulse, regime_of
 
 PLACES = ("initial", "ball translation", "ball rotation", "cue", "tip loss", "friction loss")
 REGIMES = ("stick", "late stick", "miscue", "slip reversal", "jam")
@@ -84,22 +84,22 @@ def mirrors(singles: list[Scene], right: Outcome) -> None:
 def test_impulse_every_regime_agrees_with_oracle(kind: str) -> None:
     rng = np.random.default_rng([8, REGIMES.index(kind)])
     singles = [draw(rng, kind) for _ in range(100)]
-    n, out, told = columns(singles), impulse(singles), [exact(each) for each in singles]
+    n, out, solutions = columns(singles), impulse(singles), [exact_impulse(each) for each in singles]
     energy_closes(singles, out)
     mirrors(singles, out)
-    seen = Counter([*map(regime_of, told), *(["jam"] * int(out.jam.sum()))])
-    assert seen[kind] >= 30, seen
-    assert out.regime.tolist() == [*map(regime_of, told)]
+    counts = Counter([*map(regime_of, solutions), *(["jam"] * int(out.jam.sum()))])
+    assert counts[kind] >= 30, counts
+    assert out.regime.tolist() == [*map(regime_of, solutions)]
     p, mass = np.hypot(*out.impulse.T), n["ball_mass"]
-    tangent, p_t, p_n, cue_speed, tip_loss, friction_loss = np.array([each[:6] for each in told], float).T
-    near = 1e-12
-    assert np.all(abs(np.tan(out.squirt) - tangent) < near * (1 + tangent**2))  # decimals have no angles
-    assert np.all(abs(np.array([p_t, p_n]) - out.impulse.T) < near * p)
+    tangent, p_t, p_n, cue_speed, tip_loss, friction_loss = np.array([each[:6] for each in solutions], float).T
+    tolerance = 1e-12
+    assert np.all(abs(np.tan(out.squirt) - tangent) < tolerance * (1 + tangent**2))  # decimals have no angles
+    assert np.all(abs(np.array([p_t, p_n]) - out.impulse.T) < tolerance * p)
     np.testing.assert_allclose(out.impulse, mass[:, None] * out.ball_velocity, rtol=1e-14)
     assert np.all(abs(out.spin * n["inertia"] * mass * n["radius"] - out.impulse[:, 0]) < 1e-14 * p)
-    assert np.all(abs(cue_speed - out.cue_speed) < near * n["speed"])
+    assert np.all(abs(cue_speed - out.cue_speed) < tolerance * n["speed"])
     for name, joules in (("tip loss", tip_loss), ("friction loss", friction_loss)):
-        assert np.all(abs(joules - out.energy[name]) < near * out.energy["initial"]), name
+        assert np.all(abs(joules - out.energy[name]) < tolerance * out.energy["initial"]), name
 
 
 def test_impulse_edge_cases_conserve_energy_and_mirror() -> None:

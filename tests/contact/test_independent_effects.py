@@ -22,7 +22,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.contact.outcome import Phase
-from tests.oracle.small_steps import Seen, struck
+from tests.oracle.small_steps import SmallStepsOutcome, solve_small_steps
 
 
 class Draw:
@@ -79,15 +79,15 @@ def supported(draw: Draw) -> cf.Scene:
     cue = draw.cue()
     if draw.often(0.25):
         return draw.scene(cue, cf.Support(cue.length, math.inf, math.inf), cf.Support(0.2, draw.scaled(1e3, 1e5)))
-    place = draw.between(0.04, 0.4)
-    return draw.scene(cue, cf.Support(place, draw.scaled(1e3, 1e6), draw.scaled(0.1, 50.0), draw.scaled(1.0, 50.0)))
+    position = draw.between(0.04, 0.4)
+    return draw.scene(cue, cf.Support(position, draw.scaled(1e3, 1e6), draw.scaled(0.1, 50.0), draw.scaled(1.0, 50.0)))
 
 
 def all_on_the_cue(draw: Draw) -> cf.Scene:
     """Own losses or one for all, a mass, a hand and a joint that turns, or turns and shears, at one place."""
-    place, lump = draw.between(0.05, 0.3), cf.PointMass(draw.between(0.01, 0.1), draw.scaled(1e-3, 2e-2), 1e-6)
-    hand = cf.Support(place, draw.scaled(1e3, 1e5), 0.0, draw.scaled(1.0, 30.0))
-    joint = cf.Joint(place, draw.scaled(1e-4, 1e-1), draw.scaled(1e-9, 1e-6) if draw.often(0.5) else 0.0)
+    position, lump = draw.between(0.05, 0.3), cf.PointMass(draw.between(0.01, 0.1), draw.scaled(1e-3, 2e-2), 1e-6)
+    hand = cf.Support(position, draw.scaled(1e3, 1e5), 0.0, draw.scaled(1.0, 30.0))
+    joint = cf.Joint(position, draw.scaled(1e-4, 1e-1), draw.scaled(1e-9, 1e-6) if draw.often(0.5) else 0.0)
     loss = cf.StructuralDamping(None if draw.often(0.5) else draw.scaled(1e-2, 0.3))
     return draw.scene(draw.cue(), loss, joint, lump, hand)
 
@@ -133,7 +133,7 @@ KINDS = {
 AT = cf.Resolution(3, 14, MODES, 2 * STEPS)
 
 
-def differences(scene: cf.Scene, ours: cf.Outcome, theirs: Seen) -> dict[str, float]:
+def differences(scene: cf.Scene, ours: cf.Outcome, theirs: SmallStepsOutcome) -> dict[str, float]:
     """Of each number, over a sensible size."""
     first, speed = ours.energy["initial"], ours.ball_speed
     return {
@@ -149,7 +149,7 @@ def differences(scene: cf.Scene, ours: cf.Outcome, theirs: Seen) -> dict[str, fl
 
 def compared(scene: cf.Scene, steps: int) -> dict[str, float]:
     """Differences of a strike from its small steps; both must have touched equally often."""
-    ours, theirs = cf.strike(scene, AT), struck(scene, MODES, steps)
+    ours, theirs = cf.strike(scene, AT), solve_small_steps(scene, MODES, steps)
     assert 1 + len(flights(ours)) == len(theirs.touches)
     return differences(scene, ours, theirs)
 

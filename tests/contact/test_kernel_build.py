@@ -52,7 +52,7 @@ SPOILED = {  # the file of the kernel that is changed, and what becomes of its b
 @pytest.mark.heavy
 @pytest.mark.parametrize("how", SPOILED)
 def test_kernel_of_other_sources_raises_until_built(folder: Path, how: str) -> None:
-    name, spoil, words = SPOILED[how]
+    name, spoil, message = SPOILED[how]
     binary = folder / BINARY.relative_to(ROOT)
     file = binary.parent / name
     spoiled = spoil(file.read_bytes())
@@ -60,9 +60,9 @@ def test_kernel_of_other_sources_raises_until_built(folder: Path, how: str) -> N
     if spoiled is not None:
         file.write_bytes(spoiled)
     (folder / "scene.toml").write_text(SCENE)
-    status, printed, said = run(folder, "-m", "cuefem", "strike", "scene.toml")
-    assert (status, printed, len(said)) == (2, "", 1)
-    assert said[0].endswith(f"the contact's compiled kernel {words}; {BUILD}")
+    status, printed, errors = run(folder, "-m", "cuefem", "strike", "scene.toml")
+    assert (status, printed, len(errors)) == (2, "", 1)
+    assert errors[0].endswith(f"the contact's compiled kernel {message}; {BUILD}")
     if how == "other sources":
         assert run(folder, "-c", STRIKE)[2][-1].startswith("cuefem.contact.kernel.KernelError: ")
         assert run(folder, "hatch_build.py", CFLAGS="-O0") == (0, str(binary), [])
@@ -75,7 +75,7 @@ def test_kernel_build_without_compiler_uses_zig_or_names_both(folder: Path, envi
     without_zig = f"import sys; sys.modules['ziglang'] = None; {BUILDING}"
     assert run(folder, "-c", without_zig, **environment) == (1, "", [NAMES_BOTH])
     (folder / "ziglang.py").write_text("raise SystemExit('a zig that does not compile')")
-    status, printed, said = run(folder, "-c", BUILDING, **environment)
+    status, printed, errors = run(folder, "-c", BUILDING, **environment)
     assert (status, printed) == (1, "")
-    assert said[0].startswith("cuefem: the contact's kernel does not compile with ")
-    assert said[-1].endswith("a zig that does not compile")
+    assert errors[0].startswith("cuefem: the contact's kernel does not compile with ")
+    assert errors[-1].endswith("a zig that does not compile")

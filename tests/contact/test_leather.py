@@ -1,6 +1,6 @@
 """A whole tip of leather: its time head on, rings that slip against small steps, no jumps, and a chain's squirt.
 
-Small steps (`tests.oracle.ring_stepper`) have no phases: across sliding as a whole, with the tip's rim, fast and slow.
+Small steps (`tests.oracle.partial_slip`) have no phases: across sliding as a whole, with the tip's rim, fast and slow.
 Losses along the surface, energies and a constant stiffness: the stored answers (test_stored_answers.py).
 """
 
@@ -16,7 +16,7 @@ from scipy.integrate import quad
 import cuefem as cf
 from cuefem import strike
 from tests.helpers.orders import assert_error_falls_with_the_step
-from tests.oracle.ring_stepper import LEATHER, stepped, struck_scene
+from tests.oracle.partial_slip import LEATHER, maple_scene, small_step_squirt
 
 WITHIN = 5e-3
 # A jump: squirt changes from one offset to the next by more than so many times what it does at either neighbour, and
@@ -27,13 +27,13 @@ BEND = 1.5
 @pytest.mark.parametrize(("speed", "chain"), [(0.8, 2.30), (2.0, 2.32), (4.0, 2.33), (7.0, 2.31)])
 def test_leather_strike_on_maple_equals_exact_chain(speed: float, chain: float) -> None:
     """The full model against rigid links of their own, which are geometrically exact."""
-    found = strike(struck_scene(0.375, speed, more=(cf.AxialWaves(), cf.GeometricStiffness())))
-    assert np.degrees(found.squirt) == pytest.approx(chain, rel=0.02)
+    outcome = strike(maple_scene(0.375, speed, more=(cf.AxialWaves(), cf.GeometricStiffness())))
+    assert np.degrees(outcome.squirt) == pytest.approx(chain, rel=0.02)
 
 
 @pytest.mark.parametrize("speed", [1.0, 2.0, 5.0])
 def test_leather_central_impact_contact_time_equals_quadrature(speed: float) -> None:
-    scene, at = struck_scene(0.0, speed), cf.Resolution(2, 10, 10)
+    scene, at = maple_scene(0.0, speed), cf.Resolution(2, 10, 10)
     assert_error_falls_with_the_step(
         lambda steps: abs(strike(scene, replace(at, steps=steps)).duration / scene.contact_time - 1)
     )
@@ -47,17 +47,17 @@ def test_leather_central_impact_contact_time_equals_quadrature(speed: float) -> 
     assert loading == pytest.approx(quad(slowness, 1e-9, 1, epsabs=0, epsrel=1e-9, limit=200)[0], rel=1e-7)
 
 
-def drawn(seed: int) -> cf.Scene:
+def random_scene(seed: int) -> cf.Scene:
     """Friction 0.2 to 0.7, b/R 0.1 to 0.7, 0.8 to 7 m/s, restitution 0.5 to 0.9, soft to hard leather."""
     rng = np.random.default_rng([21, seed])
     tip = cf.Tip(float(rng.uniform(0.5, 0.9)), float(rng.uniform(0.2, 0.7)))
     speed, E = float(np.exp(rng.uniform(math.log(0.8), math.log(7.0)))), float(rng.uniform(100e6, 400e6))
-    return struck_scene(float(rng.uniform(0.1, 0.7)), speed, replace(LEATHER, E=E), tip=tip)
+    return maple_scene(float(rng.uniform(0.1, 0.7)), speed, replace(LEATHER, E=E), tip=tip)
 
 
-def off(scene: cf.Scene, step: float = 1e-6) -> float:
+def squirt_error(scene: cf.Scene, step: float = 1e-6) -> float:
     """Relative difference of squirt."""
-    return stepped(scene, step) / math.degrees(strike(scene).squirt) - 1
+    return small_step_squirt(scene, step) / math.degrees(strike(scene).squirt) - 1
 
 
 @pytest.mark.parametrize(
@@ -68,25 +68,25 @@ def test_leather_strike_slip_and_losses_agree_with_small_steps(
     offset: float, friction: float, restitution: float
 ) -> None:
     leather = replace(LEATHER, surface_restitution=restitution)
-    assert abs(off(struck_scene(offset, leather=leather, tip=cf.Tip(0.73, friction)), 2e-6)) < WITHIN
+    assert abs(squirt_error(maple_scene(offset, leather=leather, tip=cf.Tip(0.73, friction)), 2e-6)) < WITHIN
 
 
 @pytest.mark.nightly
 def test_leather_strike_random_scenes_agree_with_small_steps() -> None:
-    found = np.array([off(drawn(seed)) for seed in range(100)])
-    wrong = np.flatnonzero(np.abs(found) >= WITHIN).tolist()
-    print("worst", np.abs(found).max(), "median", np.median(np.abs(found)), "wrong", len(wrong))
-    assert not wrong, {seed: float(found[seed]) for seed in wrong}
+    errors = np.array([squirt_error(random_scene(seed)) for seed in range(100)])
+    wrong = np.flatnonzero(np.abs(errors) >= WITHIN).tolist()
+    print("worst", np.abs(errors).max(), "median", np.median(np.abs(errors)), "wrong", len(wrong))
+    assert not wrong, {seed: float(errors[seed]) for seed in wrong}
 
 
 @pytest.mark.parametrize(
     ("leather", "friction", "offset"),
     [(LEATHER, 0.3, 0.3746), (LEATHER, 0.7, 0.671)],
 )
-def test_squirt_has_no_jump(leather: cf.LeatherTip, friction: float, offset: float) -> None:
+def test_squirt_at_gross_slip_and_rim_is_continuous(leather: cf.LeatherTip, friction: float, offset: float) -> None:
     """Where the rings begin to slide as a whole, and where the contact begins on the tip's rim."""
     offsets = offset + np.arange(-5, 6) * 1e-3
-    scenes = (struck_scene(float(b), 2.0, leather, tip=cf.Tip(0.73, friction)) for b in offsets)
+    scenes = (maple_scene(float(b), 2.0, leather, tip=cf.Tip(0.73, friction)) for b in offsets)
     squirts = np.array([strike(scene).squirt for scene in scenes])
     change = np.abs(np.diff(squirts))
     beside = np.maximum(np.r_[change[1:], 0.0], np.r_[0.0, change[:-1]])

@@ -25,15 +25,15 @@ EFFECTS: dict[str, tuple[Any, ...]] = {
 }
 
 
-def slid(found: Motion, scene: cf.Scene) -> Any:
+def sliding_path(result: Motion, scene: cf.Scene) -> Any:
     """How far the ball's contact point has slid over the cue's, along (t, n), from the positions alone."""
-    phi, (w, theta) = np.arcsin(scene.stroke.offset), found.deflection(np.array(0.0))
+    phi, (w, theta) = np.arcsin(scene.stroke.offset), result.deflection(np.array(0.0))
     t, n = np.array([np.sin(phi), np.cos(phi)]), np.array([np.cos(phi), -np.sin(phi)])
     r = sum(effect.radius for effect in scene.effects if isinstance(effect, cf.TipDome))
     # where the dome touches, r (n - e_u) from the tip, and the ball, -R n from its centre: both turn about u x w
-    on_cue = np.column_stack([found.along, w]) + np.outer(-theta, r * np.array([-n[1], n[0] - 1]))
-    ball = found.centre - found.centre[0]
-    turning = np.outer(found.turned, -scene.ball.radius * np.array([-n[1], n[0]]))
+    on_cue = np.column_stack([result.along, w]) + np.outer(-theta, r * np.array([-n[1], n[0] - 1]))
+    ball = result.centre - result.centre[0]
+    turning = np.outer(result.turned, -scene.ball.radius * np.array([-n[1], n[0]]))
     return (ball + turning - on_cue) @ np.array([t, n]).T
 
 
@@ -46,6 +46,6 @@ def test_motion_relative_velocity_equals_history(name: str, offset: float) -> No
     times = outcome.history.ends[: int(0.8 * len(outcome.history.ends))]
     known, until = outcome.history(times), times[-1]
     expected = [np.trapezoid(known["velocity_t"], times), np.trapezoid(known["velocity_n"], times)]
-    found = motion(scene, [0.0, until], AT)
-    np.testing.assert_allclose(slid(found, scene)[1], expected, rtol=0, atol=1e-5 * SCENE.stroke.speed * until)
-    assert found.duration == outcome.phases[-1].end
+    result = motion(scene, [0.0, until], AT)
+    np.testing.assert_allclose(sliding_path(result, scene)[1], expected, rtol=0, atol=1e-5 * SCENE.stroke.speed * until)
+    assert result.duration == outcome.phases[-1].end

@@ -29,13 +29,13 @@ SCENES = [
     leather_scene(0.45, cf.SecondHit(0.02)),
     leather_scene(0.4),
 ]
-LEFT_OUT = ("phases", "history", "unknowns", "error", "energy")
+EXCLUDED = ("phases", "history", "unknowns", "error", "energy")
 
 
 def numbers(outcome: cf.Outcome) -> dict[str, object]:
     """What a strike says, and its energies, by name."""
     named = {field.name: getattr(outcome, field.name) for field in fields(outcome)} | outcome.energy
-    return {name: value for name, value in named.items() if name not in LEFT_OUT}
+    return {name: value for name, value in named.items() if name not in EXCLUDED}
 
 
 @pytest.mark.parametrize(
@@ -61,7 +61,7 @@ EFFECTS: list[tuple[cf.Effect, ...]] = [
 ]
 
 
-def struck(effects: tuple[cf.Effect, ...]) -> cf.Outcome:
+def strike_with(effects: tuple[cf.Effect, ...]) -> cf.Outcome:
     scene = leather_scene(0.3) if LEATHER.__class__ in map(type, effects) else kim_scene(0.3)
     return cf.strike(replace(scene, effects=effects), AT)
 
@@ -69,8 +69,8 @@ def struck(effects: tuple[cf.Effect, ...]) -> cf.Outcome:
 @pytest.mark.heavy
 def test_outcome_in_another_process_is_equal() -> None:
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as executor:
-        for effects, sent in zip(EFFECTS, executor.map(struck, EFFECTS), strict=True):
-            outcome = struck(effects)
+        for effects, sent in zip(EFFECTS, executor.map(strike_with, EFFECTS), strict=True):
+            outcome = strike_with(effects)
             times = np.linspace(0, outcome.duration, 7)
             for other in (sent, pickle.loads(pickle.dumps(outcome)), deepcopy(outcome)):
                 assert other == outcome
@@ -80,7 +80,7 @@ def test_outcome_in_another_process_is_equal() -> None:
             assert all(outcome != replace(outcome, **change) for change in changes)
             assert outcome != outcome.squirt
             # an effect that is listed gives another outcome
-            assert (outcome == struck(())) == (effects in ((), (cf.SecondHit(),)))
+            assert (outcome == strike_with(())) == (effects in ((), (cf.SecondHit(),)))
 
 
 def test_outcome_of_batch_copies_and_pickles_equal() -> None:
@@ -94,7 +94,7 @@ def test_outcome_of_batch_copies_and_pickles_equal() -> None:
 
 
 @pytest.mark.nightly
-def test_strike_repeated_leaves_no_memory_behind() -> None:
+def test_strike_repeated_does_not_leak_memory() -> None:
     """The greatest memory of this process hardly grows over so many strikes; few are on leather."""
     bare, few = kim_scene(0.3), cf.Resolution(2, 8, 4)
     scenes = [leather_scene(0.3, cf.SecondHit(5e-3)), bare, replace(bare, effects=(cf.TipShear(0.75),))]

@@ -16,7 +16,7 @@ from scipy.special import wofz
 import cuefem as cf
 from cuefem import PointMass, Resolution, SideStrike, Striker, Support, side_strike
 from tests.helpers.cues import FAMILY, MAPLE, cone, kim, rod, scaled
-from tests.helpers.refusals import command_refuses, refuses
+from tests.helpers.invalid_input import assert_raises, assert_rejects
 
 BALL = Striker(0.005, 0.8, contact_time=1e-3)
 SOFT = Striker(0.005, 0.8, modulus=1e8, radius=0.02)
@@ -99,8 +99,8 @@ def test_side_strike_long_thin_beam_equals_infinite_beam(where: str, lengths: fl
     section, unit = thin.section(0.0), time / math.pi
     C = (1 if where == "middle" else 4) / (2 * math.sqrt(2) * float(section.EI) ** 0.25 * float(section.rhoA) ** 0.75)
     mass = inelasticity / C * math.sqrt(unit)
-    place = thin.length / 2 if where == "middle" else 0.0
-    outcome = side_strike(SideStrike(thin, Striker(mass, 1.0, stiffness=mass / unit**2), place))
+    position = thin.length / 2 if where == "middle" else 0.0
+    outcome = side_strike(SideStrike(thin, Striker(mass, 1.0, stiffness=mass / unit**2), position))
     exact, duration = spring_exact(inelasticity)
     assert outcome.apparent_restitution == pytest.approx(exact, abs=1e-5)
     assert outcome.duration / unit == pytest.approx(duration, rel=1e-4)
@@ -126,9 +126,9 @@ ON = [pytest.param(name, marks=[] if name == "kim" else pytest.mark.heavy) for n
 def test_side_strike_light_striker_measures_end_mass_by_force(name: str) -> None:
     """The force of a striker of no mass is a half sine; impulse over the tip's speed at its end is that definition."""
     cue, at = FAMILY[name], Resolution(2, 14, 24, 1600)
-    felt = cf.end_mass(cf.Scene(cue, tip=cf.Tip(contact_time=1e-3)), "force", at)
+    expected = cf.end_mass(cf.Scene(cue, tip=cf.Tip(contact_time=1e-3)), "force", at)
     outcome = side_strike(SideStrike(cue, Striker(1e-7, 1.0, contact_time=1e-3)), at)
-    assert outcome.impulse / outcome.contact_point_speed == pytest.approx(felt, rel=1e-4)
+    assert outcome.impulse / outcome.contact_point_speed == pytest.approx(expected, rel=1e-4)
 
 
 @pytest.mark.parametrize("name", ON)
@@ -136,8 +136,8 @@ def test_side_strike_default_resolution_restitution_within_1e_4(name: str) -> No
     rng, cue = np.random.default_rng(7), FAMILY[name]
     for _ in range(2):
         mass, time = np.exp(rng.uniform(np.log([1e-3, 0.3e-3]), np.log([0.2, 3e-3])))
-        place, restitution = rng.uniform(0, 0.15), float(rng.uniform(0.3, 1))
-        scene = SideStrike(cue, Striker(float(mass), restitution, contact_time=float(time)), float(place))
+        position, restitution = rng.uniform(0, 0.15), float(rng.uniform(0.3, 1))
+        scene = SideStrike(cue, Striker(float(mass), restitution, contact_time=float(time)), float(position))
         few, many = (side_strike(scene, Resolution(8, 24, n)).apparent_restitution for n in (80, 160))
         limit = 2 * many - few  # the error of a plain sum falls like 1/modes
         assert side_strike(scene).apparent_restitution == pytest.approx(limit, abs=1e-4)
@@ -161,7 +161,7 @@ def test_side_strike_file_round_trip_is_equal(tmp_path: Path, striker: Striker) 
     scene = replace(SCENE, striker=striker)
     cf.save(scene, tmp_path / "side.toml")
     assert cf.load(tmp_path / "side.toml") == scene
-    command_refuses("striker: must be absent: ", "strike", tmp_path / "side.toml")
+    assert_rejects("striker: must be absent: ", "strike", tmp_path / "side.toml")
 
 
 CALLS: list[tuple[Callable[[], object], str]] = [
@@ -178,6 +178,6 @@ CALLS: list[tuple[Callable[[], object], str]] = [
 ]
 
 
-@pytest.mark.parametrize(("ask", "message"), CALLS, ids=[message for _, message in CALLS])
-def test_side_strike_invalid_input_raises(ask: Callable[[], object], message: str) -> None:
-    refuses(ask, message)
+@pytest.mark.parametrize(("call", "message"), CALLS, ids=[message for _, message in CALLS])
+def test_side_strike_invalid_input_raises(call: Callable[[], object], message: str) -> None:
+    assert_raises(call, message)

@@ -15,14 +15,14 @@ from cuefem import Outcome
 from cuefem.contact.outcome import end_of_first_slip
 from cuefem.contact.strike import strike_modes
 from tests.data.stored import cue_of, cues, scene_of, stored_law, strikes, tip_of
-from tests.helpers.strike_scenes import imbalance
+from tests.helpers.strike_scenes import energy_residual
 
 KINDS = tuple(dict.fromkeys(row["kind"] for row in strikes()))
 # Infinite friction begins with an impulse, whose wave fronts the steps do not resolve.
 ENDLESS = "endless"
 
 
-def struck(row: dict[str, Any], **resolution: int) -> Outcome:
+def strike_row(row: dict[str, Any], **resolution: int) -> Outcome:
     with stored_law(row):
         return strike_modes(scene_of(row), tip_of(row), **resolution)
 
@@ -35,12 +35,12 @@ def squirt_error(outcome: Outcome, row: dict[str, Any]) -> float:
 @pytest.mark.parametrize("kind", KINDS)
 def test_strike_each_kind_equals_stored_answers(kind: str) -> None:
     rows = [row for row in strikes() if row["kind"] == kind]
-    outcomes = [struck(row) for row in rows]
+    outcomes = [strike_row(row) for row in rows]
     errors = np.array([squirt_error(outcome, row) for outcome, row in zip(outcomes, rows, strict=True)])
     assert np.median(errors) < 1e-4
     assert np.quantile(errors, 0.95) < 1e-3
     assert errors.max() < 2e-3
-    assert max(map(imbalance, outcomes)) < (2e-4 if kind == ENDLESS else 2e-5)
+    assert max(map(energy_residual, outcomes)) < (2e-4 if kind == ENDLESS else 2e-5)
     for name, most in (("ball_speed", 5e-4), ("cue_speed", 5e-4), ("spin", 5e-4), ("duration", 1e-3)):
         pairs = [(getattr(outcome, name), row["answer"][name]) for outcome, row in zip(outcomes, rows, strict=True)]
         assert max(abs(value / stored - 1) for value, stored in pairs) < most, name

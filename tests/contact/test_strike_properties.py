@@ -25,21 +25,21 @@ from tests.helpers.strike_scenes import (
     OFFSET,
     RESTITUTION,
     SIGN,
-    a_few_modes,
-    hand_made,
-    imbalance,
+    assert_mirrored,
+    custom_tip_modes,
+    energy_residual,
     kim_scene,
     logarithmic,
-    mirrors,
-    numbers,
+    outcome_vector,
+    rotating_tip_modes,
 )
 
 pytestmark = pytest.mark.kernel
 AT = cf.Resolution(2, 10, 8)
 # How well energy closes at the default steps of a cue with dampers; its fall with the step: test_step_convergence.py
-ACCOUNT = 1e-4
-HERE = 0.213  # m
-PLACE = st.floats(0.01, 0.69)
+ENERGY_TOLERANCE = 1e-4
+POSITION = 0.213  # m
+POSITIONS = st.floats(0.01, 0.69)
 
 
 def size(low: float, high: float) -> st.SearchStrategy[float]:
@@ -48,10 +48,10 @@ def size(low: float, high: float) -> st.SearchStrategy[float]:
 
 
 ON_CUE = st.one_of(
-    st.builds(cf.PointMass, PLACE, size(1e-5, 0.1), size(1e-9, 1e-3)),
-    st.builds(cf.Support, PLACE, size(1.0, 1e7), size(0.01, 1e3), size(0.1, 100.0)),
+    st.builds(cf.PointMass, POSITIONS, size(1e-5, 0.1), size(1e-9, 1e-3)),
+    st.builds(cf.Support, POSITIONS, size(1.0, 1e7), size(0.01, 1e3), size(0.1, 100.0)),
     st.just(cf.Support(KIM.length, inf, inf)),
-    st.builds(cf.Joint, PLACE, size(1e-6, 1e2), size(1e-11, 1e-3)),
+    st.builds(cf.Joint, POSITIONS, size(1e-6, 1e2), size(1e-11, 1e-3)),
     st.builds(cf.StructuralDamping, size(1e-4, 0.9)),
     st.just(cf.AxialWaves()),
     st.just(cf.GeometricStiffness()),
@@ -77,15 +77,15 @@ WHOLE_TIP = st.builds(
 def strikes(draw: st.DrawFn) -> cf.Scene:
     """A scene with some effects on the cue, and some at its tip that go together."""
     kinds = {type(effect): effect for effect in draw(st.lists(ON_CUE, max_size=3))}
-    e, mu, way = draw(RESTITUTION), draw(FRICTION), draw(st.sampled_from(["level", "raised", "leather"]))
+    e, mu, tip_kind = draw(RESTITUTION), draw(FRICTION), draw(st.sampled_from(["level", "raised", "leather"]))
     stroke = cf.Stroke(draw(st.floats(0.3, 3.0)), draw(SIGN) * draw(OFFSET))
-    if way == "leather":
-        again = draw(st.sampled_from([(), (cf.SecondHit(),)]))
+    if tip_kind == "leather":
+        second_hit = draw(st.sampled_from([(), (cf.SecondHit(),)]))
         tip = draw(WHOLE_TIP)
         return leather_scene(
-            stroke.offset, *again, *kinds.values(), speed=stroke.speed, e=max(e, 0.15), friction=mu, leather=tip
+            stroke.offset, *second_hit, *kinds.values(), speed=stroke.speed, e=max(e, 0.15), friction=mu, leather=tip
         )
-    if way == "raised":
+    if tip_kind == "raised":
         return replace(kim_scene(friction=mu, restitution=max(e, 0.1)), stroke=stroke,
                        effects=(draw(RAISED), *draw(st.tuples(DOME, POWER)), *kinds.values()))  # fmt: skip
     at_tip = draw(st.lists(st.sampled_from(LEVEL), unique=True).flatmap(lambda chosen: st.tuples(*chosen)))
@@ -113,23 +113,23 @@ def test_strike_conserves_energy_mirrors_and_ignores_effect_order(examples: int)
     @example(leather_scene(0.0, e=0.716796875, friction=inf, leather=replace(LEATHER, E=142981276.0, rolling=False)), 0)
     @example(leather_scene(0.2309, speed=3.8607, e=0.883, friction=0.17, leather=replace(LEATHER, E=3.9e8)), 0)
     def everywhere(scene: cf.Scene, turn: int) -> None:
-        if (found := strike(scene)) is None:
+        if (outcome := strike(scene)) is None:
             return
-        assert np.all(np.isfinite(numbers(found)))
-        assert imbalance(found) < ACCOUNT
-        assert min(found.energy.values()) > -1e-9 * found.energy["initial"]
-        assert ("damping loss" in found.energy) >= any(
+        assert np.all(np.isfinite(outcome_vector(outcome)))
+        assert energy_residual(outcome) < ENERGY_TOLERANCE
+        assert min(outcome.energy.values()) > -1e-9 * outcome.energy["initial"]
+        assert ("damping loss" in outcome.energy) >= any(
             isinstance(effect, cf.StructuralDamping) and effect.loss for effect in scene.effects
         )
-        if found.history.velocity is not None:
-            assert found.history.velocity[2] > -1e-9  # the table keeps the ball up
+        if outcome.history.velocity is not None:
+            assert outcome.history.velocity[2] > -1e-9  # the table keeps the ball up
         other = strike(replace(scene, stroke=replace(scene.stroke, offset=-scene.stroke.offset)))
         assert other is not None
-        mirrors(found, other)
+        assert_mirrored(outcome, other)
         effects = scene.effects[turn:] + scene.effects[:turn]
         turned = strike(replace(scene, effects=effects[::-1] if turn % 2 else effects))
         assert turned is not None
-        assert numbers(turned) == pytest.approx(numbers(found), rel=1e-9, abs=1e-12)
+        assert outcome_vector(turned) == pytest.approx(outcome_vector(outcome), rel=1e-9, abs=1e-12)
 
     everywhere()
 
@@ -147,25 +147,27 @@ def test_effect_split_in_parts_equals_whole(name: str) -> None:
     """For strike, end mass, motion and the impulse solver alike."""
     whole, *parts = SPLIT[name]
     one, other = (replace(kim_scene(), effects=tuple(effects)) for effects in ([whole], parts))
-    assert numbers(cf.strike(other, AT)) == pytest.approx(numbers(cf.strike(one, AT)), rel=1e-9, abs=1e-14)
+    assert outcome_vector(cf.strike(other, AT)) == pytest.approx(
+        outcome_vector(cf.strike(one, AT)), rel=1e-9, abs=1e-14
+    )
     for drive in ("offset", "velocity"):
         assert cf.end_mass(other, drive, AT) == pytest.approx(cf.end_mass(one, drive, AT), rel=1e-9)
     assert cf.impulse(other).squirt == pytest.approx(cf.impulse(one).squirt, rel=1e-9)
-    moved = [cf.motion(scene, [0.0, 3e-4, 2e-3], AT).centre for scene in (one, other)]
-    np.testing.assert_allclose(*moved, rtol=1e-9, atol=1e-14)
+    centres = [cf.motion(scene, [0.0, 3e-4, 2e-3], AT).centre for scene in (one, other)]
+    np.testing.assert_allclose(*centres, rtol=1e-9, atol=1e-14)
     assert one.dome_radius == pytest.approx(other.dome_radius, abs=1e-15)
 
 
-NODE = cf.PointMass(HERE, 0.0)  # a node alone: the mesh's error is the same with and without the effect
+NODE = cf.PointMass(POSITION, 0.0)  # a node alone: the mesh's error is the same with and without the effect
 VANISHING = {
-    "point mass": (lambda x: cf.PointMass(HERE, 1e-4 * x), NODE),
-    "rotary inertia": (lambda x: cf.PointMass(HERE, 0.0, 1e-7 * x), NODE),
-    "support": (lambda x: cf.Support(HERE, 1e3 * x), NODE),
-    "rotational support": (lambda x: cf.Support(HERE, 0.0, x), NODE),
-    "dashpot": (lambda x: cf.Support(HERE, dashpot=0.1 * x), NODE),
+    "point mass": (lambda x: cf.PointMass(POSITION, 1e-4 * x), NODE),
+    "rotary inertia": (lambda x: cf.PointMass(POSITION, 0.0, 1e-7 * x), NODE),
+    "support": (lambda x: cf.Support(POSITION, 1e3 * x), NODE),
+    "rotational support": (lambda x: cf.Support(POSITION, 0.0, x), NODE),
+    "dashpot": (lambda x: cf.Support(POSITION, dashpot=0.1 * x), NODE),
     "damping": (lambda x: cf.StructuralDamping(0.01 * x), None),
-    "rotational joint": (lambda x: cf.Joint(HERE, rotational_compliance=1e-5 * x), NODE),
-    "shear joint": (lambda x: cf.Joint(HERE, shear_compliance=1e-8 * x), NODE),
+    "rotational joint": (lambda x: cf.Joint(POSITION, rotational_compliance=1e-5 * x), NODE),
+    "shear joint": (lambda x: cf.Joint(POSITION, shear_compliance=1e-8 * x), NODE),
     "dome": (lambda x: cf.TipDome(1e-3 * x), None),
 }
 
@@ -197,13 +199,15 @@ def test_strike_other_limits_are_reached() -> None:
     rolled = []
     for time in 1e-3 * 2.0 ** -np.arange(5, 9):
         scene = kim_scene(0.3, contact_time=float(time))
-        turned, fixed = (strike_modes(replace(scene, effects=e), a_few_modes()) for e in ((cf.RollingContact(),), ()))
+        turned, fixed = (
+            strike_modes(replace(scene, effects=e), rotating_tip_modes()) for e in ((cf.RollingContact(),), ())
+        )
         rolled.append(turned.squirt / fixed.squirt - 1)
     assert_order(1, 2.0 ** -np.arange(4.0), rolled, within=[0.04, 0.02, 0.01])
 
 
 LOUD = cf.Scene(cf.LumpedCue(0.54, 0.01), tip=cf.Tip(0.3, 0.05, contact_time=3e-3), stroke=cf.Stroke(1.5, 0.5))
-COURSES = {
+CASES = {
     "stick": kim_scene(0.3),
     "miscue": kim_scene(0.8),
     "reload": kim_scene(0.9, restitution=0.05, friction=0.3, contact_time=3e-3),
@@ -213,16 +217,16 @@ COURSES = {
 }
 
 
-def struck(name: str) -> cf.Outcome:
-    scene = COURSES[name]
+def outcome_of(name: str) -> cf.Outcome:
+    scene = CASES[name]
     if scene is LOUD:
-        return strike_modes(scene, hand_made([870.0, 2600.0], [11.0, 12.0], rigid=0.5))
+        return strike_modes(scene, custom_tip_modes([870.0, 2600.0], [11.0, 12.0], rigid=0.5))
     return cf.strike(scene, None if isinstance(scene.cue, cf.LumpedCue) else KIM_AT)
 
 
-@pytest.mark.parametrize("name", COURSES)
+@pytest.mark.parametrize("name", CASES)
 def test_history_forces_obey_friction_and_integrate_to_impulse(name: str) -> None:
-    scene, outcome = COURSES[name], struck(name)
+    scene, outcome = CASES[name], outcome_of(name)
     history, side, mu = outcome.history, np.sign(scene.stroke.offset), scene.tip.friction
     force_times, force, lengths = history.force_times[1:-1], history.forces[1:-1], np.diff(history.ends)
     assert np.all(force[:, 1] >= 0)
@@ -232,13 +236,13 @@ def test_history_forces_obey_friction_and_integrate_to_impulse(name: str) -> Non
             assert (phase.state, phase.start) == ("impulse", phase.end)
             continue
         f_t, f_n = force[here].T
-        given_by = [lengths[here] @ f_t, lengths[here] @ f_n]
-        np.testing.assert_allclose(given_by, phase.impulse, rtol=0, atol=1e-10 * outcome.impulse[1])
+        integrals = [lengths[here] @ f_t, lengths[here] @ f_n]
+        np.testing.assert_allclose(integrals, phase.impulse, rtol=0, atol=1e-10 * outcome.impulse[1])
         if not isinf(mu):
             assert np.all(np.abs(f_t) <= mu * f_n * (1 + 1e-9))
         if phase.state != "stick":
-            way = side * (1 if phase.state == "slip" else -1)
+            direction = side * (1 if phase.state == "slip" else -1)
             last = slice(None, -1)  # in a phase's last step it may come to rest
-            assert np.abs(f_t - way * mu * f_n)[last].max() < 1e-9 * f_n.max()
-            assert np.all(way * history.velocities[1:][here][last, 0] < 1e-3 * scene.stroke.speed)
+            assert np.abs(f_t - direction * mu * f_n)[last].max() < 1e-9 * f_n.max()
+            assert np.all(direction * history.velocities[1:][here][last, 0] < 1e-3 * scene.stroke.speed)
     assert np.sum([phase.impulse for phase in outcome.phases], axis=0) == pytest.approx(outcome.impulse, rel=1e-12)

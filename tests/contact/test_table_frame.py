@@ -23,7 +23,7 @@ def stroke(offset, speed=2.0, end_mass=0.004):
     return cf.impulse(cf.Scene(cf.LumpedCue(0.54, end_mass), BALL, cf.Tip(0.75, 0.7), cf.Stroke(speed, offset)))
 
 
-def struck(point, direction=NORTH, **how):
+def strike_and_place(point, direction=NORTH, **how):
     outcome = stroke(offset_of(point, direction, ball=BALL), **how)
     return outcome, cf.place(outcome, point, direction, ball=BALL)
 
@@ -38,7 +38,7 @@ def struck(point, direction=NORTH, **how):
     ],
 )
 def test_place_english_follow_and_draw_spin_as_expected(side, spin, squirt):
-    outcome, placed = struck((0.4 * R * side[0], R * (1 + 0.4 * side[1])))
+    outcome, placed = strike_and_place((0.4 * R * side[0], R * (1 + 0.4 * side[1])))
     assert outcome.squirt > 0.005
     np.testing.assert_allclose(placed.spin, outcome.spin * np.array(spin), rtol=0, atol=1e-12)
     expected = outcome.ball_speed * (cos(outcome.squirt) * np.array(NORTH) + sin(outcome.squirt) * np.array(squirt))
@@ -50,12 +50,12 @@ def test_place_english_follow_and_draw_spin_as_expected(side, spin, squirt):
 
 @MANY
 @given(INSIDE, st.floats(0, 2 * pi), st.floats(0, 1.2), st.floats(0.1, 10))
-def test_place_any_stroke_keeps_angles_and_magnitudes(point, heading, elevation, length):
+def test_place_any_stroke_preserves_angles_and_magnitudes(point, heading, elevation, length):
     direction = length * np.array([cos(elevation) * sin(heading), cos(elevation) * cos(heading), -sin(elevation)])
     unit = direction / length
     contact = contact_of(point, unit)
     assume(contact @ unit < -0.05 * R)
-    outcome, placed = struck(point, direction)
+    outcome, placed = strike_and_place(point, direction)
     b = np.linalg.norm(np.cross(contact, unit))
     offset = offset_of(point, direction, ball=BALL)
     assert offset == pytest.approx(b / R, rel=1e-12, abs=1e-14)

@@ -9,7 +9,7 @@ import pytest
 from cuefem import Cue, LumpedCue, Material, Segment, Tip
 from cuefem.cue import shear_coefficient
 from tests.helpers.cues import CARBON, FAMILY, FOAM, LEATHER, MAPLE, kim, soft_tip
-from tests.helpers.refusals import refuses
+from tests.helpers.invalid_input import assert_raises
 
 POINTS, WEIGHTS = (part / 2 for part in np.polynomial.legendre.leggauss(8))
 
@@ -39,14 +39,14 @@ def test_section_tapered_tube_with_core_equals_closed_form() -> None:
     turn, core_turn = np.pi / 4 * (outer**4 - inner**4), np.pi / 4 * inner**4
     shear = shear_coefficient(CARBON.effective_poisson_ratio, inner / outer) * CARBON.G * shell
     core_shear = shear_coefficient(FOAM.effective_poisson_ratio) * FOAM.G * disc
-    wanted = [
+    expected = [
         CARBON.E * shell + FOAM.E * disc,
         CARBON.E * turn + FOAM.E * core_turn,
         shear + core_shear,
         CARBON.rho * shell + FOAM.rho * disc,
         CARBON.rho * turn + FOAM.rho * core_turn,
     ]
-    np.testing.assert_allclose(s, wanted, rtol=1e-13)
+    np.testing.assert_allclose(s, expected, rtol=1e-13)
 
 
 def test_section_at_jump_is_butt_side() -> None:
@@ -105,4 +105,4 @@ CALLS: list[tuple[Callable[[], object], str]] = [
 
 @pytest.mark.parametrize(("call", "message"), CALLS, ids=[message for _, message in CALLS])
 def test_cue_invalid_input_raises(call: Callable[[], object], message: str) -> None:
-    refuses(call, message)
+    assert_raises(call, message)

@@ -48,10 +48,10 @@ def test_carbon_equals_laminate_theory() -> None:
     A22 = 0.5 * Q22 + 0.3 * (angle + G12) + 0.2 * Q11
     A12 = 0.7 * Q12 + 0.3 * (angle - G12)
     A66 = 0.7 * G12 + 0.3 * (Q11 + Q22 - 2 * Q12) / 4
-    found = material("carbon fibre")
-    assert pytest.approx(A11 - A12**2 / A22, rel=2e-3) == found.E
-    assert pytest.approx(A66, rel=5e-3) == found.G
-    assert found.nu == pytest.approx(A12 / A22, rel=0.02)
+    carbon = material("carbon fibre")
+    assert pytest.approx(A11 - A12**2 / A22, rel=2e-3) == carbon.E
+    assert pytest.approx(A66, rel=5e-3) == carbon.G
+    assert carbon.nu == pytest.approx(A12 / A22, rel=0.02)
 
 
 def test_leather_ranges_are_soft_to_hard() -> None:
@@ -77,9 +77,9 @@ OFFERS = {
 SPELT = {"Hard Maple": "hard maple", " HARD_MAPLE": "hard maple", "sugar maple": "hard maple", "aluminum": "aluminium"}
 
 
-def test_material_unknown_name_suggests_and_spelling_variant_is_found() -> None:
+def test_material_unknown_name_suggests_and_spelling_variant_loads() -> None:
     for name, offer in OFFERS.items():
         with pytest.raises(ValueError, match=f"no material is called {name!r}; nearest: .*{offer}"):
             material(name)
-    for name, meant in (SPELT | {"Carbon Fiber": "carbon fibre", "ABS": "abs"}).items():
-        assert material(name) is MATERIALS[meant].material
+    for name, expected in (SPELT | {"Carbon Fiber": "carbon fibre", "ABS": "abs"}).items():
+        assert material(name) is MATERIALS[expected].material

@@ -13,7 +13,7 @@ from cuefem.parameters.parameter import with_parameters
 from cuefem.results.comparison import comparison_record
 from cuefem.results.uncertainty import RATIO_FLOOR, SHAFT_ERROR
 from tests.helpers.command_line import as_json, call
-from tests.helpers.refusals import command_refuses
+from tests.helpers.invalid_input import assert_rejects
 
 ROOT = Path(__file__).parents[2]
 REFERENCE = ("kim", "pool_hollow", "carbon")
@@ -44,11 +44,11 @@ def test_design_changes_rows_equal_strikes_of_changed_cues(computed: tuple[cf.Sc
     assert record["own"]["squirt"] == pytest.approx(own.squirt, rel=1e-9)
     assert record["changes"]
     for row in record["changes"]:
-        made = with_parameters(scene, row["set"])
-        assert row["squirt_change"] == pytest.approx(cf.strike(made).squirt / own.squirt - 1, abs=1e-8)
-        assert row["shaft_mass_change"] == pytest.approx(made.cue.shaft_mass - scene.cue.shaft_mass, abs=1e-12)
-        changed = cf.modes(made.cue, effects=made.cue_effects).frequencies[0]
-        assert row["frequency_change"] == pytest.approx(changed - frequency, abs=1e-6 * frequency)
+        changed = with_parameters(scene, row["set"])
+        assert row["squirt_change"] == pytest.approx(cf.strike(changed).squirt / own.squirt - 1, abs=1e-8)
+        assert row["shaft_mass_change"] == pytest.approx(changed.cue.shaft_mass - scene.cue.shaft_mass, abs=1e-12)
+        new_frequency = cf.modes(changed.cue, effects=changed.cue_effects).frequencies[0]
+        assert row["frequency_change"] == pytest.approx(new_frequency - frequency, abs=1e-6 * frequency)
 
 
 def test_design_changes_are_sorted_with_verdicts(computed: tuple[cf.Scene, dict]) -> None:
@@ -92,8 +92,8 @@ def test_design_changes_of_tube_exclude_tapers_and_woods() -> None:
     labels = [change.label for change in changes_of(scene_of("carbon"))]
     assert not any("taper" in each or "shaft" in each or "thinner" in each for each in labels)
     (tube,) = (change for change in changes_of(scene_of("pool_maple")) if "carbon" in change.label)
-    made = with_parameters(scene_of("pool_maple"), tube.values)
-    assert {s.core for s in made.cue.segments[1:]} == {material("foam")}
+    changed = with_parameters(scene_of("pool_maple"), tube.values)
+    assert {s.core for s in changed.cue.segments[1:]} == {material("foam")}
 
 
 def test_improve_take_saves_row_and_replaces_no_file(tmp_path: Path, computed: tuple[cf.Scene, dict]) -> None:
@@ -107,6 +107,6 @@ def test_improve_take_saves_row_and_replaces_no_file(tmp_path: Path, computed: t
     assert (code, err) == (0, "")
     assert f"cuefem compare {path} {target}" in out
     assert cf.strike(cf.load(target)).squirt == pytest.approx(rows[1]["squirt"], rel=1e-9)
-    command_refuses("--force", "improve", path, "--take", "2", "-o", target)
-    command_refuses("--take ROW requires -o FILE.toml", "improve", path, "--take", "1")
-    command_refuses("must be a row of the table, 1 to ", "improve", path, "--take", "99", "-o", tmp_path / "x.toml")
+    assert_rejects("--force", "improve", path, "--take", "2", "-o", target)
+    assert_rejects("--take ROW requires -o FILE.toml", "improve", path, "--take", "1")
+    assert_rejects("must be a row of the table, 1 to ", "improve", path, "--take", "99", "-o", tmp_path / "x.toml")

@@ -17,8 +17,8 @@ from cuefem.io.study_files import load_study
 from studies.pages import STUDIES
 from tests.helpers.command_line import stdout_of
 from tests.helpers.cues import low_deflection
-from tests.helpers.refusals import command_refuses
-from tests.helpers.sweeps import OPTIMUM, written
+from tests.helpers.invalid_input import assert_rejects
+from tests.helpers.sweeps import OPTIMUM, write_study
 
 STUDY = STUDIES / "design" / "optimum.toml"
 OPTIMAL = {
@@ -61,27 +61,29 @@ def best() -> Optimum:
 def test_committed_study_equals_optimum_of_exact_gradients(tmp_path: Path) -> None:
     """The design of the former exact gradients; the saved scene has the required stiffness."""
     goal = tmp_path / "best.toml"
-    told = json.loads(stdout_of("study", STUDY, "--json", "-o", goal))
-    assert (told["kind"], told["objective"], told["unfinished"]) == ("optimum", {"minimize": "squirt_slope"}, "")
+    record = json.loads(stdout_of("study", STUDY, "--json", "-o", goal))
+    assert (record["kind"], record["objective"], record["unfinished"]) == ("optimum", {"minimize": "squirt_slope"}, "")
     # by the closed form of the end mass; equal steps leave 2e-7 of it
-    assert told["value"] == pytest.approx(0.03951969007, rel=1e-6)
-    assert told["values"] == pytest.approx(OPTIMAL, rel=1e-6)
-    assert told["active"][:2] == ["tip_stiffness >= 386.7", "wall >= 0.002"]
-    assert told["responses"] == pytest.approx({"squirt_slope": told["value"], "tip_stiffness": 386.7, "wall": 0.002})
+    assert record["value"] == pytest.approx(0.03951969007, rel=1e-6)
+    assert record["values"] == pytest.approx(OPTIMAL, rel=1e-6)
+    assert record["active"][:2] == ["tip_stiffness >= 386.7", "wall >= 0.002"]
+    assert record["responses"] == pytest.approx(
+        {"squirt_slope": record["value"], "tip_stiffness": 386.7, "wall": 0.002}
+    )
     written_best = cf.load(goal)
     assert evaluate([cf.Scene(written_best.cue)], [STIFFNESS]).values[0, 0] == pytest.approx(386.7, rel=1e-6)
-    assert written_best.cue.segments[0].tip_diameter == pytest.approx(told["values"]["tip diameter"], rel=1e-8)
-    command_refuses("--force", "study", STUDY, "-o", goal)
+    assert written_best.cue.segments[0].tip_diameter == pytest.approx(record["values"]["tip diameter"], rel=1e-8)
+    assert_rejects("--force", "study", STUDY, "-o", goal)
 
 
 @pytest.mark.heavy
 def test_optimum_of_strike_converges_to_same_design() -> None:
     """Squirt of a strike at b/R 0.3, for which differential evolution takes thousands of strikes."""
     problem, rounds = replace(load_study(STUDY), objective=Response("squirt", 0.3)), list[Round]()
-    found = optimum(problem, progress=rounds.append)
-    assert (found.unfinished, rounds[-1].evaluations < 200) == ("", True)
-    assert found.responses["squirt(0.3)"] == pytest.approx(0.010864, abs=2e-6)
-    assert found.values == pytest.approx(OPTIMAL, rel=1e-4)
+    result = optimum(problem, progress=rounds.append)
+    assert (result.unfinished, rounds[-1].evaluations < 200) == ("", True)
+    assert result.responses["squirt(0.3)"] == pytest.approx(0.010864, abs=2e-6)
+    assert result.values == pytest.approx(OPTIMAL, rel=1e-4)
 
 
 @pytest.mark.heavy
@@ -122,25 +124,25 @@ NAMES = OPTIMUM + '[[vary]]\npath = "cue.segments[0].material"\nvalues = ["hard 
 
 @pytest.mark.heavy
 def test_listed_values_are_searched_one_by_one(tmp_path: Path) -> None:
-    problem = load_study(written(tmp_path, NAMES.replace("300 N/m", "700 N/m")))
-    found = optimum(problem, rounds=8)
-    each = {str(choice.values["cue.segments[0].material"]): choice for choice in found.choices}
+    problem = load_study(write_study(tmp_path, NAMES.replace("300 N/m", "700 N/m")))
+    result = optimum(problem, rounds=8)
+    each = {str(choice.values["cue.segments[0].material"]): choice for choice in result.choices}
     assert [*each] == ["hard maple", "ash", "purpleheart"]
     assert each["ash"].reason.startswith("no design within tip_stiffness >= 700 was found")
     for name in ("hard maple", "purpleheart"):
         base = replace(problem.base, cue=replace(problem.base.cue, segments=(of(problem.base.cue, name),)))
         alone = optimum(replace(problem, base=base, vary=problem.vary[:2]))
         assert alone.responses["squirt_slope"] == pytest.approx(each[name].objective, rel=1e-6)
-    assert found.responses["squirt_slope"] == min(each[name].objective for name in ("hard maple", "purpleheart"))
-    assert found.scene.cue.segments[0].material == material(found.values["cue.segments[0].material"])
+    assert result.responses["squirt_slope"] == min(each[name].objective for name in ("hard maple", "purpleheart"))
+    assert result.scene.cue.segments[0].material == material(result.values["cue.segments[0].material"])
 
 
 def test_optimum_of_listed_values_alone(tmp_path: Path) -> None:
     head, *_, last = NAMES.split("[[vary]]")
-    found = cf.study(written(tmp_path, f"{head}[[vary]]{last}")).optimum
-    assert found.evaluations == len(found.choices) == 3
-    best = min(found.choices, key=lambda choice: choice.objective)
-    assert (found.values, found.responses["squirt_slope"]) == (best.values, best.objective)
+    result = cf.study(write_study(tmp_path, f"{head}[[vary]]{last}")).optimum
+    assert result.evaluations == len(result.choices) == 3
+    best = min(result.choices, key=lambda choice: choice.objective)
+    assert (result.values, result.responses["squirt_slope"]) == (best.values, best.objective)
 
 
 def of(cue: cf.Cue, name: str) -> cf.Segment:
@@ -148,11 +150,11 @@ def of(cue: cf.Cue, name: str) -> cf.Segment:
 
 
 def test_optimum_output_has_units_limits_and_rounds(tmp_path: Path) -> None:
-    out = stdout_of("study", written(tmp_path, OPTIMUM))
+    out = stdout_of("study", write_study(tmp_path, OPTIMUM))
     assert {"bore 9 mm", "tip 10 mm"} <= {" ".join(line.split()) for line in out.splitlines()}
     assert "active constraints: bore <= 9 mm, tip >= 10 mm" in out
     assert "not finished: " in stdout_of("study", tmp_path / "study.toml", "--iterations", 1)
     problem = load_study(tmp_path / "study.toml")
-    words = [round_text(problem, Round({"wood": "ash"}, 3, 30, best), 60) for best in (np.nan, 0.0412345678)]
-    assert words[0].endswith("no design within the limits yet")
-    assert words[1].endswith("squirt slope 0.0412346 so far")
+    texts = [round_text(problem, Round({"wood": "ash"}, 3, 30, best), 60) for best in (np.nan, 0.0412345678)]
+    assert texts[0].endswith("no design within the limits yet")
+    assert texts[1].endswith("squirt slope 0.0412346 so far")

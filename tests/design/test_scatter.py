@@ -14,7 +14,7 @@ from cuefem.design import Normal, Response, Span, Study, Vary, evaluate
 from cuefem.design.scatter import Scatter, indices
 from cuefem.io.study_files import load_study
 from tests.helpers.command_line import as_json, stdout_of
-from tests.helpers.sweeps import SCATTER, written
+from tests.helpers.sweeps import SCATTER, write_study
 
 MAPLE = cf.load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml")
 BASE = cf.Scene(MAPLE, tip=cf.Tip(contact_time=1e-3))
@@ -48,9 +48,9 @@ def test_sobol_indices_ishigami_equal_closed_form() -> None:
     for count in (256, 2048):
         A, B = np.split(ndtri(qmc.Sobol(6, rng=3).random(count) + 2.0**-31), 2, axis=1)
         mixed = [np.where(np.arange(3) == i, B, A) for i in range(3)]
-        found = indices(np.array([ishigami(points) for points in (A, B, *mixed)])[:, None], seed=3)
-        errors.append(max(abs(found[0][:, 0] - first).max(), abs(found[1][:, 0] - total).max()))
-        for estimate, (low, high), exact in zip(found[:2], found[2:], (first, total), strict=True):
+        result = indices(np.array([ishigami(points) for points in (A, B, *mixed)])[:, None], seed=3)
+        errors.append(max(abs(result[0][:, 0] - first).max(), abs(result[1][:, 0] - total).max()))
+        for estimate, (low, high), exact in zip(result[:2], result[2:], (first, total), strict=True):
             assert np.all((low <= estimate) & (estimate <= high))
             assert np.all((low[:, 0] - 3e-3 <= exact) & (exact <= high[:, 0] + 3e-3))
     assert errors[-1] < min(0.02, errors[0])
@@ -72,7 +72,7 @@ def test_sobol_indices_of_correlated_sum_equal_closed_form() -> None:
     scatter = Scatter(study, r, {"wood": ("front", "middle", "rear")}, 128, 1)
     assert scatter.causes == ("ferrule", "wood")
     result = cf.study(scatter)
-    found = result.sobol_indices
+    computed = result.sobol_indices
     per_rho = np.array([segment.mass / segment.material.rho for segment in MAPLE.segments[1:]])
     ferrule = MAPLE.segments[1]
     hole = math.pi / 4 * ferrule.length * ferrule.tip_bore**2
@@ -81,8 +81,8 @@ def test_sobol_indices_of_correlated_sum_equal_closed_form() -> None:
     cut = 1 - 8 * math.exp(-8) / math.sqrt(2 * math.pi)
     terms = per_rho * [vary.range.sd for vary in DENSITIES] * math.sqrt(cut)
     parts = np.array([terms[0] ** 2, terms[1:] @ scatter.matrix[1:, 1:] @ terms[1:]])
-    assert found.first[:, 0] == pytest.approx(parts / parts.sum(), abs=0.03)
-    assert found.total[:, 0] == pytest.approx(parts / parts.sum(), abs=0.03)
+    assert computed.first[:, 0] == pytest.approx(parts / parts.sum(), abs=0.03)
+    assert computed.total[:, 0] == pytest.approx(parts / parts.sum(), abs=0.03)
     assert result.spread["shaft_mass"]["sd"] == pytest.approx(math.sqrt(parts.sum()), rel=0.03)
     apart = cf.study(Scatter(study, count=128, seed=1)).sobol_indices
     assert apart.causes == ("ferrule", "front", "middle", "rear")
@@ -90,23 +90,23 @@ def test_sobol_indices_of_correlated_sum_equal_closed_form() -> None:
 
 
 @pytest.mark.heavy
-def test_spread_equals_monte_carlo() -> None:
+def test_scatter_spread_equals_monte_carlo() -> None:
     """Independent draws of NumPy, correlated by NumPy, of a shaft's wood, bore and contact time."""
     vary = (replace(VARY[0], range=Normal(1.0, 0.2, logarithmic=True)), VARY[1], VARY[3])
     study = Study(BASE, vary, (Response.of("end_mass"), Response.of("squirt_slope")), at=COARSE)
-    found = cf.study(Scatter(study, {("E", "rho"): 0.6}, count=256, seed=1)).spread
+    computed = cf.study(Scatter(study, {("E", "rho"): 0.6}, count=256, seed=1)).spread
     random, count = np.random.default_rng(9), 2048
     logs = random.multivariate_normal([0, 0], [[0.04, 0.012], [0.012, 0.01]], count)
     values = zip(*np.exp(logs).T.tolist(), random.uniform(0.8e-3, 1.5e-3, count).tolist(), strict=True)
     plain = evaluate([study.scene(each) for each in values], study.responses, at=COARSE).values
     error = plain.std(axis=0) / math.sqrt(count)
-    mean, sd = (np.array([found[name][key] for name in ("end_mass", "squirt_slope")]) for key in ("mean", "sd"))
+    mean, sd = (np.array([computed[name][key] for name in ("end_mass", "squirt_slope")]) for key in ("mean", "sd"))
     assert np.all(abs(mean - plain.mean(axis=0)) < 4 * error)
     assert np.all(abs(sd / plain.std(axis=0) - 1) < 4 / math.sqrt(2 * count))
 
 
 @pytest.mark.parametrize(("one", "other", "third"), [(0.5, -0.3, 0.5), (-0.55, 0.55, 0.1)])
-def test_samples_have_the_correlations(one: float, other: float, third: float) -> None:
+def test_scatter_samples_have_stated_correlations(one: float, other: float, third: float) -> None:
     """Of logarithms and of normal numbers the correlation, of a uniform one the rank correlation 6/pi asin(r/2)."""
     pairs = {("E", "rho"): one, ("rho", "G"): other, ("E", "time"): third}
     for values in np.split(designs(Scatter(STUDY, pairs, count=1024, seed=1)), 3):  # two samples, and one of both
@@ -125,8 +125,8 @@ def test_correlated_parameters_are_one_cause() -> None:
     assert Scatter(STUDY, {("G", "E"): 0.5}, {"wood": ("E", "rho", "G")}).causes == ("wood", "time")
 
 
-def test_command_equals_function(tmp_path: Path) -> None:
-    study = written(tmp_path, SCATTER)
+def test_scatter_command_equals_function(tmp_path: Path) -> None:
+    study = write_study(tmp_path, SCATTER)
     assert load_study(study).correlations == {("E", "density"): 0.4}
     result = cf.study(study)
     record = as_json("study", study, "-o", tmp_path / "all.csv")

@@ -5,7 +5,6 @@ import json
 import os
 import random
 import signal
-import sqlite3
 import subprocess
 import sys
 import time
@@ -19,8 +18,8 @@ from cuefem.design import evaluate
 from cuefem.io import InputError
 from cuefem.io.study_files import load_study
 from tests.helpers.command_line import stdout_of
-from tests.helpers.refusals import untouched
-from tests.helpers.sweeps import SCENE, STRUCK, STUDY, changed, stored, swept, written
+from tests.helpers.invalid_input import assert_unchanged
+from tests.helpers.sweeps import SCENE, STRIKES, STUDY, alter_store, computed_rows, stored_rows, write_study
 
 ROOT = str(Path(__file__).parents[2])
 ENVIRONMENT = os.environ | {"PYTHONPATH": ROOT}
@@ -73,8 +72,8 @@ def waited_for(store: Path, run: subprocess.Popen[bytes], rows: int) -> int:
     while run.poll() is None and count < rows and time.monotonic() - begun < 60:
         time.sleep(0.02)
         try:
-            count = stored(store) if store.exists() else 0
-        except sqlite3.OperationalError:  # it is being created
+            count = len(stored_rows(store)) if store.exists() else 0
+        except InputError:  # it is being created
             count = 0
     return count
 
@@ -84,19 +83,22 @@ def waited_for(store: Path, run: subprocess.Popen[bytes], rows: int) -> int:
 @pytest.mark.parametrize("workers", [(), ("--workers", "2")], ids=["alone", "two workers"])
 def test_study_killed_edited_and_resumed_has_same_table(tmp_path: Path, workers: tuple[str, ...]) -> None:
     """200 designs; kill -9 after 1, 5 and 9 blocks and a random while."""
-    study, store = written(tmp_path, STRUCK.replace("count = 150", "count = 200")), tmp_path / "study.sqlite"
-    counts, rng = [0], random.Random(len(workers))
+    study, store = write_study(tmp_path, STRIKES.replace("count = 150", "count = 200")), tmp_path / "study.sqlite"
+    stored, rng = [0], random.Random(len(workers))
     for blocks in (1, 5, 9):
         run = started(study, *workers)
         waited_for(store, run, 16 * blocks)
         time.sleep(rng.uniform(0, 0.05))
         os.killpg(run.pid, signal.SIGKILL)
         run.communicate()
-        counts.append(stored(store))
-    assert 0 < counts[1] <= counts[2] <= counts[3]
+        stored.append(len(stored_rows(store)))
+    assert 0 < stored[1] <= stored[2] <= stored[3]
     whole, own = tmp_path / "whole.csv", tmp_path / "own.csv"
-    assert record_of(study, "-o", whole)["evaluated"] == 200 - counts[3]
-    study = written(tmp_path, study.read_text(encoding="utf-8").replace("high = 1.3", "high = 1.4"), name="edited.toml")
+    count = len(stored_rows(store))
+    assert record_of(study, "-o", whole)["evaluated"] == 200 - count
+    study = write_study(
+        tmp_path, study.read_text(encoding="utf-8").replace("high = 1.3", "high = 1.4"), name="edited.toml"
+    )
     stdout_of("study", study, "--store", store, "-o", tmp_path / "edited.csv")
     for name, path in (("study", whole), ("edited", tmp_path / "edited.csv")):
         stdout_of("study", tmp_path / f"{name}.toml", "--store", tmp_path / f"fresh_{name}.sqlite", "-o", own)
@@ -107,28 +109,27 @@ def test_study_killed_edited_and_resumed_has_same_table(tmp_path: Path, workers:
 @pytest.mark.heavy
 @pytest.mark.parametrize("workers", [(), ("--workers", "2")], ids=["alone", "two workers"])
 def test_study_interrupted_prints_one_line_and_stores_designs(tmp_path: Path, workers: tuple[str, ...]) -> None:
-    study, store = written(tmp_path, STRUCK.replace("count = 150", "count = 3000")), tmp_path / "study.sqlite"
+    study, store = write_study(tmp_path, STRIKES.replace("count = 150", "count = 3000")), tmp_path / "study.sqlite"
     run = started(study, *workers)
     waited_for(store, run, 100)
     os.killpg(run.pid, signal.SIGINT)
     out, err = run.communicate(timeout=60)
-    count = stored(store)
+    count = len(stored_rows(store))
     assert (run.returncode, out) == (130, b"")
-    progress = f"{count} of 3000 designs are stored in {store}"
-    assert err.decode() == f"cuefem: interrupted; {progress}; run the same command to resume\n"
+    stored = f"{count} of 3000 designs are stored in {store}"
+    assert err.decode() == f"cuefem: interrupted; {stored}; run the same command to resume\n"
     assert 100 <= count < 3000
 
 
 @pytest.mark.heavy
 def test_study_killed_worker_is_replaced(tmp_path: Path) -> None:
-    study = written(tmp_path, STRUCK)
+    study = write_study(tmp_path, STRIKES)
     run = started(study, "--workers", "2")
     waited_for(tmp_path / "study.sqlite", run, 32)
     workers = [p for p in psutil.Process(run.pid).children(recursive=True) if "spawn_main" in " ".join(p.cmdline())]
     workers[0].kill()
     assert (run.communicate()[1], run.returncode) == (b"", 0)
-    assert stored(tmp_path / "study.sqlite") == 150
-    assert swept(study, tmp_path / "study.sqlite") == swept(study, tmp_path / "alone.sqlite")
+    assert stored_rows(tmp_path / "study.sqlite") == computed_rows(study, tmp_path / "alone.sqlite")
 
 
 EDITS = [  # the edit of the study, its designs, and how many of them are new
@@ -145,18 +146,18 @@ EDITS = [  # the edit of the study, its designs, and how many of them are new
 def test_edited_study_computes_only_new_designs(tmp_path: Path) -> None:
     store = tmp_path / "all.sqlite"
     for (old, new), size, fresh in EDITS:
-        study = written(tmp_path, GRID.replace(old, new))
+        study = write_study(tmp_path, GRID.replace(old, new))
         record = record_of(study, "--store", store)
         assert (record["designs"], record["evaluated"]) == (size, fresh), new
         (tmp_path / "own.sqlite").unlink(missing_ok=True)
-        assert swept(study, store) == swept(study, tmp_path / "own.sqlite")
-    moved = SCENE.replace('tip_diameter = "12 mm"', 'tip_diameter = "12.5 mm"')
-    assert record_of(written(tmp_path, GRID, moved), "--store", store)["evaluated"] == 0  # the same designs
-    assert record_of(written(tmp_path, GRID, SCENE.replace("420 g", "421 g")), "--store", store)["evaluated"] == 8
+        assert stored_rows(store) == computed_rows(study, tmp_path / "own.sqlite")
+    edited = SCENE.replace('tip_diameter = "12 mm"', 'tip_diameter = "12.5 mm"')
+    assert record_of(write_study(tmp_path, GRID, edited), "--store", store)["evaluated"] == 0  # the same designs
+    assert record_of(write_study(tmp_path, GRID, SCENE.replace("420 g", "421 g")), "--store", store)["evaluated"] == 8
 
 
 def test_study_of_other_version_computes_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    study = written(tmp_path, GRID)
+    study = write_study(tmp_path, GRID)
     assert [record_of(study)["evaluated"], record_of(study)["evaluated"]] == [8, 0]
     monkeypatch.setattr("cuefem.io.store.code_digest", lambda: "another")
     assert record_of(study)["evaluated"] == 8
@@ -165,14 +166,13 @@ def test_study_of_other_version_computes_again(tmp_path: Path, monkeypatch: pyte
 # --- damage ----------------------------------------------------------------------------------------------------------
 def test_store_flipped_byte_raises_or_is_harmless(tmp_path: Path) -> None:
     store, rng = tmp_path / "study.sqlite", random.Random(1)
-    study = written(tmp_path, GRID)
-    table = swept(study, store)
+    table = computed_rows(write_study(tmp_path, GRID), store)
     data, flipped, lines = store.read_bytes(), tmp_path / "flipped.sqlite", list[str]()
     for _ in range(120):
         position, bit = rng.randrange(len(data)), rng.randrange(1, 256)
         flipped.write_bytes(data[:position] + bytes([data[position] ^ bit]) + data[position + 1 :])
         try:
-            assert swept(study, flipped) == table
+            assert stored_rows(flipped) == table
         except InputError as error:
             lines.append(str(error))
     assert len(lines) > 10
@@ -180,10 +180,10 @@ def test_store_flipped_byte_raises_or_is_harmless(tmp_path: Path) -> None:
 
 
 # --- the table -------------------------------------------------------------------------------------------------------
-@pytest.mark.parametrize("text", [STUDY, STRUCK.replace("count = 150", "count = 40")], ids=["grid", "sample"])
+@pytest.mark.parametrize("text", [STUDY, STRIKES.replace("count = 150", "count = 40")], ids=["grid", "sample"])
 def test_csv_has_every_design_exactly(text: str, tmp_path: Path) -> None:
     """Equal to each design evaluated alone; an invalid design has a reason and no responses."""
-    study = written(tmp_path, text)
+    study = write_study(tmp_path, text)
     definition = load_study(study)
     stdout_of("study", study, "-o", tmp_path / "out.csv")
     with (tmp_path / "out.csv").open(newline="", encoding="utf-8") as file:
@@ -203,18 +203,28 @@ def test_csv_has_every_design_exactly(text: str, tmp_path: Path) -> None:
             assert line[-1] == ""
 
 
-ONE = "(SELECT {} FROM designs ORDER BY scene LIMIT 1)"
+def test_store_of_several_studies_reads_by_name(tmp_path: Path) -> None:
+    store = tmp_path / "all.sqlite"
+    for name, text in (("grid", GRID), ("quick", STRIKES.replace("count = 150", "count = 16"))):
+        stdout_of("study", write_study(tmp_path, text, name=f"{name}.toml"), "--store", store)
+    assert [len(stored_rows(store, name)) for name in (None, "grid")] == [16, 8]
+    with pytest.raises(InputError, match="must contain a study other; got quick, grid"):
+        stored_rows(store, "other")
+
+
 REFUSED = [
     ("PRAGMA application_id = 7", "must be a store of `cuefem study`; got another database"),
-    ("UPDATE designs SET answers = replace(answers, '0.0', '0.1')", "is damaged: a design was altered"),
-    (f"UPDATE designs SET answers = {ONE.format('answers')}", "is damaged: a design was altered"),
-    (f"UPDATE designs SET failure = 'none' WHERE scene = {ONE.format('scene')}", "is damaged: a design was altered"),
+    (
+        """UPDATE designs SET answer = replace(answer, '0.0', '0.1') WHERE design = 3""",
+        "is damaged: design 3 was altered",
+    ),
+    ("UPDATE designs SET answer = (SELECT answer FROM designs WHERE design = 2) WHERE design = 3", "design 3 was"),
 ]
 
 
 @pytest.mark.parametrize(("statement", "message"), REFUSED)
 def test_store_altered_raises_and_is_unchanged(tmp_path: Path, statement: str, message: str) -> None:
-    study, store = written(tmp_path, GRID), tmp_path / "study.sqlite"
-    swept(study, store)
-    changed(store, statement)
-    untouched(tmp_path, message, "study", study)
+    study, store = write_study(tmp_path, GRID), tmp_path / "study.sqlite"
+    computed_rows(study, store)
+    alter_store(store, statement)
+    assert_unchanged(tmp_path, message, "study", study)

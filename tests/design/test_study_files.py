@@ -9,8 +9,8 @@ from cuefem.design import Normal, Span
 from cuefem.io import InputError
 from cuefem.io.study_files import load_study
 from tests.helpers.command_line import as_json
-from tests.helpers.refusals import command_refuses
-from tests.helpers.sweeps import SCENE, STRUCK, STUDY, written
+from tests.helpers.invalid_input import assert_rejects
+from tests.helpers.sweeps import SCENE, STRIKES, STUDY, write_study
 
 LEATHER = ("6 mm", "12.75 mm", "12.75 mm", 'material = "leather"')
 FERRULED = (
@@ -39,34 +39,34 @@ PATHS = {
 def varying(folder: Path, path: str, *, of: str = "cue.toml", more: str = "") -> Path:
     (folder / "cue.toml").write_text(CUE, encoding="utf-8")
     text = f'scene = "{of}"\nresponses = ["shaft_mass"]\n[[vary]]\npath = "{path}"\nvalues = ["5 mm", "7 mm"]\n{more}'
-    return written(folder, text, OF_CUE)
+    return write_study(folder, text, OF_CUE)
 
 
 @pytest.mark.parametrize("of", ["cue.toml", "scene.toml"])
 @pytest.mark.parametrize("path", PATHS)
 def test_study_segments_are_numbered_as_in_file(path: str, of: str, tmp_path: Path) -> None:
     i, field, before, piece = PATHS[path]
-    wanted = load_study(file := varying(tmp_path, path, of=of))
-    assert getattr(wanted.base.cue.segments[i], field) == pytest.approx(before)
+    expected = load_study(file := varying(tmp_path, path, of=of))
+    assert getattr(expected.base.cue.segments[i], field) == pytest.approx(before)
     for value in (0.005, 0.007):
-        assert getattr(wanted.scene((value,)).cue.segments[i], field) == pytest.approx(value)
+        assert getattr(expected.scene((value,)).cue.segments[i], field) == pytest.approx(value)
     assert as_json("study", file)["varied"] == {path: [piece]}
 
 
 def test_study_compensated_length_of_segment_in_file(tmp_path: Path) -> None:
-    wanted = load_study(
+    expected = load_study(
         varying(tmp_path, "cue.segments[1].length", more='compensating_path = "cue.segments[2].length"\n')
     )
-    lengths = [segment.length for segment in wanted.scene((0.005,)).cue.segments]
+    lengths = [segment.length for segment in expected.scene((0.005,)).cue.segments]
     assert lengths == pytest.approx([0.005, 0.141, 0.55])
 
 
 @pytest.mark.parametrize(
-    ("path", "words"),
+    ("path", "message"),
     [("cue.segments[0].length", "must not name the drawn leather"), ("cue.segments[4].length", "cue's file, 0 to 3")],
 )
-def test_study_segment_off_the_modelled_cue_raises(path: str, words: str, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=words):
+def test_study_segment_off_the_modelled_cue_raises(path: str, message: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=message):
         load_study(varying(tmp_path, path))
 
 
@@ -77,23 +77,23 @@ def test_study_of_cue_has_default_stroke_of_game(tmp_path: Path) -> None:
         assert load_study(file).base == usual(cf.load(tmp_path / "cue.toml"))
         assert f"cue speed {1 if game else 2} m/s" in as_json("study", file)["assumed"]
     file.write_text('game = "chess"\n' + file.read_text(encoding="utf-8"), encoding="utf-8")
-    command_refuses("study.toml: game: must be one of pool, carom, snooker, kim", "study", file)
-    of_scene = written(tmp_path, f'game = "pool"\n{STUDY}')
-    command_refuses("study.toml: game: must be left out: scene.toml is a scene", "study", of_scene)
+    assert_rejects("study.toml: game: must be one of pool, carom, snooker, kim", "study", file)
+    of_scene = write_study(tmp_path, f'game = "pool"\n{STUDY}')
+    assert_rejects("study.toml: game: must be left out: scene.toml is a scene", "study", of_scene)
 
 
 def test_study_file_ranges_are_read(tmp_path: Path) -> None:
-    text = STRUCK.replace('low = "0 mm"\nhigh = "13 mm"', 'middle = "5 mm"\nsd = "1 mm"')
+    text = STRIKES.replace('low = "0 mm"\nhigh = "13 mm"', 'middle = "5 mm"\nsd = "1 mm"')
     text = text.replace("low = 0.7\nhigh = 1.3", 'middle = 1\nsd = 0.2\nspacing = "logarithmic"')
     text += '[[vary]]\npath = "cue.segments[0].length"\nlow = "-5 mm"\nhigh = "5 mm"\nshift = true\n'
     text += 'compensating_path = "cue.segments[1].length"\n'
     two = SCENE.replace("[tip]", SCENE[SCENE.index("[[") : SCENE.index("[tip]")] + "[tip]")
-    found = load_study(written(tmp_path, text, two))
-    bore, modulus, length = found.vary
+    result = load_study(write_study(tmp_path, text, two))
+    bore, modulus, length = result.vary
     assert (bore.range, modulus.range) == (Normal(5e-3, 1e-3), Normal(1, 0.2, logarithmic=True))
     assert (length.range, length.shift, length.compensating_path) == (
         Span(-5e-3, 5e-3),
         True,
         ("cue.segments[1].length",),
     )
-    assert found.units[:3] == ("m", "", "m")
+    assert result.units[:3] == ("m", "", "m")

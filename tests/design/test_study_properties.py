@@ -61,21 +61,21 @@ def test_sample_is_uniform_and_depends_on_seed(method: str) -> None:
 
 
 def test_grid_last_parameter_varies_fastest() -> None:
-    found = study(varied("cue.body_mass", 0.1, 0.2), Vary(("ball.mass",), Span(0.16, 0.2, 3)))
-    assert [*found.designs()] == [(b, m) for b in (0.1, 0.2) for m in (0.16, 0.18, 0.2)]
-    assert found.size == 6
+    result = study(varied("cue.body_mass", 0.1, 0.2), Vary(("ball.mass",), Span(0.16, 0.2, 3)))
+    assert [*result.designs()] == [(b, m) for b in (0.1, 0.2) for m in (0.16, 0.18, 0.2)]
+    assert result.size == 6
 
 
 def test_study_scene_applies_materials_numbers_and_factors() -> None:
-    found = study(
+    result = study(
         varied("cue.segments[3].material", "ash"),
         varied("cue.segments[*].material.E", 0.5, factor=True, name="factor"),
         varied("cue.segments[3].material.rho", 500.0),
     )
-    made = found.scene(("ash", 0.5, 500.0)).cue.segments
-    assert made[3].material == replace(material("ash"), E=material("ash").E * 0.5, rho=500.0)
+    segments = result.scene(("ash", 0.5, 500.0)).cue.segments
+    assert segments[3].material == replace(material("ash"), E=material("ash").E * 0.5, rho=500.0)
     for i in (0, 1, 2, 4):
-        assert made[i].material == replace(BASE.cue.segments[i].material, E=BASE.cue.segments[i].material.E * 0.5)
+        assert segments[i].material == replace(BASE.cue.segments[i].material, E=BASE.cue.segments[i].material.E * 0.5)
 
 
 def test_response_name_is_inverse_of_of() -> None:
@@ -125,9 +125,9 @@ def test_responses_equal_single_calls(at: cf.Resolution | None, effects: tuple[A
     """Two cues, and one of them struck at another offset, which shares its modes."""
     scenes = [replace(BASE, effects=effects), replace(BASE, cue=pool(), effects=effects)]
     scenes.append(struck_at(scenes[1], 0.25))
-    found = evaluate(scenes, ALL, at=at)
-    assert found.reasons == (None,) * 3
-    for scene, values in zip(scenes, found.values, strict=True):
+    result = evaluate(scenes, ALL, at=at)
+    assert result.reasons == (None,) * 3
+    for scene, values in zip(scenes, result.values, strict=True):
         by_name = dict(zip(NAMES, values, strict=True))
         for name, single in singly(scene, at).items():
             np.testing.assert_allclose(by_name[name], single, rtol=1e-10, err_msg=name)
@@ -146,13 +146,13 @@ def test_evaluate_failed_design_does_not_affect_others() -> None:
     scenes = [BASE, replace(BASE, cue=replace(kim(), segments=(feather,))), replace(long, cue=light), long]
     names = ("end_mass", "squirt_slope", "mass")
     with np.errstate(all="ignore"):
-        found = evaluate(scenes, names, at=AT)
-    np.testing.assert_array_equal(found.values[[0, 3]], evaluate([scenes[0], scenes[3]], names, at=AT).values)
-    assert [reason is None for reason in found.reasons] == [True, False, False, True]
-    assert np.isnan(found.values[1, 0])
-    assert np.isnan(found.values[2]).tolist() == [True, False, False]
-    assert found.values[2, 1] < 0
-    assert f"a squirt of {found.values[2, 1]:.4g} phi" in found.reasons[2]
+        result = evaluate(scenes, names, at=AT)
+    np.testing.assert_array_equal(result.values[[0, 3]], evaluate([scenes[0], scenes[3]], names, at=AT).values)
+    assert [reason is None for reason in result.reasons] == [True, False, False, True]
+    assert np.isnan(result.values[1, 0])
+    assert np.isnan(result.values[2]).tolist() == [True, False, False]
+    assert result.values[2, 1] < 0
+    assert f"a squirt of {result.values[2, 1]:.4g} phi" in result.reasons[2]
 
 
 DEPTH = Vary(("cue.segments[2].length",), Span(0.05, 0.25), "bore depth", compensating_path=("cue.segments[3].length",))
@@ -160,11 +160,11 @@ DEPTH = Vary(("cue.segments[2].length",), Span(0.05, 0.25), "bore depth", compen
 
 @given(st.floats(0.05, 0.25))
 def test_study_compensated_length_preserves_cue_length(depth: float) -> None:
-    made = study(DEPTH).scene((depth,)).cue
-    assert made.segments[2].length == depth
-    assert made.length == pytest.approx(BASE.cue.length, rel=1e-15)
+    changed = study(DEPTH).scene((depth,)).cue
+    assert changed.segments[2].length == depth
+    assert changed.length == pytest.approx(BASE.cue.length, rel=1e-15)
     rest = BASE.cue.segments[:2] + BASE.cue.segments[4:]
-    assert made.segments[:2] + made.segments[4:] == rest
+    assert changed.segments[:2] + changed.segments[4:] == rest
 
 
 def test_study_compensated_lengths_in_any_order_agree() -> None:
@@ -172,8 +172,8 @@ def test_study_compensated_lengths_in_any_order_agree() -> None:
     ferrule = Vary(("cue.segments[1].length",), Span(-0.005, 0.01), "ferrule", False, True, ("cue.segments[2].length",))
     for order in (1, -1):
         values = (0.004, 0.1)[::order]
-        made = study(*(ferrule, DEPTH)[::order]).scene(values).cue
-        lengths = [segment.length for segment in made.segments[1:4]]
+        changed = study(*(ferrule, DEPTH)[::order]).scene(values).cue
+        lengths = [segment.length for segment in changed.segments[1:4]]
         assert lengths == pytest.approx([0.016, 0.096, 0.2], rel=1e-14)
 
 
@@ -181,25 +181,25 @@ def test_study_applies_factor_and_shift_after_value() -> None:
     path = ("tip.contact_time",)
     numbers = (Levels((1e-3, 2e-3)), Levels((1.5,)), Levels((1e-4,)))
     set_, factor, shift = (replace(Vary(path, range), name=name) for name, range in zip("abc", numbers, strict=True))
-    moved = study(replace(shift, shift=True), replace(factor, factor=True), set_)
-    assert moved.scene((1e-4, 1.5, 2e-3)).tip.contact_time == pytest.approx(3.1e-3, rel=1e-15)
+    combined = study(replace(shift, shift=True), replace(factor, factor=True), set_)
+    assert combined.scene((1e-4, 1.5, 2e-3)).tip.contact_time == pytest.approx(3.1e-3, rel=1e-15)
 
 
 @given(st.floats(-5, 5), st.floats(0.01, 3), st.floats(0, 1))
 def test_normal_range_is_truncated_normal(middle: float, sd: float, u: float) -> None:
-    drawn = Normal(middle, sd)
-    low, high = drawn.ends
+    distribution = Normal(middle, sd)
+    low, high = distribution.ends
     assert (low, high) == (middle - 4 * sd, middle + 4 * sd)
-    assert low <= drawn.quantile(u) <= high
-    assert drawn.quantile(0.5) == pytest.approx(middle, abs=1e-12)
+    assert low <= distribution.quantile(u) <= high
+    assert distribution.quantile(0.5) == pytest.approx(middle, abs=1e-12)
     # between the cuts as without them, but for the 6e-5 that lies beyond
-    assert NormalDist(middle, sd).cdf(drawn.quantile(u)) == pytest.approx(u, abs=6.4e-5)
+    assert NormalDist(middle, sd).cdf(distribution.quantile(u)) == pytest.approx(u, abs=6.4e-5)
     logarithmic = Normal(np.exp(middle), sd, logarithmic=True)
-    assert np.log(logarithmic.quantile(u)) == pytest.approx(drawn.quantile(u), rel=1e-9, abs=1e-9)
+    assert np.log(logarithmic.quantile(u)) == pytest.approx(distribution.quantile(u), rel=1e-9, abs=1e-9)
 
 
 def test_evaluate_lumped_cue_has_responses_without_segments() -> None:
     lumped = cf.Scene(cf.LumpedCue(0.5, 0.005))
-    found = evaluate([lumped, lumped], ["mass", "frequency(1)"])
-    assert found.values[:, 0].tolist() == [0.5, 0.5]
-    assert found.reasons == ("frequency(1) needs a cue of segments; got a lumped cue",) * 2
+    result = evaluate([lumped, lumped], ["mass", "frequency(1)"])
+    assert result.values[:, 0].tolist() == [0.5, 0.5]
+    assert result.reasons == ("frequency(1) needs a cue of segments; got a lumped cue",) * 2

@@ -12,95 +12,95 @@ import pytest
 import cuefem as cf
 from tests.helpers.command_line import call
 from tests.helpers.designer_browser import (
-    downloaded,
-    launched,
-    needs_browser,
-    number,
-    opened,
-    picked,
-    served,
-    settled,
-    typed,
+    browser_marks,
+    designer_page,
+    displayed_number,
+    download,
+    open_browser,
+    pick_option,
+    run_designer,
+    type_value,
+    wait_until_idle,
 )
 
 axe = pytest.importorskip(
     "axe_playwright_python.sync_playwright", reason="needs axe: pip install axe-playwright-python"
 )
-pytestmark = needs_browser()
+pytestmark = browser_marks()
 DRAWING = "position (mm);diameter (mm)\n0;12,4\n330;13,1\n737;21,5\n"
 TABS = ("Curves", "Changes", "Numbers", "Check", "File")
 
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    with launched() as made:
-        yield made
+    with open_browser() as instance:
+        yield instance
 
 
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    with served(tmp_path_factory.mktemp("designer")) as made:
-        yield made
+    with run_designer(tmp_path_factory.mktemp("designer")) as url:
+        yield url
 
 
 def violations(page: Any) -> list[tuple[str, list[str]]]:
     """Each violated accessibility rule, and its elements."""
-    found = axe.Axe().run(page).response["violations"]
-    return [(one["id"], [str(node["target"]) for node in one["nodes"]]) for one in found]
+    results = axe.Axe().run(page).response["violations"]
+    return [(one["id"], [str(node["target"]) for node in one["nodes"]]) for one in results]
 
 
 def test_saved_design_strikes_as_displayed(browser: Any, address: str, tmp_path: Path) -> None:
     """Open a drawing, add a ferrule, a weight and a bore, undo two, compare, try the best change, save and report."""
     (tmp_path / "mine.csv").write_text(DRAWING, encoding="utf-8")
     (tmp_path / "broken.toml").write_text("[[segments", encoding="utf-8")
-    with opened(browser, address) as page:
+    with designer_page(browser, address) as page:
         page.locator("input[type=file]").first.set_input_files(tmp_path / "broken.toml")
         page.locator("[role=alert]").filter(has_text="broken.toml").wait_for()
         page.locator("input[type=file]").first.set_input_files(tmp_path / "mine.csv")
         page.wait_for_function(
             "() => document.querySelector('input[aria-label=\"Name of the design\"]').value === 'mine'"
         )
-        settled(page)
-        plain = number(page, "squirt")
+        wait_until_idle(page)
+        plain = displayed_number(page, "squirt")
 
-        picked(page, "Ferrule", "melamine")
-        typed(page, "Shaft weight", "101 g")
-        picked(page, "Bore", "drilled")
-        typed(page, "Bore width", "13 mm")
+        pick_option(page, "Ferrule", "melamine")
+        type_value(page, "Shaft weight", "101 g")
+        pick_option(page, "Bore", "drilled")
+        type_value(page, "Bore width", "13 mm")
         page.locator("[role=alert]").filter(has_text="13 mm is too large").wait_for()
-        typed(page, "Bore width", "1/4 in")
-        bored = number(page, "squirt")
+        type_value(page, "Bore width", "1/4 in")
+        bored = displayed_number(page, "squirt")
         assert bored < plain
         page.reload()
-        settled(page)
-        assert number(page, "squirt") == bored
+        wait_until_idle(page)
+        assert displayed_number(page, "squirt") == bored
         assert page.get_by_label("Bore width", exact=True).first.input_value() == "1/4 in"
         for _ in range(2):
             page.get_by_role("button", name="Undo").click()
-        settled(page)
+        wait_until_idle(page)
         assert not page.get_by_label("Bore width", exact=True).first.is_visible()
 
-        picked(page, "Compare with", "as it was opened")
-        assert number(page, "squirt", "other") == plain
+        pick_option(page, "Compare with", "as it was opened")
+        assert displayed_number(page, "squirt", "other") == plain
         page.get_by_role("tab", name="Changes").click()
-        settled(page)
-        before = number(page, "squirt")
+        wait_until_idle(page)
+        before = displayed_number(page, "squirt")
         page.get_by_role("button", name="Try").first.click()
-        settled(page)
-        tried = number(page, "squirt")
-        assert tried < before
+        wait_until_idle(page)
+        changed = displayed_number(page, "squirt")
+        assert changed < before
 
-        saved = downloaded(page, "Save", tmp_path)
+        saved = download(page, "Save", tmp_path)
         scene = cf.load(saved)
         assert scene.cue.weighed
-        assert cf.strike(scene).squirt == pytest.approx(tried, rel=1e-9)
+        assert cf.strike(scene).squirt == pytest.approx(changed, rel=1e-9)
         assert call("strike", saved)[0] == 0
-        report = downloaded(page, "Report", tmp_path).read_text(encoding="utf-8")
+        report = download(page, "Report", tmp_path).read_text(encoding="utf-8")
         printed = [
             float(text) for text in re.findall(r'data-number="squirt" data-of="\w+" data-value="([^"]*)"', report)
         ]
         assert sorted(printed) == pytest.approx(
-            sorted([tried, plain]), rel=5e-3
+            sorted([changed, plain]), rel=5e-3
         )  # the report has another numerical error
 
 
@@ -118,15 +118,15 @@ CUT_OFF = """() => {
 
 @pytest.mark.parametrize(("scheme", "width"), [("light", 1280), ("dark", 390)])
 def test_every_tab_is_accessible_and_not_cropped(browser: Any, address: str, scheme: str, width: int) -> None:
-    with opened(browser, address, width=width, scheme=scheme) as page:
-        picked(page, "Compare with", "low deflection")
+    with designer_page(browser, address, width=width, scheme=scheme) as page:
+        pick_option(page, "Compare with", "low deflection")
         for group in ("Tip", "Stroke", "Shaft"):
             page.get_by_role("button", name=group, exact=False).first.click()
         for tab in TABS:
             page.get_by_role("tab", name=tab).click()
-            settled(page)
-            found = page.evaluate(CUT_OFF)
-            assert found["scroll"] <= width, tab
-            assert (found["wide"], found["outside"]) == ([], 0), tab
-            assert found["smallest"] is None or found["smallest"] > 6.5, tab  # px, of a text's line
+            wait_until_idle(page)
+            layout = page.evaluate(CUT_OFF)
+            assert layout["scroll"] <= width, tab
+            assert (layout["wide"], layout["outside"]) == ([], 0), tab
+            assert layout["smallest"] is None or layout["smallest"] > 6.5, tab  # px, of a text's line
             assert violations(page) == [], tab

@@ -19,8 +19,8 @@ pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' 
 import cuefem as cf
 from cuefem.designer.page import MAX_FILE, file_name
 from cuefem.designer.server import REJECTED, RequestValidation
-from tests.helpers.designer_browser import await_listening
-from tests.helpers.refusals import command_refuses
+from tests.helpers.designer_browser import wait_for_port
+from tests.helpers.invalid_input import assert_rejects
 
 OWN = "http://127.0.0.1:8470"
 PIECE = 1_000_000  # bytes of a chunk of a body
@@ -100,21 +100,21 @@ def test_file_name_drops_folders() -> None:
 def test_designer_without_nicegui_names_install_command(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delitem(sys.modules, "cuefem.designer.server", raising=False)
     monkeypatch.setitem(sys.modules, "nicegui", None)
-    command_refuses("the designer needs nicegui: pip install '.[designer]' in the clone", "designer", "--no-open")
+    assert_rejects("the designer needs nicegui: pip install '.[designer]' in the clone", "designer", "--no-open")
 
 
 def test_designer_with_too_many_segments_exits_with_message(tmp_path: Path) -> None:
     piece = cf.Segment(1.8e-3, 0.012, 0.012, cf.Material(12.6e9, 0.84e9, 700.0))
     cf.save(cf.Cue((piece,) * 301, body_mass=0.45), tmp_path / "many.toml")
     message = "many.toml: the designer takes a cue of at most 300 segments; got 301"
-    command_refuses(message, "designer", "--no-open", tmp_path / "many.toml")
+    assert_rejects(message, "designer", "--no-open", tmp_path / "many.toml")
 
 
 def test_designer_with_port_in_use_exits_with_message() -> None:
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        port = taken.getsockname()[1]
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        port = listener.getsockname()[1]
         message = f"--port {port} is not available"
-        command_refuses(message, "designer", "--no-open", "--port", port)
+        assert_rejects(message, "designer", "--no-open", "--port", port)
 
 
 @pytest.mark.heavy
@@ -126,7 +126,7 @@ def test_ctrl_c_stops_server_without_output() -> None:
     try:
         assert running.stdout is not None
         address = running.stdout.readline().strip()
-        await_listening(int(address.rstrip("/").rsplit(":", 1)[1]))
+        wait_for_port(int(address.rstrip("/").rsplit(":", 1)[1]))
         with urllib.request.urlopen(address, timeout=90) as answer:
             assert answer.status == 200
         running.send_signal(signal.SIGINT)

@@ -18,7 +18,7 @@ TIP = cf.Tip(0.73, 0.7, contact_time=1.1e-3)
 
 
 @cache
-def drawn(name: str) -> cf.Cue:
+def reference_cue(name: str) -> cf.Cue:
     """A reference cue."""
     cue = cf.load(MESHES / f"{name}.toml")
     assert isinstance(cue, cf.Cue)
@@ -29,12 +29,12 @@ def head_on(cue: cf.Cue) -> cf.Scene:
     return cf.Scene(cue, cf.Ball(), TIP, cf.Stroke(1.0, 0.0), (cf.AxialWaves(),))
 
 
-def seen(outcome: cf.Outcome, cue: cf.Cue) -> tuple[float, float]:
+def contact_of(outcome: cf.Outcome, cue: cf.Cue) -> tuple[float, float]:
     """Contact time, s, and the restitution that the ball's speed shows, of a cue that is rigid along its axis."""
     return outcome.duration, outcome.ball_speed * (1 + cf.Ball().mass / cue.mass) - 1
 
 
-def stepped(cue: cf.Cue, pieces: int = 200) -> tuple[float, float]:
+def step_chain(cue: cf.Cue, pieces: int = 200) -> tuple[float, float]:
     """Contact time, s, and the restitution seen: a chain of masses and springs behind the tip's spring, in small
     steps."""
     x = np.linspace(cue.leather, cue.length, pieces + 1)
@@ -46,26 +46,26 @@ def stepped(cue: cf.Cue, pieces: int = 200) -> tuple[float, float]:
     m[-1] += cue.body_mass
     k, e = head_on(cue).stiffness, TIP.restitution
     v, squeeze = np.ones(pieces + 1), np.zeros(pieces)
-    ball = pressed = most = time = 0.0
+    ball = compression = most = time = 0.0
     dt = 0.2 * h / math.sqrt(MAPLE.E / MAPLE.rho)
     while True:
-        most = max(most, pressed)
-        force = max(k * most - k / e**2 * (most - pressed), 0.0)
+        most = max(most, compression)
+        force = max(k * most - k / e**2 * (most - compression), 0.0)
         if time > 0 and force == 0:
             return time, ball * (1 + cf.Ball().mass / cue.mass) - 1
-        held = np.r_[0.0, springs * squeeze] - np.r_[springs * squeeze, 0.0]
-        held[0] -= force
-        v += dt * held / m
+        net = np.r_[0.0, springs * squeeze] - np.r_[springs * squeeze, 0.0]
+        net[0] -= force
+        v += dt * net / m
         ball += dt * force / cf.Ball().mass
         squeeze += dt * (v[:-1] - v[1:])
-        pressed += dt * (v[0] - ball)
+        compression += dt * (v[0] - ball)
         time += dt
 
 
 def test_axial_waves_equal_chain_of_masses() -> None:
     """The remainder, of 1.1 ms and 0.73: about 0.16 ms and 0.05."""
-    cue = drawn("pool_maple")
-    assert seen(cf.strike(head_on(cue)), cue) == pytest.approx(stepped(cue), rel=2e-3)
+    cue = reference_cue("pool_maple")
+    assert contact_of(cf.strike(head_on(cue)), cue) == pytest.approx(step_chain(cue), rel=2e-3)
 
 
 BUTT = {"cue_length": 1.4732, "butt_diameter": 0.03175}
@@ -73,12 +73,12 @@ BUTT = {"cue_length": 1.4732, "butt_diameter": 0.03175}
 
 def test_axial_waves_stated_butt_equals_drawn_butt():
     """Along the axis it is a tapered segment of the rest's mass and of the wave speed; across it nothing is there."""
-    waves, cue = cf.AxialWaves(**BUTT, wave_speed=4430.0), drawn("pool_maple")
+    waves, cue = cf.AxialWaves(**BUTT, wave_speed=4430.0), reference_cue("pool_maple")
     whole, scene = waves.with_butt(cue), replace(head_on(cue), effects=(waves,))
     rest = whole.segments[-1]
     assert (whole.length, whole.mass) == pytest.approx((1.4732, cue.mass), rel=1e-12)
     assert (rest.material.E / rest.material.rho) ** 0.5 == pytest.approx(4430.0, rel=1e-12)
-    assert seen(cf.strike(scene), cue) == pytest.approx(seen(cf.strike(head_on(whole)), whole), rel=1e-5)
+    assert contact_of(cf.strike(scene), cue) == pytest.approx(contact_of(cf.strike(head_on(whole)), whole), rel=1e-5)
     assert cf.end_mass(scene, "velocity") == cf.end_mass(head_on(cue), "velocity")
 
 
@@ -90,9 +90,9 @@ def test_rod_truncation_correction_has_compliance_of_all_modes(below):
     section = cue.section(0.0)
     s = 10 * section.EA / section.rhoA / cue.length**2
     exact = 1 / np.tanh(math.sqrt(10)) / np.sqrt(s * section.EA * section.rhoA) - 1 / (cue.mass * s)
-    found = rod_modes(cue, (), below=below, tailed=True)
-    assert len(found.omega) == 2 + np.sum(found.omega[:-2] <= below)
-    assert np.sum(found.along**2 / (found.omega**2 + s)) == pytest.approx(exact, rel=1e-6)
+    result = rod_modes(cue, (), below=below, tailed=True)
+    assert len(result.omega) == 2 + np.sum(result.omega[:-2] <= below)
+    assert np.sum(result.along**2 / (result.omega**2 + s)) == pytest.approx(exact, rel=1e-6)
     plain = rod_modes(cue, (), below=below)
     assert plain.radiation is None
     assert np.sum(plain.along**2 / (plain.omega**2 + s)) < 0.95 * exact

@@ -18,17 +18,17 @@ from tests.helpers.cues import MAPLE, kim
 from tests.helpers.orders import assert_error_falls_with_the_step
 from tests.helpers.strike_scenes import KIM, kim_scene
 
-HERE = 0.213  # m, between the nodes of every mesh used here
+POSITION = 0.213  # m, between the nodes of every mesh used here
 
 
-NODE = cf.PointMass(HERE, 0.0)  # a node alone: the mesh's error is the same with and without the effect
+NODE = cf.PointMass(POSITION, 0.0)  # a node alone: the mesh's error is the same with and without the effect
 
 
 @pytest.mark.parametrize("share", [0.0, 0.4, 1.0])
 def test_point_mass_adds_its_axial_share_to_axial_mass(share):
     """Bending modes are those of the whole mass; head on, the cue is as heavy as with its share of it behind."""
-    lump = cf.PointMass(HERE, 0.05, axial_share=share)
-    across = [cf.modes(kim(), 3, effects=(each,)).frequencies for each in (lump, cf.PointMass(HERE, 0.05))]
+    lump = cf.PointMass(POSITION, 0.05, axial_share=share)
+    across = [cf.modes(kim(), 3, effects=(each,)).frequencies for each in (lump, cf.PointMass(POSITION, 0.05))]
     np.testing.assert_allclose(*across, rtol=1e-12)
     heavier = replace(kim(), body_mass=kim().body_mass + 0.05 * share)
     assert cf.strike(cf.Scene(kim(), effects=(lump,))).ball_speed == pytest.approx(
@@ -44,14 +44,14 @@ SOFT = (3e-3, 2e-6)  # rad/(N m), m/N
 def test_joint_compliance_adds_in_series(compliances, order):
     """A force at the tip of a cue clamped at its butt bends it by the joint's lever squared, and shears it, more."""
 
-    def give(*effects: Effect) -> float:
+    def compliance(*effects: Effect) -> float:
         system = assemble(KIM, cf.Resolution(3, order, 1), (cf.Support(0.7, inf, inf), *effects))
         force = system.unit_loads_at(0.0)[:, 0]
         return force @ np.linalg.solve(system.K, force)
 
     rotational, shear = compliances
-    extra = HERE**2 * rotational + shear
-    assert abs(give(cf.Joint(HERE, *compliances)) / (give(NODE) + extra) - 1) < 1e-11
+    extra = POSITION**2 * rotational + shear
+    assert abs(compliance(cf.Joint(POSITION, *compliances)) / (compliance(NODE) + extra) - 1) < 1e-11
 
 
 def test_rod_modes_of_cone_equal_closed_form():
@@ -92,18 +92,21 @@ def test_structural_damping_equals_strain_energy_loss(effects: tuple[Effect, ...
     moving, damping = lossy.omega > 0, np.diag(lossy.damping)
     pairs = (modes(1 + h), modes(1 - h)), (modes(core=1 + h), modes(core=1 - h))
     front, inside = (np.log(up.omega[moving] / down.omega[moving]) / h for up, down in pairs)
-    found, expected = damping[moving] / lossy.omega[moving], 0.05 * front + 0.2 * inside + 0.012 * (1 - front - inside)
-    np.testing.assert_allclose(found, expected, rtol=1e-5)
-    assert np.ptp(found) > 1e-3
+    computed, expected = (
+        damping[moving] / lossy.omega[moving],
+        0.05 * front + 0.2 * inside + 0.012 * (1 - front - inside),
+    )
+    np.testing.assert_allclose(computed, expected, rtol=1e-5)
+    assert np.ptp(computed) > 1e-3
     assert np.count_nonzero(lossy.damping - np.diag(damping)) == np.count_nonzero(damping[~moving]) == 0
 
 
 def test_joint_strain_energy_is_not_dissipated() -> None:
     scene = cf.Scene(lossy_cue(), effects=(cf.StructuralDamping(0.05), cf.Joint(0.3, 1e-3)))
     tip = tip_modes_of(scene, cf.Resolution(3, 16, 12))
-    found = (np.diag(tip.damping) / np.maximum(tip.omega, 1e-9))[tip.omega > 0]
-    assert found.min() < 0.0495
-    assert found.max() < 0.05
+    loss = (np.diag(tip.damping) / np.maximum(tip.omega, 1e-9))[tip.omega > 0]
+    assert loss.min() < 0.0495
+    assert loss.max() < 0.05
 
 
 RADIUS = 0.012
@@ -122,8 +125,8 @@ def rigid_domed(offset: float) -> tuple[cf.Cue, cf.LumpedCue]:
     section = stub.section(s)
     inertia = 0.03 * weights @ (section.rhoA * (s - x) ** 2 + section.rhoI)
     phi = np.arcsin(offset)
-    forward, aside = x - RADIUS + RADIUS * np.cos(phi), -RADIUS * np.sin(phi)
-    u, w = -aside, forward
+    forward, lateral = x - RADIUS + RADIUS * np.cos(phi), -RADIUS * np.sin(phi)
+    u, w = -lateral, forward
     along, across = 1 / stub.mass + u**2 / inertia, 1 / stub.mass + w**2 / inertia
     return stub, cf.LumpedCue(1 / along, 1 / across, u * w / inertia)
 
@@ -141,8 +144,8 @@ def test_dome_on_rigid_body_equals_lumped_cue_with_coupling(offset, restitution,
 
     def error(steps: int) -> float:
         coupled = strike_modes(domed, tip, steps=steps)
-        given_by = np.abs(coupled.impulse - expected.impulse).max() / expected.impulse[1]
-        return float(max(abs(coupled.squirt - expected.squirt), given_by))
+        impulse_error = np.abs(coupled.impulse - expected.impulse).max() / expected.impulse[1]
+        return float(max(abs(coupled.squirt - expected.squirt), impulse_error))
 
     assert_error_falls_with_the_step(error, most=1e-3)
     flat = cf.impulse(replace(scene, cue=replace(lumped, coupling=0.0)))

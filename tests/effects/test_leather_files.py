@@ -9,10 +9,10 @@ import pytest
 
 import cuefem as cf
 from cuefem.cue.materials import LEATHERS
+from tests.helpers.invalid_input import assert_raises
 from tests.helpers.leather_scenes import SHAFT
-from tests.helpers.refusals import refuses
 
-GIVEN = {"height": '"6 mm"', "dome_radius": '"9.5 mm"', "leather": '"medium"'}
+ENTRIES = {"height": '"6 mm"', "dome_radius": '"9.5 mm"', "leather": '"medium"'}
 
 
 @pytest.fixture
@@ -21,9 +21,9 @@ def file(tmp_path: Path) -> Path:
     return tmp_path / "scene.toml"
 
 
-def put(file: Path, **entries: str | None) -> Path:
+def write_scene(file: Path, **entries: str | None) -> Path:
     """A scene with a leather tip of these entries; None leaves one out."""
-    rows = [f"{name} = {value}" for name, value in (GIVEN | entries).items() if value is not None]
+    rows = [f"{name} = {value}" for name, value in (ENTRIES | entries).items() if value is not None]
     file.write_text("\n".join(["cue = 'shaft.toml'", "game = 'kim'", "[[effects]]", "type = 'LeatherTip'", *rows]))
     return file
 
@@ -37,7 +37,7 @@ def tip_of(file: Path) -> cf.LeatherTip:
 @pytest.mark.parametrize("name", LEATHERS)
 def test_leather_name_in_file_sets_constants(file: Path, name: str) -> None:
     known = LEATHERS[name]
-    assert tip_of(put(file, leather=f"'{name}'")) == cf.LeatherTip(6e-3, 9.5e-3, known.E, known.nu, known.rho)
+    assert tip_of(write_scene(file, leather=f"'{name}'")) == cf.LeatherTip(6e-3, 9.5e-3, known.E, known.nu, known.rho)
 
 
 @pytest.mark.parametrize(
@@ -48,7 +48,7 @@ def test_leather_name_in_file_sets_constants(file: Path, name: str) -> None:
     ],
 )
 def test_dome_radius_by_coin_length_or_flat_is_read(file: Path, text: str, radius: float) -> None:
-    assert tip_of(put(file, dome_radius=text)).dome_radius == pytest.approx(radius, rel=1e-12)
+    assert tip_of(write_scene(file, dome_radius=text)).dome_radius == pytest.approx(radius, rel=1e-12)
     cf.save(cf.load(file), file)
     assert tip_of(file).dome_radius == pytest.approx(radius, rel=1e-12)
 
@@ -66,5 +66,5 @@ def test_dome_radius_by_coin_length_or_flat_is_read(file: Path, text: str, radiu
         ({"rolling": "'no'"}, "effects[0].rolling: must be true or false; got 'no'"),
     ],
 )
-def test_refusals(file: Path, entries: dict[str, str | None], message: str) -> None:
-    refuses(lambda: cf.load(put(file, **entries)), message)
+def test_leather_tip_in_file_invalid_raises(file: Path, entries: dict[str, str | None], message: str) -> None:
+    assert_raises(lambda: cf.load(write_scene(file, **entries)), message)

@@ -37,13 +37,15 @@ def test_leather_compliance_is_symmetric_and_positive(
     tip: LeatherTip, diameter: float, offset: float, patch: float
 ) -> None:
     """Symmetric and positive definite, mirrored with the offset, in proportion to 1/E."""
-    give = possible(tip, diameter).compliance(diameter, offset, patch * diameter)
-    near = {"rtol": 1e-9, "atol": 1e-12 * give[0, 0]}
-    assert give[0, 1] == give[1, 0]
-    assert np.all(np.linalg.eigvalsh(give) > 0)
-    np.testing.assert_allclose(tip.compliance(diameter, -offset, patch * diameter), give * [[1, -1], [-1, 1]], **near)
+    compliance = possible(tip, diameter).compliance(diameter, offset, patch * diameter)
+    tolerance = {"rtol": 1e-9, "atol": 1e-12 * compliance[0, 0]}
+    assert compliance[0, 1] == compliance[1, 0]
+    assert np.all(np.linalg.eigvalsh(compliance) > 0)
     np.testing.assert_allclose(
-        replace(tip, E=2 * tip.E).compliance(diameter, offset, patch * diameter), give / 2, **near
+        tip.compliance(diameter, -offset, patch * diameter), compliance * [[1, -1], [-1, 1]], **tolerance
+    )
+    np.testing.assert_allclose(
+        replace(tip, E=2 * tip.E).compliance(diameter, offset, patch * diameter), compliance / 2, **tolerance
     )
 
 

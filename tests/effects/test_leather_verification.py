@@ -44,8 +44,8 @@ def test_leather_small_patch_equals_half_space() -> None:
     errors = []
     for radius in (1 / 32, 1 / 64, 1 / 128):
         shape, how = Shape(0.5, 0.0), contact_fineness(0.5, radius, 4)._replace(harmonics=1)
-        found = np.diagonal(solved(shape, 0.4, Patch(0.0, radius), how))
-        errors.append(1 - found / tt.half_space(0.4, radius))
+        computed = np.diagonal(solved(shape, 0.4, Patch(0.0, radius), how))
+        errors.append(1 - computed / tt.half_space(0.4, radius))
     assert np.all(np.abs(errors[0]) < 0.05)
     np.testing.assert_allclose(np.divide(errors[0], errors[1]), 2, rtol=0.05)
     np.testing.assert_allclose(np.divide(errors[1], errors[2]), 2, rtol=0.05)
@@ -54,8 +54,8 @@ def test_leather_small_patch_equals_half_space() -> None:
 def test_leather_central_impact_equals_hertz() -> None:
     """A small contact is Hertz's, force and depth alike, for gaps of second and of fourth order."""
     shape, how = Shape(1.0, 0.0), contact_fineness(1.0, 0.01)
-    found = central_contact(shape, TipSolid(shape, how).surface(0.3, 0), 0.01, how)
-    np.testing.assert_allclose(found / tt.half_space_head_on(0.3, np.array(0.01)), 1, rtol=5e-3)
+    computed = central_contact(shape, TipSolid(shape, how).surface(0.3, 0), 0.01, how)
+    np.testing.assert_allclose(computed / tt.half_space_head_on(0.3, np.array(0.01)), 1, rtol=5e-3)
 
 
 # --- the table --------------------------------------------------------------------------------------------------------
@@ -64,10 +64,10 @@ def test_leather_central_impact_equals_hertz() -> None:
 def test_leather_compliance_equals_computed_values() -> None:
     """h 6, D 12.75, r 9.5 mm, nu 0.4, E 100 MPa, b/R 0.375, a 2 mm: an independent solution with scikit-fem's own
     assembly of quadratic elements gave these."""
-    give = 1e6 * TIP.compliance(DIAMETER, 0.375, 2e-3)
-    np.testing.assert_allclose(np.diagonal(give), [1.938, 4.597], rtol=3e-3)
-    assert abs(abs(give[0, 1]) - 0.129) < 1e-3 * math.sqrt(give[0, 0] * give[1, 1])
-    assert give[0, 1] == give[1, 0] < 0
+    compliance = 1e6 * TIP.compliance(DIAMETER, 0.375, 2e-3)
+    np.testing.assert_allclose(np.diagonal(compliance), [1.938, 4.597], rtol=3e-3)
+    assert abs(abs(compliance[0, 1]) - 0.129) < 1e-3 * math.sqrt(compliance[0, 0] * compliance[1, 1])
+    assert compliance[0, 1] == compliance[1, 0] < 0
 
 
 RANDOM = [  # height, diameter, dome radius, mm; nu; b/R; patch, mm
@@ -84,12 +84,12 @@ RANDOM = [  # height, diameter, dome radius, mm; nu; b/R; patch, mm
 def test_leather_table_equals_solution(
     height: float, diameter: float, dome: float, nu: float, offset: float, patch: float
 ) -> None:
-    place = 2 * offset * dome / diameter if offset else 0.0
+    position = 2 * offset * dome / diameter if offset else 0.0
     tip = LeatherTip(1e-3 * height, 1e-3 * dome, 1.0, nu)
-    exact = solved(Shape(height / diameter, diameter / dome), nu, Patch(place, patch / diameter))
-    give = 1e-3 * diameter * tip.compliance(1e-3 * diameter, offset, 1e-3 * patch)
-    np.testing.assert_allclose(np.diagonal(give), np.diagonal(exact), rtol=5e-3)
-    assert abs(give[0, 1] - exact[0, 1]) < 5e-3 * math.sqrt(exact[0, 0] * exact[1, 1])
+    exact = solved(Shape(height / diameter, diameter / dome), nu, Patch(position, patch / diameter))
+    compliance = 1e-3 * diameter * tip.compliance(1e-3 * diameter, offset, 1e-3 * patch)
+    np.testing.assert_allclose(np.diagonal(compliance), np.diagonal(exact), rtol=5e-3)
+    assert abs(compliance[0, 1] - exact[0, 1]) < 5e-3 * math.sqrt(exact[0, 0] * exact[1, 1])
 
 
 @pytest.mark.parametrize(("height", "diameter", "dome", "nu", "offset", "patch"), RANDOM[:2])

@@ -50,9 +50,9 @@ def ratio(cue: Cue, periods: float, drive: str) -> float:
     ids=["kim", "rod", "cone 0.4"],
 )
 def test_end_mass_long_pulse_equals_rigid_cue(cue: Cue, limit: float, drive: str) -> None:
-    found = ratio(cue, 1e4, drive)
-    np.testing.assert_allclose(found, rigid_ratio(cue), rtol=1e-7)
-    np.testing.assert_allclose(found, limit, rtol=1e-6)
+    computed = ratio(cue, 1e4, drive)
+    np.testing.assert_allclose(computed, rigid_ratio(cue), rtol=1e-7)
+    np.testing.assert_allclose(computed, limit, rtol=1e-6)
 
 
 # --- a beam so long that no wave is reflected ---
@@ -63,31 +63,31 @@ def long_rod() -> tuple[TipModes, Scene, float]:
     """Tip modes of a rod 60 wave lengths long and as thin as a needle; (rhoA sqrt(T sqrt(EI/rhoA))) of Euler's beam."""
     cue, T = rod(3000.0, diameter=1e-3), 5e-4
     s = cue.section(0.0)
-    found = scene(cue, T)
-    count = default_mode_count(found, periods=45)
-    tip = tip_modes_from(solve(assemble(cue, count), count), found)
-    return tip, found, float(s.rhoA) * math.sqrt(T * math.sqrt(float(s.EI / s.rhoA)))
+    pulse_scene = scene(cue, T)
+    count = default_mode_count(pulse_scene, periods=45)
+    tip = tip_modes_from(solve(assemble(cue, count), count), pulse_scene)
+    return tip, pulse_scene, float(s.rhoA) * math.sqrt(T * math.sqrt(float(s.EI / s.rhoA)))
 
 
 @pytest.mark.parametrize(("formula", "constant"), [(force, 0.79021), (velocity, 0.54814)])
 def test_end_mass_long_rod_equals_semi_infinite_beam(
     long_rod: tuple[TipModes, Scene, float], formula: Callable[[TipModes, Scene], float], constant: float
 ) -> None:
-    tip, found, unit = long_rod
-    np.testing.assert_allclose(formula(tip, found) / unit, constant, rtol=0.01)
+    tip, pulse_scene, unit = long_rod
+    np.testing.assert_allclose(formula(tip, pulse_scene) / unit, constant, rtol=0.01)
 
 
 # --- the same definitions solved in time, mode by mode ---
 
 
 @pytest.mark.parametrize("T", [0.8e-3, 2e-3])
-def test_force_equals_quadrature(T: float) -> None:
+def test_force_end_mass_equals_quadrature(T: float) -> None:
     tip = few_modes()
     omega, phi = tip.omega[1:], tip.amplitude[1:, 1]
-    moved, _ = quad(
+    velocity_integral, _ = quad(
         lambda s: math.sin(math.pi * s / T) * (phi**2 @ np.cos(omega * (T - s))), 0, T, epsrel=1e-12, limit=400
     )
-    np.testing.assert_allclose(force(tip, scene(kim(), T)), 2 * T / math.pi / moved, rtol=1e-11)
+    np.testing.assert_allclose(force(tip, scene(kim(), T)), 2 * T / math.pi / velocity_integral, rtol=1e-11)
 
 
 # --- known values ---
@@ -98,12 +98,12 @@ def test_force_equals_quadrature(T: float) -> None:
 )
 def test_end_mass_kim_shaft_equals_reference(drive: str, T: float, grams: float) -> None:
     """Reference values at the precision it gives them."""
-    found = scene(kim(), T)
-    value = end_mass(found, drive)  # type: ignore[arg-type]
+    pulse_scene = scene(kim(), T)
+    value = end_mass(pulse_scene, drive)  # type: ignore[arg-type]
     np.testing.assert_allclose(1e3 * value, grams, rtol=3e-3)
 
 
 @pytest.mark.parametrize("drive", ["stick", "velocity", "force", "squirt"])
 def test_end_mass_lumped_cue_is_its_own(drive: str) -> None:
-    found = Scene(LumpedCue(0.54, 0.0123))
-    assert end_mass(found, drive) == 0.0123  # type: ignore[arg-type]
+    lumped = Scene(LumpedCue(0.54, 0.0123))
+    assert end_mass(lumped, drive) == 0.0123  # type: ignore[arg-type]

@@ -13,7 +13,7 @@ from cuefem.handbook import MAKERS, chapters
 from cuefem.parameters.parameter import with_parameters
 from cuefem.results.uncertainty import MODEL_ERROR, SHAFT_ERROR
 from tests.helpers.command_line import call
-from tests.helpers.maker_pictures import FOLDER, PICTURES, answers, ready
+from tests.helpers.maker_pictures import FOLDER, PICTURES, command_json, reference_squirts
 
 TEXTS = {chapter.name: chapter.text for chapter in chapters() if chapter.name in MAKERS}
 NUMBER = re.compile(r"[−+-]?\d+(?:\.\d+)?")
@@ -22,15 +22,15 @@ NUMBER = re.compile(r"[−+-]?\d+(?:\.\d+)?")
 def test_makers_chapters_are_first_and_short() -> None:
     assert [chapter.name for chapter in chapters()][:6] == [*TEXTS] == [*MAKERS]
     assert max(len(text.split()) for text in TEXTS.values()) < 400
-    drawn = re.findall(r"```drawing\n(\w+)", "".join(TEXTS.values()))
-    assert len(drawn) == len(TEXTS)
-    assert {*PICTURES} <= {*drawn}
-    assert all((FOLDER / f"{name}.svg").exists() for name in drawn)
+    pictures = re.findall(r"```drawing\n(\w+)", "".join(TEXTS.values()))
+    assert len(pictures) == len(TEXTS)
+    assert {*PICTURES} <= {*pictures}
+    assert all((FOLDER / f"{name}.svg").exists() for name in pictures)
 
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("name", PICTURES)
-def test_picture_equals_drawing_now(name: str) -> None:
+def test_picture_equals_redrawn_picture(name: str) -> None:
     """Within three units: rounded numbers may differ between machines."""
     stored, now = (FOLDER / f"{name}.svg").read_text(encoding="utf-8"), PICTURES[name]()
     assert NUMBER.sub("#", stored) == NUMBER.sub("#", now)
@@ -40,13 +40,13 @@ def test_picture_equals_drawing_now(name: str) -> None:
 
 @pytest.mark.heavy
 def test_numbers_in_makers_chapters_equal_computation() -> None:
-    verdict = answers("report")["verdict"]
+    verdict = command_json("report")["verdict"]
     degrees, off_line = math.degrees(verdict["squirt"]), 1e3 * math.tan(verdict["squirt"])
     off = degrees * verdict["uncertainty"]["total"]
     line = f"squirt {degrees:.2f} ± {off:.2f}° (at b/R 0.3, 3/10 of the way to the edge): the ball is"
     assert line in TEXTS["read_the_report"]
     assert f"about {off_line:.0f} mm off line after 1 m" in TEXTS["what_squirt_is"]
-    known = ready()
+    known = reference_squirts()
     for name in ("low deflection", "carbon"):  # "about a fifth less"
         assert 0.18 < 1 - known[name] / known["plain maple"] < 0.24
     assert verdict["uncertainty"]["total"] == pytest.approx(0.2, abs=0.025)  # "off by about 20 %"

@@ -12,8 +12,8 @@ from cuefem.design.effect_sensitivity import effect_kinds
 from cuefem.handbook import CHAPTERS, LINES, chapters, effect_lines
 from cuefem.handbook.page import page
 from tests.helpers.command_line import stdout_of
-from tests.helpers.page_reader import Reader
-from tests.helpers.refusals import untouched
+from tests.helpers.invalid_input import assert_unchanged
+from tests.helpers.page_reader import PageReader
 
 ROOT = Path(__file__).parents[2]
 TITLES = {chapter.title for chapter in chapters()}
@@ -36,8 +36,8 @@ def whole() -> str:
 def cited_wrongly(text: str) -> list[str]:
     """The citations in a text that do not begin with a chapter's title, and the titles after a comma that do not."""
     wrong = []
-    for found in CITED.findall(re.sub(r"\n\s*(?:# )?", "\n", text)):
-        first, *others = (" ".join(part.split()) for part in found.split(","))
+    for citation in CITED.findall(re.sub(r"\n\s*(?:# )?", "\n", text)):
+        first, *others = (" ".join(part.split()) for part in citation.split(","))
         names = [first, *(other for other in others if other[:1].isupper())]
         wrong += [name for name in names if not any(name == title or name.startswith(title + " ") for title in TITLES)]
     return wrong
@@ -62,7 +62,7 @@ def test_effects_chapter_has_five_lines_of_every_effect(name: str) -> None:
 
 def test_handbook_page_is_self_contained_with_valid_links() -> None:
     text = whole()
-    read = Reader(text)
+    read = PageReader(text)
     anchors, links = read.values("id"), read.values("href", "src")
     assert read.open == []
     assert len(anchors) == len(set(anchors))
@@ -72,17 +72,19 @@ def test_handbook_page_is_self_contained_with_valid_links() -> None:
     assert 'handbook: <a href="#beam">The beam</a>, <a href="#strike">The strike</a>, <a href="#effects">' in text
 
 
-@pytest.mark.parametrize("there", [True, False])
-def test_guide_command_opens_prints_and_writes(there: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("has_browser", [True, False])
+def test_guide_command_opens_prints_and_writes(
+    has_browser: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     opened: list[str] = []
     monkeypatch.setattr(import_module("cuefem.cli.guide_command"), "page", whole)
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
-    monkeypatch.setattr(webbrowser, "open", lambda address: opened.append(address) or there)
-    assert stdout_of("guide", "glossary").startswith("opened file:" if there else "no browser found")
-    (made,) = tmp_path.glob("cuefem-guide-*.html")
-    assert opened == [f"{made.as_uri()}#glossary"]
+    monkeypatch.setattr(webbrowser, "open", lambda address: opened.append(address) or has_browser)
+    assert stdout_of("guide", "glossary").startswith("opened file:" if has_browser else "no browser found")
+    (page_file,) = tmp_path.glob("cuefem-guide-*.html")
+    assert opened == [f"{page_file.as_uri()}#glossary"]
     assert stdout_of("guide", "-o", tmp_path / "guide.html") == f"wrote {tmp_path / 'guide.html'}\n"
-    assert made.read_text(encoding="utf-8") == (tmp_path / "guide.html").read_text(encoding="utf-8") == whole()
+    assert page_file.read_text(encoding="utf-8") == (tmp_path / "guide.html").read_text(encoding="utf-8") == whole()
     printed = stdout_of("guide", "glossary", "--print")
     assert ("effective end mass" in printed, "Hutchinson" in printed) == (True, False)
     listed = " ".join(stdout_of("guide", "--help").split())
@@ -101,4 +103,4 @@ def test_guide_with_invalid_arguments_exits_with_message(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: str, message: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    untouched(tmp_path, message, "guide", *arguments.split())
+    assert_unchanged(tmp_path, message, "guide", *arguments.split())

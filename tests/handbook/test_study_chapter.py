@@ -29,12 +29,12 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_examples_load_as_their_kinds(folder: Path) -> None:
+def test_study_chapter_examples_load_as_their_kinds(folder: Path) -> None:
     for kind, name in KINDS.items():
         assert type(load_study(folder / f"{kind}.toml")).__name__ == name
     first, sample = EXAMPLES["sweep"]
-    drawn = first.replace("count = 6\n", "").replace("[[vary]]", f"{sample}\n[[vary]]", 1)
-    (folder / "drawn.toml").write_text(drawn, encoding="utf-8")
+    sampled = first.replace("count = 6\n", "").replace("[[vary]]", f"{sample}\n[[vary]]", 1)
+    (folder / "drawn.toml").write_text(sampled, encoding="utf-8")
     assert load_study(folder / "drawn.toml").size == 4096
 
 

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from cuefem import Cue, Material, Scene, Segment, Tip
-from studies.strokes import cue as drawn
+from studies.strokes import cue as reference_cue
 
 KIM_DENSITY = 782.3284453057836  # kg/m3: [Kim]'s cone, 120 g
 MAPLE = Material(12.6e9, 12.6e9 / 15, 700.0)
@@ -77,8 +77,8 @@ FAMILY = {
     "kim": kim(),
     "pool": pool(),
     "low deflection": low_deflection(),
-    "carbon tube": drawn("carbon"),
-    "whole cue": drawn("whole_cue"),
+    "carbon tube": reference_cue("carbon"),
+    "whole cue": reference_cue("whole_cue"),
 }
 
 

@@ -20,7 +20,7 @@ COMMAND = "import sys; from cuefem.cli import main; main()"
 PATIENCE = 90_000  # ms, on a busy machine
 
 
-def needs_browser() -> list[pytest.MarkDecorator]:
+def browser_marks() -> list[pytest.MarkDecorator]:
     """Skip a file where nothing can serve or show a page; else the marks of its tests."""
     pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
     pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
@@ -28,22 +28,22 @@ def needs_browser() -> list[pytest.MarkDecorator]:
 
 
 @contextmanager
-def launched() -> Iterator[Any]:
+def open_browser() -> Iterator[Any]:
     """The browser, without a window."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as driver:
-        found = driver.chromium.launch(executable_path=BROWSER, args=["--no-sandbox", "--disable-gpu"])
-        yield found
-        found.close()
+        browser = driver.chromium.launch(executable_path=BROWSER, args=["--no-sandbox", "--disable-gpu"])
+        yield browser
+        browser.close()
 
 
 @contextmanager
-def served(folder: Path) -> Iterator[str]:
+def run_designer(folder: Path) -> Iterator[str]:
     """The address of a designer that runs in a folder; it must say nothing on stderr and leave nothing there."""
     command = [sys.executable, "-W", "error", "-c", COMMAND, "designer", "--no-open", "--port", "0"]
-    complaints = folder / "stderr"
-    with complaints.open("w") as err:
+    errors = folder / "stderr"
+    with errors.open("w") as err:
         process = subprocess.Popen(
             command,
             stdout=subprocess.PIPE,
@@ -55,18 +55,18 @@ def served(folder: Path) -> Iterator[str]:
         try:
             assert process.stdout is not None
             address = process.stdout.readline().strip()
-            assert address.startswith("http://127.0.0.1:"), complaints.read_text()
-            await_listening(int(address.rstrip("/").rsplit(":", 1)[1]))
+            assert address.startswith("http://127.0.0.1:"), errors.read_text()
+            wait_for_port(int(address.rstrip("/").rsplit(":", 1)[1]))
             yield address
         finally:
             process.terminate()
             process.wait(timeout=30)
             process.stdout.close()
-    assert complaints.read_text() == ""
+    assert errors.read_text() == ""
     assert [path.name for path in folder.iterdir()] == ["stderr"]
 
 
-def await_listening(port: int) -> None:
+def wait_for_port(port: int) -> None:
     """Return when the server listens, which it does a moment after it says its address."""
     for _ in range(PATIENCE // 50):
         with suppress(OSError), socket.create_connection(("127.0.0.1", port), timeout=1):
@@ -75,27 +75,27 @@ def await_listening(port: int) -> None:
 
 
 @contextmanager
-def watched(browser: Any, address: str = "", *, width: int = 1280, scheme: str = "light") -> Iterator[Any]:
+def empty_page(browser: Any, address: str = "", *, width: int = 1280, scheme: str = "light") -> Iterator[Any]:
     """An empty page, on which the browser must not complain, nor ask for anything but the address."""
     size = {"width": width, "height": 900 if width > 600 else 844}
     context = browser.new_context(viewport=size, color_scheme=scheme, accept_downloads=True)
     page = context.new_page()
     page.set_default_timeout(PATIENCE)
-    said: list[str] = []
-    page.on("console", lambda message: said.append(message.text))
-    page.on("pageerror", lambda error: said.append(str(error)))
-    page.on("request", lambda asked: None if _own(asked.url, address) else said.append(asked.url))
+    messages: list[str] = []
+    page.on("console", lambda message: messages.append(message.text))
+    page.on("pageerror", lambda error: messages.append(str(error)))
+    page.on("request", lambda request: None if _own(request.url, address) else messages.append(request.url))
     yield page
     context.close()
-    assert said == []
+    assert messages == []
 
 
 @contextmanager
-def opened(browser: Any, address: str, **how: Any) -> Iterator[Any]:
+def designer_page(browser: Any, address: str, **how: Any) -> Iterator[Any]:
     """A page on the designer, whole."""
-    with watched(browser, address, **how) as page:
+    with empty_page(browser, address, **how) as page:
         page.goto(address)
-        settled(page)
+        wait_until_idle(page)
         yield page
 
 
@@ -104,33 +104,33 @@ def _own(url: str, address: str) -> bool:
     return url.startswith((address, address.replace("http", "ws"), "data:", f"blob:{address}"))
 
 
-def settled(page: Any) -> None:
+def wait_until_idle(page: Any) -> None:
     """Wait until everything that was changed has been answered."""
     page.wait_for_timeout(150)  # a message is on its way, after which the page says that it is busy
     page.wait_for_function("() => document.querySelector('[data-busy]')?.dataset.busy === 'false'")
 
 
-def number(page: Any, name: str, whose: str = "own") -> float:
+def displayed_number(page: Any, name: str, whose: str = "own") -> float:
     """A number of the first screen in SI, of the design or of the other one."""
     return float(page.locator(f'[data-number="{name}"][data-of="{whose}"]').first.get_attribute("data-value"))
 
 
-def typed(page: Any, label: str, text: str) -> None:
+def type_value(page: Any, label: str, text: str) -> None:
     """Type a value into a field, and wait for all that follows."""
     field = page.get_by_label(label, exact=True).first
     field.fill(text)
     field.press("Enter")
-    settled(page)
+    wait_until_idle(page)
 
 
-def picked(page: Any, label: str, option: str) -> None:
+def pick_option(page: Any, label: str, option: str) -> None:
     """Pick one of a list, and wait for all that follows."""
     page.get_by_role("combobox", name=label, exact=True).first.click()
     page.get_by_role("option", name=option, exact=True).click()
-    settled(page)
+    wait_until_idle(page)
 
 
-def downloaded(page: Any, button: str, folder: Path) -> Path:
+def download(page: Any, button: str, folder: Path) -> Path:
     """What a button of the page gives, as a file in the folder."""
     with page.expect_download() as waiting:
         page.get_by_role("button", name=button).click()

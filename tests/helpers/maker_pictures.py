@@ -25,7 +25,7 @@ OFFSET = 0.375  # of all of them
 
 
 @cache
-def answers(command: str, *options: str) -> Any:
+def command_json(command: str, *options: str) -> Any:
     """What a command says of the plain maple shaft, as a program is told."""
     status, out, err = call(command, MAPLE, "--json", *options)
     assert (status, err) == (0, "")
@@ -34,12 +34,12 @@ def answers(command: str, *options: str) -> Any:
 
 def changes() -> dict[str, float]:
     """The change of squirt, %, of the changes that the picture shows, by their words."""
-    return {row["change"]: 100 * row["squirt_change"] for row in answers("improve")["changes"]}
+    return {row["change"]: 100 * row["squirt_change"] for row in command_json("improve")["changes"]}
 
 
-def ready() -> dict[str, float]:
+def reference_squirts() -> dict[str, float]:
     """Squirt of the ready cues, degrees."""
-    return {name: math.degrees(row["squirt"]) for name, row in answers("report")["verdict"]["references"].items()}
+    return {name: math.degrees(row["squirt"]) for name, row in command_json("report")["verdict"]["references"].items()}
 
 
 def picture(height: int, label: str, *inside: str) -> str:
@@ -48,12 +48,12 @@ def picture(height: int, label: str, *inside: str) -> str:
     return "\n".join([head, *inside, "</svg>", ""])
 
 
-def words(x: float, y: float, text: str, more: str = "") -> str:
+def svg_text(x: float, y: float, text: str, more: str = "") -> str:
     """A text at its place."""
     return f'<text x="{x:.0f}" y="{y:.0f}"{more}>{escape(text)}</text>'
 
 
-MIDDLE, END, SAID = ' text-anchor="middle"', ' text-anchor="end"', ' class="said"'
+MIDDLE, END, CAPTION = ' text-anchor="middle"', ' text-anchor="end"', ' class="said"'
 
 
 def on_scale(rows: dict[str, float], verdict: Any, label: str, own: str, *, x0: int, unit: int, last: float) -> str:
@@ -66,29 +66,29 @@ def on_scale(rows: dict[str, float], verdict: Any, label: str, own: str, *, x0: 
 
     y = 24 + 26 * len(rows)
     texts = [
-        f'{words(x0 - 10, 24 + 26 * i, name, END)}<circle class="ball" cx="{at(value)}" cy="{20 + 26 * i}" r="5"/>'
+        f'{svg_text(x0 - 10, 24 + 26 * i, name, END)}<circle class="ball" cx="{at(value)}" cy="{20 + 26 * i}" r="5"/>'
         for i, (name, value) in enumerate(rows.items())
     ]
     return picture(
         y + 40,
         label,
         *texts,
-        words(x0 - 10, y, own, f"{END}{SAID}"),
+        svg_text(x0 - 10, y, own, f"{END}{CAPTION}"),
         f'<path class="arrow" d="M{at(squirt - off)} {y - 4}H{at(squirt + off)}"/>',
         f'<circle class="wood" cx="{at(squirt)}" cy="{y - 4}" r="5"/>',
         f'<path class="measure" d="M{at(0)} {y + 12}H{at(last)}"/>',
-        *(words(float(at(d)), y + 26, f"{d:g}°", MIDDLE) for d in np.arange(0, last + 0.1, 0.5)),
+        *(svg_text(float(at(d)), y + 26, f"{d:g}°", MIDDLE) for d in np.arange(0, last + 0.1, 0.5)),
     )
 
 
 def scale() -> str:
     """The verdict's scale of the plain maple shaft."""
-    rows = dict(sorted(ready().items(), key=lambda item: item[1]))
+    rows = dict(sorted(reference_squirts().items(), key=lambda item: item[1]))
     label = "Squirt of the ready shafts and of yours on one scale, yours with what it may be off"
-    return on_scale(rows, answers("report")["verdict"], label, "yours", x0=100, unit=90, last=2.5)
+    return on_scale(rows, command_json("report")["verdict"], label, "yours", x0=100, unit=90, last=2.5)
 
 
-def changes_drawn() -> str:
+def changes_chart() -> str:
     """Bars of the change of squirt, sorted."""
     bars = sorted(changes().items(), key=lambda item: item[1])
     texts = []
@@ -96,9 +96,9 @@ def changes_drawn() -> str:
         y, end = 14 + 20 * i, 250 + 7.5 * percent
         style = "wood" if percent < 0 else "block"
         texts.append(f'<path class="{style}" d="M250 {y - 8}H{end:.0f}V{y + 2}H250Z"/>')
-        texts.append(words(4, y, re.split(", wall|, a cone| wide and| from the", name)[0]))
+        texts.append(svg_text(4, y, re.split(", wall|, a cone| wide and| from the", name)[0]))
         texts.append(
-            words(
+            svg_text(
                 end + (-3 if percent < 0 else 3), y, f"{percent:+.0f} %".replace("-", "−"), END if percent < 0 else ""
             )
         )
@@ -109,13 +109,13 @@ def changes_drawn() -> str:
 
 def trust() -> str:
     """One cue, measured three times, and computed with its uncertainty."""
-    verdict = answers("report", "--offset", str(OFFSET))["verdict"]
+    verdict = command_json("report", "--offset", str(OFFSET))["verdict"]
     label = "Squirt of one plain maple cue: measured three times, and computed with what it may be off"
     rows = {f"{name}, {value:.2f}°": value for name, value in MEASURED.items()}
     return on_scale(rows, verdict, label, "computed", x0=175, unit=50, last=3)
 
 
-PICTURES = {"scale": scale, "changes": changes_drawn, "trust": trust}
+PICTURES = {"scale": scale, "changes": changes_chart, "trust": trust}
 
 if __name__ == "__main__":
     for name, draw in PICTURES.items():

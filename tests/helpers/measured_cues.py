@@ -10,7 +10,7 @@ from cuefem.measurements.uncertain_parameters import Prior
 WOOD = cf.Material(E=13.86e9, G=1.2e9, rho=705.0)
 SHAFT = cf.Cue((cf.Segment(0.13, 0.012, 0.0122, WOOD, 0.006, 0.006), cf.Segment(0.6, 0.0122, 0.021, WOOD)), 0.45)
 SCENE = cf.Scene(SHAFT, cf.Ball(0.170, 0.028575), cf.Tip(0.73, 0.7, 1.1e-3), cf.Stroke(2.0, 0.3))
-DRAWING = """body_mass = "450 g"
+CUE_TOML = """body_mass = "450 g"
 
 [[segments]]
 length = "130 mm"
@@ -26,7 +26,7 @@ tip_diameter = "12.2 mm"
 butt_diameter = "21 mm"
 material = "hard maple"
 """
-SOME = """name = "a cue"
+MEASURED_TOML = """name = "a cue"
 game = "kim"
 
 [tip]
@@ -48,21 +48,21 @@ error = "90 N/m"
 """
 
 
-def measured_cue(*found: Measurement, priors: tuple[Prior, ...] = ()) -> MeasuredCue:
+def measured_cue(*measurements: Measurement, priors: tuple[Prior, ...] = ()) -> MeasuredCue:
     """The cue with some measurements."""
-    return MeasuredCue("a cue", SCENE, found, priors)
+    return MeasuredCue("a cue", SCENE, measurements, priors)
 
 
-def blank() -> tuple[Measurement, ...]:
+def cheap_measurements() -> tuple[Measurement, ...]:
     """The cheap measurements, with errors and without values that mean anything."""
     tones = (Tone(mode=i + 1, value=f, error=0.2) for i, f in enumerate((95.0, 280.0, 560.0, 930.0)))
     stiff = Stiffness(value=360.0, error=7.0), Stiffness(free_length=0.2032, value=4600.0, error=90.0)
     return (Weight(value=0.1, error=5e-4), *tones, *stiff)
 
 
-def folder(place: Path, measured: str = SOME, drawing: str = DRAWING) -> Path:
+def measured_folder(directory: Path, measured: str = MEASURED_TOML, drawing: str = CUE_TOML) -> Path:
     """A folder of a measured cue."""
-    place.mkdir()
-    (place / "cue.toml").write_text(drawing, encoding="utf-8")
-    (place / "measured.toml").write_text(measured, encoding="utf-8")
-    return place
+    directory.mkdir()
+    (directory / "cue.toml").write_text(drawing, encoding="utf-8")
+    (directory / "measured.toml").write_text(measured, encoding="utf-8")
+    return directory

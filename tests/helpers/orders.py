@@ -15,8 +15,8 @@ def assert_order(expected: float, steps: ArrayLike, errors: ArrayLike, *, within
     steps, errors = np.asarray(steps, float), np.asarray(errors, float)
     assert np.all(np.diff(steps) < 0)
     assert np.all(errors > 1e-12)
-    found = np.log(errors[:-1] / errors[1:]) / np.log(steps[:-1] / steps[1:])
-    assert np.all(np.abs(found - expected) <= within), found
+    orders = np.log(errors[:-1] / errors[1:]) / np.log(steps[:-1] / steps[1:])
+    assert np.all(np.abs(orders - expected) <= within), orders
 
 
 def assert_error_falls_with_the_step(error: Callable[[int], float], *, most: float = 1e-4) -> None:

@@ -6,7 +6,7 @@ from html.parser import HTMLParser
 VOID = {"meta", "link", "br", "hr", "input"}
 
 
-class Reader(HTMLParser):
+class PageReader(HTMLParser):
     """Tags, attributes and text of a page; refuses tags that do not close in order."""
 
     def __init__(self, text: str) -> None:

@@ -14,31 +14,31 @@ from cuefem.parameters.parts import main_material, with_material
 LOSS = 0.012  # maple's, where a file gives none
 PULSE = 3e-4  # s, a small hard mallet: a half sine
 BEFORE, SECONDS = 0.15, 1.2  # s of silence before a tap, and from one to the next
-EARS = (0.04, 0.12)  # places of two microphones, over the length from the tip
+MICROPHONES = (0.04, 0.12)  # places of two microphones, over the length from the tip
 
 
-def other_wood(drawn: cf.Cue, *, E: float = 1.15, G: float = 0.85, rho: float = 1.06) -> cf.Cue:
+def other_wood(cue: cf.Cue, *, E: float = 1.15, G: float = 0.85, rho: float = 1.06) -> cf.Cue:
     """The cue with the main material's constants times these factors."""
-    wood = main_material(drawn)
-    return with_material(drawn, wood, replace(wood, E=E * wood.E, G=G * wood.G, rho=rho * wood.rho))
+    wood = main_material(cue)
+    return with_material(cue, wood, replace(wood, E=E * wood.E, G=G * wood.G, rho=rho * wood.rho))
 
 
-def tapped(shaft: cf.Cue, rate: float = 44100.0, *, missing: Sequence[int] = ()) -> np.ndarray:
+def tap_sound(shaft: cf.Cue, rate: float = 44100.0, *, missing: Sequence[int] = ()) -> np.ndarray:
     """What two microphones hear of a tap at the butt, (samples, 2); missing: modes, 1 the lowest, that do not sound."""
-    found = cf.modes(shaft, 26)
-    loss = found.loss_factors(section_loss(shaft, found.points, None))
+    result = cf.modes(shaft, 26)
+    loss = result.loss_factors(section_loss(shaft, result.points, None))
     loss = loss if loss.max() > 0 else np.full(len(loss), LOSS)
-    at_butt, _ = found.shape(shaft.length)
+    at_butt, _ = result.shape(shaft.length)
     t = np.arange(int(SECONDS * rate)) / rate - BEFORE
-    sound, after = np.zeros((len(t), len(EARS))), t >= 0
-    for k, w in enumerate(found.omega):
-        if k + 1 in missing or found.frequencies[k] > 0.45 * rate:
+    sound, after = np.zeros((len(t), len(MICROPHONES))), t >= 0
+    for k, w in enumerate(result.omega):
+        if k + 1 in missing or result.frequencies[k] > 0.45 * rate:
             continue
-        heard = at_butt[k] * found.shape(shaft.length * np.array(EARS))[0][k]
+        amplitude = at_butt[k] * result.shape(shaft.length * np.array(MICROPHONES))[0][k]
         x, decay = w * PULSE / np.pi, loss[k] * w / 2
         pulse = np.pi / 4 * (np.sinc((x - 1) / 2) + np.sinc((x + 1) / 2))
         tone = np.exp(-decay * t[after]) * np.cos(np.sqrt(w**2 - decay**2) * t[after])
-        sound[after] += pulse * heard * tone[:, None]
+        sound[after] += pulse * amplitude * tone[:, None]
     return sound
 
 
@@ -46,8 +46,8 @@ def recording(sound: np.ndarray, snr: float, seed: int, *, taps: int = 3) -> np.
     """Taps of a sound in white noise ``snr`` dB below its mean power, 16 bits of full scale 1."""
     whole = np.tile(sound, (taps, 1))
     noise = np.sqrt(np.mean(whole**2) * 10 ** (-snr / 10))
-    heard = whole + noise * np.random.default_rng(seed).standard_normal(whole.shape)
-    return np.round(heard / np.abs(heard).max() * 0.98 * 32767) / 32768
+    signal = whole + noise * np.random.default_rng(seed).standard_normal(whole.shape)
+    return np.round(signal / np.abs(signal).max() * 0.98 * 32767) / 32768
 
 
 def save_wav(path: Path, samples: np.ndarray, rate: int = 44100) -> None:

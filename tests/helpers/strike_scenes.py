@@ -14,7 +14,7 @@ from cuefem.beam.tip_modes import TipModes
 from tests.helpers.cues import kim
 
 # How well the account of energy closes at the default steps, relative.
-CLOSED = 1e-6
+ENERGY_TOLERANCE = 1e-6
 
 
 def maple(E: float = 12.6e9, rho: float = 700.0) -> Material:
@@ -41,7 +41,7 @@ def weighted_cue() -> Cue:
     return Cue((*KIM.segments, Segment(0.004, 0.021, 0.021, heavy)))
 
 
-def hand_made(omega: list[float], across: list[float], *, mass: float = 0.54, rigid: float = 4.0) -> TipModes:
+def custom_tip_modes(omega: list[float], across: list[float], *, mass: float = 0.54, rigid: float = 4.0) -> TipModes:
     """Tip modes by hand: a rigid axial motion, one rigid transverse motion, vibrating modes of amplitude ``across``."""
     amplitude = np.zeros((2 + len(omega), 2))
     amplitude[0, 0], amplitude[1, 1], amplitude[2:, 1] = mass**-0.5, rigid, across
@@ -50,21 +50,21 @@ def hand_made(omega: list[float], across: list[float], *, mass: float = 0.54, ri
     return TipModes(np.r_[0.0, 0.0, omega], amplitude, approach, np.zeros(len(amplitude)))
 
 
-def a_few_modes(damping: float = 0.0) -> TipModes:
+def rotating_tip_modes(damping: float = 0.0) -> TipModes:
     """A shaft of a few modes by hand whose end section turns with them, each damped or none."""
-    tip = hand_made([500.0, 3000.0, 9000.0], [5.0, 8.0, 7.0], rigid=9.0)
+    tip = custom_tip_modes([500.0, 3000.0, 9000.0], [5.0, 8.0, 7.0], rigid=9.0)
     tip = replace(tip, rotation=np.array([0, -50.0, -60.0, -80.0, -120.0]))
     return replace(tip, damping=np.diag(damping * tip.omega)) if damping else tip
 
 
-def imbalance(outcome: Outcome) -> float:
+def energy_residual(outcome: Outcome) -> float:
     """What the energy account misses, relative to the energy at the start."""
     parts = dict(outcome.energy)
     initial = parts.pop("initial")
     return abs(sum(parts.values()) - initial) / initial
 
 
-def numbers(outcome: Outcome) -> np.ndarray:
+def outcome_vector(outcome: Outcome) -> np.ndarray:
     """Everything an outcome says, as one vector: angles, speeds, impulses, energies."""
     return np.array(
         [
@@ -80,12 +80,12 @@ def numbers(outcome: Outcome) -> np.ndarray:
     )
 
 
-def sound(outcome: Outcome, within: float = CLOSED) -> None:
+def assert_valid_outcome(outcome: Outcome, within: float = ENERGY_TOLERANCE) -> None:
     """What holds for every strike: finite numbers, losses that are losses, an energy account that closes."""
-    assert np.all(np.isfinite(numbers(outcome)))
+    assert np.all(np.isfinite(outcome_vector(outcome)))
     initial = outcome.energy["initial"]
-    assert all(part >= -CLOSED * initial for part in outcome.energy.values())
-    assert imbalance(outcome) < within
+    assert all(part >= -ENERGY_TOLERANCE * initial for part in outcome.energy.values())
+    assert energy_residual(outcome) < within
     thrown = [phase.state for phase in outcome.phases] == ["impulse"]  # separated by infinite friction alone
     assert outcome.impulse[1] == 0 if thrown else outcome.impulse[1] > 0
     assert abs(outcome.impulse[0]) >= 0
@@ -96,11 +96,11 @@ def sound(outcome: Outcome, within: float = CLOSED) -> None:
     assert all(start <= end for start, end in times)
 
 
-def mirrors(right: Outcome, left: Outcome) -> None:
+def assert_mirrored(right: Outcome, left: Outcome) -> None:
     """The stroke on the other side is the exact mirror image, its history too."""
-    mirrored = numbers(left)
+    mirrored = outcome_vector(left)
     mirrored[[0, 1, 4, 6]] *= -1  # squirt, V_t, spin, impulse along t
-    assert np.array_equal(numbers(right), mirrored)
+    assert np.array_equal(outcome_vector(right), mirrored)
     assert left.duration == right.duration
     mirrored_phases = [phase._replace(impulse=(-phase.impulse[0], phase.impulse[1])) for phase in left.phases]
     assert mirrored_phases == list(right.phases)

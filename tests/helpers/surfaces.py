@@ -12,7 +12,7 @@ from cuefem import Cue
 Outline = Sequence[tuple[float, float]]
 
 
-def revolved(outline: Outline, facets: int) -> tuple[np.ndarray, np.ndarray]:
+def revolve(outline: Outline, facets: int) -> tuple[np.ndarray, np.ndarray]:
     """Corners (along x) and triangles of an outline of (position, radius), turned about the axis; radius 0 is on it.
 
     Corners lie on the true surface. An outline that runs up the tip's face, along and down the butt's faces outwards.
@@ -42,7 +42,9 @@ def outline_of(cue: Cue) -> Outline:
     return [p for p, before in zip(whole, [None, *whole], strict=False) if p != before]
 
 
-def written(path: Path, points: np.ndarray, faces: np.ndarray, *, unit: float = 1e-3, binary: bool = True) -> Path:
+def write_surface(
+    path: Path, points: np.ndarray, faces: np.ndarray, *, unit: float = 1e-3, binary: bool = True
+) -> Path:
     """The surface as a file, in millimetres."""
     mesh = meshio.Mesh(points / unit, [("triangle", faces)])
     mesh.write(path) if path.suffix == ".obj" else mesh.write(path, binary=binary)

@@ -1,12 +1,11 @@
 """Small studies that tests share; no tests."""
 
 import sqlite3
-from contextlib import closing
 from pathlib import Path
 from typing import Any
 
 from cuefem.design.study_result import compute_study
-from cuefem.io.store import SqliteStore
+from cuefem.io.store import SqliteStore, read_table
 from cuefem.io.study_files import load_study
 
 SCENE = """
@@ -40,10 +39,10 @@ STUDY += vary('"tip.contact_time"', 'values = ["0.8 ms", "1.2 ms"]')
 STUDY += vary('"cue.segments[0].material"', 'values = ["hard maple", "ash"]')
 
 # Quasi-random; a strike in time a design, so that blocks are small.
-STRUCK = 'scene = "scene.toml"\nresponses = ["squirt(0.3)", "end_mass", "vibration_energy(0.3)"]\n' + resolution(10, 4)
-STRUCK += '[sample]\nmethod = "sobol"\ncount = 150\nseed = 5\n'
-STRUCK += vary('"cue.segments[0].tip_bore"', 'low = "0 mm"', 'high = "13 mm"')
-STRUCK += vary('"cue.segments[*].material.E"', 'name = "E over drawn"', "low = 0.7", "high = 1.3", "factor = true")
+STRIKES = 'scene = "scene.toml"\nresponses = ["squirt(0.3)", "end_mass", "vibration_energy(0.3)"]\n' + resolution(10, 4)
+STRIKES += '[sample]\nmethod = "sobol"\ncount = 150\nseed = 5\n'
+STRIKES += vary('"cue.segments[0].tip_bore"', 'low = "0 mm"', 'high = "13 mm"')
+STRIKES += vary('"cue.segments[*].material.E"', 'name = "E over drawn"', "low = 0.7", "high = 1.3", "factor = true")
 
 # Distributions of wood, and of a tip, for scatter.
 SCATTER = 'scene = "scene.toml"\nresponses = ["end_mass", "tip_stiffness"]\n' + resolution(8, 4)
@@ -61,27 +60,26 @@ OPTIMUM += vary('"cue.segments[0].tip_bore"', 'name = "bore"', 'low = "1 mm"', '
 OPTIMUM += vary('"cue.segments[0].tip_diameter"', 'name = "tip"', 'low = "10 mm"', 'high = "13 mm"')
 
 
-def written(folder: Path, study: str = STUDY, scene: str = SCENE, name: str = "study.toml") -> Path:
+def write_study(folder: Path, study: str = STUDY, scene: str = SCENE, name: str = "study.toml") -> Path:
     """A study, and its scene beside it."""
     (folder / "scene.toml").write_text(scene, encoding="utf-8")
     (folder / name).write_text(study, encoding="utf-8")
     return folder / name
 
 
-def swept(study: Path, output: Path, **more: Any) -> list[tuple[Any, ...]]:
-    """The table of a study, computed into a store: numbers as they are stored."""
-    with SqliteStore(output, load_study(study)) as store:
+def computed_rows(study: Path, output: Path, **more: Any) -> list[tuple[Any, ...]]:
+    """The table of a study, computed into a store."""
+    with SqliteStore(output, load_study(study), study.stem) as store:
         compute_study(store.study, store=store, **more)
-        return [(row.design, *row.values, *row.responses, row.failure) for row in store.rows()]
+    return stored_rows(output)
 
 
-def stored(path: Path) -> int:
-    """The number of stored designs."""
-    with closing(sqlite3.connect(path)) as file:
-        return int(file.execute("SELECT count(*) FROM designs").fetchone()[0])
+def stored_rows(path: Path, name: str | None = None) -> list[tuple[Any, ...]]:
+    """The whole table of a study in a store, numbers as they are kept."""
+    return [(row.design, *row.values, *row.responses, row.failure) for row in read_table(path, name).rows]
 
 
-def changed(path: Path, command: str, *values: object) -> None:
+def alter_store(path: Path, command: str, *values: object) -> None:
     """Change a store behind cuefem's back."""
     with sqlite3.connect(path) as file:
         file.execute(command, values)

@@ -31,7 +31,7 @@ accuracy = { rtol = 1e-4 }
 """
 
 
-def test_load_scene_finds_its_cue_by_relative_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_load_scene_resolves_relative_path_of_cue(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "cues").mkdir()
     (tmp_path / "cues" / "kim.toml").write_text(KIM_TOML)
     (tmp_path / "scene.toml").write_text(SCENE_TOML)
@@ -106,7 +106,7 @@ def test_save_over_file_replaces_it(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("thing", "name", "message"),
+    ("item", "name", "message"),
     [
         (KIM, "cue.msh", r"must end in .toml or .vtu; got '.msh'"),
         (cf.Scene(KIM), "scene.vtu", r"must end in .toml, for a scene; got '.vtu'"),
@@ -114,9 +114,9 @@ def test_save_over_file_replaces_it(tmp_path: Path) -> None:
         (KIM, "nowhere/cue.vtu", r"cannot be written: No such file or directory"),
     ],
 )
-def test_save_to_invalid_path_is_rejected(tmp_path: Path, thing: cf.Cue | cf.Scene, name: str, message: str) -> None:
+def test_save_to_invalid_path_is_rejected(tmp_path: Path, item: cf.Cue | cf.Scene, name: str, message: str) -> None:
     with pytest.raises(InputError, match=f"{name}: {message}"):
-        cf.save(thing, tmp_path / name)
+        cf.save(item, tmp_path / name)
     assert not list(tmp_path.iterdir())
 
 
@@ -134,8 +134,8 @@ def test_stored_meshes_equal_their_toml(tmp_path: Path) -> None:
     assert cues
     for path in cues:  # where this fails: cuefem convert meshes/NAME.toml meshes/NAME.vtu --force
         cf.save(cf.load(path), tmp_path / "made.vtu")
-        made, stored = (meshio.vtu.read(mesh) for mesh in (tmp_path / "made.vtu", path.with_suffix(".vtu")))
-        assert made.points.tolist() == stored.points.tolist()
-        assert {name: value[0].tolist() for name, value in made.cell_data.items()} == {
+        saved, stored = (meshio.vtu.read(mesh) for mesh in (tmp_path / "made.vtu", path.with_suffix(".vtu")))
+        assert saved.points.tolist() == stored.points.tolist()
+        assert {name: value[0].tolist() for name, value in saved.cell_data.items()} == {
             name: value[0].tolist() for name, value in stored.cell_data.items()
         }

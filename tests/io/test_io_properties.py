@@ -81,36 +81,36 @@ def outcome(read: Callable) -> tuple[Any, str]:
         return None, str(error)
 
 
-def saved_and_loaded(thing: cf.Cue | cf.Scene, name: str) -> cf.Cue | cf.Scene:
+def saved_and_loaded(item: cf.Cue | cf.Scene, name: str) -> cf.Cue | cf.Scene:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / name
-        cf.save(thing, path)
+        cf.save(item, path)
         assert [path] == list(Path(folder).iterdir())
         return cf.load(path)
 
 
 @given(CUES | SCENES)
 @settings(max_examples=40)
-def test_save_and_load_preserve_twelve_digits(thing: cf.Cue | cf.Scene) -> None:
-    close(saved_and_loaded(thing, "thing.toml"), thing)
+def test_save_and_load_preserve_twelve_digits(item: cf.Cue | cf.Scene) -> None:
+    assert_close(saved_and_loaded(item, "thing.toml"), item)
 
 
-def close(found: Any, wanted: Any) -> None:
+def assert_close(result: Any, expected: Any) -> None:
     """Numbers are equal to 2e-12, everything else exactly."""
-    assert type(found) is type(wanted)
-    if is_dataclass(wanted):
-        for field in fields(wanted):  # type: ignore[arg-type]
-            close(getattr(found, field.name), getattr(wanted, field.name))
-    elif isinstance(wanted, tuple):
-        for one, other in zip(found, wanted, strict=True):
-            close(one, other)
+    assert type(result) is type(expected)
+    if is_dataclass(expected):
+        for field in fields(expected):  # type: ignore[arg-type]
+            assert_close(getattr(result, field.name), getattr(expected, field.name))
+    elif isinstance(expected, tuple):
+        for one, other in zip(result, expected, strict=True):
+            assert_close(one, other)
     else:
-        assert found == wanted or found == pytest.approx(wanted, rel=2e-12, abs=0)
+        assert result == expected or result == pytest.approx(expected, rel=2e-12, abs=0)
 
 
 @given(FINITE, st.sampled_from(sorted(EXAMPLES)))
 @settings(max_examples=200)
-def test_written_number_reads_back(value: float, unit: str) -> None:
+def test_formatted_number_reads_back(value: float, unit: str) -> None:
     assert parse_number(format_number(value, unit), unit) == pytest.approx(value, rel=2e-12, abs=0)
 
 
@@ -139,16 +139,16 @@ m^3: cc, ml, mL = 1e-06; litres = liter
 Hz: Hz, hz, Hertz = 1.0; kHz = 1000.0; MHz = 1000000.0; 1/s = 1.0; 1/min = 1/60
 1/kg: 1/kg = 1.0; 1/g = 1000.0; 1/oz = 1/oz
 """.strip().splitlines():
-    unit, told = row.split(": ")
-    for names, size in (part.rsplit(" = ", 1) for part in told.split("; ")):
+    unit, sizes = row.split(": ")
+    for names, size in (part.rsplit(" = ", 1) for part in sizes.split("; ")):
         TYPED[unit] |= dict.fromkeys(names.split(", "), float(eval(size, vars(constants))))
 
 
-@pytest.mark.parametrize("wanted", TYPED)
-def test_typed_quantity_equals_reference(wanted: str) -> None:
-    for unit, size in TYPED[wanted].items():
-        assert parse_number(f"1 {unit}", wanted) == pytest.approx(size, rel=1e-15), unit
-        assert unit[0] == "1" or parse_number(f"1{unit}", wanted) == parse_number(f"1 {unit}", wanted)
+@pytest.mark.parametrize("si_unit", TYPED)
+def test_typed_quantity_equals_reference(si_unit: str) -> None:
+    for unit, size in TYPED[si_unit].items():
+        assert parse_number(f"1 {unit}", si_unit) == pytest.approx(size, rel=1e-15), unit
+        assert unit[0] == "1" or parse_number(f"1{unit}", si_unit) == parse_number(f"1 {unit}", si_unit)
 
 
 def test_reference_quantities_cover_every_unit() -> None:
@@ -178,10 +178,10 @@ def test_ambiguous_unit_is_rejected(text: str, unit: str) -> None:
 @given(st.text(max_size=30) | st.from_regex(r"[0-9.]{1,4} ?[a-zA-Z*/^0-9()]{0,12}", fullmatch=True))
 @settings(max_examples=400, deadline=None)
 def test_load_any_text_loads_or_is_rejected(given_text: str) -> None:
-    wanted = Quantity("m", "(0, inf)")
-    value, refusal = outcome(lambda: wanted.read(given_text))
-    told = ("must be a length", "must be more than 0", "needs a unit: ")
-    assert refusal.startswith(told) if refusal else 0 < value < math.inf
+    quantity = Quantity("m", "(0, inf)")
+    value, error = outcome(lambda: quantity.read(given_text))
+    messages = ("must be a length", "must be more than 0", "needs a unit: ")
+    assert error.startswith(messages) if error else 0 < value < math.inf
 
 
 @given(st.binary(max_size=80), st.sampled_from([".toml", ".csv", ".ply"]))
@@ -207,6 +207,6 @@ def test_load_damaged_file_loads_or_is_rejected(data: st.DataObject) -> None:
         first = data.draw(st.integers(0, len(content) - 1))
         content[first : first + data.draw(st.integers(0, 40))] = data.draw(st.binary(max_size=5))
         path.write_bytes(content)
-        loaded, refusal = outcome(lambda: cf.load(path))
-        assert refusal.startswith(f"{path}: ") if refusal else isinstance(loaded, cf.Cue)
-        assert len(refusal.splitlines()) <= 1
+        loaded, error = outcome(lambda: cf.load(path))
+        assert error.startswith(f"{path}: ") if error else isinstance(loaded, cf.Cue)
+        assert len(error.splitlines()) <= 1

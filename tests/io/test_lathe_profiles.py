@@ -1,4 +1,4 @@
-"""PlausibilityWarning but unambiguous CSVs are read as meant (`test_refusals` has the rejected ones)."""
+"""PlausibilityWarning but unambiguous CSVs are read as meant (rejected ones: `test_invalid_input`)."""
 
 import itertools
 from pathlib import Path
@@ -10,7 +10,7 @@ from cuefem.cue.materials import material
 from cuefem.io.defaults_report import assumption_texts, drawing_assumptions
 
 MAPLE = material("hard maple")
-MEANT = ((0.0, 12.75), (330.0, 13.2), (736.6, 21.5))  # mm
+POINTS = ((0.0, 12.75), (330.0, 13.2), (736.6, 21.5))  # mm
 INCHES = ((0.0, 12.7), (330.2, 13.208), (736.6, 21.59))
 
 
@@ -34,7 +34,7 @@ READ = {
     "commas in the header, semicolons below": "x [mm],diameter [mm]\n0;12,75\n330;13,2\n736,6;21,5\n",
     "extra columns": (
         "No,x [mm],diameter [mm],note\n1,0,12.75,ferrule\n2,330,13.2,\n3,736.6,21.5,joint\n",
-        MEANT,
+        POINTS,
         ("columns 'No', 'note' are not used",),
     ),
     "swapped columns": "diameter [mm],x [mm]\n12.75,0\n13.2,330\n21.5,736.6\n",
@@ -42,24 +42,24 @@ READ = {
     "names in capitals": "POS_MM,DIA_MM\n0,12.75\n330,13.2\n736.6,21.5\n",
     "radius for diameter": (
         "x [mm],radius [mm]\n0,6.375\n330,6.6\n736.6,10.75\n",
-        MEANT,
+        POINTS,
         ("diameters are twice the column 'radius [mm]'",),
     ),
     "it begins after 0": (
         "x [mm],diameter [mm]\n10,12.75\n340,13.2\n746.6,21.5\n",
-        MEANT,
+        POINTS,
         ("the shaft begins at its first point, x = 10 mm",),
     ),
     "a line of units": "x,diameter\nmm,mm\n0,12.75\n330,13.2\n736.6,21.5\n",
     "units beside the numbers": "x,diameter\n0 mm,12.75 mm\n330 mm,13.2mm\n736.6 mm,21.5 mm\n",
     "titles above": (
         "Shaft 12; maple\nmeasured by Ann; 3 May\n\n" + GERMAN,
-        MEANT,
+        POINTS,
         ("lines 1, 2 skipped: no numbers of the table",),
     ),
     "notes below": (
         PLAIN.replace("\n330", "\n--- 13 in ---\n330") + "Note: dry, cold, and straight\n",
-        MEANT,
+        POINTS,
         ("lines 3, 6 skipped: no numbers of the table",),
     ),
     "the unit first": ("inches from tip,thick in inches\n0,0.5\n13,0.52\n29,0.85\n", INCHES, ()),
@@ -68,7 +68,7 @@ READ = {
     "butt first": "x [mm],diameter [mm]\n736.6,21.5\n330,13.2\n0,12.75\n",
     "from the butt": (
         "distance from joint [mm],diameter [mm]\n0,21.5\n406.6,13.2\n736.6,12.75\n",
-        MEANT,
+        POINTS,
         ("x is measured from the butt ('distance from joint [mm]')",),
     ),
     "fractions of an inch": (
@@ -116,21 +116,21 @@ def test_profile_columns_bore_material_core_make_segments(tmp_path: Path) -> Non
         (330, 13.2, 430, 14.7, MAPLE, 0, 0, None),
         (430, 14.7, 736.6, 21.5, MAPLE, 0, 0, None),
     ]
-    found = cf.load(path)
-    assert isinstance(found, cf.Cue)
-    for segment, (x0, d0, x1, d1, wood, b0, b1, core) in zip(found.segments, sizes, strict=True):
+    result = cf.load(path)
+    assert isinstance(result, cf.Cue)
+    for segment, (x0, d0, x1, d1, wood, b0, b1, core) in zip(result.segments, sizes, strict=True):
         numbers = segment.length, segment.tip_diameter, segment.butt_diameter, segment.tip_bore, segment.butt_bore
-        meant = [value / 1e3 for value in (x1 - x0, d0, d1, b0, b1)]
-        assert numbers == pytest.approx(meant, rel=1e-12, abs=1e-15)
+        expected = [value / 1e3 for value in (x1 - x0, d0, d1, b0, b1)]
+        assert numbers == pytest.approx(expected, rel=1e-12, abs=1e-15)
         assert (segment.material, segment.core) == (wood, core)
-    texts = assumption_texts(drawing_assumptions(path, found, {"body_mass": 0.4}))
+    texts = assumption_texts(drawing_assumptions(path, result, {"body_mass": 0.4}))
     assert texts == [
         "bored 8 mm from 6 to 31 mm and filled with hard maple",
         "bored 6 to 5 mm from 31 to 150 mm and filled with foam",
         "bored 5 mm from 150 to 200 mm and filled with foam",
     ]
-    cf.save(found, tmp_path / "cue.toml")
-    assert cf.load(tmp_path / "cue.toml") == found
+    cf.save(result, tmp_path / "cue.toml")
+    assert cf.load(tmp_path / "cue.toml") == result
 
 
 def test_profile_ferrule_cell_equals_the_option(tmp_path: Path) -> None:
@@ -139,10 +139,10 @@ def test_profile_ferrule_cell_equals_the_option(tmp_path: Path) -> None:
     text = "x [mm],diameter [mm],ferrule\n0,12.75,25 mm melamine\n330,13.2,\n736.6,21.5,\n"
     assert cf.load(written(tmp_path, text)) == by_option
     behind = "x [mm],diameter [mm],material,ferrule\n0,12.75,leather,\n6,12.75,ash,1 in abs\n330,13.2\n736.6,21.5\n"
-    found = cf.load(written(tmp_path, behind))
-    assert isinstance(found, cf.Cue)
-    assert found.nodes[:3] == pytest.approx([0, 0.006, 0.0314], rel=1e-12)
-    assert [s.core for s in found.segments[:3]] == [None, material("ash"), None]
+    result = cf.load(written(tmp_path, behind))
+    assert isinstance(result, cf.Cue)
+    assert result.nodes[:3] == pytest.approx([0, 0.006, 0.0314], rel=1e-12)
+    assert [s.core for s in result.segments[:3]] == [None, material("ash"), None]
 
 
 # The core of the second row in each: none of them fills the bore behind the ferrule.
@@ -168,18 +168,18 @@ def test_profile_core_applies_to_its_row(row: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", READ)
 def test_profile_in_unusual_format_is_read(name: str, tmp_path: Path) -> None:
     odd = READ[name]
-    content, points, notes = odd if isinstance(odd, tuple) else (odd, MEANT, ())
-    found = cf.load(written(tmp_path, content))
-    assert isinstance(found, cf.Cue)
-    for segment, (a, b) in zip(found.segments, itertools.pairwise(points), strict=True):
+    content, points, notes = odd if isinstance(odd, tuple) else (odd, POINTS, ())
+    result = cf.load(written(tmp_path, content))
+    assert isinstance(result, cf.Cue)
+    for segment, (a, b) in zip(result.segments, itertools.pairwise(points), strict=True):
         sizes = segment.length, segment.tip_diameter, segment.butt_diameter
         assert sizes == pytest.approx(((b[0] - a[0]) / 1e3, a[1] / 1e3, b[1] / 1e3), rel=1e-12, abs=0)
-    assumed = drawing_assumptions(tmp_path / "shaft.csv", found, {"material": "ash", "body_mass": 0.4})
+    assumed = drawing_assumptions(tmp_path / "shaft.csv", result, {"material": "ash", "body_mass": 0.4})
     assert assumed[: len(notes)] == [("", note) for note in notes]
     assert [key for key, _ in assumed[len(notes) :]] == ["ferrule", "bore", "front"]
 
 
 def test_profile_without_unit_takes_length_unit(tmp_path: Path) -> None:
     path = written(tmp_path, "x,diameter\n0,0.5\n13,0.52\n29,0.85\n")
-    found = cf.load(path, length_unit="in")
-    assert found == cf.load(written(tmp_path, "x [in],diameter [in]\n0,0.5\n13,0.52\n29,0.85\n"))
+    result = cf.load(path, length_unit="in")
+    assert result == cf.load(written(tmp_path, "x [in],diameter [in]\n0,0.5\n13,0.52\n29,0.85\n"))

@@ -13,7 +13,7 @@ import cuefem as cf
 from cuefem.contact.motion_history import motion
 from cuefem.io import InputError
 from cuefem.io.paraview import RING_POINTS, ball_surface, displacements, shaft_surface
-from tests.helpers.refusals import refuses
+from tests.helpers.invalid_input import assert_raises
 
 MAPLE = cf.Material(12.6e9, 0.84e9, 782.3284453057836)
 CUE = cf.Cue((cf.Segment(0.025, 0.0125, 0.0128, MAPLE), cf.Segment(0.7, 0.012, 0.021, MAPLE)), 0.42)
@@ -36,9 +36,9 @@ def test_shaft_surface_is_closed_and_oriented_outwards() -> None:
     expected = prism * np.pi / 12 * sum(length * (d**2 + d * D + D**2) for length, d, D in frusta)
     assert volume == pytest.approx(expected, rel=1e-12)
     edges = np.concatenate([np.stack([c, np.roll(c, -1, axis=1)], axis=-1).reshape(-1, 2) for _, c in surface.cells])
-    there, back = (set(map(tuple, pairs)) for pairs in (edges, edges[:, ::-1]))
-    assert there == back
-    assert len(there) == len(edges)
+    forward, back = (set(map(tuple, pairs)) for pairs in (edges, edges[:, ::-1]))
+    assert forward == back
+    assert len(forward) == len(edges)
 
 
 def test_ball_surface_is_a_sphere() -> None:
@@ -52,24 +52,24 @@ def test_ball_surface_is_a_sphere() -> None:
 def test_displacements_of_rigid_rotation_preserve_distances() -> None:
     """The sign of the rotation: a rigid motion of the beam is one of its surface, to first order."""
     surface = shaft_surface(CUE)
-    found = cf.modes(CUE)
-    for vector in found.rigid_vectors.T:
-        w, theta = found.system.interpolate(vector[:, None], surface.x)
-        moved = displacements(surface, w[0], theta[0])
+    result = cf.modes(CUE)
+    for vector in result.rigid_vectors.T:
+        w, theta = result.system.interpolate(vector[:, None], surface.x)
+        displaced = displacements(surface, w[0], theta[0])
         ends = surface.points[:-1:7], surface.points[1::7][: len(surface.points[:-1:7])]
-        u = moved[:-1:7], moved[1::7][: len(ends[0])]
+        u = displaced[:-1:7], displaced[1::7][: len(ends[0])]
         np.testing.assert_allclose(np.sum((ends[1] - ends[0]) * (u[1] - u[0]), axis=1), 0, atol=1e-15)
 
 
 def test_save_motion_modes_equal_the_library(tmp_path: Path) -> None:
     cf.save_motion(SCENE, tmp_path / "seen", count=4, frames=2)
     read = meshio.read(tmp_path / "seen/modes.vtu")
-    found = cf.modes(CUE, 4)
-    shapes, turns = found.shape(read.point_data["x"])
-    for k, tone in enumerate(found.frequencies):
-        moved = read.point_data[f"mode_{k + 1}_{tone:.1f}_Hz"]
-        np.testing.assert_array_equal(moved[:, 1], shapes[k])
-        np.testing.assert_array_equal(moved[:, 0], turns[k] * read.points[:, 1])
+    result = cf.modes(CUE, 4)
+    shapes, turns = result.shape(read.point_data["x"])
+    for k, tone in enumerate(result.frequencies):
+        displaced = read.point_data[f"mode_{k + 1}_{tone:.1f}_Hz"]
+        np.testing.assert_array_equal(displaced[:, 1], shapes[k])
+        np.testing.assert_array_equal(displaced[:, 0], turns[k] * read.points[:, 1])
         np.testing.assert_array_equal(read.point_data[f"mode_{k + 1}_theta"], turns[k])
     np.testing.assert_array_equal(read.points[:, 0], -read.point_data["x"])
 
@@ -78,9 +78,9 @@ def test_save_motion_strike_equals_the_library(tmp_path: Path) -> None:
     scale, folder = 20.0, tmp_path / "seen"
     cf.save_motion(SCENE, folder, frames=5, scale=scale)
     times = np.linspace(0, 3 * motion(SCENE, [0.0]).duration, 5)
-    found = motion(SCENE, times)
+    result = motion(SCENE, times)
     shaft = shaft_surface(CUE)
-    w, theta = found.deflection(shaft.x)
+    w, theta = result.deflection(shaft.x)
     collection = ET.parse(folder / "strike.pvd").getroot()
     sets = [entry.attrib for entry in collection.iter("DataSet")]
     assert collection.get("type") == "Collection"
@@ -92,18 +92,18 @@ def test_save_motion_strike_equals_the_library(tmp_path: Path) -> None:
         np.testing.assert_array_equal(read.point_data["w"], w[i])
         np.testing.assert_array_equal(read.point_data["theta"], theta[i])
         np.testing.assert_array_equal(
-            read.point_data["displacement"], displacements(shaft, w[i], theta[i], along=found.along[i])
+            read.point_data["displacement"], displacements(shaft, w[i], theta[i], along=result.along[i])
         )
-        drawn = displacements(shaft, scale * w[i], scale * theta[i], along=found.along[i])
-        np.testing.assert_array_equal(read.points, shaft.points + drawn)
+        exaggerated = displacements(shaft, scale * w[i], scale * theta[i], along=result.along[i])
+        np.testing.assert_array_equal(read.points, shaft.points + exaggerated)
         ball = meshio.read(folder / sets[2 * i + 1]["file"])
-        np.testing.assert_allclose(ball.points.reshape(-1, 3)[36:-36].mean(axis=0), [*found.centre[i], 0], atol=1e-15)
-        assert set(map(tuple, ball.point_data["force"])) == {(*found.force[i], 0)}
+        np.testing.assert_allclose(ball.points.reshape(-1, 3)[36:-36].mean(axis=0), [*result.centre[i], 0], atol=1e-15)
+        assert set(map(tuple, ball.point_data["force"])) == {(*result.force[i], 0)}
     history = cf.strike(SCENE).history(times[1])  # within the contact
     s, c = 0.3, np.sqrt(1 - 0.09)
     expected = [s * history["force_t"] + c * history["force_n"], c * history["force_t"] - s * history["force_n"]]
-    np.testing.assert_allclose(found.force[1], expected, rtol=1e-12)
-    np.testing.assert_array_equal(found.force[2:], 0)
+    np.testing.assert_allclose(result.force[1], expected, rtol=1e-12)
+    np.testing.assert_array_equal(result.force[2:], 0)
 
 
 def test_save_motion_with_effects_ends_at_until(tmp_path: Path) -> None:
@@ -141,6 +141,6 @@ CALLS = [
 ]
 
 
-@pytest.mark.parametrize(("ask", "message"), CALLS)
-def test_save_motion_invalid_arguments_are_rejected(ask: Callable[[], object], message: str) -> None:
-    refuses(ask, message)
+@pytest.mark.parametrize(("call", "message"), CALLS)
+def test_save_motion_invalid_arguments_are_rejected(call: Callable[[], object], message: str) -> None:
+    assert_raises(call, message)

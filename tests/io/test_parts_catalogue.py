@@ -26,8 +26,8 @@ def test_cue_from_parts_equals_csv_with_options(tmp_path: Path) -> None:
         tmp_path, f'{CONE}material = "ash"\nferrule = "melamine ferrule 25 mm"\nbore = "6 mm wide, 127 mm deep"'
     )
     (tmp_path / "same.csv").write_text("x [mm],diameter [mm]\n0,12.75\n730.6,21.5\n", encoding="utf-8")
-    told = {"material": "ash", "ferrule": "25 mm melamine", "bore": "6 mm wide, 127 mm deep"}
-    parts, table = cf.load(own), cf.load(tmp_path / "same.csv", **told)
+    options = {"material": "ash", "ferrule": "25 mm melamine", "bore": "6 mm wide, 127 mm deep"}
+    parts, table = cf.load(own), cf.load(tmp_path / "same.csv", **options)
     assert parts.segments == table.segments
     assert parts.body_mass == pytest.approx(0.42524, rel=1e-4)
     assert parts.segments[0].core == MATERIALS["ash"].material
@@ -48,9 +48,9 @@ def test_catalogue_shaft_from_drawing_has_no_leather(tmp_path: Path) -> None:
 
 def test_tip_by_name_in_option_and_file_agree(tmp_path: Path) -> None:
     own = written(tmp_path, CONE)
-    said = [call("strike", own, "--leather", tip) for tip in ("Kamui Soft", "soft", "medium")]
-    assert [status for status, *_ in said] == [0] * 3
-    squirts = [re.findall(r"squirt .*", out) for _, out, _ in said]
+    results = [call("strike", own, "--leather", tip) for tip in ("Kamui Soft", "soft", "medium")]
+    assert [status for status, *_ in results] == [0] * 3
+    squirts = [re.findall(r"squirt .*", out) for _, out, _ in results]
     assert squirts[0] == squirts[1] != squirts[2]
     tip = '{ type = "LeatherTip", height = "6 mm", dome_radius = "dime", leather = "Kamui hard" }'
     scene = tmp_path / "scene.toml"

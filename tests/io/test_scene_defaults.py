@@ -28,22 +28,22 @@ KEYS = [(part, name) for part, names in WHOLE.items() for name in names]
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    place = tmp_path_factory.mktemp("scenes")
-    (place / "cue.toml").write_text(CUE, encoding="utf-8")
-    return place
+    directory = tmp_path_factory.mktemp("scenes")
+    (directory / "cue.toml").write_text(CUE, encoding="utf-8")
+    return directory
 
 
 def cue_of(folder: Path) -> cf.Cue:
-    found = cf.load(folder / "cue.toml")
-    assert isinstance(found, cf.Cue)
-    return found
+    result = cf.load(folder / "cue.toml")
+    assert isinstance(result, cf.Cue)
+    return result
 
 
 def loaded(folder: Path, text: str) -> cf.Scene:
     (folder / "scene.toml").write_text(f"{text.strip()}\n", encoding="utf-8")
-    found = cf.load(folder / "scene.toml")
-    assert isinstance(found, cf.Scene)
-    return found
+    result = cf.load(folder / "scene.toml")
+    assert isinstance(result, cf.Scene)
+    return result
 
 
 @settings(max_examples=25)
@@ -53,7 +53,7 @@ def test_scene_missing_keys_default_to_the_game(folder: Path, present, effects, 
     for part in WHOLE:
         inside = [f"{name} = {WHOLE[part][name]}" for other, name in sorted(present) if other == part]
         rows += [f"[{part}]", *inside] if inside else []
-    found, usual = loaded(folder, "\n".join(rows)), cf.usual_scene(cue_of(folder), game)
+    result, usual = loaded(folder, "\n".join(rows)), cf.usual_scene(cue_of(folder), game)
     if effects:  # without axial waves the tip has the restitution of the whole cue
         tip = replace(usual.tip, restitution=GAMES[game].restitution)
         usual = replace(usual, cue=cue_of(folder), tip=tip, effects=())
@@ -61,16 +61,16 @@ def test_scene_missing_keys_default_to_the_game(folder: Path, present, effects, 
     for part in WHOLE:
         changes = {name: values[name] for other, name in present if other == part}
         usual = replace(usual, **{part: replace(getattr(usual, part), **changes)})
-    assert found == usual
-    cf.save(found, folder / "again.toml")
+    assert result == usual
+    cf.save(result, folder / "again.toml")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert cf.load(folder / "again.toml") == found
+        assert cf.load(folder / "again.toml") == result
 
 
 def test_scene_with_spring_tip_gets_no_leather(folder: Path) -> None:
-    found = loaded(folder, 'game = "pool"\ncue = "cue.toml"\n[tip]\ncontact_time = "1.1 ms"')
-    assert [type(effect).__name__ for effect in found.effects] == ["AxialWaves", "GeometricStiffness"]
-    assert found.cue == cue_of(folder)
+    result = loaded(folder, 'game = "pool"\ncue = "cue.toml"\n[tip]\ncontact_time = "1.1 ms"')
+    assert [type(effect).__name__ for effect in result.effects] == ["AxialWaves", "GeometricStiffness"]
+    assert result.cue == cue_of(folder)
     lumped = loaded(folder, 'game = "pool"\n[cue]\nmass = "540 g"\nend_mass = "6 g"')
     assert lumped == cf.Scene(lumped.cue, GAMES["pool"].ball, cf.Tip(0.73, 0.7), cf.Stroke(2.0, 0.3))

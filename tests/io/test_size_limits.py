@@ -81,8 +81,8 @@ def test_constructors_beyond_bounds_raise() -> None:
 
 def test_longest_drawing_with_axial_waves_accepts_a_butt() -> None:
     wood = cf.Material(12e9, 8e8, 680.0)
-    drawn = cf.Cue((cf.Segment(0.7 / 2000, 0.012, 0.012, wood),) * 2000, body_mass=0.43)
-    assert len(cf.AxialWaves(1.47, 0.03, 4430.0).with_butt(drawn).segments) == 2001
+    long_cue = cf.Cue((cf.Segment(0.7 / 2000, 0.012, 0.012, wood),) * 2000, body_mass=0.43)
+    assert len(cf.AxialWaves(1.47, 0.03, 4430.0).with_butt(long_cue).segments) == 2001
 
 
 def stiff(stiffness: float) -> cf.Scene:

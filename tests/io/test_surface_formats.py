@@ -9,9 +9,9 @@ import pytest
 
 import cuefem as cf
 from tests.helpers.command_line import call
-from tests.helpers.surfaces import revolved, written
+from tests.helpers.surfaces import revolve, write_surface
 
-SHAFT = revolved([(0, 0), (0, 0.006), (0.7, 0.0105), (0.7, 0)], 16)
+SHAFT = revolve([(0, 0), (0, 0.006), (0.7, 0.0105), (0.7, 0)], 16)
 # Ending, whether binary, and what another program does otherwise than meshio.
 FILES: dict[str, tuple[str, bool, Callable[[bytes], bytes]]] = {
     "ascii": ("stl", False, lambda text: text),
@@ -36,13 +36,13 @@ FILES: dict[str, tuple[str, bool, Callable[[bytes], bytes]]] = {
 @pytest.mark.parametrize("name", FILES)
 def test_surface_of_any_program_is_read(tmp_path: Path, name: str) -> None:
     suffix, binary, change = FILES[name]
-    path, made = written(tmp_path / f"shaft.{suffix}", *SHAFT, binary=binary), tmp_path / "made.toml"
+    path, output = write_surface(tmp_path / f"shaft.{suffix}", *SHAFT, binary=binary), tmp_path / "made.toml"
     path.write_bytes(change(path.read_bytes()))
-    status, _, err = call("convert", path, made)
+    status, _, err = call("convert", path, output)
     assert (status, err) == (0, "")
-    found = cf.load(made)
-    assert isinstance(found, cf.Cue)
-    assert found.length == pytest.approx(0.7, rel=1e-6)
-    sizes = found.segments[0].tip_diameter, found.segments[-1].butt_diameter
+    result = cf.load(output)
+    assert isinstance(result, cf.Cue)
+    assert result.length == pytest.approx(0.7, rel=1e-6)
+    sizes = result.segments[0].tip_diameter, result.segments[-1].butt_diameter
     round16 = np.sqrt(16 / 2 * np.sin(2 * np.pi / 16) / np.pi)  # of the disc that 16 facets are as large as
     assert sizes == pytest.approx((0.012 * round16, 0.021 * round16), rel=1e-4)

@@ -11,7 +11,7 @@ from cuefem.cue.materials import material
 from cuefem.io.defaults_report import assumption_texts, drawing_assumptions
 from cuefem.io.surface_sections import TOLERANCE, aligned_surface, section_shaft
 from tests.helpers.orders import assert_order
-from tests.helpers.surfaces import outline_of, revolved, written
+from tests.helpers.surfaces import outline_of, revolve, write_surface
 
 MAPLE = material("hard maple")
 CYLINDER = cf.Cue((cf.Segment(0.5, 0.013, 0.013, MAPLE),))
@@ -39,7 +39,7 @@ def polygon(radius: float, facets: int) -> tuple[float, float]:
 @pytest.mark.parametrize("name", CUES)
 def test_slices_equal_exact_polygons(name: str, facets: int) -> None:
     cue = CUES[name]
-    body = aligned_surface(*revolved(outline_of(cue), facets))
+    body = aligned_surface(*revolve(outline_of(cue), facets))
     assert body.flats == pytest.approx(np.unique(cue.nodes)[[0, *body_jumps(cue), -1]], abs=1e-12)
     for x in (0.0, 0.01, 0.1, 0.1459, 0.1461, 0.2999, 0.3001, 0.49):
         i = np.searchsorted(cue.nodes, x, side="right") - 1
@@ -68,14 +68,14 @@ def body_jumps(cue: cf.Cue) -> list[int]:
 def test_surface_of_conical_pieces_recovers_the_drawing(name: str) -> None:
     """Lengths to rounding; diameters those of the polygon's area, and of its second moment too where it is bored."""
     cue, facets = CUES[name], 64
-    found = section_shaft(aligned_surface(*revolved(outline_of(cue), facets)))
-    assert [p.length for p in found.pieces] == pytest.approx([s.length for s in cue.segments], rel=1e-9)
+    result = section_shaft(aligned_surface(*revolve(outline_of(cue), facets)))
+    assert [p.length for p in result.pieces] == pytest.approx([s.length for s in cue.segments], rel=1e-9)
     shrunk = np.sqrt(polygon(1, facets)[0] / np.pi)
-    for piece, segment in zip(found.pieces, cue.segments, strict=True):
+    for piece, segment in zip(result.pieces, cue.segments, strict=True):
         assert piece.outer == pytest.approx([shrunk * segment.tip_diameter, shrunk * segment.butt_diameter], rel=2e-6)
         assert piece.bore == pytest.approx([shrunk * segment.tip_bore, shrunk * segment.butt_bore], rel=2e-5)
     widest = cue.segments[-1].butt_diameter
-    assert found.facets == pytest.approx(widest / 2 * (1 - shrunk), rel=1e-6)
+    assert result.facets == pytest.approx(widest / 2 * (1 - shrunk), rel=1e-6)
 
 
 def test_facets_refined_converge_with_second_order() -> None:
@@ -83,7 +83,7 @@ def test_facets_refined_converge_with_second_order() -> None:
     facets = np.array([16, 32, 64])
     off = []
     for n in facets:
-        pieces = section_shaft(aligned_surface(*revolved(outline_of(KIM), int(n)))).pieces
+        pieces = section_shaft(aligned_surface(*revolve(outline_of(KIM), int(n)))).pieces
         cue = cf.Cue(tuple(cf.Segment(p.length, *p.outer, MAPLE, *p.bore) for p in pieces))
         off.append(1 - cf.modes(cue, 1).frequencies[0] / cf.modes(KIM, 1).frequencies[0])
     assert_order(2, 1 / facets, off, within=0.02)
@@ -94,24 +94,24 @@ def test_curved_profile_is_within_the_tolerance() -> None:
     """A pro taper's smooth curve: straight pieces keep within the tolerance of every slice."""
     x = np.linspace(0, 0.7, 141)
     radius = 0.006 + 0.005 * (x / 0.7) ** 3
-    found = section_shaft(aligned_surface(*revolved([(0, 0), *zip(x, radius, strict=True), (0.7, 0)], 48)))
-    ends = np.concatenate([[0.0], np.cumsum([p.length for p in found.pieces])])
-    outer = np.array([found.pieces[0].outer[0], *(p.outer[1] for p in found.pieces)])
+    result = section_shaft(aligned_surface(*revolve([(0, 0), *zip(x, radius, strict=True), (0.7, 0)], 48)))
+    ends = np.concatenate([[0.0], np.cumsum([p.length for p in result.pieces])])
+    outer = np.array([result.pieces[0].outer[0], *(p.outer[1] for p in result.pieces)])
     exact = 2 * radius * np.sqrt(polygon(1, 48)[0] / np.pi)
     off = np.abs(np.interp(x, ends, outer) - exact).max()
-    assert 8 < len(found.pieces) < 100
-    assert 0.2 * TOLERANCE * found.widest < off <= TOLERANCE * found.widest
+    assert 8 < len(result.pieces) < 100
+    assert 0.2 * TOLERANCE * result.widest < off <= TOLERANCE * result.widest
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_surface_moved_and_rotated_gives_the_same_shaft(seed: int) -> None:
     rng = np.random.default_rng(seed)
     turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
-    points, faces = revolved(outline_of(HOLLOW), 24)
+    points, faces = revolve(outline_of(HOLLOW), 24)
     straight = section_shaft(aligned_surface(points, faces))
-    moved = section_shaft(aligned_surface(points @ turn.T + rng.normal(size=3), faces if seed else faces[:, ::-1]))
-    for here, there in zip(moved.pieces, straight.pieces, strict=True):
-        assert np.hstack(here) == pytest.approx(np.hstack(there), rel=1e-6, abs=1e-12)
+    turned = section_shaft(aligned_surface(points @ turn.T + rng.normal(size=3), faces if seed else faces[:, ::-1]))
+    for piece, other in zip(turned.pieces, straight.pieces, strict=True):
+        assert np.hstack(piece) == pytest.approx(np.hstack(other), rel=1e-6, abs=1e-12)
 
 
 def test_polygon_faces_are_triangulated(tmp_path: Path) -> None:
@@ -127,13 +127,13 @@ def test_polygon_faces_are_triangulated(tmp_path: Path) -> None:
 
 def test_surface_length_unit_and_uppercase_extension_are_read(tmp_path: Path) -> None:
     """As CAD programs on other systems write them; by a scene too."""
-    points, faces = revolved(outline_of(KIM), 16)
-    inches = written(tmp_path / "inches.stl", points, faces, unit=0.0254)
+    points, faces = revolve(outline_of(KIM), 16)
+    inches = write_surface(tmp_path / "inches.stl", points, faces, unit=0.0254)
     assert cf.load(inches, length_unit="in").length == pytest.approx(0.7, rel=1e-6)
     loaded, path = cf.load(inches), inches.rename(tmp_path / "INCHES.STL")
     assert loaded.length == pytest.approx(0.7 / 25.4, rel=1e-6)
     assert cf.load(path, material="ash").segments[0].material == material("ash")
     (tmp_path / "SCENE.TOML").write_text(f"game = 'kim'\ncue = '{path.name}'\n")
     assert cf.load(tmp_path / "SCENE.TOML").cue == loaded
-    told = assumption_texts(drawing_assumptions(path, loaded, {"body_mass": 0.4}))
-    assert [words.split(" ")[0] for words in told[:5]] == ["lengths", "1", "facets", "the", "material"]
+    texts = assumption_texts(drawing_assumptions(path, loaded, {"body_mass": 0.4}))
+    assert [words.split(" ")[0] for words in texts[:5]] == ["lengths", "1", "facets", "the", "material"]

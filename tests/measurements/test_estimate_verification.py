@@ -11,7 +11,7 @@ from cuefem.measurements.measured_cue import MeasuredCue, compare
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Stiffness, Tone, Weight
 from cuefem.measurements.outliers import posterior
 from cuefem.measurements.uncertain_parameters import Prior
-from tests.helpers.measured_cues import SCENE, blank, measured_cue
+from tests.helpers.measured_cues import SCENE, cheap_measurements, measured_cue
 
 HOLDS_95 = 1.959964  # standard deviations either way that hold 95 %
 CLOSED = Prior("contact time", 0.0)  # nothing here depends on it
@@ -24,7 +24,7 @@ def measured_as(cue: MeasuredCue, values: np.ndarray) -> MeasuredCue:
 
 
 def made_up(
-    seed: int, measurements: tuple[Measurement, ...] = blank(), size: float = 1.0
+    seed: int, measurements: tuple[Measurement, ...] = cheap_measurements(), size: float = 1.0
 ) -> tuple[MeasuredCue, np.ndarray]:
     """A cue whose parameters are drawn from their priors, measured with noise; and these parameters."""
     generator = np.random.default_rng(seed)
@@ -43,7 +43,7 @@ def made_up(
 
 def test_estimate_exact_data_recovers_the_parameters() -> None:
     """With small errors the priors do not count, and the parameters follow from the values."""
-    small = tuple(replace(one, error=1e-3 * one.error) for one in blank() if not isinstance(one, Tone))  # type: ignore[call-arg,attr-defined]
+    small = tuple(replace(one, error=1e-3 * one.error) for one in cheap_measurements() if not isinstance(one, Tone))  # type: ignore[call-arg,attr-defined]
     cue = measured_cue(*small, priors=(CLOSED, Prior("G", 0.0)))
     z = np.array([0.7, -0.4, 0.5])
     result = estimate(measured_as(cue, cue.computed(z)))
@@ -81,9 +81,9 @@ def linear_estimate(cue: MeasuredCue, slopes: np.ndarray, values: np.ndarray) ->
     """The estimate of a linear model, its measured values ``values`` above those of the drawing."""
     sd = np.array([one.sd for one in cue.measurements])
     mean, covariance, wrong = posterior(slopes / sd[:, None], values / sd)
-    there = np.array([one.measured for one in cue.measurements])
-    off = measured_as(cue, there + values)
-    return Estimate(off, mean, covariance, there + slopes @ mean, slopes, 0.0, True, wrong)
+    base = np.array([one.measured for one in cue.measurements])
+    off = measured_as(cue, base + values)
+    return Estimate(off, mean, covariance, base + slopes @ mean, slopes, 0.0, True, wrong)
 
 
 @pytest.mark.heavy
@@ -118,7 +118,7 @@ def test_intervals_with_one_outlier_cover_or_name_it(
 
 def test_next_measurement_added_gives_predicted_gain() -> None:
     """The predicted narrowing by a stiffness is that of an estimate with it, at the same values."""
-    cue, _ = made_up(9, blank()[:4], size=0.5)
+    cue, _ = made_up(9, cheap_measurements()[:4], size=0.5)
     before = estimate(cue)
     gains = before.next_measurements()
     assert {type(gain.measurement) for gain in gains} <= set(MEASUREMENT_TYPES.values())
@@ -159,6 +159,6 @@ def test_estimate_at_limits_of_geometry_stays_finite(name: str) -> None:
         end = bisect(lambda z: possible(cue, i, z) - 0.5, 0.0, outside, xtol=1e-9)
         end -= 2e-9 * np.sign(end)
         for inside in (0.0, 0.3):
-            near = replace(cue, scene=parameter.setup(cue.setup(), end - np.sign(end) * inside).scene)
-            assert np.isfinite([row.spread for row in compare(near)]).all()
-        assert np.isfinite(estimate(near).covariance).all()
+            limited = replace(cue, scene=parameter.setup(cue.setup(), end - np.sign(end) * inside).scene)
+            assert np.isfinite([row.spread for row in compare(limited)]).all()
+        assert np.isfinite(estimate(limited).covariance).all()

@@ -20,7 +20,7 @@ from cuefem.measurements.measurement_types import (
 )
 from cuefem.measurements.predictions import predictions_of
 from tests.helpers.leather_scenes import leather_scene
-from tests.helpers.measured_cues import SCENE, WOOD, blank, measured_cue
+from tests.helpers.measured_cues import SCENE, WOOD, cheap_measurements, measured_cue
 
 ROD = replace(SCENE, cue=cf.Cue((cf.Segment(0.7, 0.014, 0.014, WOOD),)))
 
@@ -47,10 +47,10 @@ def test_weight_and_balance_with_leather_tip_include_it() -> None:
 
 def test_squirt_and_contact_time_equal_a_strike() -> None:
     for scene in (SCENE, leather_scene()):
-        struck = cf.strike(replace(scene, stroke=cf.Stroke(1.5, 0.25)))
+        outcome = cf.strike(replace(scene, stroke=cf.Stroke(1.5, 0.25)))
         one = Squirt(offset=0.25, value=0.03, error=1e-3, speed=1.5)
-        assert one.computed(Setup(scene)) == pytest.approx(struck.squirt, rel=1e-12)
-        assert one.computed(Setup(scene, squirt_factor=1.1)) == pytest.approx(1.1 * struck.squirt, rel=1e-12)
+        assert one.computed(Setup(scene)) == pytest.approx(outcome.squirt, rel=1e-12)
+        assert one.computed(Setup(scene, squirt_factor=1.1)) == pytest.approx(1.1 * outcome.squirt, rel=1e-12)
         head_on = cf.strike(replace(scene, stroke=cf.Stroke(1.5, 0.0)))
         time = ContactTime(value=1e-3, error=1e-4, speed=1.5)
         assert time.computed(Setup(scene)) == pytest.approx(head_on.duration, rel=1e-12)
@@ -93,7 +93,7 @@ def test_offset_zero_moves_one_side_and_not_the_mean() -> None:
 
 
 def test_residuals_are_in_units_of_errors() -> None:
-    rows = compare(measured_cue(*blank()))
+    rows = compare(measured_cue(*cheap_measurements()))
     for row in rows:
         assert row.residual == pytest.approx((row.measured - row.computed) / row.error)
         assert row.pull == pytest.approx((row.measured - row.computed) / np.hypot(row.error, row.spread))

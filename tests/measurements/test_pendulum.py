@@ -12,7 +12,7 @@ from cuefem.io.measured_folder import load_measured
 from cuefem.measurements.measurement_types import EndMass, Setup
 from cuefem.measurements.pendulum import GRAVITY, Pendulum
 from tests.helpers.command_line import as_json, stdout_of
-from tests.helpers.measured_cues import SCENE, folder
+from tests.helpers.measured_cues import SCENE, measured_folder
 
 TEXT = """[[pendulum]]
 ball_mass = "8 g"
@@ -27,8 +27,8 @@ TWICE = TEXT.replace('"-34 mm"', '"-34 mm", "-35 mm"').replace('"162 mm"', '"162
 BY_HERTZ = TWICE.replace('contact_time = "1 ms"', 'force = "50 N"\nindentation = "0.5 mm"')
 
 
-def measured(text: str, place: Path) -> EndMass:
-    (result,) = load_measured(folder(place, text))[0].measurements
+def measured(text: str, directory: Path) -> EndMass:
+    (result,) = load_measured(measured_folder(directory, text))[0].measurements
     assert isinstance(result, EndMass)
     return result
 
@@ -64,10 +64,10 @@ def test_pendulum_on_free_mass_is_exact(m: float) -> None:
 
 def test_pendulum_on_shaft_equals_side_strike() -> None:
     ball = cf.Striker(8e-3, 0.8, contact_time=1e-3)
-    struck = cf.side_strike(cf.SideStrike(SCENE.shaft, ball, 0.02))
-    result = of_speeds(8e-3, 0.6 * struck.apparent_restitution, 0.6 * 0.8).end_mass
-    assert result.value == pytest.approx(struck.effective_mass, rel=1e-9)
-    assert result.computed(Setup(SCENE)) == pytest.approx(struck.effective_mass, rel=1e-9)
+    outcome = cf.side_strike(cf.SideStrike(SCENE.shaft, ball, 0.02))
+    result = of_speeds(8e-3, 0.6 * outcome.apparent_restitution, 0.6 * 0.8).end_mass
+    assert result.value == pytest.approx(outcome.effective_mass, rel=1e-9)
+    assert result.computed(Setup(SCENE)) == pytest.approx(outcome.effective_mass, rel=1e-9)
 
 
 def test_pendulum_error_covers_noise_of_readings() -> None:
@@ -93,9 +93,9 @@ def test_pendulum_error_covers_noise_of_readings() -> None:
 def test_compare_contradiction_with_drawing_is_reported(tmp_path: Path) -> None:
     """8.95 g measured for 6.06 g drawn: beyond the readings' errors, and beyond what drawing and contact time allow."""
     drawing = (Path(__file__).parents[2] / "meshes" / "pool_maple.toml").read_text(encoding="utf-8")
-    place = folder(tmp_path / "cue", TEXT.replace("-34 mm", "-9 mm"), drawing)
-    (row,) = as_json("compare", place)["rows"]
+    directory = measured_folder(tmp_path / "cue", TEXT.replace("-34 mm", "-9 mm"), drawing)
+    (row,) = as_json("compare", directory)["rows"]
     assert (1e3 * row["measured"], 1e3 * row["computed"]) == pytest.approx((8.95, 6.06), abs=0.02)
     assert row["residual"] > 15
     assert row["pull"] > 5
-    assert "contradicts the drawing" in stdout_of("compare", place)
+    assert "contradicts the drawing" in stdout_of("compare", directory)

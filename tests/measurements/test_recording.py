@@ -11,8 +11,8 @@ from cuefem.io.measured_folder import load_measured
 from cuefem.measurements.estimate import estimate
 from cuefem.measurements.measurement_types import Tone
 from cuefem.measurements.recording import Peak, assign_modes, tones_in
-from tests.helpers.measured_cues import SHAFT, folder
-from tests.helpers.recordings import other_wood, recording, save_wav, tapped
+from tests.helpers.measured_cues import SHAFT, measured_folder
+from tests.helpers.recordings import other_wood, recording, save_wav, tap_sound
 
 POOL = Path(__file__).parents[2] / "meshes" / "pool_maple.toml"
 RECORDING = '[[recording]]\nfile = "tap.wav"\n'
@@ -22,13 +22,13 @@ DRAWN = cf.modes(SHAFT, 8).frequencies
 @pytest.mark.heavy
 def test_recording_of_known_wood_gives_its_constants(tmp_path: Path) -> None:
     """Three taps of pool_maple in another wood, 25 dB: the true E, G, density, and those of an earlier estimate."""
-    drawn = cf.load(POOL)
-    assert isinstance(drawn, cf.Cue)
-    shaft = other_wood(drawn)
+    pool_cue = cf.load(POOL)
+    assert isinstance(pool_cue, cf.Cue)
+    shaft = other_wood(pool_cue)
     weight = f'[[weight]]\nvalue = "{1e3 * shaft.shaft_mass:.1f} g"\nerror = "0.5 g"\n'
-    place = folder(tmp_path / "cue", weight + RECORDING, POOL.read_text(encoding="utf-8"))
-    save_wav(place / "tap.wav", recording(tapped(shaft), 25.0, 0))
-    cue, _ = load_measured(place)
+    directory = measured_folder(tmp_path / "cue", weight + RECORDING, POOL.read_text(encoding="utf-8"))
+    save_wav(directory / "tap.wav", recording(tap_sound(shaft), 25.0, 0))
+    cue, _ = load_measured(directory)
     assert [one.mode for one in cue.measurements if isinstance(one, Tone)] == [1, 2, 3, 4, 5, 6, 7]
     assert {one.source for one in cue.measurements if isinstance(one, Tone)} == {"tap.wav"}
     result = estimate(cue)
@@ -42,11 +42,11 @@ def test_recording_of_known_wood_gives_its_constants(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("snr", "missing"), [(10.0, ()), (10.0, (1, 2)), (20.0, (1,)), (60.0, (3,))])
-def test_tones_with_silent_modes_keep_their_numbers(snr: float, missing: tuple[int, ...]) -> None:
+def test_tones_with_missing_modes_have_right_mode_numbers(snr: float, missing: tuple[int, ...]) -> None:
     """The wood is 15 % stiffer than drawn; a silent mode does not shift the numbers of the others."""
     shaft = other_wood(SHAFT)
     true = cf.modes(shaft, 8).frequencies
-    tones = tones_in(recording(tapped(shaft, missing=missing), snr, 1), 44100.0, DRAWN)
+    tones = tones_in(recording(tap_sound(shaft, missing=missing), snr, 1), 44100.0, DRAWN)
     assert [tone.mode for tone in tones][: 6 - len(missing)] == [k for k in range(1, 7) if k not in missing]
     for tone in tones:
         assert abs(tone.value - true[tone.mode - 1]) < 3 * tone.sd
@@ -74,10 +74,10 @@ def test_two_recordings_give_one_tone_per_mode(tmp_path: Path) -> None:
     def sound(*tones: float) -> np.ndarray:
         return 0.4 * sum(np.exp(-15 * time) * np.sin(2 * np.pi * f * time) for f in tones)[:, None]
 
-    place = folder(tmp_path / "cue", RECORDING + RECORDING.replace("tap", "two"))
-    save_wav(place / "tap.wav", sound(*DRAWN[:3]))
-    save_wav(place / "two.wav", sound(DRAWN[0], DRAWN[1] + 1.0, DRAWN[3]))
-    first, second, third, fourth = load_measured(place)[0].measurements
+    directory = measured_folder(tmp_path / "cue", RECORDING + RECORDING.replace("tap", "two"))
+    save_wav(directory / "tap.wav", sound(*DRAWN[:3]))
+    save_wav(directory / "two.wav", sound(DRAWN[0], DRAWN[1] + 1.0, DRAWN[3]))
+    first, second, third, fourth = load_measured(directory)[0].measurements
     assert isinstance(second, Tone)
     assert (first.source, third.source, fourth.source) == ("tap.wav, two.wav", "tap.wav", "two.wav")
     assert DRAWN[1] < second.value < DRAWN[1] + 1

@@ -35,11 +35,11 @@ class Chain:
         """On the masses, (masses, 2), N."""
         force = np.zeros_like(at)
         if not exact:
-            moved = at - self.rest
-            pull = self.stretch * (moved[1:, 0] - moved[:-1, 0])
+            displacement = at - self.rest
+            pull = self.stretch * (displacement[1:, 0] - displacement[:-1, 0])
             force[:-1, 0] += pull
             force[1:, 0] -= pull
-            couple = self.bend / self.link**2 * (moved[2:, 1] - 2 * moved[1:-1, 1] + moved[:-2, 1])
+            couple = self.bend / self.link**2 * (displacement[2:, 1] - 2 * displacement[1:-1, 1] + displacement[:-2, 1])
             force[2:, 1] -= couple
             force[1:-1, 1] += 2 * couple
             force[:-2, 1] -= couple

@@ -24,7 +24,7 @@ SWEEPS, SETTLED = 200, 1e-13  # of the friction of a raised cue, and when it has
 
 
 @dataclass(frozen=True)
-class Seen:
+class SmallStepsOutcome:
     """What small steps say of a strike, in the words of `cuefem.Outcome`.
 
     touches: when each contact of tip and ball began, s. vibration, lost: energy of the cue's vibrations, and what its
@@ -41,7 +41,7 @@ class Seen:
     lost: float
 
 
-def struck(scene: cf.Scene, modes: int, steps: int) -> Seen:
+def solve_small_steps(scene: cf.Scene, modes: int, steps: int) -> SmallStepsOutcome:
     """A strike with so many flexible modes of the free cue, in so many steps for a head-on contact time."""
     return Steps(scene, modes, steps).run()
 
@@ -56,9 +56,9 @@ class Steps:
         self.bent = self._bent(modes)
         added = math.fsum(effect.mass for effect in scene.effects if isinstance(effect, cf.PointMass))
         self.mass = scene.cue.mass + added
-        felt = 1 / (1 / self.ball.mass + 1 / self.mass)
+        reduced_mass = 1 / (1 / self.ball.mass + 1 / self.mass)
         self.time = self.tip.contact_time
-        self.stiffness = felt * (math.pi / 2 * (1 + self.tip.restitution) / self.time) ** 2
+        self.stiffness = reduced_mass * (math.pi / 2 * (1 + self.tip.restitution) / self.time) ** 2
         self.step = self.time / steps
         self.planes = 2 if self.raised else 1
         self.many = len(self.bent.omega)
@@ -93,16 +93,16 @@ class Steps:
         bent, many = self.bent, self.many
         tip = np.zeros((3, self.size))  # velocity of the tip's contact point in the table's frame
         tip += np.outer(axis, np.eye(self.size)[0]) / math.sqrt(self.mass)
-        for plane, way in zip(range(self.planes), (right, rise), strict=False):
+        for plane, direction in zip(range(self.planes), (right, rise), strict=False):
             modes = slice(1 + plane * many, 1 + (plane + 1) * many)
-            tip[:, modes] += np.outer(way, bent.across + r * (1 - c) * bent.turning)
+            tip[:, modes] += np.outer(direction, bent.across + r * (1 - c) * bent.turning)
             if plane == 0:  # the contact lies r s left of the axis, so that a turning end moves it along the axis
                 tip[:, modes] += np.outer(axis, -r * s * bent.turning)
 
-        def row(way: Array, arm: Array, *, of_tip: bool) -> Array:
-            found = np.zeros(self.size)
-            found[self.body : self.body + 3], found[self.body + 3 :] = way, np.cross(arm, way)
-            return found - way @ tip if of_tip else found
+        def row(direction: Array, arm: Array, *, of_tip: bool) -> Array:
+            entries = np.zeros(self.size)
+            entries[self.body : self.body + 3], entries[self.body + 3 :] = direction, np.cross(arm, direction)
+            return entries - direction @ tip if of_tip else entries
 
         self.masses = np.ones(self.size)
         self.masses[self.body : self.body + 3] = self.ball.mass
@@ -130,7 +130,7 @@ class Steps:
         self.blows = np.concatenate([np.zeros_like(wide), wide], axis=1)  # of unit impulses: normal, then the rows
         self.gram = self.reading @ self.blows.T
 
-    def run(self) -> Seen:
+    def run(self) -> SmallStepsOutcome:
         """The strike from touch to the last separation."""
         n, h, e, k = self.size, self.step, self.tip.restitution, self.stiffness
         shear = self._effect(cf.TipShear)
@@ -190,9 +190,9 @@ class Steps:
         mu = self.tip.friction
         G = self.gram[:, 1:]
         if not self.raised:
-            wanted = -sliding[0] / G[0, 0]
+            sticking = -sliding[0] / G[0, 0]
             bound = mu * pressed if math.isfinite(mu) else math.inf
-            return np.array([min(max(wanted, -bound), bound)])
+            return np.array([min(max(sticking, -bound), bound)])
         P = guess.copy()
         scale = abs(pressed) + 1e-30
         for _ in range(SWEEPS):
@@ -204,7 +204,7 @@ class Steps:
                 break
         return P
 
-    def _seen(self, z: Array, left: float, touches: list[float], lost: float, first: float) -> Seen:
+    def _seen(self, z: Array, left: float, touches: list[float], lost: float, first: float) -> SmallStepsOutcome:
         n, body, many = self.size, self.body, self.many
         v = z[n:]
         V, turning = v[body : body + 3], v[body + 3 :] / self.ball.radius
@@ -213,7 +213,7 @@ class Steps:
             modes = slice(1 + plane * many, 1 + (plane + 1) * many)
             moving = self.bent.omega > 0
             vibration += float(np.sum((self.bent.omega * z[:n][modes])[moving] ** 2 + v[modes][moving] ** 2)) / 2
-        return Seen(
+        return SmallStepsOutcome(
             squirt=math.atan2(-V[0], V[1]),
             ball_speed=math.hypot(V[0], V[1]),
             spin=float(turning[2]),
@@ -236,8 +236,8 @@ def in_disk(P: Array, sliding: Array, G: Array, bound: float) -> Array:
     if bound == 0:
         return np.zeros(2)
     for _ in range(50):  # the fixed point of P -> projection of P - sliding/g
-        moved = P - sliding / (G[0, 0] + G[1, 1])
-        new = moved * (bound / math.hypot(*moved))
+        trial = P - sliding / (G[0, 0] + G[1, 1])
+        new = trial * (bound / math.hypot(*trial))
         sliding = sliding + G @ (new - P)
         done = np.abs(new - P).max() <= 1e-14 * bound
         P = new

@@ -64,7 +64,7 @@ class Assembly:
 
     def __init__(self, cue: Cue, effects: tuple[Effect, ...]) -> None:
         self.effects = effects
-        places = [effect.position for effect in effects if hasattr(effect, "position")]
+        positions = [effect.position for effect in effects if hasattr(effect, "position")]
         ends = np.cumsum([0.0, *(segment.length for segment in cue.segments)])
         joints = {effect.position for effect in effects if isinstance(effect, Joint)}
         self.blocks: list[tuple[Array, float, Segment, float]] = []  # nodes, length, segment, start in the segment
@@ -72,14 +72,14 @@ class Assembly:
         self.before: dict[float, int] = {}  # the node of a joint's other side
         last, count = 0, 1
         for (start, end), segment in zip(pairwise(ends), cue.segments, strict=True):
-            cuts = [start, *sorted({x for x in places if start + 1e-9 < x < end - 1e-9}), end]
+            cuts = [start, *sorted({x for x in positions if start + 1e-9 < x < end - 1e-9}), end]
             for a, b in pairwise(cuts):
                 many = math.ceil((b - a) / LONGEST)
                 for i in range(many):
                     nodes = np.concatenate([[last], np.arange(count, count + DEGREE)])
                     self.blocks.append((nodes, (b - a) / many, segment, a - start + i * (b - a) / many))
                     last, count = int(nodes[-1]), count + DEGREE
-                where = next((x for x in places if abs(x - b) < 1e-9), b)
+                where = next((x for x in positions if abs(x - b) < 1e-9), b)
                 if where in joints:
                     self.before[where] = last
                     last, count = count, count + 1
@@ -125,10 +125,10 @@ class Assembly:
         for effect in self.effects:
             if isinstance(effect, Joint):
                 ahead, behind = 2 * self.before[effect.position], 2 * self.node[effect.position]
-                for i, give in enumerate((effect.shear_compliance, effect.rotational_compliance)):
-                    if give:
+                for i, compliance in enumerate((effect.shear_compliance, effect.rotational_compliance)):
+                    if compliance:
                         pair = [ahead + i, behind + i]
-                        K[np.ix_(pair, pair)] += np.array([[1, -1], [-1, 1]]) / give
+                        K[np.ix_(pair, pair)] += np.array([[1, -1], [-1, 1]]) / compliance
                     else:
                         into[ahead + i] = into[behind + i]
         clamped = {
@@ -138,11 +138,11 @@ class Assembly:
             for i, spring in enumerate((effect.stiffness, effect.rotational_stiffness))
             if math.isinf(spring)
         }
-        kept = sorted(set(into.tolist()) - clamped)
-        T = np.zeros((len(into), len(kept)))
-        for i, unknown in enumerate(into.tolist()):
-            if unknown in kept:
-                T[i, kept.index(unknown)] = 1.0
+        free = sorted(set(into.tolist()) - clamped)
+        T = np.zeros((len(into), len(free)))
+        for i, degree in enumerate(into.tolist()):
+            if degree in free:
+                T[i, free.index(degree)] = 1.0
         return T.T @ K @ T, T.T @ lossy @ T, T.T @ C @ T, T.T @ np.diag(M) @ T
 
 

@@ -22,14 +22,14 @@ BASE = Scene(low_deflection(), tip=Tip(contact_time=1.2e-3), stroke=Stroke(2.0, 
         ("cue.segments[0].kappa", None),
     ],
 )
-def test_path_leads_to_its_field(path: str, value: float) -> None:
-    (found,) = paths(BASE, path)
-    assert value_at(BASE, found) == value
-    assert path_text(found) == path
+def test_path_resolves_to_its_field(path: str, value: float) -> None:
+    (resolved,) = paths(BASE, path)
+    assert value_at(BASE, resolved) == value
+    assert path_text(resolved) == path
 
 
 @pytest.mark.parametrize(
-    ("path", "words"),
+    ("path", "message"),
     [
         ("cue.segments[2].tip_boar", "got 'cue.segments[2].tip_boar'; did you mean tip_bore"),
         ("kue.segments[0].length", "did you mean cue"),
@@ -40,18 +40,18 @@ def test_path_leads_to_its_field(path: str, value: float) -> None:
         ("cue..length", "must be a path such as cue.segments[0].tip_bore"),
     ],
 )
-def test_path_without_field_raises(path: str, words: str) -> None:
+def test_path_without_field_raises(path: str, message: str) -> None:
     with pytest.raises(ValueError, match="must") as error:
         paths(BASE, path)
-    assert words in str(error.value)
+    assert message in str(error.value)
 
 
 def test_replaced_values_change_together() -> None:
     """A bore may be wider than the shaft was, where the shaft grows with it; nothing else changes."""
     (bore,), (outer,) = paths(BASE, "cue.segments[2].tip_bore"), paths(BASE, "cue.segments[2].tip_diameter")
-    found = with_values_at(BASE, {bore: 0.0126, outer: 0.014})
-    assert found.cue.segments[2] == replace(BASE.cue.segments[2], tip_bore=0.0126, tip_diameter=0.014)
-    assert with_values_at(found, {bore: 0.008, outer: 0.0125}) == BASE
+    changed = with_values_at(BASE, {bore: 0.0126, outer: 0.014})
+    assert changed.cue.segments[2] == replace(BASE.cue.segments[2], tip_bore=0.0126, tip_diameter=0.014)
+    assert with_values_at(changed, {bore: 0.008, outer: 0.0125}) == BASE
 
 
 def test_replaced_contact_time_clears_stiffness() -> None:

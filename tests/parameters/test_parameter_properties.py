@@ -35,12 +35,12 @@ def changed(key: str, value: float, part: float) -> float:
 def test_parameter_set_reads_back(name: str, permille: int) -> None:
     scene = SCENES[name]
     for key, value in numbers(scene).items():
-        wanted = changed(key, value, permille / 1000)
-        made = with_parameters(scene, {PARAMETERS[key].name: wanted})
+        target = changed(key, value, permille / 1000)
+        result = with_parameters(scene, {PARAMETERS[key].name: target})
         if key not in IDLE:
-            assert PARAMETERS[key].value(made) == pytest.approx(wanted, rel=1e-9), key
-        assert made.ball == scene.ball
-        assert made.cue.length == pytest.approx(scene.cue.length, rel=1e-12), key
+            assert PARAMETERS[key].value(result) == pytest.approx(target, rel=1e-9), key
+        assert result.ball == scene.ball
+        assert result.cue.length == pytest.approx(scene.cue.length, rel=1e-12), key
 
 
 @settings(max_examples=20)
@@ -64,20 +64,20 @@ def test_parameter_name_variants_agree(name: str) -> None:
 @given(x=st.floats(0.05, 0.7), more=st.floats(1e-8, 5e-4).flatmap(lambda size: st.sampled_from((size, -size))))
 def test_taper_at_position_changes_diameters_linearly(x: float, more: float) -> None:
     name = f"taper at {1e3 * x!r} mm"
-    there = outer_diameter(FIRST.cue, x)
-    made = with_parameters(FIRST, {name: there + more}).cue
-    for at in np.linspace(0, made.length, 15):
-        hat = np.interp(at, [0, x, made.length], [0, more, 0])
-        assert outer_diameter(made, at) == pytest.approx(outer_diameter(FIRST.cue, at) + hat, rel=1e-9)
+    diameter = outer_diameter(FIRST.cue, x)
+    cue = with_parameters(FIRST, {name: diameter + more}).cue
+    for at in np.linspace(0, cue.length, 15):
+        hat = np.interp(at, [0, x, cue.length], [0, more, 0])
+        assert outer_diameter(cue, at) == pytest.approx(outer_diameter(FIRST.cue, at) + hat, rel=1e-9)
 
 
 def test_parameter_material_and_leather_names_set_values() -> None:
-    made = with_parameters(FIRST, {"wood": "ash", "wood.E": 13e9, "leather": "soft", "ferrule material": "nylon"})
-    assert {s.material.rho for s in made.cue.segments} >= {material("ash").rho, material("nylon").rho}
-    assert all(s.material.E == 13e9 for s in made.cue.segments if s.material.rho == material("ash").rho)
+    result = with_parameters(FIRST, {"wood": "ash", "wood.E": 13e9, "leather": "soft", "ferrule material": "nylon"})
+    assert {s.material.rho for s in result.cue.segments} >= {material("ash").rho, material("nylon").rho}
+    assert all(s.material.E == 13e9 for s in result.cue.segments if s.material.rho == material("ash").rho)
     soft = LEATHERS["soft"]
-    assert (made.leather.E, made.leather.nu, made.leather.rho) == (soft.E, soft.nu, soft.rho)
-    assert made.tip.restitution == soft.restitution
+    assert (result.leather.E, result.leather.nu, result.leather.rho) == (soft.E, soft.nu, soft.rho)
+    assert result.tip.restitution == soft.restitution
     assert with_parameters(FIRST, {"leather": "soft", "restitution": 0.7}).tip.restitution == 0.7
 
 
@@ -87,7 +87,7 @@ def test_contact_time_of_spring_clears_stiffness() -> None:
     assert with_parameters(spring, {"tip.contact_time": 1e-3}).tip == cf.Tip(contact_time=1e-3)
 
 
-REFUSED = {
+INVALID = {
     "unknown": ("ferule length", "did you mean ferrule length"),
     "absent": ("contact time", "got 'contact time', which this scene does not have"),
     "beyond": ("taper at 5 m", "got 'taper at 5 m', which this scene does not have"),
@@ -97,9 +97,9 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("case", REFUSED)
+@pytest.mark.parametrize("case", INVALID)
 def test_unknown_parameter_raises(case: str) -> None:
-    text, message = REFUSED[case]
+    text, message = INVALID[case]
     with pytest.raises(ValueError, match="got") as error:
         with_parameters(FIRST, {text: 1.0})
     assert message in str(error.value)

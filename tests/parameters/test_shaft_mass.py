@@ -71,8 +71,8 @@ def test_shaft_mass_option_and_file_key_agree(tmp_path: Path) -> None:
 @pytest.mark.parametrize("options", [{"material": "ash"}, {"bore": "6 mm wide, 127 mm deep"}, {"ferrule": "25 mm abs"}])
 def test_load_weighed_shaft_with_options_preserves_mass(options: dict[str, str], tmp_path: Path) -> None:
     bare = cf.Cue((cf.Segment(0.73, 0.0127, 0.0215, main_material(pool())),), 0.42)
-    for thing in (with_shaft_mass(bare, 0.112), cf.Scene(with_shaft_mass(bare, 0.112))):
-        cf.save(thing, tmp_path / "weighed.toml")
+    for item in (with_shaft_mass(bare, 0.112), cf.Scene(with_shaft_mass(bare, 0.112))):
+        cf.save(item, tmp_path / "weighed.toml")
         loaded = cf.load(tmp_path / "weighed.toml", **options)
         cue = loaded if isinstance(loaded, cf.Cue) else loaded.cue
         assert isinstance(cue, cf.Cue)

@@ -23,7 +23,7 @@ from cuefem.quantity.fields import Quantity, quantity_fields
 WOOD = cf.Material(12.6e9, 0.84e9, 700.0)
 LEATHER = cf.LeatherTip(6e-3, 9.5e-3, 140e6)
 # An instance of each class with declared fields.
-MADE: list[Any] = [
+INSTANCES: list[Any] = [
     *(WOOD, cf.Segment(0.7, 0.012, 0.021, WOOD), cf.Ball(), cf.Tip(), cf.Stroke()),
     *(cf.LumpedCue(0.54, 0.01), cf.PointMass(0.1, 0.01), cf.Support(0.1, 1e3), cf.Joint(0.1, 1e-3), LEATHER),
     cf.AxialWaves(1.47, 0.03, 4430.0),
@@ -36,32 +36,32 @@ ARRAYS = {"LumpedCue", "Ball", "Stroke"}
 def beyond(mark: Quantity) -> Iterator[float]:
     """Numbers that are not in an interval."""
     yield math.nan
-    for end, way, bracket in zip(mark.ends, (-1, 1), (mark.interval[0], mark.interval[-1]), strict=True):
+    for end, side, bracket in zip(mark.ends, (-1, 1), (mark.interval[0], mark.interval[-1]), strict=True):
         if math.isfinite(end):
-            yield end + way * max(1e-7, 1e-7 * abs(end))
+            yield end + side * max(1e-7, 1e-7 * abs(end))
         if bracket in "()":
             yield end
 
 
-@pytest.mark.parametrize("made", MADE, ids=lambda made: type(made).__name__)
-def test_field_invalid_value_in_python_raises(made: Any) -> None:
-    kind = type(made)
+@pytest.mark.parametrize("instance", INSTANCES, ids=lambda instance: type(instance).__name__)
+def test_field_invalid_value_in_python_raises(instance: Any) -> None:
+    kind = type(instance)
     for name, mark, optional in quantity_fields(kind):
-        said = f"{kind.__name__}.{name} must be "
+        prefix = f"{kind.__name__}.{name} must be "
         for wrong in beyond(mark):
-            with pytest.raises(ValueError, match=r"must be in") as refused:
-                replace(made, **{name: wrong})
-            assert str(refused.value).startswith(f"{said}in "), name
+            with pytest.raises(ValueError, match=r"must be in") as error:
+                replace(instance, **{name: wrong})
+            assert str(error.value).startswith(f"{prefix}in "), name
         for wrong in ("0.5", True, {}, np.full(2, 0.5), *([] if optional else [None])):
-            with pytest.raises(TypeError) as told:
-                replace(made, **{name: wrong})
-            assert str(told.value).startswith(f"{said}a number in {mark.bounds}; got "), name
+            with pytest.raises(TypeError) as raised:
+                replace(instance, **{name: wrong})
+            assert str(raised.value).startswith(f"{prefix}a number in {mark.bounds}; got "), name
 
 
-def test_every_effect_has_an_instance() -> None:
-    tried = {type(made).__name__ for made in MADE}
+def test_instances_cover_every_effect() -> None:
+    covered = {type(instance).__name__ for instance in INSTANCES}
     kinds = {name: kind for name, kind in effect_kinds().items() if kind.__module__.startswith("cuefem.")}
-    assert {name for name, kind in kinds.items() if fields(kind)} <= tried
+    assert {name for name, kind in kinds.items() if fields(kind)} <= covered
 
 
 METALS = {"E": "12.6 GPa", "G": "840 MPa", "rho": "782 kg/m^3"}
@@ -87,9 +87,9 @@ TABLES = {
 
 def in_a_file(mark: Quantity) -> Iterator[tuple[Any, str]]:
     """Invalid values in a file, each with a part of its error message."""
-    for end, way in zip(mark.ends, (-1, 1), strict=True):
+    for end, side in zip(mark.ends, (-1, 1), strict=True):
         if math.isfinite(end):
-            wrong = end + way * max(1.0, abs(end))
+            wrong = end + side * max(1.0, abs(end))
             yield (f"{wrong} {mark.unit}" if mark.unit else wrong), f"{end:.6g}".replace("e-0", "e-")
     yield "inf mm" if mark.unit == "m" else [], "must be "
     if mark.unit:
@@ -102,28 +102,28 @@ def in_a_file(mark: Quantity) -> Iterator[tuple[Any, str]]:
 def test_field_invalid_value_in_file_raises(tmp_path: Path, key: str) -> None:
     path, kind = tmp_path / "scene.toml", TABLES[key]
 
-    def said(name: str, value: Any) -> str:
+    def error_line(name: str, value: Any) -> str:
         scene: Any = copy.deepcopy(SCENE)
         table = scene
         for part in key.replace("[0]", ".0").split("."):
             table = table[int(part) if part.isdecimal() else part]
         table.pop(name, None) if value is None else table.update({name: value})
         path.write_text(tomlkit.dumps(scene))
-        with pytest.raises(InputError) as refused:
+        with pytest.raises(InputError) as error:
             cf.load(path)
-        line = str(refused.value)
+        line = str(error.value)
         assert line.startswith(f"{path}: ")
         assert "\n" not in line
         return line.removeprefix(f"{path}: ")
 
     for name, hint in field_types(kind).items():
         mark = quantity_of(hint)
-        for value, words in in_a_file(mark) if mark else [(3, "must be ")]:
-            line = said(name, value)
+        for value, message in in_a_file(mark) if mark else [(3, "must be ")]:
+            line = error_line(name, value)
             assert line.startswith(f"{key}.{name}: "), line
-            assert words in line, line
-        line = said(f"{name}x", 1)
+            assert message in line, line
+        line = error_line(f"{name}x", 1)
         assert line.startswith(f"{key}.{name}x: must be one of the keys "), line
         assert len(name) < 4 or line.endswith(f"; did you mean '{name}'?"), line
         if name in required_keys(kind):
-            assert said(name, None).startswith(f"{key}.{name}: must be given, ")
+            assert error_line(name, None).startswith(f"{key}.{name}: must be given, ")

@@ -15,7 +15,7 @@ CUE = cf.load(ROOT / "meshes" / "pool_hollow.toml")
 assert isinstance(CUE, cf.Cue)
 SCENE = cf.Scene(CUE, stroke=cf.Stroke(1.0, 0.3), effects=(cf.TipDome(0.0095),))
 LUMPED = [cf.Scene(cf.LumpedCue(0.5, 0.006), stroke=cf.Stroke(1.0, b)) for b in np.linspace(0, 0.4, 50)]
-THINGS = {
+OBJECTS = {
     "cue": (lambda: CUE, "Cue(6 segments, 0.7366 m, "),
     "scene": (lambda: SCENE, "Scene(cue=Cue(6 segments, 0.7366 m, "),
     "outcome": (lambda: cf.strike(SCENE), "Outcome(squirt=0.0"),
@@ -25,13 +25,13 @@ THINGS = {
 }
 
 
-@pytest.mark.parametrize("name", THINGS)
+@pytest.mark.parametrize("name", OBJECTS)
 def test_repr_is_one_short_line(name: str) -> None:
-    make, begins = THINGS[name]
-    shown = repr(make())
-    assert shown.startswith(begins)
-    assert len(shown) < 400
-    assert "\n" not in shown
+    make, begins = OBJECTS[name]
+    text = repr(make())
+    assert text.startswith(begins)
+    assert len(text) < 400
+    assert "\n" not in text
 
 
 def test_full_repr_evaluates_to_equal_object() -> None:

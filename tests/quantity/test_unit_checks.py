@@ -15,7 +15,7 @@ from tests.helpers.command_line import call
 ROOT = Path(__file__).parents[2]
 WOOD = cf.Material(12.6e9, 0.84e9, 700.0)
 SEGMENT = cf.Segment(0.7, 0.012, 0.021, WOOD)
-SLIPS: dict[str, Callable[[], object]] = {
+WARNINGS: dict[str, Callable[[], object]] = {
     "TipDome.radius is 9.5 m, which no cue has: is it 9.5 mm? Write 0.0095 (m)": lambda: cf.TipDome(9.5),
     "Segment.length is 700 m, which no cue has: is it 700 mm?": lambda: cf.Segment(700, 0.012, 0.021, WOOD),
     "Segment.length is 29 m, which no cue has: is it 29 mm or 29 in?": lambda: cf.Segment(29, 0.012, 0.021, WOOD),
@@ -28,10 +28,10 @@ SLIPS: dict[str, Callable[[], object]] = {
 }
 
 
-@pytest.mark.parametrize("message", SLIPS)
+@pytest.mark.parametrize("message", WARNINGS)
 def test_number_in_other_unit_warns_at_caller(message: str) -> None:
     with pytest.warns(cf.PlausibilityWarning) as caught:
-        SLIPS[message]()
+        WARNINGS[message]()
     assert str(caught[0].message).startswith(message)
     assert {Path(one.filename).name for one in caught} == {Path(__file__).name}
 
@@ -53,10 +53,10 @@ def test_scene_of_shaft_without_butt_warns() -> None:
 def test_limits_and_scale_models_do_not_warn() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        for made in (cf.TipDome(1.0), cf.TipDome(1e3), cf.Tip(contact_time=1e-6), cf.Ball(1e6)):
-            assert made
-        for made in (cf.Segment(5.0, 0.06, 0.06, WOOD), cf.LumpedCue(5.0, 1e-9), cf.LeatherTip(0.006, math.inf, 1e12)):
-            assert made
+        for item in (cf.TipDome(1.0), cf.TipDome(1e3), cf.Tip(contact_time=1e-6), cf.Ball(1e6)):
+            assert item
+        for item in (cf.Segment(5.0, 0.06, 0.06, WOOD), cf.LumpedCue(5.0, 1e-9), cf.LeatherTip(0.006, math.inf, 1e12)):
+            assert item
 
 
 def test_file_number_in_other_unit_warns_at_load(tmp_path: Path) -> None:

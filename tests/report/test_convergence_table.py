@@ -22,8 +22,8 @@ def test_recommended_resolution_equals_resolve(record: dict) -> None:
     assert [row["rtol"] for row in record["recommended"]] == list(RECOMMENDED_RTOLS)
     for row in record["recommended"]:
         if row["reached"]:
-            found = resolve(scene("kim", 1e-3, 0.3), row["rtol"])
-            assert (found.unknowns, found.error) == (row["unknowns"], row["estimate"])
+            result = resolve(scene("kim", 1e-3, 0.3), row["rtol"])
+            assert (result.unknowns, result.error) == (row["unknowns"], row["estimate"])
     assert [row["reached"] for row in record["recommended"]] == [True, False, False, False]
     best = min(level["estimate"] for level in record["levels"] if level["estimate"] is not None)
     assert record["recommended"][-1]["estimate"] == best

@@ -27,10 +27,10 @@ def rows(record: Any) -> dict[str, Any]:
 
 
 def test_variants_remove_or_add_each_effect_once() -> None:
-    found = variants(SCENE)
-    assert sorted(variant.name for variant in found) == sorted(effect_kinds())
-    assert [v.name for v in found if v.listed] == ["TipDome", "PointMass", "Support"]
-    for v in found:
+    result = variants(SCENE)
+    assert sorted(variant.name for variant in result) == sorted(effect_kinds())
+    assert [v.name for v in result if v.listed] == ["TipDome", "PointMass", "Support"]
+    for v in result:
         changed = tuple(e for e in SCENE.effects if e != v.effect) if v.listed else (*SCENE.effects, v.effect)
         assert v.reason if v.scene is None else v.scene.effects == changed
 

@@ -35,10 +35,10 @@ PROFILE = "x [mm],diameter [mm]\n0,12.5\n250,12.9\n737,21\n"
 
 
 def warnings_of(path: Path) -> list[str]:
-    found = cf.load(path)
-    if isinstance(found, cf.Cue) and not found.body_mass and path.suffix != ".toml":  # a profile has no other mass
-        found = replace(found, body_mass=0.43)
-    return plausibility_warnings(found if isinstance(found, cf.Scene) else cf.Scene(found))
+    loaded = cf.load(path)
+    if isinstance(loaded, cf.Cue) and not loaded.body_mass and path.suffix != ".toml":  # a profile has no other mass
+        loaded = replace(loaded, body_mass=0.43)
+    return plausibility_warnings(loaded if isinstance(loaded, cf.Scene) else cf.Scene(loaded))
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
@@ -74,7 +74,7 @@ def test_plausibility_of_wrong_value_warns(tmp_path: Path, old: str, new: str, l
     assert any(text.startswith(line) for text in warnings_of(tmp_path / "scene.toml"))
 
 
-LEFT_OUT = "; expected 400 to 700 g"
+EXPECTED = "; expected 400 to 700 g"
 
 
 def test_strike_of_shaft_without_butt_warns(tmp_path: Path) -> None:
@@ -83,10 +83,10 @@ def test_strike_of_shaft_without_butt_warns(tmp_path: Path) -> None:
     light = cf.load(shaft)
     assert isinstance(light, cf.Cue)
     (line,) = plausibility_warnings(cf.Scene(light))
-    assert line.startswith(f"mass of the whole cue {1e3 * light.mass:.6g} g{LEFT_OUT}")
+    assert line.startswith(f"mass of the whole cue {1e3 * light.mass:.6g} g{EXPECTED}")
     status, out, err = call("strike", shaft, "--json")
     assert (status, err.splitlines()) == (0, [f"warning: {json.loads(out)['warnings'][0]}"])
-    assert LEFT_OUT in err
+    assert EXPECTED in err
     assert call("strike", shaft, "--body-mass", "15 oz")[2] == ""
     assert call("modes", shaft)[2] == ""  # frequencies do not depend on it
 

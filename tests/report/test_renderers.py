@@ -17,41 +17,41 @@ from cuefem.results.records import Table, tabulate
 ROWS = [{"at": 0.01, "felt": 0.0062, "part": 0.25}, {"at": 0.02, "felt": None, "part": -0.5}]
 
 
-def cells(made: Table) -> dict[str, list[list[str]]]:
+def cells(table: Table) -> dict[str, list[list[str]]]:
     """The cells of a table by medium."""
     console = Console(width=200, file=io.StringIO())
     with console.capture() as captured:
-        console.print(terminal(made))
+        console.print(terminal(table))
     lines = [line for line in captured.get().splitlines()[1:] if line.strip() and "─" not in line]
-    markup = str(environment().get_template("drawings.html.j2").module.cells(made))  # type: ignore[attr-defined]
+    markup = str(environment().get_template("drawings.html.j2").module.cells(table))  # type: ignore[attr-defined]
     page = [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in re.findall(r"<tr.*?</tr>", markup)]
     return {
         "terminal": [re.split(r"\s{2,}", line.strip()) for line in lines],
         "page": [[unescape(cell) for cell in row] for row in page],
-        "spreadsheet": list(csv.reader(io.StringIO(csv_text(made.head, made.rows)))),
+        "spreadsheet": list(csv.reader(io.StringIO(csv_text(table.head, table.rows)))),
     }
 
 
 def test_table_in_every_medium_has_same_cells() -> None:
     columns = {"place": "{at:m}", "felt <there>": "{felt:end_mass}", "part": "{part:.1 %}"}
-    made = tabulate("Where", columns, ROWS, texts=())
+    table = tabulate("Where", columns, ROWS, texts=())
     whole = [["place", "felt <there>", "part"], ["10 mm", "6.200 g", "25.0 %"], ["20 mm", DASH, "-50.0 %"]]
-    assert cells(made) == dict.fromkeys(("terminal", "page", "spreadsheet"), whole)
+    assert cells(table) == dict.fromkeys(("terminal", "page", "spreadsheet"), whole)
 
 
 def test_missing_value_is_dash_and_nonfinite_is_null() -> None:
-    made = tabulate("", {"error": "{plain[error]:error}"}, [{"plain": {"error": 1e-3}}, {"plain": None}])
-    assert made.rows == (("0.0010",), (DASH,))
+    table = tabulate("", {"error": "{plain[error]:error}"}, [{"plain": {"error": 1e-3}}, {"plain": None}])
+    assert table.rows == (("0.0010",), (DASH,))
     numbers = json.loads(json_text({"a": float("inf"), "b": [float("nan"), 1.0], "c": {"d": 2}}))
     assert numbers == {"a": None, "b": [None, 1.0], "c": {"d": 2}}
     assert csv_text(["=1+1"], [["-2"], ["-x"]]).split() == ["'=1+1", "-2", "'-x"]  # none is taken for a formula
 
 
-def rendered(things: list[Any], width: int) -> str:
+def rendered(items: list[Any], width: int) -> str:
     out = io.StringIO()
     console = Console(file=out, width=width, force_terminal=False, highlight=False)
-    for thing in things:
-        console.print(thing, crop=False) if not isinstance(thing, str) else console.print(thing, markup=False)
+    for item in items:
+        console.print(item, crop=False) if not isinstance(item, str) else console.print(item, markup=False)
     return out.getvalue()
 
 

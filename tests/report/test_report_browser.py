@@ -16,7 +16,7 @@ from cuefem.report.report_page import PAGE_OFFSETS, page
 from cuefem.report.squirt_table import squirt_record
 from cuefem.report.study_table import tabulate_sweep
 from cuefem.report.templates import plain_page
-from tests.helpers.designer_browser import BROWSER, launched, watched
+from tests.helpers.designer_browser import BROWSER, empty_page, open_browser
 
 pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
 axe = pytest.importorskip(
@@ -35,13 +35,13 @@ OUTSIDE = """[...document.querySelectorAll("section, figure, header, svg text")]
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    with launched() as found:
-        yield found
+    with open_browser() as instance:
+        yield instance
 
 
 @pytest.fixture
 def opened(browser: Any) -> Iterator[Any]:
-    with watched(browser) as page:
+    with empty_page(browser) as page:
         yield page
 
 
@@ -87,5 +87,5 @@ def test_page_is_accessible_and_not_cropped(opened: Any, what: str, width: int) 
         assert opened.evaluate(OUTSIDE) == 0
     opened.evaluate("document.querySelectorAll('details').forEach(fold => fold.open = true)")
     assert width == 390 or opened.evaluate(CUT) == 0
-    found = axe.Axe().run(opened).response["violations"]
-    assert [one["id"] for one in found if one["impact"] in ("serious", "critical")] == []
+    violations = axe.Axe().run(opened).response["violations"]
+    assert [one["id"] for one in violations if one["impact"] in ("serious", "critical")] == []

@@ -12,7 +12,7 @@ import cuefem as cf
 from cuefem.report.charts import WIDTH, Axis, round_step
 from cuefem.report.drawings import DIAMETER_SCALE, cue_drawing
 from cuefem.report.report_page import page
-from tests.helpers.page_reader import Reader
+from tests.helpers.page_reader import PageReader
 
 MESHES = Path(__file__).parents[2] / "meshes"
 SCENES = MESHES.parent / "studies" / "scenes"
@@ -20,27 +20,27 @@ LUMPED = cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=cf.Stroke(offset=0.3))
 
 
 def scene(name: str) -> cf.Scene:
-    found = cf.load(SCENES / f"{name}.toml")
-    assert isinstance(found, cf.Scene)
-    return found
+    loaded = cf.load(SCENES / f"{name}.toml")
+    assert isinstance(loaded, cf.Scene)
+    return loaded
 
 
-def assert_valid(text: str) -> Reader:
+def assert_valid(text: str) -> PageReader:
     """A page of valid HTML without external resources, nan and None."""
-    found = Reader(text)
-    assert found.open == []
+    reader = PageReader(text)
+    assert reader.open == []
     titles_of_curves = text.count("</title></path>")
-    assert found.tags["html"] == found.tags["h1"] == found.tags["title"] - titles_of_curves == 1
-    assert (found.tags["script"], found.tags["img"], found.tags["iframe"]) == (1, 0, 0)
-    assert found.values("href", "src", "xlink:href") == ["data:,"]
+    assert reader.tags["html"] == reader.tags["h1"] == reader.tags["title"] - titles_of_curves == 1
+    assert (reader.tags["script"], reader.tags["img"], reader.tags["iframe"]) == (1, 0, 0)
+    assert reader.values("href", "src", "xlink:href") == ["data:,"]
     assert re.findall(r"url\((?!#)|@import|https?:", text) == []
-    ids = found.values("id")
+    ids = reader.values("id")
     assert len(ids) == len(set(ids))
-    assert {*re.findall(r"url\(#([^)]*)\)", text), *found.values("popovertarget")} == set(ids)
-    words = " ".join(found.text)
-    assert not re.search(r"\b(nan|inf|None|Undefined)\b", words)
+    assert {*re.findall(r"url\(#([^)]*)\)", text), *reader.values("popovertarget")} == set(ids)
+    texts = " ".join(reader.text)
+    assert not re.search(r"\b(nan|inf|None|Undefined)\b", texts)
     assert not re.search(r"\bnan\b", text)
-    return found
+    return reader
 
 
 @pytest.mark.parametrize(
@@ -56,9 +56,9 @@ def assert_valid(text: str) -> Reader:
     ids=["lumped", "left", "head on", "miscue", "coupled", "no slip"],
 )
 def test_page_of_lumped_cue_is_valid_html(stroke: cf.Scene) -> None:
-    words = " ".join(assert_valid(page("lumped.toml", stroke)).text)
-    assert "Mode shapes" not in words
-    assert f"{math.degrees(cf.strike(stroke).squirt):.2f}°" in words
+    texts = " ".join(assert_valid(page("lumped.toml", stroke)).text)
+    assert "Mode shapes" not in texts
+    assert f"{math.degrees(cf.strike(stroke).squirt):.2f}°" in texts
 
 
 def test_page_with_markup_in_name_is_escaped() -> None:

@@ -44,25 +44,25 @@ def scene(tmp_path: Path) -> Path:
 
 @pytest.mark.parametrize("offset", [-0.3, 0.1, 0.5])
 def test_pooltool_formula_with_exported_end_mass_equals_strike(offset: float) -> None:
-    struck = replace(SCENE, stroke=replace(SCENE.stroke, offset=offset))
-    record = pooltool_record("kim", struck)
-    squirt = cf.strike(struck).squirt
+    case = replace(SCENE, stroke=replace(SCENE.stroke, offset=offset))
+    record = pooltool_record("kim", case)
+    squirt = cf.strike(case).squirt
     assert record["squirt"] == pytest.approx(squirt, rel=1e-12)
     assert -pooltool_squirt(0.17, record["CueSpecs"]["end_mass"], offset) == pytest.approx(squirt, rel=1e-12)
     assert -pooltool_squirt(0.17, 0.170097 / 30, offset) == pytest.approx(record["default_squirt"], rel=1e-12)
 
 
 def test_pooltool_export_writes_cue_specs(scene: Path, tmp_path: Path) -> None:
-    found, goal = exported(scene), tmp_path / "kim.json"
+    record, goal = exported(scene), tmp_path / "kim.json"
     mass = pytest.approx(KIM.mass, rel=1e-11)  # of a file
     expected = {"brand": "scene", "M": mass, "length": 1.4732, "tip_radius": 0.0095, "shaft_radius_at_tip": 0.006}
-    assert {name: found["CueSpecs"][name] for name in expected} == expected
-    assert tuple(found["CueSpecs"]) == CUE_SPECS
-    assert f"{1e3 * found['CueSpecs']['end_mass']:.3f} g" in stdout_of(
+    assert {name: record["CueSpecs"][name] for name in expected} == expected
+    assert tuple(record["CueSpecs"]) == CUE_SPECS
+    assert f"{1e3 * record['CueSpecs']['end_mass']:.3f} g" in stdout_of(
         "strike", scene, "--format", "pooltool", "-o", goal
     )
     written = json.loads(goal.read_text(encoding="utf-8"))
-    assert written["CueSpecs"] == found["CueSpecs"]
+    assert written["CueSpecs"] == record["CueSpecs"]
     assert written["line"] == f'CueSpecs(**json.load(open("{goal}"))["CueSpecs"])'
 
 
@@ -109,9 +109,9 @@ def test_pooltool_with_exported_cue_computes_same_squirt(scene: Path) -> None:
     sent = json.dumps([(offset, exported(scene, f"--offset={offset}")) for offset in offsets])
     done = subprocess.run([python, "-c", IN_POOLTOOL], input=sent, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    version, answers = json.loads(done.stdout)
+    version, results = json.loads(done.stdout)
     assert version == VERSION
-    for offset, (alpha, (x, y, _), length) in zip(offsets, answers, strict=True):
+    for offset, (alpha, (x, y, _), length) in zip(offsets, results, strict=True):
         ours = cf.strike(replace(SCENE, stroke=replace(SCENE.stroke, offset=offset))).squirt
         assert -alpha == pytest.approx(ours, rel=1e-12)
         assert math.atan2(x, y) == pytest.approx(ours, rel=1e-9)  # aimed along y, struck on the left

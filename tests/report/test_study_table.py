@@ -15,8 +15,8 @@ from cuefem.design import Response
 from cuefem.design.study_statistics import SweepStatistics
 from cuefem.report.study_table import column_label
 from tests.helpers.command_line import as_json, stdout_of
-from tests.helpers.refusals import command_refuses
-from tests.helpers.sweeps import STUDY, written
+from tests.helpers.invalid_input import assert_rejects
+from tests.helpers.sweeps import STUDY, write_study
 
 PAIR = (Response.of("end_mass"), Response.of("tip_stiffness"))
 
@@ -32,19 +32,19 @@ def test_shares_of_grid_equal_exact_variances() -> None:
     """y = 3 a + b + 2 a c on a, b, c = -1, 0, 1: variances 6, 2/3 and 16/9 of a sum."""
     a, b, c = np.array(list(itertools.product((-1.0, 0.0, 1.0), repeat=3))).T
     y = 3 * a + b + 2 * a * c
-    found = table({"a": a, "b": b, "c": c}, np.stack([y, -b], axis=1))
+    result = table({"a": a, "b": b, "c": c}, np.stack([y, -b], axis=1))
     whole = 9 * 2 / 3 + 2 / 3 + 4 * 4 / 9
-    assert found.shares[:, 0] == pytest.approx([6 / whole, 2 / 3 / whole, 0.0], rel=1e-12, abs=1e-12)
-    assert found.shares[:, 1] == pytest.approx([0, 1, 0], abs=1e-12)
-    assert [row[0] for row in found.trends] == ["rises", "rises", ""]
-    assert found.trends[1][1] == "falls"
+    assert result.shares[:, 0] == pytest.approx([6 / whole, 2 / 3 / whole, 0.0], rel=1e-12, abs=1e-12)
+    assert result.shares[:, 1] == pytest.approx([0, 1, 0], abs=1e-12)
+    assert [row[0] for row in result.trends] == ["rises", "rises", ""]
+    assert result.trends[1][1] == "falls"
 
 
 def test_shares_of_sample_and_of_choices_equal_exact_variances() -> None:
     """y = x + z/2 has shares of 80 and 20 %; a column without effect has 0; choices are groups."""
     x, z, w = np.random.default_rng(3).random((3, 2000))
-    found = table({"x": x, "z": z, "w": w}, np.stack([x + z / 2, w], axis=1))
-    assert found.shares[:, 0] == pytest.approx([0.8, 0.2, 0.0], abs=0.045)
+    result = table({"x": x, "z": z, "w": w}, np.stack([x + z / 2, w], axis=1))
+    assert result.shares[:, 0] == pytest.approx([0.8, 0.2, 0.0], abs=0.045)
     wood = np.array(["maple", "ash"] * 6)
     named = table({"wood": wood}, np.stack([np.where(wood == "ash", 1.0, 2.0), np.arange(12.0)], axis=1))
     assert (named.shares[0, 0], named.trends) == (pytest.approx(1.0, rel=1e-12), [["", ""]])
@@ -54,17 +54,17 @@ def test_shares_of_sample_and_of_choices_equal_exact_variances() -> None:
 @given(arrays(int, (60, 2), elements=st.integers(0, 11)))  # with ties
 def test_pareto_front_has_undominated_designs(numbers: np.ndarray) -> None:
     results = numbers.astype(float)
-    found = table({"x": np.arange(60.0)}, results)
+    result = table({"x": np.arange(60.0)}, results)
     costs = results * [1, -1]  # stiffness is better if it is higher
     dominated = [any((other <= own).all() and (other < own).any() for other in costs) for own in costs]
-    assert {tuple(costs[i]) for i in found.front} == {tuple(w) for w, b in zip(costs, dominated, strict=True) if not b}
-    assert all(not dominated[i] for i in found.front)
-    assert found.best(0) in np.flatnonzero(results[:, 0] == results[:, 0].min())
-    assert found.best(1) in np.flatnonzero(results[:, 1] == results[:, 1].max())
+    assert {tuple(costs[i]) for i in result.front} == {tuple(w) for w, b in zip(costs, dominated, strict=True) if not b}
+    assert all(not dominated[i] for i in result.front)
+    assert result.best(0) in np.flatnonzero(results[:, 0] == results[:, 0].min())
+    assert result.best(1) in np.flatnonzero(results[:, 1] == results[:, 1].max())
 
 
 def test_study_command_prints_summary_and_writes_page(tmp_path: Path) -> None:
-    study, (page, best) = written(tmp_path), (tmp_path / name for name in ("page.html", "best.toml"))
+    study, (page, best) = write_study(tmp_path), (tmp_path / name for name in ("page.html", "best.toml"))
     out = " ".join(stdout_of("study", study, "-o", page, "-o", best).split())
     assert "16 failed, the first of them design 48: Segment.tip_bore must be in [0, 0.012)" in out
     assert "bore 0 to 15 mm" in out
@@ -78,24 +78,24 @@ def test_study_command_prints_summary_and_writes_page(tmp_path: Path) -> None:
     assert summary["front"]["designs"][0]["design"] == summary["best"]["end_mass"]["design"]
     text = page.read_text(encoding="utf-8")
     assert (text.count("<table"), re.findall('(?:href|src)="([^"]*)"', text)) == (4, ["data:,"])
-    none = written(tmp_path, STUDY.replace('low = "0 mm"\nhigh = "15 mm"', 'low = "13 mm"\nhigh = "14 mm"'))
-    command_refuses("has no design to write", "study", none, "-o", tmp_path / "none.toml")
+    none = write_study(tmp_path, STUDY.replace('low = "0 mm"\nhigh = "15 mm"', 'low = "13 mm"\nhigh = "14 mm"'))
+    assert_rejects("has no design to write", "study", none, "-o", tmp_path / "none.toml")
 
 
 def test_study_result_has_designs_responses_units_best_and_spread(tmp_path: Path) -> None:
-    found = cf.study(written(tmp_path), store=tmp_path / "some.sqlite")
-    assert (found.kind, len(found.rows), len(found.failures)) == ("sweep", 64, 16)
+    result = cf.study(write_study(tmp_path), store=tmp_path / "some.sqlite")
+    assert (result.kind, len(result.rows), len(result.failures)) == ("sweep", 64, 16)
     units = ["m", "s", "", "kg", "N/m", "Hz"]
-    assert found.units == dict(zip((*found.designs, *found.responses), units, strict=True))
-    assert (found.designs["bore"].shape, found.responses["end_mass"].shape) == ((64,), (64,))
-    best = found.best["end_mass"]
-    assert best.responses["end_mass"] == np.nanmin(found.responses["end_mass"])
+    assert result.units == dict(zip((*result.designs, *result.responses), units, strict=True))
+    assert (result.designs["bore"].shape, result.responses["end_mass"].shape) == ((64,), (64,))
+    best = result.best["end_mass"]
+    assert best.responses["end_mass"] == np.nanmin(result.responses["end_mass"])
     assert best.scene.cue.segments[0].tip_bore == best.values["bore"]
-    assert set(found.best) == {"end_mass", "tip_stiffness"}
-    assert found.spread["end_mass"]["5 %"] < found.spread["end_mass"]["mean"] < found.spread["end_mass"]["95 %"]
-    assert repr(found).splitlines()[0] == "StudyResult(sweep of 64 designs, 16 failed)"
+    assert set(result.best) == {"end_mass", "tip_stiffness"}
+    assert result.spread["end_mass"]["5 %"] < result.spread["end_mass"]["mean"] < result.spread["end_mass"]["95 %"]
+    assert repr(result).splitlines()[0] == "StudyResult(sweep of 64 designs, 16 failed)"
     again = cf.study(tmp_path / "study.toml", store=tmp_path / "some.sqlite", workers=1)  # all designs are stored
-    assert again.rows == found.rows
+    assert again.rows == result.rows
 
 
 LABELS = {

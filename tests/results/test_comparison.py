@@ -94,15 +94,15 @@ def test_compare_files_of_one_name_takes_first_ball_and_stroke(tmp_path: Path, m
 
 
 def test_comparison_miscue_has_no_squirt() -> None:
-    far = {name: replace(scene, stroke=cf.Stroke(2.0, 0.8)) for name, scene in (("a", SCENE), ("b", BORED))}
-    record = comparison_record(far)
+    miscues = {name: replace(scene, stroke=cf.Stroke(2.0, 0.8)) for name, scene in (("a", SCENE), ("b", BORED))}
+    record = comparison_record(miscues)
     assert record["cues"]["a"]["squirt"] != record["cues"]["a"]["squirt"]
     assert not {"squirt", "pivot_length"} & {*record["differences"]["b"]}
     assert "is a miscue" in comparison_sentences(record)[0]
 
 
 @pytest.mark.parametrize(
-    ("arguments", "words"),
+    ("arguments", "message"),
     [
         (["cue.toml"], "needs another FILE"),
         (["cue.toml", "--speed", "3 m/s"], "need two or more files"),
@@ -116,7 +116,7 @@ def test_comparison_miscue_has_no_squirt() -> None:
     ],
 )
 def test_compare_invalid_input_prints_one_line(
-    arguments: list[str], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    arguments: list[str], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     cf.save(kim(), tmp_path / "cue.toml")
     cf.save(cf.Scene(cf.LumpedCue(0.54, 0.006)), tmp_path / "lumped.toml")
@@ -124,4 +124,4 @@ def test_compare_invalid_input_prints_one_line(
     monkeypatch.chdir(tmp_path)
     status, out, err = call("compare", *arguments)
     assert (status, out, err.count("\n")) == (2, "", 1)
-    assert words.casefold() in err.casefold()
+    assert message.casefold() in err.casefold()

@@ -23,7 +23,7 @@ def all_modes(scene: cf.Scene, count: int) -> Modes:
     return solve(system, system.size - system.rigid.shape[1])
 
 
-def judged(outcome: cf.Outcome) -> np.ndarray:
+def checked_numbers(outcome: cf.Outcome) -> np.ndarray:
     return np.array([outcome.squirt, outcome.ball_speed, outcome.spin])
 
 
@@ -32,18 +32,18 @@ def reference(scene: cf.Scene, modes: int) -> np.ndarray:
     assert isinstance(scene.cue, cf.Cue)
     elements, order = uniform_mesh_for(scene.cue, modes)
     system = assemble(scene.cue, cf.Resolution(elements + 1, order, modes), scene.cue_effects)
-    found = solve(system, modes, corrected=2 if has_moment_arm(scene) else 1)
-    return judged(strike_modes(scene, tip_modes_from(found, scene), steps=3200))
+    result = solve(system, modes, corrected=2 if has_moment_arm(scene) else 1)
+    return checked_numbers(strike_modes(scene, tip_modes_from(result, scene), steps=3200))
 
 
 def true_error(outcome: cf.Outcome, best: np.ndarray, scene: cf.Scene) -> float:
     size = np.maximum(np.abs(best), [0.01 * abs(scene.stroke.offset), 0, 0])
-    return float((np.abs(judged(outcome) - best) / size).max())
+    return float((np.abs(checked_numbers(outcome) - best) / size).max())
 
 
-def moment(found: Modes, power: int, *, past: int) -> np.ndarray:
+def moment(result: Modes, power: int, *, past: int) -> np.ndarray:
     """Sum of [w, theta][w, theta]' / (omega^2 + shift)^power over the modes from number ``past`` on."""
-    rows = found.participation[:, past:] / (found.omega[past:] ** 2 + found.system.shift) ** (power / 2)
+    rows = result.participation[:, past:] / (result.omega[past:] ** 2 + result.system.shift) ** (power / 2)
     return np.asarray(rows @ rows.T)
 
 
@@ -53,12 +53,12 @@ def test_truncation_correction_conserves_moments_of_truncated_modes(name: str, e
     """Two Lanczos steps conserve four moments; with a force alone, those of the deflection."""
     whole = all_modes(scene(name, 1e-3, 0.3, effects=effects), 40)
     for loads in (2, 1):
-        ended, part = solve(whole.system, 20, corrected=loads), slice(loads)
-        assert len(ended.omega) == 20 + 2 * loads
+        corrected, part = solve(whole.system, 20, corrected=loads), slice(loads)
+        assert len(corrected.omega) == 20 + 2 * loads
         for power in (1, 2, 3, 4):
-            found, wanted = (moment(each, power, past=20)[part, part] for each in (ended, whole))
-            scale = np.sqrt(np.outer(wanted.diagonal(), wanted.diagonal()))
-            np.testing.assert_allclose(found / scale, wanted / scale, rtol=0, atol=1e-7)
+            computed, expected = (moment(each, power, past=20)[part, part] for each in (corrected, whole))
+            scale = np.sqrt(np.outer(expected.diagonal(), expected.diagonal()))
+            np.testing.assert_allclose(computed / scale, expected / scale, rtol=0, atol=1e-7)
 
 
 def test_resolve_end_mass_error_is_within_rtol() -> None:

@@ -21,19 +21,19 @@ RECORD = verdict_record(SCENE, cf.strike(SCENE), reference_cues())
 
 @pytest.mark.parametrize("name", REFERENCE_FILES)
 def test_verdict_reference_cues_agree_with_strikes(name: str) -> None:
-    struck = cf.strike(replace(SCENE, cue=without_leather(cf.load(ROOT / REFERENCE_FILES[name]))))
-    among = RECORD["references"][name]
-    assert among["squirt"] == pytest.approx(struck.squirt, rel=1e-12)
-    assert among["difference"] == pytest.approx(cf.strike(SCENE).squirt / struck.squirt - 1, abs=1e-12)
+    outcome = cf.strike(replace(SCENE, cue=without_leather(cf.load(ROOT / REFERENCE_FILES[name]))))
+    reference = RECORD["references"][name]
+    assert reference["squirt"] == pytest.approx(outcome.squirt, rel=1e-12)
+    assert reference["difference"] == pytest.approx(cf.strike(SCENE).squirt / outcome.squirt - 1, abs=1e-12)
 
 
 def test_verdict_uncertainty_is_quadrature_sum_of_parts() -> None:
-    band = RECORD["uncertainty"]
-    parts = [band[name] for name in ("model", "inputs", "computation")]
+    uncertainty = RECORD["uncertainty"]
+    parts = [uncertainty[name] for name in ("model", "inputs", "computation")]
     assert all(part > 0 for part in parts)
-    assert band["total"] == pytest.approx(math.sqrt(sum(part**2 for part in parts)), rel=1e-12)
-    assert RECORD["squirt_error"] == pytest.approx(band["total"] * RECORD["squirt"], rel=1e-12)
-    assert band["inputs"] == pytest.approx(math.hypot(*RECORD["inputs"].values()), rel=1e-12)
+    assert uncertainty["total"] == pytest.approx(math.sqrt(sum(part**2 for part in parts)), rel=1e-12)
+    assert RECORD["squirt_error"] == pytest.approx(uncertainty["total"] * RECORD["squirt"], rel=1e-12)
+    assert uncertainty["inputs"] == pytest.approx(math.hypot(*RECORD["inputs"].values()), rel=1e-12)
     assert {"E", "rho", "tip_height"} <= set(RECORD["inputs"])
 
 
@@ -54,9 +54,9 @@ def test_verdict_difference_within_error_is_not_distinct(depth: float, distinct:
     maple = cf.load(ROOT / REFERENCE_FILES["plain maple"])
     bored = with_parameters(cf.usual_scene(maple), {"bore depth": depth, "bore width": 0.006})
     record = verdict_record(bored, cf.strike(bored), {"plain maple": maple})
-    among = record["references"]["plain maple"]
-    assert among["distinct"] == distinct == (abs(among["difference"]) > among["error"])
-    assert among["error"] >= RATIO_FLOOR
+    reference = record["references"]["plain maple"]
+    assert reference["distinct"] == distinct == (abs(reference["difference"]) > reference["error"])
+    assert reference["error"] >= RATIO_FLOOR
     assert ("less squirt" in reference_comparison(record)[0]) == distinct
 
 
@@ -64,26 +64,26 @@ def test_same_stroke_excludes_effects_on_own_cue() -> None:
     more = (cf.PointMass(0.1, 0.011), cf.Support(0.2, 1e3), cf.Support(0.72, 1e3))
     scene = replace(SCENE, effects=(*SCENE.effects, *more))
     short = replace(SCENE.cue, segments=SCENE.cue.segments[:-1])
-    kept = {type(effect).__name__ for effect in with_cue(scene, short).effects}
-    assert kept == {"LeatherTip", "Support", "AxialWaves", "GeometricStiffness"}
+    types = {type(effect).__name__ for effect in with_cue(scene, short).effects}
+    assert types == {"LeatherTip", "Support", "AxialWaves", "GeometricStiffness"}
     assert sum(isinstance(effect, cf.Support) for effect in with_cue(scene, short).effects) == 1
 
 
 def test_reference_scale_is_ascending_and_relative_to_maple() -> None:
-    rows, among = reference_scale(RECORD), RECORD["references"]
+    rows, reference = reference_scale(RECORD), RECORD["references"]
     assert [row.at for row in rows] == sorted(row.at for row in rows)
     assert all(0 <= row.low <= row.at <= row.high <= 100 for row in rows)
     assert [row.name for row in rows if row.kind == "own"] == ["yours"]
     beside = {row.name: row.difference for row in rows}
     for name in ("low deflection", "carbon"):
-        less = 1 - among[name]["squirt"] / among["plain maple"]["squirt"]
+        less = 1 - reference[name]["squirt"] / reference["plain maple"]["squirt"]
         assert beside[name] == f"{100 * less:.0f} % less than plain maple"
     assert beside["plain maple"] == ""
 
 
 @pytest.mark.parametrize(
-    ("squirt", "error", "words"), [(1.847, 0.31, "1.85°"), (0.4, 0.042, "0.40°"), (0.04, 0.0042, "0.040°")]
+    ("squirt", "error", "text"), [(1.847, 0.31, "1.85°"), (0.4, 0.042, "0.40°"), (0.04, 0.0042, "0.040°")]
 )
-def test_squirt_text_has_digits_of_tables(squirt: float, error: float, words: str) -> None:
+def test_squirt_text_has_digits_of_tables(squirt: float, error: float, text: str) -> None:
     record = {"squirt": math.radians(squirt), "squirt_error": math.radians(error)}
-    assert squirt_text(record)[0] == words
+    assert squirt_text(record)[0] == text

@@ -8,7 +8,7 @@ import pytest
 import cuefem as cf
 from cuefem.cue.materials import LEATHERS, material
 from cuefem.scene.default_scene import GAMES, default_tip
-from tests.helpers.refusals import refuses
+from tests.helpers.invalid_input import assert_raises
 
 ROOT = Path(__file__).parents[2]
 WOOD = cf.Segment(0.7, 0.0118, 0.021, material("hard maple"))
@@ -33,15 +33,15 @@ def test_default_scene_cue_without_leather_gets_tip_of_game(game: str) -> None:
 
 
 def test_default_tip_has_height_of_drawn_leather() -> None:
-    drawn = cf.Cue((leather(3e-3), leather(2e-3), WOOD), 0.4)
-    scene = cf.usual_scene(drawn)
+    cue = cf.Cue((leather(3e-3), leather(2e-3), WOOD), 0.4)
+    scene = cf.usual_scene(cue)
     assert scene.cue == cf.Cue((WOOD,), 0.4)
     assert scene.leather == replace(GAMES["pool"].tip, height=5e-3)
-    assert default_tip(drawn, "snooker").height == 5e-3
-    assert cf.usual_scene(drawn, tip=replace(scene.leather, height=7e-3)).leather.height == 7e-3
+    assert default_tip(cue, "snooker").height == 5e-3
+    assert cf.usual_scene(cue, tip=replace(scene.leather, height=7e-3)).leather.height == 7e-3
 
 
-def test_default_tip_restitution_with_axial_waves_is_leather_s() -> None:
+def test_default_tip_restitution_with_axial_waves_equals_leather() -> None:
     cue, hard = cf.Cue((WOOD,), 0.4), LEATHERS["hard"]
     tip = replace(GAMES["pool"].tip, E=hard.E)
     scene = cf.usual_scene(cue, tip=tip)
@@ -52,23 +52,23 @@ def test_default_tip_restitution_with_axial_waves_is_leather_s() -> None:
 @pytest.mark.parametrize("game", GAMES)
 def test_default_scene_drawn_tip_has_all_effects(game: str) -> None:
     bare = cf.usual_scene(cf.Cue((WOOD,), 0.4), game)
-    drawn = cf.usual_scene(cf.Cue((leather(bare.leather.height), WOOD), 0.4), game)
-    assert drawn == bare
-    assert cf.strike(drawn).squirt == cf.strike(bare).squirt
+    with_leather = cf.usual_scene(cf.Cue((leather(bare.leather.height), WOOD), 0.4), game)
+    assert with_leather == bare
+    assert cf.strike(with_leather).squirt == cf.strike(bare).squirt
 
 
-def test_refusals() -> None:
-    refuses(
+def test_default_scene_invalid_input_raises() -> None:
+    assert_raises(
         lambda: cf.usual_scene(cf.Cue((WOOD,)), "croquet"), "game must be one of pool, carom, snooker; got 'croquet'"
     )
-    refuses(lambda: default_tip(cf.Cue((WOOD,)), "golf"), "game must be one of pool, carom, snooker; got 'golf'")
-    refuses(
+    assert_raises(lambda: default_tip(cf.Cue((WOOD,)), "golf"), "game must be one of pool, carom, snooker; got 'golf'")
+    assert_raises(
         lambda: cf.usual_scene(cf.LumpedCue(0.5, 0.01)), "TypeError: usual_scene cue must be a Cue; got a LumpedCue"
     )
-    refuses(lambda: cf.usual_scene(cf.Cue((leather(1e-3), WOOD))), "higher than 2.054 mm, the depth of its dome")
+    assert_raises(lambda: cf.usual_scene(cf.Cue((leather(1e-3), WOOD))), "higher than 2.054 mm, the depth of its dome")
 
 
-def test_axial_waves_short_rest_is_rigid_mass() -> None:
+def test_axial_waves_short_butt_is_rigid_mass() -> None:
     """A cue drawn to 3 mm short of a whole one's length, with 100 g more at its end."""
     cue = cf.Cue((WOOD, cf.Segment(0.7702, 0.021, 0.031, material("hard maple"))), body_mass=0.1)
     scene = cf.usual_scene(cue)

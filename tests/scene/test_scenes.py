@@ -23,9 +23,9 @@ def rows() -> dict[str, list[str]]:
 
 
 def scene(name: str) -> cf.Scene:
-    found = cf.load(SCENES / f"{name}.toml")
-    assert isinstance(found, cf.Scene)
-    return found
+    loaded = cf.load(SCENES / f"{name}.toml")
+    assert isinstance(loaded, cf.Scene)
+    return loaded
 
 
 def test_ready_scenes_are_all_listed() -> None:
@@ -44,9 +44,9 @@ def test_ready_scene_states_its_sources(name: str) -> None:
 
 def test_readme_of_meshes_states_computed_squirts() -> None:
     text = (SCENES.parents[1] / "meshes" / "README.md").read_text(encoding="utf-8")
-    told = re.findall(r"([\d.]+)° \((\w+)\)", text.partition("Squirt at b/R 0.3 is then ")[2].partition(".\n")[0])
-    assert len(told) == 5
-    for squirt, name in told:
+    stated = re.findall(r"([\d.]+)° \((\w+)\)", text.partition("Squirt at b/R 0.3 is then ")[2].partition(".\n")[0])
+    assert len(stated) == 5
+    for squirt, name in stated:
         cue = cf.load(SCENES.parents[1] / "meshes" / f"{name}.toml")
         assert isinstance(cue, cf.Cue)
         assert f"{math.degrees(cf.strike(cf.usual_scene(cue)).squirt):.2f}" == squirt
@@ -55,10 +55,10 @@ def test_readme_of_meshes_states_computed_squirts() -> None:
 @pytest.mark.heavy
 @pytest.mark.parametrize("name", READY)
 def test_ready_scene_equals_its_readme(name: str) -> None:
-    found, outcome = scene(name), resolve(scene(name), 1e-3)
+    ready, outcome = scene(name), resolve(scene(name), 1e-3)
     _, ball, offset, squirt, effects = rows()[name]
-    assert ball == f"{2e3 * found.ball.radius:g} mm, {1e3 * found.ball.mass:g} g"
-    assert float(offset) == found.stroke.offset
-    assert effects == (", ".join(type(effect).__name__ for effect in found.effects) or "none")
+    assert ball == f"{2e3 * ready.ball.radius:g} mm, {1e3 * ready.ball.mass:g} g"
+    assert float(offset) == ready.stroke.offset
+    assert effects == (", ".join(type(effect).__name__ for effect in ready.effects) or "none")
     assert outcome.regime == "stick"
     assert math.degrees(outcome.squirt) == pytest.approx(float(squirt), rel=1e-3, abs=5e-4)

@@ -53,14 +53,14 @@ INVALID: list[tuple[Callable[[], object], str]] = [
 ]
 
 
-@pytest.mark.parametrize(("ask", "message"), INVALID, ids=[message for _, message in INVALID])
+@pytest.mark.parametrize(("call", "message"), INVALID, ids=[message for _, message in INVALID])
 def test_solid_invalid_input_raises_before_assembly(
-    ask: Callable[[], object], message: str, monkeypatch: pytest.MonkeyPatch
+    call: Callable[[], object], message: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Assembly takes seconds."""
     monkeypatch.setattr(SolidBody, "matrices", property(lambda body: pytest.fail("a solid was assembled")))
     with pytest.raises(ValueError, match=message):
-        ask()
+        call()
 
 
 @pytest.mark.heavy
@@ -79,23 +79,23 @@ def test_model_error_short_cone_lists_quantities_and_exclusions() -> None:
     assert 0 < abs(rows["natural frequency 1"]["solid"] / laden - 1) < 0.1
     assert record["summary"].startswith("Error of the beam model for this shaft: ")
     assert record["excluded_effects"] == ["AxialWaves"]
-    sheet = tabulate_model_error(record)
-    assert [row[0].removesuffix(" *") for row in sheet.rows[:-1]] == list(rows)
+    table = tabulate_model_error(record)
+    assert [row[0].removesuffix(" *") for row in table.rows[:-1]] == list(rows)
     assert abs(record["scikit_fem"]["difference"]) < 1e-9
-    assert sheet.rows[-1][0] == "natural frequency 1, same beam by scikit-fem"
-    assert "AxialWaves" in sheet.notes[-1]
+    assert table.rows[-1][0] == "natural frequency 1, same beam by scikit-fem"
+    assert "AxialWaves" in table.notes[-1]
 
 
 def test_report_with_check_states_model_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Once, and for the scene of the report."""
-    asked: list[cf.Scene] = []
+    requested: list[cf.Scene] = []
 
     def record(scene: cf.Scene, follow: object) -> dict[str, object]:
-        asked.append(scene)
+        requested.append(scene)
         return {"summary": "Beam theory is 0.125 % off."}
 
     monkeypatch.setattr("cuefem.report.model_error_record", record)
     cf.save(SCENE, tmp_path / "scene.toml")
     assert call("report", tmp_path / "scene.toml", "--check", "-o", tmp_path / "page.html")[0] == 0
     assert (tmp_path / "page.html").read_text(encoding="utf-8").count("0.125 % off") == 1
-    assert asked == [SCENE]
+    assert requested == [SCENE]

@@ -98,5 +98,5 @@ def test_solid_pure_bending_energy_is_exact(wood: Material) -> None:
 @pytest.mark.parametrize("wood", [STEEL, MAPLE], ids=["steel", "maple"])
 def test_solid_rod_axial_compliance_agrees_with_section(wood: Material) -> None:
     rod = Cue((Segment(LENGTH, 2 * RADIUS, 2 * RADIUS, wood, RADIUS, RADIUS),))
-    give = LENGTH / float(rod.section(0.0).EA)
-    assert SolidBody(rod, Fineness(4, 1.0, 0.01), AXIAL).compliance == pytest.approx(give, rel=1e-10)
+    compliance = LENGTH / float(rod.section(0.0).EA)
+    assert SolidBody(rod, Fineness(4, 1.0, 0.01), AXIAL).compliance == pytest.approx(compliance, rel=1e-10)

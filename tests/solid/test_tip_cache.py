@@ -11,7 +11,7 @@ import cuefem as cf
 from cuefem.solid.tip_cache import cached_table
 from cuefem.solid.tip_table import HEIGHT, TipTable, UntabulatedTip, table_of_tip
 from tests.helpers.command_line import call
-from tests.helpers.refusals import command_refuses
+from tests.helpers.invalid_input import assert_rejects
 
 D = 12.75e-3
 PLAIN = cf.LeatherTip(height=6e-3, dome_radius=9.5e-3, E=100e6)
@@ -96,7 +96,7 @@ def test_tip_cache_without_home_folder_stores_nothing(
 
 
 @pytest.mark.parametrize(
-    ("more", "words"),
+    ("more", "message"),
     [
         ('height = "6 mm"\nlayers = [{ height = "0 mm", E = "2 GPa" }]', "effects[0].layers[0].height: must be"),
         ('height = "6 mm"\nlayers = [{ height = "1 mm" }]', "effects[0].layers[0].E: must be given"),
@@ -109,8 +109,8 @@ def test_tip_cache_without_home_folder_stores_nothing(
         ('height = "6 mm"\nnu = 0.5', "nu: must be 0 to 0.49; got 0.5"),
     ],
 )
-def test_leather_tip_invalid_input_prints_one_line(tmp_path: Path, more: str, words: str) -> None:
+def test_leather_tip_invalid_input_prints_one_line(tmp_path: Path, more: str, message: str) -> None:
     """In one line, with status 2, before anything is computed."""
     file = tmp_path / "scene.toml"
     file.write_text(SCENE + more + "\n")
-    command_refuses(words, "strike", file)
+    assert_rejects(message, "strike", file)

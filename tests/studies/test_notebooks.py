@@ -13,7 +13,7 @@ NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_a_notebook_runs(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_notebook_prints_stored_output(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     plt.switch_backend("agg")
     monkeypatch.chdir(FOLDER)
     cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
@@ -23,8 +23,8 @@ def test_a_notebook_runs(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed):
             exec(compile("".join(cell["source"]), path.name, "exec"), names)
-        kept = [out for out in cell["outputs"] if out["output_type"] == "stream"]
-        assert printed.getvalue() == "".join(line for out in kept for line in out["text"])
-        shown = [out for out in cell["outputs"] if out["output_type"] == "display_data"]
-        assert len(plt.get_fignums()) == len(shown)
+        stored = [out for out in cell["outputs"] if out["output_type"] == "stream"]
+        assert printed.getvalue() == "".join(line for out in stored for line in out["text"])
+        figures = [out for out in cell["outputs"] if out["output_type"] == "display_data"]
+        assert len(plt.get_fignums()) == len(figures)
     plt.close("all")

@@ -20,13 +20,13 @@ def rows(name: str) -> list[dict[str, str]]:
     return list(csv.DictReader(line for line in lines if not line.startswith("#")))
 
 
-def test_folders_hold_every_row_of_the_data() -> None:
+def test_measured_folders_have_every_row_of_data() -> None:
     """Squirt at an offset, pivot length at an offset, and the series of added masses."""
-    told = [("squirt", CUES[r["cue"].split()[0]], r["b_over_R"], r["squirt_deg"]) for r in rows("measured_squirt")]
+    expected = [("squirt", CUES[r["cue"].split()[0]], r["b_over_R"], r["squirt_deg"]) for r in rows("measured_squirt")]
     pivots = rows("pivot_lengths_2007")
-    told += [("pivot", CUES[r["cue"].split()[0]], r["b_over_R"], r["pivot_length_in"]) for r in pivots]
+    expected += [("pivot", CUES[r["cue"].split()[0]], r["b_over_R"], r["pivot_length_in"]) for r in pivots]
     masses = rows("added_mass_players_feb2008")
-    told += [(f"{float(r['mass_g']):g} g", PLAYERS, r["distance_in"], r["squirt_deg"]) for r in masses]
+    expected += [(f"{float(r['mass_g']):g} g", PLAYERS, r["distance_in"], r["squirt_deg"]) for r in masses]
     own = set()
     for name in CUES.values():
         for one in load_measured(HOME / name)[0].measurements:
@@ -37,10 +37,10 @@ def test_folders_hold_every_row_of_the_data() -> None:
             elif isinstance(one, AddedMass):
                 inch, squirt = round(one.position / 0.0254, 6), round(math.degrees(one.value), 6)
                 own.add((f"{1e3 * one.mass:g} g", name, inch, squirt))
-    assert {(kind, name, float(x), float(y)) for kind, name, x, y in told} - own == set()
+    assert {(kind, name, float(x), float(y)) for kind, name, x, y in expected} - own == set()
 
 
-def test_the_page_says_what_is_computed() -> None:
+def test_measured_readme_states_computed_values() -> None:
     """The table of the folder's README, one line a measurement that is not of the series of added masses."""
     text = (HOME / "README.md").read_text(encoding="utf-8")
     for path in FOLDERS:
@@ -49,11 +49,11 @@ def test_the_page_says_what_is_computed() -> None:
         for one in cue.measurements:
             if not isinstance(one, AddedMass):
                 computed = with_unit(one.computed(cue.setup()), one.unit)
-                told = with_unit(one.measured, one.unit, error=one.sd)
-                assert f"| {cue.name} | {one.label} | {told} | {computed} |" in text
+                measured = with_unit(one.measured, one.unit, error=one.sd)
+                assert f"| {cue.name} | {one.label} | {measured} | {computed} |" in text
 
 
-def test_the_handbook_s_tables_are_those_of_the_studies() -> None:
+def test_handbook_tables_equal_those_of_studies() -> None:
     """Of measured squirt, of its uncertainty, and of what is left out."""
     pages = ("measured/squirt.md", "measured/uncertainty.md", "article/article.md")
     known = {line for page in pages for line in (STUDIES / page).read_text(encoding="utf-8").splitlines()}

@@ -26,12 +26,12 @@ INDEX = (STUDIES / "README.md").read_text(encoding="utf-8")
         if not study.seconds
     ],
 )
-def test_a_page_is_what_its_study_gives(name: str) -> None:
+def test_study_page_equals_its_program(name: str) -> None:
     assert disagreements(STUDY[name].committed, STUDY[name].page()) == []
 
 
 @pytest.mark.parametrize("name", STUDY)
-def test_a_page_begins_with_question_and_answer_and_the_index_has_it(name: str) -> None:
+def test_study_page_has_question_answer_and_index_entry(name: str) -> None:
     study = STUDY[name]
     lines = study.committed.splitlines()
     assert lines[0].startswith("# ")
@@ -44,7 +44,7 @@ def test_a_page_begins_with_question_and_answer_and_the_index_has_it(name: str) 
         assert "<text" in study.path.with_name(figure).read_text("utf-8")
 
 
-def test_nothing_lies_about() -> None:
+def test_study_folders_have_no_other_pages_or_figures() -> None:
     written = {study.path.with_name(figure) for study in STUDY.values() for figure in study.figures}
     written |= {study.path.with_suffix(".md") for study in STUDY.values()}
     homes = {path.parent for path in PROGRAMS}
@@ -52,6 +52,6 @@ def test_nothing_lies_about() -> None:
     assert {path.name for path in loose - written} <= {"README.md"}
 
 
-def test_every_link_of_the_index_is_there() -> None:
+def test_study_index_links_exist() -> None:
     links = re.findall(r"\]\(([^)#]+)\)", INDEX)
     assert [link for link in links if not link.startswith("http") and not (STUDIES / link).exists()] == []

@@ -17,7 +17,7 @@ from tests.helpers.command_line import call
 ROOT = Path(__file__).parents[1]
 GOLDEN = ROOT / "tests" / "golden"
 SCENES = {"kim": "studies/scenes/kim.toml", "pool": "meshes/pool_hollow.toml"}  # a bare strike; all of a usual one
-FACES = {
+OUTPUTS = {
     "report.txt": ["report"],
     "report.json": ["report", "--json"],
     "page.txt": ["report", "-o", "page.html"],
@@ -29,71 +29,73 @@ HEAVY = {"effects.txt": ["effects"], "improve.txt": ["improve"], "check.txt": ["
 NUMBER = re.compile(r"(?<![\w.])[-+−]?\d+(?:\.\d+)?(?:e[-+]\d+)?")
 
 
-def words_of(page: str) -> str:
+def page_text(page: str) -> str:
     """The text of a page: a line a text, without script, style and the scales of charts."""
     body = re.sub(r"<(style|script|svg|head).*?</\1>", "", page, flags=re.DOTALL)
     return "\n".join(line for part in re.split(r"<[^>]*>", body) if (line := html.unescape(part).strip())) + "\n"
 
 
-def place(number: str) -> float:
+def last_place(number: str) -> float:
     """One in the last place of a number as it stands."""
     digits, _, power = number.partition("e")
     return 10.0 ** (int(power or 0) - len(digits.partition(".")[2]))
 
 
-def differences(kept: str, now: str) -> list[tuple[str, str]]:
+def differences(stored: str, now: str) -> list[tuple[str, str]]:
     """Lines that differ by more than the last place of a number."""
     off = []
-    for one, other in zip(kept.splitlines(), now.splitlines(), strict=False):
+    for one, other in zip(stored.splitlines(), now.splitlines(), strict=False):
         pairs = list(zip(NUMBER.findall(one), NUMBER.findall(other), strict=False))
-        near = (abs(float(a.replace("−", "-")) - float(b.replace("−", "-"))) < 1.01 * place(a) for a, b in pairs)
-        if " ".join(NUMBER.sub("#", one).split()) != " ".join(NUMBER.sub("#", other).split()) or not all(near):
+        close = (abs(float(a.replace("−", "-")) - float(b.replace("−", "-"))) < 1.01 * last_place(a) for a, b in pairs)
+        if " ".join(NUMBER.sub("#", one).split()) != " ".join(NUMBER.sub("#", other).split()) or not all(close):
             off.append((one, other))
     return off
 
 
-def same(kept: Any, now: Any, path: str = "") -> None:
-    if isinstance(kept, dict):
-        assert kept.keys() == now.keys(), path
-        for key in kept:
-            same(kept[key], now[key], f"{path}.{key}")
-    elif isinstance(kept, list):
-        assert len(kept) == len(now), path
-        for i, (one, other) in enumerate(zip(kept, now, strict=True)):
-            same(one, other, f"{path}[{i}]")
-    elif isinstance(kept, float):
-        assert now == pytest.approx(kept, rel=1e-6, abs=1e-9), path
+def assert_same_json(stored: Any, now: Any, path: str = "") -> None:
+    if isinstance(stored, dict):
+        assert stored.keys() == now.keys(), path
+        for key in stored:
+            assert_same_json(stored[key], now[key], f"{path}.{key}")
+    elif isinstance(stored, list):
+        assert len(stored) == len(now), path
+        for i, (one, other) in enumerate(zip(stored, now, strict=True)):
+            assert_same_json(one, other, f"{path}[{i}]")
+    elif isinstance(stored, float):
+        assert now == pytest.approx(stored, rel=1e-6, abs=1e-9), path
     else:
-        assert kept == now, path
+        assert stored == now, path
 
 
-EVERYDAY = [("kim", face) for face in (*FACES, "effects.txt") if face != "page.txt"] + [
-    ("pool", face) for face in FACES if face not in ("page.txt", "report.txt")
+EVERYDAY = [("kim", output) for output in (*OUTPUTS, "effects.txt") if output != "page.txt"] + [
+    ("pool", output) for output in OUTPUTS if output not in ("page.txt", "report.txt")
 ]
-SLOW = [(scene, face) for scene in SCENES for face in FACES | HEAVY if (scene, face) not in EVERYDAY]
+SLOW = [(scene, output) for scene in SCENES for output in OUTPUTS | HEAVY if (scene, output) not in EVERYDAY]
 
 
 @pytest.mark.parametrize(
-    ("scene", "face"), [*EVERYDAY, *(pytest.param(*slow, marks=pytest.mark.heavy) for slow in SLOW)]
+    ("scene", "output"), [*EVERYDAY, *(pytest.param(*slow, marks=pytest.mark.heavy) for slow in SLOW)]
 )
-def test_a_face(face: str, scene: str, request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: Any) -> None:
+def test_output_equals_golden_file(
+    output: str, scene: str, request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: Any
+) -> None:
     monkeypatch.chdir(ROOT)
     monkeypatch.setenv("COLUMNS", "110")
     for clock in ("perf_counter", "process_time"):
         ticks = itertools.count()
         monkeypatch.setattr(f"time.{clock}", ticks.__next__)  # every look is one second later
-    command, *options = (FACES | HEAVY)[face]
+    command, *options = (OUTPUTS | HEAVY)[output]
     options = [str(tmp_path / option) if option == "page.html" else option for option in options]
     status, out, err = call(command, SCENES[scene], *options)
     assert (status, err) == (0, "")
-    now = words_of((tmp_path / "page.html").read_text(encoding="utf-8")) if face == "page.txt" else out
+    now = page_text((tmp_path / "page.html").read_text(encoding="utf-8")) if output == "page.txt" else out
     now = re.sub(r"\n +not tried: [^\n]*", "", now)  # tests make effects up
-    golden = GOLDEN / f"{scene}_{face}"
+    golden = GOLDEN / f"{scene}_{output}"
     if request.config.getoption("--update"):
         golden.write_text(now, encoding="utf-8")
-    kept = golden.read_text(encoding="utf-8")
-    if face.endswith(".json"):
-        same(json.loads(kept), json.loads(now))
+    stored = golden.read_text(encoding="utf-8")
+    if output.endswith(".json"):
+        assert_same_json(json.loads(stored), json.loads(now))
     else:
-        assert differences(kept, now) == []
-        assert len(kept.splitlines()) == len(now.splitlines())
+        assert differences(stored, now) == []
+        assert len(stored.splitlines()) == len(now.splitlines())

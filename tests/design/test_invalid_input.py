@@ -12,8 +12,8 @@ from cuefem.design.optimum import Limit, Problem, optimum
 from cuefem.design.scatter import Scatter
 from cuefem.design.sensitivity import sensitivity
 from tests.helpers.cues import low_deflection, scene
-from tests.helpers.refusals import command_refuses, refuses, untouched
-from tests.helpers.sweeps import OPTIMUM, SCATTER, SCENE, STRUCK, STUDY, written
+from tests.helpers.invalid_input import assert_raises, assert_rejects, assert_unchanged
+from tests.helpers.sweeps import OPTIMUM, SCATTER, SCENE, STRIKES, STUDY, write_study
 
 AT = cf.Resolution(1, 4, 2)
 MAPLE = cf.Scene(cf.load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml"))
@@ -86,7 +86,7 @@ CALLS: dict[str, Callable[[], object]] = {
 
 @pytest.mark.parametrize("message", CALLS)
 def test_study_invalid_call_raises(message: str) -> None:
-    refuses(CALLS[message], message)
+    assert_raises(CALLS[message], message)
 
 
 # The study, the text replaced in it, its replacement, and a part of the error message.
@@ -124,9 +124,9 @@ FILES = [
     ),
     (STUDY, "count = 16", "count = 16\ncompensating_path = 5", "vary[0].compensating_path: must be text, or an array"),
     (STUDY, 'low = "0 mm"\nhigh = "15 mm"\ncount = 16', 'middle = "9 mm"', "give [sample]"),
-    (STRUCK, '"sobol"', '"sobel"', "sample: method must be one of grid"),
-    (STRUCK, RANGE, 'middle = "0 mm"\nsd = 0.1\nspacing = "logarithmic"', "middle must be above 0"),
-    (STRUCK, RANGE, 'middle = "9 mm"\nsd = "1 mm"\nspacing = "logarithmic"', "vary[0].sd: must be a bare number"),
+    (STRIKES, '"sobol"', '"sobel"', "sample: method must be one of grid"),
+    (STRIKES, RANGE, 'middle = "0 mm"\nsd = 0.1\nspacing = "logarithmic"', "middle must be above 0"),
+    (STRIKES, RANGE, 'middle = "9 mm"\nsd = "1 mm"\nspacing = "logarithmic"', "vary[0].sd: must be a bare number"),
     (SCATTER, '[["E", "density", 0.4]]', "0.4", "tolerances.correlations: must be an array"),
     (SCATTER, "0.4]]", '"high"]]', "correlations[0]: must be [name, name, number]"),
     (SCATTER, "0.4]]", '0.4], ["E", "density", 0.3]]', "must be listed once; got E and density twice"),
@@ -146,7 +146,7 @@ FILES = [
 @pytest.mark.parametrize(("good", "old", "new", "message"), FILES, ids=[message for *_, message in FILES])
 def test_study_invalid_file_raises(tmp_path: Path, good: str, old: str, new: str, message: str) -> None:
     assert old in good
-    command_refuses(message, "study", written(tmp_path, good.replace(old, new, 1)))
+    assert_rejects(message, "study", write_study(tmp_path, good.replace(old, new, 1)))
     stored = {"study.sqlite"} if "designs failed" in message else set()
     assert {path.name for path in tmp_path.iterdir()} == {"scene.toml", "study.toml"} | stored
 
@@ -157,10 +157,10 @@ def test_study_invalid_file_raises(tmp_path: Path, good: str, old: str, new: str
 )
 def test_study_of_drawing_or_scene_raises(tmp_path: Path, name: str, text: str, what: str) -> None:
     (tmp_path / name).write_text(text)
-    wanted = (
+    expected = (
         f'{name}: must be a study, with scene = "{name}" and [[vary]] tables, such as studies/sweeps/bore.toml; got '
     )
-    untouched(tmp_path, wanted + what, "study", tmp_path / name)
+    assert_unchanged(tmp_path, expected + what, "study", tmp_path / name)
 
 
 # The content of the store, the options of the next study, and a part of the error message.
@@ -178,8 +178,8 @@ def test_study_invalid_options_change_no_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, store: bytes, options: list[str], message: str
 ) -> None:
     """Errors before the run."""
-    file = written(tmp_path)
+    file = write_study(tmp_path)
     if store:
         (tmp_path / "study.sqlite").write_bytes(store)
     monkeypatch.chdir(tmp_path)
-    untouched(tmp_path, message, "study", file, *options)
+    assert_unchanged(tmp_path, message, "study", file, *options)

@@ -8,7 +8,7 @@ import pytest
 
 from cuefem import LumpedCue, Resolution, modes
 from tests.helpers.cues import kim
-from tests.helpers.refusals import refuses
+from tests.helpers.invalid_input import assert_raises
 
 CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: modes(kim(), 0), "modes count must be a whole number >= 1; got 0"),
@@ -25,4 +25,4 @@ CALLS: list[tuple[Callable[[], object], str]] = [
 
 @pytest.mark.parametrize(("call", "message"), CALLS, ids=[message for _, message in CALLS])
 def test_modes_invalid_input_raises(call: Callable[[], object], message: str) -> None:
-    refuses(call, message)
+    assert_raises(call, message)

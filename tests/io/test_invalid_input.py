@@ -12,7 +12,7 @@ import pytest
 import cuefem as cf
 from cuefem.io import InputError
 from tests.helpers.command_line import call
-from tests.helpers.surfaces import revolved, written
+from tests.helpers.surfaces import revolve, write_surface
 
 
 def rejection(path: Path, **options: str) -> str:
@@ -24,7 +24,7 @@ def rejection(path: Path, **options: str) -> str:
     return text.removeprefix(f"{path}: ").replace(f"{path.parent}/", "")
 
 
-POINTS, FACES = revolved([(0, 0), (0, 0.006), (0.7, 0.0105), (0.7, 0)], 16)
+POINTS, FACES = revolve([(0, 0), (0, 0.006), (0.7, 0.0105), (0.7, 0)], 16)
 # One error a line: file extension, content (H is the header of a profile), and the first words of the message.
 CONTENTS = r"""
 toml |                                      | must hold a cue or a scene; got an empty file
@@ -93,7 +93,7 @@ def test_load_invalid_content_is_rejected(tmp_path: Path, row: str) -> None:
     assert call("modes", path)[:2] == (2, "")
 
 
-BAR = revolved([(0, 0), *((x, 0.006) for x in np.linspace(0, 0.7, 30)), (0.7, 0)], 16)
+BAR = revolve([(0, 0), *((x, 0.006) for x in np.linspace(0, 0.7, 30)), (0.7, 0)], 16)
 SURFACES = {
     "must be closed": (POINTS, FACES[1:]),
     "must have consistently oriented triangles": (
@@ -101,9 +101,9 @@ SURFACES = {
         np.concatenate([FACES[:20], FACES[20:21, ::-1], FACES[21:]]),
     ),
     "must enclose a volume": (POINTS, np.concatenate([FACES[:8], FACES[:8, ::-1]])),
-    "must be slender, at least 5 times": revolved([(0, 0), (0, 0.02), (0.15, 0.02), (0.15, 0)], 16),
+    "must be slender, at least 5 times": revolve([(0, 0), (0, 0.02), (0.15, 0.02), (0.15, 0)], 16),
     "must be round, second moments": (BAR[0] * (1, 1.05, 1), BAR[1]),
-    "must be round, its second moment within 2 % of a disc's; got a section 4.7 %": revolved(
+    "must be round, its second moment within 2 % of a disc's; got a section 4.7 %": revolve(
         [(0, 0), (0, 0.006), (0.7, 0.006), (0.7, 0)], 4
     ),
     "must be straight": (BAR[0] + 0.003 * np.outer(BAR[0][:, 0] ** 2, (0, 0, 1)), BAR[1]),
@@ -116,7 +116,7 @@ SURFACES = {
 
 @pytest.mark.parametrize("line", SURFACES)
 def test_load_surface_that_is_not_a_shaft_is_rejected(tmp_path: Path, line: str) -> None:
-    assert rejection(written(tmp_path / "shaft.ply", *SURFACES[line], binary=False)).startswith(line)
+    assert rejection(write_surface(tmp_path / "shaft.ply", *SURFACES[line], binary=False)).startswith(line)
 
 
 def test_load_signalling_nan_in_surface_is_rejected(tmp_path: Path) -> None:
@@ -131,7 +131,7 @@ def test_load_missing_file_or_foreign_option_is_rejected(tmp_path: Path) -> None
         assert rejection(tmp_path / name) == "cannot be read: No such file or directory"
     assert rejection(tmp_path / "folder.toml") == rejection(tmp_path) == "must be a file; got a folder"
     assert rejection(tmp_path / "cue.vtu").startswith("must end in .toml, .csv, .stl")
-    shaft = written(tmp_path / "shaft.stl", POINTS, FACES)
+    shaft = write_surface(tmp_path / "shaft.stl", POINTS, FACES)
     assert rejection(shaft, length_unit="kg").startswith("length unit: must be a unit of length")
     for name in ("shaft.xlsx", "shaft.txt"):
         (tmp_path / name).write_bytes(b"PK\x03\x04")

@@ -12,12 +12,12 @@ from cuefem.beam.tip_modes import lumped_tip_modes
 from cuefem.contact.contact_model import model_of
 from cuefem.contact.step_records import solve_contact
 from cuefem.scene.solved_scene import default_mode_count
+from tests.helpers.invalid_input import assert_raises
 from tests.helpers.leather_scenes import leather_scene
-from tests.helpers.refusals import refuses
 from tests.helpers.strike_scenes import kim_scene
 
 
-def identified(contact_time: float, rebound: float) -> Callable[[], object]:
+def identify_call(contact_time: float, rebound: float) -> Callable[[], object]:
     return lambda: cf.identify_tip(leather_scene(0.0, cf.AxialWaves()), contact_time, rebound)
 
 
@@ -29,23 +29,23 @@ LUMPED = cf.Scene(cf.LumpedCue(0.54, 0.006, 3.0), stroke=cf.Stroke(offset=0.3))
 DEAD = "Tip.restitution must be in [0.05, 1] for a contact computed in time; got "
 
 
-def placed(point: Any = GOOD, direction: Any = NORTH, ball: cf.Ball = BALL) -> Callable[[], object]:
+def place_call(point: Any = GOOD, direction: Any = NORTH, ball: cf.Ball = BALL) -> Callable[[], object]:
     return lambda: cf.place(STRUCK, point, direction, ball=ball)
 
 
-def struck(scene: cf.Scene, at: cf.Resolution | None = None, **changes: Any) -> Callable[[], object]:
+def strike_call(scene: cf.Scene, at: cf.Resolution | None = None, **changes: Any) -> Callable[[], object]:
     return lambda: cf.strike(replace(scene, **changes), at)
 
 
-def heavy(ask: Callable[[], object], message: str) -> Any:
-    return pytest.param(ask, message, marks=pytest.mark.heavy)
+def heavy(call: Callable[[], object], message: str) -> Any:
+    return pytest.param(call, message, marks=pytest.mark.heavy)
 
 
 CALLS: list[Any] = [
     (lambda: cf.LumpedCue(0.25, 0.25, 4.0), "LumpedCue.coupling must be in (-4.0, 4.0) 1/kg; got 4.0"),
     (lambda: cf.strike(3), "TypeError: strike scene must be a Scene; got 3"),  # type: ignore[arg-type]
     (lambda: cf.impulse(3), "TypeError: impulse scene must be a sequence of Scene; got 3"),  # type: ignore[arg-type]
-    *((ask, "must be a Cue of segments: ") for ask in (lambda: LUMPED.shaft, lambda: default_mode_count(LUMPED))),
+    *((call, "must be a Cue of segments: ") for call in (lambda: LUMPED.shaft, lambda: default_mode_count(LUMPED))),
     (lambda: cf.Scene("cue"), "TypeError: Scene.cue must be a Cue or LumpedCue; got 'cue'"),
     (lambda: cf.Scene(cf.LumpedCue(0.5, 0.003), tip=0.7), "TypeError: Scene.tip must be a Tip"),
     (
@@ -54,15 +54,18 @@ CALLS: list[Any] = [
     ),
     # strikes
     (
-        struck(leather_scene(e=0.05)),
+        strike_call(leather_scene(e=0.05)),
         "Tip.restitution must be in [0.1, 1] for a contact",
     ),
-    (struck(leather_scene(speed=60.0)), "mm): raise LeatherTip.height or E, or lower Stroke.speed"),
-    (struck(kim_scene(restitution=0.049), effects=(cf.Elevation(0.1),)), f"{DEAD}0.049 (cuefem.impulse takes any)"),
-    (struck(kim_scene(friction=inf), effects=(cf.SecondHit(),)), "Tip.friction must be finite beside SecondHit"),
+    (strike_call(leather_scene(speed=60.0)), "mm): raise LeatherTip.height or E, or lower Stroke.speed"),
+    (
+        strike_call(kim_scene(restitution=0.049), effects=(cf.Elevation(0.1),)),
+        f"{DEAD}0.049 (cuefem.impulse takes any)",
+    ),
+    (strike_call(kim_scene(friction=inf), effects=(cf.SecondHit(),)), "Tip.friction must be finite beside SecondHit"),
     (lambda: cf.Resolution(4, 8, 0), "Resolution.modes"),
     (lambda: cf.Resolution(1, 1, 1, 19), "Resolution.steps must be a whole number in [20, 1000000]; got 19"),
-    (struck(kim_scene(), cf.Resolution(2, 3, 500)), "use more elements"),
+    (strike_call(kim_scene(), cf.Resolution(2, 3, 500)), "use more elements"),
     (lambda: cf.strike(kim_scene(), cf.Resolution(2, 8, 4)).history(-1e-9), "History takes times in [0, "),
     # many strikes
     (lambda: cf.impulse([kim_scene(), 3]), "TypeError: impulse scene must be a Scene"),
@@ -84,23 +87,23 @@ CALLS: list[Any] = [
         "Scene.effects must hold a LeatherTip; got none",
     ),
     heavy(lambda: cf.identify_tip(leather_scene(), 9e-3, 0.73), "no leather has a contact time of 0.009 s"),
-    heavy(identified(0.5e-3, 0.73), "no leather has a contact time of 0.0005 s"),
-    heavy(identified(1.1e-3, 0.999), "no leather has a contact time of 0.0011 s and a rebound of 0.999"),
+    heavy(identify_call(0.5e-3, 0.73), "no leather has a contact time of 0.0005 s"),
+    heavy(identify_call(1.1e-3, 0.999), "no leather has a contact time of 0.0011 s and a rebound of 0.999"),
     # the table's frame
-    (placed((R, 1.5 * R)), "R = 0.0286 m; got (0.0286, 0.0429"),
-    (placed((nan, R)), "point[0] must be in (-inf, inf) m; got nan"),
-    (placed(direction=(0, inf, 0)), "direction[1] must be in (-inf, inf); got inf"),
-    (placed(direction=(0, 0, 0)), "direction must have a length; got (0, 0, 0)"),
-    (placed(direction=(0, 1)), "direction must have 3 components"),
-    (placed((1.0, 2.0, 3.0)), "point must have 2 components"),
-    (placed((0.0, 0.0)), "point must be on the side of the ball that the direction meets, less than 90 degrees"),
-    (placed((0.31 * R, R)), "0.31 or -0.31; got one at 0.3"),
+    (place_call((R, 1.5 * R)), "R = 0.0286 m; got (0.0286, 0.0429"),
+    (place_call((nan, R)), "point must be in (-inf, inf) m; got nan at index 0"),
+    (place_call(direction=(0, inf, 0)), "got inf at index 1"),
+    (place_call(direction=(0, 0, 0)), "direction must have a length; got (0, 0, 0)"),
+    (place_call(direction=(0, 1)), "direction must have 3 components"),
+    (place_call((1.0, 2.0, 3.0)), "point must have 2 components"),
+    (place_call((0.0, 0.0)), "point must be on the side of the ball that the direction meets, less than 90 degrees"),
+    (place_call((0.31 * R, R)), "0.31 or -0.31; got one at 0.3"),
 ]
 
 
-@pytest.mark.parametrize(("ask", "message"), CALLS)
-def test_calls(ask: Callable[[], object], message: str) -> None:
-    refuses(ask, message)
+@pytest.mark.parametrize(("call", "message"), CALLS)
+def test_contact_invalid_input_raises(call: Callable[[], object], message: str) -> None:
+    assert_raises(call, message)
 
 
 def test_contact_input_at_bound_is_accepted() -> None:

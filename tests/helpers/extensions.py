@@ -23,12 +23,12 @@ from cuefem.results.quantities import Result, of_drawing, of_strike
 from tests.helpers.command_line import call
 
 
-def faces(scene: cf.Scene, folder: Path, *names: str) -> dict[str, str]:
+def outputs(scene: cf.Scene, folder: Path, *names: str) -> dict[str, str]:
     """The words that these faces show of a scene: commands, the JSON of the report, the designer."""
     file = folder / "scene.toml"
     cf.save(scene, file)
 
-    def shown(name: str) -> str:
+    def text_of(name: str) -> str:
         if name == "json":
             return call("report", file, "--json")[1]
         if name == "designer":
@@ -36,12 +36,12 @@ def faces(scene: cf.Scene, folder: Path, *names: str) -> dict[str, str]:
             return tables_markup([tabulate_numbers(Step(Design("this", scene)), results)])
         return call(name, file)[1]
 
-    return {name: " ".join(re.sub("<[^>]*>", "", shown(name)).split()) for name in names}
+    return {name: " ".join(re.sub("<[^>]*>", "", text_of(name)).split()) for name in names}
 
 
-def missing(words: str, shown: dict[str, str]) -> list[str]:
+def outputs_without(phrase: str, texts: dict[str, str]) -> list[str]:
     """The faces that do not show the words."""
-    return [name for name, text in shown.items() if words not in text]
+    return [name for name, text in texts.items() if phrase not in text]
 
 
 def _length(scene: Any) -> float | None:

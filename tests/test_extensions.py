@@ -19,17 +19,17 @@ from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.measurements.uncertain_parameters import parameters_of
 from cuefem.parameters.parameter import PARAMETERS, paths, with_parameters
 from cuefem.results.quantities import RESULTS
-from tests.helpers.made_up import (
+from tests.helpers.extensions import (
     DEFINITION,
     DRAWING_RESULT,
     PARAMETER,
     STRIKE_RESULT,
     cap_effect,
     collar_effect,
-    faces,
-    missing,
+    outputs,
+    outputs_without,
 )
-from tests.helpers.strike_scenes import imbalance, kim_scene
+from tests.helpers.strike_scenes import energy_residual, kim_scene
 
 AT = cf.Resolution(2, 8, 12)
 WOOD, BRASS = cf.Material(12.6e9, 0.84e9, 700.0), cf.Material(97e9, 37e9, 8500.0)
@@ -42,57 +42,62 @@ def _forgotten() -> Iterator[None]:
     """Made-up effects are gone when a test is over: files and tables list every effect that there is."""
     yield
     modules = [module for name, module in sys.modules.items() if name.startswith("cuefem.")]
-    for kept in [one for module in modules for one in vars(module).values() if hasattr(one, "cache_clear")]:
-        kept.cache_clear()
+    for cached in [one for module in modules for one in vars(module).values() if hasattr(one, "cache_clear")]:
+        cached.cache_clear()
     gc.collect()
 
 
-def test_a_parameter(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_added_parameter_is_varied_and_uncertain(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(PARAMETERS, PARAMETER.key, PARAMETER)
     scene = cf.usual_scene(RINGED)
     study = Study(scene, (Vary(("collar length",), Levels((0.005, 0.025))),), (Response.of("shaft_mass"),))
     assert study.units[0] == "m"
     assert study.scene((0.025,)).cue.segments[1].length == 0.025
-    (unknown,) = (each for each in parameters_of(scene, ()) if each.name == "collar length")
-    assert (unknown.label, unknown.unit, unknown.median, unknown.spread) == ("length of the collar", "m", 0.01, 0.1)
+    (uncertain,) = (each for each in parameters_of(scene, ()) if each.name == "collar length")
+    assert (uncertain.label, uncertain.unit, uncertain.median, uncertain.spread) == (
+        "length of the collar",
+        "m",
+        0.01,
+        0.1,
+    )
     plain = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.0125, 0.021, WOOD),), 0.42))
     with pytest.raises(ValueError, match="got 'collar length', which this scene does not have"):
         paths(plain, "collar length")
 
 
-def test_a_result(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_added_result_is_displayed_and_evaluated(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setitem(RESULTS, "sweet_spot", DRAWING_RESULT)
     monkeypatch.setitem(RESULTS, "push", STRIKE_RESULT)
     scene = kim_scene(0.3)
-    assert missing("sweet spot", faces(scene, tmp_path, "designer")) == []
-    numbers = json.loads(faces(scene, tmp_path, "json")["json"])["numbers"]
+    assert outputs_without("sweet spot", outputs(scene, tmp_path, "designer")) == []
+    numbers = json.loads(outputs(scene, tmp_path, "json")["json"])["numbers"]
     assert numbers["sweet_spot"] == pytest.approx(scene.shaft.length / 5, rel=1e-12)
     assert numbers["push"] == pytest.approx(2 * cf.strike(scene).ball_speed, rel=1e-12)
-    found = evaluate([scene], ["sweet_spot", "push(0.2)"], at=AT).values[0]
-    assert found == pytest.approx([0.14, 2 * cf.strike(kim_scene(0.2), AT).ball_speed], rel=1e-6)
+    values = evaluate([scene], ["sweet_spot", "push(0.2)"], at=AT).values[0]
+    assert values == pytest.approx([0.14, 2 * cf.strike(kim_scene(0.2), AT).ball_speed], rel=1e-6)
     with pytest.raises(ValueError, match="did you mean sweet_spot"):
         Response.of("sweet_spott")
 
 
-def test_a_definition_of_the_end_mass(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_added_end_mass_definition_is_displayed_and_evaluated(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setitem(DEFINITIONS, DEFINITION.name, DEFINITION)
     scene = kim_scene(0.3)
-    felt = cf.end_mass(scene, "rigid", AT)
-    assert cf.resolve_end_mass(scene, "rigid", 1e-3)[0] == pytest.approx(felt, rel=1e-6)
+    expected = cf.end_mass(scene, "rigid", AT)
+    assert cf.resolve_end_mass(scene, "rigid", 1e-3)[0] == pytest.approx(expected, rel=1e-6)
     assert cf.end_mass(cf.Scene(cf.LumpedCue(0.5, 0.006)), "rigid") == 0.006
-    assert missing("rigid, at b/R 0.3", faces(scene, tmp_path, "end-mass")) == []
-    assert missing("rigid body at b/R 0.3", faces(scene, tmp_path, "designer")) == []
-    found = evaluate([scene], ["end_mass_rigid", "end_mass_rigid(0.1)"], at=AT).values[0]
-    assert found == pytest.approx([felt] * 2, rel=1e-9)
+    assert outputs_without("rigid, at b/R 0.3", outputs(scene, tmp_path, "end-mass")) == []
+    assert outputs_without("rigid body at b/R 0.3", outputs(scene, tmp_path, "designer")) == []
+    values = evaluate([scene], ["end_mass_rigid", "end_mass_rigid(0.1)"], at=AT).values[0]
+    assert values == pytest.approx([expected] * 2, rel=1e-9)
 
 
 @pytest.mark.usefixtures("_forgotten")
-def test_an_effect_on_the_cue(tmp_path: Path) -> None:
-    made: Any = collar_effect()
+def test_added_cue_effect_is_displayed_saved_and_varied(tmp_path: Path) -> None:
+    kind: Any = collar_effect()
     bare = kim_scene(0.3)
-    scene = replace(bare, effects=(made(0.03, 4e-3),))
-    assert effect_kinds()["Collar"] is made
-    assert missing("Collar (position 30 mm, mass 4 g)", faces(scene, tmp_path, "strike")) == []
+    scene = replace(bare, effects=(kind(0.03, 4e-3),))
+    assert effect_kinds()["Collar"] is kind
+    assert outputs_without("Collar (position 30 mm, mass 4 g)", outputs(scene, tmp_path, "strike")) == []
     assert 'type = "Collar"' in (tmp_path / "scene.toml").read_text(encoding="utf-8")
     assert cf.load(tmp_path / "scene.toml").effects == scene.effects
     assert cf.strike(scene, AT).squirt > 1.01 * cf.strike(bare, AT).squirt
@@ -100,27 +105,27 @@ def test_an_effect_on_the_cue(tmp_path: Path) -> None:
     assert (added.listed, added.scene) == (False, scene)
     study = Study(scene, (Vary(("effects[0].mass",), Levels((0.0, 4e-3))),), (Response.of("squirt"),))
     assert (study.scene((4e-3,)), study.units[0]) == (scene, "kg")
-    assert with_parameters(scene, {"effects[0].mass": 5e-3}).effects == (made(0.03, 5e-3),)
+    assert with_parameters(scene, {"effects[0].mass": 5e-3}).effects == (kind(0.03, 5e-3),)
 
 
 @pytest.mark.usefixtures("_forgotten")
-def test_an_effect_at_the_tip() -> None:
+def test_added_tip_effect_acts_in_contact() -> None:
     cap: Any = cap_effect()
 
-    def struck(*effects: Any) -> cf.Scene:
+    def scene_with(*effects: Any) -> cf.Scene:
         return replace(kim_scene(0.4), effects=effects)
 
     others = (cf.PowerLawTip(1.5), cf.RollingContact())
-    aside, back = 0.009 * 0.4, 0.009 * (1 - np.sqrt(1 - 0.4**2))
-    terms = struck(cf.TipDome(0.007), cap(0.002)).contact_terms
-    assert terms.moment_arm(float(np.arcsin(0.4))) == pytest.approx((-aside, back), rel=1e-12)
-    whole = cf.strike(struck(cap(0.002), *others, cf.TipDome(0.007)), AT)
-    split = cf.strike(struck(*others, cap(0.0005), cf.TipDome(0.007), cap(0.0015)), AT)
-    assert imbalance(whole) < 1e-6
+    lateral, back = 0.009 * 0.4, 0.009 * (1 - np.sqrt(1 - 0.4**2))
+    terms = scene_with(cf.TipDome(0.007), cap(0.002)).contact_terms
+    assert terms.moment_arm(float(np.arcsin(0.4))) == pytest.approx((-lateral, back), rel=1e-12)
+    whole = cf.strike(scene_with(cap(0.002), *others, cf.TipDome(0.007)), AT)
+    split = cf.strike(scene_with(*others, cap(0.0005), cf.TipDome(0.007), cap(0.0015)), AT)
+    assert energy_residual(whole) < 1e-6
     assert split.squirt == pytest.approx(whole.squirt, rel=1e-9)
-    assert whole.squirt != cf.strike(struck(*others, cf.TipDome(0.007)), AT).squirt
-    assert struck(cap(0.002)).without_tip_effects == struck()
+    assert whole.squirt != cf.strike(scene_with(*others, cf.TipDome(0.007)), AT).squirt
+    assert scene_with(cap(0.002)).without_tip_effects == scene_with()
     with pytest.raises(ValueError, match="takes a tip without tangential compliance, a fixed normal"):
-        cf.strike(struck(cap(0.0, give=1.0), cf.Elevation(0.1)), AT)
+        cf.strike(scene_with(cap(0.0, give=1.0), cf.Elevation(0.1)), AT)
     with pytest.raises(ValueError, match=r"Scene\.effects must give the contact one window for a second hit; got"):
-        struck(cf.SecondHit(), cap(0.0, window=1e-3))
+        scene_with(cf.SecondHit(), cap(0.0, window=1e-3))

@@ -11,8 +11,8 @@ import pytest
 import cuefem as cf
 from cuefem.effects.force_law import LeatherLaw
 from tests.helpers.cues import pool
-from tests.helpers.refusals import refuses
-from tests.helpers.strike_scenes import KIM, imbalance, kim_scene
+from tests.helpers.invalid_input import assert_raises
+from tests.helpers.strike_scenes import KIM, energy_residual, kim_scene
 
 
 def listed(*effects: cf.Effect) -> Callable[[], cf.Scene]:
@@ -61,16 +61,16 @@ CALLS: list[tuple[Callable[[], object], str]] = [  # a line a raise, its first w
 ]
 
 
-@pytest.mark.parametrize(("ask", "message"), CALLS, ids=[message for _, message in CALLS])
-def test_calls(ask: Callable[[], object], message: str) -> None:
-    refuses(ask, message)
+@pytest.mark.parametrize(("call", "message"), CALLS, ids=[message for _, message in CALLS])
+def test_effect_invalid_input_raises(call: Callable[[], object], message: str) -> None:
+    assert_raises(call, message)
 
 
 def test_clamped_tip_has_strike_but_no_end_mass() -> None:
     clamped = replace(kim_scene(0.3), effects=(cf.Support(0.0, inf),))
-    assert imbalance(cf.strike(clamped)) < 1e-9
+    assert energy_residual(cf.strike(clamped)) < 1e-9
     for drive in ("stick", "velocity", "force"):
-        refuses(lambda drive=drive: cf.end_mass(clamped, drive), "the tip is clamped transversely")
+        assert_raises(lambda drive=drive: cf.end_mass(clamped, drive), "the tip is clamped transversely")
 
 
 def test_effect_input_at_bound_is_accepted() -> None:
@@ -103,7 +103,7 @@ FILES = [
 
 
 @pytest.mark.parametrize(("effect", "message"), FILES)
-def test_files(tmp_path: Path, effect: str, message: str) -> None:
+def test_effect_in_file_off_the_cue_raises(tmp_path: Path, effect: str, message: str) -> None:
     path = tmp_path / "scene.toml"
     path.write_text(SCENE.format(effect=effect), encoding="utf-8")
-    refuses(lambda: cf.load(path), f"{path}: {message}")
+    assert_raises(lambda: cf.load(path), f"{path}: {message}")

@@ -14,9 +14,9 @@ from cuefem.measurements.measurement_types import AddedMass, PivotLength, Setup,
 from cuefem.measurements.pendulum import Pendulum
 from cuefem.measurements.uncertain_parameters import Prior
 from tests.helpers.command_line import call
-from tests.helpers.measured_cues import DRAWING, SCENE, SOME, folder, measured_cue
+from tests.helpers.invalid_input import assert_raises, assert_rejects, assert_unchanged
+from tests.helpers.measured_cues import CUE_TOML, MEASURED_TOML, SCENE, measured_cue, measured_folder
 from tests.helpers.recordings import save_wav
-from tests.helpers.refusals import command_refuses, refuses, untouched
 
 SWING = {"release": (0.19,), "rebound": (-0.03,), "clamped_rebound": (0.15,)}
 GOOD = Pendulum(ball_mass=8e-3, thread_length=1.0, position=0.02, contact_time=1e-3, **SWING)  # type: ignore[arg-type]
@@ -51,7 +51,7 @@ CALLS: dict[str, Callable[[], object]] = {
 
 @pytest.mark.parametrize("message", CALLS)
 def test_invalid_arguments_are_rejected(message: str) -> None:
-    refuses(CALLS[message], message)
+    assert_raises(CALLS[message], message)
 
 
 PENDULUM = (
@@ -85,10 +85,10 @@ squirts.csv | offset\n | squirts.csv: must be one of weight.csv
 @pytest.mark.parametrize("row", FILES.strip().splitlines())
 def test_invalid_files_are_rejected(row: str, tmp_path: Path) -> None:
     name, text, message = row.split(" | ")
-    place = folder(tmp_path / "cue")
+    directory = measured_folder(tmp_path / "cue")
     text = (PENDULUM + text[1:]) if text[0] == "P" else text
-    (place / name).write_text(text.replace("\\n", "\n"), encoding="utf-8")
-    command_refuses(message, "compare", place)
+    (directory / name).write_text(text.replace("\\n", "\n"), encoding="utf-8")
+    assert_rejects(message, "compare", directory)
 
 
 NOISE, TIME = np.random.default_rng(3), np.arange(22050)[:, None] / 22050
@@ -105,10 +105,10 @@ SOUNDS: dict[str, tuple[np.ndarray | bytes, int]] = {
 
 @pytest.mark.parametrize("message", SOUNDS)
 def test_invalid_recordings_are_rejected(message: str, tmp_path: Path) -> None:
-    place, (samples, rate) = folder(tmp_path / "cue", '[[recording]]\nfile = "tap.wav"\n'), SOUNDS[message]
-    path = place / "tap.wav"
+    directory, (samples, rate) = measured_folder(tmp_path / "cue", '[[recording]]\nfile = "tap.wav"\n'), SOUNDS[message]
+    path = directory / "tap.wav"
     path.write_bytes(samples) if isinstance(samples, bytes) else save_wav(path, samples, rate)
-    command_refuses(message, "compare", place)
+    assert_rejects(message, "compare", directory)
 
 
 def test_template_write_failure_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -118,19 +118,21 @@ def test_template_write_failure_leaves_nothing(tmp_path: Path, monkeypatch: pyte
     template = ("compare", tmp_path / "cue", "--template")
     with monkeypatch.context() as patch:
         patch.setattr("cuefem.io.measured_folder.TEMPLATE", ("README.md", "none"))  # the second file cannot be read
-        untouched(tmp_path, "cannot be written", *template)
+        assert_unchanged(tmp_path, "cannot be written", *template)
         patch.setattr(Path, "write_text", full)
-        untouched(tmp_path, "cannot be written: No space left on device", *template)
+        assert_unchanged(tmp_path, "cannot be written: No space left on device", *template)
     assert call(*template)[0] == 0
-    untouched(tmp_path, "must be a new folder", *template)
+    assert_unchanged(tmp_path, "must be a new folder", *template)
 
 
 def test_invalid_folders_are_rejected(tmp_path: Path) -> None:
-    command_refuses("got no folder", "compare", tmp_path / "none")
+    assert_rejects("got no folder", "compare", tmp_path / "none")
     (empty := tmp_path / "empty").mkdir()
-    command_refuses("must contain the shaft's drawing, cue.toml or cue.csv; got none", "compare", empty)
-    untouched(tmp_path, "cannot be written: No such file", "compare", tmp_path / "no" / "folder", "--template")
-    scene = f"game = 'kim'\n[cue]\n{DRAWING.replace('[[segments]]', '[[cue.segments]]')}"
-    of_scene = folder(tmp_path / "scene", SOME, scene)
-    command_refuses("this file is the drawing; ball and tip belong in measured.toml", "compare", of_scene)
-    untouched(tmp_path, "cannot be written", "compare", folder(tmp_path / "cue"), "-o", tmp_path / "no" / "page.html")
+    assert_rejects("must contain the shaft's drawing, cue.toml or cue.csv; got none", "compare", empty)
+    assert_unchanged(tmp_path, "cannot be written: No such file", "compare", tmp_path / "no" / "folder", "--template")
+    scene = f"game = 'kim'\n[cue]\n{CUE_TOML.replace('[[segments]]', '[[cue.segments]]')}"
+    of_scene = measured_folder(tmp_path / "scene", MEASURED_TOML, scene)
+    assert_rejects("this file is the drawing; ball and tip belong in measured.toml", "compare", of_scene)
+    assert_unchanged(
+        tmp_path, "cannot be written", "compare", measured_folder(tmp_path / "cue"), "-o", tmp_path / "no" / "page.html"
+    )

@@ -15,7 +15,7 @@ from cuefem.cli.output import Output
 from tests.helpers.command_line import call
 
 
-def test_a_made_up_command_is_a_file_and_a_line(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_added_command_is_listed_completed_and_loaded_at_call(monkeypatch: pytest.MonkeyPatch) -> None:
     """It is listed, completed and called; and it is loaded when it is called, not before."""
     monkeypatch.setitem(COMMANDS, "sweet-spot", ("made_up_command:sweet_spot", "Places", "Where a hit stings least."))
     assert "Places:\n  sweet-spot  Where a hit stings least.\n" in call("--help")[1]
@@ -30,7 +30,7 @@ def test_a_made_up_command_is_a_file_and_a_line(monkeypatch: pytest.MonkeyPatch)
 
 
 @pytest.mark.parametrize(("name", "nearest"), [("endmass", "'end-mass'"), ("nonsense", None)])
-def test_an_unknown_name_is_refused_with_the_nearest(name: str, nearest: str | None) -> None:
+def test_unknown_command_suggests_nearest_name(name: str, nearest: str | None) -> None:
     hint = "" if nearest is None else f"; did you mean {nearest}?"
     status, out, err = call(name, "scene.toml")
     assert (status, out) == (2, "")
@@ -38,7 +38,7 @@ def test_an_unknown_name_is_refused_with_the_nearest(name: str, nearest: str | N
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_every_command_takes_the_same_options(name: str) -> None:
+def test_every_command_has_common_options(name: str) -> None:
     """--json is everywhere, and -o, which writes what the ending says; `convert` has a file of its own for that."""
     status, out, err = call(name, "--help")
     assert (status, err) == (0, "")
@@ -55,14 +55,14 @@ def test_every_command_takes_the_same_options(name: str) -> None:
     assert written is None or (written.opts == ["-o", "--output"] and ".html" in written.type.endings)  # type: ignore[attr-defined]
 
 
-def test_a_command_without_a_page_of_its_own_writes_what_it_prints(tmp_path: Path) -> None:
+def test_command_without_own_page_writes_printed_tables(tmp_path: Path) -> None:
     page, shaft = tmp_path / "modes.html", Path(__file__).parents[2] / "meshes/kim.toml"
     assert call("modes", shaft, "-o", page) == (0, f"wrote {page}\n", "")
-    text, told = page.read_text(encoding="utf-8"), json.loads(call("modes", shaft, "--json")[1])
-    assert all(f"{hertz:.2f} Hz" in text for hertz in told["frequencies"])
+    text, record = page.read_text(encoding="utf-8"), json.loads(call("modes", shaft, "--json")[1])
+    assert all(f"{hertz:.2f} Hz" in text for hertz in record["frequencies"])
 
 
-def test_a_list_of_the_commands_loads_none_of_them() -> None:
+def test_help_loads_no_command_module() -> None:
     program = "import sys; from cuefem.cli import main; main(['--help'], standalone_mode=False); print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert [name for name in done.stdout.splitlines()[-1].split() if name.startswith("cuefem.cli.")] == []

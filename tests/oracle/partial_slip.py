@@ -28,7 +28,7 @@ LEATHER = LeatherTip(height=6e-3, dome_radius=9.5e-3, E=140e6)
 RINGS = 400
 
 
-def struck_scene(
+def maple_scene(
     offset: float = 0.375,
     speed: float = 2.0,
     leather: LeatherTip = LEATHER,
@@ -71,7 +71,7 @@ class Patch:
         return min(max(float(self.stiff @ self.strain), -most), most)
 
 
-def stepped(scene: Scene, step: float = 1e-6) -> float:
+def small_step_squirt(scene: Scene, step: float = 1e-6) -> float:
     """Squirt, deg."""
     tip, ball, at, leather = scene.tip, scene.ball, scene.stroke, scene.effects[0]
     assert isinstance(leather, LeatherTip)
@@ -98,12 +98,12 @@ def stepped(scene: Scene, step: float = 1e-6) -> float:
         reach = modes.amplitude + np.outer(modes.rotation, leather.moment_arm(phi, diameter))
         return t, normal, reach
 
-    def turned(moved: np.ndarray, by_ball: np.ndarray) -> float:
+    def turned(motion: np.ndarray, by_ball: np.ndarray) -> float:
         """Angle that the contact turns by: the ball rolls over the dome or, from there on, over its rim, an edge."""
         t, _, reach = directions()
         on_rim = leather.dome_radius * abs(math.sin(phi)) >= diameter / 2
         centre, rolling = (reach, ball.radius) if on_rim else (dome_centre, ball.radius + leather.dome_radius)
-        return float(moved @ centre @ t - by_ball @ t) / rolling
+        return float(motion @ centre @ t - by_ball @ t) / rolling
 
     while True:
         t, normal, reach = directions()
@@ -112,18 +112,18 @@ def stepped(scene: Scene, step: float = 1e-6) -> float:
         velocity, spin = velocity + force * step / (2 * ball.mass), spin + F_t * step / (2 * inertia)
         old = z
         z = turn @ z
-        moved = z[:n] - old[:n]
-        phi += turned(moved, velocity * step) / 2
+        motion = z[:n] - old[:n]
+        phi += turned(motion, velocity * step) / 2
         t, normal, reach = directions()  # about the middle of the step
-        near = velocity * step - moved @ reach
-        depth -= float(near @ normal)
-        phi += turned(moved, velocity * step) / 2
+        approach = velocity * step - motion @ reach
+        depth -= float(approach @ normal)
+        phi += turned(motion, velocity * step) / 2
         loading, peak = loading and depth >= peak, max(peak, depth)
         eta = depth if loading else (depth - (1 - law.restitution**2) * peak) / law.restitution**2
         if eta <= 0:
             break
         F_n = float(law.at(np.array([eta]))[0][0])
-        F_t = patch.shift(-(float(near @ t) + spin * step), eta, F_n)
+        F_t = patch.shift(-(float(approach @ t) + spin * step), eta, F_n)
         t, normal, reach = directions()
         force = F_n * normal + F_t * t
         z[2 * n :] -= reach @ force * step / 2

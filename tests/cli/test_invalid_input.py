@@ -12,7 +12,7 @@ import pytest
 import cuefem as cf
 from cuefem.cue.materials import material
 from tests.helpers.command_line import call
-from tests.helpers.refusals import untouched
+from tests.helpers.invalid_input import assert_unchanged
 
 GOOD = """
 [[segments]]
@@ -93,16 +93,16 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("refused")
     for name, content in FILES.items():
         (folder / name).write_text(content)
-    for name, thing in SAVED.items():
-        cf.save(thing, folder / name)
+    for name, item in SAVED.items():
+        cf.save(item, folder / name)
     return folder
 
 
 @pytest.mark.parametrize("row", COMMANDS)
-def test_commands(folder: Path, monkeypatch: pytest.MonkeyPatch, row: str) -> None:
+def test_command_invalid_input_prints_one_line(folder: Path, monkeypatch: pytest.MonkeyPatch, row: str) -> None:
     command, message = row.split(" | ")
     monkeypatch.chdir(folder)
-    untouched(folder, message, *shlex.split(command))
+    assert_unchanged(folder, message, *shlex.split(command))
 
 
 ECHOED = [
@@ -114,7 +114,7 @@ ECHOED = [
 
 
 @pytest.mark.parametrize(("file", "options"), ECHOED)
-def test_what_is_echoed_is_short_and_printable(file: str, options: list[str], tmp_path: Path) -> None:
+def test_error_message_of_long_text_is_short_and_printable(file: str, options: list[str], tmp_path: Path) -> None:
     path = tmp_path / "x.toml"
     path.write_text(file.replace("LONG", "y" * 3000).replace("DIGITS", "9" * 150), encoding="utf-8")
     status, out, err = call("modes", path, *(option.replace("LONG", "y" * 3000) for option in options))
@@ -123,7 +123,7 @@ def test_what_is_echoed_is_short_and_printable(file: str, options: list[str], tm
     assert len(err.replace(str(path), "")) < 420
 
 
-def test_output_that_cannot_be_written() -> None:
+def test_command_on_full_disk_prints_one_line() -> None:
     program = "from cuefem.cli import main; main()"
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
     environment.pop("PYTHONUNBUFFERED", None)  # what stays in the buffer would fail once more at the end
@@ -134,25 +134,27 @@ def test_output_that_cannot_be_written() -> None:
 
 
 @pytest.mark.parametrize(
-    ("command", "was", "size", "words"),
+    ("command", "was", "size", "message"),
     [
         ("strike", "700 mm", "1e-300 m", "overflow"),
         ("report", "12 mm", "0.012 mm", "a leather tip on 0.012 mm must be 0.0006 to 0.036 mm high; got 6 mm"),
     ],
 )
-def test_sizes_out_of_all_proportion(command: str, was: str, size: str, words: str, tmp_path: Path) -> None:
+def test_extreme_size_prints_one_line_after_warnings(
+    command: str, was: str, size: str, message: str, tmp_path: Path
+) -> None:
     """In bounds, but no double holds what follows from them: status 2, said in one line behind the remarks."""
     path = tmp_path / "cue.toml"
     path.write_text(re.sub("(tip|butt)_bore.*", "", GOOD).replace(was, size), encoding="utf-8")
     status, out, err = call(command, path)
-    *remarks, last = err.splitlines()
+    *warnings, last = err.splitlines()
     assert (status, out) == (2, "")
-    assert remarks
-    assert all(line.startswith("warning") for line in remarks)
-    assert words in last
+    assert warnings
+    assert all(line.startswith("warning") for line in warnings)
+    assert message in last
 
 
-def test_more_memory_than_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_command_out_of_memory_prints_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: object, **__: object) -> None:
         raise MemoryError
 

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from cuefem import Scene
 
 
-class Told(NamedTuple):
+class ImpulseSolution(NamedTuple):
     """What the oracle says, in SI; tangent: tan of the squirt; pulls: the friction law's course."""
 
     tangent: Any
@@ -23,7 +23,7 @@ class Told(NamedTuple):
     pulls: list[str]
 
 
-def exact(scene: Scene, digits: int = 60) -> Told:
+def exact_impulse(scene: Scene, digits: int = 60) -> ImpulseSolution:
     """The stroke in decimal arithmetic: straight pieces of velocity, roots of lines and parabolas."""
     cue, ball, tip = scene.cue, scene.ball, scene.tip
     with localcontext() as context:
@@ -35,7 +35,7 @@ def exact(scene: Scene, digits: int = 60) -> Told:
         return _exact(x, M=M, U=Decimal(scene.stroke.speed))
 
 
-def _exact(x: dict[str, Decimal], *, M: Decimal, U: Decimal) -> Told:
+def _exact(x: dict[str, Decimal], *, M: Decimal, U: Decimal) -> ImpulseSolution:
     s, e, mu, nu = x["b"], x["e"], x["mu"], x["nu"]
     c = (1 - s * s).sqrt()
 
@@ -83,7 +83,7 @@ def _exact(x: dict[str, Decimal], *, M: Decimal, U: Decimal) -> Told:
         spent, v_n = normal_work, Decimal(0)
     p_u, p_w = s * p_t + c * p_n, c * p_t - s * p_n
     free = 1 - x["coupling"] ** 2 / (x["along"] * x["across"])
-    return Told(
+    return ImpulseSolution(
         tangent=-p_w / p_u,
         p_t=M * U * p_t,
         p_n=M * U * p_n,
@@ -94,7 +94,7 @@ def _exact(x: dict[str, Decimal], *, M: Decimal, U: Decimal) -> Told:
     )
 
 
-def regime_of(told: Told) -> str:
+def regime_of(told: ImpulseSolution) -> str:
     """The regime in the words of `Outcome`, from the course of friction."""
     if any(pull.startswith("reversed") for pull in told.pulls):
         return "slip reversal"

@@ -10,14 +10,14 @@ import cuefem as cf
 from cuefem import end_mass
 from cuefem.endmass.definitions import equivalent_end_mass
 from tests.helpers.cues import kim, scene
-from tests.helpers.refusals import refuses
+from tests.helpers.invalid_input import assert_raises
 
 SCENE = scene(kim(), 1e-3)
 
 
 def test_end_mass_unknown_drive_raises() -> None:
     message = "end_mass drive must be one of stick, offset, velocity, force, squirt; got 'push'"
-    refuses(lambda: end_mass(SCENE, "push"), message)
+    assert_raises(lambda: end_mass(SCENE, "push"), message)
 
 
 @pytest.mark.parametrize("mass", [1e-4, 1e-3, 0.01, 0.05])
@@ -28,5 +28,5 @@ def test_equivalent_end_mass_sliding_tip_raises(mass: float) -> None:
     slid = replace(cf.impulse(scene), regime="late stick")  # as if a vibrating cue had this squirt and stuck at the end
     with pytest.raises(ValueError, match="no single lumped end mass"):
         equivalent_end_mass(slid, scene)
-    held = replace(scene, cue=cf.LumpedCue(0.54, 0.15))
-    assert equivalent_end_mass(cf.impulse(held), held) == pytest.approx(0.15, rel=1e-9)
+    sticking = replace(scene, cue=cf.LumpedCue(0.54, 0.15))
+    assert equivalent_end_mass(cf.impulse(sticking), sticking) == pytest.approx(0.15, rel=1e-9)
