@@ -34,16 +34,16 @@ def guide(chapter: str | None, output: Path | None, in_terminal: bool, as_json: 
     CHAPTER opens one chapter (--print: prints it). For makers: what_squirt_is, measure_your_shaft, read_the_report,
     change_it, weigh_and_tap or what_not_to_believe. For engineers: start, model, files, study, working, frame,
     inverse_mass, impulse_solver, beam, solid, strike, contact, end_mass, side, effects, measured, measuring, accuracy,
-    paper, glossary or sources.
+    paper, glossary, terms or sources.
     """
-    asked = [part for part in chapters() if chapter in (None, part.name)]
+    requested = [part for part in chapters() if chapter in (None, part.name)]
     if as_json:
-        print_json({part.name: part.text for part in asked})
+        print_json({part.name: part.text for part in requested})
         return
     if in_terminal:
         if output is not None:
             raise InputError(output, "--output", "cannot be combined with --print, which writes no page")
-        _print([part.text for part in asked])
+        _print([part.text for part in requested])
         return
 
     if output is not None:
@@ -51,8 +51,8 @@ def guide(chapter: str | None, output: Path | None, in_terminal: bool, as_json: 
         click.echo(f"wrote {output}")
         return
 
-    with tempfile.NamedTemporaryFile(prefix="cuefem-guide-", suffix=".html", delete=False) as made:
-        path = Path(made.name)
+    with tempfile.NamedTemporaryFile(prefix="cuefem-guide-", suffix=".html", delete=False) as file:
+        path = Path(file.name)
     path.write_text(page(), encoding="utf-8")
     address = path.as_uri() + (f"#{chapter}" if chapter else "")
     click.echo(f"opened {address}" if webbrowser.open(address) else f"no browser found; open this file in one: {path}")

@@ -39,6 +39,7 @@ CHAPTERS = (
     "accuracy",
     "paper",
     "glossary",
+    "terms",
     "sources",
 )
 # The headed lines of every effect's docstring, in their order.

@@ -19,6 +19,7 @@ BANNED = (
 
 def test_banned_phrases_are_absent_from_texts() -> None:
     pages = [path for path in (ROOT / "cuefem").rglob("*") if path.suffix in (".py", ".md", ".j2", ".toml")]
+    pages.remove(ROOT / "cuefem/handbook/terms.md")  # which lists them
     whole = {path: " ".join(path.read_text(encoding="utf-8").lower().split()) for path in (*pages, ROOT / "README.md")}
     matches = {str(path): [phrase for phrase in BANNED if phrase in text] for path, text in whole.items()}
     assert {path: phrases for path, phrases in matches.items() if phrases} == {}
