@@ -1,27 +1,5 @@
 """Finite-element cues and their geometry, lumped cues, and the table of materials."""
 
-from cuefem.cue.geometry import (
-    MAX_LEATHER_MODULUS,
-    Array,
-    Cue,
-    LumpedCue,
-    Material,
-    Section,
-    Segment,
-    SegmentRows,
-    section_properties,
-    shear_coefficient,
-)
+from cuefem.cue.geometry import MAX_LEATHER_MODULUS, Array, Cue, LumpedCue, Material, Section, Segment
 
-__all__ = [
-    "MAX_LEATHER_MODULUS",
-    "Array",
-    "Cue",
-    "LumpedCue",
-    "Material",
-    "Section",
-    "Segment",
-    "SegmentRows",
-    "section_properties",
-    "shear_coefficient",
-]
+__all__ = ["MAX_LEATHER_MODULUS", "Array", "Cue", "LumpedCue", "Material", "Section", "Segment"]

@@ -177,10 +177,6 @@ class Segment:
 
     def __post_init__(self) -> None:
         check_fields(self)
-        for name, value in (("material", self.material), ("core", self.core)):
-            if isinstance(value, str):
-                hint = f"cuefem.cue.materials.material({value!r}) is the material of that name"
-                raise TypeError(f"Segment.{name} must be a Material; got {value!r}: {hint}")
         check_kind("Segment.material", self.material, Material)
         check_kind("Segment.core", self.core, (Material, type(None)))
         for end in ("tip", "butt"):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Mapping
 from dataclasses import fields, replace
-from difflib import get_close_matches
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -13,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.cue.geometry import Material
+from cuefem.quantity.fields import suggestion
 
 
 class MaterialEntry(NamedTuple):
@@ -77,7 +77,8 @@ def material(name: str) -> Material:
     plain = " ".join(name.replace("_", " ").replace("-", " ").casefold().split())
     plain = _ALSO.get(plain, plain)
     if plain not in MATERIALS:
-        raise ValueError(f"no material is called {name!r}; {_offer(plain)}")
+        hint = suggestion(plain, MATERIALS) or f"; known: {', '.join(MATERIALS)}"
+        raise ValueError(f"no material is called {name!r}{hint}")
     return MATERIALS[plain].material
 
 
@@ -93,14 +94,3 @@ def material_name(material: Material) -> str:
     if name is None:
         return f"E {material.E / 1e9:.4g} GPa"
     return name if MATERIALS[name].material == material else f"{name} of {material.rho:.0f} kg/m³"
-
-
-def _offer(name: str) -> str:
-    """The materials nearest to a name: of its kind, with one of its words, or of similar spelling."""
-    words = {word for word in name.split() if len(word) > 2}
-    kinds = [kind for kind, names in _TABLES["words"].items() if words & {*names}]
-    alike = (known for known in _ROWS if words & {*known.split()} or known.startswith(tuple(words)))
-    near = [*(known for known, row in _ROWS.items() if row["kind"] in kinds), *alike]
-    near = near or get_close_matches(name, MATERIALS, n=3, cutoff=0.6)
-    near = near or [m for m in _ROWS if any(get_close_matches(word, m.split(), cutoff=0.7) for word in words)]
-    return f"nearest: {', '.join(dict.fromkeys(near))}" if near else f"known: {', '.join(MATERIALS)}"

@@ -10,7 +10,8 @@ import numpy as np
 from cuefem.beam.modes import Modes
 from cuefem.beam.system import Points
 from cuefem.beam.tip_modes import TipModes
-from cuefem.cue import Array, Cue, Section, Segment, SegmentRows, section_properties
+from cuefem.cue import Array, Cue, Section, Segment
+from cuefem.cue.geometry import SegmentRows, section_properties
 from cuefem.effects.rod_modes import RodModes
 
 

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 import cuefem as cf
-from cuefem.cue import shear_coefficient
+from cuefem.cue.geometry import shear_coefficient
 from cuefem.cue.materials import material
 from cuefem.solid.meridian_mesh import Fineness
 from cuefem.solid.shaft import SolidBody

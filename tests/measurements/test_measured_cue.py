@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.cue import shear_coefficient
+from cuefem.cue.geometry import shear_coefficient
 from cuefem.measurements.measured_cue import compare, offset_zeros
 from cuefem.measurements.measurement_types import (
     AddedMass,
