@@ -11,8 +11,8 @@ import numpy as np
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.modal_response import ModalPropagator, propagator_of
 from cuefem.cue import Array
-from cuefem.effects.contact_terms import CentralImpact, ContactTerms, TipModel
-from cuefem.effects.force_law import LeatherLaw, TipLaw
+from cuefem.effects.contact_terms import ContactTerms, PowerLaw, TipModel
+from cuefem.effects.force_law import LeatherLaw, TipLaw, contact_time_ratio
 from cuefem.scene import Scene
 
 # A tip of small restitution e unloads 1/e times as fast as it loads, and takes as many steps. Lower bounds of spring
@@ -208,9 +208,9 @@ def _leather(scene: Scene, whole: TipModel, common: dict[str, Any]) -> dict[str,
 
 def _power_tip(scene: Scene, terms: ContactTerms, common: dict[str, Any]) -> dict[str, Any]:
     """The terms of a power-law tip, that of an effect or the linear one; its patch is rigid or a spring."""
-    law, time = TipLaw(float(scene.stiffness), 1.0, common["restitution"]), float(common["time"])
-    if terms.law is not None:
-        law, time = terms.law(CentralImpact(scene.reduced_mass, common["restitution"], time, common["speed"]))
+    exponent, speed = terms.law or PowerLaw(1.0, common["speed"])
+    usual = {"mass": scene.reduced_mass, "speed": speed, "time": common["time"]}
+    law = TipLaw.for_contact_time(exponent, common["restitution"], **usual)
     compliance = terms.compliance / scene.stiffness
     patch = SPRING_PATCH if compliance else RIGID_PATCH
     return {
@@ -218,7 +218,7 @@ def _power_tip(scene: Scene, terms: ContactTerms, common: dict[str, Any]) -> dic
         "patch": patch,
         "terms": power_law(law) | {"compliance": compliance},
         "arrays": {},
-        "time": time,
+        "time": common["time"] * contact_time_ratio(exponent, common["speed"] / speed),
     }
 
 

@@ -98,8 +98,7 @@ class Striker:
         if self.stiffness is not None:
             return TipLaw(self.stiffness, 1.0, self.restitution)
         assert self.contact_time is not None
-        root = math.pi / 2 * (1 + self.restitution) / self.contact_time
-        return TipLaw(self.mass * root**2, 1.0, self.restitution)
+        return TipLaw.for_contact_time(1.0, self.restitution, mass=self.mass, speed=1.0, time=self.contact_time)
 
     def wall_time(self, speed: float) -> float:
         """How long the striker touches a wall that does not give, s; speed: m/s, which only Hertz's law depends on."""

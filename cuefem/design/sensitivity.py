@@ -139,7 +139,7 @@ def _stick(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
     in the modes' phi^2; a response R(omega) is the derivative of J to the phi^2 of a mode of this frequency.
     """
     limit, omega = StickLimit.of(scene), np.sqrt(squares)
-    T, c, K = float(limit.T), float(limit.c), float(limit.K)
+    T, c, K = limit.T, limit.c, limit.K
     tip = ImpulseResponse(np.append(rigid, phi**2).astype(complex), 1j * np.append(0.0, omega))
     h, t = T / STEPS, T / STEPS * np.arange(STEPS)
     velocity_after, column = tip.mean_velocities_with_ball(c, T)
@@ -163,7 +163,7 @@ def _stick(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
 
     impulses = np.append(first_impulse, first_impulse + h * np.cumsum(force))
     J, to_K, still = float(edges @ impulses), float(normal @ impulses), float(R(np.full(1, 1e-9 / T))[0])
-    m = float(limit.end_mass(J))
+    m = limit.end_mass(J)
     scale = m**2 * (K - 1) / J**2  # dm/dJ at fixed c and K
     M, m_a, head_on = scene.ball.mass, scene.axial_mass, limit.reduced_mass
     # K = (1 + e)(c + 1/m_a)/(1/M + 1/m_a), c proportional to 1/M

@@ -7,19 +7,10 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from cuefem.effects.force_law import LeatherLaw, TipLaw
+from cuefem.effects.force_law import LeatherLaw
 
 if TYPE_CHECKING:
     from cuefem.effects.effect import Effect
-
-
-class CentralImpact(NamedTuple):
-    """A central impact: reduced mass, kg; restitution; contact time of the base model, s; stroke speed, m/s."""
-
-    mass: float
-    restitution: float
-    time: float
-    speed: float
 
 
 @dataclass(frozen=True)
@@ -40,8 +31,11 @@ class TipModel:
     law: Callable[[float, float, float], LeatherLaw]
 
 
-# From a central impact to the force-indentation law and the approximate contact time, s.
-TipLawFactory = Callable[[CentralImpact], tuple[TipLaw, float]]
+class PowerLaw(NamedTuple):
+    """The exponent of a tip's force, and the speed, m/s, of the head-on stroke that has the tip's contact time."""
+
+    exponent: float
+    speed: float
 
 
 class BilliardTable(NamedTuple):
@@ -64,7 +58,7 @@ ONCE = {
 class ContactTerms:
     """Terms of the contact; each effect of a scene adds its own (`Effect.add_to_contact`), in any order.
 
-    tip_diameter: of the cue's end, m; None for a lumped cue. law: makes the force-indentation law, by default linear.
+    tip_diameter: of the cue's end, m; None for a lumped cue. law: of the force over the indentation, by default linear.
     tip: a complete tip model. turns: whether the normal turns as the contact rolls over ball and tip. table: under the
     ball of a raised cue. window: simulated time after the first separation, s. They become the kernel's input in
     `cuefem.contact.contact_model`.
@@ -74,7 +68,7 @@ class ContactTerms:
         self.tip_diameter = tip_diameter
         self.dome_radii: list[float] = []
         self.compliances: list[float] = []
-        self.law: TipLawFactory | None = None
+        self.law: PowerLaw | None = None
         self.tip: TipModel | None = None
         self.turns: bool | None = None
         self.table: BilliardTable | None = None

@@ -14,6 +14,7 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial import Polynomial
 
 from cuefem.cue import Array
 
@@ -47,10 +48,8 @@ class TipLaw:
 
 def loading_time(exponent: float) -> float:
     """Time to the maximum indentation, in depth over speed: the integral of 1/sqrt(1 - s^(n + 1)) over 0..1."""
-    from scipy.special import gamma  # loaded when used: a scene alone needs no scipy
-
     power = 1 / (exponent + 1)
-    return float(math.sqrt(math.pi) * gamma(1 + power) / gamma(0.5 + power))
+    return float(math.sqrt(math.pi) * math.gamma(1 + power) / math.gamma(0.5 + power))
 
 
 def contact_time_ratio(exponent: float, ratio: float) -> float:
@@ -58,9 +57,7 @@ def contact_time_ratio(exponent: float, ratio: float) -> float:
     return float(ratio ** ((1 - exponent) / (1 + exponent)))
 
 
-# Terms of the two series.
-TERMS = 7
-TINY = 1e-300  # stands for nothing in a divisor
+TERMS = 7  # of the two series
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(48)
 _ANGLES = (1 + _GAUSS) * math.pi / 4
 
@@ -93,11 +90,6 @@ class LeatherLaw:
     restitution: float
     depth_limit: float
 
-    def __post_init__(self) -> None:
-        if len(self.force_terms) != len(self.compliance_terms):  # the kernel reads as many of one as of the other
-            counts = f"{len(self.force_terms)} and {len(self.compliance_terms)}"
-            raise ValueError(f"LeatherLaw takes as many force_terms as compliance_terms; got {counts}")
-
     @classmethod
     def fitted(cls, curves: Curves, restitution: float) -> LeatherLaw:
         """The law through the curves, by least squares of relative differences."""
@@ -106,63 +98,46 @@ class LeatherLaw:
         return cls(force, give, restitution, float(curves.depth[-1]))
 
     @cached_property
-    def _terms(self) -> Array:
-        """F and y^2/k_t in the powers of y, 1 and up: (2, powers)."""
-        terms = np.zeros((2, 2 + len(self.force_terms)))
-        terms[0, 2:], terms[1, : len(self.compliance_terms)] = self.force_terms, self.compliance_terms
-        return terms
+    def _force(self) -> Polynomial:
+        """F in y, the root of the virtual indentation."""
+        return Polynomial([0, 0, 0, *self.force_terms])
 
-    def _powers(self, depth: Array) -> Array:
-        """Powers of y, 1 and up, at virtual compressions (n,): (powers, n)."""
-        powers = np.empty((self._terms.shape[1], *np.shape(depth)))
-        powers[:] = np.sqrt(np.maximum(depth, 0.0))
-        return np.asarray(np.multiply.accumulate(powers, axis=0, out=powers))
+    def at(self, depth: Any) -> tuple[Any, Any]:
+        """(F, k_t), N and N/m, at virtual indentations, m; zero where negative."""
+        y = np.sqrt(np.maximum(depth, 0.0))
+        return self._force(y), y / Polynomial(self.compliance_terms)(y)
 
-    def at(self, depth: Array) -> tuple[Array, Array]:
-        """(F, k_t), N and N/m, at virtual indentations, m, (n,); zero where negative."""
-        powers = self._powers(depth)
-        force, give = self._terms @ powers
-        return force, powers[1] / (give + TINY)
+    def slope(self, depth: Any) -> Any:
+        """Slope of F over the virtual indentation, N/m: dF/dy over 2 y."""
+        return Polynomial(self._force.deriv().coef[1:])(np.sqrt(np.maximum(depth, 0.0))) / 2
 
-    def slope(self, depth: Array) -> Array:
-        """Slope of F over the virtual indentation, N/m, (n,)."""
-        powers = self._powers(depth)
-        force = self._terms[0] * np.arange(1, len(powers) + 1) @ powers  # y times what it is over y
-        by = 2 * powers[1]
-        return np.divide(force, by, out=np.zeros_like(force), where=by > 0)
+    @cached_property
+    def _work(self) -> Polynomial:
+        return Polynomial([0, *2 * self._force.coef]).integ()
 
     def work(self, depth: Any) -> Any:
-        """Work of loading to an indentation, J."""
-        y = np.sqrt(np.maximum(depth, 0.0))
-        return sum(2 / (5 + k) * term * y ** (5 + k) for k, term in enumerate(self.force_terms))
+        """Work of loading to an indentation, J: the integral of 2 y F."""
+        return self._work(np.sqrt(np.maximum(depth, 0.0)))
 
     def loss(self, deepest: float) -> float:
         """Energy dissipated by loading to ``deepest``, m, and unloading, J."""
         return (1 - self.restitution**2) * float(self.work(deepest))
 
-    def central_impact(self, mass: Any, speed: Any) -> tuple[Any, Any]:
+    def central_impact(self, mass: float, speed: float) -> tuple[float, float]:
         """(maximum indentation, m, time to it, s) of a central impact of a reduced mass, kg, at a speed, m/s."""
-        mass, speed = np.broadcast_arrays(np.asarray(mass, float), np.asarray(speed, float))
-        energy = mass * speed**2 / 2
-        deepest = self._deepest(energy)
-        if np.max(deepest) > self.depth_limit:
-            raise self.too_deep(float(np.max(deepest)))
-        cosine, sine = np.cos(_ANGLES), np.sin(_ANGLES)
-        left = self.work(deepest)[..., None] - self.work(deepest[..., None] * cosine**2)
-        rates = 2 * deepest[..., None] * cosine * sine / np.sqrt(2 * left / mass[..., None])
-        time = rates @ _WEIGHTS * math.pi / 4
-        return deepest[()], time[()]
-
-    def _deepest(self, energy: Array) -> Array:
-        """Indentation of this loading work, by Newton's method in logarithms, where the law is nearly straight."""
-        depth = np.full(energy.shape, self.depth_limit)
-        for _ in range(60):
-            work = self.work(depth)
-            step = np.log(work / energy) * work / (depth * self.at(depth.ravel())[0].reshape(depth.shape))
-            depth = depth * np.exp(-np.clip(step, -1.0, 1.0))
-            if np.all(np.abs(step) < 1e-14):
+        energy, deepest = mass * speed**2 / 2, self.depth_limit
+        for _ in range(60):  # Newton's method in logarithms, where the law is nearly straight
+            work = float(self.work(deepest))
+            step = math.log(work / energy) * work / (deepest * float(self.at(deepest)[0]))
+            deepest *= math.exp(-min(max(step, -1.0), 1.0))
+            if abs(step) < 1e-12:
                 break
-        return depth
+        if deepest > self.depth_limit:
+            raise self.too_deep(deepest)
+        cosine, sine = np.cos(_ANGLES), np.sin(_ANGLES)
+        left = self.work(deepest) - self.work(deepest * cosine**2)
+        rates = 2 * deepest * cosine * sine / np.sqrt(2 * left / mass)
+        return deepest, float(rates @ _WEIGHTS) * math.pi / 4
 
     def too_deep(self, depth: float) -> IndentationOutOfRange:
         """The error of an indentation beyond the law's range."""

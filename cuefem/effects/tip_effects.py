@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-from cuefem.effects.contact_terms import CentralImpact, ContactTerms
+from cuefem.effects.contact_terms import ContactTerms, PowerLaw
 from cuefem.effects.effect import TipEffect, TrialValues
-from cuefem.effects.force_law import TipLaw, contact_time_ratio
 from cuefem.quantity.fields import Quantity
 
 
@@ -151,13 +150,7 @@ class PowerLawTip(TipEffect):
 
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The power law."""
-        terms.set_once("law", self._law)
-
-    def _law(self, impact: CentralImpact) -> tuple[TipLaw, float]:
-        law = TipLaw.for_contact_time(
-            self.exponent, impact.restitution, mass=impact.mass, speed=self.speed, time=impact.time
-        )
-        return law, impact.time * contact_time_ratio(self.exponent, impact.speed / self.speed)
+        terms.set_once("law", PowerLaw(self.exponent, self.speed))
 
 
 @dataclass(frozen=True)

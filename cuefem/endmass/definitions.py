@@ -54,10 +54,9 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
         - "force": a half-sine force acts on the tip.
         - "squirt": the lumped end mass with the squirt of the coupled strike.
     at
-        A `Resolution`. By default modes are retained by frequency (handbook: The beam): at least 160, or 40 for
-        "velocity" and "force" on a cue without a leather segment. At contact times of 0.5 to 3 ms, a stick end mass
-        differs from that of 400 modes by less than 0.03 % for 95 % of 50 shafts, and by at most 0.2 % for 50 whole cues
-        with joints and masses. Exceptions are metal tips that stick, and "force" through soft leather in less than 1
+        A `Resolution`. By default 160 modes are retained. At contact times of 0.5 to 3 ms, a stick end mass differs
+        from that of 400 modes by less than 0.03 % for 95 % of 50 shafts, and by at most 0.2 % for 50 whole cues with
+        joints and masses. Exceptions are metal tips that stick, and "force" through soft leather in less than 1
         ms; `cuefem.resolve_end_mass` estimates the error.
 
     Returns
@@ -125,7 +124,7 @@ def stick(tip: TipModes, scene: Scene) -> float:
     It has the squirt of `small_offset_slope`.
     """
     limit = StickLimit.of(scene)
-    return float(limit.end_mass(limit.impulse(small_offset_slope(tip, scene))))
+    return limit.end_mass(small_offset_slope(tip, scene) * limit.normal)
 
 
 def stick_at_offset(tip: TipModes, scene: Scene) -> float:
@@ -140,16 +139,12 @@ def stick_at_offset(tip: TipModes, scene: Scene) -> float:
     if _couples(tip, scene):
         here = replace(scene, stroke=Stroke(scene.stroke.speed, b))
         return _with_squirt(sticking_squirt(tip, here), without_slip(here), "offset") if b else stick(tip, here)
-    mass = float(_uncoupled(tip, scene, np.array([b]))[0])
-    if math.isnan(mass):
-        raise ValueError(f"end_mass drive 'offset': no end mass has the squirt of a sticking tip; got offset {b:g}")
-    return mass
+    limit = limit_at(scene, b)
+    return limit.end_mass(limit.transverse_impulse(tip))
 
 
 def stick_at_offsets(tip: TipModes, scene: Scene, offsets: Sequence[float]) -> list[float]:
     """`stick_at_offset` of each offset; nan where no end mass has that squirt."""
-    if not _couples(tip, scene):  # one linear solve for all
-        return [float(mass) for mass in _uncoupled(tip, scene, np.abs(offsets))]
 
     def mass(offset: float) -> float:
         try:
@@ -160,26 +155,15 @@ def stick_at_offsets(tip: TipModes, scene: Scene, offsets: Sequence[float]) -> l
     return [mass(offset) for offset in offsets]
 
 
-def _uncoupled(tip: TipModes, scene: Scene, offsets: Array) -> Array:
-    limit = limit_at(scene, offsets)
-    J = limit.transverse_impulse(_step_impulse(tip, StickLimit.of(scene)), scene.contact_time)
-    rest = np.divide(limit.K - 1, J, out=np.full(len(J), np.nan), where=J > 0) - limit.c
-    return np.divide(1.0, rest, out=np.full(len(J), np.nan), where=rest > 0)
-
-
-def limit_at(scene: Scene, offset: Any) -> StickLimit:
-    """The contact of a tip that sticks at offsets b/R >= 0. With a light cue end, the force is axial.
+def limit_at(scene: Scene, offset: float) -> StickLimit:
+    """The contact of a tip that sticks at an offset b/R >= 0. With a light cue end, the force is axial.
 
     Then F_t = F_n tan(phi). With D = 1 + 1/Q0 + sin(phi)^2/nu the contact is that of the mass M cos(phi)^2/D, of the
     length T cos(phi) sqrt((1 + 1/Q0)/D), and the tip's velocity is K P - 1, K = (1 + e)(1 + 1/nu + 1/Q0)/D.
     """
     limit, q = StickLimit.of(scene), scene.ball.mass / scene.axial_mass
     share = (1 + q) / (1 + q + offset**2 / scene.ball.inertia)
-    return replace(limit, K=limit.K * share, T=limit.T * np.sqrt((1 - offset**2) * share))
-
-
-def _step_impulse(tip: TipModes, limit: StickLimit) -> Array:
-    return ImpulseResponse.of(tip).velocity_step_impulse(limit.c, limit.T)
+    return limit._replace(K=limit.K * share, T=limit.T * math.sqrt((1 - offset**2) * share))
 
 
 def small_offset_slope(tip: TipModes, scene: Scene) -> float:
@@ -191,7 +175,7 @@ def small_offset_slope(tip: TipModes, scene: Scene) -> float:
     """
     if scene.lumped is None and not _couples(tip, scene):
         limit = StickLimit.of(scene)
-        return float(limit.slope(limit.transverse_impulse(_step_impulse(tip, limit), limit.T)))
+        return limit.transverse_impulse(tip) / limit.normal
     small = _near_centre(scene)
     return sticking_squirt(tip, small) / float(small.stroke.angle)
 
@@ -243,28 +227,33 @@ def equivalent_end_mass(outcome: Outcome, scene: Scene) -> float:
 
 def _with_squirt(squirt: float, scene: Scene, drive: str) -> float:
     """The lumped end mass, kg, whose impulse-solver squirt is ``squirt``, rad, away from the side struck."""
-    side, numbers = np.sign(scene.stroke.offset), impulse_inputs(scene, LumpedCue(scene.axial_mass, scene.axial_mass))
-
-    def excess(log_mass: Any) -> Any:
-        return side * impact(numbers | {"end_mass": np.exp(log_mass)}).squirt - squirt
-
-    log_masses = np.linspace(math.log(1e-9), math.log(1e3), SEARCH_POINTS)
-    excesses = excess(log_masses)
-    if (
-        not excesses[0] < -SQUIRT_TOLERANCE < SQUIRT_TOLERANCE < excesses[-1]
-    ):  # for all light end masses the tip slides at one squirt
+    cue, masses = LumpedCue(scene.axial_mass, scene.axial_mass), np.geomspace(1e-9, 1e3, SEARCH_POINTS)
+    mass = lumped_number("end_mass", masses, squirt, scene=scene, cue=cue)
+    if mass is None:
         raise ValueError(
             f"end_mass drive {drive!r}: no single lumped end mass in [1e-9, 1e3] kg has the squirt {squirt:.6g} rad"
         )
-    return math.exp(bracketed_root(excess, log_masses))
+    return mass
 
 
-def bracketed_root(function: Callable[[Array], Array], points: Array) -> float:
-    """First root, to round-off error, of a function that is negative at the first of ``points``, (n,) ascending."""
+def lumped_number(name: str, values: Array, squirt: float, *, scene: Scene, cue: LumpedCue) -> float | None:
+    """The least value of a number of a lumped cue, to round-off error, with which it squirts by ``squirt``, rad.
+
+    values: ascending, (n,), the range. squirt: away from the side struck. None unless squirt is less at the lower end
+    of the range, and more at the upper end: for all light end masses a tip that slides has one squirt.
+    """
+    side, numbers = np.sign(scene.stroke.offset), impulse_inputs(scene, cue)
+
+    def excess(values: Array) -> Array:
+        return np.asarray(side * impact(numbers | {name: values}).squirt - squirt)
+
+    least, *_, most = excess(values)
+    if not least < -SQUIRT_TOLERANCE < SQUIRT_TOLERANCE < most:
+        return None
     for _ in range(SEARCH_ROUNDS):
-        above = int(np.argmax(function(points) >= 0))
-        points = np.linspace(points[above - 1], points[above], len(points))
-    return float(points[-1])
+        above = int(np.argmax(excess(values) >= 0))
+        values = np.linspace(values[above - 1], values[above], len(values))
+    return float(values[-1])
 
 
 class Definition(NamedTuple):
@@ -272,8 +261,7 @@ class Definition(NamedTuple):
 
     name: the ``drive`` of `end_mass`. label: a short title. meaning: one sentence. value: the end mass of a vibrating
     cue, kg, from its tip modes and its scene. at_offset: whether it is the end mass at the scene's own offset.
-    includes_tip: whether it includes effects at the tip. smooth: whether the tip starts without a step of its velocity,
-    so that a strike's modes suffice.
+    includes_tip: whether it includes effects at the tip.
     """
 
     name: str
@@ -282,15 +270,10 @@ class Definition(NamedTuple):
     value: Callable[[TipModes, Scene], Any]
     at_offset: bool = False
     includes_tip: bool = False
-    smooth: bool = False
-
-    def tip_of(self, solved: SolvedScene) -> TipModes:
-        """The tip modes of a solved scene for this definition."""
-        return solved.smooth_tip if self.smooth else solved.stick_tip
 
     def of_solved(self, solved: SolvedScene) -> Any:
         """The end mass of a solved scene, kg."""
-        return self.of(self.tip_of(solved), solved.scene)
+        return self.of(solved.stick_tip, solved.scene)
 
     def of(self, tip: TipModes, scene: Scene) -> Any:
         """The end mass of any cue by this definition, kg; of a lumped cue its own."""
@@ -322,13 +305,11 @@ DEFINITIONS: dict[str, Definition] = {
             *("velocity", "velocity"),
             "impulse over final velocity, for a prescribed tip velocity (1 - cos(pi t/T))/2",
             velocity,
-            smooth=True,
         ),
         Definition(
             *("force", "force"),
             "impulse over final velocity, for a prescribed half-sine force of duration T",
             force,
-            smooth=True,
         ),
         Definition(
             *("squirt", "squirt-equivalent"),

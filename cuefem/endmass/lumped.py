@@ -10,11 +10,11 @@ import numpy as np
 
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.impulse_solver import impact, impulse_inputs
-from cuefem.cue import Array, LumpedCue
+from cuefem.cue import LumpedCue
 from cuefem.endmass.definitions import (
     SEARCH_POINTS,
-    bracketed_root,
     end_mass,
+    lumped_number,
     stick_at_offset,
     sticking_squirt,
     without_slip,
@@ -66,22 +66,12 @@ def lump_modes(scene: Scene, tip: TipModes) -> LumpedCue:
     cue = LumpedCue(scene.axial_mass, stick_at_offset(tip, scene.without_tip_effects))
     if not scene.at_tip or scene.stroke.offset == 0:
         return cue
-    return replace(cue, coupling=_coupling(cue, scene, sticking_squirt(tip, scene)))
-
-
-def _coupling(cue: LumpedCue, scene: Scene, squirt: float) -> float:
-    """The coupling, 1/kg, of a lumped cue without slip whose squirt is ``squirt``, rad."""
-    most, side = (1 - 1e-9) / math.sqrt(cue.mass * cue.end_mass), np.sign(scene.stroke.offset)
-    numbers = impulse_inputs(without_slip(scene), cue)
-
-    def excess(part: Array) -> Array:
-        return np.asarray(side * impact(numbers | {"coupling": part * most}).squirt - squirt)
-
-    parts = np.linspace(-1.0, 1.0, SEARCH_POINTS)
-    excesses = excess(parts)
-    if not excesses[0] < 0 < excesses[-1]:
+    most, squirt = (1 - 1e-9) / math.sqrt(cue.mass * cue.end_mass), sticking_squirt(tip, scene)
+    couplings = most * np.linspace(-1.0, 1.0, SEARCH_POINTS)
+    coupling = lumped_number("coupling", couplings, squirt, scene=without_slip(scene), cue=cue)
+    if coupling is None:
         raise ValueError(f"lump: no coupling of a lumped cue has the squirt {squirt:.6g} rad of a sticking tip")
-    return most * bracketed_root(excess, parts)
+    return replace(cue, coupling=coupling)
 
 
 def impulse(scene: Scene | Sequence[Scene]) -> Outcome:

@@ -30,13 +30,12 @@ def impact_record(scene: Scene) -> Record:
             indentation, loading = law.central_impact(scene.reduced_mass, speed)
         except ValueError:
             return dict.fromkeys(("contact_time", "force", "depth", "stiffness", "patch")) | {"speed": speed}
-        at = np.array([indentation])
         return {
             "speed": speed,
             "contact_time": (1 + law.restitution) * loading,
-            "force": float(law.at(at)[0][0]),
+            "force": float(law.at(indentation)[0]),
             "depth": float(indentation),
-            "stiffness": float(law.slope(at)[0]),
+            "stiffness": float(law.slope(indentation)),
             "patch": 2 * float(np.interp(indentation, depths, patches)),
         }
 

@@ -334,8 +334,7 @@ def as_scenes(name: str, scenes: Any) -> tuple[Scene, ...]:
 @lru_cache(maxsize=256)
 def _pressed(law: LeatherLaw, mass: float, speed: float) -> tuple[float, float]:
     """Maximum indentation and the time to it, cached for all strokes of a sweep at one speed."""
-    deepest, time = law.central_impact(mass, speed)
-    return float(deepest), float(time)
+    return law.central_impact(mass, speed)
 
 
 @dataclass(frozen=True)

@@ -33,9 +33,8 @@ PERIODS, TRUNCATED_SUM_PERIODS, MIN_MODES = 30, 60, 40
 # 70 random cues the modes left out change squirt by 2e-5 at most, for 2.5e-3 with a bare tip and twice as many.
 LEATHER_PERIODS, MIN_LEATHER_MODES = 15, 24
 # The end mass of a tip that sticks needs more: its velocity begins with a step, whose front comes back from the butt
-# at 2 L/c with frequencies of 10 to 80 kHz, whatever the contact time. A tip that is pushed or led from rest starts no
-# such front, and its end mass takes a strike's modes. The mesh resolves the first MESHED_MODES of them; the
-# others only add compliance: the end mass is as accurate as on a mesh for 160 (50 shafts, 50 whole cues).
+# at 2 L/c with frequencies of 10 to 80 kHz, whatever the contact time. The mesh resolves the first MESHED_MODES of
+# them; the others only add compliance: the end mass is as accurate as on a mesh for 160 (50 shafts, 50 whole cues).
 # Accuracy with these numbers: studies/accuracy/accuracy.md.
 MIN_STICK_MODES, MESHED_MODES = 160, 120
 # Never more than this by default, which a contact of a fraction of a millisecond would ask for: the tail does the rest,
@@ -99,23 +98,10 @@ class SolvedScene:
 
     @cached_property
     def stick_tip(self) -> TipModes:
-        """Tip modes for an end mass whose drive begins with a step: at least `MIN_STICK_MODES` of them by default."""
-        return self._at_least(MIN_STICK_MODES)
-
-    @property
-    def smooth_tip(self) -> TipModes:
-        """Tip modes for an end mass whose drive begins smoothly: `MIN_MODES` or more; on a leather segment `stick_tip`.
-
-        A leather segment of the drawing has resonances far above the modes of a strike, and a push of a millisecond
-        still excites them: with a strike's modes alone, the end mass by force was 0.9 % off for leather before brass.
-        """
-        lumped = self.scene.lumped is not None
-        return self._at_least(MIN_MODES) if lumped or not self.scene.shaft.leather else self.stick_tip
-
-    def _at_least(self, least: int) -> TipModes:
+        """Tip modes for an end mass, whose drive may begin with a step: at least `MIN_STICK_MODES` by default."""
         if self.at is not None or self.scene.lumped is not None:
             return self.tip
-        return tip_modes_from(self._default(default_mode_count(self.scene, least=least)), self.scene)
+        return tip_modes_from(self._default(default_mode_count(self.scene, least=MIN_STICK_MODES)), self.scene)
 
     def _default(self, count: int) -> Modes:
         return self._bending(count, corrected=True, meshed=min(count, MESHED_MODES))

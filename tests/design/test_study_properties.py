@@ -152,7 +152,7 @@ def test_evaluate_failed_design_does_not_affect_others() -> None:
     assert np.isnan(result.values[1, 0])
     assert np.isnan(result.values[2]).tolist() == [True, False, False]
     assert result.values[2, 1] < 0
-    assert f"a squirt of {result.values[2, 1]:.4g} phi" in result.reasons[2]
+    assert f"got {result.values[2, 1]:.4g} phi" in result.reasons[2]
 
 
 DEPTH = Vary(("cue.segments[2].length",), Span(0.05, 0.25), "bore depth", compensating_path=("cue.segments[3].length",))

@@ -9,7 +9,6 @@ from typing import Any
 import pytest
 
 import cuefem as cf
-from cuefem.effects.force_law import LeatherLaw
 from tests.helpers.cues import pool
 from tests.helpers.invalid_input import assert_raises
 from tests.helpers.strike_scenes import KIM, energy_residual, kim_scene
@@ -33,7 +32,6 @@ def with_tip(tip: cf.Tip, *effects: cf.Effect, **more: Any) -> Callable[[], cf.S
 
 
 CALLS: list[tuple[Callable[[], object], str]] = [  # a line a raise, its first words
-    (lambda: LeatherLaw((1.0, 2.0), (1.0,), 0.7, 1e-3), "as many force_terms as compliance_terms; got 2 and 1"),
     (listed(SHEAR, RAISED), "TipShear; got Elevation, which does not"),
     (lambda: replace(LEATHER, dome_radius=6e-3).mass(0.013), "must have a radius of 6.5 mm or more, half of"),
     (lambda: replace(LEATHER, height=2e-3).mass(0.01275), "must be higher than 2.457 mm, the depth"),
