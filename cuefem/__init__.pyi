@@ -14,21 +14,21 @@ from .contact.tip_identification import identify_tip as identify_tip
 from .contact.tip_identification import rebound as rebound
 from .cue.geometry import Cue as Cue, LumpedCue as LumpedCue, Material as Material, Segment as Segment
 from .design.design_changes import design_changes as design_changes
-from .effects import (
+from .effects.cue_effects import (
     AxialWaves as AxialWaves,
-    Effect as Effect,
-    Elevation as Elevation,
     GeometricStiffness as GeometricStiffness,
     Joint as Joint,
-    LeatherTip as LeatherTip,
     PointMass as PointMass,
-    PowerLawTip as PowerLawTip,
-    RollingContact as RollingContact,
-    SecondHit as SecondHit,
     StructuralDamping as StructuralDamping,
     Support as Support,
+)
+from .effects.effect import Effect as Effect
+from .effects.stroke_effects import Elevation as Elevation, SecondHit as SecondHit
+from .effects.leather_tip import LeatherTip as LeatherTip, TipLayer as TipLayer
+from .effects.tip_effects import (
+    PowerLawTip as PowerLawTip,
+    RollingContact as RollingContact,
     TipDome as TipDome,
-    TipLayer as TipLayer,
     TipShear as TipShear,
 )
 from .endmass.definitions import end_mass as end_mass

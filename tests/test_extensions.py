@@ -14,7 +14,7 @@ import pytest
 import cuefem as cf
 from cuefem.design import Levels, Response, Study, Vary, evaluate
 from cuefem.design.effect_sensitivity import variants
-from cuefem.effects import effect_kinds
+from cuefem.effects.effect import effect_kinds
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.measurements.uncertain_parameters import parameters_of
 from cuefem.parameters.parameter import PARAMETERS, paths, with_parameters

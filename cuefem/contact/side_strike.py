@@ -20,9 +20,8 @@ from cuefem.contact.modal_response import propagator_of
 from cuefem.contact.outcome import Phase
 from cuefem.contact.step_records import SolvedContact, solve_contact
 from cuefem.cue import Cue
-from cuefem.effects import CueEffect, Effect, acting_on_cue, check_effects
 from cuefem.effects.contact_terms import ContactTerms
-from cuefem.effects.effect import POSITION_TOLERANCE
+from cuefem.effects.effect import POSITION_TOLERANCE, CueEffect, Effect, acting_on_cue, check_effects
 from cuefem.effects.force_law import TipLaw, loading_time
 from cuefem.quantity.fields import CONTACT_TIME, Quantity, check_fields, check_kind
 from cuefem.scene import Resolution, equal_fields

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import MISSING, dataclass, fields, replace
 from typing import Any
 
-from cuefem.effects import Effect, effect_kinds
+from cuefem.effects.effect import Effect, effect_kinds
 from cuefem.scene import Outcome, Scene
 
 # Effects without a default describe an individual cue, such as a point mass.

@@ -20,7 +20,7 @@ from cuefem.contact.impulse_solver import impact, impulse_inputs
 from cuefem.contact.outcome import slips_at_end
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, LumpedCue
-from cuefem.effects import Effect
+from cuefem.effects.effect import Effect
 from cuefem.endmass.impulse_response import ImpulseResponse
 from cuefem.endmass.sticking_contact import StickLimit
 from cuefem.quantity.fields import check_kind

@@ -11,7 +11,7 @@ from typing import Any, TypeVar, cast
 
 from cuefem.cue import Material
 from cuefem.cue.materials import MATERIALS
-from cuefem.effects import Effect
+from cuefem.effects.effect import Effect
 from cuefem.io.errors import InputError, as_input_error, quote, suggestion
 from cuefem.quantity.fields import OutOfBounds, Quantity
 

@@ -15,7 +15,7 @@ from typing import Annotated, Any
 from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue, LumpedCue, Material
 from cuefem.cue.materials import material
-from cuefem.effects import Effect, effect_kinds
+from cuefem.effects.effect import Effect, effect_kinds
 from cuefem.io.csv_reader import read_text
 from cuefem.io.errors import InputError, as_input_error, quote, suggestion
 from cuefem.io.parts_catalogue import assemble_shaft

@@ -13,7 +13,8 @@ from cuefem.beam.system import assemble
 from cuefem.contact.side_strike import SideStrike, Striker, side_strike
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, Cue
-from cuefem.effects import Effect, PointMass, Support
+from cuefem.effects.cue_effects import PointMass, Support
+from cuefem.effects.effect import Effect
 from cuefem.scene import Outcome, Scene, Stroke
 from cuefem.scene.solved_scene import SolvedScene
 

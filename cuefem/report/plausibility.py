@@ -9,7 +9,7 @@ from typing import Any
 
 from cuefem.cue import Cue, Segment
 from cuefem.cue.materials import MATERIALS, table_name
-from cuefem.effects import TipDome
+from cuefem.effects.tip_effects import TipDome
 from cuefem.parameters.parts import main_material
 from cuefem.quantity.fields import quantity_fields
 from cuefem.quantity.unit_checks import CUE_DIAMETER, CUE_LENGTH, MIN_CUE_MASS

@@ -15,7 +15,7 @@ from cuefem.beam.system import assemble
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.strike import steps_of, strike_modes
 from cuefem.cue import Array
-from cuefem.effects import Support
+from cuefem.effects.cue_effects import Support
 from cuefem.endmass.definitions import DEFINITIONS, Definition, small_offset_slope
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.quantities import RESULTS, Result

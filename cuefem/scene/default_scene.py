@@ -8,7 +8,9 @@ from types import MappingProxyType
 
 from cuefem.cue import MAX_LEATHER_MODULUS, Cue
 from cuefem.cue.materials import LEATHERS, leather_restitution
-from cuefem.effects import AxialWaves, Effect, GeometricStiffness, LeatherTip
+from cuefem.effects.cue_effects import AxialWaves, GeometricStiffness
+from cuefem.effects.effect import Effect
+from cuefem.effects.leather_tip import LeatherTip
 from cuefem.quantity.fields import check_kind
 from cuefem.scene.scene import Ball, Scene, Stroke, Tip
 

@@ -12,9 +12,10 @@ from typing import Annotated, Any
 import numpy as np
 
 from cuefem.cue import Array, Cue, LumpedCue
-from cuefem.effects import CueEffect, Effect, LeatherTip, acting_on_cue, check_effects
 from cuefem.effects.contact_terms import ContactTerms
+from cuefem.effects.effect import CueEffect, Effect, acting_on_cue, check_effects
 from cuefem.effects.force_law import IndentationOutOfRange, LeatherLaw
+from cuefem.effects.leather_tip import LeatherTip
 from cuefem.quantity.display import brief_repr
 from cuefem.quantity.fields import (
     CONTACT_TIME,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cuefem import Cue, LeatherTip, PointMass, Scene, Segment, Stroke, Support, end_mass, strike
-from cuefem.effects import Effect
+from cuefem.effects.effect import Effect
 from tests.helpers.orders import assert_order
 from tests.helpers.strike_scenes import maple
 

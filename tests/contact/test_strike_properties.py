@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.contact.strike import strike_modes
-from cuefem.effects import Effect
+from cuefem.effects.effect import Effect
 from tests.helpers.leather_scenes import LEATHER, leather_scene
 from tests.helpers.orders import assert_order
 from tests.helpers.strike_scenes import (

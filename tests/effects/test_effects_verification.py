@@ -11,7 +11,7 @@ import cuefem as cf
 from cuefem.beam.system import assemble
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.strike import strike_modes
-from cuefem.effects import Effect
+from cuefem.effects.effect import Effect
 from cuefem.effects.rod_modes import rod_modes
 from cuefem.scene.solved_scene import tip_modes_of
 from tests.helpers.cues import MAPLE, kim

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import cuefem as cf
-from cuefem.effects import Effect
+from cuefem.effects.effect import Effect
 from studies.strokes import DOME, NAMES, SHEAR, cue
 
 WAVES = cf.AxialWaves()

@@ -13,8 +13,8 @@ import cuefem as cf
 from cuefem.designer.computation import numbers
 from cuefem.designer.panels import Results, tables_markup, tabulate_numbers
 from cuefem.designer.state import Design, Step
-from cuefem.effects import CueEffect, TipEffect, TrialValues
 from cuefem.effects.contact_terms import ContactTerms
+from cuefem.effects.effect import CueEffect, TipEffect, TrialValues
 from cuefem.endmass.definitions import Definition
 from cuefem.parameters.parameter import Parameter
 from cuefem.parameters.parts import Part

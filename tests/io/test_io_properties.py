@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from scipy import constants
 
 import cuefem as cf
-from cuefem.effects import Effect
+from cuefem.effects.effect import Effect
 from cuefem.io import InputError
 from cuefem.quantity.fields import Quantity, check_fields
 from cuefem.quantity.units import EXAMPLES, UNITS, format_number, parse_number

@@ -15,7 +15,7 @@ import pytest
 import tomlkit
 
 import cuefem as cf
-from cuefem.effects import effect_kinds
+from cuefem.effects.effect import effect_kinds
 from cuefem.io import InputError
 from cuefem.io.schema import field_types, quantity_of, required_keys
 from cuefem.quantity.fields import Quantity, quantity_fields

@@ -7,7 +7,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.design.effect_sensitivity import variants
-from cuefem.effects import effect_kinds
+from cuefem.effects.effect import effect_kinds
 from cuefem.report import effects_record
 from cuefem.report.effects_table import MARGIN
 from cuefem.results.convergence import resolve
