@@ -1,6 +1,7 @@
 """The house has one way through it: imports run in one order, heavy libraries stay where they belong (properties)."""
 
 import ast
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -12,28 +13,10 @@ import cuefem
 
 PACKAGE = Path(cuefem.__file__).parent
 
-# Every part of cuefem; a part imports only what stands above it. A folder is one part.
-ORDER = [
-    "quantity",
-    "cue",
-    "solid",
-    "beam",
-    "effects",
-    "scene",
-    "parameters",
-    "contact",
-    "endmass",
-    "results",
-    "design",
-    "plot",
-    "measurements",
-    "io",
-    "frames",
-    "report",
-    "handbook",
-    "designer",
-    "cli",
-    "__main__",
+# The rooms in the order of CONTRIBUTING.md's table; a room imports only those before it.
+TABLE = (PACKAGE.parent / "CONTRIBUTING.md").read_text(encoding="utf-8").partition("## Map")[2].partition("## How")[0]
+ORDER = [name for rooms in re.findall(r"^\| (`.*?) \|", TABLE, re.M) for name in re.findall(r"`(\w+)", rooms)] + [
+    "__main__"
 ]
 HOMES = {
     "skfem": {"solid", "beam"},
