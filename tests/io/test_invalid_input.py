@@ -96,10 +96,7 @@ def test_load_invalid_content_is_rejected(tmp_path: Path, row: str) -> None:
 BAR = revolve([(0, 0), *((x, 0.006) for x in np.linspace(0, 0.7, 30)), (0.7, 0)], 16)
 SURFACES = {
     "must be closed": (POINTS, FACES[1:]),
-    "must have consistently oriented triangles": (
-        POINTS,
-        np.concatenate([FACES[:20], FACES[20:21, ::-1], FACES[21:]]),
-    ),
+    "must have consistently oriented triangles": (POINTS, np.concatenate([FACES[:20], FACES[20:21, ::-1], FACES[21:]])),
     "must enclose a volume": (POINTS, np.concatenate([FACES[:8], FACES[:8, ::-1]])),
     "must be slender, at least 5 times": revolve([(0, 0), (0, 0.02), (0.15, 0.02), (0.15, 0)], 16),
     "must be round, second moments": (BAR[0] * (1, 1.05, 1), BAR[1]),

@@ -35,8 +35,7 @@ def test_kim_mesh_has_published_dimensions() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "grams", "centre"),
-    [("pool_maple", 99.98, 17.04), ("pool_hollow", 89.69, 18.17), ("carbon", 90.26, 19.26)],
+    ("name", "grams", "centre"), [("pool_maple", 99.98, 17.04), ("pool_hollow", 89.69, 18.17), ("carbon", 90.26, 19.26)]
 )
 def test_pool_meshes_have_stated_masses(name: str, grams: float, centre: float) -> None:
     """29 in long, 3 to 4 oz, on a cue of 20 oz, 0.846 in at the joint; centre of mass in inches from the tip."""

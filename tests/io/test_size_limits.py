@@ -69,10 +69,7 @@ def test_constructors_beyond_bounds_raise() -> None:
         (lambda: cf.Tip(contact_time=1e-12), "Tip.contact_time must be in [1e-6, 10] s; got 1e-12"),
         (lambda: cf.Cue((cf.Segment(1e-3, 0.012, 0.012, ash),) * 2002), "Cue.segments must hold at most 2001 segments"),
         (lambda: cf.end_mass(stiff(1e30)), "Tip.stiffness must make a head-on contact time in [1e-6, 10] s; got 1e+30"),
-        (
-            lambda: cf.end_mass(stiff(1e6), at=cf.Resolution(4000, 8, 4)),
-            "the mesh must have at most 50000 degrees of freedom",
-        ),
+        (lambda: cf.end_mass(stiff(1e6), at=cf.Resolution(4000, 8, 4)), "the mesh must have at most 50000 degrees of"),
         (lambda: cf.modes(stiff(1e6).cue, 10**9), "the mesh must have at most 50000 degrees of freedom; got "),
     ):
         with pytest.raises(ValueError, match=f"^{re.escape(line)}"):
