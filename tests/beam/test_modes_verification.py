@@ -8,13 +8,7 @@ import pytest
 from cuefem import Cue, Resolution, modes
 from cuefem.beam.tip_modes import tip_modes
 from cuefem.beam.wave_phases import uniform_mesh_for
-from tests.helpers.cues import (
-    FAMILY,
-    isotropic_kim,
-    kim,
-    scaled,
-    stiff_ferrule,
-)
+from tests.helpers.cues import FAMILY, isotropic_kim, kim, scaled, stiff_ferrule
 
 SHAFTS = {**FAMILY, "stiff ferrule": stiff_ferrule()}
 

@@ -35,10 +35,7 @@ FILES = {
     "bored.csv": "x [mm],diameter [mm],bore [mm]\n0,12,6\n152,14,\n700,21,\n",
     "kept.toml": "somebody's work",
 }
-SAVED = {
-    "shaft.toml": SHAFT,
-    "spring.toml": cf.Scene(SHAFT, stroke=cf.Stroke(offset=0.3)),
-}
+SAVED = {"shaft.toml": SHAFT, "spring.toml": cf.Scene(SHAFT, stroke=cf.Stroke(offset=0.3))}
 # Commands on these files, each with a part of the one line that says why it is refused.
 COMMANDS = r"""
 strike good.toml --offset nan | good.toml: --offset: must be between -1 and 1

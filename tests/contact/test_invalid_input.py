@@ -48,20 +48,11 @@ CALLS: list[Any] = [
     *((call, "must be a Cue of segments: ") for call in (lambda: LUMPED.shaft, lambda: default_mode_count(LUMPED))),
     (lambda: cf.Scene("cue"), "TypeError: Scene.cue must be a Cue or LumpedCue; got 'cue'"),
     (lambda: cf.Scene(cf.LumpedCue(0.5, 0.003), tip=0.7), "TypeError: Scene.tip must be a Tip"),
-    (
-        lambda: cf.impulse(cf.Scene(cf.LumpedCue(0.54, 0.005), effects=(cf.TipShear(0.75),))),
-        "impulse scene must have no effects on a LumpedCue",
-    ),
+    (lambda: cf.impulse(replace(LUMPED, effects=(cf.TipShear(0.75),))), "impulse scene must have no effects on a Lump"),
     # strikes
-    (
-        strike_call(leather_scene(e=0.05)),
-        "Tip.restitution must be in [0.1, 1] for a contact",
-    ),
+    (strike_call(leather_scene(e=0.05)), "Tip.restitution must be in [0.1, 1] for a contact"),
     (strike_call(leather_scene(speed=60.0)), "mm): raise LeatherTip.height or E, or lower Stroke.speed"),
-    (
-        strike_call(kim_scene(restitution=0.049), effects=(cf.Elevation(0.1),)),
-        f"{DEAD}0.049 (cuefem.impulse takes any)",
-    ),
+    (strike_call(kim_scene(restitution=0.049), effects=(cf.Elevation(0.1),)), f"{DEAD}0.049 (cuefem.impulse takes"),
     (strike_call(kim_scene(friction=inf), effects=(cf.SecondHit(),)), "Tip.friction must be finite beside SecondHit"),
     (lambda: cf.Resolution(4, 8, 0), "Resolution.modes"),
     (lambda: cf.Resolution(1, 1, 1, 19), "Resolution.steps must be a whole number in [20, 1000000]; got 19"),
@@ -69,23 +60,14 @@ CALLS: list[Any] = [
     (lambda: cf.strike(kim_scene(), cf.Resolution(2, 8, 4)).history(-1e-9), "History takes times in [0, "),
     # many strikes
     (lambda: cf.impulse([kim_scene(), 3]), "TypeError: impulse scene must be a Scene"),
-    (
-        lambda: cf.batch_strike(kim_scene()),
-        "TypeError: batch_strike scenes must be a sequence of Scene; got one Scene: ",
-    ),
+    (lambda: cf.batch_strike(kim_scene()), "TypeError: batch_strike scenes must be a sequence of Scene; got one"),
     (lambda: cf.batch_strike([kim_scene(), 3]), "TypeError: batch_strike scenes must be a Scene"),
     (lambda: cf.batch_strike([]), "batch_strike scenes must be one scene or more; got none"),
-    (
-        lambda: cf.batch_strike([kim_scene(), replace(kim_scene(restitution=0.0), effects=(cf.SecondHit(),))]),
-        "scene 1: " + DEAD,
-    ),
+    (lambda: cf.batch_strike([kim_scene(), kim_scene(restitution=0.0)]), "scene 1: " + DEAD),
     # a measured impact
     (lambda: cf.identify_tip(leather_scene(), 0.0, 0.73), "identify_tip contact_time must be in [1e-6, 10] s; got 0"),
     (lambda: cf.identify_tip(leather_scene(), 1e-3, 1.1), "identify_tip rebound must be in [0.1, 1]; got 1.1"),
-    (
-        lambda: cf.identify_tip(replace(leather_scene(), effects=(cf.TipDome(0.01),)), 1e-3, 0.73),
-        "Scene.effects must hold a LeatherTip; got none",
-    ),
+    (lambda: cf.identify_tip(kim_scene(), 1e-3, 0.73), "Scene.effects must hold a LeatherTip; got none"),
     heavy(lambda: cf.identify_tip(leather_scene(), 9e-3, 0.73), "no leather has a contact time of 0.009 s"),
     heavy(identify_call(0.5e-3, 0.73), "no leather has a contact time of 0.0005 s"),
     heavy(identify_call(1.1e-3, 0.999), "no leather has a contact time of 0.0011 s and a rebound of 0.999"),
@@ -104,10 +86,6 @@ CALLS: list[Any] = [
 @pytest.mark.parametrize(("call", "message"), CALLS)
 def test_contact_invalid_input_raises(call: Callable[[], object], message: str) -> None:
     assert_raises(call, message)
-
-
-def test_contact_input_at_bound_is_accepted() -> None:
-    assert cf.impulse(cf.Scene(cf.LumpedCue(1, 1), cf.Ball(1, 1, 1), cf.Tip(0, inf), cf.Stroke(1, 0))).cue_speed == 0.5
 
 
 def test_strike_without_separation_raises_with_its_state(monkeypatch) -> None:

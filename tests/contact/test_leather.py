@@ -79,10 +79,7 @@ def test_leather_strike_random_scenes_agree_with_small_steps() -> None:
     assert not wrong, {seed: float(errors[seed]) for seed in wrong}
 
 
-@pytest.mark.parametrize(
-    ("leather", "friction", "offset"),
-    [(LEATHER, 0.3, 0.3746), (LEATHER, 0.7, 0.671)],
-)
+@pytest.mark.parametrize(("leather", "friction", "offset"), [(LEATHER, 0.3, 0.3746), (LEATHER, 0.7, 0.671)])
 def test_squirt_at_gross_slip_and_rim_is_continuous(leather: cf.LeatherTip, friction: float, offset: float) -> None:
     """Where the rings begin to slide as a whole, and where the contact begins on the tip's rim."""
     offsets = offset + np.arange(-5, 6) * 1e-3

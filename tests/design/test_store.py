@@ -214,10 +214,7 @@ def test_store_of_several_studies_reads_by_name(tmp_path: Path) -> None:
 
 REFUSED = [
     ("PRAGMA application_id = 7", "must be a store of `cuefem study`; got another database"),
-    (
-        """UPDATE designs SET answer = replace(answer, '0.0', '0.1') WHERE design = 3""",
-        "is damaged: design 3 was altered",
-    ),
+    ("UPDATE designs SET answer = replace(answer, '0.0', '0.1') WHERE design = 3", "is damaged: design 3 was altered"),
     ("UPDATE designs SET answer = (SELECT answer FROM designs WHERE design = 2) WHERE design = 3", "design 3 was"),
 ]
 

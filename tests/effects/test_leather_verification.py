@@ -22,8 +22,6 @@ from cuefem.solid.tip_compliance import (
 from studies.beam.leather import COUNTS, curvatures, shape_at, solved, stuck
 
 TIP, DIAMETER = LeatherTip(6e-3, 9.5e-3, 100e6), 12.75e-3
-SHAPE = Shape(6 / 12.75, 12.75 / 9.5)
-PATCH = Patch(2 * 0.375 * 9.5 / 12.75, 2 / 12.75)
 
 
 # --- the solid --------------------------------------------------------------------------------------------------------

@@ -55,10 +55,7 @@ def _with_length(scene: Any, value: float) -> Any:
 
 
 PARAMETER = Parameter(
-    *("collar length", "length of the collar"),
-    part=Part(_length, _with_length, LENGTH),
-    spread=0.1,
-    option="LENGTH",
+    *("collar length", "length of the collar"), part=Part(_length, _with_length, LENGTH), spread=0.1, option="LENGTH"
 )
 DRAWING_RESULT = Result(
     *("sweet spot, from the tip", "m", 2),

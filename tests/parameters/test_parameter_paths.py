@@ -52,9 +52,3 @@ def test_replaced_values_change_together() -> None:
     changed = with_values_at(BASE, {bore: 0.0126, outer: 0.014})
     assert changed.cue.segments[2] == replace(BASE.cue.segments[2], tip_bore=0.0126, tip_diameter=0.014)
     assert with_values_at(changed, {bore: 0.008, outer: 0.0125}) == BASE
-
-
-def test_replaced_contact_time_clears_stiffness() -> None:
-    hard = replace(BASE, tip=Tip(stiffness=1e6))
-    (time,) = paths(hard, "tip.contact_time")
-    assert with_values_at(hard, {time: 2e-3}).tip == Tip(contact_time=2e-3)

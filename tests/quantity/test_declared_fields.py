@@ -30,7 +30,6 @@ INSTANCES: list[Any] = [
     *(cf.TipDome(0.01), cf.TipShear(0.75), cf.Elevation(0.1), cf.TipLayer(1e-3, 1e9)),
     *(cf.StructuralDamping(0.01), cf.PowerLawTip(), cf.SecondHit(), cf.Striker(0.02, 0.8, contact_time=1e-3)),
 ]
-ARRAYS = {"LumpedCue", "Ball", "Stroke"}
 
 
 def beyond(mark: Quantity) -> Iterator[float]:

@@ -58,11 +58,7 @@ def test_plausibility_of_shipped_cues_has_no_warning(path: Path) -> None:
         ("12.8 mm", "128 mm", "the diameter jumps from 12.7 to 128 mm between segments[0] and segments[1]"),
         ("12.8 mm", "8.1 mm", "the diameter jumps from 12.7 to 8.1 mm between segments[0] and segments[1]"),
         ("400 mm", "400 m", "drawn length 400325 mm; check the unit of the lengths"),
-        (
-            '"14 mm", mat',
-            '"14 mm", butt_bore = "3 mm", mat',
-            "the bore of segments[1] tapers to zero; is tip_bore",
-        ),
+        ('"14 mm", mat', '"14 mm", butt_bore = "3 mm", mat', "the bore of segments[1] tapers to zero; is tip_bore"),
     ],
 )
 def test_plausibility_of_wrong_value_warns(tmp_path: Path, old: str, new: str, line: str) -> None:

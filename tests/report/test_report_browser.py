@@ -22,10 +22,7 @@ pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install
 axe = pytest.importorskip(
     "axe_playwright_python.sync_playwright", reason="needs axe: pip install axe-playwright-python"
 )
-pytestmark = [
-    pytest.mark.heavy,
-    pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium"),
-]
+pytestmark = [pytest.mark.heavy, pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium")]
 SCENE = cf.usual_scene(cf.load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml"))
 # tables wider than their container, and elements outside the window
 CUT = "[...document.querySelectorAll('.scroll')].filter(e => e.scrollWidth > e.clientWidth + 1).length"

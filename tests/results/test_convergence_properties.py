@@ -5,8 +5,6 @@ from dataclasses import replace
 from hypothesis import given, settings
 
 from cuefem import LumpedCue, Scene, impulse, resolve, resolve_end_mass
-from cuefem.results.convergence import mode_counts
-from cuefem.scene.solved_scene import MAX_MODES
 from tests.helpers.accuracy_scenes import scene
 from tests.helpers.strike_scenes import lumped_scenes
 
@@ -30,8 +28,3 @@ def test_resolve_smaller_rtol_takes_more_degrees_of_freedom() -> None:
     assert [outcome.unknowns for outcome in results] == sorted(outcome.unknowns for outcome in results)
     errors = [outcome.error for outcome in results]
     assert all(error is not None and error <= rtol for error, rtol in zip(errors, (0.5, 1e-2, 1e-3, 3e-4), strict=True))
-
-
-def test_mode_counts_double() -> None:
-    assert mode_counts(1) == [12, 24, 48, 96, 192, MAX_MODES]
-    assert mode_counts(MAX_MODES) == [50, 100, 200, MAX_MODES]

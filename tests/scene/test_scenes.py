@@ -2,13 +2,11 @@
 
 import math
 import re
-import tomllib
 from pathlib import Path
 
 import pytest
 
 import cuefem as cf
-from cuefem.io import load_accuracy
 from cuefem.results.convergence import resolve
 
 SCENES = Path(__file__).parents[2] / "studies" / "scenes"
@@ -30,16 +28,6 @@ def scene(name: str) -> cf.Scene:
 
 def test_ready_scenes_are_all_listed() -> None:
     assert tuple(sorted(path.stem for path in SCENES.glob("*.toml"))) == tuple(sorted(rows())) == READY
-
-
-@pytest.mark.parametrize("name", READY)
-def test_ready_scene_states_its_sources(name: str) -> None:
-    text = (SCENES / f"{name}.toml").read_text(encoding="utf-8")
-    assert text.startswith("# ")
-    assert load_accuracy(SCENES / f"{name}.toml") == 1e-2
-    assert list(tomllib.loads(text)) == [
-        key for key in ("game", "cue", "ball", "tip", "stroke", "effects", "accuracy") if key in tomllib.loads(text)
-    ]
 
 
 def test_readme_of_meshes_states_computed_squirts() -> None:
