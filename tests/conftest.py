@@ -7,15 +7,14 @@ from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 
-# Where Python may not keep what it compiles, every worker and every process that a test starts would compile the tests
-# and the package anew, half a second or more each: they keep it beside the tests' root instead, in a folder that git
-# ignores.
+# With PYTHONDONTWRITEBYTECODE every worker and every process that a test starts would compile tests and package anew,
+# half a second or more each: bytecode goes to a folder beside tests/ instead, which git ignores.
 if os.environ.pop("PYTHONDONTWRITEBYTECODE", ""):
     os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix = str(Path(__file__).parents[1] / "__pycache__")
     sys.dont_write_bytecode = False
 
-# Before NumPy is loaded: the package's small dense matrices gain nothing from BLAS threads, and two of them on a busy
-# machine can be a hundred times slower than one.
+# Set before NumPy is imported: BLAS threads do not accelerate the package's small dense matrices, and two of them on a
+# busy machine can be a hundred times slower than one.
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 
@@ -24,7 +23,7 @@ from hypothesis import settings  # noqa: E402
 
 import cuefem  # noqa: E402
 
-# hypothesis draws from the constants of the modules that are loaded: with all of them no worker's order matters
+# hypothesis draws from the constants of imported modules: with all of them the order of a worker has no effect
 for module in pkgutil.walk_packages(cuefem.__path__, "cuefem."):
     with suppress(ImportError):  # an extra that is not installed
         import_module(module.name)

@@ -126,6 +126,6 @@ def test_added_tip_effect_acts_in_contact() -> None:
     assert whole.squirt != cf.strike(scene_with(*others, cf.TipDome(0.007)), AT).squirt
     assert scene_with(cap(0.002)).without_tip_effects == scene_with()
     with pytest.raises(ValueError, match="takes a tip without tangential compliance, a fixed normal"):
-        cf.strike(scene_with(cap(0.0, give=1.0), cf.Elevation(0.1)), AT)
+        cf.strike(scene_with(cap(0.0, compliance=1.0), cf.Elevation(0.1)), AT)
     with pytest.raises(ValueError, match=r"Scene\.effects must give the contact one window for a second hit; got"):
         scene_with(cf.SecondHit(), cap(0.0, window=1e-3))

@@ -1,1 +1,1 @@
-"""What tests share: cues, scenes, oracles, made-up files; no tests."""
+"""Shared by tests: cues, scenes, files, browser, commands; no tests."""

@@ -1,4 +1,4 @@
-"""The family of forty scenes on which the errors that `resolve` promises are held; no tests."""
+"""Forty scenes on which the error estimates of `resolve` are tested; no tests."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from studies.strokes import DOME, NAMES, SHEAR, cue
 WAVES = cf.AxialWaves()
 BRIDGE, CLAY = cf.Support(0.2, stiffness=1e4, dashpot=5.0), cf.PointMass(0.1, 0.011)
 
-# (contact time s, offset, restitution, friction) of the bare cues; every cue takes six of these eight.
+# (contact time in s, offset, restitution, friction) of the cues without effects; each cue takes six of these eight.
 STROKES = (
     (1e-3, 0.3, 0.75, 0.7),
     (2e-3, 0.1, 0.75, 0.7),
@@ -49,7 +49,7 @@ def scene(
 
 
 def bare_scenes() -> list[cf.Scene]:
-    """Six strokes a cue, shifted from cue to cue so that all eight meet every other one."""
+    """Six strokes a cue, shifted from cue to cue."""
     return [scene(name, *STROKES[(i + 3 * j) % len(STROKES)]) for j, name in enumerate(NAMES) for i in range(6)]
 
 

@@ -1,4 +1,4 @@
-"""A command run in this process, as a user would see it."""
+"""Runs commands in this process; no tests."""
 
 import io
 import json
@@ -19,16 +19,16 @@ def call(*arguments: object) -> tuple[object, str, str]:
 
 
 def stdout_of(*arguments: object) -> str:
-    """What a command prints that ends well and has no remark."""
+    """Stdout of a command with exit status 0 and no warning."""
     status, out, err = call(*arguments)
     assert (status, err) == (0, "")
     return out
 
 
 def as_json(*arguments: object) -> Any:
-    """What such a command tells programs, which is strict JSON, without NaN and Infinity."""
+    """The record that a command prints with --json: strict JSON, without NaN and Infinity."""
 
     def no_constant(name: str) -> None:
-        raise AssertionError(f"{name} is no JSON")
+        raise AssertionError(f"{name} is not JSON")
 
     return json.loads(stdout_of(*arguments, "--json"), parse_constant=no_constant)

@@ -41,7 +41,7 @@ def soft_tip() -> Cue:
 
 
 def stiff_ferrule() -> Cue:
-    """A steel ferrule 1 mm long between leather and maple: the largest jump of stiffness that a cue may have."""
+    """A steel ferrule 1 mm long between leather and maple: the largest jump of stiffness tested."""
     tip, shaft = soft_tip().segments
     return Cue((tip, Segment(0.001, 0.013, 0.013, STEEL), shaft))
 
@@ -97,5 +97,5 @@ def scaled(cue: Cue, *, E: float = 1.0, G: float = 1.0, rho: float = 1.0, length
 
 
 def scene(cue: Cue, contact_time: float, **tip: float) -> Scene:
-    """The cue before the default ball, head on, with a contact of ``contact_time`` s."""
+    """A centre-ball impact of the cue on the default ball, with a contact of ``contact_time`` s."""
     return Scene(cue, tip=Tip(contact_time=contact_time, **tip))

@@ -1,4 +1,4 @@
-"""The designer served by its own process, and a browser that looks at it."""
+"""The designer in its own process, and a headless browser; no tests."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PATIENCE = 90_000  # ms, on a busy machine
 
 
 def browser_marks() -> list[pytest.MarkDecorator]:
-    """Skip a file where nothing can serve or show a page; else the marks of its tests."""
+    """The marks of browser tests; skips the file where NiceGUI or playwright is not installed."""
     pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
     pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
     return [pytest.mark.heavy, pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium")]
@@ -29,7 +29,7 @@ def browser_marks() -> list[pytest.MarkDecorator]:
 
 @contextmanager
 def open_browser() -> Iterator[Any]:
-    """The browser, without a window."""
+    """A headless browser."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as driver:
@@ -40,7 +40,7 @@ def open_browser() -> Iterator[Any]:
 
 @contextmanager
 def run_designer(folder: Path) -> Iterator[str]:
-    """The address of a designer that runs in a folder; it must say nothing on stderr and leave nothing there."""
+    """The address of a designer that runs in a folder; it must print nothing on stderr and write no file there."""
     command = [sys.executable, "-W", "error", "-c", COMMAND, "designer", "--no-open", "--port", "0"]
     errors = folder / "stderr"
     with errors.open("w") as err:
@@ -67,7 +67,7 @@ def run_designer(folder: Path) -> Iterator[str]:
 
 
 def wait_for_port(port: int) -> None:
-    """Return when the server listens, which it does a moment after it says its address."""
+    """Return when the server listens, shortly after it prints its address."""
     for _ in range(PATIENCE // 50):
         with suppress(OSError), socket.create_connection(("127.0.0.1", port), timeout=1):
             return
@@ -76,7 +76,7 @@ def wait_for_port(port: int) -> None:
 
 @contextmanager
 def empty_page(browser: Any, address: str = "", *, width: int = 1280, scheme: str = "light") -> Iterator[Any]:
-    """An empty page, on which the browser must not complain, nor ask for anything but the address."""
+    """An empty page; console messages, errors and requests to other addresses fail the test."""
     size = {"width": width, "height": 900 if width > 600 else 844}
     context = browser.new_context(viewport=size, color_scheme=scheme, accept_downloads=True)
     page = context.new_page()
@@ -92,7 +92,7 @@ def empty_page(browser: Any, address: str = "", *, width: int = 1280, scheme: st
 
 @contextmanager
 def designer_page(browser: Any, address: str, **how: Any) -> Iterator[Any]:
-    """A page on the designer, whole."""
+    """A page on the designer, loaded completely."""
     with empty_page(browser, address, **how) as page:
         page.goto(address)
         wait_until_idle(page)
@@ -100,23 +100,23 @@ def designer_page(browser: Any, address: str, **how: Any) -> Iterator[Any]:
 
 
 def _own(url: str, address: str) -> bool:
-    address = address.partition("#")[0]  # a link holds a design behind it
+    address = address.partition("#")[0]  # a link contains a design after #
     return url.startswith((address, address.replace("http", "ws"), "data:", f"blob:{address}"))
 
 
 def wait_until_idle(page: Any) -> None:
-    """Wait until everything that was changed has been answered."""
-    page.wait_for_timeout(150)  # a message is on its way, after which the page says that it is busy
+    """Wait until the designer has computed every change."""
+    page.wait_for_timeout(150)  # the message that marks the page as busy is in transit
     page.wait_for_function("() => document.querySelector('[data-busy]')?.dataset.busy === 'false'")
 
 
 def displayed_number(page: Any, name: str, whose: str = "own") -> float:
-    """A number of the first screen in SI, of the design or of the other one."""
+    """A number of the first screen in SI, of the design or of the compared one."""
     return float(page.locator(f'[data-number="{name}"][data-of="{whose}"]').first.get_attribute("data-value"))
 
 
 def type_value(page: Any, label: str, text: str) -> None:
-    """Type a value into a field, and wait for all that follows."""
+    """Type a value into a field, and wait for its results."""
     field = page.get_by_label(label, exact=True).first
     field.fill(text)
     field.press("Enter")
@@ -124,14 +124,14 @@ def type_value(page: Any, label: str, text: str) -> None:
 
 
 def pick_option(page: Any, label: str, option: str) -> None:
-    """Pick one of a list, and wait for all that follows."""
+    """Pick an option of a list, and wait for its results."""
     page.get_by_role("combobox", name=label, exact=True).first.click()
     page.get_by_role("option", name=option, exact=True).click()
     wait_until_idle(page)
 
 
 def download(page: Any, button: str, folder: Path) -> Path:
-    """What a button of the page gives, as a file in the folder."""
+    """The file that a button downloads, saved in the folder."""
     with page.expect_download() as waiting:
         page.get_by_role("button", name=button).click()
     path = folder / str(waiting.value.suggested_filename)

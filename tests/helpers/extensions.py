@@ -1,4 +1,4 @@
-"""A made-up place, result, definition of the end mass and effects, known by their entry or class alone; no tests."""
+"""A parameter, results, an end-mass definition and effects, registered by their entry or class alone; no tests."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tests.helpers.command_line import call
 
 
 def outputs(scene: cf.Scene, folder: Path, *names: str) -> dict[str, str]:
-    """The words that these faces show of a scene: commands, the JSON of the report, the designer."""
+    """The text of a scene in these outputs: commands, the JSON of the report, the designer."""
     file = folder / "scene.toml"
     cf.save(scene, file)
 
@@ -40,7 +40,7 @@ def outputs(scene: cf.Scene, folder: Path, *names: str) -> dict[str, str]:
 
 
 def outputs_without(phrase: str, texts: dict[str, str]) -> list[str]:
-    """The faces that do not show the words."""
+    """The outputs that do not contain the phrase."""
     return [name for name, text in texts.items() if phrase not in text]
 
 
@@ -72,11 +72,11 @@ DEFINITION = Definition(
 
 
 def collar_effect() -> type[CueEffect]:
-    """The class of an effect on the cue; made inside, so that it is gone when a test is over."""
+    """The class of an effect on the cue; defined locally, so that it is deleted after the test."""
 
     @dataclass(frozen=True)
     class Collar(CueEffect):
-        """A ring on the shaft."""
+        """A collar on the shaft."""
 
         trial_values: ClassVar[TrialValues | None] = TrialValues({"position": 0.03, "mass": 4e-3}, "made up")
         position: Annotated[float, Quantity("m", "[0, inf)")]
@@ -84,7 +84,7 @@ def collar_effect() -> type[CueEffect]:
 
         @property
         def positions(self) -> tuple[float, ...]:
-            """Its place."""
+            """Where it acts, m."""
             return (self.position,)
 
         def add_to(self, terms: Any) -> None:
@@ -102,14 +102,14 @@ def cap_effect() -> type[TipEffect]:
         """A round cap on the tip, of ``radius``, m."""
 
         radius: Annotated[float, Quantity("m")]
-        give: float = 0.0
+        compliance: float = 0.0
         window: float = 0.0
 
         def add_to_contact(self, terms: ContactTerms) -> None:
-            """A dome, a compliance across as a part of that along the normal, a window for a second hit."""
+            """A dome, a tangential compliance relative to the normal one, the window of a second hit."""
             terms.add_dome(self.radius)
-            if self.give:
-                terms.add_compliance(self.give)
+            if self.compliance:
+                terms.add_compliance(self.compliance)
             if self.window:
                 terms.set_once("window", self.window)
 

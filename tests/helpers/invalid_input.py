@@ -1,4 +1,4 @@
-"""What a table of refusals is checked with: a call and a part of its one line, or a command line and a part of its."""
+"""Assertions on invalid input: a call or a command, and a part of its one-line error message; no tests."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -9,7 +9,7 @@ from tests.helpers.command_line import call
 
 
 def assert_raises(action: Callable[[], object], message: str) -> None:
-    """The call raises ValueError, or TypeError if the message begins with that, in one line that holds the message."""
+    """The call raises ValueError, or TypeError if ``message`` begins with it, in one line that contains ``message``."""
     start = message.removeprefix("TypeError: ")
     with pytest.raises(ValueError if start == message else TypeError) as error:
         action()
@@ -19,7 +19,7 @@ def assert_raises(action: Callable[[], object], message: str) -> None:
 
 
 def assert_rejects(message: str, *arguments: object) -> None:
-    """The command ends with status 2, nothing on stdout and one line on stderr that holds the message."""
+    """The command exits with status 2, an empty stdout and one line on stderr that contains ``message``."""
     code, out, err = call(*arguments)
     assert (code, out) == (2, ""), err
     assert err.startswith("cuefem: ")
@@ -28,7 +28,7 @@ def assert_rejects(message: str, *arguments: object) -> None:
 
 
 def assert_unchanged(folder: Path, message: str, *arguments: object) -> None:
-    """The command refuses, and every file and folder inside the folder is as it was."""
+    """The command rejects its input and changes no file or folder inside ``folder``."""
     before = file_contents(folder)
     assert_rejects(message, *arguments)
     assert file_contents(folder) == before

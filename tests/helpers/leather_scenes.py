@@ -1,4 +1,4 @@
-"""Scenes with a whole tip of leather that several tests share; no tests."""
+"""Scenes with a leather tip; no tests."""
 
 from __future__ import annotations
 
@@ -23,5 +23,5 @@ def leather_scene(
     leather: LeatherTip = LEATHER,
     **more: Any,
 ) -> Scene:
-    """A shaft with a tip of leather that strikes a pool ball."""
+    """A shaft with a leather tip that strikes a pool ball."""
     return Scene(more.get("cue", SHAFT), POOL, Tip(e, friction), Stroke(speed, offset), (leather, *effects))

@@ -1,4 +1,4 @@
-"""The pictures of the makers' handbook that show computed numbers; as a program it writes them anew.
+"""The pictures of the makers' handbook with computed numbers; run as a program, it writes them.
 
 python -m tests.helpers.maker_pictures
 """
@@ -26,30 +26,30 @@ OFFSET = 0.375  # of all of them
 
 @cache
 def command_json(command: str, *options: str) -> Any:
-    """What a command says of the plain maple shaft, as a program is told."""
+    """The record that a command prints for the plain maple shaft with --json."""
     status, out, err = call(command, MAPLE, "--json", *options)
     assert (status, err) == (0, "")
     return json.loads(out)
 
 
 def changes() -> dict[str, float]:
-    """The change of squirt, %, of the changes that the picture shows, by their words."""
+    """Change of squirt, %, by the name of the design change."""
     return {row["change"]: 100 * row["squirt_change"] for row in command_json("improve")["changes"]}
 
 
 def reference_squirts() -> dict[str, float]:
-    """Squirt of the ready cues, degrees."""
+    """Squirt of the reference cues, degrees."""
     return {name: math.degrees(row["squirt"]) for name, row in command_json("report")["verdict"]["references"].items()}
 
 
 def picture(height: int, label: str, *inside: str) -> str:
-    """A drawing of the handbook's width."""
+    """An SVG image of the handbook's width."""
     head = f'<svg viewBox="0 0 340 {height}" class="small" role="img" aria-label="{escape(label)}">'
     return "\n".join([head, *inside, "</svg>", ""])
 
 
 def svg_text(x: float, y: float, text: str, more: str = "") -> str:
-    """A text at its place."""
+    """A text at x, y."""
     return f'<text x="{x:.0f}" y="{y:.0f}"{more}>{escape(text)}</text>'
 
 
@@ -57,7 +57,7 @@ MIDDLE, END, CAPTION = ' text-anchor="middle"', ' text-anchor="end"', ' class="s
 
 
 def on_scale(rows: dict[str, float], verdict: Any, label: str, own: str, *, x0: int, unit: int, last: float) -> str:
-    """Squirts of others, degrees, and one's own with its uncertainty, on a scale from 0 to ``last``."""
+    """Squirts of other cues, and the own one with its uncertainty, on a scale from 0 to ``last``, degrees."""
     squirt = math.degrees(verdict["squirt"])
     off = squirt * verdict["uncertainty"]["total"]
 

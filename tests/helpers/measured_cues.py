@@ -1,4 +1,4 @@
-"""A small measured cue for tests: cheap measurements on a plain shaft, and folders of one."""
+"""A measured cue with fast measurements, and its folder; no tests."""
 
 from pathlib import Path
 
@@ -54,7 +54,7 @@ def measured_cue(*measurements: Measurement, priors: tuple[Prior, ...] = ()) -> 
 
 
 def cheap_measurements() -> tuple[Measurement, ...]:
-    """The cheap measurements, with errors and without values that mean anything."""
+    """Measurements that are fast to compute, with stated errors and arbitrary values."""
     tones = (Tone(mode=i + 1, value=f, error=0.2) for i, f in enumerate((95.0, 280.0, 560.0, 930.0)))
     stiff = Stiffness(value=360.0, error=7.0), Stiffness(free_length=0.2032, value=4600.0, error=90.0)
     return (Weight(value=0.1, error=5e-4), *tones, *stiff)

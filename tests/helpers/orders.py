@@ -1,4 +1,4 @@
-"""Measures orders of convergence; no tests."""
+"""Assertions on orders of convergence; no tests."""
 
 from collections.abc import Callable
 
@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 def assert_order(expected: float, steps: ArrayLike, errors: ArrayLike, *, within: ArrayLike) -> None:
     """AssertionError unless the order at every level is ``expected``, neither less nor more, to ``within``.
 
-    steps: step sizes (or 1/elements, 1/T ...), strictly falling. errors: their errors, a hundred times above rounding.
+    steps: step sizes (or 1/elements, 1/T ...), strictly falling. errors: errors, a hundred times the round-off error.
     within: one bound, or one a level (pair of neighbouring steps), where the bound is known to tighten with the step.
     """
     steps, errors = np.asarray(steps, float), np.asarray(errors, float)

@@ -1,4 +1,4 @@
-"""Reads a page as a browser's parser does, and refuses tags that do not close in order; no tests."""
+"""Parses a page as a browser does, and fails for tags that do not close in order; no tests."""
 
 from collections import Counter
 from html.parser import HTMLParser
@@ -7,7 +7,7 @@ VOID = {"meta", "link", "br", "hr", "input"}
 
 
 class PageReader(HTMLParser):
-    """Tags, attributes and text of a page; refuses tags that do not close in order."""
+    """Tags, attributes and text of a page."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -15,7 +15,7 @@ class PageReader(HTMLParser):
         self.tags: Counter[str] = Counter()
         self.attributes: list[tuple[str, str]] = []
         self.text: list[str] = []
-        self.within = False  # a sentence that a word which is explained stands in
+        self.within = False  # inside or just after the button of a glossary term
         self.feed(text)
         self.close()
 

@@ -11,10 +11,10 @@ import cuefem as cf
 from cuefem.effects.damping import section_loss
 from cuefem.parameters.parts import main_material, with_material
 
-LOSS = 0.012  # maple's, where a file gives none
+LOSS = 0.012  # of maple, used where a file states none
 PULSE = 3e-4  # s, a small hard mallet: a half sine
 BEFORE, SECONDS = 0.15, 1.2  # s of silence before a tap, and from one to the next
-MICROPHONES = (0.04, 0.12)  # places of two microphones, over the length from the tip
+MICROPHONES = (0.04, 0.12)  # positions of two microphones, from the tip, over the length
 
 
 def other_wood(cue: cf.Cue, *, E: float = 1.15, G: float = 0.85, rho: float = 1.06) -> cf.Cue:
@@ -24,7 +24,7 @@ def other_wood(cue: cf.Cue, *, E: float = 1.15, G: float = 0.85, rho: float = 1.
 
 
 def tap_sound(shaft: cf.Cue, rate: float = 44100.0, *, missing: Sequence[int] = ()) -> np.ndarray:
-    """What two microphones hear of a tap at the butt, (samples, 2); missing: modes, 1 the lowest, that do not sound."""
+    """Signal of two microphones after a tap at the butt, (samples, 2); missing: silent modes, 1 the lowest."""
     result = cf.modes(shaft, 26)
     loss = result.loss_factors(section_loss(shaft, result.points, None))
     loss = loss if loss.max() > 0 else np.full(len(loss), LOSS)

@@ -13,7 +13,7 @@ from cuefem import Ball, Cue, LumpedCue, Material, Outcome, Resolution, Scene, S
 from cuefem.beam.tip_modes import TipModes
 from tests.helpers.cues import kim
 
-# How well the account of energy closes at the default steps, relative.
+# Bound on the relative energy residual at the default steps.
 ENERGY_TOLERANCE = 1e-6
 
 
@@ -42,7 +42,7 @@ def weighted_cue() -> Cue:
 
 
 def custom_tip_modes(omega: list[float], across: list[float], *, mass: float = 0.54, rigid: float = 4.0) -> TipModes:
-    """Tip modes by hand: a rigid axial motion, one rigid transverse motion, vibrating modes of amplitude ``across``."""
+    """Tip modes of a rigid axial motion, a rigid transverse one, and vibrating modes of amplitude ``across``."""
     amplitude = np.zeros((2 + len(omega), 2))
     amplitude[0, 0], amplitude[1, 1], amplitude[2:, 1] = mass**-0.5, rigid, across
     approach = np.zeros(len(amplitude))
@@ -51,21 +51,21 @@ def custom_tip_modes(omega: list[float], across: list[float], *, mass: float = 0
 
 
 def rotating_tip_modes(damping: float = 0.0) -> TipModes:
-    """A shaft of a few modes by hand whose end section turns with them, each damped or none."""
+    """Three vibrating modes that rotate the end section, with modal damping if ``damping`` > 0."""
     tip = custom_tip_modes([500.0, 3000.0, 9000.0], [5.0, 8.0, 7.0], rigid=9.0)
     tip = replace(tip, rotation=np.array([0, -50.0, -60.0, -80.0, -120.0]))
     return replace(tip, damping=np.diag(damping * tip.omega)) if damping else tip
 
 
 def energy_residual(outcome: Outcome) -> float:
-    """What the energy account misses, relative to the energy at the start."""
+    """Energy residual relative to the initial energy."""
     parts = dict(outcome.energy)
     initial = parts.pop("initial")
     return abs(sum(parts.values()) - initial) / initial
 
 
 def outcome_vector(outcome: Outcome) -> np.ndarray:
-    """Everything an outcome says, as one vector: angles, speeds, impulses, energies."""
+    """All numbers of an outcome: angles, speeds, impulses, energies."""
     return np.array(
         [
             outcome.squirt,
@@ -81,13 +81,13 @@ def outcome_vector(outcome: Outcome) -> np.ndarray:
 
 
 def assert_valid_outcome(outcome: Outcome, within: float = ENERGY_TOLERANCE) -> None:
-    """What holds for every strike: finite numbers, losses that are losses, an energy account that closes."""
+    """Finite numbers, nonnegative losses, a small energy residual and contiguous phases."""
     assert np.all(np.isfinite(outcome_vector(outcome)))
     initial = outcome.energy["initial"]
     assert all(part >= -ENERGY_TOLERANCE * initial for part in outcome.energy.values())
     assert energy_residual(outcome) < within
-    thrown = [phase.state for phase in outcome.phases] == ["impulse"]  # separated by infinite friction alone
-    assert outcome.impulse[1] == 0 if thrown else outcome.impulse[1] > 0
+    separates_at_once = [phase.state for phase in outcome.phases] == ["impulse"]  # separated by infinite friction alone
+    assert outcome.impulse[1] == 0 if separates_at_once else outcome.impulse[1] > 0
     assert abs(outcome.impulse[0]) >= 0
     times = [(phase.start, phase.end) for phase in outcome.phases]
     assert times[0][0] == 0

@@ -1,4 +1,4 @@
-"""Closed surfaces of revolution with facets, as CAD writes them; no tests."""
+"""Closed surfaces of revolution with facets, as CAD programs write them; no tests."""
 
 from collections.abc import Sequence
 from itertools import pairwise

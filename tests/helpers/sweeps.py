@@ -1,4 +1,4 @@
-"""Small studies that tests share; no tests."""
+"""Small studies; no tests."""
 
 import sqlite3
 from pathlib import Path
@@ -28,7 +28,7 @@ def resolution(order: int, modes: int) -> str:
 
 
 def vary(path: str, *rest: str) -> str:
-    """The table of what varies, a line each."""
+    """A [[vary]] table, one key a line."""
     return "\n".join(["", "[[vary]]", f"path = {path}", *rest, ""])
 
 
@@ -38,13 +38,13 @@ STUDY += vary(BOTH, 'name = "bore"', 'low = "0 mm"', 'high = "15 mm"', "count = 
 STUDY += vary('"tip.contact_time"', 'values = ["0.8 ms", "1.2 ms"]')
 STUDY += vary('"cue.segments[0].material"', 'values = ["hard maple", "ash"]')
 
-# Quasi-random; a strike in time a design, so that blocks are small.
+# Quasi-random; a strike takes longer than an end mass, so that blocks are small.
 STRIKES = 'scene = "scene.toml"\nresponses = ["squirt(0.3)", "end_mass", "vibration_energy(0.3)"]\n' + resolution(10, 4)
 STRIKES += '[sample]\nmethod = "sobol"\ncount = 150\nseed = 5\n'
 STRIKES += vary('"cue.segments[0].tip_bore"', 'low = "0 mm"', 'high = "13 mm"')
 STRIKES += vary('"cue.segments[*].material.E"', 'name = "E over drawn"', "low = 0.7", "high = 1.3", "factor = true")
 
-# Distributions of wood, and of a tip, for scatter.
+# Distributions of wood and tip for a tolerance analysis.
 SCATTER = 'scene = "scene.toml"\nresponses = ["end_mass", "tip_stiffness"]\n' + resolution(8, 4)
 SCATTER += '[tolerances]\ncount = 16\nseed = 5\ncorrelations = [["E", "density", 0.4]]\n'
 SCATTER += 'groups = { wood = ["E", "density"] }\n'
@@ -53,7 +53,7 @@ DENSITY = ('name = "density"', 'middle = "700 kg/m^3"', "sd = 0.1", 'spacing = "
 SCATTER += vary('"cue.segments[0].material.rho"', *DENSITY)
 SCATTER += vary('"tip.contact_time"', 'name = "time"', 'low = "0.8 ms"', 'high = "1.5 ms"')
 
-# The least squirt of a bore and a width of the tip, as stiff as 300 N/m.
+# Minimum squirt over bore and tip diameter with a stiffness of at least 300 N/m.
 OPTIMUM = 'scene = "scene.toml"\n[objective]\nminimize = "squirt_slope"\n' + resolution(8, 4)
 OPTIMUM += '[[limit]]\nresponse = "tip_stiffness"\nlow = "300 N/m"\n'
 OPTIMUM += vary('"cue.segments[0].tip_bore"', 'name = "bore"', 'low = "1 mm"', 'high = "9 mm"')
@@ -61,26 +61,26 @@ OPTIMUM += vary('"cue.segments[0].tip_diameter"', 'name = "tip"', 'low = "10 mm"
 
 
 def write_study(folder: Path, study: str = STUDY, scene: str = SCENE, name: str = "study.toml") -> Path:
-    """A study, and its scene beside it."""
+    """Write a study and its scene; the path of the study."""
     (folder / "scene.toml").write_text(scene, encoding="utf-8")
     (folder / name).write_text(study, encoding="utf-8")
     return folder / name
 
 
 def computed_rows(study: Path, output: Path, **more: Any) -> list[tuple[Any, ...]]:
-    """The table of a study, computed into a store."""
+    """Compute a study into a store; its rows."""
     with SqliteStore(output, load_study(study), study.stem) as store:
         compute_study(store.study, store=store, **more)
     return stored_rows(output)
 
 
 def stored_rows(path: Path, name: str | None = None) -> list[tuple[Any, ...]]:
-    """The whole table of a study in a store, numbers as they are kept."""
+    """All rows of a study in a store."""
     return [(row.design, *row.values, *row.responses, row.failure) for row in read_table(path, name).rows]
 
 
 def alter_store(path: Path, command: str, *values: object) -> None:
-    """Change a store behind cuefem's back."""
+    """Execute an SQL statement on a store."""
     with sqlite3.connect(path) as file:
         file.execute(command, values)
     file.close()

@@ -1,1 +1,1 @@
-"""Other methods than the package's, which check it: a beam of its own, small steps, the contact in NumPy; no tests."""
+"""Independent methods: a spectral beam, small steps, partial slip, an exact chain, decimal impulses; no tests."""

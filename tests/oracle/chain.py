@@ -1,7 +1,7 @@
-"""A geometrically exact cue: a chain of point masses, stiff links and springs at its joints, stepped by small steps.
+"""A geometrically exact cue: point masses, stretching links and rotational springs at joints, in small steps; no tests.
 
-Nothing of cuefem is in it. Links stretch and turn by any angle; the linear chain has the same stiffness without the
-geometry, so that the two differ by what bending does to the thrust and the thrust to bending.
+It uses no code of cuefem. Links stretch and rotate by any angle; the linear chain has the same stiffness without the
+geometric terms, so that the two differ by the coupling of axial force and bending.
 """
 
 from __future__ import annotations
@@ -13,26 +13,26 @@ import numpy as np
 
 
 class Chain:
-    """length: m; radius(x), density, E: of a solid shaft; more: mass at its butt end, kg; count: links."""
+    """length: m; radius(x), density, E: of a solid shaft; butt_mass: at the butt end, kg; count: number of links."""
 
-    def __init__(self, length: float, radius: Any, density: float, E: float, more: float, count: int) -> None:
+    def __init__(self, length: float, radius: Any, density: float, E: float, butt_mass: float, count: int) -> None:
         self.link = length / count
         middle, node = (np.arange(count) + 0.5) * self.link, np.arange(1, count) * self.link
         area, fine = math.pi * radius(middle) ** 2, (np.arange(20 * count) + 0.5) / 20
         part = density * math.pi * radius(fine * self.link) ** 2 * self.link / 20
         self.mass = np.bincount(fine.astype(int), part * (1 - fine % 1), count + 1)
         self.mass += np.bincount(fine.astype(int) + 1, part * (fine % 1), count + 1)
-        self.mass[-1] += more
+        self.mass[-1] += butt_mass
         self.stretch, self.bend = E * area / self.link, E * math.pi * radius(node) ** 4 / 4 / self.link
         self.rest = np.column_stack([-np.arange(count + 1) * self.link, np.zeros(count + 1)])
 
     @property
     def step(self) -> float:
-        """A fiftieth of the time that a wave takes along a link, s."""
+        """Time step, s: a small part of the time that a wave takes along a link."""
         return 0.08 * float(np.sqrt(self.mass[1:-1].min() / self.stretch.max()))
 
     def forces(self, at: Any, *, exact: bool) -> Any:
-        """On the masses, (masses, 2), N."""
+        """Forces on the masses, (masses, 2), N."""
         force = np.zeros_like(at)
         if not exact:
             displacement = at - self.rest

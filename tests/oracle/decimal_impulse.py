@@ -1,8 +1,8 @@
-"""An oracle of the impulse solver, written from Newton's and Coulomb's laws and sharing no formula with cuefem.
+"""An independent impulse solver, written from Newton's and Coulomb's laws without a formula of cuefem; no tests.
 
-`exact`: a stroke's course in the normal impulse, where the pieces are straight, in decimal arithmetic of 60 digits.
-It does not know the inverse mass B: a contact force (f, 1) per normal impulse moves the ball's centre, its spin and the
-tip, each by its own law, and the contact's velocity is read off their motion.
+The solution is piecewise linear in the normal impulse, in decimal arithmetic of 60 digits. There is no inverse mass B:
+a contact force (f, 1) per normal impulse accelerates the ball's centre, its spin and the tip, each by its own law, and
+the relative velocity of the contact follows from their motion.
 """
 
 from decimal import Decimal, localcontext
@@ -12,7 +12,7 @@ from cuefem import Scene
 
 
 class ImpulseSolution(NamedTuple):
-    """What the oracle says, in SI; tangent: tan of the squirt; pulls: the friction law's course."""
+    """The outcome in SI; tangent: tan of the squirt; friction_states: state and phase of each piece."""
 
     tangent: Any
     p_t: Any
@@ -20,7 +20,7 @@ class ImpulseSolution(NamedTuple):
     cue_speed: Any
     tip_loss: Any
     friction_loss: Any
-    pulls: list[str]
+    friction_states: list[str]
 
 
 def exact_impulse(scene: Scene, digits: int = 60) -> ImpulseSolution:
@@ -44,43 +44,43 @@ def _exact(x: dict[str, Decimal], *, M: Decimal, U: Decimal) -> ImpulseSolution:
         tip_u, tip_w = -x["along"] * u - x["coupling"] * w, -x["coupling"] * u - x["across"] * w
         return f + f / nu - (s * tip_u + c * tip_w), normal - (c * tip_u - s * tip_w)
 
-    held = -response(Decimal(0), Decimal(1))[0] / response(Decimal(1), Decimal(0))[0]
+    stick_ratio = -response(Decimal(0), Decimal(1))[0] / response(Decimal(1), Decimal(0))[0]
     v_t, v_n = -s, -c
     p_t = p_n = normal_work = friction_work = Decimal(0)
-    spent, pulls = None, []
-    if mu == Decimal("Infinity") and v_t < 0:  # the limit of ever larger friction: an impulse along t alone
+    compression_work, friction_states = None, []
+    if mu == Decimal("Infinity") and v_t < 0:  # the limit of infinite friction: a tangential impulse alone
         r_t, r_n = response(Decimal(1), Decimal(0))
         p_t = -v_t / r_t
         friction_work, v_t, v_n = -v_t * p_t / 2, Decimal(0), v_n + r_n * p_t
     while True:
         if v_t < 0:
             name, f = "slip", mu
-        elif v_t == 0 and abs(held) <= mu:
-            name, f = "stick", held
-        elif v_t > 0 or held < 0:
+        elif v_t == 0 and abs(stick_ratio) <= mu:
+            name, f = "stick", stick_ratio
+        elif v_t > 0 or stick_ratio < 0:
             name, f = "reversed", -mu
         else:
             name, f = "slip", mu
-        pulls.append(name + (" compressing" if spent is None else " restoring"))
+        friction_states.append(name + (" compressing" if compression_work is None else " restoring"))
         r_t, r_n = response(f, Decimal(1))
-        if spent is None:
+        if compression_work is None:
             end = -v_n / r_n if r_n > 0 else None
         else:
-            missing = spent * (1 - e * e) - normal_work
+            missing = compression_work * (1 - e * e) - normal_work
             end = 2 * missing / (v_n + (v_n * v_n + 2 * r_n * missing).sqrt()) if missing > 0 else Decimal(0)
-        grip = -v_t / r_t if v_t < 0 < r_t else None
-        gripped = grip is not None and (end is None or grip < end)
-        step = grip if gripped else end
+        stick_impulse = -v_t / r_t if v_t < 0 < r_t else None
+        sticks = stick_impulse is not None and (end is None or stick_impulse < end)
+        step = stick_impulse if sticks else end
         normal_work += (v_n + r_n * step / 2) * step
         friction_work -= f * (v_t + r_t * step / 2) * step
         p_t, p_n = p_t + f * step, p_n + step
-        v_t = Decimal(0) if gripped or name == "stick" else v_t + r_t * step
+        v_t = Decimal(0) if sticks or name == "stick" else v_t + r_t * step
         v_n = v_n + r_n * step
-        if gripped:
+        if sticks:
             continue
-        if spent is not None or e == 0:
+        if compression_work is not None or e == 0:
             break
-        spent, v_n = normal_work, Decimal(0)
+        compression_work, v_n = normal_work, Decimal(0)
     p_u, p_w = s * p_t + c * p_n, c * p_t - s * p_n
     free = 1 - x["coupling"] ** 2 / (x["along"] * x["across"])
     return ImpulseSolution(
@@ -90,15 +90,15 @@ def _exact(x: dict[str, Decimal], *, M: Decimal, U: Decimal) -> ImpulseSolution:
         cue_speed=U * (1 - p_u * x["along"] * free),
         tip_loss=-M * U**2 * normal_work,
         friction_loss=M * U**2 * friction_work,
-        pulls=pulls,
+        friction_states=friction_states,
     )
 
 
-def regime_of(told: ImpulseSolution) -> str:
-    """The regime in the words of `Outcome`, from the course of friction."""
-    if any(pull.startswith("reversed") for pull in told.pulls):
+def regime_of(solution: ImpulseSolution) -> str:
+    """The regime of `Outcome` that the friction states define."""
+    if any(state.startswith("reversed") for state in solution.friction_states):
         return "slip reversal"
-    first = next((pull for pull in told.pulls if pull.startswith("stick")), None)
+    first = next((state for state in solution.friction_states if state.startswith("stick")), None)
     if first is None:
         return "miscue"
     return "stick" if first == "stick compressing" else "late stick"

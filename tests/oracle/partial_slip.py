@@ -1,14 +1,14 @@
-"""A patch of leather that shrinks and slips ring by ring, in small steps that share nothing with the kernel.
+"""Partial slip of a leather contact, annulus by annulus, in small steps that share no code with the kernel; no tests.
 
 A symmetric splitting of second order: half a kick by the contact's forces, the exact turn of the modes, half a kick.
-Let k(a) be the tip's stiffness along the surface with a stuck patch of radius a. Where the patch grows from a to a +
-da while the surfaces shift by d(delta), the tractions of a stuck punch of radius a are added, times d(delta). So the
-ring at x is strained by u(x) = delta - (delta at the time when x touched), F_t = integral of u dk, and each ring
-slips where u dk exceeds mu times its part (d - x) dS of the normal force: the partial slip of Cattaneo, Mindlin and
+Let k(a) be the tangential stiffness of the tip with a sticking contact area of radius a. Where the area grows from a to
+a + da while the surfaces shift by d(delta), the tractions of a sticking punch of radius a are added, times d(delta). So
+the annulus at x is strained by u(x) = delta - (delta at the time when x touched), F_t = integral of u dk, and it slips
+where u dk exceeds mu times its part (d - x) dS of the normal force: the partial slip of Cattaneo, Mindlin and
 Deresiewicz (Jaeger's superposition). A boundary-element solver with vector friction gives the same squirt: within 0.0
 % on a half-space, and within 0.04, 0.3 and 1.1 % at b/R 0.187, 0.375 and 0.453 on a bonded layer of 6 mm. A force
-that falls in proportion to the patch's stiffness instead makes 7 to 11 % more squirt. x stands for a patch by the
-compression that it belongs to.
+that falls in proportion to the patch's stiffness instead makes 7 to 11 % more squirt. x denotes a contact area by the
+indentation at which it has that radius.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def maple_scene(
     more: tuple[Effect, ...] = (),
     tip: Tip | None = None,
 ) -> Scene:
-    """The maple shaft before a pool ball, its leather as a `LeatherTip`."""
+    """A stroke of the maple shaft on a pool ball, its leather as a `LeatherTip`."""
     shaft = cue("pool_maple")
     bare = replace(shaft, segments=shaft.segments[1:])
     return Scene(bare, Ball(0.170, 0.028575), tip or Tip(0.73, 0.7), Stroke(speed, offset), (leather, *more))
@@ -43,7 +43,7 @@ def maple_scene(
 
 @dataclass
 class Patch:
-    """The force along the surface, ring by ring."""
+    """The tangential force, annulus by annulus."""
 
     law: LeatherLaw
     friction: float
@@ -59,7 +59,7 @@ class Patch:
         self.strain = np.zeros(RINGS)
 
     def shift(self, by: float, eta: float, F_n: float) -> float:
-        """F_t, N, after the surfaces have shifted by so much, m, at the virtual compression eta, m."""
+        """F_t, N, after the surfaces have shifted by ``by``, m, at the virtual indentation ``eta``, m."""
         open_now = self.middle <= eta
         self.strain[~open_now] = 0.0
         before, e2 = self.strain.copy(), self.restitution**2
@@ -72,7 +72,7 @@ class Patch:
 
 
 def small_step_squirt(scene: Scene, step: float = 1e-6) -> float:
-    """Squirt, deg."""
+    """Squirt, deg, in steps of ``step``, s."""
     tip, ball, at, leather = scene.tip, scene.ball, scene.stroke, scene.effects[0]
     assert isinstance(leather, LeatherTip)
     law = scene.tip_law(tip.restitution, at.offset)
@@ -99,7 +99,7 @@ def small_step_squirt(scene: Scene, step: float = 1e-6) -> float:
         return t, normal, reach
 
     def turned(motion: np.ndarray, by_ball: np.ndarray) -> float:
-        """Angle that the contact turns by: the ball rolls over the dome or, from there on, over its rim, an edge."""
+        """Rotation of the contact normal, rad: the ball rolls over the dome or, beyond it, over the rim."""
         t, _, reach = directions()
         on_rim = leather.dome_radius * abs(math.sin(phi)) >= diameter / 2
         centre, rolling = (reach, ball.radius) if on_rim else (dome_centre, ball.radius + leather.dome_radius)

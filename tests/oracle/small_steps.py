@@ -1,9 +1,9 @@
-"""A contact of its own for what checks the package: small steps of equal length, without phases and without events.
+"""An independent contact solver: small steps of equal length, without phases and events; no tests.
 
 Cue, ball and table move in three dimensions in the table's frame (x right, y forward, z up). A step is half of the
 free motion (exact), an impulse of the contact's forces, and the other half. The tip's normal force follows from
-the positions; friction, at the tip and on the table, is what leaves the sliding point at rest at the end of the step,
-or its bound against the sliding. Whoever slips, sticks, lifts off or touches again comes out of that.
+the positions; friction, at the tip and on the table, stops the sliding point at the end of the step, or is at its
+bound against the sliding. Slip, stick, separation and repeated contact follow from that.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ import cuefem as cf
 from tests.oracle.spectral_beam import Bending, bending
 
 Array = NDArray[np.float64]
-SWEEPS, SETTLED = 200, 1e-13  # of the friction of a raised cue, and when it has settled
+SWEEPS, SETTLED = 200, 1e-13  # iterations of the friction of a raised cue, and their tolerance
 
 
 @dataclass(frozen=True)
 class SmallStepsOutcome:
-    """What small steps say of a strike, in the words of `cuefem.Outcome`.
+    """The outcome of small steps; fields as in `cuefem.Outcome`.
 
-    touches: when each contact of tip and ball began, s. vibration, lost: energy of the cue's vibrations, and what its
-    dampers took, over the energy at the start.
+    touches: start of each contact of tip and ball, s. vibration, lost: energy of the cue's vibrations, and energy
+    dissipated by its dampers, over the initial energy.
     """
 
     squirt: float
@@ -42,12 +42,12 @@ class SmallStepsOutcome:
 
 
 def solve_small_steps(scene: cf.Scene, modes: int, steps: int) -> SmallStepsOutcome:
-    """A strike with so many flexible modes of the free cue, in so many steps for a head-on contact time."""
+    """A strike with ``modes`` flexible modes of the free cue, in ``steps`` steps for a head-on contact time."""
     return Steps(scene, modes, steps).run()
 
 
 class Steps:
-    """The strike of one scene; see `struck`."""
+    """The strike of one scene."""
 
     def __init__(self, scene: cf.Scene, modes: int, steps: int) -> None:
         self.scene = scene
@@ -62,7 +62,7 @@ class Steps:
         self.step = self.time / steps
         self.planes = 2 if self.raised else 1
         self.many = len(self.bent.omega)
-        self.body = 1 + self.planes * self.many  # where the ball's coordinates begin: x, y, z and R times its turning
+        self.body = 1 + self.planes * self.many  # index of the ball's coordinates: x, y, z and R times its rotation
         self.size = self.body + 6
         self._frame()
         self._half_step()
@@ -82,7 +82,7 @@ class Steps:
         return bending(cue, on_cue, modes + 2)
 
     def _frame(self) -> None:
-        """Rows that read the relative velocity, ball less tip, along each direction of the contact and of the table."""
+        """Output rows of the relative velocity, ball less tip, along each direction of the contact and of the table."""
         a = self.raised.angle if self.raised else 0.0
         s = self.stroke.offset
         c = math.sqrt(1 - s * s)
@@ -96,7 +96,9 @@ class Steps:
         for plane, direction in zip(range(self.planes), (right, rise), strict=False):
             modes = slice(1 + plane * many, 1 + (plane + 1) * many)
             tip[:, modes] += np.outer(direction, bent.across + r * (1 - c) * bent.turning)
-            if plane == 0:  # the contact lies r s left of the axis, so that a turning end moves it along the axis
+            if (
+                plane == 0
+            ):  # the contact lies r s left of the axis, so that a rotation of the end moves it along the axis
                 tip[:, modes] += np.outer(axis, -r * s * bent.turning)
 
         def row(direction: Array, arm: Array, *, of_tip: bool) -> Array:
@@ -125,10 +127,10 @@ class Steps:
             A[n + modes, modes] = -(self.bent.omega**2)
             A[np.ix_(n + modes, n + modes)] = -self.bent.damping
         self.half = la.expm(A * self.step / 2)
-        self.reading = np.concatenate([np.zeros_like(self.rows), self.rows], axis=1) @ self.half
+        self.output_rows = np.concatenate([np.zeros_like(self.rows), self.rows], axis=1) @ self.half
         wide = np.concatenate([self.row_n[None], self.rows]) / self.masses
-        self.blows = np.concatenate([np.zeros_like(wide), wide], axis=1)  # of unit impulses: normal, then the rows
-        self.gram = self.reading @ self.blows.T
+        self.impulses = np.concatenate([np.zeros_like(wide), wide], axis=1)  # of unit impulses: normal, then the rows
+        self.gram = self.output_rows @ self.impulses.T
 
     def run(self) -> SmallStepsOutcome:
         """The strike from touch to the last separation."""
@@ -163,12 +165,12 @@ class Steps:
                 F_t = min(max(F_t - shear.ratio * k * (shift - before), -bound), bound)
                 before, tangent = shift, np.array([h * F_t])
             elif impulse:
-                tangent = self._rubbed(self.reading @ z + self.gram[:, 0] * impulse, impulse, tangent)
+                tangent = self._rubbed(self.output_rows @ z + self.gram[:, 0] * impulse, impulse, tangent)
             else:
                 tangent = np.zeros(len(self.rows))
                 if self.raised:
-                    tangent = self._rubbed(self.reading @ z, 0.0, tangent)
-            z = z + self.blows[0] * impulse + tangent @ self.blows[1:]
+                    tangent = self._rubbed(self.output_rows @ z, 0.0, tangent)
+            z = z + self.impulses[0] * impulse + tangent @ self.impulses[1:]
             lost += self._damped(z)
             z = self.half @ z
             time += h / 2
@@ -176,14 +178,14 @@ class Steps:
         return self._seen(z, left, touches, lost, first)
 
     def _damped(self, z: Array) -> float:
-        """What dampers take in a step, J."""
+        """Energy that dampers dissipate in a step, J."""
         if not self.bent.damping.any():
             return 0.0
         v = z[self.size + 1 : self.size + 1 + self.many]
         return float(v @ self.bent.damping @ v) * self.step
 
     def _rubbed(self, sliding: Array, pressed: float, guess: Array) -> Array:
-        """Impulses along the rows: the tip's friction, and of a raised cue the table's push and friction.
+        """Impulses along the rows: the tip's friction, and of a raised cue the normal force and friction of the table.
 
         sliding: velocities at the end of the step without them.
         """
@@ -226,9 +228,9 @@ class Steps:
 
 
 def in_disk(P: Array, sliding: Array, G: Array, bound: float) -> Array:
-    """The friction impulse, within its bound, that stops a sliding in two directions or goes against it.
+    """The friction impulse, within its bound, that stops sliding in two directions or opposes it.
 
-    P: the one that led to the sliding velocity.
+    P: the impulse that led to the sliding velocity.
     """
     free = P - np.linalg.solve(G, sliding)
     if math.isinf(bound) or free @ free <= bound**2:

@@ -1,7 +1,7 @@
-"""A beam of its own for what checks the package: Timoshenko's, in spectral elements with lumped masses.
+"""An independent Timoshenko beam: spectral elements with lumped masses; no tests.
 
 The nodes of an element are its Gauss-Lobatto points, which are its quadrature points too, so that the mass matrix is
-diagonal. Nothing of it is the package's: not its basis, not its quadrature, not its sections, not its effects.
+diagonal. It shares no basis, quadrature, sections or effects with the package.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def lobatto(degree: int) -> tuple[Array, Array, Array]:
 
 @dataclass(frozen=True)
 class Bending:
-    """Modes of a beam: angular frequency, rad/s, deflection and rotation of the tip, and a matrix of damping, 1/s."""
+    """Modes of a beam: angular frequency, rad/s, deflection and rotation of the tip, and the damping matrix, 1/s."""
 
     omega: Array
     across: Array
@@ -59,7 +59,7 @@ def section(segment: Segment, s: Array) -> list[tuple[Material, Array, Array]]:
 class Assembly:
     """Stiffness, the same with every modulus times its loss factor, dashpots, and the diagonal of masses.
 
-    Unknowns stand in the order of the nodes: deflection, rotation.
+    Degrees of freedom in the order of the nodes: deflection, rotation.
     """
 
     def __init__(self, cue: Cue, effects: tuple[Effect, ...]) -> None:
@@ -69,7 +69,7 @@ class Assembly:
         joints = {effect.position for effect in effects if isinstance(effect, Joint)}
         self.blocks: list[tuple[Array, float, Segment, float]] = []  # nodes, length, segment, start in the segment
         self.node: dict[float, int] = {0.0: 0}
-        self.before: dict[float, int] = {}  # the node of a joint's other side
+        self.before: dict[float, int] = {}  # the node ahead of a joint
         last, count = 0, 1
         for (start, end), segment in zip(pairwise(ends), cue.segments, strict=True):
             cuts = [start, *sorted({x for x in positions if start + 1e-9 < x < end - 1e-9}), end]
@@ -87,7 +87,7 @@ class Assembly:
         self.count = count
 
     def matrices(self) -> tuple[Array, Array, Array, Array]:
-        """(K, K with losses, C, diagonal of M) of all unknowns."""
+        """(K, K with losses, C, diagonal of M) of all degrees of freedom."""
         size = 2 * self.count
         K, lossy, C, M = np.zeros((size, size)), np.zeros((size, size)), np.zeros((size, size)), np.zeros(size)
         x, weights, slopes = lobatto(DEGREE)
@@ -119,7 +119,7 @@ class Assembly:
         return K, lossy, C, M
 
     def reduced(self) -> tuple[Array, Array, Array, Array]:
-        """The matrices with the joints' springs, without what is clamped, and with what a joint leaves whole tied."""
+        """The matrices with joint springs, without clamped degrees of freedom, with rigid joint directions tied."""
         K, lossy, C, M = self.matrices()
         into = np.arange(2 * self.count)
         for effect in self.effects:
