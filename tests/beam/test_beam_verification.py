@@ -1,4 +1,4 @@
-"""Verification of the beam: closed forms, spectral elements, orders of convergence, round-off error, slices."""
+"""The beam: closed forms, spectral elements, orders of convergence, round-off error, slices (verification)."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ LEVELS = {1: [4, 8, 16, 32, 64, 128], 2: [4, 8, 16, 32, 64], 3: [4, 8, 16, 32]}
 @pytest.mark.parametrize("mode", [0, 1, 2])
 @pytest.mark.parametrize("order", [1, 2, 3])
 def test_frequency_error_has_order_2p(order: int, mode: int) -> None:
-    """The frequency error is of order 2p; its next term is h^2 smaller, so the bound tightens like 1/elements^2."""
+    """The next term of the error is h^2 smaller, so the bound on the order falls like 1/elements^2."""
     exact = frequencies(isotropic_kim(), 2, 20)
     elements = np.array(LEVELS[order])
     errors = [frequencies(isotropic_kim(), int(n), order)[mode] / exact[mode] - 1 for n in elements]
@@ -121,7 +121,7 @@ def test_inverse_form_low_modes_have_small_roundoff_error(cue: Cue, most: float)
 
 def test_modes_dense_and_sparse_solvers_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     cue, results = soft_tip(), {}
-    monkeypatch.setattr(system, "EVEN", 1)  # however many modes are wanted
+    monkeypatch.setattr(system, "EVEN", 1)  # for any number of modes
     for limit in (0, 10**6):
         monkeypatch.setattr(system, "DENSE_LIMIT", limit)
         results[limit] = modes(cue, 8, effects=(Joint(0.3, 1e-3), Support(0.5, np.inf)), at=Resolution(2, 16, 8))
@@ -134,7 +134,7 @@ def test_modes_dense_and_sparse_solvers_agree(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_mesh_has_node_at_every_jump_and_position() -> None:
-    """A smooth piece is one element: nodes lie at jumps and at positions, none twice."""
+    """Nodes lie at jumps and at positions, none twice; a smooth part is one element."""
     effects = tuple(PointMass(x, 0.0) for x in (0.1, 0.006, 0.1))
     for at, elements in ((Resolution(2, 3, 1), 8), (6, 4)):
         mesh = mesh_cue(COMPOSITE, at, effects)
@@ -176,7 +176,7 @@ def test_mesh_sliced_cone_equals_whole_cone() -> None:
 
 @pytest.mark.parametrize("n", [100, pytest.param(1000, marks=pytest.mark.heavy)])
 def test_frequencies_alternating_slices_converge_to_mean_material(n: int) -> None:
-    """Of n pairs of thin slices the error goes like 1/n: compliance and mass per length are the mean of both."""
+    """With n pairs of thin slices the error falls like 1/n: compliance and mass per length are the mean of both."""
     d, light, heavy = 0.014, Material(12e9, 0.8e9, 700.0), Material(16e9, 1.2e9, 1000.0)
 
     def mean(a: float, b: float) -> float:

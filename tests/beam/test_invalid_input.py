@@ -1,4 +1,4 @@
-"""Invalid input of `modes`: each call with the beginning of its error message."""
+"""Invalid input of `modes`: each call with a part of its error message (bad input)."""
 
 from __future__ import annotations
 

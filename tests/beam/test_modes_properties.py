@@ -1,4 +1,4 @@
-"""Properties of modes and end masses: scale, units, bounds and monotony, of every shaft that can be drawn."""
+"""Modes and end masses of random shafts: change of units, monotony in stiffness and mass (properties)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ AT = Resolution(2, 8, 10)
 
 @st.composite
 def cues(draw: st.DrawFn) -> Cue:
-    """One to four pieces of 4 mm to 40 cm, 8 to 30 mm wide, some bored, of wood, leather or steel.
+    """One to four segments of 4 mm to 40 cm, 8 to 30 mm in diameter, some bored, of wood, leather or steel.
 
     kappa is set, because its default depends on E/G.
     """
@@ -63,7 +63,7 @@ def test_end_mass_scaled_units_scales(cue: Cue, drive: str, length: float, time:
 @given(cues(), st.floats(1.01, 4.0))
 @settings(max_examples=20)
 def test_frequencies_rise_with_stiffness_and_fall_with_mass(cue: Cue, factor: float) -> None:
-    """Rayleigh: with E alone (or G alone) no frequency falls; with both all go like the root, as with mass."""
+    """Rayleigh: a larger E lowers no frequency; a larger density divides all by its root."""
     plain = modes(cue, 6, at=AT).frequencies
     stiff, both = (
         modes(scaled(cue, E=factor), 6, at=AT).frequencies,

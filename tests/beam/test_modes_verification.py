@@ -1,4 +1,4 @@
-"""Verification of the modes: orthogonality, `near`, the default mesh, and tip modes."""
+"""Modes: orthogonality, `near`, the default mesh, and tip modes (verification)."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def stations(cue: Cue, nodes: np.ndarray | None = None) -> tuple[np.ndarray, np.
 
 @pytest.mark.parametrize("name", SHAFTS)
 def test_modes_are_orthonormal_in_mass(name: str) -> None:
-    """By an integral of their own, and orthogonal to translation and rotation."""
+    """By an independent integral, and orthogonal to translation and rotation."""
     cue = SHAFTS[name]
     result = modes(cue, 8)
     nodes = result.system.mesh.nodes
@@ -46,7 +46,7 @@ def test_modes_are_orthonormal_in_mass(name: str) -> None:
 
 @pytest.mark.parametrize("mode", [0, 1, 2])
 def test_modes_near_natural_frequency_include_it(mode: int) -> None:
-    """E and G scaled until 250 Hz *is* the frequency of a mode: no singular matrix, and it comes first of all."""
+    """E and G scaled so that a mode has exactly 250 Hz: no singular matrix, and that mode is the first."""
     cue = kim()
     ratio = (250.0 / modes(cue, 3).frequencies[mode]) ** 2
     tuned = scaled(cue, E=ratio, G=ratio)
@@ -67,7 +67,7 @@ def test_default_mesh_resolves_requested_modes(name: str, count: int) -> None:
 
 
 def test_tip_modes_sum_to_inverse_mass_at_tip() -> None:
-    """The initial inverse mass is the sum of a a' over the modes; its rigid-body part is axial and transverse."""
+    """The rigid-body part of the sum of a a' over the modes is the inverse mass, axial and transverse."""
     cue = kim()
     result = modes(cue, 5)
     tip = tip_modes(result, cue.mass)

@@ -1,4 +1,4 @@
-"""The beam's matrices against those that scikit-fem assembles of the same weak forms (verification)."""
+"""The beam's matrices against scikit-fem's assembly of the same weak forms (verification)."""
 
 from __future__ import annotations
 

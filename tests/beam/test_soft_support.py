@@ -1,4 +1,4 @@
-"""A support of vanishing stiffness changes nothing (verification)."""
+"""The limit of a support of vanishing stiffness is the free cue (verification)."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def scene(cue: Cue, *effects) -> Scene:
 
 @pytest.mark.parametrize("cue", [CUE, UNEVEN], ids=["even", "stiff ferrule"])
 def test_end_mass_and_squirt_soft_support_converge_to_free_cue(cue: Cue) -> None:
-    """In proportion to the stiffness and without a jump, though the soft mode's frequency becomes round-off error."""
+    """The error is proportional to the stiffness, even where the soft mode's frequency is round-off error."""
 
     def results(*effects: Effect) -> np.ndarray:
         return np.array([end_mass(scene(cue, *effects)), strike(scene(cue, *effects)).squirt])

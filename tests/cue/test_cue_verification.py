@@ -1,4 +1,4 @@
-"""Verification of the cue: section properties, masses and shear coefficients against their own exact values."""
+"""The cue: section properties, masses and shear coefficients against exact values (verification)."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -32,7 +32,7 @@ def test_mass_and_balance_point_equal_quadrature(name: str) -> None:
 
 
 def test_section_tapered_tube_with_core_equals_closed_form() -> None:
-    """At 1/4 of the piece: radii 5.5 and 3.5 mm; shell and core add, each with its own constants."""
+    """At 1/4 of the segment: radii 5.5 and 3.5 mm; shell and core add, each with its own constants."""
     s = Segment(0.4, 0.010, 0.014, CARBON, 0.006, 0.010, core=FOAM).section(0.1)
     outer, inner = 0.0055, 0.0035
     shell, disc = np.pi * (outer**2 - inner**2), np.pi * inner**2
@@ -67,7 +67,7 @@ def test_shear_coefficient_solid_circle_equals_published(material: Material, kap
 
 @pytest.mark.parametrize("nu", [0.0, 0.1, 0.3, 0.5])
 def test_shear_coefficient_small_bore_and_thin_wall_limits(nu: float) -> None:
-    """Without a bore the solid circle's; a thin tube (1 + nu)/(2 + nu), approached like the wall squared."""
+    """Without a bore: the solid circle's; thin tube: (1 + nu)/(2 + nu), with an error of order wall squared."""
     solid = 6 * (1 + nu) ** 2 / (7 + 12 * nu + 4 * nu**2)
     np.testing.assert_allclose(shear_coefficient(nu, 0.0), solid, rtol=1e-15)
     np.testing.assert_allclose(shear_coefficient(nu, 1e-9), solid, rtol=1e-15)

@@ -1,4 +1,4 @@
-"""The table of materials against its sources and ranges."""
+"""The table of materials against its sources and ranges (validation)."""
 
 import dataclasses
 
@@ -39,7 +39,7 @@ def test_wood_equals_wood_handbook(name: str, E: float, G: float, rho: float, nu
 
 
 def test_carbon_equals_laminate_theory() -> None:
-    """Classical lamination theory, rebuilt: membrane stiffness of 50 % at 0, 30 % at +-45, 20 % at 90 degrees."""
+    """Classical lamination theory: membrane stiffness of 50 % at 0, 30 % at +-45, 20 % at 90 degrees."""
     E1, E2, G12, nu12 = 135e9, 10e9, 5e9, 0.3
     d = 1 - nu12**2 * E2 / E1
     Q11, Q22, Q12 = E1 / d, E2 / d, nu12 * E2 / d

@@ -1,5 +1,4 @@
-"""End mass of a prescribed tip velocity with a dashpot on the cue: against small steps of a beam of another
-discretisation (verification), and in the limit of a vanishing dashpot (property)."""
+"""End masses with a dashpot on the cue, against small steps of a spectral beam, and without damping (verification)."""
 
 from __future__ import annotations
 
@@ -26,7 +25,7 @@ def dashpot_scene(contact_time: float, dashpot: float, position: float = 0.1) ->
 
 
 def stepped_end_mass(scene: Scene, steps: int) -> float:
-    """Impulses, each at the middle of a step, that give the tip (1 - cos(pi t/T))/2 at the end of each step, summed."""
+    """Sum of impulses, each at the middle of a step, after which the tip has the velocity (1 - cos(pi t/T))/2."""
     bent = bending(SHAFT, scene.cue_effects, MODES + 2)
     n, T = len(bent.omega), float(scene.contact_time)
     A = np.block([[np.zeros((n, n)), np.eye(n)], [-np.diag(bent.omega**2), -bent.damping]])
@@ -58,4 +57,4 @@ def test_end_mass_vanishing_dashpot_is_undamped(drive: str) -> None:
         for dashpot in (1e-2, 1e-3)
     )
     assert slight < 1e-3
-    assert less == pytest.approx(slight / 10, rel=0.05)  # in proportion to it
+    assert less == pytest.approx(slight / 10, rel=0.05)  # proportional to the dashpot

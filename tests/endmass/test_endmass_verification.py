@@ -1,4 +1,4 @@
-"""Verification of the end masses: limits and their orders, closed laws, independent solutions in time, known values."""
+"""End masses: rigid and infinite limits, quadrature in time, reference values (verification)."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def rigid_ratio(cue: Cue) -> float:
 
 
 def ratio(cue: Cue, periods: float, drive: str) -> float:
-    """mass / m_e for a pulse of so many periods of the lowest mode; a slow cue is made stiffer, so that T is 1 s."""
+    """mass / m_e for a pulse of ``periods`` periods of the lowest mode; a slow cue is stiffened, so that T is 1 s."""
     T = periods / modes(cue, 1).frequencies[0]
     if T > 1:
         cue, T = scaled(cue, E=T**2, G=T**2), 1.0
@@ -60,7 +60,7 @@ def test_end_mass_long_pulse_equals_rigid_cue(cue: Cue, limit: float, drive: str
 
 @pytest.fixture(scope="module")
 def long_rod() -> tuple[TipModes, Scene, float]:
-    """Tip modes of a rod 60 wave lengths long and as thin as a needle; (rhoA sqrt(T sqrt(EI/rhoA))) of Euler's beam."""
+    """Tip modes of a thin rod 60 wavelengths long, and the unit rhoA sqrt(T sqrt(EI/rhoA)) of Euler's beam."""
     cue, T = rod(3000.0, diameter=1e-3), 5e-4
     s = cue.section(0.0)
     pulse_scene = scene(cue, T)
@@ -97,7 +97,7 @@ def test_force_end_mass_equals_quadrature(T: float) -> None:
     ("drive", "T", "grams"), [("force", 2e-3, 17.3), ("stick", 1e-3, 5.27), ("stick", 2e-3, 8.1), ("force", 1e-3, 10.4)]
 )
 def test_end_mass_kim_shaft_equals_reference(drive: str, T: float, grams: float) -> None:
-    """Reference values at the precision it gives them."""
+    """At the reference's precision."""
     pulse_scene = scene(kim(), T)
     value = end_mass(pulse_scene, drive)  # type: ignore[arg-type]
     np.testing.assert_allclose(1e3 * value, grams, rtol=3e-3)

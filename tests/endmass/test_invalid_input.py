@@ -1,4 +1,4 @@
-"""Invalid input of `end_mass`, and squirts that have no end mass: errors."""
+"""Invalid input of `end_mass`, and squirts without an end mass (bad input)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def test_end_mass_unknown_drive_raises() -> None:
 
 @pytest.mark.parametrize("mass", [1e-4, 1e-3, 0.01, 0.05])
 def test_equivalent_end_mass_sliding_tip_raises(mass: float) -> None:
-    """While the tip slides, squirt does not depend on the end mass: round-off error must not choose one."""
+    """While the tip slides, squirt does not depend on the end mass, and round-off error must not determine one."""
     tip, stroke = cf.Tip(0.73, 0.2, contact_time=1e-3), cf.Stroke(2.0, 0.37)
     scene = cf.Scene(cf.LumpedCue(0.54, mass), cf.Ball(0.17, 0.028575), tip, stroke)
     slid = replace(cf.impulse(scene), regime="late stick")  # as if a vibrating cue had this squirt and stuck at the end

@@ -1,4 +1,4 @@
-"""End mass of a sticking tip at the scene's own offset: symmetry, limits, and its use in lumped models (properties)."""
+"""End mass of a sticking tip at the scene's offset: symmetry, limits, lumped models (properties)."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def test_lump_with_dome_squirt_equals_strike_without_slip(offset: float) -> None
 
 
 def test_strike_record_without_end_mass_omits_lumped_models() -> None:
-    """A tip of low restitution, far off centre: the cue's end runs ahead of the ball."""
+    """A tip of low restitution, far off centre: the tip moves ahead of the ball."""
     scene = replace(kim_scene(0.85), tip=cf.Tip(0.05, 0.7, 1e-3))
     with pytest.raises(ValueError, match="end_mass: no end mass has the squirt of a sticking tip; got"):
         cf.impulse(scene)
@@ -86,7 +86,7 @@ def test_strike_record_without_end_mass_omits_lumped_models() -> None:
 
 @pytest.mark.parametrize("effects", [(), (cf.GeometricStiffness(),), (cf.Elevation(0.2), cf.GeometricStiffness())])
 def test_squirt_end_mass_is_continuous_at_centre(effects: tuple[cf.Effect, ...]) -> None:
-    """At the centre it is the limit of the same strikes, with axial force (7 %) and the table's force (40 %)."""
+    """At the centre it is the limit of small offsets, with axial force (7 %) and the table's force (40 %)."""
     cue = cf.Cue((cf.Segment(0.74, 0.0125, 0.0215, cf.Material(12.6e9, 0.84e9, 700.0)),), body_mass=0.42)
     scene = cf.Scene(cue, tip=cf.Tip(0.73, 0.6), stroke=cf.Stroke(2.0, 0.0), effects=effects)
     tip = tip_modes_of(scene)
