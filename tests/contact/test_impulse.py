@@ -1,4 +1,4 @@
-"""The impulse solver against an oracle that shares no formula with it, in every regime: energy, mirror, arrays."""
+"""The impulse solver against decimal arithmetic, in every regime: energy, mirror, arrays (verification)."""
 
 from collections import Counter
 from dataclasses import replace
@@ -12,9 +12,9 @@ from cuefem.contact.impulse_solver import impulse_inputs
 from studies.paper import closed_forms as squirt
 from tests.oracle.decimal_impulse import exact_impulse, regime_of
 
-PLACES = ("initial", "ball translation", "ball rotation", "cue", "tip loss", "friction loss")
+ENERGIES = ("initial", "ball translation", "ball rotation", "cue", "tip loss", "friction loss")
 REGIMES = ("stick", "late stick", "miscue", "slip reversal", "jam")
-# A strongly coupled cue, a graze, and friction that is endless or none.
+# A strongly coupled cue, grazing offsets, and friction 0 or infinite.
 EDGES = [
     Scene(LumpedCue(0.5, 0.2, -2.9), Ball(1.0, 0.03), Tip(0.5, inf), Stroke(1.0, 0.995)),
     *(
@@ -27,7 +27,7 @@ EDGES = [
 
 
 def draw(rng: np.random.Generator, kind: str) -> Scene:
-    """A scene that is likely to fall in the regime asked for."""
+    """A scene that is likely to have the requested regime."""
     M, nu = rng.uniform(0.1, 0.3), rng.uniform(0.2, 1)
     Q0, ends, b = 10 ** rng.uniform(-1, 2), 10 ** rng.uniform(-6, 1), rng.uniform(0.01, 0.99)
     mu, e = rng.uniform(0, 2), rng.choice([0.0, 1.0, rng.uniform(0, 1)])
@@ -61,8 +61,8 @@ def columns(singles: list[Scene]) -> dict[str, np.ndarray]:
 
 def energy_closes(singles: list[Scene], out: Outcome) -> None:
     n = columns(singles)
-    initial, *parts = (out.energy[name] for name in PLACES)
-    assert set(out.energy) == set(PLACES)
+    initial, *parts = (out.energy[name] for name in ENERGIES)
+    assert set(out.energy) == set(ENERGIES)
     assert np.all(abs(sum(parts) - initial) < 1e-12 * initial)
     assert np.all(np.min(parts, axis=0) >= -1e-13 * initial)
     assert np.all(initial >= n["mass"] * n["speed"] ** 2 / 2 * (1 - 1e-15))
@@ -93,7 +93,9 @@ def test_impulse_every_regime_agrees_with_oracle(kind: str) -> None:
     p, mass = np.hypot(*out.impulse.T), n["ball_mass"]
     tangent, p_t, p_n, cue_speed, tip_loss, friction_loss = np.array([each[:6] for each in solutions], float).T
     tolerance = 1e-12
-    assert np.all(abs(np.tan(out.squirt) - tangent) < tolerance * (1 + tangent**2))  # decimals have no angles
+    assert np.all(
+        abs(np.tan(out.squirt) - tangent) < tolerance * (1 + tangent**2)
+    )  # the decimal solution has the tangent
     assert np.all(abs(np.array([p_t, p_n]) - out.impulse.T) < tolerance * p)
     np.testing.assert_allclose(out.impulse, mass[:, None] * out.ball_velocity, rtol=1e-14)
     assert np.all(abs(out.spin * n["inertia"] * mass * n["radius"] - out.impulse[:, 0]) < 1e-14 * p)

@@ -1,13 +1,13 @@
-"""Strikes with effects on the cue, of a raised cue and with a second hit, against a beam and small steps of their own.
+"""Strikes with effects on the cue, elevation or a second hit, against independent small steps (verification).
 
-The beam (`tests.oracle.spectral_beam`) is of spectral elements with lumped masses, the contact
-(`tests.oracle.small_steps`) has neither phases nor events: whether the tip slips, sticks, parts or touches again comes
-out of an impulse in each of some thousand equal steps. Both have the same number of modes, so that they differ by the
-steps alone. Scenes are random: cue, ball, tip, stroke and effect, with slips, sticks and miscues on both sides.
+The beam (`tests.oracle.spectral_beam`) has spectral elements with lumped masses, the contact
+(`tests.oracle.small_steps`) has neither phases nor events: slip, stick, separation and repeated contact follow from an
+impulse in each of some thousand equal steps. Both have the same number of modes, so that they differ by the steps
+alone. Scenes are random: cue, ball, tip, stroke and effect, with slips, sticks and miscues on both sides.
 
-With 1,600 steps a contact time the worst of 40 scenes a kind is 2e-5 (on the cue), 9e-5 (a raised cue) and 3e-4 (a
-second hit), over a sensible size (`differences`): the small steps' own, which fall with the steps. Of 40 second hits 23
-touch again, up to 17 times. `pytest -m nightly -s` prints them.
+With 1,600 steps a contact time the maximum difference of 40 scenes a kind is 2e-5 (on the cue), 9e-5 (elevation) and
+3e-4 (second hit), over a typical size (`differences`): the error of the small steps, which falls with the step. 23 of
+40 second hits touch again, up to 17 times. `pytest -m nightly -s` prints the differences.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ def supported(draw: Draw) -> cf.Scene:
 
 
 def all_on_the_cue(draw: Draw) -> cf.Scene:
-    """Own losses or one for all, a mass, a hand and a joint that turns, or turns and shears, at one place."""
+    """Loss of materials or one for all, a mass, a hand and a joint with one or two compliances, at one position."""
     position, lump = draw.between(0.05, 0.3), cf.PointMass(draw.between(0.01, 0.1), draw.scaled(1e-3, 2e-2), 1e-6)
     hand = cf.Support(position, draw.scaled(1e3, 1e5), 0.0, draw.scaled(1.0, 30.0))
     joint = cf.Joint(position, draw.scaled(1e-4, 1e-1), draw.scaled(1e-9, 1e-6) if draw.often(0.5) else 0.0)
@@ -93,20 +93,20 @@ def all_on_the_cue(draw: Draw) -> cf.Scene:
 
 
 def raised(draw: Draw) -> cf.Scene:
-    """A raised cue with a table that rubs, slides or is smooth."""
+    """A raised cue on a table with or without friction."""
     table = 0.0 if draw.often(0.25) else draw.scaled(0.05, 2.0)
     cue = cf.LumpedCue(draw.between(0.45, 0.65), draw.scaled(3e-3, 0.05)) if draw.often(0.3) else draw.cue()
     return draw.scene(cue, cf.Elevation(draw.between(0.02, 0.5), table))
 
 
 def raised_and_stuck(draw: Draw) -> cf.Scene:
-    """A steep cue whose tip never slips: its impact presses the ball onto the table, which rubs."""
+    """A steep cue whose tip never slips; its impulse presses the ball onto a table with friction."""
     tip, lowered = cf.Tip(0.75, math.inf, contact_time=1e-3), cf.Elevation(draw.between(0.4, 0.6), 0.2)
     return cf.Scene(draw.cue(), tip=tip, stroke=cf.Stroke(1.0, draw.between(0.5, 0.7)), effects=(lowered,))
 
 
 def hit_again(draw: Draw) -> cf.Scene:
-    """A lossy tip on a vibrating cue, often a heavy one, which may catch up with the ball."""
+    """A tip of low restitution on a vibrating, often heavy cue, which may hit the ball again."""
     cue = replace(draw.cue(), body_mass=draw.between(0.4, 2.0))
     tip = cf.Tip(draw.scaled(0.12, 0.6), draw.between(0.2, 0.9), contact_time=draw.scaled(1e-3, 8e-3))
     scene = draw.scene(cue, cf.SecondHit(draw.between(3e-3, 1e-2)), tip=tip)
@@ -114,7 +114,7 @@ def hit_again(draw: Draw) -> cf.Scene:
 
 
 class Kind(NamedTuple):
-    """A kind of scene, how far any number may be off with ``STEPS`` steps, and the daily ones' seeds and steps."""
+    """A kind of scene, the tolerance of any number with ``STEPS`` steps, and seeds and steps of everyday tests."""
 
     make: Callable[[Draw], cf.Scene]
     within: float
@@ -127,14 +127,14 @@ KINDS = {
     "Support": Kind(supported, 1e-4, (0, 1, 2, 3), STEPS),
     "all on the cue": Kind(all_on_the_cue, 1e-4, (0, 1, 2, 3), STEPS),
     "Elevation": Kind(raised, 2e-4, (0, 3), STEPS // 4),
-    "Elevation, endless friction": Kind(raised_and_stuck, 3e-3, (2,), STEPS // 4),
+    "Elevation, infinite friction": Kind(raised_and_stuck, 3e-3, (2,), STEPS // 4),
     "SecondHit": Kind(hit_again, 5e-4, (6, 20, 24), STEPS),  # 2, 4 and 2 touches
 }
 AT = cf.Resolution(3, 14, MODES, 2 * STEPS)
 
 
 def differences(scene: cf.Scene, ours: cf.Outcome, theirs: SmallStepsOutcome) -> dict[str, float]:
-    """Of each number, over a sensible size."""
+    """Difference of each number, over a typical size."""
     first, speed = ours.energy["initial"], ours.ball_speed
     return {
         "squirt": abs(theirs.squirt - ours.squirt) / max(abs(ours.squirt), 0.01),
@@ -148,7 +148,7 @@ def differences(scene: cf.Scene, ours: cf.Outcome, theirs: SmallStepsOutcome) ->
 
 
 def compared(scene: cf.Scene, steps: int) -> dict[str, float]:
-    """Differences of a strike from its small steps; both must have touched equally often."""
+    """Differences of a strike from its small steps; both must have the same number of contacts."""
     ours, theirs = cf.strike(scene, AT), solve_small_steps(scene, MODES, steps)
     assert 1 + len(flights(ours)) == len(theirs.touches)
     return differences(scene, ours, theirs)
@@ -160,7 +160,7 @@ MANY = [pytest.param(name, range(40), 2 * STEPS, marks=pytest.mark.nightly) for 
 
 
 def flights(outcome: cf.Outcome) -> list[Phase]:
-    """The phases in which ball and tip are apart before they touch again."""
+    """The phases between separation and the next contact."""
     return [phase for phase in outcome.phases if phase.normal_phase == "free"]
 
 

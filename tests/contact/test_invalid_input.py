@@ -1,4 +1,4 @@
-"""What a stroke refuses: calls, each with a part of the one line that names field, bound, unit and value."""
+"""Invalid strokes: each call with a part of the message, which states field, bound, unit and value (bad input)."""
 
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Properties of the compiled kernel: one that is not the one of these sources ends in a line, and a build mends it."""
+"""The compiled kernel: a library of other sources raises, and a build replaces it (bad input)."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ BUILDING = "import runpy; runpy.run_path('hatch_build.py', run_name='__main__')"
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """The package and its build somewhere else."""
+    """A copy of the package and its build script."""
     shutil.copytree(ROOT / "cuefem", tmp_path / "cuefem", ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copy(ROOT / "hatch_build.py", tmp_path)
     return tmp_path
 
 
 def run(folder: Path, *arguments: str, **environment: str) -> tuple[int, str, list[str]]:
-    """(exit status, what is printed, the lines on stderr) of Python in a folder."""
+    """(exit status, stdout, lines of stderr) of Python in a folder."""
     others = {name: value for name, value in os.environ.items() if name not in ("CC", "CFLAGS")}
     done = subprocess.run(
         [sys.executable, *arguments],
@@ -41,7 +41,7 @@ def run(folder: Path, *arguments: str, **environment: str) -> tuple[int, str, li
     return done.returncode, done.stdout.strip(), done.stderr.strip().splitlines()
 
 
-SPOILED = {  # the file of the kernel that is changed, and what becomes of its bytes
+SPOILED = {  # the changed file of the kernel, its new bytes, and the message
     "missing": (BINARY.name, lambda whole: None, "is missing"),
     "cut short": (BINARY.name, lambda whole: whole[: len(whole) // 2], "is damaged: it is not the one that was built"),
     "half a digest": ("_kernel.sha256", lambda whole: b"half", "is damaged: it is not the one that was built"),

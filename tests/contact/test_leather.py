@@ -1,7 +1,7 @@
-"""A whole tip of leather: its time head on, rings that slip against small steps, no jumps, and a chain's squirt.
+"""Leather tips: contact time, partial slip against small steps, continuity, squirt of an exact chain (verification).
 
-Small steps (`tests.oracle.partial_slip`) have no phases: across sliding as a whole, with the tip's rim, fast and slow.
-Losses along the surface, energies and a constant stiffness: the stored answers (test_stored_answers.py).
+Small steps (`tests.oracle.partial_slip`) have no phases; scenes include gross slip, contact on the rim, and slow and
+fast strokes. Tangential losses, energies and a constant stiffness: test_stored_answers.py.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from tests.helpers.orders import assert_error_falls_with_the_step
 from tests.oracle.partial_slip import LEATHER, maple_scene, small_step_squirt
 
 WITHIN = 5e-3
-# A jump: squirt changes from one offset to the next by more than so many times what it does at either neighbour, and
-# by a ten-thousandth of itself more: a curve whose slope changes by less than this factor within 1e-3 of b/R has none.
+# A jump: squirt changes from one offset to the next by more than this factor times the change at either neighbour plus
+# 1e-4 of itself; a curve whose slope changes by a smaller factor within 1e-3 of b/R has none.
 BEND = 1.5
 
 
 @pytest.mark.parametrize(("speed", "chain"), [(0.8, 2.30), (2.0, 2.32), (4.0, 2.33), (7.0, 2.31)])
 def test_leather_strike_on_maple_equals_exact_chain(speed: float, chain: float) -> None:
-    """The full model against rigid links of their own, which are geometrically exact."""
+    """The full model against a geometrically exact chain."""
     outcome = strike(maple_scene(0.375, speed, more=(cf.AxialWaves(), cf.GeometricStiffness())))
     assert np.degrees(outcome.squirt) == pytest.approx(chain, rel=0.02)
 
@@ -41,7 +41,7 @@ def test_leather_central_impact_contact_time_equals_quadrature(speed: float) -> 
     deepest, loading = law.central_impact(mass, speed)
     assert law.work(deepest) == pytest.approx(mass * speed**2 / 2, rel=1e-12)
 
-    def slowness(s: float) -> float:  # depth = deepest (1 - s^2), so that it stays finite
+    def slowness(s: float) -> float:  # depth = deepest (1 - s^2): a finite integrand
         return 2 * deepest * s / np.sqrt(2 * (law.work(deepest) - law.work(deepest * (1 - s**2))) / mass)
 
     assert loading == pytest.approx(quad(slowness, 1e-9, 1, epsabs=0, epsrel=1e-9, limit=200)[0], rel=1e-7)
@@ -81,7 +81,7 @@ def test_leather_strike_random_scenes_agree_with_small_steps() -> None:
 
 @pytest.mark.parametrize(("leather", "friction", "offset"), [(LEATHER, 0.3, 0.3746), (LEATHER, 0.7, 0.671)])
 def test_squirt_at_gross_slip_and_rim_is_continuous(leather: cf.LeatherTip, friction: float, offset: float) -> None:
-    """Where the rings begin to slide as a whole, and where the contact begins on the tip's rim."""
+    """At the transition to gross slip, and where the contact reaches the rim of the dome."""
     offsets = offset + np.arange(-5, 6) * 1e-3
     scenes = (maple_scene(float(b), 2.0, leather, tip=cf.Tip(0.73, friction)) for b in offsets)
     squirts = np.array([strike(scene).squirt for scene in scenes])

@@ -1,4 +1,4 @@
-"""Motion of a strike against its outcome, its forces integrated again, and what a rigid body does (verification)."""
+"""Motion of a strike against the relative velocities of its history (verification)."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ EFFECTS: dict[str, tuple[Any, ...]] = {
 
 
 def sliding_path(result: Motion, scene: cf.Scene) -> Any:
-    """How far the ball's contact point has slid over the cue's, along (t, n), from the positions alone."""
+    """Displacement of the ball's contact point relative to the cue's, along (t, n), from positions alone."""
     phi, (w, theta) = np.arcsin(scene.stroke.offset), result.deflection(np.array(0.0))
     t, n = np.array([np.sin(phi), np.cos(phi)]), np.array([np.cos(phi), -np.sin(phi)])
     r = sum(effect.radius for effect in scene.effects if isinstance(effect, cf.TipDome))
@@ -40,7 +40,7 @@ def sliding_path(result: Motion, scene: cf.Scene) -> Any:
 @pytest.mark.parametrize("offset", [0.3, -0.4])
 @pytest.mark.parametrize("name", EFFECTS)
 def test_motion_relative_velocity_equals_history(name: str, offset: float) -> None:
-    """The way slid is the integral of the velocity, within what straight lines between the steps leave of that."""
+    """The relative displacement is the integral of the velocity, within the error of the trapezoidal rule."""
     scene = replace(SCENE, stroke=replace(SCENE.stroke, offset=offset), effects=EFFECTS[name])
     outcome = cf.strike(scene, AT)
     times = outcome.history.ends[: int(0.8 * len(outcome.history.ends))]

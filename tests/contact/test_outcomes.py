@@ -1,4 +1,4 @@
-"""Outcomes are values, in any process, and many strikes at once are the strikes one by one, to the bit."""
+"""Outcomes: equality, copies, other processes; a batch equals single strikes bit by bit (properties)."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ EXCLUDED = ("phases", "history", "unknowns", "error", "energy")
 
 
 def numbers(outcome: cf.Outcome) -> dict[str, object]:
-    """What a strike says, and its energies, by name."""
+    """Numbers of an outcome, and its energies, by name."""
     named = {field.name: getattr(outcome, field.name) for field in fields(outcome)} | outcome.energy
     return {name: value for name, value in named.items() if name not in EXCLUDED}
 
@@ -42,7 +42,7 @@ def numbers(outcome: cf.Outcome) -> dict[str, object]:
     ("scenes", "at"), [(SCENES, AT), (SCENES[::-1], AT), (SCENES[:22:6], None)], ids=["given", "backwards", "default"]
 )
 def test_batch_strike_equals_single_strikes(scenes: list[cf.Scene], at: cf.Resolution | None) -> None:
-    """So are strikes that share what a cue does, in any order."""
+    """Also for scenes that share a cue, in any order."""
     together = cf.batch_strike(scenes, at)
     for i, scene in enumerate(scenes):
         alone = numbers(cf.strike(scene, at))
@@ -79,7 +79,6 @@ def test_outcome_in_another_process_is_equal() -> None:
             changes = ({"squirt": np.nextafter(outcome.squirt, 1)}, {"history": None}, {"history": history})
             assert all(outcome != replace(outcome, **change) for change in changes)
             assert outcome != outcome.squirt
-            # an effect that is listed gives another outcome
             assert (outcome == strike_with(())) == (effects in ((), (cf.SecondHit(),)))
 
 
@@ -95,7 +94,7 @@ def test_outcome_of_batch_copies_and_pickles_equal() -> None:
 
 @pytest.mark.nightly
 def test_strike_repeated_does_not_leak_memory() -> None:
-    """The greatest memory of this process hardly grows over so many strikes; few are on leather."""
+    """The maximum memory of the process grows by less than 4 MB over 8,900 rounds."""
     bare, few = kim_scene(0.3), cf.Resolution(2, 8, 4)
     scenes = [leather_scene(0.3, cf.SecondHit(5e-3)), bare, replace(bare, effects=(cf.TipShear(0.75),))]
     cues = [(scene, tip_modes_of(scene, few)) for scene in scenes]

@@ -1,4 +1,4 @@
-"""The side strike: rigid limits, closed forms of Hertz and of endless beams, energies, effects, files, refusals."""
+"""The side strike: rigid limit, closed forms of Hertz and infinite beams, energy, files, bad input (verification)."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SCENE = SideStrike(PLAIN, Striker(0.02, 0.8, contact_time=1e-3), 0.05, 2.0, (Poi
 
 
 def stiffened(cue: cf.Cue) -> cf.Cue:
-    """The cue so stiff that a contact of a millisecond holds 3,000 periods of its lowest mode."""
+    """The cue so stiff that a contact of 1 ms lasts 3,000 periods of its lowest mode."""
     factor = (3000 / cf.modes(cue, 1).frequencies[0] / 1e-3) ** 2
     return scaled(cue, E=factor, G=factor)
 
@@ -39,7 +39,7 @@ def stiffened(cue: cf.Cue) -> cf.Cue:
     ids=["rod", "cone 0.4", "kim"],
 )
 def test_side_strike_stiff_beam_has_rigid_effective_mass(cue: cf.Cue, limit: float, restitution: float) -> None:
-    """A free rigid rod is felt at its end as 1/4 of its mass, a cone of 0.4 as 1/6.83; anywhere as `rigid_mass`."""
+    """Effective mass of a rigid rod at its end: 1/4 of its mass; of a cone of 0.4: 1/6.83; elsewhere `rigid_mass`."""
     striker, at = Striker(0.1 * cue.shaft_mass, restitution, contact_time=1e-3), Resolution(1, 12, 2, 6400)
     scene = SideStrike(stiffened(cue), striker)
     assert cue.shaft_mass / side_strike(scene, at).effective_mass == pytest.approx(limit, rel=1e-6)
@@ -49,7 +49,7 @@ def test_side_strike_stiff_beam_has_rigid_effective_mass(cue: cf.Cue, limit: flo
 
 @pytest.mark.parametrize("restitution", [1.0, 0.6, 0.2])
 def test_side_strike_hertz_on_wall_equals_closed_form(restitution: float) -> None:
-    """Duration 2.94 of the greatest compression (15 m v²/(16 E* √R))^(2/5) over v, times (1 + e)/2; e_A = e."""
+    """Duration: 2.94 times the maximum indentation (15 m v²/(16 E* √R))^(2/5) over v, times (1 + e)/2; e_A = e."""
     striker = Striker(0.02, restitution, modulus=1e8, radius=0.01)
     wall = (Support(0.2, math.inf, math.inf),)
     outcome = side_strike(SideStrike(kim(), striker, 0.2, 2.0, wall), Resolution(1, 6, 2, 12_800))
@@ -65,12 +65,12 @@ def test_side_strike_hertz_on_wall_equals_closed_form(restitution: float) -> Non
 
 
 def spring_exact(inelasticity: float) -> tuple[float, float]:
-    """(e_A, duration in 1/w0) of an elastic spring on an endless Euler beam, in closed form.
+    """(e_A, duration in 1/w0) of an elastic spring on an infinite Euler beam, in closed form.
 
-    A force F(t) moves its place by w(t) = C/Gamma(3/2) times the integral of sqrt(t - s) F(s) over s from 0 to t, with
-    C = 1/(2 sqrt(2) EI^(1/4) rhoA^(3/4)), the free end of one endless to one side four times as far. A striker
+    A force F(t) deflects its position by w(t) = C/Gamma(3/2) times the integral of sqrt(t - s) F(s) over s from 0 to t,
+    with C = 1/(2 sqrt(2) EI^(1/4) rhoA^(3/4)), the free end of a semi-infinite beam four times as far. A striker
     of mass m and speed v on a spring k has, in units of 1/w0 = sqrt(m/k) of time, v/w0 of length, m v w0 of force, the
-    compression d = t - I^2 F - L I^(3/2) F, L = C m sqrt(w0), the part that inelasticity has in Zener's plate.
+    compression d = t - I^2 F - L I^(3/2) F, L = C m sqrt(w0), the inelasticity parameter of Zener's plate.
 
     Laplace: F = 1/(p^2 + 1 + L sqrt(p)). Over the four roots u of u^4 + L u + 1, F(t) is the sum of
     u exp(u^2 t) erfc(-u sqrt(t))/(4 u^3 + L).
@@ -91,7 +91,7 @@ def spring_exact(inelasticity: float) -> tuple[float, float]:
 @pytest.mark.parametrize("inelasticity", [0.05, 0.5, 2.0])
 @pytest.mark.parametrize(("where", "lengths"), [("middle", 16.0), ("end", 8.0)])
 def test_side_strike_long_thin_beam_equals_infinite_beam(where: str, lengths: float, inelasticity: float) -> None:
-    """An elastic spring on an endless Euler beam: e_A by Laplace's transform, one parameter C m √ω0."""
+    """An elastic spring on an infinite Euler beam: e_A by Laplace's transform, one parameter C m √ω0."""
     time, diameter, rho = 1e-3, 1e-2, 700.0
     spread = 250 * diameter  # (EI/rhoA)^(1/4) sqrt(T): thin, and without shear, it is nearly Euler's beam
     E = 16 * rho * (spread**2 / time) ** 2 / diameter**2
@@ -124,7 +124,7 @@ ON = [pytest.param(name, marks=[] if name == "kim" else pytest.mark.heavy) for n
 
 @pytest.mark.parametrize("name", ON)
 def test_side_strike_light_striker_measures_end_mass_by_force(name: str) -> None:
-    """The force of a striker of no mass is a half sine; impulse over the tip's speed at its end is that definition."""
+    """The force of a massless striker is a half sine; impulse over final tip speed is the end mass by force."""
     cue, at = FAMILY[name], Resolution(2, 14, 24, 1600)
     expected = cf.end_mass(cf.Scene(cue, tip=cf.Tip(contact_time=1e-3)), "force", at)
     outcome = side_strike(SideStrike(cue, Striker(1e-7, 1.0, contact_time=1e-3)), at)
@@ -145,7 +145,7 @@ def test_side_strike_default_resolution_restitution_within_1e_4(name: str) -> No
 
 @pytest.mark.parametrize("law", [{"contact_time": 0.3e-3}, {"modulus": 1e9, "radius": 0.02}], ids=["linear", "Hertz"])
 def test_side_strike_second_hit_is_computed(law: dict[str, float]) -> None:
-    """The end that a heavy striker drove away hits it again; a contact that outlasts the window is the last."""
+    """The end of the cue hits a heavy striker again; a contact that outlasts the window is the last."""
     scene = SideStrike(kim(), Striker(0.05, 0.8, **law), 0.0)
     once, twice = side_strike(scene, FEW), side_strike(replace(scene, effects=(cf.SecondHit(20e-3),)), FEW)
     flight = next(phase for phase in twice.phases if phase.state == "separated")

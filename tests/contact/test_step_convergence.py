@@ -1,4 +1,4 @@
-"""The steps of the contact: their order, how smooth their answers are, hard strikes, and balls that hop."""
+"""Steps of the contact solver: order, smoothness, extreme inputs, elevation with lifted balls (verification)."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ from tests.helpers.strike_scenes import (
 )
 
 MESHES = sorted((Path(__file__).parents[2] / "meshes").glob("*.toml"))
-# Where in its step an event falls is chance: the root mean square of many errors has the order.
+# The position of an event in its step is random: the RMS of many errors has the order.
 ORDER, WITHIN = 2.0, 0.4
 
 
 def random_lumped(rng: np.random.Generator) -> cf.Scene:
-    """A lumped cue, light or heavy, a tip and a stroke: every regime is among them."""
+    """A random lumped cue, tip and stroke; every regime occurs."""
     mass, end_mass = 10 ** rng.uniform((-1.3, -2.7), (0.3, 0.3))
     coupling = rng.uniform(-0.6, 0.6) / math.sqrt(mass * end_mass) * (rng.random() < 0.3)
     friction = float(rng.choice([rng.uniform(0.05, 0.8), 0.0, math.inf], p=[0.9, 0.05, 0.05]))
@@ -72,7 +72,7 @@ def test_strike_lumped_cue_converges_to_impulse_solver_second_order() -> None:
     assert all(counts[regime] >= 2 for regime in ("stick", "late stick", "miscue", "slip reversal")), counts
 
 
-# Stick, slip, rings, everything of a default strike, and a raised cue.
+# Stick, slip, partial slip, a default strike, a raised cue.
 KINDS = ("linear", "rolling", "leather", "usual", "second hit", "raised", "thrust")
 
 
@@ -102,7 +102,7 @@ def test_leather_first_touch_sticks_at_any_step(offset: float, regime: str, step
 
 @cache
 def default_scene(kind: str) -> tuple[cf.Scene, TipModes]:
-    """A pool strike with leather and everything, or with a bare tip."""
+    """A pool strike with all default effects, or with a spring tip."""
     cue = cf.load(MESHES[3])
     assert isinstance(cue, cf.Cue)
     usual = cf.usual_scene(cue)
@@ -119,14 +119,16 @@ def squirts_over(kind: str, offsets: np.ndarray, **more: int) -> np.ndarray:
 @pytest.mark.heavy
 @pytest.mark.parametrize("kind", ["usual", "bare"])
 def test_squirt_over_offsets_fine_grid_has_no_jump(kind: str) -> None:
-    """Neighbouring squirts differ by what the curve's slope makes of it, and by no more than 1e-5 of squirt.
+    """Neighbouring squirts deviate from the slope of the curve by less than 1e-5 of squirt.
 
-    The rings of a default strike take 600 steps for that (400 leave 1.007e-5), a bare tip, whose grip changes at once,
-    1600.
+    The partial slip of a default strike needs 600 steps for that (400 have 1.007e-5), a spring tip, whose contact state
+    changes abruptly, 1600.
     """
     squirts = squirts_over(kind, np.linspace(0.1, 0.5, 2001), steps=600 if kind == "usual" else 1600)
     steps_up = np.diff(squirts)
-    slope = np.median(np.lib.stride_tricks.sliding_window_view(steps_up, 21), axis=1)  # of the ten steps on either side
+    slope = np.median(
+        np.lib.stride_tricks.sliding_window_view(steps_up, 21), axis=1
+    )  # over ten intervals on either side
     assert np.abs((steps_up[10:-10] - slope) / squirts[11:-10]).max() < 1e-5
 
 
@@ -139,7 +141,7 @@ def test_squirt_over_offsets_is_smooth(kind: str, most: float) -> None:
 
 
 def second_hits() -> Iterator[tuple[cf.Scene, TipModes]]:
-    """Cues made by hand that touch the ball again, chatter, and slip near the friction at which they would jam."""
+    """Artificial tip modes with second hits, chatter, and friction near the jam condition."""
     rng = np.random.default_rng(2)
     for _ in range(200):
         count = int(rng.integers(1, 8))
@@ -155,7 +157,7 @@ def second_hits() -> Iterator[tuple[cf.Scene, TipModes]]:
 
 
 def light_cues() -> Iterator[tuple[cf.Scene, TipModes]]:
-    """End masses down to a tenth of a milligram, level and raised."""
+    """End masses down to 0.1 mg, level and raised."""
     for end_mass, mu, offset, e in product((1e-7, 1e-3, 2.0), (0.0, 0.7, 5.0), (1e-9, 0.9), (0.05, 1.0)):
         cue = cf.LumpedCue(0.54, end_mass)
         scene = cf.Scene(cue, tip=cf.Tip(e, mu, 1e-3), stroke=cf.Stroke(2.0, offset))
@@ -164,9 +166,9 @@ def light_cues() -> Iterator[tuple[cf.Scene, TipModes]]:
 
 
 def odd_shafts() -> Iterator[tuple[cf.Scene, TipModes]]:
-    """Odd shafts: thin, short, endless, stepped, heavy behind; a graze, and a miscue that presses a ringing tip on."""
+    """Thin, short, long, stepped and butt-heavy shafts; grazing offsets, and a miscue with a vibrating tip."""
     few = cf.Resolution(4, 12, 12)
-    # of 0.2 mm in front of the shaft: its own mode rings at tens of kHz, and its mass is a milligram
+    # 0.2 mm in diameter in front of the shaft: its own mode has tens of kHz, its mass is 1 mg
     needle = cf.Cue((cf.Segment(0.004, 0.0002, 0.0002, maple()), *KIM.segments), 0.42)
     for cue, offsets, at in (
         (stiff_ferrule(), (0.3,), None),
@@ -205,7 +207,7 @@ def test_strike_extreme_inputs_conserves_energy(
 
 @pytest.mark.parametrize("end_mass", [0.003, 0.05, 1.0])
 def test_friction_at_critical_value_does_not_chatter(end_mass: float) -> None:
-    """Stick needs exactly mu_c, so |F_t| = mu F_n for the whole of it, but for rounding."""
+    """Stick needs exactly mu_c, so |F_t| = mu F_n throughout, to round-off error."""
     cue, ball = cf.LumpedCue(0.54, end_mass), cf.Ball()
     B = inverse_mass(0.4, mass=cue.mass, end_mass=end_mass, coupling=0.0, ball_mass=ball.mass, inertia=ball.inertia)
     scene = cf.Scene(cue, ball, cf.Tip(0.75, abs(float(B.tn / B.tt))), cf.Stroke(offset=0.4))
@@ -248,7 +250,7 @@ def test_central_impact_contact_time_falls_with_speed(exponent, speed, e):
 
 
 def test_elevation_table_friction_of_sliding_ball_equals_closed_form():
-    """Head on, the ball's lowest point slides forward throughout: f = -mu N, N = F sin(a), F cos(a) - f drives it."""
+    """At offset 0 the ball's lowest point slides forward throughout: f = -mu N, N = F sin(a)."""
     angle, mu, e = 0.3, 0.15, 0.8
     scene = cf.Scene(cf.LumpedCue(0.5, 0.01), tip=cf.Tip(e, 0.0, 1e-3), stroke=cf.Stroke(1.0))
     outcome = cf.strike(replace(scene, effects=(cf.Elevation(angle, mu),)), cf.Resolution(1, 1, 1, 1600))
@@ -263,7 +265,7 @@ def test_elevation_table_friction_of_sliding_ball_equals_closed_form():
 
 
 def test_elevation_hopping_ball_conserves_energy() -> None:
-    """Of random strikes on two modes some let the ball leave the table; none drives it through."""
+    """In some of 20 random strikes the ball leaves the table; in none it moves below."""
     rng, up = np.random.default_rng(12), []
     for _ in range(20):
         omega, across = sorted(10 ** rng.uniform(2.5, 4.0, 2)), list(rng.normal(size=2) * 10)
@@ -278,7 +280,7 @@ def test_elevation_hopping_ball_conserves_energy() -> None:
 
 
 def test_elevation_lifted_ball_returns_to_table() -> None:
-    """A loud cue lifts the ball by friction; the table pushes where it lies, and does not hold it in the air."""
+    """Friction of a vibrating cue lifts the ball; the table's normal force acts only at height 0."""
     tip = custom_tip_modes([8000.0], [15.0], rigid=1.0)
     law, stroke = cf.Tip(0.8, 3.0, contact_time=3e-3), cf.Stroke(1.0, 0.8)
     scene = cf.Scene(cf.LumpedCue(0.54, 0.01), tip=law, stroke=stroke, effects=(cf.Elevation(0.7, 0.2),))

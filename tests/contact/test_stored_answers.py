@@ -1,6 +1,6 @@
-"""The contact, end masses and frequencies against what the former engine answered at 1e-9 (tests/data; verification).
+"""Strikes, end masses and frequencies against stored results of the former engine at 1e-9 (tests/data; verification).
 
-Squirt is taken relative to itself, but to no less than 0.01 b/R.
+Errors of squirt are relative to the larger of squirt and 0.01 b/R.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from tests.helpers.strike_scenes import energy_residual
 
 KINDS = tuple(dict.fromkeys(row["kind"] for row in strikes()))
 # Infinite friction begins with an impulse, whose wave fronts the steps do not resolve.
-ENDLESS = "endless"
+INFINITE_FRICTION = "endless"  # the key in the stored data
 
 
 def strike_row(row: dict[str, Any], **resolution: int) -> Outcome:
@@ -40,7 +40,7 @@ def test_strike_each_kind_equals_stored_answers(kind: str) -> None:
     assert np.median(errors) < 1e-4
     assert np.quantile(errors, 0.95) < 1e-3
     assert errors.max() < 2e-3
-    assert max(map(energy_residual, outcomes)) < (2e-4 if kind == ENDLESS else 2e-5)
+    assert max(map(energy_residual, outcomes)) < (2e-4 if kind == INFINITE_FRICTION else 2e-5)
     for name, most in (("ball_speed", 5e-4), ("cue_speed", 5e-4), ("spin", 5e-4), ("duration", 1e-3)):
         pairs = [(getattr(outcome, name), row["answer"][name]) for outcome, row in zip(outcomes, rows, strict=True)]
         assert max(abs(value / stored - 1) for value, stored in pairs) < most, name
@@ -58,7 +58,7 @@ def test_strike_each_kind_equals_stored_answers(kind: str) -> None:
 @pytest.mark.heavy
 @pytest.mark.parametrize("damped", [False, True])
 def test_end_mass_equals_stored_answers(damped: bool) -> None:
-    """The default modes leave up to 0.6 % of an end mass (handbook: Accuracy)."""
+    """The truncation error of the default modes is at most 0.6 % (handbook: Accuracy)."""
     errors = []
     for row in cues():
         effects = (cf.StructuralDamping(),) if damped else ()

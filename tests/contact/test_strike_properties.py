@@ -1,6 +1,6 @@
-"""What holds for every coupled strike with any effects: energy, mirror, order, splitting, limits, units, friction.
+"""Coupled strikes with any effects: energy, mirror, order of effects, splitting, limits, friction (properties).
 
-Effects are drawn from one strategy (`strikes`), a tip of leather, a raised cue and a second hit among them.
+Effects are drawn from one strategy (`strikes`), which includes leather tips, elevation and second hits.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from tests.helpers.strike_scenes import (
 
 pytestmark = pytest.mark.kernel
 AT = cf.Resolution(2, 10, 8)
-# How well energy closes at the default steps of a cue with dampers; its fall with the step: test_step_convergence.py
+# Bound on the energy residual of a cue with dampers at the default steps; its order: test_step_convergence.py
 ENERGY_TOLERANCE = 1e-4
 POSITION = 0.213  # m
 POSITIONS = st.floats(0.01, 0.69)
@@ -75,7 +75,7 @@ WHOLE_TIP = st.builds(
 
 @st.composite
 def strikes(draw: st.DrawFn) -> cf.Scene:
-    """A scene with some effects on the cue, and some at its tip that go together."""
+    """A scene with effects on the cue, and compatible effects at its tip."""
     kinds = {type(effect): effect for effect in draw(st.lists(ON_CUE, max_size=3))}
     e, mu, tip_kind = draw(RESTITUTION), draw(FRICTION), draw(st.sampled_from(["level", "raised", "leather"]))
     stroke = cf.Stroke(draw(st.floats(0.3, 3.0)), draw(SIGN) * draw(OFFSET))
@@ -95,7 +95,7 @@ def strikes(draw: st.DrawFn) -> cf.Scene:
 
 
 def strike(scene: cf.Scene, at: cf.Resolution = AT) -> cf.Outcome | None:
-    """The strike, or None where the shaft bends further than its thrust is known for."""
+    """The strike, or None where axial force and bending exceed the range of GeometricStiffness."""
     try:
         return cf.strike(scene, at)
     except ValueError as refused:
@@ -122,7 +122,7 @@ def test_strike_conserves_energy_mirrors_and_ignores_effect_order(examples: int)
             isinstance(effect, cf.StructuralDamping) and effect.loss for effect in scene.effects
         )
         if outcome.history.velocity is not None:
-            assert outcome.history.velocity[2] > -1e-9  # the table keeps the ball up
+            assert outcome.history.velocity[2] > -1e-9  # the ball does not move into the table
         other = strike(replace(scene, stroke=replace(scene.stroke, offset=-scene.stroke.offset)))
         assert other is not None
         assert_mirrored(outcome, other)
@@ -187,8 +187,8 @@ def test_effect_near_limit_vanishes_linearly(name: str) -> None:
 
 
 def test_strike_other_limits_are_reached() -> None:
-    """Stiff shear is none, like one over its ratio with wiggles of a factor 2; exponent 1 is the bilinear law; a level
-    cue is not raised; thrust falls with the speed; a turning contact, with its time."""
+    """Infinite shear ratio (error 1/ratio within a factor 2), exponent 1, elevation 0, speed 0 with GeometricStiffness,
+    contact time 0 with RollingContact."""
     bare = squirt()
     for ratio in (1e1, 1e2):
         assert 5e-3 / ratio < abs(squirt(cf.TipShear(ratio)) - bare) < 5e-2 / ratio
@@ -211,7 +211,7 @@ CASES = {
     "stick": kim_scene(0.3),
     "miscue": kim_scene(0.8),
     "reload": kim_scene(0.9, restitution=0.05, friction=0.3, contact_time=3e-3),
-    "endless friction": kim_scene(-0.5, friction=inf),
+    "infinite friction": kim_scene(-0.5, friction=inf),
     "lumped": cf.Scene(cf.LumpedCue(0.54, 0.004), stroke=cf.Stroke(offset=0.4)),
     "slips and sticks eight times": LOUD,
 }
@@ -242,7 +242,7 @@ def test_history_forces_obey_friction_and_integrate_to_impulse(name: str) -> Non
             assert np.all(np.abs(f_t) <= mu * f_n * (1 + 1e-9))
         if phase.state != "stick":
             direction = side * (1 if phase.state == "slip" else -1)
-            last = slice(None, -1)  # in a phase's last step it may come to rest
+            last = slice(None, -1)  # sliding may stop in the last step of a phase
             assert np.abs(f_t - direction * mu * f_n)[last].max() < 1e-9 * f_n.max()
             assert np.all(direction * history.velocities[1:][here][last, 0] < 1e-3 * scene.stroke.speed)
     assert np.sum([phase.impulse for phase in outcome.phases], axis=0) == pytest.approx(outcome.impulse, rel=1e-12)

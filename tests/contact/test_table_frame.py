@@ -1,4 +1,4 @@
-"""A stroke in the table's frame: rotation, sides and spins."""
+"""Strokes in the table's frame: directions, signs and magnitudes (properties)."""
 
 from math import cos, pi, sin
 

@@ -1,4 +1,4 @@
-"""A leather from contact time and rebound gives both back; the stored leathers are derived again (validation)."""
+"""Leather identified from contact time and rebound reproduces both; stored leathers are derived again (validation)."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ def whole_cue() -> cf.Scene:
 
 @pytest.mark.parametrize("E", [60e6, 400e6])
 def test_identify_tip_rigid_cue_recovers_tip(E: float) -> None:
-    """Head on, a cue without axial waves is a rigid one: it rebounds as its tip, its law gives the time."""
+    """In a centre-ball impact a cue without axial waves is rigid: its rebound is the tip's restitution."""
     known = leather_scene(leather=replace(LEATHER, E=E))
     assert cf.rebound(known) == pytest.approx(0.73, rel=1e-4)
-    soft = leather_scene(leather=replace(LEATHER, E=1e6))  # a ball would be pressed through it: its E does not matter
+    soft = leather_scene(leather=replace(LEATHER, E=1e6))  # too soft for the stroke; its E has no effect
     assert cf.identify_tip(soft, float(known.contact_time), 0.73) == pytest.approx((E, 0.73), rel=2e-4)
 
 
@@ -40,8 +40,8 @@ def test_identify_tip_with_axial_waves_recovers_tip() -> None:
     result = cf.identify_tip(scene, 1.1e-3, 0.8)
     assert head_on(with_tip(scene, result)) == pytest.approx((1.1e-3, 0.8), rel=1e-5)
     rigid = cf.identify_tip(leather_scene(), 1.1e-3, 0.8)
-    assert result.E > 1.05 * rigid.E  # the wood gives way too
-    assert result.restitution < 0.95 * rigid.restitution  # and gives back
+    assert result.E > 1.05 * rigid.E  # the compliance of the wood adds
+    assert result.restitution < 0.95 * rigid.restitution  # axial waves dissipate less than the tip alone
 
 
 @pytest.mark.parametrize("name", LEATHERS)
@@ -55,7 +55,7 @@ def test_identify_tip_reproduces_measured_contact_time_and_rebound(name: str) ->
 
 
 def test_rebound_of_reference_cues_is_in_published_range() -> None:
-    """At 2 m/s, within what playing cues have (0.71 to 0.75, TP A.30) and 0.015: nothing is fitted to these cues."""
+    """At 2 m/s, within 0.015 of the published range 0.71 to 0.75 (TP A.30); no parameter is fitted to these cues."""
     for game, name in (("pool", "pool_maple"), ("pool", "pool_hollow"), ("pool", "carbon"), ("carom", "kim")):
         cue = cf.load(MESHES / f"{name}.toml")
         assert isinstance(cue, cf.Cue)
