@@ -1,8 +1,8 @@
 """Modal propagation: the exact response of a cue's modes to loads at its tip.
 
 An undamped mode of angular frequency omega is one complex coordinate xi = v + i omega q, with xi' = i omega xi + input.
-Modes that a damper couples are replaced by the eigenvectors of their group. The contact sees y = Re(output_rows xi).
-All of it depends on the cue alone, so that strikes at other speeds and offsets share it.
+Modes that a damper couples are replaced by the eigenvectors of their group. The velocities of ports and slopes are
+Re(output_rows xi). All of it depends on the cue alone: strikes at other speeds and offsets share it.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from cuefem.cue import Array
 Complex = NDArray[np.complex128]
 Index = NDArray[np.intp]
 # Above MAX_CONDITION the eigenvectors of coupled modes lose accuracy. The diagonal is then shifted by up to
-# DIAGONAL_SHIFT of the norm, which separates equal rates.
+# DIAGONAL_SHIFT of the norm, which separates equal eigenvalues.
 MAX_CONDITION, DIAGONAL_SHIFT = 1e7, 1e-9
 
 
@@ -31,9 +31,11 @@ class ModalPropagator:
 
     rows: (ports, modes), output and input matrix of the ports, 1/sqrt(kg). slopes: (slopes, modes), the same for the
     slopes of the bent cue (`cuefem.contact.geometric_stiffness`); empty without geometric stiffness. omega, approach:
-    of the modes. rates: (coordinates,), 1/s. displacements, velocities: (modes, coordinates), from the coordinates to
-    omega q and the modal velocities. onto: (coordinates, modes), from modal velocities to coordinates. n_dissipative:
-    number of the dampers' rows that dissipate energy; the other rows radiate it.
+    of the tip modes. eigenvalues: (coordinates,), 1/s, i omega of an undamped mode. displacements, velocities: (modes,
+    coordinates), from the coordinates to omega q and the modal velocities. onto: (coordinates, modes), from modal
+    velocities to coordinates. dampers: (rows, modes), rows r of the damping and then of the radiation, whose (r v)^2
+    add up to the power, W, at the modal velocities v. n_dissipative: number of the first of these, whose energy is
+    dissipated; the others radiate it.
     """
 
     def __init__(self, tip: TipModes, rows: Array, slopes: Array) -> None:
@@ -41,14 +43,14 @@ class ModalPropagator:
         omega, count = tip.omega, len(tip.omega)
         resistance = np.zeros((count, count)) if tip.total_damping is None else tip.total_damping
         coupled = resistance != 0
-        parts = [_alone(omega, np.flatnonzero(~coupled.any(axis=1)))]
+        parts = [_uncoupled_modes(omega, np.flatnonzero(~coupled.any(axis=1)))]
         parts += [_coupled(omega, resistance, group) for group in _coupled_groups(coupled)]
-        self.rates = np.concatenate([part.rates for part in parts])
-        self.displacements, self.velocities = (np.zeros((count, len(self.rates)), complex) for _ in range(2))
-        self.onto = np.zeros((len(self.rates), count), complex)
+        self.eigenvalues = np.concatenate([part.eigenvalues for part in parts])
+        self.displacements, self.velocities = (np.zeros((count, len(self.eigenvalues)), complex) for _ in range(2))
+        self.onto = np.zeros((len(self.eigenvalues), count), complex)
         first = 0
         for part in parts:
-            here = slice(first, first + len(part.rates))
+            here = slice(first, first + len(part.eigenvalues))
             self.displacements[part.modes, here], self.velocities[part.modes, here] = (
                 part.displacements,
                 part.velocities,
@@ -98,7 +100,7 @@ class ModalPropagator:
         ends, means = (xi @ self._damped).real, np.zeros((len(lengths), len(self.dampers)))
         for length in np.unique(lengths[lengths > 0]):
             here = np.flatnonzero(lengths == length)
-            turned, first, second = phi_functions(self.rates * length)
+            turned, first, second = phi_functions(self.eigenvalues * length)
             before, after = (first - turned * second / first)[:, None], (second / first)[:, None]
             means[here] = (xi[here] @ (before * self._damped) + xi[here + 1] @ (after * self._damped)).real
         v, w = ends[:-1], ends[1:]
@@ -122,36 +124,36 @@ class _Group(NamedTuple):
     """Uncoupled modes, or a group coupled by dampers, in uncoupled coordinates (`ModalPropagator`)."""
 
     modes: Index
-    rates: Complex
+    eigenvalues: Complex
     displacements: Complex
     velocities: Complex
     onto: Complex
 
 
-def _alone(omega: Array, modes: Index) -> _Group:
-    """Each mode a coordinate v + i omega q; a rigid one is its velocity."""
+def _uncoupled_modes(omega: Array, modes: Index) -> _Group:
+    """Each mode is a coordinate v + i omega q, a rigid one its velocity."""
     own = np.eye(len(modes), dtype=complex)
     return _Group(modes, np.asarray(1j * omega[modes], complex), -1j * own * (omega[modes] > 0), own, own)
 
 
 def _coupled(omega: Array, resistance: Array, modes: Index) -> _Group:
-    """The eigenvectors of (omega q, v)' = (omega v, -omega^2 q/omega - C v); of two conjugates one, doubled."""
+    """The eigenvectors of (omega q, v)' = (omega v, -omega (omega q) - C v); one of each conjugate pair, doubled."""
     vibrating = np.flatnonzero(omega[modes])  # a rigid mode has no displacement among the states
     count, turning = len(vibrating), omega[modes[vibrating]]
     states = np.zeros((count + len(modes), count + len(modes)))
     states[count:, count:] = -resistance[modes[:, None], modes]
     states[np.arange(count), count + vibrating], states[count + vibrating, np.arange(count)] = turning, -turning
-    rates, right = np.linalg.eig(states)
-    if np.linalg.cond(right, "fro") > MAX_CONDITION:  # two rates are one, as of a critically damped mode: part them
+    eigenvalues, right = np.linalg.eig(states)
+    if np.linalg.cond(right, "fro") > MAX_CONDITION:  # equal eigenvalues, as of a critically damped mode
         nudge = DIAGONAL_SHIFT * np.linalg.norm(states) * np.diag(np.linspace(-1.0, 0.0, len(states)))
-        rates, right = np.linalg.eig(states + nudge)
+        eigenvalues, right = np.linalg.eig(states + nudge)
     left = np.linalg.inv(right).astype(complex)
-    upper = np.flatnonzero(rates.imag >= 0)
-    right = (right[:, upper] * np.where(rates[upper].imag > 0, 2.0, 1.0)).astype(complex)
+    upper = np.flatnonzero(eigenvalues.imag >= 0)
+    right = (right[:, upper] * np.where(eigenvalues[upper].imag > 0, 2.0, 1.0)).astype(complex)
     displacements = np.zeros((len(modes), len(upper)), complex)
     displacements[vibrating] = right[:count]
     velocities, onto = np.asarray(right[count:], complex), np.asarray(left[upper][:, count:], complex)
-    return _Group(modes, rates[upper].astype(complex), displacements, velocities, onto)
+    return _Group(modes, eigenvalues[upper].astype(complex), displacements, velocities, onto)
 
 
 def _coupled_groups(coupled: Any) -> Iterator[Index]:
@@ -166,7 +168,7 @@ def _coupled_groups(coupled: Any) -> Iterator[Index]:
 
 
 def _rows_of_power(damping: Array) -> Array:
-    """Rows over the modes whose squares add up to a damping's power."""
+    """Rows r over the modes, with the power of a damping matrix as the sum of (r v)^2, v the modal velocities."""
     modes = np.flatnonzero(damping.any(axis=1))
     strengths, directions = np.linalg.eigh(damping[np.ix_(modes, modes)])
     acting = strengths > 1e-14 * strengths.max(initial=0.0)
@@ -176,10 +178,10 @@ def _rows_of_power(damping: Array) -> Array:
 
 
 def propagator_of(tip: TipModes, ports: str = "straight", time: float = 0.0, window: float = 0.0) -> ModalPropagator:
-    """The propagator of tip modes with some ports: "straight" (u, w), "turning" (u, w, the end's turning), or "raised".
+    """The propagator of tip modes at the ports "straight" (u, w), "turning" (u, w, rotation) or "raised" (u, w, p).
 
-    time, window: how long the contact lasts, and is followed after that, s, which the slopes of a bent cue depend on
-    (`slope_rows`). Strikes with the same tip modes share it.
+    time: approximate contact time, s; window: the time simulated after it, s. The slopes of a bent cue depend on both
+    (`slope_rows`). Strikes with the same tip modes share the propagator.
     """
     bends = tip.geometric is not None
     return _propagator(tip, ports, *((half_octave(time), half_octave(time) + window) if bends else (0.0, 0.0)))
@@ -194,17 +196,18 @@ def _propagator(tip: TipModes, ports: str, time: float, until: float) -> ModalPr
 
 
 def _in_two_planes(tip: TipModes, slopes: Array) -> tuple[TipModes, Array, Array]:
-    """Modes, rows of the ports (u, w, p) and slopes: each bending mode stands again in the plane across, moving p."""
-    again = np.flatnonzero(tip.amplitude[:, 1] != 0)
-    count, more = len(tip.omega), len(again)
-    both = np.append(np.arange(count), again)
-    one_plane = np.equal.outer(np.arange(len(both)) < count, np.arange(len(both)) < count)
+    """Modes, rows of the ports (u, w, p) and slopes: each bending mode a second time, in the plane out of (u, w)."""
+    bending = np.flatnonzero(tip.amplitude[:, 1] != 0)
+    count, more = len(tip.omega), len(bending)
+    source = np.append(np.arange(count), bending)
+    one_plane = np.equal.outer(np.arange(len(source)) < count, np.arange(len(source)) < count)
     amplitude, nothing = np.pad(tip.amplitude, ((0, more), (0, 0))), np.zeros(more)
     damping, radiation = (
-        None if matrix is None else matrix[np.ix_(both, both)] * one_plane for matrix in (tip.damping, tip.radiation)
+        None if matrix is None else matrix[np.ix_(source, source)] * one_plane
+        for matrix in (tip.damping, tip.radiation)
     )
     approach, rotation = np.append(tip.approach, nothing), np.append(tip.rotation, nothing)
-    modes = TipModes(tip.omega[both], amplitude, approach, rotation, damping, radiation)
-    rows = np.concatenate([amplitude.T, np.append(np.zeros(count), tip.amplitude[again, 1])[None]])
-    across = np.pad(slopes[:, again], ((0, 0), (count, 0)))
-    return modes, rows, np.concatenate([np.pad(slopes, ((0, 0), (0, more))), across])
+    modes = TipModes(tip.omega[source], amplitude, approach, rotation, damping, radiation)
+    rows = np.concatenate([amplitude.T, np.append(np.zeros(count), tip.amplitude[bending, 1])[None]])
+    out_of_plane = np.pad(slopes[:, bending], ((0, 0), (count, 0)))
+    return modes, rows, np.concatenate([np.pad(slopes, ((0, 0), (0, more))), out_of_plane])

@@ -178,19 +178,19 @@ def _path(solved: SolvedContact, times: Array) -> tuple[Array, Array]:
     Under a load that is constant over a step of length h, xi = exp(rate t) xi_0 + a (exp(rate t) - 1)/rate, and its
     integral follows; a is known from xi at the step's end. After the contact cue and ball fly freely.
     """
-    assert solved.course is not None
+    assert solved.states is not None
     p, model, steps = solved.model.propagator, solved.model, solved.steps
     ends, rigid = np.append(0.0, steps["time"]), p.omega == 0
     lengths, pressed = np.append(steps["length"], 0.0), np.flatnonzero(steps["length"])
     which = np.searchsorted(ends, times, side="right") - 1  # the step of each time; behind the last, the flight
     t, h = (times - ends[which])[:, None], lengths[pressed, None]
     balls = np.vstack([model.ball, steps["ball"][:, : len(model.ball)]])
-    loads, pulls = np.zeros_like(solved.course), np.zeros_like(balls)
-    turned, first, _ = phi_functions(p.rates * h)
-    loads[pressed] = (solved.course[pressed + 1] - turned * solved.course[pressed]) / (h * first)
+    loads, pulls = np.zeros_like(solved.states), np.zeros_like(balls)
+    turned, first, _ = phi_functions(p.eigenvalues * h)
+    loads[pressed] = (solved.states[pressed + 1] - turned * solved.states[pressed]) / (h * first)
     pulls[pressed] = (balls[pressed + 1] - balls[pressed]) / h
-    xi, summed = _driven(solved.course[which], loads[which], p.rates, t)
-    before = _driven(solved.course[:-1], loads[:-1], p.rates, lengths[:-1, None])[1] @ p.velocities[rigid].T
+    xi, summed = _driven(solved.states[which], loads[which], p.eigenvalues, t)
+    before = _driven(solved.states[:-1], loads[:-1], p.eigenvalues, lengths[:-1, None])[1] @ p.velocities[rigid].T
     gone = np.vstack([np.zeros(int(rigid.sum())), np.cumsum(before.real, axis=0)])
     ways = np.vstack([0 * balls[:1], np.cumsum(lengths[:-1, None] * (balls[1:] + balls[:-1]) / 2, axis=0)])
     displaced = (xi @ p.displacements.T).real / np.where(rigid, 1.0, p.omega)

@@ -22,12 +22,12 @@ from cuefem.scene import Outcome
 
 FRICTION_STATES = {0: "stick", 1: "slip", -1: "slip back", 2: IMPACT, 3: SEPARATION[0]}
 NORMAL_PHASES = ("load", "unload", "free")
-# Steps in a head-on contact time: squirt of a default strike is then right to 0.1 %
+# Steps in a head-on contact time: squirt of a default strike then has an error below 0.1 %
 # (tests/contact/test_stored_answers.py).
 DEFAULT_STEPS = 400
-INFINITE_FRICTION = 1e12  # friction, as the kernel takes it
+INFINITE_FRICTION = 1e12  # finite stand-in for infinite friction, as in kernel/step.c
 STEPS_PER_CALL = 2048  # of the kernel
-MAX_CONTACT_TIMES = 200  # without separation, after which the strike raises an error; head-on contact times
+MAX_CONTACT_TIMES = 200  # longest contact, in head-on contact times; beyond it the strike raises an error
 MAX_RECORDED_STEPS = 2_000_000  # 0.4 GB of records
 _RUNNING, _ENDED, _, _INDENTATION_OUT_OF_RANGE, _SLOPE_OUT_OF_RANGE, _UNSOLVED, _NO_MEMORY = range(7)
 
@@ -39,21 +39,21 @@ Steps = NDArray[np.void]
 class SolvedContact:
     """The solution of a contact.
 
-    steps: records (`STEP`) up to the last separation. course: (steps + 1, coordinates), modal coordinates before and
-    after each step; None unless stored. xi: final modal coordinates. ball: its final velocities, m/s (raised: also R
-    times its spins). losses: J by name.
+    steps: records (`STEP`) up to the last separation. states: (steps + 1, coordinates), modal coordinates before and
+    after each step; None unless stored. xi: final modal coordinates. ball: final velocities of the ball, m/s: (t, n)
+    and R times its spin, or above a table (t, n, p) and R times (t, n, p) of its spin. losses: J by name.
     """
 
     model: ContactModel
     steps: Steps
-    course: Complex | None
+    states: Complex | None
     xi: Complex
     ball: Array
     losses: dict[str, float]
 
     @property
     def time(self) -> float:
-        """When the last contact ended, s."""
+        """End of the last contact, s."""
         return float(self.steps["time"][-1])
 
     @property
@@ -81,29 +81,30 @@ class SolvedContact:
     def phases(self) -> tuple[Phase, ...]:
         """Runs of steps in one friction state and one normal phase."""
         steps, model = self.steps, self.model
-        grip, press = steps["friction_state"], steps["phase"]
-        ends = np.append(np.flatnonzero(np.diff(8 * grip + press)), len(steps) - 1)
+        friction, normal = steps["friction_state"], steps["phase"]
+        ends = np.append(np.flatnonzero(np.diff(8 * friction + normal)), len(steps) - 1)
         times = [0.0, *steps["time"][ends].tolist()]
-        given = model.momentum(np.vstack([model.ball, steps["ball"][ends, : len(model.ball)]])) * [model.side, 1.0]
-        names = [(FRICTION_STATES[int(g)], NORMAL_PHASES[int(p)]) for g, p in zip(grip[ends], press[ends], strict=True)]
-        spans = zip(names, pairwise(times), np.diff(given, axis=0).tolist(), strict=True)
+        momenta = model.momentum(np.vstack([model.ball, steps["ball"][ends, : len(model.ball)]])) * [model.side, 1.0]
+        names = [
+            (FRICTION_STATES[int(g)], NORMAL_PHASES[int(p)]) for g, p in zip(friction[ends], normal[ends], strict=True)
+        ]
+        spans = zip(names, pairwise(times), np.diff(momenta, axis=0).tolist(), strict=True)
         return tuple(Phase(*name, start, end, (p_t, p_n)) for name, (start, end), (p_t, p_n) in spans)
 
     @property
     def history(self) -> History:
         """Forces and velocities."""
-        model, blows = self.model, int(np.sum(self.steps["length"] == 0))  # which take no time
-        steps = self.steps[self.steps["length"] > 0] if blows else self.steps
+        model, steps = self.model, self.steps[self.steps["length"] > 0]  # impacts have no duration
         ends, side = np.append(0.0, steps["time"]), np.array([model.side, 1.0])
         force_times = np.concatenate([[0.0], ends[1:] - steps["length"] / 2, [self.time]])
-        forces = np.zeros((len(steps) + 2, 2))  # none at the touch, and none as the two part
+        forces = np.zeros((len(steps) + 2, 2))  # zero at touch and separation
         forces[1:-1] = steps["F"][:, :2] * side
         velocities = np.vstack([model.approach, steps["v"][:, :2]]) * side
         if model.axes is None:
             return History(force_times, forces, ends, velocities)
-        moving, turning = model.axes @ self.ball[:3], model.axes @ self.ball[3:] / model.radius
+        velocity, spin = model.axes @ self.ball[:3], model.axes @ self.ball[3:] / model.radius
         sides = np.array([model.side, 1.0, 1.0])
-        return History(force_times, forces, ends, velocities, moving * sides, turning * sides * model.side)
+        return History(force_times, forces, ends, velocities, velocity * sides, spin * sides * model.side)
 
     @property
     def outcome(self) -> Outcome:
@@ -111,12 +112,12 @@ class SolvedContact:
         model, side = self.model, self.model.side
         M, s, c = model.ball_mass, math.sin(model.phi), math.cos(model.phi)
         (p_t, p_n), approach = self.impulse, model.propagator.approach
-        inertia = float(approach @ approach)  # of a cue that moves as one along its axis
+        inertia = float(approach @ approach)  # of a cue that moves axially as a rigid body, kg
         if model.axes is None:
-            turning, along = float(self.ball[2]), s * p_t + c * p_n
-        else:  # what turned the ball about the vertical, and what the cue gave
+            turning, axial = float(self.ball[2]), s * p_t + c * p_n
+        else:  # R times the ball's spin about the vertical; the axial momentum that the cue lost
             turning = float(model.axes[2] @ self.ball[3:])
-            along = model.speed * inertia - float(approach @ (model.propagator.velocities @ self.xi).real)
+            axial = model.speed * inertia - float(approach @ (model.propagator.velocities @ self.xi).real)
         energy = self.energies(
             {
                 "initial": inertia * model.speed**2 / 2,
@@ -129,7 +130,7 @@ class SolvedContact:
             ball_velocity=np.array([side * p_t, p_n]) / M,
             ball_speed=math.hypot(p_t, p_n) / M,
             spin=side * turning / model.radius,
-            cue_speed=model.speed - along / inertia,
+            cue_speed=model.speed - axial / inertia,
             impulse=np.array([side * p_t, p_n]),
             duration=self.time,
             regime=self._regime(energy),
@@ -141,14 +142,14 @@ class SolvedContact:
         )
 
     def _regime(self, energy: dict[str, float]) -> str:
-        if self.time == 0:  # separated by the impact of infinite friction, which stopped the slip or did not
+        if self.time == 0:  # separated by the impact of infinite friction
             return "late stick" if abs(self.velocity[0]) <= 1e-12 * self.model.speed else "miscue"
         return contact_state(self.phases, energy)
 
     def energies(self, of_ball: dict[str, float]) -> dict[str, float]:
-        """Energies after the contact by name, J; of_ball: the initial one, and the ball's or striker's."""
+        """Energies after the contact by name, J; of_ball: the initial energy, and those of the ball or striker."""
         model, losses, (rigid, vibrating) = self.model, self.losses, self.cue_energy
-        account = {
+        energy = {
             **of_ball,
             "cue": rigid,
             "cue vibration": vibrating + losses["radiated"],
@@ -156,26 +157,26 @@ class SolvedContact:
             "friction loss": losses["friction"],
         }
         if model.propagator.n_dissipative:
-            account["damping loss"] = losses["damping"]
+            energy["damping loss"] = losses["damping"]
         if model.patch != RIGID_PATCH:
-            account["tip shear"] = losses["shear"]
+            energy["tip shear"] = losses["shear"]
         if model.axes is not None:
-            level, hop = model.axes[:2] @ self.ball[3:], float(model.axes[2] @ self.ball[:3])
-            account["ball roll"] = model.inertia * model.ball_mass * float(level @ level) / 2
-            account["ball hop"] = model.ball_mass * hop**2 / 2
-            account["table loss"] = losses["table"]
-        return {name: float(joules) for name, joules in account.items()}
+            horizontal_spin, vertical = model.axes[:2] @ self.ball[3:], float(model.axes[2] @ self.ball[:3])
+            energy["ball roll"] = model.inertia * model.ball_mass * float(horizontal_spin @ horizontal_spin) / 2
+            energy["ball hop"] = model.ball_mass * vertical**2 / 2
+            energy["table loss"] = losses["table"]
+        return {name: float(joules) for name, joules in energy.items()}
 
 
 def solve_contact(model: ContactModel, *, steps: int | None = None, keep_states: bool = False) -> SolvedContact:
     """Solve a contact from first touch to separation, and through the window of a second hit.
 
-    steps: per central-impact contact time. keep_states: store the modal coordinates after every step. RuntimeError if
-    the ball does not separate; ValueError where leather or a bent shaft leave the range of their theory.
+    steps: in a head-on contact time. keep_states: store the modal coordinates after every step. RuntimeError if
+    the ball does not separate; ValueError if the indentation or the slope of the shaft leaves its theory's range.
     """
-    kernel, propagator, level = library(), model.propagator, model.axes is None
+    kernel, propagator = library(), model.propagator
     arrays = {
-        "rates": propagator.rates,
+        "eigenvalues": propagator.eigenvalues,
         "rows": propagator.output_rows,
         "drives": propagator.input_rows,
         "kinematics": model.kinematics,
@@ -186,12 +187,12 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, keep_states:
     }
     arrays = {name: np.ascontiguousarray(values) for name, values in arrays.items()}
     numbers = {
-        "modes": len(propagator.rates),
+        "modes": len(propagator.eigenvalues),
         "ports": len(propagator.rows),
         "slopes": len(propagator.slopes),
         "forces": len(model.kinematics),
         "speeds": len(model.ball),
-        "planes": 1 if level else 2,
+        "planes": 1 if model.axes is None else 2,
         "patch": model.patch,
         "phi": model.phi,
         "restitution": model.restitution,
@@ -202,7 +203,7 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, keep_states:
     }
     c = KernelContact(**numbers | model.terms | {name: array.ctypes.data for name, array in arrays.items()})
     records, states, dissipated = [], [arrays["xi"][None].copy()], []
-    watched = keep_states or len(propagator.dampers) > 0
+    needs_states = keep_states or len(propagator.dampers) > 0
     work = kernel.contact_new(ctypes.byref(c))
     if not work:
         raise MemoryError("no memory for the steps of a contact")
@@ -213,13 +214,12 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, keep_states:
                     f"the strike takes more than {MAX_RECORDED_STEPS} steps of {c.step:.3g} s, for {c.time:.3g} s so "
                     "far: lower Resolution.steps, or the window of SecondHit"
                 )
-            rows, after = (
-                np.empty(STEPS_PER_CALL, STEP),
-                np.empty((STEPS_PER_CALL if watched else 0, 2, len(propagator.rates))),
-            )
-            count = kernel.contact_steps(work, STEPS_PER_CALL, rows.ctypes.data, after.ctypes.data if watched else None)
+            rows = np.empty(STEPS_PER_CALL, STEP)
+            after = np.empty((STEPS_PER_CALL if needs_states else 0, 2, len(propagator.eigenvalues)))
+            stored = after.ctypes.data if needs_states else None
+            count = kernel.contact_steps(work, STEPS_PER_CALL, rows.ctypes.data, stored)
             records.append(rows[:count])
-            if watched:
+            if needs_states:
                 states.append(after[:count, 0] + 1j * after[:count, 1])
                 xi = np.concatenate([states[-2][-1:], states[-1]])
                 dissipated.append(propagator.dissipated(xi, rows["length"][:count]))
@@ -230,7 +230,9 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, keep_states:
         raise _failure(model, c)
     tangential = c.work[0] + c.work[2]
     shear = tangential if model.patch == PARTIAL_SLIP and model.friction >= INFINITE_FRICTION else c.shear_loss
-    damping, radiated = np.concatenate([*dissipated, np.zeros((1, 2))])[: c.steps_in_contact].sum(axis=0).tolist()
+    damping, radiated = (
+        np.concatenate([*dissipated, np.zeros((1, 2))])[: c.steps_to_last_separation].sum(axis=0).tolist()
+    )
     losses = {
         "tip": model.law.loss(c.max_depth),
         "friction": tangential - shear,
@@ -241,8 +243,8 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, keep_states:
     }
     return SolvedContact(
         model,
-        np.concatenate(records)[: c.steps_in_contact],
-        np.concatenate(states)[: c.steps_in_contact + 1] if keep_states else None,
+        np.concatenate(records)[: c.steps_to_last_separation],
+        np.concatenate(states)[: c.steps_to_last_separation + 1] if keep_states else None,
         arrays["xi"],
         arrays["ball"],
         losses,
@@ -250,7 +252,7 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, keep_states:
 
 
 def _failure(model: ContactModel, c: KernelContact) -> Exception:
-    """The error of a contact that did not end."""
+    """The exception for a contact that did not end."""
     if c.status == _NO_MEMORY:
         return MemoryError("no memory for the steps of a contact")
     if c.status == _INDENTATION_OUT_OF_RANGE and isinstance(model.law, LeatherLaw):

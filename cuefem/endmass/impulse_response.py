@@ -37,7 +37,7 @@ class ImpulseResponse(NamedTuple):
         active = weights != 0
         if not active.any():
             raise ValueError("end_mass: the tip is clamped transversely, so its end mass is infinite")
-        return cls(weights[active], propagator.rates[active])
+        return cls(weights[active], propagator.eigenvalues[active])
 
     def velocity_step_impulse(self, c: float, T: float) -> Array:
         """Impulse on the tip that moves it at 1 m/s from t = 0, at the edges of the steps of 0..T, kg, (`STEPS` + 1,).

@@ -3,11 +3,12 @@
    Between the contact's forces, cue and ball move linearly. Over a step of length h the forces are constant,
    and every mode of the cue answers them exactly (modal propagation). The normal force follows the
    force-indentation law at mid-step. Coulomb friction is a return mapping, as in plasticity: trial stick,
-   then |F_t| is projected onto mu F_n. Second order in h; no event is located. J. J. Moreau, Unilateral
-   contact and dry friction in finite freedom dynamics (1988); M. Jean, The non-smooth contact dynamics
-   method, Comput. Methods Appl. Mech. Engrg. 177 (1999) 235.
+   then |F_t| is projected onto mu F_n. Second order in h. One shortened step ends at separation or touch;
+   changes between stick and slip or loading and unloading are not located. J. J. Moreau, Unilateral contact
+   and dry friction in finite freedom dynamics (1988); M. Jean, The non-smooth contact dynamics method,
+   Comput. Methods Appl. Mech. Engrg. 177 (1999) 235.
 
-   A mode is one complex coordinate xi with xi' = rate xi + drive . loads. The cue has ports (axial and
+   A mode is one complex coordinate xi with xi' = eigenvalue xi + drive . loads. The cue has ports (axial and
    lateral velocity of its tip, rotation rate) and the slopes of the bent shaft; the ball has its velocities.
    With y all these velocities, the contact's velocities are v = C y and its forces F load them by C' F, so
    that energy is conserved.
@@ -36,73 +37,107 @@
 #define FAST
 #endif
 
+/* Largest numbers of ports, slopes, velocities (of the cue, of the ball, both), forces and annuli. */
 enum {
     PORTS = 3,
     SLOPES = 32,
-    READS = PORTS + SLOPES,
-    SPEEDS = 6,
-    WIDE = READS + SPEEDS,
+    CUE_VELOCITIES = PORTS + SLOPES,
+    BALL_VELOCITIES = 6,
+    VELOCITIES = CUE_VELOCITIES + BALL_VELOCITIES,
     FORCES = 6,
     ANNULI = 256
 };
-enum {
-    T,
-    N,
-    P,
-    UP,
-    LATERAL,
-    FORWARD
-}; /* at the tip: tangential, normal, out of the plane; at the ball's point on the table: the rest */
-enum { STICK = 0, SLIP = 1, SLIP_BACK = -1, IMPACT = 2, SEPARATED = 3 };
-enum { LOADING, UNLOADING, FREE };
-enum { RIGID_PATCH, SPRING_PATCH, PARTIAL_SLIP };
+/* Components of the contact's forces F and velocities v. At the tip: tangential, normal, out of the plane; at
+   the ball's point on the table: upwards, lateral, forwards. A level cue has the first two, a raised one (the
+   effect Elevation) all six. */
+enum { T, N, P, UP, LATERAL, FORWARD };
+enum { STICK = 0, SLIP = 1, SLIP_BACK = -1, IMPACT = 2, SEPARATED = 3 }; /* friction states */
+enum { LOADING, UNLOADING, FREE };                                       /* normal phases */
+enum { RIGID_PATCH, SPRING_PATCH, PARTIAL_SLIP }; /* tangential compliance of the tip */
 enum { POWER_LAW, LEATHER_LAW };
-enum { RUNNING, ENDED, LATE, INDENTATION_OUT_OF_RANGE, SLOPE_OUT_OF_RANGE, UNSOLVED, NO_MEMORY };
+enum { RUNNING, ENDED, TIME_LIMIT, INDENTATION_OUT_OF_RANGE, SLOPE_OUT_OF_RANGE, UNSOLVED, NO_MEMORY };
 
 /* One step, or an impact: a step of zero length whose F is an impulse, N s. */
 typedef struct {
-    double time, length, friction_state, phase, angle; /* at the end of the step */
-    double F[FORCES], v[FORCES],
-        ball[SPEEDS]; /* F: over the step. v, ball: at its end, of the contact and of the ball */
+    double time, length;          /* at the end of the step; of the step, s */
+    double friction_state, phase; /* of the step */
+    double angle;                 /* rolled by the end of the step, rad */
+    double F[FORCES];             /* over the step, N */
+    double v[FORCES];             /* of the contact at the end of the step, m/s */
+    double ball[BALL_VELOCITIES]; /* velocities of the ball at the end of the step, m/s */
 } Step;
 
+/* Input and results of a contact; lengths of arrays are given by the first line. */
 typedef struct {
-    int modes, ports, slopes, forces, speeds, planes, rolling, law, terms, patch, annuli;
-    const double *rates, *rows, *drives; /* complex: (modes,), and (ports + slopes, modes) twice */
-    const double *kinematics,
-        *inverse_masses;         /* C of the first touch, (forces, ports + speeds); of the ball */
-    const double *slope_weights; /* (slopes,): weight of each slope in the tip's axial shortening */
-    const double *force_terms, *compliance_terms; /* leather: series in the square root of the indentation */
-    const double *annulus_edges, *annulus_forces, *annulus_slopes,
-        *annulus_stiffness; /* (annuli + 1,), at the indentations annulus_edges */
-    double *xi, *ball;      /* before the first touch, and after the last separation */
-    double restitution, friction, table_friction, stiffness, exponent, depth_limit, compliance,
-        surface_restitution;
-    double phi, dome, rim, radius, arm_t, arm_n, step, max_time, window;
-    double time, depth, max_depth, angle, height, shear_loss, axial_force, max_slope,
-        work[FORCES]; /* work: dissipated by each force */
-    int status, friction_state, steps,
-        steps_in_contact; /* steps_in_contact: number up to the last separation */
+    int modes, ports, slopes, forces, speeds; /* speeds: velocities of the ball */
+    int planes;                               /* planes in which the cue bends, 1 or 2 */
+    int rolling;                              /* whether the contact rolls over ball and dome */
+    int law, terms, patch, annuli;            /* terms: of the leather law's series */
+    const double *eigenvalues;      /* complex, (modes,), 1/s: a free xi grows with exp(eigenvalue t) */
+    const double *rows, *drives;    /* output and input rows: complex, (ports + slopes, modes), 1/sqrt(kg) */
+    const double *kinematics;       /* C at the first touch, (forces, ports + speeds) */
+    const double *inverse_masses;   /* of the ball's velocities, (speeds,), 1/kg */
+    const double *slope_weights;    /* of each slope in the tip's axial shortening, (slopes,) */
+    const double *force_terms;      /* leather: F = d^(3/2) times a series in the root of the indentation d */
+    const double *compliance_terms; /* tangential compliance: such a series over the root of d */
+    const double *annulus_edges;    /* indentations at which the annuli begin, (annuli + 1,), m */
+    const double *annulus_forces;   /* F at the edges, N */
+    const double *annulus_slopes;   /* dF/dd at the edges, N/m */
+    const double *annulus_stiffness; /* tangential stiffness at the edges, N/m */
+    double *xi, *ball;               /* before the first touch; after the last separation */
+    double restitution, friction;    /* of the tip */
+    double table_friction;
+    double stiffness, exponent;    /* power law F = stiffness d^exponent */
+    double depth_limit;            /* largest indentation of the leather law, m */
+    double compliance;             /* of a spring patch, m/N */
+    double surface_restitution;    /* its square: recovered part of an annulus's strain energy */
+    double phi, dome, rim;         /* angle of the first touch, rad; radius of the dome, m; its end, rad */
+    double radius;                 /* of the ball, m */
+    double arm_t, arm_n;           /* moment arms of (t, n) about the end section at the first touch, m */
+    double step, max_time, window; /* step; longest contact; time followed after the first separation, s */
+    double time, depth, max_depth; /* s; indentation and its maximum, m */
+    double angle;                  /* rolled, rad */
+    double height;                 /* of the ball above the table, m */
+    double shear_loss;             /* dissipated strain energy of the patch, J */
+    double axial_force;            /* on the cue at its largest slope, N */
+    double max_slope;              /* of the cue's end, rad */
+    double work[FORCES];           /* dissipated by each force, J */
+    int status, friction_state, steps, steps_to_last_separation;
 } Contact;
 
-/* Modal propagation over a step of one length: rows of 2 modes, first the real, then the imaginary parts. */
+/* Modal propagation over a step of one length h (modes.c). Rows of 2 modes: real, then imaginary parts. */
 typedef struct {
-    double h, *propagator, *ends, *means, *push, end[READS][READS], mean[READS][READS];
+    double h, *propagator; /* s; factor of a free mode */
+    double *ends, *means; /* from the modes to the velocities at the end of the step and on average over it */
+    double *push;         /* change of the modes per load */
+    double end[CUE_VELOCITIES][CUE_VELOCITIES],
+        mean[CUE_VELOCITIES][CUE_VELOCITIES]; /* velocities per load */
 } Tables;
 
+/* State of a contact, and the equations of the step under way. */
 typedef struct {
     Contact *c;
     Tables t;
-    double *rows, *drives, *state;
-    double ball[SPEEDS], rates[READS],
-        slopes[SLOPES]; /* rates: velocities of ports and slopes now; slopes: those of the bent shaft */
-    double C[FORCES][WIDE], v[FORCES], u[FORCES], rest[FORCES], V[FORCES][FORCES],
-        W[FORCES][FORCES]; /* contact_matrices */
-    double end_free[READS], mean_free[READS], F[FORCES];
-    double rolling_rate, shift, shift_mid, origin, virtual_mid, virtual_now, lost, annulus_force[ANNULI],
-        annulus_force_now[ANNULI];
-    double until, max_time;
-    int phase, side, held, up_held, table_held, last;
+    double *rows, *drives, *state; /* output and input rows and modal coordinates, as in Tables */
+    double ball[BALL_VELOCITIES];
+    double port_velocities[CUE_VELOCITIES]; /* of ports and slopes */
+    double slopes[SLOPES];
+    double C[FORCES][VELOCITIES], v[FORCES], u[FORCES], rest[FORCES]; /* contact_matrices */
+    double V[FORCES][FORCES], W[FORCES][FORCES];
+    double end_free[CUE_VELOCITIES], mean_free[CUE_VELOCITIES]; /* of ports and slopes without loads */
+    double F[FORCES];
+    double axial_force;           /* on the cue, N */
+    double rolling_rate;          /* rad/s */
+    double shift, shift_mid;      /* of the tip along t against the ball, m; at the middle of the last step */
+    double origin;                /* shift at which a spring patch is unstrained, m */
+    double virtual_mid;           /* virtual indentation at the middle of the last step, m; see laws.c */
+    double annulus_force[ANNULI]; /* at the middle of the last step, N */
+    double virtual_now, annulus_force_now[ANNULI], annuli_loss; /* the same in this step; dissipated, J */
+    double window_end, deadline; /* of the window after separation; of this contact, s */
+    int phase, slip;             /* slip: its direction, or STICK; a PARTIAL_SLIP patch keeps STICK */
+    int tip_stuck, on_table,
+        table_stuck;   /* in the last step: tip sticks; table presses the ball; it sticks */
+    int ends_at_event; /* whether the step was shortened to end at separation or touch */
 } Work;
 
 static inline double larger(double a, double b) { return a > b ? a : b; }
@@ -119,10 +154,10 @@ double tip_force(const Contact *c, int phase, double depth, double *slope, doubl
 double residual_depth(const Contact *c);
 double unloading_scale(const Contact *c, int phase);
 double tangential_stiffness(const Contact *c, double depth);
-void contact_kinematics(const Work *w, double angle, const double *slopes, double C[FORCES][WIDE]);
+void contact_kinematics(const Work *w, double angle, const double *slopes, double C[FORCES][VELOCITIES]);
 
 /* partial_slip.c */
-double shift_annuli(Work *w, double depth, double shift, double *stuck, double *slid);
+double shift_annuli(Work *w, double depth, double shift, double *by_shift, double *by_virtual);
 
 /* forces.c */
 void contact_matrices(Work *w);

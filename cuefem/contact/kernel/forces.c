@@ -1,42 +1,46 @@
 /* The forces of a step: force-indentation law at mid-step, friction as a return mapping. */
 #include "contact.h"
 
-enum { ROUNDS = 40, SWEEPS = 1000, HALVINGS = 60 };
-static const double CLOSE = 1e-12,
-                    NEAR = 1e-7; /* relative change of the forces at convergence; largest accepted */
+enum { MAX_ITERATIONS = 40, MAX_SWEEPS = 1000, MAX_BISECTIONS = 60 };
+/* Relative change of the forces per iteration. Gauss-Seidel sweeps converge slowly and need a wider one. */
+static const double REL_TOL = 1e-12, REL_TOL_SWEEPS = 1e-11; /* at convergence */
+static const double REL_TOL_ACCEPTED = 1e-7;                 /* largest accepted after the last iteration */
+static const double MIN_FORCE = 1e-9;                        /* N, least scale of the relative change */
 
-/* C at mid-step; with it the contact's velocities without forces at the end (v) and on average over the step
-   (u), and their change per force (V, W). rest: mean velocity of a sticking point: 0, or half of the initial
-   velocity where it slipped before and comes to rest. */
+/* C at mid-step; with it the contact's velocities without forces at the end of the step (v) and on average
+   over it (u), m/s, and their change per force (V, W), (m/s)/N; in impact() per impulse, 1/kg. rest: mean
+   velocity of a sticking point, m/s: 0, or half of the initial velocity where it slipped before and comes to
+   rest. */
 void contact_matrices(Work *w)
 {
     const Contact *c = w->c;
-    const int Q = c->ports + c->slopes, n = c->forces, B = c->speeds;
+    const int n_cue = c->ports + c->slopes, n = c->forces, n_ball = c->speeds;
     const double h = w->t.h;
-    double bent[SLOPES], end[FORCES][READS], mean[FORCES][READS];
-    for (int a = 0; a < c->slopes; a++) bent[a] = w->slopes[a] + h / 2 * w->rates[c->ports + a];
+    double bent[SLOPES], end[FORCES][CUE_VELOCITIES], mean[FORCES][CUE_VELOCITIES];
+    for (int a = 0; a < c->slopes; a++) bent[a] = w->slopes[a] + h / 2 * w->port_velocities[c->ports + a];
     contact_kinematics(w, c->angle + h / 2 * w->rolling_rate, bent, w->C);
     for (int f = 0; f < n; f++) {
         const double *C = w->C[f];
         w->v[f] = w->u[f] = 0;
-        for (int b = 0; b < B; b++) w->v[f] += C[Q + b] * w->ball[b];
+        for (int b = 0; b < n_ball; b++) w->v[f] += C[n_cue + b] * w->ball[b];
         w->u[f] = w->v[f], w->rest[f] = w->v[f] / 2;
-        for (int q = 0; q < Q; q++) {
+        for (int q = 0; q < n_cue; q++) {
             w->v[f] += C[q] * w->end_free[q], w->u[f] += C[q] * w->mean_free[q];
-            w->rest[f] += C[q] * w->rates[q] / 2;
+            w->rest[f] += C[q] * w->port_velocities[q] / 2;
         }
-        if (f == UP ? w->up_held : f > UP ? w->table_held : w->held) w->rest[f] = 0;
-        for (int q = 0; q < Q; q++) {
+        if (f == UP ? w->on_table : f > UP ? w->table_stuck : w->tip_stuck) w->rest[f] = 0;
+        for (int q = 0; q < n_cue; q++) {
             end[f][q] = mean[f][q] = 0;
-            for (int p = 0; p < Q; p++)
+            for (int p = 0; p < n_cue; p++)
                 end[f][q] += C[p] * w->t.end[p][q], mean[f][q] += C[p] * w->t.mean[p][q];
         }
     }
     for (int f = 0; f < n; f++)
         for (int g = 0; g < n; g++) {
             double ball = 0, ends = 0, means = 0;
-            for (int b = 0; b < B; b++) ball += h * w->C[f][Q + b] * c->inverse_masses[b] * w->C[g][Q + b];
-            for (int q = 0; q < Q; q++) ends += end[f][q] * w->C[g][q], means += mean[f][q] * w->C[g][q];
+            for (int b = 0; b < n_ball; b++)
+                ball += h * w->C[f][n_cue + b] * c->inverse_masses[b] * w->C[g][n_cue + b];
+            for (int q = 0; q < n_cue; q++) ends += end[f][q] * w->C[g][q], means += mean[f][q] * w->C[g][q];
             w->V[f][g] = ends + ball, w->W[f][g] = means + ball / 2;
         }
 }
@@ -51,24 +55,26 @@ void velocities(const Work *w, double *end, double *mean)
     }
 }
 
-/* Newton's method for (F_t, F_n); side: direction of slip, or STICK. Returns whether it converged. */
-static int newton(Work *w, int side)
+/* Newton's method for (F_t, F_n); slip: its direction, or STICK; unused with PARTIAL_SLIP, whose annuli slip
+   one by one. Returns whether it converged. */
+static int newton(Work *w, int slip)
 {
     const Contact *c = w->c;
     const double half = w->t.h / 2;
-    double v[FORCES], u[FORCES], off = 0, size = 0;
-    for (int round = 0; round < ROUNDS; round++) {
-        double slope, stuck, slid, g[2], J[2][2];
+    double v[FORCES], u[FORCES], change = 0, scale = 0;
+    for (int i = 0; i < MAX_ITERATIONS; i++) {
+        double slope, by_shift, by_virtual, g[2], J[2][2];
         velocities(w, v, u);
         double force = tip_force(c, w->phase, c->depth - half * u[N], &slope, &w->virtual_now),
                shift = w->shift - half * u[T];
         g[N] = w->F[N] - force, J[N][T] = slope * half * w->W[N][T], J[N][N] = 1 + slope * half * w->W[N][N];
         if (c->patch == PARTIAL_SLIP) {
-            g[T] = w->F[T] - shift_annuli(w, w->virtual_now, shift - w->shift_mid, &stuck, &slid);
-            slid /= w->virtual_now < c->max_depth ? unloading_scale(c, w->phase) : 1;
-            for (int f = 0; f < 2; f++) J[T][f] = (f == T) + half * (stuck * w->W[T][f] + slid * w->W[N][f]);
-        } else if (side)
-            g[T] = w->F[T] - side * c->friction * w->F[N], J[T][T] = 1, J[T][N] = -side * c->friction;
+            g[T] = w->F[T] - shift_annuli(w, w->virtual_now, shift - w->shift_mid, &by_shift, &by_virtual);
+            by_virtual /= w->virtual_now < c->max_depth ? unloading_scale(c, w->phase) : 1;
+            for (int f = 0; f < 2; f++)
+                J[T][f] = (f == T) + half * (by_shift * w->W[T][f] + by_virtual * w->W[N][f]);
+        } else if (slip)
+            g[T] = w->F[T] - slip * c->friction * w->F[N], J[T][T] = 1, J[T][N] = -slip * c->friction;
         else if (c->patch == SPRING_PATCH) {
             g[T] = w->F[T] - (shift - w->origin) / c->compliance;
             for (int f = 0; f < 2; f++) J[T][f] = (f == T) + half * w->W[T][f] / c->compliance;
@@ -77,29 +83,33 @@ static int newton(Work *w, int side)
             for (int f = 0; f < 2; f++) J[T][f] = w->W[T][f];
         }
         double det = J[0][0] * J[1][1] - J[0][1] * J[1][0];
-        double by[2] = {(J[1][1] * g[0] - J[0][1] * g[1]) / det, (J[0][0] * g[1] - J[1][0] * g[0]) / det};
-        w->F[0] -= by[0], w->F[1] -= by[1];
-        off = fabs(by[0]) + fabs(by[1]), size = fabs(w->F[0]) + fabs(w->F[1]) + 1e-9;
-        if (off <= CLOSE * size) return 1;
+        double correction[2] = {(J[1][1] * g[0] - J[0][1] * g[1]) / det,
+                                (J[0][0] * g[1] - J[1][0] * g[0]) / det};
+        w->F[0] -= correction[0], w->F[1] -= correction[1];
+        change = fabs(correction[0]) + fabs(correction[1]);
+        scale = fabs(w->F[0]) + fabs(w->F[1]) + MIN_FORCE;
+        if (change <= REL_TOL * scale) return 1;
     }
-    return off <= NEAR * size;
+    return change <= REL_TOL_ACCEPTED * scale;
 }
 
-/* Level cue: trial stick, and slip where the trial exceeds mu F_n. */
+/* Forces of a level cue: trial stick, and slip if |F_t| of the trial exceeds mu F_n. Returns whether they
+   converged. */
 int level_forces(Work *w)
 {
     const Contact *c = w->c;
-    w->side = c->friction == 0 && c->patch != PARTIAL_SLIP ? SLIP : STICK;
-    if (!newton(w, w->side)) return 0;
-    if (c->patch == PARTIAL_SLIP || w->side ||
-        fabs(w->F[T]) <= c->friction * larger(w->F[N], 0) * (1 + CLOSE))
+    w->slip = c->friction == 0 && c->patch != PARTIAL_SLIP ? SLIP : STICK;
+    if (!newton(w, w->slip)) return 0;
+    if (c->patch == PARTIAL_SLIP || w->slip ||
+        fabs(w->F[T]) <= c->friction * larger(w->F[N], 0) * (1 + REL_TOL))
         return 1;
-    w->side = w->F[T] > 0 ? SLIP : SLIP_BACK;
-    return newton(w, w->side);
+    w->slip = w->F[T] > 0 ? SLIP : SLIP_BACK;
+    return newton(w, w->slip);
 }
 
-/* Friction in the plane of two forces a and b, |F| <= bound: whether the point sticks. A slipping force
-   opposes the mean velocity, found by projected-gradient steps on the disc of the bound. */
+/* Solve F[a], F[b] in place, hypot(F[a], F[b]) <= bound; return 1 if the point sticks. The friction force of
+   a slipping point opposes its mean velocity; it is found by projected-gradient steps on the disc of the
+   bound. */
 static int plane_friction(Work *w, int a, int b, double bound)
 {
     const double (*W)[FORCES] = w->W;
@@ -107,63 +117,64 @@ static int plane_friction(Work *w, int a, int b, double bound)
     for (int f = 0; f < w->c->forces; f++) u[0] += W[a][f] * F[f], u[1] += W[b][f] * F[f];
     double x = u[0] - w->rest[a], y = u[1] - w->rest[b];
     double p = F[a] - (W[b][b] * x - W[a][b] * y) / det, q = F[b] - (W[a][a] * y - W[b][a] * x) / det;
-    double size = hypot(p, q), rho = 1 / larger(W[a][a], W[b][b]);
-    int sticks = size <= bound * (1 + CLOSE);
-    if (!sticks) p *= bound / size, q *= bound / size;
-    for (int i = 0; i < ROUNDS && !sticks; i++) {
+    double stick = hypot(p, q), rho = 1 / larger(W[a][a], W[b][b]);
+    int sticks = stick <= bound * (1 + REL_TOL);
+    if (!sticks) p *= bound / stick, q *= bound / stick;
+    for (int i = 0; i < MAX_ITERATIONS && !sticks; i++) {
         double to_p = p - rho * (u[0] + W[a][a] * (p - F[a]) + W[a][b] * (q - F[b]));
         double to_q = q - rho * (u[1] + W[b][a] * (p - F[a]) + W[b][b] * (q - F[b])),
-               reach = hypot(to_p, to_q), off;
-        if (reach > bound) to_p *= bound / reach, to_q *= bound / reach;
-        off = fabs(to_p - p) + fabs(to_q - q), p = to_p, q = to_q;
-        if (off < CLOSE * bound) break;
+               next = hypot(to_p, to_q), change;
+        if (next > bound) to_p *= bound / next, to_q *= bound / next;
+        change = fabs(to_p - p) + fabs(to_q - q), p = to_p, q = to_q;
+        if (change < REL_TOL * bound) break;
     }
     F[a] = p, F[b] = q;
     return sticks;
 }
 
-/* Raised cue over a table that never pulls: block Gauss-Seidel over the contact points until the forces
-   converge; or the impulses of its impact, which stops the tip along the ball and the ball into the table.
-   bound: of the tip's friction; mu F_n where it is negative. */
-static int solve_in_turns(Work *w, int strikes, double bound)
+/* Forces of a raised cue over a unilateral table contact: block Gauss-Seidel over the normal force, the tip's
+   friction, and the table's normal force and friction. is_impact: solve for the impulses of impact(), at no
+   normal force. bound: of the tip's friction, N; mu F_n if it is negative. Returns whether they converged. */
+static int solve_gauss_seidel(Work *w, int is_impact, double bound)
 {
     const Contact *c = w->c;
-    double *F = w->F, half = w->t.h / 2, off = 1, size = 1;
-    int sticks = 0, rests = 0;
-    for (int sweep = 0; sweep < SWEEPS && off > 1e-11 * size; sweep++) {
+    double *F = w->F, half = w->t.h / 2, change = 1, scale = 1;
+    int tip_sticks = 0, table_sticks = 0;
+    for (int sweep = 0; sweep < MAX_SWEEPS && change > REL_TOL_SWEEPS * scale; sweep++) {
         double before[FORCES];
         memcpy(before, F, sizeof before);
-        for (int i = 0; i < ROUNDS && !strikes; i++) {
+        for (int i = 0; i < MAX_ITERATIONS && !is_impact; i++) {
             double u = w->u[N], slope, unused;
             for (int f = 0; f < FORCES; f++) u += w->W[N][f] * F[f];
-            double by = (F[N] - tip_force(c, w->phase, c->depth - half * u, &slope, &unused)) /
-                        (1 + slope * half * w->W[N][N]);
-            F[N] -= by;
-            if (fabs(by) <= CLOSE * fabs(F[N])) break;
+            double correction = (F[N] - tip_force(c, w->phase, c->depth - half * u, &slope, &unused)) /
+                                (1 + slope * half * w->W[N][N]);
+            F[N] -= correction;
+            if (fabs(correction) <= REL_TOL * fabs(F[N])) break;
         }
-        sticks = plane_friction(w, T, P, bound < 0 ? c->friction * larger(F[N], 0) : bound);
+        tip_sticks = plane_friction(w, T, P, bound < 0 ? c->friction * larger(F[N], 0) : bound);
         double u = w->u[UP] - w->W[UP][UP] * F[UP]; /* without the table */
         for (int f = 0; f < FORCES; f++) u += w->W[UP][f] * F[f];
         F[UP] = c->height > 0 && c->height + w->t.h * u > 0 ? 0 : larger(0, (w->rest[UP] - u) / w->W[UP][UP]);
-        rests = plane_friction(w, LATERAL, FORWARD, c->table_friction * F[UP]);
-        off = 0, size = 1e-9;
+        table_sticks = plane_friction(w, LATERAL, FORWARD, c->table_friction * F[UP]);
+        change = 0, scale = MIN_FORCE;
         for (int f = 0; f < FORCES; f++)
-            off = larger(off, fabs(F[f] - before[f])), size = larger(size, fabs(F[f]));
+            change = larger(change, fabs(F[f] - before[f])), scale = larger(scale, fabs(F[f]));
     }
-    w->side = sticks ? STICK : SLIP, w->up_held = F[UP] > 0, w->table_held = rests && F[UP] > 0;
-    return off <= NEAR * size;
+    w->slip = tip_sticks ? STICK : SLIP, w->on_table = F[UP] > 0, w->table_stuck = table_sticks && F[UP] > 0;
+    return change <= REL_TOL_ACCEPTED * scale;
 }
 
-/* Raised cue. Strong friction may hold so much that F_n vanishes, and with it mu F_n: the iteration then
-   alternates. The bound mu F_n lies between 0 and the force of full stick, and is found by bisection. */
+/* Forces of a raised cue. Strong friction may support so much that F_n vanishes, and with it mu F_n: the
+   iteration then alternates. The bound mu F_n lies between 0 and the friction force of stick, and is found by
+   bisection. Returns whether the forces converged. */
 int raised_forces(Work *w)
 {
-    if (solve_in_turns(w, 0, -1)) return 1;
-    int solved = solve_in_turns(w, 0, HUGE_VAL);
+    if (solve_gauss_seidel(w, 0, -1)) return 1;
+    int solved = solve_gauss_seidel(w, 0, HUGE_VAL);
     double low = 0, high = hypot(w->F[T], w->F[P]);
-    for (int i = 0; i < HALVINGS && solved; i++) {
+    for (int i = 0; i < MAX_BISECTIONS && solved; i++) {
         double bound = (low + high) / 2;
-        solved = solve_in_turns(w, 0, bound);
+        solved = solve_gauss_seidel(w, 0, bound);
         if (w->c->friction * w->F[N] > bound)
             low = bound;
         else
@@ -172,44 +183,46 @@ int raised_forces(Work *w)
     return solved;
 }
 
-/* Impact of infinite friction at the first touch: an impulse stops the tip's velocity along the ball, and the
-   ball's into the table, where it rubs. Returns whether they stay in contact; if the impulse alone separates
-   them, it ends at e times their approach velocity. */
+/* Impact of infinite friction at the first touch. An impulse stops the tip's tangential velocity and the
+   ball's velocity into the table, with friction there. Returns 1 if tip and ball stay in contact; if they
+   separate, the impulse is scaled so that they do so at e times the approach speed. */
 int impact(Work *w, Step *row)
 {
     Contact *c = w->c;
-    const int Q = c->ports + c->slopes, wide = Q + c->speeds;
-    double loads[WIDE] = {0}, *F = w->F;
+    const int n_cue = c->ports + c->slopes, n_velocities = n_cue + c->speeds;
+    double loads[VELOCITIES] = {0}, *F = w->F;
     contact_kinematics(w, c->angle, w->slopes, w->C);
     for (int f = 0; f < c->forces; f++) {
         w->v[f] = w->rest[f] = 0;
-        for (int p = 0; p < wide; p++) w->v[f] += w->C[f][p] * (p < Q ? w->rates[p] : w->ball[p - Q]);
+        for (int p = 0; p < n_velocities; p++)
+            w->v[f] += w->C[f][p] * (p < n_cue ? w->port_velocities[p] : w->ball[p - n_cue]);
         for (int g = 0; g < c->forces; g++) {
             double sum = 0;
-            for (int b = 0; b < c->speeds; b++) sum += w->C[f][Q + b] * c->inverse_masses[b] * w->C[g][Q + b];
-            for (int p = 0; p < Q; p++)
-                for (int q = 0; q < Q; q++) sum += w->C[f][p] * mobility(w, p, q) * w->C[g][q];
+            for (int b = 0; b < c->speeds; b++)
+                sum += w->C[f][n_cue + b] * c->inverse_masses[b] * w->C[g][n_cue + b];
+            for (int p = 0; p < n_cue; p++)
+                for (int q = 0; q < n_cue; q++) sum += w->C[f][p] * mobility(w, p, q) * w->C[g][q];
             w->V[f][g] = w->W[f][g] = sum;
         }
         w->u[f] = w->v[f];
     }
     if (c->forces == 2)
         F[T] = -w->v[T] / w->V[T][T];
-    else if (!solve_in_turns(w, 1, HUGE_VAL))
+    else if (!solve_gauss_seidel(w, 1, HUGE_VAL))
         c->status = UNSOLVED;
-    double turned = 0, unused[FORCES];
-    for (int f = 0; f < c->forces; f++) turned += w->V[N][f] * F[f];
-    int parts = w->v[N] + turned > 0;
-    for (int f = 0; f < c->forces && parts; f++)
-        F[f] *= fmin(1, (1 + c->restitution) * fabs(w->v[N] / turned));
+    double gained = 0, unused[FORCES]; /* gained: normal velocity, m/s */
+    for (int f = 0; f < c->forces; f++) gained += w->V[N][f] * F[f];
+    int separates = w->v[N] + gained > 0;
+    for (int f = 0; f < c->forces && separates; f++)
+        F[f] *= fmin(1, (1 + c->restitution) * fabs(w->v[N] / gained));
     velocities(w, row->v, unused);
     for (int f = 0; f < c->forces; f++) {
         c->work[f] -= F[f] * (w->v[f] + row->v[f]) / 2;
-        for (int p = 0; p < wide; p++) loads[p] += w->C[f][p] * F[f];
+        for (int p = 0; p < n_velocities; p++) loads[p] += w->C[f][p] * F[f];
     }
     memcpy(row->F, F, sizeof row->F), memset(F, 0, sizeof w->F);
     apply_impulses(w, loads);
-    for (int b = 0; b < c->speeds; b++) w->ball[b] += c->inverse_masses[b] * loads[Q + b];
-    w->held = w->up_held = 1;
-    return !parts;
+    for (int b = 0; b < c->speeds; b++) w->ball[b] += c->inverse_masses[b] * loads[n_cue + b];
+    w->tip_stuck = w->on_table = 1;
+    return !separates;
 }

@@ -11,7 +11,7 @@ from cuefem.contact.kernel import BINARY, BUILD, KernelError, check
 
 _INTEGERS = "modes ports slopes forces speeds planes rolling law terms patch annuli"
 _ARRAYS = (
-    "rates rows drives kinematics inverse_masses slope_weights force_terms compliance_terms annulus_edges "
+    "eigenvalues rows drives kinematics inverse_masses slope_weights force_terms compliance_terms annulus_edges "
     "annulus_forces annulus_slopes annulus_stiffness xi ball"
 )
 _NUMBERS = (
@@ -31,7 +31,7 @@ class KernelContact(ctypes.Structure):
         *((name, ctypes.c_void_p) for name in _ARRAYS.split()),
         *((name, ctypes.c_double) for name in _NUMBERS.split()),
         ("work", ctypes.c_double * 6),
-        *((name, ctypes.c_int) for name in ("status", "friction_state", "steps", "steps_in_contact")),
+        *((name, ctypes.c_int) for name in ("status", "friction_state", "steps", "steps_to_last_separation")),
     )
 
 

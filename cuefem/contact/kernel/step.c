@@ -1,19 +1,19 @@
 /* Time stepping of a contact from first touch to separation, and through the window for a second hit. */
 #include "contact.h"
 
-/* Largest slope of the tip, rad: beyond it the shortening w'^2/2 of the second-order theory is inaccurate. */
+/* Largest slope of the cue's end, rad: there the shortening w'^2/2 exceeds the exact 1 - cos w' by 0.5 %. */
 static const double SLOPE_LIMIT = 0.25;
-/* A tip of restitution e unloads 1/e times as fast as it loads: below this one, steps are shortened by e over
- * it. */
+/* A tip of restitution e unloads 1/e times as fast as it loads. Below this restitution, unloading steps are
+   shortened by the factor e / MIN_STEP_RESTITUTION. */
 static const double MIN_STEP_RESTITUTION = 0.5;
-static const double ENDLESS = 1e12; /* infinite friction */
+static const double INFINITE_FRICTION = 1e12; /* as in step_records.py */
 
-static void read_modes(Work *w)
+static void update_port_velocities(Work *w)
 {
-    const int Q = w->c->ports + w->c->slopes, wide = 2 * w->c->modes;
-    for (int q = 0; q < Q; q++) {
-        w->rates[q] = 0;
-        for (int i = 0; i < wide; i++) w->rates[q] += w->rows[q * wide + i] * w->state[i];
+    const int n_cue = w->c->ports + w->c->slopes, n_state = 2 * w->c->modes;
+    for (int q = 0; q < n_cue; q++) {
+        w->port_velocities[q] = 0;
+        for (int i = 0; i < n_state; i++) w->port_velocities[q] += w->rows[q * n_state + i] * w->state[i];
     }
 }
 
@@ -25,121 +25,133 @@ EXPORTED void contact_free(Work *w)
 /* A contact at its first touch; NULL if memory runs out. */
 EXPORTED Work *contact_new(Contact *c)
 {
-    const int K = c->modes, Q = c->ports + c->slopes, wide = 2 * K;
+    const int K = c->modes, n_cue = c->ports + c->slopes, n_state = 2 * K;
     Work *w = calloc(1, sizeof *w);
-    if (!w || !(w->rows = malloc((size_t)(2 * Q + 1) * wide * sizeof(double)))) return contact_free(w), NULL;
-    w->c = c, w->drives = w->rows + Q * wide, w->state = w->drives + Q * wide;
+    if (!w || !(w->rows = malloc((size_t)(2 * n_cue + 1) * n_state * sizeof(double))))
+        return contact_free(w), NULL;
+    w->c = c, w->drives = w->rows + n_cue * n_state, w->state = w->drives + n_cue * n_state;
     for (int k = 0; k < K; k++) {
         w->state[k] = c->xi[2 * k], w->state[K + k] = c->xi[2 * k + 1];
-        for (int q = 0; q < Q; q++) {
+        for (int q = 0; q < n_cue; q++) {
             const double *row = c->rows + 2 * (q * K + k), *drive = c->drives + 2 * (q * K + k);
-            w->rows[q * wide + k] = row[0], w->rows[q * wide + K + k] = -row[1];
-            w->drives[q * wide + k] = drive[0], w->drives[q * wide + K + k] = drive[1];
+            w->rows[q * n_state + k] = row[0], w->rows[q * n_state + K + k] = -row[1];
+            w->drives[q * n_state + k] = drive[0], w->drives[q * n_state + K + k] = drive[1];
         }
     }
     memcpy(w->ball, c->ball, c->speeds * sizeof(double));
-    w->until = HUGE_VAL, w->max_time = c->max_time;
-    read_modes(w);
+    w->window_end = HUGE_VAL, w->deadline = c->max_time;
+    update_port_velocities(w);
     if (!tabulate(w, c->step)) return contact_free(w), NULL;
     return w;
 }
 
-/* Separation: the strain energy of the patch is lost, and the state is stored as the final one so far. */
+/* Separation: a spring patch loses its strain energy; modal state and ball velocities are copied to the
+   Contact. */
 static void separate(Work *w, double shift)
 {
     Contact *c = w->c;
-    if (c->patch == SPRING_PATCH && c->steps > c->steps_in_contact) {
-        double F = w->side ? w->F[T] : (shift - w->origin) / c->compliance;
+    if (c->patch == SPRING_PATCH && c->steps > c->steps_to_last_separation) {
+        double F = w->slip ? w->F[T] : (shift - w->origin) / c->compliance;
         c->shear_loss += c->compliance * F * F / 2;
     }
-    c->steps_in_contact = c->steps, w->max_time = c->max_time + c->time;
-    w->phase = FREE, w->last = 0, w->held = 0, w->virtual_mid = 0, w->origin = w->shift_mid = shift;
+    c->steps_to_last_separation = c->steps, w->deadline = c->max_time + c->time;
+    w->phase = FREE, w->ends_at_event = 0, w->tip_stuck = 0, w->virtual_mid = 0,
+    w->origin = w->shift_mid = shift;
     memset(w->annulus_force, 0, sizeof w->annulus_force), memset(w->F, 0, sizeof w->F);
     for (int k = 0; k < c->modes; k++) c->xi[2 * k] = w->state[k], c->xi[2 * k + 1] = w->state[c->modes + k];
     memcpy(c->ball, w->ball, c->speeds * sizeof(double));
-    if (!isfinite(w->until)) w->until = c->time + c->window;
+    if (!isfinite(w->window_end)) w->window_end = c->time + c->window;
 }
 
 static int set_step(Work *w, double h) { return w->t.h == h || tabulate(w, h); }
 
-/* Normal phase of the next step; v_n: velocity of separation at the end of this one. */
+/* Normal phase and length of the next step; v_n: normal velocity of the contact at the end of this one. */
 static void next_phase(Work *w, double v_n)
 {
     Contact *c = w->c;
-    double soft = c->restitution < MIN_STEP_RESTITUTION ? c->step * c->restitution / MIN_STEP_RESTITUTION
-                                                        : c->step,
+    double unloading_step = c->restitution < MIN_STEP_RESTITUTION
+                                ? c->step * c->restitution / MIN_STEP_RESTITUTION
+                                : c->step,
            h = w->t.h;
     if (w->phase == LOADING && v_n > 0) {
-        c->max_depth = larger(c->max_depth, c->depth), w->phase = UNLOADING, h = soft;
-    } else if (w->phase == UNLOADING && (w->last || c->depth <= residual_depth(c)))
+        c->max_depth = larger(c->max_depth, c->depth), w->phase = UNLOADING, h = unloading_step;
+    } else if (w->phase == UNLOADING && (w->ends_at_event || c->depth <= residual_depth(c)))
         separate(w, w->shift), h = c->step;
     else if (w->phase == UNLOADING && c->depth > c->max_depth)
         w->phase = LOADING, h = c->step;
-    else if (w->phase == FREE && (w->last || c->depth > residual_depth(c)))
-        w->phase = UNLOADING, w->last = 0, h = soft;
+    else if (w->phase == FREE && (w->ends_at_event || c->depth > residual_depth(c)))
+        /* below max_depth a second contact follows the unloading curve, beyond it the loading curve */
+        w->phase = UNLOADING, w->ends_at_event = 0, h = unloading_step;
     if (!set_step(w, h)) c->status = NO_MEMORY;
 }
 
-/* Friction state of the contact, at a mean tangential velocity u. */
+/* Friction state of the step, at a mean tangential velocity u. */
 static int friction_state_of(const Work *w, double u)
 {
     const Contact *c = w->c;
-    if (c->friction == 0 && c->forces == 2) return u < 0 ? SLIP : u > 0 ? SLIP_BACK : STICK;
-    int stops =
-        !w->side && !w->held && c->patch == RIGID_PATCH; /* stick begins within the step: counted as slip */
+    if (c->friction == 0 && c->forces == 2) /* no friction force: by the velocity */
+        return u < 0 ? SLIP : u > 0 ? SLIP_BACK : STICK;
+    /* a rigid patch that comes to rest within the step has slipped in a part of it: counted as slip */
+    int stops = !w->slip && !w->tip_stuck && c->patch == RIGID_PATCH;
     if (c->patch != PARTIAL_SLIP)
-        return !stops || w->rest[T] == 0 ? w->side : w->rest[T] < 0 ? SLIP : SLIP_BACK;
+        return !stops || w->rest[T] == 0 ? w->slip : w->rest[T] < 0 ? SLIP : SLIP_BACK;
     if (fabs(w->F[T]) < c->friction * w->F[N] * (1 - 1e-6)) return STICK;
     return w->F[T] > 0 ? SLIP : w->F[T] < 0 ? SLIP_BACK : c->friction_state;
 }
 
-/* One step; 0 where ball and tip separate or touch before its end, with a shorter step prepared. */
+/* Take one step and return 1. If ball and tip separate or touch before its end, prepare a shorter step that
+   ends there and return 0. */
 static int take_step(Work *w, Step *row)
 {
     Contact *c = w->c;
-    const int Q = c->ports + c->slopes;
+    const int n_cue = c->ports + c->slopes;
     const double h = w->t.h;
-    double loads[WIDE] = {0}, v[FORCES], u[FORCES], turned = 0, spin = w->ball[2];
+    double loads[VELOCITIES] = {0}, v[FORCES], u[FORCES], section_rotation_rate = 0, spin = w->ball[2];
     free_motion(w);
     contact_matrices(w);
     if (w->phase != FREE && !(c->forces == 2 ? level_forces(w) : raised_forces(w))) c->status = UNSOLVED;
     velocities(w, v, u);
-    double left = c->depth - residual_depth(c), then = left - h * u[N];
-    int crosses = w->phase == UNLOADING ? then < 0 : w->phase == FREE && left < 0 && then > 0;
-    if (crosses && w->last != 1) {
-        w->last = 1;
-        if (!tabulate(w, h * larger(left / (h * u[N]), 1e-6))) c->status = NO_MEMORY;
+    double excess = c->depth - residual_depth(c), excess_at_end = excess - h * u[N];
+    int crosses_zero =
+        w->phase == UNLOADING ? excess_at_end < 0 : w->phase == FREE && excess < 0 && excess_at_end > 0;
+    if (crosses_zero && !w->ends_at_event) {
+        w->ends_at_event = 1;
+        if (!tabulate(w, h * larger(excess / (h * u[N]), 1e-6))) c->status = NO_MEMORY;
         return 0;
     }
     for (int f = 0; f < c->forces; f++) {
         c->work[f] -= h * w->F[f] * u[f];
-        for (int p = 0; p < Q + c->speeds; p++) loads[p] += w->C[f][p] * w->F[f];
+        for (int p = 0; p < n_cue + c->speeds; p++) loads[p] += w->C[f][p] * w->F[f];
     }
+    w->axial_force = -loads[0];
     advance_modes(w, loads);
-    for (int p = 0; p < Q; p++) {
+    for (int p = 0; p < n_cue; p++) {
         double end = w->end_free[p], mean = w->mean_free[p];
-        for (int q = 0; q < Q; q++) end += w->t.end[p][q] * loads[q], mean += w->t.mean[p][q] * loads[q];
-        if (p == 2 && c->ports > 2) turned = mean; /* rotation of the tip's section, or out of the plane */
+        for (int q = 0; q < n_cue; q++) end += w->t.end[p][q] * loads[q], mean += w->t.mean[p][q] * loads[q];
+        /* port 2: rotation rate of the end section; of a raised cue, without rolling, out-of-plane velocity
+         */
+        if (p == 2 && c->ports > 2) section_rotation_rate = mean;
         if (p >= c->ports) w->slopes[p - c->ports] += h * mean;
-        w->rates[p] = end;
+        w->port_velocities[p] = end;
     }
-    for (int b = 0; b < c->speeds; b++) w->ball[b] += h * c->inverse_masses[b] * loads[Q + b];
-    if (c->rolling) { /* rolling and slip move the contact over ball and dome; on the rim over the ball alone
-                       */
+    for (int b = 0; b < c->speeds; b++) w->ball[b] += h * c->inverse_masses[b] * loads[n_cue + b];
+    if (c->rolling) {
+        /* rolling and slip move the contact over ball and dome; beyond the dome's rim over the ball alone */
         double dome = fabs(c->phi + c->angle) < c->rim ? c->dome : 0;
-        w->rolling_rate = ((spin + w->ball[2]) / 2 - u[T] + dome * turned) / (c->radius + dome);
+        w->rolling_rate =
+            ((spin + w->ball[2]) / 2 - u[T] + dome * section_rotation_rate) / (c->radius + dome);
         c->angle += h * w->rolling_rate;
     }
     double middle = w->shift - h / 2 * u[T];
     if (w->phase != FREE) {
-        if (w->side && c->patch == SPRING_PATCH) w->origin = middle - c->compliance * w->F[T];
+        if (w->slip && c->patch == SPRING_PATCH) w->origin = middle - c->compliance * w->F[T];
         if (c->patch == PARTIAL_SLIP)
-            memcpy(w->annulus_force, w->annulus_force_now, sizeof w->annulus_force), c->shear_loss += w->lost;
+            memcpy(w->annulus_force, w->annulus_force_now, sizeof w->annulus_force),
+                c->shear_loss += w->annuli_loss;
         w->virtual_mid = w->virtual_now;
-        c->friction_state = friction_state_of(w, u[T]), w->held = !w->side;
+        c->friction_state = friction_state_of(w, u[T]), w->tip_stuck = !w->slip;
     } else
-        c->friction_state = SEPARATED,
-        middle = w->origin = w->shift - h * u[T]; /* a patch is unstrained at touch */
+        c->friction_state = SEPARATED, middle = w->origin = w->shift - h * u[T]; /* unstrained at touch */
     w->shift -= h * u[T], w->shift_mid = middle, c->depth -= h * u[N], c->time += h;
     if (c->forces > 2) c->height = larger(0, c->height + h * u[UP]);
     *row = (Step){.time = c->time,
@@ -151,45 +163,47 @@ static int take_step(Work *w, Step *row)
     return 1;
 }
 
-/* Status after a step: RUNNING, ENDED, or the reason why the contact cannot continue. */
-static int failure_status(Work *w)
+/* Update max_slope; return the status after a step: RUNNING, ENDED, or why the contact cannot continue. */
+static int update_status(Work *w)
 {
     Contact *c = w->c;
-    for (int a = c->slopes / c->planes; a && a <= c->slopes;
-         a += c->slopes / c->planes) { /* the tip's slope is the last */
-        double turned = fabs(w->slopes[a - 1]);
-        if (turned > c->max_slope) c->max_slope = turned, c->axial_force = w->F[N];
+    const int per_plane = c->slopes / c->planes; /* the last slope of each plane is that of the cue's end */
+    for (int a = per_plane; a && a <= c->slopes; a += per_plane) {
+        double slope = fabs(w->slopes[a - 1]);
+        if (slope > c->max_slope) c->max_slope = slope, c->axial_force = w->axial_force;
     }
-    double together = c->depth + c->time;
-    for (int f = 0; f < c->forces; f++) together += w->F[f];
-    if (!isfinite(together)) return UNSOLVED;
+    double sum = c->depth + c->time; /* NaN or infinite if any of its terms is */
+    for (int f = 0; f < c->forces; f++) sum += w->F[f];
+    if (!isfinite(sum)) return UNSOLVED;
     if (c->law == LEATHER_LAW && c->depth > c->depth_limit) return INDENTATION_OUT_OF_RANGE;
     if (c->max_slope > SLOPE_LIMIT) return SLOPE_OUT_OF_RANGE;
-    if (w->phase == FREE) return c->time >= w->until ? ENDED : RUNNING;
-    return c->time > w->max_time ? LATE : RUNNING;
+    if (w->phase == FREE) return c->time >= w->window_end ? ENDED : RUNNING;
+    return c->time > w->deadline ? TIME_LIMIT : RUNNING;
 }
 
-/* Take up to `most` steps, each with a record and the modal coordinates after it (course may be NULL).
-   Returns their number. The status stays RUNNING until the contact has ended. */
-EXPORTED int contact_steps(Work *w, int most, Step *rows, double *course)
+/* Take up to max_steps steps and return their number; call again while the status is RUNNING.
+   rows: (max_steps,), a record of each step. states: NULL, or (max_steps, 2, modes), the modal coordinates
+   after each step, first all real parts, then all imaginary parts (Contact.xi is interleaved). */
+EXPORTED int contact_steps(Work *w, int max_steps, Step *rows, double *states)
 {
     Contact *c = w->c;
     int done = 0;
-    while (done < most && c->status == RUNNING) {
-        if (!c->steps && c->friction >= ENDLESS && c->patch == RIGID_PATCH && c->phi > 0) {
+    while (done < max_steps && c->status == RUNNING) {
+        /* first touch of a rigid patch with infinite friction: an impulse stops the tangential motion */
+        if (!c->steps && c->friction >= INFINITE_FRICTION && c->patch == RIGID_PATCH && c->phi > 0) {
             rows[done] = (Step){.friction_state = IMPACT};
             int stays = impact(w, rows + done);
-            read_modes(w);
+            update_port_velocities(w);
             c->steps++;
             if (!stays && c->status == RUNNING) separate(w, w->shift), c->status = ENDED;
         } else if (take_step(w, rows + done)) {
             c->steps++;
             next_phase(w, rows[done].v[N]);
-            if (c->status == RUNNING) c->status = failure_status(w);
+            if (c->status == RUNNING) c->status = update_status(w);
         } else
             continue;
         memcpy(rows[done].ball, w->ball, sizeof w->ball);
-        if (course) memcpy(course + (size_t)2 * c->modes * done, w->state, 2 * c->modes * sizeof(double));
+        if (states) memcpy(states + (size_t)2 * c->modes * done, w->state, 2 * c->modes * sizeof(double));
         done++;
     }
     return done;
