@@ -21,10 +21,10 @@ from cuefem.scene import Scene
 @stroke_options
 @page_option
 def effects(file: Path, **options: Any) -> None:
-    """Test the physical effects one at a time: remove each one FILE lists, add each one it does not.
+    """Sensitivity to the physical effects: remove each effect of the scene, add each other one.
 
-    An effect matters if squirt, ball speed or spin change by more than the rtol of the file's [accuracy] table
-    (default 1e-2).
+    The scene is FILE's; a shaft gets the game's default stroke. An effect is significant if squirt, ball speed or spin
+    changes by at least rtol, relative ([accuracy] in FILE, default 1e-2).
     """
 
     def results(scene: Scene) -> Any:
@@ -36,13 +36,19 @@ def effects(file: Path, **options: Any) -> None:
 
 @command()
 @stroke_options
-@click.option("--most", type=click.IntRange(min=24), default=150, show_default=True, help="Largest number of modes.")
+@click.option(
+    "--max-modes",
+    type=click.IntRange(min=24),
+    default=150,
+    show_default=True,
+    help="Refine up to this many modes; at least three levels (12, 24 and 48 modes or more) run.",
+)
 @page_option
-def cost(file: Path, most: int, **options: Any) -> None:
+def cost(file: Path, max_modes: int, **options: Any) -> None:
     """Run a convergence study and recommend a resolution: error against run time and degrees of freedom."""
 
     def results(scene: Scene) -> Any:
-        return convergence_record(scene, most=most, progress=with_progress_bar)
+        return convergence_record(scene, max_modes=max_modes, progress=with_progress_bar)
 
     figures = convergence_charts if options["output"] else lambda record: []
     run_on_scene(file, options, results, lambda record, about: [*tabulate_convergence(record), *figures(record)])
@@ -54,12 +60,15 @@ def cost(file: Path, most: int, **options: Any) -> None:
 def check(file: Path, **options: Any) -> None:
     """Compare the beam model of a shaft with a 3-D elastic solid: frequencies, stiffness, end mass and squirt.
 
-    The shaft is computed as a solid of revolution on two meshes, which gives the discretisation error beside each
-    difference. Takes seconds.
+    The solid is computed with elements of two orders; their difference is the discretisation error. Effects that the
+    solid lacks (AxialWaves, GeometricStiffness ...) are removed from both models and listed. Run time: some seconds,
+    longer for a shaft of many segments.
     """
 
     def results(scene: Scene) -> Any:
-        return cuefem.report.model_error_record(scene, with_progress_bar)  # loads scikit-fem, which the others need not
+        return cuefem.report.model_error_record(
+            scene, with_progress_bar
+        )  # loads scikit-fem, which only this command needs
 
     run_on_scene(
         file, options, results, lambda record, about: [cuefem.report.tabulate_model_error(record), record["summary"]]

@@ -20,27 +20,28 @@ RECOMMENDED_RTOLS = (1e-2, 1e-3, 1e-4, 1e-6)
 Progress = Callable[[Sequence[Any]], Iterable[Any]]
 
 
-def convergence_record(scene: Scene, *, most: int = MAX_MODES, progress: Progress = iter) -> Record:
-    """Refinement levels up to ``most`` modes with error and run time, and the recommendation for each of `WANTED`.
+def convergence_record(scene: Scene, *, max_modes: int = MAX_MODES, progress: Progress = iter) -> Record:
+    """Refinement levels, at least three, with error and run time; a recommendation for each of `RECOMMENDED_RTOLS`.
 
-    Keys of a level: "modes", "steps", "elements", "order"; "unknowns", the number of degrees of freedom; "estimate",
-    its estimated relative error (None on the first two); "difference", relative, from the last level; "seconds", the
-    run time of all levels up to it, which `cuefem.resolve` takes. ValueError for a lumped cue, which is exact.
+    Refinement ends at ``max_modes`` modes. Keys of a level: "modes", "steps", "elements", "order"; "unknowns", the
+    number of degrees of freedom; "estimate", its estimated relative error (None on the first two); "difference",
+    relative, from the last level; "seconds", the run time of all levels up to it, which `cuefem.resolve` takes.
+    ValueError for a lumped cue, which is exact.
     """
-    refined = _timed_levels(scene, most, progress)
+    refined = _timed_levels(scene, max_modes, progress)
     best = refined[-1][0].result
     rows = [_level_record(scene, level, seconds, best) for level, seconds in refined]
     return {"levels": rows, "recommended": [_recommended(rtol, rows) for rtol in RECOMMENDED_RTOLS]}
 
 
-def _timed_levels(scene: Scene, most: int, progress: Progress) -> list[tuple[Level, float]]:
-    """Levels with the run time, s, up to each: to ``most`` modes or the smallest of `WANTED`.
+def _timed_levels(scene: Scene, max_modes: int, progress: Progress) -> list[tuple[Level, float]]:
+    """Levels with the run time, s, up to each: to ``max_modes`` modes or the smallest of `RECOMMENDED_RTOLS`.
 
     A second run of the sequence is timed, so that the time includes nothing that a process does only once.
     """
     refined: list[Level] = []
     for level in refinement_levels(scene, min(RECOMMENDED_RTOLS)):
-        if len(refined) > 2 and level.at.modes > most:
+        if len(refined) > 2 and level.at.modes > max_modes:
             break
         refined.append(level)
     again, start = refinement_levels(scene, min(RECOMMENDED_RTOLS)), perf_counter()

@@ -15,7 +15,7 @@ KIM = MESHES / "kim.toml"
 
 @pytest.fixture(scope="module")
 def record() -> dict:
-    return convergence_record(scene("kim", 1e-3, 0.3), most=60)
+    return convergence_record(scene("kim", 1e-3, 0.3), max_modes=60)
 
 
 def test_recommended_resolution_equals_resolve(record: dict) -> None:
@@ -30,7 +30,7 @@ def test_recommended_resolution_equals_resolve(record: dict) -> None:
 
 
 def test_cost_command_prints_table_and_draws_chart(tmp_path: Path) -> None:
-    assert "1e-06, not reached" in stdout_of("cost", KIM, "--most", 24)
-    stdout_of("cost", KIM, "--most", 24, "--output", tmp_path / "cost.html")
+    assert "1e-06, not reached" in stdout_of("cost", KIM, "--max-modes", 24)
+    stdout_of("cost", KIM, "--max-modes", 24, "--output", tmp_path / "cost.html")
     text = (tmp_path / "cost.html").read_text(encoding="utf-8")
     assert text.count('<path class="curve c3" d="M') == 2  # with its legend
