@@ -1,4 +1,4 @@
-"""Header of a lathe profile: which columns are position, diameter, bore and materials, and their units."""
+"""Header of a lathe profile: its columns of position, diameter or radius, bore and materials, and their units."""
 
 from __future__ import annotations
 
@@ -9,39 +9,43 @@ from pathlib import Path
 
 from cuefem.io.csv_reader import Row, is_number, split_unit
 from cuefem.io.errors import InputError, quote
-from cuefem.quantity.units import first_name, scale
+from cuefem.quantity.units import conversion_factor, preferred_name
 
 EXAMPLE = '"x [mm],diameter [mm]"'
-MAX_TITLES = 20  # lines allowed above the header
+MAX_HEADER_ROWS = 20  # rows searched for the header: without blank lines and comments, at most 19 above it
 
-POSITION, DIAMETER, RADIUS, BORE, MATERIAL, CORE = "x", "diameter", "radius", "bore", "material", "core"
-FERRULE = "ferrule"
-NAMES = (MATERIAL, CORE, FERRULE)  # columns of material names, without units
+# Kinds of columns: of lengths, and of material names.
+POSITION_COLUMN, DIAMETER_COLUMN, RADIUS_COLUMN, BORE_COLUMN = "x", "diameter", "radius", "bore"
+MATERIAL_COLUMN, CORE_COLUMN, FERRULE_COLUMN = "material", "core", "ferrule"
+MATERIAL_COLUMNS = (MATERIAL_COLUMN, CORE_COLUMN, FERRULE_COLUMN)
 # Words that identify a column, in order of precedence: "bore diameter" is a bore, "diameter at x" a diameter.
 _WORDS = {
-    CORE: {"core", "kern"},
-    MATERIAL: {"material", "materials", "wood"},
-    BORE: {"bore", "bored", "inner", "inside", "id", "hole", "hollow", "bohrung"},
-    RADIUS: {"radius", "radii", "rad", "r", "halbmesser"},
-    DIAMETER: {
+    CORE_COLUMN: {"core", "kern"},
+    MATERIAL_COLUMN: {"material", "materials", "wood"},
+    BORE_COLUMN: {"bore", "bored", "inner", "inside", "id", "hole", "hollow", "bohrung"},
+    RADIUS_COLUMN: {"radius", "radii", "rad", "r", "halbmesser"},
+    DIAMETER_COLUMN: {
         *("diameter", "diameters", "dia", "diam", "d", "ø", "od", "width", "thickness"),
         *("thick", "dicke", "durchmesser", "diamètre", "diametre", "diámetro", "diametro"),
     },
-    POSITION: {
+    POSITION_COLUMN: {
         *("x", "z", "position", "pos", "place", "location", "station", "distance", "dist", "length", "along", "from"),
         *("von", "abstand", "länge", "distancia", "posición", "posizione", "distanza"),
     },
 }
-_OTHERS = ("kg", "g", "oz", "lb", "s", "ms", "n", "deg", "°", "%")  # units that are not lengths
+_OTHER_UNITS = ("kg", "g", "oz", "lb", "s", "ms", "n", "deg", "°", "%")  # units that are not lengths
 _BRACKETS = re.compile(r"[\[({<]([^])}>]*)[\])}>]")
 _TOKENS = re.compile(r"[^\W\d_]+")
-_WALL = re.compile(r"wall|wand")  # first letters of a wall thickness
-_BUTT = {"butt", "joint"}  # origin of x, after the word "from"
+_WALL = re.compile(r"wall|wand")  # first letters of the words for a wall thickness
+_BUTT = {"butt", "joint"}  # after the word "from": x is measured from the butt
 
 
 @dataclass(frozen=True)
 class ProfileColumn:
-    """A used column: its kind, index, name in the file and unit ("" without one)."""
+    """A column of the table.
+
+    kind: "" if unused. index: from 0. name: in the file. unit: of length; "" if the header names none.
+    """
 
     kind: str
     index: int
@@ -51,94 +55,108 @@ class ProfileColumn:
 
 @dataclass(frozen=True)
 class Header:
-    """Columns of lengths, of materials and unused ones; the rows; the numbers of lines with titles and notes."""
+    """The header of a table, and the rows below it that have data.
+
+    line: of the header, from 1. n_columns: cells in that line. skipped_lines: of titles above the header and of rows
+    without data.
+    """
 
     line: int
-    number_columns: tuple[ProfileColumn, ...]
-    name_columns: tuple[ProfileColumn, ...]
+    length_columns: tuple[ProfileColumn, ...]
+    material_columns: tuple[ProfileColumn, ...]
     unused_names: tuple[str, ...]
-    width: int
+    n_columns: int
     rows: tuple[Row, ...]
     skipped_lines: tuple[int, ...]
 
 
-def unit_of(text: str) -> str:
-    """The unit of length named by a text, by its first name in the table of units; "" without one."""
+def length_unit_of(text: str) -> str:
+    """The unit of length named by a text, by its preferred name; "" if it names none."""
     word = text.strip().strip(".[](){}<>").strip()
     try:
-        scale(word, "m")
+        conversion_factor(word, "m")
     except ValueError:
         return ""
-    return first_name(word)
+    return preferred_name(word)
 
 
 def read_header(path: Path, rows: Sequence[Row]) -> Header:
-    """The header of a profile's rows; InputError if no row names a position and a diameter."""
-    nearest = rows[0]  # the row that resembles a header most
-    for i, (line, cells) in enumerate(rows[:MAX_TITLES]):
+    """Find the header in the first `MAX_HEADER_ROWS` rows of a profile.
+
+    Raises
+    ------
+    InputError
+        If no row names a position and a diameter (or radius); for a column of wall thicknesses or of bore radii; and
+        for a column of another unit than length.
+    """
+    candidate = rows[0]  # or the first row with a recognised column: quoted in the error
+    for i, (line, cells) in enumerate(rows[:MAX_HEADER_ROWS]):
         columns = [_column(path, line, j, cell) for j, cell in enumerate(cells)]
-        used = tuple(column for column in columns if column.kind and column.kind not in NAMES)
-        names = tuple(column for column in columns if column.kind in NAMES)
-        kinds = {column.kind for column in used}
-        if POSITION in kinds and kinds & {DIAMETER, RADIUS}:
+        lengths = tuple(column for column in columns if column.kind and column.kind not in MATERIAL_COLUMNS)
+        materials = tuple(column for column in columns if column.kind in MATERIAL_COLUMNS)
+        kinds = {column.kind for column in lengths}
+        if POSITION_COLUMN in kinds and kinds & {DIAMETER_COLUMN, RADIUS_COLUMN}:
             below = rows[i + 1 :]
-            units = [unit_of(cell) for cell in below[0][1]] if below else []
+            units = [length_unit_of(cell) for cell in below[0][1]] if below else []
             if units and all(unit or not cell for unit, cell in zip(units, below[0][1], strict=True)):
-                used = tuple(_with_unit(column, units) for column in used)
+                # a row of units only
+                lengths = tuple(_with_unit(column, units) for column in lengths)
                 below = below[1:]
             unused = tuple(column.name for column in columns if column.name and not column.kind)
             if wall := next((name for name in unused if any(map(_WALL.match, _TOKENS.findall(name.casefold())))), None):
                 problem = f"column {quote(wall)} is a wall thickness: write a column bore, the diameter less two walls"
                 raise InputError(path, f"line {line}", problem)
-            noted = tuple(row for row in below if not _has_data(row[1], used, names))
-            passed = tuple(number for number, _ in (*rows[:i], *noted))
-            return Header(line, used, names, unused, len(cells), tuple(r for r in below if r not in noted), passed)
-        if len(cells) > 1 and kinds and nearest == rows[0]:
-            nearest = line, cells
+            data = tuple(row for row in below if _has_data(row[1], lengths, materials))
+            skipped = tuple(number for number, _ in (*rows[:i], *(row for row in below if row not in data)))
+            return Header(line, lengths, materials, unused, len(cells), data, skipped)
+        if len(cells) > 1 and kinds and candidate == rows[0]:
+            candidate = line, cells
         if len(cells) > 1 and all(map(is_number, cells)):
             break
-    line, cells = nearest
-    wanted = f"must name a column for the position along the shaft and one for the diameter, such as {EXAMPLE}"
-    raise InputError(path, f"line {line}", f"{wanted}; got {quote(','.join(cells))}")
+    line, cells = candidate
+    expected = f"must name a column for the position along the shaft and one for the diameter, such as {EXAMPLE}"
+    raise InputError(path, f"line {line}", f"{expected}; got {quote(','.join(cells))}")
 
 
-def _has_data(cells: Sequence[str], used: Sequence[ProfileColumn], names: Sequence[ProfileColumn]) -> bool:
-    """Whether a line has a number or a material in a used column."""
-    inside = [[cells[c.index] for c in columns if c.index < len(cells)] for columns in (used, names)]
-    return any(split_unit(cell)[0] for cell in inside[0]) or any(inside[1])
+def _has_data(cells: Sequence[str], lengths: Sequence[ProfileColumn], materials: Sequence[ProfileColumn]) -> bool:
+    """Whether a row has a number in a column of lengths, or a text in one of materials."""
+    numbers, names = ([cells[c.index] for c in columns if c.index < len(cells)] for columns in (lengths, materials))
+    return any(split_unit(cell)[0] for cell in numbers) or any(names)
 
 
 def _with_unit(column: ProfileColumn, units: Sequence[str]) -> ProfileColumn:
+    """The column with the unit of a row of units, if its header names none."""
     unit = units[column.index] if column.index < len(units) else ""
     return ProfileColumn(column.kind, column.index, column.name, column.unit or unit)
 
 
 def _column(path: Path, line: int, index: int, cell: str) -> ProfileColumn:
-    """The column of a header cell; its kind is "" if the column is not used."""
+    """The column of a header cell; InputError for a bore radius or another unit than length."""
     text = cell.replace("⌀", "ø").replace("Ø", "ø").casefold()
-    inside = _BRACKETS.findall(text)
-    unit = next(filter(None, map(unit_of, inside)), "")
+    bracketed = _BRACKETS.findall(text)
+    unit = next(filter(None, map(length_unit_of, bracketed)), "")
     words = _TOKENS.findall(_BRACKETS.sub(" ", text) if unit else text)
     for end in (-1, 0):  # "diameter mm", "inches from tip"
-        if not unit and len(words) > 1 and (unit := unit_of(words[end])):
+        if not unit and len(words) > 1 and (unit := length_unit_of(words[end])):
             words.pop(end)
     if not unit and text.rstrip().endswith(('"', "″", "”")):
         unit = "in"
     kind = _kind(words)
     if words == ["id"] and not unit:  # a row number, not an inner diameter
         kind = ""
-    if kind == BORE and _WORDS[RADIUS] & {*words}:
+    if kind == BORE_COLUMN and _WORDS[RADIUS_COLUMN] & {*words}:
         raise InputError(path, f"line {line}, {kind}", f"must be a column of diameters; got {quote(cell)}")
-    if kind and inside and not unit and inside[0].strip() in _OTHERS:
-        problem = f"must be in a unit of length, such as mm; got {quote(inside[0])}"
+    if kind and bracketed and not unit and bracketed[0].strip() in _OTHER_UNITS:
+        problem = f"must be in a unit of length, such as mm; got {quote(bracketed[0])}"
         raise InputError(path, f"line {line}, {kind}", problem)
     return ProfileColumn(kind, index, cell, unit)
 
 
 def _kind(words: Sequence[str]) -> str:
-    """The kind of a column by the words of its name."""
-    if FERRULE in words and {*words} <= {FERRULE, MATERIAL}:  # "distance from ferrule" is a position
-        return FERRULE
+    """The kind of a column by the words of its name; "" if unused."""
+    if FERRULE_COLUMN in words and {*words} <= {FERRULE_COLUMN, MATERIAL_COLUMN}:
+        # but "distance from ferrule" is a position
+        return FERRULE_COLUMN
     if any(map(_WALL.match, words)):
         return ""
     return next((kind for kind, known in _WORDS.items() if known & {*words}), "")

@@ -8,11 +8,11 @@ from collections.abc import Iterable
 from functools import cache
 from typing import Any
 
-LONGEST = 60  # characters of an echoed value
-MOST = 8  # names of a list
+MAX_VALUE_CHARACTERS = 60  # characters of an echoed value
+MAX_LISTED = 8  # names of a list
 
 _LONG = re.compile(
-    rf"(?P<quote>['\"])(?P<quoted>[^'\"]{{{LONGEST}}})[^'\"]+(?P=quote)|(?P<word>[^\s/'\"]{{{LONGEST}}})[^\s/'\"]+"
+    rf"(?P<quote>['\"])(?P<quoted>[^'\"]{{{MAX_VALUE_CHARACTERS}}})[^'\"]+(?P=quote)|(?P<word>[^\s/'\"]{{{MAX_VALUE_CHARACTERS}}})[^\s/'\"]+"
 )
 
 
@@ -59,14 +59,14 @@ def one_line(text: str) -> str:
         quote = match["quote"] or ""
         return f"{quote}{match['quoted'] or match['word']}...{quote}"
 
-    return "; ".join(map(_ended, _LONG.sub(cut, printable(text)).split("; ")))
+    return "; ".join(map(_shortened, _LONG.sub(cut, printable(text)).split("; ")))
 
 
-def _ended(part: str) -> str:
-    """A part of a message whose list of names is cut after `MOST`; a final item with "or" remains."""
+def _shortened(part: str) -> str:
+    """A part of a message whose list of names is cut after `MAX_LISTED`; a final item with "or" remains."""
     names = part.split(", ")
-    rest = next((i for i, name in enumerate(names) if i >= MOST and name.startswith("or ")), len(names))
-    return part if rest <= MOST else ", ".join([*names[:MOST], "...", *names[rest:]])
+    rest = next((i for i, name in enumerate(names) if i >= MAX_LISTED and name.startswith("or ")), len(names))
+    return part if rest <= MAX_LISTED else ", ".join([*names[:MAX_LISTED], "...", *names[rest:]])
 
 
 def printable(text: str) -> str:

@@ -17,11 +17,11 @@ from cuefem.quantity.unit_checks import unit_hint, warn
 from cuefem.quantity.units import (
     UNITS,
     UnknownUnit,
+    conversion_factor,
     dimension_of,
     examples_of,
     format_number,
     parse_number,
-    scale,
     split_quantity,
     units_of_dimension,
 )
@@ -82,7 +82,7 @@ class Quantity:
 
     def bounds_in(self, unit: str) -> str:
         """The bounds as text in a unit of their dimension, or in SI if they are too large or too small in it."""
-        per = float(scale(unit, self.unit)) if self.unit else 1.0
+        per = float(conversion_factor(unit, self.unit)) if self.unit else 1.0
         if any(end and math.isfinite(end) and not 1e-4 <= abs(end) / per < 1e6 for end in self.ends):
             unit, per = self.unit, 1.0
         low, high = (f"{end / per:.6g}".replace("e-0", "e-") for end in self.ends)

@@ -12,7 +12,7 @@ import traceback
 import warnings
 from pathlib import Path
 
-from cuefem.quantity.units import scale
+from cuefem.quantity.units import conversion_factor
 
 
 class PlausibilityWarning(UserWarning):
@@ -47,7 +47,7 @@ def unit_hint(name: str, value: float, unit: str, usual: tuple[float, float]) ->
     least, most = usual
     if least / IMPLAUSIBLE_FACTOR <= value <= IMPLAUSIBLE_FACTOR * most or not math.isfinite(value):
         return ""
-    scales = ((other, float(scale(other, unit))) for other in COMMON_UNITS.get(unit, ()))
+    scales = ((other, float(conversion_factor(other, unit))) for other in COMMON_UNITS.get(unit, ()))
     meant = {other: value * per for other, per in scales if least <= value * per <= most}
     units = " or ".join(f"{value:g} {other}" for other in meant)
     written = " or ".join(f"{number:.4g}" for number in meant.values())

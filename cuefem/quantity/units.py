@@ -8,20 +8,20 @@ import re
 from decimal import Decimal, DecimalException
 from typing import NamedTuple
 
-# The dimension of each SI unit of this package, and examples, the first in the unit of files.
+# By SI unit: its dimension, and example quantities. Files are written in the unit of the first example.
 EXAMPLES = {
     "m": ("a length", "12 mm", "0.5 in"),
     "kg": ("a mass", "150 g", "15 oz"),
     "s": ("a time", "1.2 ms"),
     "m/s": ("a speed", "2 m/s", "4.5 mph"),
-    "Pa": ("a stress", "12.6 GPa", "1.8 Msi"),
+    "Pa": ("a modulus or stress", "12.6 GPa", "1.8 Msi"),
     "kg/m^3": ("a density", "700 kg/m^3", "0.025 lb/in^3"),
     "N/m": ("a stiffness", "5000 N/m"),
     "N m/rad": ("a rotational stiffness", "20 N m/rad"),
     "rad/(N m)": ("a rotational compliance", "2e-4 rad/(N m)"),
     "m/N": ("a compliance", "1e-8 m/N"),
     "N m": ("a torque", "20 N m"),
-    "N s/m": ("a dashpot", "3 N s/m"),
+    "N s/m": ("a damping coefficient", "3 N s/m"),
     "kg m^2": ("a rotary inertia", "40 g mm^2"),
     "rad": ("an angle", "3 deg"),
     "Hz": ("a frequency", "250 Hz"),
@@ -31,13 +31,13 @@ Powers = tuple[int, int, int, int]  # of m, kg, s and rad
 
 
 class Unit(NamedTuple):
-    """A unit: its size in SI units, and its dimension as powers of m, kg, s and rad."""
+    """A unit: its scale, in SI units, and its dimension as powers of m, kg, s and rad."""
 
     scale: Decimal
     powers: Powers
 
 
-# All single units by dimension: size in SI units, and names, that for messages first.
+# All units without powers or products, by dimension: scale in SI units, and names, first the preferred one.
 # Products, powers and quotients of them ("lb/in^3", "N mm/rad") need no entry.
 _TABLE: dict[Powers, str] = {
     (1, 0, 0, 0): """0.001 mm millimetre millimetres millimeter millimeters; 1 m metre metres meter meters;
@@ -75,10 +75,10 @@ _TEXT = re.compile(
     re.IGNORECASE,
 )
 ROUND_TRIP_TOLERANCE = 1e-12  # relative: numbers closer than this are equal in files
-MAX_TEXT = 200  # characters of a number and its unit: the cost of matching grows like the square
-_SIGNS = re.compile(r"\s*([*/·])\s*|\s+")
+MAX_QUANTITY_CHARACTERS = 200  # characters of a number and its unit: the cost of matching grows like the square
+_OPERATORS = re.compile(r"\s*([*/·])\s*|\s+")
 _FACTOR = re.compile(r"([^\W\d_]+|[°\"″”']+)(?:\^(-?[0-9])|([23]))?")
-_BELOW = re.compile(r"(.*?)(?:/\s*\(([^/()]*)\))?", re.DOTALL)  # the bracket behind a slash: rad/(N m)
+_FRACTION_BAR = re.compile(r"(.*?)(?:/\s*\(([^/()]*)\))?", re.DOTALL)  # numerator, denominator in brackets: rad/(N m)
 _NO_UNIT = Unit(Decimal(1), (0, 0, 0, 0))
 _POWERS = str.maketrans({"²": "^2", "³": "^3"})
 
@@ -94,71 +94,71 @@ class UnknownUnit(ValueError):
 @functools.lru_cache(maxsize=1024)
 def unit_of(text: str) -> Unit:
     """The unit of a text such as "g/cm^3"; UnknownUnit if it is not in the table."""
-    above, below = _BELOW.fullmatch(text.strip().translate(_POWERS).replace("**", "^")).groups()  # type: ignore[union-attr]
+    numerator, denominator = _FRACTION_BAR.fullmatch(text.strip().translate(_POWERS).replace("**", "^")).groups()  # type: ignore[union-attr]
     scale, powers = _NO_UNIT
-    for part, turned in ((above, 1), (below, -1)):
-        parts = _SIGNS.split(part.strip()) if part is not None else []
-        for sign, factor in zip(["*", *parts[1::2]], parts[::2], strict=False):
-            size, its = _factor(factor)
-            power = -turned if sign == "/" else turned
-            scale = scale * size if power > 0 else scale / size
-            powers = tuple(p + power * q for p, q in zip(powers, its, strict=True))  # type: ignore[assignment]
+    for part, sign in ((numerator, 1), (denominator, -1)):
+        parts = _OPERATORS.split(part.strip()) if part is not None else []
+        for operator, word in zip(["*", *parts[1::2]], parts[::2], strict=False):
+            factor = _factor(word)
+            power = -sign if operator == "/" else sign
+            scale = scale * factor.scale if power > 0 else scale / factor.scale
+            powers = tuple(p + power * q for p, q in zip(powers, factor.powers, strict=True))  # type: ignore[assignment]
     return Unit(scale, powers)
 
 
 def _factor(text: str) -> Unit:
-    """One name with its power; a name in capitals is the one in small letters, where there is no other."""
+    """A single unit with its power; a name that is not in the table is tried in small letters."""
     if text == "1":
         return _NO_UNIT
-    parts = _FACTOR.fullmatch(text)
-    known = parts and (UNITS.get(parts[1]) or UNITS.get(parts[1].lower()))
-    if not parts or not known:
-        raise UnknownUnit(parts[1] if parts else text)
-    power = int(parts[2] or parts[3] or 1)
+    match = _FACTOR.fullmatch(text)
+    known = match and (UNITS.get(match[1]) or UNITS.get(match[1].lower()))
+    if not match or not known:
+        raise UnknownUnit(match[1] if match else text)
+    power = int(match[2] or match[3] or 1)
     return Unit(known.scale**power, tuple(power * p for p in known.powers))  # type: ignore[arg-type]
 
 
-def scale(unit: str, wanted: str) -> Decimal:
-    """The factor from ``unit`` to ``wanted``; ValueError if it is unknown or has another dimension.
+def conversion_factor(unit: str, target: str) -> Decimal:
+    """The factor from ``unit`` to ``target``; ValueError if a unit is unknown or the dimensions differ.
 
-    An angle may be omitted (N m for N m/rad), but not added: 1 rad/s is not 1 Hz.
+    ``unit`` may omit an angle of ``target`` (N m for N m/rad), but not add one: 1 rad/s is not 1 Hz.
     """
-    own, other = unit_of(unit), unit_of(wanted)
+    own, other = unit_of(unit), unit_of(target)
     if own.powers != other.powers and (own.powers != (*other.powers[:3], 0) or not any(own.powers)):
         raise ValueError(f"a unit of another kind, {unit!r}")
     return own.scale / other.scale
 
 
 def examples_of(unit: str) -> tuple[str, ...]:
-    """The dimension of an SI unit, and examples, the first in a convenient unit."""
+    """The dimension of an SI unit, and example quantities, the first in a convenient unit."""
     return EXAMPLES.get(unit, ("a quantity", f"3 {unit}"))
 
 
 def dimension_of(unit: str) -> str:
-    """The dimension of a unit: "a mass"."""
+    """The dimension of a unit, such as "a mass"; UnknownUnit if it is not in the table."""
     powers = unit_of(unit).powers
     return next((what for si, (what, *_) in EXAMPLES.items() if unit_of(si).powers == powers), "something else")
 
 
-def first_name(unit: str) -> str:
-    """The first name of a unit in the table; the unit itself if it is not there."""
+def preferred_name(unit: str) -> str:
+    """The first name of a unit in the table ("in" of inch), compound units unchanged; UnknownUnit if it is unknown."""
     return next((name for name in UNITS if UNITS[name] == unit_of(unit)), unit)
 
 
 def units_of_dimension(unit: str) -> list[str]:
-    """The first names of the units with the dimension of ``unit``, or that of an example."""
+    """The preferred names of the units with the dimension of ``unit``; of a compound unit, the unit of its example."""
     names = {UNITS[name]: name for name in reversed(UNITS) if UNITS[name].powers == unit_of(unit).powers}
     return [*reversed(names.values())] or [examples_of(unit)[1].split(" ", 1)[1]]
 
 
 def split_quantity(text: str) -> tuple[str, str]:
-    """The number and the unit of a text, each "" if it is missing."""
-    parts = _TEXT.fullmatch(text) if len(text) <= MAX_TEXT else None
+    """The number and the unit of a text, each "" if missing; both "" if it is no quantity or too long."""
+    parts = _TEXT.fullmatch(text) if len(text) <= MAX_QUANTITY_CHARACTERS else None
     return (parts[1], parts[5]) if parts else ("", "")
 
 
 def parse_decimal(digits: str) -> Decimal:
-    """The value of digits or a fraction."""
+    """The value of a decimal number, a fraction (5/16) or a mixed number (1 1/4)."""
     if fraction := FRACTION.fullmatch(digits):
         whole, above, below = fraction.groups(default="0")
         return Decimal(whole) + Decimal(above) / Decimal(below)
@@ -166,31 +166,36 @@ def parse_decimal(digits: str) -> Decimal:
 
 
 def parse_number(text: str, unit: str) -> float:
-    """The value of ``text`` ("12 mm", "5/16 in") in ``unit``; ValueError if its unit is missing or wrong."""
+    """The value of ``text`` ("12 mm", "5/16 in") in ``unit``.
+
+    inf beyond the range of floats, nan beyond that of decimals. ValueError if the number or its unit is missing, or the
+    unit is unknown (UnknownUnit) or of another dimension.
+    """
     digits, own = split_quantity(text)
     if not own:
         raise ValueError("a number and a unit")
     try:
-        return float(parse_decimal(digits) * scale(own, unit))
+        return float(parse_decimal(digits) * conversion_factor(own, unit))
     except (DecimalException, OverflowError):
-        return math.nan  # beyond every decimal: in no interval
+        return math.nan  # in no interval
 
 
 def format_number(value: float, unit: str) -> str:
-    """A number in a convenient unit ("12 mm"), with the fewest digits that are exact to `ROUND_TRIP_TOLERANCE`.
+    """A number in the convenient unit ("12 mm"), with the fewest digits that are exact to `ROUND_TRIP_TOLERANCE`.
 
-    If SI needs fewer digits (0.1 rad), it is in SI.
+    In ``unit``, SI, if that needs fewer digits (0.1 rad).
     """
-    friendly = examples_of(unit)[1].split(" ", 1)[1]
+    convenient = examples_of(unit)[1].split(" ", 1)[1]
     if math.isfinite(value):
-        exact, per = Decimal(repr(value)), scale(friendly, unit)
+        exact, per = Decimal(repr(value)), conversion_factor(convenient, unit)
         for digits in range(len(exact.normalize().as_tuple().digits)):
-            written = f"{_plain(Decimal(f'{exact / per:.{digits}e}'))} {friendly}"
+            written = f"{_plain(Decimal(f'{exact / per:.{digits}e}'))} {convenient}"
             if math.isclose(parse_number(written, unit), value, rel_tol=ROUND_TRIP_TOLERANCE):
                 return written
     return f"{value!r} {unit}"
 
 
 def _plain(value: Decimal) -> str:
+    """A number without exponent from 1e-5 to 1e12, with one beyond."""
     value = value.normalize()
     return format(value, "f") if value == 0 or -5 <= value.adjusted() < 12 else str(value)

@@ -48,11 +48,11 @@ toml | shaft = 3                            | shaft: must be text; got 3
 toml | shaft = 'carbon'\nbody_mass = '15 oz'\nbore = 'wide' | shaft: bore must be a width and a depth
 toml | shaft = 'carbon'\nbody_mass = '15 oz'\nsegments = [] | segments: must be left out beside shaft, which defines
 csv  |                                      | must hold a cue or a scene; got an empty file
-csv  | # x                                  | must begin with the header "x [mm],diameter [mm]"; got comments
+csv  | # x                                  | must begin with the header "x [mm],diameter [mm]"; got only
 csv  | H0,12                                | must hold at least 2 points; got 1
 csv  | H0,12\n\n700,-21                     | line 4, diameter: must be more than 0 and at most 10000 mm; got -21
 csv  | Hnan,12\n700,1                       | line 2, x: must be a finite number of mm; got nan mm
-csv  | H0,0,12,75\n330,0,13,2               | line 2: must have no more numbers than there are columns, 2; got
+csv  | H0,0,12,75\n330,0,13,2               | line 2: must have at most as many cells as the header, 2; got
 csv  | H0,12.75\n736.6,21.5\n330,13.2       | line 4, x: must be beyond 736.6 mm, the x of the line before
 csv  | H0,12.75\n330,about 13               | line 3, diameter: must be a number; got 'about 13'
 csv  | x,diameter\n0,12.75\n700,21.5        | line 1: 'x,diameter' must name the unit: write "x [mm],diameter [mm]"
@@ -66,7 +66,7 @@ csv  | x [mm],diameter [mm],Wandstärke\n0,12,3 | line 1: column 'Wandstärke' i
 csv  | x [mm],diameter [mm],ferrule\n0,12,\n20,12,5 mm abs\n700,21, | line 3, ferrule: with a length must be the
 csv  | x [kg],diameter [mm]\n0,12           | line 1, x: must be in a unit of length, such as mm; got 'kg'
 csv  | x [mm],diameter 1 [mm],diameter 2 [mm]\n0,12.75,12.9\n700,21,22 | line 1: two columns may be the diameter,
-csv  | x [mm],diameter [mm],bore [mm]\n700,21,\n0,12,6  | line 1, x: must run from tip to butt beside a bore or
+csv  | x [mm],diameter [mm],bore [mm]\n700,21,\n0,12,6  | line 1, x: must increase from tip to butt: bores and
 csv  | x [mm],diameter [mm],bore [mm]\n0,12,12\n700,21, | line 2, bore: must be less than 12 mm, the diameter there;
 csv  | x [mm],diameter [mm],material\n0,12,hard mapel\n700,21, | line 2, material: no material is called 'hard mapel'
 csv  | x [mm],diameter [mm],core\n0,12.75,foam\n736.6,21.5,foam | line 2, core: needs a bore in its row
