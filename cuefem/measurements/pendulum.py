@@ -1,8 +1,8 @@
 """The pendulum test: a light ball on a thread swings against the side of a shaft, freely suspended and clamped.
 
-The ball rebounds from the free shaft with e_A times its speed, and from the clamped one with e times its speed. A
-free mass with the same rebound is m_e = m (1 + e_A)/(e - e_A): the end mass at that position, for an
-impact of that duration (handbook: Measuring a cue).
+The ball, of mass m, rebounds from the free shaft with e_A times its speed, and from the clamped one with e times its
+speed. A free mass with the same rebound is m_e = m (1 + e_A)/(e - e_A): the end mass at that position, for an impact of
+that duration (handbook: Measuring a cue).
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from cuefem.measurements.measurement_types import EndMass
 from cuefem.quantity.fields import CONTACT_TIME, LENGTH, Quantity, check_fields
 
 GRAVITY = 9.81  # m/s2
-TIME_ERROR = 0.1  # relative, of a contact time that is stated without an error
-SWING = Quantity("m", "(-100, 100)")
-SIZE = Quantity("m", "(0, 100)")
+DEFAULT_TIME_ERROR = 0.1  # relative, 1 sigma, if contact_time_error is omitted
+DISPLACEMENT = Quantity("m", "(-100, 100)")
+POSITIVE_LENGTH = Quantity("m", "(0, 100)")
 MASS = Quantity("kg", "(0, inf)")
 
 
 class Ratio(NamedTuple):
-    """Speed after a rebound over the speed before, and its error."""
+    """Speed after a rebound over the speed before, and its error (1 sigma)."""
 
     value: float
     error: float
@@ -35,33 +35,35 @@ class Ratio(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Pendulum:
-    """A pendulum test by its readings from a ruler; `end_mass` is the result.
+    """A pendulum test by its readings from a ruler; `end_mass` is the result. All errors are 1 sigma.
 
     Parameters
     ----------
     ball_mass, ball_mass_error : float
-        Of the light ball, kg.
+        Mass of the ball, kg, and its error, by default 1e-4 kg.
     thread_length : float
-        Of its thread, m.
+        From the suspension to the ball's centre, m.
     release, rebound : tuple of float
-        Displacement of the ball before and after rebounds from the freely suspended shaft, m: one reading before,
-        or one for each rebound; negative after a rebound where the ball continues forwards.
-    clamped_rebound, clamped_release : tuple of float
-        The same from the clamped shaft; by default the first reading before.
+        Horizontal displacement of the ball before and after each rebound from the freely suspended shaft, m: one
+        release for all rebounds, or one for each. A rebound is negative if the ball continues forwards.
+    clamped_release, clamped_rebound : tuple of float
+        The same with the clamped shaft; clamped_release is by default the first release.
     reading_error : float
-        Of one reading, m.
+        Of one displacement, m, by default 1e-3 m.
     position : float
         Of the impact, m from the end of the tip.
     contact_time, contact_time_error : float, optional
-        Of the ball on the clamped shaft, s; 10 % by default. Or
+        For which the ball touches the clamped shaft, s; the error is by default 10 %. Instead of contact_time:
     force, indentation : float, optional
-        A force, N, and the indentation of the ball under it, m: the contact time follows from Hertz's law.
+        A static force on the ball, N, and its indentation, m: they determine the contact time by Hertz's law.
     source : str
+        Where the readings come from.
 
     Raises
     ------
     ValueError
-        If a number is out of bounds, or the readings contradict each other.
+        If a number is out of bounds, the readings contradict each other, or the end mass would be uncertain by more
+        than 100 %.
 
     Examples
     --------
@@ -74,17 +76,17 @@ class Pendulum:
 
     ball_mass: Annotated[float, MASS]
     ball_mass_error: Annotated[float, MASS] = 1e-4
-    thread_length: Annotated[float, SIZE]
-    release: tuple[Annotated[float, SIZE], ...]
-    rebound: tuple[Annotated[float, SWING], ...]
-    clamped_release: tuple[Annotated[float, SIZE], ...] = ()
-    clamped_rebound: tuple[Annotated[float, SIZE], ...]
-    reading_error: Annotated[float, SIZE] = 1e-3
+    thread_length: Annotated[float, POSITIVE_LENGTH]
+    release: tuple[Annotated[float, POSITIVE_LENGTH], ...]
+    rebound: tuple[Annotated[float, DISPLACEMENT], ...]
+    clamped_release: tuple[Annotated[float, POSITIVE_LENGTH], ...] = ()
+    clamped_rebound: tuple[Annotated[float, POSITIVE_LENGTH], ...]
+    reading_error: Annotated[float, POSITIVE_LENGTH] = 1e-3
     position: Annotated[float, LENGTH]
     contact_time: Annotated[float | None, CONTACT_TIME] = None
     contact_time_error: Annotated[float | None, Quantity("s", "(0, inf)")] = None
     force: Annotated[float | None, Quantity("N", "(0, inf)")] = None
-    indentation: Annotated[float | None, SIZE] = None
+    indentation: Annotated[float | None, POSITIVE_LENGTH] = None
     source: str = ""
 
     def __post_init__(self) -> None:
@@ -92,22 +94,24 @@ class Pendulum:
         if not self.clamped_release:
             object.__setattr__(self, "clamped_release", self.release[:1])
         for name, bounds in (
-            ("release", SIZE),
-            ("rebound", SWING),
-            ("clamped_release", SIZE),
-            ("clamped_rebound", SIZE),
+            ("release", POSITIVE_LENGTH),
+            ("rebound", DISPLACEMENT),
+            ("clamped_release", POSITIVE_LENGTH),
+            ("clamped_rebound", POSITIVE_LENGTH),
         ):
             readings = tuple(bounds.check(f"Pendulum.{name}", value) for value in getattr(self, name))
             object.__setattr__(self, name, readings)
-            if not 0 < max(map(abs, readings), default=0.0) < self.thread_length:
+            if not readings or max(map(abs, readings)) >= self.thread_length:
                 got = f"{max(map(abs, readings))} m" if readings else "no reading"
                 raise ValueError(
-                    f"Pendulum.{name} must be swings shorter than the thread, {self.thread_length} m; got {got}"
+                    f"Pendulum.{name} must be displacements less than thread_length, {self.thread_length} m; got {got}"
                 )
         for release, rebound in (("release", "rebound"), ("clamped_release", "clamped_rebound")):
-            one, many = len(getattr(self, release)), len(getattr(self, rebound))
-            if one not in (1, many):
-                raise ValueError(f"Pendulum.{release} must be one reading, or {many} as {rebound}; got {one}")
+            n_release, n_rebound = len(getattr(self, release)), len(getattr(self, rebound))
+            if n_release not in (1, n_rebound):
+                raise ValueError(
+                    f"Pendulum.{release} must be one reading, or one for each {rebound} ({n_rebound}); got {n_release}"
+                )
         stated = [name for name in ("contact_time", "force", "indentation") if getattr(self, name) is not None]
         if stated not in (["contact_time"], ["force", "indentation"]):
             got = " and ".join(stated) or "none of them"
@@ -121,43 +125,46 @@ class Pendulum:
         clamped = self._ratio(self.clamped_release, self.clamped_rebound)
         a, e = free.value, clamped.value
         if not 0 < e <= 1 + 3 * clamped.error:
-            raise ValueError(f"Pendulum.clamped_rebound must be (0, 1] of the speed before; got {e:.4g} of it")
+            raise ValueError(
+                f"Pendulum.clamped_rebound must have a speed in (0, 1] times that of clamped_release; got {e:.4g} times"
+            )
         if not -1 < a < e:
-            raise ValueError(f"Pendulum.rebound must be between -1 and {e:.4g} of the speed before; got {a:.4g} of it")
+            raise ValueError(
+                f"Pendulum.rebound must have a speed between -1 and {e:.4g} times that of release; got {a:.4g} times"
+            )
         by_free, by_clamped = (1 + e) / ((1 + a) * (e - a)) * free.error, clamped.error / (e - a)
         relative = math.hypot(self.ball_mass_error / m, by_free, by_clamped)
         if relative > 1:
             raise ValueError(
-                "Pendulum.rebound must differ more from clamped_rebound, for an end mass uncertain by at most 100 %; "
+                "Pendulum.rebound must differ more from clamped_rebound for an error of the end mass below 100 %; "
                 f"got {100 * relative:.3g} %"
             )
         value, time = m * (1 + a) / (e - a), self._time(min(e, 1.0))
-        later = self.contact_time_error or TIME_ERROR * time
-        ball = {"ball_mass": m, "restitution": min(e, 1.0), "contact_time": time, "contact_time_error": later}
+        time_error = self.contact_time_error or DEFAULT_TIME_ERROR * time
+        ball = {"ball_mass": m, "restitution": min(e, 1.0), "contact_time": time, "contact_time_error": time_error}
         return EndMass(value=value, error=relative * value, position=self.position, source=self.source, **ball)
 
     def _time(self, restitution: float) -> float:
-        """The contact time on the clamped shaft, s."""
+        """The contact time on a clamped shaft, s, at the speed of the free test, which it represents."""
         if self.contact_time is not None:
             return self.contact_time
         assert self.force is not None
         assert self.indentation is not None
-        speed = 2 * math.sqrt(GRAVITY * self.thread_length) * float(np.mean(self._speeds(self.release)[0]))
-        modulus = 0.75 * self.force / self.indentation**1.5  # with R = 1 m: K = 4/3 E* sqrt(R)
+        speed = 2 * math.sqrt(GRAVITY * self.thread_length) * float(np.mean(self._half_angle_sines(self.release)[0]))
+        modulus = 0.75 * self.force / self.indentation**1.5  # K = 4/3 E* sqrt(R), with R = 1 m
         return Striker(self.ball_mass, restitution, modulus=modulus, radius=1.0).wall_time(speed)
 
     def _ratio(self, release: Sequence[float], rebound: Sequence[float]) -> Ratio:
-        """The mean of all rebounds; its error is that of readings, or the scatter if that is larger."""
-        (v0, d0), (v1, d1) = self._speeds(release), self._speeds(rebound)
-        ratios = v1 / v0
+        """The mean ratio of all rebounds; its error is that of the readings, or the scatter of the mean if larger."""
+        (s0, d0), (s1, d1) = self._half_angle_sines(release), self._half_angle_sines(rebound)
+        ratios = s1 / s0
         n = len(ratios)
-        by_release = float(np.sqrt(np.mean((ratios * d0 / v0) ** 2) / len(release)))
-        by_rebound = float(np.sqrt(np.mean((d1 / v0) ** 2) / n))
+        by_release = float(np.sqrt(np.mean((ratios * d0 / s0) ** 2) / len(release)))
+        by_rebound = float(np.sqrt(np.mean((d1 / s0) ** 2) / n))
         scatter = float(np.std(ratios, ddof=1)) / math.sqrt(n) if n > 1 else 0.0
         return Ratio(float(np.mean(ratios)), max(math.hypot(by_release, by_rebound), scatter))
 
-    def _speeds(self, swings: Sequence[float]) -> tuple[Array, Array]:
-        """sin of half the thread's angle, which is proportional to the speed at its lowest point, and its error."""
-        aside = np.array(swings) / self.thread_length
-        angle = np.arcsin(aside)
+    def _half_angle_sines(self, displacements: Sequence[float]) -> tuple[Array, Array]:
+        """sin(theta/2) of the thread's angle, which is proportional to the speed at the lowest point, and its error."""
+        angle = np.arcsin(np.array(displacements) / self.thread_length)
         return np.sin(angle / 2), np.cos(angle / 2) / (2 * np.cos(angle)) * self.reading_error / self.thread_length

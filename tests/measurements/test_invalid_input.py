@@ -38,14 +38,14 @@ CALLS: dict[str, Callable[[], object]] = {
     ),
     "added_mass position must be in [0, 0.73] m": lambda: FAR.computed(Setup(SCENE)),
     "estimate takes a cue with measurements": lambda: estimate(measured_cue()),
-    "Pendulum.release must be swings shorter than the thread, 0.1 m": lambda: replace(GOOD, thread_length=0.1),
-    "Pendulum.rebound must be swings": lambda: replace(GOOD, rebound=()),
-    "Pendulum.release must be one reading, or 1": lambda: replace(GOOD, release=(0.2, 0.2)),
+    "Pendulum.release must be displacements less than thread_length, 0.1 m": lambda: replace(GOOD, thread_length=0.1),
+    "Pendulum.rebound must be displacements": lambda: replace(GOOD, rebound=()),
+    "Pendulum.release must be one reading, or one for each rebound (1)": lambda: replace(GOOD, release=(0.2, 0.2)),
     "Pendulum.contact_time must be given": lambda: replace(GOOD, contact_time=None),
     "without it; got contact_time and force": lambda: replace(GOOD, force=9.0),
-    "Pendulum.clamped_rebound must be (0, 1]": lambda: replace(GOOD, clamped_rebound=(0.3,)),
-    "Pendulum.rebound must be between -1 and 0.": lambda: replace(GOOD, rebound=(0.188,)),
-    "for an end mass uncertain by at most 100 %": lambda: replace(GOOD, rebound=(0.1495,)),
+    "Pendulum.clamped_rebound must have a speed in (0, 1]": lambda: replace(GOOD, clamped_rebound=(0.3,)),
+    "Pendulum.rebound must have a speed between -1 and 0.": lambda: replace(GOOD, rebound=(0.188,)),
+    "for an error of the end mass below 100 %": lambda: replace(GOOD, rebound=(0.1495,)),
 }
 
 
@@ -68,7 +68,7 @@ measured.toml | [[squirt]]\noffset = 0.3\nerror = "1 deg"\n | squirt[0].value: m
 measured.toml | name = 3\n | name: must be text
 measured.toml | prior = 3\n | prior: must be tables
 measured.toml | cue = { mass = "0.5 kg", end_mass = "6 g" }\n | cue: must be a cue of segments
-measured.toml | Prebound = ["250 cm"]\n | pendulum[0].rebound: must be swings shorter
+measured.toml | Prebound = ["250 cm"]\n | pendulum[0].rebound: must be displacements less
 measured.toml | [[recording]]\nfile = "none.wav"\n | none.wav: cannot be read: No such file
 measured.toml | [[recording]]\nfile = "tap.mp3"\n | tap.mp3: must end in .wav
 measured.toml | [[recording]]\nfile = "tap.wav"\nloud = 1\n | recording[0].loud: must be one of the keys
