@@ -1,22 +1,23 @@
-"""The examples in the docstrings of the public names run and print what they say (regression)."""
+"""The examples in the docstrings of the package run and print the results shown (regression)."""
 
 import doctest
+import importlib
+from pathlib import Path
 
 import pytest
 
 import cuefem as cf
 
 FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
+ROOT = Path(cf.__file__).parent
+FILES = [file for file in ROOT.rglob("*.py") if ">>>" in file.read_text(encoding="utf-8")]
+MODULES = sorted(".".join(file.relative_to(ROOT.parent).with_suffix("").parts) for file in FILES)
+SLOW = "cuefem.design.design_changes"  # strikes a cue for every change
 
 
-# Strikes a cue for every change.
-SLOW = pytest.param("design_changes", marks=pytest.mark.heavy)
-
-
-@pytest.mark.parametrize("name", [SLOW if name == "design_changes" else name for name in cf.__all__])
-def test_docstring_examples_of_public_name_run(name: str) -> None:
-    public = getattr(cf, name)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.heavy if n == SLOW else ()) for n in MODULES])
+def test_examples_run(name: str) -> None:
     failures: list[str] = []
-    for example in doctest.DocTestFinder(recurse=False).find(public, name, globs={"cf": cf}):
+    for example in doctest.DocTestFinder().find(importlib.import_module(name), extraglobs={"cf": cf}):
         doctest.DocTestRunner(optionflags=FLAGS).run(example, out=failures.append)
     assert "".join(failures) == ""

@@ -2,8 +2,8 @@
 
 A parameter is one number or one material. A path leads through fields; "[*]" means every item of a list. It may begin
 at a part of the drawing (`cuefem.parameters.parts`), as in "wood.E". Each name of `PARAMETERS` refers to a path or a
-part. Sweeps, optima, scatters, knobs, uncertain parameters and the options of commands derive from that table: an entry
-added there appears in all of them.
+part. Studies, sliders, uncertain parameters and the options of commands derive from that table: an entry added there
+appears in all of them.
 """
 
 from __future__ import annotations
@@ -44,9 +44,9 @@ Path = tuple[Step, ...]
 
 _STEP = re.compile(r"\.?([A-Za-z_]\w*)|\[(\d+|\*)\]")
 _TAPER = re.compile(r"taper at (.+)")
-_FIELDS = tuple(field.name for field in fields(Scene))
+_SCENE_FIELDS = tuple(field.name for field in fields(Scene))
 # Alternative fields: setting one clears the others.
-_INSTEAD = {
+_ALTERNATIVES = {
     ("Tip", "contact_time"): ("stiffness",),
     ("Tip", "stiffness"): ("contact_time",),
 }
@@ -63,21 +63,22 @@ class Parameter:
     label
         A short description.
     path
-        Its path; "" if it is a part:
+        Its path; "" if it is a part.
     part
-        how its value is read and written, and its quantity.
+        How the value of a part is read and written, and its quantity; None for a path.
     materials
         The choices, if it is a material.
     spread
-        As an uncertain parameter: the standard deviation of its logarithm; None if only a file makes it one.
+        Prior standard deviation of its logarithm, or a function of the scene for it. None: uncertain only if a file
+        says so.
     below
         Relative uncertainty, downwards, of a number that is usually at its upper bound.
     option, help
         The metavariable and the text of a command's help; "" if it is no option.
     sets
-        Values by path for each name of its value: its own, and those of other parameters.
-    beside
-        Values of other parameters, by path, that depend on it where it is uncertain.
+        For each name of its value ("medium"): the values, by path, that the name sets, of this and other parameters.
+    dependent_values
+        Function of scene and value: values of other parameters, by path, that change with it where it is uncertain.
     """
 
     name: str
@@ -112,16 +113,16 @@ class Parameter:
         return self.path.startswith(("leather.", "tip.", "waves.")) or self.part is CONTACT_TIME_OF_SPRING
 
     def scaled(self, scene: Scene, factor: float) -> dict[Path, float]:
-        """Its value in a scene times a factor, and dependent values, by path."""
+        """Its value in a scene times a factor, and the dependent values, by path."""
         value = factor * self.value(scene)
         return {self.steps(): value} | (self.dependent_values(scene, value) if self.dependent_values else {})
 
     def spread_in(self, scene: Scene) -> float | None:
-        """Its spread in a scene."""
+        """Its spread in a scene; None if it is not uncertain there."""
         return self.spread(scene) if callable(self.spread) else self.spread
 
     def quantity(self, scene: Scene) -> Quantity:
-        """Unit and bounds of its number, and the names of values."""
+        """Unit and bounds of its number, and the names of values; ValueError if the scene has no such number."""
         known = quantity_at(scene, self.steps())
         if known is None:
             raise ValueError(f"{self.name} must be a number of this scene; got none")
@@ -136,7 +137,7 @@ class Parameter:
 
 
 def parameter(text: str) -> Parameter | None:
-    """The parameter of a name; None if the text is a path."""
+    """The parameter of a name; None if the text is a path. ValueError for "taper at" without a position."""
     taper = _TAPER.fullmatch(text.strip())
     if taper:
         try:
@@ -149,7 +150,7 @@ def parameter(text: str) -> Parameter | None:
 
 def _part(step: Step) -> Part | None:
     """The part at which a path begins; None if it begins at a field of scenes."""
-    if step in PARTS or step in _FIELDS:
+    if step in PARTS or step in _SCENE_FIELDS:
         return PARTS.get(str(step))
     known = parameter(str(step))
     return known.part if known else None
@@ -181,11 +182,11 @@ def paths(scene: Scene, text: str) -> tuple[Path, ...]:
     ends: list[tuple[Path, Any]] = [((), scene)]
     for step in known.steps() if known else _steps(text):
         ends = [end for path, value in ends for end in _below(path, value, step, text)]
-    found = tuple(path for path, _ in ends)
-    if not found or any(quantity_at(scene, path) is None and not is_material(scene, path) for path in found):
+    expanded = tuple(path for path, _ in ends)
+    if not expanded or any(quantity_at(scene, path) is None and not is_material(scene, path) for path in expanded):
         holds = ", which holds " + ", ".join(map(str, _inner(ends[0][1]))) if ends and _inner(ends[0][1]) else ""
         raise ValueError(f"must name one number or a material; got {text!r}{holds}")
-    return found
+    return expanded
 
 
 def _inner(value: Any) -> dict[Step, Any]:
@@ -299,43 +300,46 @@ def with_parameters(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     Examples
     --------
     >>> import cuefem as cf
-    >>> from cuefem.parameters.parameter import varied
+    >>> from cuefem.parameters.parameter import with_parameters
     >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
     >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),)))
-    >>> made = varied(scene, {"wood": "ash", "bore depth": 0.1, "speed": 3.0})
-    >>> [segment.length for segment in made.cue.segments], made.cue.segments[0].tip_bore, made.stroke.speed
+    >>> changed = with_parameters(scene, {"shaft material": "ash", "bore depth": 0.1, "speed": 3.0})
+    >>> [segment.length for segment in changed.cue.segments], changed.cue.segments[0].tip_bore, changed.stroke.speed
     ([0.1, 0.6], 0.006, 3.0)
     """
     values = dict[Path, Any]()
     for text, value in changes.items():
         known = parameter(text)
-        beside: dict[Path, Any] = known.named_value(value) if known and isinstance(value, str) else {}
+        named: dict[Path, Any] = known.named_value(value) if known and isinstance(value, str) else {}
         for path in paths(scene, text):
-            whole = is_material(scene, path) and isinstance(value, str)
-            values |= beside if beside else {path: named_material(value) if whole else value}
+            by_name = is_material(scene, path) and isinstance(value, str)
+            values |= named if named else {path: named_material(value) if by_name else value}
     return with_values_at(scene, values)
 
 
 def with_values_at(scene: Scene, changes: Mapping[Path, Any]) -> Scene:
-    """A scene with the values at some paths replaced, changed together and then checked."""
+    """A scene with the values at some paths replaced, changed together and then checked.
+
+    Fields of the scene are written first, then parts of the drawing in the order of `PARAMETERS`.
+    """
     below: dict[str, dict[Path, Any]] = {}
     for (head, *rest), value in changes.items():
         below.setdefault(str(head), {})[tuple(rest)] = value
-    draft = _Draft(**{name: getattr(scene, name) for name in _FIELDS})
-    draft = with_fields(draft, {path: value for path, value in changes.items() if path[0] in _FIELDS})
+    draft = _Draft(**{name: getattr(scene, name) for name in _SCENE_FIELDS})
+    draft = with_fields(draft, {path: value for path, value in changes.items() if path[0] in _SCENE_FIELDS})
     heads = (*(known.name for known in PARAMETERS.values()), *PARTS, *below)
-    parts = {head: part for head in heads if (part := _part(head))}  # in the order in which they are written
-    wanted = {
+    parts = {head: part for head in heads if (part := _part(head))}  # in writing order
+    written = {
         head: with_fields(None if () in inner else parts[head].read(draft), inner)
         for head, inner in below.items()
         if head in parts
     }
-    stay = {name for head in wanted for name in parts[head].unchanged} - {*wanted}
-    wanted |= {name: parts[name].read(draft) for name in stay}
+    unchanged = {name for head in written for name in parts[head].unchanged} - {*written}
+    written |= {name: parts[name].read(draft) for name in unchanged}
     for head, part in parts.items():
-        if wanted.get(head) is not None:
-            draft = part.write(draft, wanted[head])
-    return Scene(**{name: getattr(draft, name) for name in _FIELDS})
+        if written.get(head) is not None:
+            draft = part.write(draft, written[head])
+    return Scene(**{name: getattr(draft, name) for name in _SCENE_FIELDS})
 
 
 def with_fields(thing: Any, changes: Mapping[Path, Any]) -> Any:
@@ -344,8 +348,8 @@ def with_fields(thing: Any, changes: Mapping[Path, Any]) -> Any:
     A material is replaced before its own fields.
     """
     if () in changes:
-        inside = {path: value for path, value in changes.items() if path}
-        return with_fields(changes[()], inside) if inside else changes[()]
+        own_fields = {path: value for path, value in changes.items() if path}
+        return with_fields(changes[()], own_fields) if own_fields else changes[()]
     below: dict[Step, dict[Path, Any]] = {}
     for (step, *rest), value in changes.items():
         below.setdefault(step, {})[tuple(rest)] = value
@@ -353,7 +357,7 @@ def with_fields(thing: Any, changes: Mapping[Path, Any]) -> Any:
         return tuple(with_fields(item, below[i]) if i in below else item for i, item in enumerate(thing))
     new = {str(step): with_fields(getattr(thing, str(step)), inner) for step, inner in below.items()}
     kind = type(thing).__name__
-    others = (other for name in new if new[name] is not None for other in _INSTEAD.get((kind, name), ()))
+    others = (other for name in new if new[name] is not None for other in _ALTERNATIVES.get((kind, name), ()))
     return replace(thing, **({other: None for other in others if other not in new} | new))
 
 
@@ -374,7 +378,7 @@ def _wood_spread(name: str) -> Callable[[Scene], float | None]:
 
 
 def _leather_spread(scene: Scene) -> float | None:
-    """From a contact time of ±10 % (1.0 to 1.2 ms) for a named leather, ±5 % for a custom E; None without leather."""
+    """From a contact time of ±10 % (1.0 to 1.2 ms) for a named leather, ±5 % for a custom E; None without one."""
     if scene.contact_terms.tip is None:
         return None
     named = any(own.E == scene.leather.E for own in LEATHERS.values())
