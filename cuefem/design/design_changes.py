@@ -150,8 +150,8 @@ def design_changes(scene: Scene, *, solved: SolvedScene | None = None, progress:
         "offset", b/R; "regime", the contact's (`Outcome.regime`); "own", the cue's squirt (rad), tip
         stiffness (N/m), shaft mass (kg) and first natural frequency (Hz); "changes", a list of dicts sorted by squirt,
         lowest first: "change", the label, "set", the argument of `cuefem.parameters.parameter.with_parameters`, the
-        four numbers, relative changes of squirt (with "squirt_change_error", 1 sigma) and stiffness, absolute ones of mass and frequency, and
-        a "verdict": a change of squirt that is smaller than its error is "within uncertainty".
+        four numbers, relative changes of squirt (with "squirt_change_error", 1 sigma) and stiffness, absolute ones of
+        mass and frequency, and a "verdict": a change of squirt smaller than its error is "within uncertainty".
 
     Raises
     ------

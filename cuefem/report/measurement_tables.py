@@ -7,18 +7,18 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cuefem.measurements.estimate import Estimate, InformationGain
+from cuefem.measurements.estimate import CONVERGED, Estimate, InformationGain
 from cuefem.measurements.measured_cue import MeasuredCue, OffsetZero, Residual
 from cuefem.results.quantities import DASH, with_unit
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 
-LARGE_RESIDUAL = 3.0  # in combined standard deviations: a contradiction
+LARGE_PULL = 3.0  # a larger one is a contradiction
 UNITS = {"residual": "", "pull": "", "zero": "m", "squirt_error": "rad"}
-OUTLIER = 0.2  # probability of a wrong measurement that gets a note
+MIN_OUTLIER_PROBABILITY = 0.2  # of a measurement with a note
 
 
 def row_record(row: Residual) -> Record:
-    """A measurement beside the model's value."""
+    """A measurement with the model's value, both SI with 1 sigma; see `Residual`."""
     measurement = row.measurement
     names = ("measured", "error", "computed", "spread", "residual", "pull")
     return {
@@ -30,7 +30,7 @@ def row_record(row: Residual) -> Record:
 
 
 def measured_record(cue: MeasuredCue, rows: Sequence[Residual], zeros: Sequence[OffsetZero]) -> Record:
-    """Every measurement beside its computed value, the offset zeros, and what was not measured."""
+    """Every measurement with its computed value, the zero errors of the offset, and the missing measurements."""
     return {
         "name": cue.name,
         "source": cue.source,
@@ -44,56 +44,62 @@ def measured_record(cue: MeasuredCue, rows: Sequence[Residual], zeros: Sequence[
 
 
 def tabulate_measured(record: Record) -> list[Table | str]:
-    """Measured and computed values, contradictions, the offset zero, and missing measurements."""
+    """Measured and computed values, contradictions, the zero error of the offset, and missing measurements."""
     sourced = ["source"] if any(row["source"] for row in record["rows"]) else []
-    made: list[Table | str] = []
+    blocks: list[Table | str] = []
     if record["rows"]:
-        made.append(_tabulate_fit("Measured and computed", record, "pull", *sourced))
-    made += [*contradictions(record), *zero_lines(record)]
+        blocks.append(_tabulate_fit("Measured and computed", record, "pull", *sourced))
+    blocks += [*contradictions(record), *zero_lines(record)]
     if record["missing"]:
-        made += ["not measured, and what that costs:", *(f"  {line}" for line in record["missing"])]
-    return made
+        blocks += ["Missing measurements and their consequences:", *(f"  {line}" for line in record["missing"])]
+    return blocks
 
 
-def _tabulate_fit(title: str, record: Record, *more: str) -> Table:
-    """A row for each measurement with its computed value. more: of "pull" and "source"."""
+def _tabulate_fit(title: str, record: Record, *optional: str) -> Table:
+    """A row for each measurement with its computed value. optional: names of `OPTIONAL_COLUMNS`."""
     columns: dict[str, ColumnEntry] = {"measurement": "{label}"}
-    columns |= {value: _with_error(value, error) for value, error in PAIRS} | {"residual": "{residual:+.1f}"}
-    columns |= {heading: entry for heading, entry in MORE.items() if heading in more}
-    return tabulate(title, columns, record["rows"], *(captions(record) if more else ()), texts=(0, 5))
+    columns |= {value: _with_error(value, error) for value, error in VALUES_WITH_ERRORS} | {
+        "residual": "{residual:+.1f}"
+    }
+    columns |= {heading: entry for heading, entry in OPTIONAL_COLUMNS.items() if heading in optional}
+    return tabulate(title, columns, record["rows"], *captions(record), texts=(0, 5))
 
 
 def _with_error(value: str, error: str) -> ColumnEntry:
     return lambda row: with_unit(row[value], row["unit"], error=row[error])
 
 
-MORE = {"pull": "{pull:+.1f}", "source": "{source}"}
-PAIRS = (("measured", "error"), ("computed", "spread"))
+OPTIONAL_COLUMNS = {"pull": "{pull:+.1f}", "source": "{source}"}
+VALUES_WITH_ERRORS = (("measured", "error"), ("computed", "spread"))
 
 
 def captions(record: Record) -> list[str]:
-    """Definitions of the table's columns."""
+    """Definitions of the table's columns; an estimate's table has no pull."""
+    residual = "Residual: measured minus computed, over the measurement's 1σ"
+    if "rms_pull" not in record:
+        return [f"±: 1σ; that of a computed value comes from the estimated parameters. {residual}."]
     return [
         "±: 1σ; that of a computed value comes from the uncertain parameters of the drawing: "
         f"{', '.join(record['uncertain_parameters'])}.",
-        "Residual: measured minus computed, over the measurement's 1σ; pull: over the 1σ of both combined "
-        f"(RMS {record['rms_pull']:.2f}).",
+        f"{residual}; pull: over the 1σ of both combined (RMS {record['rms_pull']:.2f}).",
     ]
 
 
 def contradictions(record: Record) -> list[str]:
-    """The measurements whose residual is large for their errors and the uncertain parameters combined."""
+    """The measurements with a large pull, in words."""
     lines = []
     for row in record["rows"]:
-        if abs(row["pull"]) > LARGE_RESIDUAL:
-            measured, computed = (with_unit(row[value], row["unit"], error=row[error]) for value, error in PAIRS)
-            difference = f"measured {measured}, computed {computed}, a difference of {abs(row['pull']):.1f} σ"
+        if abs(row["pull"]) > LARGE_PULL:
+            measured, computed = (
+                with_unit(row[value], row["unit"], error=row[error]) for value, error in VALUES_WITH_ERRORS
+            )
+            difference = f"measured {measured}, computed {computed}, a difference of {abs(row['pull']):.1f} combined σ"
             lines.append(f"{row['label']} contradicts the drawing: {difference}")
     return lines
 
 
 def zero_lines(record: Record) -> list[str]:
-    """The error of the offset's zero, from strokes on the left and on the right."""
+    """The zero error of the offset, from strokes on the left and on the right; empty without them."""
     if not record["zeros"]:
         return []
     weights = np.array([1 / zero["error"] ** 2 for zero in record["zeros"]])
@@ -103,7 +109,7 @@ def zero_lines(record: Record) -> list[str]:
 
 
 def gain_record(gain: InformationGain) -> Record:
-    """A further measurement, and the uncertainty that it would remove."""
+    """A further measurement, and the uncertainty that would remain after it; see `InformationGain`."""
     measurement = gain.measurement
     about = {"kind": measurement.key, "label": measurement.label, "unit": measurement.unit, "error": measurement.sd}
     return about | {name: value for name, value in gain._asdict().items() if name != "measurement"}
@@ -112,7 +118,10 @@ def gain_record(gain: InformationGain) -> Record:
 def estimate_record(
     estimate: Estimate, gains: Sequence[InformationGain], squirt: tuple[float, float], offset: float
 ) -> Record:
-    """The uncertain parameters by all measurements, the fit, squirt (value and 1σ, rad) and further measurements."""
+    """The estimated parameters, the fit, squirt and recommended measurements.
+
+    squirt: value and 1σ, rad, at ``offset``, b/R. gains: of the recommended measurements.
+    """
     sd = np.sqrt(np.diag(estimate.covariance))
     return {
         "name": estimate.cue.name,
@@ -120,7 +129,7 @@ def estimate_record(
         "correlations": (estimate.covariance / np.outer(sd, sd)).tolist(),
         "rows": [row_record(row) for row in estimate.residuals],
         "misfit": estimate.misfit,
-        "measurements": len(estimate.cue.measurements),
+        "measurement_count": len(estimate.cue.measurements),
         "outlier_probability": estimate.outlier_probability.tolist(),
         "unchecked": [
             {"label": each.measurement.label, "without": each.without._asdict()} for each in estimate.unchecked
@@ -135,7 +144,7 @@ def estimate_record(
 
 
 def tabulate_estimate(record: Record) -> list[Table | str]:
-    """The uncertain parameters, the fit of the measurements, squirt, and recommended measurements."""
+    """The estimated parameters, the fit of the measurements, squirt, and recommended measurements."""
     squirt = with_unit(record["squirt"], "rad", error=record["squirt_error"])
     return [
         tabulate(
@@ -153,12 +162,12 @@ def tabulate_estimate(record: Record) -> list[Table | str]:
             {
                 "measurement": "{label}",
                 "1σ": lambda gain: with_unit(gain["error"], gain["unit"]) if gain["unit"] else DASH,
-                "narrows most": "{parameter}",
-                "to": "{error_ratio:.0 %}",
-                "squirt then": "± {relative_squirt_error:.1 %}",
+                "parameter improved most": "{parameter}",
+                "its σ, after/before": "{error_ratio:.0 %}",
+                "σ of squirt after": "{relative_squirt_error:.1 %}",
             },
             record["recommended"],
-            "Sorted by the remaining relative uncertainty (1σ) of squirt, squirt then.",
+            "Sorted by the relative uncertainty (1σ) of squirt after the measurement.",
         ),
     ]
 
@@ -174,12 +183,12 @@ _INTERVAL: dict[str, ColumnEntry] = {
 
 
 def _estimate_notes(record: Record) -> list[str]:
-    misfit, count = record["misfit"], record["measurements"]
+    misfit, count = record["misfit"], record["measurement_count"]
     notes = [f"Misfit {misfit:.1f} (chi-square of {count} measurements and the priors); expected about {count}."]
     if misfit > count + 3 * math.sqrt(2 * count):
-        notes.append("It is too large: a measurement, an error or the model is wrong.")
+        notes.append("That is too large: a measurement, a stated error or the model is wrong.")
     for row, probability in zip(record["rows"], record["outlier_probability"], strict=True):
-        if probability > OUTLIER:
+        if probability > MIN_OUTLIER_PROBABILITY:
             notes.append(
                 f"{row['label']} contradicts the others: outlier with a probability of {100 * probability:.0f} %, and "
                 "its weight is reduced."
@@ -188,11 +197,12 @@ def _estimate_notes(record: Record) -> list[str]:
         without = each["without"]
         low, high = (with_unit(without[end], without["unit"]) for end in ("low", "high"))
         notes.append(
-            f"No other measurement checks {each['label']}, and the intervals include no mistake in it: without it, "
+            f"No other measurement checks {each['label']}; the intervals assume that it is right. Without it, "
             f"{without['label']} is {low} to {high} (68 %)."
         )
     if not record["converged"]:
         notes.append(
-            "The estimate did not converge: the measurements contradict each other, and the intervals are too narrow."
+            f"The estimate did not converge (last step above {CONVERGED:g}σ): the intervals may be too narrow. Check "
+            "for contradictory measurements."
         )
-    return [*notes, "68 %: interval of 1σ; remaining: its width over that before any measurement."]
+    return [*notes, "68 %: interval of ±1σ; remaining: its width over that before any measurement."]
