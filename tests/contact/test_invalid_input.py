@@ -73,8 +73,8 @@ CALLS: list[Any] = [
     heavy(identify_call(1.1e-3, 0.999), "no leather has a contact time of 0.0011 s and a rebound of 0.999"),
     # the table's frame
     (place_call((R, 1.5 * R)), "R = 0.0286 m; got (0.0286, 0.0429"),
-    (place_call((nan, R)), "point must be in (-inf, inf) m; got nan at index 0"),
-    (place_call(direction=(0, inf, 0)), "got inf at index 1"),
+    (place_call((nan, R)), "point[0] must be in (-inf, inf) m; got nan"),
+    (place_call(direction=(0, inf, 0)), "direction[1] must be in (-inf, inf); got inf"),
     (place_call(direction=(0, 0, 0)), "direction must have a length; got (0, 0, 0)"),
     (place_call(direction=(0, 1)), "direction must have 3 components"),
     (place_call((1.0, 2.0, 3.0)), "point must have 2 components"),

@@ -1,11 +1,12 @@
 """Small studies; no tests."""
 
 import sqlite3
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
 from cuefem.design.study_result import compute_study
-from cuefem.io.store import SqliteStore, read_table
+from cuefem.io.store import SqliteStore
 from cuefem.io.study_files import load_study
 
 SCENE = """
@@ -68,15 +69,16 @@ def write_study(folder: Path, study: str = STUDY, scene: str = SCENE, name: str 
 
 
 def computed_rows(study: Path, output: Path, **more: Any) -> list[tuple[Any, ...]]:
-    """Compute a study into a store; its rows."""
-    with SqliteStore(output, load_study(study), study.stem) as store:
+    """The table of a study, computed into a store: numbers as they are stored."""
+    with SqliteStore(output, load_study(study)) as store:
         compute_study(store.study, store=store, **more)
-    return stored_rows(output)
+        return [(row.design, *row.values, *row.responses, row.failure) for row in store.rows()]
 
 
-def stored_rows(path: Path, name: str | None = None) -> list[tuple[Any, ...]]:
-    """All rows of a study in a store."""
-    return [(row.design, *row.values, *row.responses, row.failure) for row in read_table(path, name).rows]
+def stored_count(path: Path) -> int:
+    """The number of stored designs."""
+    with closing(sqlite3.connect(path)) as file:
+        return int(file.execute("SELECT count(*) FROM designs").fetchone()[0])
 
 
 def alter_store(path: Path, command: str, *values: object) -> None:
