@@ -54,7 +54,7 @@ class Modes(EigenSolution):
         If the loads act at another node, of that node.
         """
         w, theta = np.concatenate([self.loads.T @ self.rigid_vectors, self.participation], axis=1)
-        return w, theta / self.system.length
+        return w, theta / self.system.cue.length
 
     def shape(self, x: ArrayLike) -> tuple[Array, Array]:
         """Deflection w and rotation theta of every mode at ``x`` m from the tip: two arrays (n, *x.shape).
@@ -62,7 +62,7 @@ class Modes(EigenSolution):
         Mass-normalised: w in 1/sqrt(kg), theta in 1/(m sqrt(kg)); w(0) > 0.
         """
         x = np.asarray(x, float)
-        length = self.system.length
+        length = self.system.cue.length
         if not np.all((x >= 0) & (x <= length)):
             raise ValueError(f"Modes.shape takes positions in [0, {length}] m; got {x}")
         return self.system.interpolate(self.vectors, x)

@@ -87,11 +87,6 @@ class System:
     shift: float
 
     @property
-    def length(self) -> float:
-        """Length of the cue, m, by which rotations are scaled."""
-        return self.cue.length
-
-    @property
     def size(self) -> int:
         """Number of free degrees of freedom."""
         return int(self.K.shape[0])
@@ -114,7 +109,7 @@ class System:
 
     def fields(self, vectors: Array) -> Fields:
         """The fields of the degrees of freedom ``vectors`` (free, k) at the Gauss points."""
-        return _fields(self.length, self.points, self.all_dofs(vectors))
+        return _fields(self.cue.length, self.points, self.all_dofs(vectors))
 
     def geometric_stiffness(self, vectors: Array, masses: Sequence[tuple[float, float]]) -> Array:
         """Geometric stiffness of ``vectors`` (free, k) per newton of axial force: integral p w_i' w_j' dx, (k, k).
@@ -143,7 +138,7 @@ class System:
         """(w, theta) of the degrees of freedom ``vectors`` (free, k) at positions ``x``: two arrays (k, *x.shape)."""
         order = np.argsort(x, axis=None, kind="stable")
         points = _points(self.cue, self.mesh, x.ravel()[order], np.ones(x.size), [False] * len(self.mesh.orders))
-        fields = _fields(self.length, points, self.all_dofs(vectors))
+        fields = _fields(self.cue.length, points, self.all_dofs(vectors))
         w, theta = np.empty_like(fields.w), np.empty_like(fields.w)
         w[order], theta[order] = fields.w, fields.theta
         return w.T.reshape(-1, *x.shape), theta.T.reshape(-1, *x.shape)

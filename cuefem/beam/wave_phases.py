@@ -13,9 +13,8 @@ from cuefem.cue import Array, Cue
 # Interpolation error of the shape of the highest mode. The error of its frequency is the square of it, and lower modes
 # are far more accurate.
 SHAPE_ERROR = 3e-4
-# Few long elements need the fewest degrees of freedom; a `Resolution` of one order for all segments has shorter ones.
+# Few long elements need the fewest degrees of freedom.
 MAX_PHASE = 150.0  # phase of the waves on an element, rad
-MAX_UNIFORM_PHASE = 36.0  # the same in a mesh of one order
 MAX_ORDER = 110
 _GUESSES = np.geomspace(1e0, 1e9, 100)  # angular frequencies between which `mode_phases` interpolates, rad/s
 
@@ -71,11 +70,3 @@ def orders_for(phase: Array, taper: Array) -> NDArray[np.intp]:
     root = np.sqrt(taper)
     cone = np.ceil(-math.log(SHAPE_ERROR) / np.log((root + 1) / np.maximum(root - 1, 1e-9)))
     return np.minimum(np.maximum(waves, cone), MAX_ORDER).astype(np.intp)
-
-
-def uniform_mesh_for(cue: Cue, count: int) -> tuple[int, int]:
-    """(elements, order) of a mesh with the same in every segment, for the ``count`` lowest modes."""
-    phases = mode_phases(cue, count)
-    elements = math.ceil(float(phases.max()) / MAX_UNIFORM_PHASE)
-    EA = cue.section_in(np.arange(len(phases))[:, None], np.diff(cue.nodes)[:, None] * np.array([0.0, 1.0])).EA
-    return elements, int(orders_for(phases / elements, EA.max(axis=1) / EA.min(axis=1)).max())

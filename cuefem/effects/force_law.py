@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -66,17 +66,6 @@ class IndentationOutOfRange(ValueError):
     """A leather tip is indented beyond the range of its law."""
 
 
-class Curves(NamedTuple):
-    """Computed curves of a leather tip, (n,) each, ascending, without zero.
-
-    depth, force: of a central impact, m and N. shear: tangential stiffness of the patch at that depth, N/m.
-    """
-
-    depth: Array
-    force: Array
-    shear: Array
-
-
 @dataclass(frozen=True)
 class LeatherLaw:
     """The law of leather: series of F and k_t in the root of the indentation, restitution e, and range of validity, m.
@@ -91,11 +80,14 @@ class LeatherLaw:
     depth_limit: float
 
     @classmethod
-    def fitted(cls, curves: Curves, restitution: float) -> LeatherLaw:
-        """The law through the curves, by least squares of relative differences."""
-        root = np.sqrt(curves.depth)
-        force, give = _series(root, curves.force, lowest=3), _series(root, root / curves.shear, lowest=0)
-        return cls(force, give, restitution, float(curves.depth[-1]))
+    def fitted(cls, depth: Array, force: Array, shear: Array, restitution: float) -> LeatherLaw:
+        """The law through computed curves, (n,), ascending, without zero, by least squares of relative differences.
+
+        depth, force: of a central impact, m and N. shear: tangential stiffness of the patch at that depth, N/m.
+        """
+        root = np.sqrt(depth)
+        terms = _series(root, force, lowest=3), _series(root, root / shear, lowest=0)
+        return cls(*terms, restitution, float(depth[-1]))
 
     @cached_property
     def _force(self) -> Polynomial:

@@ -16,7 +16,7 @@ from cuefem.cue.materials import LEATHER_NAMES
 from cuefem.effects.contact_terms import ContactTerms, TipModel
 from cuefem.effects.cue_effects import PointMass
 from cuefem.effects.effect import CueEffect, Effect
-from cuefem.effects.force_law import Curves, LeatherLaw
+from cuefem.effects.force_law import LeatherLaw
 from cuefem.quantity.fields import DIAMETER, OutOfBounds, Quantity, check_fields, check_kind
 from cuefem.solid.tip_cache import cached_table, read_table
 from cuefem.solid.tip_table import (
@@ -480,4 +480,4 @@ def _law(tip: LeatherTip, diameter: float, ball_radius: float, offset: float, re
     patch, depth, force = _pressed(tip, diameter, ball_radius)
     radius, shear = tip.shear_stiffness(diameter, offset)
     of_patch = patch * np.interp(patch, radius[1:], shear[1:] / radius[1:])  # nearly straight, other than the stiffness
-    return LeatherLaw.fitted(Curves(depth, force, of_patch), restitution)
+    return LeatherLaw.fitted(depth, force, of_patch, restitution)

@@ -23,8 +23,7 @@ Progress = Callable[[Sequence[Any]], Iterable[Any]]
 def convergence_record(scene: Scene, *, max_modes: int = MAX_MODES, progress: Progress = iter) -> Record:
     """Refinement levels, at least three, with error and run time; a recommendation for each of `RECOMMENDED_RTOLS`.
 
-    Refinement ends at ``max_modes`` modes. Keys of a level: "modes", "steps", "elements", "order"; "unknowns", the
-    number of degrees of freedom; "estimate", its estimated relative error (None on the first two); "difference",
+    Refinement ends at ``max_modes`` modes. Keys of a level: "modes", "steps"; "unknowns", the number of degrees of freedom; "estimate", its estimated relative error (None on the first two); "difference",
     relative, from the last level; "seconds", the run time of all levels up to it, which `cuefem.resolve` takes.
     ValueError for a lumped cue, which is exact.
     """
@@ -41,7 +40,7 @@ def _timed_levels(scene: Scene, max_modes: int, progress: Progress) -> list[tupl
     """
     refined: list[Level] = []
     for level in refinement_levels(scene, min(RECOMMENDED_RTOLS)):
-        if len(refined) > 2 and level.at.modes > max_modes:
+        if len(refined) > 2 and level.modes > max_modes:
             break
         refined.append(level)
     again, start = refinement_levels(scene, min(RECOMMENDED_RTOLS)), perf_counter()
@@ -50,10 +49,8 @@ def _timed_levels(scene: Scene, max_modes: int, progress: Progress) -> list[tupl
 
 def _level_record(scene: Scene, level: Level, seconds: float, best: Any) -> Record:
     return {
-        "modes": level.at.modes,
-        "steps": level.at.steps,
-        "elements": level.at.elements,
-        "order": level.at.order,
+        "modes": level.modes,
+        "steps": level.steps,
         "unknowns": level.result.unknowns,
         "estimate": level.error,
         "difference": None if level.result is best else relative_error(level.result, best, scene),
@@ -65,14 +62,14 @@ def _recommended(rtol: float, rows: Sequence[Record]) -> Record:
     """The first level with an estimated error of at most ``rtol``; otherwise the last, with "reached" False."""
     estimated = [row for row in rows if row["estimate"] is not None]
     first = next((row for row in estimated if row["estimate"] <= rtol), None)
-    names = ("modes", "steps", "elements", "order", "unknowns", "estimate", "seconds")
+    names = ("modes", "steps", "unknowns", "estimate", "seconds")
     last = estimated[-1] if estimated else rows[-1]
     return {"rtol": rtol, "reached": first is not None, **{name: (first or last)[name] for name in names}}
 
 
 def tabulate_convergence(record: Record) -> list[Table]:
     """The refinement levels, and the recommended resolutions."""
-    sizes: dict[str, ColumnEntry] = {"modes": "{modes}", "steps": "{steps}", "elements x order": _mesh}
+    sizes: dict[str, ColumnEntry] = {"modes": "{modes}", "steps": "{steps}"}
     errors = {"estimate": "{estimate:error}", "difference": "{difference:error}"}
     times: dict[str, ColumnEntry] = {
         "ms, sequence": lambda row: significant(float(to_display(row["seconds"], "s")), 3),
@@ -85,7 +82,6 @@ def tabulate_convergence(record: Record) -> list[Table]:
             record["levels"],
             "Relative error, the largest of squirt, ball speed and spin: estimate, and difference from the last row.",
             "ms, sequence: time of all rows down to this one, which `resolve` runs.",
-            "elements: number for all segments together; order: degree of their polynomials.",
         ),
         tabulate(
             "Recommended resolution",
@@ -98,11 +94,6 @@ def tabulate_convergence(record: Record) -> list[Table]:
 
 def _accuracy(row: Mapping[str, Any]) -> str:
     return f"{row['rtol']:.0e}" + ("" if row["reached"] else ", not reached; the best:")
-
-
-def _mesh(row: Mapping[str, Any]) -> str:
-    elements = row["elements"]
-    return f"{sum(elements) if isinstance(elements, list) else elements} x {row['order']}"
 
 
 def convergence_charts(record: Record) -> list[Chart]:

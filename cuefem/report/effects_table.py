@@ -12,7 +12,7 @@ from cuefem.report.scene_summary import assumptions, effect_text
 from cuefem.results.convergence import refinement_levels
 from cuefem.results.quantities import DASH, format_value
 from cuefem.results.records import Record, Table
-from cuefem.scene import Outcome, Resolution, Scene
+from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import corrected_tip_modes
 
 DEFAULT_RTOL = 1e-2
@@ -22,9 +22,9 @@ MARGIN = 3
 Progress = Callable[[Sequence[Variant]], Iterable[Variant]]
 
 
-def strike_at(scene: Scene, at: Resolution | None) -> Outcome:
-    """Strike with the modes of a resolution and a truncation correction. at: None for a lumped cue."""
-    return strike(scene) if at is None else strike_modes(scene, corrected_tip_modes(scene, at.modes))
+def strike_at(scene: Scene, modes: int | None) -> Outcome:
+    """Strike with a number of modes and a truncation correction. modes: None for a lumped cue."""
+    return strike(scene) if modes is None else strike_modes(scene, corrected_tip_modes(scene, modes))
 
 
 def effects_record(scene: Scene, *, rtol: float = DEFAULT_RTOL, progress: Progress = iter) -> Record:
@@ -33,16 +33,16 @@ def effects_record(scene: Scene, *, rtol: float = DEFAULT_RTOL, progress: Progre
     All strikes have the resolution that the unmodified scene needs, so that discretisation errors cancel. progress:
     iterates over the variants with a progress bar.
     """
-    at = None
+    modes = None
     if scene.lumped is None:
         *_, level = refinement_levels(scene, rtol / MARGIN)
-        at = level.at
-    base = strike_at(scene, at)
-    rows = [_row(variant, scene, base, rtol=rtol, at=at) for variant in progress(variants(scene))]
+        modes = level.modes
+    base = strike_at(scene, modes)
+    rows = [_row(variant, scene, base, rtol=rtol, modes=modes) for variant in progress(variants(scene))]
     rows.sort(key=lambda row: -1.0 if row["largest_change"] is None else row["largest_change"], reverse=True)
     return {
         "rtol": rtol,
-        "resolution": None if at is None else asdict(at),
+        "modes": modes,
         "base": _results(base, scene),
         "effects": rows,
         "recommendation": recommendation(rows),
@@ -66,7 +66,7 @@ def _end_mass(outcome: Outcome, scene: Scene) -> float | None:
         return None
 
 
-def _row(variant: Variant, scene: Scene, base: Outcome, *, rtol: float, at: Resolution | None) -> Record:
+def _row(variant: Variant, scene: Scene, base: Outcome, *, rtol: float, modes: int | None) -> Record:
     about: Record = {
         "name": variant.name,
         "values": None if variant.effect is None else asdict(variant.effect),
@@ -76,7 +76,7 @@ def _row(variant: Variant, scene: Scene, base: Outcome, *, rtol: float, at: Reso
     if variant.scene is None:
         return about | _failed(variant.reason)
     try:
-        outcome = strike_at(variant.scene, at)
+        outcome = strike_at(variant.scene, modes)
     except (ValueError, RuntimeError) as error:
         return about | _failed(str(error))
     changed = outcome_change(outcome, base, offset=scene.stroke.offset)

@@ -13,12 +13,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.beam.tip_modes import TipModes, lumped_tip_modes
-from cuefem.beam.wave_phases import modes_below, uniform_mesh_for
+from cuefem.beam.wave_phases import modes_below
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
 from cuefem.endmass.definitions import definition_of
 from cuefem.quantity.fields import Quantity, check_kind
-from cuefem.scene import MAX_STEPS, Outcome, Resolution, Scene
+from cuefem.scene import MAX_STEPS, Outcome, Scene
 from cuefem.scene.solved_scene import MAX_MODES, corrected_tip_modes
 
 FIRST_MODES, FIRST_STEPS = 12, 100  # modes and steps of the first level
@@ -31,9 +31,10 @@ RTOL = Quantity("", "(0, 1)")
 
 
 class Level(NamedTuple):
-    """One refinement level: its resolution, its outcome or end mass, and from the third level on its relative error."""
+    """One refinement level: modes, steps, its outcome or end mass, and from the third level on its relative error."""
 
-    at: Resolution
+    modes: int
+    steps: int
     result: Any
     error: float | None
 
@@ -83,18 +84,18 @@ def resolve(scene: Scene, rtol: float) -> Outcome:
 
 def refinement_levels(scene: Scene, rtol: float) -> Iterator[Level]:
     """Strikes at ever more modes and steps, up to the first with an error within ``rtol``, or `MAX_MODES` modes."""
-    strike = lambda tip, at: strike_modes(scene, tip, steps=at.steps)  # noqa: E731
+    strike = lambda tip, steps: strike_modes(scene, tip, steps=steps)  # noqa: E731
     return _refined(scene, rtol, strike, lambda outcome, best: relative_error(outcome, best, scene))
 
 
 def _refined(
-    scene: Scene, rtol: float, solve: Callable[[TipModes, Resolution], Any], difference: Callable[[Any, Any], float]
+    scene: Scene, rtol: float, solve: Callable[[TipModes, int], Any], difference: Callable[[Any, Any], float]
 ) -> Iterator[Level]:
     before: list[Any] = []
-    for at, tip in _level_tip_modes(scene):
-        result = solve(tip, at)
+    for modes, steps, tip in _level_tip_modes(scene):
+        result = solve(tip, steps)
         error = max(difference(each, result) for each in before) if len(before) == COMPARED_LEVELS else None
-        yield Level(at, result, error)
+        yield Level(modes, steps, result, error)
         if error is not None and error <= rtol:
             return
         before = [*before, result][-COMPARED_LEVELS:]
@@ -150,18 +151,17 @@ def _compared(outcome: Outcome) -> Array:
     return np.array([outcome.squirt, outcome.ball_speed, outcome.spin], float)
 
 
-def _level_tip_modes(scene: Scene) -> Iterator[tuple[Resolution, TipModes]]:
-    """Resolutions and tip modes of the levels; for a lumped cue, which has no modes, only the step is halved."""
+def _level_tip_modes(scene: Scene) -> Iterator[tuple[int, int, TipModes]]:
+    """Modes, steps and tip modes of the levels; for a lumped cue, which has two modes, only the step is halved."""
     steps = FIRST_STEPS
     if scene.lumped is not None:
         tip = lumped_tip_modes(scene.lumped)
         while steps <= MAX_STEPS:
-            yield Resolution(1, 1, 1, steps), tip
+            yield 0, steps, tip
             steps *= 2
         return
-    cue = scene.shaft
-    for count in mode_counts(modes_below(cue, 2 * np.pi * MIN_PERIODS / scene.contact_time)):
-        yield Resolution(*uniform_mesh_for(cue, count), count, steps), corrected_tip_modes(scene, count)
+    for count in mode_counts(modes_below(scene.shaft, 2 * np.pi * MIN_PERIODS / scene.contact_time)):
+        yield count, steps, corrected_tip_modes(scene, count)
         steps *= 2
 
 

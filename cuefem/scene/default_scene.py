@@ -63,11 +63,6 @@ class Game:
         leather = LEATHERS[self.leather]
         return LeatherTip(self.height, self.dome_radius, leather.E, leather.nu, leather.rho)
 
-    @property
-    def tip_restitution(self) -> float:
-        """Restitution of the default tip by itself; axial waves raise it to about that of the whole cue."""
-        return LEATHERS[self.leather].restitution
-
     def tip_with(self, effects: Sequence[Effect]) -> Tip:
         """Tip with the leather's own restitution beside axial waves; otherwise that of the whole cue."""
         E = next((effect.E for effect in effects if isinstance(effect, LeatherTip)), LEATHERS[self.leather].E)

@@ -455,8 +455,5 @@ class Outcome:
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        return brief_repr("Outcome", self._shown())
-
-    def _shown(self) -> list[tuple[str, Any]]:
         names = ("squirt", "ball_speed", "spin", "cue_speed", "duration", "regime", "error")
-        return [(name, getattr(self, name)) for name in names if getattr(self, name) is not None]
+        return brief_repr("Outcome", ((name, getattr(self, name)) for name in names if getattr(self, name) is not None))

@@ -26,7 +26,7 @@ def test_default_scene_cue_without_leather_gets_tip_of_game(game: str) -> None:
     waves = cf.AxialWaves(known.cue_length, known.butt_diameter, 4430.0)
     assert set(scene.effects) == {known.tip, waves, cf.GeometricStiffness()}
     assert (scene.ball, scene.stroke) == (known.ball, cf.Stroke(known.speed, known.offset))
-    assert scene.tip == cf.Tip(known.tip_restitution, known.friction)
+    assert scene.tip == cf.Tip(LEATHERS[known.leather].restitution, known.friction)
     assert known.tip.E == LEATHERS["medium"].E
     assert 2e-4 < scene.contact_time < 3e-3
     assert len(known.source) > 40
