@@ -8,9 +8,10 @@ from cuefem.scene import Scene
 
 
 def modes_record(scene: Scene, *, count: int, near: float | None) -> Record:
-    """Natural frequencies, Hz, and tip amplitudes of the ``count`` lowest modes, or of those nearest ``near``, Hz.
+    """Natural frequencies and tip amplitudes of the ``count`` lowest bending modes, or of those nearest ``near``, Hz.
 
-    "nearest": the frequency nearest ``near``, or None.
+    "frequencies", Hz; "tip_amplitudes", kg^-1/2, of mass-normalised modes; "rigid", the number of rigid-body modes;
+    "nearest", the frequency nearest ``near``, or None.
     """
     bending = modes(scene.shaft, count, near, effects=scene.cue_effects)
     amplitudes, _ = bending.shape(0.0)
@@ -25,20 +26,21 @@ def modes_record(scene: Scene, *, count: int, near: float | None) -> Record:
 
 
 def tabulate_modes(record: Record) -> Table:
-    """A row for each mode of the cue with the scene's effects on it."""
+    """A row for each mode of the cue, with the scene's effects on the cue."""
     near, nearest = record["near"], record["nearest"]
     rows = [
-        {"frequency": frequency, "period": 1 / frequency, "at_tip": amplitude}
+        {"frequency": frequency, "period": 1 / frequency, "tip_amplitude": amplitude}
         for frequency, amplitude in zip(record["frequencies"], record["tip_amplitudes"], strict=True)
     ]
     columns: dict[str, ColumnEntry] = {
         "frequency": "{frequency:frequencies}",
-        "period": "{period:s}",
-        "tip amplitude": "{at_tip:tip_amplitudes}",
+        "period": "{period:s}",  # in the display unit of s
+        "tip amplitude": "{tip_amplitude:tip_amplitudes}",
     }
     if near is not None:
         columns[""] = lambda row: "nearest" if row["frequency"] == nearest else ""
-    motions = "1 rigid-body mode" if record["rigid"] == 1 else f"{record['rigid']} rigid-body modes"
-    note = f"{motions} at 0 Hz not listed; tip amplitude: of the mass-normalised mode"
+    notes = ["tip amplitude: of the mass-normalised mode"]
+    if rigid := record["rigid"]:
+        notes.insert(0, f"{rigid} rigid-body mode{'s' * (rigid > 1)} at 0 Hz not listed")
     title = "Natural frequencies" if near is None else f"Natural frequencies nearest {near:g} Hz"
-    return tabulate(title, columns, rows, note, texts=())
+    return tabulate(title, columns, rows, "; ".join(notes), texts=())

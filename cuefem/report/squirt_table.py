@@ -9,7 +9,7 @@ import numpy as np
 from cuefem.cue import LumpedCue
 from cuefem.report.charts import Axis, Chart, Curve, Shade, Tick, chart
 from cuefem.report.scene_summary import assumptions
-from cuefem.report.strike_table import PIVOT, a31_squirt, lumped_cues, lumped_strike
+from cuefem.report.strike_table import PIVOT_NOTE, a31_squirt, lumped_cues, lumped_strike
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.quantities import DISPLAY_UNITS, format_value
 from cuefem.results.records import Record, Table
@@ -23,12 +23,12 @@ PAPER_CUE_END_MASS = 0.012  # kg, [Kim]'s m_c of a real cue: four times the effe
 def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, solved: SolvedScene | None = None) -> Record:
     """Squirt, rad, and natural pivot length, m, at each offset b/R by every model; nan where no lumped cue fits.
 
-    Models: coupled strike; lumped, if effects at the tip couple the cue's transverse and axial motions; two-part, with
-    this cue's end mass and with [Kim]'s 12 g; [A.31]. "end_mass": kg at each offset, with sticking contact and without
-    effects at the tip. solved: the scene's modes, if already computed.
+    Models: coupled strike; lumped, if effects at the tip or a lumped cue's own constant couple transverse and axial
+    motion; two-part, with this cue's end mass and with [Kim]'s 12 g; [A.31]. "end_mass", kg, and "coupling", 1/kg, at
+    each offset are those of `lumped_cues`. solved: the scene's modes, if already computed.
     """
     solved = solved or SolvedScene(scene)
-    own, slope = lumped_cues(scene, offsets, solved.stick_tip)
+    own = lumped_cues(scene, offsets, solved.stick_tip)
     cues = {f"{name}, this cue": each for name, each in own.items()}
     cues["two-part, 12 g"] = [LumpedCue.two_part(scene.axial_mass, PAPER_CUE_END_MASS)] * len(offsets)
     cues["A.31, this cue"] = own["two-part"]
@@ -45,7 +45,7 @@ def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, solved: S
     return {
         "offsets": list(offsets),
         "end_mass": [cue and cue.end_mass for cue in own["two-part"]],
-        "coupling": slope,
+        "coupling": [cue and cue.coupling for cue in own.get("lumped", own["two-part"])],
         "models": models,
     }
 
@@ -60,7 +60,11 @@ def tabulate_squirt(record: Record, scene: Record) -> Table:
     ]
     head = ("b/R", "squirt", "natural pivot length", "contact")
     return Table(
-        "Squirt and tip offset", head, tuple(rows), (assumptions(scene), f"natural pivot length: {PIVOT}"), texts=(3,)
+        "Squirt and tip offset",
+        head,
+        tuple(rows),
+        (assumptions(scene), PIVOT_NOTE),
+        texts=(3,),
     )
 
 

@@ -21,46 +21,39 @@ from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import SolvedScene
 
 
-def lumped_cues(
-    scene: Scene, offsets: Sequence[float], tip: TipModes
-) -> tuple[dict[str, list[LumpedCue | None]], float]:
-    """The lumped cues of "lumped" and "two-part" at each offset, or None; and the coupling per b/R, 1/kg.
+def lumped_cues(scene: Scene, offsets: Sequence[float], tip: TipModes) -> dict[str, list[LumpedCue | None]]:
+    """The lumped cues of "lumped" and "two-part" at each offset; None where no lumped cue has the squirt.
 
-    "two-part" has the end mass with sticking contact and without effects at the tip; "lumped" adds the coupling by
-    these effects, and is absent if they add none.
+    "two-part" has the end mass for sticking contact at that offset, without effects at the tip and without coupling.
+    "lumped" adds the coupling by effects at the tip, proportional to |b/R|; it is absent if they add none, or if no
+    lumped cue has the squirt with them. A scene's own lumped cue has its own end mass and, as "lumped", its own
+    coupling, both at all offsets. tip: the cue's tip modes with sticking contact.
     """
-    cues, slope = two_part_cues(scene, offsets, tip), coupling_slope(scene, tip)
-    coupled = [_with_coupling(cue, slope * abs(b)) for cue, b in zip(cues, offsets, strict=True)]
-    return ({"lumped": coupled} if slope else {}) | {"two-part": cues}, slope
-
-
-def two_part_cues(scene: Scene, offsets: Sequence[float], tip: TipModes) -> list[LumpedCue | None]:
-    """The lumped cue for the impulse solver at each offset, with the end mass for sticking contact there.
-
-    Without effects at the tip. None at an offset where no end mass gives that squirt. A lumped cue has its own end
-    mass at all offsets. tip: the cue's tip modes with sticking contact.
-    """
-    if scene.lumped is not None:
-        return [replace(scene.lumped, coupling=0.0)] * len(offsets)
+    if (own := scene.lumped) is not None:
+        coupled: list[LumpedCue | None] = [own] * len(offsets)
+        return ({"lumped": coupled} if own.coupling else {}) | {"two-part": [replace(own, coupling=0.0)] * len(offsets)}
     masses = stick_at_offsets(tip, scene.without_tip_effects, offsets)
-    return [None if math.isnan(mass) else LumpedCue(scene.axial_mass, mass) for mass in masses]
+    cues = [None if math.isnan(mass) else LumpedCue(scene.axial_mass, mass) for mass in masses]
+    slope = _coupling_slope(scene, tip)
+    coupled = [_with_coupling(cue, slope * abs(b)) for cue, b in zip(cues, offsets, strict=True)]
+    return ({"lumped": coupled} if slope else {}) | {"two-part": cues}
 
 
-def coupling_slope(scene: Scene, tip: TipModes) -> float:
-    """The coupling per b/R, 1/kg, that effects at the tip add to `two_part_cues`; zero if beyond any lumped cue.
+def _coupling_slope(scene: Scene, tip: TipModes) -> float:
+    """The coupling by effects at the tip per b/R, 1/kg, at the offset of the stroke, or at 0.1 of a central impact.
 
-    Computed at the offset of the stroke, or at 0.1 for a head-on stroke.
+    Zero without such effects, or if no lumped cue has the squirt with them.
     """
     offset = scene.stroke.offset or 0.1
     try:
         cue = lump_modes(at_offset(scene, offset), tip)
-    except ValueError:  # no lumped cue has so large a coupling
+    except ValueError:
         return 0.0
     return cue.coupling / abs(offset)
 
 
 def _with_coupling(cue: LumpedCue | None, coupling: float) -> LumpedCue | None:
-    """The cue with a coupling; None if no cue can have it."""
+    """The cue with a coupling; None without a cue, or if the coupling is out of its bounds."""
     try:
         return cue and replace(cue, coupling=coupling)
     except ValueError:
@@ -68,7 +61,7 @@ def _with_coupling(cue: LumpedCue | None, coupling: float) -> LumpedCue | None:
 
 
 def lumped_strike(scene: Scene, cue: LumpedCue) -> Outcome:
-    """The outcome of the impulse solver for a lumped cue, without effects."""
+    """The outcome of the scene's stroke with a lumped cue and without effects, by the impulse solver."""
     return impulse(replace(scene, cue=cue, effects=()))
 
 
@@ -87,87 +80,101 @@ def outcome_record(outcome: Outcome, scene: Scene) -> Record:
 def strike_record(scene: Scene, outcome: Outcome | None = None, *, solved: SolvedScene | None = None) -> Record:
     """One stroke by each model, by the model's name; [A.31] has squirt and pivot length only.
 
-    "coupled": the vibrating cue, integrated in time. "two-part" (impulse solver) and "A.31": with the end mass for
-    sticking contact at this offset and without effects at the tip; absent if no end mass gives that squirt. "lumped":
-    the impulse solver with the coupling by effects at the tip, if any. outcome: of the coupled strike, solved: the
-    scene's modes, if already computed.
+    "coupled": integrated in time. "lumped" and "two-part": the impulse solver for the cues of `lumped_cues`; "A.31":
+    with the end mass of "two-part". A model without a cue is absent. "coupling": of "lumped", 1/kg. outcome: of the
+    coupled strike, solved: the scene's modes, if already computed.
     """
     solved = solved or SolvedScene(scene)
-    offset = scene.stroke.offset
-    cues, slope = lumped_cues(scene, [offset], solved.stick_tip)
+    cues = lumped_cues(scene, [scene.stroke.offset], solved.stick_tip)
     models = {"coupled": outcome_record(outcome or strike_modes(scene, solved.tip), scene)}
     models |= {name: outcome_record(lumped_strike(scene, cue), scene) for name, (cue,) in cues.items() if cue}
-    (cue,) = cues["two-part"]
+    (cue,), (lumped,) = cues["two-part"], cues.get("lumped", [None])
     if cue:
         squirt = a31_squirt(scene, cue)
         models["A.31"] = {"squirt": squirt, "pivot_length": pivot_length(scene, squirt)}
     return {
         "end_mass": cue and cue.end_mass,
-        "coupling": slope * abs(offset) if "lumped" in models else 0.0,
+        "coupling": lumped.coupling if lumped else 0.0,
         "models": models,
     }
 
 
-# Rows of the table; a vector has a row for each component (0 tangential, 1 normal).
-SHOWN: tuple[tuple[str, int | None, str], ...] = (
+# Rows of the table: quantity, component of a vector (0 tangential, 1 normal), and the end of the label.
+ROWS: tuple[tuple[str, int | None, str], ...] = (
     *((name, None, "") for name in ("squirt", "pivot_length", "ball_speed")),
-    *(("ball_velocity", 1, ", normal"), ("ball_velocity", 0, ", tangent")),
+    *(("ball_velocity", 1, ", normal"), ("ball_velocity", 0, ", tangential")),
     *((name, None, "") for name in ("spin", "cue_speed", "duration", "regime", "error")),
 )
-SLOWER = 0.02  # relative: a note explains a ball speed that is lower by more
-LUMPED = (
+SPEED_NOTE_THRESHOLD = 0.02  # relative deficit of a lumped model's ball speed from which a note explains it
+LUMPED_SPEED_NOTE = (
     "ball speed: use the coupled value; the lumped models omit axial waves, which raise the restitution of the whole "
     "cue above that of its tip"
 )
-PIVOT = "distance from the tip to the point about which pivoting the cue cancels squirt (back-hand English)"
-UNCERTAINTY_NOTE = "uncertainty of squirt: cuefem report"
-MISCUE = f"miscue: {MISCUE_DEFINITION}. Ignore squirt and pivot length"
+PIVOT_NOTE = (
+    "natural pivot length: distance from the tip to the point about which pivoting the cue cancels squirt (back-hand "
+    "English)"
+)
+UNCERTAINTY_NOTE = "run `cuefem report FILE` for the uncertainty of squirt"
+MISCUE_NOTE = f"miscue: {MISCUE_DEFINITION}. Ignore squirt and pivot length"
 
 
 def regime_warning(regime: str) -> str:
     """The warning for a miscue, or for slip that increases squirt; "" for other contact states."""
-    return MISCUE if regime == "miscue" else REGIMES[regime] if regime in ("partial slip", "gross slip") else ""
+    return MISCUE_NOTE if regime == "miscue" else REGIMES[regime] if regime in ("partial slip", "gross slip") else ""
 
 
 def tabulate_strike(record: Record, scene: Record) -> Table:
     """A column for each model, a row for each quantity that any model has."""
     coupled = record["models"]["coupled"]
     rows = []
-    for name, part, component in SHOWN:
+    for name, part, component in ROWS:
         values = [model.get(name) for model in record["models"].values()]
         if any(value is not None for value in values):
             parts = (value if value is None or part is None else value[part] for value in values)
             rows.append((RESULTS[name].label + component, *(format_value(name, value) for value in parts)))
-    miscue = [MISCUE] if coupled["regime"] == "miscue" else []
+    miscue = [MISCUE_NOTE] if coupled["regime"] == "miscue" else []
     accuracy = (
         ", numerical error of squirt at most 0.1 % for 95 % of default strikes"
         if "length" in scene["cue"] and coupled["error"] is None
         else ""
     )
-    offset = "offset, without the effects at the tip" if scene["effects_at_tip"] else "offset"
-    lumped = (
-        f"; lumped includes them as a coupling of {record['coupling']:.4g} /kg, transverse tip velocity per unit axial "
-        "impulse"
-        if record["coupling"]
-        else ""
-    )
     notes = (
         *miscue,
         assumptions(scene),
-        f"coupled: vibrating shaft in time{accuracy}; two-part and A.31: two masses, with the end mass of a tip that "
-        f"sticks ({offset}; `cuefem end-mass`)",
-        *([f"natural pivot length: {PIVOT}"] if any(row[0] == RESULTS["pivot_length"].label for row in rows) else []),
+        _models_note(scene, accuracy),
+        *([PIVOT_NOTE] if any(row[0] == RESULTS["pivot_length"].label for row in rows) else []),
         *([] if miscue else [f"contact: {REGIMES[coupled['regime']]}"]),
-        *_on_speed(record, scene),
+        *_speed_notes(record, scene),
         UNCERTAINTY_NOTE,
-        *tip_effect_notes(scene, f"two-part and A.31 exclude the effects at the tip{lumped}"),
+        *_coupling_notes(record, scene),
     )
     return Table(f"Strike at offset b/R = {scene['stroke']['offset']:.4g}", ("", *record["models"]), tuple(rows), notes)
 
 
-def _on_speed(record: Record, scene: Record) -> list[str]:
+def _models_note(scene: Record, accuracy: str) -> str:
+    """The definitions of the models, for a vibrating or a lumped cue."""
+    if "length" not in scene["cue"]:
+        return "coupled: contact integrated in time; two-part and A.31: two masses, with the cue's end mass"
+    offset = "offset, without the effects at the tip" if scene["effects_at_tip"] else "offset"
+    return (
+        f"coupled: vibrating shaft in time{accuracy}; two-part and A.31: two masses, with the end mass of a tip that "
+        f"sticks ({offset}; `cuefem end-mass`)"
+    )
+
+
+def _coupling_notes(record: Record, scene: Record) -> list[str]:
+    """Which models include the effects at the tip, and a coupling."""
+    coupling = f"coupling of {record['coupling']:.4g} /kg, transverse tip velocity per unit axial impulse"
+    if "length" not in scene["cue"]:
+        own = [f"two-part and A.31 exclude the cue's {coupling}"] if record["coupling"] else []
+        return [*own, *tip_effect_notes(scene, "only coupled includes the effects at the tip")]
+    lumped = f"; lumped includes them as a {coupling}" if record["coupling"] else ""
+    return tip_effect_notes(scene, f"two-part and A.31 exclude the effects at the tip{lumped}")
+
+
+def _speed_notes(record: Record, scene: Record) -> list[str]:
     """A note on the lower ball speed of lumped models, which omit the axial waves of the coupled strike."""
     if "AxialWaves" not in {effect["type"] for effect in scene["effects"]}:
         return []
     coupled, *others = (model["ball_speed"] for model in record["models"].values() if "ball_speed" in model)
-    return [LUMPED] if any(other < (1 - SLOWER) * coupled for other in others) else []
+    return [LUMPED_SPEED_NOTE] if any(other < (1 - SPEED_NOTE_THRESHOLD) * coupled for other in others) else []

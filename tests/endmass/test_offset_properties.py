@@ -71,6 +71,14 @@ def test_lump_with_dome_squirt_equals_strike_without_slip(offset: float) -> None
     assert cf.impulse(lumped).squirt == pytest.approx(cf.strike(gripping, KIM_AT).squirt, rel=1e-9)
 
 
+def test_lumped_cue_coupling_is_the_same_at_all_offsets() -> None:
+    """A cue's own coupling is a constant, that by effects at the tip is proportional to the offset."""
+    scene = at(cf.Scene(cf.LumpedCue(0.54, 0.006, coupling=3.0), tip=cf.Tip(contact_time=1e-3)), 0.2)
+    models = squirt_record(scene, (-0.3, 0.3))["models"]
+    assert models["lumped, this cue"]["squirt"] == pytest.approx(models["coupled, this cue"]["squirt"], rel=1e-3)
+    assert strike_record(scene)["coupling"] == 3.0
+
+
 def test_strike_record_without_end_mass_omits_lumped_models() -> None:
     """A tip of low restitution, far off centre: the tip moves ahead of the ball."""
     scene = replace(kim_scene(0.85), tip=cf.Tip(0.05, 0.7, 1e-3))
