@@ -62,7 +62,7 @@ def study(
     first response).
     """
     asked = load_study(file)
-    designs = asked if isinstance(asked, Study) else asked.designs if isinstance(asked, Scatter) else asked.study
+    designs = asked if isinstance(asked, Study) else asked.sobol_study if isinstance(asked, Scatter) else asked.study
     notes = base_assumptions(file, designs.base)
     if isinstance(asked, Problem) and (store or workers):
         raise click.UsageError("--store and --workers do not apply to an optimum, which runs in one process")

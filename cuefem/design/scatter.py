@@ -1,11 +1,11 @@
 """Tolerance analysis: uncertainty propagation from wood, turning and strokes to responses, with Sobol indices.
 
-The ranges of a study (`cuefem.design`) are distributions: `Normal`, `Span` (uniform), `Levels` (equally likely). Normal
-scores z = L n, n independent and L L' their correlations (a Gaussian copula), determine the numbers: the quantile of
-each range at the cumulative probability of z. Sobol indices need independent causes, so correlated numbers are one
-cause, a group, and are drawn together. A group's first-order index is the part of the variance that would vanish if all
-its numbers were known; its total index is the part that would remain if all other numbers were known. Single numbers of
-a group have no index of their own.
+The ranges of a study are distributions: `Normal`, `Span` (uniform; of the logarithm if logarithmic), `Levels` (equally
+likely). Normal scores z = L n, with n independent standard normal and L L' the correlation matrix (a Gaussian copula),
+determine the parameters: each is the quantile of its range at the cumulative probability of its score. Sobol indices
+need independent causes, so correlated parameters form one cause, a group, and are drawn together. A group's first-order
+index is the part of the variance that would vanish if all its parameters were known; its total index is the part that
+would remain if all others were known. Single parameters of a group have no indices.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from cuefem.design.sweep import Row
 from cuefem.quantity.fields import check_count
 
 CONFIDENCE, RESAMPLES = 0.95, 400  # of the bootstrapped intervals
-HALF_CELL = 2.0**-31  # of scipy's Sobol points, so that none is 0
+HALF_CELL = 2.0**-31  # half the spacing of scipy's Sobol points: added, so that no point is 0
 
 
 @dataclass(frozen=True)
@@ -37,21 +37,24 @@ class Scatter:
     study : Study
         Its ranges are the distributions; its own sample is not used.
     correlations : mapping, optional
-        {(name, name): r}, with r in (-1, 1) between the normal scores of two numbers. For normal numbers, and for the
-        logarithms of logarithmic ones, r is the correlation itself; other numbers have the rank correlation
-        6/pi asin(r/2).
+        {(name, name): r}, r: correlation of the normal scores, in (-1, 1). A normal range has correlation r (a
+        logarithmic one, of its logarithm), apart from truncation. Every range has rank correlation 6/pi asin(r/2).
     groups : mapping, optional
-        {name: names of parameters}, each one cause. Correlated numbers must share a group; without one
-        they form a group of their own.
+        {name: names of parameters}, each one cause. Correlated parameters must share a group; without one they form a
+        group of their own.
     count : int
-        Designs of a sample, a power of two.
+        Designs per base sample: a power of two, at least 2. The analysis evaluates (causes + 2) count designs.
     seed : int
-        Of the samples.
+        Of the samples, at least 0.
 
     Raises
     ------
+    TypeError
+        If count or seed is no whole number.
     ValueError
-        If a name is unknown, the correlation matrix is not positive definite, or a group separates correlated numbers.
+        If count or seed is out of bounds; a name is unknown; a correlation is out of bounds, listed twice, or of a list
+        of values; the correlation matrix is not positive definite; a parameter is in two groups; a group separates
+        correlated parameters; or two causes have one name.
     """
 
     study: Study
@@ -66,18 +69,18 @@ class Scatter:
         if self.count & (self.count - 1):
             near = 1 << (self.count.bit_length() - 1)
             raise ValueError(f"count must be a power of two; got {self.count}: take {near} or {2 * near}")
-        pairs: set[frozenset[str]] = set()
+        listed: set[frozenset[str]] = set()
         for pair, r in self.correlations.items():
             self._check_names("a correlation", pair)
-            lists = [name for name in pair if isinstance(self.study.vary[self.names.index(name)].range, Levels)]
-            if lists:
-                raise ValueError(f"a correlation must be between numbers; got {lists[0]!r}, which is a list of values")
-            if frozenset(pair) in pairs or len(set(pair)) != 2:
+            levels = [name for name in pair if isinstance(self.study.vary[self.names.index(name)].range, Levels)]
+            if levels:
+                raise ValueError(f"a correlation must be between numbers; got {levels[0]!r}, which is a list of values")
+            if frozenset(pair) in listed or len(set(pair)) != 2:
                 raise ValueError(f"a correlation must be of two numbers, listed once; got {' and '.join(pair)}")
             if not -1 < r < 1:
                 raise ValueError(f"the correlation of {' and '.join(pair)} must be in (-1, 1); got {r}")
-            pairs.add(frozenset(pair))
-        if np.linalg.eigvalsh(self.matrix)[0] < 1e-9:
+            listed.add(frozenset(pair))
+        if np.linalg.eigvalsh(self.correlation_matrix)[0] < 1e-9:
             raise ValueError("the correlations must have a positive definite matrix: some contradict others")
         self._check_groups()
 
@@ -88,13 +91,13 @@ class Scatter:
         twice = [name for name in grouped if grouped.count(name) > 1]
         if twice:
             raise ValueError(f"a parameter must be in one group; got {twice[0]!r} in two")
-        for members in self.members:
-            own = {self.names[i] for i in members}
+        for indices in self.factor_indices:
+            correlated = {self.names[i] for i in indices}
             for group, names in self.groups.items():
-                if own & set(names) and own != set(names):
-                    missing = ", ".join(sorted(own - set(names)))
+                if correlated & set(names) and correlated != set(names):
+                    missing = ", ".join(sorted(correlated - set(names)))
                     raise ValueError(f"group {group!r} must include all correlated parameters; it lacks {missing}")
-        if len(set(self.causes)) < len(self.members):
+        if len(set(self.causes)) < len(self.factor_indices):
             raise ValueError(f"causes must have different names; got {', '.join(self.causes)}")
 
     def _check_names(self, what: str, names: tuple[str, ...]) -> None:
@@ -109,8 +112,8 @@ class Scatter:
         return tuple(vary.name for vary in self.study.vary)
 
     @cached_property
-    def matrix(self) -> Array:
-        """Correlations of the normal scores, (vary, vary)."""
+    def correlation_matrix(self) -> Array:
+        """Correlations of the normal scores, (parameters, parameters)."""
         matrix = np.eye(len(self.names))
         for (first, other), r in self.correlations.items():
             i, j = self.names.index(first), self.names.index(other)
@@ -118,9 +121,9 @@ class Scatter:
         return matrix
 
     @cached_property
-    def members(self) -> tuple[tuple[int, ...], ...]:
-        """Parameter indices of each cause, in order of the first."""
-        joined = self.matrix != 0
+    def factor_indices(self) -> tuple[tuple[int, ...], ...]:
+        """Parameter indices of each cause, in order of the first parameter."""
+        joined = self.correlation_matrix != 0  # (i, j): in one cause
         for names in self.groups.values():
             rows = [self.names.index(name) for name in names]
             joined[np.ix_(rows, rows)] = True
@@ -132,18 +135,18 @@ class Scatter:
     def causes(self) -> tuple[str, ...]:
         """Names of the independent causes: groups and single parameters."""
         groups = {self.names.index(name): group for group, names in self.groups.items() for name in names}
-        return tuple(groups.get(each[0], " + ".join(self.names[i] for i in each)) for each in self.members)
+        return tuple(groups.get(each[0], " + ".join(self.names[i] for i in each)) for each in self.factor_indices)
 
     @property
-    def designs(self) -> Study:
-        """The study of the designs for Sobol indices: two independent samples, and the first with each cause in turn
-        from the second."""
+    def sobol_study(self) -> Study:
+        """The study of (causes + 2) ``count`` designs: two independent samples, and for each cause the first sample
+        with the cause's parameters from the second."""
         return replace(self.study, sample=_Points(self))
 
 
 @dataclass(frozen=True)
 class _Points:
-    """Cumulative probabilities of the parameters: a scrambled Sobol sequence for both samples, then the mixed ones."""
+    """Cumulative probabilities of the parameters: two samples of a scrambled Sobol sequence, then the mixed ones."""
 
     scatter: Scatter
 
@@ -155,17 +158,24 @@ class _Points:
         from scipy.stats import qmc  # loaded when used: half a second
 
         engine = qmc.Sobol(2 * dimensions, seed=np.random.default_rng(self.scatter.seed))
-        first, other = np.split(ndtri(engine.random(self.scatter.count) + HALF_CELL), 2, axis=1)
-        drawn = (np.isin(np.arange(dimensions), cause) for cause in self.scatter.members)
-        scores = np.concatenate([first, other, *(np.where(cause, other, first) for cause in drawn)])
-        yield from ndtr(scores @ np.linalg.cholesky(self.scatter.matrix).T).tolist()
+        first, second = np.split(ndtri(engine.random(self.scatter.count) + HALF_CELL), 2, axis=1)
+        from_second = (np.isin(np.arange(dimensions), indices) for indices in self.scatter.factor_indices)
+        scores = np.concatenate([first, second, *(np.where(columns, second, first) for columns in from_second)])
+        yield from ndtr(scores @ np.linalg.cholesky(self.scatter.correlation_matrix).T).tolist()
 
 
 @dataclass(frozen=True)
 class SobolIndices:
     """Sobol indices: the part of each response's variance due to each cause.
 
-    first, total: (causes, responses). first_interval, total_interval: (2, causes, responses), bootstrapped, 95 %.
+    Parameters
+    ----------
+    causes : tuple of str
+        Names of groups and of single parameters.
+    first, total : ndarray
+        First-order and total indices, (causes, responses).
+    first_interval, total_interval : ndarray
+        Ends of their 95 % intervals by bootstrap, (2, causes, responses).
     """
 
     causes: tuple[str, ...]
@@ -176,7 +186,7 @@ class SobolIndices:
 
 
 def sobol_indices_of(scatter: Scatter, rows: Sequence[Row]) -> SobolIndices:
-    """Sobol indices from the rows of `Scatter.designs`.
+    """Sobol indices from the evaluated rows of `Scatter.sobol_study`.
 
     Estimators of Saltelli et al. (Comput. Phys. Commun. 181 (2010) 259, table 2 b, f) as scipy.stats has them; error
     about 1/sqrt(count) or less, see the intervals. ValueError if a design has no response, with the first reason, or
@@ -189,17 +199,32 @@ def sobol_indices_of(scatter: Scatter, rows: Sequence[Row]) -> SobolIndices:
     for response, column in zip(scatter.study.responses, np.moveaxis(results[:2], -1, 0), strict=True):
         if column.std() <= 1e-12 * abs(column.mean()):
             raise ValueError(f"{response.name} is constant: no parameter of the study changes it")
-    return SobolIndices(scatter.causes, *indices(results.swapaxes(1, 2), seed=scatter.seed))
+    return SobolIndices(scatter.causes, *bootstrap_sobol_indices(results.swapaxes(1, 2), seed=scatter.seed))
 
 
-def indices(values: Array, *, seed: int) -> tuple[Array, Array, Array, Array]:
-    """(first, total, interval of the first, of the total) from the values (2 + causes, responses, count) of the two
-    samples and the mixed ones: each (causes, responses), intervals with low and high before."""
+def bootstrap_sobol_indices(values: Array, *, seed: int) -> tuple[Array, Array, Array, Array]:
+    """First-order and total Sobol indices with their intervals.
+
+    Parameters
+    ----------
+    values : ndarray
+        Responses of both samples and of the mixed ones, (2 + causes, responses, count).
+    seed : int
+        Of the bootstrap.
+
+    Returns
+    -------
+    first, total : ndarray
+        (causes, responses).
+    first_interval, total_interval : ndarray
+        (2, causes, responses).
+    """
     from scipy.stats import bootstrap, sobol_indices
 
     count = values.shape[-1]
 
-    def both(rows: Any) -> Array:
+    def estimate(rows: Any) -> Array:
+        """(2, causes, responses): first-order and total indices from some designs of each sample."""
         A, B, *mixed = values[:, :, rows]
         shares = sobol_indices(func={"f_A": A, "f_B": B, "f_AB": np.array(mixed)}, n=count)
         # scipy drops axes of length 1
@@ -208,12 +233,12 @@ def indices(values: Array, *, seed: int) -> tuple[Array, Array, Array, Array]:
     # scipy's own bootstrap of the indices takes no seed
     resampled = bootstrap(
         (np.arange(count),),
-        both,
+        estimate,
         vectorized=False,
         method="percentile",
         n_resamples=RESAMPLES,
         confidence_level=CONFIDENCE,
         random_state=np.random.default_rng(seed),
     ).confidence_interval
-    (first, total), low, high = both(np.arange(count)), resampled.low, resampled.high
+    (first, total), low, high = estimate(np.arange(count)), resampled.low, resampled.high
     return first, total, np.stack([low[0], high[0]]), np.stack([low[1], high[1]])

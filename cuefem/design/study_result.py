@@ -162,7 +162,7 @@ def compute_study(
         best = optimum(definition, rounds=rounds, progress=progress)
         row = Row(0, tuple(best.values.values()), tuple(best.responses.values()), None)
         return StudyResult(definition, (row,), best)
-    designs = definition.designs if isinstance(definition, Scatter) else definition
+    designs = definition.sobol_study if isinstance(definition, Scatter) else definition
     store = MemoryStore() if store is None else store
     sweep(designs, store, workers=workers, progress=progress)
     rows = tuple(store.rows())

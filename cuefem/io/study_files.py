@@ -184,7 +184,7 @@ def study(
         if store or workers:
             raise ValueError("an optimum takes no store or workers: it computes one design after the other")
         return compute_study(problem)
-    designs = problem.designs if isinstance(problem, Scatter) else problem
+    designs = problem.sobol_study if isinstance(problem, Scatter) else problem
     with SqliteStore(store, designs) if store else nullcontext() as stored:
         return compute_study(problem, store=stored, workers=workers)
 

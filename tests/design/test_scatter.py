@@ -11,7 +11,7 @@ from scipy.stats import qmc, spearmanr
 
 import cuefem as cf
 from cuefem.design import Normal, Response, Span, Study, Vary, evaluate
-from cuefem.design.scatter import Scatter, indices
+from cuefem.design.scatter import Scatter, bootstrap_sobol_indices
 from cuefem.io.study_files import load_study
 from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.sweeps import SCATTER, write_study
@@ -29,7 +29,7 @@ STUDY = Study(BASE, VARY, (Response.of("shaft_mass"), Response.of("tip_stiffness
 
 
 def designs(scatter: Scatter) -> np.ndarray:
-    return np.array([*scatter.designs.designs()])
+    return np.array([*scatter.sobol_study.designs()])
 
 
 def test_sobol_indices_ishigami_equal_closed_form() -> None:
@@ -48,7 +48,7 @@ def test_sobol_indices_ishigami_equal_closed_form() -> None:
     for count in (256, 2048):
         A, B = np.split(ndtri(qmc.Sobol(6, rng=3).random(count) + 2.0**-31), 2, axis=1)
         mixed = [np.where(np.arange(3) == i, B, A) for i in range(3)]
-        result = indices(np.array([ishigami(points) for points in (A, B, *mixed)])[:, None], seed=3)
+        result = bootstrap_sobol_indices(np.array([ishigami(points) for points in (A, B, *mixed)])[:, None], seed=3)
         errors.append(max(abs(result[0][:, 0] - first).max(), abs(result[1][:, 0] - total).max()))
         for estimate, (low, high), exact in zip(result[:2], result[2:], (first, total), strict=True):
             assert np.all((low <= estimate) & (estimate <= high))
@@ -80,7 +80,7 @@ def test_sobol_indices_of_correlated_sum_equal_closed_form() -> None:
     # a normal number cut at 4 sd: its variance loses 8 pdf(4)/(1 - 2 tail)
     cut = 1 - 8 * math.exp(-8) / math.sqrt(2 * math.pi)
     terms = per_rho * [vary.range.sd for vary in DENSITIES] * math.sqrt(cut)
-    parts = np.array([terms[0] ** 2, terms[1:] @ scatter.matrix[1:, 1:] @ terms[1:]])
+    parts = np.array([terms[0] ** 2, terms[1:] @ scatter.correlation_matrix[1:, 1:] @ terms[1:]])
     assert computed.first[:, 0] == pytest.approx(parts / parts.sum(), abs=0.03)
     assert computed.total[:, 0] == pytest.approx(parts / parts.sum(), abs=0.03)
     assert result.spread["shaft_mass"]["sd"] == pytest.approx(math.sqrt(parts.sum()), rel=0.03)
