@@ -55,10 +55,11 @@ def solved_strike(scene: Scene) -> SolvedStrike:
 
 
 def first_numbers(scene: Scene) -> dict[str, float | None]:
-    """Results of the strike alone, SI."""
+    """Results of the strike alone, SI; None for a miscue."""
     outcome = solved_strike(scene).outcome
-    pivot = pivot_length(scene, outcome.squirt)
-    return {"squirt": float(outcome.squirt), "pivot_length": None if pivot is None else float(pivot)}
+    pivot = None if outcome.regime == "miscue" else pivot_length(scene, outcome.squirt)
+    squirt = None if outcome.regime == "miscue" else float(outcome.squirt)
+    return {"squirt": squirt, "pivot_length": None if pivot is None else float(pivot)}
 
 
 @lru_cache(CACHED_DESIGNS)
@@ -68,7 +69,7 @@ def numbers(scene: Scene) -> dict[str, Any]:
     design = SolvedDesign(strike.solved, strike.outcome)
     masses = {f"end_mass_{name}": _end_mass(name, strike.solved) for name in DEFINITIONS}
     frequencies = [design.frequency(mode) for mode in range(1, MIN_SOLVED_MODES + 1)]
-    return first_numbers(scene) | listed(design) | masses | {"frequencies": frequencies}
+    return listed(design) | first_numbers(scene) | masses | {"frequencies": frequencies}
 
 
 def _end_mass(name: str, solved: SolvedScene) -> float | None:
@@ -104,11 +105,14 @@ def curve(scene: Scene) -> dict[str, Any]:
 
 @lru_cache(CACHED_DESIGNS)
 def end_mass_distribution(scene: Scene) -> tuple[Array, Array]:
-    """Positions along the cue without tip effects, m, and the increase of the end mass by a mass of 1 g there, g."""
-    bare = replace(scene, effects=())
+    """Positions along the cue, m, and the increase of the stick end mass by a mass of 1 g there, g.
+
+    Without effects; the contact time is that of the scene's tip.
+    """
+    bare = replace(scene.without_tip_effects, effects=())
     effect = sensitivity(bare, min(default_mode_count(bare), MAX_MASS_MODES))
     near = effect.x <= MASS_RANGE
-    return effect.x[near], effect.rhoA[near]
+    return effect.x[near], (effect.rhoA + effect.axial_mass)[near]
 
 
 @lru_cache(CACHED_DESIGNS)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, NamedTuple, Protocol
 
@@ -22,6 +23,7 @@ from cuefem.scene.default_scene import GAMES, usual_scene, without_leather
 
 MIN_WALL = 0.0005  # m, the thinnest wall around a typed bore
 NEW_FERRULE, NEW_BORE, NEW_DEPTH = "25 mm", 0.006, 0.127
+DECIMALS = {"mm": 2, "g": 1}  # the most that are shown; of other units 3
 NONE, DRILLED = "none", "drilled"
 MAX_TEXT = 40
 _UNITLESS = re.compile(r"[-+]?[\d./\s]+")
@@ -57,7 +59,7 @@ def _mm(low: float, high: float, step: float, least: float, most: float) -> Rang
 
 # By the keys of the parameters that they change, where a parameter has it.
 KNOBS = {
-    "shaft_material": Knob("Shaft", "Wood"),
+    "shaft_material": Knob("Shaft", "Material"),
     "tip_diameter": Knob("Shaft", "Tip diameter", _mm(8, 15, 0.05, 4, 30)),
     "taper_diameter": Knob("Shaft", "Taper, {at}", _mm(8, 20, 0.05, 4, 60)),
     "butt_diameter": Knob("Shaft", "Taper, end", _mm(12, 34, 0.1, 4, 60)),
@@ -66,7 +68,7 @@ KNOBS = {
     "bore": Knob("Shaft", "Bore"),
     "bore_width": Knob("Shaft", "Bore width", _mm(1, 11, 0.1, 0.1, 30)),
     "bore_depth": Knob("Shaft", "Bore depth", _mm(0, 300, 1, 0, 3000)),
-    "shaft_mass": Knob("Shaft", "Shaft weight", Range("g", 1e3, 0, 0, 0.1, 0.1, 100_000)),
+    "shaft_mass": Knob("Shaft", "Shaft weight, with tip", Range("g", 1e3, 0, 0, 0.1, 0.1, 100_000)),
     "body_mass": Knob("Shaft", "Rest of cue", Range("g", 1e3, 0, 0, 1, 0, 5000)),
     "leather": Knob("Tip", "Tip hardness"),
     "tip_height": Knob("Tip", "Tip height", _mm(2, 12, 0.1, 0.5, 40)),
@@ -89,7 +91,7 @@ INPUTS = {"shaft_material": ("E", "G"), "shaft_mass": ("rho",), "bore": ("bore_w
 
 def label(key: str, scene: Scene) -> str:
     """A control's label."""
-    return KNOBS[key].label.format(at=f"{1e3 * taper_position(scene.shaft):.0f} mm")
+    return KNOBS[key].label.format(at=f"{1e3 * taper_position(scene.shaft):.0f}\u00a0mm")
 
 
 def range_of(key: str) -> Range:
@@ -105,7 +107,8 @@ def value(key: str, scene: Scene) -> Any:
     if key == "ferrule":
         return _name(cue.segments[layout.ferrule.start].material) if layout.ferrule else NONE
     if key in ("bore", "bore_width", "bore_depth") and not layout.bore:
-        return NONE if key == "bore" and layout.bore is not None else None
+        core = cue.segments[layout.shaft.start].core
+        return None if key != "bore" else f"{_name(core)} core" if core else NONE
     if key == "bore":
         return DRILLED
     if key == "shaft_material":
@@ -131,7 +134,7 @@ def options(key: str, scene: Scene) -> list[str]:
     offered = {
         "shaft_material": PARAMETERS["shaft_material"].materials,
         "ferrule": (NONE, *PARAMETERS["ferrule_material"].materials),
-        "bore": (NONE, DRILLED),
+        "bore": () if Layout.of(scene.shaft).bore is None else (NONE, DRILLED),
         "leather": (*LEATHERS,),
         "game": (*GAMES,),
         "front": (FERRULE_BEGINS, LEATHER_BEGINS),
@@ -206,12 +209,16 @@ def _with_game(scene: Scene, name: str) -> Scene:
     return replace(usual, effects=(*usual.effects, *staying))
 
 
-def value_text(key: str, shown: float, scene: Scene) -> str:
-    """A number with its unit, to the digits of a slider's step, or to its own up to three: "12.40 mm"."""
+def value_text(key: str, shown: float, whole: Callable[[float], int] = round) -> str:
+    """A number with its unit, to the digits of a slider's step, or to its own up to `DECIMALS`: "12.40 mm".
+
+    whole: how the last digit is rounded.
+    """
     known = range_of(key)
-    least, whole_text = len(f"{known.step:g}".partition(".")[2]), f"{known.scale * shown:.3f}"
-    decimals = max(least, len(whole_text.rstrip("0").partition(".")[2]))
-    return f"{known.scale * shown:.{decimals}f} {known.unit}".rstrip()
+    most = DECIMALS.get(known.unit, 3)
+    number = whole(10**most * known.scale * shown) / 10**most
+    decimals = max(len(f"{known.step:g}".partition(".")[2]), len(f"{number:.{most}f}".rstrip("0").partition(".")[2]))
+    return f"{number:.{decimals}f} {known.unit}".rstrip()
 
 
 def parse(key: str, text: str, scene: Scene, last: str = "") -> float:
@@ -255,23 +262,23 @@ def limits(key: str, scene: Scene) -> tuple[float, float, str]:
     least, most, why = known.least / known.scale, known.most / known.scale, ""
     if key == "bore_width" and (bore := Layout.of(cue).bore):
         narrow = min(min(cue.segments[i].tip_diameter, cue.segments[i].butt_diameter) for i in bore)
-        most, why = narrow - 2 * MIN_WALL, f"leaves a wall of {1e3 * MIN_WALL:g} mm in {1e3 * narrow:.2f} mm"
+        most, why = narrow - 2 * MIN_WALL, f"a wall of {1e3 * MIN_WALL:g} mm in {1e3 * narrow:.2f} mm"
     elif key == "bore_depth":
-        most, why = deepest_bore(cue), f"reaches the end, from {1e3 * bore_mouth(cue):.0f} mm behind the tip on"
+        most, why = deepest_bore(cue), f"to the end, from {1e3 * bore_mouth(cue):.0f} mm behind the tip"
     elif key == "dome":
-        least, why = max(least, scene.tip_diameter / 2), f"fits a {1e3 * scene.tip_diameter:.2f} mm tip"
+        least, why = max(least, scene.tip_diameter / 2), f"half of the tip's {1e3 * scene.tip_diameter:.2f} mm"
     return least, most, why
 
 
 def _check_limits(key: str, new: float, text: str, scene: Scene) -> float:
     least, most, why = limits(key, scene)
     if math.isnan(new) or not least * (1 - 1e-9) <= new <= most * (1 + 1e-9):
-        low = not new > least
-        end = value_text(key, least if low else most, scene)
-        reason = f" {why}" if why else " can be typed"
-        raise ValueError(
-            f"{text.strip()} is too {'small' if low else 'large'}: at {'least' if low else 'most'} {end}{reason}."
-        )
+        if low := not new > least:
+            size, end = "small: at least", value_text(key, least, lambda x: math.ceil(x - 1e-6))
+        else:
+            size, end = "large: at most", value_text(key, most, lambda x: math.floor(x + 1e-6))
+        reason = f" ({why})" if why and low == (key == "dome") else ""
+        raise ValueError(f"{text.strip()} is too {size} {end}{reason}.")
     return new
 
 
@@ -350,17 +357,20 @@ class KnobRow:
             return str(mine)
         if self.key == "shaft_mass" and not design.scene.shaft.weighed:
             return ""
-        return design.typed.get(self.key) or value_text(self.key, mine, design.scene)
+        return design.typed.get(self.key) or value_text(self.key, mine)
 
     def _note(self, design: Design, mine: Any, beside: Any) -> str:
-        """The note below the label: the other design's value, or the weight, or a typed value in mm or g."""
-        own = mine if self.knob.range is None else value_text(self.key, mine, design.scene)
-        if beside != mine:
-            there = beside if beside is None or self.knob.range is None else value_text(self.key, beside, design.scene)
-            return NONE if there is None else str(there)
+        """The note below the label: the weight, or a typed value in mm or g; and the other design's, if it differs."""
+        own, there = (
+            NONE if each is None else f"{each}" if self.knob.range is None else value_text(self.key, each)
+            for each in (mine, beside)
+        )
+        note = f"= {own}" if self.key in design.typed and self.shown != own else ""
         if self.key == "shaft_mass":
-            return f"{'now' if design.scene.shaft.weighed else 'computed'} {own}"
-        return f"= {own}" if self.key in design.typed and self.shown != own else ""
+            note = f"{'now' if design.scene.shaft.weighed else 'computed'} {own}"
+        parts = [note, there] if beside != mine else [note]
+        text = ", other ".join(filter(None, parts))
+        return text if self.knob.range is None else re.sub(r"(?<=\d) ", "\u00a0", text)
 
     def _place(self, name: str, mine: float, beside: float | None, scene: Scene) -> None:
         known = range_of(self.key)
@@ -382,7 +392,7 @@ class KnobRow:
             "style": style,
             "aria-label": f"{name}, slider",
         }
-        wanted["aria-valuetext"] = value_text(self.key, mine, scene)
+        wanted["aria-valuetext"] = value_text(self.key, mine)
         if any(self.slider.props.get(key) != own for key, own in wanted.items()):
             self.slider.props.update(wanted)
             self.slider.update()
@@ -420,7 +430,8 @@ class KnobRow:
             last = self.page.step.design.typed.get(self.key, "")
             new, text = parse(self.key, text, scene, last), with_unit(self.key, text, last)
         except FAILURES as error:
-            self._fail(one_line(error))
+            words = one_line(error)
+            self._fail(f"{label(self.key, scene)} {words}" if words.startswith("must ") else words)
             return
         self._set(new, text)
 

@@ -39,6 +39,7 @@ from cuefem.report.renderers import csv_text
 from cuefem.report.report_page import page as report_page
 from cuefem.report.strike_table import regime_warning
 from cuefem.report.templates import chart_script, page_style
+from cuefem.results.quantities import REGIMES
 from cuefem.results.verdict import with_cue
 from cuefem.scene import Scene
 from cuefem.solid.tip_cache import computing_message
@@ -51,6 +52,7 @@ OPTIONS = {"opened": OPENED, "now": NOW}
 # What is computed of a design before its tabs, and for each tab.
 FIRST = ("solved_strike", "numbers", "verdict")
 OF_TAB = {"Curves": ("curve", "end_mass_distribution"), "Changes": ("changes",)}
+NO_MISCUE = ("verdict", "changes")  # which need a squirt
 SHARED = ("solved_strike", "numbers", "curve", "end_mass_distribution")  # also computed of the other design
 
 
@@ -375,7 +377,8 @@ class Page:
         own, other = self._shown(self.results.own, 0), self._shown(self.results.other, 1)
         if own is None:
             return
-        warning = regime_warning(self.results.own["solved_strike"].outcome.regime) or ""
+        regime = self.results.own["solved_strike"].outcome.regime
+        warning = REGIMES[regime] if regime_warning(regime) else ""
         difference = self.results.difference
         self.headline.set_content(with_term_buttons(headline_markup(own, other, difference, warning)))
         self.scale.set_content(scale_markup(own, other))
@@ -453,6 +456,8 @@ class Page:
                 self.show_message(computing_message())
             failures = list[str]()
             for name in (*FIRST, *OF_TAB.get(self.tab, ())):
+                if name in NO_MISCUE and results.own["solved_strike"].outcome.regime == "miscue":
+                    continue
                 for scene, side in scenes:
                     if side is results.own or name in SHARED:
                         failures += await self._compute(side, name, getattr(computation, name), scene)
@@ -534,8 +539,8 @@ def _stem(name: str) -> str:
 
 def _assumption(key: str, scene: Scene) -> str:
     own = value(key, scene)
-    return str(own) if KNOBS[key].range is None else value_text(key, own, scene)
+    return str(own) if KNOBS[key].range is None else value_text(key, own)
 
 
 def _texts(scene: Scene, *keys: str) -> str:
-    return ", ".join(escape(value_text(key, own, scene)) for key in keys if (own := value(key, scene)) is not None)
+    return ", ".join(escape(value_text(key, own)) for key in keys if (own := value(key, scene)) is not None)

@@ -71,7 +71,7 @@ def curves_markup(step: Step, results: Results) -> str:
     if curves:
         charts.append(
             chart(
-                "End mass added by 1 g",
+                "End mass added by 1 g (stick, without tip effects)",
                 curves,
                 x=Axis("distance from the tip, mm", 0.0),
                 y=Axis("end mass, g"),
@@ -90,7 +90,8 @@ def changes_panel(step: Step, results: Results, attempt: Callable[[Mapping[str, 
     """The design changes, each with a button that applies it."""
     record = results.own.get("changes")
     if record is None:
-        ui.html(COMPUTING, sanitize=False)
+        missed = "solved_strike" in results.own and results.own["solved_strike"].outcome.regime == "miscue"
+        ui.html('<p class="soft">none for a miscue</p>' if missed else COMPUTING, sanitize=False)
         return
     made = tabulate_design_changes(record)
     ui.label(f"Changes to {step.design.name}, each alone").classes("h2")
@@ -160,7 +161,7 @@ def _number_row(name: str, values: Sequence[Any], words: str, difference: Record
 
 def _knob_text(key: str, scene: Scene) -> str:
     own = value(key, scene)
-    return DASH if own is None else own if KNOBS[key].range is None else value_text(key, own, scene)
+    return DASH if own is None else own if KNOBS[key].range is None else value_text(key, own)
 
 
 def tabulate_check(step: Step, results: Results) -> list[Table]:

@@ -100,8 +100,12 @@ class UndoHistory:
         return self.steps[self.at - self.continues_slide(label, when)].design
 
     def push(self, step: Step, label: str = "", *, when: float = 0.0) -> None:
-        """Add a step; undone steps are dropped, and one slide is one step."""
-        if step == self.now:
+        """Add a step; undone steps are dropped, and one slide is one step.
+
+        The choice of the other design alone is no step: it applies to all steps.
+        """
+        if step.design == self.now.design:
+            self.steps = [old._replace(other=step.other) for old in self.steps]
             return
         kept = self.steps[: self.at + (not self.continues_slide(label, when))]
         self.steps = [*kept, step][-MAX_STEPS:]

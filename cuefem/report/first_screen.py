@@ -60,18 +60,20 @@ def headline_markup(own: Shown, other: Shown | None = None, difference: Record |
     difference: of `cuefem.results.comparison`, from the other design. warning: about the contact state.
     """
     verdict = own.verdict
-    text, error = (
-        squirt_text(verdict) if verdict else (with_unit(abs(own.numbers["squirt"] or 0.0), "rad", decimals=2), "")
-    )
+    squirt, where = own.numbers["squirt"], f"{verdict['offset'] if verdict else own.scene.stroke.offset:.2f}"
+    if verdict:
+        text, error = squirt_text(verdict)
+        where += " (default; this stroke is head-on)" if verdict["head_on"] else ""
+    else:
+        text, error = DASH if squirt is None else with_unit(abs(squirt), "rad", decimals=2), ""
     lines = []
-    if other is not None:
+    if other is not None and squirt is not None:
         lines.append(("compared with" if difference is None else squirt_difference(**difference), other.name))
     for first, among in [*(verdict["references"].items() if verdict else ())][:1]:
         if other is None or other.name != first:
             line = squirt_difference(among["difference"], among["error"], among["distinct"])
             lines.append((line, first))
-    offset = verdict["offset"] if verdict else own.scene.stroke.offset
-    return _macro("headline", own.numbers["squirt"], text, error, f"{offset:.2f}", lines, warning)
+    return _macro("headline", squirt, text, error, where, lines, warning)
 
 
 def tiles(own: Shown, other: Shown | None = None) -> list[Tile]:
@@ -88,7 +90,7 @@ def tiles(own: Shown, other: Shown | None = None) -> list[Tile]:
 
 def _value(design: Shown, key: str) -> float | None:
     squirt = design.numbers.get("squirt")
-    value = (None if squirt is None else math.tan(abs(squirt))) if key == "off_line" else design.numbers.get(key)
+    value = (math.tan(abs(squirt)) if squirt else None) if key == "off_line" else design.numbers.get(key)
     return value if value is not None and math.isfinite(value) else None
 
 

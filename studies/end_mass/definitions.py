@@ -106,7 +106,7 @@ def draw(axes: Any) -> None:
     fine = np.geomspace(TIMES[0], TIMES[-1], 24)
     for i, name in enumerate(strokes.NAMES):
         axes.loglog(1e3 * fine, [1e3 * mass("stick", name, float(T), 0.0) for T in fine], f"C{i}", label=name)
-    axes.axhline(3, color="0.5", lw=0.9, label="the paper's 12 g")
+    axes.axhline(3, color="0.5", lw=0.9, label="3 g: end mass of Kim's 12 g cue end")
     axes.set(xlabel="contact time, ms", ylabel="stick end mass, g")
     axes.set_xticks([0.5, 1, 2, 4], ["0.5", "1", "2", "4"])
     axes.set_yticks([2, 3, 5, 10], ["2", "3", "5", "10"])

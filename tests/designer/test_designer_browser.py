@@ -64,7 +64,7 @@ def test_saved_design_strikes_as_displayed(browser: Any, address: str, tmp_path:
         plain = displayed_number(page, "squirt")
 
         pick_option(page, "Ferrule", "melamine")
-        type_value(page, "Shaft weight", "101 g")
+        type_value(page, "Shaft weight, with tip", "101 g")
         pick_option(page, "Bore", "drilled")
         type_value(page, "Bore width", "13 mm")
         page.locator("[role=alert]").filter(has_text="13 mm is too large").wait_for()
