@@ -46,9 +46,9 @@ PAGE_OFFSETS = tuple(round(0.03 * i, 2) for i in range(1, 21))  # b/R of the cur
 # Notes on the accuracy of the model; its size is in `cuefem.results.uncertainty`.
 LAW = (
     "The tip is modelled as elastic leather of given height, dome and E. Its compliance is that of the elastic solid "
-    "to 0.3 % (95 % of contacts; at worst 1.1 %); the model has not been tested on real tips. Computed squirt changes "
-    "by 6 % from soft to hard leather; players find no difference, to ±5 % at best. Do not choose a tip's hardness by "
-    "this number."
+    "to 0.3 % (95 % of the contacts of 36 tips) and 2.0 % (maximum of 20 others); it has not been tested on real tips. "
+    "Computed squirt of soft leather is 9 % below medium, of hard 3 % below (b/R 0.3); players find no difference, to "
+    "±5 % at best. Do not choose a tip's hardness by this number."
 )
 SPRING = (
     "The tip is modelled as a linear spring with the given contact time. No real tip was measured for it, and squirt "
