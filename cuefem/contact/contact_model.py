@@ -15,11 +15,11 @@ from cuefem.effects.contact_terms import ContactTerms, PowerLaw, TipModel
 from cuefem.effects.force_law import LeatherLaw, TipLaw, contact_time_ratio
 from cuefem.scene import Scene
 
-# A tip of small restitution e unloads 1/e times as fast as it loads, and takes as many steps. Lower bounds of spring
-# tips and of leather, which vibrates on the ball below its bound.
+# A tip of small restitution e unloads 1/e times as fast as it loads, which needs 1/e times as many steps. Lower bounds
+# of spring tips and of leather, which vibrates on the ball below its bound.
 MIN_RESTITUTION, MIN_LEATHER_RESTITUTION = 0.05, 0.1
-ANNULI, TABLE_MARGIN = 120, 1.05  # annuli uniform in the root of the indentation, up to 1.05 of a central impact's
-RIGID_PATCH, SPRING_PATCH, PARTIAL_SLIP = range(3)
+ANNULI, TABLE_MARGIN = 120, 1.05  # annuli uniform in the root of the indentation, up to 1.05 times the largest
+RIGID_PATCH, SPRING_PATCH, PARTIAL_SLIP = range(3)  # as in kernel/contact.h
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,10 +27,13 @@ class ContactModel:
     """Input of the contact kernel.
 
     propagator: the cue's modes and ports. kinematics: (forces, ports + ball), from the velocities of ports and ball to
-    those of the contact at the first touch. inverse_masses: (n,), of the ball's velocities. ball: these velocities at
-    the first touch, m/s. law: the force-indentation law. terms, arrays: further fields of `kernel/contact.h`, by name.
-    axes: right, forward and up in (t, n, p), (3, 3), above a table; None for a level cue. side: of the ball that is
-    struck, 1 or -1; all else is that of the stroke on the side 1. radius: of the ball, m.
+    those of the contact at the first touch. inverse_masses: (n,), of the ball's velocities, 1/kg. ball: (n,), these
+    velocities at the first touch, m/s. phi: angle of the contact, rad. ball_mass: kg. inertia: the factor of the ball's
+    moment of inertia. speed: of the cue, m/s. time: head-on contact time, s. law: the force-indentation law. patch:
+    tangential compliance, `RIGID_PATCH`, `SPRING_PATCH` or `PARTIAL_SLIP`. terms, arrays: further fields of
+    `kernel/contact.h`, by name. axes: right, forward and up in (t, n, p), (3, 3), above a table; None for a level cue.
+    window: time simulated after separation, s; None without second hits. side: struck side of the ball, 1 or -1; all
+    other fields are those of the mirrored stroke, on side 1. radius: of the ball, m.
     """
 
     propagator: ModalPropagator
@@ -55,7 +58,7 @@ class ContactModel:
 
     @property
     def inverse_mass(self) -> Array:
-        """Rates of the contact's velocities per force at the first touch, (forces, forces), 1/kg."""
+        """Inverse mass of the contact at the first touch, (forces, forces), 1/kg."""
         ports = len(self.propagator.rows)
         of_cue, of_ball = self.kinematics[:, :ports], self.kinematics[:, ports:]
         return np.asarray(of_cue @ self.propagator.mobility @ of_cue.T + (of_ball * self.inverse_masses) @ of_ball.T)
@@ -73,21 +76,21 @@ class ContactModel:
         return bool(B[1, 1] + self.friction * B[0, 1] < 0)
 
     def momentum(self, ball: Array) -> Array:
-        """(t, n), N s, of the ball at velocities (..., speeds); above a table, along it."""
+        """Momentum (t, n), N s, of the ball at velocities (..., speeds); above a table, its horizontal part."""
         if self.axes is None:
             return np.asarray(self.ball_mass * ball[..., :2])
         s, c, (right, forward, _) = math.sin(self.phi), math.cos(self.phi), self.axes
-        along = np.array([s * forward + c * right, c * forward - s * right])
-        return np.asarray(self.ball_mass * (ball[..., :3] @ along.T))
+        horizontal = np.array([s * forward + c * right, c * forward - s * right])
+        return np.asarray(self.ball_mass * (ball[..., :3] @ horizontal.T))
 
     @property
     def unknowns(self) -> int:
         """Number of state variables: modal displacements and velocities, the ball's, and the tip's."""
         omega = self.propagator.omega
         forces = len(self.kinematics)
-        turns, gives = bool(self.terms.get("rolling")), self.patch != RIGID_PATCH
-        of_tip = {2: 3 + 2 * turns + gives, 6: 8}[forces]
-        return len(omega) + int(np.count_nonzero(omega)) + of_tip
+        rolls, has_compliance = bool(self.terms.get("rolling")), self.patch != RIGID_PATCH
+        of_tip_and_ball = {2: 3 + 2 * rolls + has_compliance, 6: 8}[forces]
+        return len(omega) + int(np.count_nonzero(omega)) + of_tip_and_ball
 
 
 def model_of(scene: Scene, tip: TipModes) -> ContactModel:
@@ -128,8 +131,9 @@ def model_of(scene: Scene, tip: TipModes) -> ContactModel:
         tip = replace(tip, amplitude=tip.amplitude + np.outer(tip.rotation, (u, w)))
     ports = "raised" if raised else "turning" if u or w or (terms.turns and dome) else "straight"
     propagator = propagator_of(tip, ports, model["time"], terms.window or 0.0)
-    if len(propagator.slopes):  # of a bent cue, in one plane or two; the last is that of its end
-        ahead = -w - (dome * math.cos(model["phi"]) if model["phi"] < rim else 0.0)  # the centre of the dome, m
+    if len(propagator.slopes):  # in one plane or two; the last of each plane is the slope of the cue's end
+        # distance from the end section forwards to the dome's centre, m
+        ahead = -w - (dome * math.cos(model["phi"]) if model["phi"] < rim else 0.0)
         planes = 1 + raised
         weights = np.append(np.ones(len(propagator.slopes) // planes - 1), ahead)
         model["arrays"] |= {"slope_weights": np.tile(weights, planes)}
@@ -144,13 +148,13 @@ def model_of(scene: Scene, tip: TipModes) -> ContactModel:
         model["axes"] = _table_axes(model["phi"], terms.table.angle)
         model["terms"] |= {"table_friction": terms.table.friction}
         kinematics = _raised(model["phi"], model["axes"])
-    moves, turns = 1 / model["ball_mass"], 1 / (model["inertia"] * model["ball_mass"])
-    inverse_masses = np.array([moves] * 3 + [turns] * 3 if raised else [moves, moves, turns])
+    velocity, spin = 1 / model["ball_mass"], 1 / (model["inertia"] * model["ball_mass"])
+    inverse_masses = np.array([velocity] * 3 + [spin] * 3 if raised else [velocity, velocity, spin])
     return ContactModel(propagator, kinematics, inverse_masses, 0 * inverse_masses, **model)
 
 
 def _level(phi: float, u: float, w: float) -> Array:
-    """From the velocities of the ports (u, w, turning) and of the ball to those of a level contact (t, n)."""
+    """From the velocities of the ports (u, w, rotation) and of the ball to those of a level contact (t, n)."""
     s, c = math.sin(phi), math.cos(phi)
     return np.array([[-s, -c, -s * u - c * w, 1.0, 0.0, 1.0], [-c, s, s * w - c * u, 0.0, 1.0, 0.0]])
 
@@ -164,8 +168,8 @@ def _table_axes(phi: float, angle: float) -> Array:
 def _raised(phi: float, axes: Array) -> Array:
     """As `_level`, of a cue that points down by an angle, over a table (handbook: Effects).
 
-    In (t, n, p), p = t x n: the velocities of the contact are those of the tip's place along all three, and of the
-    ball's lowest point upwards, aside and ahead; the ball's are its velocity and R times its spin.
+    In (t, n, p), p = t x n. The contact has the three velocities of the ball against the tip, and those of the ball's
+    lowest point upwards, laterally and forwards; the ball has its velocity and R times its spin.
     """
     s, c, (right, forward, up) = math.sin(phi), math.cos(phi), axes
     kinematics = np.zeros((6, 9))
@@ -178,7 +182,7 @@ def _raised(phi: float, axes: Array) -> Array:
 
 
 def check_restitution(name: str, restitution: float, least: float = MIN_RESTITUTION) -> None:
-    """ValueError for a restitution near 0."""
+    """ValueError for a restitution below ``least``."""
     if restitution < least:
         raise ValueError(
             f"{name} must be in [{least:g}, 1] for a contact computed in time; got {restitution:g} "
@@ -186,13 +190,13 @@ def check_restitution(name: str, restitution: float, least: float = MIN_RESTITUT
         )
 
 
-def _leather(scene: Scene, whole: TipModel, common: dict[str, Any]) -> dict[str, Any]:
-    """The terms of a whole tip, whose patch slips annulus by annulus."""
-    law = whole.law(common["radius"], abs(float(scene.stroke.offset)), common["restitution"])
+def _leather(scene: Scene, tip: TipModel, common: dict[str, Any]) -> dict[str, Any]:
+    """Fields of a leather tip, whose patch slips annulus by annulus."""
+    law = tip.law(common["radius"], abs(float(scene.stroke.offset)), common["restitution"])
     terms = {"law": 1, "depth_limit": law.depth_limit, "terms": len(law.force_terms), "annuli": ANNULI}
-    terms["surface_restitution"] = whole.surface_restitution
+    terms["surface_restitution"] = tip.surface_restitution
     arrays = {"force_terms": np.array(law.force_terms), "compliance_terms": np.array(law.compliance_terms)}
-    # the last ring has what lies beyond
+    # the last annulus also has what lies beyond its edge
     edges = min(law.depth_limit, TABLE_MARGIN * scene.max_indentation) * np.linspace(0.0, 1.0, ANNULI + 1) ** 2
     force, stiffness = law.at(edges)
     arrays |= {
@@ -205,7 +209,7 @@ def _leather(scene: Scene, whole: TipModel, common: dict[str, Any]) -> dict[str,
 
 
 def _power_tip(scene: Scene, terms: ContactTerms, common: dict[str, Any]) -> dict[str, Any]:
-    """The terms of a power-law tip, that of an effect or the linear one; its patch is rigid or a spring."""
+    """Fields of a power-law tip, that of an effect or the linear one; its patch is rigid or a spring."""
     exponent, speed = terms.law or PowerLaw(1.0, common["speed"])
     usual = {"mass": scene.reduced_mass, "speed": speed, "time": common["time"]}
     law = TipLaw.for_contact_time(exponent, common["restitution"], **usual)

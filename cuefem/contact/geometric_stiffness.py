@@ -14,8 +14,8 @@ import numpy as np
 from cuefem.beam.tip_modes import TipModes
 from cuefem.cue import Array
 
-# Durations of the half-sine pulses, in contact times. Each response is sampled SAMPLES times from the first touch up to
-# SAMPLED_TIME contact times.
+# Durations of the half-sine pulses, in contact times. Each response is sampled SAMPLES times up to SAMPLED_TIME contact
+# times from the first touch.
 PULSE_LENGTHS, SAMPLES, SAMPLED_TIME = (0.5, 0.75, 1.0), 16, 1.5
 # The decomposition drops rows whose share of the largest row's q'Gq is smaller, and all beyond MAX_ROWS.
 MIN_SHARE, MAX_ROWS = 1e-12, 12
@@ -26,7 +26,7 @@ class SlopeOutOfRange(ValueError):
 
 
 def half_octave(time: float) -> float:
-    """The nearest power of the square root of two: contacts of similar duration share their rows."""
+    """The nearest power of the square root of two, s: contacts of similar duration share their rows."""
     return float(2.0 ** (round(2 * math.log2(time)) / 2))
 
 
@@ -39,28 +39,30 @@ def slope_rows(tip: TipModes, time: float, until: float) -> Array:
     if tip.geometric is None:
         return np.zeros((0, len(tip.omega)))
     times = np.linspace(0.0, max(SAMPLED_TIME * time, until), SAMPLES + 1)[1:]
-    moved = [_pushed(tip.omega, part * time, times) for part in PULSE_LENGTHS]
-    shapes = [load[:, None] * each for load in (tip.amplitude[:, 1], tip.rotation) for each in moved]
+    responses = [_half_sine_response(tip.omega, length * time, times) for length in PULSE_LENGTHS]
+    shapes = [load[:, None] * each for load in (tip.amplitude[:, 1], tip.rotation) for each in responses]
     shapes = [shape / math.sqrt(np.sum(shape * (tip.geometric @ shape))) for shape in shapes if shape.any()]
-    together = np.concatenate(shapes, axis=1)
-    onto = tip.geometric @ together
-    parts, ways = np.linalg.eigh(together.T @ onto)
-    strongest = np.flatnonzero(parts > MIN_SHARE * parts[-1])[-MAX_ROWS:]
-    return np.concatenate([(onto @ (ways[:, strongest] / np.sqrt(parts[strongest]))).T[::-1], tip.rotation[None]])
+    basis = np.concatenate(shapes, axis=1)
+    loads = tip.geometric @ basis
+    squares, directions = np.linalg.eigh(basis.T @ loads)
+    strongest = np.flatnonzero(squares > MIN_SHARE * squares[-1])[-MAX_ROWS:]
+    return np.concatenate(
+        [(loads @ (directions[:, strongest] / np.sqrt(squares[strongest]))).T[::-1], tip.rotation[None]]
+    )
 
 
-def _pushed(omega: Array, span: float, times: Array) -> Array:
+def _half_sine_response(omega: Array, span: float, times: Array) -> Array:
     """Displacement of each mode at ``times``, (n, times), under sin(pi t/span) up to ``span``, from rest."""
     rate = math.pi / span
     nearest = np.abs(omega / rate - 1).min()
     rate *= 1.0 if nearest > 1e-6 else 1 + 3e-6  # at resonance the quotient below is 0/0
-    return np.asarray(_begun(omega, rate, times) + _begun(omega, rate, times - math.pi / rate))
+    return np.asarray(_sine_response(omega, rate, times) + _sine_response(omega, rate, times - math.pi / rate))
 
 
-def _begun(omega: Array, rate: float, times: Array) -> Array:
+def _sine_response(omega: Array, rate: float, times: Array) -> Array:
     """Displacement of each mode under sin(rate t) from t = 0 on, (n, times)."""
-    t, flexible = np.maximum(times, 0.0), np.where(omega > 0, omega, 1.0)[:, None]
-    swung = np.sin(flexible * t) / flexible
+    t, nonzero_omega = np.maximum(times, 0.0), np.where(omega > 0, omega, 1.0)[:, None]
+    free = np.sin(nonzero_omega * t) / nonzero_omega
     return np.asarray(
-        (np.sin(rate * t) - rate * np.where(omega[:, None] > 0, swung, t)) / (omega[:, None] ** 2 - rate**2)
+        (np.sin(rate * t) - rate * np.where(omega[:, None] > 0, free, t)) / (omega[:, None] ** 2 - rate**2)
     )

@@ -1,8 +1,8 @@
-"""A stroke in the table's frame: where on the ball, in which direction, and what comes out in three dimensions.
+"""A stroke in the table's frame: its offset from a point and a direction, and the ball's velocity and spin vectors.
 
 The frame is [Kim]'s (end of sec. 5): z points up, and a cue that points along +y strikes with its right along +x. The
-impact stays planar, in the plane of the cue's axis and the ball's centre (handbook: The impulse solver); the table's
-reaction to a ball that is driven downwards is not part of it.
+impact is planar, in the plane of the cue's axis and the ball's centre (handbook: The impulse solver), and excludes the
+table's reaction to a ball that is driven downwards (the effect `Elevation`).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from cuefem.quantity.display import brief_repr
 from cuefem.quantity.fields import Quantity
 from cuefem.scene import Ball, Outcome
 
-# How far the offset of an outcome may lie from that of the point it is placed at.
+# Largest difference of the offset of an outcome from that of point and direction.
 OFFSET_TOLERANCE = 1e-9
 
 _COORDINATE, _COMPONENT = Quantity("m"), Quantity("")
@@ -49,12 +49,12 @@ def place(outcome: Outcome, point: ArrayLike, direction: ArrayLike, *, ball: Bal
     Parameters
     ----------
     outcome : Outcome
-        Of a stroke at the offset `offset_of(point, direction)`, of either sign.
+        Of a planar stroke at the offset `offset_of(point, direction)`, of either sign.
     point : (float, float)
         (h, l), m: the contact lies h to the right of the ball's centre as the player looks along the cue, and l above
         the table, on the half of the ball that faces the player.
     direction : (float, float, float)
-        Direction of the cue's motion (x, y, z), of any length.
+        Direction of the cue's motion (x, y, z), of any non-zero length.
     ball : Ball, optional
         The ball of the outcome's scene; by default `Ball()`.
 
@@ -66,14 +66,15 @@ def place(outcome: Outcome, point: ArrayLike, direction: ArrayLike, *, ball: Bal
     Raises
     ------
     ValueError
-        If the point is not on the ball, if the cue does not meet the ball there, or if the outcome has another offset.
+        If the point is not on the ball, if the cue does not meet the ball there, if the outcome has another offset, or
+        after `Elevation`: the outcome's ``history`` then has velocity and spin.
 
     Notes
     -----
     The ball leaves at the squirt angle from ``direction``, away from the side that is struck, and spins about R_I x u
-    ([Kim] end of sec. 5), R_I from the centre to the contact. For a level cue along +y: struck right (h > 0), it spins
-    along +z (right english) and squirts to -x; struck high (l > R), it spins along -x (follow) and squirts into the
-    table; struck low, it spins along +x (draw).
+    ([Kim] end of sec. 5), R_I from the centre to the contact and u the direction. For a level cue along +y: struck
+    right (h > 0), it spins along +z (right english) and squirts to -x; struck high (l > R), it spins along -x (follow)
+    and squirts into the table; struck low, it spins along +x (draw).
 
     Examples
     --------
@@ -84,6 +85,8 @@ def place(outcome: Outcome, point: ArrayLike, direction: ArrayLike, *, ball: Bal
     >>> bool(placed.velocity[0] < 0), bool(placed.spin[2] > 0)
     (True, True)
     """
+    if getattr(outcome.history, "velocity", None) is not None:
+        raise ValueError("place takes planar outcomes; after Elevation use outcome.history.velocity and .spin")
     ball = Ball() if ball is None else ball
     offset, axis, along = _geometry(point, direction, ball)
     angle = outcome.squirt + math.atan2(*outcome.ball_velocity)  # phi, as the outcome was computed
@@ -110,8 +113,13 @@ def offset_of(point: ArrayLike, direction: ArrayLike, *, ball: Ball | None = Non
     Returns
     -------
     float
-        b is the distance of the ball's centre from the line through the contact along the cue's motion; for a level cue
-        b^2 = h^2 + (l - R)^2.
+        b/R, dimensionless, in [0, 1). b is the distance of the ball's centre from the line through the contact along
+        the cue's motion; for a level cue b^2 = h^2 + (l - R)^2.
+
+    Raises
+    ------
+    ValueError
+        If the point is not on the ball, or if the cue does not meet the ball there.
 
     Examples
     --------
@@ -125,7 +133,7 @@ def offset_of(point: ArrayLike, direction: ArrayLike, *, ball: Ball | None = Non
 
 
 def _geometry(point: ArrayLike, direction: ArrayLike, ball: Ball) -> tuple[float, Array, Array]:
-    """Offset b/R, the axis of the spin (zero head on), and the unit vector along the cue."""
+    """Offset b/R, the axis of the spin (zero head-on), and the unit vector along the cue."""
     contact, along = _contact(point, direction, ball.radius)
     axis, facing = np.cross(contact, along), -float(contact @ along)
     offset = float(np.linalg.norm(axis))
@@ -139,19 +147,21 @@ def _geometry(point: ArrayLike, direction: ArrayLike, ball: Ball) -> tuple[float
 
 def _contact(point: ArrayLike, direction: ArrayLike, radius: float) -> tuple[Array, Array]:
     """R_I/R, from the ball's centre to the contact, and the unit vector along the cue."""
-    h, up = _vector("point", point, 2, _COORDINATE)
+    h, contact_height = _vector("point", point, 2, _COORDINATE)
     along = _vector("direction", direction, 3, _COMPONENT)
     if not along.any():
-        raise ValueError("direction must have a length; got (0, 0, 0)")
+        raise ValueError("direction must have a non-zero length; got (0, 0, 0)")
     along = along / np.linalg.norm(along)
-    # a cue straight up or down is taken to stand on the player's side, towards +y
-    ahead = complex(along[0], along[1]) or 1j
-    aside, height = h / radius, up / radius - 1
-    depth = (1 - aside) * (1 + aside) - height**2
-    if not depth >= 0:
-        raise ValueError(f"point must be on the ball, h^2 + (l - R)^2 <= R^2 with R = {radius} m; got ({h}, {up}) m")
-    level = -complex(math.sqrt(depth), aside) * ahead / abs(ahead)  # x + iy, behind the centre and to its right
-    return np.array([level.real, level.imag, height]), along
+    # the player of a vertical cue looks towards +y
+    forward = complex(along[0], along[1]) or 1j
+    right, height = h / radius, contact_height / radius - 1
+    depth_squared = (1 - right) * (1 + right) - height**2
+    if not depth_squared >= 0:
+        raise ValueError(
+            f"point must be on the ball, h^2 + (l - R)^2 <= R^2 with R = {radius} m; got ({h}, {contact_height}) m"
+        )
+    horizontal = -complex(math.sqrt(depth_squared), right) * forward / abs(forward)  # x + iy, behind and to the right
+    return np.array([horizontal.real, horizontal.imag, height]), along
 
 
 def _vector(name: str, value: ArrayLike, size: int, quantity: Quantity) -> Array:

@@ -25,6 +25,7 @@ BALL, NORTH = cf.Ball(0.17, 0.0286), (0.0, 1.0, 0.0)
 R = BALL.radius
 GOOD = (0.3 * R, R)
 STRUCK = cf.impulse(cf.Scene(cf.LumpedCue(0.54, 0.004), BALL, cf.Tip(0.75, 0.7), cf.Stroke(2.0, 0.3)))
+RAISED = cf.strike(cf.Scene(cf.LumpedCue(0.54, 0.004), BALL, stroke=cf.Stroke(2.0, 0.3), effects=(cf.Elevation(0.1),)))
 LUMPED = cf.Scene(cf.LumpedCue(0.54, 0.006, 3.0), stroke=cf.Stroke(offset=0.3))
 DEAD = "Tip.restitution must be in [0.05, 1] for a contact computed in time; got "
 
@@ -75,11 +76,15 @@ CALLS: list[Any] = [
     (place_call((R, 1.5 * R)), "R = 0.0286 m; got (0.0286, 0.0429"),
     (place_call((nan, R)), "point[0] must be in (-inf, inf) m; got nan"),
     (place_call(direction=(0, inf, 0)), "direction[1] must be in (-inf, inf); got inf"),
-    (place_call(direction=(0, 0, 0)), "direction must have a length; got (0, 0, 0)"),
+    (place_call(direction=(0, 0, 0)), "direction must have a non-zero length; got (0, 0, 0)"),
     (place_call(direction=(0, 1)), "direction must have 3 components"),
     (place_call((1.0, 2.0, 3.0)), "point must have 2 components"),
     (place_call((0.0, 0.0)), "point must be on the side of the ball that the direction meets, less than 90 degrees"),
     (place_call((0.31 * R, R)), "0.31 or -0.31; got one at 0.3"),
+    (
+        lambda: cf.place(RAISED, GOOD, NORTH),
+        "place takes planar outcomes; after Elevation use outcome.history.velocity and .spin",
+    ),
 ]
 
 

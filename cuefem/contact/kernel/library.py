@@ -1,4 +1,4 @@
-"""What goes to the compiled kernel and comes back."""
+"""The compiled kernel and the structures of its input and results."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _NUMBERS = (
     "restitution friction table_friction stiffness exponent depth_limit compliance surface_restitution phi dome rim "
     "radius arm_t arm_n step max_time window time depth max_depth angle height shear_loss axial_force max_slope"
 )
-# A step that was taken; the last three are of the forces at the tip and on the table, and of the ball.
+# The structure Step of kernel/contact.h; F and v have one entry a force, ball one a velocity of the ball.
 _ONE, _SIX = ("time", "length", "friction_state", "phase", "angle"), ("F", "v", "ball")
 STEP = np.dtype([*((name, float) for name in _ONE), *((name, float, 6) for name in _SIX)])
 
@@ -37,7 +37,7 @@ class KernelContact(ctypes.Structure):
 
 @cache
 def library() -> ctypes.CDLL:
-    """The compiled kernel. KernelError if none can be used."""
+    """The compiled kernel. KernelError if it is missing, damaged or of other sources."""
     check()
     try:
         kernel = ctypes.CDLL(str(BINARY))
