@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 
 from cuefem.cue import Array
 
-EXTRA_POINTS = 4  # than the order: Gauss's rule is then exact for cones, whose matrices have the degree 2 order + 6
+# Gauss points beyond the order. order + 3 are exact for solid cones, whose integrands have degree 2 order + 4.
+EXTRA_POINTS = 4
 
 
 def line_basis(degree: int, points: Array) -> tuple[Array, Array]:
-    """scikit-fem's hierarchical basis of ``degree`` and its derivative at reference ``points``: two (degree + 1, q).
+    """scikit-fem's hierarchical basis of ``degree`` and its derivative at ``points`` in [0, 1]: two (degree + 1, q).
 
     1 - x and x, then the integrals of the Legendre polynomials, which vanish at both ends, each with a derivative of
     unit norm on [-1, 1].
@@ -42,7 +43,7 @@ def _rows(order: int) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.in
 
 
 def element_basis(order: int, values: Array, slopes: Array, length: float = 1.0) -> Array:
-    """w, w', theta, theta' of an element's degrees of freedom, (4, dofs, q), from its line basis, (degrees, q).
+    """w, w', theta, theta' per degree of freedom of an element, (4, dof, q), from its line basis, (degrees, q).
 
     Rotational degrees of freedom are theta times ``length``.
     """
@@ -55,7 +56,7 @@ def element_basis(order: int, values: Array, slopes: Array, length: float = 1.0)
 
 @functools.cache
 def gauss_rule(count: int) -> tuple[Array, Array]:
-    """Gauss's points and weights on [0, 1]."""
+    """Gauss points and weights on [0, 1], (count,)."""
     points, weights = leggauss(count)
     return (points + 1) / 2, weights / 2
 

@@ -13,7 +13,7 @@ from cuefem.beam.wave_phases import MAX_PHASE, mode_phases, orders_for
 from cuefem.cue import Array, Cue
 from cuefem.quantity.fields import MAX_DOF
 
-# Two points count as one if they are closer than this fraction of the cue's length.
+# Positions count as one if they are closer than this fraction of the cue's length.
 POSITION_TOLERANCE = 1e-9
 # An element continues across the end of a segment if the section there differs from the mean of its neighbourhood by
 # less than this, relative. A smooth profile cut into many segments then needs few elements.
@@ -57,14 +57,14 @@ class Mesh:
     """Elements of a cue.
 
     nodes: (elements + 1,) m. orders: (elements,) polynomial degrees of the rotation. first: (elements,) each element's
-    first degree of freedom. unknowns: number of degrees of freedom. Neighbouring elements share the two of their node,
+    first degree of freedom. n_dof: number of degrees of freedom. Neighbouring elements share the two of their node,
     unless a joint splits the node.
     """
 
     nodes: Array
     orders: NDArray[np.intp]
     first: NDArray[np.intp]
-    unknowns: int
+    n_dof: int
 
     def node(self, x: float) -> int:
         """Index of the node at position ``x``."""
@@ -77,7 +77,7 @@ class Mesh:
 
     def dofs_at(self, node: int) -> tuple[int, int]:
         """Degrees of freedom (w, theta) of a node; at a joint, those of the butt side."""
-        first = int(self.first[node]) if node < len(self.first) else self.unknowns - 2
+        first = int(self.first[node]) if node < len(self.first) else self.n_dof - 2
         return first, first + 1
 
     def dofs_before(self, node: int) -> tuple[int, int]:
@@ -116,10 +116,10 @@ def mesh_for_phases(cue: Cue, phases: Array, positions: Sequence[float]) -> Mesh
     return _numbered(*_by_rule(cue, phases, _snapped(cue, np.array([cue.leather, *positions]))), [])
 
 
-def _snapped(cue: Cue, places: Array) -> Array:
+def _snapped(cue: Cue, positions: Array) -> Array:
     """The positions, moved to the end of a segment where they coincide with it."""
-    nearest = cue.nodes[np.argmin(np.abs(places[:, None] - cue.nodes), axis=1)]
-    return np.where(np.abs(places - nearest) > POSITION_TOLERANCE * cue.length, places, nearest)
+    nearest = cue.nodes[np.argmin(np.abs(positions[:, None] - cue.nodes), axis=1)]
+    return np.where(np.abs(positions - nearest) > POSITION_TOLERANCE * cue.length, positions, nearest)
 
 
 def _numbered(nodes: Array, orders: NDArray[np.intp], splits: Sequence[float]) -> Mesh:
@@ -127,28 +127,28 @@ def _numbered(nodes: Array, orders: NDArray[np.intp], splits: Sequence[float]) -
     first = np.cumsum(strides) - strides
     for node in {int(np.argmin(np.abs(nodes - x))) for x in splits}:
         first[node:] += 2
-    unknowns = int(first[-1] + strides[-1]) + 2
-    check_mesh_size(unknowns, f"{len(orders)} elements")
-    return Mesh(nodes, orders, first, unknowns)
+    n_dof = int(first[-1] + strides[-1]) + 2
+    check_mesh_size(n_dof, f"{len(orders)} elements")
+    return Mesh(nodes, orders, first, n_dof)
 
 
-def _by_rule(cue: Cue, phases: Array, places: Array) -> tuple[Array, NDArray[np.intp]]:
+def _by_rule(cue: Cue, phases: Array, positions: Array) -> tuple[Array, NDArray[np.intp]]:
     """Nodes and orders for waves of ``phases`` rad over the segments: elements of equal phase."""
     check_mesh_size(2 * phases.sum(), f"waves of {phases.sum():.6g} rad")
     sides = cue.section_in(np.arange(len(phases))[:, None], np.diff(cue.nodes)[:, None] * np.array([0.0, 1.0]))
     logs = np.log([sides.EA, sides.EI, sides.kGA, sides.rhoA])
-    ends = _ends(cue, places, logs, np.diff(cue.nodes) / phases)
-    along, steep = (np.append(0.0, np.cumsum(each)) for each in (phases, np.abs(np.diff(logs[0])[:, 0])))
+    ends = _ends(cue, positions, logs, np.diff(cue.nodes) / phases)
+    along, log_taper = (np.append(0.0, np.cumsum(each)) for each in (phases, np.abs(np.diff(logs[0])[:, 0])))
     here = np.interp(ends, cue.nodes, along)
     counts = np.ceil(np.diff(here) / MAX_PHASE).astype(int)
     nodes = np.interp(_divided(here, counts), along, cue.nodes)
     nodes[np.append(0, np.cumsum(counts))] = ends
-    phase, taper = (np.diff(np.interp(nodes, cue.nodes, each)) for each in (along, steep))
+    phase, taper = (np.diff(np.interp(nodes, cue.nodes, each)) for each in (along, log_taper))
     return nodes, orders_for(phase, np.exp(taper))
 
 
-def _ends(cue: Cue, places: Array, logs: Array, reach: Array) -> Array:
-    """The ends of the cue, ``places``, and the ends of segments that must be nodes.
+def _ends(cue: Cue, positions: Array, logs: Array, reach: Array) -> Array:
+    """Positions of nodes: the ends of the cue, ``positions``, and the ends of segments that an element cannot cross.
 
     logs: (kinds, segments, 2) of the section at both ends of every segment. reach: (segments,) the length that the
     shortest waves resolve, m. The section must not jump at an end that is no node, and it must be the mean of the
@@ -156,7 +156,7 @@ def _ends(cue: Cue, places: Array, logs: Array, reach: Array) -> Array:
     """
     profile, logs = np.repeat(cue.nodes, 2)[1:-1], logs.reshape(len(logs), -1)
     jumps = np.abs(np.diff(logs)[:, 1::2]).max(axis=0) > 2 * JUMP_TOLERANCE
-    fixed = np.unique(np.concatenate([[0.0, cue.length], places, cue.nodes[1:-1][jumps]]))
+    fixed = np.unique(np.concatenate([[0.0, cue.length], positions, cue.nodes[1:-1][jumps]]))
     ends, last = fixed.tolist(), 0.0
     for i in np.flatnonzero(~jumps) + 1:
         x, behind = cue.nodes[i], np.searchsorted(fixed, cue.nodes[i])
@@ -178,12 +178,12 @@ def _divided(ends: Array, counts: NDArray[np.intp]) -> Array:
     return np.append(np.concatenate(steps), ends[-1])
 
 
-def check_mesh_size(unknowns: float, what: str) -> None:
+def check_mesh_size(n_dof: float, what: str) -> None:
     """ValueError if a mesh has more degrees of freedom than can be solved in reasonable time and memory."""
-    if unknowns > MAX_DOF:
+    if n_dof > MAX_DOF:
         remedy = "request fewer modes or elements, draw fewer segments, or check sizes and materials"
         limit = f"the mesh must have at most {MAX_DOF} degrees of freedom"
-        raise ValueError(f"{limit}; got {unknowns:.6g}, of {what}: {remedy}")
+        raise ValueError(f"{limit}; got {n_dof:.6g}, of {what}: {remedy}")
 
 
 class PointTerms:
@@ -194,17 +194,17 @@ class PointTerms:
 
     def __init__(self, mesh: Mesh, cue: Cue) -> None:
         self.mesh, self.cue = mesh, cue
-        self.stiffness, self.dashpot, self.mass = np.zeros((3, mesh.unknowns))
+        self.stiffness, self.dashpot, self.mass = np.zeros((3, mesh.n_dof))
         self.compliance: dict[tuple[int, int], float] = {}
         self.fixed: set[int] = set()
 
     def add(self, x: float, kind: str, w: float, theta: float) -> None:
         """Add diagonal terms at position ``x``: ``w`` for the deflection, ``theta`` for the rotation; inf clamps."""
-        for unknown, value in zip(self.mesh.dofs_at(self.mesh.node(x)), (w, theta), strict=True):
+        for dof, value in zip(self.mesh.dofs_at(self.mesh.node(x)), (w, theta), strict=True):
             if np.isinf(value):
-                self.fixed.add(unknown)
+                self.fixed.add(dof)
             else:
-                getattr(self, kind)[unknown] += value
+                getattr(self, kind)[dof] += value
 
     def join(self, x: float, w: float, theta: float) -> None:
         """Add a joint at position ``x`` with compliances ``w`` (m/N) and ``theta`` (rad/(N m)); zero: no jump."""

@@ -140,7 +140,7 @@ def modes(
     system = assemble(cue, wanted if at is None else at, effects, wanted)
     if near is None:
         return solve(system, count)
-    return _nearest(solve(system, min(wanted, system.size - system.rigid.shape[1])), count, near)
+    return _nearest(solve(system, min(wanted, system.size - system.rigid_basis.shape[1])), count, near)
 
 
 def _on_the_cue(effects: tuple[Any, ...]) -> tuple[BeamEffect, ...]:
@@ -157,7 +157,7 @@ def solve(system: System, count: int, *, corrected: int = 0, position: float = 0
     corrected: number of loads with a truncation correction (`cuefem.beam.truncation`): 1 for a force at ``position``, a
     node, m from the tip; 2 for a couple too, as where the contact lies off the cue's axis; 0 for none.
     """
-    most = system.size - system.rigid.shape[1]
+    most = system.size - system.rigid_basis.shape[1]
     if count > most:
         raise ValueError(f"modes count must be at most {most} on this mesh; got {count}: use more elements")
     rigid = rigid_body_modes(system)
@@ -169,11 +169,11 @@ def solve(system: System, count: int, *, corrected: int = 0, position: float = 0
 
 
 def rigid_body_modes(system: System) -> Array:
-    """The exact rigid-body modes, orthonormal in the mass."""
-    rigid = system.rigid
-    if rigid.shape[1] == 0:
-        return rigid
-    return np.asarray(np.linalg.solve(np.linalg.cholesky(rigid.T @ (system.M @ rigid)), rigid.T).T)
+    """The exact rigid-body modes, mass-normalised, (free, r)."""
+    basis = system.rigid_basis
+    if basis.shape[1] == 0:
+        return basis
+    return np.asarray(np.linalg.solve(np.linalg.cholesky(basis.T @ (system.M @ basis)), basis.T).T)
 
 
 def _nearest(candidates: Modes, count: int, near: float) -> Modes:

@@ -19,33 +19,35 @@ if TYPE_CHECKING:
 
 scipy = lazy_loader.load("scipy")  # loaded when used: few cues need sparse matrices
 # A sparse eigenproblem costs in proportion to the modes, a dense one to the cube of the degrees of freedom (dof). They
-# cost the same when the number of modes is (dof/EVEN)^3. Measured: 6 modes of 270 dof, 30 of 450, 150 of 780.
+# cost the same when the number of modes is (dof/BREAK_EVEN_DOF)^3. Measured: 6 modes of 270 dof, 30 of 450, 150 of 780.
 # Below DENSE_LIMIT dof a dense one is always faster.
-EVEN, DENSE_LIMIT = 145, 220
-# A spring softer than this, relative to the first mode, leaves the cue free: its mode would be round-off error.
+BREAK_EVEN_DOF, DENSE_LIMIT = 145, 220
+# A spring softer than this times mass and `System.shift` leaves the cue free: the squared frequency of its mode would
+# be round-off error.
 MIN_STIFFNESS = 1e-10
 
 
 class Points(NamedTuple):
     """Gauss points of the whole beam, element by element, and within an element segment by segment; or other points.
 
-    x: (points,) m from the tip. weights: m. piece: index of the point's segment; offset: m from the segment's tip end.
-    section: arrays (points,). rows: (elements + 1,) the first point of each element. tabulated: (elements,) whether its
-    points are the Gauss points of one segment, at which the basis is tabulated.
+    x: (points,) m from the tip. weights: (points,) of the integral over x, m. segment: (points,) index of the point's
+    segment; from_segment_end: (points,) m from the segment's tip end. section: arrays (points,). first_point: (elements
+    + 1,) the first point of each element, and the number of points. tabulated: (elements,) whether the element's points
+    are the Gauss points of one segment, at which the basis is tabulated.
     """
 
     mesh: Mesh
     x: Array
     weights: Array
-    piece: NDArray[np.intp]
-    offset: Array
+    segment: NDArray[np.intp]
+    from_segment_end: Array
     section: Section
-    rows: list[int]
+    first_point: list[int]
     tabulated: list[bool]
 
     def element(self, e: int) -> slice:
         """The points of an element."""
-        return slice(self.rows[e], self.rows[e + 1])
+        return slice(self.first_point[e], self.first_point[e + 1])
 
     def line_basis(self, e: int) -> tuple[Array, Array]:
         """scikit-fem's hierarchical line basis in an element at its points, and its derivatives, 1/m: (degrees, q)."""
@@ -58,7 +60,10 @@ class Points(NamedTuple):
 
 
 class Fields(NamedTuple):
-    """Deflection, rotation and their derivatives along x at points, each (points, k)."""
+    """Deflection w, rotation theta and their derivatives along x at points, (points, k), of k vectors.
+
+    Units per unit of the vectors: w m, dw 1, theta rad, dtheta rad/m.
+    """
 
     w: Array
     dw: Array
@@ -70,10 +75,11 @@ class Fields(NamedTuple):
 class System:
     """The assembled beam: K q = omega^2 M q, in w (m) and theta times the cue's length (m).
 
-    K, M: (free, free), arrays or sparse (`is_dense_faster`). index: (unknowns,) the free degree of freedom of each one
-    of the mesh, -1 if clamped; the two sides of a rigid joint are one. rigid: (free, r), the exact rigid-body modes
-    that no support resists (two for a free cue). dashpots: (free,) diagonal of the viscous matrix, None without
-    dashpots. shift: rad2/s2, of the order of the lowest mode's squared frequency; it makes K + shift M regular.
+    K, M: (free, free), arrays or sparse (`is_dense_faster`), N/m and kg. index: (n_dof,), for each degree of freedom of
+    the mesh its index among the free ones; -1 if clamped, and the same for both sides of a rigid joint. rigid_basis:
+    (free, r), basis of the rigid-body motions that no support resists, not normalised; r = 2 for a free cue. dashpots:
+    (free,), diagonal of the viscous damping matrix, N s/m; None without dashpots. shift: about the lowest squared
+    angular frequency of the free-free cue, rad2/s2; K + shift M is non-singular.
     """
 
     cue: Cue
@@ -82,7 +88,7 @@ class System:
     K: Array | sp.csc_matrix
     M: Array | sp.csc_matrix
     index: NDArray[np.intp]
-    rigid: Array
+    rigid_basis: Array
     dashpots: Array | None
     shift: float
 
@@ -92,11 +98,11 @@ class System:
         return int(self.K.shape[0])
 
     def all_dofs(self, vectors: Array) -> Array:
-        """All degrees of freedom of the mesh, (unknowns, k), from the free ones ``vectors`` (free, k)."""
+        """All degrees of freedom of the mesh, (n_dof, k), from the free ones ``vectors`` (free, k)."""
         return np.asarray(np.concatenate([vectors, np.zeros((1, vectors.shape[1]))])[self.index])
 
     def unit_loads_at(self, x: float) -> Array:
-        """A unit force and a unit couple over the length at the node ``x``, m, (free, 2); zero where clamped."""
+        """Loads (free, 2) at the node ``x``, m: force 1 N, and couple 1 N times the cue's length; 0 if clamped."""
         forces = np.zeros((self.size + 1, 2))
         forces[self.index[list(self.mesh.dofs_at(self.mesh.node(x)))], [0, 1]] = 1.0
         return forces[:-1]
@@ -117,7 +123,7 @@ class System:
         The cue shortens by half the integral of w'^2 as it bends. Relative to its centre of mass, the tip recedes by
         half the integral of p w'^2, p(x) being the share of the mass behind x. The axial force at x is p times that at
         the tip, because it accelerates the mass behind x. The slope is w', not the section's rotation, as in Engesser's
-        column. masses: (position m, mass kg) of each point mass.
+        column. masses: (position m, mass kg) of each point mass, also (cue.length, cue.body_mass).
         """
         root = np.sqrt(self.share_behind(masses) * self.points.weights)
         rows = root[:, None] * self.fields(vectors).dw
@@ -126,10 +132,11 @@ class System:
     def share_behind(self, masses: Sequence[tuple[float, float]]) -> Array:
         """Share of the cue's mass behind each Gauss point, (points,)."""
         points, cue = self.points, self.cue
-        first, middle = (cue.section_in(points.piece, part * points.offset).rhoA for part in (0.0, 0.5))
-        mass = np.bincount(points.piece, points.section.rhoA * points.weights, len(cue.segments))
-        # Simpson's rule is exact for the area of a cone
-        ahead = (np.cumsum(mass) - mass)[points.piece] + points.offset / 6 * (first + 4 * middle + points.section.rhoA)
+        x = points.from_segment_end
+        first, middle = (cue.section_in(points.segment, part * x).rhoA for part in (0.0, 0.5))
+        mass = np.bincount(points.segment, points.section.rhoA * points.weights, len(cue.segments))
+        # Simpson's rule is exact for the mass of a cone, whose rho A is a parabola
+        ahead = (np.cumsum(mass) - mass)[points.segment] + x / 6 * (first + 4 * middle + points.section.rhoA)
         for position, lump in masses:
             ahead = ahead + lump * (points.x > position)
         return np.asarray(1 - ahead / (mass.sum() + sum(lump for _, lump in masses)))
@@ -144,24 +151,24 @@ class System:
         return w.T.reshape(-1, *x.shape), theta.T.reshape(-1, *x.shape)
 
 
-def _fields(length: float, points: Points, unknowns: Array) -> Fields:
-    """The fields of all degrees of freedom ``unknowns`` (unknowns, k) at any points."""
-    out, mesh = np.zeros((4, len(points.x), unknowns.shape[1])), points.mesh
+def _fields(length: float, points: Points, dof_values: Array) -> Fields:
+    """The fields of all degrees of freedom of the mesh, (n_dof, k), at any points."""
+    out, mesh = np.zeros((4, len(points.x), dof_values.shape[1])), points.mesh
     for e, (order, first) in enumerate(zip(mesh.orders.tolist(), mesh.first.tolist(), strict=True)):
         rows = points.element(e)
         if rows.start < rows.stop:
             basis = element_basis(order, *points.line_basis(e), length)
-            out[:, rows] = basis.swapaxes(1, 2) @ unknowns[first : first + 2 * order + 3]
+            out[:, rows] = basis.swapaxes(1, 2) @ dof_values[first : first + 2 * order + 3]
     return Fields(*out)
 
 
 def gauss_points(cue: Cue, mesh: Mesh) -> Points:
-    """Gauss points between the nodes and the ends of segments, exact for a cone that is one element."""
+    """Gauss points between the nodes and the ends of segments; exact for a solid cone that is one element."""
     ends = cue.nodes[np.min(np.abs(cue.nodes[:, None] - mesh.nodes), axis=1) > POSITION_TOLERANCE * cue.length]
     x = np.sort(np.append(mesh.nodes, ends))
     sizes = np.diff(x)
     element = np.searchsorted(mesh.nodes, (x[:-1] + x[1:]) / 2) - 1
-    # polynomials vary fastest near the ends of an element: like cos(n arccos x)
+    # a polynomial varies fastest at the ends of its element, like cos(n arccos x): a part s needs n sqrt(s) points
     part = np.sqrt(sizes / np.diff(mesh.nodes)[element])
     counts = np.ceil(mesh.orders[element] * part - POSITION_TOLERANCE).astype(int) + EXTRA_POINTS
     rules = [gauss_rule(n) for n in counts.tolist()]
@@ -176,10 +183,10 @@ def gauss_points(cue: Cue, mesh: Mesh) -> Points:
 
 def _points(cue: Cue, mesh: Mesh, x: Array, weights: Array, tabulated: list[bool]) -> Points:
     """The points ``x``, ascending."""
-    piece = np.searchsorted(cue.nodes[1:-1], x, side="right")
-    offset = x - cue.nodes[piece]
-    rows = [0, *np.searchsorted(x, mesh.nodes[1:-1]).tolist(), len(x)]
-    return Points(mesh, x, weights, piece, offset, cue.section_in(piece, offset), rows, tabulated)
+    segment = np.searchsorted(cue.nodes[1:-1], x, side="right")
+    from_end = x - cue.nodes[segment]
+    first_point = [0, *np.searchsorted(x, mesh.nodes[1:-1]).tolist(), len(x)]
+    return Points(mesh, x, weights, segment, from_end, cue.section_in(segment, from_end), first_point, tabulated)
 
 
 def assemble(
@@ -191,16 +198,17 @@ def assemble(
 ) -> System:
     """Assemble a cue with the effects that act on it.
 
-    at, positions: as in `mesh_cue`. count: how many modes will be computed, by default those of ``at``, or few.
+    at, positions: as in `mesh_cue`. count: number of modes that will be computed, which decides between dense and
+    sparse matrices; by default ``at`` if it is a number of modes, 0 for a resolution.
     """
     mesh = mesh_cue(cue, at, effects, positions)
     points = gauss_points(cue, mesh)
     terms = PointTerms(mesh, cue)
     for effect in effects:
         effect.add_to(terms)
-    scale = np.ones(mesh.unknowns)
+    scale = np.ones(mesh.n_dof)
     scale[np.append(mesh.first, mesh.last) + 1] = 1 / cue.length**2  # rotations are scaled by the length
-    index = np.arange(mesh.unknowns)
+    index = np.arange(mesh.n_dof)
     for (before, after), value in terms.compliance.items():
         index[before] = before if value else after
     if terms.compliance or terms.fixed:
@@ -208,30 +216,30 @@ def assemble(
         index[index >= 0] = np.unique(index[index >= 0], return_inverse=True)[1]
     size = int(index.max()) + 1
 
-    stiff, heavy = [], []
+    stiffness, inertia = [], []  # (indices, block) of each element and joint
     section, weights = points.section, points.weights
-    EI, kGA, rhoA, rhoI = np.sqrt([section.EI, section.kGA, section.rhoA, section.rhoI] * weights)
+    root_EI, root_kGA, root_rhoA, root_rhoI = np.sqrt([section.EI, section.kGA, section.rhoA, section.rhoI] * weights)
     for e, (order, first) in enumerate(zip(mesh.orders.tolist(), mesh.first.tolist(), strict=True)):
-        rows, own = points.element(e), index[first : first + 2 * order + 3]
+        rows, indices = points.element(e), index[first : first + 2 * order + 3]
         w, dw, theta, dtheta = element_basis(order, *points.line_basis(e), cue.length)
-        strains = np.concatenate([EI[rows] * dtheta, kGA[rows] * (dw - theta)], axis=1)
-        motions = np.concatenate([rhoA[rows] * w, rhoI[rows] * theta], axis=1)
-        stiff.append((own, strains @ strains.T))
-        heavy.append((own, motions @ motions.T))
+        strains = np.concatenate([root_EI[rows] * dtheta, root_kGA[rows] * (dw - theta)], axis=1)
+        motions = np.concatenate([root_rhoA[rows] * w, root_rhoI[rows] * theta], axis=1)
+        stiffness.append((indices, strains @ strains.T))
+        inertia.append((indices, motions @ motions.T))
     for (before, after), value in terms.compliance.items():
         if value:
-            stiff.append((index[[before, after]], scale[before] / value * np.array([[1.0, -1.0], [-1.0, 1.0]])))
+            stiffness.append((index[[before, after]], scale[before] / value * np.array([[1.0, -1.0], [-1.0, 1.0]])))
 
-    def point(values: Array) -> Array:
+    def free_diagonal(values: Array) -> Array:
         return np.bincount(index % (size + 1), values * scale, size + 1)[:-1].astype(float)
 
-    springs = point(terms.stiffness)
+    springs = free_diagonal(terms.stiffness)
     dense = is_dense_faster(size, count or (at if isinstance(at, int) else 0))
-    K, M = assemble_blocks(stiff, springs, dense), assemble_blocks(heavy, point(terms.mass), dense)
-    dashpots = point(terms.dashpot) if terms.dashpot.any() else None
+    K, M = assemble_blocks(stiffness, springs, dense), assemble_blocks(inertia, free_diagonal(terms.mass), dense)
+    dashpots = free_diagonal(terms.dashpot) if terms.dashpot.any() else None
     shift, mass = _shift(cue, points), float(points.weights @ points.section.rhoA)
-    rigid = _free_rigid_modes(mesh, cue.length, index, springs > MIN_STIFFNESS * shift * mass)
-    return System(cue, mesh, points, K, M, index, rigid, dashpots, shift)
+    rigid_basis = _free_rigid_motions(mesh, cue.length, index, springs > MIN_STIFFNESS * shift * mass)
+    return System(cue, mesh, points, K, M, index, rigid_basis, dashpots, shift)
 
 
 def _shift(cue: Cue, points: Points) -> float:
@@ -239,9 +247,9 @@ def _shift(cue: Cue, points: Points) -> float:
     return float(500 * (points.weights @ points.section.EI) / (points.weights @ points.section.rhoA) / cue.length**4)
 
 
-def is_dense_faster(unknowns: int, count: int) -> bool:
+def is_dense_faster(n_dof: int, count: int) -> bool:
     """Whether a dense eigenproblem computes the lowest ``count`` modes faster than a sparse one."""
-    return unknowns <= DENSE_LIMIT or count > (unknowns / EVEN) ** 3
+    return n_dof <= DENSE_LIMIT or count > (n_dof / BREAK_EVEN_DOF) ** 3
 
 
 def assemble_blocks(
@@ -250,33 +258,32 @@ def assemble_blocks(
     """The sum of ``blocks``, each with its indices (-1: omitted), and a ``diagonal``, as a matrix."""
     size = len(diagonal)
     if dense:
-        whole = np.diag(diagonal)
-        for own, block in blocks:
-            first, kept = int(own[0]), own >= 0
-            if kept.all() and np.array_equal(own, np.arange(first, first + len(own))):
-                whole[first : first + len(own), first : first + len(own)] += block
+        matrix = np.diag(diagonal)
+        for indices, block in blocks:
+            first, free = int(indices[0]), indices >= 0
+            if free.all() and np.array_equal(indices, np.arange(first, first + len(indices))):
+                matrix[first : first + len(indices), first : first + len(indices)] += block
             else:
-                whole[np.ix_(own[kept], own[kept])] += block[np.ix_(kept, kept)]
-        return whole
-    places = np.concatenate([[np.repeat(own, len(own)), np.tile(own, len(own))] for own, _ in blocks], axis=1) % (
-        size + 1
-    )
+                matrix[np.ix_(indices[free], indices[free])] += block[np.ix_(free, free)]
+        return matrix
+    pairs = [[np.repeat(indices, len(indices)), np.tile(indices, len(indices))] for indices, _ in blocks]
+    positions = np.concatenate(pairs, axis=1) % (size + 1)
     values = np.concatenate([block.ravel() for _, block in blocks])
-    summed = scipy.sparse.coo_matrix((values, places), shape=(size + 1,) * 2).tocsc()[:size, :size]
+    summed = scipy.sparse.coo_matrix((values, positions), shape=(size + 1,) * 2).tocsc()[:size, :size]
     return scipy.sparse.csc_matrix(summed + scipy.sparse.diags(diagonal))
 
 
-def _free_rigid_modes(mesh: Mesh, length: float, index: NDArray[np.intp], sprung: NDArray[np.bool_]) -> Array:
+def _free_rigid_motions(mesh: Mesh, length: float, index: NDArray[np.intp], has_spring: NDArray[np.bool_]) -> Array:
     """The combinations of translation and rotation about the tip that no spring or clamp resists, (free, r)."""
-    motions = np.zeros((mesh.unknowns, 2))
+    motions = np.zeros((mesh.n_dof, 2))
     for w, x in ((mesh.first, mesh.nodes[:-1]), (mesh.last, mesh.nodes[1:])):
         motions[w, 0], motions[w, 1] = 1.0, x / length
         motions[w + 1, 1] = 1.0
-    free = np.zeros((len(sprung) + 1, 2))
+    free = np.zeros((len(has_spring) + 1, 2))
     free[index] = motions
-    resisted = np.concatenate([motions[index < 0], free[:-1][sprung]])
+    resisted = np.concatenate([motions[index < 0], free[:-1][has_spring]])
     if not len(resisted):
         return free[:-1]
-    _, strength, directions = np.linalg.svd(resisted)
-    rank = int(np.sum(strength > 1e-12 * strength[0]))
+    _, singular_values, directions = np.linalg.svd(resisted)
+    rank = int(np.sum(singular_values > 1e-12 * singular_values[0]))
     return free[:-1] @ directions[rank:].T

@@ -88,7 +88,7 @@ def sensitivity(scene: Scene, at: Resolution | int | None = None) -> Sensitivity
         raise ValueError(f"sensitivity scene must have no effects; got {len(scene.effects)}")
     at = at or default_mode_count(scene, periods=TRUNCATED_SUM_PERIODS)
     system, count = assemble(scene.shaft, at), at if isinstance(at, int) else at.modes
-    bending = solve(system, system.size - system.rigid.shape[1])
+    bending = solve(system, system.size - system.rigid_basis.shape[1])
     squares, phi = bending.omega**2, bending.vectors[0]
     still = bending.rigid_vectors[0]
     gradient = _stick(squares[:count], phi[:count], float(still @ still), scene)

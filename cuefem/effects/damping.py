@@ -34,7 +34,7 @@ def section_loss(cue: Cue, points: Points, loss: float | None) -> Section:
     The result is therefore the section with every modulus multiplied by its loss factor, over the elastic section.
     """
     rows = np.array([_lossy(segment, loss) for segment in cue.segments]).T
-    lossy = section_properties(SegmentRows(*rows[:, points.piece]), points.offset)
+    lossy = section_properties(SegmentRows(*rows[:, points.segment]), points.from_segment_end)
     return Section(*(part / whole for part, whole in zip(lossy, points.section, strict=True)))
 
 

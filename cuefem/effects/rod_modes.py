@@ -64,7 +64,7 @@ def rod_modes(cue: Cue, masses: Sequence[tuple[float, float]], *, below: float, 
         stiff.append((own, (slopes * EA[rows]) @ slopes.T))
         heavy.append((own, (values * rhoA[rows]) @ values.T))
     lumps = np.zeros(first[-1] + 1)
-    lumps[0] = rhoA[: points.rows[front]].sum()
+    lumps[0] = rhoA[: points.first_point[front]].sum()
     for x, lump in masses:
         lumps[first[mesh.node(x)]] += lump
     # jumps of the section and lumps may let a few more modes lie below than the phase says

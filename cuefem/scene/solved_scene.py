@@ -121,7 +121,7 @@ class SolvedScene:
             beam = system.assemble(scene.shaft, meshed or at, scene.cue_effects, wanted)
             # a support makes rigid modes flexible; the number of modes in all stays the same, so that its limits
             # are continuous
-            self.known[at, loads] = modes.solve(beam, wanted + 2 - beam.rigid.shape[1], corrected=loads)
+            self.known[at, loads] = modes.solve(beam, wanted + 2 - beam.rigid_basis.shape[1], corrected=loads)
         return self.known[at, loads]
 
 

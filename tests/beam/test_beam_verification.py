@@ -121,7 +121,7 @@ def test_inverse_form_low_modes_have_small_roundoff_error(cue: Cue, most: float)
 
 def test_modes_dense_and_sparse_solvers_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     cue, results = soft_tip(), {}
-    monkeypatch.setattr(system, "EVEN", 1)  # for any number of modes
+    monkeypatch.setattr(system, "BREAK_EVEN_DOF", 1)  # for any number of modes
     for limit in (0, 10**6):
         monkeypatch.setattr(system, "DENSE_LIMIT", limit)
         results[limit] = modes(cue, 8, effects=(Joint(0.3, 1e-3), Support(0.5, np.inf)), at=Resolution(2, 16, 8))
@@ -141,7 +141,7 @@ def test_mesh_has_node_at_every_jump_and_position() -> None:
         for x in (0.0, 0.006, 0.1, 0.306, 0.706):
             assert np.min(np.abs(mesh.nodes - x)) < 1e-15
         assert len(mesh.orders) == elements
-        assert mesh.unknowns == 2 + np.sum(2 * mesh.orders + 1)
+        assert mesh.n_dof == 2 + np.sum(2 * mesh.orders + 1)
 
 
 def sliced(cue: Cue, count: int) -> Cue:

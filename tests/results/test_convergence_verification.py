@@ -19,7 +19,7 @@ def all_modes(scene: cf.Scene, count: int) -> Modes:
     """All modes of a mesh for ``count`` modes."""
     assert isinstance(scene.cue, cf.Cue)
     system = assemble(scene.cue, count, scene.cue_effects)
-    return solve(system, system.size - system.rigid.shape[1])
+    return solve(system, system.size - system.rigid_basis.shape[1])
 
 
 def checked_numbers(outcome: cf.Outcome) -> np.ndarray:
