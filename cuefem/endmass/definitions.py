@@ -144,7 +144,7 @@ def stick_at_offset(tip: TipModes, scene: Scene) -> float:
 
 
 def stick_at_offsets(tip: TipModes, scene: Scene, offsets: Sequence[float]) -> list[float]:
-    """`stick_at_offset` of each offset; nan where no end mass has that squirt."""
+    """`stick_at_offset` at each offset, kg; nan where no end mass has that squirt."""
 
     def mass(offset: float) -> float:
         try:
@@ -227,7 +227,8 @@ def equivalent_end_mass(outcome: Outcome, scene: Scene) -> float:
 
 def _with_squirt(squirt: float, scene: Scene, drive: str) -> float:
     """The lumped end mass, kg, whose impulse-solver squirt is ``squirt``, rad, away from the side struck."""
-    cue, masses = LumpedCue(scene.axial_mass, scene.axial_mass), np.geomspace(1e-9, 1e3, SEARCH_POINTS)
+    # any end mass that causes no `PlausibilityWarning`: the search replaces it
+    cue, masses = LumpedCue(scene.axial_mass, 0.01), np.geomspace(1e-9, 1e3, SEARCH_POINTS)
     mass = lumped_number("end_mass", masses, squirt, scene=scene, cue=cue)
     if mass is None:
         raise ValueError(
@@ -237,10 +238,10 @@ def _with_squirt(squirt: float, scene: Scene, drive: str) -> float:
 
 
 def lumped_number(name: str, values: Array, squirt: float, *, scene: Scene, cue: LumpedCue) -> float | None:
-    """The least value of a number of a lumped cue, to round-off error, with which it squirts by ``squirt``, rad.
+    """The smallest value of the field ``name`` of a lumped cue, to round-off error, at which its squirt is ``squirt``.
 
-    values: ascending, (n,), the range. squirt: away from the side struck. None unless squirt is less at the lower end
-    of the range, and more at the upper end: for all light end masses a tip that slides has one squirt.
+    values: ascending, (n,), the range. squirt: rad, away from the side struck. None unless squirt is smaller at the
+    lower end of the range and larger at the upper: light end masses, whose tip slips until separation, have one squirt.
     """
     side, numbers = np.sign(scene.stroke.offset), impulse_inputs(scene, cue)
 

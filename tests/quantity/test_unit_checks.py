@@ -59,6 +59,12 @@ def test_limits_and_scale_models_do_not_warn() -> None:
             assert item
 
 
+def test_end_mass_search_does_not_warn() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert cf.end_mass(cf.Scene(cf.Cue((SEGMENT,), 0.43), stroke=cf.Stroke(2.0, 0.3)), "squirt") > 0
+
+
 def test_file_number_in_other_unit_warns_at_load(tmp_path: Path) -> None:
     shutil.copy(ROOT / "meshes" / "pool_maple.toml", tmp_path / "cue.toml")
     path = tmp_path / "scene.toml"
