@@ -23,8 +23,9 @@ Progress = Callable[[Sequence[Any]], Iterable[Any]]
 def convergence_record(scene: Scene, *, max_modes: int = MAX_MODES, progress: Progress = iter) -> Record:
     """Refinement levels, at least three, with error and run time; a recommendation for each of `RECOMMENDED_RTOLS`.
 
-    Refinement ends at ``max_modes`` modes. Keys of a level: "modes", "steps"; "unknowns", the number of degrees of freedom; "estimate", its estimated relative error (None on the first two); "difference",
-    relative, from the last level; "seconds", the run time of all levels up to it, which `cuefem.resolve` takes.
+    Refinement ends at ``max_modes`` modes. Keys of a level: "modes", "steps"; "unknowns", the number of degrees of
+    freedom; "estimate", its estimated relative error (None on the first two); "difference", relative, from the last
+    level; "seconds", the run time of all levels up to it, which `cuefem.resolve` takes.
     ValueError for a lumped cue, which is exact.
     """
     refined = _timed_levels(scene, max_modes, progress)

@@ -1,4 +1,4 @@
-"""Verdict on a cue: its squirt with its uncertainty, compared with reference cues by the same stroke."""
+"""Verdict on a cue: its squirt with its uncertainty, compared with that of reference cues at the same stroke."""
 
 from __future__ import annotations
 
@@ -26,13 +26,29 @@ from cuefem.scene.solved_scene import SolvedScene
 
 
 def verdict_record(
-    scene: Scene, outcome: Outcome, ready: Mapping[str, Cue], *, solved: SolvedScene | None = None
+    scene: Scene, outcome: Outcome, reference_cues: Mapping[str, Cue], *, solved: SolvedScene | None = None
 ) -> Record:
-    """Squirt at the stroke's offset, its uncertainty, and the squirt of each reference cue by the same stroke.
+    """Squirt at the stroke's offset, its uncertainty, and the squirt of each reference cue at the same stroke.
 
-    A head-on stroke, which has no squirt, is computed at the default offset instead. "inputs": by how much each changes
-    squirt. "references": squirt, own squirt over it less 1, its error, and whether the two are "distinct". ready:
-    the first is the reference of the text. solved: the scene's default modes, if already computed.
+    Parameters
+    ----------
+    scene : Scene
+        A head-on stroke, which has no squirt, is computed at the default offset instead.
+    outcome : Outcome
+        Of the scene's strike, at any resolution.
+    reference_cues : mapping of str to Cue
+        The report compares with the first.
+    solved : SolvedScene, optional
+        The scene with its default modes, if already computed.
+
+    Returns
+    -------
+    dict
+        offset: b/R; head_on: whether it replaces a head-on stroke. squirt: rad, signed; squirt_error: rad, 1 sigma.
+        uncertainty: relative, 1 sigma, by its causes model, inputs and computation, and in total. inputs: contribution
+        of each uncertain input to "inputs". references: by name squirt, rad; difference, own squirt over it less 1,
+        both at the default resolution; error of the difference, 1 sigma; distinct, whether the difference exceeds it.
+        Reference cues whose strike fails, or whose squirt is zero or of the opposite sign, are left out.
     """
     struck = off_centre(scene)
     head_on = struck is not scene
@@ -41,9 +57,10 @@ def verdict_record(
     own = variant_squirt(solved, struck) if head_on or outcome.error is not None else float(outcome.squirt)
     squirt = own if head_on else float(outcome.squirt)
     inputs = {key: abs(change) for key, change in squirt_changes(solved, own).items()}
-    computation = NUMERICAL_ERROR if outcome.error is None else outcome.error
+    computation = NUMERICAL_ERROR if head_on or outcome.error is None else outcome.error
     uncertainty = Uncertainty(model_error(struck), math.hypot(*inputs.values()), computation)
-    among = {name: _reference_row(struck, own, cue, shaft_uncertainty(inputs)) for name, cue in ready.items()}
+    shaft = shaft_uncertainty(inputs)
+    reference_rows = {name: _reference_row(struck, own, cue, shaft) for name, cue in reference_cues.items()}
     return {
         "offset": float(struck.stroke.offset),
         "head_on": head_on,
@@ -51,15 +68,15 @@ def verdict_record(
         "uncertainty": uncertainty._asdict() | {"total": uncertainty.total},
         "inputs": inputs,
         "squirt_error": uncertainty.total * abs(squirt),
-        "references": {name: beside for name, beside in among.items() if beside},
+        "references": {name: row for name, row in reference_rows.items() if row},
     }
 
 
 def _reference_row(scene: Scene, squirt: float, cue: Cue, inputs: float) -> Record | None:
-    """Another cue with the same stroke; None if this stroke fails with it, or one of the two has no squirt.
+    """Comparison with another cue at the same stroke; None if its strike fails or the signs of squirt differ.
 
-    inputs: relative uncertainty of squirt by the inputs of the scene's shaft; the other shaft, another piece of wood,
-    is taken to have as much.
+    squirt: that of the scene, rad. inputs: relative uncertainty of squirt by the inputs of the scene's shaft; the
+    same is assumed, independently, for the other shaft.
     """
     struck = with_cue(scene, cue)
     try:
@@ -74,10 +91,12 @@ def _reference_row(scene: Scene, squirt: float, cue: Cue, inputs: float) -> Reco
 def with_cue(scene: Scene, cue: Cue) -> Scene:
     """The scene's ball, tip, stroke and effects with another cue.
 
-    Effects on the scene's own cue (a mass, a joint, a clamp beyond the other's end) are dropped. The other cue
-    has the leather in its drawing only if the scene's own cue has.
+    Effects that are part of the scene's own cue (a mass, a joint) or lie beyond the other's end are dropped. The other
+    cue retains leather in its drawing only if the scene's own cue has it.
     """
-    own = scene.lumped is None and scene.shaft.leather
-    other = cue if own else without_leather(cue)
-    stay = (e for e in scene.effects if e.at_tip or not (e.part_of_cue or any(x >= other.length for x in e.positions)))
-    return replace(scene, cue=other, effects=tuple(stay))
+    has_leather = scene.lumped is None and scene.shaft.leather
+    other = cue if has_leather else without_leather(cue)
+    remaining = (
+        e for e in scene.effects if e.at_tip or not (e.part_of_cue or any(x >= other.length for x in e.positions))
+    )
+    return replace(scene, cue=other, effects=tuple(remaining))

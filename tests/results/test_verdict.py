@@ -10,7 +10,7 @@ import cuefem as cf
 from cuefem.io.reference_cues import REFERENCE_FILES, reference_cues
 from cuefem.parameters.parameter import with_parameters
 from cuefem.report.verdict_table import reference_comparison, reference_scale, squirt_text
-from cuefem.results.uncertainty import RATIO_FLOOR
+from cuefem.results.uncertainty import NUMERICAL_ERROR, RATIO_FLOOR
 from cuefem.results.verdict import verdict_record, with_cue
 from cuefem.scene.default_scene import without_leather
 
@@ -58,6 +58,12 @@ def test_verdict_difference_within_error_is_not_distinct(depth: float, distinct:
     assert reference["distinct"] == distinct == (abs(reference["difference"]) > reference["error"])
     assert reference["error"] >= RATIO_FLOOR
     assert ("less squirt" in reference_comparison(record)[0]) == distinct
+
+
+def test_verdict_head_on_outcome_error_is_not_of_the_default_offset() -> None:
+    scene = replace(SCENE, stroke=cf.Stroke(2.0, 0.0))
+    record = verdict_record(scene, replace(cf.strike(scene), error=1e-9), {})
+    assert (record["head_on"], record["uncertainty"]["computation"]) == (True, NUMERICAL_ERROR)
 
 
 def test_same_stroke_excludes_effects_on_own_cue() -> None:
