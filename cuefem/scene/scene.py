@@ -28,7 +28,7 @@ from cuefem.quantity.fields import (
 from cuefem.quantity.unit_checks import warn_light_cue
 
 DEFAULT_CONTACT_TIME = 2e-3  # s, [Kim] sec. 4
-MIN_STEPS, MAX_STEPS = 20, 1_000_000  # of a contact, in a head-on contact time
+MIN_STEPS, MAX_STEPS = 20, 1_000_000  # in a head-on contact time
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Ball:
 
 @dataclass(frozen=True)
 class Tip:
-    """The leather between cue and ball.
+    """Contact parameters of the tip.
 
     Parameters
     ----------
@@ -188,12 +188,12 @@ class Scene:
         object.__setattr__(self, "effects", check_effects(self.cue, self.effects))
         if isinstance(self.cue, Cue) and self.cue.segments and self.cue.body_mass == 0:
             warn_light_cue(self.cue.mass, self.cue.length)
-        whole = self.contact_terms.tip is not None  # the terms refuse what may be given only once
+        has_tip_model = self.contact_terms.tip is not None  # `ContactTerms.of` rejects effects that may act only once
         for name, unit in (("contact_time", "s"), ("stiffness", "N/m")):
             value = getattr(self.tip, name)
-            if whole and value is not None:
+            if has_tip_model and value is not None:
                 raise ValueError(
-                    f"Tip.{name} must be left out beside an effect that gives the whole tip, from which it follows; "
+                    f"Tip.{name} must be omitted with an effect that models the whole tip, which determines it; "
                     f"got {value} {unit}"
                 )
 
@@ -236,8 +236,8 @@ class Scene:
     @property
     def tip_diameter(self) -> float:
         """Diameter of the leather tip, or else of the shaft's end, m; ValueError for a lumped cue."""
-        whole = self.contact_terms.tip
-        return self.shaft.segments[0].tip_diameter if whole is None else float(whole.diameter)
+        tip = self.contact_terms.tip
+        return self.shaft.segments[0].tip_diameter if tip is None else float(tip.diameter)
 
     @property
     def _end_diameter(self) -> float | None:
@@ -267,14 +267,14 @@ class Scene:
         With the stiffness it defines the equivalent linear tip for end masses, the choice of modes, and reports.
         """
         if self.contact_terms.tip is not None:
-            return (1 + self.tip.restitution) * self._pressed[1]
+            return (1 + self.tip.restitution) * self._loading_phase[1]
         if self.tip.stiffness is None:
             return DEFAULT_CONTACT_TIME if self.tip.contact_time is None else self.tip.contact_time
         return math.pi / 2 * (1 + self.tip.restitution) * math.sqrt(self.reduced_mass / self.tip.stiffness)
 
     @property
     def known_contact_time(self) -> float | None:
-        """The `contact_time`, or None for leather that the impact indents beyond the range of its law."""
+        """The `contact_time`, s; None if the impact indents the leather beyond the range of its law."""
         try:
             return self.contact_time
         except IndentationOutOfRange:
@@ -303,20 +303,20 @@ class Scene:
 
     def tip_law(self, restitution: float = 1.0, offset: float = 0.0) -> LeatherLaw:
         """The force-indentation law of the `LeatherTip` on this cue and ball; ValueError without one."""
-        whole = self.contact_terms.tip
-        if whole is None:
-            raise ValueError("Scene.effects must hold a LeatherTip, whose law is asked for; got none")
-        return whole.law(self.ball.radius, abs(offset), restitution)
+        tip = self.contact_terms.tip
+        if tip is None:
+            raise ValueError("Scene.effects must hold a LeatherTip, whose law is required; got none")
+        return tip.law(self.ball.radius, abs(offset), restitution)
 
     @property
     def max_indentation(self) -> float:
         """Maximum indentation of the `LeatherTip` in a central impact, m; ValueError without one."""
-        return self._pressed[0]
+        return self._loading_phase[0]
 
     @property
-    def _pressed(self) -> tuple[float, float]:
+    def _loading_phase(self) -> tuple[float, float]:
         """Maximum indentation of the `LeatherTip` in a central impact, m, and the time to it, s."""
-        return _pressed(self.tip_law(), self.reduced_mass, self.stroke.speed)
+        return _loading_phase(self.tip_law(), self.reduced_mass, self.stroke.speed)
 
 
 def as_scenes(name: str, scenes: Any) -> tuple[Scene, ...]:
@@ -333,8 +333,8 @@ def as_scenes(name: str, scenes: Any) -> tuple[Scene, ...]:
 
 
 @lru_cache(maxsize=256)
-def _pressed(law: LeatherLaw, mass: float, speed: float) -> tuple[float, float]:
-    """Maximum indentation and the time to it, cached for all strokes of a sweep at one speed."""
+def _loading_phase(law: LeatherLaw, mass: float, speed: float) -> tuple[float, float]:
+    """Maximum indentation, m, and the time to it, s; cached for all strokes of a sweep at one speed."""
     return law.central_impact(mass, speed)
 
 
@@ -379,7 +379,7 @@ class Resolution:
 
 
 def equal_fields(this: Any, other: Any) -> bool:
-    """Whether two dataclasses of one class have equal fields, arrays included: their ``__eq__``."""
+    """``__eq__`` of dataclasses with arrays: whether two of one class have equal fields."""
     if type(this) is not type(other):
         return NotImplemented
     pairs = ((getattr(this, field.name), getattr(other, field.name)) for field in fields(this))
@@ -404,7 +404,7 @@ class Outcome:
         Angle between the ball's path and the cue's, rad; positive when the ball leaves on the far side of the cue's
         line from the side that is struck.
     ball_velocity : array
-        Velocity of the ball (t, n), m/s: t along the ball's surface, n into the ball at the contact.
+        Velocity of the ball (t, n), m/s: t tangential, n normal into the ball at the contact.
     ball_speed : float or array
         m/s.
     spin : float or array
@@ -422,7 +422,7 @@ class Outcome:
         (slip through more than half of it, or through its last third). The impulse solver has "stick", "late stick",
         "slip reversal", and "miscue" where slip never ends.
     jam : bool or array
-        Whether friction pressed ball and tip together at first, so that they closed faster: usual for a light end mass.
+        Whether friction increased the normal approach speed of ball and tip at first: usual for a light end mass.
     phases : tuple
         Phases of the contact.
     energy : dict

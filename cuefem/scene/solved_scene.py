@@ -1,9 +1,9 @@
 """From a scene to its tip modes, the one way for every cue; and the default resolution.
 
-The tip modes are all that an impact sees of a cue. A lumped cue is two of them, of zero frequency. A finite-element cue
-is solved: where a Resolution is given, the modes asked for are summed plainly. By default modes are kept by frequency
-and ended by a tail (`cuefem.beam.truncation`), without which no bound on their frequency holds every cue to half a
-percent. The beam's solver is loaded when a finite-element cue is solved, not before.
+Tip modes determine the impact of a cue. A lumped cue has two of them, of zero frequency. With a Resolution, a
+finite-element cue has the truncated sum over the requested modes. By default modes are retained by frequency and a
+truncation correction replaces the others (`cuefem.beam.truncation`); without it no frequency bound would give every cue
+an error below 0.5 %. The beam's solver is loaded when a finite-element cue is solved.
 """
 
 from __future__ import annotations
@@ -26,31 +26,33 @@ from cuefem.solid.resolution import Solid
 if TYPE_CHECKING:
     from cuefem.beam.modes import Modes
 
-# Modes are kept up to this many periods in a contact, with a tail; a plain sum wants more, the carbon cue's is 1 % off
-# even with a hundred. But never fewer than MIN_MODES, however long the contact.
+# Modes are retained up to PERIODS periods in a contact with a truncation correction, and up to TRUNCATED_SUM_PERIODS
+# without: the carbon cue's error is 1 % even at 100. Long contacts have at least MIN_MODES.
 PERIODS, TRUNCATED_SUM_PERIODS, MIN_MODES = 30, 60, 40
-# The same for a strike with a whole tip, which gives along its surface too, so that the shaft's end feels no step: over
-# 70 random cues the modes left out change squirt by 2e-5 at most, for 2.5e-3 with a bare tip and twice as many.
+# The same for a strike with a leather tip, whose tangential compliance leaves no velocity step at the shaft's end: over
+# 70 random cues the truncated modes change squirt by at most 2e-5, against 2.5e-3 with a rigid tip and twice as many.
 LEATHER_PERIODS, MIN_LEATHER_MODES = 15, 24
-# The end mass of a tip that sticks needs more: its velocity begins with a step, whose front comes back from the butt
-# at 2 L/c with frequencies of 10 to 80 kHz, whatever the contact time. The mesh resolves the first MESHED_MODES of
+# The end mass of a tip that sticks needs more: its velocity begins with a step, whose front returns from the butt
+# after 2 L/c with frequencies of 10 to 80 kHz, at any contact time. The mesh resolves the first MESHED_MODES of
 # them; the others only add compliance: the end mass is as accurate as on a mesh for 160 (50 shafts, 50 whole cues).
 # Accuracy with these numbers: studies/accuracy/accuracy.md.
 MIN_STICK_MODES, MESHED_MODES = 160, 120
-# Never more than this by default, which a contact of a fraction of a millisecond would ask for: the tail does the rest,
-# and more would take over a second. MAX_MODES is the last rung of `resolve`.
+# Limit of the default number, which contacts of a fraction of a millisecond reach: the truncation correction replaces
+# the others, and more would take over a second. MAX_MODES: the last level of `resolve`.
 MAX_DEFAULT_MODES, MAX_MODES = 160, 400
 
 
 def strike_mode_count(scene: Scene) -> int:
-    """The number of modes that a strike takes by default."""
-    whole = scene.contact_terms.tip is not None
-    return default_mode_count(scene, **({"periods": LEATHER_PERIODS, "least": MIN_LEATHER_MODES} if whole else {}))
+    """Default number of modes of a strike."""
+    has_tip_model = scene.contact_terms.tip is not None
+    return default_mode_count(
+        scene, **(dict(periods=LEATHER_PERIODS, least=MIN_LEATHER_MODES) if has_tip_model else {})
+    )
 
 
 def default_mode_count(scene: Scene, *, periods: float = PERIODS, least: int = MIN_MODES) -> int:
     """The number of modes up to the frequency ``periods`` / contact time, at least ``least``."""
-    # a contact time that the user gave is in bounds; one that follows from a stiffness or a whole tip may not be
+    # a contact time in the input is within bounds; one computed from a stiffness or a leather tip may not be
     if not CONTACT_TIME.contains(scene.contact_time):
         got = f"{scene.stiffness:.6g} N/m, {scene.contact_time:.3g} s"
         raise ValueError(f"Tip.stiffness must make a head-on contact time in {CONTACT_TIME.bounds}; got {got}")
@@ -64,11 +66,11 @@ def mode_count_for(cue: Cue, time: float, *, periods: float = PERIODS, least: in
 
 @dataclass(frozen=True, eq=False)
 class SolvedScene:
-    """A scene and its modes, each eigenproblem solved when it is first asked for, and once.
+    """A scene and its modes; each eigenproblem is solved once, on first use.
 
     Nothing here depends on the stroke: one solved scene serves strikes at every speed and offset. at: the resolution of
-    all modes; by default the modes of `strike_mode_count`, ended by a tail. known: modes that are solved already, which
-    scenes of one cue with the same effects on it share.
+    all modes; by default the modes of `strike_mode_count`, with a truncation correction. known: solved modes by
+    resolution or number, which scenes of one cue with the same effects on it share.
     """
 
     scene: Scene
@@ -77,16 +79,16 @@ class SolvedScene:
 
     @property
     def modes(self) -> Modes:
-        """Bending modes that a strike takes; ValueError for a lumped cue, which has none."""
+        """Bending modes of a strike; ValueError for a lumped cue, which has none."""
         if isinstance(self.at, Solid):
-            raise ValueError("at must be a Resolution, for this asks for the shapes of a beam; got a Solid")
+            raise ValueError("at must be a Resolution, because mode shapes of a beam are required; got a Solid")
         if self.at is not None:
             return self._bending(self.at, corrected=False)
         return self._default(strike_mode_count(self.scene))
 
     @cached_property
     def tip(self) -> TipModes:
-        """Tip modes that a strike takes."""
+        """Tip modes of a strike."""
         if self.scene.lumped is not None:
             return lumped_tip_modes(self.scene.lumped)
         if isinstance(self.at, Solid):
@@ -109,8 +111,8 @@ class SolvedScene:
     def _bending(self, at: Resolution | int, *, corrected: bool, meshed: int | None = None) -> Modes:
         """Bending modes at a resolution, or a number of them; each solved once.
 
-        corrected: with a truncation correction, or a truncated sum. meshed: how many of them the mesh must hold, by
-        default all.
+        corrected: with a truncation correction; otherwise a truncated sum. meshed: number of modes that the mesh
+        resolves, by default all.
         """
         scene = self.scene
         loads = 0 if not corrected else 2 if has_moment_arm(scene) else 1
@@ -119,35 +121,35 @@ class SolvedScene:
 
             wanted = at if isinstance(at, int) else at.modes
             beam = system.assemble(scene.shaft, meshed or at, scene.cue_effects, wanted)
-            # a support makes rigid modes flexible; the number of modes in all stays the same, so that its limits
-            # are continuous
+            # a support makes rigid-body modes flexible; the total number of modes stays the same, so that results
+            # are continuous as its stiffness vanishes
             self.known[at, loads] = modes.solve(beam, wanted + 2 - beam.rigid_basis.shape[1], corrected=loads)
         return self.known[at, loads]
 
 
 def tip_modes_of(scene: Scene, at: Resolution | Solid | None = None) -> TipModes:
-    """Tip modes of any scene's cue, with its effects, that a strike takes."""
+    """Tip modes of a strike of any scene's cue, with its effects."""
     return SolvedScene(scene, at).tip
 
 
 def corrected_tip_modes(scene: Scene, count: int) -> TipModes:
-    """Tip modes of a finite-element cue from ``count`` bending modes ended by a tail."""
+    """Tip modes of a finite-element cue from ``count`` bending modes with a truncation correction."""
     return tip_modes_from(SolvedScene(scene)._bending(count, corrected=True), scene)
 
 
 def has_moment_arm(scene: Scene) -> bool:
-    """Whether an effect takes the contact off the cue's axis, so that the tip's rotation moves it."""
+    """Whether an effect moves the contact off the cue's axis, so that the tip's rotation moves it."""
     return any(scene.contact_terms.moment_arm(math.pi / 6))
 
 
 def tip_modes_from(bending: Modes, scene: Scene) -> TipModes:
-    """Tip modes of the scene's finite-element cue from its bending modes, with what its effects add to them."""
+    """Tip modes of the scene's finite-element cue from its bending modes and its effects."""
     cue, effects = scene.shaft, scene.cue_effects
     tip = tip_modes(bending, scene.axial_mass)
     bent = [
         part for part in (effect.geometric_stiffness(bending, cue, effects) for effect in effects) if part is not None
     ]
-    if bent:  # the first of the tip modes moves along the axis
+    if bent:  # the first of the tip modes is the axial rigid-body mode
         tip = replace(tip, geometric=np.pad(sum(bent[1:], bent[0]), (1, 0)))
     along = tuple(chain.from_iterable(effect.axial_modes(bending, cue, effects) for effect in effects))
     for family in along:

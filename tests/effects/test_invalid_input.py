@@ -47,7 +47,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [  # a line a raise, its first w
     (lambda: cf.AxialWaves(1.47), "AxialWaves must be given cue_length, butt_diameter and wave_speed together"),
     (listed(WAVES, SHEAR, WAVES), "Scene.effects[2] must be another effect, AxialWaves acts once; got Axial"),
     (listed(DOME, LEATHER), "must be an effect that goes with effects[0], TipDome; got LeatherTip"),
-    (listed(LEATHER), "Tip.contact_time must be left out beside an effect that gives the whole tip"),
+    (listed(LEATHER), "Tip.contact_time must be omitted with an effect that models the whole tip"),
     (with_tip(cf.Tip(stiffness=1e6), LEATHER), "Tip.stiffness must be left out beside an effect that gives the whole"),
     (with_tip(cf.Tip(), WAVES, LEATHER, cue=pool()), "Scene.effects[1] must be the only leather: draw the cue"),
     (lambda: cf.modes(pool(), effects=(LEATHER,)), "LeatherTip must be the only leather: draw the cue without its"),
