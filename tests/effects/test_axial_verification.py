@@ -1,4 +1,4 @@
-"""Verification of the waves along a cue: against closed forms, a chain of masses stepped in time, and many modes."""
+"""Axial waves of a cue: against a chain of masses in small steps, a drawn butt, and a closed form (verification)."""
 
 import math
 from dataclasses import replace
@@ -30,13 +30,12 @@ def head_on(cue: cf.Cue) -> cf.Scene:
 
 
 def contact_of(outcome: cf.Outcome, cue: cf.Cue) -> tuple[float, float]:
-    """Contact time, s, and the restitution that the ball's speed shows, of a cue that is rigid along its axis."""
+    """Contact time, s, and apparent restitution: that of an axially rigid cue with the same ball speed."""
     return outcome.duration, outcome.ball_speed * (1 + cf.Ball().mass / cue.mass) - 1
 
 
 def step_chain(cue: cf.Cue, pieces: int = 200) -> tuple[float, float]:
-    """Contact time, s, and the restitution seen: a chain of masses and springs behind the tip's spring, in small
-    steps."""
+    """Contact time, s, and apparent restitution of a chain of masses and springs behind the tip's spring."""
     x = np.linspace(cue.leather, cue.length, pieces + 1)
     inside = cue.section((x[:-1] + x[1:]) / 2)
     h = x[1] - x[0]
@@ -63,7 +62,7 @@ def step_chain(cue: cf.Cue, pieces: int = 200) -> tuple[float, float]:
 
 
 def test_axial_waves_equal_chain_of_masses() -> None:
-    """The remainder, of 1.1 ms and 0.73: about 0.16 ms and 0.05."""
+    """Axial waves change 1.1 ms and 0.73 by about 0.16 ms and 0.05."""
     cue = reference_cue("pool_maple")
     assert contact_of(cf.strike(head_on(cue)), cue) == pytest.approx(step_chain(cue), rel=2e-3)
 
@@ -72,7 +71,7 @@ BUTT = {"cue_length": 1.4732, "butt_diameter": 0.03175}
 
 
 def test_axial_waves_stated_butt_equals_drawn_butt():
-    """Along the axis it is a tapered segment of the rest's mass and of the wave speed; across it nothing is there."""
+    """The stated butt equals a tapered segment of its mass and wave speed along the axis, and is absent across it."""
     waves, cue = cf.AxialWaves(**BUTT, wave_speed=4430.0), reference_cue("pool_maple")
     whole, scene = waves.with_butt(cue), replace(head_on(cue), effects=(waves,))
     rest = whole.segments[-1]
@@ -85,7 +84,8 @@ def test_axial_waves_stated_butt_equals_drawn_butt():
 @pytest.mark.parametrize("below", [1e3, 2e5])
 def test_rod_truncation_correction_has_compliance_of_all_modes(below):
     """A free uniform rod on springs of s per mass under a steady force at its end: the sum of along^2/(omega^2 + s),
-    for the s = 10 (c/L)^2 with which the tail is made, is coth(L sqrt(s)/c) / sqrt(s EA rhoA), rigid motion and all."""
+    for the shift s = 10 (c/L)^2 of the truncation correction, is coth(L sqrt(s)/c) / sqrt(s EA rhoA), rigid motion
+    included."""
     cue = cf.Cue((cf.Segment(0.7, 0.012, 0.012, MAPLE),))
     section = cue.section(0.0)
     s = 10 * section.EA / section.rhoA / cue.length**2

@@ -1,4 +1,4 @@
-"""Effects against closed forms and exact limits, each limit at its stated rate."""
+"""Effects against closed forms and exact limits (verification)."""
 
 from dataclasses import replace
 from math import inf, pi
@@ -26,7 +26,7 @@ NODE = cf.PointMass(POSITION, 0.0)  # a node alone: the mesh's error is the same
 
 @pytest.mark.parametrize("share", [0.0, 0.4, 1.0])
 def test_point_mass_adds_its_axial_share_to_axial_mass(share):
-    """Bending modes are those of the whole mass; head on, the cue is as heavy as with its share of it behind."""
+    """Bending modes include the whole mass; in a centre-ball impact the cue's mass includes the axial share."""
     lump = cf.PointMass(POSITION, 0.05, axial_share=share)
     across = [cf.modes(kim(), 3, effects=(each,)).frequencies for each in (lump, cf.PointMass(POSITION, 0.05))]
     np.testing.assert_allclose(*across, rtol=1e-12)
@@ -42,7 +42,7 @@ SOFT = (3e-3, 2e-6)  # rad/(N m), m/N
 @pytest.mark.parametrize("order", [3, 12])
 @pytest.mark.parametrize("compliances", [SOFT, (SOFT[0], 0.0), (0.0, SOFT[1]), (0.0, 0.0)])
 def test_joint_compliance_adds_in_series(compliances, order):
-    """A force at the tip of a cue clamped at its butt bends it by the joint's lever squared, and shears it, more."""
+    """The joint adds moment arm squared times its rotational compliance, and its shear compliance."""
 
     def compliance(*effects: Effect) -> float:
         system = assemble(KIM, cf.Resolution(3, order, 1), (cf.Support(0.7, inf, inf), *effects))
@@ -55,7 +55,7 @@ def test_joint_compliance_adds_in_series(compliances, order):
 
 
 def test_rod_modes_of_cone_equal_closed_form():
-    """r u is a plane wave: (r u)' = (r'/r) (r u) at both free ends."""
+    """r u is a plane wave, with (r u)' = (r'/r) (r u) at both free ends."""
     cue = kim()
     material = cue.segments[0].material
     k = rod_modes(cue, (), below=2 * pi * 3e4).omega / (material.E / material.rho) ** 0.5
@@ -70,7 +70,7 @@ def test_rod_modes_of_cone_equal_closed_form():
 
 
 def lossy_cue(shell: float = 1.0, core: float = 1.0) -> cf.Cue:
-    """A bored shaft with a core and a plain one behind it; the factors scale both moduli of two of its materials."""
+    """A bored segment with a core, and a plain one; the factors scale both moduli of shell and core."""
     plastic, foam = (
         cf.Material(3e9 * shell, 1.1e9 * shell, 1200.0, 0.05),
         cf.Material(1e9 * core, 4e8 * core, 300.0, 0.2),
@@ -113,7 +113,7 @@ RADIUS = 0.012
 
 
 def rigid_domed(offset: float) -> tuple[cf.Cue, cf.LumpedCue]:
-    """A stub, and its inverse mass at the contact as a rigid body's with a dome.
+    """A stub, and its inverse mass at the contact as a rigid body with a dome.
 
     With u forward along the axis and w across it the contact lies from the centre of mass at x forward to the apex,
     r back to the dome's centre, and r along n = (cos phi, -sin phi): rotation moves it by (-w, u) of that.

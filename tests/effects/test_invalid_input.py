@@ -1,4 +1,4 @@
-"""Effects that cannot be: calls and scene files, each with a part of the one line that says why."""
+"""Invalid effects: calls and scene files, each with a part of the error message (bad input)."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -31,7 +31,7 @@ def with_tip(tip: cf.Tip, *effects: cf.Effect, **more: Any) -> Callable[[], cf.S
     return lambda: replace(kim_scene(), tip=tip, effects=effects, **more)
 
 
-CALLS: list[tuple[Callable[[], object], str]] = [  # a line a raise, its first words
+CALLS: list[tuple[Callable[[], object], str]] = [  # one line for each `raise`
     (listed(SHEAR, RAISED), "TipShear; got Elevation, which does not"),
     (lambda: replace(LEATHER, dome_radius=6e-3).mass(0.013), "must have a radius of 6.5 mm or more, half of"),
     (lambda: replace(LEATHER, height=2e-3).mass(0.01275), "must be higher than 2.457 mm, the depth"),
@@ -72,7 +72,7 @@ def test_clamped_tip_has_strike_but_no_end_mass() -> None:
 
 
 def test_effect_input_at_bound_is_accepted() -> None:
-    """The very end is on the cue, but for rounding; two clamps at a place are one."""
+    """Round-off error at the end of the cue is accepted; two clamps at one position are one."""
     assert cf.modes(KIM, 1, effects=(cf.Support(0.7 * (1 + 1e-12), inf, inf),)).rigid == 0
     once, twice = (cf.modes(KIM, 3, effects=(CLAMP,) * n).frequencies for n in (1, 2))
     assert once == pytest.approx(twice, rel=1e-12)

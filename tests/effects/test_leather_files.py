@@ -1,4 +1,4 @@
-"""A leather tip in a scene file, in the words of a cue maker: coins, soft, medium or hard, flat (regression)."""
+"""Leather tips in scene files: hardness by name, dome by coin, length or flat (regression)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def file(tmp_path: Path) -> Path:
 
 
 def write_scene(file: Path, **entries: str | None) -> Path:
-    """A scene with a leather tip of these entries; None leaves one out."""
+    """A scene with a leather tip of these entries; None removes an entry."""
     rows = [f"{name} = {value}" for name, value in (ENTRIES | entries).items() if value is not None]
     file.write_text("\n".join(["cue = 'shaft.toml'", "game = 'kim'", "[[effects]]", "type = 'LeatherTip'", *rows]))
     return file

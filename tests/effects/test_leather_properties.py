@@ -1,4 +1,4 @@
-"""Properties of the leather tip over all that its table covers."""
+"""The leather tip over the range of its table: compliance, moment arm, stiffness (properties)."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_leather_compliance_is_symmetric_and_positive(
 @settings(max_examples=40)
 @given(TIPS, DIAMETERS, st.floats(-0.6, 0.6))
 def test_leather_moment_arm_lies_on_dome_or_rim(tip: LeatherTip, diameter: float, phi: float) -> None:
-    """The contact lies on the dome or on its rim, and the mass is between that of cylinders."""
+    """The contact lies on the dome or its rim; the mass is between 1/3 of the cylinder's and the cylinder's."""
     along, across = possible(tip, diameter).moment_arm(phi, diameter)
     assert abs(along) <= diameter / 2
     assert math.copysign(1, along) == -math.copysign(1, phi)
@@ -69,11 +69,11 @@ def test_leather_moment_arm_lies_on_dome_or_rim(tip: LeatherTip, diameter: float
 @settings(max_examples=40)
 @given(TIPS, DIAMETERS, OFFSETS)
 def test_leather_law_stiffness_of_every_annulus_is_positive(tip: LeatherTip, diameter: float, offset: float) -> None:
-    """The force stiffens, so that a ring's share of it is not negative; with the whole tip in touch it may level off.
+    """The slope of the force rises, so that the share of each annulus is positive, up to contact of the whole tip.
 
-    Near the rim the patch's stiffness levels off too: it falls by less than 0.2 % of its maximum, on flat domes (radius
-    above 3.5 diameters) by less than 0.4 % (85,102 random tips). Only where the dome ends within 3 % of a diameter over
-    the ferrule, and the patch is at that rim, its series of seven terms falls by up to 0.9 % (30 of 4632 such tips).
+    Near the rim the tangential stiffness falls by less than 0.2 % of its maximum, on flat domes (radius above 3.5
+    diameters) by less than 0.4 % (85,102 random tips). Only where the dome ends within 3 % of a diameter over the
+    ferrule, and the contact area is at that rim, its series of seven terms falls by up to 0.9 % (30 of 4632 such tips).
     """
     law = tip_model(possible(tip, diameter), diameter).law(0.028575, offset, 0.7)
     depth = law.depth_limit * np.linspace(0.0, 1.0, 1000) ** 2

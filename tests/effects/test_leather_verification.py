@@ -1,4 +1,4 @@
-"""The leather tip's elasticity against exact solutions and other methods, and its table against the solution itself."""
+"""The leather tip's elasticity against exact solutions, and its table against the elastic solution (verification)."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ TIP, DIAMETER = LeatherTip(6e-3, 9.5e-3, 100e6), 12.75e-3
 
 
 def test_leather_long_tip_equals_rod() -> None:
-    """EA/h along the axis, from the difference of two lengths, which the end's own give has dropped out of; 3EI/h^3
-    across it on a slender rod. Over D: EA is pi/4, EI pi/64."""
+    """EA/h along the axis, from the difference of two lengths, which cancels the local compliance; 3EI/h^3 across it
+    on a slender rod. Over D: EA is pi/4, EI pi/64."""
     how = graded_fineness(4, 4, 6, 1)
     short, long, slender = (solved(Shape(h, 0.0), 0.3, Patch(0.0, 0.45), how) for h in (4.0, 6.0, 30.0))
     assert abs((long - short)[0, 0] * math.pi / 4 / 2 - 1) < 1e-3
@@ -50,7 +50,7 @@ def test_leather_small_patch_equals_half_space() -> None:
 
 
 def test_leather_central_impact_equals_hertz() -> None:
-    """A small contact is Hertz's, force and depth alike, for gaps of second and of fourth order."""
+    """Force and indentation of a small contact, for gaps of second and fourth order."""
     shape, how = Shape(1.0, 0.0), contact_fineness(1.0, 0.01)
     computed = central_contact(shape, TipSolid(shape, how).surface(0.3, 0), 0.01, how)
     np.testing.assert_allclose(computed / tt.half_space_head_on(0.3, np.array(0.01)), 1, rtol=5e-3)
@@ -60,8 +60,8 @@ def test_leather_central_impact_equals_hertz() -> None:
 
 
 def test_leather_compliance_equals_computed_values() -> None:
-    """h 6, D 12.75, r 9.5 mm, nu 0.4, E 100 MPa, b/R 0.375, a 2 mm: an independent solution with scikit-fem's own
-    assembly of quadratic elements gave these."""
+    """h 6, D 12.75, r 9.5 mm, nu 0.4, E 100 MPa, b/R 0.375, a 2 mm: an independent solution with scikit-fem and
+    quadratic elements."""
     compliance = 1e6 * TIP.compliance(DIAMETER, 0.375, 2e-3)
     np.testing.assert_allclose(np.diagonal(compliance), [1.938, 4.597], rtol=3e-3)
     assert abs(abs(compliance[0, 1]) - 0.129) < 1e-3 * math.sqrt(compliance[0, 0] * compliance[1, 1])
@@ -109,7 +109,7 @@ def test_leather_central_impact_table_equals_solution(
 
 @pytest.mark.heavy
 def test_leather_table_equals_its_program() -> None:
-    """One tip of the table, nu aside: all its patches and contacts."""
+    """One tip of the table: all its patches and contacts."""
     panel, i, j, u = 1, 2, 3, 1
     k = curvatures(panel, COUNTS["curvature"])[i]
     nu = (1 - np.exp(-tt.chebyshev_nodes(*tt.NU, COUNTS["nu"])[u])) / 2
@@ -122,7 +122,7 @@ def test_leather_table_equals_its_program() -> None:
 @pytest.mark.parametrize("nu", [0.3, 0.4])
 @pytest.mark.parametrize("dome", [math.inf, 10.605e-3, 8.955e-3], ids=["flat", "nickel", "dime"])
 def test_leather_sticking_patch_equals_rigid_punch(dome: float, nu: float) -> None:
-    """Its traction is the sum of Hertz's and a punch's that gives least (the theorem of least complementary energy)."""
+    """The traction is the sum of Hertz's and a punch's with the least complementary energy."""
     for height, patch in product((0.3, 0.47, 0.7), (0.1, 0.2, 0.25)):
         radius, stiffness = LeatherTip(height * DIAMETER, dome, 1e9, nu).shear_stiffness(DIAMETER, 0.0)
         _, rigid = stuck(Shape(height, DIAMETER / dome), nu, patch)
