@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shlex
-from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -22,15 +21,12 @@ from cuefem.cli.common import (
 )
 from cuefem.cli.output import Command, command, output_option, page_option, print_tables
 from cuefem.cli.progress import with_progress_bar
-from cuefem.cli.scene_options import impact_options, option, tip_options, with_options
+from cuefem.cli.scene_options import impact_options, tip_options
 from cuefem.design.design_changes import design_changes
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.io import InputError, load_accuracy, save, save_page
-from cuefem.io.shaft_additions import SHAFT_ADDITIONS
 from cuefem.parameters.parameter import with_parameters
 from cuefem.parameters.parts import main_material
-from cuefem.quantity.fields import Quantity
-from cuefem.quantity.units import parse_number
 from cuefem.report import (
     end_mass_record,
     modes_record,
@@ -149,61 +145,26 @@ def improve(file: Path, take: int | None, output: Path | None, force: bool, **op
     changed = with_parameters(scene, row["set"])
     save(changed, output)
     click.echo(f"wrote {output}: {row['change']}")
-    for line in _comparing(file, output, options, (scene, changed)):
-        click.echo(line)
-
-
-def _comparing(file: Path, output: Path, options: dict[str, Any], scenes: tuple[Scene, Scene]) -> list[str]:
-    """The commands that compare a cue before and after a change; none if the new file would have another stroke.
-
-    Options that change only the drawing are converted first, since options apply to both files.
-    """
-    given = {name: value for name, value in options.items() if isinstance(value, str)}
-    drawn = {name: given.pop(name) for name in (*SHAFT_ADDITIONS, "shaft_mass") if name in given}
-    try:
-        alike = "game" not in given and with_options(scenes[1], output, given) == scenes[1]
-    except InputError:  # the options do not go with the changed cue
-        alike = False
-    if not alike:
-        return []
-    before, lines = file, list[str]()
-    if drawn:
-        before = output.with_name(f"{file.stem}_before.toml")
-        lines = [f"first: cuefem convert {_typed(file, before, drawn)}"]
-    woods = {main_material(scene.shaft).E for scene in scenes}
-    same = " --same-shaft" if len(woods) == 1 else ""
-    return [*lines, f"before and after: cuefem compare {_typed(before, output, given)}{same}"]
-
-
-def _typed(first: Path, second: Path, given: dict[str, str]) -> str:
-    """Two files and options as command-line text."""
-    return shlex.join([str(first), str(second), *(word for name in given for word in (option(name), given[name]))])
+    if not any(value for name, value in options.items() if name != "as_json"):  # options would apply to both files
+        same = ["--same-shaft"] if main_material(scene.shaft).E == main_material(changed.shaft).E else []
+        click.echo(f"before and after: {shlex.join(['cuefem', 'compare', str(file), str(output), *same])}")
 
 
 @command()
 @file_options
 @tip_options
 @page_option
-@click.option("--near", metavar="HERTZ", help="Show the modes nearest this frequency instead of the lowest.")
+@click.option(
+    "--near", metavar="HERTZ", type=float, help="Show the modes nearest this frequency instead of the lowest."
+)
 @click.option("--count", type=click.IntRange(min=1), default=6, show_default=True, help="Number of modes.")
-def modes(file: Path, near: str | None, count: int, **options: Any) -> None:
+def modes(file: Path, near: float | None, count: int, **options: Any) -> None:
     """Compute natural frequencies of bending, with period and tip amplitude of each mode."""
 
     def results(scene: Scene) -> Any:
-        return modes_record(scene, count=count, near=hertz)
+        return modes_record(scene, count=count, near=near)
 
-    hertz = None if near is None else _hertz(file, near)
     run_on_scene(file, options, results, lambda record, about: [tabulate_modes(record)], with_impact=False)
-
-
-def _hertz(file: Path, near: str) -> float:
-    """The frequency of --near: a number of hertz, or a number with its unit."""
-    wanted = Quantity("Hz", "[0, inf)")
-    for text in (near, f"{near} Hz"):
-        with suppress(ValueError):
-            if wanted.contains(hertz := parse_number(text, "Hz")):
-                return hertz
-    raise InputError(file, "--near", f'must be {wanted.bounds_in("Hz")}, such as 250 or "0.25 kHz"; got {near!r}')
 
 
 @command("end-mass", cls=WithDefinitions)

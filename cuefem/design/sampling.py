@@ -128,18 +128,12 @@ class Normal:
 
 @dataclass(frozen=True)
 class Sample:
-    """A quasi-random sample of ``count`` designs instead of the grid; method: one of `METHODS` (scipy.stats.qmc).
+    """A quasi-random sample of ``count`` designs instead of the grid: a scrambled Sobol sequence."""
 
-    Points are computed on demand, but all at once for "latin hypercube" (8 bytes a number).
-    """
-
-    method: str
     count: int
     seed: int
 
     def __post_init__(self) -> None:
-        if self.method not in METHODS:
-            raise ValueError(f"method must be one of grid, {', '.join(METHODS)}; got {self.method!r}")
         check_count("count", self.count, 1, MAX_POINTS)
         check_count("seed", self.seed, 0)
 
@@ -147,10 +141,6 @@ class Sample:
         """The points of the designs, each of numbers in [0, 1)."""
         from scipy.stats import qmc  # loaded when used: half a second
 
-        engine = getattr(qmc, METHODS[self.method])(dimensions, seed=np.random.default_rng(self.seed))
-        size = self.count if self.method == "latin hypercube" else BLOCK  # a hypercube cannot be computed in parts
-        for start in range(0, self.count, size):  # whole blocks: powers of two keep Sobol points balanced
-            yield from engine.random(size)[: self.count - start].tolist()
-
-
-METHODS = {"sobol": "Sobol", "halton": "Halton", "latin hypercube": "LatinHypercube"}
+        engine = qmc.Sobol(dimensions, seed=np.random.default_rng(self.seed))
+        for start in range(0, self.count, BLOCK):  # whole blocks: powers of two keep the points balanced
+            yield from engine.random(BLOCK)[: self.count - start].tolist()

@@ -109,8 +109,7 @@ def keys_of(kind: type) -> list[str]:
 def unknown_key(name: str, value: Any, names: list[str], *, file: str, key: str) -> InputError:
     """The error for a key that is not among ``names``."""
     wanted = f"must be one of the keys {', '.join(names)}"
-    half = name == "diameter" and "radius" in names
-    hint = "; did you mean 'radius', half of it?" if half else suggestion(name, names)
+    hint = suggestion(name, names)
     return InputError(file, key_path(key, name), f"{wanted}; got {name} = {quote(value)}{hint}")
 
 

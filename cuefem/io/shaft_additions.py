@@ -23,8 +23,7 @@ TENON_RATIO = 0.62  # of a ferrule's width: 5/16 in in a pool ferrule of 12.75 m
 FERRULE, BORE, LEATHER = "25 mm melamine", "6 mm wide, 127 mm deep", "leather 6 mm"
 
 _SIZE = re.compile(r"[\d.,/ ]*\d\s*(?:mm|cm|m|in|inch|inches|\"|″)(?!\w)")
-_BETWEEN, _DEEP = re.compile(r",|;|×|\bx\b|\band\b|\bby\b"), re.compile(r"deep|depth|long")
-_WORDS = re.compile(r"\b(wide|deep|across|diameter|width|depth|long)\b")
+_BORE = re.compile(r"(.+)\bwide\s*,\s*(.+)\bdeep")
 
 
 class ShaftAddition(NamedTuple):
@@ -164,13 +163,11 @@ def _ferrule_of(text: str) -> tuple[float, Material, float | None]:
 
 
 def _bored(scene: Any, text: str) -> Any:
-    """The scene with the bore of a text; of two lengths without words the smaller is the width."""
-    pieces = [piece for piece in _BETWEEN.split(text.casefold()) if piece.strip()]
-    if len(pieces) != 2:
+    """The scene with the bore of a text."""
+    sizes = _BORE.fullmatch(text.strip().casefold())
+    if not sizes:
         raise ValueError(f'bore must be a width and a depth, such as "{BORE}"; got {text!r}')
-    first, second = (_length("bore", _WORDS.sub("", piece)) for piece in pieces)
-    swapped = _DEEP.search(pieces[0]) or (first > second and not _DEEP.search(pieces[1]))
-    width, depth = (second, first) if swapped else (first, second)
+    width, depth = (_length("bore", size) for size in sizes.groups())
     if Layout.of(scene.shaft).bore is None:
         raise ValueError("bore must be left out: the drawing has a filled bore")
     return with_parameters(scene, {"bore depth": depth, "bore width": width})

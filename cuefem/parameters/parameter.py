@@ -45,11 +45,6 @@ Path = tuple[Step, ...]
 _STEP = re.compile(r"\.?([A-Za-z_]\w*)|\[(\d+|\*)\]")
 _TAPER = re.compile(r"taper at (.+)")
 _SCENE_FIELDS = tuple(field.name for field in fields(Scene))
-# Alternative fields: setting one clears the others.
-_ALTERNATIVES = {
-    ("Tip", "contact_time"): ("stiffness",),
-    ("Tip", "stiffness"): ("contact_time",),
-}
 
 
 @dataclass(frozen=True)
@@ -356,9 +351,7 @@ def with_fields(thing: Any, changes: Mapping[Path, Any]) -> Any:
     if isinstance(thing, tuple):
         return tuple(with_fields(item, below[i]) if i in below else item for i, item in enumerate(thing))
     new = {str(step): with_fields(getattr(thing, str(step)), inner) for step, inner in below.items()}
-    kind = type(thing).__name__
-    others = (other for name in new if new[name] is not None for other in _ALTERNATIVES.get((kind, name), ()))
-    return replace(thing, **({other: None for other in others if other not in new} | new))
+    return replace(thing, **new)
 
 
 # --- the table -------------------------------------------------------------------------------------

@@ -65,7 +65,7 @@ modes bare.csv --ferrule '70 mm abs' | ferrule must be at most 60 mm long
 modes bare.csv --ferrule '25 mm abs, tenon 14 mm' | must be
 modes bare.csv --ferrule '25 mm abs, glued' | ferrule must be such as
 modes bare.csv --bore '6 mm' | bore must be a width and a depth
-modes bare.csv --bore '6, 127 mm' | bore must have lengths above 0 with a unit
+modes bare.csv --bore '6 wide, 127 mm deep' | bore must have lengths above 0 with a unit
 modes bare.csv --bore '15 mm wide, 127 mm deep' | the bore must be narrower than the cue, 12 mm there
 modes bare.csv --bore '6 mm wide, 2 m deep' | the bore must be at most 700 mm deep
 modes bored.csv --ferrule '25 mm abs, tenon 8 mm' | the shaft is bored there

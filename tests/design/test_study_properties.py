@@ -51,9 +51,8 @@ def test_span_levels_are_evenly_spaced(low: float, ratio: float, count: int, log
     assert Span(low, low * ratio, 1, log).levels == pytest.approx([middle], rel=1e-9)
 
 
-@pytest.mark.parametrize("method", ["sobol", "halton", "latin hypercube"])
-def test_sample_is_uniform_and_depends_on_seed(method: str) -> None:
-    points, others = (np.array([*Sample(method, 300, seed).points(3)]) for seed in (7, 8))
+def test_sample_is_uniform_and_depends_on_seed() -> None:
+    points, others = (np.array([*Sample(300, seed).points(3)]) for seed in (7, 8))
     assert points.shape == (300, 3)
     assert np.all((points >= 0) & (points < 1))
     np.testing.assert_allclose(points.mean(axis=0), 0.5, atol=0.01)

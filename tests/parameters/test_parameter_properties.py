@@ -84,7 +84,6 @@ def test_parameter_material_and_leather_names_set_values() -> None:
 def test_contact_time_of_spring_clears_stiffness() -> None:
     spring = cf.Scene(FIRST.cue, tip=cf.Tip(stiffness=1e6))
     assert with_parameters(spring, {"contact time": 1e-3}).tip == cf.Tip(contact_time=1e-3)
-    assert with_parameters(spring, {"tip.contact_time": 1e-3}).tip == cf.Tip(contact_time=1e-3)
 
 
 INVALID = {
