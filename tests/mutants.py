@@ -1,8 +1,8 @@
-"""Draws mutants of the package at random and counts those that a test notices: `python tests/mutants.py --seed 1`.
+"""Draws mutants of the package at random and counts those that a test detects: `python tests/mutants.py --seed 1`.
 
 A mutant is the package with one operator, comparison, condition or number changed in one function. The tests of its
-room and the root's (`CONCERNED`) run on a copy of the tree until the first fails. Printed: a line a mutant, then the
-part that is noticed with its 95 % interval (Wilson).
+room and the root's (`TEST_FOLDERS`) run on a copy of the tree until the first fails. Printed: one line a mutant, then
+the detected fraction with its 95 % interval (Wilson).
 """
 
 import argparse
@@ -19,9 +19,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).parents[1]
-FACES = ("cli", "design", "designer", "handbook", "io", "measurements", "report")
-# room -> folders of tests that see it, soonest first; what is not named: its own
-CONCERNED = {
+INTERFACE = ("cli", "design", "designer", "handbook", "io", "measurements", "report")
+# room -> folders of its tests, fastest detection first; default: the folder of the room's name
+TEST_FOLDERS = {
     "": ("contact", "endmass", "effects", "results", "report", "io", "cli"),
     "beam": ("beam", "endmass", "contact", "effects"),
     "contact": ("contact", "effects", "endmass"),
@@ -48,7 +48,7 @@ SWAPS: dict[type, type] = {
 
 
 class Mutant(NamedTuple):
-    """A file, the first line and the ends of what is changed in it (bytes of UTF-8), and what stands there instead."""
+    """A file, the first changed line, the changed range in bytes of UTF-8, and the new text."""
 
     path: Path
     line: int
@@ -57,7 +57,7 @@ class Mutant(NamedTuple):
 
 
 def changed(node: ast.AST) -> ast.expr | None:
-    """Another expression for one of these, or None."""
+    """A changed expression for an operator, comparison, condition or number, or None."""
     match node:
         case ast.BinOp(left, op, right) if type(op) in SWAPS and not isinstance(left, ast.Constant | ast.JoinedStr):
             return ast.BinOp(left, SWAPS[type(op)](), right)
@@ -89,13 +89,13 @@ def mutants(path: Path) -> Iterator[Mutant]:
                     yield Mutant(path, node.lineno, ends, f"({ast.unparse(new)})")
 
 
-def is_noticed(tree: Path, mutant: Mutant) -> str:
-    """The first line of what failed with it, or nothing."""
+def detection(tree: Path, mutant: Mutant) -> str:
+    """The first failure that the mutant causes, or an empty text."""
     file = tree / mutant.path.relative_to(ROOT)
     whole = file.read_bytes()
     file.write_bytes(whole[: mutant.ends[0]] + mutant.text.encode() + whole[mutant.ends[1] :])
     room = "" if file.parent.name == "cuefem" else file.relative_to(tree / "cuefem").parts[0]
-    folders = [f"tests/{name}" for name in CONCERNED.get(room, (room,)) if (tree / "tests" / name).is_dir()]
+    folders = [f"tests/{name}" for name in TEST_FOLDERS.get(room, (room,)) if (tree / "tests" / name).is_dir()]
     tests = [
         "tests/test_docstrings.py",
         *folders,
@@ -106,7 +106,7 @@ def is_noticed(tree: Path, mutant: Mutant) -> str:
     try:
         done = subprocess.run(command, cwd=tree, env=environment, capture_output=True, text=True, timeout=900)
         failures = [line for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
-        return "" if done.returncode == 0 else (failures or ["does not even start"])[0][:110]
+        return "" if done.returncode == 0 else (failures or ["does not start"])[0][:110]
     except subprocess.TimeoutExpired:
         return "does not end"
     finally:
@@ -114,30 +114,31 @@ def is_noticed(tree: Path, mutant: Mutant) -> str:
 
 
 def main() -> None:
-    """As the module says."""
-    parser = argparse.ArgumentParser(description="random mutants, and how many of them a test notices")
-    for name, value in (("--seed", 1), ("--core", 40), ("--faces", 20)):
+    """Run the command line."""
+    parser = argparse.ArgumentParser(description="random mutants, and how many of them a test detects")
+    for name, value in (("--seed", 1), ("--core", 40), ("--interface", 20)):
         parser.add_argument(name, type=int, default=value)
     options = parser.parse_args()
     files = sorted((ROOT / "cuefem").rglob("*.py"))
-    faces = [file for file in files if file.relative_to(ROOT / "cuefem").parts[0] in FACES]
+    interface = [file for file in files if file.relative_to(ROOT / "cuefem").parts[0] in INTERFACE]
     sample: list[Mutant] = []
-    for seed, (part, count) in enumerate(((sorted({*files} - {*faces}), options.core), (faces, options.faces))):
+    groups = (sorted({*files} - {*interface}), options.core), (interface, options.interface)
+    for seed, (part, count) in enumerate(groups):
         population = [mutant for file in part for mutant in mutants(file)]
         sample += random.Random(f"{options.seed} {seed}").sample(population, count)
-    noticed = 0
+    detected = 0
     with tempfile.TemporaryDirectory() as folder:
         tree = Path(folder) / "tree"
         shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns(".git", ".venv*", "__pycache__", "dist", "*.sqlite"))
         for number, mutant in enumerate(sample):
-            by = is_noticed(tree, mutant)
-            noticed += bool(by)
+            by = detection(tree, mutant)
+            detected += bool(by)
             position = f"{mutant.path.relative_to(ROOT)}:{mutant.line}"
             print(number, position, mutant.text, "|", by or "SURVIVES", flush=True)
-    n, z, rate = len(sample), 1.96, noticed / len(sample)
+    n, z, rate = len(sample), 1.96, detected / len(sample)
     middle = (rate + z**2 / 2 / n) / (1 + z**2 / n)
     half = z * math.sqrt(rate * (1 - rate) / n + z**2 / 4 / n**2) / (1 + z**2 / n)
-    print(f"noticed {noticed} of {n}: {rate:.0%}, 95 % interval {middle - half:.0%} to {middle + half:.0%}")
+    print(f"detected {detected} of {n}: {rate:.0%}, 95 % interval {middle - half:.0%} to {middle + half:.0%}")
 
 
 if __name__ == "__main__":

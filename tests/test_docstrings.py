@@ -1,4 +1,4 @@
-"""The examples in the docstrings of the package run and print the results shown (regression)."""
+"""Examples in the docstrings of the package run and print the stated output (regression)."""
 
 import doctest
 import importlib
@@ -16,7 +16,7 @@ SLOW = "cuefem.design.design_changes"  # strikes a cue for every change
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.heavy if n == SLOW else ()) for n in MODULES])
-def test_examples_run(name: str) -> None:
+def test_docstring_examples_of_module_run(name: str) -> None:
     failures: list[str] = []
     for example in doctest.DocTestFinder().find(importlib.import_module(name), extraglobs={"cf": cf}):
         doctest.DocTestRunner(optionflags=FLAGS).run(example, out=failures.append)

@@ -1,4 +1,4 @@
-"""What is added by one entry of a table, or by a class, is found everywhere: parameter, result, definition, effects."""
+"""Extensions by one table entry or class appear in all outputs: parameter, result, definition, effects (properties)."""
 
 import gc
 import json
@@ -38,8 +38,8 @@ RINGED = cf.Cue(tuple(cf.Segment(*part) for part in (FRONT, RING, REST)), 0.42)
 
 
 @pytest.fixture
-def _forgotten() -> Iterator[None]:
-    """Made-up effects are gone when a test is over: files and tables list every effect that there is."""
+def _effects_deleted() -> Iterator[None]:
+    """Deletes effects defined by a test, because files and tables list every effect class."""
     yield
     modules = [module for name, module in sys.modules.items() if name.startswith("cuefem.")]
     for cached in [one for module in modules for one in vars(module).values() if hasattr(one, "cache_clear")]:
@@ -91,7 +91,7 @@ def test_added_end_mass_definition_is_displayed_and_evaluated(monkeypatch: pytes
     assert values == pytest.approx([expected] * 2, rel=1e-9)
 
 
-@pytest.mark.usefixtures("_forgotten")
+@pytest.mark.usefixtures("_effects_deleted")
 def test_added_cue_effect_is_displayed_saved_and_varied(tmp_path: Path) -> None:
     kind: Any = collar_effect()
     bare = kim_scene(0.3)
@@ -108,7 +108,7 @@ def test_added_cue_effect_is_displayed_saved_and_varied(tmp_path: Path) -> None:
     assert with_parameters(scene, {"effects[0].mass": 5e-3}).effects == (kind(0.03, 5e-3),)
 
 
-@pytest.mark.usefixtures("_forgotten")
+@pytest.mark.usefixtures("_effects_deleted")
 def test_added_tip_effect_acts_in_contact() -> None:
     cap: Any = cap_effect()
 

@@ -1,4 +1,4 @@
-"""Pandas frames of studies have their designs, responses and units (properties)."""
+"""Pandas frames of studies: designs, responses and units (properties)."""
 
 from pathlib import Path
 

@@ -1,6 +1,6 @@
-"""What terminal, JSON and page show of two scenes, against golden files; `--update` writes them anew (regression).
+"""Terminal, JSON and page of two scenes against golden files; `--update` rewrites them (regression).
 
-A number may be one off in its last place, of JSON 1e-6 of itself: it must not hang on another machine's digits.
+Tolerance: one unit in the last digit of a number, in JSON 1e-6 of its value, for other machines' round-off error.
 """
 
 import html
@@ -16,7 +16,7 @@ from tests.helpers.command_line import call
 
 ROOT = Path(__file__).parents[1]
 GOLDEN = ROOT / "tests" / "golden"
-SCENES = {"kim": "studies/scenes/kim.toml", "pool": "meshes/pool_hollow.toml"}  # a bare strike; all of a usual one
+SCENES = {"kim": "studies/scenes/kim.toml", "pool": "meshes/pool_hollow.toml"}  # a spring tip; a default stroke
 OUTPUTS = {
     "report.txt": ["report"],
     "report.json": ["report", "--json"],
@@ -30,19 +30,19 @@ NUMBER = re.compile(r"(?<![\w.])[-+−]?\d+(?:\.\d+)?(?:e[-+]\d+)?")
 
 
 def page_text(page: str) -> str:
-    """The text of a page: a line a text, without script, style and the scales of charts."""
+    """The text of a page, one line an element, without script, style and charts."""
     body = re.sub(r"<(style|script|svg|head).*?</\1>", "", page, flags=re.DOTALL)
     return "\n".join(line for part in re.split(r"<[^>]*>", body) if (line := html.unescape(part).strip())) + "\n"
 
 
 def last_place(number: str) -> float:
-    """One in the last place of a number as it stands."""
+    """One unit in the last digit of a number."""
     digits, _, power = number.partition("e")
     return 10.0 ** (int(power or 0) - len(digits.partition(".")[2]))
 
 
 def differences(stored: str, now: str) -> list[tuple[str, str]]:
-    """Lines that differ by more than the last place of a number."""
+    """Lines that differ by more than one unit in the last digit of a number."""
     off = []
     for one, other in zip(stored.splitlines(), now.splitlines(), strict=False):
         pairs = list(zip(NUMBER.findall(one), NUMBER.findall(other), strict=False))
@@ -83,13 +83,13 @@ def test_output_equals_golden_file(
     monkeypatch.setenv("COLUMNS", "110")
     for clock in ("perf_counter", "process_time"):
         ticks = itertools.count()
-        monkeypatch.setattr(f"time.{clock}", ticks.__next__)  # every look is one second later
+        monkeypatch.setattr(f"time.{clock}", ticks.__next__)  # every reading is one second later
     command, *options = (OUTPUTS | HEAVY)[output]
     options = [str(tmp_path / option) if option == "page.html" else option for option in options]
     status, out, err = call(command, SCENES[scene], *options)
     assert (status, err) == (0, "")
     now = page_text((tmp_path / "page.html").read_text(encoding="utf-8")) if output == "page.txt" else out
-    now = re.sub(r"\n +not tried: [^\n]*", "", now)  # tests make effects up
+    now = re.sub(r"\n +not tried: [^\n]*", "", now)  # tests define effects
     golden = GOLDEN / f"{scene}_{output}"
     if request.config.getoption("--update"):
         golden.write_text(now, encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The house has one way through it: imports run in one order, heavy libraries stay where they belong (properties)."""
+"""Imports: order of rooms, room of each heavy library, loading on demand (properties)."""
 
 import ast
 import re
@@ -42,7 +42,7 @@ def part_of(path: Path) -> str:
 
 
 def imported(tree: ast.Module) -> Iterator[str]:
-    """Full names of the modules that a file imports, those inside functions too, those for type checking not."""
+    """Full names of the modules that a file imports, also inside functions, except for type checking."""
     for node in walk(tree):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
@@ -55,7 +55,7 @@ def imported(tree: ast.Module) -> Iterator[str]:
 
 
 def walk(tree: ast.AST) -> list[ast.stmt]:
-    """The statements within a file, but for those of type checking."""
+    """The statements of a file, except those for type checking."""
     hints = (
         one for one in ast.walk(tree) if isinstance(one, ast.If) and getattr(one.test, "id", "") == "TYPE_CHECKING"
     )
@@ -64,7 +64,7 @@ def walk(tree: ast.AST) -> list[ast.stmt]:
 
 
 def out_of_order(part: str, tree: ast.Module) -> list[str]:
-    """What a file of ``part`` imports against the order, or from a library that has its home elsewhere."""
+    """Imports of a file of ``part`` against the order, or of a library of another room."""
     wrong = []
     for name in imported(tree):
         top, _, rest = name.partition(".")
@@ -81,7 +81,7 @@ TREES = {path: ast.parse(path.read_bytes()) for path in SOURCES}
 
 
 def test_imports_follow_package_order() -> None:
-    """In the order, each library in its home, and few of them inside functions."""
+    """Each library in its rooms, and at most 45 imports inside functions."""
     wrong = {path.name: out_of_order(part_of(path), tree) for path, tree in TREES.items()}
     assert {name: names for name, names in wrong.items() if names} == {}
     assert out_of_order("cue", ast.parse("from cuefem.beam import assemble")) == ["cuefem.beam"]
@@ -91,7 +91,7 @@ def test_imports_follow_package_order() -> None:
 
 
 def test_public_names_are_importable() -> None:
-    """Every name of the stub is where it says, `dir` shows it, and it can be imported."""
+    """`dir` lists every public name, and each can be imported."""
     assert {"load", "strike", "design_changes"} <= set(dir(cuefem))
     for name in dir(cuefem):
         assert getattr(cuefem, name).__name__.removeprefix("cuefem.") == name
@@ -100,7 +100,7 @@ def test_public_names_are_importable() -> None:
 
 
 HEAVY = ["skfem", "scipy", "pint", "pydantic", "matplotlib", "meshio", "tomlkit", "rich", "click"]
-# A command on a faultless file in usual units needs none of these, which take several times as long as its work.
+# A command on a valid file in common units needs none of these, whose import takes several times as long as its work.
 WORKED_ON = ["skfem", "scipy.sparse", "pint", "pydantic", "tomlkit", "jinja2", "matplotlib"]
 COMMAND = "from tests.helpers.command_line import call; call("
 

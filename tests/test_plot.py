@@ -1,4 +1,4 @@
-"""Figures for researchers: the drawn lines agree with the functions (properties)."""
+"""Figures: drawn lines agree with the functions (properties)."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -66,7 +66,7 @@ def test_forces_figure_integrates_to_impulse() -> None:
 
 
 def test_end_mass_figure_behind_leather_tip_equals_bare_shaft() -> None:
-    """With the tip's contact time; the title states the excluded mass of the leather."""
+    """At the leather tip's contact time; the title states the excluded mass of the leather."""
     scene = cf.usual_scene(SCENE.shaft)
     axes = cf.plot.end_mass(scene, at=AT)
     bare = cf.Scene(scene.cue, scene.ball, replace(scene.tip, contact_time=scene.contact_time), scene.stroke)

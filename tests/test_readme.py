@@ -1,7 +1,4 @@
-"""The README's words are kept, and those of the handbook's chapters on use.
-
-Their commands run, their files load, their Python runs, their paths are there.
-"""
+"""README and the handbook's chapters on use: commands and Python run, files load, paths exist (regression)."""
 
 import itertools
 import os
@@ -22,7 +19,7 @@ from tests.helpers.surfaces import outline_of, revolve, write_surface
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-# the README, and the chapters of the handbook that hold what it has no room for
+# chapters of the handbook with further examples
 MORE = [
     (ROOT / "cuefem" / "handbook" / f"{name}.md").read_text(encoding="utf-8")
     for name in ("files", "working", "accuracy", "side")
@@ -53,7 +50,7 @@ def test_code_blocks_are_of_tested_languages() -> None:
 
 
 def test_own_shaft_example_writes_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As the README writes it, behind the installation, which `.ci/run` tries."""
+    """The block after the installation, which `.ci/run` tests."""
     monkeypatch.chdir(tmp_path)
     _, drawing, report = OWN_SHAFT.splitlines()
     subprocess.run(["bash", "-c", drawing], check=True)
@@ -85,7 +82,7 @@ def test_python_blocks_run(
 ) -> None:
     for name in ("meshes", "studies"):
         (tmp_path / name).symlink_to(ROOT / name)
-    monkeypatch.chdir(tmp_path)  # where the code may write
+    monkeypatch.chdir(tmp_path)  # a writable folder
     namespace: dict[str, object] = {}
     exec(compile(code, "README.md", "exec"), namespace)
     for value in re.findall(r"# (\d+\.\d+) g$", code, flags=re.MULTILINE):

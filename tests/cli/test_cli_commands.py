@@ -44,7 +44,7 @@ def test_strike_json_equals_library(folder: Path) -> None:
 
 
 def test_report_json_of_lumped_cue_equals_library(folder: Path) -> None:
-    """Of a lumped cue; of others: tests/test_golden_files.py."""
+    """Reports of other cues: tests/test_golden_files.py."""
     cf.save(cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=KIM_SCENE.stroke), "lumped.toml")
     lumped = as_json("report", "lumped.toml")
     assert "modes" not in lumped

@@ -1,4 +1,4 @@
-"""One table names all commands: a command is a file and a line of it, and all take the same options (properties)."""
+"""The table of commands: completion, help, common options, loading on demand (properties)."""
 
 import json
 import subprocess
@@ -16,7 +16,7 @@ from tests.helpers.command_line import call
 
 
 def test_added_command_is_listed_completed_and_loaded_at_call(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is listed, completed and called; and it is loaded when it is called, not before."""
+    """Its module is imported by its call, not before."""
     monkeypatch.setitem(COMMANDS, "sweet-spot", ("made_up_command:sweet_spot", "Places", "Where a hit stings least."))
     assert "Places:\n  sweet-spot  Where a hit stings least.\n" in call("--help")[1]
     with pytest.raises(ModuleNotFoundError):  # its file is not there yet
@@ -39,7 +39,7 @@ def test_unknown_command_suggests_nearest_name(name: str, nearest: str | None) -
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_every_command_has_common_options(name: str) -> None:
-    """--json is everywhere, and -o, which writes what the ending says; `convert` has a file of its own for that."""
+    """Every command has --json, and all but `convert` and `designer` have -o."""
     status, out, err = call(name, "--help")
     assert (status, err) == (0, "")
     assert f" {name} " in f"{out.splitlines()[0]} "

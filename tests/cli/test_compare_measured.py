@@ -1,4 +1,4 @@
-"""`cuefem compare` on measured cues: numbers of the library, the template, the page (regression)."""
+"""`cuefem compare` of a measured cue: JSON, page, template, estimate (regression)."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -59,7 +59,7 @@ def test_compare_template_has_every_measurement_type(tmp_path: Path) -> None:
 
 
 def test_load_measured_without_scene_has_default_stroke_of_game(tmp_path: Path) -> None:
-    """The one that every command gives to a drawing, of the game that measured.toml names."""
+    """The default stroke is that of every command, for the game of measured.toml."""
     directory = measured_folder(tmp_path / "cue")
     drawing = cf.load(directory / "cue.toml")
     assert isinstance(drawing, cf.Cue)

@@ -1,4 +1,4 @@
-"""A cue alone on the command line: a game's usual stroke, its options, and leather that is too soft (regression)."""
+"""Commands on a drawing: default stroke, an option for each assumption, results without contact (regression)."""
 
 import json
 import re
@@ -53,7 +53,7 @@ def test_every_assumption_has_an_option(folder: Path) -> None:
     assert {*OPTIONS} <= {*re.findall(r"--[a-z-]+", " ".join(plain["assumed"]))}
     for name, (_, value, expected) in OPTIONS.items():
         assert value(result["scene"]) == pytest.approx(expected, rel=1e-12), name
-    changed = as_json("strike", "leather.toml", *arguments)  # a file that says all
+    changed = as_json("strike", "leather.toml", *arguments)  # a complete scene
     assert (changed["assumed"], changed["scene"]) == ([], result["scene"])
 
 
@@ -79,7 +79,7 @@ def test_axial_force_out_of_range_fails_strike_and_study_design(folder: Path) ->
 
 
 def assert_one_fails(scene: str, vary: str, message: str) -> None:
-    """Of a sweep's two designs one has an answer, and the words say why the other has none."""
+    """One of a sweep's two designs fails, and its reason contains ``message``."""
     Path("study.toml").write_text(f"scene = '{scene}'\nresponses = ['squirt(0.5)', 'frequency(1)']\n[[vary]]\n{vary}\n")
     record = json.loads(call("study", "study.toml", "--json")[1])
     assert (record["designs"], record["failed"]) == (2, 1)

@@ -1,4 +1,4 @@
-"""Bad input to a command: status 2, one line on stderr, no traceback, nothing on stdout, no file (regression)."""
+"""Invalid input of commands: status 2, one line on stderr, empty stdout, no file (bad input)."""
 
 import os
 import re
@@ -33,10 +33,10 @@ FILES = {
     "of_bad.toml": "cue = 'bad.toml'\n",
     "bare.csv": CSV + "0,12\n700,21\n",
     "bored.csv": "x [mm],diameter [mm],bore [mm]\n0,12,6\n152,14,\n700,21,\n",
-    "kept.toml": "somebody's work",
+    "own.toml": "somebody's work",
 }
 SAVED = {"shaft.toml": SHAFT, "spring.toml": cf.Scene(SHAFT, stroke=cf.Stroke(offset=0.3))}
-# Commands on these files, each with a part of the one line that says why it is refused.
+# Commands on these files, each with a part of the error message.
 COMMANDS = r"""
 strike good.toml --offset nan | good.toml: --offset: must be between -1 and 1
 strike good.toml --offset half | --offset: must be a bare number, between -1 and 1
@@ -74,7 +74,7 @@ modes lumped.toml | lumped.toml: Scene.cue must be a Cue of segments
 modes lumped.toml --body-mass '1 kg' | lumped.toml: --body-mass: does not apply
 strike of_bad.toml | cuefem: bad.toml: segments[0].length: must be more than 0
 report off.toml -o page.html | cuefem: off.toml: effects[0].position: must be 0 to 700 mm, on the cue
-convert good.toml kept.toml | already exists; --force overwrites it
+convert good.toml own.toml | already exists; --force overwrites it
 report lumped.toml -o page.pdf | page.pdf: --output: must end in .html or .json
 report lumped.toml -o page.html --json | page.html: --output: cannot be combined with --json
 strike spring.toml --format pooltool --offset 0 | [A.31] has no squirt at offset 0
@@ -86,7 +86,7 @@ strike shaft.toml --offset | Option '--offset' requires an argument
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Everything that these commands are called on; each leaves it as it is."""
+    """The files of these commands, which change none of them."""
     folder = tmp_path_factory.mktemp("refused")
     for name, content in FILES.items():
         (folder / name).write_text(content)
@@ -123,7 +123,7 @@ def test_error_message_of_long_text_is_short_and_printable(file: str, options: l
 def test_command_on_full_disk_prints_one_line() -> None:
     program = "from cuefem.cli import main; main()"
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
-    environment.pop("PYTHONUNBUFFERED", None)  # what stays in the buffer would fail once more at the end
+    environment.pop("PYTHONUNBUFFERED", None)  # a full buffer would raise again at exit
     with open("/dev/full", "w") as full:
         command = [sys.executable, "-c", program, "parts"]
         done = subprocess.run(command, stdout=full, stderr=-1, text=True, env=environment)
@@ -140,7 +140,7 @@ def test_command_on_full_disk_prints_one_line() -> None:
 def test_extreme_size_prints_one_line_after_warnings(
     command: str, was: str, size: str, message: str, tmp_path: Path
 ) -> None:
-    """In bounds, but no double holds what follows from them: status 2, said in one line behind the remarks."""
+    """Valid values whose results overflow: status 2, and one line after the warnings."""
     path = tmp_path / "cue.toml"
     path.write_text(re.sub("(tip|butt)_bore.*", "", GOOD).replace(was, size), encoding="utf-8")
     status, out, err = call(command, path)

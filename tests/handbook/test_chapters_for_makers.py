@@ -1,4 +1,4 @@
-"""The six chapters for makers: numbers, pictures and example files are computed again (verification)."""
+"""Chapters for makers: numbers, pictures and example files are computed again (regression)."""
 
 import math
 import re
@@ -32,7 +32,7 @@ def test_makers_chapters_are_first_and_short() -> None:
 @pytest.mark.heavy
 @pytest.mark.parametrize("name", PICTURES)
 def test_picture_equals_redrawn_picture(name: str) -> None:
-    """Within three units: rounded numbers may differ between machines."""
+    """Tolerance of three units: rounded numbers may differ between machines."""
     stored, now = (FOLDER / f"{name}.svg").read_text(encoding="utf-8"), PICTURES[name]()
     assert NUMBER.sub("#", stored) == NUMBER.sub("#", now)
     both = zip(NUMBER.findall(stored), NUMBER.findall(now), strict=True)

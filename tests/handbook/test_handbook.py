@@ -1,4 +1,4 @@
-"""The handbook: citations, the lines of every effect, the page and the command (regression)."""
+"""The handbook: citations, lines of every effect, page and command (regression)."""
 
 import re
 import webbrowser
@@ -24,7 +24,7 @@ SOURCES = sorted(
     for path in (ROOT / folder).rglob("*")
     if path.suffix in (".py", ".md", ".toml") and path != Path(__file__)
 )
-# without effects that other tests define
+# excludes effects that tests define
 EFFECTS = {name: kind for name, kind in effect_kinds().items() if kind.__module__.startswith("cuefem.")}
 
 
@@ -34,7 +34,7 @@ def whole() -> str:
 
 
 def cited_wrongly(text: str) -> list[str]:
-    """The citations in a text that do not begin with a chapter's title, and the titles after a comma that do not."""
+    """Citations in a text, and capitalized names after a comma, that do not begin with a chapter's title."""
     wrong = []
     for citation in CITED.findall(re.sub(r"\n\s*(?:# )?", "\n", text)):
         first, *others = (" ".join(part.split()) for part in citation.split(","))

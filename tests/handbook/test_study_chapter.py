@@ -1,4 +1,4 @@
-"""The chapter on studies: its examples load and run, and it lists every key and response (regression)."""
+"""The chapter on studies: examples load and run, every key and response is listed (regression)."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The notebooks run, and print what stands in them (regression)."""
+"""Notebooks run, and print their stored output (regression)."""
 
 import contextlib
 import io

@@ -1,4 +1,4 @@
-"""The published cues: their folders hold the numbers of the data, and compare to what their page says (validation)."""
+"""Published cues: their folders against the data, their page and the handbook against computed values (validation)."""
 
 import csv
 import math
@@ -21,7 +21,7 @@ def rows(name: str) -> list[dict[str, str]]:
 
 
 def test_measured_folders_have_every_row_of_data() -> None:
-    """Squirt at an offset, pivot length at an offset, and the series of added masses."""
+    """Squirt and pivot length at offsets, and the series of added masses."""
     expected = [("squirt", CUES[r["cue"].split()[0]], r["b_over_R"], r["squirt_deg"]) for r in rows("measured_squirt")]
     pivots = rows("pivot_lengths_2007")
     expected += [("pivot", CUES[r["cue"].split()[0]], r["b_over_R"], r["pivot_length_in"]) for r in pivots]
@@ -41,7 +41,7 @@ def test_measured_folders_have_every_row_of_data() -> None:
 
 
 def test_measured_readme_states_computed_values() -> None:
-    """The table of the folder's README, one line a measurement that is not of the series of added masses."""
+    """Every measurement except the series of added masses."""
     text = (HOME / "README.md").read_text(encoding="utf-8")
     for path in FOLDERS:
         assert f"[{path.name}]({path.name}/measured.toml)" in text
@@ -54,7 +54,7 @@ def test_measured_readme_states_computed_values() -> None:
 
 
 def test_handbook_tables_equal_those_of_studies() -> None:
-    """Of measured squirt, of its uncertainty, and of what is left out."""
+    """Tables of measured squirt, its uncertainty, and excluded effects."""
     pages = ("measured/squirt.md", "measured/uncertainty.md", "article/article.md")
     known = {line for page in pages for line in (STUDIES / page).read_text(encoding="utf-8").splitlines()}
     (text,) = (chapter.text for chapter in chapters() if chapter.name == "measured")

@@ -1,4 +1,4 @@
-"""Every study of studies/: its page is what its program gives, and the index names it (regression)."""
+"""Studies: each page equals the output of its program, and the index lists it (regression)."""
 
 import re
 from importlib import import_module
@@ -7,7 +7,7 @@ import pytest
 
 from studies.pages import STUDIES, Study, disagreements
 
-# Studies whose page takes more than 20 s of a processor: only `.ci/nightly` makes them again.
+# Studies whose page takes more than 20 s of processor time; `.ci/nightly` computes them again.
 NIGHTLY = ("accuracy", "leather", "solid")
 PROGRAMS = sorted(path for path in STUDIES.rglob("*.py") if re.search(r"^STUDY = ", path.read_text("utf-8"), re.M))
 STUDY: dict[str, Study] = {
