@@ -116,6 +116,8 @@ def model_of(scene: Scene, tip: TipModes) -> ContactModel:
         "Tip.restitution", model["restitution"], MIN_RESTITUTION if terms.tip is None else MIN_LEATHER_RESTITUTION
     )
     raised = terms.table is not None
+    if raised and (terms.compliance or terms.turns or terms.window is not None or terms.tip is not None):
+        raise ValueError("Elevation takes a tip without tangential compliance, a fixed normal and a single hit")
     model |= _power_tip(scene, terms, model) if terms.tip is None else _leather(scene, terms.tip, model)
     if model["patch"] == RIGID_PATCH and terms.window is not None and math.isinf(model["friction"]):
         raise ValueError(
