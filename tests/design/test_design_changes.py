@@ -1,4 +1,4 @@
-"""Design changes: each row is the strike of a changed cue, and can be saved (properties)."""
+"""Design changes: rows equal strikes of changed cues, verdicts, saving of a row (properties)."""
 
 import math
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Invalid design studies: one line per `raise`, calls and files, each with the beginning of its error message."""
+"""Invalid studies: calls and files, one for each `raise`, each with a part of its error message (bad input)."""
 
 from collections.abc import Callable
 from dataclasses import replace

@@ -59,7 +59,7 @@ def best() -> Optimum:
 
 
 def test_committed_study_equals_optimum_of_exact_gradients(tmp_path: Path) -> None:
-    """The design of the former exact gradients; the saved scene has the required stiffness."""
+    """The optimum of exact gradients; the saved scene has the required stiffness."""
     goal = tmp_path / "best.toml"
     record = json.loads(stdout_of("study", STUDY, "--json", "-o", goal))
     assert (record["kind"], record["objective"], record["unfinished"]) == ("optimum", {"minimize": "squirt_slope"}, "")
@@ -88,7 +88,7 @@ def test_optimum_of_strike_converges_to_same_design() -> None:
 
 @pytest.mark.heavy
 def test_active_limits_constrain_the_optimum() -> None:
-    """Only without an active limit is there a better design."""
+    """Removing a limit improves the objective if and only if the limit is active."""
     point = np.array([best().values[v.name] for v in PROBLEM.vary])
     assert PROBLEM.margins(PROBLEM.values(point[None])).min() == pytest.approx(0.0, abs=1e-6)
     assert (best().scene, best().unfinished) == (PROBLEM.scene(point), "")
@@ -102,7 +102,7 @@ def test_active_limits_constrain_the_optimum() -> None:
 
 
 def test_maximum_under_limit_equals_minimum_under_limit() -> None:
-    """Stiffness as large as a limit on squirt allows: as much as the least squirt of so stiff a shaft has."""
+    """Maximum stiffness at the least squirt of a stiffness limit equals that limit's stiffness."""
     least = optimum(Problem(SCENE, (BORE, TIP, TAPER), SQUIRT, (Limit(STIFFNESS, low=430.0),), PROBLEM.at))
     bound = Limit(SQUIRT, high=least.responses["squirt_slope"])
     stiffest = optimum(Problem(SCENE, (BORE, TIP, TAPER), STIFFNESS, (bound,), PROBLEM.at, maximize=True))

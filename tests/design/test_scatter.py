@@ -66,7 +66,7 @@ DENSITIES = (
 
 @pytest.mark.heavy
 def test_sobol_indices_of_correlated_sum_equal_closed_form() -> None:
-    """The mass of a shaft is a sum of densities times volumes: indices of independent ones, and of groups, exact."""
+    """The mass of a shaft is a sum of densities times volumes, with exact indices of parameters and groups."""
     r = {("front", "middle"): 0.8, ("middle", "rear"): -0.5}
     study = Study(BASE, DENSITIES, (Response.of("shaft_mass"),), at=COARSE)
     scatter = Scatter(study, r, {"wood": ("front", "middle", "rear")}, 128, 1)
@@ -91,7 +91,7 @@ def test_sobol_indices_of_correlated_sum_equal_closed_form() -> None:
 
 @pytest.mark.heavy
 def test_scatter_spread_equals_monte_carlo() -> None:
-    """Independent draws of NumPy, correlated by NumPy, of a shaft's wood, bore and contact time."""
+    """Correlated draws by NumPy of a shaft's wood and contact time."""
     vary = (replace(VARY[0], range=Normal(1.0, 0.2, logarithmic=True)), VARY[1], VARY[3])
     study = Study(BASE, vary, (Response.of("end_mass"), Response.of("squirt_slope")), at=COARSE)
     computed = cf.study(Scatter(study, {("E", "rho"): 0.6}, count=256, seed=1)).spread
@@ -107,7 +107,7 @@ def test_scatter_spread_equals_monte_carlo() -> None:
 
 @pytest.mark.parametrize(("one", "other", "third"), [(0.5, -0.3, 0.5), (-0.55, 0.55, 0.1)])
 def test_scatter_samples_have_stated_correlations(one: float, other: float, third: float) -> None:
-    """Of logarithms and of normal numbers the correlation, of a uniform one the rank correlation 6/pi asin(r/2)."""
+    """Correlation of logarithms and normal numbers; rank correlation 6/pi asin(r/2) of a uniform one."""
     pairs = {("E", "rho"): one, ("rho", "G"): other, ("E", "time"): third}
     for values in np.split(designs(Scatter(STUDY, pairs, count=1024, seed=1)), 3):  # two samples, and one of both
         E, rho, G, time = np.log(values[:, 0]), np.log(values[:, 1]), values[:, 2], values[:, 3]

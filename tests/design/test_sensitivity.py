@@ -1,4 +1,4 @@
-"""Verification of sensitivities: the sum rule, and central differences of the end mass itself."""
+"""Sensitivities: the sum rule, and central differences of the end mass (verification)."""
 
 import math
 from collections.abc import Callable
@@ -60,7 +60,7 @@ CUES = pytest.mark.parametrize(
 @CUES
 def test_sensitivity_to_point_mass_equals_difference(cue: Cue) -> None:
     """The density of rhoA is the end mass that a point mass there adds."""
-    fine = Resolution(4, 20, 14)  # so fine that the node which the point mass needs changes nothing
+    fine = Resolution(4, 20, 14)  # so fine that the node of the point mass has no effect
     result = sensitivity(scene(cue), fine)
     i = len(result.x) // 3
     masses = 1e-6 * np.arange(3)
@@ -85,9 +85,9 @@ def multiplied(cue: Cue, constant: str, factor: float) -> Cue:
 @CUES
 @pytest.mark.parametrize(("constant", "names"), [("E", ["EI"]), ("G", ["kGA"]), ("rho", ["rhoA", "rhoI"])])
 def test_sensitivity_to_material_constant_equals_difference(cue: Cue, constant: str, names: list[str]) -> None:
-    """nu = 0 makes the shear coefficient free of E and G; a denser cue is heavier along the axis too."""
+    """With nu = 0 the shear coefficient is independent of E and G; a denser cue has a larger axial mass."""
     cue = multiplied(cue, constant, 1.0)
     result = sensitivity(scene(cue), AT)
-    want = integral(result, cue, *names) + (result.axial_mass * cue.shaft_mass if constant == "rho" else 0.0)
+    expected = integral(result, cue, *names) + (result.axial_mass * cue.shaft_mass if constant == "rho" else 0.0)
     measured = slope(lambda h: end_mass(scene(multiplied(cue, constant, 1 + h)), "stick", AT), 1e-2)
-    assert measured == pytest.approx(want, rel=1e-6)
+    assert measured == pytest.approx(expected, rel=1e-6)

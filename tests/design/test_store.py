@@ -1,4 +1,4 @@
-"""Stored designs: interruption, resumption, edits, damage; the table depends on the study alone (properties)."""
+"""Stores: interruption, resumption, edited studies, damage, tables (properties)."""
 
 import csv
 import json
@@ -50,7 +50,7 @@ def command(study: Path, *more: str) -> list[str]:
     return [sys.executable, "-m", "cuefem", "study", str(study), *more]
 
 
-def started(study: Path, *more: str) -> subprocess.Popen[bytes]:
+def start_study(study: Path, *more: str) -> subprocess.Popen[bytes]:
     quiet = subprocess.PIPE
     return subprocess.Popen(
         command(study, *more),
@@ -67,8 +67,8 @@ def interruptible() -> None:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-def waited_for(store: Path, run: subprocess.Popen[bytes], rows: int) -> int:
-    """Wait until so many rows are stored, or the study has ended; the number of rows."""
+def wait_for_rows(store: Path, run: subprocess.Popen[bytes], rows: int) -> int:
+    """Wait until ``rows`` rows are stored or the study has ended; the number of stored rows."""
     begun, count = time.monotonic(), 0
     while run.poll() is None and count < rows and time.monotonic() - begun < 60:
         time.sleep(0.02)
@@ -87,8 +87,8 @@ def test_study_killed_edited_and_resumed_has_same_table(tmp_path: Path, workers:
     study, store = write_study(tmp_path, STRIKES.replace("count = 150", "count = 200")), tmp_path / "study.sqlite"
     counts, rng = [0], random.Random(len(workers))
     for blocks in (1, 5, 9):
-        run = started(study, *workers)
-        waited_for(store, run, 16 * blocks)
+        run = start_study(study, *workers)
+        wait_for_rows(store, run, 16 * blocks)
         time.sleep(rng.uniform(0, 0.05))
         os.killpg(run.pid, signal.SIGKILL)
         run.communicate()
@@ -110,8 +110,8 @@ def test_study_killed_edited_and_resumed_has_same_table(tmp_path: Path, workers:
 @pytest.mark.parametrize("workers", [(), ("--workers", "2")], ids=["alone", "two workers"])
 def test_study_interrupted_prints_one_line_and_stores_designs(tmp_path: Path, workers: tuple[str, ...]) -> None:
     study, store = write_study(tmp_path, STRIKES.replace("count = 150", "count = 3000")), tmp_path / "study.sqlite"
-    run = started(study, *workers)
-    waited_for(store, run, 100)
+    run = start_study(study, *workers)
+    wait_for_rows(store, run, 100)
     os.killpg(run.pid, signal.SIGINT)
     out, err = run.communicate(timeout=60)
     count = stored_count(store)
@@ -124,8 +124,8 @@ def test_study_interrupted_prints_one_line_and_stores_designs(tmp_path: Path, wo
 @pytest.mark.heavy
 def test_study_killed_worker_is_replaced(tmp_path: Path) -> None:
     study = write_study(tmp_path, STRIKES)
-    run = started(study, "--workers", "2")
-    waited_for(tmp_path / "study.sqlite", run, 32)
+    run = start_study(study, "--workers", "2")
+    wait_for_rows(tmp_path / "study.sqlite", run, 32)
     workers = [p for p in psutil.Process(run.pid).children(recursive=True) if "spawn_main" in " ".join(p.cmdline())]
     workers[0].kill()
     assert (run.communicate()[1], run.returncode) == (b"", 0)
@@ -206,7 +206,7 @@ def test_csv_has_every_design_exactly(text: str, tmp_path: Path) -> None:
 
 
 ONE = "(SELECT {} FROM designs ORDER BY scene LIMIT 1)"
-REFUSED = [
+DAMAGED = [
     ("PRAGMA application_id = 7", "must be a store of `cuefem study`; got another database"),
     ("UPDATE designs SET answers = replace(answers, '0.0', '0.1')", "is damaged: a design was altered"),
     (f"UPDATE designs SET answers = {ONE.format('answers')}", "is damaged: a design was altered"),
@@ -214,7 +214,7 @@ REFUSED = [
 ]
 
 
-@pytest.mark.parametrize(("statement", "message"), REFUSED)
+@pytest.mark.parametrize(("statement", "message"), DAMAGED)
 def test_store_altered_raises_and_is_unchanged(tmp_path: Path, statement: str, message: str) -> None:
     study, store = write_study(tmp_path, GRID), tmp_path / "study.sqlite"
     computed_rows(study, store)

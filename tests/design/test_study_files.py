@@ -1,4 +1,4 @@
-"""Files of studies: segments are numbered as in the cue's file; a cue has the stroke of its game (properties)."""
+"""Study files: numbering of segments, default strokes, ranges (properties)."""
 
 from pathlib import Path
 

@@ -84,9 +84,9 @@ def test_response_name_is_inverse_of_of() -> None:
 
 
 def singly(scene: cf.Scene, at: cf.Resolution | None) -> dict[str, float]:
-    """Every response by the calls for one cue, but for the limits of small offsets."""
+    """Every response by single calls, except limits of small offsets."""
     domes = [effect.radius for effect in scene.effects if isinstance(effect, cf.TipDome)]
-    squirts = {b: cf.strike(struck_at(scene, b), at).squirt for b in (-0.2, 0.4)}
+    squirts = {b: cf.strike(at_offset(scene, b), at).squirt for b in (-0.2, 0.4)}
     flexible = cf.modes(scene.cue, 5, effects=scene.cue_effects, at=at).frequencies
     pivot = natural_pivot_length(0.4, squirts[0.4], radius=scene.ball.radius, dome_radius=sum(domes))
     return {
@@ -98,16 +98,16 @@ def singly(scene: cf.Scene, at: cf.Resolution | None) -> dict[str, float]:
         "frequency(3)": flexible[2],
         "squirt": cf.strike(scene, at).squirt,
         "squirt(-0.2)": squirts[-0.2],
-        "ball_speed(0.2)": cf.strike(struck_at(scene, 0.2), at).ball_speed,
+        "ball_speed(0.2)": cf.strike(at_offset(scene, 0.2), at).ball_speed,
         "vibration_energy": cf.strike(scene, at).energy["cue vibration"],
         "pivot_length(0.4)": float(pivot),
         **{f"end_mass_{drive}": cf.end_mass(scene, drive, at) for drive in DEFINITIONS},
-        "end_mass_offset(0.4)": cf.end_mass(struck_at(scene, 0.4), "offset", at),
-        "end_mass_squirt(-0.4)": cf.end_mass(struck_at(scene, -0.4), "squirt", at),
+        "end_mass_offset(0.4)": cf.end_mass(at_offset(scene, 0.4), "offset", at),
+        "end_mass_squirt(-0.4)": cf.end_mass(at_offset(scene, -0.4), "squirt", at),
     }
 
 
-def struck_at(scene: cf.Scene, offset: float) -> cf.Scene:
+def at_offset(scene: cf.Scene, offset: float) -> cf.Scene:
     return replace(scene, stroke=replace(scene.stroke, offset=offset))
 
 
@@ -121,9 +121,9 @@ EFFECTS = {
 
 @pytest.mark.parametrize(("at", "effects"), EFFECTS.values(), ids=EFFECTS.keys())
 def test_responses_equal_single_calls(at: cf.Resolution | None, effects: tuple[Any, ...]) -> None:
-    """Two cues, and one of them struck at another offset, which shares its modes."""
+    """Two cues, and one of them at another offset, which shares its modes."""
     scenes = [replace(BASE, effects=effects), replace(BASE, cue=pool(), effects=effects)]
-    scenes.append(struck_at(scenes[1], 0.25))
+    scenes.append(at_offset(scenes[1], 0.25))
     result = evaluate(scenes, ALL, at=at)
     assert result.reasons == (None,) * 3
     for scene, values in zip(scenes, result.values, strict=True):
@@ -131,8 +131,8 @@ def test_responses_equal_single_calls(at: cf.Resolution | None, effects: tuple[A
         for name, single in singly(scene, at).items():
             np.testing.assert_allclose(by_name[name], single, rtol=1e-10, err_msg=name)
         assert by_name["tip_stiffness"] > 0
-        if at is not None:  # else an end mass takes more modes than a strike
-            small = replace(struck_at(scene, 1e-4), tip=replace(scene.tip, friction=math.inf))
+        if at is not None:  # otherwise an end mass has more modes than a strike
+            small = replace(at_offset(scene, 1e-4), tip=replace(scene.tip, friction=math.inf))
             slope = cf.strike(small, at).squirt / 1e-4
             assert by_name["squirt_slope"] == pytest.approx(slope, rel=1e-4)
 
@@ -167,7 +167,7 @@ def test_study_compensated_length_preserves_cue_length(depth: float) -> None:
 
 
 def test_study_compensated_lengths_in_any_order_agree() -> None:
-    """The ferrule grows into the bored wood, which grows into the solid wood."""
+    """A longer ferrule shortens the bored segment, a longer bored segment the solid one."""
     ferrule = Vary(("cue.segments[1].length",), Span(-0.005, 0.01), "ferrule", False, True, ("cue.segments[2].length",))
     for order in (1, -1):
         values = (0.004, 0.1)[::order]
@@ -191,7 +191,7 @@ def test_normal_range_is_truncated_normal(middle: float, sd: float, u: float) ->
     assert (low, high) == (middle - 4 * sd, middle + 4 * sd)
     assert low <= distribution.quantile(u) <= high
     assert distribution.quantile(0.5) == pytest.approx(middle, abs=1e-12)
-    # between the cuts as without them, but for the 6e-5 that lies beyond
+    # the truncation at 4 sd removes 6e-5
     assert NormalDist(middle, sd).cdf(distribution.quantile(u)) == pytest.approx(u, abs=6.4e-5)
     logarithmic = Normal(np.exp(middle), sd, logarithmic=True)
     assert np.log(logarithmic.quantile(u)) == pytest.approx(distribution.quantile(u), rel=1e-9, abs=1e-9)

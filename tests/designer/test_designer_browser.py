@@ -1,4 +1,4 @@
-"""The designer in a headless browser: a maker's session, accessibility, and nothing cropped (regression)."""
+"""The designer in a headless browser: a session, accessibility, layout (regression)."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def violations(page: Any) -> list[tuple[str, list[str]]]:
 
 
 def test_saved_design_strikes_as_displayed(browser: Any, address: str, tmp_path: Path) -> None:
-    """Open a drawing, add a ferrule, a weight and a bore, undo two, compare, try the best change, save and report."""
+    """Open a drawing, add a ferrule, a weight and a bore, undo two, compare, apply the best change, save and report."""
     (tmp_path / "mine.csv").write_text(DRAWING, encoding="utf-8")
     (tmp_path / "broken.toml").write_text("[[segments", encoding="utf-8")
     with designer_page(browser, address) as page:
@@ -104,7 +104,7 @@ def test_saved_design_strikes_as_displayed(browser: Any, address: str, tmp_path:
         )  # the report has another numerical error
 
 
-CUT_OFF = """() => {
+LAYOUT = """() => {
   const box = e => e.getBoundingClientRect(), all = what => [...document.querySelectorAll(what)];
   const texts = all("svg.chart text, svg.cue text").map(box).filter(r => r.height);
   return {
@@ -125,7 +125,7 @@ def test_every_tab_is_accessible_and_not_cropped(browser: Any, address: str, sch
         for tab in TABS:
             page.get_by_role("tab", name=tab).click()
             wait_until_idle(page)
-            layout = page.evaluate(CUT_OFF)
+            layout = page.evaluate(LAYOUT)
             assert layout["scroll"] <= width, tab
             assert (layout["wide"], layout["outside"]) == ([], 0), tab
             assert layout["smallest"] is None or layout["smallest"] > 6.5, tab  # px, of a text's line

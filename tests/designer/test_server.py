@@ -1,4 +1,4 @@
-"""The designer's command and server: rejected and accepted requests, errors (bad input)."""
+"""The designer's command and server: validation of requests, errors (bad input)."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ PIECE = 1_000_000  # bytes of a chunk of a body
 
 
 def response_to(kind: str, headers: dict[str, str], pieces: int = 0) -> tuple[list[dict[str, Any]], int]:
-    """Messages sent for a request to an application that reads it all and answers 200, and the bytes read."""
+    """Messages for a request to an application that reads it completely and responds 200, and the bytes read."""
     sent: list[dict[str, Any]] = []
     left = pieces
 

@@ -1,4 +1,4 @@
-"""Estimates: exact data, coverage of the intervals over drawn cues, the next measurement, limits of the geometry."""
+"""Estimates: exact data, coverage of intervals, next measurement, limits of the geometry (verification)."""
 
 from dataclasses import replace
 
@@ -13,8 +13,8 @@ from cuefem.measurements.outliers import posterior
 from cuefem.measurements.uncertain_parameters import Prior
 from tests.helpers.measured_cues import SCENE, cheap_measurements, measured_cue
 
-HOLDS_95 = 1.959964  # standard deviations either way that hold 95 %
-CLOSED = Prior("contact time", 0.0)  # nothing here depends on it
+SIGMAS_95 = 1.959964  # standard deviations of a 95 % interval
+CLOSED = Prior("contact time", 0.0)  # no measurement here depends on it
 
 
 def measured_as(cue: MeasuredCue, values: np.ndarray) -> MeasuredCue:
@@ -23,10 +23,10 @@ def measured_as(cue: MeasuredCue, values: np.ndarray) -> MeasuredCue:
     return replace(cue, measurements=result)
 
 
-def made_up(
+def random_cue(
     seed: int, measurements: tuple[Measurement, ...] = cheap_measurements(), size: float = 1.0
 ) -> tuple[MeasuredCue, np.ndarray]:
-    """A cue whose parameters are drawn from their priors, measured with noise; and these parameters."""
+    """A cue with parameters drawn from their priors, measured with noise; and these parameters."""
     generator = np.random.default_rng(seed)
     cue = measured_cue(*measurements, priors=(CLOSED,))
     z = size * generator.normal(size=len(cue.parameters))
@@ -42,7 +42,7 @@ def made_up(
 
 
 def test_estimate_exact_data_recovers_the_parameters() -> None:
-    """With small errors the priors do not count, and the parameters follow from the values."""
+    """With small errors the priors have no effect."""
     small = tuple(replace(one, error=1e-3 * one.error) for one in cheap_measurements() if not isinstance(one, Tone))  # type: ignore[call-arg,attr-defined]
     cue = measured_cue(*small, priors=(CLOSED, Prior("G", 0.0)))
     z = np.array([0.7, -0.4, 0.5])
@@ -61,24 +61,24 @@ def test_intervals_of_drawn_cues_have_stated_coverage() -> None:
     """A hundred cues of four parameters drawn from the priors: 68 and 95 % intervals to three standard deviations."""
     pulls = []
     for seed in range(100):
-        cue, z = made_up(seed)
+        cue, z = random_cue(seed)
         result = estimate(cue)
         assert result.converged
         pulls.append(np.abs(result.z - z) / np.sqrt(np.diag(result.covariance)))
-    for share, half_width in ((0.683, 1.0), (0.95, HOLDS_95)):
+    for share, half_width in ((0.683, 1.0), (0.95, SIGMAS_95)):
         assert np.mean(np.array(pulls) < half_width) == pytest.approx(share, abs=3 * np.sqrt(share * (1 - share) / 400))
 
 
 @pytest.fixture(scope="module")
 def linear() -> tuple[MeasuredCue, np.ndarray]:
-    """A cue whose measured values are the computed ones, and their Jacobian."""
-    cue = made_up(0, size=0.0)[0]
+    """A cue whose measured values equal the computed ones, and their Jacobian."""
+    cue = random_cue(0, size=0.0)[0]
     zero = np.zeros(len(cue.parameters))
     return measured_as(cue, cue.computed(zero)), cue.jacobian(zero)
 
 
 def linear_estimate(cue: MeasuredCue, slopes: np.ndarray, values: np.ndarray) -> Estimate:
-    """The estimate of a linear model, its measured values ``values`` above those of the drawing."""
+    """The estimate of a linear model with measured values ``values`` above those of the drawing."""
     sd = np.array([one.sd for one in cue.measurements])
     mean, covariance, wrong = posterior(slopes / sd[:, None], values / sd)
     base = np.array([one.measured for one in cue.measurements])
@@ -91,7 +91,7 @@ def linear_estimate(cue: MeasuredCue, slopes: np.ndarray, values: np.ndarray) ->
 def test_intervals_with_one_outlier_cover_or_name_it(
     outlier: int | None, linear: tuple[MeasuredCue, np.ndarray]
 ) -> None:
-    """A reading 6 to 20 errors off: the intervals hold the truth, or the estimate lists it as unchecked."""
+    """One value 6 to 20 errors off: the intervals cover the true parameters, or the estimate lists it as unchecked."""
     cue, slopes = linear
     generator, sd = np.random.default_rng(26), np.array([one.sd for one in cue.measurements])
     pulls, named = [], []
@@ -104,7 +104,7 @@ def test_intervals_with_one_outlier_cover_or_name_it(
         pulls.append(np.abs(result.z - z) / np.sqrt(np.diag(result.covariance)))
         label = None if outlier is None else cue.measurements[outlier].label
         named.append(label in {each.measurement.label for each in result.unchecked})
-    covered, wide = (np.mean(np.array(pulls) < each) for each in (1.0, HOLDS_95))
+    covered, wide = (np.mean(np.array(pulls) < each) for each in (1.0, SIGMAS_95))
     if outlier is None:
         assert covered == pytest.approx(0.683, abs=0.04)
         assert wide == pytest.approx(0.95, abs=0.02)
@@ -118,7 +118,7 @@ def test_intervals_with_one_outlier_cover_or_name_it(
 
 def test_next_measurement_added_gives_predicted_gain() -> None:
     """The predicted narrowing by a stiffness is that of an estimate with it, at the same values."""
-    cue, _ = made_up(9, cheap_measurements()[:4], size=0.5)
+    cue, _ = random_cue(9, cheap_measurements()[:4], size=0.5)
     before = estimate(cue)
     gains = before.next_measurements()
     assert {type(gain.measurement) for gain in gains} <= set(MEASUREMENT_TYPES.values())
@@ -152,7 +152,7 @@ def possible(cue: MeasuredCue, i: int, z: float) -> bool:
 
 @pytest.mark.parametrize("name", ["E", pytest.param("bore width", marks=pytest.mark.heavy), "taper"])
 def test_estimate_at_limits_of_geometry_stays_finite(name: str) -> None:
-    """Differences are one-sided at a limit, which is sought within 12 standard deviations of the prior."""
+    """Differences are one-sided at a limit; limits within 12 standard deviations of the prior are tested."""
     cue = MeasuredCue("a cue", SCENE, CHEAP, (Prior("taper", 0.1),))
     i, parameter = next((i, each) for i, each in enumerate(cue.parameters) if each.name == name)
     for outside in (side for side in (-12.0, 12.0) if not possible(cue, i, side)):

@@ -1,4 +1,4 @@
-"""Invalid measurements, files and folders are rejected; one line for each `raise`."""
+"""Invalid measurements, files and folders; one for each `raise` (bad input)."""
 
 import errno
 from collections.abc import Callable
@@ -58,7 +58,7 @@ PENDULUM = (
     r"""[[pendulum]]\nball_mass = "8 g"\nthread_length = "1 m"\nrelease = ["200 mm"]\nclamped_rebound = ["162 mm"]\n"""
 )
 PENDULUM += r"""contact_time = "1 ms"\nposition = "10 mm"\n"""
-# A file of the folder, what it holds (P is a pendulum test without the rebound), and a part of the message.
+# A file of the folder, its content (P: a pendulum test without the rebound), and a part of the message.
 FILES = r"""
 measured.toml | [[weigth]]\nvalue = "1 g"\n | measured.toml: weigth: must be one of the keys
 measured.toml | [[weight]]\nvalue = 100\nerror = "1 g"\n | weight[0].value: needs a unit

@@ -1,4 +1,4 @@
-"""Values of measurements: exact static stiffness, errors from priors, residuals, the zero of the offset."""
+"""Computed values of measurements, residuals, and offset zeros (verification)."""
 
 from dataclasses import replace
 
@@ -57,7 +57,7 @@ def test_squirt_and_contact_time_equal_a_strike() -> None:
 
 
 def test_pivot_length_follows_from_squirt_and_dome() -> None:
-    """TP B.1 by hand: turned by psi about the bridge, the cue's axis points beside the centre by (R + r) b/R."""
+    """TP B.1: rotated by the squirt about the bridge, the axis of the cue passes the centre at (R + r) b/R."""
     for scene, dome in ((SCENE, 0.0), (leather_scene(), leather_scene().leather.dome_radius)):
         one, radius = PivotLength(offset=0.25, value=0.3, error=0.01, speed=1.5), float(scene.ball.radius)
         for factor in (1.0, 1.1):
@@ -78,7 +78,7 @@ def test_added_mass_position_counts_from_the_leather() -> None:
 
 
 def test_offset_zero_moves_one_side_and_not_the_mean() -> None:
-    """One side is at another offset; the mean of both is not, and the zero follows from their difference."""
+    """A zero error shifts one side and not the mean of both; it is estimated from their difference."""
     radius, shift = float(SCENE.ball.radius), 1e-3
     setup = Setup(SCENE, {"a": shift})
     both = [cf.strike(replace(SCENE, stroke=cf.Stroke(2.0, 0.3 + side * shift / radius))).squirt for side in (1, -1)]
@@ -98,7 +98,7 @@ def test_residuals_are_in_units_of_errors() -> None:
         assert row.residual == pytest.approx((row.measured - row.computed) / row.error)
         assert row.pull == pytest.approx((row.measured - row.computed) / np.hypot(row.error, row.spread))
     weight, tone = rows[0], rows[1]
-    # by hand: the weight is proportional to the density, the tone to the root of E/rho and little else
+    # closed form: weight proportional to density, frequency to the root of E/rho
     assert weight.spread / weight.computed == pytest.approx(np.log(780 / 630) / 2, rel=2e-2)
     E, rho = np.log(16.9 / 10.8) / 2, np.log(780 / 630) / 2
     assert tone.spread / tone.computed == pytest.approx(np.hypot(E, rho) / 2, rel=5e-2)

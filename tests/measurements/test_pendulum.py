@@ -1,4 +1,4 @@
-"""The pendulum test: exact on free masses, the numbers of the handbook, contradictions."""
+"""The pendulum test: handbook example, free masses, side strike, noise, contradictions (verification)."""
 
 import math
 from dataclasses import replace
@@ -71,7 +71,7 @@ def test_pendulum_on_shaft_equals_side_strike() -> None:
 
 
 def test_pendulum_error_covers_noise_of_readings() -> None:
-    """Some hundred tests with noise in every reading and in the ball's mass: 68 % lie within the stated error."""
+    """300 tests with noise in every reading and in the ball's mass: 68 % within the stated error."""
     generator, M, e, m, U = np.random.default_rng(4), 7e-3, 0.8, 6e-3, 0.6
     back, inside = U * (e * M - m) / (m + M), []
     for _ in range(300):
@@ -91,7 +91,7 @@ def test_pendulum_error_covers_noise_of_readings() -> None:
 
 
 def test_compare_contradiction_with_drawing_is_reported(tmp_path: Path) -> None:
-    """8.95 g measured for 6.06 g drawn: beyond the readings' errors, and beyond what drawing and contact time allow."""
+    """8.95 g measured, 6.06 g computed: beyond the errors of readings, drawing and contact time."""
     drawing = (Path(__file__).parents[2] / "meshes" / "pool_maple.toml").read_text(encoding="utf-8")
     directory = measured_folder(tmp_path / "cue", TEXT.replace("-34 mm", "-9 mm"), drawing)
     (row,) = as_json("compare", directory)["rows"]

@@ -1,4 +1,4 @@
-"""Recordings: the wood estimated from one, mode numbers where some modes are silent, noise."""
+"""Recordings: estimate of the wood, mode numbers with missing modes, noise (verification)."""
 
 import itertools
 from pathlib import Path
@@ -21,7 +21,7 @@ DRAWN = cf.modes(SHAFT, 8).frequencies
 
 @pytest.mark.heavy
 def test_recording_of_known_wood_gives_its_constants(tmp_path: Path) -> None:
-    """Three taps of pool_maple in another wood, 25 dB: the true E, G, density, and those of an earlier estimate."""
+    """Three taps of pool_maple in another wood, 25 dB: true E, G, density, and those of an earlier estimate."""
     pool_cue = cf.load(POOL)
     assert isinstance(pool_cue, cf.Cue)
     shaft = other_wood(pool_cue)
@@ -43,7 +43,7 @@ def test_recording_of_known_wood_gives_its_constants(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("snr", "missing"), [(10.0, ()), (10.0, (1, 2)), (20.0, (1,)), (60.0, (3,))])
 def test_tones_with_missing_modes_have_right_mode_numbers(snr: float, missing: tuple[int, ...]) -> None:
-    """The wood is 15 % stiffer than drawn; a silent mode does not shift the numbers of the others."""
+    """The wood is 15 % stiffer than drawn; a missing mode does not shift the numbers of the others."""
     shaft = other_wood(SHAFT)
     true = cf.modes(shaft, 8).frequencies
     tones = tones_in(recording(tap_sound(shaft, missing=missing), snr, 1), 44100.0, DRAWN)
@@ -54,7 +54,7 @@ def test_tones_with_missing_modes_have_right_mode_numbers(snr: float, missing: t
 
 
 def test_mode_numbers_of_any_subset_and_wood_are_right() -> None:
-    """Woods from the table's spread; three modes may be ambiguous, five may not."""
+    """Woods within the spread of the table; three modes may be ambiguous, five are not."""
     generator, wrong, sets = np.random.default_rng(0), 0, 0
     for E, G, rho in np.exp(generator.normal(0, (0.2, 0.25, 0.1), (6, 3))):
         true = cf.modes(other_wood(SHAFT, E=E, G=G, rho=rho), 8).frequencies
@@ -68,7 +68,7 @@ def test_mode_numbers_of_any_subset_and_wood_are_right() -> None:
 
 
 def test_two_recordings_give_one_tone_per_mode(tmp_path: Path) -> None:
-    """Their scatter is an error: 1 Hz apart, it is half of that; and their tones have both as source."""
+    """A difference of 1 Hz is an error of 0.5 Hz; the tones have both files as source."""
     time = np.arange(44100) / 44100
 
     def sound(*tones: float) -> np.ndarray:
