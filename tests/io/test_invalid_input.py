@@ -1,4 +1,4 @@
-"""Invalid files are rejected in one line with file, key path and limit (regression).
+"""Invalid files: one line with file, key path and limit (bad input).
 
 Every declared field of every table: tests/quantity/test_declared_fields.py.
 """

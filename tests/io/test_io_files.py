@@ -1,4 +1,4 @@
-"""Reference files of every kind load and save exactly (regression)."""
+"""Files of every kind load and save exactly (regression)."""
 
 import math
 from dataclasses import replace

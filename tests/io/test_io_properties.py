@@ -1,4 +1,4 @@
-"""Properties of files: saved objects load back identical, and any other content is rejected."""
+"""Files: saved objects load equal, units, arbitrary content (properties)."""
 
 import math
 import tempfile
@@ -22,7 +22,7 @@ from cuefem.quantity.units import EXAMPLES, UNITS, format_number, parse_number
 
 @dataclass(frozen=True)
 class Weight(Effect):
-    """An effect made for these tests: text with units, a bare number, one that may be infinite, one left out."""
+    """An effect with a quantity, an optional one, one that may be infinite, and a bare number."""
 
     position: Annotated[float, Quantity("m", "[0, inf)")]
     mass: Annotated[float, Quantity("kg", "[0, inf]")] = 0.0
@@ -74,7 +74,7 @@ SCENES = st.builds(
 
 
 def outcome(read: Callable) -> tuple[Any, str]:
-    """What ``read`` gives, or the words in which it refuses."""
+    """The result of ``read`` and an empty text, or None and the error message."""
     try:
         return read(), ""
     except ValueError as error:
@@ -114,7 +114,7 @@ def test_formatted_number_reads_back(value: float, unit: str) -> None:
     assert parse_number(format_number(value, unit), unit) == pytest.approx(value, rel=2e-12, abs=0)
 
 
-# What people type, and how many SI units it is by another source than the table.
+# Units as typed, and their size in SI by scipy.constants.
 TYPED: dict[str, dict[str, float]] = defaultdict(dict)
 for row in """
 m: mm, millimetres, MM = milli; cm, centimeter = centi; m, meters = 1.0; in, inch, inches, IN, ", ″ = inch

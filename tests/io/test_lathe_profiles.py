@@ -84,7 +84,7 @@ FERRULED = """x [mm],Diameter [mm],Bore [mm],Material,Core
 
 
 def test_profile_columns_bore_material_core_make_segments(tmp_path: Path) -> None:
-    """A material holds from its row on, bore and core for their row; a bore tapers within the same materials."""
+    """A material applies from its row on, bore and core to their row; a bore tapers within the same materials."""
     path = write_profile(tmp_path, FERRULED)
     leather, melamine, foam = map(material, ("leather", "melamine", "foam"))
     sizes = [

@@ -1,4 +1,4 @@
-"""The reference cues of meshes/ against the numbers that meshes/README.md states for them."""
+"""The reference cues of meshes/ against the numbers of meshes/README.md (regression)."""
 
 import math
 from pathlib import Path
@@ -49,7 +49,7 @@ def test_pool_meshes_have_stated_masses(name: str, grams: float, centre: float) 
 
 
 def test_whole_cue_mesh_has_stated_mass_and_balance() -> None:
-    """58 in, near 19 oz, balanced 18 to 19 in from the butt, nothing left to body_mass."""
+    """58 in, about 19 oz, balanced 18.2 in from the butt, body_mass 0."""
     cue = load("whole_cue")
     assert cue.body_mass == 0
     assert cue.length == pytest.approx(58 * INCH, rel=1e-12)

@@ -1,4 +1,4 @@
-"""Files for ParaView, read back: modes and motion equal those of the library (verification)."""
+"""ParaView files: modes and motion equal the library (verification)."""
 
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
@@ -32,7 +32,7 @@ def test_shaft_surface_is_closed_and_oriented_outwards() -> None:
     surface = shaft_surface(CUE)
     _, volume = area_and_volume(surface.points, dict(surface.cells))
     frusta = [(0.025, 0.0125, 0.0128), (0.7, 0.012, 0.021)]
-    prism = RING_POINTS / (2 * np.pi) * np.sin(2 * np.pi / RING_POINTS)  # of the circle's area, what the polygon holds
+    prism = RING_POINTS / (2 * np.pi) * np.sin(2 * np.pi / RING_POINTS)  # area of the polygon over that of the circle
     expected = prism * np.pi / 12 * sum(length * (d**2 + d * D + D**2) for length, d, D in frusta)
     assert volume == pytest.approx(expected, rel=1e-12)
     edges = np.concatenate([np.stack([c, np.roll(c, -1, axis=1)], axis=-1).reshape(-1, 2) for _, c in surface.cells])
@@ -50,7 +50,7 @@ def test_ball_surface_is_a_sphere() -> None:
 
 
 def test_displacements_of_rigid_rotation_preserve_distances() -> None:
-    """The sign of the rotation: a rigid motion of the beam is one of its surface, to first order."""
+    """A rigid motion of the beam is one of its surface, to first order, which tests the sign of the rotation."""
     surface = shaft_surface(CUE)
     result = cf.modes(CUE)
     for vector in result.rigid_vectors.T:

@@ -1,4 +1,4 @@
-"""Cues from parts of the catalogue: shapes, options and files."""
+"""Parts catalogue: cues, options, files, command (regression)."""
 
 import json
 import re

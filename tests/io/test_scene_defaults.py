@@ -1,4 +1,4 @@
-"""Missing keys of a scene file default to those of its game."""
+"""Missing keys of a scene file have the values of its game (properties)."""
 
 import warnings
 from dataclasses import replace
@@ -18,12 +18,12 @@ segments = [
   { length = "700 mm", tip_diameter = "12.7 mm", butt_diameter = "21 mm", material = "hard maple" },
 ]
 """
-WHOLE = {
+TABLES = {
     "ball": {"mass": '"165 g"', "radius": '"28 mm"'},
     "tip": {"restitution": "0.8", "friction": "0.55"},
     "stroke": {"speed": '"2.5 m/s"', "offset": "0.21"},
 }
-KEYS = [(part, name) for part, names in WHOLE.items() for name in names]
+KEYS = [(part, name) for part, names in TABLES.items() for name in names]
 
 
 @pytest.fixture(scope="module")
@@ -50,15 +50,15 @@ def loaded(folder: Path, text: str) -> cf.Scene:
 @given(present=st.sets(st.sampled_from(KEYS)), effects=st.booleans(), game=st.sampled_from([*GAMES]))
 def test_scene_missing_keys_default_to_the_game(folder: Path, present, effects, game) -> None:
     rows = [f'game = "{game}"', 'cue = "cue.toml"', *(["effects = []"] if effects else [])]
-    for part in WHOLE:
-        inside = [f"{name} = {WHOLE[part][name]}" for other, name in sorted(present) if other == part]
+    for part in TABLES:
+        inside = [f"{name} = {TABLES[part][name]}" for other, name in sorted(present) if other == part]
         rows += [f"[{part}]", *inside] if inside else []
     result, usual = loaded(folder, "\n".join(rows)), cf.usual_scene(cue_of(folder), game)
     if effects:  # without axial waves the tip has the restitution of the whole cue
         tip = replace(usual.tip, restitution=GAMES[game].restitution)
         usual = replace(usual, cue=cue_of(folder), tip=tip, effects=())
     values = {"mass": 0.165, "radius": 0.028, "restitution": 0.8, "friction": 0.55, "speed": 2.5, "offset": 0.21}
-    for part in WHOLE:
+    for part in TABLES:
         changes = {name: values[name] for other, name in present if other == part}
         usual = replace(usual, **{part: replace(getattr(usual, part), **changes)})
     assert result == usual

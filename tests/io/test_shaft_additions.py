@@ -1,4 +1,4 @@
-"""Additions to a drawing by options: material, ferrule, bore, leather front, body mass."""
+"""Additions to a drawing by options: material, ferrule, bore, leather front, body mass (regression)."""
 
 from pathlib import Path
 

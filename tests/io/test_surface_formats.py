@@ -1,4 +1,4 @@
-"""Surfaces as different programs write them, read by the commands (regression)."""
+"""Surfaces in the formats of different programs are read (regression)."""
 
 import re
 from collections.abc import Callable
@@ -12,7 +12,7 @@ from tests.helpers.command_line import call
 from tests.helpers.surfaces import revolve, write_surface
 
 SHAFT = revolve([(0, 0), (0, 0.006), (0.7, 0.0105), (0.7, 0)], 16)
-# Ending, whether binary, and what another program does otherwise than meshio.
+# Extension, whether binary, and the difference from meshio's output.
 FILES: dict[str, tuple[str, bool, Callable[[bytes], bytes]]] = {
     "ascii": ("stl", False, lambda text: text),
     "a long head": ("stl", False, lambda text: text.replace(b"solid", b"solid " + b"OpenSCAD_Model " * 12, 1)),
@@ -44,5 +44,5 @@ def test_surface_of_any_program_is_read(tmp_path: Path, name: str) -> None:
     assert isinstance(result, cf.Cue)
     assert result.length == pytest.approx(0.7, rel=1e-6)
     sizes = result.segments[0].tip_diameter, result.segments[-1].butt_diameter
-    round16 = np.sqrt(16 / 2 * np.sin(2 * np.pi / 16) / np.pi)  # of the disc that 16 facets are as large as
+    round16 = np.sqrt(16 / 2 * np.sin(2 * np.pi / 16) / np.pi)  # diameter of the disc of equal area
     assert sizes == pytest.approx((0.012 * round16, 0.021 * round16), rel=1e-4)

@@ -1,4 +1,4 @@
-"""Slices of closed surfaces against exact polygons, and the shafts loaded from them (verification)."""
+"""Sections of closed surfaces against exact polygons, and the loaded shafts (verification)."""
 
 from itertools import pairwise
 from pathlib import Path
@@ -66,7 +66,7 @@ def body_jumps(cue: cf.Cue) -> list[int]:
 
 @pytest.mark.parametrize("name", CUES)
 def test_surface_of_conical_pieces_recovers_the_drawing(name: str) -> None:
-    """Lengths to rounding; diameters those of the polygon's area, and of its second moment too where it is bored."""
+    """Lengths to round-off error; diameters of the polygon's area, and of its second moment where it is bored."""
     cue, facets = CUES[name], 64
     result = section_shaft(aligned_surface(*revolve(outline_of(cue), facets)))
     assert [p.length for p in result.pieces] == pytest.approx([s.length for s in cue.segments], rel=1e-9)
@@ -79,7 +79,7 @@ def test_surface_of_conical_pieces_recovers_the_drawing(name: str) -> None:
 
 
 def test_facets_refined_converge_with_second_order() -> None:
-    """Inscribed facets, N a turn, make diameters small by (2 pi/N)^2/12 and frequencies with them."""
+    """N inscribed facets reduce diameters and frequencies by (2 pi/N)^2/12."""
     facets = np.array([16, 32, 64])
     off = []
     for n in facets:
@@ -91,7 +91,7 @@ def test_facets_refined_converge_with_second_order() -> None:
 
 
 def test_curved_profile_is_within_the_tolerance() -> None:
-    """A pro taper's smooth curve: straight pieces keep within the tolerance of every slice."""
+    """Straight segments approximate a curved taper within the tolerance."""
     x = np.linspace(0, 0.7, 141)
     radius = 0.006 + 0.005 * (x / 0.7) ** 3
     result = section_shaft(aligned_surface(*revolve([(0, 0), *zip(x, radius, strict=True), (0.7, 0)], 48)))
@@ -126,7 +126,7 @@ def test_polygon_faces_are_triangulated(tmp_path: Path) -> None:
 
 
 def test_surface_length_unit_and_uppercase_extension_are_read(tmp_path: Path) -> None:
-    """As CAD programs on other systems write them; by a scene too."""
+    """Also by a scene file."""
     points, faces = revolve(outline_of(KIM), 16)
     inches = write_surface(tmp_path / "inches.stl", points, faces, unit=0.0254)
     assert cf.load(inches, length_unit="in").length == pytest.approx(0.7, rel=1e-6)

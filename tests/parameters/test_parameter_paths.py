@@ -47,7 +47,7 @@ def test_path_without_field_raises(path: str, message: str) -> None:
 
 
 def test_replaced_values_change_together() -> None:
-    """A bore may be wider than the shaft was, where the shaft grows with it; nothing else changes."""
+    """A bore may exceed the former diameter if the diameter changes too; nothing else changes."""
     (bore,), (outer,) = paths(BASE, "cue.segments[2].tip_bore"), paths(BASE, "cue.segments[2].tip_diameter")
     changed = with_values_at(BASE, {bore: 0.0126, outer: 0.014})
     assert changed.cue.segments[2] == replace(BASE.cue.segments[2], tip_bore=0.0126, tip_diameter=0.014)

@@ -1,4 +1,4 @@
-"""Every named parameter of every reference cue: set and read, alone and together, in any order (properties)."""
+"""Named parameters of reference cues: set and read, alone and together, in any order (properties)."""
 
 from typing import Any
 

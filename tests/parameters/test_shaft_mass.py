@@ -1,4 +1,4 @@
-"""The mass of a shaft sets the density of its wood, which is then no uncertain parameter."""
+"""The mass of a shaft determines the density of its wood, which is then not uncertain (properties)."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -58,7 +58,7 @@ def test_shaft_mass_option_and_file_key_agree(tmp_path: Path) -> None:
     cue = cf.load(toml)
     assert isinstance(cue, cf.Cue)
     assert cue.weighed
-    assert 0.111 < cue.shaft_mass < 0.112  # the rest is the tip, which is not drawn
+    assert 0.111 < cue.shaft_mass < 0.112  # without the tip, which is not drawn
     assert as_json("modes", csv, "--shaft-mass", "112 g")["scene"]["cue"]["shaft_mass"] == pytest.approx(
         cue.shaft_mass, rel=1e-11
     )

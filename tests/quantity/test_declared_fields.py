@@ -33,7 +33,7 @@ INSTANCES: list[Any] = [
 
 
 def beyond(mark: Quantity) -> Iterator[float]:
-    """Numbers that are not in an interval."""
+    """Numbers outside an interval."""
     yield math.nan
     for end, side, bracket in zip(mark.ends, (-1, 1), (mark.interval[0], mark.interval[-1]), strict=True):
         if math.isfinite(end):

@@ -1,4 +1,4 @@
-"""Representations of objects: short in a terminal, and full (regression)."""
+"""Representations of objects: short and full (regression)."""
 
 from __future__ import annotations
 
@@ -35,6 +35,6 @@ def test_repr_is_one_short_line(name: str) -> None:
 
 
 def test_full_repr_evaluates_to_equal_object() -> None:
-    """Studies are compared by it."""
+    """Studies are compared by their full representation."""
     names = {name: getattr(cf, name) for name in dir(cf)} | {"inf": float("inf")}
     assert eval(full_repr(SCENE), names) == SCENE

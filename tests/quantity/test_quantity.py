@@ -1,4 +1,4 @@
-"""Quantities: intervals, messages, and checks of fields (properties)."""
+"""Quantities: intervals, error messages, fractions (properties)."""
 
 import math
 import re

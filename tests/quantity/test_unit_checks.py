@@ -1,4 +1,4 @@
-"""Warnings for numbers in another unit, and for no others (properties)."""
+"""Warnings for numbers in another unit (properties)."""
 
 import dataclasses
 import math
