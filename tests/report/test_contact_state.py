@@ -29,7 +29,7 @@ def test_regime_with_long_partial_slip_warns(speed: float, offset: float, regime
 
 
 def test_end_mass_of_miscue_raises() -> None:
-    """Its squirt hardly depends on the cue: an end mass of it would be 18.7 g at 0.63, and 7 g where it grips."""
+    """Its squirt hardly depends on the cue: the end mass would be 18.7 g at b/R 0.63, and 7 g with stick."""
     miscue = replace(LEATHER, stroke=cf.Stroke(2.0, 0.63))
     assert cf.strike(miscue).regime == "miscue"
     with pytest.raises(ValueError, match=r"the stroke miscues at offset 0\.63; got no end mass"):

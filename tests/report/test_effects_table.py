@@ -1,4 +1,4 @@
-"""Sensitivity to each effect: the changes equal differences of single strikes (properties)."""
+"""Sensitivity to each effect: changes equal differences of strikes (properties)."""
 
 from dataclasses import replace
 from typing import Any

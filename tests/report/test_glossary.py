@@ -1,4 +1,4 @@
-"""The glossary on a page: each term is a button that opens its definition; the text is unchanged (properties)."""
+"""The glossary on a page: buttons of terms open definitions; the text is unchanged (properties)."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Warnings of implausible values, such as by a wrong unit, and none for shipped cues (regression)."""
+"""Warnings for implausible values, and none for shipped cues (regression)."""
 
 import json
 from dataclasses import replace
@@ -88,7 +88,7 @@ def test_strike_of_shaft_without_butt_warns(tmp_path: Path) -> None:
 
 
 def test_solid_carbon_rod_warns(tmp_path: Path) -> None:
-    """A lathe profile has no bore: carbon in it is a rod of twice a shaft's mass."""
+    """A lathe profile without a bore in carbon is a solid rod of twice a shaft's mass."""
     (shaft := tmp_path / "shaft.csv").write_text(PROFILE)
     (line,) = plausibility_warnings(cf.Scene(cf.load(shaft, material="carbon fibre", body_mass="15 oz")))
     assert line.startswith("a solid rod as stiff as carbon fibre, drawn mass 2")

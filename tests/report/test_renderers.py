@@ -1,4 +1,4 @@
-"""Renderers: a table has the same cells in the terminal, on a page and as CSV (properties)."""
+"""Renderers: equal cells in terminal, page and CSV; missing values; narrow terminals (properties)."""
 
 import csv
 import io
@@ -14,7 +14,7 @@ from cuefem.report.templates import environment
 from cuefem.results.quantities import DASH
 from cuefem.results.records import Table, tabulate
 
-ROWS = [{"at": 0.01, "felt": 0.0062, "part": 0.25}, {"at": 0.02, "felt": None, "part": -0.5}]
+ROWS = [{"at": 0.01, "mass": 0.0062, "part": 0.25}, {"at": 0.02, "mass": None, "part": -0.5}]
 
 
 def cells(table: Table) -> dict[str, list[list[str]]]:
@@ -33,9 +33,9 @@ def cells(table: Table) -> dict[str, list[list[str]]]:
 
 
 def test_table_in_every_medium_has_same_cells() -> None:
-    columns = {"place": "{at:m}", "felt <there>": "{felt:end_mass}", "part": "{part:.1 %}"}
+    columns = {"position": "{at:m}", "mass <there>": "{mass:end_mass}", "part": "{part:.1 %}"}
     table = tabulate("Where", columns, ROWS, texts=())
-    whole = [["place", "felt <there>", "part"], ["10 mm", "6.200 g", "25.0 %"], ["20 mm", DASH, "-50.0 %"]]
+    whole = [["position", "mass <there>", "part"], ["10 mm", "6.200 g", "25.0 %"], ["20 mm", DASH, "-50.0 %"]]
     assert cells(table) == dict.fromkeys(("terminal", "page", "spreadsheet"), whole)
 
 
@@ -44,7 +44,7 @@ def test_missing_value_is_dash_and_nonfinite_is_null() -> None:
     assert table.rows == (("0.0010",), (DASH,))
     numbers = json.loads(json_text({"a": float("inf"), "b": [float("nan"), 1.0], "c": {"d": 2}}))
     assert numbers == {"a": None, "b": [None, 1.0], "c": {"d": 2}}
-    assert csv_text(["=1+1"], [["-2"], ["-x"]]).split() == ["'=1+1", "-2", "'-x"]  # none is taken for a formula
+    assert csv_text(["=1+1"], [["-2"], ["-x"]]).split() == ["'=1+1", "-2", "'-x"]  # not a spreadsheet formula
 
 
 def rendered(items: list[Any], width: int) -> str:
@@ -69,4 +69,4 @@ def test_table_in_narrow_terminal_wraps_headings_first_and_numbers_never() -> No
     above, head, _, row = lines(39)
     assert (above.split(), head.split()) == (["a", "long", "another"], ["what", "heading", "one"])
     assert re.fullmatch(r"\[words\] of text +-1.2345 m/s +3.4e-12", row)
-    assert "-1.2345 m/s  3.4e-12" in rendered([table], 20)  # too wide: the terminal may wrap the lines
+    assert "-1.2345 m/s  3.4e-12" in rendered([table], 20)  # wider than the terminal

@@ -1,4 +1,4 @@
-"""The report in a headless browser: values by keyboard, print, nothing cropped (regression)."""
+"""The report in a headless browser: keyboard, print, accessibility, layout (regression)."""
 
 import math
 import re

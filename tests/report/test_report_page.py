@@ -1,4 +1,4 @@
-"""The report page is valid and self-contained, and its drawings agree with the cue (regression)."""
+"""The report page: valid HTML, escaping, axes, drawing of the cue (regression)."""
 
 import math
 import re

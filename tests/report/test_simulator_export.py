@@ -1,4 +1,4 @@
-"""Export for pooltool: with the exported end mass it computes the same squirt (verification).
+"""Export for pooltool: its formula with the exported end mass has the same squirt (verification).
 
 pooltool 0.6.0 requires a development build of its graphics that is not on PyPI, so that pip installs 0.3.3, which has
 no end mass, and `cuefem[pooltool]` cannot exist. .ci/pooltool makes an environment, and POOLTOOL_PYTHON names it.

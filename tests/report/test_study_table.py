@@ -1,4 +1,4 @@
-"""Tables of a study: best designs, sensitivities and Pareto fronts against their definitions (verification)."""
+"""Tables of a study: sensitivities, Pareto fronts, best designs (verification)."""
 
 import itertools
 import re

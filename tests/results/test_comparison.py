@@ -1,4 +1,4 @@
-"""Comparison of cues: differences agree with strikes, and shared errors cancel (properties)."""
+"""Comparison of cues: differences, shared errors, invalid input (properties)."""
 
 import math
 from dataclasses import replace
@@ -73,7 +73,7 @@ def test_comparison_with_shaft_masses_has_smaller_error() -> None:
 
 @pytest.mark.heavy
 def test_comparison_with_point_mass_has_larger_error() -> None:
-    """The model error of the ratio is that of the measured masses."""
+    """The model error of a ratio with a point mass is MASS_ERROR."""
     clip = replace(SCENE, effects=(*SCENE.effects, cf.PointMass(0.05, 0.011)))
     squirt = comparison_record({"plain": SCENE, "clip": clip}, same_shaft=True)["differences"]["clip"]["squirt"]
     assert squirt["error"] >= MASS_ERROR * squirt["difference"] > SHAFT_ERROR * squirt["difference"]

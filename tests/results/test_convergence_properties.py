@@ -1,4 +1,4 @@
-"""`resolve` and `resolve_end_mass`: lumped cues, cost against accuracy, levels (properties)."""
+"""`resolve` and `resolve_end_mass`: lumped cues, cost against accuracy (properties)."""
 
 from dataclasses import replace
 

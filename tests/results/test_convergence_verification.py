@@ -1,5 +1,4 @@
-"""The truncation correction against sums over all modes, and the error estimates of `resolve` against references
-(verification)."""
+"""Truncation correction against all modes, and error estimates of `resolve` against references (verification)."""
 
 import numpy as np
 import pytest
@@ -71,7 +70,7 @@ def test_resolve_end_mass_error_is_within_rtol() -> None:
 @pytest.mark.heavy
 @pytest.mark.parametrize("number", range(0, 40, 3))
 def test_refinement_levels_error_estimate_bounds_true_error(number: int) -> None:
-    """The tolerance includes the difference of two references, which is the uncertainty of the true error."""
+    """The tolerance includes the difference of two references."""
     here = family()[number]
     best, rougher = reference(here, 300), reference(here, 230)
     known = float((np.abs(rougher - best) / np.abs(best)).max())

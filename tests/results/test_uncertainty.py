@@ -1,4 +1,4 @@
-"""Uncertain inputs, and the model errors against published series (properties, validation)."""
+"""Uncertain inputs, and model errors against published series (validation)."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -22,7 +22,7 @@ MESHES = Path(__file__).parents[2] / "meshes"
 
 
 def test_squirt_changes_surface_restitution_is_one_sided() -> None:
-    """0.95 for the 1 that stands there: 4 % more squirt. It is the tip's, which two shafts share."""
+    """Surface restitution 0.95 instead of 1 increases squirt by 4 %; two shafts with one tip share this error."""
     scene = cf.usual_scene(cf.load(MESHES / "pool_maple.toml"))
     own = float(cf.strike(scene).squirt)
     lossy = with_parameters(scene, {"leather.surface_restitution": 0.95})
@@ -37,7 +37,7 @@ def test_squirt_changes_surface_restitution_is_one_sided() -> None:
 
 @pytest.mark.heavy
 def test_model_errors_agree_with_published_series() -> None:
-    """The constants are the upper ends of the intervals that the study derives."""
+    """The constants are the upper ends of the study's intervals."""
     errors = [uncertainty.model_error(model).high for model in ("whole", "bare")]
     constants = [MODEL_ERROR, SPRING_ERROR, SHAFT_ERROR, MASS_ERROR]
     assert [*errors, *uncertainty.ratio_errors()] == pytest.approx(constants, abs=5.1e-3)
@@ -45,7 +45,7 @@ def test_model_errors_agree_with_published_series() -> None:
 
 @pytest.mark.heavy
 def test_uncertainty_covers_published_rows() -> None:
-    """At least 68 % of the rows of squirt and of two shafts; the series of 3 g has fewer, as the page states."""
+    """At least 68 % of published squirts and of two shafts; the series of 3 g has fewer, as the page states."""
     within = {name: (inside, rows) for name, rows, inside, _ in uncertainty.coverage()}
     cues = [pair for name, pair in within.items() if " g on a shaft" not in name]
     inside, rows = map(sum, zip(*cues, strict=True))

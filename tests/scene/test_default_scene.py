@@ -1,4 +1,4 @@
-"""What a cue alone is given, by the game: a tip for the drawn leather, and times as published (properties)."""
+"""Default scenes of a cue: tip, ball, stroke and effects of the game (properties)."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -60,7 +60,7 @@ def test_default_scene_invalid_input_raises() -> None:
 
 
 def test_axial_waves_short_butt_is_rigid_mass() -> None:
-    """A cue drawn to 3 mm short of a whole one's length, with 100 g more at its end."""
+    """A cue drawn up to 3 mm before the butt, with 100 g behind it."""
     cue = cf.Cue((WOOD, cf.Segment(0.7702, 0.021, 0.031, material("hard maple"))), body_mass=0.1)
     scene = cf.usual_scene(cue)
     rigid = replace(

@@ -1,4 +1,4 @@
-"""The ready scenes of studies/scenes, and what a scene file means to the commands (regression)."""
+"""The scenes of studies/scenes and the cues of meshes/ against their READMEs (regression)."""
 
 import math
 import re
@@ -14,7 +14,7 @@ READY = ("break_cue", "carom", "clay_on_shaft", "kim", "pool_low_deflection", "s
 
 
 def rows() -> dict[str, list[str]]:
-    """The scenes' README by name: what, ball, offset, squirt, effects."""
+    """Rows of the scenes' README by name: content, ball, offset, squirt, effects."""
     lines = (SCENES / "README.md").read_text(encoding="utf-8").splitlines()
     cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines if line.startswith("| [")]
     return {row[0][1:].partition("]")[0]: row[1:] for row in cells}

@@ -54,7 +54,7 @@ INVALID: list[tuple[Callable[[], object], str]] = [
 def test_solid_invalid_input_raises_before_assembly(
     call: Callable[[], object], message: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Assembly takes seconds."""
+    """Input is checked before assembly, which takes seconds."""
     monkeypatch.setattr(SolidBody, "matrices", property(lambda body: pytest.fail("a solid was assembled")))
     with pytest.raises(ValueError, match=message):
         call()
@@ -84,7 +84,7 @@ def test_model_error_short_cone_lists_quantities_and_exclusions() -> None:
 
 
 def test_report_with_check_states_model_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Once, and for the scene of the report."""
+    """The page states it once, for the scene of the report."""
     requested: list[cf.Scene] = []
 
     def record(scene: cf.Scene, follow: object) -> dict[str, object]:

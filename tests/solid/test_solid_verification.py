@@ -1,5 +1,4 @@
-"""The solid shaft against exact elasticity, its convergence, and its weak forms against scikit-fem's own assembly
-(verification)."""
+"""The solid shaft: exact waves, orders of convergence, pure bending, axial compliance (verification)."""
 
 from __future__ import annotations
 
@@ -51,7 +50,7 @@ def beam_wave(k: float) -> float:
 
 
 def love_wave(k: float) -> float:
-    """omega of a rod's wave with the inertia of its swelling (Love)."""
+    """omega of a rod's wave with lateral inertia (Love)."""
     return k * math.sqrt(STEEL.E / STEEL.rho / (1 + (STEEL.nu * k * RADIUS) ** 2 / 2))
 
 
@@ -62,7 +61,7 @@ def exact_wave(halves: int, motion: int) -> float:
 
 
 def standing_wave(halves: int, motion: int, how: Fineness) -> float:
-    """The mode with so many half waves between faces that do not move within their planes."""
+    """The mode with ``halves`` half waves between faces that do not move within their planes."""
     omega = SolidBody(CYLINDER, how, motion).modes(5, supported=True).omega
     return float(omega[halves - (motion == BENDING)])
 

@@ -1,4 +1,4 @@
-"""Tips that the table does not cover: their cache and invalid input (properties)."""
+"""Leather tips outside the table: cache and invalid input (properties)."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def test_tip_cache_without_home_folder_stores_nothing(
     ],
 )
 def test_leather_tip_invalid_input_prints_one_line(tmp_path: Path, more: str, message: str) -> None:
-    """In one line, with status 2, before anything is computed."""
+    """Before any computation."""
     file = tmp_path / "scene.toml"
     file.write_text(SCENE + more + "\n")
     assert_rejects(message, "strike", file)
