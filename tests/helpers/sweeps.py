@@ -69,7 +69,7 @@ def write_study(folder: Path, study: str = STUDY, scene: str = SCENE, name: str 
 
 
 def computed_rows(study: Path, output: Path, **more: Any) -> list[tuple[Any, ...]]:
-    """The table of a study, computed into a store: numbers as they are stored."""
+    """Compute a study into a store; its rows as stored."""
     with SqliteStore(output, load_study(study)) as store:
         compute_study(store.study, store=store, **more)
         return [(row.design, *row.values, *row.responses, row.failure) for row in store.rows()]
