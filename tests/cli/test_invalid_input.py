@@ -87,7 +87,7 @@ strike shaft.toml --offset | Option '--offset' requires an argument
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The files of these commands, which change none of them."""
-    folder = tmp_path_factory.mktemp("refused")
+    folder = tmp_path_factory.mktemp("invalid")
     for name, content in FILES.items():
         (folder / name).write_text(content)
     for name, item in SAVED.items():

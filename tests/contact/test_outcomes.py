@@ -39,7 +39,7 @@ def numbers(outcome: cf.Outcome) -> dict[str, object]:
 
 
 @pytest.mark.parametrize(
-    ("scenes", "at"), [(SCENES, AT), (SCENES[::-1], AT), (SCENES[:22:6], None)], ids=["given", "backwards", "default"]
+    ("scenes", "at"), [(SCENES, AT), (SCENES[::-1], AT), (SCENES[:22:6], None)], ids=["forward", "reverse", "default"]
 )
 def test_batch_strike_equals_single_strikes(scenes: list[cf.Scene], at: cf.Resolution | None) -> None:
     """Also for scenes that share a cue, in any order."""

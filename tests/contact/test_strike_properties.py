@@ -98,8 +98,8 @@ def strike(scene: cf.Scene, at: cf.Resolution = AT) -> cf.Outcome | None:
     """The strike, or None where axial force and bending exceed the range of GeometricStiffness."""
     try:
         return cf.strike(scene, at)
-    except ValueError as refused:
-        if "bends the shaft by" not in str(refused):
+    except ValueError as error:
+        if "bends the shaft by" not in str(error):
             raise
         return None
 

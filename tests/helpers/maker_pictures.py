@@ -103,8 +103,8 @@ def changes_chart() -> str:
             )
         )
     height = 20 * len(bars) + 10
-    said = "Bars of how much each change lowers or raises squirt, from the best to the worst"
-    return picture(height, said, f'<path class="measure" d="M250 0V{height - 8}"/>', *texts)
+    label = "Bars of how much each change lowers or raises squirt, from the best to the worst"
+    return picture(height, label, f'<path class="measure" d="M250 0V{height - 8}"/>', *texts)
 
 
 def trust() -> str:

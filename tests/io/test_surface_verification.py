@@ -136,4 +136,4 @@ def test_surface_length_unit_and_uppercase_extension_are_read(tmp_path: Path) ->
     (tmp_path / "SCENE.TOML").write_text(f"game = 'kim'\ncue = '{path.name}'\n")
     assert cf.load(tmp_path / "SCENE.TOML").cue == loaded
     texts = assumption_texts(drawing_assumptions(path, loaded, {"body_mass": 0.4}))
-    assert [words.split(" ")[0] for words in texts[:5]] == ["lengths", "1", "facets", "the", "material"]
+    assert [text.split(" ")[0] for text in texts[:5]] == ["lengths", "1", "facets", "the", "material"]

@@ -30,8 +30,8 @@ def lobatto(degree: int) -> tuple[Array, Array, Array]:
     x = np.concatenate([[-1.0], np.sort(legendre.legroots(legendre.legder(top)).real), [1.0]])
     at = legendre.legval(x, top)
     weights = 2 / (degree * (degree + 1) * at**2)
-    apart = x[:, None] - x + np.eye(degree + 1)
-    slopes = (at[:, None] / at) / apart * (1 - np.eye(degree + 1))
+    differences = x[:, None] - x + np.eye(degree + 1)
+    slopes = (at[:, None] / at) / differences * (1 - np.eye(degree + 1))
     slopes -= np.diag(slopes.sum(axis=1))  # a constant has no slope
     return (x + 1) / 2, weights / 2, 2 * slopes
 

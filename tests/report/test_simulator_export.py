@@ -82,10 +82,10 @@ from pooltool.physics.resolve.stick_ball.instantaneous_point import Instantaneou
 from pooltool.physics.resolve.stick_ball.squirt import get_squirt_angle
 
 answers = []
-for offset, found in json.load(sys.stdin):
-    specs = pt.objects.CueSpecs(**found["CueSpecs"])
+for offset, record in json.load(sys.stdin):
+    specs = pt.objects.CueSpecs(**record["CueSpecs"])
     cue = pt.Cue(V0=2.0, phi=90.0, a=offset, b=0.0, specs=specs)
-    ball = pt.Ball("cue", params=pt.BallParams(**found["BallParams"]))
+    ball = pt.Ball("cue", params=pt.BallParams(**record["BallParams"]))
     alpha = get_squirt_angle(ball.params.m, specs.end_mass, offset, 1.0)
     _, after = InstantaneousPoint().resolve(cue, ball)
     answers.append((alpha, after.state.rvw[1].tolist(), specs.length))
