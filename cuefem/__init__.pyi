@@ -1,5 +1,6 @@
 from . import frames as frames, plot as plot
 from .results.convergence import resolve as resolve, resolve_end_mass as resolve_end_mass
+from .beam.mesh import Resolution as Resolution
 from .beam.modes import modes as modes
 from .contact.motion_history import motion as motion
 from .contact.table_frame import Placed as Placed, place as place
@@ -44,7 +45,6 @@ from .solid.shaft import SolidModes as SolidModes, solid_modes as solid_modes
 from .scene.scene import (
     Ball as Ball,
     Outcome as Outcome,
-    Resolution as Resolution,
     Scene as Scene,
     Stroke as Stroke,
     Tip as Tip,

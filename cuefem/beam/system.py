@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cuefem.beam.basis import EXTRA_POINTS, element_basis, gauss_rule, line_basis, tabulated_line_basis
-from cuefem.beam.mesh import POSITION_TOLERANCE, BeamEffect, Mesh, MeshOptions, PointTerms, mesh_cue
+from cuefem.beam.mesh import POSITION_TOLERANCE, BeamEffect, Mesh, PointTerms, Resolution, mesh_cue
 from cuefem.cue import Array, Cue, Section
 
 if TYPE_CHECKING:
@@ -191,7 +191,7 @@ def _points(cue: Cue, mesh: Mesh, x: Array, weights: Array, tabulated: list[bool
 
 def assemble(
     cue: Cue,
-    at: int | MeshOptions,
+    at: int | Resolution,
     effects: tuple[BeamEffect, ...] = (),
     count: int | None = None,
     positions: Sequence[float] = (),

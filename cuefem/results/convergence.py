@@ -13,13 +13,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from cuefem.beam.mesh import MAX_STEPS
 from cuefem.beam.tip_modes import TipModes, lumped_tip_modes
 from cuefem.beam.wave_phases import modes_below
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
 from cuefem.endmass.definitions import definition_of
 from cuefem.quantity.fields import Quantity, check_kind
-from cuefem.scene import MAX_STEPS, Outcome, Scene
+from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import MAX_MODES, corrected_tip_modes
 
 FIRST_MODES, FIRST_STEPS = 12, 100  # modes and steps of the first level

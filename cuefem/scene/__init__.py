@@ -1,11 +1,10 @@
 """Scenes, default scenes of games, resolutions and outcomes."""
 
+from cuefem.beam.mesh import Resolution
 from cuefem.scene.scene import (
     DEFAULT_CONTACT_TIME,
-    MAX_STEPS,
     Ball,
     Outcome,
-    Resolution,
     Scene,
     Stroke,
     Tip,
@@ -15,7 +14,6 @@ from cuefem.scene.scene import (
 
 __all__ = [
     "DEFAULT_CONTACT_TIME",
-    "MAX_STEPS",
     "Ball",
     "Outcome",
     "Resolution",

@@ -20,7 +20,6 @@ from cuefem.quantity.display import brief_repr
 from cuefem.quantity.fields import (
     CONTACT_TIME,
     Quantity,
-    check_count,
     check_fields,
     check_kind,
     quote,
@@ -28,7 +27,6 @@ from cuefem.quantity.fields import (
 from cuefem.quantity.unit_checks import warn_light_cue
 
 DEFAULT_CONTACT_TIME = 2e-3  # s, [Kim] sec. 4
-MIN_STEPS, MAX_STEPS = 20, 1_000_000  # in a head-on contact time
 
 
 @dataclass(frozen=True)
@@ -336,46 +334,6 @@ def as_scenes(name: str, scenes: Any) -> tuple[Scene, ...]:
 def _loading_phase(law: LeatherLaw, mass: float, speed: float) -> tuple[float, float]:
     """Maximum indentation, m, and the time to it, s; cached for all strokes of a sweep at one speed."""
     return law.central_impact(mass, speed)
-
-
-@dataclass(frozen=True)
-class Resolution:
-    """Resolution of a finite-element cue and of its contact.
-
-    Parameters
-    ----------
-    elements
-        Number of elements in each smooth piece of the cue.
-    order
-        Polynomial degree p of the rotation; the deflection has degree p + 1.
-    modes
-        Number of flexible bending modes; the rigid-body modes are always included.
-    steps
-        Steps of the contact in a head-on contact time, 20 to 1,000,000; by default 400.
-
-    Raises
-    ------
-    TypeError
-        If a number is not whole.
-    ValueError
-        If a number is out of bounds.
-
-    Examples
-    --------
-    >>> import cuefem as cf
-    >>> fine = cf.Resolution(elements=4, order=16, modes=60)
-    """
-
-    elements: int
-    order: int
-    modes: int
-    steps: int | None = None
-
-    def __post_init__(self) -> None:
-        if self.steps is not None:
-            check_count("Resolution.steps", self.steps, MIN_STEPS, MAX_STEPS)
-        for name in ("elements", "order", "modes"):
-            check_count(f"Resolution.{name}", getattr(self, name), 1)
 
 
 def equal_fields(this: Any, other: Any) -> bool:
