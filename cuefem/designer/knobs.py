@@ -197,7 +197,8 @@ def _with_ferrule(scene: Scene, name: str) -> Scene:
     """The scene with a ferrule of a material, a new one on a tenon; or with wood instead of it."""
     layout = Layout.of(scene.shaft)
     if name == NONE or not layout.ferrule:
-        return with_additions(scene, ferrule=name if name == NONE else f"{NEW_FERRULE} {name}")
+        ferrule = name if name == NONE else f"{NEW_FERRULE} {name}"
+        return replace(scene, cue=with_additions(scene.shaft, ferrule=ferrule))
     return with_parameters(scene, {"ferrule material": name})
 
 

@@ -104,18 +104,17 @@ def load(
     changed = any(additions.values()) or (material is not None and not shape)
     if (changed or body_mass is not None) and isinstance(loaded, Scene) and loaded.lumped:
         raise InputError(path, "cue", "is a lumped cue, without material, ferrule, bore or body mass")
-    cue = loaded if isinstance(loaded, Cue) else loaded.cue
-    weight = cue.shaft_mass if isinstance(cue, Cue) and cue.weighed else 0.0
-    with as_input_error(path, ""):
-        if material is not None and not shape:
-            named_material(material, path, "material")
-            loaded = with_shaft_material(loaded, material)
-        if changed:
-            loaded = with_additions(loaded, **additions)
-        if changed and weight:  # options on a shaft do not change its measured mass
-            shaft: Any = loaded if isinstance(loaded, Cue) else loaded.cue
-            weighed = with_shaft_mass(shaft, weight)
-            loaded = weighed if isinstance(loaded, Cue) else replace(loaded, cue=weighed)
+    if changed:
+        with as_input_error(path, ""):
+            before: Any = loaded if isinstance(loaded, Cue) else loaded.cue
+            cue = before
+            if material is not None and not shape:
+                named_material(material, path, "material")
+                cue = with_shaft_material(cue, material)
+            cue = with_additions(cue, **additions)
+            if before.weighed:  # options on a shaft do not change its measured mass
+                cue = with_shaft_mass(cue, before.shaft_mass)
+            loaded = cue if isinstance(loaded, Cue) else replace(loaded, cue=cue)
     return loaded if body_mass is None else with_body_mass(loaded, path, "body_mass", body_mass)
 
 

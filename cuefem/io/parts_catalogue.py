@@ -77,5 +77,4 @@ def assemble_shaft(
     cue = catalogue_shaft(name, drawn)
     if material is not None:
         cue = with_shaft_material(cue, material)
-    made: Cue = with_additions(cue, ferrule=ferrule, bore=bore)
-    return made
+    return with_additions(cue, ferrule=ferrule, bore=bore)

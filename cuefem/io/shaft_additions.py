@@ -63,22 +63,18 @@ SHAFT_ADDITIONS = {
 }
 
 
-def with_additions(thing: Any, *, front: str | None = None, ferrule: str | None = None, bore: str | None = None) -> Any:
-    """The cue or scene with a leather front, a ferrule and a bore given as texts; ValueError if one is impossible."""
-    if isinstance(thing, Cue):
-        return with_additions(Scene(thing), front=front, ferrule=ferrule, bore=bore).cue
+def with_additions(cue: Cue, *, front: str | None = None, ferrule: str | None = None, bore: str | None = None) -> Cue:
+    """The cue with a leather front, a ferrule and a bore given as texts; ValueError if one is impossible."""
     if front is not None:
-        thing = replace(thing, cue=_with_leather(thing.shaft, front))
+        cue = _with_leather(cue, front)
     if ferrule is not None:
-        thing = replace(thing, cue=_with_ferrule(thing.shaft, ferrule))
-    return thing if bore is None else _bored(thing, bore)
+        cue = _with_ferrule(cue, ferrule)
+    return cue if bore is None else _bored(cue, bore)
 
 
-def with_shaft_material(thing: Any, name: str) -> Any:
-    """The cue or scene with shaft and tenon of another material."""
-    if isinstance(thing, Cue):
-        return with_shaft_material(Scene(thing), name).cue
-    return with_parameters(thing, {"shaft material": name})
+def with_shaft_material(cue: Cue, name: str) -> Cue:
+    """The cue with shaft and tenon of another material."""
+    return with_parameters(Scene(cue), {"shaft material": name}).shaft
 
 
 def _with_leather(cue: Cue, text: str) -> Cue:
@@ -162,15 +158,15 @@ def _ferrule_of(text: str) -> tuple[float, Material, float | None]:
     return _length("ferrule", size[0]), material_of(" ".join(name.split())), tenon
 
 
-def _bored(scene: Any, text: str) -> Any:
-    """The scene with the bore of a text."""
+def _bored(cue: Cue, text: str) -> Cue:
+    """The cue with the bore of a text."""
     sizes = _BORE.fullmatch(text.strip().casefold())
     if not sizes:
         raise ValueError(f'bore must be a width and a depth, such as "{BORE}"; got {text!r}')
     width, depth = (_length("bore", size) for size in sizes.groups())
-    if Layout.of(scene.shaft).bore is None:
+    if Layout.of(cue).bore is None:
         raise ValueError("bore must be left out: the drawing has a filled bore")
-    return with_parameters(scene, {"bore depth": depth, "bore width": width})
+    return with_parameters(Scene(cue), {"bore depth": depth, "bore width": width}).shaft
 
 
 def _length(name: str, text: str) -> float:
