@@ -14,8 +14,9 @@ from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue
 from cuefem.io.errors import InputError, as_input_error, os_error_text, quote
 from cuefem.io.lathe_profile import DEFAULT_MATERIAL, SHAPE_EXTENSIONS, SPREADSHEET_EXTENSIONS, read_profile
+from cuefem.io.schema import named_material
 from cuefem.io.shaft_additions import with_additions, with_shaft_material
-from cuefem.io.toml_reader import cue_as_drawn, load_accuracy, load_cue, load_toml, named_material
+from cuefem.io.toml_reader import cue_as_drawn, load_accuracy, load_cue, load_toml
 from cuefem.parameters.parameter import with_fields
 from cuefem.parameters.parts import with_shaft_mass
 from cuefem.quantity.fields import Quantity

@@ -29,9 +29,9 @@ from cuefem.io.csv_header import (
 )
 from cuefem.io.csv_reader import Row, decimal_mark, python_number, read_rows, split_unit
 from cuefem.io.errors import InputError, as_input_error, quote
+from cuefem.io.schema import named_material
 from cuefem.io.shaft_additions import ferrule_on_tenon, has_length, with_additions
 from cuefem.io.surface_sections import polyline_corners
-from cuefem.io.toml_reader import named_material
 from cuefem.quantity.display import MAX_LISTED
 from cuefem.quantity.fields import DIAMETER, Quantity
 from cuefem.quantity.units import parse_number

@@ -7,10 +7,11 @@ import re
 import types
 import typing
 from dataclasses import MISSING, fields, is_dataclass
+from os import PathLike
 from typing import Any, TypeVar, cast
 
 from cuefem.cue import Material
-from cuefem.cue.materials import MATERIALS
+from cuefem.cue.materials import MATERIALS, material
 from cuefem.effects.effect import Effect
 from cuefem.io.errors import InputError, as_input_error, quote, suggestion
 from cuefem.quantity.fields import OutOfBounds, Quantity
@@ -45,9 +46,19 @@ def _read(hint: Any, value: Any, file: str, key: str) -> Any:
                 return {name: _read(inner, item, file, key_path(key, name)) for name, item in value.items()}
         elif isinstance(value, choice) and isinstance(value, bool) == (choice is bool):
             return value
+        elif isinstance(value, str) and choice is Material:
+            return named_material(value, file, key)
         elif isinstance(value, dict) and is_dataclass(choice):
             return _made(cast(type, choice), value, file, key)
     raise InputError(file, key, f"must be {_expected(hint)}; got {quote(value)}")
+
+
+def named_material(name: str, file: str | PathLike[str], key: str) -> Material:
+    """The material of this name; InputError with similar names if there is none."""
+    try:
+        return material(name)
+    except ValueError as error:
+        raise InputError(file, key, f"{error}; see `cuefem parts`") from None
 
 
 def _made(kind: type, table: dict[str, Any], file: str, key: str) -> Any:

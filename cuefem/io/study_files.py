@@ -20,9 +20,9 @@ from cuefem.io import load_stroke, replaced_segments
 from cuefem.io.defaults_report import assumption_texts, assumptions
 from cuefem.io.errors import InputError, as_input_error, file_state, quote
 from cuefem.io.lathe_profile import SHAPE_EXTENSIONS
-from cuefem.io.schema import build, key_path
+from cuefem.io.schema import build, key_path, named_material
 from cuefem.io.store import SqliteStore
-from cuefem.io.toml_reader import game_of, named_material, read_tables
+from cuefem.io.toml_reader import game_of, read_tables
 from cuefem.parameters.parameter import paths, quantity_at
 from cuefem.quantity.fields import Quantity
 from cuefem.scene import Resolution, Scene, Stroke

@@ -13,8 +13,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from cuefem.contact.side_strike import SideStrike
-from cuefem.cue import Cue, LumpedCue, Material
-from cuefem.cue.materials import material
+from cuefem.cue import Cue, LumpedCue
 from cuefem.effects.effect import Effect, effect_kinds
 from cuefem.io.csv_reader import read_text
 from cuefem.io.errors import InputError, as_input_error, quote, suggestion
@@ -105,12 +104,9 @@ def _cue(table: dict[str, Any], path: Path, key: str) -> Cue:
     if "shaft" in table:
         table = _of_parts(table, path, key)
     segments = table.get("segments")
-    if isinstance(segments, list):
-        if len(segments) > MAX_SEGMENTS:
-            problem = f"must have at most {MAX_SEGMENTS} segments; got {len(segments)}"
-            raise InputError(path, key_path(key, "segments"), problem)
-        within = key_path(key, "segments")
-        table = {**table, "segments": [_segment(s, path, key_path(within, i)) for i, s in enumerate(segments)]}
+    if isinstance(segments, list) and len(segments) > MAX_SEGMENTS:
+        problem = f"must have at most {MAX_SEGMENTS} segments; got {len(segments)}"
+        raise InputError(path, key_path(key, "segments"), problem)
     weight = table.get("shaft_mass")
     without = {name: value for name, value in table.items() if name != "shaft_mass"}
     cue = build(Cue, without, file=str(path), key=key)
@@ -130,22 +126,6 @@ def _of_parts(cue_table: dict[str, Any], path: Path, key: str) -> dict[str, Any]
         cue = assemble_shaft(parts.shaft, load_cue, material=parts.material, ferrule=parts.ferrule, bore=parts.bore)
     rest = {name: value for name, value in cue_table.items() if name not in named}
     return rest | {"segments": [*cue.segments]}
-
-
-def _segment(table: Any, path: Path, key: str) -> Any:
-    """A segment's table with materials instead of their names."""
-    if not isinstance(table, dict):
-        return table
-    named = {name: table[name] for name in ("material", "core") if isinstance(table.get(name), str)}
-    return table | {name: named_material(value, path, key_path(key, name)) for name, value in named.items()}
-
-
-def named_material(name: str, path: Path, key: str) -> Material:
-    """The material of this name; InputError with similar names if there is none."""
-    try:
-        return material(name)
-    except ValueError as error:
-        raise InputError(path, key, f"{error}; see `cuefem parts`") from None
 
 
 def scene_from_tables(tables: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> Scene:
