@@ -75,7 +75,7 @@ def test_added_result_is_displayed_and_evaluated(monkeypatch: pytest.MonkeyPatch
     assert numbers["push"] == pytest.approx(2 * cf.strike(scene).ball_speed, rel=1e-12)
     values = evaluate([scene], ["sweet_spot", "push(0.2)"], at=AT).values[0]
     assert values == pytest.approx([0.14, 2 * cf.strike(kim_scene(0.2), AT).ball_speed], rel=1e-6)
-    with pytest.raises(ValueError, match="did you mean sweet_spot"):
+    with pytest.raises(ValueError, match="did you mean 'sweet_spot"):
         Response.of("sweet_spott")
 
 

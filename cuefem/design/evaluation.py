@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,6 +12,7 @@ import numpy as np
 from cuefem.beam.modes import Modes
 from cuefem.cue import Array
 from cuefem.quantity.display import one_line
+from cuefem.quantity.fields import suggestion
 from cuefem.results.quantities import Result, with_heading
 from cuefem.results.solved_design import SolvedDesign, computable_results
 from cuefem.scene import Resolution, Scene
@@ -38,8 +38,7 @@ class Response:
         """Read text such as "squirt(0.3)"; ValueError, suggesting similar names, if no response matches."""
         match = _NAME.fullmatch(text.strip())
         if not match or match[1] not in computable_results():
-            close = difflib.get_close_matches(text.partition("(")[0], computable_results(), n=3, cutoff=0.5)
-            hint = f"; did you mean {' or '.join(close)}?" if close else ""
+            hint = suggestion(text.partition("(")[0], computable_results())
             raise ValueError(f"must be one of {', '.join(map(_usage, computable_results()))}; got {text!r}{hint}")
         return cls(match[1], _argument(match[1], match[2], text))
 

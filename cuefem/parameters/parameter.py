@@ -8,7 +8,6 @@ appears in all of them.
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 from collections.abc import Callable, Mapping
@@ -35,7 +34,7 @@ from cuefem.parameters.parts import (
     main_material,
     taper_position,
 )
-from cuefem.quantity.fields import Quantity, quantity_fields
+from cuefem.quantity.fields import Quantity, quantity_fields, suggestion
 from cuefem.quantity.units import parse_number
 from cuefem.scene import Scene
 
@@ -158,8 +157,7 @@ def _steps(text: str) -> Path:
     while start < len(text) or not text:
         step = _STEP.match(text, start)
         if not step:
-            close = difflib.get_close_matches(text, [known.name for known in PARAMETERS.values()], n=3)
-            hint = f"; did you mean {' or '.join(close)}?" if close else ""
+            hint = suggestion(text, [known.name for known in PARAMETERS.values()])
             raise ValueError(f"must be a path such as cue.segments[0].tip_bore; got {text!r}{hint}")
         steps.append(step[1] or (step[2] if step[2] == "*" else int(step[2])))
         start = step.end()
@@ -202,9 +200,8 @@ def _below(path: Path, value: Any, step: Step, text: str) -> list[tuple[Path, An
         return [((step,), part.read(value))]
     here, names = path_text(path) or "the scene", [name for name in inner if isinstance(name, str)]
     offered = names if path else [*names, *(known.name for known in PARAMETERS.values()), *PARTS]
-    close = difflib.get_close_matches(str(step), offered, n=3, cutoff=0.5)
     holds = ", ".join(names) if names else f"{len(inner)} items"
-    hint = f"; did you mean {' or '.join(close)}?" if close else f", where {here} has {holds}"
+    hint = suggestion(str(step), offered) or f", where {here} has {holds}"
     raise ValueError(f"must name a field of the scene; got {text!r}{hint}")
 
 

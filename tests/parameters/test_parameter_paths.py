@@ -31,8 +31,8 @@ def test_path_resolves_to_its_field(path: str, value: float) -> None:
 @pytest.mark.parametrize(
     ("path", "message"),
     [
-        ("cue.segments[2].tip_boar", "got 'cue.segments[2].tip_boar'; did you mean tip_bore"),
-        ("kue.segments[0].length", "did you mean cue"),
+        ("cue.segments[2].tip_boar", "got 'cue.segments[2].tip_boar'; did you mean 'tip_bore'"),
+        ("kue.segments[0].length", "did you mean 'cue'"),
         ("cue.segments[5].length", "where cue.segments has 5 items"),
         ("cue.segments[0].core.E", "where cue.segments[0].core has 0 items"),
         ("cue.segments[0]", "must name one number or a material"),

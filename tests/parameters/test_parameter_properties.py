@@ -87,7 +87,7 @@ def test_contact_time_of_spring_clears_stiffness() -> None:
 
 
 INVALID = {
-    "unknown": ("ferule length", "did you mean ferrule length"),
+    "unknown": ("ferule length", "did you mean 'ferrule length'"),
     "absent": ("contact time", "got 'contact time', which this scene does not have"),
     "beyond": ("taper at 5 m", "got 'taper at 5 m', which this scene does not have"),
     "unit": ("taper at 5 kg", "must name a position such as \"taper at 330 mm\"; got 'taper at 5 kg'"),
