@@ -18,38 +18,43 @@ from studies.pages import table
 
 PARTS = ("ball translation", "ball rotation", "cue", "cue vibration", "tip loss", "friction loss")
 COLOURS = ("C0", "C9", "0.75", "C3", "C1", "0.35")
-FINE = np.round(np.arange(0, 0.7501, 0.025), 3)
+OFFSETS = np.round(np.arange(0, 0.7501, 0.025), 3)
 
 
 @cache
 def shares(offset: float) -> tuple[dict[str, float], str]:
-    """Each part over the energy at first contact, %, and the regime."""
+    """Each part over the energy at first contact, %, and the contact state (regime)."""
     outcome = cf.strike(strokes.scene(strokes.cue("pool_maple"), offset=offset))
     return {p: 100 * float(outcome.energy[p] / outcome.energy["initial"]) for p in PARTS}, str(outcome.regime)
 
 
 def text() -> str:
-    head_on = shares(0.0)[0]
-    held = [shares(float(b)) for b in FINE if shares(float(b))[1] == "stick"]
-    spin, shaken = (max(found[part] for found, _ in held) for part in ("ball rotation", "cue vibration"))
-    rows = [[f"{b:.2f}", *(f"{shares(float(b))[0][p]:.1f}" for p in PARTS), shares(float(b))[1]] for b in FINE[::2]]
+    """The answer, and the table of the shares."""
+    central = shares(0.0)[0]
+    sticking = [shares(float(b))[0] for b in OFFSETS if shares(float(b))[1] == "stick"]
+    rotation, vibration = (max(share[part] for share in sticking) for part in ("ball rotation", "cue vibration"))
+    miscues = [float(b) for b in OFFSETS if shares(float(b))[1] == "miscue"]
+    friction = max(shares(b)[0]["friction loss"] for b in miscues)
+    ball = [sum(shares(b)[0][part] for part in ("ball translation", "ball rotation")) for b in (0.5, *miscues)]
+    rows = [[f"{b:.2f}", *(f"{shares(float(b))[0][p]:.1f}" for p in PARTS), shares(float(b))[1]] for b in OFFSETS[::2]]
     return pages.page(
         "Energy balance of a stroke",
         "How does the energy of a stroke divide between ball, cue, tip and friction?",
-        f"In a central impact the ball receives {head_on['ball translation']:.0f} %, the cue retains "
-        f"{head_on['cue']:.0f} % and the tip dissipates {head_on['tip loss']:.0f} %. While the tip sticks, rotation of "
-        f"the ball is at most {spin:.0f} % and vibration of the shaft {shaken:.1f} %. The miscue limit is gradual: "
-        "beyond b/R 0.6 friction dissipates up to 14 % and the ball's part decreases.",
-        "pool_maple, per cent of the cue's energy at first contact:",
-        table(["b/R", *PARTS, "regime"], rows),
+        f"In a central impact the ball receives {central['ball translation']:.0f} %, the cue retains "
+        f"{central['cue']:.0f} % and the tip dissipates {central['tip loss']:.0f} %. In the state stick, "
+        f"rotation of the ball is at most {rotation:.0f} % and vibration of the shaft {vibration:.1f} %. The miscue limit "
+        f"is gradual: in a miscue, from b/R {miscues[0]:g} on, friction dissipates up to {friction:.0f} %, and the "
+        f"ball's part decreases from {ball[1]:.0f} % to {ball[-1]:.0f} % at b/R {miscues[-1]:g} ({ball[0]:.0f} % at 0.5).",
+        "pool_maple, percent of the cue's energy at first contact:",
+        table(["b/R", *PARTS, "contact state"], rows),
     )
 
 
 def draw(axes: Any) -> None:
     """The shares, stacked."""
-    found = [shares(float(b))[0] for b in FINE]
-    axes.stackplot(FINE, [[f[part] for f in found] for part in PARTS], labels=PARTS, colors=COLOURS, lw=0)
-    axes.set(xlabel="offset b/R", ylabel="per cent of the cue's energy", xlim=(0, FINE[-1]), ylim=(0, 100))
+    curves = [shares(float(b))[0] for b in OFFSETS]
+    axes.stackplot(OFFSETS, [[share[part] for share in curves] for part in PARTS], labels=PARTS, colors=COLOURS, lw=0)
+    axes.set(xlabel="offset b/R", ylabel="percent of the cue's energy", xlim=(0, OFFSETS[-1]), ylim=(0, 100))
     handles, labels = axes.get_legend_handles_labels()
     axes.figure.legend(handles[::-1], labels[::-1], loc="outside right center", fontsize=9)
 

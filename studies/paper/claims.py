@@ -1,4 +1,4 @@
-"""A statement of a source beside what follows from its equations, and the table that a study commits."""
+"""A statement of a source, what follows from its equations, and the table of a study's page."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from dataclasses import dataclass
 
 from studies.pages import NONE, number
 
-VERDICTS = ("agrees", "rounding", "slip", "not derivable")
+VERDICTS = ("agrees", "rounding", "error", "not derivable")
 COLUMNS = ("source", "what", "printed", "derived", "unit", "relative difference", "verdict", "cause")
 NOISE = 1e-9  # relative differences below it are rounding errors, the same on no two machines
 
 
 @dataclass(frozen=True)
 class Claim:
-    """One statement of a source: where it stands, what it is about, its value there and ours, and why they differ.
+    """One statement of a source: its place, its subject, both values, and the cause of a difference.
 
     printed, derived: numbers in ``unit``, None if the source (or the derivation) gives no number. verdict: one of
     VERDICTS; "rounding" means that the source's own digits or its stated approximation explain the difference. cause:
