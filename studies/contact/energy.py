@@ -42,9 +42,10 @@ def text() -> str:
         "How does the energy of a stroke divide between ball, cue, tip and friction?",
         f"In a central impact the ball receives {central['ball translation']:.0f} %, the cue retains "
         f"{central['cue']:.0f} % and the tip dissipates {central['tip loss']:.0f} %. In the state stick, "
-        f"rotation of the ball is at most {rotation:.0f} % and vibration of the shaft {vibration:.1f} %. The miscue limit "
-        f"is gradual: in a miscue, from b/R {miscues[0]:g} on, friction dissipates up to {friction:.0f} %, and the "
-        f"ball's part decreases from {ball[1]:.0f} % to {ball[-1]:.0f} % at b/R {miscues[-1]:g} ({ball[0]:.0f} % at 0.5).",
+        f"rotation of the ball is at most {rotation:.0f} % and vibration of the shaft {vibration:.1f} %. The miscue "
+        f"limit is gradual: in a miscue, from b/R {miscues[0]:g} on, friction dissipates up to {friction:.0f} %, and "
+        f"the ball's part decreases from {ball[1]:.0f} % to {ball[-1]:.0f} % at b/R {miscues[-1]:g} "
+        f"({ball[0]:.0f} % at 0.5).",
         "pool_maple, percent of the cue's energy at first contact:",
         table(["b/R", *PARTS, "contact state"], rows),
     )
