@@ -36,15 +36,15 @@ def test_section_tapered_tube_with_core_equals_closed_form() -> None:
     s = Segment(0.4, 0.010, 0.014, CARBON, 0.006, 0.010, core=FOAM).section(0.1)
     outer, inner = 0.0055, 0.0035
     shell, disc = np.pi * (outer**2 - inner**2), np.pi * inner**2
-    turn, core_turn = np.pi / 4 * (outer**4 - inner**4), np.pi / 4 * inner**4
+    second_moment, core_moment = np.pi / 4 * (outer**4 - inner**4), np.pi / 4 * inner**4
     shear = shear_coefficient(CARBON.effective_poisson_ratio, inner / outer) * CARBON.G * shell
     core_shear = shear_coefficient(FOAM.effective_poisson_ratio) * FOAM.G * disc
     expected = [
         CARBON.E * shell + FOAM.E * disc,
-        CARBON.E * turn + FOAM.E * core_turn,
+        CARBON.E * second_moment + FOAM.E * core_moment,
         shear + core_shear,
         CARBON.rho * shell + FOAM.rho * disc,
-        CARBON.rho * turn + FOAM.rho * core_turn,
+        CARBON.rho * second_moment + FOAM.rho * core_moment,
     ]
     np.testing.assert_allclose(s, expected, rtol=1e-13)
 
@@ -57,7 +57,7 @@ def test_section_at_jump_is_butt_side() -> None:
     np.testing.assert_allclose(s.EA, stiffness * area, rtol=1e-12)
 
 
-# Hutchinson 2001; the first two are quoted in handbook: The beam to three digits
+# Hutchinson 2001, to three digits; quoted in handbook: The beam
 @pytest.mark.parametrize(
     ("material", "kappa"), [(Material(2.6, 1.0, 1.0, nu=0.3), 0.925), (Material(15.0, 1.0, 1.0, nu=0.3), 0.867)]
 )
@@ -67,7 +67,7 @@ def test_shear_coefficient_solid_circle_equals_published(material: Material, kap
 
 @pytest.mark.parametrize("nu", [0.0, 0.1, 0.3, 0.5])
 def test_shear_coefficient_small_bore_and_thin_wall_limits(nu: float) -> None:
-    """Without a bore: the solid circle's; thin tube: (1 + nu)/(2 + nu), with an error of order wall squared."""
+    """Without a bore: the solid circle's; a thin tube: (1 + nu)/(2 + nu), with an error of order wall squared."""
     solid = 6 * (1 + nu) ** 2 / (7 + 12 * nu + 4 * nu**2)
     np.testing.assert_allclose(shear_coefficient(nu, 0.0), solid, rtol=1e-15)
     np.testing.assert_allclose(shear_coefficient(nu, 1e-9), solid, rtol=1e-15)
