@@ -65,7 +65,7 @@ def _bores(own: Record) -> Iterator[DesignChange]:
         return
     if depth <= 0:
         new = {"bore depth": NEW_DEPTH, "bore width": NEW_BORE}
-        yield DesignChange(f"a bore, {with_unit(NEW_BORE, 'm')} wide and {with_unit(NEW_DEPTH, 'm')} deep", new)
+        yield DesignChange(f"bore, {with_unit(NEW_BORE, 'm')} wide and {with_unit(NEW_DEPTH, 'm')} deep", new)
         return
     yield DesignChange(f"bore wider, {_from_to(width, width + WIDER)}", {"bore width": width + WIDER})
     yield DesignChange(f"bore deeper, {_from_to(depth, depth + DEEPER)}", {"bore depth": depth + DEEPER})
@@ -81,16 +81,16 @@ def _fronts(own: Record) -> Iterator[DesignChange]:
         )
     for name in FERRULES:
         if MATERIALS[name].material != material:
-            yield DesignChange(f"ferrule of {name}", {"ferrule material": name})
+            yield DesignChange(f"{'ABS' if name == 'abs' else name} ferrule", {"ferrule material": name})
 
 
 def _tips(own: Record) -> Iterator[DesignChange]:
     height, dome = own["tip_height"], own["dome"]
     if height is not None and height - LOWER >= MIN_TIP:
-        yield DesignChange(f"leather lower, {_from_to(height, height - LOWER)}", {"tip height": height - LOWER})
+        yield DesignChange(f"tip height {_from_to(height, height - LOWER)}", {"tip height": height - LOWER})
     for name in ("dime", "nickel"):
         if dome is not None and abs(DOMES[name] - dome) > 0.1 * MM:
-            yield DesignChange(f"dome of a {name}", {"dome": DOMES[name]}, ("dome",))
+            yield DesignChange(f"tip radius of a {name}", {"dome": DOMES[name]}, ("dome",))
 
 
 def _woods_and_tapers(cue: Cue, own: Record) -> Iterator[DesignChange]:
@@ -103,12 +103,13 @@ def _woods_and_tapers(cue: Cue, own: Record) -> Iterator[DesignChange]:
 def _tapers(cue: Cue, own: Record) -> Iterator[DesignChange]:
     tip, taper, end = (own[f"{name}_diameter"] for name in ("tip", "taper", "butt"))
     x = taper_position(cue)
+    at = with_unit(x, "m", decimals=0)
     thinner = {"tip diameter": tip - THINNER, "taper diameter": taper - THINNER}
-    yield DesignChange(f"{with_unit(THINNER, 'm')} thinner from the tip to {with_unit(x, 'm')}", thinner)
+    yield DesignChange(f"{with_unit(THINNER, 'm')} thinner from the tip to {at}", thinner)
     cone, pro = tip + (end - tip) * x / cue.length, tip + PRO_GAIN
     for name, wanted in (("straight taper, a cone", cone), ("pro taper", pro)):
         if abs(wanted - taper) > 0.2 * MM:
-            yield DesignChange(f"{name}, {with_unit(wanted, 'm')} at {with_unit(x, 'm')}", {"taper diameter": wanted})
+            yield DesignChange(f"{name}, {with_unit(wanted, 'm')} at {at}", {"taper diameter": wanted})
 
 
 def _woods(cue: Cue) -> Iterator[DesignChange]:
@@ -116,7 +117,7 @@ def _woods(cue: Cue) -> Iterator[DesignChange]:
     own = table_name(cue.segments[shaft.start].material)
     for name in WOODS:
         if name != own:
-            yield DesignChange(f"shaft of {name}", {"shaft material": name}, WOOD)
+            yield DesignChange(f"{name} shaft", {"shaft material": name}, WOOD)
     tube: dict[str, Any] = {}
     for i in shaft:
         segment = cue.segments[i]
@@ -126,7 +127,7 @@ def _woods(cue: Cue) -> Iterator[DesignChange]:
             f"cue.segments[{i}].tip_bore": segment.tip_diameter - 2 * CARBON_WALL,
             f"cue.segments[{i}].butt_bore": segment.butt_diameter - 2 * CARBON_WALL,
         }
-    yield DesignChange(f"shaft a carbon tube, wall {with_unit(CARBON_WALL, 'm')}, foam inside", tube, WOOD)
+    yield DesignChange(f"carbon tube, wall {with_unit(CARBON_WALL, 'm')}, foam inside", tube, WOOD)
 
 
 def _from_to(old: float, new: float) -> str:

@@ -17,9 +17,9 @@ from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.report.charts import Axis, Curve, chart
 from cuefem.report.design_changes_table import tabulate_design_changes
 from cuefem.report.plausibility import plausibility_warnings
-from cuefem.report.squirt_table import SHADED, offset_charts
+from cuefem.report.squirt_table import offset_charts
 from cuefem.report.strike_table import regime_warning
-from cuefem.report.templates import chart_markup, table_markup
+from cuefem.report.templates import chart_markup, shading_markup, table_markup
 from cuefem.report.verdict_table import difference_text
 from cuefem.results.quantities import DASH, RESULTS, format_change
 from cuefem.results.records import Record, Table
@@ -79,11 +79,10 @@ def curves_markup(step: Step, results: Results) -> str:
             )
         )
     figures = "".join(chart_markup(each, f"curve{i}") for i, each in enumerate(charts))
-    note = SHADED
     missed = [b for b, regime in zip(CURVE_OFFSETS, regimes, strict=True) if regime == "miscue"]
-    if missed:
-        note = f"{step.design.name}: miscue from b/R {missed[0] - HALF:.2f} on. {note}"
-    return f'<div class="charts">{figures}</div><p class="soft">{escape(note)}</p>'
+    note = f"{step.design.name}: miscue from b/R {missed[0] - HALF:.2f} on." if missed else ""
+    of = f"({step.design.name})" if len(drawn) > 1 else ""
+    return f'<div class="charts">{figures}</div>{shading_markup(charts[0], of)}<p class="soft">{escape(note)}</p>'
 
 
 def changes_panel(step: Step, results: Results, attempt: Callable[[Mapping[str, Any]], None]) -> None:
@@ -115,7 +114,7 @@ def changes_panel(step: Step, results: Results, attempt: Callable[[Mapping[str, 
 
 def _cell(kind: str, content: str, *, text: bool = False) -> None:
     with ui.element(kind).classes("text" if text else "") as cell:
-        ui.label(content)
+        ui.label(content.replace(" mm", "\u00a0mm").replace(" →", "\u00a0→"))
     if kind == "th":
         cell.props("scope=col")
 

@@ -82,7 +82,8 @@ class Scale(NamedTuple):
         count = range(math.ceil(self.low / self.step - 1e-9), math.floor(self.high / self.step + 1e-9) + 1)
         decimals = max(0, -math.floor(math.log10(self.step) + 1e-9))
         return tuple(
-            Tick(float(self.position(i * self.step, first, last)), f"{i * self.step:.{decimals}f}") for i in count
+            Tick(float(self.position(i * self.step, first, last)), f"{i * self.step:.{decimals}f}".replace("-", "−"))
+            for i in count
         )
 
 
@@ -132,7 +133,7 @@ def chart(
     height: float = 260.0,
 ) -> Chart:
     """A chart of curves, clipped at the ends of the axes."""
-    left, top, right, bottom = 50.0, 22.0 if marks else 10.0, WIDTH - 8, height - 36
+    left, top, right, bottom = 44.0, 22.0 if marks else 10.0, WIDTH - 8, height - 36
     x_scale = x.scale_for([curve.x for curve in curves])
     y_scale = y.scale_for([curve.y for curve in curves])
     lines = tuple(Tick(float(x_scale.position(mark.at, left, right)), mark.label) for mark in marks)

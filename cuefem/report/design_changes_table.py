@@ -18,12 +18,12 @@ def tabulate_design_changes(record: Record) -> Table:
         "Design changes",
         {
             "change": "{change}",
-            "squirt": lambda row: format_change(
+            "squirt change": lambda row: format_change(
                 100 * row["squirt_change"], 1, f"± {100 * row['squirt_change_error']:.1f} %"
             ),
-            "stiffness": lambda row: _percent(row["tip_stiffness_change"]),
-            "weight": lambda row: format_change(1e3 * row["shaft_mass_change"], 1, "g"),
-            "first frequency": lambda row: format_change(row["frequency_change"], 1, "Hz"),
+            "stiffness change": lambda row: _percent(row["tip_stiffness_change"]),
+            "mass change": lambda row: format_change(1e3 * row["shaft_mass_change"], 1, "g"),
+            "1st natural frequency change": lambda row: format_change(row["frequency_change"], 1, "Hz"),
             "recommendation": "{verdict}",
         },
         rows,

@@ -17,7 +17,8 @@ from cuefem.contact.strike import strike_modes
 from cuefem.cue import Cue
 from cuefem.effects.effect import CueEffect
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.results.quantities import DISPLAY_UNITS, to_display
+from cuefem.report.scene_summary import effect_name
+from cuefem.results.quantities import DISPLAY_UNITS
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import mass_on_face
@@ -26,8 +27,11 @@ from cuefem.solid.shaft import AXIAL, SolidBody
 
 MODES, N_FREQUENCIES = 40, 6  # flexible modes of either model; natural frequencies in the table
 ORDER, LARGE_ORDER, LARGE = 6, 4, 150  # a mesh of more than LARGE elements has LARGE_ORDER
-# The beam that scikit-fem assembles: its longest element, m, its order, and the smallest relative difference printed.
-MAX_ELEMENT, SCIKIT_FEM_ORDER, MIN_DIFFERENCE = 0.03, 6, 1e-9
+# The beam that scikit-fem assembles: its longest element, m, and its order.
+MAX_ELEMENT, SCIKIT_FEM_ORDER = 0.03, 6
+MIN_PRINTED = 1e-5  # relative difference: smaller ones are printed as below it
+# Factors and units of large stiffnesses and of compliances, by the SI unit and whether the number is large.
+LARGE_UNITS = {("N/m", True): (1e-6, "kN/mm"), ("m/N", False): (1e3, "mm/N")}
 Progress = Callable[[Sequence[Any]], Iterable[Any]]
 
 
@@ -129,9 +133,18 @@ def _numbers(scene: Scene, tip: TipModes, transverse: float, axial: float) -> Nu
     return numbers
 
 
+def _display_unit(row: Record) -> tuple[float, str]:
+    """The factor from the SI unit, and the unit, that a quantity is displayed in."""
+    unit = row["unit"]
+    return LARGE_UNITS.get((unit, abs(row["solid"]) >= 1e5)) or DISPLAY_UNITS.get(unit, (1.0, unit))
+
+
 def _percent(part: float, digits: int, sign: str = "-") -> str:
-    """A relative difference in per cent, to so many significant digits; large ones without exponent."""
-    return f"{100 * part:{sign}.{digits}g} %" if abs(part) < 0.1 else f"{100 * part:{sign}.0f} %"
+    """A relative difference in per cent, to so many significant digits, without exponent."""
+    if abs(part) < MIN_PRINTED:
+        return f"< {100 * MIN_PRINTED:g} %"
+    text = f"{100 * part:{sign}.{digits}g}" if abs(part) < 0.1 else f"{100 * part:{sign}.0f}"
+    return f"{text} %".replace("-", "−")
 
 
 def _summary(rows: Sequence[Record]) -> str:
@@ -145,13 +158,13 @@ def _summary(rows: Sequence[Record]) -> str:
 
 def tabulate_model_error(record: Record) -> Table:
     """Beam and solid side by side."""
-    without = " *" if record["excluded_effects"] else ""
+    star = " *" if record["excluded_effects"] else ""
     of_strike = ("end mass", "squirt")
     columns: Any = {
-        "": lambda row: row["quantity"] + (without if row["quantity"].startswith(of_strike) else ""),
-        "unit": lambda row: DISPLAY_UNITS.get(row["unit"], (1.0, row["unit"]))[1],
-        "beam": lambda row: f"{to_display(row['beam'], row['unit']):.6g}",
-        "solid": lambda row: f"{to_display(row['solid'], row['unit']):.6g}",
+        "": lambda row: row["quantity"] + (star if row["quantity"].startswith(of_strike) else ""),
+        "unit": lambda row: _display_unit(row)[1],
+        "beam": lambda row: f"{_display_unit(row)[0] * row['beam']:.6g}",
+        "solid": lambda row: f"{_display_unit(row)[0] * row['solid']:.6g}",
         "error of the beam": lambda row: _percent(row["difference"], 2, "+"),
         "discretisation error": lambda row: _percent(row["discretisation_error"], 1),
     }
@@ -161,9 +174,10 @@ def tabulate_model_error(record: Record) -> Table:
         f"{record['order']}"
     ]
     if excluded := record["excluded_effects"]:
-        notes.append(f"* without {', '.join(excluded)}, which the solid model does not include; `cuefem end-mass` does")
+        without = ", ".join(map(effect_name, excluded))
+        notes.append(f"* without {without}, which the solid model does not include; `cuefem end-mass` does")
     made = tabulate("Beam and solid models", columns, record["rows"], *notes, texts=(0, 1))
     same = record["scikit_fem"]
-    error = "< 1e-07 %" if abs(same["difference"]) < MIN_DIFFERENCE else _percent(same["difference"], 2, "+")
+    error = _percent(same["difference"], 2, "+")
     row = ("natural frequency 1, same beam by scikit-fem", "Hz", f"{same['beam']:.6g}", "", error, "")
     return replace(made, rows=(*made.rows, row))

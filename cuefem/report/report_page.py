@@ -28,8 +28,8 @@ from cuefem.report.glossary import with_glossary
 from cuefem.report.impact_table import tabulate_impacts
 from cuefem.report.modes_table import tabulate_modes
 from cuefem.report.report_sections import report_record
-from cuefem.report.scene_summary import assumptions, effect_text, plain_cue_line, scene_record
-from cuefem.report.squirt_table import SHADED, offset_charts
+from cuefem.report.scene_summary import assumptions, plain_cue_line, plain_effect_line, scene_record
+from cuefem.report.squirt_table import offset_charts
 from cuefem.report.strike_table import regime_warning, strike_record, tabulate_strike
 from cuefem.report.templates import environment
 from cuefem.report.verdict_table import headline, uncertainty_line
@@ -153,7 +153,7 @@ def _context(scene: Scene, records: Record) -> Record:
     stroke = f"{assumptions(about)}, offset b/R {scene.stroke.offset:.4g}"
     shaft = "modes" in records
     return {
-        "facts": [plain_cue_line(scene.cue), stroke, *(f"with {effect_text(effect)}" for effect in scene.effects)],
+        "facts": [plain_cue_line(scene.cue), stroke, *map(plain_effect_line, scene.effects)],
         "squirt": format_value("squirt", outcome.squirt, brief=True),
         "error": "" if outcome.error is None else f"{100.0 * outcome.error:.2g} %",
         "uncertainty": uncertainty_line(records["verdict"]),
@@ -164,7 +164,6 @@ def _context(scene: Scene, records: Record) -> Record:
         "frequencies": tabulate_modes(records["modes"]) if shaft else None,
         "contact": None if outcome.history is None else contact_section(outcome),
         "by_offset": _by_offset(records["squirt"]["models"], scene, regimes),
-        "shaded": SHADED,
         "numbers": tabulate_values("Cue and stroke", value_rows(records["numbers"])),
         "end_masses": tabulate_end_masses(records["end_masses"], about),
         "meanings": _meanings(scene, outcome),

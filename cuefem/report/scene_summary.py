@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import asdict, fields
 from typing import Any
@@ -73,6 +74,17 @@ def effect_text(effect: Effect) -> str:
     entered = {name: value for name, value in file_table(effect).items() if getattr(effect, name) != defaults[name]}
     entries = [f"{name.replace('_', ' ')} {_short(value)}" for name, value in entered.items()]
     return type(effect).__name__ + (f" ({', '.join(entries)})" if entries else "")
+
+
+def plain_effect_line(effect: Effect) -> str:
+    """An effect for a reader without its file: "point mass, position 100 mm, mass 5 g"."""
+    kind, _, values = effect_text(effect).removesuffix(")").partition(" (")
+    return ", ".join(filter(None, (effect_name(kind), values)))
+
+
+def effect_name(kind: str) -> str:
+    """The name of an effect in texts: "point mass" of a `PointMass`."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", kind).lower()
 
 
 def _short(value: Any) -> str:

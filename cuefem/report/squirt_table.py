@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import groupby
 
 import numpy as np
 
@@ -68,8 +69,7 @@ def tabulate_squirt(record: Record, scene: Record) -> Table:
     )
 
 
-SHADED_REGIMES = ("late stick", "partial slip", "gross slip", "miscue")
-SHADED = "Shaded: the tip slips through much of the normal impulse, close to a miscue. Darker: miscue."
+SHADES = {"late stick": "slip", "partial slip": "slip", "gross slip": "slip", "miscue": "miss"}  # CSS classes
 MAX_PIVOT = 1.5  # m, of the chart; a longer pivot length is beyond the butt
 
 
@@ -95,14 +95,15 @@ def offset_charts(
         squirt.append(Curve(name, np.r_[0.0, x], np.degrees(np.r_[0.0, angle]), style))
         pivot.append(Curve(name, x, per_metre * np.where(angle > 0, curve["pivot_length"], np.nan), style))
     ends = np.r_[x[0], (x[1:] + x[:-1]) / 2, x[-1]]
-    spans = [
-        Shade(float(ends[i]), float(ends[i + 1]), "miss" if regime == "miscue" else "slip")
-        for i, regime in enumerate(regimes)
-        if regime in SHADED_REGIMES
-    ]
+    spans = []
+    for shade, run in groupby(range(len(regimes)), lambda i: SHADES.get(regimes[i], "")):
+        inside = [*run]
+        if shade:
+            spans.append(Shade(float(ends[inside[0]]), float(ends[inside[-1] + 1]), shade))
     longest = max([0.1, *(float(np.nanmax(curve.y, initial=0.0)) / per_metre for curve in pivot)])
     highest = Axis("", 0.0).scale_for([np.array([per_metre * min(MAX_PIVOT, longest)])]).high
-    at, here = Axis("offset b/R", 0.0, float(x[-1])), [Tick(abs(own), "here")] if 0 < abs(own) <= x[-1] else []
+    at = Axis("tip offset b/R", 0.0, float(x[-1]))
+    here = [Tick(abs(own), f"b/R {abs(own):.2f}")] if 0 < abs(own) <= x[-1] else []
 
     def draw(title: str, curves: list[Curve], y: Axis) -> Chart:
         return chart(title, curves, x=at, y=y, marks=here, spans=spans, height=height)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from functools import cache
 from html import escape
@@ -9,6 +10,7 @@ from itertools import groupby
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
 
 from cuefem.report.charts import Chart
 from cuefem.report.drawings import CueDrawing
@@ -18,13 +20,20 @@ from cuefem.results.records import Table
 @cache
 def environment() -> Environment:
     """The templates in this folder; inserted text is escaped."""
-    return Environment(
+    made = Environment(
         loader=PackageLoader("cuefem", "report"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    made.filters["code"] = code_markup
+    return made
+
+
+def code_markup(text: str) -> Markup:
+    """A text with `code` between backticks as HTML."""
+    return Markup(re.sub(r"`([^`]*)`", r"<code>\1</code>", escape(text, quote=False)))
 
 
 def page_style() -> str:
@@ -40,6 +49,11 @@ def chart_script() -> str:
 def chart_markup(drawing: Chart, name: str) -> str:
     """A chart as a figure. name: its id on the page."""
     return str(_macros().chart(drawing, name))
+
+
+def shading_markup(drawing: Chart, of: str = "") -> str:
+    """The legend of a chart's shaded spans."""
+    return str(_macros().shading(drawing, of))
 
 
 def table_markup(sheet: Table) -> str:

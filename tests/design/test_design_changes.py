@@ -70,7 +70,7 @@ def test_design_changes_are_sorted_with_verdicts(computed: tuple[cf.Scene, dict]
 @pytest.mark.heavy
 def test_design_change_error_equals_comparison_of_same_shaft() -> None:
     scene = scene_of("pool_maple")
-    (row,) = (row for row in design_changes(scene)["changes"] if row["change"] == "ferrule of abs")
+    (row,) = (row for row in design_changes(scene)["changes"] if row["change"] == "ABS ferrule")
     pair = {"before": scene, "after": with_parameters(scene, row["set"])}
     error = comparison_record(pair, same_shaft=True)["differences"]["after"]["squirt"]["error"]
     assert row["squirt_change_error"] == pytest.approx(error, rel=0.01)
