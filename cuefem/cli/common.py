@@ -108,7 +108,8 @@ def scene_of(
             print_warnings(Scene(opened), with_impact=False)
             raise
     given = {name: value for name, value in options.items() if value is not None}
-    notes = assumption_texts(assumptions(file, scene, given), options, with_impact=with_impact)
+    offered = {*options} - ({"game"} if isinstance(opened, Scene) else set())
+    notes = assumption_texts(assumptions(file, scene, given), offered, with_impact=with_impact)
     with errors_name_file(file):
         compute_tip(scene)
     if warn:

@@ -21,7 +21,7 @@ from cuefem.cli.common import (
 )
 from cuefem.cli.output import Command, command, output_option, page_option, print_tables
 from cuefem.cli.progress import with_progress_bar
-from cuefem.cli.scene_options import impact_options, tip_options
+from cuefem.cli.scene_options import tip_options
 from cuefem.design.design_changes import design_changes
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.io import InputError, load_accuracy, save, save_page
@@ -168,8 +168,7 @@ def modes(file: Path, near: float | None, count: int, **options: Any) -> None:
 
 
 @command("end-mass", cls=WithDefinitions)
-@file_options
-@impact_options
+@stroke_options
 @page_option
 @click.option("--paper", is_flag=True, help="Also show m_c (the end mass of Kim's paper) and eps.")
 def end_mass(file: Path, paper: bool, **options: Any) -> None:

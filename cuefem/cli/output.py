@@ -16,6 +16,7 @@ from cuefem.report.renderers import json_text, terminal
 
 # The heading of an option that many commands share, in the order of a command's help.
 HEADINGS = ("Cue", "Tip", "Stroke", "Output")
+LAST = ("output", "as_json", "force")  # under their heading, in every command's help
 
 
 class SharedOption(click.Option):
@@ -31,8 +32,9 @@ class Command(click.Command):
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options, a group under each heading."""
+        options = [p for p in self.get_params(ctx) if isinstance(p, click.Option)]
+        options.sort(key=lambda p: LAST.index(p.name) if p.name in LAST else -1)
         for heading in ("", *HEADINGS):
-            options = [p for p in self.get_params(ctx) if isinstance(p, click.Option)]
             records = (p.get_help_record(ctx) for p in options if getattr(p, "heading", "") == heading)
             if rows := [record for record in records if record]:
                 with formatter.section(heading or "Options"):
@@ -49,13 +51,8 @@ command = partial(click.command, cls=Command)
 # The option of every command, for programs.
 json_option = shared_option("Output", "--json", "as_json", is_flag=True, help="Print JSON (SI units).")
 
-# What a file of each ending is that commands write.
-FORMATS = {
-    ".html": "a page",
-    ".toml": "a drawing or scene",
-    ".json": "JSON",
-    ".csv": "a table",
-}
+# The formats of -o by extension, as its help names them.
+FORMATS = {".html": ".html (page)", ".csv": ".csv (table)", ".json": ".json", ".toml": ".toml (drawing or scene)"}
 
 
 class Output(click.Path):
@@ -80,11 +77,11 @@ class Output(click.Path):
 
 def output_option(*endings: str, required: bool = False, many: bool = False) -> Callable[..., Any]:
     """The option -o of every command, with the formats by extension; many: whether it is repeatable."""
-    kinds = dict.fromkeys(FORMATS[ending] for ending in endings)
-    said = "; ".join(f"{kind} ({', '.join(e for e in endings if FORMATS[e] == kind)})" for kind in kinds)
-    said = f"Write {said}; the extension sets the format{'. Repeatable' if many else ''}."
+    *others, last = (FORMATS[ending] for ending in endings)
+    formats = f"{', '.join(others)}{' or ' if others else ''}{last}"
+    text = f"Write the result to FILE: {formats}; the extension sets the format.{' Repeatable.' if many else ''}"
     return shared_option(
-        "Output", *("-o", "--output"), type=Output(endings), metavar="FILE", help=said, required=required, multiple=many
+        "Output", *("-o", "--output"), type=Output(endings), metavar="FILE", help=text, required=required, multiple=many
     )
 
 

@@ -145,5 +145,6 @@ def assumption_texts(assumptions: Assumptions, offered: Collection[str] = (), *,
 
 
 def _option(key: str, offered: Collection[str]) -> str:
+    key = "game" if key.startswith("ball_") else key
     example = f' "{_EXAMPLES[key]}"' if key in _EXAMPLES else ""
     return f" (--{key.replace('_', '-')}{example})" if key in offered else ""

@@ -40,12 +40,12 @@ CATALOGUE_SHAFTS = {
     ),
     "low deflection": CatalogueShaft(
         "hollow-front maple, 11.85 mm: a size that is sold; bore, ferrule and taper are assumed, since no maker "
-        "publishes them (meshes/README.md, pool_hollow.toml). It brings its ferrule",
+        "publishes them (meshes/README.md, pool_hollow.toml). Includes its ferrule",
         file="meshes/pool_hollow.toml",
     ),
     "carbon": CatalogueShaft(
         "carbon tube with foam, 12.4 mm: a size that is sold; walls within what patents claim, layup, plate, plug and "
-        "taper assumed (meshes/README.md, carbon.toml). It brings its ferrule",
+        "taper assumed (meshes/README.md, carbon.toml). Includes its ferrule",
         file="meshes/carbon.toml",
     ),
 }

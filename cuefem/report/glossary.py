@@ -81,7 +81,7 @@ def definitions(used: set[str] | None = None) -> str:
         for entry in entries()
         if used is None or entry.id in used
     )
-    return f'<aside class="words" aria-label="Words"><h2>Words</h2>{"".join(shown)}</aside>'
+    return f'<aside class="words" aria-label="Glossary"><h2>Glossary</h2>{"".join(shown)}</aside>'
 
 
 def _with_code(meaning: str) -> str:

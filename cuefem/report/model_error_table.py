@@ -169,8 +169,8 @@ def tabulate_model_error(record: Record) -> Table:
         "discretisation error": lambda row: _percent(row["discretisation_error"], 1),
     }
     notes = [
-        f"both from {record['modes']} bending modes without a truncation correction, which `cuefem end-mass` and "
-        f"`cuefem strike` have; discretisation error: change from elements of order {record['order'] - 1} to "
+        f"beam and solid with {record['modes']} bending modes each, without the truncation correction of `cuefem "
+        f"end-mass` and `cuefem strike`; discretisation error: change from elements of order {record['order'] - 1} to "
         f"{record['order']}"
     ]
     if excluded := record["excluded_effects"]:
