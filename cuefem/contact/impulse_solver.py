@@ -1,15 +1,15 @@
-"""The general impulse solver's kernel: a lumped cue strikes a ball, exactly, in impulse space ([Stronge] ch. 8).
+"""The impulse solver: exact impact of a lumped cue on a ball in impulse space ([Stronge] ch. 8).
 
-In the tangent-normal frame (t, n) the contact velocity changes by dv = B dp. The course of the normal impulse p has at
-most three straight pieces, so every event is the root of a line or a parabola:
+In the tangent-normal frame (t, n) the contact velocity changes by dv = B dp. Over the normal impulse p it has at most
+three straight pieces, so every event is the root of a line or a parabola:
 
 - slip: dp_t = mu dp (the tip slides towards -t at first touch, so friction on the ball points to +t);
 - then, from p_s on, stick: dp_t = mu_c dp, mu_c = -B_tn/B_tt, where |mu_c| <= mu; or reversed slip: dp_t = -mu dp;
-- compression lasts until v_n = 0; separation is where the normal work regained is e^2 times that spent.
+- compression lasts until v_n = 0; at separation the returned normal work is e^2 times the work of compression.
 
 One formula serves all strokes; negative offsets are the mirror image of positive ones. The stroke is solved at unit
-cue speed and scaled. What crosses the cue's line comes from the velocity there at separation, a sum in which nothing
-cancels, so that squirt keeps its digits however light the end mass is.
+cue speed and scaled. The lateral momentum follows from the lateral velocity at separation, a sum without cancellation,
+so that squirt has no round-off error at small end masses.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ SLIPPING = 2  # from this index on, the tip slips at separation
 
 
 class InverseMass(NamedTuple):
-    """The contact's inverse mass B in (t, n), 1/kg, and sums of its entries, written so that no digits cancel.
+    """The contact's inverse mass B in (t, n), 1/kg, and sums of its entries without cancellation.
 
     det: the determinant, a sum of positive terms, 1/kg2. cross_t = s B_nn - c B_tn and cross_n = c B_tt - s B_tn, 1/kg,
-    s and c the sine and cosine of the contact's angle: the cue's mass along its axis drops out of them.
+    s and c the sine and cosine of the contact's angle: they do not depend on the cue's axial mass.
     """
 
     tt: Array
@@ -46,7 +46,7 @@ class InverseMass(NamedTuple):
 
 
 class Event(NamedTuple):
-    """A moment of the contact: its name and the normal impulse given until then, N s (inf: it never comes)."""
+    """An event of the contact: its name and the normal impulse until then, N s; inf if it does not occur."""
 
     name: str
     impulse: Any
@@ -55,76 +55,78 @@ class Event(NamedTuple):
 def inverse_mass(offset: Any, *, mass: Any, end_mass: Any, coupling: Any, ball_mass: Any, inertia: Any) -> InverseMass:
     """B = B_ball + B_cue of handbook: Inverse mass at ``offset`` b/R = sin(phi) >= 0."""
     s, c = sine_cosine(offset)
-    along, across, both = 1 / mass, 1 / end_mass, coupling
+    axial, lateral = 1 / mass, 1 / end_mass
     ball_tt, ball_nn = (1 + 1 / inertia) / ball_mass, 1 / ball_mass
-    cue_tt = along * s**2 + across * c**2 + 2 * both * s * c
-    cue_nn = along * c**2 + across * s**2 - 2 * both * s * c
-    tn = (along - across) * s * c + both * (c**2 - s**2)
-    det = ball_tt * ball_nn + ball_nn * cue_tt + ball_tt * cue_nn + (along * across - both**2)
-    cross_t, cross_n = s * (ball_nn + across) - both * c, c * (ball_tt + across) + both * s
+    cue_tt = axial * s**2 + lateral * c**2 + 2 * coupling * s * c
+    cue_nn = axial * c**2 + lateral * s**2 - 2 * coupling * s * c
+    tn = (axial - lateral) * s * c + coupling * (c**2 - s**2)
+    det = ball_tt * ball_nn + ball_nn * cue_tt + ball_tt * cue_nn + (axial * lateral - coupling**2)
+    cross_t, cross_n = s * (ball_nn + lateral) - coupling * c, c * (ball_tt + lateral) + coupling * s
     return InverseMass(ball_tt + cue_tt, ball_nn + cue_nn, tn, det, cross_t, cross_n)
 
 
-class _Course(NamedTuple):
-    """Where the contact went: impulses at the events, the tangential impulse, the velocity (t, n) of the contact at
-    separation, losses, the regime's index, jam."""
+class _Solution(NamedTuple):
+    """Of an impact at unit cue speed: normal impulses at slip end, greatest compression and separation and tangential
+    impulse, N s; velocity (t, n) at separation, m/s; losses, J; index of the regime; jam."""
 
     slip_end: Array
     compressed: Array
     final: Array
     tangential: Array
-    leaving_t: Array
-    leaving_n: Array
+    final_t: Array
+    final_n: Array
     tip_loss: Array
     friction_loss: Array
     regime: Array
     jam: Any
 
 
-def _course(B: InverseMass, v_t: Array, v_n: Array, *, mu: Array, e: Array) -> _Course:
-    """The course of contacts that start with v_t = -s <= 0 and v_n = -c < 0, unit speed along the cue."""
-    endless, mu = np.isinf(mu), np.minimum(mu, INFINITE_FRICTION)
+def _solve(B: InverseMass, v_t: Array, v_n: Array, *, mu: Array, e: Array) -> _Solution:
+    """Contacts that start with v_t = -s <= 0 and v_n = -c < 0, at unit cue speed."""
+    infinite, mu = np.isinf(mu), np.minimum(mu, INFINITE_FRICTION)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         mu_c = -B.tn / B.tt
-        stuck = B.det / B.tt  # dv_n/dp in stick
-        closing = B.tt * (mu - mu_c)  # dv_t/dp while slipping
-        slows = stuck + B.tn * (mu - mu_c)  # dv_n/dp while slipping; negative in a jam
-        beyond = np.maximum(-mu_c - mu, 0)  # what friction lacks to hold the tip once slip has ended
-        reverses = beyond > 0
-        then_t, then_n = mu_c + beyond, stuck + B.tn * beyond  # dp_t/dp, dv_n/dp after slip
-        grips, never = v_t == 0, mu <= mu_c
-        p_s = np.where(grips, 0.0, np.where(never, np.inf, -v_t / closing))
-        t_s = np.where(grips, 0.0, np.where(never, np.inf, mu * -v_t / closing))
-        v_s = np.where(grips, v_n, np.where(never, np.inf, (B.cross_t - mu * B.cross_n) / closing))
-        early = v_s >= 0  # fully compressed while still slipping
+        stick_rate = B.det / B.tt  # dv_n/dp during stick
+        slip_rate_t = B.tt * (mu - mu_c)  # dv_t/dp during slip
+        slip_rate_n = stick_rate + B.tn * (mu - mu_c)  # dv_n/dp during slip; negative in a jam
+        deficit = np.maximum(-mu_c - mu, 0)  # dp_t/dp that friction lacks to stick once slip has ended
+        reverses = deficit > 0
+        after_t, after_n = mu_c + deficit, stick_rate + B.tn * deficit  # dp_t/dp, dv_n/dp after slip
+        sticks_at_touch, always_slips = v_t == 0, mu <= mu_c
+        p_s = np.where(sticks_at_touch, 0.0, np.where(always_slips, np.inf, -v_t / slip_rate_t))
+        t_s = np.where(sticks_at_touch, 0.0, np.where(always_slips, np.inf, mu * -v_t / slip_rate_t))
+        v_s = np.where(sticks_at_touch, v_n, np.where(always_slips, np.inf, (B.cross_t - mu * B.cross_n) / slip_rate_t))
+        compressed_in_slip = v_s >= 0  # greatest compression before slip ends
         # compression, and the work done on the tip
-        in_slip = early | reverses  # else v_t = v_n = 0 at greatest compression, where B p = -v
-        p_c = np.where(early, -v_n / slows, np.where(reverses, p_s - v_s / then_n, B.cross_n / B.det))
-        work = np.where(early, v_n * p_c / 2, (v_n + v_s) / 2 * p_s - v_s**2 / (2 * then_n))
-        regained = -(e**2) * work
-        # restitution: in the slip alone, or slip and then the rest, or after it
-        slip_regains = v_s**2 / (2 * slows)
-        miscue = early & (slip_regains >= regained)
-        rest = np.maximum(regained - slip_regains, 0)
-        leaving_late = np.sqrt(v_s**2 + 2 * then_n * rest)
-        leaving_early = np.sqrt(2 * then_n * regained)
-        p_f = np.where(early, p_s + 2 * rest / (v_s + leaving_late), p_c + leaving_early / then_n)
+        in_slip = compressed_in_slip | reverses  # else v_t = v_n = 0 at greatest compression, where B p = -v
+        p_c = np.where(
+            compressed_in_slip, -v_n / slip_rate_n, np.where(reverses, p_s - v_s / after_n, B.cross_n / B.det)
+        )
+        work = np.where(compressed_in_slip, v_n * p_c / 2, (v_n + v_s) / 2 * p_s - v_s**2 / (2 * after_n))
+        returned = -(e**2) * work
+        # restitution: during slip alone, partly during slip, or after it
+        returned_in_slip = v_s**2 / (2 * slip_rate_n)
+        miscue = compressed_in_slip & (returned_in_slip >= returned)
+        returned_later = np.maximum(returned - returned_in_slip, 0)
+        v_n_late = np.sqrt(v_s**2 + 2 * after_n * returned_later)
+        v_n_early = np.sqrt(2 * after_n * returned)
+        p_f = np.where(compressed_in_slip, p_s + 2 * returned_later / (v_s + v_n_late), p_c + v_n_early / after_n)
         p_f = np.where(miscue, p_c * (1 + e), p_f)
-        tail = np.where(miscue, 0.0, p_f - p_s)
-        tangential = np.where(in_slip, t_s + then_t * tail, B.cross_t / B.det + mu_c * (p_f - p_c))
+        p_after = np.where(miscue, 0.0, p_f - p_s)
+        tangential = np.where(in_slip, t_s + after_t * p_after, B.cross_t / B.det + mu_c * (p_f - p_c))
         tangential = np.where(miscue, mu * p_f, tangential)
-        leaving_t = np.where(miscue, v_t + closing * p_f, B.tt * beyond * tail)
-        leaving_n = np.where(miscue, -e * v_n, np.where(early, leaving_late, leaving_early))
-        # friction takes -v_t dp_t; v_t is linear in p, zero at p_s
-        slipped = np.where(miscue, -(v_t + leaving_t) / 2 * mu * p_f, (leaving_t * mu * tail - v_t * t_s) / 2)
-    jam = (slows < 0) & (p_s > 0) & ~endless
-    slip_end = np.where(miscue, np.inf, np.where(endless & ~early, 0.0, p_s))
-    regime = np.select([miscue, reverses, early], [2, 3, 1], 0)
-    return _Course(slip_end, p_c, p_f, tangential, leaving_t, leaving_n, -work - regained, slipped, regime, jam)
+        final_t = np.where(miscue, v_t + slip_rate_t * p_f, B.tt * deficit * p_after)
+        final_n = np.where(miscue, -e * v_n, np.where(compressed_in_slip, v_n_late, v_n_early))
+        # friction dissipates -v_t dp_t; v_t is linear in p, zero at p_s
+        dissipated = np.where(miscue, -(v_t + final_t) / 2 * mu * p_f, (final_t * mu * p_after - v_t * t_s) / 2)
+    jam = (slip_rate_n < 0) & (p_s > 0) & ~infinite
+    slip_end = np.where(miscue, np.inf, np.where(infinite & ~compressed_in_slip, 0.0, p_s))
+    regime = np.select([miscue, reverses, compressed_in_slip], [2, 3, 1], 0)
+    return _Solution(slip_end, p_c, p_f, tangential, final_t, final_n, -work - returned, dissipated, regime, jam)
 
 
 def impulse_inputs(scene: Scene, cue: LumpedCue) -> dict[str, float]:
-    """What `impact` takes of a scene that a lumped cue strikes."""
+    """Arguments of `impact` for a scene, struck with a lumped cue."""
     ball, tip, stroke = scene.ball, scene.tip, scene.stroke
     return {
         **{"mass": cue.mass, "end_mass": cue.end_mass, "coupling": cue.coupling},
@@ -164,17 +166,17 @@ def _strokes(
     coupling = np.where(side == 0, 0.0, coupling)
     B = inverse_mass(distance, mass=m, end_mass=m_e, coupling=coupling, ball_mass=M, inertia=nu)
     s, c = sine_cosine(distance)
-    course = _course(B, -s, -c, mu=friction, e=restitution)  # at unit speed
-    p_t, p_n = U * course.tangential, U * course.final
+    solution = _solve(B, -s, -c, mu=friction, e=restitution)  # at unit speed
+    p_t, p_n = U * solution.tangential, U * solution.final
     p_u = s * p_t + c * p_n
-    # across the cue: (1/M + 1/m_e) p_w + p_t c/(nu M) + coupling p_u is the contact's velocity at separation
-    v_w = U * (c * course.leaving_t - s * course.leaving_n)
+    # lateral velocity of the contact at separation: (1/M + 1/m_e) p_w + p_t c/(nu M) + coupling p_u
+    v_w = U * (c * solution.final_t - s * solution.final_n)
     p_w = (v_w - c * p_t / (nu * M) - coupling * p_u) / (1 / M + 1 / m_e)
-    # which rounds like m_e; c p_t - s p_n rounds like m, and is as good as mu itself while the tip slips
-    p_w = np.where(np.less(m_e, m) & (course.regime < SLIPPING), p_w, c * p_t - s * p_n)
+    # its round-off error is relative to m_e, that of c p_t - s p_n to m; during slip the latter is as accurate as mu
+    p_w = np.where(np.less(m_e, m) & (solution.regime < SLIPPING), p_w, c * p_t - s * p_n)
     # the cue's tip velocity after the impact in (u, w), and kinetic energies with the inverse of B_cue
     tip_u, tip_w = U - p_u / m - coupling * p_w, -coupling * p_u - p_w / m_e
-    free = 1 - coupling**2 * m * m_e  # m/free: the axial inertia of a cue that moves as one along its axis
+    free = 1 - coupling**2 * m * m_e  # m/free: the inertia of a cue that moves axially as a rigid body
     cue_energy = (m * tip_u**2 + m_e * tip_w**2 - 2 * coupling * m * m_e * tip_u * tip_w) / (2 * free)
     out = {
         "squirt": side * np.arctan2(-p_w, p_u) + 0.0,
@@ -185,17 +187,17 @@ def _strokes(
         "ball_speed": np.hypot(p_t, p_n) / M,
         "spin": side * p_t / (nu * M * R),
         "cue_speed": U - p_u * free / m,
-        "regime": REGIMES[course.regime],
-        "jam": course.jam,
-        "slip ends": U * course.slip_end,
-        "greatest compression": U * course.compressed,
+        "regime": REGIMES[solution.regime],
+        "jam": solution.jam,
+        "slip ends": U * solution.slip_end,
+        "greatest compression": U * solution.compressed,
         "separation": p_n,
         "initial": m * U**2 / (2 * free),
         "ball translation": (p_t**2 + p_n**2) / (2 * M),
         "ball rotation": p_t**2 / (2 * nu * M),
         "cue": cue_energy,
-        "tip loss": U**2 * course.tip_loss,
-        "friction loss": U**2 * course.friction_loss,
+        "tip loss": U**2 * solution.tip_loss,
+        "friction loss": U**2 * solution.friction_loss,
     }
     return dict(zip(out, np.broadcast_arrays(*out.values()), strict=True))
 

@@ -1,7 +1,7 @@
 """The side strike: a ball or a hammer meets a vibrating beam across its axis (handbook: The side strike).
 
-The contact is the centre-ball impact of `cuefem.contact` with the beam's deflection at the place that is struck instead
-of the cue's motion along its axis.
+The contact is the centre-ball impact of `cuefem.contact` with the beam's deflection at the struck position instead
+of the cue's axial motion.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ from cuefem.quantity.fields import CONTACT_TIME, Quantity, check_fields, check_k
 from cuefem.scene import Resolution, equal_fields
 from cuefem.scene.solved_scene import mode_count_for
 
-# Hertz's force grows with this power of the compression: F = 4/3 E* sqrt(R) d^(3/2).
+# Exponent of Hertz's law F = 4/3 E* sqrt(R) d^(3/2).
 HERTZ_EXPONENT = 1.5
 
 
 @dataclass(frozen=True)
 class Striker:
-    """What strikes a beam from the side: a ball or a hammer, with its law of contact.
+    """A ball or hammer that strikes a beam from the side, with its force-indentation law.
 
     Exactly one law is given: a ``stiffness``, a ``contact_time``, or Hertz's law by ``modulus`` and ``radius``.
 
@@ -42,18 +42,18 @@ class Striker:
     mass
         kg.
     restitution
-        Energetic coefficient of restitution e of the contact itself, in [0, 1]: what it gives back is e^2 of the work
-        that pressed it. Off a heavy wall the striker bounces with e times its speed.
+        Energetic coefficient of restitution e of the contact, in [0, 1]: the part e^2 of the work of compression is
+        recovered. The striker rebounds from a rigid wall at e times its speed.
     stiffness
-        Of a linear contact while it is pressed, N/m.
+        Loading stiffness of a linear contact, N/m.
     contact_time
-        Of a linear contact: how long the striker, all by itself, touches a wall that does not give, s. With
-        a restitution of 1 the stiffness is mass (pi/contact_time)^2. On a beam that gives way the contact is shorter.
+        Contact time of a linear contact on a rigid wall, s. With a restitution of 1 the stiffness is mass
+        (pi/contact_time)^2. On a beam the contact is shorter.
     modulus
         Hertz's E* of 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 of striker and beam, Pa.
     radius
-        Hertz's R of 1/R = 1/R1 + 1/R2 where they touch, m. For a ball of radius R1 on a flat side it is R1; on a round
-        one, sqrt(R1^2 R2/(R1 + R2)) comes close (handbook: The side strike).
+        Hertz's R of 1/R = 1/R1 + 1/R2 at the contact, m. For a ball of radius R1 on a flat side it is R1; on a round
+        side about sqrt(R1^2 R2/(R1 + R2)) (handbook: The side strike).
 
     Raises
     ------
@@ -80,8 +80,8 @@ class Striker:
 
     def __post_init__(self) -> None:
         check_fields(self)
-        marks = (("stiffness", "N/m"), ("contact_time", "s"), ("modulus", "Pa"), ("radius", "m"))
-        stated = [(name, getattr(self, name), unit) for name, unit in marks if getattr(self, name) is not None]
+        units = (("stiffness", "N/m"), ("contact_time", "s"), ("modulus", "Pa"), ("radius", "m"))
+        stated = [(name, getattr(self, name), unit) for name, unit in units if getattr(self, name) is not None]
         if [name for name, _, _ in stated] not in (["stiffness"], ["contact_time"], ["modulus", "radius"]):
             got = ", ".join(f"{name} {value} {unit}" for name, value, unit in stated) or "none of them"
             raise ValueError(
@@ -91,7 +91,7 @@ class Striker:
 
     @property
     def law(self) -> TipLaw:
-        """Force over compression: a power law, F = stiffness d^exponent while it is pressed."""
+        """Force-indentation law of the contact, a power law."""
         if self.modulus is not None and self.radius is not None:
             return TipLaw(4 / 3 * self.modulus * math.sqrt(self.radius), HERTZ_EXPONENT, self.restitution)
         if self.stiffness is not None:
@@ -100,43 +100,43 @@ class Striker:
         return TipLaw.for_contact_time(1.0, self.restitution, mass=self.mass, speed=1.0, time=self.contact_time)
 
     def wall_time(self, speed: float) -> float:
-        """How long the striker touches a wall that does not give, s; speed: m/s, which only Hertz's law depends on."""
+        """Contact time on a rigid wall, s, at ``speed``, m/s, on which only that of Hertz's law depends."""
         return self.contact_time_on(math.inf, speed)
 
     def contact_time_on(self, mass: float, speed: float) -> float:
-        """How long the striker touches a free rigid body of ``mass``, kg, head on at ``speed``, m/s: a time in s."""
-        law, felt = self.law, 1 / (1 / self.mass + 1 / mass)
+        """Contact time on a free rigid body of ``mass``, kg, head-on at ``speed``, m/s: s."""
+        law, reduced_mass = self.law, 1 / (1 / self.mass + 1 / mass)
         power = law.exponent + 1
-        depth = (power * felt * speed**2 / (2 * law.stiffness)) ** (1 / power)
+        depth = (power * reduced_mass * speed**2 / (2 * law.stiffness)) ** (1 / power)
         return (1 + self.restitution) * loading_time(law.exponent) * depth / speed
 
 
 @dataclass(frozen=True)
 class SideStrike:
-    """A strike from the side: a ball or a hammer hits a beam across its axis, away from any table.
+    """A strike from the side: a ball or hammer hits a free beam across its axis.
 
     Parameters
     ----------
     cue
-        The beam: a `Cue` of segments, or a bat, a stick or a club drawn as one. Its ``body_mass`` takes no part, since
-        it moves along the axis only.
+        The beam: a `Cue` of segments, or a bat, a stick or a club drawn as one. Its ``body_mass`` has no influence,
+        because it moves only along the axis.
     striker
-        What hits it, with the law of the contact.
+        The ball or hammer.
     position
-        Where it is hit, m from the tip.
+        Position of the impact, m from the tip.
     speed
         Of the striker, across the axis, m/s. The beam is at rest.
     effects
         Effects that act on the cue (`PointMass`, `Support`, `Joint`, `StructuralDamping`), and `SecondHit`, which
-        follows the striker on to further touches. `AxialWaves` changes nothing here. Effects of the cue's tip are
-        refused: the striker does not touch it.
+        simulates further contacts. `AxialWaves` has no influence. Effects of the cue's tip are rejected: the striker
+        does not touch it.
 
     Raises
     ------
     TypeError
         If a field is of another kind.
     ValueError
-        If the place lies off the cue, or an effect does not go with a strike from the side.
+        If the position is off the cue, or an effect cannot act in a strike from the side.
 
     Examples
     --------
@@ -177,7 +177,7 @@ class SideStrike:
 
     @property
     def window(self) -> float | None:
-        """How long striker and beam are followed after they part, s; None: not at all."""
+        """Time simulated after separation, s; None without `SecondHit`."""
         return ContactTerms.of(self.effects, self.cue.segments[0].tip_diameter).window
 
     @property
@@ -191,40 +191,40 @@ class SideStrike:
 
     @property
     def contact_time(self) -> float:
-        """Duration of the contact if the beam were rigid and free, s: the scale of time in which modes are chosen."""
+        """Contact time if the beam were rigid and free, s: the time scale for the choice of modes."""
         return self.striker.contact_time_on(self.rigid_mass, self.speed)
 
 
 @dataclass(frozen=True, eq=False)
 class SideOutcome:
-    """What a strike from the side leaves behind.
+    """Outcome of a strike from the side.
 
     Attributes
     ----------
     rebound_speed : float
-        Of the striker, m/s; positive if it bounces back, negative if it goes on in its old direction.
+        Of the striker, m/s; negative if it goes on in its initial direction.
     apparent_restitution : float
-        e_A, the rebound speed over the speed of the strike.
+        e_A, the rebound speed over the initial speed.
     impulse : float
         Between striker and beam, N s.
     duration : float
-        Of the contact, s; of the last one with `SecondHit`, from the first touch on.
+        End of the contact, with `SecondHit` of the last one, s from first touch.
     effective_mass : float
-        m_e = m (1 + e_A)/(e - e_A), kg: of the free mass from which the striker would bounce in the same way. Infinite
-        for a beam that bounces it like a wall; negative for one that throws it back faster than a wall would.
+        m_e = m (1 + e_A)/(e - e_A), kg: the free mass on which the rebound would be the same. Infinite if the striker
+        rebounds as from a rigid wall, negative if faster.
     contact_point_speed : float
-        Of the place that was struck, at the end of the contact, m/s, in the direction of the strike.
+        Of the struck position at the end of the contact, m/s, in the direction of the strike.
     phases : tuple
-        The course of the contact (`cuefem.contact.outcome.Phase`); impulses are (0, along the strike), N s.
+        Phases of the contact (`cuefem.contact.outcome.Phase`); impulses are (0, along the strike), N s.
     energy : dict
         J by name: "initial", and the parts that add up to it: "striker", "cue" (rigid motion of the beam), "cue
         vibration", "tip loss" (of the striker's contact), "friction loss" (none), and what effects add.
     unknowns : int
-        Of the model that was solved.
+        Number of state variables of the model.
     history : History
-        Force and velocity of the contact at any time of it: called with times, s, it gives a dict of arrays, of which
-        "force_n" is the force, N, and "velocity_n" the velocity of striker against beam, m/s, negative while they
-        approach.
+        Force and velocity at any time of the contact: called with times, s, it returns a dict of arrays, of which
+        "force_n" is the force, N, and "velocity_n" the velocity of the striker relative to the beam, m/s, negative
+        during approach.
     """
 
     rebound_speed: float
@@ -243,15 +243,15 @@ class SideOutcome:
 
 
 def side_strike(scene: SideStrike, at: Resolution | None = None) -> SideOutcome:
-    """Strike a beam from the side, and follow the contact in time.
+    """Strike a beam from the side and compute the contact in time.
 
     Parameters
     ----------
     scene : SideStrike
-        What is there, and which effects act.
+        Beam, striker, position, speed and effects.
     at : Resolution, optional
-        How finely the beam is computed: the plain sum over the modes asked for. By default modes are kept by frequency
-        and completed by a tail, so that e_A is within 1e-4.
+        A truncated sum over the requested modes. By default modes are retained by frequency and the truncated ones
+        corrected, so that the error of e_A is below 1e-4.
 
     Returns
     -------
@@ -270,7 +270,7 @@ def side_strike(scene: SideStrike, at: Resolution | None = None) -> SideOutcome:
 
     Examples
     --------
-    A rigid rod that is free and hit at its end is felt as a quarter of its mass, but for the rotary inertia of its
+    The effective mass at the end of a free rigid rod is a quarter of its mass, apart from the rotary inertia of its
     sections:
 
     >>> import cuefem as cf
@@ -301,7 +301,7 @@ def side_strike(scene: SideStrike, at: Resolution | None = None) -> SideOutcome:
 
 
 def solve_side_contact(scene: SideStrike, at: Resolution | None = None) -> SolvedContact:
-    """The contact of the strike when it is over: one along the normal alone, of a body that comes in."""
+    """The solution of the contact: a normal contact with a body that moves at the speed of the strike."""
     striker, law, time = scene.striker, scene.striker.law, scene.contact_time
     if not CONTACT_TIME.contains(time):
         raise ValueError(f"SideStrike must make a contact time in {CONTACT_TIME.bounds}; got {time:.3g} s")

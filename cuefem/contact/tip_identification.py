@@ -1,4 +1,4 @@
-"""Identification of a tip: the leather's E and its own restitution from a measured contact time and rebound."""
+"""Identification of a tip: the leather's E and the tip's restitution from a measured contact time and rebound."""
 
 from __future__ import annotations
 
@@ -15,38 +15,39 @@ from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import tip_modes_of
 
 TOLERANCE = 1e-8  # of ln E and of the restitution
-MODULI = 1e6, 2e10  # Pa, between which E is sought: softer and stiffer than any tip
-MIN_RESTITUTION, NO_SEPARATION = 0.1, 10.0  # restitution of leather, of which a strike takes no less; s
+MIN_E, MAX_E = 1e6, 2e10  # Pa, range of the search: softer and stiffer than any tip
+MIN_RESTITUTION = 0.1  # the least that a strike accepts of leather
+NO_SEPARATION = 10.0  # s, contact time where the indentation is out of range
 REBOUND = Quantity("", "[0.1, 1]")
 
 
 class IdentifiedTip(NamedTuple):
-    """A leather's Young's modulus, Pa, and its own restitution."""
+    """A leather's Young's modulus, Pa, and the restitution of the tip."""
 
     E: float
     restitution: float
 
 
-GUESS, GUESS_TIME = IdentifiedTip(230e6, 0.6), 1.135e-3  # s: medium leather, where the search begins
+GUESS, GUESS_TIME = IdentifiedTip(230e6, 0.6), 1.135e-3  # s: medium leather, the start of the search
 
 
 def identify_tip(scene: Scene, contact_time: float, rebound: float) -> IdentifiedTip:
-    """The leather with which a central impact lasts a given time and the whole cue rebounds with a given restitution.
+    """The leather whose central impact has a given contact time and a given restitution of the whole cue.
 
     Parameters
     ----------
     scene
-        A scene with a `LeatherTip`, of which neither E, the tip's restitution nor the offset matters. The impact
-        has the scene's cue, ball, speed and other effects: with `AxialWaves` it lasts longer and rebounds faster.
+        A scene with a `LeatherTip`. Its E, the tip's restitution and the offset have no influence. With `AxialWaves`
+        the impact lasts longer and rebounds faster.
     contact_time
-        How long ball and tip touch, s.
+        Measured contact time, s.
     rebound
         Restitution of the whole cue, (v_ball/v_cue)(1 + m/M) - 1, in [0.1, 1].
 
     Returns
     -------
     IdentifiedTip
-        E, Pa, and the restitution of the tip by itself, in [0.1, 1].
+        E, Pa, and the restitution of the tip alone, in [0.1, 1].
 
     Raises
     ------
@@ -55,8 +56,8 @@ def identify_tip(scene: Scene, contact_time: float, rebound: float) -> Identifie
 
     Notes
     -----
-    A stiffer leather shortens the contact, one of less restitution does so too and lowers the rebound. Waves along the
-    cue bound both: no leather, however stiff, is shorter in contact than the wood.
+    Stiffer leather shortens the contact; a smaller restitution shortens it and lowers the rebound. Axial waves limit
+    both: with leather of any stiffness the contact lasts at least as long as with the wood.
 
     Examples
     --------
@@ -72,10 +73,10 @@ def identify_tip(scene: Scene, contact_time: float, rebound: float) -> Identifie
     contact_time = CONTACT_TIME.check("identify_tip contact_time", contact_time)
     rebound = REBOUND.check("identify_tip rebound", rebound)
     tip = tip_modes_of(with_tip(scene, IdentifiedTip(1e9, 0.5)))  # neither number changes the modes of the cue
-    lowest, highest = map(math.log, MODULI)
+    lowest, highest = math.log(MIN_E), math.log(MAX_E)
 
     def central_impact(log_E: float, e: float) -> tuple[float, float]:
-        """Contact time and rebound; endless and none where the leather is pressed in further than its law is known."""
+        """Contact time, s, and rebound; `NO_SEPARATION` and 0 if the indentation leaves the range of the law."""
         try:
             made = with_tip(scene, IdentifiedTip(math.exp(log_E), e))
             outcome = strike_modes(_centred(made), tip)
@@ -83,26 +84,26 @@ def identify_tip(scene: Scene, contact_time: float, rebound: float) -> Identifie
             return NO_SEPARATION, 0.0
         return float(outcome.duration), rebound_of_outcome(outcome, made)
 
-    def misses(guess: Any) -> Any:
-        tried = np.clip(guess, [lowest, MIN_RESTITUTION], [highest, 1.0])  # beyond these ends the miss goes on growing
-        time, found = central_impact(*tried)
-        return [math.log(time / contact_time), found - rebound] + np.array([-1.0, 1.0]) * (guess - tried)
+    def residuals(guess: Any) -> Any:
+        tried = np.clip(guess, [lowest, MIN_RESTITUTION], [highest, 1.0])  # the residuals grow beyond the bounds
+        time, computed = central_impact(*tried)
+        return [math.log(time / contact_time), computed - rebound] + np.array([-1.0, 1.0]) * (guess - tried)
 
     first = [math.log(GUESS.E) - 3 * math.log(contact_time / GUESS_TIME), GUESS.restitution]
-    near = root(misses, np.clip(first, [lowest, MIN_RESTITUTION], [highest, 1.0]), tol=TOLERANCE)
+    near = root(residuals, np.clip(first, [lowest, MIN_RESTITUTION], [highest, 1.0]), tol=TOLERANCE)
     if near.success and lowest < near.x[0] < highest and MIN_RESTITUTION <= near.x[1] <= 1:
         return IdentifiedTip(math.exp(near.x[0]), float(near.x[1]))
 
     E, e = np.clip(near.x, [lowest, MIN_RESTITUTION], [highest, 1.0])
-    time, found = central_impact(E, e)
+    time, computed = central_impact(E, e)
     raise ValueError(
         f"identify_tip: no leather has a contact time of {contact_time:g} s and a rebound of {rebound:g} on this cue; "
-        f"the nearest tried, E {math.exp(E) / 1e6:.4g} MPa and e {e:.3g}, has {time:.3g} s and {found:.3g}"
+        f"the nearest tried, E {math.exp(E) / 1e6:.4g} MPa and e {e:.3g}, has {time:.3g} s and {computed:.3g}"
     )
 
 
 def with_tip(scene: Scene, tip: IdentifiedTip) -> Scene:
-    """The scene with another E of its leather and another restitution of its tip."""
+    """The scene with the identified E of its leather and restitution of its tip."""
     leather = scene.leather
     effects = tuple(replace(leather, E=tip.E) if each is leather else each for each in scene.effects)
     return replace(scene, tip=replace(scene.tip, restitution=tip.restitution), effects=effects)
@@ -114,8 +115,8 @@ def rebound(scene: Scene) -> float:
     Parameters
     ----------
     scene
-        Of which the offset does not matter. With `AxialWaves` the cue gives back a part of what it takes as waves, so
-        that it parts from the ball faster than its tip alone would.
+        The offset has no influence. With `AxialWaves` a part of the waves' energy returns to the ball, so that the
+        rebound is larger than the tip's restitution.
 
     Returns
     -------

@@ -48,10 +48,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [  # one line for each `raise`
     (listed(WAVES, SHEAR, WAVES), "Scene.effects[2] must be another effect, AxialWaves acts once; got Axial"),
     (listed(DOME, LEATHER), "must be an effect that goes with effects[0], TipDome; got LeatherTip"),
     (listed(LEATHER), "Tip.contact_time must be omitted with an effect that models the whole tip"),
-    (
-        with_tip(cf.Tip(stiffness=1e6), LEATHER),
-        "Tip.stiffness must be omitted with an effect that models the whole tip",
-    ),
+    (with_tip(cf.Tip(stiffness=1e6), LEATHER), "Tip.stiffness must be omitted with an effect that models the whole"),
     (with_tip(cf.Tip(), WAVES, LEATHER, cue=pool()), "Scene.effects[1] must be the only leather: draw the cue"),
     (lambda: cf.modes(pool(), effects=(LEATHER,)), "LeatherTip must be the only leather: draw the cue without its"),
     (with_tip(cf.Tip(), replace(LEATHER, dome_radius=5e-3)), "the dome of a leather tip on 12 mm must have a radius"),
