@@ -41,7 +41,7 @@ def __dir__() -> list[str]:
 
 
 PLOT_OFFSETS = tuple(np.round(np.arange(0.0, 0.525, 0.025), 3).tolist())
-FROM_TIP, TIME = with_heading("from the tip", "m"), with_heading("time", "s")
+FROM_TIP, TIME = with_heading("from the front of the drawing", "m"), with_heading("time", "s")
 _SOFT, _WOODY, _METAL = 1e9, (300.0, 1250.0), 2500.0  # Pa: leather and foam; kg/m3: woods, metals
 _LOCAL = 5e-4  # m behind the leather: the end-mass distribution is drawn from here
 

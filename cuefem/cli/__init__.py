@@ -26,14 +26,18 @@ for _threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 CUE, SURE, STUDIES, FILES, PAGE = "Cue", "Verification", "Studies", "Files and parts", "Designer"
 COMMANDS = {
     "report": ("cuefem.cli.cue_commands:report", CUE, "Squirt with its uncertainty, and all other numbers of a cue."),
-    "improve": ("cuefem.cli.cue_commands:improve", CUE, "Design changes, each with its squirt, stiffness and weight."),
+    "improve": ("cuefem.cli.cue_commands:improve", CUE, "Design changes, each with its squirt, stiffness and mass."),
     "modes": ("cuefem.cli.cue_commands:modes", CUE, "Natural frequencies of bending, and tip amplitudes."),
     "end-mass": ("cuefem.cli.cue_commands:end_mass", CUE, "Effective end mass, by five definitions."),
     "strike": ("cuefem.cli.cue_commands:strike", CUE, "Squirt, ball speed, spin and pivot length of one stroke."),
     "compare": ("cuefem.cli.compare_command:compare", CUE, "Compare cues, or computed and measured values."),
     "effects": ("cuefem.cli.accuracy_commands:effects", SURE, "Sensitivity to each physical effect, removed or added."),
     "cost": ("cuefem.cli.accuracy_commands:cost", SURE, "Convergence study, and the resolution it recommends."),
-    "check": ("cuefem.cli.accuracy_commands:check", SURE, "Error of the beam model against a 3-D elastic solid."),
+    "check": (
+        "cuefem.cli.accuracy_commands:check",
+        SURE,
+        "Error of the beam model against a 3-D elastic solid, a part of all errors.",
+    ),
     "study": (
         "cuefem.cli.study_command:study",
         STUDIES,

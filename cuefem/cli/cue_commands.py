@@ -120,7 +120,7 @@ def _write_page(file: Path, output: Path, options: dict[str, Any], *, check: boo
 )
 @force_option
 def improve(file: Path, take: int | None, output: Path | None, force: bool, **options: Any) -> None:
-    """List design changes a maker can make, with squirt, stiffness, weight and first natural frequency of each.
+    """List design changes a maker can make, with squirt, stiffness, mass and first natural frequency of each.
 
     Each change is applied on its own and computed by the coupled strike. Rows are sorted by squirt, lowest first.
     """

@@ -352,7 +352,7 @@ class Cue:
 
     @property
     def balance_point(self) -> float:
-        """Centre of mass of the segments, m from the tip."""
+        """Centre of mass of the segments, m from the front of the first."""
         moments = (s.mass * (x + s.centre) for s, x in zip(self.segments, self.nodes, strict=False))
         return math.fsum(moments) / self.shaft_mass
 

@@ -18,6 +18,7 @@ from cuefem.results.quantities import to_display, with_unit
 from cuefem.results.records import Record
 from cuefem.results.solved_design import SolvedDesign, off_centre
 from cuefem.results.uncertainty import model_share, ratio_error, squirt_changes
+from cuefem.results.verdict import refuse_miscue
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
 
@@ -105,7 +106,7 @@ def _tapers(cue: Cue, own: Record) -> Iterator[DesignChange]:
     x = taper_position(cue)
     at = with_unit(x, "m", decimals=0)
     thinner = {"tip diameter": tip - THINNER, "taper diameter": taper - THINNER}
-    yield DesignChange(f"{with_unit(THINNER, 'm')} thinner from the tip to {at}", thinner)
+    yield DesignChange(f"{with_unit(THINNER, 'm')} thinner from the front to {at}", thinner)
     cone, pro = tip + (end - tip) * x / cue.length, tip + PRO_GAIN
     for name, wanted in (("straight taper, a cone", cone), ("pro taper", pro)):
         if abs(wanted - taper) > 0.2 * MM:
@@ -157,7 +158,7 @@ def design_changes(scene: Scene, *, solved: SolvedScene | None = None, progress:
     Raises
     ------
     ValueError
-        If the cue is lumped.
+        If the cue is lumped, or the stroke a miscue.
 
     Examples
     --------
@@ -170,7 +171,9 @@ def design_changes(scene: Scene, *, solved: SolvedScene | None = None, progress:
     """
     struck = off_centre(scene)
     solved = SolvedScene(struck) if solved is None or struck is not scene else solved
-    own, regime = _numbers(solved), SolvedDesign(solved).strike().regime
+    outcome = SolvedDesign(solved).strike()
+    refuse_miscue(struck, outcome)
+    own = _numbers(solved)
     before = {key: x for key, x in squirt_changes(solved, own["squirt"]).items() if abs(x) > MIN_CONTRIBUTION}
     rows = []
     for change in progress(changes_of(struck)):
@@ -187,7 +190,7 @@ def design_changes(scene: Scene, *, solved: SolvedScene | None = None, progress:
         except (ValueError, RuntimeError):
             continue
     rows.sort(key=lambda row: row["squirt_change"])
-    return {"offset": float(struck.stroke.offset), "regime": regime, "own": own, "changes": rows}
+    return {"offset": float(struck.stroke.offset), "regime": outcome.regime, "own": own, "changes": rows}
 
 
 def _numbers(solved: SolvedScene) -> Record:

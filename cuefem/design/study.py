@@ -14,7 +14,7 @@ import numpy as np
 from cuefem.cue.materials import material
 from cuefem.design.evaluation import Evaluation, Failed, Response, evaluate
 from cuefem.design.sampling import Levels, Normal, Span, Value
-from cuefem.parameters.parameter import Path, path_text, paths, quantity_at, value_at, with_values_at
+from cuefem.parameters.parameter import Path, check_bore, path_text, paths, quantity_at, value_at, with_values_at
 from cuefem.quantity.display import one_line
 from cuefem.scene import Resolution, Scene
 
@@ -170,6 +170,8 @@ class Study:
                 if (path, vary.operation) in changed:
                     raise ValueError(f"a field must vary once; got {path_text(path)} twice")
                 changed.add((path, vary.operation))
+        if not any(path[0] == "cue" for path, _ in changed):  # which may draw a bore
+            check_bore(self.base, {path[0] for path, _ in changed})
 
     @property
     def columns(self) -> tuple[str, ...]:

@@ -79,7 +79,7 @@ KNOBS = {
     "game": Knob("Stroke", "Game"),
     "speed": Knob("Stroke", "Cue speed", Range("m/s", 1.0, 0.3, 12, 0.1, 0.01, 40)),
     "offset": Knob("Stroke", "Tip offset b/R", Range("", 1.0, 0, 0.9, 0.01, -0.95, 0.95)),
-    "ball_mass": Knob("Stroke", "Ball weight", Range("g", 1e3, 0, 0, 1, 1, 10_000)),
+    "ball_mass": Knob("Stroke", "Ball mass", Range("g", 1e3, 0, 0, 1, 1, 10_000)),
     "ball_diameter": Knob("Stroke", "Ball diameter", _mm(0, 0, 0.05, 1, 1000)),
     "front": Knob("", "Front of the drawing"),
 }

@@ -73,7 +73,7 @@ def curves_markup(step: Step, results: Results) -> str:
             chart(
                 "End mass added by 1 g (stick, without tip effects)",
                 curves,
-                x=Axis("distance from the tip, mm", 0.0),
+                x=Axis("distance from the front of the drawing, mm", 0.0),
                 y=Axis("end mass, g"),
                 height=280,
             )

@@ -282,7 +282,7 @@ class Definition(NamedTuple):
 
     def label_at(self, offset: Any) -> str:
         """The label, with the offset b/R if the definition depends on it."""
-        return f"{self.label} at b/R {offset:g}" if self.at_offset else self.label
+        return f"{self.label}, b/R {offset:.4g}" if self.at_offset else self.label
 
 
 # The table of definitions, in the order of display. An entry added here appears in commands, pages and sweeps.
@@ -296,7 +296,7 @@ DEFINITIONS: dict[str, Definition] = {
             includes_tip=True,
         ),
         Definition(
-            *("offset", "stick"),
+            *("offset", "stick at offset"),
             "transverse inertia of the cue at the tip in a coupled strike at this offset whose tip never slips",
             stick_at_offset,
             at_offset=True,

@@ -58,7 +58,7 @@ def drawing_assumptions(path: Path, cue: Cue, options: Mapping[str, Any]) -> Ass
     ending = path.suffix.lower()
     if ending not in SHAPE_EXTENSIONS:
         return tenon_assumption(cue)
-    lacking = [("material", f"material {DEFAULT_MATERIAL}"), ("shaft_mass", "weight by the density of that material")]
+    lacking = [("material", f"material {DEFAULT_MATERIAL}"), ("shaft_mass", "mass by the density of that material")]
     parts = [
         ("ferrule", "no ferrule"),
         ("bore", "no bore"),
@@ -79,7 +79,7 @@ def drawing_assumptions(path: Path, cue: Cue, options: Mapping[str, Any]) -> Ass
     if any(cue.segments[i].tip_bore and cue.segments[i].core is None for i in Layout.of(cue).ferrule):
         notes = [*notes, "the ferrule has the bore of the shaft, without a tenon"]
     lacking = [] if "material" in options else lacking
-    assumptions = [*lacking, ("body_mass", "no mass behind the shaft"), *parts]
+    assumptions = [*lacking, ("body_mass", "no butt behind the shaft"), *parts]
     return [
         *(("", note) for note in notes),
         *((k, words) for k, words in assumptions if k not in options),
@@ -125,7 +125,9 @@ def _stroke(tables: dict[str, Any], game: str, scene: Scene, options: Mapping[st
             "leather": f"tip hardness {known.leather if known else ''}, E {1e-6 * leather.E:g} MPa",
         }
     elif tip.contact_time is None and tip.stiffness is None:
-        words["contact_time"] = f"head-on contact time {1e3 * DEFAULT_CONTACT_TIME:g} ms (leather: about 1 ms)"
+        words["contact_time"] = (
+            f"contact time {1e3 * DEFAULT_CONTACT_TIME:g} ms, rigid cue head-on (leather: about 1 ms)"
+        )
         missing.add("contact_time")
     words |= {
         "restitution": f"restitution {tip.restitution:.3g}{whole_cue}",

@@ -121,7 +121,7 @@ class Weight(Measurement):
     @classmethod
     def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
         """The shaft on a kitchen scale."""
-        return (cls(value=scene.shaft.shaft_mass, error=SCALE_ERROR),)
+        return (cls(value=predictions_of(scene).shaft_mass, error=SCALE_ERROR),)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,7 +143,7 @@ class Balance(Measurement):
     @classmethod
     def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
         """The shaft on an edge."""
-        return (cls(value=scene.shaft.balance_point, error=BALANCE_ERROR),)
+        return (cls(value=predictions_of(scene).balance_point, error=BALANCE_ERROR),)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -172,7 +172,7 @@ class Tone(Measurement):
     @property
     def label(self) -> str:
         """Which one."""
-        return f"tone {self.mode}"
+        return f"natural frequency {self.mode}"
 
     def computed(self, setup: Setup) -> float:
         """Of the beam."""

@@ -15,6 +15,7 @@ from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, Cue
 from cuefem.effects.cue_effects import PointMass, Support
 from cuefem.effects.effect import Effect
+from cuefem.results.quantities import balance_point, drawn_mass
 from cuefem.scene import Outcome, Scene, Stroke
 from cuefem.scene.solved_scene import SolvedScene
 
@@ -43,18 +44,12 @@ class Predictions:
     @property
     def shaft_mass(self) -> float:
         """Mass of the drawn part with its tip, kg."""
-        cue = self.scene.shaft
-        return cue.shaft_mass + sum(effect.mass_on(cue) for effect in self.suspended_effects)
+        return drawn_mass(self.scene)
 
     @property
     def balance_point(self) -> float:
-        """Centre of mass of the drawn part, m from the end of the tip; the mass of a LeatherTip is at its base."""
-        cue = self.scene.shaft
-        moment = cue.shaft_mass * cue.balance_point
-        moment += sum(
-            effect.mass_on(cue) * effect.positions[0] for effect in self.suspended_effects if effect.mass_on(cue)
-        )
-        return self.tip_height + moment / self.shaft_mass
+        """Centre of mass of the drawn part with its tip, m from the end of the tip."""
+        return balance_point(self.scene)
 
     @cached_property
     def frequencies(self) -> Array:

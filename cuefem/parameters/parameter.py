@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cache
 from typing import Any, get_args, get_type_hints
@@ -138,7 +138,7 @@ def parameter(text: str) -> Parameter | None:
             position = parse_number(taper[1], "m")
         except ValueError:
             raise ValueError(f'must name a position such as "taper at 330 mm"; got {text!r}') from None
-        return Parameter(text.strip(), f"diameter {taper[1]} from the tip", part=diameter_at(lambda cue: position))
+        return Parameter(text.strip(), f"diameter {taper[1]} from the front", part=diameter_at(lambda cue: position))
     return PARAMETERS.get(re.sub(r"[\s._]+", "_", text.strip()))
 
 
@@ -326,12 +326,19 @@ def with_values_at(scene: Scene, changes: Mapping[Path, Any]) -> Scene:
         for head, inner in below.items()
         if head in parts
     }
+    check_bore(draft, written)
     unchanged = {name for head in written for name in parts[head].unchanged} - {*written}
     written |= {name: parts[name].read(draft) for name in unchanged}
     for head, part in parts.items():
         if written.get(head) is not None:
             draft = part.write(draft, written[head])
     return Scene(**{name: getattr(draft, name) for name in _SCENE_FIELDS})
+
+
+def check_bore(scene: Any, names: Container[Step]) -> None:
+    """ValueError if the width of a bore changes and there is none: "bore width" is then that of a new one."""
+    if "bore width" in names and "bore depth" not in names and BORE_DEPTH.read(scene) == 0:
+        raise ValueError("bore width has no effect: the cue has no bore; change bore depth too, or draw a bore")
 
 
 def with_fields(thing: Any, changes: Mapping[Path, Any]) -> Any:
@@ -470,9 +477,9 @@ PARAMETERS: dict[str, Parameter] = {
             help='Tip offset from the ball centre: b/R in (-1, 1), or a length, e.g. "8 mm".',
         ),
         Parameter(
-            *("body mass", "mass of the rest of the cue", "cue.body_mass"),
+            *("body mass", "mass of the butt", "cue.body_mass"),
             option="MASS",
-            help='Mass of the rest of the cue (butt), behind what FILE draws, e.g. "420 g".',
+            help='Mass of the butt, the rest of the cue behind what FILE draws, e.g. "420 g".',
         ),
         Parameter("ferrule material", "material of the ferrule", part=FERRULE_MATERIAL, materials=FERRULES),
         Parameter("shaft material", "material of the shaft", part=SHAFT_MATERIAL, materials=SHAFTS),

@@ -43,7 +43,7 @@ def design_change_notes(record: Record) -> list[str]:
         f"{with_unit(record['own']['squirt'], 'rad', decimals=2)}. ±: uncertainty of the change (1σ): model, "
         "unmeasured wood and tip, and 1 %. Worthwhile: squirt falls by more than its uncertainty; within uncertainty: "
         "the change is smaller than its uncertainty.",
-        "Stiffness: static, at the tip, butt end clamped. Costs stiffness: by 5 % or more.",
+        "Stiffness: static, at the tip, joint end clamped. Costs stiffness: by 5 % or more.",
     ]
 
 

@@ -144,5 +144,5 @@ def modes_chart(scene: Scene) -> Chart:
         Curve(f"{frequency:.4g} Hz", to_display(x, "m"), shape / np.abs(shape).max(), f"c{k}")
         for k, (frequency, shape) in enumerate(zip(solved.frequencies, solved.shape(x)[0], strict=True), 1)
     ]
-    along = Axis(with_heading("distance from the tip", "m"), 0.0, float(to_display(x[-1], "m")))
+    along = Axis(with_heading("distance from the front of the drawing", "m"), 0.0, float(to_display(x[-1], "m")))
     return chart("Bending mode shapes", curves, x=along, y=Axis("deflection", -1.0, 1.0))

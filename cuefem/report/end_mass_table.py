@@ -45,24 +45,30 @@ def _end_mass(solved: SolvedScene, drive: str) -> Record:
 
 def tabulate_end_masses(record: Record, scene: Record, *, paper: bool = False) -> Table:
     """A row for each definition. paper: add [Kim]'s m_c and eps."""
-    at = f", at b/R {record['offset']:.4g}"
     papers = {"m_c": "cue_end_mass", "eps": "{eps:.4f}"} if paper else {}
     their = "m_c = 4 m_e: end mass of the two-part cue in Kim's paper (nu_c 1/3); eps: m_c over the mass of the ball"
     rows = [{"name": drive, **values} for drive, values in record["drives"].items()]
     return tabulate(
         "Effective end mass",
         {
-            "definition": lambda row: row["name"] + (at if DEFINITIONS[row["name"]].at_offset else ""),
+            "definition": lambda row: _definition(row["name"], record["offset"]),
             "m_e": "end_mass",
             **papers,
         },
         rows,
         assumptions(scene),
         *(f"{row['name']}: {row['reason']}" for row in rows if row["end_mass"] is None),
-        "m_e: effective end mass, the transverse inertia of the cue at its tip (the lumped models use offset)",
+        "m_e: effective end mass, the transverse inertia of the cue at its tip; `report` and `compare` use squirt, "
+        "the lumped models offset, published end masses [A.31]",
         *([their] if paper else []),
         *tip_effect_notes(scene, _tip_effects_note()),
     )
+
+
+def _definition(name: str, offset: float) -> str:
+    """The name of a definition, and its label where that says more."""
+    label = DEFINITIONS[name].label_at(offset)
+    return name if label == name else f"{name} ({label})"
 
 
 def _tip_effects_note() -> str:

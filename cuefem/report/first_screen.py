@@ -27,7 +27,7 @@ TILES = {
         "m",
         0,
         "",
-        "Distance from the tip to the point about which pivoting the cue cancels squirt",
+        "Distance from the end of the tip to the point about which pivoting the cue cancels squirt",
     ),
     "tip_stiffness": ("Stiffness", "N/m", 0, "", "Static, transverse, at the tip; joint end clamped"),
 }

@@ -119,12 +119,12 @@ def _by_solid(scene: Scene, mesh: Fineness) -> Numbers:
 
 
 def _numbers(scene: Scene, tip: TipModes, transverse: float, axial: float) -> Numbers:
-    """The compared quantities by name and unit. transverse, axial: compliance at the tip, m/N, butt clamped."""
+    """The compared quantities by name and unit. transverse, axial: compliance at the tip, m/N, joint end clamped."""
     omega, amplitude = tip.omega[3:], tip.amplitude[3:, 1]
     frequencies = omega[:N_FREQUENCIES] / (2 * np.pi)
     numbers = {(f"natural frequency {k}", "Hz"): float(frequency) for k, frequency in enumerate(frequencies, 1)}
-    numbers["transverse stiffness at the tip, butt clamped", "N/m"] = 1 / transverse
-    numbers["axial stiffness at the tip, butt clamped", "N/m"] = 1 / axial
+    numbers["transverse stiffness at the tip, joint end clamped", "N/m"] = 1 / transverse
+    numbers["axial stiffness at the tip, joint end clamped", "N/m"] = 1 / axial
     numbers["tip compliance, free cue", "m/N"] = float(np.sum((amplitude / omega) ** 2))
     for definition in DEFINITIONS.values():
         with suppress(ValueError):  # a miscue has no squirt-equivalent end mass
@@ -153,7 +153,10 @@ def _summary(rows: Sequence[Record]) -> str:
     difference, mesh = abs(row["difference"]), row["discretisation_error"]
     size = _percent(max(difference, mesh), 2 if mesh < 0.05 * difference else 1)
     error = f"less than {size}" if difference < mesh else size
-    return f"Error of the beam model for this shaft: {error} in {row['quantity']}."
+    return (
+        f"Error of the beam model for this shaft: {error} in {row['quantity']} (a part of the numerical error only; "
+        "total uncertainty: cuefem report)."
+    )
 
 
 def tabulate_model_error(record: Record) -> Table:

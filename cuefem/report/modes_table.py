@@ -39,7 +39,7 @@ def tabulate_modes(record: Record) -> Table:
     }
     if near is not None:
         columns[""] = lambda row: "nearest" if row["frequency"] == nearest else ""
-    notes = ["tip amplitude: of the mass-normalised mode"]
+    notes = ["tip amplitude: of the mass-normalised mode", "of the drawn part with its tip, without the butt"]
     if rigid := record["rigid"]:
         notes.insert(0, f"{rigid} rigid-body mode{'s' * (rigid > 1)} at 0 Hz not listed")
     title = "Natural frequencies" if near is None else f"Natural frequencies nearest {near:g} Hz"

@@ -34,7 +34,7 @@ def _usual(kind: type, name: str) -> tuple[float, float]:
 
 def _of_stroke(scene: Scene) -> Iterator[Check]:
     leather, ball = "expected 0.001 to 0.002 s for leather", scene.ball
-    yield "head-on contact time", scene.known_contact_time, _usual(Tip, "contact_time"), "s", leather
+    yield "contact time, rigid cue head-on,", scene.known_contact_time, _usual(Tip, "contact_time"), "s", leather
     diameter = "expected 26 to 31 mm; is this the diameter?"
     yield "ball radius", ball.radius, _usual(Ball, "radius"), "mm", diameter
     yield "ball mass", ball.mass, _usual(Ball, "mass"), "g", "expected 140 to 210 g"
@@ -59,7 +59,7 @@ def _of_drawing(cue: Cue) -> Iterator[Check]:
     if cue.weighed and known is not None:
         low, high = MATERIALS[known].ranges["rho"]
         own = f"by the weight of the shaft the density of its {known} is"
-        joint = "does the measured mass include a joint or the rest of the cue?"
+        joint = "does the measured mass include a joint or the butt?"
         yield own, wood.rho, ((1 - DENSITY_MARGIN) * low, (1 + DENSITY_MARGIN) * high), "kg/m3", joint
     if any(
         segment.length > LONG and segment.material.E > STIFF and segment.material.rho < LIGHT
@@ -71,11 +71,12 @@ def _of_drawing(cue: Cue) -> Iterator[Check]:
 
 
 def _of_mass(scene: Scene) -> Iterator[Check]:
-    name, mass = "mass of the whole cue", float(scene.cue.mass)
-    yield name, mass, (0.0, 1.0), "kg", "expected 0.4 to 0.7 kg"
+    mass = float(scene.cue.mass)
+    yield "mass of the whole cue", mass, (0.0, 1.0), "kg", "expected 0.4 to 0.7 kg"
     if not scene.cue.segments or scene.shaft.shaft_mass >= MIN_DRAWN_MASS:  # else the drawing itself is too light
-        body = 'expected 400 to 700 g; add the rest of the cue with --body-mass "15 oz" (body_mass in a file)'
-        yield name, mass, (MIN_CUE_MASS, inf), "g", body
+        too_low = "squirt is too low (a maple cue: by about 20 %) and cannot be compared"
+        body = f'{too_low}; add the butt with --body-mass "15 oz" (body_mass in a file)'
+        yield "butt missing or too light: the whole cue weighs", mass, (MIN_CUE_MASS, inf), "g", body
 
 
 SCALES = {"mm": 1e3, "g": 1e3}  # of the SI unit; others: 1

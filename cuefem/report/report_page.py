@@ -116,6 +116,8 @@ def page_and_headline(
     for key, work in progress([*stages.items()]):
         records[key] = work()
     records |= records.pop("report")
+    if "no_squirt" in records:
+        raise ValueError(records["no_squirt"])
     lines = {"notes": list(notes), "warnings": list(warnings), "checks": list(checks)}
     context = _context(scene, records) | {"screen": _screen(name, scene, records, other), "comparison": None}
     if other is not None:

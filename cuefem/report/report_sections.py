@@ -18,7 +18,7 @@ from cuefem.report.verdict_table import tabulate_verdict
 from cuefem.results.quantities import format_value
 from cuefem.results.records import Record, Table, tabulate_values, value_rows
 from cuefem.results.solved_design import OFFSETS, SolvedDesign, listed
-from cuefem.results.verdict import verdict_record
+from cuefem.results.verdict import Miscue, verdict_record
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import SolvedScene
 
@@ -33,7 +33,8 @@ def report_record(
 ) -> Record:
     """Verdict, modes, end masses, squirt curve, leather tip, all results by name, and the contact state of a stroke.
 
-    Beyond the valid range of the force law or of the geometric stiffness: the modes, and the reason as "no_contact".
+    Beyond the valid range of the force law or of the geometric stiffness: the modes, and the reason as "no_contact". Of
+    a miscue: no verdict and no squirt of its own, and the reason as "no_squirt".
     offsets: of the squirt curve; solved, outcome: the scene's modes and its strike, if already computed.
     """
     solved = solved or SolvedScene(scene)
@@ -47,8 +48,11 @@ def report_record(
         return record | {"no_contact": str(error)}
     record |= squirts | ({} if scene.contact_terms.tip is None else {"tip": impact_record(scene)})
     numbers = listed(SolvedDesign(solved, outcome))
-    verdict = verdict_record(scene, outcome, reference_cues(), solved=solved)
-    return record | {"verdict": verdict, "numbers": numbers, "regime": outcome.regime}
+    record |= {"numbers": numbers, "regime": outcome.regime}
+    try:
+        return record | {"verdict": verdict_record(scene, outcome, reference_cues(), solved=solved)}
+    except Miscue as error:
+        return record | {"no_squirt": str(error)}
 
 
 def tabulate_report(record: Record, scene: Record) -> list[Table | str]:
@@ -57,10 +61,13 @@ def tabulate_report(record: Record, scene: Record) -> list[Table | str]:
     if "no_contact" in record:
         return [*frequencies, f"no end mass and no squirt: {record['no_contact']}"]
     warning = regime_warning(record["regime"])
-    first: list[Table | str] = [warning, ""] if warning else []
-    first += tabulate_verdict(record["verdict"])
+    first: list[Table | str]
+    if "no_squirt" in record:
+        first = [record["no_squirt"], ""]
+    else:
+        first = [*([warning, ""] if warning else []), *tabulate_verdict(record["verdict"])]
     first += [record["model_error"]["summary"], ""] if "model_error" in record else []
-    title = f"Cue, and stroke at offset b/R = {scene['stroke']['offset']:.4g}"
+    title = f"Cue, and stroke at offset b/R {scene['stroke']['offset']:.4g}"
     end_mass = (SQUIRT_END_MASS, format_value("mass", record["end_masses"]["drives"]["squirt"]["end_mass"]))
     numbers = tabulate_values(title, [end_mass, *value_rows(record["numbers"])], assumptions(scene))
     return [

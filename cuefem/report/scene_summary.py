@@ -16,10 +16,10 @@ from cuefem.scene import Scene
 
 
 def cue_record(cue: Cue | LumpedCue) -> Record:
-    """Length, masses, balance point and number of segments of a cue, or the parameters of a lumped cue, SI."""
+    """Length, masses and number of segments of a cue, or the parameters of a lumped cue, SI."""
     if not cue.segments:
         return {name: getattr(cue, name) for name in ("mass", "end_mass", "coupling")}
-    names = ("length", "mass", "shaft_mass", "body_mass", "balance_point")
+    names = ("length", "mass", "shaft_mass", "body_mass")
     return {name: getattr(cue, name) for name in names} | {"segments": len(cue.segments)}
 
 
@@ -42,7 +42,7 @@ def assumptions(scene: Record) -> str:
     return ", ".join(
         [
             f"ball {format_value('mass', ball['mass'])}, {with_unit(2 * ball['radius'], 'm')}",
-            f"head-on contact time {_milliseconds(tip['contact_time'])} (rigid cue)",
+            f"contact time {_milliseconds(tip['contact_time'])} (rigid cue head-on)",
             f"tip restitution {tip['restitution']:g}",
             f"friction {tip['friction']:g}".replace("inf", "∞"),
             f"speed {stroke['speed']:g} m/s",
@@ -59,7 +59,7 @@ def cue_line(cue: Record) -> str:
     if "length" not in cue:
         return f"lumped cue, {format_value('mass', cue['mass'])}, end mass {format_value('mass', cue['end_mass'])}"
     pieces = f"{cue['segments']} segment" + ("s" if cue["segments"] > 1 else "")
-    masses = f"as drawn {format_value('mass', cue['shaft_mass'])}, rest {format_value('mass', cue['body_mass'])}"
+    masses = f"as drawn {format_value('mass', cue['shaft_mass'])}, butt {format_value('mass', cue['body_mass'])}"
     return f"{with_unit(cue['length'], 'm')} in {pieces}, cue {format_value('mass', cue['mass'])} ({masses})"
 
 

@@ -54,10 +54,11 @@ def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, solved: S
 def tabulate_squirt(record: Record, scene: Record) -> Table:
     """Squirt, natural pivot length and contact state, a row for each offset."""
     own = record["models"]["coupled, this cue"]
-    names = ("squirt", "pivot_length", "regime")
+    names = ("squirt", "pivot_length")
     rows = [
-        (f"{offset:g}", *(format_value(name, own[name][i], brief=True) for name in names))
-        for i, offset in enumerate(record["offsets"])
+        (f"{offset:g}", *(format_value(name, None if missed else own[name][i], brief=True) for name in names), regime)
+        for i, (offset, regime) in enumerate(zip(record["offsets"], own["regime"], strict=True))
+        for missed in [regime == "miscue"]
     ]
     head = ("b/R", "squirt", "natural pivot length", "contact")
     return Table(

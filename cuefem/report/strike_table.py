@@ -111,11 +111,11 @@ LUMPED_SPEED_NOTE = (
     "cue above that of its tip"
 )
 PIVOT_NOTE = (
-    "natural pivot length: distance from the tip to the point about which pivoting the cue cancels squirt (back-hand "
-    "English)"
+    "natural pivot length: distance from the end of the tip to the point about which pivoting the cue cancels squirt "
+    "(back-hand English)"
 )
 UNCERTAINTY_NOTE = "run `cuefem report FILE` for the uncertainty of squirt"
-MISCUE_NOTE = f"miscue: {MISCUE_DEFINITION}. Ignore squirt and pivot length"
+MISCUE_NOTE = f"miscue: {MISCUE_DEFINITION}. Do not use squirt and natural pivot length; use a smaller offset"
 
 
 def regime_warning(regime: str) -> str:
@@ -141,35 +141,33 @@ def tabulate_strike(record: Record, scene: Record) -> Table:
     notes = (
         *miscue,
         assumptions(scene),
-        _models_note(scene, accuracy),
+        *_model_notes(record, scene, accuracy),
         *([PIVOT_NOTE] if any(row[0] == RESULTS["pivot_length"].label for row in rows) else []),
         *([] if miscue else [f"contact: {REGIMES[coupled['regime']]}"]),
         *_speed_notes(record, scene),
         UNCERTAINTY_NOTE,
-        *_coupling_notes(record, scene),
     )
-    return Table(f"Strike at offset b/R = {scene['stroke']['offset']:.4g}", ("", *record["models"]), tuple(rows), notes)
-
-
-def _models_note(scene: Record, accuracy: str) -> str:
-    """The definitions of the models, for a vibrating or a lumped cue."""
-    if "length" not in scene["cue"]:
-        return "coupled: contact integrated in time; two-part and A.31: two masses, with the cue's end mass"
-    offset = "offset, without the effects at the tip" if scene["effects_at_tip"] else "offset"
-    return (
-        f"coupled: vibrating shaft in time{accuracy}; two-part and A.31: two masses, with the end mass of a tip that "
-        f"sticks ({offset}; `cuefem end-mass`)"
+    return Table(
+        f"Stroke at offset b/R {scene['stroke']['offset']:.4g}, by model", ("", *record["models"]), tuple(rows), notes
     )
 
 
-def _coupling_notes(record: Record, scene: Record) -> list[str]:
-    """Which models include the effects at the tip, and a coupling."""
-    coupling = f"coupling of {record['coupling']:.4g} /kg, transverse tip velocity per unit axial impulse"
+def _model_notes(record: Record, scene: Record, accuracy: str) -> list[str]:
+    """Which model to use, and the definitions of the models, for a vibrating or a lumped cue."""
+    use = "use the coupled column; the others are simpler published models, for comparison"
+    coupling = f"coupling of {record['coupling']:.4g} /kg (transverse tip velocity per unit axial impulse)"
     if "length" not in scene["cue"]:
         own = [f"two-part and A.31 exclude the cue's {coupling}"] if record["coupling"] else []
-        return [*own, *tip_effect_notes(scene, "only coupled includes the effects at the tip")]
-    lumped = f"; lumped includes them as a {coupling}" if record["coupling"] else ""
-    return tip_effect_notes(scene, f"two-part and A.31 exclude the effects at the tip{lumped}")
+        models = "coupled: contact integrated in time; two-part and A.31: two masses, with the cue's end mass"
+        return [use, models, *own, *tip_effect_notes(scene, "only coupled includes the effects at the tip")]
+    masses, beam = (
+        "one axial mass and one end mass (`cuefem end-mass`: offset)",
+        f"coupled: vibrating shaft in time{accuracy}",
+    )
+    if not record["coupling"]:
+        return [use, beam, f"two-part and A.31: {masses}, without effects at the tip"]
+    lumped = f"lumped: {masses}, with the effects at the tip as a {coupling}"
+    return [use, beam, f"{lumped}; two-part and A.31: the same without them"]
 
 
 def _speed_notes(record: Record, scene: Record) -> list[str]:

@@ -74,16 +74,15 @@ def offset_text(offset: float) -> str:
 
 
 def difference_text(difference: float, error: float) -> str:
-    """A relative difference with its uncertainty: "−3 ± 8 %"."""
-    digits = 0 if error >= 0.02 else 1 if error >= 0.002 else 2
+    """A relative difference with its uncertainty: "−3.2 ± 8.1 %"."""
+    digits = 0 if error >= 0.1 else 1 if error >= 0.002 else 2
     return format_change(100 * difference, digits, f"± {100 * error:.{digits}f} %")
 
 
 def squirt_difference(difference: float, error: float, distinct: bool) -> str:
-    """A difference of squirt, followed by the name of the other cue: "15 ± 8 % less squirt than"."""
-    text = difference_text(difference, error)
-    more = "more" if difference > 0 else "less"
-    return f"{text[1:]} {more} squirt than" if distinct else f"{text} squirt, not distinct from"
+    """A difference of squirt, followed by the name of the other cue: "15.1 ± 8.2 % less squirt than"."""
+    text, more = difference_text(abs(difference), error).lstrip("+"), "more" if difference > 0 else "less"
+    return f"{'' if distinct else 'not distinct: '}{text} {more} squirt than"
 
 
 def reference_comparison(record: Record) -> list[str]:
@@ -125,11 +124,13 @@ class ScaleRow(NamedTuple):
 def reference_scale(
     record: Record, name: str = "yours", other: tuple[str, float | None] | None = None
 ) -> list[ScaleRow]:
-    """The cues by their squirt, the lowest first, the design with its uncertainty. other: name and squirt, rad, of one
-    more cue."""
+    """The cues by their squirt, the lowest first, the design with its uncertainty; none without reference cues. other:
+    name and squirt, rad, of one more cue."""
+    if not record["references"]:
+        return []
     mine, error = abs(record["squirt"]), record["squirt_error"]
     squirts = {cue: abs(values["squirt"]) for cue, values in record["references"].items()}
-    first = next(iter(squirts), "")
+    first = next(iter(squirts))
     compared, squirt = other or ("", None)
     if squirt is not None and not record["head_on"]:
         squirts.setdefault(compared, abs(squirt))
@@ -139,7 +140,7 @@ def reference_scale(
     interval = (part * max(0.0, mine - error), part * (mine + error))
     rows = [ScaleRow(name, text, f"± {error_text}", "own", part * mine, *interval)]
     for cue, own in squirts.items():
-        ratio = round(100 * (own / squirts[first] - 1)) if first else 0
+        ratio = round(100 * (own / squirts[first] - 1))
         more = f"{abs(ratio)} % {'less' if ratio < 0 else 'more'} than {first}" if ratio else f"as much as {first}"
         text, kind = with_unit(own, "rad", decimals=decimals), "other" if cue == compared else ""
         rows.append(ScaleRow(cue, text, more if cue != first else "", kind, *3 * (part * own,)))
@@ -148,13 +149,15 @@ def reference_scale(
 
 def tabulate_verdict(record: Record) -> list[Table | str]:
     """The verdict for the terminal: headline, comparison, and the table of reference cues."""
+    text, uncertainty = [headline(record), *reference_comparison(record), ""], uncertainty_line(record)
+    if not record["references"]:
+        return [*text, uncertainty, ""]
     rows = reference_scale(record)
     own = {i: "bold" for i, row in enumerate(rows) if row.kind == "own"}
     head = ("cue", "squirt", "less to more squirt", "")
     cells = tuple((row.name, row.text, _bar(row), row.difference) for row in rows)
-    title = "Reference pool cues, with the same tip and stroke"
-    table = Table(title, head, cells, (uncertainty_line(record),), (0, 2, 3), own)
-    return [headline(record), *reference_comparison(record), "", table]
+    title = "Reference pool cues, with this tip, ball and stroke"
+    return [*text, Table(title, head, cells, (uncertainty,), (0, 2, 3), own)]
 
 
 BAR = 32  # characters of the scale in a terminal

@@ -44,8 +44,7 @@ def alciatore_a31_mass_ratio(offset: Any, squirt: Any, *, inertia: Any = 0.4) ->
 
 
 def natural_pivot_length(offset: Any, squirt: Any, *, radius: Any, dome_radius: Any = 0.0) -> Any:
-    """[B.1]: distance from the tip to the bridge about which pivoting the cue cancels squirt, m, at an offset other
-    than 0.
+    """[B.1]: distance from the end of the tip to the bridge about which pivoting the cue cancels squirt, m.
 
     p = (R + r) b/(R sin psi) - R; radius R of the ball, dome_radius r of the tip (0: its curvature is neglected), both
     in m. Infinite without squirt; negative for squirt towards the struck side.

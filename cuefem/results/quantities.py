@@ -121,6 +121,24 @@ def of_drawing(value: Callable[[Scene], Any]) -> Callable[[SolvedDesign, Any], f
     return lambda design, _: float(value(design.scene))
 
 
+def drawn_mass(scene: Scene) -> float:
+    """Mass of the drawn part with its tip, kg, as on a scale."""
+    return float(scene.shaft.shaft_mass + sum(mass for _, mass in _added_masses(scene)))
+
+
+def balance_point(scene: Scene) -> float:
+    """Centre of mass of the drawn part with its tip, m from the end of the tip; a LeatherTip's mass is at its base."""
+    cue, height = scene.shaft, 0.0 if scene.contact_terms.tip is None else scene.leather.height
+    moment = cue.shaft_mass * cue.balance_point + sum(x * mass for x, mass in _added_masses(scene))
+    return float(height + moment / drawn_mass(scene))
+
+
+def _added_masses(scene: Scene) -> list[tuple[float, float]]:
+    """Position and mass, m and kg, of the tip and of masses on the cue."""
+    own = ((effect, effect.mass_on(scene.shaft)) for effect in scene.cue_effects if effect.part_of_cue)
+    return [(effect.positions[0], mass) for effect, mass in own if mass]
+
+
 def _thinnest_wall(scene: Scene) -> float:
     ends = ((s.tip_diameter - s.tip_bore, s.butt_diameter - s.butt_bore) for s in scene.shaft.segments)
     return min(map(min, ends)) / 2
@@ -128,14 +146,14 @@ def _thinnest_wall(scene: Scene) -> float:
 
 RESULTS = {
     "shaft_mass": Result(
-        *("mass of the drawn part", "kg"),
+        *("mass of the drawn part, without an added tip", "kg"),
         heading="shaft mass",
         about="mass of the segments",
         of=of_drawing(lambda scene: scene.shaft.shaft_mass),
         segments=True,
     ),
     "mass": Result("mass of the cue", "kg", heading="cue mass", of=of_drawing(lambda scene: scene.cue.mass)),
-    "body_mass": Result("mass of the rest of the cue", "kg"),
+    "body_mass": Result("mass of the butt", "kg"),
     "end_mass": Result(
         *("end mass", "kg"),
         about="stick definition, small offsets; at an offset: of a tip that sticks",
@@ -148,10 +166,10 @@ RESULTS = {
     "cue_end_mass": Result("mass of the cue's end", "kg"),
     "length": Result("length", "m", 0),
     "balance_point": Result(
-        *("balance point of the drawn part, from the tip", "m", 1),
+        *("balance point of the drawn part, from the end of the tip", "m", 1),
         heading="balance point",
-        about="centre of the segments' mass, from the tip",
-        of=of_drawing(lambda scene: scene.shaft.balance_point),
+        about="centre of mass of the drawn part with its tip, from the end of the tip",
+        of=of_drawing(balance_point),
         segments=True,
     ),
     "radius": Result("radius", "m", 2),
@@ -189,8 +207,8 @@ RESULTS = {
     "ball_velocity": Result("ball velocity", "m/s", 4),
     "spin": Result("spin", "rad/s", 3),
     "cue_speed": Result("cue speed after", "m/s", 4),
-    "contact_time": Result("head-on contact time", "s"),
-    "duration": Result("time in contact", "s", 4),
+    "contact_time": Result("contact time, rigid cue head-on", "s"),
+    "duration": Result("contact time of this stroke", "s", 4),
     "regime": Result("contact"),
     "error": Result("estimated error", digits=2),
     "energy": Result("energy", "J"),
@@ -205,9 +223,9 @@ RESULTS = {
     "coupling": Result("coupling", "1/kg"),
     "position": Result("distance from the tip", "m", 1),
     "tip_stiffness": Result(
-        *("shaft stiffness at the tip, static, butt clamped", "N/m"),
+        *("shaft stiffness at the tip, static, joint end clamped", "N/m"),
         heading="stiffness at the tip",
-        about="static: force across the tip over its deflection, the butt end clamped",
+        about="static: force across the tip over its deflection, the joint end clamped",
         of=lambda design, _: design.tip_stiffness,
         segments=True,
         better="higher",
@@ -220,7 +238,8 @@ RESULTS = {
     ),
     "butt_diameter": Result("diameter of the butt", "m"),
     "wall": Result(
-        *("thinnest wall", "m"),
+        *("thinnest wall (where solid, the radius)", "m"),
+        heading="thinnest wall",
         about="of the segments, at their ends; where solid, the radius",
         of=of_drawing(_thinnest_wall),
         segments=True,

@@ -72,7 +72,7 @@ class SolvedDesign:
 
     @property
     def tip_stiffness(self) -> float:
-        """Static tip stiffness, N/m: transverse force at the tip over its deflection, the butt end clamped."""
+        """Static tip stiffness, N/m: transverse force at the tip over its deflection, the joint end clamped."""
         cue, effects = self.scene.shaft, self.scene.cue_effects
         clamped = (*effects, Support(cue.length, np.inf, np.inf))
         return assemble(cue, MIN_SOLVED_MODES, clamped).static_stiffness(0.0)
@@ -135,6 +135,8 @@ def _value(result: Result, design: SolvedDesign) -> float | None:
     assert result.of is not None
     try:
         value = result.of(design, None)
+        if result is RESULTS["squirt"] and design.strike().regime == "miscue":
+            return None
     except (ValueError, RuntimeError):  # such as the stiffness of a cue whose effects clamp its tip
         return None
     return value if math.isfinite(value) else None

@@ -6,7 +6,10 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
+from cuefem.contact.strike import strike_modes
 from cuefem.cue import Cue
+from cuefem.quantity.unit_checks import MIN_CUE_MASS
+from cuefem.results.quantities import MISCUE_DEFINITION
 from cuefem.results.records import Record
 from cuefem.results.solved_design import off_centre
 from cuefem.results.uncertainty import (
@@ -23,6 +26,24 @@ from cuefem.results.uncertainty import (
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.default_scene import without_leather
 from cuefem.scene.solved_scene import SolvedScene
+
+
+def lacks_butt(scene: Scene) -> bool:
+    """Whether a cue is too light for a whole one: its squirt is then too low to compare (of maple by about 20 %)."""
+    return float(scene.cue.mass) < MIN_CUE_MASS
+
+
+def refuse_miscue(scene: Scene, outcome: Outcome) -> None:
+    """ValueError for a miscue, whose squirt hardly depends on the cue."""
+    if outcome.regime == "miscue":
+        raise Miscue(
+            f"miscue at b/R {scene.stroke.offset:.4g}: no squirt is reported. Use a smaller offset "
+            f"(miscue: {MISCUE_DEFINITION})"
+        )
+
+
+class Miscue(ValueError):
+    """A stroke that has no squirt to report."""
 
 
 def verdict_record(
@@ -48,19 +69,27 @@ def verdict_record(
         uncertainty: relative, 1 sigma, by its causes model, inputs and computation, and in total. inputs: contribution
         of each uncertain input to "inputs". references: by name squirt, rad; difference, own squirt over it less 1,
         both at the default resolution; error of the difference, 1 sigma; distinct, whether the difference exceeds it.
-        Reference cues whose strike fails, or whose squirt is zero or of the opposite sign, are left out.
+        Reference cues whose strike fails, or whose squirt is zero or of the opposite sign, are left out; all of them,
+        if the scene's cue lacks its butt.
+
+    Raises
+    ------
+    Miscue
+        If the stroke is a miscue.
     """
     struck = off_centre(scene)
     head_on = struck is not scene
     solved = SolvedScene(struck) if solved is None or head_on else solved
+    outcome = strike_modes(struck, solved.tip) if head_on else outcome
+    refuse_miscue(struck, outcome)
+    squirt = float(outcome.squirt)
     # at the resolution of the reference cues, since the outcome may be finer
-    own = variant_squirt(solved, struck) if head_on or outcome.error is not None else float(outcome.squirt)
-    squirt = own if head_on else float(outcome.squirt)
+    own = squirt if outcome.error is None else variant_squirt(solved, struck)
     inputs = {key: abs(change) for key, change in squirt_changes(solved, own).items()}
-    computation = NUMERICAL_ERROR if head_on or outcome.error is None else outcome.error
+    computation = NUMERICAL_ERROR if outcome.error is None else outcome.error
     uncertainty = Uncertainty(model_error(struck), math.hypot(*inputs.values()), computation)
-    shaft = shaft_uncertainty(inputs)
-    reference_rows = {name: _reference_row(struck, own, cue, shaft) for name, cue in reference_cues.items()}
+    shaft, compared = shaft_uncertainty(inputs), {} if lacks_butt(struck) else reference_cues
+    reference_rows = {name: _reference_row(struck, own, cue, shaft) for name, cue in compared.items()}
     return {
         "offset": float(struck.stroke.offset),
         "head_on": head_on,

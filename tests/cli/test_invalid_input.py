@@ -79,6 +79,7 @@ report lumped.toml -o page.pdf | page.pdf: --output: must end in .html or .json
 report lumped.toml -o page.html --json | page.html: --output: cannot be combined with --json
 strike spring.toml --format pooltool --offset 0 | [A.31] has no squirt at offset 0
 strike spring.toml --format pooltool -o cue.json --offset 0.9 | the stroke is a miscue at offset 0.9
+report spring.toml -o page.html --offset 0.9 | miscue at b/R 0.9: no squirt is reported. Use a smaller offset
 strike | --help` lists the options)
 strike shaft.toml --offset | Option '--offset' requires an argument
 """.strip().splitlines()
