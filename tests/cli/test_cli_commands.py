@@ -69,7 +69,7 @@ def test_convert_writes_equal_cue_or_scene(folder: Path) -> None:
     assert stdout_of("convert", "cue.toml", "cue.vtu") == "wrote cue.vtu\n"
     stdout_of("convert", "cue.toml", "new.toml", "--body-mass", "15 oz")
     assert cf.load("new.toml") == replace(cf.load("cue.toml"), body_mass=0.425242846875)
-    assert stdout_of("convert", "shaft.csv", "shaft.toml", "--material", "ash").startswith("assumed:\n  no mass behind")
+    assert stdout_of("convert", "shaft.csv", "shaft.toml", "--material", "ash").startswith("assumed:\n  no butt behind")
     assert cf.load("shaft.toml") == cf.load("shaft.csv", material="ash")
     stdout_of("convert", "scene.toml", "shaft.toml", "--body-mass", "0.4 kg", "--force")
     scene = cf.load("scene.toml")

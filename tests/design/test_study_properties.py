@@ -14,6 +14,7 @@ import cuefem as cf
 from cuefem.cue.materials import material
 from cuefem.design import Levels, Normal, Response, Sample, Span, Study, Vary, evaluate
 from cuefem.endmass.definitions import DEFINITIONS
+from cuefem.measurements.predictions import predictions_of
 from cuefem.results.quantities import RESULTS
 from cuefem.results.solved_design import computable_results
 from studies.paper.closed_forms import natural_pivot_length
@@ -93,7 +94,7 @@ def singly(scene: cf.Scene, at: cf.Resolution | None) -> dict[str, float]:
         "end_mass": cf.end_mass(scene, at=at),
         "mass": scene.cue.mass,
         "shaft_mass": scene.cue.shaft_mass,
-        "balance_point": scene.cue.balance_point,
+        "balance_point": predictions_of(scene).balance_point,
         "frequency(1)": flexible[0],
         "frequency(3)": flexible[2],
         "squirt": cf.strike(scene, at).squirt,
