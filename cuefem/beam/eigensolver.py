@@ -32,9 +32,9 @@ LEADING, SPARE, ROUNDING = 2.2, 12, 1e-7
 class EigenSolution:
     """Mass-normalised modes of ascending frequency, those of the truncation correction last.
 
-    omega: (n,) rad/s. loads: (free, loads). felt: (loads, n), the work of each load on each mode. highest: rad/s, of
-    the retained modes. radiation: (k, k) of the k correction modes, 1/s; None without a correction. shapes: computes
-    the vectors.
+    omega: (n,) rad/s. loads: (free, loads). participation: (loads, n), the work of each load on each mode, 1/sqrt(kg).
+    highest: rad/s, of the retained modes. radiation: (k, k) of the k correction modes, 1/s; None without a correction.
+    shapes: computes the vectors.
     """
 
     omega: Array
@@ -51,11 +51,11 @@ class EigenSolution:
 
     def subset(self, index: NDArray[np.intp]) -> Self:
         """The modes of these indices, without a truncation correction."""
-        omega, felt = self.omega[index], self.participation[:, index]
+        omega = self.omega[index]
         return replace(
             self,
             omega=omega,
-            participation=felt,
+            participation=self.participation[:, index],
             highest=omega[-1],
             radiation=None,
             shapes=lambda: self.vectors[:, index],
@@ -72,37 +72,37 @@ def solve_eigenproblem(
     """
     if not isinstance(K, np.ndarray) and is_dense_faster(K.shape[0], count):
         K, M = K.toarray(), M.toarray()
-    taken = np.flatnonzero(loads[:, :corrected].any(axis=0))  # loads on clamped degrees of freedom are zero
+    corrected_loads = np.flatnonzero(loads[:, :corrected].any(axis=0))  # loads on clamped degrees of freedom are zero
     if isinstance(K, np.ndarray):
         form = _Tridiagonal(K, M, shift)
-        mu, z = form.eigen(rigid + count, leading=len(taken) == 1 and not loads[1:, taken].any())
-        felt, vectors = form.loads(loads)[: len(z)].T @ z, lambda mix: form.vectors(z @ mix)
+        mu, z = form.eigen(rigid + count, leading=len(corrected_loads) == 1 and not loads[1:, corrected_loads].any())
+        work, vectors = form.loads(loads)[: len(z)].T @ z, lambda mix: form.vectors(z @ mix)
     else:
-        mu, basis = _sparse(K, M, loads[:, taken], shift, rigid + count)
-        felt, vectors = loads.T @ basis, lambda mix: basis @ mix
+        mu, basis = _sparse(K, M, loads[:, corrected_loads], shift, rigid + count)
+        work, vectors = loads.T @ basis, lambda mix: basis @ mix
     last = rigid + int(np.sum(1 / mu[rigid : rigid + count] - shift <= below**2))
     if last == rigid and np.isinf(below):
-        raise np.linalg.LinAlgError("no mode has a frequency that is a number: check sizes and materials")
+        raise np.linalg.LinAlgError("the frequencies of all modes are NaN: check sizes and materials")
     # on a nearly vanishing support, the squared frequency is round-off error
     omega = np.sqrt(np.maximum(1 / mu[rigid:last] - shift, np.finfo(float).eps * shift))
-    mix = np.eye(len(mu), last)[:, rigid:] / np.sqrt(mu[rigid:last]) * np.where(felt[0, rigid:last] < 0, -1.0, 1.0)
+    mix = np.eye(len(mu), last)[:, rigid:] / np.sqrt(mu[rigid:last]) * np.where(work[0, rigid:last] < 0, -1.0, 1.0)
     highest, radiation = float(omega[-1]) if np.isinf(below) else below, None
-    if len(taken):
-        rest = truncation_correction(mu[last:], felt[taken, last:].T, shift=shift, highest=highest)
+    if len(corrected_loads):
+        rest = truncation_correction(mu[last:], work[corrected_loads, last:].T, shift=shift, highest=highest)
         omega, radiation = np.append(omega, rest.omega), rest.radiation
         mix = np.concatenate([mix, np.concatenate([np.zeros((last, len(rest.omega))), rest.mix])], axis=1)
-    return EigenSolution(omega, loads, felt @ mix, highest, radiation, lambda: vectors(mix))
+    return EigenSolution(omega, loads, work @ mix, highest, radiation, lambda: vectors(mix))
 
 
 def _sparse(K: Any, M: Any, loads: Array, shift: float, count: int) -> tuple[Array, Array]:
-    """(mu, q), q' (K + shift M) q = 1, of the ``count`` lowest modes, then of a few that replace all others.
+    """(mu, q), q' (K + shift M) q = 1, of the ``count`` lowest modes, then of a few vectors that replace all others.
 
     These are Ritz vectors of the static deflections under the loads, and under the inertia of those, orthogonal to the
     modes. A truncation correction is the same with them as with all other modes.
     """
     from scipy.sparse.linalg import eigsh, splu
 
-    start = np.ones(K.shape[0])  # a fixed start, so that the same input gives the same numbers
+    start = np.ones(K.shape[0])  # a fixed start, so that results are reproducible
     squares, vectors = eigsh(K, count, M, sigma=-shift, v0=start)
     order = np.argsort(squares)
     mu, vectors = 1 / (squares[order] + shift), vectors[:, order]
@@ -130,44 +130,47 @@ class _Tridiagonal:
     def __init__(self, K: Array, M: Array, shift: float) -> None:
         # a symmetric array copied by rows has LAPACK's order when transposed; each step overwrites its input, because
         # fresh memory costs a quarter of the time
-        self.shift, self.upper, heavy = shift, K[::-1, ::-1].copy().T, M[::-1, ::-1].copy().T
-        heavy *= shift
-        self.upper += heavy
-        _done(lapack.dpotrf(self.upper, lower=0, clean=0, overwrite_a=1))
-        _done(lapack.dsygst(heavy, self.upper, lower=0, overwrite_a=1))
-        size, whole = len(M), heavy.T[::-1, ::-1].copy().T
+        self.shift, self.upper, inertia = shift, K[::-1, ::-1].copy().T, M[::-1, ::-1].copy().T
+        inertia *= shift
+        self.upper += inertia
+        _checked(lapack.dpotrf(self.upper, lower=0, clean=0, overwrite_a=1))
+        _checked(lapack.dsygst(inertia, self.upper, lower=0, overwrite_a=1))
+        size, matrix = len(M), inertia.T[::-1, ::-1].copy().T
         # wider blocks take longer for matrices of this size
-        found = _done(lapack.dsytrd(whole, lower=1, lwork=10 * size, overwrite_a=1))
+        found = _checked(lapack.dsytrd(matrix, lower=1, lwork=10 * size, overwrite_a=1))
         _, self.diagonal, self.off, self.tau = found
-        self.reflectors = whole.T.ravel()[1 : 1 + size * (size - 1)].reshape(size - 1, size).T  # whole[1:], unmoved
+        self.reflectors = (
+            matrix.T.ravel()[1 : 1 + size * (size - 1)].reshape(size - 1, size).T
+        )  # matrix[1:], not copied
 
     def eigen(self, count: int, *, leading: bool) -> tuple[Array, Array]:
-        """(mu, y) with descending mu, (m,), (m, m), of the whole or the leading part; the first ``count`` are exact."""
+        """(mu, y), (m,) and (m, m), mu descending, of the matrix or its leading part; the first ``count`` are exact."""
         size = len(self.diagonal)
         part = min(int(LEADING * count) + SPARE, size) if leading else size
-        mu, y = (each[..., ::-1] for each in _done(lapack.dstevd(self.diagonal[:part], self.off[: part - 1])))
+        mu, y = (each[..., ::-1] for each in _checked(lapack.dstevd(self.diagonal[:part], self.off[: part - 1])))
         if part < size and np.any(abs(self.off[part - 1] * y[-1, :count]) > ROUNDING * mu[:count]):
             return self.eigen(count, leading=False)
         return mu / self.shift, y
 
     def loads(self, loads: Array) -> Array:
         """y of loads (free, k): Q' U'^-1 loads."""
-        y = _done(lapack.dtrtrs(self.upper, loads[::-1], trans=1))[::-1].copy()
-        return self._turned(y, "T")
+        y = _checked(lapack.dtrtrs(self.upper, loads[::-1], trans=1))[::-1].copy()
+        return self._apply_reflectors(y, "T")
 
     def vectors(self, y: Array) -> Array:
         """q (free, k) of y (rows of the leading part, k): U^-1 Q y."""
-        whole = np.zeros((len(self.upper), y.shape[1]))
-        whole[: len(y)] = y
-        return np.asarray(_done(lapack.dtrtrs(self.upper, self._turned(whole, "N")[::-1]))[::-1])
+        padded = np.zeros((len(self.upper), y.shape[1]))
+        padded[: len(y)] = y
+        return np.asarray(_checked(lapack.dtrtrs(self.upper, self._apply_reflectors(padded, "N")[::-1]))[::-1])
 
-    def _turned(self, y: Array, trans: str) -> Array:
+    def _apply_reflectors(self, y: Array, trans: str) -> Array:
+        """Q y, or Q' y if ``trans`` is "T"; y is overwritten."""
         if len(y) > 1 and y.shape[1]:
             y[1:] = lapack.dormqr("L", trans, self.reflectors, self.tau, y[1:], 64 * y.shape[1])[0]
         return y
 
 
-def _done(answer: tuple[Any, ...]) -> Any:
+def _checked(answer: tuple[Any, ...]) -> Any:
     """The outputs of a LAPACK routine; LinAlgError if it failed."""
     *found, failed = answer
     if failed:

@@ -1,4 +1,4 @@
-"""Bending modes of a cue: the eigenproblem."""
+"""Bending modes of a cue."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tip modes: the motion of a cue's modes at the tip, which determines an impact. This file needs numpy alone."""
+"""Tip modes: the motion of a cue's modes at the tip, which determines an impact. This file imports only numpy."""
 
 from __future__ import annotations
 
@@ -115,8 +115,8 @@ def free_tip_modes(omega: Array, deflection: Array, rotation: Array, axial_mass:
 def side_modes(bending: Modes) -> TipModes:
     """Modes at the contact of a body that strikes the resting beam from the side, at the node of the modes' loads.
 
-    The first direction of the contact is that of the body's rebound, opposite to the deflection w of the beam; the
-    second does not move.
+    The first direction of the contact is that of the body's rebound, opposite to the deflection w of the beam; in the
+    second the beam does not move.
     """
     deflection, turning = bending.at_tip
     omega = np.concatenate([np.zeros(bending.rigid), bending.omega])
@@ -126,7 +126,7 @@ def side_modes(bending: Modes) -> TipModes:
 
 
 def _resistances(bending: Modes, count: int) -> tuple[Array | None, Array | None]:
-    """Damping by dashpots and radiation of ``count`` modes, of which the ``bending`` ones are the last."""
+    """Damping by dashpots, and radiation, (n, n), 1/s, of ``count`` modes, the last of which are ``bending``."""
     damping = None
     if bending.system.dashpots is not None:
         vectors = np.concatenate([bending.rigid_vectors, bending.vectors], axis=1)

@@ -32,9 +32,10 @@ class TruncationCorrection(NamedTuple):
 def truncation_correction(mu: Array, participation: Array, *, shift: float, highest: float) -> TruncationCorrection:
     """Correction for the truncated modes, from their mu = 1/(omega^2 + shift), descending, and their participation.
 
-    felt: (modes, loads), the work of the loads on the modes, with q' (K + shift M) q = 1. `LANCZOS_STEPS` Lanczos steps
-    from the static deflections match the first moments of the flexibility in mu. The chain ends in a dashpot, like a
-    matched transmission line: waves above the ``highest`` retained frequency, rad/s, leave the tip without reflection.
+    participation: (modes, loads), the work of the loads on the modes, with q' (K + shift M) q = 1. `LANCZOS_STEPS`
+    Lanczos steps from the static deflections match the first moments of the flexibility in mu. The chain ends in a
+    dashpot, like a matched transmission line: waves above the ``highest`` retained frequency, rad/s, leave the tip
+    without reflection.
     """
     weights = mu[:, None]
     basis = np.linalg.qr(np.concatenate([weights**step * participation for step in range(LANCZOS_STEPS)], axis=1))[0]

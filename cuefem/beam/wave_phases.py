@@ -1,4 +1,4 @@
-"""Phases of the bending waves on each segment: the mesh that resolves them, and the number of modes they make."""
+"""Phases of the bending waves on each segment: the mesh that resolves them, and the number of modes."""
 
 from __future__ import annotations
 

@@ -34,29 +34,29 @@ class _PointTerms:
     """What effects add at nodes ``x`` of the mesh; a joint has two nodes, and other terms act on the butt side's."""
 
     def __init__(self, cue: Cue, basis: Basis, x: Array) -> None:
-        self.cue, self.x, self.unknowns = cue, x, basis.nodal_dofs.T  # (nodes, 2): w, theta
+        self.cue, self.x, self.dofs = cue, x, basis.nodal_dofs.T  # (nodes, 2): w, theta
         size = basis.N
         self.stiffness, self.mass, self.dashpot = (sp.lil_matrix((size, size)) for _ in range(3))
         self.source = np.arange(size)  # the degree of freedom that each is equal to; -1 where clamped
 
     def at(self, x: float) -> Any:
         """Degrees of freedom (w, theta) of the nodes at ``x``: (1 or 2, 2)."""
-        return self.unknowns[abs(self.x - x) < POSITION_TOLERANCE * self.cue.length]
+        return self.dofs[abs(self.x - x) < POSITION_TOLERANCE * self.cue.length]
 
     def add(self, x: float, kind: str, *values: float) -> None:
         """Springs, masses or dashpots to the ground, for deflection and rotation; inf clamps."""
-        for unknown, value in zip(self.at(x)[-1], values, strict=True):
+        for dof, value in zip(self.at(x)[-1], values, strict=True):
             if np.isinf(value):
-                self.source[unknown] = -1
+                self.source[dof] = -1
             else:
-                getattr(self, kind)[unknown, unknown] += value
+                getattr(self, kind)[dof, dof] += value
 
     def join(self, x: float, *compliances: float) -> None:
         """Springs between the two sides of a joint; no jump if the compliance is negligible."""
         section = self.cue.section(min(x, self.cue.length))
         stiffness = (section.kGA, section.EI)
-        for (before, after), compliance, own in zip(self.at(x).T, compliances, stiffness, strict=True):
-            if compliance * own > MIN_COMPLIANCE * self.cue.length:
+        for (before, after), compliance, rigidity in zip(self.at(x).T, compliances, stiffness, strict=True):
+            if compliance * rigidity > MIN_COMPLIANCE * self.cue.length:
                 self.stiffness[np.ix_([before, after], [before, after])] += np.array([[1, -1], [-1, 1]]) / compliance
             else:
                 self.source[before] = after
@@ -72,7 +72,7 @@ def assemble(
     x = np.sort(np.append(nodes, [split for effect in effects for split in effect.splits]))
     elements = np.flatnonzero(np.diff(x) > POSITION_TOLERANCE * cue.length)
     mesh = MeshLine(x[None], np.array([elements, elements + 1]))
-    # a taper's EI has degree 4
+    # EI of a solid cone has degree 4
     basis = Basis(mesh, ElementLinePp(order + 1) * ElementLinePp(order), intorder=2 * order + 6)
     fields = cue.section(np.asarray(basis.global_coordinates())[0])._asdict()
     points = _PointTerms(cue, basis, x)
@@ -81,8 +81,11 @@ def assemble(
     clamped = points.source < 0
     free, column = np.unique(points.source[~clamped], return_inverse=True)
     spread = sp.csc_matrix((np.ones(len(column)), (np.flatnonzero(~clamped), column)), (basis.N, len(free)))
-    own = {name: fields[name] for name in ("EI", "kGA", "rhoA", "rhoI")}
-    K, M = stiffness.assemble(basis, **own) + points.stiffness, inertia.assemble(basis, **own) + points.mass
+    coefficients = {name: fields[name] for name in ("EI", "kGA", "rhoA", "rhoI")}
+    K, M = (
+        stiffness.assemble(basis, **coefficients) + points.stiffness,
+        inertia.assemble(basis, **coefficients) + points.mass,
+    )
     return sp.csc_matrix(spread.T @ K @ spread), sp.csc_matrix(spread.T @ M @ spread)
 
 

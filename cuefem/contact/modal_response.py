@@ -91,7 +91,7 @@ class ModalPropagator:
         return np.asarray((self.dampers @ self.velocities).T)
 
     def dissipated(self, xi: Complex, lengths: Array) -> Array:
-        """Energy lost, and radiated, in each of n steps, (n, 2), J; xi: (n + 1, coordinates), before and after them.
+        """Energy dissipated, and radiated, in each of n steps, (n, 2), J; xi: (n + 1, coordinates), before and after them.
 
         The dampers' velocities are parabolas with the values v, w at the ends of a step and the mean m over it, whose
         squares have the mean (4 v^2 + 4 w^2 - 2 v w)/30 + m (6 m - v - w)/5. Under constant loads the mean of xi is
@@ -100,14 +100,14 @@ class ModalPropagator:
         ends, means = (xi @ self._damped).real, np.zeros((len(lengths), len(self.dampers)))
         for length in np.unique(lengths[lengths > 0]):
             here = np.flatnonzero(lengths == length)
-            turned, first, second = phi_functions(self.eigenvalues * length)
-            before, after = (first - turned * second / first)[:, None], (second / first)[:, None]
+            exp_z, phi_1, phi_2 = phi_functions(self.eigenvalues * length)
+            before, after = (phi_1 - exp_z * phi_2 / phi_1)[:, None], (phi_2 / phi_1)[:, None]
             means[here] = (xi[here] @ (before * self._damped) + xi[here + 1] @ (after * self._damped)).real
         v, w = ends[:-1], ends[1:]
         squares = (4 * v**2 + 4 * w**2 - 2 * v * w) / 30 + means * (6 * means - v - w) / 5
         squares *= lengths[:, None]
-        lost, radiated = np.split(squares, [self.n_dissipative], axis=1)
-        return np.column_stack([lost.sum(axis=1), radiated.sum(axis=1)])
+        dissipated, radiated = np.split(squares, [self.n_dissipative], axis=1)
+        return np.column_stack([dissipated.sum(axis=1), radiated.sum(axis=1)])
 
 
 def phi_functions(z: Complex) -> tuple[Complex, Complex, Complex]:

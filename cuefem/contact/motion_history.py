@@ -1,8 +1,8 @@
 """Motion of cue and ball at any time of a strike and after it.
 
-Over a step the contact's forces are constant and the modes answer them exactly, so the motion is known at every time
-from the states at the ends of the steps.
-Coordinates: u along the cue in the direction of the stroke and w across it, on the side that is struck at a positive
+Over a step the contact's forces are constant and the modal response is exact, so that the states at the ends of steps
+determine the motion at every time.
+Coordinates: u axial in the direction of the stroke and w lateral, positive on the side that is struck at a positive
 offset; their origin is the tip's centre at first touch.
 """
 
@@ -36,11 +36,11 @@ class Motion:
     times : (n,) array
         Times from first touch, s.
     duration : float
-        When the last contact ends, s.
+        End of the last contact, s.
     modes : Modes
         The bending modes of the cue.
-    fields : (unknowns, n) array
-        The beam's motion, in the unknowns of ``modes``; `deflection` reads it anywhere.
+    fields : (free, n) array
+        The beam's motion, in the degrees of freedom of ``modes``; `deflection` interpolates it.
     along : (n,) array
         Axial displacement of the tip, m, with axial waves (`AxialWaves`) and the shortening of the bent shaft
         (`GeometricStiffness`); neither is resolved along the shaft.
@@ -99,14 +99,14 @@ def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Moti
     Raises
     ------
     ValueError
-        For a lumped cue, which has no shape; for a raised cue (`Elevation`), which moves out of the plane; for times
-        that do not ascend.
+        For a lumped cue, which has no shape; for a raised cue (`Elevation`), whose motion is not planar; for times that
+        do not ascend.
 
     Notes
     -----
-    u points along the cue in the direction of the stroke and w across it, to the side that is struck at a positive
-    offset; the origin is the tip's centre at first touch. The modes are integrated exactly between the contact's
-    forces, so that the motion is as accurate as the strike at every time.
+    u is axial in the direction of the stroke and w lateral, positive on the side that is struck at a positive offset;
+    the origin is the tip's centre at first touch. The modes are integrated exactly over each step, so that the motion
+    is as accurate as the strike at every time.
 
     Examples
     --------
@@ -126,7 +126,7 @@ def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Moti
     solved = SolvedScene(scene, at)
     bending, tip = solved.modes, solved.tip
     contact = solve_contact(model_of(scene, tip), steps=steps_of(at), keep_states=True)
-    return _read(scene, bending, tip, solved=contact, times=times)
+    return _motion_of(scene, bending, tip, solved=contact, times=times)
 
 
 def ascending(times: ArrayLike) -> Array:
@@ -137,27 +137,27 @@ def ascending(times: ArrayLike) -> Array:
     return times
 
 
-def _read(scene: Scene, bending: Modes, tip: TipModes, *, solved: SolvedContact, times: Array) -> Motion:
+def _motion_of(scene: Scene, bending: Modes, tip: TipModes, *, solved: SolvedContact, times: Array) -> Motion:
     phi, side = solved.model.phi, math.copysign(1.0, scene.stroke.offset)
     tangent, normal = np.array([math.sin(phi), math.cos(phi)]), np.array([math.cos(phi), -math.sin(phi)])
     modes, ball = _path(solved, times)
     vectors, across = _bending(bending, tip)
-    R, pressed = scene.ball.radius, solved.steps["length"] > 0
-    aside, back = scene.contact_terms.moment_arm(phi)  # where on the cue's end the contact lies
-    centre = R * normal + [-back, aside] + ball[:, :2] @ np.array([tangent, normal])
+    R, in_contact = scene.ball.radius, solved.steps["length"] > 0
+    u, w = scene.contact_terms.moment_arm(phi)  # of the contact per unit rotation of the end: it lies at (-w, u)
+    centre = R * normal + [-w, u] + ball[:, :2] @ np.array([tangent, normal])
     angle = phi + np.interp(times, np.append(0.0, solved.steps["time"]), np.append(0.0, solved.steps["angle"]))
     s, c, force = np.sin(angle), np.cos(angle), np.zeros((2, len(times)))
-    if pressed.any():
+    if in_contact.any():
         history = solved.history(np.minimum(times, solved.time))
         force = np.where(times < solved.time, [side * history["force_t"], history["force_n"]], 0.0)
     F_t, F_n = force
-    shorter = 0.0 if tip.geometric is None else np.einsum("it,ij,jt->t", modes, tip.geometric, modes) / 2
+    shortening = 0.0 if tip.geometric is None else np.einsum("it,ij,jt->t", modes, tip.geometric, modes) / 2
     return Motion(
         times,
         solved.time,
         bending,
         fields=side * vectors @ modes[across],
-        along=tip.amplitude[:, 0] @ modes - shorter,
+        along=tip.amplitude[:, 0] @ modes - shortening,
         centre=centre * [1.0, side],
         turned=-side * ball[:, 2] / R,
         force=np.column_stack([s * F_t + c * F_n, side * (c * F_t - s * F_n)]),
@@ -165,7 +165,7 @@ def _read(scene: Scene, bending: Modes, tip: TipModes, *, solved: SolvedContact,
 
 
 def _bending(bending: Modes, tip: TipModes) -> tuple[Array, Any]:
-    """Vectors of the bending modes, (unknowns, k), and which of the tip modes they are."""
+    """Vectors of the bending modes, (free, k), and their indices among the tip modes."""
     vectors = np.concatenate([bending.rigid_vectors, bending.vectors], axis=1)
     columns = np.argsort(np.concatenate([np.zeros(bending.rigid), bending.omega]), kind="stable")
     across = np.flatnonzero(tip.amplitude[:, 0] == 0)
@@ -173,32 +173,32 @@ def _bending(bending: Modes, tip: TipModes) -> tuple[Array, Any]:
 
 
 def _path(solved: SolvedContact, times: Array) -> tuple[Array, Array]:
-    """The modes' displacements, (modes, times), and the way of the ball along each of its velocities, m, (times, n).
+    """Displacements of the modes, (modes, times), and of the ball along each of its velocities, m, (times, n).
 
     Under a load that is constant over a step of length h, xi = exp(rate t) xi_0 + a (exp(rate t) - 1)/rate, and its
-    integral follows; a is known from xi at the step's end. After the contact cue and ball fly freely.
+    integral follows; a follows from xi at the step's end. After the contact cue and ball move freely.
     """
     assert solved.states is not None
     p, model, steps = solved.model.propagator, solved.model, solved.steps
     ends, rigid = np.append(0.0, steps["time"]), p.omega == 0
-    lengths, pressed = np.append(steps["length"], 0.0), np.flatnonzero(steps["length"])
-    which = np.searchsorted(ends, times, side="right") - 1  # the step of each time; behind the last, the flight
-    t, h = (times - ends[which])[:, None], lengths[pressed, None]
+    lengths, nonzero = np.append(steps["length"], 0.0), np.flatnonzero(steps["length"])
+    step = np.searchsorted(ends, times, side="right") - 1  # the step of each time; after the last, free motion
+    t, h = (times - ends[step])[:, None], lengths[nonzero, None]
     balls = np.vstack([model.ball, steps["ball"][:, : len(model.ball)]])
-    loads, pulls = np.zeros_like(solved.states), np.zeros_like(balls)
-    turned, first, _ = phi_functions(p.eigenvalues * h)
-    loads[pressed] = (solved.states[pressed + 1] - turned * solved.states[pressed]) / (h * first)
-    pulls[pressed] = (balls[pressed + 1] - balls[pressed]) / h
-    xi, summed = _driven(solved.states[which], loads[which], p.eigenvalues, t)
+    loads, accelerations = np.zeros_like(solved.states), np.zeros_like(balls)
+    exp_z, phi_1, _ = phi_functions(p.eigenvalues * h)
+    loads[nonzero] = (solved.states[nonzero + 1] - exp_z * solved.states[nonzero]) / (h * phi_1)
+    accelerations[nonzero] = (balls[nonzero + 1] - balls[nonzero]) / h
+    xi, integral = _driven(solved.states[step], loads[step], p.eigenvalues, t)
     before = _driven(solved.states[:-1], loads[:-1], p.eigenvalues, lengths[:-1, None])[1] @ p.velocities[rigid].T
-    gone = np.vstack([np.zeros(int(rigid.sum())), np.cumsum(before.real, axis=0)])
-    ways = np.vstack([0 * balls[:1], np.cumsum(lengths[:-1, None] * (balls[1:] + balls[:-1]) / 2, axis=0)])
+    rigid_displacements = np.vstack([np.zeros(int(rigid.sum())), np.cumsum(before.real, axis=0)])
+    travelled = np.vstack([0 * balls[:1], np.cumsum(lengths[:-1, None] * (balls[1:] + balls[:-1]) / 2, axis=0)])
     displaced = (xi @ p.displacements.T).real / np.where(rigid, 1.0, p.omega)
-    displaced[:, rigid] = gone[which] + (summed @ p.velocities[rigid].T).real
-    return displaced.T, ways[which] + t * (balls[which] + t * pulls[which] / 2)
+    displaced[:, rigid] = rigid_displacements[step] + (integral @ p.velocities[rigid].T).real
+    return displaced.T, travelled[step] + t * (balls[step] + t * accelerations[step] / 2)
 
 
-def _driven(xi: Complex, loads: Complex, rates: Complex, t: Array) -> tuple[Complex, Complex]:
+def _driven(xi: Complex, loads: Complex, eigenvalues: Complex, t: Array) -> tuple[Complex, Complex]:
     """Coordinates after times t, (n, 1), from ``xi`` under constant loads, and their integrals, (n, coordinates)."""
-    turned, first, second = phi_functions(rates * t)
-    return turned * xi + t * first * loads, t * first * xi + t**2 * second * loads
+    exp_z, phi_1, phi_2 = phi_functions(eigenvalues * t)
+    return exp_z * xi + t * phi_1 * loads, t * phi_1 * xi + t**2 * phi_2 * loads

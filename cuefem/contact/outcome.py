@@ -89,7 +89,7 @@ class History:
 
     @property
     def duration(self) -> float:
-        """When the last contact ends, s."""
+        """End of the last contact, s."""
         return float(self.ends[-1])
 
     def __call__(self, time: ArrayLike) -> dict[str, Array]:
@@ -133,19 +133,19 @@ def slips_at_end(outcome: Outcome) -> bool:
 
 
 def _slip_shares(phases: Sequence[Phase]) -> tuple[float, float]:
-    """Shares of the normal impulse during slip: in all, and without a break up to the end."""
-    given = [(phase.state in SLIP_STATES, abs(phase.impulse[1])) for phase in phases]
-    whole = sum(impulse for _, impulse in given) or 1.0
-    last = takewhile(lambda each: each[0] or each[1] < 1e-3 * whole, reversed(given))
-    return sum(impulse for slips, impulse in given if slips) / whole, sum(impulse for _, impulse in last) / whole
+    """Shares of the normal impulse during slip: in total, and without interruption up to the end."""
+    slips = [(phase.state in SLIP_STATES, abs(phase.impulse[1])) for phase in phases]
+    total = sum(impulse for _, impulse in slips) or 1.0
+    last = takewhile(lambda each: each[0] or each[1] < 1e-3 * total, reversed(slips))
+    return sum(impulse for slip, impulse in slips if slip) / total, sum(impulse for _, impulse in last) / total
 
 
 def end_of_first_slip(phases: Sequence[Phase]) -> str:
-    """How the slip at first touch ended, by the regimes of the impulse solver."""
+    """End of the slip at first touch, as a regime of the impulse solver."""
     first_touch = list(takewhile(lambda phase: phase[:2] != SEPARATION, phases))
-    held = next((i for i, phase in enumerate(first_touch) if phase.state != "slip"), None)
-    if held is None:
+    first_other = next((i for i, phase in enumerate(first_touch) if phase.state != "slip"), None)
+    if first_other is None:
         return "miscue"
-    if first_touch[held].state == "slip back":
+    if first_touch[first_other].state == "slip back":
         return "slip reversal"
-    return "stick" if all(phase.normal_phase == "load" for phase in first_touch[: held + 1]) else "late stick"
+    return "stick" if all(phase.normal_phase == "load" for phase in first_touch[: first_other + 1]) else "late stick"
