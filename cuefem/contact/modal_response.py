@@ -91,7 +91,7 @@ class ModalPropagator:
         return np.asarray((self.dampers @ self.velocities).T)
 
     def dissipated(self, xi: Complex, lengths: Array) -> Array:
-        """Energy dissipated, and radiated, in each of n steps, (n, 2), J; xi: (n + 1, coordinates), before and after them.
+        """Energy dissipated and radiated in each of n steps, (n, 2), J; xi: (n + 1, coordinates), at their ends.
 
         The dampers' velocities are parabolas with the values v, w at the ends of a step and the mean m over it, whose
         squares have the mean (4 v^2 + 4 w^2 - 2 v w)/30 + m (6 m - v - w)/5. Under constant loads the mean of xi is

@@ -175,8 +175,8 @@ def _bending(bending: Modes, tip: TipModes) -> tuple[Array, Any]:
 def _path(solved: SolvedContact, times: Array) -> tuple[Array, Array]:
     """Displacements of the modes, (modes, times), and of the ball along each of its velocities, m, (times, n).
 
-    Under a load that is constant over a step of length h, xi = exp(rate t) xi_0 + a (exp(rate t) - 1)/rate, and its
-    integral follows; a follows from xi at the step's end. After the contact cue and ball move freely.
+    Under a load that is constant over a step of length h, xi = exp(s t) xi_0 + a (exp(s t) - 1)/s with the eigenvalue
+    s, and its integral follows; a follows from xi at the step's end. After the contact cue and ball move freely.
     """
     assert solved.states is not None
     p, model, steps = solved.model.propagator, solved.model, solved.steps
