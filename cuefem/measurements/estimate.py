@@ -18,11 +18,14 @@ from cuefem.measurements.measured_cue import MeasuredCue, Residual, Track, resid
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Squirt
 from cuefem.measurements.outliers import DETECTABLE, OUTLIER_FACTOR, posterior
 
-MAX_STEPS, CONVERGED = 12, 0.05  # steps at most; length of a step, in standard deviations of the result, that ends them
-MAX_OUTLIER_STEPS = 6  # steps at most of the search that counts contradictions less
+MAX_ITERATIONS = 12
+STEP_TOLERANCE = (
+    0.05  # length of a step, in standard deviations of the posterior, below which the estimate has converged
+)
+MAX_OUTLIER_ITERATIONS = 6  # of the search that reduces the weight of contradictory measurements
 MAX_HALVINGS = 6
-LONGEST_STEP = 1.5  # standard deviations of the priors, a step
-TARGET_OFFSET = 0.3  # b/R of the squirt that is predicted where the scene has no offset
+MAX_STEP = 1.5  # standard deviations of the priors
+TARGET_OFFSET = 0.3  # b/R of the predicted squirt, if the scene has no offset
 
 
 class EstimatedParameter(NamedTuple):
@@ -69,10 +72,11 @@ class UncheckedMeasurement(NamedTuple):
 class Estimate:
     """The uncertain parameters of a cue after its measurements.
 
-    z: (parameters,) mean, in standard deviations of the priors. covariance: (parameters, parameters). computed: (n,)
-    values of the measurements there. slopes: (n, parameters). misfit: the least sum of squares of the residuals and the
-    priors, every measurement in full. converged: whether the last step was short. outlier_probability: (n,)
-    the probability of each measurement that its error is far larger than stated.
+    z: (parameters,) posterior mean, in standard deviations of the priors. covariance: (parameters, parameters), of z.
+    computed: (n,) values of the measurements at z, SI. slopes: (n, parameters), their derivatives with respect to z.
+    misfit: the least sum of squares of the residuals and of z, at full weights. converged: whether
+    the last step was below `STEP_TOLERANCE`. outlier_probability: (n,) that the error of a measurement is far larger
+    than stated.
     """
 
     cue: MeasuredCue
@@ -108,8 +112,8 @@ class Estimate:
         made = []
         for i, measurement in enumerate(self.cue.measurements):
             others = np.arange(len(J)) != i
-            foreseen = J[i] @ np.linalg.solve(J[others].T @ J[others] + np.eye(len(self.z)), J[i])
-            if DETECTABLE**2 * (1 + foreseen) > OUTLIER_FACTOR**2:
+            predicted_variance = J[i] @ np.linalg.solve(J[others].T @ J[others] + np.eye(len(self.z)), J[i])
+            if DETECTABLE**2 * (1 + predicted_variance) > OUTLIER_FACTOR**2:
                 mean, covariance, _ = posterior(J[others], residuals[others])
                 largest = int(np.argmax(np.diag(covariance) / np.diag(self.covariance)))
                 made.append(UncheckedMeasurement(measurement, self._values(mean, covariance)[largest]))
@@ -133,7 +137,7 @@ class Estimate:
         return at, bare.jacobian(self.z, others)
 
     def next_measurements(self) -> tuple[InformationGain, ...]:
-        """Information gain of each further measurement, the most informative about squirt first.
+        """Information gain of each candidate measurement, the one with the least error of squirt first.
 
         Each is assumed to have the predicted value; it may also check the existing ones.
         """
@@ -144,12 +148,14 @@ class Estimate:
         made = []
         for measurement, slope in zip(others, slopes[1:] / [[measurement.sd] for measurement in others], strict=True):
             after = posterior(np.vstack([J, slope]), np.append(residuals, slope @ self.z)).covariance
-            left = np.sqrt(np.diag(after) / np.diag(self.covariance))
-            i = int(np.argmin(left))
+            error_ratios = np.sqrt(np.diag(after) / np.diag(self.covariance))
+            i = int(np.argmin(error_ratios))
             bits = 0.5 / np.log(2) * (np.linalg.slogdet(self.covariance)[1] - np.linalg.slogdet(after)[1])
             relative = float(np.sqrt(slopes[0] @ after @ slopes[0])) / abs(float(at[0]))
             made.append(
-                InformationGain(measurement, float(bits), self.cue.parameters[i].label, float(left[i]), relative)
+                InformationGain(
+                    measurement, float(bits), self.cue.parameters[i].label, float(error_ratios[i]), relative
+                )
             )
         return tuple(sorted(made, key=lambda gain: gain.relative_squirt_error))
 
@@ -168,7 +174,7 @@ def estimate(cue: MeasuredCue, *, track: Track = iter) -> Estimate:
     cue : MeasuredCue
         At least one measurement.
     track : callable, optional
-        Follows the steps.
+        Iterates over the steps with a progress bar.
 
     Returns
     -------
@@ -193,16 +199,16 @@ def estimate(cue: MeasuredCue, *, track: Track = iter) -> Estimate:
     z = np.zeros(len(cue.parameters))
     at = cue.computed(z)
     cost, converged = _cost(z, (measured - at) / sd), False
-    for _ in track(range(MAX_STEPS)):
+    for _ in track(range(MAX_ITERATIONS)):
         if converged:
             continue  # a progress bar runs to its end
         J = cue.jacobian(z) / sd[:, None]
-        inverse = J.T @ J + np.eye(len(z))
-        step = np.linalg.solve(inverse, J.T @ ((measured - at) / sd) - z)
-        converged = float(np.sqrt(step @ inverse @ step)) < CONVERGED
+        precision = J.T @ J + np.eye(len(z))
+        step = np.linalg.solve(precision, J.T @ ((measured - at) / sd) - z)
+        converged = float(np.sqrt(step @ precision @ step)) < STEP_TOLERANCE
         if converged:
             continue
-        best = _lowest(cue, z, _limited(step), cost, measured, sd)
+        best = _line_search(cue, z, _limited(step), cost, measured, sd)
         if best is None:
             break
         z, at, cost = best
@@ -211,17 +217,17 @@ def estimate(cue: MeasuredCue, *, track: Track = iter) -> Estimate:
 
 def _reweighted(cue: MeasuredCue, z: Array, at: Array, misfit: float) -> Estimate:
     """The estimate about a start, in which a measurement that contradicts the others has less weight."""
-    for last in range(1, MAX_OUTLIER_STEPS + 1):
+    for last in range(1, MAX_OUTLIER_ITERATIONS + 1):
         slopes = cue.jacobian(z)
-        mean, covariance, wrong = posterior(*_scaled(cue, z, at, slopes))
+        mean, covariance, outlier_probability = posterior(*_scaled(cue, z, at, slopes))
         step = mean - z
-        converged = float(np.sqrt(step @ np.linalg.solve(covariance, step))) < CONVERGED
-        if converged or last == MAX_OUTLIER_STEPS:
+        converged = float(np.sqrt(step @ np.linalg.solve(covariance, step))) < STEP_TOLERANCE
+        if converged or last == MAX_OUTLIER_ITERATIONS:
             break
-        ways = (z + _limited(step) / 2**halving for halving in range(MAX_HALVINGS))
-        possible = ((there, computed) for there in ways if (computed := cue.computed_or_none(there)) is not None)
-        z, at = next(possible, (z, at))
-    return Estimate(cue, z, covariance, at, slopes, misfit, converged, wrong)
+        trials = (z + _limited(step) / 2**halving for halving in range(MAX_HALVINGS))
+        valid = ((trial, computed) for trial in trials if (computed := cue.computed_or_none(trial)) is not None)
+        z, at = next(valid, (z, at))
+    return Estimate(cue, z, covariance, at, slopes, misfit, converged, outlier_probability)
 
 
 def _scaled(cue: MeasuredCue, z: Array, at: Array, slopes: Array) -> tuple[Array, Array]:
@@ -232,11 +238,11 @@ def _scaled(cue: MeasuredCue, z: Array, at: Array, slopes: Array) -> tuple[Array
 
 
 def _limited(step: Array) -> Array:
-    """A step of at most `LONGEST_STEP` in any parameter."""
-    return step * min(1.0, LONGEST_STEP / max(float(np.abs(step).max()), 1e-12))
+    """A step of at most `MAX_STEP` in any parameter."""
+    return step * min(1.0, MAX_STEP / max(float(np.abs(step).max()), 1e-12))
 
 
-def _lowest(
+def _line_search(
     cue: MeasuredCue, z: Array, step: Array, cost: float, measured: Array, sd: Array
 ) -> tuple[Array, Array, float] | None:
     """Line search: the lowest point along a step, halved while the cost decreases; None if none is below ``cost``.
@@ -245,15 +251,16 @@ def _lowest(
     """
     best = None
     for halving in range(MAX_HALVINGS):
-        there = z + step / 2**halving
-        lowest = cue.computed_or_none(there)
-        after = np.inf if lowest is None else _cost(there, (measured - lowest) / sd)
-        if lowest is not None and after < (cost if best is None else best[2]):
-            best = there, lowest, after
+        trial = z + step / 2**halving
+        computed = cue.computed_or_none(trial)
+        after = np.inf if computed is None else _cost(trial, (measured - computed) / sd)
+        if computed is not None and after < (cost if best is None else best[2]):
+            best = trial, computed, after
         elif best is not None:
             break
     return best
 
 
 def _cost(z: Array, r: Array) -> float:
+    """Sum of squares of scaled residuals and of z."""
     return float(r @ r + z @ z)

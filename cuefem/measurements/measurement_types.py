@@ -19,20 +19,20 @@ POSITIVE = "(0, inf)"
 PARTS = ("shaft", "cue")
 INCH = 0.0254
 FREQUENCY_MODEL_ERROR = 2e-3  # relative, of a natural frequency: diameters to 0.1 %, uneven grain, the beam
-# What one can reach with simple means, for advice on what to measure next.
+# Errors (1 sigma) of simple instruments: of the candidates for the next measurement.
 SCALE_ERROR = 0.5e-3  # kg, of a kitchen scale
 STIFFNESS_ERROR = 0.02  # relative, of a static stiffness: a kitchen scale and a dial gauge
 BALANCE_ERROR = 1e-3  # m, of a balance point
 SQUIRT_ERROR = 8.7e-4  # rad, 0.05 degrees: the mean of some shots on either side
 END_MASS_ERROR = 0.03  # relative, of a pendulum test: ten swings on either side
-TIME_ERROR = 0.05  # relative, of a contact time
+CONTACT_TIME_ERROR = 0.05  # relative, of a contact time
 
 
 class Setup(NamedTuple):
     """A scene with the systematic errors of its measurements.
 
-    zeros: zero error of the offset of each series, m, by its name. squirt_factor: true
-    squirt over that of the model. time_factor: true contact time of a pendulum's ball over the stated one.
+    zeros: zero error of the offset of each series, m, by its name. squirt_factor: true squirt over that of the model.
+    time_factor: true contact time of a pendulum's ball over the stated one.
     """
 
     scene: Scene
@@ -48,7 +48,7 @@ class Setup(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Measurement:
-    """Something that was measured: its error is one standard deviation, in the unit of the value."""
+    """A measurement: its value, and its error, one standard deviation in the unit of the value."""
 
     # Its key in a file; the SI unit of its value; its title; the consequence if it is missing.
     key: ClassVar[str] = ""
@@ -77,7 +77,7 @@ class Measurement:
         return self.title
 
     def computed(self, setup: Setup) -> float:
-        """The same by the model, SI."""
+        """The value by the model, SI."""
         raise NotImplementedError
 
     @classmethod
@@ -87,7 +87,7 @@ class Measurement:
 
     @classmethod
     def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
-        """Measurements of this kind that one could make on the cue; their values do not count."""
+        """Further measurements of this kind that are possible on the cue, with the model's values."""
         return ()
 
 
@@ -153,7 +153,7 @@ class Tone(Measurement):
     key: ClassVar[str] = "tone"
     unit: ClassVar[str] = "Hz"
     title: ClassVar[str] = "natural frequencies of the freely suspended shaft"
-    consequence: ClassVar[str] = "E and G of the wood stay those of a table, uncertain by a fifth and more"
+    consequence: ClassVar[str] = "E and G of the wood stay those of a table, uncertain by 20 % and more"
 
     mode: int
     value: Annotated[float, Quantity("Hz", "(0, inf)")]
@@ -232,7 +232,7 @@ class Stiffness(Measurement):
 
 @dataclass(frozen=True, kw_only=True)
 class Squirt(Measurement):
-    """Squirt at an offset b/R: one value, or left and right, whose mean is free of the zero of the offset.
+    """Squirt at an offset b/R: one value, or left and right, whose mean is free of the zero error of the offset.
 
     error: of each value. series: strokes with the same aim have one zero error of the offset, zero_error,
     one standard deviation, where only one side was measured. speed: of the cue, by default the scene's.
@@ -241,7 +241,7 @@ class Squirt(Measurement):
     key: ClassVar[str] = "squirt"
     unit: ClassVar[str] = "rad"
     title: ClassVar[str] = "squirt, left and right, at three offsets and two speeds"
-    consequence: ClassVar[str] = "nothing here tests the tip or the contact"
+    consequence: ClassVar[str] = "no measurement tests the tip or the contact"
 
     offset: Annotated[float, Quantity("", "(0, 1)")]
     value: Annotated[float | None, ANGLE] = None
@@ -299,11 +299,11 @@ class Squirt(Measurement):
         offsets, speeds = ({getattr(measurement, name) for measurement in measurements} for name in ("offset", "speed"))
         parts = []
         if any(measurement.left is None for measurement in measurements):
-            parts.append("the other side (a zero error of the offset stays in the numbers)")
+            parts.append("the other side (the values include a zero error of the offset)")
         if len(offsets) < 3:
-            parts.append(f"three offsets, here {len(offsets)} (the growth with the offset, which tests the tip)")
+            parts.append(f"three offsets, here {len(offsets)} (the increase with the offset tests the tip)")
         if len(speeds) < 2:
-            parts.append("a second speed (whether the contact time counts)")
+            parts.append("a second speed (it tests the effect of the contact time)")
         return f"squirt: {'; '.join(parts)}" if parts else ""
 
     @classmethod
@@ -314,7 +314,7 @@ class Squirt(Measurement):
 
 @dataclass(frozen=True, kw_only=True)
 class PivotLength(Measurement):
-    """The natural pivot length at an offset b/R: pivoted about it, the cue sends the ball along its first line.
+    """The natural pivot length at an offset b/R: pivoted about it, the cue sends the ball along the original aim.
 
     Zero errors of angle and offset cancel in it. speed: of the cue, by default the scene's.
     """
@@ -322,7 +322,7 @@ class PivotLength(Measurement):
     key: ClassVar[str] = "pivot_length"
     unit: ClassVar[str] = "m"
     title: ClassVar[str] = "natural pivot length"
-    consequence: ClassVar[str] = "squirt is not tested by a value that is free of the zeros of angle and offset"
+    consequence: ClassVar[str] = "no value of squirt is free of the zero errors of angle and offset"
 
     offset: Annotated[float, Quantity("", "(0, 1)")]
     value: Annotated[float, Quantity("m", "(0, inf)")]
@@ -410,7 +410,7 @@ class ContactTime(Measurement):
     @classmethod
     def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
         """By a circuit of foil, or on video."""
-        return (cls(value=float(scene.contact_time), error=TIME_ERROR * float(scene.contact_time)),)
+        return (cls(value=float(scene.contact_time), error=CONTACT_TIME_ERROR * float(scene.contact_time)),)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -91,7 +91,7 @@ class Quantity:
             if low == "-inf":
                 return f"a finite number{unit and ' of'}{unit}"
             return f"more than {low}{unit}" if self.interval[0] == "(" else f"{low}{unit} or more"
-        return _WORDS[self.interval[0] + self.interval[-1]].format(low, high) + unit
+        return _BOUND_TEXTS[self.interval[0] + self.interval[-1]].format(low, high) + unit
 
     def read(self, value: Any) -> float:
         """The value of a file or an option as a checked SI number; ValueError in the units of the file."""
@@ -114,14 +114,14 @@ class Quantity:
         return result
 
     def _why(self, error: ValueError, value: Any, unit: str) -> str:
-        """The error in the unit of a text."""
+        """The reason why a text is no quantity of this unit, for the end of a message; "" if unknown."""
         if not unit or _comma(value):
             return _comma(value)
         if not isinstance(error, UnknownUnit):
             return f", which is {dimension_of(unit)}"
-        like = units_of_dimension(self.unit)
-        near = suggestion(error.name, like) or suggestion(error.name, UNITS) or f"; there are {', '.join(like)}"
-        return f": no unit is called {quote(error.name)}{near}"
+        valid = units_of_dimension(self.unit)
+        hint = suggestion(error.name, valid) or suggestion(error.name, UNITS) or f"; valid: {', '.join(valid)}"
+        return f": unknown unit {quote(error.name)}{hint}"
 
     def _bare(self, value: Any) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float):
@@ -154,7 +154,7 @@ class Quantity:
         return number
 
 
-_WORDS = {
+_BOUND_TEXTS = {
     "()": "between {} and {}",
     "[]": "{} to {}",
     "(]": "more than {} and at most {}",
@@ -165,7 +165,7 @@ _COMMA = re.compile(r"\s*[-+]?[0-9]+,[0-9]")
 
 def _comma(value: Any) -> str:
     """A hint for a number with a decimal comma."""
-    return "; a decimal point, no comma" if isinstance(value, str) and _COMMA.match(value) else ""
+    return "; use a decimal point" if isinstance(value, str) and _COMMA.match(value) else ""
 
 
 class OutOfBounds(ValueError):
@@ -223,19 +223,19 @@ def check_kind(name: str, value: Any, kind: type | tuple[type, ...]) -> None:
     """TypeError unless ``value`` is an instance of ``kind``; the message names a field of it that is one."""
     if not isinstance(value, kind):
         wanted = " or ".join(k.__name__ for k in (kind if isinstance(kind, tuple) else (kind,)))
-        raise TypeError(f"{name} must be {_a(wanted)}; got {_in_short(value, kind)}")
+        raise TypeError(f"{name} must be {_a(wanted)}; got {_brief_value(value, kind)}")
 
 
 def _a(noun: str) -> str:
     return f"{'an' if noun[0] in 'AEIOUaeiou' else 'a'} {noun}"
 
 
-def _in_short(value: Any, kind: type | tuple[type, ...]) -> str:
+def _brief_value(value: Any, kind: type | tuple[type, ...]) -> str:
     """A value for a message: numbers and texts by value, others by type; of a dataclass also the field to pass."""
     if not dataclasses.is_dataclass(value) or isinstance(value, type):
         return quote(value)
-    meant = [field.name for field in dataclasses.fields(value) if isinstance(getattr(value, field.name), kind)]
-    return _a(type(value).__name__) + (f": pass its {meant[0]}" if meant else "")
+    matching = [field.name for field in dataclasses.fields(value) if isinstance(getattr(value, field.name), kind)]
+    return _a(type(value).__name__) + (f": pass its {matching[0]}" if matching else "")
 
 
 def quote(value: Any) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cuefem.measurements.estimate import CONVERGED, Estimate, InformationGain
+from cuefem.measurements.estimate import STEP_TOLERANCE, Estimate, InformationGain
 from cuefem.measurements.measured_cue import MeasuredCue, OffsetZero, Residual
 from cuefem.results.quantities import DASH, with_unit
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
@@ -202,7 +202,7 @@ def _estimate_notes(record: Record) -> list[str]:
         )
     if not record["converged"]:
         notes.append(
-            f"The estimate did not converge (last step above {CONVERGED:g}σ): the intervals may be too narrow. Check "
-            "for contradictory measurements."
+            f"The estimate did not converge (last step above {STEP_TOLERANCE:g}σ): the intervals may be too narrow. "
+            "Check for contradictory measurements."
         )
     return [*notes, "68 %: interval of ±1σ; remaining: its width over that before any measurement."]

@@ -40,7 +40,7 @@ SAVED = {"shaft.toml": SHAFT, "spring.toml": cf.Scene(SHAFT, stroke=cf.Stroke(of
 COMMANDS = r"""
 strike good.toml --offset nan | good.toml: --offset: must be between -1 and 1
 strike good.toml --offset half | --offset: must be a bare number, between -1 and 1
-strike shaft.toml --offset 0,3 | a decimal point, no comma
+strike shaft.toml --offset 0,3 | use a decimal point
 strike shaft.toml --offset '8 kg' | or a length such as "8 mm"
 strike shaft.toml --offset '40 mm' | or a length of less than 28.575 mm
 strike shaft.toml --restitution 2 | shaft.toml: --restitution: must be 0 to 1

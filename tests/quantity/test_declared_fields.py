@@ -93,7 +93,7 @@ def in_a_file(mark: Quantity) -> Iterator[tuple[Any, str]]:
     yield "inf mm" if mark.unit == "m" else [], "must be "
     if mark.unit:
         yield "700", "needs a unit: "
-        yield "1 V", "no unit is called 'V'"
+        yield "1 V", "unknown unit 'V'"
         yield "3 s" if mark.unit != "s" else "3 g", "must be "
 
 
