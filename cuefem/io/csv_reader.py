@@ -10,16 +10,16 @@ from pathlib import Path
 from cuefem.io.errors import LARGEST_TEXT, InputError, quote, read_bytes
 from cuefem.quantity.units import FRACTION, parse_decimal
 
-LONGEST_LINE = 10_000  # characters
+MAX_LINE_CHARACTERS = 10_000
 
 Row = tuple[int, list[str]]  # line number in the file, and its cells
 
-_SPREADSHEETS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")  # first bytes of .xlsx and .ods, and of .xls
-_MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
+_SPREADSHEET_BYTES = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")  # first bytes of .xlsx and .ods, and of .xls
+_BYTE_ORDER_MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 _COMMENTS = ("#", "//")
-_SEPARATORS = "\t;|,"  # in order of preference: the first one that is in most lines
-_ANY = re.compile(r"[\t;|,]")
-_GAPS = re.compile(r"(?<=\d)[ '](?=\d{3}(?!\d))")  # 1 470 and 1'470
+_SEPARATORS = "\t;|,"  # in order of preference: the first one that is in at least half of the lines
+_ANY_SEPARATOR = re.compile(r"[\t;|,]")
+_THOUSANDS_GAPS = re.compile(r"(?<=\d)[ '](?=\d{3}(?!\d))")  # 1 470 and 1'470
 _PLAIN = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?|[+-]?(?:inf|nan)", re.IGNORECASE)
 _NUMBER = re.compile(rf"(?:{FRACTION.pattern}|[+-]?[\d.,](?:[\d.,' ]*[\d.,])?(?:e[+-]?\d+)?|[+-]?(?:inf|nan))", re.I)
 
@@ -29,8 +29,8 @@ def read_rows(path: Path) -> list[Row]:
     lines = [(i, line) for i, line in enumerate(read_text(path).splitlines(), start=1) if line.strip()]
     lines = [(i, line) for i, line in lines if not line.lstrip().startswith(_COMMENTS)]
     for i, line in lines:
-        if len(line) > LONGEST_LINE:
-            raise InputError(path, f"line {i}", f"must have at most {LONGEST_LINE} characters; got {len(line)}")
+        if len(line) > MAX_LINE_CHARACTERS:
+            raise InputError(path, f"line {i}", f"must have at most {MAX_LINE_CHARACTERS} characters; got {len(line)}")
     if lines and (first := re.fullmatch(r"sep=(.)", lines[0][1].strip(), re.IGNORECASE)):
         return _split(lines[1:], first[1])
     most = [mark for mark in _SEPARATORS if 2 * sum(mark in line for _, line in lines) >= len(lines)]
@@ -43,8 +43,8 @@ def _split(lines: Iterable[tuple[int, str]], separator: str | None) -> list[Row]
         cells = re.split(r"\s{2,}|\t", line.strip()) if separator is None else _cells(line, separator)
         if separator is None and len(cells) == 1:
             cells = line.split()
-        if len(cells) == 1 and _ANY.search(line):  # a header with another separator
-            cells = _cells(line, _ANY.search(line)[0])  # type: ignore[index]
+        if len(cells) == 1 and _ANY_SEPARATOR.search(line):  # a header with another separator
+            cells = _cells(line, _ANY_SEPARATOR.search(line)[0])  # type: ignore[index]
         cells = [cell.replace("\xa0", " ").strip() for cell in cells]
         while cells and not cells[-1]:
             cells.pop()
@@ -60,7 +60,7 @@ def _cells(line: str, separator: str) -> list[str]:
 def read_text(path: Path) -> str:
     """The text of a file in UTF-8, UTF-16 or Windows-1252; InputError if it is empty or not text."""
     content = read_bytes(path, LARGEST_TEXT)
-    if content.startswith(_SPREADSHEETS):
+    if content.startswith(_SPREADSHEET_BYTES):
         raise InputError(path, "", "is a spreadsheet: export it as CSV")
     try:
         text = content.decode(_encoding(content))
@@ -74,7 +74,7 @@ def read_text(path: Path) -> str:
 
 
 def _encoding(content: bytes) -> str:
-    for mark, name in _MARKS.items():
+    for mark, name in _BYTE_ORDER_MARKS.items():
         if content.startswith(mark):
             return name
     if b"\0" in content[:100]:  # UTF-16 without a byte-order mark: every other byte of ASCII text is 0
@@ -100,10 +100,10 @@ def is_number(cell: str) -> bool:
 
 
 def decimal_mark(numbers: Sequence[str]) -> str:
-    """The decimal mark of a table: a point, or a comma if most numbers have one."""
-    both = [number for number in numbers if "." in number and "," in number]
-    if both:
-        return max(".,", key=both[0].rfind)
+    """The decimal mark of a table: the last mark of a number with both, else the one in more numbers, else a point."""
+    with_both = [number for number in numbers if "." in number and "," in number]
+    if with_both:
+        return max(".,", key=with_both[0].rfind)
     points, commas = (sum(mark in number for number in numbers) for mark in ".,")
     return "," if commas > points else "."
 
@@ -113,7 +113,7 @@ def python_number(number: str, mark: str) -> str:
     if FRACTION.fullmatch(number):
         return str(parse_decimal(number))
     other = "," if mark == "." else "."
-    number = _GAPS.sub("", number)
+    number = _THOUSANDS_GAPS.sub("", number)
     if other in number:
         if not re.fullmatch(rf"[+-]?\d{{1,3}}(?:{re.escape(other)}\d{{3}})+(?:{re.escape(mark)}\d*)?", number):
             word = "point" if mark == "." else "comma"

@@ -18,8 +18,9 @@ from cuefem.parameters.parts import MAX_FERRULE, SAME_POSITION, Layout, split_at
 from cuefem.quantity.units import parse_number
 from cuefem.scene import Scene
 
-MAX_LEATHER = 0.03  # m, of leather
-TENON_RATIO = 0.62  # of a ferrule's width: 5/16 in in a pool ferrule of 12.75 mm
+MAX_LEATHER = 0.03  # m, height of leather
+TENON_RATIO = 0.62  # tenon over ferrule diameter: 5/16 in in a pool ferrule of 12.75 mm
+# Examples.
 FERRULE, BORE, LEATHER = "25 mm melamine", "6 mm wide, 127 mm deep", "leather 6 mm"
 
 _SIZE = re.compile(r"[\d.,/ ]*\d\s*(?:mm|cm|m|in|inch|inches|\"|″)(?!\w)")
@@ -86,7 +87,7 @@ def _with_leather(cue: Cue, text: str) -> Cue:
     if height in (words, ""):
         raise ValueError(f'front must be "ferrule" or leather with a height, such as "{LEATHER}"; got {text!r}')
     if cue.leather:
-        raise ValueError("front must be left out: the drawing already has leather")
+        raise ValueError("front must be omitted: the drawing already has leather")
     end = _length("front", height)
     if end > MAX_LEATHER:
         raise ValueError(f"front must have at most {1e3 * MAX_LEATHER:g} mm of leather; got {text!r}")
@@ -102,16 +103,16 @@ def _with_ferrule(cue: Cue, text: str) -> Cue:
     """The cue with a ferrule behind its leather: on a tenon of the shaft's wood, or bored where the shaft is."""
     layout = Layout.of(cue)
     wood = cue.segments[layout.shaft.start].material
-    bare = [_without_tenon(s, wood) if i in layout.ferrule else s for i, s in enumerate(cue.segments)]
+    stripped = [_without_tenon(s, wood) if i in layout.ferrule else s for i, s in enumerate(cue.segments)]
     if text.strip().casefold() == "none":
-        return replace(cue, segments=tuple(bare))
+        return replace(cue, segments=tuple(stripped))
     length, ferrule_material, tenon = _ferrule_of(text)
-    first = next(i for i, s in enumerate(bare) if s.material.E >= MAX_LEATHER_MODULUS)
+    first = next(i for i, s in enumerate(stripped) if s.material.E >= MAX_LEATHER_MODULUS)
     start = float(cue.nodes[first])
     longest = min(MAX_FERRULE, 0.9 * (cue.length - start))
     if not 0 < length <= longest:
         raise ValueError(f"ferrule must be at most {1e3 * longest:.3g} mm long; got {text!r}")
-    cue = split_at(replace(cue, segments=tuple(bare)), start + length)
+    cue = split_at(replace(cue, segments=tuple(stripped)), start + length)
     stop = next(i for i, x in enumerate(cue.nodes) if x >= (start + length) * (1 - SAME_POSITION))
     front = (ferrule_on_tenon(s, ferrule_material, wood, tenon) for s in cue.segments[first:stop])
     return replace(cue, segments=(*cue.segments[:first], *front, *cue.segments[stop:]))
@@ -126,7 +127,7 @@ def _without_tenon(ferrule: Segment, wood: Material) -> Segment:
 def ferrule_on_tenon(
     segment: Segment, ferrule_material: Material, wood: Material, tenon: float | None = None
 ) -> Segment:
-    """The segment as a ferrule on a wooden tenon, m wide, by default `TENON_RATIO` of its width; bores stay."""
+    """The segment as a ferrule on a wooden tenon, m wide, by default `TENON_RATIO` of its width; a bore stays."""
     if tenon and (segment.tip_bore or segment.butt_bore):
         raise ValueError("ferrule must have no tenon: the shaft is bored there")
     if segment.tip_bore or segment.butt_bore or tenon == 0:
@@ -143,7 +144,7 @@ def has_length(text: str) -> bool:
 
 
 def _ferrule_of(text: str) -> tuple[float, Material, float | None]:
-    """Length, material and diameter of the tenon of a ferrule, m; the tenon is None if the text has none."""
+    """Length, m, material and tenon diameter, m, of a ferrule; the tenon is 0 for "no tenon", None if not mentioned."""
     first, *more = (piece.strip() for piece in text.casefold().split(","))
     size = _SIZE.search(first)
     name = _SIZE.sub(" ", first).replace("ferrule", " ").strip()
@@ -165,7 +166,7 @@ def _bored(cue: Cue, text: str) -> Cue:
         raise ValueError(f'bore must be a width and a depth, such as "{BORE}"; got {text!r}')
     width, depth = (_length("bore", size) for size in sizes.groups())
     if Layout.of(cue).bore is None:
-        raise ValueError("bore must be left out: the drawing has a filled bore")
+        raise ValueError("bore must be omitted: the drawing has a filled bore")
     return with_parameters(Scene(cue), {"bore depth": depth, "bore width": width}).shaft
 
 

@@ -104,9 +104,9 @@ class StudyTable:
     def __post_init__(self) -> None:
         kinds = [name for name in ("objective", "tolerances", "sample") if getattr(self, name) is not None]
         if len(kinds) > 1:
-            raise ValueError(f"StudyTable.{kinds[1]} must be left out beside [{kinds[0]}]: a study has one kind")
+            raise ValueError(f"StudyTable.{kinds[1]} must be omitted with [{kinds[0]}]: a study has one kind")
         if self.objective and self.responses:
-            raise ValueError("StudyTable.responses must be left out beside [objective], which names the response")
+            raise ValueError("StudyTable.responses must be omitted with [objective], which names the response")
         if self.limit and not self.objective:
             raise ValueError("StudyTable.limit needs an [objective]")
 
@@ -239,7 +239,7 @@ def _base(tables: StudyTable, path: Path) -> Scene:
         with as_input_error(path, "game"):
             return Scene(base, stroke=Stroke(offset=OFFSET)) if game == KIM else usual_scene(base, game)
     if tables.game is not None:
-        problem = f"must be left out: {tables.scene} is a scene, which has its own ball, tip and stroke"
+        problem = f"must be omitted: {tables.scene} is a scene, which has its own ball, tip and stroke"
         raise InputError(path, "game", f"{problem}; got {quote(game)}")
     return base
 

@@ -49,7 +49,7 @@ class Accuracy:
 
 
 def read_tables(path: Path) -> dict[str, Any]:
-    """A TOML file as plain tables."""
+    """A TOML file as plain tables; InputError if it is not TOML."""
     text = read_text(path)
     try:
         return tomllib.loads(text)
@@ -102,7 +102,7 @@ def _accuracy(table: Any, path: Path) -> float | None:
 
 def _cue(table: dict[str, Any], path: Path, key: str) -> Cue:
     if "shaft" in table:
-        table = _of_parts(table, path, key)
+        table = _assembled(table, path, key)
     segments = table.get("segments")
     if isinstance(segments, list) and len(segments) > MAX_SEGMENTS:
         problem = f"must have at most {MAX_SEGMENTS} segments; got {len(segments)}"
@@ -116,12 +116,12 @@ def _cue(table: dict[str, Any], path: Path, key: str) -> Cue:
         return with_shaft_mass(cue, Quantity("kg", "(0, 100]").read(weight))
 
 
-def _of_parts(cue_table: dict[str, Any], path: Path, key: str) -> dict[str, Any]:
+def _assembled(cue_table: dict[str, Any], path: Path, key: str) -> dict[str, Any]:
     """A cue's table with the segments of a shaft of the catalogue instead of its parts."""
     named = {name: cue_table[name] for name in keys_of(ShaftParts) if name in cue_table}
     parts = build(ShaftParts, named, file=str(path), key=key)
     if "segments" in cue_table:
-        raise InputError(path, key_path(key, "segments"), "must be left out beside shaft, which defines them")
+        raise InputError(path, key_path(key, "segments"), "must be omitted with shaft, which defines them")
     with as_input_error(path, key_path(key, "shaft")):
         cue = assemble_shaft(parts.shaft, load_cue, material=parts.material, ferrule=parts.ferrule, bore=parts.bore)
     rest = {name: value for name, value in cue_table.items() if name not in named}
@@ -244,25 +244,25 @@ def _effect(table: Any, path: Path, key: str) -> Effect:
         problem = f"must be one of {names}; got {quote(name)}{suggestion(str(name), kinds)}"
         raise InputError(path, key_path(key, "type"), problem)
     rest = {field: value for field, value in table.items() if field != "type"}
-    return build(kinds[name], _spelt_out(kinds[name], rest, path, key), file=str(path), key=key)
+    return build(kinds[name], _with_presets(kinds[name], rest, path, key), file=str(path), key=key)
 
 
-def _spelt_out(kind: type[Effect], table: dict[str, Any], path: Path, key: str) -> dict[str, Any]:
-    """The table with the fields instead of a name for several fields, such as the hardness of a leather."""
-    marks = {name: mark for name, mark, *_ in quantity_fields(kind)}  # type: ignore[arg-type]
-    for word, names in kind.presets.items():
-        wanted = f"must be one of {', '.join(names)}"
-        meant = [*dict.fromkeys(name for values in names.values() for name in values)]
-        here, first = key_path(key, word), meant[0]
-        if word not in table:
+def _with_presets(kind: type[Effect], table: dict[str, Any], path: Path, key: str) -> dict[str, Any]:
+    """The table with the fields that a preset sets instead of its name, such as the hardness of a leather."""
+    quantities = {name: quantity for name, quantity, *_ in quantity_fields(kind)}  # type: ignore[arg-type]
+    for preset, names in kind.presets.items():
+        expected = f"must be one of {', '.join(names)}"
+        set_fields = [*dict.fromkeys(name for values in names.values() for name in values)]
+        preset_key, first = key_path(key, preset), set_fields[0]
+        if preset not in table:
             if first not in table and set(table) <= {*keys_of(kind)}:  # a misspelt key is reported first
-                raise InputError(path, here, f"{wanted}, or give {first} instead; got nothing")
+                raise InputError(path, preset_key, f"{expected}, or give {first} instead; got nothing")
             continue
-        spelt = table[word].casefold() if isinstance(table[word], str) else table[word]
-        if not isinstance(spelt, str) or spelt not in names:
-            raise InputError(path, here, f"{wanted}; got {quote(spelt)}{suggestion(str(spelt), names)}")
-        if twice := [name for name in meant if name in table]:
-            raise InputError(path, key_path(key, twice[0]), f"must be left out beside {word}, which sets it")
-        rest = {name: value for name, value in table.items() if name != word}
-        table = rest | {name: marks[name].as_text(value) for name, value in names[spelt].items()}
+        chosen = table[preset].casefold() if isinstance(table[preset], str) else table[preset]
+        if not isinstance(chosen, str) or chosen not in names:
+            raise InputError(path, preset_key, f"{expected}; got {quote(chosen)}{suggestion(str(chosen), names)}")
+        if twice := [name for name in set_fields if name in table]:
+            raise InputError(path, key_path(key, twice[0]), f"must be omitted with {preset}, which sets it")
+        rest = {name: value for name, value in table.items() if name != preset}
+        table = rest | {name: quantities[name].as_text(value) for name, value in names[chosen].items()}
     return table

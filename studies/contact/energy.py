@@ -46,7 +46,7 @@ def text() -> str:
         f"limit is gradual: in a miscue, from b/R {miscues[0]:g} on, friction dissipates up to {friction:.0f} %, and "
         f"the ball's part decreases from {ball[1]:.0f} % to {ball[-1]:.0f} % at b/R {miscues[-1]:g} "
         f"({ball[0]:.0f} % at 0.5).",
-        "pool_maple, percent of the cue's energy at first contact:",
+        "pool_maple, per cent of the cue's energy at first contact:",
         table(["b/R", *PARTS, "contact state"], rows),
     )
 
@@ -55,7 +55,7 @@ def draw(axes: Any) -> None:
     """The shares, stacked."""
     curves = [shares(float(b))[0] for b in OFFSETS]
     axes.stackplot(OFFSETS, [[share[part] for share in curves] for part in PARTS], labels=PARTS, colors=COLOURS, lw=0)
-    axes.set(xlabel="offset b/R", ylabel="percent of the cue's energy", xlim=(0, OFFSETS[-1]), ylim=(0, 100))
+    axes.set(xlabel="offset b/R", ylabel="per cent of the cue's energy", xlim=(0, OFFSETS[-1]), ylim=(0, 100))
     handles, labels = axes.get_legend_handles_labels()
     axes.figure.legend(handles[::-1], labels[::-1], loc="outside right center", fontsize=9)
 

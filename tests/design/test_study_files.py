@@ -79,7 +79,7 @@ def test_study_of_cue_has_default_stroke_of_game(tmp_path: Path) -> None:
     file.write_text('game = "chess"\n' + file.read_text(encoding="utf-8"), encoding="utf-8")
     assert_rejects("study.toml: game: must be one of pool, carom, snooker, kim", "study", file)
     of_scene = write_study(tmp_path, f'game = "pool"\n{STUDY}')
-    assert_rejects("study.toml: game: must be left out: scene.toml is a scene", "study", of_scene)
+    assert_rejects("study.toml: game: must be omitted: scene.toml is a scene", "study", of_scene)
 
 
 def test_study_file_ranges_are_read(tmp_path: Path) -> None:

@@ -46,7 +46,7 @@ toml | [cue]\nmass = '540 g'\nend_mass = '6 g'\ncoupling = '99 1/kg'     | cue.c
 toml | [tip]\ncontact_time = '1 ms'\nstiffness = '1e5 N/m'\n[cue]\nmass = '1 kg'\nend_mass = '6 g' | tip: Tip takes
 toml | shaft = 3                            | shaft: must be text; got 3
 toml | shaft = 'carbon'\nbody_mass = '15 oz'\nbore = 'wide' | shaft: bore must be a width and a depth
-toml | shaft = 'carbon'\nbody_mass = '15 oz'\nsegments = [] | segments: must be left out beside shaft, which defines
+toml | shaft = 'carbon'\nbody_mass = '15 oz'\nsegments = [] | segments: must be omitted with shaft, which defines
 csv  |                                      | must hold a cue or a scene; got an empty file
 csv  | # x                                  | must begin with the header "x [mm],diameter [mm]"; got only
 csv  | H0,12                                | must hold at least 2 points; got 1
