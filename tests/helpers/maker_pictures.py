@@ -53,7 +53,7 @@ def svg_text(x: float, y: float, text: str, more: str = "") -> str:
     return f'<text x="{x:.0f}" y="{y:.0f}"{more}>{escape(text)}</text>'
 
 
-MIDDLE, END, CAPTION = ' text-anchor="middle"', ' text-anchor="end"', ' class="said"'
+MIDDLE, END, CAPTION = ' text-anchor="middle"', ' text-anchor="end"', ' class="label"'
 
 
 def on_scale(rows: dict[str, float], verdict: Any, label: str, own: str, *, x0: int, unit: int, last: float) -> str:
@@ -84,7 +84,7 @@ def on_scale(rows: dict[str, float], verdict: Any, label: str, own: str, *, x0: 
 def scale() -> str:
     """The verdict's scale of the plain maple shaft."""
     rows = dict(sorted(reference_squirts().items(), key=lambda item: item[1]))
-    label = "Squirt of the ready shafts and of yours on one scale, yours with what it may be off"
+    label = "Squirt of the reference shafts and of yours on one scale, yours with its uncertainty"
     return on_scale(rows, command_json("report")["verdict"], label, "yours", x0=100, unit=90, last=2.5)
 
 
@@ -110,7 +110,7 @@ def changes_chart() -> str:
 def trust() -> str:
     """One cue, measured three times, and computed with its uncertainty."""
     verdict = command_json("report", "--offset", str(OFFSET))["verdict"]
-    label = "Squirt of one plain maple cue: measured three times, and computed with what it may be off"
+    label = "Squirt of one plain maple cue: measured three times, and computed with its uncertainty"
     rows = {f"{name}, {value:.2f}°": value for name, value in MEASURED.items()}
     return on_scale(rows, verdict, label, "computed", x0=175, unit=50, last=3)
 
