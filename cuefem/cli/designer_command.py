@@ -51,9 +51,9 @@ def designer(scene: Path | None, port: int, show: bool, as_json: bool, **options
         with errors_name_file(scene):
             first = design_from_file(scene, scene.stem, read, given)
         print_warnings(first.scene)
-    told: Callable[[str], None] = (lambda address: print_json({"address": address})) if as_json else click.echo
+    announce: Callable[[str], None] = (lambda address: print_json({"address": address})) if as_json else click.echo
     with suppress(KeyboardInterrupt):  # Ctrl-C is how one ends it
-        serve(first, port=_free(port), show=show, announce=told)
+        serve(first, port=_free(port), show=show, announce=announce)
 
 
 def _free(port: int) -> int:
