@@ -130,19 +130,19 @@ def mesh_cue(
         if not 0 <= x <= cue.length * (1 + POSITION_TOLERANCE):
             raise ValueError(f"an effect's position must be in [0, {cue.length}] m, on the cue; got {x}")
     if isinstance(at, int):
-        nodes, orders = _by_rule(cue, mode_phases(cue, at), _snapped(cue, wanted))
+        nodes, orders = _equal_phases(cue, mode_phases(cue, at), _snapped(cue, wanted))
     else:
         ends = np.unique(np.append(cue.nodes, _snapped(cue, wanted)))
         pieces = len(ends) - 1
         check_mesh_size(pieces * at.elements * (2 * at.order + 1), f"{pieces} pieces")
-        nodes = _divided(ends, np.full(pieces, at.elements))
+        nodes = _subdivided(ends, np.full(pieces, at.elements))
         orders = np.full(pieces * at.elements, at.order)
-    return _numbered(nodes, orders, [x for effect in effects for x in effect.splits])
+    return _with_dofs(nodes, orders, [x for effect in effects for x in effect.splits])
 
 
 def mesh_for_phases(cue: Cue, phases: Array, positions: Sequence[float]) -> Mesh:
     """Mesh a cue for waves of ``phases`` rad over its segments, with a node at each of ``positions`` and no splits."""
-    return _numbered(*_by_rule(cue, phases, _snapped(cue, np.array([cue.leather, *positions]))), [])
+    return _with_dofs(*_equal_phases(cue, phases, _snapped(cue, np.array([cue.leather, *positions]))), [])
 
 
 def _snapped(cue: Cue, positions: Array) -> Array:
@@ -151,7 +151,8 @@ def _snapped(cue: Cue, positions: Array) -> Array:
     return np.where(np.abs(positions - nearest) > POSITION_TOLERANCE * cue.length, positions, nearest)
 
 
-def _numbered(nodes: Array, orders: NDArray[np.intp], splits: Sequence[float]) -> Mesh:
+def _with_dofs(nodes: Array, orders: NDArray[np.intp], splits: Sequence[float]) -> Mesh:
+    """The mesh, its degrees of freedom numbered from the tip; the nodes at ``splits`` have two of each kind."""
     strides = 2 * orders + 1
     first = np.cumsum(strides) - strides
     for node in {int(np.argmin(np.abs(nodes - x))) for x in splits}:
@@ -161,26 +162,26 @@ def _numbered(nodes: Array, orders: NDArray[np.intp], splits: Sequence[float]) -
     return Mesh(nodes, orders, first, n_dof)
 
 
-def _by_rule(cue: Cue, phases: Array, positions: Array) -> tuple[Array, NDArray[np.intp]]:
+def _equal_phases(cue: Cue, phases: Array, positions: Array) -> tuple[Array, NDArray[np.intp]]:
     """Nodes and orders for waves of ``phases`` rad over the segments: elements of equal phase."""
     check_mesh_size(2 * phases.sum(), f"waves of {phases.sum():.6g} rad")
     sides = cue.section_in(np.arange(len(phases))[:, None], np.diff(cue.nodes)[:, None] * np.array([0.0, 1.0]))
     logs = np.log([sides.EA, sides.EI, sides.kGA, sides.rhoA])
-    ends = _ends(cue, positions, logs, np.diff(cue.nodes) / phases)
-    along, log_taper = (np.append(0.0, np.cumsum(each)) for each in (phases, np.abs(np.diff(logs[0])[:, 0])))
-    here = np.interp(ends, cue.nodes, along)
-    counts = np.ceil(np.diff(here) / MAX_PHASE).astype(int)
-    nodes = np.interp(_divided(here, counts), along, cue.nodes)
+    ends = _required_nodes(cue, positions, logs, np.diff(cue.nodes) / phases)
+    phase_at, log_taper = (np.append(0.0, np.cumsum(each)) for each in (phases, np.abs(np.diff(logs[0])[:, 0])))
+    end_phases = np.interp(ends, cue.nodes, phase_at)
+    counts = np.ceil(np.diff(end_phases) / MAX_PHASE).astype(int)
+    nodes = np.interp(_subdivided(end_phases, counts), phase_at, cue.nodes)
     nodes[np.append(0, np.cumsum(counts))] = ends
-    phase, taper = (np.diff(np.interp(nodes, cue.nodes, each)) for each in (along, log_taper))
+    phase, taper = (np.diff(np.interp(nodes, cue.nodes, each)) for each in (phase_at, log_taper))
     return nodes, orders_for(phase, np.exp(taper))
 
 
-def _ends(cue: Cue, positions: Array, logs: Array, reach: Array) -> Array:
+def _required_nodes(cue: Cue, positions: Array, logs: Array, reach: Array) -> Array:
     """Positions of nodes: the ends of the cue, ``positions``, and the ends of segments that an element cannot cross.
 
     logs: (kinds, segments, 2) of the section at both ends of every segment. reach: (segments,) the length that the
-    shortest waves resolve, m. The section must not jump at an end that is no node, and it must be the mean of the
+    shortest waves resolve, m. The end of a segment is no node if the section does not jump there and is the mean of the
     sections at equal distances before and behind, within reach and no further than the next nodes.
     """
     profile, logs = np.repeat(cue.nodes, 2)[1:-1], logs.reshape(len(logs), -1)
@@ -201,7 +202,7 @@ def _ends(cue: Cue, positions: Array, logs: Array, reach: Array) -> Array:
     return np.unique(ends)
 
 
-def _divided(ends: Array, counts: NDArray[np.intp]) -> Array:
+def _subdivided(ends: Array, counts: NDArray[np.intp]) -> Array:
     """``counts`` equal steps between each two of the ``ends``."""
     steps = [a + (b - a) * np.arange(n) / n for a, b, n in zip(ends[:-1], ends[1:], counts, strict=True)]
     return np.append(np.concatenate(steps), ends[-1])

@@ -40,10 +40,10 @@ class TipLaw:
         depth = speed * time / ((1 + restitution) * loading_time(exponent))
         return cls((exponent + 1) * mass * speed**2 / (2 * depth ** (exponent + 1)), exponent, restitution)
 
-    def loss(self, deepest: float) -> float:
+    def loss(self, max_indentation: float) -> float:
         """Energy dissipated by loading to an indentation, m, and unloading, J."""
         power = self.exponent + 1
-        return (1 - self.restitution**2) * self.stiffness * deepest**power / power
+        return (1 - self.restitution**2) * self.stiffness * max_indentation**power / power
 
 
 def loading_time(exponent: float) -> float:
@@ -111,25 +111,25 @@ class LeatherLaw:
         """Work of loading to an indentation, J: the integral of 2 y F."""
         return self._work(np.sqrt(np.maximum(depth, 0.0)))
 
-    def loss(self, deepest: float) -> float:
-        """Energy dissipated by loading to ``deepest``, m, and unloading, J."""
-        return (1 - self.restitution**2) * float(self.work(deepest))
+    def loss(self, max_indentation: float) -> float:
+        """Energy dissipated by loading to ``max_indentation``, m, and unloading, J."""
+        return (1 - self.restitution**2) * float(self.work(max_indentation))
 
     def central_impact(self, mass: float, speed: float) -> tuple[float, float]:
         """(maximum indentation, m, time to it, s) of a central impact of a reduced mass, kg, at a speed, m/s."""
-        energy, deepest = mass * speed**2 / 2, self.depth_limit
+        energy, max_indentation = mass * speed**2 / 2, self.depth_limit
         for _ in range(60):  # Newton's method in logarithms, where the law is nearly straight
-            work = float(self.work(deepest))
-            step = math.log(work / energy) * work / (deepest * float(self.at(deepest)[0]))
-            deepest *= math.exp(-min(max(step, -1.0), 1.0))
+            work = float(self.work(max_indentation))
+            step = math.log(work / energy) * work / (max_indentation * float(self.at(max_indentation)[0]))
+            max_indentation *= math.exp(-min(max(step, -1.0), 1.0))
             if abs(step) < 1e-12:
                 break
-        if deepest > self.depth_limit:
-            raise self.too_deep(deepest)
+        if max_indentation > self.depth_limit:
+            raise self.too_deep(max_indentation)
         cosine, sine = np.cos(_ANGLES), np.sin(_ANGLES)
-        left = self.work(deepest) - self.work(deepest * cosine**2)
-        rates = 2 * deepest * cosine * sine / np.sqrt(2 * left / mass)
-        return deepest, float(rates @ _WEIGHTS) * math.pi / 4
+        left = self.work(max_indentation) - self.work(max_indentation * cosine**2)
+        rates = 2 * max_indentation * cosine * sine / np.sqrt(2 * left / mass)
+        return max_indentation, float(rates @ _WEIGHTS) * math.pi / 4
 
     def too_deep(self, depth: float) -> IndentationOutOfRange:
         """The error of an indentation beyond the law's range."""
