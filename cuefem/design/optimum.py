@@ -22,15 +22,15 @@ from cuefem.parameters.parameter import value_at
 from cuefem.scene import Resolution, Scene
 
 TOLERANCE = 1e-6  # relative to a limit's own size (1 if it is 0): a closer value makes the limit active
-EXCLUDED = 1e9  # score of a design that breaks a limit: worse than any within the limits
-FAR = 1e3  # scaled objective of an invalid design in SLSQP
-STEP = 1e-4  # of differences, relative to a range: the numerical error of a strike (1e-6) is a hundredth of it
-POPULATION = 15  # designs a variable of differential evolution
+EXCLUDED = 1e9  # score of a design that violates a limit: worse than any within the limits
+INVALID_OBJECTIVE = 1e3  # scaled objective of an invalid design in SLSQP
+STEP = 1e-4  # of differences, relative to a range: a hundred times the numerical error of a strike (1e-6)
+POPULATION = 15  # designs per variable in differential evolution
 
 
 @dataclass(frozen=True)
 class Limit:
-    """A response that must stay in [low, high], in SI units."""
+    """A response that must be in [low, high], in SI units."""
 
     response: Response
     low: float = -np.inf
@@ -263,14 +263,14 @@ class _Search:
         self.scale, self.best = self.scale / (size if np.isfinite(size) and size else 1.0), np.inf
         ends = [(start, "")]
         if len(start):
-            ends.append(self.by_differences(start, rounds))
-            if ends[-1][1] or self.broken(ends[-1][0]):
+            ends.append(self.by_slsqp(start, rounds))
+            if ends[-1][1] or self.violated(ends[-1][0]):
                 ends.append(self.by_evolution(start, rounds, seed))
-                ends.append(self.by_differences(ends[-1][0], rounds))
+                ends.append(self.by_slsqp(ends[-1][0], rounds))
         u = min((u for u, _ in ends), key=lambda u: self.scores(self.at(u)[None])[0])
-        broken, unfinished = self.broken(u), ends[-1][1]
-        if broken or not np.isfinite(self.at(u)).all():
-            what = f"within {', '.join(broken)}" if broken else f"that has {self.problem.objective.name}"
+        violated, unfinished = self.violated(u), ends[-1][1]
+        if violated or not np.isfinite(self.at(u)).all():
+            what = f"within {', '.join(violated)}" if violated else f"that has {self.problem.objective.name}"
             raise ValueError(f"no design {what} was found: {unfinished or 'none is near'}")
         point, study = self.problem.points(u), self.problem.study
         return Optimum(
@@ -301,7 +301,7 @@ class _Search:
             raise _NoDesign
         return self._slopes[key]
 
-    def by_differences(self, start: Array, rounds: int) -> tuple[Array, str]:
+    def by_slsqp(self, start: Array, rounds: int) -> tuple[Array, str]:
         """(The last point of SLSQP; why it stopped without convergence, or "")."""
         from scipy.optimize import minimize  # loaded when used: a second
 
@@ -318,13 +318,13 @@ class _Search:
             unit = sign / (abs(bound) or 1.0)
             return {
                 "type": "ineq",
-                "fun": lambda u: unit * (value(u, k, bound - FAR / unit) - bound),
+                "fun": lambda u: unit * (value(u, k, bound - INVALID_OBJECTIVE / unit) - bound),
                 "jac": lambda u: unit * self.slopes(u)[k],
             }
 
         try:
             result = minimize(
-                lambda u: self.scale * value(u, 0, FAR / self.scale),
+                lambda u: self.scale * value(u, 0, INVALID_OBJECTIVE / self.scale),
                 start,
                 jac=lambda u: self.scale * self.slopes(u)[0],
                 method="SLSQP",
@@ -370,6 +370,6 @@ class _Search:
             margins += [(f"{name} >= {span.low:g}", part), (f"{name} <= {span.high:g}", 1 - part)]
         return margins
 
-    def broken(self, u: Array) -> list[str]:
+    def violated(self, u: Array) -> list[str]:
         """The limits that a point violates."""
         return [text for text, margin in self.sides(u) if not margin >= -TOLERANCE]

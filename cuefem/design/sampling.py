@@ -14,7 +14,7 @@ from cuefem.quantity.fields import check_count
 MAX_POINTS = 2**30  # points of a Sobol sequence of 30 bits
 MAX_LEVELS = 2**20  # of an interval
 BLOCK = 256  # points computed at a time
-CUT_DEVIATIONS = 4.0  # standard deviations at which a normal distribution is truncated: its own decreases by 0.05 %
+CUT_DEVIATIONS = 4.0  # standard deviations at which a normal distribution is truncated: reduces its sd by 0.05 %
 STANDARD = NormalDist()
 
 Value = float | str
@@ -47,7 +47,7 @@ class Levels:
 
 @dataclass(frozen=True)
 class Span:
-    """An interval of numbers in SI, both ends included, in ``count`` steps of a grid; logarithmic: in equal ratios."""
+    """An interval of numbers in SI, both ends included; a grid has ``count`` values, in equal ratios if logarithmic."""
 
     low: float
     high: float
@@ -76,7 +76,7 @@ class Span:
         return (1 - u) * self.low + u * self.high
 
     def share(self, value: float) -> float:
-        """The inverse of `quantile`, at most 1 and at least 0."""
+        """The inverse of `quantile`, clipped to [0, 1]."""
         low, high, at = (math.log(x) if self.logarithmic else x for x in (self.low, self.high, value))
         return min(max((at - low) / (high - low), 0.0), 1.0)
 

@@ -18,9 +18,9 @@ from typing import NamedTuple, ParamSpec, Protocol, TypeVar
 from cuefem.design.sampling import Value
 from cuefem.design.study import Study
 
-BLOCK = 16  # designs that are evaluated, and written, at a time
-ATTEMPTS = 3  # to open a broken pool again, without a block in between
-CHECK_INTERVAL = 1.0  # s: Windows does not interrupt a wait without a limit
+BLOCK = 16  # designs that are evaluated and stored at a time
+ATTEMPTS = 3  # at a pool that breaks without a result in between
+CHECK_INTERVAL = 1.0  # s, of waits: on Windows Ctrl-C does not interrupt a wait without a limit
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -143,7 +143,7 @@ def process_pool(workers: int) -> Iterator[Executor]:
     They are spawned: a fork would copy locks of the threads of this process.
     """
 
-    executor = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_follow)
+    executor = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_end_with_parent)
     resource_tracker.ensure_running()  # starting it enables Ctrl-C again: not during `submit`
     with _without_interrupts():  # inherited by workers: only this process handles Ctrl-C
         for _ in range(workers):  # a submission starts a worker while none is idle
@@ -168,14 +168,14 @@ def _without_interrupts() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
-def _follow() -> None:
+def _end_with_parent() -> None:
     """End this worker when its parent ends, and ignore Ctrl-C."""
     parent = parent_process()
     assert parent is not None
 
-    def until_it_ends() -> None:
+    def exit_after_parent() -> None:
         parent.join()
         os._exit(1)
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=until_it_ends, daemon=True).start()
+    threading.Thread(target=exit_after_parent, daemon=True).start()

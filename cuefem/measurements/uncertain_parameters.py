@@ -1,8 +1,8 @@
 """Uncertain parameters of a drawing: the wood, the bore, the tip; each with a prior.
 
 The prior of a positive number is lognormal about the drawing's value. Its spread, the standard deviation of the
-logarithm, comes from the table of materials where that has a range (which spans one standard deviation either way), and
-from the file of a measured cue where that gives one.
+logarithm, is that of `PARAMETERS` (of wood: from the range in the table of materials, which spans one standard
+deviation either way), or that of a prior in the file of a measured cue.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ ZERO, SQUIRT_MODEL, BALL_TIME = "zero", "squirt model", "ball time"
 class UncertainParameter:
     """An uncertain parameter: its value in the drawing, and its prior.
 
-    spread: standard deviation of its logarithm; of the number itself, in its unit, if ``normal``. apply: a setup with
-    another value.
+    median: its value in the drawing. spread: standard deviation of its logarithm; of the number itself, in its unit, if
+    ``normal``. apply: the setup with another value.
     """
 
     name: str
@@ -49,7 +49,7 @@ class UncertainParameter:
 
 @dataclass(frozen=True)
 class Prior:
-    """A prior in a file: the spread, or a low and a high value, one standard deviation away."""
+    """A prior in a file: the spread (of the logarithm), or the values one standard deviation below and above."""
 
     name: str
     spread: Annotated[float | None, Quantity("", "[0, 3]")] = None
@@ -73,7 +73,7 @@ def names() -> tuple[str, ...]:
 
 
 def _key(name: str) -> str:
-    """The key of the parameter that a prior names; the name itself where it names none."""
+    """The key of the parameter that a prior names; the name itself if there is no such parameter."""
     known = parameter(name)
     return known.key if known else name
 
@@ -86,44 +86,46 @@ def parameters_of(
     ValueError if a prior is of something that the scene does not have.
     """
     named = {_key(prior.name): prior for prior in priors}
-    made = []
+    parameters = []
     for key, known in PARAMETERS.items():
         if known.spread is None and key not in named:
             continue
-        usual, prior = known.value(scene), named.get(key)
-        if usual is None or isinstance(usual, Material):
+        drawn, prior = known.value(scene), named.get(key)
+        if drawn is None or isinstance(drawn, Material):
             if prior:
                 raise ValueError(
                     f"uncertain parameters must be of this cue; got {prior.name!r}, which it does not have"
                 )
             continue
-        if not usual > 0:
+        if not drawn > 0:
             raise ValueError(
-                f"uncertain parameters must be above 0, for their logarithm is estimated; got {key}, {usual:g}"
+                f"uncertain parameters must be above 0, since their logarithm is estimated; got {key}, {drawn:g}"
             )
         spread = known.spread_in(scene) or 0.0
-        middle, spread = _prior(prior, usual, spread)
+        median, spread = _prior(prior, drawn, spread)
         unit = known.quantity(scene).unit
-        made.append(UncertainParameter(known.name, known.label, unit, middle, spread, _on_scene(known.steps())))
+        parameters.append(UncertainParameter(known.name, known.label, unit, median, spread, _on_scene(known.steps())))
     squirts = [measurement for measurement in measurements if isinstance(measurement, Squirt)]
     _, spread = _prior(named.get(SQUIRT_MODEL), 1.0, model_error(scene))
     if any(isinstance(measurement, Squirt | PivotLength) for measurement in measurements):
         factor: Any = lambda setup, value: setup._replace(squirt_factor=value)  # noqa: E731
-        made.append(UncertainParameter(SQUIRT_MODEL, "true squirt over the model's", "", 1.0, spread, factor))
-    ends = [one for one in measurements if isinstance(one, EndMass) and one.contact_time_error]
-    if ends:
-        spread = max((one.contact_time_error or 0.0) / one.contact_time for one in ends)
+        parameters.append(UncertainParameter(SQUIRT_MODEL, "true squirt over the model's", "", 1.0, spread, factor))
+    pendulums = [test for test in measurements if isinstance(test, EndMass) and test.contact_time_error]
+    if pendulums:
+        spread = max((test.contact_time_error or 0.0) / test.contact_time for test in pendulums)
         time_factor: Any = lambda setup, value: setup._replace(time_factor=value)  # noqa: E731
         label = "true contact time of the pendulum over the stated"
-        made.append(UncertainParameter(BALL_TIME, label, "", 1.0, spread, time_factor))
+        parameters.append(UncertainParameter(BALL_TIME, label, "", 1.0, spread, time_factor))
     series: dict[str, float] = {}
     for measurement in squirts:
         if measurement.zero_error is not None:
             series[measurement.series] = max(measurement.zero_error, series.get(measurement.series, 0.0))
     for name, error in series.items():
         label = f"zero of the offset{', ' + name if name else ''}"
-        made.append(UncertainParameter(f"{ZERO} {name}".strip(), label, "m", 0.0, error, _zero(name), normal=True))
-    return tuple(parameter for parameter in made if parameter.spread > 0)
+        parameters.append(
+            UncertainParameter(f"{ZERO} {name}".strip(), label, "m", 0.0, error, _zero(name), normal=True)
+        )
+    return tuple(parameter for parameter in parameters if parameter.spread > 0)
 
 
 def _prior(prior: Prior | None, usual: float, spread: float) -> tuple[float, float]:

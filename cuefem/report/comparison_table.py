@@ -20,13 +20,13 @@ from cuefem.scene.solved_scene import SolvedScene
 
 CURVE_OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 13))  # b/R
 STYLES = ("c1", "c2", "c3", "c4", "c5")
-_WORDS = {"end_mass_squirt": SQUIRT_END_MASS}
+_LABELS = {"end_mass_squirt": SQUIRT_END_MASS}
 
 
 def comparison_sentences(record: Record) -> list[str]:
     """A sentence on the squirt of each cue relative to the first."""
     first = record["reference"]
-    made = []
+    sentences = []
     for name, differences in record["differences"].items():
         squirt = differences.get("squirt")
         if squirt is None:
@@ -34,10 +34,10 @@ def comparison_sentences(record: Record) -> list[str]:
             which = (
                 f"the stroke of {' and of '.join(miscues)} is a miscue" if miscues else "a stroke is nearly a miscue"
             )
-            made.append(f"{name} and {first} cannot be compared in squirt: {which}.")
+            sentences.append(f"{name} and {first} cannot be compared in squirt: {which}.")
         else:
-            made.append(f"{name}: {squirt_difference(**squirt)} {first} (1σ).")
-    return made
+            sentences.append(f"{name}: {squirt_difference(**squirt)} {first} (1σ).")
+    return sentences
 
 
 def tabulate_comparison(record: Record) -> Table:
@@ -70,12 +70,12 @@ def tabulate_comparison(record: Record) -> Table:
 def _label(name: str) -> str:
     if name.startswith("frequency_"):
         return f"natural frequency {name.removeprefix('frequency_')}"
-    return _WORDS.get(name) or RESULTS[name].label
+    return _LABELS.get(name) or RESULTS[name].label
 
 
 def _value(name: str, value: float) -> str:
     """A value with its unit."""
-    quantity = "frequency" if name.startswith("frequency_") else "end_mass" if name in _WORDS else name
+    quantity = "frequency" if name.startswith("frequency_") else "end_mass" if name in _LABELS else name
     return format_value(quantity, value)
 
 

@@ -14,7 +14,7 @@ STYLES = {"worthwhile": "bold", "more squirt": "dim", "within uncertainty": "dim
 def tabulate_design_changes(record: Record) -> Table:
     """A row for each design change, the lowest squirt first."""
     rows = record["changes"]
-    made = tabulate(
+    table = tabulate(
         "Design changes",
         {
             "change": "{change}",
@@ -31,7 +31,7 @@ def tabulate_design_changes(record: Record) -> Table:
         texts=(0, 5),
     )
     styles = {i: STYLES[row["verdict"]] for i, row in enumerate(rows) if row["verdict"] in STYLES}
-    return replace(made, styles=styles)
+    return replace(table, styles=styles)
 
 
 def design_change_notes(record: Record) -> list[str]:

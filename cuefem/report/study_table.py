@@ -28,8 +28,8 @@ from cuefem.scene import Scene
 
 _FIELD = re.compile(rf"({'|'.join(field.name for field in fields(Scene))})(\[[\d*]+\])?(\.\w+(\[[\d*]+\])?)+")
 _ITEM = re.compile(r"(\w+)s\[(\d+|\*)\]")
-SHOWN = 7  # designs of a Pareto front
-MIN_SHARE = 0.01  # of the variance: a smaller cause is not named among the strongest
+MAX_FRONT_ROWS = 7  # designs of a Pareto front in the table
+MIN_SHARE = 0.01  # of the variance, of a cause that is named among the strongest
 
 
 def varied_segments(vary: Sequence[Vary], base: Scene) -> dict[str, list[str]]:
@@ -192,9 +192,9 @@ def tabulate_sweep(sweep: SweepStatistics) -> list[Table | str]:
     if sweep.pair is None:
         return sheets
     count, two = len(sweep.front), [sweep.responses[k] for k in sweep.pair]
-    picked = np.unique(np.linspace(0, count - 1, min(SHOWN, count)).round().astype(int))
+    picked = np.unique(np.linspace(0, count - 1, min(MAX_FRONT_ROWS, count)).round().astype(int))
     rows = tuple((str(sweep.numbers[i]), *cells(i, sweep.pair)) for i in (sweep.front[j] for j in picked))
-    few = f"; {SHOWN} of them, evenly spaced" if count > SHOWN else ""
+    few = f"; {MAX_FRONT_ROWS} of them, evenly spaced" if count > MAX_FRONT_ROWS else ""
     title = (
         f"{two[0].label} against {two[1].label}: Pareto front of {count} designs{few}"
         if count > 1
