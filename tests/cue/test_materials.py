@@ -65,14 +65,9 @@ def test_leather_ranges_are_soft_to_hard() -> None:
 
 
 OFFERS = {
-    **{
-        "hard mapel": "hard maple",
-        "mapel": "hard maple",
-        "Maple": "hard maple",
-        "carbon fiver": "carbon fibre",
-        "alu": "aluminium",
-    },
-    **{"ABS plastic": "abs", "steal": "steel", "Birch": "yellow birch", "ebony": "hard maple", "ivory": "melamine"},
+    **{"hard mapel": "hard maple", "mapel": "hard maple", "Maple": "hard maple", "carbon fiver": "carbon fibre"},
+    **{"alu": "aluminium", "ABS plastic": "abs", "steal": "steel", "Birch": "yellow birch", "ebony": "hard maple"},
+    "ivory": "melamine",
 }
 SPELT = {"Hard Maple": "hard maple", " HARD_MAPLE": "hard maple", "sugar maple": "hard maple", "aluminum": "aluminium"}
 

@@ -22,11 +22,8 @@ REFERENCE = ("kim", "pool_hollow", "carbon")
 def scene_of(name: str) -> cf.Scene:
     """The default stroke of a reference cue; of Kim's with a spring tip, which is solved faster."""
     cue = cf.load(ROOT / "meshes" / f"{name}.toml")
-    return (
-        cf.Scene(cue, tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(2.0, 0.3))
-        if name == "kim"
-        else cf.usual_scene(cue)
-    )
+    spring = cf.Scene(cue, tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(2.0, 0.3))
+    return spring if name == "kim" else cf.usual_scene(cue)
 
 
 @pytest.fixture(

@@ -145,10 +145,8 @@ def test_study_invalid_file_raises(tmp_path: Path, good: str, old: str, new: str
 )
 def test_study_of_drawing_or_scene_raises(tmp_path: Path, name: str, text: str, what: str) -> None:
     (tmp_path / name).write_text(text)
-    expected = (
-        f'{name}: must be a study, with scene = "{name}" and [[vary]] tables, such as studies/sweeps/bore.toml; got '
-    )
-    assert_unchanged(tmp_path, expected + what, "study", tmp_path / name)
+    expected = f'{name}: must be a study, with scene = "{name}" and [[vary]] tables, such as studies/sweeps/bore.toml'
+    assert_unchanged(tmp_path, f"{expected}; got {what}", "study", tmp_path / name)
 
 
 # The content of the store, the options of the next study, and a part of the error message.

@@ -96,9 +96,8 @@ def test_study_killed_edited_and_resumed_has_same_table(tmp_path: Path, workers:
     assert 0 < counts[1] <= counts[2] <= counts[3]
     whole, own = tmp_path / "whole.csv", tmp_path / "own.csv"
     assert record_of(study, "-o", whole)["evaluated"] == 200 - counts[3]
-    study = write_study(
-        tmp_path, study.read_text(encoding="utf-8").replace("high = 1.3", "high = 1.4"), name="edited.toml"
-    )
+    edited = study.read_text(encoding="utf-8").replace("high = 1.3", "high = 1.4")
+    study = write_study(tmp_path, edited, name="edited.toml")
     stdout_of("study", study, "--store", store, "-o", tmp_path / "edited.csv")
     for name, path in (("study", whole), ("edited", tmp_path / "edited.csv")):
         stdout_of("study", tmp_path / f"{name}.toml", "--store", tmp_path / f"fresh_{name}.sqlite", "-o", own)
