@@ -191,7 +191,7 @@ class Scene:
             value = getattr(self.tip, name)
             if has_tip_model and value is not None:
                 raise ValueError(
-                    f"Tip.{name} must be left out beside an effect that models the whole tip, which determines it; "
+                    f"Tip.{name} must be omitted with an effect that models the whole tip, which determines it; "
                     f"got {value} {unit}"
                 )
 
