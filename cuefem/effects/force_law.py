@@ -63,7 +63,7 @@ _ANGLES = (1 + _GAUSS) * math.pi / 4
 
 
 class IndentationOutOfRange(ValueError):
-    """A leather tip is indented beyond the range of its law."""
+    """The indentation of a leather tip exceeds the valid range of its law."""
 
 
 @dataclass(frozen=True)
@@ -134,8 +134,8 @@ class LeatherLaw:
     def too_deep(self, depth: float) -> IndentationOutOfRange:
         """The error of an indentation beyond the law's range."""
         return IndentationOutOfRange(
-            f"the tip's leather is indented by {1e3 * depth:.3g} mm, beyond the range of its law "
-            f"({1e3 * self.depth_limit:.3g} mm): raise LeatherTip.height or E, or lower Stroke.speed"
+            f"tip too soft or stroke too fast: indentation {1e3 * depth:.3g} mm exceeds the valid range "
+            f"({1e3 * self.depth_limit:.3g} mm); raise height or E of the leather, or lower the speed"
         )
 
 

@@ -10,7 +10,7 @@ static const double MIN_FORCE = 1e-9;                        /* N, least scale o
 /* C at mid-step; with it the contact's velocities without forces at the end of the step (v) and on average
    over it (u), m/s, and their change per force (V, W), (m/s)/N; in impact() per impulse, 1/kg. rest: mean
    velocity of a sticking point, m/s: 0, or half of the initial velocity where it slipped before and comes to
-   rest. */
+   rest. Handbook: The contact, Ports and the matrix C: v = C y, loads = C' F. */
 void contact_matrices(Work *w)
 {
     const Contact *c = w->c;
@@ -56,7 +56,7 @@ void velocities(const Work *w, double *end, double *mean)
 }
 
 /* Newton's method for (F_t, F_n); slip: its direction, or STICK; unused with PARTIAL_SLIP, whose annuli slip
-   one by one. Returns whether it converged. */
+   one by one. Returns whether it converged. Handbook: The contact: F_n = law(d - h v_n/2), return mapping. */
 static int newton(Work *w, int slip)
 {
     const Contact *c = w->c;

@@ -65,7 +65,8 @@ static void separate(Work *w, double shift)
 
 static int set_step(Work *w, double h) { return w->t.h == h || tabulate(w, h); }
 
-/* Normal phase and length of the next step; v_n: normal velocity of the contact at the end of this one. */
+/* Normal phase and length of the next step; v_n: normal velocity of the contact at the end of this one.
+   Handbook: The strike: F = k d loading, (k/e^2)(d - (1 - e^2) D) unloading; Low restitution: h e/0.5. */
 static void next_phase(Work *w, double v_n)
 {
     Contact *c = w->c;
