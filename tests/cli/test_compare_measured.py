@@ -16,16 +16,16 @@ from tests.helpers.measured_cues import MEASURED_TOML, measured_folder
 
 
 def test_compare_json_equals_library_and_page_lists_measurements(tmp_path: Path) -> None:
-    directory, page = measured_folder(tmp_path / "cue"), tmp_path / "page.html"
-    (directory / "squirt.csv").write_text("offset,value [deg],error [deg]\n0.3,1.5,0.1\n", encoding="utf-8")
-    result, (cue, _) = as_json("compare", directory), load_measured(directory)
+    folder, page = measured_folder(tmp_path / "cue"), tmp_path / "page.html"
+    (folder / "squirt.csv").write_text("offset,value [deg],error [deg]\n0.3,1.5,0.1\n", encoding="utf-8")
+    result, (cue, _) = as_json("compare", folder), load_measured(folder)
     for reported, row in zip(result["rows"], compare(cue), strict=True):
         assert reported["label"] == row.measurement.label
         assert [reported[name] for name in ("computed", "spread", "pull")] == [row.computed, row.spread, row.pull]
     assert (result["name"], result["missing"]) == ("a cue", cue.missing)
-    out = stdout_of("compare", directory)
+    out = stdout_of("compare", folder)
     assert all(phrase in out for phrase in ("weight of the shaft", "100.00 ± 0.50 g", "Missing measurements"))
-    assert call("compare", directory, "-o", page) == (0, f"wrote {page}\n", "")
+    assert call("compare", folder, "-o", page) == (0, f"wrote {page}\n", "")
     text = page.read_text(encoding="utf-8")
     assert all(f">{one.label}<" in text for one in cue.measurements)
     assert "http" not in text.replace("http://www.w3.org", "")
@@ -33,51 +33,49 @@ def test_compare_json_equals_library_and_page_lists_measurements(tmp_path: Path)
 
 @pytest.mark.parametrize("drawing", ["cue.toml", "cue.csv"])
 def test_compare_folder_with_drawing_alone_lists_measurement_types(tmp_path: Path, drawing: str) -> None:
-    directory = measured_folder(tmp_path / "cue")
-    (directory / "measured.toml").unlink()
+    folder = measured_folder(tmp_path / "cue")
+    (folder / "measured.toml").unlink()
     if bare := drawing == "cue.csv":
-        (directory / "cue.toml").unlink()
-        (directory / "cue.csv").write_text("x [mm],diameter [mm]\n0,12.75\n730,21\n", encoding="utf-8")
-    status, out, err = call("compare", directory)
+        (folder / "cue.toml").unlink()
+        (folder / "cue.csv").write_text("x [mm],diameter [mm]\n0,12.75\n730,21\n", encoding="utf-8")
+    status, out, err = call("compare", folder)
     assert (status, err[:7]) == (0, "warning" if bare else "")
     assert all(kind.title in out for kind in MEASUREMENT_TYPES.values())
 
 
 def test_compare_template_has_every_measurement_type(tmp_path: Path) -> None:
-    directory = tmp_path / "mine"
-    assert call("compare", directory, "--template")[::2] == (0, "")
-    assert sorted(path.name for path in directory.iterdir()) == sorted(TEMPLATE)
-    cue, notes = load_measured(directory)
+    folder = tmp_path / "mine"
+    assert call("compare", folder, "--template")[::2] == (0, "")
+    assert sorted(path.name for path in folder.iterdir()) == sorted(TEMPLATE)
+    cue, notes = load_measured(folder)
     assert {type(one) for one in cue.measurements} == set(MEASUREMENT_TYPES.values())
     assert cue.missing == []
     assert notes[0].startswith(", ".join(name for name in sorted(TEMPLATE) if name != "README.md"))
-    (directory / "squirt.csv").unlink()
-    (directory / "cue.toml").write_text(
-        (directory / "cue.toml").read_text().replace("467 g", "450 g"), encoding="utf-8"
-    )
-    assert load_measured(directory)[1][0].startswith("added_mass.csv, measured.toml as in the template")
+    (folder / "squirt.csv").unlink()
+    (folder / "cue.toml").write_text((folder / "cue.toml").read_text().replace("467 g", "450 g"), encoding="utf-8")
+    assert load_measured(folder)[1][0].startswith("added_mass.csv, measured.toml as in the template")
 
 
 def test_load_measured_without_scene_has_default_stroke_of_game(tmp_path: Path) -> None:
     """The default stroke is that of every command, for the game of measured.toml."""
-    directory = measured_folder(tmp_path / "cue")
-    drawing = cf.load(directory / "cue.toml")
+    folder = measured_folder(tmp_path / "cue")
+    drawing = cf.load(folder / "cue.toml")
     assert isinstance(drawing, cf.Cue)
     for game in ("", "snooker"):
-        (directory / "measured.toml").write_text(f'game = "{game}"\n' if game else "# none\n", encoding="utf-8")
-        assert load_measured(directory)[0].scene == cf.usual_scene(drawing, game or "pool")
-    (directory / "measured.toml").write_text('game = "pool"\n[tip]\nfriction = 0.5\n', encoding="utf-8")
+        (folder / "measured.toml").write_text(f'game = "{game}"\n' if game else "# none\n", encoding="utf-8")
+        assert load_measured(folder)[0].scene == cf.usual_scene(drawing, game or "pool")
+    (folder / "measured.toml").write_text('game = "pool"\n[tip]\nfriction = 0.5\n', encoding="utf-8")
     usual = cf.usual_scene(drawing)
-    assert load_measured(directory)[0].scene == replace(usual, tip=replace(usual.tip, friction=0.5))
-    (directory / "measured.toml").write_text('game = "chess"\n', encoding="utf-8")
-    assert_rejects("measured.toml: game: must be one of pool, carom, snooker, kim", "compare", directory)
+    assert load_measured(folder)[0].scene == replace(usual, tip=replace(usual.tip, friction=0.5))
+    (folder / "measured.toml").write_text('game = "chess"\n', encoding="utf-8")
+    assert_rejects("measured.toml: game: must be one of pool, carom, snooker, kim", "compare", folder)
 
 
 def test_compare_estimate_json_equals_library(tmp_path: Path) -> None:
     known = "".join(f'[[prior]]\nname = "{name}"\nspread = 0.0\n' for name in ("G", "bore width", "contact time"))
-    directory = measured_folder(tmp_path / "cue", MEASURED_TOML + known)
-    reported = as_json("compare", directory, "--estimate")
-    expected = estimate(load_measured(directory)[0])
+    folder = measured_folder(tmp_path / "cue", MEASURED_TOML + known)
+    reported = as_json("compare", folder, "--estimate")
+    expected = estimate(load_measured(folder)[0])
     assert [value["value"] for value in reported["values"]] == pytest.approx([value.value for value in expected.values])
     assert (reported["misfit"], reported["converged"]) == (pytest.approx(expected.misfit), True)
     assert {gain["kind"] for gain in reported["recommended"]} <= set(MEASUREMENT_TYPES)

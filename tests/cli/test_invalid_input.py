@@ -138,7 +138,7 @@ def test_command_on_full_disk_prints_one_line() -> None:
         ("report", "12 mm", "0.012 mm", "a leather tip on 0.012 mm must be 0.0006 to 0.036 mm high; got 6 mm"),
     ],
 )
-def test_extreme_size_prints_one_line_after_warnings(
+def test_extreme_size_prints_line_after_warnings(
     command: str, was: str, size: str, message: str, tmp_path: Path
 ) -> None:
     """Valid values whose results overflow: status 2, and one line after the warnings."""

@@ -92,16 +92,14 @@ def test_impulse_every_regime_agrees_with_oracle(kind: str) -> None:
     assert out.regime.tolist() == [*map(regime_of, solutions)]
     p, mass = np.hypot(*out.impulse.T), n["ball_mass"]
     tangent, p_t, p_n, cue_speed, tip_loss, friction_loss = np.array([each[:6] for each in solutions], float).T
-    tolerance = 1e-12
-    assert np.all(
-        abs(np.tan(out.squirt) - tangent) < tolerance * (1 + tangent**2)
-    )  # the decimal solution has the tangent
-    assert np.all(abs(np.array([p_t, p_n]) - out.impulse.T) < tolerance * p)
+    atol = 1e-12
+    assert np.all(abs(np.tan(out.squirt) - tangent) < atol * (1 + tangent**2))  # the decimal solution has the tangent
+    assert np.all(abs(np.array([p_t, p_n]) - out.impulse.T) < atol * p)
     np.testing.assert_allclose(out.impulse, mass[:, None] * out.ball_velocity, rtol=1e-14)
     assert np.all(abs(out.spin * n["inertia"] * mass * n["radius"] - out.impulse[:, 0]) < 1e-14 * p)
-    assert np.all(abs(cue_speed - out.cue_speed) < tolerance * n["speed"])
+    assert np.all(abs(cue_speed - out.cue_speed) < atol * n["speed"])
     for name, joules in (("tip loss", tip_loss), ("friction loss", friction_loss)):
-        assert np.all(abs(joules - out.energy[name]) < tolerance * out.energy["initial"]), name
+        assert np.all(abs(joules - out.energy[name]) < atol * out.energy["initial"]), name
 
 
 def test_impulse_edge_cases_conserve_energy_and_mirror() -> None:

@@ -31,7 +31,7 @@ from tests.helpers.strike_scenes import (
     kim_scene,
     logarithmic,
     outcome_vector,
-    rotating_tip_modes,
+    rotating_modes,
 )
 
 pytestmark = pytest.mark.kernel
@@ -200,7 +200,7 @@ def test_strike_other_limits_are_reached() -> None:
     for time in 1e-3 * 2.0 ** -np.arange(5, 9):
         scene = kim_scene(0.3, contact_time=float(time))
         turned, fixed = (
-            strike_modes(replace(scene, effects=e), rotating_tip_modes()) for e in ((cf.RollingContact(),), ())
+            strike_modes(replace(scene, effects=e), rotating_modes()) for e in ((cf.RollingContact(),), ())
         )
         rolled.append(turned.squirt / fixed.squirt - 1)
     assert_order(1, 2.0 ** -np.arange(4.0), rolled, within=[0.04, 0.02, 0.01])

@@ -87,20 +87,20 @@ def test_saved_design_strikes_as_displayed(browser: Any, address: str, tmp_path:
         before = displayed_number(page, "squirt")
         page.get_by_role("button", name="Try").first.click()
         wait_until_idle(page)
-        changed = displayed_number(page, "squirt")
-        assert changed < before
+        new = displayed_number(page, "squirt")
+        assert new < before
 
         saved = download(page, "Save", tmp_path)
         scene = cf.load(saved)
         assert scene.cue.weighed
-        assert cf.strike(scene).squirt == pytest.approx(changed, rel=1e-9)
+        assert cf.strike(scene).squirt == pytest.approx(new, rel=1e-9)
         assert call("strike", saved)[0] == 0
         report = download(page, "Report", tmp_path).read_text(encoding="utf-8")
         printed = [
             float(text) for text in re.findall(r'data-number="squirt" data-of="\w+" data-value="([^"]*)"', report)
         ]
         assert sorted(printed) == pytest.approx(
-            sorted([changed, plain]), rel=5e-3
+            sorted([new, plain]), rel=5e-3
         )  # the report has another numerical error
 
 

@@ -33,9 +33,7 @@ def possible(tip: LeatherTip, diameter: float) -> LeatherTip:
 
 @settings(max_examples=40)
 @given(TIPS, DIAMETERS, OFFSETS, st.floats(0.005, 0.5))
-def test_leather_compliance_is_symmetric_and_positive(
-    tip: LeatherTip, diameter: float, offset: float, patch: float
-) -> None:
+def test_leather_compliance_is_positive_definite(tip: LeatherTip, diameter: float, offset: float, patch: float) -> None:
     """Symmetric and positive definite, mirrored with the offset, in proportion to 1/E."""
     compliance = possible(tip, diameter).compliance(diameter, offset, patch * diameter)
     tolerance = {"rtol": 1e-9, "atol": 1e-12 * compliance[0, 0]}

@@ -22,16 +22,14 @@ def test_end_mass_of_smooth_drive_with_default_modes_equals_many_modes(number: i
     cue = random_cue(draw)
     E = cue.segments[0].material.E
     leather = E < 1e9
-    pulse_scene = scene(cue, 1e-3)
-    exact = corrected_tip_modes(pulse_scene, MANY)
+    pulse = scene(cue, 1e-3)
+    exact = corrected_tip_modes(pulse, MANY)
     shortest = 1e-3 if E < 150e6 else 0.5e-3
     for T in draw.uniform(shortest, 5e-3, 8):
-        pulse_scene = scene(cue, float(T))
-        assert end_mass(pulse_scene, "velocity") == pytest.approx(
-            definition_of("velocity").of(exact, pulse_scene), rel=5e-6
-        )
-        expected = definition_of("force").of(exact, pulse_scene)
-        assert end_mass(pulse_scene, "force") == pytest.approx(expected, rel=5e-3 if leather else 1e-3)
+        pulse = scene(cue, float(T))
+        assert end_mass(pulse, "velocity") == pytest.approx(definition_of("velocity").of(exact, pulse), rel=5e-6)
+        expected = definition_of("force").of(exact, pulse)
+        assert end_mass(pulse, "force") == pytest.approx(expected, rel=5e-3 if leather else 1e-3)
 
 
 @pytest.mark.nightly
@@ -39,8 +37,8 @@ def test_stick_end_mass_random_cues_has_stated_error() -> None:
     """95th percentile 0.1 %, maximum 0.2 %: leather, ferrules, tubes and bores, contacts of 0.5 to 3 ms."""
     draw, errors = np.random.default_rng(9), []
     for _ in range(60):
-        pulse_scene = scene(random_cue(draw), float(draw.uniform(0.5e-3, 3e-3)))
-        exact = definition_of("stick").of(corrected_tip_modes(pulse_scene, MAX_MODES), pulse_scene)
-        errors.append(abs(end_mass(pulse_scene) / exact - 1))
+        pulse = scene(random_cue(draw), float(draw.uniform(0.5e-3, 3e-3)))
+        exact = definition_of("stick").of(corrected_tip_modes(pulse, MAX_MODES), pulse)
+        errors.append(abs(end_mass(pulse) / exact - 1))
     assert np.quantile(errors, 0.95) < 1e-3
     assert max(errors) < 2e-3

@@ -73,9 +73,7 @@ def test_handbook_page_is_self_contained_with_valid_links() -> None:
 
 
 @pytest.mark.parametrize("has_browser", [True, False])
-def test_guide_command_opens_prints_and_writes(
-    has_browser: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_guide_opens_prints_and_writes(has_browser: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     opened: list[str] = []
     monkeypatch.setattr(import_module("cuefem.cli.guide_command"), "page", whole)
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))

@@ -50,7 +50,7 @@ def custom_tip_modes(omega: list[float], across: list[float], *, mass: float = 0
     return TipModes(np.r_[0.0, 0.0, omega], amplitude, approach, np.zeros(len(amplitude)))
 
 
-def rotating_tip_modes(damping: float = 0.0) -> TipModes:
+def rotating_modes(damping: float = 0.0) -> TipModes:
     """Three vibrating modes that rotate the end section, with modal damping if ``damping`` > 0."""
     tip = custom_tip_modes([500.0, 3000.0, 9000.0], [5.0, 8.0, 7.0], rigid=9.0)
     tip = replace(tip, rotation=np.array([0, -50.0, -60.0, -80.0, -120.0]))

@@ -88,9 +88,7 @@ def linear_estimate(cue: MeasuredCue, slopes: np.ndarray, values: np.ndarray) ->
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("outlier", [None, *range(7)])
-def test_intervals_with_one_outlier_cover_or_name_it(
-    outlier: int | None, linear: tuple[MeasuredCue, np.ndarray]
-) -> None:
+def test_intervals_with_outlier_cover_or_name_it(outlier: int | None, linear: tuple[MeasuredCue, np.ndarray]) -> None:
     """One value 6 to 20 errors off: the intervals cover the true parameters, or the estimate lists it as unchecked."""
     cue, slopes = linear
     generator, sd = np.random.default_rng(26), np.array([one.sd for one in cue.measurements])
