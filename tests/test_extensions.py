@@ -86,7 +86,7 @@ def test_added_end_mass_definition_is_displayed_and_evaluated(monkeypatch: pytes
     assert cf.resolve_end_mass(scene, "rigid", 1e-3)[0] == pytest.approx(expected, rel=1e-6)
     assert cf.end_mass(cf.Scene(cf.LumpedCue(0.5, 0.006)), "rigid") == 0.006
     assert outputs_without("rigid (rigid body, b/R 0.3)", outputs(scene, tmp_path, "end-mass")) == []
-    assert outputs_without("rigid body at b/R 0.3", outputs(scene, tmp_path, "designer")) == []
+    assert outputs_without("rigid body, b/R 0.3", outputs(scene, tmp_path, "designer")) == []
     values = evaluate([scene], ["end_mass_rigid", "end_mass_rigid(0.1)"], at=AT).values[0]
     assert values == pytest.approx([expected] * 2, rel=1e-9)
 
