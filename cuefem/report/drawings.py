@@ -14,7 +14,7 @@ from cuefem.beam.modes import modes
 from cuefem.cue import Material, Segment
 from cuefem.cue.materials import MATERIALS, material_name, table_name
 from cuefem.report.charts import WIDTH, Axis, Chart, Curve, Tick, chart, path
-from cuefem.results.quantities import to_display, with_heading
+from cuefem.results.quantities import significant, to_display, with_heading
 from cuefem.scene import Scene
 
 DIAMETER_SCALE = 4.0  # enlargement of the diameters in the drawing of a whole cue
@@ -141,7 +141,7 @@ def modes_chart(scene: Scene) -> Chart:
     """The lowest bending mode shapes, each scaled to its largest deflection."""
     solved, x = modes(scene.shaft, SHAPES, effects=scene.cue_effects), np.linspace(0, scene.shaft.length, 241)
     curves = [
-        Curve(f"{frequency:.4g} Hz", to_display(x, "m"), shape / np.abs(shape).max(), f"c{k}")
+        Curve(f"{significant(frequency)} Hz", to_display(x, "m"), shape / np.abs(shape).max(), f"c{k}")
         for k, (frequency, shape) in enumerate(zip(solved.frequencies, solved.shape(x)[0], strict=True), 1)
     ]
     along = Axis(with_heading("distance from the front of the drawing", "m"), 0.0, float(to_display(x[-1], "m")))

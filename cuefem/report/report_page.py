@@ -36,7 +36,7 @@ from cuefem.report.verdict_table import headline, uncertainty_line
 from cuefem.results.closed_forms import alciatore_a31_mass_ratio
 from cuefem.results.comparison import comparison_record
 from cuefem.results.convergence import resolve
-from cuefem.results.quantities import DASH, RESULTS, format_value, with_unit
+from cuefem.results.quantities import DASH, RESULTS, format_value
 from cuefem.results.records import Record, Table, tabulate_values, value_rows
 from cuefem.results.solved_design import coupled_curve
 from cuefem.scene import Outcome, Scene
@@ -156,7 +156,7 @@ def _context(scene: Scene, records: Record) -> Record:
     shaft = "modes" in records
     return {
         "facts": [plain_cue_line(scene.cue), stroke, *map(plain_effect_line, scene.effects)],
-        "squirt": format_value("squirt", outcome.squirt, brief=True),
+        "squirt": format_value("squirt", outcome.squirt),
         "error": "" if outcome.error is None else f"{100.0 * outcome.error:.2g} %",
         "uncertainty": uncertainty_line(records["verdict"]),
         "advice": tabulate_design_changes(records["advice"]) if "advice" in records else None,
@@ -223,7 +223,7 @@ def _meanings(scene: Scene, outcome: Outcome) -> list[str]:
 def _energy(outcome: Outcome) -> Table:
     whole = outcome.energy["initial"]
     rows = (
-        (name, f"{100 * value / whole:.2f} %", with_unit(value, "J") if abs(value) > 1e-9 * whole else "0")
+        (name, f"{100 * value / whole:.2f} %", format_value("energy", value) if abs(value) > 1e-9 * whole else "0")
         for name, value in outcome.energy.items()
         if name != "initial"
     )

@@ -56,7 +56,7 @@ def tabulate_squirt(record: Record, scene: Record) -> Table:
     own = record["models"]["coupled, this cue"]
     names = ("squirt", "pivot_length")
     rows = [
-        (f"{offset:g}", *(format_value(name, None if missed else own[name][i], brief=True) for name in names), regime)
+        (f"{offset:g}", *(format_value(name, None if missed else own[name][i]) for name in names), regime)
         for i, (offset, regime) in enumerate(zip(record["offsets"], own["regime"], strict=True))
         for missed in [regime == "miscue"]
     ]

@@ -27,6 +27,7 @@ DISPLAY_UNITS = {
     "m": (1e3, "mm"),
     "s": (1e3, "ms"),
     "rad": (math.degrees(1), "°"),
+    "J": (1e3, "mJ"),
     "Pa": (1e-9, "GPa"),
     "kg/m^3": (1.0, "kg/m³"),
     "1/sqrt(kg)": (1.0, "/√kg"),
@@ -69,13 +70,13 @@ class Result:
         """Factor from the SI unit to the display unit."""
         return DISPLAY_UNITS.get(self.unit, (1.0, self.unit))[0]
 
-    def number(self, value: float, *, brief: bool = False) -> str:
-        """A value in the display unit, without the unit; brief: one decimal less, of three or more."""
+    def number(self, value: float) -> str:
+        """A value in the display unit, without the unit."""
         if self.decimals is None:
             return significant(self.scale * value, self.digits)
-        return f"{self.scale * value:.{self.decimals - (brief and self.decimals > 2)}f}"
+        return f"{self.scale * value:.{self.decimals}f}"
 
-    def format(self, value: Any, *, brief: bool = False) -> str:
+    def format(self, value: Any) -> str:
         """A value with its unit; a dash if there is no value; words unchanged."""
         if isinstance(value, str):
             return value
@@ -83,7 +84,7 @@ class Result:
             return DASH
         unit = DISPLAY_UNITS.get(self.unit, (1.0, self.unit))[1]
         space = "" if unit in ("°", "") else " "
-        return f"{self.number(float(value), brief=brief)}{space}{unit}"
+        return f"{self.number(float(value))}{space}{unit}"
 
 
 def format_change(change: float, decimals: int, unit: str) -> str:
@@ -174,7 +175,7 @@ RESULTS = {
     ),
     "radius": Result("radius", "m", 2),
     "squirt": Result(
-        *("squirt", "rad", 3),
+        *("squirt", "rad", 2),
         about="of the coupled strike",
         of=of_strike(lambda outcome: outcome.squirt),
         argument="offset",
@@ -196,24 +197,25 @@ RESULTS = {
         better="higher",
         listed=False,
     ),
-    "speed": Result("speed", "m/s", 4),
+    "speed": Result("speed", "m/s", 2),
     "ball_speed": Result(
-        *("ball speed", "m/s", 4),
+        *("ball speed", "m/s", 2),
         about="after the coupled strike",
         of=of_strike(lambda outcome: outcome.ball_speed),
         argument="offset",
         better="higher",
     ),
-    "ball_velocity": Result("ball velocity", "m/s", 4),
-    "spin": Result("spin", "rad/s", 3),
-    "cue_speed": Result("cue speed after", "m/s", 4),
+    "ball_velocity": Result("ball velocity", "m/s", 2),
+    "spin": Result("spin", "rad/s", 1),
+    "cue_speed": Result("cue speed after", "m/s", 2),
     "contact_time": Result("contact time, rigid cue head-on", "s"),
-    "duration": Result("contact time of this stroke", "s", 4),
+    "duration": Result("contact time of this stroke", "s", 3),
     "regime": Result("contact"),
     "error": Result("estimated error", digits=2),
-    "energy": Result("energy", "J"),
+    "energy": Result("energy", "J", digits=3),
     "vibration_energy": Result(
         *("energy of vibration", "J"),
+        digits=3,
         about="energy of the cue's free vibration after the coupled strike",
         of=of_strike(lambda outcome: outcome.energy["cue vibration"]),
         argument="offset",
@@ -231,14 +233,14 @@ RESULTS = {
         better="higher",
     ),
     "tip_diameter": Result(
-        *("diameter of the tip", "m"),
+        *("diameter of the tip", "m", 2),
         heading="tip diameter",
         of=of_drawing(lambda scene: scene.tip_diameter),
         segments=True,
     ),
-    "butt_diameter": Result("diameter of the butt", "m"),
+    "butt_diameter": Result("diameter of the butt", "m", 2),
     "wall": Result(
-        *("thinnest wall (where solid, the radius)", "m"),
+        *("thinnest wall (where solid, the radius)", "m", 2),
         heading="thinnest wall",
         about="of the segments, at their ends; where solid, the radius",
         of=of_drawing(_thinnest_wall),
@@ -246,16 +248,16 @@ RESULTS = {
         better="higher",
     ),
     "frequency": Result(
-        *("natural frequency", "Hz", 2),
+        *("natural frequency", "Hz"),
         about="of a bending mode",
         of=lambda design, mode: design.frequency(mode),
         argument="mode",
         segments=True,
         listed=False,
     ),
-    "frequencies": Result("frequency", "Hz", 2),
+    "frequencies": Result("frequency", "Hz"),
     "near": Result("requested frequency", "Hz"),
-    "nearest": Result("nearest frequency", "Hz", 2),
+    "nearest": Result("nearest frequency", "Hz"),
     "tip_amplitudes": Result("tip amplitude", "1/sqrt(kg)", 3),
     "force": Result("force", "N"),
     "depth": Result("indentation", "m", 2),
@@ -311,6 +313,6 @@ def units_of(*names: str) -> dict[str, str]:
     return {name: UNITS[name] for name in names}
 
 
-def format_value(name: str, value: Any, *, brief: bool = False) -> str:
+def format_value(name: str, value: Any) -> str:
     """A value of the quantity of that name, with its unit."""
-    return RESULTS[name].format(value, brief=brief)
+    return RESULTS[name].format(value)

@@ -99,7 +99,7 @@ def value_rows(record: Mapping[str, Any], names: Iterable[str] | None = None) ->
     """Name in full and value with its unit of a record's quantities, or of those of the names that have a value."""
     if names is not None:
         record = {name: record[name] for name in names if record[name] is not None}
-    return [(RESULTS[name].label, format_value(name, value, brief=True)) for name, value in record.items()]
+    return [(RESULTS[name].label, format_value(name, value)) for name, value in record.items()]
 
 
 def json_value(value: Any) -> Any:

@@ -12,6 +12,7 @@ from click.shell_completion import ShellComplete
 
 from cuefem.cli import COMMANDS, main
 from cuefem.cli.output import Output
+from cuefem.results.quantities import significant
 from tests.helpers.command_line import call
 
 
@@ -59,7 +60,7 @@ def test_command_without_own_page_writes_printed_tables(tmp_path: Path) -> None:
     page, shaft = tmp_path / "modes.html", Path(__file__).parents[2] / "meshes/kim.toml"
     assert call("modes", shaft, "-o", page) == (0, f"wrote {page}\n", "")
     text, record = page.read_text(encoding="utf-8"), json.loads(call("modes", shaft, "--json")[1])
-    assert all(f"{hertz:.2f} Hz" in text for hertz in record["frequencies"])
+    assert all(f"{significant(hertz)} Hz" in text for hertz in record["frequencies"])
 
 
 def test_help_loads_no_command_module() -> None:

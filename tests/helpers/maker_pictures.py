@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from cuefem.results.quantities import format_change
 from tests.helpers.command_line import call
 
 ROOT = Path(__file__).parents[2]
@@ -99,7 +100,7 @@ def changes_chart() -> str:
         texts.append(svg_text(4, y, re.split(", wall|, a cone| wide and| from the", name)[0]))
         texts.append(
             svg_text(
-                end + (-3 if percent < 0 else 3), y, f"{percent:+.0f} %".replace("-", "−"), END if percent < 0 else ""
+                end + (-3 if percent < 0 else 3), y, format_change(percent, 0, "%"), END if percent < 0 else ""
             )
         )
     height = 20 * len(bars) + 10
