@@ -3,7 +3,7 @@ from .results.convergence import resolve as resolve, resolve_end_mass as resolve
 from .beam.mesh import Resolution as Resolution
 from .beam.modes import modes as modes
 from .contact.motion_history import motion as motion
-from .contact.table_frame import Placed as Placed, place as place
+from .contact.table_frame import BallMotion as BallMotion, place as place
 from .contact.side_strike import (
     SideOutcome as SideOutcome,
     SideStrike as SideStrike,

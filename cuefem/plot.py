@@ -240,7 +240,7 @@ def end_mass(scene: Scene, ax: Axes | None = None, *, at: Resolution | None = No
         bare = replace(scene.without_tip_effects, effects=())
         excluded = f", without the {with_unit(scene.axial_mass - bare.axial_mass, 'kg', 2)} of its leather"
     drivers, axes = sensitivity(bare, at=at), _axes(ax)
-    behind = drivers.x > scene.shaft.leather + _LOCAL
+    behind = drivers.x > scene.shaft.leather_height + _LOCAL
     axes.plot(to_display(drivers.x[behind], "m"), (drivers.rhoA + drivers.axial_mass)[behind])
     axes.axhline(0, color="#888", linewidth=0.6)
     axes.set(

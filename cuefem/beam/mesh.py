@@ -31,7 +31,7 @@ class BeamEffect(Protocol):
         """Positions that must be mesh nodes, m from the tip."""
 
     @property
-    def splits(self) -> tuple[float, ...]:
+    def joint_positions(self) -> tuple[float, ...]:
         """Positions where deflection and rotation may jump, m from the tip."""
 
     def check_on(self, cue: Cue, name: str) -> None:
@@ -87,7 +87,7 @@ class Mesh:
 
     nodes: (elements + 1,) m. orders: (elements,) polynomial degrees of the rotation. first: (elements,) each element's
     first degree of freedom. n_dof: number of degrees of freedom. Neighbouring elements share the two of their node,
-    unless a joint splits the node.
+    unless a joint divides the node.
     """
 
     nodes: Array
@@ -121,11 +121,11 @@ def mesh_cue(
     """Mesh a cue, with nodes at ``positions``, m from the tip, and at the positions of effects.
 
     at: how many of the lowest flexible modes the mesh must resolve; or the user's resolution, with a node at the end of
-    every segment. A joint splits its node.
+    every segment. A joint doubles its node.
     """
     for effect in effects:
         effect.check_on(cue, type(effect).__name__)
-    wanted = np.unique([cue.leather, *positions, *(x for effect in effects for x in effect.positions)])
+    wanted = np.unique([cue.leather_height, *positions, *(x for effect in effects for x in effect.positions)])
     for x in wanted:
         if not 0 <= x <= cue.length * (1 + POSITION_TOLERANCE):
             raise ValueError(f"an effect's position must be in [0, {cue.length}] m, on the cue; got {x}")
@@ -137,12 +137,12 @@ def mesh_cue(
         check_mesh_size(pieces * at.elements * (2 * at.order + 1), f"{pieces} pieces")
         nodes = _subdivided(ends, np.full(pieces, at.elements))
         orders = np.full(pieces * at.elements, at.order)
-    return _with_dofs(nodes, orders, [x for effect in effects for x in effect.splits])
+    return _with_dofs(nodes, orders, [x for effect in effects for x in effect.joint_positions])
 
 
 def mesh_for_phases(cue: Cue, phases: Array, positions: Sequence[float]) -> Mesh:
-    """Mesh a cue for waves of ``phases`` rad over its segments, with a node at each of ``positions`` and no splits."""
-    return _with_dofs(*_equal_phases(cue, phases, _snapped(cue, np.array([cue.leather, *positions]))), [])
+    """Mesh a cue for waves of ``phases`` rad over its segments, nodes at ``positions``, and no joint."""
+    return _with_dofs(*_equal_phases(cue, phases, _snapped(cue, np.array([cue.leather_height, *positions]))), [])
 
 
 def _snapped(cue: Cue, positions: Array) -> Array:
@@ -151,11 +151,11 @@ def _snapped(cue: Cue, positions: Array) -> Array:
     return np.where(np.abs(positions - nearest) > POSITION_TOLERANCE * cue.length, positions, nearest)
 
 
-def _with_dofs(nodes: Array, orders: NDArray[np.intp], splits: Sequence[float]) -> Mesh:
-    """The mesh, its degrees of freedom numbered from the tip; the nodes at ``splits`` have two of each kind."""
+def _with_dofs(nodes: Array, orders: NDArray[np.intp], joint_positions: Sequence[float]) -> Mesh:
+    """The mesh, its degrees of freedom numbered from the tip; joint nodes have two of each kind."""
     strides = 2 * orders + 1
     first = np.cumsum(strides) - strides
-    for node in {int(np.argmin(np.abs(nodes - x))) for x in splits}:
+    for node in {int(np.argmin(np.abs(nodes - x))) for x in joint_positions}:
         first[node:] += 2
     n_dof = int(first[-1] + strides[-1]) + 2
     check_mesh_size(n_dof, f"{len(orders)} elements")

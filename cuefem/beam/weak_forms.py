@@ -69,7 +69,7 @@ def assemble(
 
     w has the polynomial degree order + 1, theta order. Nodes must lie at the ends of segments and at effects.
     """
-    x = np.sort(np.append(nodes, [split for effect in effects for split in effect.splits]))
+    x = np.sort(np.append(nodes, [x for effect in effects for x in effect.joint_positions]))
     elements = np.flatnonzero(np.diff(x) > POSITION_TOLERANCE * cue.length)
     mesh = MeshLine(x[None], np.array([elements, elements + 1]))
     # EI of a solid cone has degree 4

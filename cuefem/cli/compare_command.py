@@ -98,7 +98,7 @@ def _side_by_side(files: Sequence[Path], options: dict[str, Any], output: Path |
         if not (own := note.partition(": ")[2]).startswith(SHARED_ASSUMPTIONS) and own not in shared
     ]
     with errors_name_file(files[0], options):
-        record = comparison_record(scenes, same_shaft=same_shaft, follow=with_progress_bar)
+        record = comparison_record(scenes, same_shaft=same_shaft, progress=with_progress_bar)
     about: dict[str, Any] = {"files": [str(file) for file in files], "assumed": notes}
     about |= {"scenes": {name: scene_record(scene) for name, scene in with_same_stroke(scenes).items()}}
     things: list[Any] = [*comparison_sentences(record), "", tabulate_comparison(record)]
@@ -125,11 +125,11 @@ def _with_measurements(folder: Path, output: Path | None, *, as_json: bool, esti
     print_warnings(cue.scene)
     with errors_name_file(folder):
         if estimate:
-            found, target = estimated(cue, track=with_progress_bar), predicted_squirt(cue)
+            found, target = estimated(cue, progress=with_progress_bar), predicted_squirt(cue)
             record = estimate_record(found, found.next_measurements(), found.predict(target), target.offset)
             sheets = tabulate_estimate(record)
         else:
-            rows = compared(cue, track=with_progress_bar)
+            rows = compared(cue, progress=with_progress_bar)
             record = measured_record(cue, rows, offset_zeros(cue, rows))
             sheets = tabulate_measured(record)
     whole = full_record(folder, notes, cue.scene, record)

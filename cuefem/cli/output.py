@@ -58,15 +58,15 @@ FORMATS = {".html": ".html (page)", ".csv": ".csv (table)", ".json": ".json", ".
 class Output(click.Path):
     """A file to write; its extension sets the format. ValueError before the computation if it cannot be written."""
 
-    def __init__(self, endings: Sequence[str]) -> None:
+    def __init__(self, extensions: Sequence[str]) -> None:
         super().__init__(path_type=Path)
-        self.endings = endings
+        self.extensions = extensions
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The path, if the command writes its extension."""
         path = Path(os.fsdecode(super().convert(value, param, ctx)))
-        if path.suffix not in self.endings:
-            wanted = " or ".join(self.endings)
+        if path.suffix not in self.extensions:
+            wanted = " or ".join(self.extensions)
             more = "; --store names the file of stored designs" if path.suffix == ".sqlite" else ""
             more = "; a page (.html) has the figures" if path.suffix in (".png", ".svg", ".pdf") else more
             raise InputError(path, "--output", f"must end in {wanted}; got {path.suffix!r}{more}")
@@ -75,13 +75,19 @@ class Output(click.Path):
         return path
 
 
-def output_option(*endings: str, required: bool = False, many: bool = False) -> Callable[..., Any]:
+def output_option(*extensions: str, required: bool = False, many: bool = False) -> Callable[..., Any]:
     """The option -o of every command, with the formats by extension; many: whether it is repeatable."""
-    *others, last = (FORMATS[ending] for ending in endings)
+    *others, last = (FORMATS[extension] for extension in extensions)
     formats = f"{', '.join(others)}{' or ' if others else ''}{last}"
     text = f"Write the result to FILE: {formats}; the extension sets the format.{' Repeatable.' if many else ''}"
     return shared_option(
-        "Output", *("-o", "--output"), type=Output(endings), metavar="FILE", help=text, required=required, multiple=many
+        "Output",
+        *("-o", "--output"),
+        type=Output(extensions),
+        metavar="FILE",
+        help=text,
+        required=required,
+        multiple=many,
     )
 
 

@@ -116,7 +116,7 @@ def with_shaft_mass_option(thing: Cue | Scene | SideStrike, file: Path, text: st
         weighed = with_parameters(
             usual_scene(thing), {"shaft mass": mass}
         )  # whose weight counts the tip, as a scale does
-        return replace(with_material(thing, *map(main_material, (thing, weighed.shaft))), weighed=True)
+        return replace(with_material(thing, *map(main_material, (thing, weighed.shaft))), shaft_mass_measured=True)
 
 
 def scene_from_cue(cue: Cue, file: Path, options: dict[str, Any]) -> Scene:

@@ -41,12 +41,12 @@ class Motion:
         The bending modes of the cue.
     fields : (free, n) array
         The beam's motion, in the degrees of freedom of ``modes``; `deflection` interpolates it.
-    along : (n,) array
+    axial : (n,) array
         Axial displacement of the tip, m, with axial waves (`AxialWaves`) and the shortening of the bent shaft
         (`GeometricStiffness`); neither is resolved along the shaft.
     centre : (n, 2) array
         The ball's centre (u, w), m.
-    turned : (n,) array
+    rotation : (n,) array
         Rotation of the ball about u x w, rad.
     force : (n, 2) array
         Force on the ball (u, w), N; zero for an impact of infinite friction.
@@ -56,9 +56,9 @@ class Motion:
     duration: float
     modes: Modes
     fields: Array
-    along: Array
+    axial: Array
     centre: Array
-    turned: Array
+    rotation: Array
     force: Array
 
     def __repr__(self) -> str:
@@ -116,7 +116,7 @@ def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Moti
     >>> moved = cf.motion(cf.Scene(cue, stroke=cf.Stroke(offset=0.3)), [0.0, 1e-3], cf.Resolution(2, 8, 6))
     >>> moved.centre.shape
     (2, 2)
-    >>> bool(moved.along[1] > moved.along[0])
+    >>> bool(moved.axial[1] > moved.axial[0])
     True
     """
     check_kind("motion scene", scene, Scene)
@@ -157,9 +157,9 @@ def _motion_of(scene: Scene, bending: Modes, tip: TipModes, *, solved: SolvedCon
         solved.time,
         bending,
         fields=side * vectors @ modes[across],
-        along=tip.amplitude[:, 0] @ modes - shortening,
+        axial=tip.amplitude[:, 0] @ modes - shortening,
         centre=centre * [1.0, side],
-        turned=-side * ball[:, 2] / R,
+        rotation=-side * ball[:, 2] / R,
         force=np.column_stack([s * F_t + c * F_n, side * (c * F_t - s * F_n)]),
     )
 

@@ -25,7 +25,7 @@ _COORDINATE, _COMPONENT = Quantity("m"), Quantity("")
 
 
 @dataclass(frozen=True)
-class Placed:
+class BallMotion:
     """The ball after a stroke, in the table's frame.
 
     Attributes
@@ -40,10 +40,10 @@ class Placed:
     spin: Array
 
     def __repr__(self) -> str:
-        return brief_repr("Placed", vars(self).items())
+        return brief_repr("BallMotion", vars(self).items())
 
 
-def place(outcome: Outcome, point: ArrayLike, direction: ArrayLike, *, ball: Ball | None = None) -> Placed:
+def place(outcome: Outcome, point: ArrayLike, direction: ArrayLike, *, ball: Ball | None = None) -> BallMotion:
     """Turn an outcome into the table's frame.
 
     Parameters
@@ -60,7 +60,7 @@ def place(outcome: Outcome, point: ArrayLike, direction: ArrayLike, *, ball: Bal
 
     Returns
     -------
-    Placed
+    BallMotion
         Velocity and spin of the ball as vectors.
 
     Raises
@@ -81,8 +81,8 @@ def place(outcome: Outcome, point: ArrayLike, direction: ArrayLike, *, ball: Bal
     >>> import cuefem as cf
     >>> outcome = cf.strike(cf.Scene(cf.LumpedCue(0.54, 0.01), stroke=cf.Stroke(offset=0.3)))
     >>> R = cf.Ball().radius
-    >>> placed = cf.place(outcome, (0.3 * R, R), (0, 1, 0))
-    >>> bool(placed.velocity[0] < 0), bool(placed.spin[2] > 0)
+    >>> ball = cf.place(outcome, (0.3 * R, R), (0, 1, 0))
+    >>> bool(ball.velocity[0] < 0), bool(ball.spin[2] > 0)
     (True, True)
     """
     if getattr(outcome.history, "velocity", None) is not None:
@@ -97,7 +97,7 @@ def place(outcome: Outcome, point: ArrayLike, direction: ArrayLike, *, ball: Bal
         )
     turn = math.copysign(1.0, angle) * outcome.squirt
     velocity = outcome.ball_speed * (math.cos(turn) * along + math.sin(turn) * np.cross(axis, along))
-    return Placed(velocity, math.copysign(1.0, angle) * outcome.spin * axis)
+    return BallMotion(velocity, math.copysign(1.0, angle) * outcome.spin * axis)
 
 
 def offset_of(point: ArrayLike, direction: ArrayLike, *, ball: Ball | None = None) -> float:

@@ -104,7 +104,7 @@ def identify_tip(scene: Scene, contact_time: float, rebound: float) -> Identifie
 
 def with_tip(scene: Scene, tip: IdentifiedTip) -> Scene:
     """The scene with the identified E of its leather and restitution of its tip."""
-    leather = scene.leather
+    leather = scene.leather_tip
     effects = tuple(replace(leather, E=tip.E) if each is leather else each for each in scene.effects)
     return replace(scene, tip=replace(scene.tip, restitution=tip.restitution), effects=effects)
 

@@ -282,7 +282,7 @@ class Cue:
     body_mass
         Mass of the rest of the cue, kg. It moves axially only ([Kim] sec. 4): it adds to the axial mass, but not to
         the inertia of bending.
-    weighed
+    shaft_mass_measured
         Whether the density of the main material was computed from the measured mass of the shaft. It is then no
         uncertain parameter.
 
@@ -304,7 +304,7 @@ class Cue:
 
     segments: tuple[Segment, ...]
     body_mass: Annotated[float, Quantity("kg", "[0, inf)").with_typical_range(0.05, 0.8)] = 0.0
-    weighed: bool = False
+    shaft_mass_measured: bool = False
 
     def __repr__(self) -> str:
         count = f"{len(self.segments)} segment{'s' if len(self.segments) > 1 else ''}"
@@ -334,7 +334,7 @@ class Cue:
         return float(self.nodes[-1])
 
     @property
-    def leather(self) -> float:
+    def leather_height(self) -> float:
         """Length of the leather tip, m: of the first segments with E below `SOFT`; 0 if the whole cue is that soft."""
         soft = takewhile(lambda segment: segment.material.E < MAX_LEATHER_MODULUS, self.segments)
         count = sum(1 for _ in soft)

@@ -88,26 +88,26 @@ class Span:
 
 @dataclass(frozen=True)
 class Normal:
-    """A normal distribution of numbers in SI, truncated at `CUT_DEVIATIONS` standard deviations; a grid has its middle.
+    """A normal distribution of numbers in SI, truncated at `CUT_DEVIATIONS` standard deviations; a grid has its median.
 
-    logarithmic: the number's natural logarithm is normal. Then ``middle`` is its median, and ``sd`` a pure number, that
+    logarithmic: the number's natural logarithm is normal. Then ``median`` is its own, and ``sd`` a pure number, that
     of the logarithm: nearly the coefficient of variation.
     """
 
-    middle: float
+    median: float
     sd: float
     logarithmic: bool = False
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.middle) and math.isfinite(self.sd) and self.sd > 0):
-            raise ValueError(f"sd must be above 0, and it and the middle finite; got {self.middle} and {self.sd}")
-        if self.logarithmic and self.middle <= 0:
-            raise ValueError(f"middle must be above 0 where the spacing is logarithmic; got {self.middle}")
+        if not (math.isfinite(self.median) and math.isfinite(self.sd) and self.sd > 0):
+            raise ValueError(f"sd must be above 0, and it and the median finite; got {self.median} and {self.sd}")
+        if self.logarithmic and self.median <= 0:
+            raise ValueError(f"median must be above 0 where the spacing is logarithmic; got {self.median}")
 
     @property
     def levels(self) -> tuple[float, ...]:
-        """The middle: the only value of a grid."""
-        return (self.middle,)
+        """The median: the only value of a grid."""
+        return (self.median,)
 
     def quantile(self, u: float) -> float:
         """The value below which a share ``u`` in [0, 1] of all lies."""
@@ -123,7 +123,7 @@ class Normal:
 
     def _at(self, deviations: float) -> float:
         moved = self.sd * deviations
-        return self.middle * math.exp(moved) if self.logarithmic else self.middle + moved
+        return self.median * math.exp(moved) if self.logarithmic else self.median + moved
 
 
 @dataclass(frozen=True)

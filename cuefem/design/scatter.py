@@ -3,9 +3,9 @@
 The ranges of a study are distributions: `Normal`, `Span` (uniform; of the logarithm if logarithmic), `Levels` (equally
 likely). Normal scores z = L n, with n independent standard normal and L L' the correlation matrix (a Gaussian copula),
 determine the parameters: each is the quantile of its range at the cumulative probability of its score. Sobol indices
-need independent causes, so correlated parameters form one cause, a group, and are drawn together. A group's first-order
-index is the part of the variance that would vanish if all its parameters were known; its total index is the part that
-would remain if all others were known. Single parameters of a group have no indices.
+need independent factors, so correlated parameters form one factor, a group, and are drawn together. A group's
+first-order index is the part of the variance that would vanish if all its parameters were known; its total index is the
+part that would remain if all others were known. Single parameters of a group have no indices.
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ class Scatter:
         {(name, name): r}, r: correlation of the normal scores, in (-1, 1). A normal range has correlation r (a
         logarithmic one, of its logarithm), apart from truncation. Every range has rank correlation 6/pi asin(r/2).
     groups : mapping, optional
-        {name: names of parameters}, each one cause. Correlated parameters must share a group; without one they form a
+        {name: names of parameters}, each one factor. Correlated parameters must share a group; without one they form a
         group of their own.
     count : int
-        Designs per base sample: a power of two, at least 2. The analysis evaluates (causes + 2) count designs.
+        Designs per base sample: a power of two, at least 2. The analysis evaluates (factors + 2) count designs.
     seed : int
         Of the samples, at least 0.
 
@@ -54,7 +54,7 @@ class Scatter:
     ValueError
         If count or seed is out of bounds; a name is unknown; a correlation is out of bounds, listed twice, or of a list
         of values; the correlation matrix is not positive definite; a parameter is in two groups; a group separates
-        correlated parameters; or two causes have one name.
+        correlated parameters; or two factors have one name.
     """
 
     study: Study
@@ -97,8 +97,8 @@ class Scatter:
                 if correlated & set(names) and correlated != set(names):
                     missing = ", ".join(sorted(correlated - set(names)))
                     raise ValueError(f"group {group!r} must include all correlated parameters; it lacks {missing}")
-        if len(set(self.causes)) < len(self.factor_indices):
-            raise ValueError(f"causes must have different names; got {', '.join(self.causes)}")
+        if len(set(self.factors)) < len(self.factor_indices):
+            raise ValueError(f"factors must have different names; got {', '.join(self.factors)}")
 
     def _check_names(self, what: str, names: tuple[str, ...]) -> None:
         for name in names:
@@ -122,8 +122,8 @@ class Scatter:
 
     @cached_property
     def factor_indices(self) -> tuple[tuple[int, ...], ...]:
-        """Parameter indices of each cause, in order of the first parameter."""
-        joined = self.correlation_matrix != 0  # (i, j): in one cause
+        """Parameter indices of each factor, in order of the first parameter."""
+        joined = self.correlation_matrix != 0  # (i, j): in one factor
         for names in self.groups.values():
             rows = [self.names.index(name) for name in names]
             joined[np.ix_(rows, rows)] = True
@@ -132,15 +132,15 @@ class Scatter:
         return tuple(dict.fromkeys(tuple(int(i) for i in np.flatnonzero(row)) for row in joined))
 
     @property
-    def causes(self) -> tuple[str, ...]:
-        """Names of the independent causes: groups and single parameters."""
+    def factors(self) -> tuple[str, ...]:
+        """Names of the independent factors: groups and single parameters."""
         groups = {self.names.index(name): group for group, names in self.groups.items() for name in names}
         return tuple(groups.get(each[0], " + ".join(self.names[i] for i in each)) for each in self.factor_indices)
 
     @property
     def sobol_study(self) -> Study:
-        """The study of (causes + 2) ``count`` designs: two independent samples, and for each cause the first sample
-        with the cause's parameters from the second."""
+        """The study of (factors + 2) ``count`` designs: two independent samples, and for each factor the first sample
+        with the factor's parameters from the second."""
         return replace(self.study, sample=_Points(self))
 
 
@@ -152,7 +152,7 @@ class _Points:
 
     @property
     def count(self) -> int:
-        return (len(self.scatter.causes) + 2) * self.scatter.count
+        return (len(self.scatter.factors) + 2) * self.scatter.count
 
     def points(self, dimensions: int) -> Iterator[list[float]]:
         from scipy.stats import qmc  # loaded when used: half a second
@@ -166,19 +166,19 @@ class _Points:
 
 @dataclass(frozen=True)
 class SobolIndices:
-    """Sobol indices: the part of each response's variance due to each cause.
+    """Sobol indices: the part of each response's variance due to each factor.
 
     Parameters
     ----------
-    causes : tuple of str
+    factors : tuple of str
         Names of groups and of single parameters.
     first, total : ndarray
-        First-order and total indices, (causes, responses).
+        First-order and total indices, (factors, responses).
     first_interval, total_interval : ndarray
-        Ends of their 95 % intervals by bootstrap, (2, causes, responses).
+        Ends of their 95 % intervals by bootstrap, (2, factors, responses).
     """
 
-    causes: tuple[str, ...]
+    factors: tuple[str, ...]
     first: Array
     total: Array
     first_interval: Array
@@ -199,7 +199,7 @@ def sobol_indices_of(scatter: Scatter, rows: Sequence[Row]) -> SobolIndices:
     for response, column in zip(scatter.study.responses, np.moveaxis(results[:2], -1, 0), strict=True):
         if column.std() <= 1e-12 * abs(column.mean()):
             raise ValueError(f"{response.name} is constant: no parameter of the study changes it")
-    return SobolIndices(scatter.causes, *bootstrap_sobol_indices(results.swapaxes(1, 2), seed=scatter.seed))
+    return SobolIndices(scatter.factors, *bootstrap_sobol_indices(results.swapaxes(1, 2), seed=scatter.seed))
 
 
 def bootstrap_sobol_indices(values: Array, *, seed: int) -> tuple[Array, Array, Array, Array]:
@@ -208,23 +208,23 @@ def bootstrap_sobol_indices(values: Array, *, seed: int) -> tuple[Array, Array, 
     Parameters
     ----------
     values : ndarray
-        Responses of both samples and of the mixed ones, (2 + causes, responses, count).
+        Responses of both samples and of the mixed ones, (2 + factors, responses, count).
     seed : int
         Of the bootstrap.
 
     Returns
     -------
     first, total : ndarray
-        (causes, responses).
+        (factors, responses).
     first_interval, total_interval : ndarray
-        (2, causes, responses).
+        (2, factors, responses).
     """
     from scipy.stats import bootstrap, sobol_indices
 
     count = values.shape[-1]
 
     def estimate(rows: Any) -> Array:
-        """(2, causes, responses): first-order and total indices from some designs of each sample."""
+        """(2, factors, responses): first-order and total indices from some designs of each sample."""
         A, B, *mixed = values[:, :, rows]
         shares = sobol_indices(func={"f_A": A, "f_B": B, "f_AB": np.array(mixed)}, n=count)
         # scipy drops axes of length 1

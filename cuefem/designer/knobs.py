@@ -356,7 +356,7 @@ class KnobRow:
     def _text(self, design: Design, mine: Any) -> str:
         if self.knob.range is None:
             return str(mine)
-        if self.key == "shaft_mass" and not design.scene.shaft.weighed:
+        if self.key == "shaft_mass" and not design.scene.shaft.shaft_mass_measured:
             return ""
         return design.typed.get(self.key) or value_text(self.key, mine)
 
@@ -368,7 +368,7 @@ class KnobRow:
         )
         note = f"= {own}" if self.key in design.typed and self.shown != own else ""
         if self.key == "shaft_mass":
-            note = f"{'now' if design.scene.shaft.weighed else 'computed'} {own}"
+            note = f"{'now' if design.scene.shaft.shaft_mass_measured else 'computed'} {own}"
         parts = [note, there] if beside != mine else [note]
         text = ", other ".join(filter(None, parts))
         return text if self.knob.range is None else re.sub(r"(?<=\d) ", "\u00a0", text)

@@ -59,7 +59,9 @@ class Design:
     def changed(self, scene: Scene, keys: Iterable[str], typed: Mapping[str, str]) -> Design:
         """The design with another scene, in which the user set some controls."""
         kept = {key: text for key, text in self.typed.items() if key not in keys}
-        weight = frozenset({"shaft_mass"} if self.scene.shaft.weighed and not scene.shaft.weighed else ())
+        weight = frozenset(
+            {"shaft_mass"} if self.scene.shaft.shaft_mass_measured and not scene.shaft.shaft_mass_measured else ()
+        )
         return replace(self, scene=scene, assumed=self.assumed - {*keys} | weight, typed={**kept, **typed})
 
 

@@ -196,7 +196,7 @@ class Joint(CueEffect):
         return (self.position,)
 
     @property
-    def splits(self) -> tuple[float, ...]:
+    def joint_positions(self) -> tuple[float, ...]:
         """The position of the joint, unless both compliances are zero."""
         return (self.position,) if self.rotational_compliance or self.shear_compliance else ()
 
@@ -209,7 +209,7 @@ class Joint(CueEffect):
 
     def add_to(self, terms: PointTerms) -> None:
         """Add the compliances; those of several joints at one position add."""
-        if self.splits:
+        if self.joint_positions:
             terms.join(self.position, self.shear_compliance, self.rotational_compliance)
 
 
@@ -278,8 +278,8 @@ class AxialWaves(CueEffect):
     Adds: Rod modes below the highest bending frequency join the rigid axial motion, with a truncation correction if the
     bending modes have one. Only axial motion uses the rod behind the drawing: bending, weights and natural frequencies
     are those of the drawing (if the rod bent too, squirt would change by 0.01 %). Point masses act at their positions.
-    Leather drawn at the tip (`Cue.leather`) is rigid along the axis, because the force-indentation law contains its
-    compliance; its mass remains.
+    Leather drawn at the tip (`Cue.leather_height`) is rigid along the axis, because the force-indentation law contains
+    its compliance; its mass remains.
 
     Matters when: The contact is long enough for waves to run along the cue; in 1 ms they run 4.2 m in maple. The
     contact lasts longer, because the tip's stiffness is still defined with the rigid axial mass, and the ball leaves a

@@ -89,7 +89,7 @@ class CueEffect(Effect):
     needs_beam: ClassVar[bool] = True
 
     @property
-    def splits(self) -> tuple[float, ...]:
+    def joint_positions(self) -> tuple[float, ...]:
         """Positions where deflection and rotation may jump, m from the tip."""
         return ()
 

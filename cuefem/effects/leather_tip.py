@@ -189,10 +189,10 @@ class LeatherTip(CueEffect):
 
     def check_on(self, cue: Cue, name: str) -> None:
         """ValueError if the cue is drawn with its leather, or the tip does not fit it."""
-        if cue.leather:
+        if cue.leather_height:
             raise ValueError(
-                f"{name} must be the only leather: draw the cue without its first {1e3 * cue.leather:.4g} mm, which "
-                f"have an E below {MAX_LEATHER_MODULUS / 1e9:g} GPa; got a {type(self).__name__} before them"
+                f"{name} must be the only leather: draw the cue without its first {1e3 * cue.leather_height:.4g} mm, "
+                f"which have an E below {MAX_LEATHER_MODULUS / 1e9:g} GPa; got a {type(self).__name__} before them"
             )
         end = cue.segments[0].tip_diameter
         if self.diameter is not None and self.diameter > end * (1 + 1e-9):

@@ -18,24 +18,24 @@ from cuefem.cue import Array, Cue, Section
 class RodModes(EigenSolution):
     """Flexible rod modes of a cue: of the chain of elements behind the leather, felt by a force at the tip.
 
-    unknowns: those of each element
+    element_dofs: those of each element
     in the chain, from the element ``front`` on; what lies before moves as one piece.
     """
 
     cue: Cue
     points: Points
     front: int
-    unknowns: list[NDArray[np.intp]]
+    element_dofs: list[NDArray[np.intp]]
 
     @property
-    def along(self) -> Array:
+    def tip_displacement(self) -> Array:
         """Displacement of the tip, 1/sqrt(kg), (n,)."""
         return self.participation[0]
 
     def loss_factors(self, loss: Section) -> Array:
         """Loss factor of every mode, (n,), from the loss factor of EA at the Gauss points, (points,)."""
         lost, stiffness = np.zeros(len(self.omega)), loss.EA * self.points.section.EA * self.points.weights
-        for e, own in enumerate(self.unknowns, start=self.front):
+        for e, own in enumerate(self.element_dofs, start=self.front):
             strains = _rod_basis(self.points, e)[1].T @ self.vectors[own]
             lost += stiffness[self.points.element(e)] @ strains**2
         return lost / self.omega**2
@@ -44,9 +44,9 @@ class RodModes(EigenSolution):
 def rod_modes(cue: Cue, masses: Sequence[tuple[float, float]], *, below: float, tailed: bool = False) -> RodModes:
     """Rod modes up to the angular frequency ``below``, rad/s, of a cue that is free at both ends.
 
-    masses: (position m, mass kg) of each lump. Leather drawn at the tip (`Cue.leather`) moves rigidly with it. tailed:
-    whether to add the tail of the modes left out. The cost is one symmetric eigenproblem with as many unknowns as the
-    elements' orders add up to.
+    masses: (position m, mass kg) of each lump. Leather drawn at the tip (`Cue.leather_height`) moves rigidly with it.
+    tailed: whether to add the tail of the modes left out. The cost is one symmetric eigenproblem with as many
+    element_dofs as the elements' orders add up to.
     """
     lengths, pieces = np.diff(cue.nodes), np.arange(len(cue.segments))
     middle = cue.section_in(pieces, lengths / 2)
@@ -54,12 +54,12 @@ def rod_modes(cue: Cue, masses: Sequence[tuple[float, float]], *, below: float, 
     shift = float(10 * (lengths @ middle.EA) / (lengths @ middle.rhoA) / cue.length**2)
     phases = lengths * np.sqrt(middle.rhoA / middle.EA)  # at 1 rad/s; the tail takes waves of twice ``below``
     mesh = mesh_for_phases(cue, phases * max(2 * below, 4 * shift**0.5), [x for x, _ in masses])
-    points, front, orders = gauss_points(cue, mesh), mesh.node(cue.leather), mesh.orders
+    points, front, orders = gauss_points(cue, mesh), mesh.node(cue.leather_height), mesh.orders
     EA, rhoA = points.section.EA * points.weights, points.section.rhoA * points.weights
     first = np.append(np.zeros(front, int), np.append(0, np.cumsum(orders[front:])))  # of each element, and the butt
-    unknowns = [first[e] + np.arange(orders[e] + 1) for e in range(front, len(orders))]
+    element_dofs = [first[e] + np.arange(orders[e] + 1) for e in range(front, len(orders))]
     stiff, heavy = [], []
-    for e, own in enumerate(unknowns, start=front):
+    for e, own in enumerate(element_dofs, start=front):
         rows, (values, slopes) = points.element(e), _rod_basis(points, e)
         stiff.append((own, (slopes * EA[rows]) @ slopes.T))
         heavy.append((own, (values * rhoA[rows]) @ values.T))
@@ -74,11 +74,11 @@ def rod_modes(cue: Cue, masses: Sequence[tuple[float, float]], *, below: float, 
     found = solve_eigenproblem(
         K, M, np.eye(len(lumps), 1), shift=shift, rigid=1, count=count, below=below, corrected=int(tailed)
     )
-    return RodModes(**vars(found), cue=cue, points=points, front=front, unknowns=unknowns)
+    return RodModes(**vars(found), cue=cue, points=points, front=front, element_dofs=element_dofs)
 
 
 def _rod_basis(points: Points, e: int) -> tuple[Array, Array]:
-    """Displacement and strain of an element's unknowns, tip end, bubbles, butt end: (order + 1, q) each."""
+    """Displacement and strain of an element's element_dofs, tip end, bubbles, butt end: (order + 1, q) each."""
     functions = np.r_[0, 2 : points.mesh.orders[e] + 1, 1]
     values, slopes = points.line_basis(e)
     return values[functions], slopes[functions]

@@ -113,7 +113,7 @@ def load(
                 named_material(material, path, "material")
                 cue = with_shaft_material(cue, material)
             cue = with_additions(cue, **additions)
-            if before.weighed:  # options on a shaft do not change its measured mass
+            if before.shaft_mass_measured:  # options on a shaft do not change its measured mass
                 cue = with_shaft_mass(cue, before.shaft_mass)
             loaded = cue if isinstance(loaded, Cue) else replace(loaded, cue=cue)
     return loaded if body_mass is None else with_body_mass(loaded, path, "body_mass", body_mass)

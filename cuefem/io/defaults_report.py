@@ -73,7 +73,7 @@ def drawing_assumptions(path: Path, cue: Cue, options: Mapping[str, Any]) -> Ass
             "material": _UNNAMED not in woods,
             "ferrule": any(wood != _UNNAMED for wood in woods),
             "bore": any(s.tip_bore for i, s in enumerate(drawn.segments) if i not in ferrule),
-            "front": bool(drawn.leather),
+            "front": bool(drawn.leather_height),
         }
         options = {**options, **{key: True for key, present in in_drawing.items() if present}}
     if any(cue.segments[i].tip_bore and cue.segments[i].core is None for i in Layout.of(cue).ferrule):
@@ -118,7 +118,7 @@ def _stroke(tables: dict[str, Any], game: str, scene: Scene, options: Mapping[st
         whole_cue = f" of the tip (with axial waves, {known.restitution:g} of the whole cue head-on)"
     words = {"ball_mass": f"ball {1e3 * ball.mass:g} g", "ball_diameter": f"ball {2e3 * ball.radius:g} mm"}
     if any(effect.defines_tip for effect in scene.effects):
-        leather = scene.leather
+        leather = scene.leather_tip
         words |= {
             "tip_height": f"leather tip {1e3 * leather.height:.4g} mm high, replacing any drawn leather",
             "dome": f"tip radius (dome) {1e3 * leather.dome_radius:g} mm",

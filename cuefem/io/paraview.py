@@ -173,11 +173,11 @@ def save_strike(folder: Path, scene: Scene, motion: Motion, *, scale: float = 1.
     (folder / "strike").mkdir()
     series = []
     for i, time in enumerate(motion.times.tolist()):
-        along, names = float(motion.along[i]), [f"strike/{body}_{i:04d}.vtu" for body in ("shaft", "ball")]
+        along, names = float(motion.axial[i]), [f"strike/{body}_{i:04d}.vtu" for body in ("shaft", "ball")]
         drawn = shaft._replace(points=shaft.points + displacements(shaft, scale * w[i], scale * theta[i], along=along))
         true = displacements(shaft, w[i], theta[i], along=along)
         save_vtu(folder / names[0], drawn, {"x": shaft.x, "displacement": true, "w": w[i], "theta": theta[i]})
-        ball_now = ball._replace(points=np.add(_turned(ball.points, float(motion.turned[i])), centres[i]))
+        ball_now = ball._replace(points=np.add(_turned(ball.points, float(motion.rotation[i])), centres[i]))
         moved = ball_now.points - np.add(ball.points, centres[0])
         save_vtu(folder / names[1], ball_now, {"displacement": moved, "force": np.tile(forces[i], (len(moved), 1))})
         series += [(time, part, name) for part, name in enumerate(names)]

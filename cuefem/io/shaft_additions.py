@@ -86,7 +86,7 @@ def _with_leather(cue: Cue, text: str) -> Cue:
     height = words.removeprefix("leather").strip()
     if height in (words, ""):
         raise ValueError(f'front must be "ferrule" or leather with a height, such as "{LEATHER}"; got {text!r}')
-    if cue.leather:
+    if cue.leather_height:
         raise ValueError("front must be omitted: the drawing already has leather")
     end = _length("front", height)
     if end > MAX_LEATHER:

@@ -36,7 +36,7 @@ Texts = str | tuple[str, ...]
 
 @dataclass(frozen=True)
 class VaryTable:
-    """[[vary]] of a file: values, or low and high, or middle and sd, in the unit of the field."""
+    """[[vary]] of a file: values, or low and high, or median and sd, in the unit of the field."""
 
     path: Texts
     name: str = ""
@@ -44,7 +44,7 @@ class VaryTable:
     low: Any = None
     high: Any = None
     count: int | None = None
-    middle: Any = None
+    median: Any = None
     sd: Any = None
     spacing: str = "linear"
     factor: bool = False
@@ -323,12 +323,12 @@ def _quantity(texts: tuple[str, ...], base: Scene, tables: VaryTable, path: Path
 
 
 def _range(tables: VaryTable, quantity: Quantity | None, path: Path, key: str, grid: bool) -> Levels | Span | Normal:
-    """The range by the keys of a table: values, low and high, or middle and sd."""
-    pairs = (("values", "values"), ("low", "high"), ("middle", "sd"))
+    """The range by the keys of a table: values, low and high, or median and sd."""
+    pairs = (("values", "values"), ("low", "high"), ("median", "sd"))
     present = [pair for pair in pairs if any(getattr(tables, name) is not None for name in pair)]
     if len(present) != 1:
         got = ", and ".join(" and ".join(dict.fromkeys(pair)) for pair in present) or "none of them"
-        raise InputError(path, key, f"must have values, or low and high, or middle and sd; got {got}")
+        raise InputError(path, key, f"must have values, or low and high, or median and sd; got {got}")
     if tables.values is not None:
         levels = tuple(
             _level(v, quantity, path, key_path(key_path(key, "values"), i)) for i, v in enumerate(tables.values)
@@ -338,10 +338,10 @@ def _range(tables: VaryTable, quantity: Quantity | None, path: Path, key: str, g
     normal, logarithmic = tables.low is None and tables.high is None, tables.spacing == "logarithmic"
     if quantity is None:
         raise InputError(
-            path, key, "must have values, a list of material names: materials have no low and high, or middle and sd"
+            path, key, "must have values, a list of material names: materials have no low and high, or median and sd"
         )
     if normal and grid:
-        raise InputError(path, key, "middle and sd need random designs: give [sample] or [tolerances]")
+        raise InputError(path, key, "median and sd need random designs: give [sample] or [tolerances]")
     for name in (*present[0], *(["count"] if grid else [])):
         if getattr(tables, name) is None:
             raise InputError(

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.measurements.measured_cue import MeasuredCue, Residual, Track, residuals_of
+from cuefem.measurements.measured_cue import MeasuredCue, Progress, Residual, residuals_of
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Squirt
 from cuefem.measurements.outliers import DETECTABLE, OUTLIER_FACTOR, posterior
 
@@ -166,14 +166,14 @@ def predicted_squirt(cue: MeasuredCue) -> Squirt:
     return Squirt(offset=own or TARGET_OFFSET, left=0.0, right=0.0, error=1.0)
 
 
-def estimate(cue: MeasuredCue, *, track: Track = iter) -> Estimate:
+def estimate(cue: MeasuredCue, *, progress: Progress = iter) -> Estimate:
     """Estimate the uncertain parameters of a cue from all measurements and priors (maximum a posteriori), with errors.
 
     Parameters
     ----------
     cue : MeasuredCue
         At least one measurement.
-    track : callable, optional
+    progress : callable, optional
         Iterates over the steps with a progress bar.
 
     Returns
@@ -199,7 +199,7 @@ def estimate(cue: MeasuredCue, *, track: Track = iter) -> Estimate:
     z = np.zeros(len(cue.parameters))
     at = cue.computed(z)
     cost, converged = _cost(z, (measured - at) / sd), False
-    for _ in track(range(MAX_ITERATIONS)):
+    for _ in progress(range(MAX_ITERATIONS)):
         if converged:
             continue  # a progress bar runs to its end
         J = cue.jacobian(z) / sd[:, None]

@@ -18,7 +18,7 @@ from cuefem.scene import Scene
 STEP = 0.1  # of differences, in standard deviations of a prior
 MAX_HALVINGS = 8  # of that step, towards the limit of what can be
 
-Track = Callable[[Sequence[Any]], Iterable[Any]]
+Progress = Callable[[Sequence[Any]], Iterable[Any]]
 
 
 @dataclass(frozen=True)
@@ -76,11 +76,11 @@ class MeasuredCue:
         return np.array([measurement.computed(setup) for measurement in (*self.measurements, *extra)])
 
     def jacobian(
-        self, z: Array, extra: Sequence[Measurement] = (), *, step: float = STEP, track: Track = iter
+        self, z: Array, extra: Sequence[Measurement] = (), *, step: float = STEP, progress: Progress = iter
     ) -> Array:
         """Derivatives of the values with respect to the parameters, (values, parameters), by central differences."""
         columns = []
-        for move in track(list(step * np.eye(len(z)))):
+        for move in progress(list(step * np.eye(len(z)))):
             columns.append(self._slope(z, move, extra) / step)
         return np.array(columns).T.reshape(-1, len(z))
 
@@ -129,14 +129,14 @@ class Residual(NamedTuple):
     pull: float
 
 
-def compare(cue: MeasuredCue, *, track: Track = iter) -> tuple[Residual, ...]:
+def compare(cue: MeasuredCue, *, progress: Progress = iter) -> tuple[Residual, ...]:
     """Compare every measurement of a measured cue with the model's value; nothing is fitted.
 
     The spread is that of `cuefem.results.uncertainty`: half the difference between one standard deviation up and down.
-    Cost: two strikes for each squirt and parameter. track: follows these steps.
+    Cost: two strikes for each squirt and parameter. progress: wraps the list of parameters.
     """
     z = np.zeros(len(cue.parameters))
-    spread = np.sqrt(np.sum(cue.jacobian(z, step=1.0, track=track) ** 2, axis=1))
+    spread = np.sqrt(np.sum(cue.jacobian(z, step=1.0, progress=progress) ** 2, axis=1))
     return residuals_of(cue, cue.computed(z), spread)
 
 

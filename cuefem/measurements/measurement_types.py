@@ -208,7 +208,7 @@ class Stiffness(Measurement):
 
     def computed(self, setup: Setup) -> float:
         """One linear solution of the beam."""
-        wood = setup.scene.shaft.length - setup.scene.shaft.leather
+        wood = setup.scene.shaft.length - setup.scene.shaft.leather_height
         return setup.predictions.stiffness(wood if self.free_length is None else self.free_length)
 
     @classmethod

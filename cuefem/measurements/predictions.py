@@ -34,7 +34,7 @@ class Predictions:
     @property
     def tip_height(self) -> float:
         """Height of a LeatherTip, which is in front of the first segment, m; 0 if the drawing has the tip."""
-        return 0.0 if self.scene.contact_terms.tip is None else self.scene.leather.height
+        return 0.0 if self.scene.contact_terms.tip is None else self.scene.leather_tip.height
 
     @property
     def suspended_effects(self) -> tuple[Effect, ...]:
@@ -114,6 +114,6 @@ def predictions_of(scene: Scene) -> Predictions:
 
 def _without_leather(cue: Cue) -> Cue:
     """The cue from the ferrule's end on."""
-    soft = cue.leather
+    soft = cue.leather_height
     segments: Any = tuple(s for s, x in zip(cue.segments, cue.nodes, strict=False) if x >= soft * (1 - 1e-9))
     return replace(cue, segments=segments) if soft else cue

@@ -365,7 +365,7 @@ def _wood_spread(name: str) -> Callable[[Scene], float | None]:
     """Half the width of the wood's range, in logarithms; None for a weighed density."""
 
     def spread(scene: Scene) -> float | None:
-        if name == "rho" and scene.shaft.weighed:
+        if name == "rho" and scene.shaft.shaft_mass_measured:
             return None
         wood = main_material(scene.shaft)
         low, high = MATERIALS[table_name(wood) or "hard maple"].ranges[name]
@@ -378,13 +378,13 @@ def _leather_spread(scene: Scene) -> float | None:
     """From a contact time of ±10 % (1.0 to 1.2 ms) for a named leather, ±5 % for a custom E; None without one."""
     if scene.contact_terms.tip is None:
         return None
-    named = any(own.E == scene.leather.E for own in LEATHERS.values())
+    named = any(own.E == scene.leather_tip.E for own in LEATHERS.values())
     return CONTACT_TIME_POWER * (0.1 if named else 0.05)
 
 
 def _dependent_restitution(scene: Scene, E: float) -> dict[Path, float]:
     """The tip's restitution for another E of its leather, at the same restitution of the whole cue."""
-    change = leather_restitution(E) - leather_restitution(scene.leather.E)
+    change = leather_restitution(E) - leather_restitution(scene.leather_tip.E)
     return {("tip", "restitution"): min(max(float(scene.tip.restitution) + change, 0.1), 1.0)}
 
 

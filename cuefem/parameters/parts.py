@@ -146,7 +146,7 @@ def with_shaft_mass(cue: Cue, mass: float) -> Cue:
             f"must be {least:.4g} to {most:.4g} g (density of its main material {MIN_DENSITY:g} to "
             f"{MAX_DENSITY:g} kg/m3); got {1e3 * mass:.4g} g"
         )
-    return replace(with_material(cue, wood, replace(wood, rho=rho)), weighed=True)
+    return replace(with_material(cue, wood, replace(wood, rho=rho)), shaft_mass_measured=True)
 
 
 def _tip_mass(scene: Any) -> float:
@@ -218,7 +218,7 @@ def _with_shaft_material(scene: Any, new: Material) -> Any:
         segments[i] = replace(segments[i], material=new)
     for i in layout.ferrule:
         segments[i] = replace(segments[i], core=new if segments[i].core == old else segments[i].core)
-    return replace(scene, cue=replace(scene.shaft, segments=tuple(segments), weighed=False))
+    return replace(scene, cue=replace(scene.shaft, segments=tuple(segments), shaft_mass_measured=False))
 
 
 FERRULE_MATERIAL = Part(_material_of("ferrule"), _with_ferrule_material)

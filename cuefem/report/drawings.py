@@ -48,7 +48,7 @@ def drawn_segments(scene: Scene) -> tuple[Segment, ...]:
     segments = scene.shaft.segments
     if scene.contact_terms.tip is None:
         return segments
-    tip = scene.leather
+    tip = scene.leather_tip
     diameter = tip.diameter_on(segments[0].tip_diameter)
     below = [(layer.height, Material(layer.E, layer.E / 2 / (1 + layer.nu), layer.rho)) for layer in tip.layers[::-1]]
     leather = tip.height - math.fsum(height for height, _ in below)

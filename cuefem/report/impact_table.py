@@ -20,7 +20,7 @@ def impact_record(scene: Scene) -> Record:
     Contact time, s, maximum force, N, and at that force indentation, m, stiffness, N/m, and contact diameter, m; None
     at a speed with an indentation beyond the valid range of the force law.
     """
-    leather = scene.leather
+    leather = scene.leather_tip
     diameter = leather.diameter_on(scene.shaft.segments[0].tip_diameter)
     law = scene.tip_law(float(scene.tip.restitution))
     patches, depths, _ = leather.head_on(diameter, float(scene.ball.radius))

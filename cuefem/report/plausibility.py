@@ -56,7 +56,7 @@ def _of_drawing(cue: Cue) -> Iterator[Check]:
     yield "drawn mass", cue.shaft_mass, (MIN_DRAWN_MASS, inf), "g", "check the sizes and the densities"
     wood = main_material(cue)
     known = table_name(wood)
-    if cue.weighed and known is not None:
+    if cue.shaft_mass_measured and known is not None:
         low, high = MATERIALS[known].ranges["rho"]
         own = f"by the weight of the shaft the density of its {known} is"
         joint = "does the measured mass include a joint or the butt?"

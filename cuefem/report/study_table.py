@@ -1,7 +1,7 @@
 """Results of a study: records and tables.
 
 Varied parameters; of a sweep the best designs, sensitivities and a trade-off; of a tolerance analysis the spread and
-its causes; of an optimum the best design and its active constraints.
+its factors; of an optimum the best design and its active constraints.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from cuefem.scene import Scene
 _FIELD = re.compile(rf"({'|'.join(field.name for field in fields(Scene))})(\[[\d*]+\])?(\.\w+(\[[\d*]+\])?)+")
 _ITEM = re.compile(r"(\w+)s\[(\d+|\*)\]")
 MAX_FRONT_ROWS = 7  # designs of a Pareto front in the table
-MIN_SHARE = 0.01  # of the variance, of a cause that is named among the strongest
+MIN_SHARE = 0.01  # of the variance, of a factor that is named among the strongest
 
 
 def varied_segments(vary: Sequence[Vary], base: Scene) -> dict[str, list[str]]:
@@ -205,15 +205,15 @@ def tabulate_sweep(sweep: SweepStatistics) -> list[Table | str]:
 
 
 def scatter_record(result: StudyResult, drivers: SobolIndices) -> Record:
-    """The distribution of each response, and the shares of its causes in the variance."""
+    """The distribution of each response, and the shares of its factors in the variance."""
     parts = ("first", "first_interval", "total", "total_interval")
     return {
         response.name: {
             "unit": response.unit,
             **result.spread[response.name],
-            "causes": {
-                cause: {part: getattr(drivers, part)[..., i, k] for part in parts}
-                for i, cause in enumerate(drivers.causes)
+            "factors": {
+                factor: {part: getattr(drivers, part)[..., i, k] for part in parts}
+                for i, factor in enumerate(drivers.factors)
             },
         }
         for k, response in enumerate(result.study.responses)
@@ -221,7 +221,7 @@ def scatter_record(result: StudyResult, drivers: SobolIndices) -> Record:
 
 
 def tabulate_scatter(result: StudyResult, scatter: Scatter, drivers: SobolIndices) -> list[Table | str]:
-    """The spread of each response, the shares of its causes, and a sentence on both."""
+    """The spread of each response, the shares of its factors, and a sentence on both."""
     spreads, rows, bold, lines = list[tuple[str, ...]](), list[tuple[str, ...]](), dict[int, str](), list[str]()
     for k, response in enumerate(scatter.study.responses):
         numbers = {name: shown(value, response.unit) for name, value in result.spread[response.name].items()}
@@ -231,25 +231,25 @@ def tabulate_scatter(result: StudyResult, scatter: Scatter, drivers: SobolIndice
         strongest = drivers.total[:, k].argsort()[::-1]
         for i in strongest:
             both = ((drivers.first, drivers.first_interval), (drivers.total, drivers.total_interval))
-            rows.append((f"  {drivers.causes[i]}", *(_share(value[i, k], ends[:, i, k]) for value, ends in both)))
+            rows.append((f"  {drivers.factors[i]}", *(_share(value[i, k], ends[:, i, k]) for value, ends in both)))
         total = np.clip(drivers.total[:, k], 0.0, 1.0)  # an estimate may be outside
-        most = [f"{drivers.causes[i]} ({100 * total[i]:.0f} %)" for i in strongest[:2] if total[i] >= MIN_SHARE]
+        most = [f"{drivers.factors[i]} ({100 * total[i]:.0f} %)" for i in strongest[:2] if total[i] >= MIN_SHARE]
         unit = DISPLAY_UNITS.get(response.unit, (1, response.unit))[1]
         ends = f"{response.label}: 90 % of the designs from {numbers['5 %']} to {numbers['95 %']} {unit}".rstrip()
-        named = f"the strongest cause{'s are' if len(most) > 1 else ' is'} {' and '.join(most)}"
-        lines.append(f"{ends}; {named if most else 'no cause stands out'}")
+        named = f"the strongest factor{'s are' if len(most) > 1 else ' is'} {' and '.join(most)}"
+        lines.append(f"{ends}; {named if most else 'no factor stands out'}")
     quantiles = "column 5 %: 5 % of the designs are below this value; sd: standard deviation"
     notes = (
-        "first-order: share of the variance that disappears if this cause is known; total: share that remains if all "
-        "other causes are known",
+        "first-order: share of the variance that disappears if this factor is known; total: share that remains if all "
+        "other factors are known",
         "in parentheses 95 % intervals by bootstrap",
-        *(f"{cause}: {', '.join(names)}" for cause, names in scatter.groups.items()),
+        *(f"{factor}: {', '.join(names)}" for factor, names in scatter.groups.items()),
     )
     return [
         Table(f"Spread of {2 * scatter.count} designs", ("response", *numbers), tuple(spreads), (quantiles,)),
         Table(
             "Sensitivity: share of the variance, %",
-            ("response, cause", "first-order", "total"),
+            ("response, factor", "first-order", "total"),
             tuple(rows),
             notes,
             styles=bold,

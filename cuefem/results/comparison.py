@@ -40,7 +40,7 @@ def comparison_record(
     *,
     same_shaft: bool = False,
     names: Sequence[str] = RESULT_NAMES,
-    follow: Progress = list,
+    progress: Progress = list,
 ) -> Record:
     """Numbers of some cues, SI, and the relative differences of the others from the first with their uncertainty.
 
@@ -51,14 +51,14 @@ def comparison_record(
     of two woods.
 
     All cues are struck with the ball, the speed and the offset of the first. names: the numbers that are compared.
-    follow: shows how far the work is.
+    progress: wraps the list of cues, to show progress.
     """
     struck = with_same_stroke(scenes)
     woods = {main_material(scene.shaft).E for scene in struck.values()}
     if same_shaft and len(woods) > 1:
         found = " and ".join(f"{E / 1e9:.4g} GPa" for E in sorted(woods))
         raise ValueError(f"one shaft before and after a change must be of one wood; got E of {found}")
-    compared = {name: _compared(struck[name], tuple(names)) for name in follow([*struck])}
+    compared = {name: _compared(struck[name], tuple(names)) for name in progress([*struck])}
     reference, *others = compared
     first = struck[reference]
     return {

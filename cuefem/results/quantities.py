@@ -129,7 +129,7 @@ def drawn_mass(scene: Scene) -> float:
 
 def balance_point(scene: Scene) -> float:
     """Centre of mass of the drawn part with its tip, m from the end of the tip; a LeatherTip's mass is at its base."""
-    cue, height = scene.shaft, 0.0 if scene.contact_terms.tip is None else scene.leather.height
+    cue, height = scene.shaft, 0.0 if scene.contact_terms.tip is None else scene.leather_tip.height
     moment = cue.shaft_mass * cue.balance_point + sum(x * mass for x, mass in _added_masses(scene))
     return float(height + moment / drawn_mass(scene))
 

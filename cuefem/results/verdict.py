@@ -123,7 +123,7 @@ def with_cue(scene: Scene, cue: Cue) -> Scene:
     Effects that are part of the scene's own cue (a mass, a joint) or lie beyond the other's end are dropped. The other
     cue retains leather in its drawing only if the scene's own cue has it.
     """
-    has_leather = scene.lumped is None and scene.shaft.leather
+    has_leather = scene.lumped is None and scene.shaft.leather_height
     other = cue if has_leather else without_leather(cue)
     remaining = (
         e for e in scene.effects if e.at_tip or not (e.part_of_cue or any(x >= other.length for x in e.positions))

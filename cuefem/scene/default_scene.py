@@ -105,8 +105,8 @@ STROKES = (*GAMES, KIM)
 
 
 def without_leather(cue: Cue) -> Cue:
-    """The cue without the leather that is drawn at its tip (`Cue.leather`)."""
-    if not cue.leather:
+    """The cue without the leather that is drawn at its tip (`Cue.leather_height`)."""
+    if not cue.leather_height:
         return cue
     first = next(i for i, segment in enumerate(cue.segments) if segment.material.E >= MAX_LEATHER_MODULUS)
     return replace(cue, segments=cue.segments[first:])
@@ -140,7 +140,7 @@ def default_tip(cue: Cue, game: str = DEFAULT_GAME) -> LeatherTip:
     0.006
     """
     tip = _game(game).tip
-    return replace(tip, height=cue.leather) if cue.leather else tip
+    return replace(tip, height=cue.leather_height) if cue.leather_height else tip
 
 
 def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = None) -> Scene:
@@ -175,7 +175,7 @@ def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = 
     >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
     >>> cue = cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43)
     >>> scene = cf.usual_scene(cue)
-    >>> scene.ball.mass, scene.stroke.speed, scene.leather.dome_radius
+    >>> scene.ball.mass, scene.stroke.speed, scene.leather_tip.dome_radius
     (0.17, 2.0, 0.0095)
     """
     check_kind("usual_scene cue", cue, Cue)

@@ -286,7 +286,7 @@ class Scene:
         return (math.pi / 2 * (1 + self.tip.restitution) / self.contact_time) ** 2 * self.reduced_mass
 
     @property
-    def leather(self) -> LeatherTip:
+    def leather_tip(self) -> LeatherTip:
         """The scene's `LeatherTip`; ValueError without one."""
         leather = next((effect for effect in self.effects if isinstance(effect, LeatherTip)), None)
         if leather is None:

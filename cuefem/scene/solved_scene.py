@@ -153,7 +153,7 @@ def tip_modes_from(bending: Modes, scene: Scene) -> TipModes:
         tip = replace(tip, geometric=np.pad(sum(bent[1:], bent[0]), (1, 0)))
     along = tuple(chain.from_iterable(effect.axial_modes(bending, cue, effects) for effect in effects))
     for family in along:
-        tip = tip.with_axial_modes(family.omega, family.along, family.radiation)
+        tip = tip.with_axial_modes(family.omega, family.tip_displacement, family.radiation)
     for effect in effects:
         tip = effect.damp(tip, [(cue, bending), *((rod.cue, rod) for rod in along)])
     return tip.ascending() if along else tip

@@ -93,7 +93,7 @@ def text() -> str:
     low, high = robot_speeds()
     soft = pages.change(squirt(whole(cue("pool_maple"), E=E)) for E in (40e6, 100e6, 200e6, 400e6))
     own, usual = model_error("whole"), whole(cue("pool_maple"))
-    tip, central = usual.leather, cf.strike(at_offset(usual, 0.0))
+    tip, central = usual.leather_tip, cf.strike(at_offset(usual, 0.0))
     farther = [pages.change(found("and axial force", U, b) for U in SPEEDS) for b in (0.3, 0.45)]
     return pages.page(
         "Squirt of a billiard cue from its geometry",

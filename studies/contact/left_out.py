@@ -65,7 +65,7 @@ def stiffening(tip: cf.LeatherTip, diameter: float, ball_radius: float) -> tuple
 def stiffened(offset: float) -> float:
     """Change of squirt by large strain."""
     usual = whole(cue("pool_maple"), offset)
-    unlike = whole(cue("pool_maple"), offset, E=UNLIKE * usual.leather.E)
+    unlike = whole(cue("pool_maple"), offset, E=UNLIKE * usual.leather_tip.E)
     squirt(usual)
     with patch.object(cf.LeatherTip, "head_on", stiffening):
         return change(unlike, usual, offset)

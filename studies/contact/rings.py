@@ -44,7 +44,7 @@ def plain(offset: float, speed: float = 2.0) -> cf.Scene:
 
 def stepped(scene: cf.Scene, leather: Leather) -> tuple[float, float, float]:
     """Squirt, deg, contact time, s, and speed of the ball over the cue's. The package's loss where nothing relaxes."""
-    tip, at, own = scene.leather, scene.stroke, scene.tip.restitution
+    tip, at, own = scene.leather_tip, scene.stroke, scene.tip.restitution
     diameter, mass = scene.tip_diameter, scene.ball.mass
     law, modes = scene.tip_law(own, at.offset), SolvedScene(scene).tip
     edges = law.depth_limit * np.linspace(0, 1, RINGS + 1) ** 2

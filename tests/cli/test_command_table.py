@@ -53,7 +53,7 @@ def test_every_command_has_common_options(name: str) -> None:
     written = options.get("-o")
     assert (written is None) is (name in ("convert", "designer"))
     assert [one for one in command.params if isinstance(one.type, Output)] == ([] if written is None else [written])
-    assert written is None or (written.opts == ["-o", "--output"] and ".html" in written.type.endings)  # type: ignore[attr-defined]
+    assert written is None or (written.opts == ["-o", "--output"] and ".html" in written.type.extensions)  # type: ignore[attr-defined]
 
 
 def test_command_without_own_page_writes_printed_tables(tmp_path: Path) -> None:

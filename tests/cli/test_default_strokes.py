@@ -69,7 +69,7 @@ def test_axial_force_out_of_range_fails_strike_and_study_design(folder: Path) ->
     wood = material("hard maple")
     thin = cf.Cue((cf.Segment(0.03, 8.5e-3, 8.5e-3, wood), cf.Segment(0.95, 4.5e-3, 4.5e-3, wood)), 0.4)
     scene = cf.usual_scene(thin)
-    hard = replace(scene.leather, E=LEATHERS["hard"].E)
+    hard = replace(scene.leather_tip, E=LEATHERS["hard"].E)
     cf.save(replace(scene, effects=(hard, *scene.effects[1:])), "struck.toml")
     fast = ("struck.toml", "--speed", "8 m/s")
     status, out, err = call("strike", *fast, "--offset", "0.5")

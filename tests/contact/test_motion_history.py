@@ -31,9 +31,9 @@ def sliding_path(result: Motion, scene: cf.Scene) -> Any:
     t, n = np.array([np.sin(phi), np.cos(phi)]), np.array([np.cos(phi), -np.sin(phi)])
     r = sum(effect.radius for effect in scene.effects if isinstance(effect, cf.TipDome))
     # where the dome touches, r (n - e_u) from the tip, and the ball, -R n from its centre: both turn about u x w
-    on_cue = np.column_stack([result.along, w]) + np.outer(-theta, r * np.array([-n[1], n[0] - 1]))
+    on_cue = np.column_stack([result.axial, w]) + np.outer(-theta, r * np.array([-n[1], n[0] - 1]))
     ball = result.centre - result.centre[0]
-    turning = np.outer(result.turned, -scene.ball.radius * np.array([-n[1], n[0]]))
+    turning = np.outer(result.rotation, -scene.ball.radius * np.array([-n[1], n[0]]))
     return (ball + turning - on_cue) @ np.array([t, n]).T
 
 

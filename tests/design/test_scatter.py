@@ -1,4 +1,4 @@
-"""Tolerance analysis: exact indices and moments, correlations of the samples, causes (verification)."""
+"""Tolerance analysis: exact indices and moments, correlations of the samples, factors (verification)."""
 
 import math
 from dataclasses import replace
@@ -59,7 +59,7 @@ def test_sobol_indices_ishigami_equal_closed_form() -> None:
 DENSITIES = (
     Vary(("cue.segments[1].material.rho",), Normal(1500.0, 100.0), "ferrule"),
     Vary(("cue.segments[2].material.rho",), Normal(705.0, 20.0), "front"),
-    Vary(("cue.segments[3].material.rho",), Normal(705.0, 40.0), "middle"),
+    Vary(("cue.segments[3].material.rho",), Normal(705.0, 40.0), "median"),
     Vary(("cue.segments[4].material.rho",), Normal(705.0, 5.0), "rear"),
 )
 
@@ -67,10 +67,10 @@ DENSITIES = (
 @pytest.mark.heavy
 def test_sobol_indices_of_correlated_sum_equal_closed_form() -> None:
     """The mass of a shaft is a sum of densities times volumes, with exact indices of parameters and groups."""
-    r = {("front", "middle"): 0.8, ("middle", "rear"): -0.5}
+    r = {("front", "median"): 0.8, ("median", "rear"): -0.5}
     study = Study(BASE, DENSITIES, (Response.of("shaft_mass"),), at=COARSE)
-    scatter = Scatter(study, r, {"wood": ("front", "middle", "rear")}, 128, 1)
-    assert scatter.causes == ("ferrule", "wood")
+    scatter = Scatter(study, r, {"wood": ("front", "median", "rear")}, 128, 1)
+    assert scatter.factors == ("ferrule", "wood")
     result = cf.study(scatter)
     computed = result.sobol_indices
     per_rho = np.array([segment.mass / segment.material.rho for segment in MAPLE.segments[1:]])
@@ -85,7 +85,7 @@ def test_sobol_indices_of_correlated_sum_equal_closed_form() -> None:
     assert computed.total[:, 0] == pytest.approx(parts / parts.sum(), abs=0.03)
     assert result.spread["shaft_mass"]["sd"] == pytest.approx(math.sqrt(parts.sum()), rel=0.03)
     ungrouped = cf.study(Scatter(study, count=128, seed=1)).sobol_indices
-    assert ungrouped.causes == ("ferrule", "front", "middle", "rear")
+    assert ungrouped.factors == ("ferrule", "front", "median", "rear")
     assert ungrouped.first[:, 0] == pytest.approx(terms**2 / (terms**2).sum(), abs=0.03)
 
 
@@ -119,10 +119,10 @@ def test_scatter_samples_have_stated_correlations(one: float, other: float, thir
 
 
 def test_correlated_parameters_are_one_cause() -> None:
-    assert Scatter(STUDY).causes == ("E", "rho", "G", "time")
-    assert Scatter(STUDY, {("G", "E"): 0.5}).causes == ("E + G", "rho", "time")
-    assert Scatter(STUDY, {("G", "E"): 0.5, ("time", "G"): 0.1}).causes == ("E + G + time", "rho")
-    assert Scatter(STUDY, {("G", "E"): 0.5}, {"wood": ("E", "rho", "G")}).causes == ("wood", "time")
+    assert Scatter(STUDY).factors == ("E", "rho", "G", "time")
+    assert Scatter(STUDY, {("G", "E"): 0.5}).factors == ("E + G", "rho", "time")
+    assert Scatter(STUDY, {("G", "E"): 0.5, ("time", "G"): 0.1}).factors == ("E + G + time", "rho")
+    assert Scatter(STUDY, {("G", "E"): 0.5}, {"wood": ("E", "rho", "G")}).factors == ("wood", "time")
 
 
 def test_scatter_command_equals_function(tmp_path: Path) -> None:
@@ -133,10 +133,10 @@ def test_scatter_command_equals_function(tmp_path: Path) -> None:
     stiffness, spread = record["responses"]["tip_stiffness"], result.spread["tip_stiffness"]
     assert (record["kind"], record["count"], record["seed"]) == ("scatter", 16, 5)
     assert {name: stiffness[name] for name in spread} == spread
-    assert stiffness["causes"]["wood"]["first"] == result.sobol_indices.first[0, 1]
-    assert stiffness["causes"]["time"]["total_interval"] == [0, 0]
+    assert stiffness["factors"]["wood"]["first"] == result.sobol_indices.first[0, 1]
+    assert stiffness["factors"]["time"]["total_interval"] == [0, 0]
     assert len((tmp_path / "all.csv").read_text(encoding="utf-8").splitlines()) == 1 + 16 * 4
     assert as_json("study", study)["evaluated"] == 0  # designs are stored
     out = " ".join(stdout_of("study", study).split())
     assert f"end mass, g {1e3 * result.spread['end_mass']['mean']:.3f}" in out
-    assert "the strongest cause is wood (" in out  # time changes no stiffness
+    assert "the strongest factor is wood (" in out  # time changes no stiffness

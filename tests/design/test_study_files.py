@@ -78,8 +78,8 @@ def test_study_of_cue_has_default_stroke_of_game(tmp_path: Path) -> None:
 
 
 def test_study_file_ranges_are_read(tmp_path: Path) -> None:
-    text = STRIKES.replace('low = "0 mm"\nhigh = "13 mm"', 'middle = "5 mm"\nsd = "1 mm"')
-    text = text.replace("low = 0.7\nhigh = 1.3", 'middle = 1\nsd = 0.2\nspacing = "logarithmic"')
+    text = STRIKES.replace('low = "0 mm"\nhigh = "13 mm"', 'median = "5 mm"\nsd = "1 mm"')
+    text = text.replace("low = 0.7\nhigh = 1.3", 'median = 1\nsd = 0.2\nspacing = "logarithmic"')
     text += '[[vary]]\npath = "cue.segments[0].length"\nlow = "-5 mm"\nhigh = "5 mm"\nshift = true\n'
     text += 'compensating_path = "cue.segments[1].length"\n'
     two = SCENE.replace("[tip]", SCENE[SCENE.index("[[") : SCENE.index("[tip]")] + "[tip]")

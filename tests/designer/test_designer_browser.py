@@ -92,7 +92,7 @@ def test_saved_design_strikes_as_displayed(browser: Any, address: str, tmp_path:
 
         saved = download(page, "Save", tmp_path)
         scene = cf.load(saved)
-        assert scene.cue.weighed
+        assert scene.cue.shaft_mass_measured
         assert cf.strike(scene).squirt == pytest.approx(new, rel=1e-9)
         assert call("strike", saved)[0] == 0
         report = download(page, "Report", tmp_path).read_text(encoding="utf-8")

@@ -36,12 +36,14 @@ def contact_of(outcome: cf.Outcome, cue: cf.Cue) -> tuple[float, float]:
 
 def step_chain(cue: cf.Cue, pieces: int = 200) -> tuple[float, float]:
     """Contact time, s, and apparent restitution of a chain of masses and springs behind the tip's spring."""
-    x = np.linspace(cue.leather, cue.length, pieces + 1)
+    x = np.linspace(cue.leather_height, cue.length, pieces + 1)
     inside = cue.section((x[:-1] + x[1:]) / 2)
     h = x[1] - x[0]
     springs, lumps = inside.EA / h, inside.rhoA * h
     m = np.r_[0.0, lumps / 2] + np.r_[lumps / 2, 0.0]
-    m[0] += sum(s.mass for s, end in zip(cue.segments, cue.nodes[1:], strict=True) if end <= cue.leather * 1.000001)
+    m[0] += sum(
+        s.mass for s, end in zip(cue.segments, cue.nodes[1:], strict=True) if end <= cue.leather_height * 1.000001
+    )
     m[-1] += cue.body_mass
     k, e = head_on(cue).stiffness, TIP.restitution
     v, squeeze = np.ones(pieces + 1), np.zeros(pieces)
@@ -92,7 +94,7 @@ def test_rod_truncation_correction_has_compliance_of_all_modes(below):
     exact = 1 / np.tanh(math.sqrt(10)) / np.sqrt(s * section.EA * section.rhoA) - 1 / (cue.mass * s)
     result = rod_modes(cue, (), below=below, tailed=True)
     assert len(result.omega) == 2 + np.sum(result.omega[:-2] <= below)
-    assert np.sum(result.along**2 / (result.omega**2 + s)) == pytest.approx(exact, rel=1e-6)
+    assert np.sum(result.tip_displacement**2 / (result.omega**2 + s)) == pytest.approx(exact, rel=1e-6)
     plain = rod_modes(cue, (), below=below)
     assert plain.radiation is None
-    assert np.sum(plain.along**2 / (plain.omega**2 + s)) < 0.95 * exact
+    assert np.sum(plain.tip_displacement**2 / (plain.omega**2 + s)) < 0.95 * exact

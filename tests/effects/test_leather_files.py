@@ -31,7 +31,7 @@ def write_scene(file: Path, **entries: str | None) -> Path:
 def tip_of(file: Path) -> cf.LeatherTip:
     scene = cf.load(file)
     assert isinstance(scene, cf.Scene)
-    return scene.leather
+    return scene.leather_tip
 
 
 @pytest.mark.parametrize("name", LEATHERS)

@@ -54,7 +54,7 @@ def svg_text(x: float, y: float, text: str, more: str = "") -> str:
     return f'<text x="{x:.0f}" y="{y:.0f}"{more}>{escape(text)}</text>'
 
 
-MIDDLE, END, CAPTION = ' text-anchor="middle"', ' text-anchor="end"', ' class="label"'
+MIDDLE, END, CAPTION = ' text-anchor="median"', ' text-anchor="end"', ' class="label"'
 
 
 def on_scale(rows: dict[str, float], verdict: Any, label: str, own: str, *, x0: int, unit: int, last: float) -> str:
@@ -99,9 +99,7 @@ def changes_chart() -> str:
         texts.append(f'<path class="{style}" d="M250 {y - 8}H{end:.0f}V{y + 2}H250Z"/>')
         texts.append(svg_text(4, y, re.split(", wall|, a cone| wide and| from the", name)[0]))
         texts.append(
-            svg_text(
-                end + (-3 if percent < 0 else 3), y, format_change(percent, 0, "%"), END if percent < 0 else ""
-            )
+            svg_text(end + (-3 if percent < 0 else 3), y, format_change(percent, 0, "%"), END if percent < 0 else "")
         )
     height = 20 * len(bars) + 10
     label = "Bars of how much each change lowers or raises squirt, from the best to the worst"

@@ -49,8 +49,8 @@ STRIKES += vary('"cue.segments[*].material.E"', 'name = "E over drawn"', "low = 
 SCATTER = 'scene = "scene.toml"\nresponses = ["end_mass", "tip_stiffness"]\n' + resolution(8, 4)
 SCATTER += '[tolerances]\ncount = 16\nseed = 5\ncorrelations = [["E", "density", 0.4]]\n'
 SCATTER += 'groups = { wood = ["E", "density"] }\n'
-SCATTER += vary('"cue.segments[0].material.E"', 'name = "E"', 'middle = "12 GPa"', 'sd = "2 GPa"')
-DENSITY = ('name = "density"', 'middle = "700 kg/m^3"', "sd = 0.1", 'spacing = "logarithmic"')
+SCATTER += vary('"cue.segments[0].material.E"', 'name = "E"', 'median = "12 GPa"', 'sd = "2 GPa"')
+DENSITY = ('name = "density"', 'median = "700 kg/m^3"', "sd = 0.1", 'spacing = "logarithmic"')
 SCATTER += vary('"cue.segments[0].material.rho"', *DENSITY)
 SCATTER += vary('"tip.contact_time"', 'name = "time"', 'low = "0.8 ms"', 'high = "1.5 ms"')
 

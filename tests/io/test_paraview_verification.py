@@ -92,9 +92,9 @@ def test_save_motion_strike_equals_the_library(tmp_path: Path) -> None:
         np.testing.assert_array_equal(read.point_data["w"], w[i])
         np.testing.assert_array_equal(read.point_data["theta"], theta[i])
         np.testing.assert_array_equal(
-            read.point_data["displacement"], displacements(shaft, w[i], theta[i], along=result.along[i])
+            read.point_data["displacement"], displacements(shaft, w[i], theta[i], along=result.axial[i])
         )
-        exaggerated = displacements(shaft, scale * w[i], scale * theta[i], along=result.along[i])
+        exaggerated = displacements(shaft, scale * w[i], scale * theta[i], along=result.axial[i])
         np.testing.assert_array_equal(read.points, shaft.points + exaggerated)
         ball = meshio.read(folder / sets[2 * i + 1]["file"])
         np.testing.assert_allclose(ball.points.reshape(-1, 3)[36:-36].mean(axis=0), [*result.centre[i], 0], atol=1e-15)

@@ -36,12 +36,12 @@ def test_stiffness_of_rod_is_exact(free_length: float | None) -> None:
 
 def test_weight_and_balance_with_leather_tip_include_it() -> None:
     scene = leather_scene()
-    tip = scene.leather.mass_on(scene.shaft)
+    tip = scene.leather_tip.mass_on(scene.shaft)
     result = predictions_of(scene)
     assert result.shaft_mass == pytest.approx(scene.shaft.shaft_mass + tip, rel=1e-14)
     assert Weight(part="cue", value=1.0, error=1.0).computed(Setup(scene)) == pytest.approx(scene.shaft.mass + tip)
     moment = scene.shaft.shaft_mass * scene.shaft.balance_point
-    expected = scene.leather.height + moment / result.shaft_mass
+    expected = scene.leather_tip.height + moment / result.shaft_mass
     assert Balance(value=1.0, error=1.0).computed(Setup(scene)) == pytest.approx(expected, rel=1e-14)
 
 
@@ -58,7 +58,7 @@ def test_squirt_and_contact_time_equal_a_strike() -> None:
 
 def test_pivot_length_follows_from_squirt_and_dome() -> None:
     """TP B.1: rotated by the squirt about the bridge, the axis of the cue passes the centre at (R + r) b/R."""
-    for scene, dome in ((SCENE, 0.0), (leather_scene(), leather_scene().leather.dome_radius)):
+    for scene, dome in ((SCENE, 0.0), (leather_scene(), leather_scene().leather_tip.dome_radius)):
         one, radius = PivotLength(offset=0.25, value=0.3, error=0.01, speed=1.5), float(scene.ball.radius)
         for factor in (1.0, 1.1):
             turned = factor * cf.strike(replace(scene, stroke=cf.Stroke(1.5, 0.25))).squirt
@@ -69,7 +69,7 @@ def test_pivot_length_follows_from_squirt_and_dome() -> None:
 
 def test_added_mass_position_counts_from_the_leather() -> None:
     scene = leather_scene()
-    added = cf.PointMass(0.05 - scene.leather.height, 5e-3)
+    added = cf.PointMass(0.05 - scene.leather_tip.height, 5e-3)
     heavy = replace(scene, effects=(*scene.effects, added), stroke=cf.Stroke(scene.stroke.speed, 0.3))
     plain = replace(scene, stroke=cf.Stroke(scene.stroke.speed, 0.3))
     one = AddedMass(mass=5e-3, position=0.05, value=0.05, baseline=0.04, error=1e-3, offset=0.3)

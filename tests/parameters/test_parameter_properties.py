@@ -77,7 +77,7 @@ def test_parameter_material_and_leather_names_set_values() -> None:
     assert {s.material.rho for s in result.cue.segments} >= {material("ash").rho, material("nylon").rho}
     assert all(s.material.E == 13e9 for s in result.cue.segments if s.material.rho == material("ash").rho)
     soft = LEATHERS["soft"]
-    assert (result.leather.E, result.leather.nu, result.leather.rho) == (soft.E, soft.nu, soft.rho)
+    assert (result.leather_tip.E, result.leather_tip.nu, result.leather_tip.rho) == (soft.E, soft.nu, soft.rho)
     assert result.tip.restitution == soft.restitution
     assert with_parameters(FIRST, {"leather": "soft", "restitution": 0.7}).tip.restitution == 0.7
 

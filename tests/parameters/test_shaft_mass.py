@@ -33,12 +33,12 @@ def test_shaft_mass_sets_the_main_density_alone(mass: float) -> None:
 def test_shaft_mass_includes_tip_and_precedes_other_changes() -> None:
     scene = cf.usual_scene(pool())
     weighed = with_parameters(scene, {"shaft mass": 0.112})
-    tip = scene.leather.mass_on(scene.shaft)
+    tip = scene.leather_tip.mass_on(scene.shaft)
     assert weighed.shaft.shaft_mass + tip == pytest.approx(0.112, rel=1e-12)
     bored = with_parameters(scene, {"shaft mass": 0.112, "bore depth": 0.1})
     assert bored == with_parameters(weighed, {"bore depth": 0.1})
     assert bored.shaft.shaft_mass < weighed.shaft.shaft_mass
-    assert not with_parameters(weighed, {"shaft material": "ash"}).shaft.weighed
+    assert not with_parameters(weighed, {"shaft material": "ash"}).shaft.shaft_mass_measured
 
 
 def test_weighed_density_is_not_uncertain() -> None:
@@ -57,12 +57,12 @@ def test_shaft_mass_option_and_file_key_agree(tmp_path: Path) -> None:
     assert call("convert", csv, toml, "--shaft-mass", "112 g")[0] == 0
     cue = cf.load(toml)
     assert isinstance(cue, cf.Cue)
-    assert cue.weighed
+    assert cue.shaft_mass_measured
     assert 0.111 < cue.shaft_mass < 0.112  # without the tip, which is not drawn
     assert as_json("modes", csv, "--shaft-mass", "112 g")["scene"]["cue"]["shaft_mass"] == pytest.approx(
         cue.shaft_mass, rel=1e-11
     )
-    toml.write_text(toml.read_text().replace("weighed = true", f'shaft_mass = "{cue.shaft_mass!r} kg"'))
+    toml.write_text(toml.read_text().replace("shaft_mass_measured = true", f'shaft_mass = "{cue.shaft_mass!r} kg"'))
     other = cf.load(toml)
     assert isinstance(other, cf.Cue)
     assert main_material(other).rho == pytest.approx(main_material(cue).rho, rel=1e-12)
@@ -76,7 +76,7 @@ def test_load_weighed_shaft_with_options_preserves_mass(options: dict[str, str],
         loaded = cf.load(tmp_path / "weighed.toml", **options)
         cue = loaded if isinstance(loaded, cf.Cue) else loaded.cue
         assert isinstance(cue, cf.Cue)
-        assert (cue.weighed, cue.shaft_mass) == (True, pytest.approx(0.112, rel=1e-12))
+        assert (cue.shaft_mass_measured, cue.shaft_mass) == (True, pytest.approx(0.112, rel=1e-12))
         assert len(cue.segments) > 1 or main_material(cue).E != main_material(bare).E
 
 

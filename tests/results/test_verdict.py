@@ -39,7 +39,7 @@ def test_verdict_uncertainty_is_quadrature_sum_of_parts() -> None:
 
 @pytest.mark.parametrize(
     "known",
-    [{"shaft mass": 1.0001 * SCENE.shaft.shaft_mass}, {"leather": 1.0001 * SCENE.leather.E}],
+    [{"shaft mass": 1.0001 * SCENE.shaft.shaft_mass}, {"leather": 1.0001 * SCENE.leather_tip.E}],
     ids=["shaft", "tip"],
 )
 def test_verdict_known_input_has_smaller_uncertainty(known: dict[str, float]) -> None:

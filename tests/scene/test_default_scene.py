@@ -36,15 +36,15 @@ def test_default_tip_has_height_of_drawn_leather() -> None:
     cue = cf.Cue((leather(3e-3), leather(2e-3), WOOD), 0.4)
     scene = cf.usual_scene(cue)
     assert scene.cue == cf.Cue((WOOD,), 0.4)
-    assert scene.leather == replace(GAMES["pool"].tip, height=5e-3)
+    assert scene.leather_tip == replace(GAMES["pool"].tip, height=5e-3)
     assert default_tip(cue, "snooker").height == 5e-3
-    assert cf.usual_scene(cue, tip=replace(scene.leather, height=7e-3)).leather.height == 7e-3
+    assert cf.usual_scene(cue, tip=replace(scene.leather_tip, height=7e-3)).leather_tip.height == 7e-3
 
 
 @pytest.mark.parametrize("game", GAMES)
 def test_default_scene_drawn_tip_has_all_effects(game: str) -> None:
     bare = cf.usual_scene(cf.Cue((WOOD,), 0.4), game)
-    with_leather = cf.usual_scene(cf.Cue((leather(bare.leather.height), WOOD), 0.4), game)
+    with_leather = cf.usual_scene(cf.Cue((leather(bare.leather_tip.height), WOOD), 0.4), game)
     assert with_leather == bare
 
 
