@@ -140,6 +140,7 @@ class Page:
         self.drawing = ui.html(sanitize=False)
         with ui.expansion(on_value_change=lambda: self.assumptions.refresh()).classes("assumptions") as self.fold:
             self.assumptions()
+        self.printed = ui.label().classes("printed soft")
 
     @ui.refreshable_method
     def assumptions(self) -> None:
@@ -165,6 +166,10 @@ class Page:
             *self.step.design.notes,
             *(f"{words} (change it in File)" for _, words in tenon_assumption(self.step.design.scene.shaft)),
         ]
+
+    def _assumption_lines(self) -> list[str]:
+        scene = self.step.design.scene
+        return [*(f"{label(key, scene)} {_assumption(key, scene)}" for key in self._assumed()), *self._notes()]
 
     def _parts(self) -> dict[str, float]:
         """Relative uncertainty of squirt by each control's parameters."""
@@ -293,10 +298,9 @@ class Page:
         """Write the report of the design, compared with the other one."""
         design, other = self.step.design, self.step.other
         self.report.disable()
-        notes = [f"{label(key, design.scene)} {_assumption(key, design.scene)}" for key in self._assumed()]
         beside = None if other is None else (panels.named_designs(self.step)[1][0], self._compared_scene())
         try:
-            text = await run_in_thread(self._page, design, [*notes, *self._notes()], beside)
+            text = await run_in_thread(self._page, design, self._assumption_lines(), beside)
             ui.download.content(text, f"{_stem(design.name)}.html")
         except FAILURES as error:
             self.show_message(one_line(error))
@@ -382,9 +386,10 @@ class Page:
         difference = self.results.difference
         self.headline.set_content(with_term_buttons(headline_markup(own, other, difference, warning)))
         self.scale.set_content(scale_markup(own, other))
-        self.tiles.set_content(tiles_markup(own, other))
-        count = len(self._assumed()) + len(self._notes())
-        words = f"{count} assumption{'s' if count != 1 else ''}"
+        self.tiles.set_content(with_term_buttons(tiles_markup(own, other)))
+        lines = self._assumption_lines()
+        self.printed.set_text("; ".join(lines))
+        words = f"{len(lines)} assumption{'s' if len(lines) != 1 else ''}"
         self.fold.props(f'label="{words}" caption="{parts_line(own.verdict) if own.verdict else ""}"')
         self._show_tab()
 

@@ -67,7 +67,7 @@ def headline_markup(own: Shown, other: Shown | None = None, difference: Record |
     else:
         text, error = DASH if squirt is None else with_unit(abs(squirt), "rad", decimals=2), ""
     lines = []
-    if other is not None and squirt is not None:
+    if other is not None and squirt is not None and (not verdict or verdict["references"]):
         lines.append(("compared with" if difference is None else squirt_difference(**difference), other.name))
     for first, among in [*(verdict["references"].items() if verdict else ())][:1]:
         if other is None or other.name != first:

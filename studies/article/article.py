@@ -138,7 +138,9 @@ def text() -> str:
 def draw(axes: Any) -> None:
     """Squirt over the speed."""
     for i, step in enumerate(("bare", *STEPS)):
-        axes.plot(SPEEDS, [found(step, U) for U in SPEEDS], f"C{i}o-", ms=3, label=step)
+        axes.plot(
+            SPEEDS, [found(step, U) for U in SPEEDS], f"C{i}o-", ms=3, label="bare tip" if step == "bare" else step
+        )
     axes.fill_between(robot_speeds(), 2.34, 2.54, color="k", alpha=0.15, lw=0, label="robot, 2008")
     axes.set(xlabel="speed of the stroke, m/s", ylabel="squirt at b/R 0.375, degrees", ylim=(1.4, 3.0))
     axes.legend(fontsize=8, ncols=2, loc="lower left")
@@ -154,9 +156,9 @@ def draw_stroke(panels: Any) -> None:
         left.plot(1e3 * time, outcome.history(time)[name], label=label)
     times = outcome.duration * np.array([0.25, 0.5, 0.75, 1.0])
     for at, shape in zip(times, cf.motion(scene, times).deflection(along)[0], strict=True):
-        right.plot(100 * along, 1e3 * shape, label=f"{1e3 * at:.2f} ms")
+        right.plot(1e3 * along, 1e3 * shape, label=f"{1e3 * at:.2f} ms")
     left.set(xlabel="time, ms", ylabel="force on the ball, N")
-    right.set(xlabel="from the ferrule's end, cm", ylabel="deflection, mm")
+    right.set(xlabel="from the ferrule's end, mm", ylabel="deflection, mm")
     for axis in panels:
         axis.legend(fontsize=8)
 

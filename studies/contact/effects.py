@@ -14,6 +14,7 @@ from typing import Any
 
 import cuefem as cf
 from cuefem.cue.materials import LEATHERS
+from cuefem.report.scene_summary import effect_name
 from studies import pages, strokes
 from studies.pages import table
 from studies.strokes import DOME, SHEAR, squirt
@@ -115,7 +116,7 @@ def draw(axes: Any) -> None:
         found = {e: change(scene(name), e) for e in USUAL}
         places = [k + 0.13 * (i - 2.5) for k, value in enumerate(found.values()) if value is not None]
         axes.barh(places, [v for v in found.values() if v is not None], height=0.12, color=f"C{i}", label=name)
-    axes.set_yticks(range(len(USUAL)), USUAL)
+    axes.set_yticks(range(len(USUAL)), map(effect_name, USUAL))
     axes.invert_yaxis()
     axes.axvline(0, color="k", lw=0.8)
     axes.set(xlabel="change of squirt by the effect, per cent")

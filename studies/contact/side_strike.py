@@ -189,7 +189,7 @@ def draw(panels: Any) -> None:
     for where, mark in zip(LENGTHS, "o+", strict=True):
         found = [computed(where, p) for p in PARAMETERS]
         panels[0].plot(PARAMETERS, found, mark, ms=7, mfc="none", label=f"computed, {where}")
-    panels[0].set(xscale="log", xlabel="inelasticity Λ", ylabel="apparent restitution $e_A$")
+    panels[0].set(xscale="log", xlabel="inelasticity Λ", ylabel="apparent restitution $e_A$", title="long beam")
     panels[0].legend(fontsize=8)
     x = np.array(CASES["bat"][2])
     for i, (label, style) in enumerate((("rigid", "k:"), ("flexible", "C0-"), ("handle clamped", "C1--"))):

@@ -8,6 +8,7 @@ cause.
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
@@ -122,7 +123,7 @@ def draw(panels: Any) -> None:
     left, right = panels
     left.hist(np.concatenate([*drawn()[:2]]), 20)
     left.set(xlabel="squirt at b/R 0.3, degrees", ylabel="shafts and strokes")
-    names = [cause.split(",")[0] for cause in shares()][::-1]
+    names = [textwrap.fill(cause, 26) for cause in shares()][::-1]
     right.barh(names, list(shares().values())[::-1])
     right.set(xlabel="share of the variance, %")
 

@@ -23,6 +23,7 @@ from studies.strokes import INCH
 HOME = pages.STUDIES / "measured"
 PLAYERS, PREDATOR, STINGER = CUES = ("players_maple", "predator_z", "stinger")
 MODELS = ("bare", "whole")
+LABELS = {"bare": "bare tip", "whole": "full model"}
 INCHES = (2, 3, 4, 5, 6, 6.5, 7, 8, 9, 10)
 RADIUS = strokes.POOL.radius
 

@@ -21,7 +21,7 @@ from cuefem.cue.materials import material
 from cuefem.design import evaluate
 from cuefem.results.closed_forms import natural_pivot_length
 from studies import pages, strokes
-from studies.measured.published import INCHES, MODELS, PLAYERS, RADIUS, Row, mass_ratios, measured, rows, series
+from studies.measured.published import INCHES, LABELS, MODELS, PLAYERS, RADIUS, Row, mass_ratios, measured, rows, series
 from studies.pages import table
 from studies.strokes import INCH, at_offset, cue, hollow, pool_scene, squirt, whole
 
@@ -37,7 +37,8 @@ def squirt_table() -> str:
     """Measured beside computed."""
     made = [[row.name, row.series, *row.told[:2], bare.told[2], row.told[2]] for row, bare in both()]
     miss = [f"{100 * pages.rms(pair[i].difference for pair in both()):.0f} %" for i in (1, 0)]
-    return table(["cue", "series", "b/R", "measured", *MODELS], [*made, ["RMS of the differences", "", "", "", *miss]])
+    head = ["cue", "series", "b/R", "measured", *LABELS.values()]
+    return table(head, [*made, ["RMS of the differences", "", "", "", *miss]])
 
 
 def depends_table() -> str:
@@ -55,7 +56,8 @@ def depends_table() -> str:
         shown = ", ".join(f"{v * {'E': 1e-6, 'speed': 1}.get(field, 1e3):g}" for v in values)
         degrees = [", ".join(f"{squirt(s):.2f}" for s in some) for some in (found, bare)]
         made.append([name, shown, *degrees, *(pages.change(map(squirt, some)) for some in (found, bare))])
-    return table(["changed", "values", "whole, deg", "bare at that contact time", "whole, range", "bare, range"], made)
+    head = ["changed", "values", "full model, deg", "bare tip at that contact time", "full model, range"]
+    return table([*head, "bare tip, range"], made)
 
 
 def mass_table() -> str:
@@ -66,7 +68,7 @@ def mass_table() -> str:
         for x in INCHES
     ]
     miss = [f"{pages.rms(a - b for a, b in (found[m][11, x] for x in INCHES)):.2f}" for m in MODELS]
-    return table(["11 g at", "measured", *MODELS], [*made, ["RMS of the difference", "", *miss]])
+    return table(["11 g at", "measured", *LABELS.values()], [*made, ["RMS of the difference", "", *miss]])
 
 
 def bore_table() -> str:
@@ -116,7 +118,7 @@ def text() -> str:
         "model. Nothing is fitted to squirt: E and restitution of the leather follow from a published contact time and "
         "restitution of whole cues. Model error: [uncertainty](uncertainty.md).",
         squirt_table(),
-        "Columns: bare is the bare-tip model, whole the full model. Differences are logarithms; those of pivot lengths "
+        "Columns: bare tip is the bare-tip model. Differences are logarithms; those of pivot lengths "
         "are converted to squirt. Pivot lengths were measured in November 2007 by pivoting the cue about the bridge "
         "until squirt cancels, which also cancels zero errors of angle and offset. Strokes were fast, balls sprayed "
         "with silicone; speeds and errors were not published. The maple angles of September 2007 correspond to pivot "
@@ -148,9 +150,9 @@ def draw(panels: Any) -> None:
     offsets = np.linspace(0.05, 0.5, 12)
     for i, model in enumerate(MODELS):
         scene = measured(PLAYERS, model).scene
-        left.plot(offsets, [squirt(at_offset(scene, float(b))) for b in offsets], f"C{i}", label=model)
+        left.plot(offsets, [squirt(at_offset(scene, float(b))) for b in offsets], f"C{i}", label=LABELS[model])
         places = [x for mass, x in mass_ratios(model) if mass == 11]
-        right.plot(places, [mass_ratios(model)[11, x][1] for x in places], f"C{i}", label=model)
+        right.plot(places, [mass_ratios(model)[11, x][1] for x in places], f"C{i}", label=LABELS[model])
     for name, mark in (("angles, 2007", "ks"), ("robot, 2008", "ko")):
         some = [row for row in series("whole")[name] if not row.pivot]
         left.plot([row.offset for row in some], [math.degrees(row.measured) for row in some], mark, label=name)

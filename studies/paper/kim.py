@@ -822,12 +822,11 @@ def draw_ends(axes: plt.Axes) -> None:
             label="2/35" if kim else f"{eps:g}",
         )
     handles, labels = axes.get_legend_handles_labels()
-    axes.text(0.69, 0.3, "curves end where slip outlasts compression", ha="right", fontsize=8)
     axes.legend(handles[::-1], labels[::-1], title="m_c/M", fontsize=8)
     axes.set(
         xlabel="offset b/R",
         ylabel="squirt ψ, degrees",
-        title="Two-part cue: e = 3/4, Q₀ = 18/7, μ = 0.7",
+        title="Two-part cue: e = 3/4, Q₀ = 18/7, μ = 0.7;\ncurves end where slip outlasts compression",
         xlim=(0, 0.7),
     )
 
