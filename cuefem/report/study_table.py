@@ -28,6 +28,10 @@ from cuefem.scene import Scene
 
 _FIELD = re.compile(rf"({'|'.join(field.name for field in fields(Scene))})(\[[\d*]+\])?(\.\w+(\[[\d*]+\])?)+")
 _ITEM = re.compile(r"(\w+)s\[(\d+|\*)\]")
+TREND_NOTE = (
+    "falls: a larger value of the parameter gives a smaller result (a larger bore, less squirt); rises: a larger one; "
+    "the shares exclude interactions of parameters"
+)
 MAX_FRONT_ROWS = 7  # designs of a Pareto front in the table
 MIN_SHARE = 0.01  # of the variance, of a factor that is named among the strongest
 
@@ -183,10 +187,7 @@ def tabulate_sweep(sweep: SweepStatistics) -> list[Table | str]:
             "Sensitivity: share of a result's variance between designs by one parameter alone",
             ("result", *labels),
             tuple(sensitivities),
-            (
-                "falls: a larger value of the parameter gives a smaller result (a larger bore, less squirt); rises: a "
-                "larger one; the shares exclude interactions of parameters",
-            ),
+            (TREND_NOTE,) if any(cell.endswith(("falls", "rises")) for row in sensitivities for cell in row) else (),
         ),
     ]
     if sweep.pair is None:

@@ -11,8 +11,10 @@ import pytest
 import cuefem as cf
 from cuefem.handbook import MAKERS, chapters
 from cuefem.parameters.parameter import with_parameters
+from cuefem.results.quantities import drawn_mass
 from cuefem.report.report_page import LAW
 from cuefem.results.uncertainty import MODEL_ERROR, SHAFT_ERROR
+from cuefem.scene.default_scene import without_leather
 from tests.helpers.command_line import call
 from tests.helpers.maker_pictures import FOLDER, PICTURES, command_json, reference_squirts
 
@@ -54,7 +56,29 @@ def test_numbers_in_makers_chapters_equal_computation() -> None:
     assert f"The model's own is {100 * MODEL_ERROR:.0f} %" in TEXTS["read_the_report"]
     assert f"its uncertainty is {100 * SHAFT_ERROR:.0f} % of the difference for the model" in TEXTS["read_the_report"]
     assert f"{100 * SHAFT_ERROR:.0f} % of the change for the model" in TEXTS["change_it"]
-    assert 0.13 < verdict["inputs"]["rho"] / 0.1 < 0.2  # "by about a sixth as much", of wood heavier by a tenth
+    assert_density_and_butt_as_stated()
+    rows = {row["change"]: row for row in command_json("improve")["changes"]}
+    for change, start in (("thinner from", "0.5 mm takes "), ("of a dime", "dime gives "), ("of a nickel", "nickel ")):
+        (row,) = (row for label, row in rows.items() if change in label)
+        text = f"{start}{100 * abs(row['squirt_change']):.1f} ± {100 * row['squirt_change_error']:.1f} %"
+        assert text in TEXTS["change_it"]
+
+
+def assert_density_and_butt_as_stated() -> None:
+    """Squirt of denser wood and of other butts; the error of a difference from plain maple, weighed or not."""
+    maple, kim = (cf.usual_scene(cf.load(Path("meshes") / f"{name}.toml")) for name in ("pool_maple", "kim"))
+    own = cf.strike(maple).squirt
+    for scene in (maple, kim):
+        heavier = with_parameters(scene, {"shaft mass": 1.1 * drawn_mass(scene)})
+        assert f"{100 * (cf.strike(heavier).squirt / cf.strike(scene).squirt - 1):.1f} % (" in TEXTS["weigh_and_tap"]
+    for butt, less in ((0.35, 4), (0.0, 23)):
+        other = replace(maple, cue=replace(maple.cue, body_mass=butt))
+        assert f"{100 * (1 - cf.strike(other).squirt / own):.0f}" == str(less)
+        assert f"{less} % less" in TEXTS["what_squirt_is"]
+    for scene in (maple, kim):
+        weighed = replace(scene, cue=replace(scene.shaft, weighed=True))
+        before, after = (cf.verdict(each)["references"]["plain maple"]["error"] for each in (scene, weighed))
+        assert f"from {100 * before:.1f} to {100 * after:.1f} %" in TEXTS["read_the_report"]
 
 
 def squirt_of(path: Path) -> float:
@@ -126,3 +150,12 @@ def test_profiles_in_chapters_load_as_bored_shaft(tmp_path: Path) -> None:
         assert all(segment.tip_bore == 0 for segment in rest)
     assert squirts[2] == pytest.approx(1.660, abs=5e-3)  # 1.79 with the bore filled by the tenon's wood
     assert squirts[1] == pytest.approx(squirts[2], rel=0.01)
+
+
+def test_complete_scene_of_files_chapter_is_default_stroke(tmp_path: Path) -> None:
+    text = next(chapter.text for chapter in chapters() if chapter.name == "files").partition("A complete scene")[2]
+    maple = without_leather(cf.load("meshes/pool_maple.toml"))  # type: ignore[arg-type]
+    cf.save(maple, tmp_path / "my_shaft.toml")
+    (tmp_path / "scene.toml").write_text(re.findall(r"```toml\n(.*?)```", text, re.DOTALL)[0], encoding="utf-8")
+    squirts = [cf.strike(scene).squirt for scene in (cf.load(tmp_path / "scene.toml"), cf.usual_scene(maple))]
+    assert squirts[0] == pytest.approx(squirts[1], rel=1e-9)
