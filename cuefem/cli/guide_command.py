@@ -32,7 +32,7 @@ def guide(chapter: str | None, output: Path | None, in_terminal: bool, as_json: 
     """Open the handbook in the browser: six pages for makers, then physics, effects, accuracy and a glossary.
 
     CHAPTER opens one chapter (--print: prints it). For makers: what_squirt_is, measure_your_shaft, read_the_report,
-    change_it, weigh_and_tap or what_not_to_believe. For engineers: start, model, files, study, working, frame,
+    design_changes, weigh_and_tap or limits. For engineers: start, model, files, study, working, frame,
     inverse_mass, impulse_solver, beam, solid, strike, contact, end_mass, side, effects, measured, measuring, accuracy,
     paper, glossary, terms or sources.
     """

@@ -13,9 +13,9 @@ MAKERS = (
     "what_squirt_is",
     "measure_your_shaft",
     "read_the_report",
-    "change_it",
+    "design_changes",
     "weigh_and_tap",
-    "what_not_to_believe",
+    "limits",
 )
 CHAPTERS = (
     *MAKERS,

@@ -55,13 +55,13 @@ def test_numbers_in_makers_chapters_equal_computation() -> None:
     assert verdict["uncertainty"]["total"] == pytest.approx(0.2, abs=0.025)  # "off by about 20 %"
     assert f"The model's own is {100 * MODEL_ERROR:.0f} %" in TEXTS["read_the_report"]
     assert f"its uncertainty is {100 * SHAFT_ERROR:.0f} % of the difference for the model" in TEXTS["read_the_report"]
-    assert f"{100 * SHAFT_ERROR:.0f} % of the change for the model" in TEXTS["change_it"]
+    assert f"{100 * SHAFT_ERROR:.0f} % of the change for the model" in TEXTS["design_changes"]
     assert_density_and_butt_as_stated()
     rows = {row["change"]: row for row in command_json("improve")["changes"]}
     for change, start in (("thinner from", "0.5 mm takes "), ("of a dime", "dime gives "), ("of a nickel", "nickel ")):
         (row,) = (row for label, row in rows.items() if change in label)
         text = f"{start}{100 * abs(row['squirt_change']):.1f} ± {100 * row['squirt_change_error']:.1f} %"
-        assert text in TEXTS["change_it"]
+        assert text in TEXTS["design_changes"]
 
 
 def assert_density_and_butt_as_stated() -> None:
@@ -104,7 +104,7 @@ def test_deeper_bore_changes_squirt_by_shaft_not_ferrule(name: str, ferrule: str
     at_5, *others = (cf.strike(with_parameters(scene, values)).squirt for values in bore)
     assert [100 * (squirt / at_5 - 1) for squirt in others] == pytest.approx([*deeper.values()], abs=0.06)
     if scene == drawn and name == "pool_maple":
-        assert "takes about 5 % off" in TEXTS["change_it"]
+        assert "takes about 5 % off" in TEXTS["design_changes"]
         assert 1 - at_5 / cf.strike(scene).squirt == pytest.approx(0.055, abs=0.005)
 
 
