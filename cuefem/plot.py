@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -43,6 +43,8 @@ def __dir__() -> list[str]:
 PLOT_OFFSETS = tuple(np.round(np.arange(0.0, 0.525, 0.025), 3).tolist())
 FROM_TIP, TIME = with_heading("from the front of the drawing", "m"), with_heading("time", "s")
 _SOFT, _WOODY, _METAL = 1e9, (300.0, 1250.0), 2500.0  # Pa: leather and foam; kg/m3: woods, metals
+_RESOLVED = 0.3  # m from the tip: modes resolve the end-mass distribution up to here
+_ABOVE: dict[str, Any] = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "ncols": 4}  # a legend off the curves
 _LOCAL = 5e-4  # m behind the leather: the end-mass distribution is drawn from here
 
 
@@ -61,9 +63,9 @@ def _cue_of(thing: Cue | Scene) -> Cue:
 
 
 def _colour(material: Material) -> str:
-    """The colour of leather, wood, carbon, metal or plastic, by Young's modulus and density."""
+    """The colour of leather, foam, wood, carbon, metal or plastic, by Young's modulus and density."""
     if material.E < _SOFT:
-        return "#8fa3b5"
+        return "#8fa3b5" if material.rho > _WOODY[0] else "#f2e6b5"
     if material.rho > _METAL:
         return "#b9bcc2"
     if material.E > 5 * _SOFT and _WOODY[0] < material.rho < _WOODY[1]:
@@ -125,8 +127,8 @@ def modes(cue: Cue | Scene, count: int = 4, ax: Axes | None = None, *, at: Resol
     for frequency, deflection in zip(solved.frequencies, solved.shape(x)[0], strict=True):
         axes.plot(to_display(x, "m"), deflection / np.abs(deflection).max(), label=f"{frequency:.0f} Hz")
     axes.axhline(0, color="#888", linewidth=0.6)
-    axes.set(xlabel=FROM_TIP, ylabel="deflection", xlim=(0, to_display(drawn.length, "m")))
-    axes.legend(ncols=2)
+    axes.set(xlabel=FROM_TIP, ylabel="deflection over its maximum", xlim=(0, to_display(drawn.length, "m")))
+    axes.legend(**_ABOVE)
     return axes
 
 
@@ -165,7 +167,7 @@ def squirt(
         (line,) = axes.plot(offsets, np.where(miscue, np.nan, to_display(curve["squirt"], "rad")), label=name or None)
         if miscue.any():
             axes.plot(np.asarray(offsets)[miscue][:1], [0], "x", color=line.get_color(), clip_on=False)
-    axes.set(xlabel="offset b/R", ylabel="squirt, degrees")
+    axes.set(xlabel="tip offset b/R", ylabel="squirt, degrees")
     if any(named):
         axes.legend()
     return axes
@@ -202,7 +204,7 @@ def forces(stroke: Scene | Outcome, ax: Axes | None = None, *, at: Resolution | 
         axes.plot(to_display(times, "s"), force, label=label)
     axes.axhline(0, color="#888", linewidth=0.6)
     axes.set(xlabel=TIME, ylabel=with_heading("force on the ball", "N"), xlim=(0, to_display(outcome.duration, "s")))
-    axes.legend()
+    axes.legend(**_ABOVE)
     return axes
 
 
@@ -246,7 +248,7 @@ def end_mass(scene: Scene, ax: Axes | None = None, *, at: Resolution | None = No
     axes.set(
         xlabel=FROM_TIP,
         ylabel=with_heading("end mass added by 1 g", "kg"),
-        xlim=(0, to_display(scene.shaft.length, "m")),
+        xlim=(0, to_display(min(scene.shaft.length, _RESOLVED), "m")),
     )
     axes.set_title(f"end mass {with_unit(drivers.end_mass, 'kg', 3)}{excluded}", fontsize="medium")
     return axes
