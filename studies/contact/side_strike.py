@@ -27,7 +27,7 @@ from studies.pages import table
 T, DIAMETER, DENSITY = 1e-3, 1e-2, 700.0  # s, m, kg/m3
 THIN, STIFF = 250.0, 1e4  # distance of the waves over the diameter, and G/E: nearly an Euler beam
 PARAMETERS = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 3.0)
-LENGTHS = {"median": 16.0, "end": 8.0}  # of the beams, over the distance that waves spread in T
+LENGTHS = {"middle": 16.0, "end": 8.0}  # of the beams, over the distance that waves spread in T
 
 
 def exact(parameter: float) -> float:
@@ -54,10 +54,10 @@ def computed(where: str, parameter: float) -> float:
     material = cf.Material(E, STIFF * E, DENSITY, nu=0.0)
     cue = cf.Cue((cf.Segment(LENGTHS[where] * spread, DIAMETER, DIAMETER, material, kappa=1.0),))
     section, unit = cue.section(0.0), T / math.pi
-    C = (1 if where == "median" else 4) / (2 * math.sqrt(2) * float(section.EI) ** 0.25 * float(section.rhoA) ** 0.75)
+    C = (1 if where == "middle" else 4) / (2 * math.sqrt(2) * float(section.EI) ** 0.25 * float(section.rhoA) ** 0.75)
     mass = parameter / C * math.sqrt(unit)
     striker = cf.Striker(mass, 1.0, stiffness=mass / unit**2)
-    place = cue.length / 2 if where == "median" else 0.0
+    place = cue.length / 2 if where == "middle" else 0.0
     return cf.side_strike(cf.SideStrike(cue, striker, place)).apparent_restitution
 
 

@@ -89,7 +89,7 @@ def spring_exact(inelasticity: float) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("inelasticity", [0.05, 0.5, 2.0])
-@pytest.mark.parametrize(("where", "lengths"), [("median", 16.0), ("end", 8.0)])
+@pytest.mark.parametrize(("where", "lengths"), [("middle", 16.0), ("end", 8.0)])
 def test_side_strike_long_thin_beam_equals_infinite_beam(where: str, lengths: float, inelasticity: float) -> None:
     """An elastic spring on an infinite Euler beam: e_A by Laplace's transform, one parameter C m √ω0."""
     time, diameter, rho = 1e-3, 1e-2, 700.0
@@ -97,9 +97,9 @@ def test_side_strike_long_thin_beam_equals_infinite_beam(where: str, lengths: fl
     E = 16 * rho * (spread**2 / time) ** 2 / diameter**2
     thin = cf.Cue((cf.Segment(lengths * spread, diameter, diameter, cf.Material(E, 1e4 * E, rho, nu=0.0), kappa=1.0),))
     section, unit = thin.section(0.0), time / math.pi
-    C = (1 if where == "median" else 4) / (2 * math.sqrt(2) * float(section.EI) ** 0.25 * float(section.rhoA) ** 0.75)
+    C = (1 if where == "middle" else 4) / (2 * math.sqrt(2) * float(section.EI) ** 0.25 * float(section.rhoA) ** 0.75)
     mass = inelasticity / C * math.sqrt(unit)
-    position = thin.length / 2 if where == "median" else 0.0
+    position = thin.length / 2 if where == "middle" else 0.0
     outcome = side_strike(SideStrike(thin, Striker(mass, 1.0, stiffness=mass / unit**2), position))
     exact, duration = spring_exact(inelasticity)
     assert outcome.apparent_restitution == pytest.approx(exact, abs=1e-5)

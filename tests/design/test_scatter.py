@@ -59,7 +59,7 @@ def test_sobol_indices_ishigami_equal_closed_form() -> None:
 DENSITIES = (
     Vary(("cue.segments[1].material.rho",), Normal(1500.0, 100.0), "ferrule"),
     Vary(("cue.segments[2].material.rho",), Normal(705.0, 20.0), "front"),
-    Vary(("cue.segments[3].material.rho",), Normal(705.0, 40.0), "median"),
+    Vary(("cue.segments[3].material.rho",), Normal(705.0, 40.0), "middle"),
     Vary(("cue.segments[4].material.rho",), Normal(705.0, 5.0), "rear"),
 )
 
@@ -67,9 +67,9 @@ DENSITIES = (
 @pytest.mark.heavy
 def test_sobol_indices_of_correlated_sum_equal_closed_form() -> None:
     """The mass of a shaft is a sum of densities times volumes, with exact indices of parameters and groups."""
-    r = {("front", "median"): 0.8, ("median", "rear"): -0.5}
+    r = {("front", "middle"): 0.8, ("middle", "rear"): -0.5}
     study = Study(BASE, DENSITIES, (Response.of("shaft_mass"),), at=COARSE)
-    scatter = Scatter(study, r, {"wood": ("front", "median", "rear")}, 128, 1)
+    scatter = Scatter(study, r, {"wood": ("front", "middle", "rear")}, 128, 1)
     assert scatter.factors == ("ferrule", "wood")
     result = cf.study(scatter)
     computed = result.sobol_indices
@@ -85,7 +85,7 @@ def test_sobol_indices_of_correlated_sum_equal_closed_form() -> None:
     assert computed.total[:, 0] == pytest.approx(parts / parts.sum(), abs=0.03)
     assert result.spread["shaft_mass"]["sd"] == pytest.approx(math.sqrt(parts.sum()), rel=0.03)
     ungrouped = cf.study(Scatter(study, count=128, seed=1)).sobol_indices
-    assert ungrouped.factors == ("ferrule", "front", "median", "rear")
+    assert ungrouped.factors == ("ferrule", "front", "middle", "rear")
     assert ungrouped.first[:, 0] == pytest.approx(terms**2 / (terms**2).sum(), abs=0.03)
 
 

@@ -54,7 +54,7 @@ def svg_text(x: float, y: float, text: str, more: str = "") -> str:
     return f'<text x="{x:.0f}" y="{y:.0f}"{more}>{escape(text)}</text>'
 
 
-MIDDLE, END, CAPTION = ' text-anchor="median"', ' text-anchor="end"', ' class="label"'
+MIDDLE, END, CAPTION = ' text-anchor="middle"', ' text-anchor="end"', ' class="label"'
 
 
 def on_scale(rows: dict[str, float], verdict: Any, label: str, own: str, *, x0: int, unit: int, last: float) -> str:
