@@ -366,7 +366,8 @@ class KnobRow:
             NONE if each is None else f"{each}" if self.knob.range is None else value_text(self.key, each)
             for each in (mine, beside)
         )
-        note = f"= {own}" if self.key in design.typed and self.shown != own else ""
+        plain = not self.knob.range or (not self.knob.range.unit and bool(_UNITLESS.fullmatch(self.shown)))
+        note = f"= {own}" if self.key in design.typed and self.shown != own and not plain else ""
         if self.key == "shaft_mass":
             note = f"{'now' if design.scene.shaft.shaft_mass_measured else 'computed'} {own}"
         parts = [note, there] if beside != mine else [note]
