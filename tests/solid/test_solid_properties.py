@@ -80,7 +80,7 @@ def test_model_error_short_cone_lists_quantities_and_exclusions() -> None:
     assert [row[0].removesuffix(" *") for row in table.rows[:-1]] == list(rows)
     assert abs(record["scikit_fem"]["difference"]) < 1e-9
     assert table.rows[-1][0] == "natural frequency 1, same beam by scikit-fem"
-    assert "AxialWaves" in table.notes[-1]
+    assert "axial waves" in table.notes[-1]
 
 
 def test_report_with_check_states_model_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
