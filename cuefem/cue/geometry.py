@@ -111,9 +111,9 @@ def shear_coefficient(nu: ArrayLike, bore_ratio: ArrayLike = 0.0) -> Array:
     Source: Hutchinson, J. Appl. Mech. 68 (2001) 87, circle and hollow circle.
     """
     nu, c = np.asarray(nu), np.asarray(bore_ratio) ** 2  # they may be complex: derivatives take a complex step
-    above = 6 * (1 + c) ** 2 * (1 + nu) ** 2
-    below = 7 + 34 * c + 7 * c**2 + nu * (12 + 48 * c + 12 * c**2) + nu**2 * (4 + 16 * c + 4 * c**2)
-    return np.asarray(above / below)
+    numerator = 6 * (1 + c) ** 2 * (1 + nu) ** 2
+    denominator = 7 + 34 * c + 7 * c**2 + nu * (12 + 48 * c + 12 * c**2) + nu**2 * (4 + 16 * c + 4 * c**2)
+    return np.asarray(numerator / denominator)
 
 
 class Section(NamedTuple):
@@ -317,9 +317,9 @@ class Cue:
         object.__setattr__(self, "segments", tuple(self.segments))
         if not self.segments:
             raise ValueError("Cue.segments must hold at least one Segment; got none")
-        most = MAX_SEGMENTS + 1  # of a drawing, and the rest of the cue that `AxialWaves` adds
-        if len(self.segments) > most:
-            raise ValueError(f"Cue.segments must hold at most {most} segments; got {len(self.segments)}")
+        limit = MAX_SEGMENTS + 1  # of a drawing, and the rest of the cue that `AxialWaves` adds
+        if len(self.segments) > limit:
+            raise ValueError(f"Cue.segments must hold at most {limit} segments; got {len(self.segments)}")
         for i, segment in enumerate(self.segments):
             check_kind(f"Cue.segments[{i}]", segment, Segment)
 
@@ -335,9 +335,9 @@ class Cue:
 
     @property
     def leather_height(self) -> float:
-        """Length of the leather tip, m: of the first segments with E below `SOFT`; 0 if the whole cue is that soft."""
-        soft = takewhile(lambda segment: segment.material.E < MAX_LEATHER_MODULUS, self.segments)
-        count = sum(1 for _ in soft)
+        """Length of the leather tip, m: of the first segments with E below `MAX_LEATHER_MODULUS`; 0 if all are."""
+        leathers = takewhile(lambda segment: segment.material.E < MAX_LEATHER_MODULUS, self.segments)
+        count = sum(1 for _ in leathers)
         return float(self.nodes[count]) if count < len(self.segments) else 0.0
 
     @cached_property
@@ -423,14 +423,14 @@ class LumpedCue:
 
         cue_end_mass: [Kim]'s m_c, kg; nu_c: inertia factor of the cue end. The end mass is m_c nu_c/(1 + nu_c).
         """
-        return cls(mass, _felt(cue_end_mass, nu_c, "LumpedCue.two_part"))
+        return cls(mass, _end_mass(cue_end_mass, nu_c, "LumpedCue.two_part"))
 
     @classmethod
     def rigid(cls, mass: float, nu_c: float = 0.136) -> LumpedCue:
         """[Kim] sec. 2: a rigid cue of end mass mass nu_c/(1 + nu_c), with [Kim]'s nu_c of a whole cue."""
-        return cls(mass, _felt(mass, nu_c, "LumpedCue.rigid"))
+        return cls(mass, _end_mass(mass, nu_c, "LumpedCue.rigid"))
 
 
-def _felt(mass: float, nu_c: float, name: str) -> float:
+def _end_mass(mass: float, nu_c: float, name: str) -> float:
     nu_c = Quantity("", "(0, inf)").check(f"{name} nu_c", nu_c)
     return mass * nu_c / (1 + nu_c)

@@ -38,7 +38,7 @@ class LeatherEntry(NamedTuple):
     source: str
 
 
-def _documented(row: Mapping[str, Any]) -> MaterialEntry:
+def _entry(row: Mapping[str, Any]) -> MaterialEntry:
     numbers = {field.name: row[field.name] for field in fields(Material) if field.name in row}
     ranges = {name: (low, high) for name, (low, high) in row["ranges"].items()}
     return MaterialEntry(Material(**numbers), MappingProxyType(ranges), row["source"], row.get("note", ""))
@@ -46,7 +46,7 @@ def _documented(row: Mapping[str, Any]) -> MaterialEntry:
 
 _TABLES = tomllib.loads(Path(__file__).with_name("materials.toml").read_text(encoding="utf-8"))
 _ROWS = _TABLES["materials"]
-MATERIALS: Mapping[str, MaterialEntry] = MappingProxyType({name: _documented(row) for name, row in _ROWS.items()})
+MATERIALS: Mapping[str, MaterialEntry] = MappingProxyType({name: _entry(row) for name, row in _ROWS.items()})
 WOODS = tuple(name for name, row in _ROWS.items() if row["kind"] == "wood")
 LEATHERS: Mapping[str, LeatherEntry] = MappingProxyType(
     {name: LeatherEntry(**row) for name, row in _TABLES["leathers"].items()}
@@ -69,27 +69,27 @@ LEATHER_BY_NAME: Mapping[str, LeatherEntry] = MappingProxyType(
 LEATHER_NAMES: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {name: {each: getattr(its, each) for each in ("E", "nu", "rho")} for name, its in LEATHER_BY_NAME.items()}
 )
-_ALSO = {other: name for name, row in _ROWS.items() for other in row.get("also", ())}
+_ALIASES = {other: name for name, row in _ROWS.items() for other in row.get("aliases", ())}
 
 
 def material(name: str) -> Material:
     """The material of this name in `MATERIALS`, in any case. An unknown name raises a ValueError with near names."""
-    plain = " ".join(name.replace("_", " ").replace("-", " ").casefold().split())
-    plain = _ALSO.get(plain, plain)
-    if plain not in MATERIALS:
-        hint = suggestion(plain, MATERIALS) or f"; known: {', '.join(MATERIALS)}"
+    key = " ".join(name.replace("_", " ").replace("-", " ").casefold().split())
+    key = _ALIASES.get(key, key)
+    if key not in MATERIALS:
+        hint = suggestion(key, MATERIALS) or f"; known: {', '.join(MATERIALS)}"
         raise ValueError(f"no material is called {name!r}{hint}")
-    return MATERIALS[plain].material
+    return MATERIALS[key].material
 
 
 def table_name(material: Material) -> str | None:
     """The name in the table of a material, or of one that differs from it in density alone; None if there is none."""
-    alike = (name for name, known in MATERIALS.items() if replace(known.material, rho=material.rho) == material)
-    return next((name for name, known in MATERIALS.items() if known.material == material), next(alike, None))
+    similar = (name for name, entry in MATERIALS.items() if replace(entry.material, rho=material.rho) == material)
+    return next((name for name, entry in MATERIALS.items() if entry.material == material), next(similar, None))
 
 
 def material_name(material: Material) -> str:
-    """A material's name in the table of materials, with its density if that is its own; or its modulus."""
+    """A material's name in the table of materials, with its density if that differs from the table; or its modulus."""
     name = table_name(material)
     if name is None:
         return f"E {material.E / 1e9:.4g} GPa"

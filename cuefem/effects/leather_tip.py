@@ -28,7 +28,7 @@ from cuefem.solid.tip_table import (
     compliance,
     head_on,
     is_tabulated,
-    max_place,
+    max_position,
     rigid_patch_gain,
     table_of_tip,
 )
@@ -439,7 +439,7 @@ class LeatherTip(CueEffect):
         exceeds that of the dome there, rad."""
         Quantity("", "(-1, 1)").check("offset", offset)
         phi, curvature = math.asin(abs(offset)), diameter / self.dome_radius
-        place = min(2 * self._off_axis(phi) / diameter, max_place(min(curvature, CURVATURE[1])))
+        place = min(2 * self._off_axis(phi) / diameter, max_position(min(curvature, CURVATURE[1])))
         return place, phi - math.asin(min(curvature * place / 2, 1.0))
 
     def _compliance(self, diameter: float, offset: float, radii: Array) -> Array:

@@ -38,7 +38,7 @@ Progress = Callable[[Sequence[Any]], Iterable[Any]]
 def fineness(cue: Cue) -> Fineness:
     """The finer of the two meshes of a cue; the order of the coarser is lower by 1."""
     mesh = Fineness(ORDER, 0.8, 0.05)
-    cells = sum(len(block.along) - 1 for block in blocks(cue, mesh))
+    cells = sum(len(block.ends) - 1 for block in blocks(cue, mesh))
     return mesh if cells <= LARGE else mesh._replace(order=LARGE_ORDER)
 
 

@@ -61,34 +61,34 @@ def stiffness(E: float, nu: float, G: float, E_transverse: float, nu_transverse:
 def matrices(
     basis: Basis, m: int, stiffnesses: Sequence[Array], densities: Sequence[float]
 ) -> tuple[sp.csc_matrix, sp.csc_matrix]:
-    """K and M of the fields U, S, W from a basis of one field; stiff, heavy: `stiffness` and density of each cell.
+    """K and M of the fields U, S, W from a basis of one field; `stiffness` and density of each cell.
 
     scikit-fem's own assembly calls a form for each pair of functions, which takes 100 times as long at these orders.
     """
     value = np.array([np.broadcast_to(np.asarray(f[0]), basis.dx.shape) for f in basis.basis])
     slopes = np.moveaxis(np.array([f[0].grad for f in basis.basis]), 1, 0)
     functions = np.array([value, *slopes])  # (value and slopes, functions, cells, points)
-    radius, none = np.asarray(basis.global_coordinates())[1], np.zeros((3, *value.shape[::2]))
+    radius, zero = np.asarray(basis.global_coordinates())[1], np.zeros((3, *value.shape[::2]))
     rows, columns, entries = [], [], []
     for cell, (C, rho) in enumerate(zip(stiffnesses, densities, strict=True)):
         f, r = functions[:, :, cell], radius[cell]
-        fields: list[tuple[Array, Array, Array]] = [(f, none, none), (none, f, none), (none, none, f)]
+        fields: list[tuple[Array, Array, Array]] = [(f, zero, zero), (zero, f, zero), (zero, zero, f)]
         root = np.sqrt((np.pi if m else 2 * np.pi) * r * basis.dx[cell])
         strain = root * np.array([strains(m, *field, r) for field in fields]).swapaxes(0, 1)
-        moved = root * np.array([displacements(m, *field) for field in fields])[:, :, 0].swapaxes(0, 1)
-        own = (basis.N * np.arange(3)[:, None] + basis.element_dofs[:, cell]).ravel()
-        pairs = (strain, np.tensordot(C, strain, 1)), (moved, rho * moved)  # (components, fields, functions, points)
-        rows.append(np.repeat(own, len(own)))
-        columns.append(np.tile(own, len(own)))
+        motion = root * np.array([displacements(m, *field) for field in fields])[:, :, 0].swapaxes(0, 1)
+        dofs = (basis.N * np.arange(3)[:, None] + basis.element_dofs[:, cell]).ravel()
+        pairs = (strain, np.tensordot(C, strain, 1)), (motion, rho * motion)  # (components, fields, functions, points)
+        rows.append(np.repeat(dofs, len(dofs)))
+        columns.append(np.tile(dofs, len(dofs)))
         entries.append([np.tensordot(a, b, ((0, 3), (0, 3))).ravel() for a, b in pairs])
-    at = np.concatenate(rows), np.concatenate(columns)
-    K, M = (sp.csc_matrix((part, at), shape=(3 * basis.N,) * 2) for part in np.concatenate(entries, axis=1))
+    indices = np.concatenate(rows), np.concatenate(columns)
+    K, M = (sp.csc_matrix((values, indices), shape=(3 * basis.N,) * 2) for values in np.concatenate(entries, axis=1))
     return K, M
 
 
-def boundary_dofs(basis: Basis, coordinate: int, at: float) -> NDArray[np.intp]:
-    """Degrees of freedom of one field on the part of the boundary where z (coordinate 0) or r (1) is ``at``."""
-    facets = basis.mesh.facets_satisfying(lambda x: np.abs(x[coordinate] - at) < SAME_POINT, boundaries_only=True)
+def boundary_dofs(basis: Basis, coordinate: int, position: float) -> NDArray[np.intp]:
+    """Degrees of freedom of one field on the part of the boundary where z (coordinate 0) or r (1) is ``position``."""
+    facets = basis.mesh.facets_satisfying(lambda x: np.abs(x[coordinate] - position) < SAME_POINT, boundaries_only=True)
     return np.asarray(basis.get_dofs(facets).all())
 
 

@@ -32,28 +32,28 @@ class SolidBody:
     """The meshed solid of a cue in one Fourier harmonic."""
 
     cue: Cue
-    how: Fineness
+    fineness: Fineness
     harmonic: int = BENDING
 
     def __post_init__(self) -> None:
-        check_mesh_size(self.cue, self.how)
+        check_mesh_size(self.cue, self.fineness)
 
     @cached_property
     def cells(self) -> tuple[MeshQuad, list[Material]]:
         """The mesh in (z, r) and the material of each cell."""
-        return half_section(self.cue, self.how)
+        return half_section(self.cue, self.fineness)
 
     @cached_property
     def basis(self) -> Basis:
         """scikit-fem's basis of one field."""
-        return Basis(self.cells[0], ElementQuadP(self.how.order), intorder=2 * self.how.order + 2)
+        return Basis(self.cells[0], ElementQuadP(self.fineness.order), intorder=2 * self.fineness.order + 2)
 
     @cached_property
     def matrices(self) -> tuple[sp.csc_matrix, sp.csc_matrix]:
         """K and M of all degrees of freedom."""
-        stiff = {m: elasticity.stiffness(m.E, m.nu, m.G, m.E_transverse, m.nu_in_plane) for m in self.cells[1]}
+        stiffness = {m: elasticity.stiffness(m.E, m.nu, m.G, m.E_transverse, m.nu_in_plane) for m in self.cells[1]}
         return elasticity.matrices(
-            self.basis, self.harmonic, [stiff[m] for m in self.cells[1]], [m.rho for m in self.cells[1]]
+            self.basis, self.harmonic, [stiffness[m] for m in self.cells[1]], [m.rho for m in self.cells[1]]
         )
 
     def free(self, *fixed: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -62,10 +62,10 @@ class SolidBody:
 
     def _mean(self, z: float, fields: tuple[float, float, float], power: int = 0) -> Array:
         """Row of the mean over an end face of r^power times a sum of the fields, over the mean of r^(2 power)."""
-        ends = self.cells[0].facets_satisfying(lambda x: np.abs(x[0] - z) < SAME, boundaries_only=True)
-        face = FacetBasis(self.cells[0], self.basis.elem, facets=ends, intorder=2 * self.how.order + 2)
-        row = LinearForm(lambda v, w: w.x[1] ** (1 + power) * v).assemble(face)
-        area = np.sum(np.asarray(face.global_coordinates())[1] ** (1 + 2 * power) * face.dx)
+        facets = self.cells[0].facets_satisfying(lambda x: np.abs(x[0] - z) < SAME, boundaries_only=True)
+        face_basis = FacetBasis(self.cells[0], self.basis.elem, facets=facets, intorder=2 * self.fineness.order + 2)
+        row = LinearForm(lambda v, w: w.x[1] ** (1 + power) * v).assemble(face_basis)
+        area = np.sum(np.asarray(face_basis.global_coordinates())[1] ** (1 + 2 * power) * face_basis.dx)
         return np.outer(fields, row / area).ravel()
 
     @cached_property
@@ -117,8 +117,8 @@ class SolidBody:
         K = self.matrices[0][free][:, free]
         load = self.tip[free]
         if self.harmonic == BENDING:
-            still = sp.csc_matrix(self._deflection(self.cue.length)[free]) * abs(K).max()
-            K, load = sp.bmat([[K, still.T], [still, None]], format="csc"), np.append(load, 0.0)
+            clamp = sp.csc_matrix(self._deflection(self.cue.length)[free]) * abs(K).max()
+            K, load = sp.bmat([[K, clamp.T], [clamp, None]], format="csc"), np.append(load, 0.0)
         return float(load @ sla.splu(K).solve(load))
 
 

@@ -39,36 +39,36 @@ def computing_message() -> str:
 @lru_cache(maxsize=64)
 def cached_table(tip: UntabulatedTip) -> TipTable:
     """The table of one tip, from its file or computed."""
-    computed = read_table(tip)
-    if computed is None:
+    result = read_table(tip)
+    if result is None:
         from cuefem.solid.tip_compliance import compute_tip_table
 
-        computed = compute_tip_table(tip)
-        write_table(tip, computed)
-    return computed
+        result = compute_tip_table(tip)
+        write_table(tip, result)
+    return result
 
 
-def cache_file(tip: UntabulatedTip, place: Path) -> Path:
+def cache_file(tip: UntabulatedTip, folder: Path) -> Path:
     """The file of a tip's table in a folder."""
-    return place / f"{hashlib.sha256(repr((VERSION, *tip)).encode()).hexdigest()[:32]}.npz"
+    return folder / f"{hashlib.sha256(repr((VERSION, *tip)).encode()).hexdigest()[:32]}.npz"
 
 
 def read_table(tip: UntabulatedTip) -> TipTable | None:
     """The stored table of a tip; None if its file is missing or invalid."""
-    if place := cache_folder():
-        with suppress(Exception), cache_file(tip, place).open("rb") as stream, np.load(stream) as file:
-            parts = LeatherTable(*(np.asarray(file[name], float) for name in LeatherTable._fields))
-            like = all(part.shape == whole.shape[4:] for part, whole in zip(parts, table(), strict=True))
-            if like and all(np.all(np.isfinite(part)) for part in parts):
-                return TipTable(tip.curvature, tip.nu, *parts)
+    if folder := cache_folder():
+        with suppress(Exception), cache_file(tip, folder).open("rb") as stream, np.load(stream) as file:
+            arrays = LeatherTable(*(np.asarray(file[name], float) for name in LeatherTable._fields))
+            shapes = [values.shape[4:] for values in table()]
+            if [array.shape for array in arrays] == shapes and all(np.all(np.isfinite(array)) for array in arrays):
+                return TipTable(tip.curvature, tip.nu, *arrays)
     return None
 
 
-def write_table(tip: UntabulatedTip, computed: TipTable) -> None:
+def write_table(tip: UntabulatedTip, result: TipTable) -> None:
     """Store the table of a tip, if the folder is writable."""
-    if place := cache_folder():
+    if folder := cache_folder():
         with suppress(OSError):
-            place.mkdir(parents=True, exist_ok=True)
-            partial = cache_file(tip, place).with_suffix(f".{os.getpid()}.npz")
-            np.savez_compressed(partial, patches=computed.patches, head_on=computed.head_on)
-            partial.replace(cache_file(tip, place))
+            folder.mkdir(parents=True, exist_ok=True)
+            temporary = cache_file(tip, folder).with_suffix(f".{os.getpid()}.npz")
+            np.savez_compressed(temporary, patches=result.patches, head_on=result.head_on)
+            temporary.replace(cache_file(tip, folder))

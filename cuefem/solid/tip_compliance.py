@@ -27,25 +27,25 @@ from cuefem.solid import tip_table as tt
 COMPUTED_HARMONICS = (10, 12, 15, 18, 22, 26, 31)  # harmonics above 8 that are computed; the others are interpolated
 LAYER_ROWS = (0.0, 0.25, 0.75, 1.0)  # ends of the elements within a layer
 GAUSS_POINTS = 48  # Gauss points along a ray of a patch, and over each part of the half circle of rays
-PLACES, RADII, HEAD_ON = 13, 11, 8  # numbers of nodes of the table
+N_POSITIONS, N_RADII, N_HEAD_ON = 13, 11, 8  # numbers of nodes of the table
 
 
 class TipFineness(NamedTuple):
     """Element sizes of a tip.
 
-    order: of the polynomials. across, up: ends of the elements along the radius and, within the leather, along the
+    order: of the polynomials. radial, axial: ends of the elements along the radius and, within the leather, along the
     axis, from 0 to 1. harmonics: the highest m.
     """
 
     order: int
-    across: tuple[float, ...]
-    up: tuple[float, ...]
+    radial: tuple[float, ...]
+    axial: tuple[float, ...]
     harmonics: int
 
 
-def graded_fineness(order: int = 4, radial: int = 6, up: int = 5, harmonics: int = 30) -> TipFineness:
+def graded_fineness(order: int = 4, radial: int = 6, axial: int = 5, harmonics: int = 30) -> TipFineness:
     """Elements graded towards the rim, the base and the top."""
-    x, y = np.linspace(0, 1, radial + 1), np.linspace(0, 1, up + 1)
+    x, y = np.linspace(0, 1, radial + 1), np.linspace(0, 1, axial + 1)
     y = 0.5 * y + 0.25 * (1 - np.cos(np.pi * y))
     return TipFineness(order, tuple(x.tolist()), tuple(y.tolist()), harmonics)
 
@@ -56,19 +56,18 @@ TABLE_FINENESS = graded_fineness(5, 6, 5, 36)
 def contact_fineness(height: float, radius: float, order: int = 5) -> TipFineness:
     """Elements for an axisymmetric contact of a radius, over D, graded towards its edge and the top."""
     edge = 2 * radius
-    out = [edge]
+    outer = [edge]
     step = 0.15 * edge
-    while out[-1] + 1.6 * step < 1:
-        out.append(out[-1] + step)
+    while outer[-1] + 1.6 * step < 1:
+        outer.append(outer[-1] + step)
         step *= 2
-    ends = (0.0, 0.5 * edge, 0.85 * edge, *out, *((1.0,) if edge < 1 else ()))
+    ends = (0.0, 0.5 * edge, 0.85 * edge, *outer, *((1.0,) if edge < 1 else ()))
     depth, step = [0.0], 0.3 * radius
     while depth[-1] + 1.6 * step < height:
         depth.append(depth[-1] + step)
         step *= 2
-    return TipFineness(
-        order, tuple(_across(np.array(ends) / 2).tolist()), tuple(1 - d / height for d in (height, *depth[::-1])), 0
-    )
+    axial = tuple(1 - d / height for d in (height, *depth[::-1]))
+    return TipFineness(order, tuple(_square_coordinate(np.array(ends) / 2).tolist()), axial, 0)
 
 
 class Shape(NamedTuple):
@@ -80,7 +79,7 @@ class Shape(NamedTuple):
 
     height: float
     curvature: float
-    layers: tuple[tt.Flat, ...] = ()
+    layers: tuple[tt.Layer, ...] = ()
 
     @property
     def leather(self) -> float:
@@ -93,40 +92,40 @@ def dome_depth(radius: Array | float, curvature: float) -> Array | float:
     return curvature * np.square(radius) / (1 + np.sqrt(np.maximum(1 - np.square(curvature * np.asarray(radius)), 0)))
 
 
-def _across(radius: Array | float) -> Array:
+def _square_coordinate(radius: Array | float) -> Array:
     """x of the square at a radius over D: r = sin(pi x/2)/2, in which a hemisphere is smooth at its rim."""
     return np.asarray(np.arcsin(np.minimum(2 * np.asarray(radius), 1.0)) * 2 / np.pi)
 
 
-def surface_nodes(how: TipFineness) -> Array:
+def surface_nodes(fineness: TipFineness) -> Array:
     """x of the surface's nodes: the Chebyshev nodes of every element."""
-    return np.append([tt.chebyshev_nodes(a, b, how.order + 1)[:-1] for a, b in pairwise(how.across)], 1.0)
+    return np.append([tt.chebyshev_nodes(a, b, fineness.order + 1)[:-1] for a, b in pairwise(fineness.radial)], 1.0)
 
 
-def lagrange(radius: Array, how: TipFineness) -> Array:
+def lagrange(radius: Array, fineness: TipFineness) -> Array:
     """Values of the Lagrange polynomials of the surface's nodes at ``radius``, over D; (points, nodes)."""
-    x = _across(radius)
-    cell = np.clip(np.searchsorted(how.across, x, side="right") - 1, 0, len(how.across) - 2)
-    values = np.zeros((len(x), (len(how.across) - 1) * how.order + 1))
-    for k, (a, b) in enumerate(pairwise(how.across)):
-        values[cell == k, k * how.order : (k + 1) * how.order + 1] = tt.node_weights(x[cell == k], a, b, how.order + 1)
+    x, order = _square_coordinate(radius), fineness.order
+    cell = np.clip(np.searchsorted(fineness.radial, x, side="right") - 1, 0, len(fineness.radial) - 2)
+    values = np.zeros((len(x), (len(fineness.radial) - 1) * order + 1))
+    for k, (a, b) in enumerate(pairwise(fineness.radial)):
+        values[cell == k, k * order : (k + 1) * order + 1] = tt.node_weights(x[cell == k], a, b, order + 1)
     return values
 
 
 class TipSolid:
     """A meshed domed cylinder on a clamped base: the given rows within the leather, three rows within every layer."""
 
-    def __init__(self, shape: Shape, how: TipFineness) -> None:
+    def __init__(self, shape: Shape, fineness: TipFineness) -> None:
         ends = np.append(0.0, np.cumsum([height for height, _, _ in shape.layers]) / shape.height)
         spans = [(a + np.array(LAYER_ROWS[:-1]) * (b - a)) for a, b in pairwise(ends)]
-        rows = np.concatenate([*spans, ends[-1] + (1 - ends[-1]) * np.array(how.up)])
-        square = MeshQuad.init_tensor(rows, np.array(how.across))
+        rows = np.concatenate([*spans, ends[-1] + (1 - ends[-1]) * np.array(fineness.axial)])
+        square = MeshQuad.init_tensor(rows, np.array(fineness.radial))
         curved = MeshQuad2.from_mesh(square)
         y, x = curved.doflocs
-        r, within = np.sin(np.pi / 2 * x) / 2, np.maximum(y - ends[-1], 0.0) / (1 - ends[-1])
-        mesh = MeshQuad2(np.array([shape.height * y - within * dome_depth(r, shape.curvature), r]), curved.t)
-        element, nodes = ElementQuadP(how.order), surface_nodes(how)
-        self.shape, self.how, self.basis = shape, how, Basis(mesh, element, intorder=2 * how.order + 2)
+        r, leather_height = np.sin(np.pi / 2 * x) / 2, np.maximum(y - ends[-1], 0.0) / (1 - ends[-1])
+        mesh = MeshQuad2(np.array([shape.height * y - leather_height * dome_depth(r, shape.curvature), r]), curved.t)
+        element, nodes = ElementQuadP(fineness.order), surface_nodes(fineness)
+        self.shape, self.fineness, self.basis = shape, fineness, Basis(mesh, element, intorder=2 * fineness.order + 2)
         self.trace = Basis(square, element).probes(np.array([np.ones_like(nodes), nodes])).tocsr()
         self.layer = np.searchsorted(ends[1:], square.p[0, square.t].mean(axis=0))
 
@@ -135,14 +134,14 @@ class TipSolid:
 
         Displacements (U, V, W) of the nodes per unit load on them.
         """
-        basis, trace, none = self.basis, self.trace, 0 * self.trace
+        basis, trace, zero = self.basis, self.trace, 0 * self.trace
         bodies = [*((E, ratio) for _, E, ratio in self.shape.layers), (1.0, nu)]
         stiff = [elasticity.stiffness(E, ratio, E / (2 * (1 + ratio)), E, ratio) for E, ratio in bodies]
         K, _ = elasticity.matrices(basis, m, [stiff[i] for i in self.layer], [1.0] * len(self.layer))
         base = elasticity.boundary_dofs(basis, 0, 0.0)
         free = elasticity.free_dofs(basis, m, base, basis.N + base, 2 * basis.N + base)
-        turned = -trace if m == 1 else none  # V = S - U
-        top = sp.bmat([[trace, none, none], [turned, trace, none], [none, none, trace]]).tocsc()[:, free]
+        hoop = -trace if m == 1 else zero  # V = S - U
+        top = sp.bmat([[trace, zero, zero], [hoop, trace, zero], [zero, zero, trace]]).tocsc()[:, free]
         symmetric = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
         return np.asarray(top @ sla.splu(K[free][:, free], **symmetric).solve(top.T.toarray()))
 
@@ -152,67 +151,68 @@ def surface_compliances(solid: TipSolid, nu: float) -> list[Array]:
 
     High harmonics contribute little to a patch, and m times the compliance varies slowly with m: it is interpolated.
     """
-    highest = solid.how.harmonics
-    solved = sorted({m for m in (*range(9), *COMPUTED_HARMONICS, highest) if m <= highest})
-    known = {m: solid.surface(nu, m) for m in solved}
-    for low, high in pairwise(solved):
+    highest = solid.fineness.harmonics
+    harmonics = sorted({m for m in (*range(9), *COMPUTED_HARMONICS, highest) if m <= highest})
+    surfaces = {m: solid.surface(nu, m) for m in harmonics}
+    for low, high in pairwise(harmonics):
         for m in range(low + 1, high):
-            part = (m - low) / (high - low)
-            known[m] = ((1 - part) * low * known[low] + part * high * known[high]) / m
-    return [known[m] for m in range(highest + 1)]
+            weight = (m - low) / (high - low)
+            surfaces[m] = ((1 - weight) * low * surfaces[low] + weight * high * surfaces[high]) / m
+    return [surfaces[m] for m in range(highest + 1)]
 
 
 class Patch(NamedTuple):
     """A loaded patch: distance of its centre from the axis, over the tip's radius, and its radius over D."""
 
-    place: float
+    position: float
     radius: float
 
 
-def patch_loads(shape: Shape, patch: Patch, how: TipFineness) -> Array:
+def patch_loads(shape: Shape, patch: Patch, fineness: TipFineness) -> Array:
     """Unit loads of a patch on the surface's nodes along n and t, in every harmonic; (m, 2, 3 nodes).
 
     The traction is Hertz's, (1 - q^2/a^2)^(1/2) with q the distance from the patch's centre in the tangent plane there.
     The part beyond the rim is cut off and the rest scaled up. n points into the leather, t away from the axis.
     """
-    k, a, centre = shape.curvature, patch.radius, patch.place / 2
+    k, a, centre = shape.curvature, patch.radius, patch.position / 2
     sin, rim = k * centre, k / 2
     cos, cos_rim = math.sqrt(1 - sin * sin), math.sqrt(max(1 - rim * rim, 0.0))
 
-    def reach(angle: Array) -> Array:
+    def rim_distance(angle: Array) -> Array:
         """Distance from the centre to the rim along rays of the tangent plane."""
         c = np.cos(angle)
         b, square = centre * cos_rim * c, (c * sin) ** 2 + cos**2
         return np.asarray((np.sqrt(b * b + square * max(0.25 - centre**2, 0.0)) - b) / square)
 
     knots = [0.0, np.pi]
-    if centre > 0 and reach(np.array([0.0]))[0] < a < reach(np.array([np.pi]))[0]:
+    if centre > 0 and rim_distance(np.array([0.0]))[0] < a < rim_distance(np.array([np.pi]))[0]:
         low, high = 0.0, np.pi
         for _ in range(60):
             middle = (low + high) / 2
-            low, high = (middle, high) if reach(np.array([middle]))[0] < a else (low, middle)
+            low, high = (middle, high) if rim_distance(np.array([middle]))[0] < a else (low, middle)
         knots.insert(1, low)
     g, w = np.polynomial.legendre.leggauss(GAUSS_POINTS)
     angle = np.concatenate([(q - p) / 2 * g + (p + q) / 2 for p, q in pairwise(knots)])
-    turn = np.concatenate([(q - p) / 2 * w for p, q in pairwise(knots)])
-    last = np.arcsin(np.minimum(reach(angle) / a, 1.0))  # q = a sin(beta)
-    beta = last[:, None] * (g + 1) / 2
+    ray_weights = np.concatenate([(q - p) / 2 * w for p, q in pairwise(knots)])
+    max_beta = np.arcsin(np.minimum(rim_distance(angle) / a, 1.0))  # q = a sin(beta)
+    beta = max_beta[:, None] * (g + 1) / 2
     q = a * np.sin(beta)
-    level = np.sqrt(1 - np.square(k * q))  # divides, because the area is that of the dome, not of the tangent plane
-    flat = turn[:, None] * (last[:, None] * w / 2) * q / level
-    x = centre + q * np.cos(angle)[:, None] * cos - k * q * q / (1 + level) * sin
+    cosine = np.sqrt(1 - np.square(k * q))  # divides, because the area is that of the dome, not of the tangent plane
+    area = ray_weights[:, None] * (max_beta[:, None] * w / 2) * q / cosine
+    x = centre + q * np.cos(angle)[:, None] * cos - k * q * q / (1 + cosine) * sin
     y = q * np.sin(angle)[:, None]
     x, y = x.ravel(), y.ravel()
-    weight = (flat * np.cos(beta) ** 2).ravel()
+    weight = (area * np.cos(beta) ** 2).ravel()
     weight /= weight.sum()
-    radius, turned = np.hypot(x, y), np.arctan2(y, x)
-    functions = lagrange(radius, how)
-    m = np.arange(how.harmonics + 1)[:, None]
-    even, odd = np.cos(m * turned) * weight, np.sin(m * turned) * weight
-    along = [f @ functions for f in (even * np.cos(turned), -odd * np.sin(turned), even)]  # of a load along x, x and z
-    none = np.zeros_like(along[0])
-    lateral = np.concatenate([along[0], along[1], none], axis=-1)
-    axial = np.concatenate([none, none, along[2]], axis=-1)
+    radius, azimuth = np.hypot(x, y), np.arctan2(y, x)
+    functions = lagrange(radius, fineness)
+    m = np.arange(fineness.harmonics + 1)[:, None]
+    even, odd = np.cos(m * azimuth) * weight, np.sin(m * azimuth) * weight
+    # of a load along x, x and z
+    radial, hoop, axial = (f @ functions for f in (even * np.cos(azimuth), -odd * np.sin(azimuth), even))
+    zero = np.zeros_like(axial)
+    lateral = np.concatenate([radial, hoop, zero], axis=-1)
+    axial = np.concatenate([zero, zero, axial], axis=-1)
     return np.stack([-(sin * lateral + cos * axial), cos * lateral - sin * axial], axis=1)
 
 
@@ -221,7 +221,7 @@ def compliance(surfaces: Sequence[Array], load: Array) -> Array:
     return np.asarray(sum(f @ S @ f.T for f, S in zip(load, surfaces, strict=True)))
 
 
-def central_contact(shape: Shape, surface: Array, radius: float, how: TipFineness, terms: int = 5) -> Array:
+def central_contact(shape: Shape, surface: Array, radius: float, fineness: TipFineness, terms: int = 5) -> Array:
     """Forces and depths, (2, 3), of a central contact of ``radius``, over D, with a rigid ball, for three unit gaps.
 
     The gaps between undeformed ball and tip at the distance p from the axis are the depth of the dome over its
@@ -238,7 +238,7 @@ def central_contact(shape: Shape, surface: Array, radius: float, how: TipFinenes
     shapes = np.polynomial.legendre.legvander(2 * x * x - 1, terms).T * np.cos(beta) * area
     nodes = surface.shape[0] // 3
     axial = surface[2 * nodes :, 2 * nodes :]
-    load = shapes @ lagrange(p, how)
+    load = shapes @ lagrange(p, fineness)
     matrix = np.hstack([load @ axial @ load[:-1].T, -shapes.sum(axis=1)[:, None]])
     k = shape.curvature
     gaps = np.array([p * p / (1 + np.sqrt(np.maximum(1 - np.square(k * p), 0))), p * p / 2, p**4 / 8])
@@ -248,33 +248,33 @@ def central_contact(shape: Shape, surface: Array, radius: float, how: TipFinenes
 
 def tip_table(shape: Shape, nu: float) -> tt.TipTable:
     """The table of one tip with its layers."""
-    places, radii = table_patches(shape.curvature)
+    positions, radii = table_patches(shape.curvature)
     solid = TipSolid(shape, TABLE_FINENESS)
     surface = surface_compliances(solid, nu)
-    flat = [compliance(surface, load) for load in table_loads(shape.curvature)]
-    C = np.reshape(flat, (PLACES, RADII, 2, 2))
-    direct = np.diagonal(C, axis1=2, axis2=3)
-    across = C[..., 0, 1] / places[:, None] / np.sqrt(direct.prod(axis=-1))
-    patches = np.concatenate([np.log(direct / tt.half_space(nu, radii)), across[..., None]], -1)
-    head = np.zeros((HEAD_ON, 2, 3))
-    for i, a in enumerate(np.exp(tt.chebyshev_nodes(*tt.LOG_HEAD_ON, HEAD_ON))):
+    compliances = [compliance(surface, load) for load in table_loads(shape.curvature)]
+    C = np.reshape(compliances, (N_POSITIONS, N_RADII, 2, 2))
+    diagonal = np.diagonal(C, axis1=2, axis2=3)
+    coupling = C[..., 0, 1] / positions[:, None] / np.sqrt(diagonal.prod(axis=-1))
+    patches = np.concatenate([np.log(diagonal / tt.half_space(nu, radii)), coupling[..., None]], -1)
+    head_on = np.zeros((N_HEAD_ON, 2, 3))
+    for i, a in enumerate(np.exp(tt.chebyshev_nodes(*tt.LOG_HEAD_ON, N_HEAD_ON))):
         solid = TipSolid(shape, contact_fineness(shape.leather, a))
-        forces = central_contact(shape, solid.surface(nu, 0), a, solid.how)
-        head[i] = np.log(forces / tt.half_space_head_on(nu, a))
-    return tt.TipTable(shape.curvature, nu, patches, head)
+        forces = central_contact(shape, solid.surface(nu, 0), a, solid.fineness)
+        head_on[i] = np.log(forces / tt.half_space_head_on(nu, a))
+    return tt.TipTable(shape.curvature, nu, patches, head_on)
 
 
 def table_patches(curvature: float) -> tuple[Array, Array]:
-    """Places and radii of the patches in the table of a tip."""
-    places = np.sqrt(tt.chebyshev_nodes(tt.MIN_PLACE**2, tt.max_place(curvature) ** 2, PLACES))
-    return places, np.exp(tt.chebyshev_nodes(*tt.LOG_RADIUS, RADII))
+    """Positions and radii of the patches in the table of a tip."""
+    positions = np.sqrt(tt.chebyshev_nodes(tt.MIN_POSITION**2, tt.max_position(curvature) ** 2, N_POSITIONS))
+    return positions, np.exp(tt.chebyshev_nodes(*tt.LOG_RADIUS, N_RADII))
 
 
 @lru_cache(maxsize=1)
 def table_loads(curvature: float) -> list[Array]:
     """Loads of these patches on `TABLE`; they do not depend on the tip's height."""
-    places, radii = table_patches(curvature)
-    return [patch_loads(Shape(1.0, curvature), Patch(s, a), TABLE_FINENESS) for s in places for a in radii]
+    positions, radii = table_patches(curvature)
+    return [patch_loads(Shape(1.0, curvature), Patch(s, a), TABLE_FINENESS) for s in positions for a in radii]
 
 
 def compute_tip_table(tip: tt.UntabulatedTip) -> tt.TipTable:

@@ -2,9 +2,9 @@
 
 A tip outside the table, or with layers, is computed and stored by `cuefem.solid.tip_cache`.
 
-Lengths here are over the tip's diameter D, moduli over Young's modulus E. A tip is given by height, curvature of the
-dome D/r (0: flat) and Poisson's ratio nu; a patch by the distance of its centre from the axis over D/2, its place, and
-its radius. The table is a grid of Chebyshev nodes in `PANELS` of the curvature, height, nu, place and radius, with the
+Lengths here are over the tip's diameter D, moduli over Young's modulus E. A tip has a height, a curvature of the dome
+D/r (0: flat) and Poisson's ratio nu; a patch has a position, the distance of its centre from the axis over D/2, and a
+radius. The table is a grid of Chebyshev nodes in `CURVATURE_PANELS`, height, nu, position and radius, with the
 logarithms of the compliance over that of a half-space, which have no singularity.
 
 Error of a compliance against the solid on a finer mesh (36 random tips, 5,062 patches up to the rim, radii of 0.06 D
@@ -26,12 +26,12 @@ from cuefem.cue import Array
 # What the table covers: height over D, D over the dome's radius, Poisson's ratio, radius of the patch over D.
 HEIGHT, CURVATURE, POISSON, RADIUS = (2 / 15, 1.5), (0.0, 2.0), (0.2, 0.45), (0.06, 0.5)
 HEAD_ON_RADIUS = (0.04, 0.45)
-# Curvatures between which the table is smooth: above 1 the lowest tip has no side below its dome; above 1.5 the places
-# end where sin(phi) is 0.75.
+# Curvatures between which the table is smooth: above 1 the lowest tip has no side below its dome; above 1.5 the
+# positions end where sin(phi) is 0.75.
 CURVATURE_PANELS = (0.0, 1.0, 1.5, 2.0)
 MIN_SIDE = 0.002  # over D: the least height of the side below the dome; lower ones count as this
 HEIGHT_SHIFT = 0.1  # over D: the coordinate of the height is log(side + this)
-MIN_PLACE = 0.01  # place: the innermost node, not 0, because C_nt is stored over the place
+MIN_POSITION = 0.01  # the innermost node, not 0, because C_nt is stored over the position
 
 
 def chebyshev_nodes(low: float, high: float, count: int) -> Array:
@@ -44,8 +44,8 @@ def node_weights(x: Array | float, low: float, high: float, count: int) -> Array
     sign = (-1.0) ** np.arange(count)
     sign[[0, -1]] /= 2
     gap = np.clip(x, low, high)[..., None] - chebyshev_nodes(low, high, count)
-    hit = gap == 0
-    terms = np.where(hit.any(axis=-1, keepdims=True), hit, sign / np.where(hit, 1.0, gap))
+    at_node = gap == 0
+    terms = np.where(at_node.any(axis=-1, keepdims=True), at_node, sign / np.where(at_node, 1.0, gap))
     return np.asarray(terms / terms.sum(axis=-1, keepdims=True))
 
 
@@ -64,8 +64,8 @@ def panel_of(curvature: float) -> int:
     return sum(curvature > end for end in CURVATURE_PANELS[1:-1])
 
 
-def max_place(curvature: float) -> float:
-    """The outermost place in the table: the rim, or on a steep dome the place where sin(phi) is 0.75."""
+def max_position(curvature: float) -> float:
+    """The outermost position in the table: the rim, or on a steep dome that where sin(phi) is 0.75."""
     return min(1.0, CURVATURE_PANELS[2] / max(curvature, 1e-9))
 
 
@@ -91,8 +91,8 @@ LOG_HEAD_ON = (math.log(HEAD_ON_RADIUS[0]), math.log(HEAD_ON_RADIUS[1]))
 
 def half_space(nu: float, radius: Array) -> Array:
     """E D times the normal and the tangential compliance of a Hertz-weighted patch on a half-space; (..., 2)."""
-    parts = np.array([0.6 * (1 - nu**2), 0.3 * (1 - nu / 2) * 2 * (1 + nu)])
-    return np.asarray(parts / np.asarray(radius)[..., None])
+    normalized = np.array([0.6 * (1 - nu**2), 0.3 * (1 - nu / 2) * 2 * (1 + nu)])
+    return np.asarray(normalized / np.asarray(radius)[..., None])
 
 
 def half_space_head_on(nu: float, radius: Array) -> Array:
@@ -111,9 +111,9 @@ def half_space_head_on(nu: float, radius: Array) -> Array:
 class LeatherTable(NamedTuple):
     """The table's values; the first axes are the panel of the curvature, curvature, height and Poisson's ratio.
 
-    patches: (..., place, radius, 3), the logarithms of C_nn and C_tt over a half-space's, and C_nt over the place and
-    over the root of C_nn C_tt. head_on: (..., radius, 2, 3), the logarithms of force and depth over a half-space's for
-    the three gaps.
+    patches: (..., position, radius, 3), the logarithms of C_nn and C_tt over a half-space's, and C_nt over the position
+    and over the root of C_nn C_tt. head_on: (..., radius, 2, 3), the logarithms of force and depth over a half-space's
+    for the three gaps.
     """
 
     patches: Array
@@ -136,7 +136,7 @@ class TipTable(NamedTuple):
     head_on: Array
 
 
-Flat = tuple[float, float, float]  # a layer's height over D, Young's modulus over that of the leather, Poisson's ratio
+Layer = tuple[float, float, float]  # a layer's height over D, Young's modulus over that of the leather, Poisson's ratio
 
 
 class UntabulatedTip(NamedTuple):
@@ -148,7 +148,7 @@ class UntabulatedTip(NamedTuple):
     height: float
     curvature: float
     nu: float
-    layers: tuple[Flat, ...]
+    layers: tuple[Layer, ...]
 
 
 def is_tabulated(height: float, nu: float) -> bool:
@@ -161,66 +161,66 @@ def table_of_tip(height: float, curvature: float, nu: float) -> TipTable:
     """The table of one tip, interpolated."""
     panel, (patches, head) = panel_of(curvature), table()
     low, high = (rim_angle(end) for end in CURVATURE_PANELS[panel : panel + 2])
-    at = (
+    coordinates = (
         (rim_angle(curvature), low, high),
         (height_coordinate(height, curvature), *heights(curvature)),
         (poisson_coordinate(nu), *NU),
     )
-    parts = [patches[panel], head[panel]]
-    for x, low, high in at:
-        parts = [np.tensordot(node_weights(x, low, high, len(part)), part, 1) for part in parts]
-    return TipTable(curvature, nu, *parts)
+    arrays = [patches[panel], head[panel]]
+    for x, low, high in coordinates:
+        arrays = [np.tensordot(node_weights(x, low, high, len(array)), array, 1) for array in arrays]
+    return TipTable(curvature, nu, *arrays)
 
 
-def distance_to_rim(curvature: float, place: float) -> float:
-    """Distance from ``place`` to the rim, over D, in the tangent plane there."""
-    here, rim = curvature * place / 2, curvature / 2
-    return (0.25 - place**2 / 4) / (0.5 * math.sqrt(1 - here**2) + place / 2 * math.sqrt(1 - rim**2))
+def distance_to_rim(curvature: float, position: float) -> float:
+    """Distance from ``position`` to the rim, over D, in the tangent plane there."""
+    sine, rim_sine = curvature * position / 2, curvature / 2
+    return (0.25 - position**2 / 4) / (0.5 * math.sqrt(1 - sine**2) + position / 2 * math.sqrt(1 - rim_sine**2))
 
 
-def compliance(tip: TipTable, place: float, radius: Array) -> Array:
+def compliance(tip: TipTable, position: float, radius: Array) -> Array:
     """E D times the compliance in (n, t) of Hertz-weighted patches of radii up to 1/2; (radii, 2, 2).
 
     Below the table's radii the difference of a half-space's compliance is added; for patches over the rim a part in
     proportion to 1/radius, extrapolated from the two smallest radii.
     """
-    at = np.maximum(radius, RADIUS[0])
-    matrices = _interpolated(tip, place, at)
-    if distance_to_rim(tip.curvature, place) >= RADIUS[0]:
-        more = half_space(tip.nu, radius) - half_space(tip.nu, at)
-        return np.asarray(matrices + more[:, None] * np.eye(2))
-    first, second = _interpolated(tip, place, np.array([1.0, 1.5]) * RADIUS[0])
-    return np.asarray(matrices + 3 * (first - second) * (RADIUS[0] / radius - RADIUS[0] / at)[:, None, None])
+    covered = np.maximum(radius, RADIUS[0])
+    matrices = _interpolate(tip, position, covered)
+    if distance_to_rim(tip.curvature, position) >= RADIUS[0]:
+        correction = half_space(tip.nu, radius) - half_space(tip.nu, covered)
+        return np.asarray(matrices + correction[:, None] * np.eye(2))
+    first, second = _interpolate(tip, position, np.array([1.0, 1.5]) * RADIUS[0])
+    return np.asarray(matrices + 3 * (first - second) * (RADIUS[0] / radius - RADIUS[0] / covered)[:, None, None])
 
 
-def _interpolated(tip: TipTable, place: float, radius: Array) -> Array:
+def _interpolate(tip: TipTable, position: float, radius: Array) -> Array:
     """E D times the compliance at radii within the table."""
-    places, radii, _ = tip.patches.shape
-    here = np.tensordot(node_weights(place**2, MIN_PLACE**2, max_place(tip.curvature) ** 2, places), tip.patches, 1)
-    logarithms = node_weights(np.log(radius), *LOG_RADIUS, radii) @ here
+    n_positions, n_radii, _ = tip.patches.shape
+    weights = node_weights(position**2, MIN_POSITION**2, max_position(tip.curvature) ** 2, n_positions)
+    logarithms = node_weights(np.log(radius), *LOG_RADIUS, n_radii) @ np.tensordot(weights, tip.patches, 1)
     normal, shear = (np.exp(logarithms[:, :2]) * half_space(tip.nu, radius)).T
-    across = logarithms[:, 2] * place * np.sqrt(normal * shear)
-    return np.array([[normal, across], [across, shear]]).transpose(2, 0, 1)
+    coupling = logarithms[:, 2] * position * np.sqrt(normal * shear)
+    return np.array([[normal, coupling], [coupling, shear]]).transpose(2, 0, 1)
 
 
-def rigid_patch_gain(nu: float, curvature: float, below: float, radius: Array) -> Array:
+def rigid_patch_gain(nu: float, curvature: float, height: float, radius: Array) -> Array:
     """E D times the difference in compliance along t between a Hertz-weighted patch and a rigid sticking one.
 
     On a half-space it is 1/6 of the compliance. It is less for a patch that is wide relative to the tip or to the
-    leather's height ``below`` it, and more on a dome, where the patch's edge moves less than its middle as the tip
+    leather's ``height`` there, and more on a dome, where the patch's edge moves less than its middle as the tip
     bends. Fitted to the solid on the axis (studies/beam/leather.md): error of the rigid patch's compliance at most
     0.4 % for pool tips (dome flat to dime, heights 0.3 to 0.7, nu 0.3 to 0.45, radii 0.08 to 0.25).
     """
-    wide, thin = (2 * radius) ** 3, (radius / below) ** 2
+    wide, thin = (2 * radius) ** 3, (radius / height) ** 2
     flat = (1 - (1.09 - 0.57 * nu) * wide) * (1 - 0.11 * thin / (1 + 0.26 * thin))
-    dome = curvature * radius * (1 + 33 * radius**2 * (below - 0.2)) * (0.72 + 0.7 * nu)
+    dome = curvature * radius * (1 + 33 * radius**2 * (height - 0.2)) * (0.72 + 0.7 * nu)
     return np.asarray(half_space(nu, radius)[..., 1] / 6 * (flat + dome))
 
 
 def head_on(tip: TipTable, radius: Array, ball: float) -> Array:
     """Force over E D^2 and depth over D of a central contact with a ball of radius ``ball``, by radius; (radii, 2)."""
-    at = np.maximum(radius, HEAD_ON_RADIUS[0])
-    ratio = np.tensordot(node_weights(np.log(at), *LOG_HEAD_ON, len(tip.head_on)), tip.head_on, 1)
-    ratio = ratio * (radius / at)[:, None, None]  # vanishes with the radius
+    covered = np.maximum(radius, HEAD_ON_RADIUS[0])
+    ratio = np.tensordot(node_weights(np.log(covered), *LOG_HEAD_ON, len(tip.head_on)), tip.head_on, 1)
+    ratio = ratio * (radius / covered)[:, None, None]  # vanishes with the radius
     gaps = np.array([tip.curvature, 1 / ball, 1 / ball**3])
     return np.asarray((half_space_head_on(tip.nu, radius) * np.exp(ratio)) @ gaps)

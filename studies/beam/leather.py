@@ -127,7 +127,7 @@ def refined() -> Iterator[list[str | float]]:
     shape, patch = Shape(6 / 12.75, 12.75 / 9.5), Patch(2 * 0.375 * 9.5 / 12.75, 2 / 12.75)
     for how in MESHES:
         C = solved(shape, 0.4, patch, how) * 1e6 / (100e6 * 12.75e-3)
-        mesh = f"{len(how.across) - 1} x {len(how.up) - 1} of order {how.order}, {how.harmonics} harmonics"
+        mesh = f"{len(how.radial) - 1} x {len(how.axial) - 1} of order {how.order}, {how.harmonics} harmonics"
         yield [mesh + (", the table's" if how is TABLE_FINENESS else ""), C[0, 0], C[1, 1], C[0, 1]]
 
 
@@ -152,7 +152,7 @@ def errors(tips: int = 20, seed: int = 1) -> Errors:
         tip, how = tt.table_of_tip(shape.height, k, nu), graded_fineness(6, 7, 6, 44)
         solution = surface_compliances(TipSolid(shape, how), nu)
         for _ in range(60):
-            place, radius = tt.max_place(k) * rng.random(), rng.uniform(0.06, 0.5)
+            place, radius = tt.max_position(k) * rng.random(), rng.uniform(0.06, 0.5)
             direct = compliance(solution, patch_loads(shape, Patch(place, radius), how))
             read = tt.compliance(tip, place, np.array([radius]))[0]
             scale = np.sqrt(np.outer(np.diagonal(direct), np.diagonal(direct)))
