@@ -53,9 +53,15 @@ def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return parameter_options("Cue", "body_mass", "shaft_mass")(command)
 
 
-def shaft_additions_of(options: Mapping[str, Any]) -> dict[str, str | None]:
-    """Arguments of `load` by these options."""
-    return {name: options.get(name) for name in SHAFT_ADDITIONS}
+def load_with_options(load: Callable[..., Any], file: Path, options: Mapping[str, Any]) -> Any:
+    """The contents of a file, with the options that supplement its drawing; errors name the option."""
+    try:
+        return load(file, **{name: options.get(name) for name in SHAFT_ADDITIONS})
+    except InputError as error:
+        name, _, problem = f"{error.key}: {error.problem}".removeprefix(": ").partition(": ")
+        if options.get(name) is None:
+            raise
+        raise InputError(file, option(name), problem) from None
 
 
 def force_option(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -97,16 +103,12 @@ def scene_of(
     A cue alone gets a game's default stroke (`cuefem.scene.default_scene`). with_impact: whether ball, tip and stroke
     matter to the command, so that assumptions on them are listed too. warn: whether to warn of implausible numbers.
     """
-    opened = load_stroke(file, **shaft_additions_of(options))
+    opened = load_with_options(load_stroke, file, options)
     if isinstance(opened, Scene):
         refuse_game(file, options)
         scene = with_options(opened, file, options)
     else:
-        try:
-            scene = scene_from_cue(opened, file, options)
-        except InputError:
-            print_warnings(Scene(opened), with_impact=False)
-            raise
+        scene = scene_from_cue(opened, file, options)
     given = {name: value for name, value in options.items() if value is not None}
     offered = {*options} - ({"game"} if isinstance(opened, Scene) else set())
     notes = assumption_texts(assumptions(file, scene, given), offered, with_impact=with_impact)

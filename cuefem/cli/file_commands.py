@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from cuefem.cli.common import check_overwrite, force_option, shaft_additions_of, shape_options
+from cuefem.cli.common import check_overwrite, force_option, load_with_options, shape_options
 from cuefem.cli.output import assumed_lines, command, json_option, page_option, print_json, print_result
 from cuefem.cli.scene_options import with_body_option, with_shaft_mass_option
 from cuefem.cue import Cue
@@ -26,7 +26,7 @@ def convert(file: Path, output: Path, force: bool, as_json: bool, **options: str
     check_overwrite(output, force=force)
     given = {name: value for name, value in options.items() if value is not None}
     body_mass, shaft_mass = options["body_mass"], options["shaft_mass"]
-    drawing = load(file, **shaft_additions_of(options))
+    drawing = load_with_options(load, file, options)
     if body_mass is not None:
         drawing = with_body_option(drawing, file, body_mass)
     if shaft_mass is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import replace
@@ -19,8 +20,9 @@ from cuefem.io.errors import as_input_error
 from cuefem.parameters.parameter import PARAMETERS, Parameter, with_fields, with_parameters, with_values_at
 from cuefem.parameters.parameter import Path as Steps
 from cuefem.parameters.parts import main_material, with_material
-from cuefem.quantity.fields import OutOfBounds, Quantity
+from cuefem.quantity.fields import OutOfBounds, Quantity, comma_hint
 from cuefem.quantity.units import parse_number
+from cuefem.report.plausibility import plausibility_warnings
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, GAMES, default_tip, usual_scene
 
@@ -82,20 +84,15 @@ def option_value(file: Path, name: str, text: str, wanted: Quantity) -> float:
 
 def offset_value(file: Path, text: str, radius: float) -> float:
     """The b/R of --offset: a bare number, or a length over the radius of the ball, m."""
-    try:
-        length = parse_number(text, "m")
-    except ValueError:
-        try:
-            return option_value(file, "--offset", text, Quantity("", "(-1, 1)"))
-        except InputError as error:
-            if "bare number" not in error.problem:
-                raise
-            problem = error.problem.replace("; got", ' (b/R), or a length such as "8 mm"; got', 1)
-            raise InputError(file, "--offset", problem) from None
-    if not abs(length) < radius:
-        within = f"a length of less than {1e3 * radius:g} mm, the radius of the ball"
-        raise InputError(file, "--offset", f"must be b/R between -1 and 1, or {within}; got {text!r}")
-    return length / radius
+    offset = math.nan
+    with suppress(ValueError):
+        offset = parse_number(text, "m") / radius
+    with suppress(ValueError):
+        offset = float(text)
+    if not abs(offset) < 1:
+        within = f'b/R between -1 and 1, or a length below {1e3 * radius:g} mm with its unit, such as "8 mm"'
+        raise InputError(file, "--offset", f"must be {within}; got {text!r}{comma_hint(text)}")
+    return offset
 
 
 def with_body_option(thing: Cue | Scene | SideStrike, file: Path, text: str) -> Any:
@@ -129,7 +126,10 @@ def scene_from_cue(cue: Cue, file: Path, options: dict[str, Any]) -> Scene:
         leather = with_fields(leather, own)
         scene = usual_scene(cue, game, tip=leather)
     except ValueError as error:
-        raise InputError(file, "", f"{error} (options: --tip-height, --dome)") from None
+        implausible = plausibility_warnings(Scene(cue), with_impact=False)
+        hint = f"; {implausible[0]}" if implausible else " (options: --tip-height, --dome)"
+        text = str(error) if options.get("dome") is None else str(error).replace("dome radius", "--dome")
+        raise InputError(file, "", f"{text}{hint}") from None
     return with_options(scene, file, options)
 
 

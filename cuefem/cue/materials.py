@@ -77,8 +77,8 @@ def material(name: str) -> Material:
     key = " ".join(name.replace("_", " ").replace("-", " ").casefold().split())
     key = _ALIASES.get(key, key)
     if key not in MATERIALS:
-        hint = suggestion(key, MATERIALS) or f"; known: {', '.join(MATERIALS)}"
-        raise ValueError(f"no material is called {name!r}{hint}")
+        hint = suggestion(key, MATERIALS) or f"; choose {', '.join(MATERIALS)}"
+        raise ValueError(f"unknown material {name!r}{hint}")
     return MATERIALS[key].material
 
 

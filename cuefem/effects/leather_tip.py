@@ -243,8 +243,8 @@ class LeatherTip(CueEffect):
         DIAMETER.check("diameter", diameter)
         if self.dome_radius < diameter / 2:
             raise ValueError(
-                f"dome radius {1e3 * self.dome_radius:.4g} mm is too small: a leather tip of {1e3 * diameter:.4g} mm "
-                f"needs at least {500 * diameter:.4g} mm, half its diameter"
+                f"dome radius {1e3 * self.dome_radius:.4g} mm is too small: a {1e3 * diameter:.4g} mm tip "
+                f"needs at least {500 * diameter:.4g} mm"
             )
         deep = self._drop(diameter / 2)
         if self.height <= deep:

@@ -96,7 +96,7 @@ def load(
     for name, value, whose in (("length_unit", length_unit, "units of length"), ("front", front, "leather")):
         if value is not None and not shape:
             files = f"{', '.join(SHAPE_EXTENSIONS[:-1])} and {SHAPE_EXTENSIONS[-1]}"
-            raise InputError(path, "", f"has its own {whose}: {name} is only for {files} files; got {value!r}")
+            raise InputError(path, name, f"is only for {files} files: this one has its own {whose}; got {value!r}")
     if path.suffix.lower() == ".toml":
         loaded = load_toml(path, _load_cue)
     else:

@@ -214,7 +214,7 @@ def _with_units(path: Path, header: Header, length_unit: str | None) -> list[Pro
             problem = f"already names its units: length_unit is for a table without units; got {quote(length_unit)}"
             raise InputError(path, "", problem)
         if not length_unit_of(length_unit):
-            raise InputError(path, "length unit", f"must be a unit of length, such as mm; got {quote(length_unit)}")
+            raise InputError(path, "length_unit", f"must be a unit of length, such as mm; got {quote(length_unit)}")
     if without_unit and length_unit is None:
         names, written = (",".join(f"{column.name}{unit}" for column in without_unit) for unit in ("", " [mm]"))
         problem = f'{quote(names)} must name the unit: write "{written}" if these are mm, or use --length-unit'

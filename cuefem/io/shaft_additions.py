@@ -64,13 +64,15 @@ SHAFT_ADDITIONS = {
 }
 
 
-def with_additions(cue: Cue, *, front: str | None = None, ferrule: str | None = None, bore: str | None = None) -> Cue:
-    """The cue with a leather front, a ferrule and a bore given as texts; ValueError if one is impossible."""
-    if front is not None:
-        cue = _with_leather(cue, front)
-    if ferrule is not None:
-        cue = _with_ferrule(cue, ferrule)
-    return cue if bore is None else _bored(cue, bore)
+def with_additions(cue: Cue, **texts: str | None) -> Cue:
+    """The cue with a leather front, a ferrule and a bore given as texts; ValueError with the name of an invalid one."""
+    for name, add in (("front", _with_leather), ("ferrule", _with_ferrule), ("bore", _bored)):
+        if (text := texts.get(name)) is not None:
+            try:
+                cue = add(cue, text)
+            except ValueError as error:
+                raise ValueError(f"{name}: {error}") from None
+    return cue
 
 
 def with_shaft_material(cue: Cue, name: str) -> Cue:
@@ -85,12 +87,12 @@ def _with_leather(cue: Cue, text: str) -> Cue:
         return cue
     height = words.removeprefix("leather").strip()
     if height in (words, ""):
-        raise ValueError(f'front must be "ferrule" or leather with a height, such as "{LEATHER}"; got {text!r}')
+        raise ValueError(f'must be "ferrule" or leather with a height, such as "{LEATHER}"; got {text!r}')
     if cue.leather_height:
-        raise ValueError("front must be omitted: the drawing already has leather")
-    end = _length("front", height)
+        raise ValueError("must be omitted: the drawing already has leather")
+    end = _length(height)
     if end > MAX_LEATHER:
-        raise ValueError(f"front must have at most {1e3 * MAX_LEATHER:g} mm of leather; got {text!r}")
+        raise ValueError(f"must have at most {1e3 * MAX_LEATHER:g} mm of leather; got {text!r}")
     cue = split_at(cue, end)
     stop = next(i for i, x in enumerate(cue.nodes) if x >= end * (1 - SAME_POSITION))
     front = (
@@ -111,7 +113,7 @@ def _with_ferrule(cue: Cue, text: str) -> Cue:
     start = float(cue.nodes[first])
     longest = min(MAX_FERRULE, 0.9 * (cue.length - start))
     if not 0 < length <= longest:
-        raise ValueError(f"ferrule must be at most {1e3 * longest:.3g} mm long; got {text!r}")
+        raise ValueError(f"must be at most {1e3 * longest:.3g} mm long; got {text!r}")
     cue = split_at(replace(cue, segments=tuple(stripped)), start + length)
     stop = next(i for i, x in enumerate(cue.nodes) if x >= (start + length) * (1 - SAME_POSITION))
     front = (ferrule_on_tenon(s, ferrule_material, wood, tenon) for s in cue.segments[first:stop])
@@ -129,7 +131,7 @@ def ferrule_on_tenon(
 ) -> Segment:
     """The segment as a ferrule on a wooden tenon, m wide, by default `TENON_RATIO` of its width; a bore stays."""
     if tenon and (segment.tip_bore or segment.butt_bore):
-        raise ValueError("ferrule must have no tenon: the shaft is bored there")
+        raise ValueError("must have no tenon: the shaft is bored there")
     if segment.tip_bore or segment.butt_bore or tenon == 0:
         return replace(segment, material=ferrule_material)
     first, last = (
@@ -149,34 +151,32 @@ def _ferrule_of(text: str) -> tuple[float, Material, float | None]:
     size = _SIZE.search(first)
     name = _SIZE.sub(" ", first).replace("ferrule", " ").strip()
     if size is None or not name:
-        raise ValueError(f'ferrule must be a length and a material, such as "{FERRULE}"; got {text!r}')
+        raise ValueError(f'must be a length and a material, such as "{FERRULE}"; got {text!r}')
     tenon = None
     for piece in more:
         if "tenon" not in piece:
-            raise ValueError(f'ferrule must be such as "{FERRULE}, tenon 8 mm" or "{FERRULE}, no tenon"; got {text!r}')
+            raise ValueError(f'must be such as "{FERRULE}, tenon 8 mm" or "{FERRULE}, no tenon"; got {text!r}')
         width = piece.replace("tenon", " ").strip()
-        tenon = 0.0 if width == "no" else _length("the ferrule's tenon", width)
-    return _length("ferrule", size[0]), material_of(" ".join(name.split())), tenon
+        tenon = 0.0 if width == "no" else _length(width)
+    return _length(size[0]), material_of(" ".join(name.split())), tenon
 
 
 def _bored(cue: Cue, text: str) -> Cue:
     """The cue with the bore of a text."""
     sizes = _BORE.fullmatch(text.strip().casefold())
     if not sizes:
-        raise ValueError(f'bore must be a width and a depth, such as "{BORE}"; got {text!r}')
-    width, depth = (_length("bore", size) for size in sizes.groups())
+        raise ValueError(f'must be a width and a depth, such as "{BORE}"; got {text!r}')
+    width, depth = (_length(size) for size in sizes.groups())
     if Layout.of(cue).bore is None:
-        raise ValueError("bore must be omitted: the drawing has a filled bore")
+        raise ValueError("must be omitted: the drawing has a filled bore")
     return with_parameters(Scene(cue), {"bore depth": depth, "bore width": width}).shaft
 
 
-def _length(name: str, text: str) -> float:
+def _length(text: str) -> float:
     """A length above 0, m, of a text such as "25 mm" or "1/4 in"."""
     length = math.nan
     with suppress(ValueError):
         length = parse_number(text, "m")
     if not 0 < length < math.inf:
-        raise ValueError(
-            f'{name} must have lengths above 0 with a unit, such as "25 mm" or "1 in"; got {text.strip()!r}'
-        )
+        raise ValueError(f'must have lengths above 0 with a unit, such as "25 mm" or "1 in"; got {text.strip()!r}')
     return length

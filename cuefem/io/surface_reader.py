@@ -55,7 +55,7 @@ def load_surface(path: Path, material: Material, length_unit: str | None = None)
     try:
         scale = parse_number(f"1 {unit}", "m")
     except ValueError:
-        raise InputError(path, "length unit", f"must be a unit of length, such as mm; got {quote(unit)}") from None
+        raise InputError(path, "length_unit", f"must be a unit of length, such as mm; got {quote(unit)}") from None
     rows = [(scale * length, *np.multiply(scale, [*outer, *bore])) for length, outer, bore in read_surface(path).pieces]
     with as_input_error(path, ""):
         return Cue(tuple(Segment(row[0], row[1], row[2], material, row[3], row[4]) for row in rows))

@@ -308,11 +308,11 @@ def _with_bore(scene: Any, depth: float | None = None, width: float | None = Non
             return segment
         widened = (wider * segment.tip_bore, wider * segment.butt_bore)
         ends = (0.0, 0.0) if not after else widened if before else (onward, onward)
-        for inner, outer in zip(ends, (segment.tip_diameter, segment.butt_diameter), strict=True):
+        outside = ((segment.tip_diameter, start), (segment.butt_diameter, start + segment.length))
+        for inner, (outer, x) in zip(ends, outside, strict=True):
             if inner >= outer:
-                raise ValueError(
-                    f"the bore must be narrower than the cue, {1e3 * outer:.4g} mm there; got {1e3 * inner:.4g} mm"
-                )
+                where = f"the cue, {1e3 * outer:.4g} mm wide at {1e3 * x:.4g} mm from the tip"
+                raise ValueError(f"the bore must be narrower than {where}; got {1e3 * inner:.4g} mm")
         return replace(segment, tip_bore=ends[0], butt_bore=ends[1])
 
     cue = split_at(cue, end)

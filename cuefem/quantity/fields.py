@@ -66,14 +66,17 @@ class Quantity:
     @property
     def example(self) -> str:
         """What the unit measures, with an example: 'a length with its unit, such as "12 mm"'."""
-        what, example, *_ = examples_of(self.unit)
-        if self.unit == "Pa" and self.names:  # a leather's
-            example = "200 MPa"
+        what, example, *_ = self._examples
         return f'{what} with its unit, such as "{example}"{self._named}'
 
     @property
+    def _examples(self) -> tuple[str, ...]:
+        what, *examples = examples_of(self.unit)
+        return (what, "200 MPa") if self.unit == "Pa" and self.names else (what, *examples)  # of leather, not of wood
+
+    @property
     def _named(self) -> str:
-        return ", or " + ", ".join(f'"{name}"' for name, _ in self.names) if self.names else ""
+        return ", or " + ", ".join(f'"{name}"' for name, _ in self.names[:3]) if self.names else ""
 
     @property
     def expected(self) -> str:
@@ -103,7 +106,7 @@ class Quantity:
             return known[word]
         digits, unit = split_quantity(str(value)) if isinstance(value, str | int | float) else ("", "")
         if digits and not unit and digits[-3:].lower() not in ("inf", "nan"):
-            named = " or ".join(f'"{text}"' for text in examples_of(self.unit)[1:])
+            named = " or ".join(f'"{text}"' for text in self._examples[1:])
             raise ValueError(f"needs a unit: {named}{self._named}; got {quote(value)}")
         try:
             result = parse_number(str(value), self.unit)
@@ -115,8 +118,8 @@ class Quantity:
 
     def _why(self, error: ValueError, value: Any, unit: str) -> str:
         """The reason why a text is no quantity of this unit, for the end of a message; "" if unknown."""
-        if not unit or _comma(value):
-            return _comma(value)
+        if not unit or comma_hint(value):
+            return comma_hint(value)
         if not isinstance(error, UnknownUnit):
             return f", which is {dimension_of(unit)}"
         valid = units_of_dimension(self.unit)
@@ -125,7 +128,7 @@ class Quantity:
 
     def _bare(self, value: Any) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise ValueError(f"must be {self.expected}; got {quote(value)}{_comma(value)}")
+            raise ValueError(f"must be {self.expected}; got {quote(value)}{comma_hint(value)}")
         try:
             result = float(value)
         except OverflowError:
@@ -163,7 +166,7 @@ _BOUND_TEXTS = {
 _COMMA = re.compile(r"\s*[-+]?[0-9]+,[0-9]")
 
 
-def _comma(value: Any) -> str:
+def comma_hint(value: Any) -> str:
     """A hint for a number with a decimal comma."""
     return "; use a decimal point" if isinstance(value, str) and _COMMA.match(value) else ""
 
@@ -247,7 +250,7 @@ def quote(value: Any) -> str:
 def suggestion(name: str, names: Iterable[str]) -> str:
     """A hint at the most similar valid name, or "" if none is similar."""
     known = {known.casefold(): known for known in names}
-    close = difflib.get_close_matches(name.casefold(), known, n=1, cutoff=0.5)
+    close = difflib.get_close_matches(name.casefold(), known, n=1)
     return f"; did you mean {known[close[0]]!r}?" if close else ""
 
 

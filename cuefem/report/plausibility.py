@@ -39,6 +39,9 @@ def _of_stroke(scene: Scene) -> Iterator[Check]:
     yield "ball radius", ball.radius, _usual(Ball, "radius"), "mm", diameter
     yield "ball mass", ball.mass, _usual(Ball, "mass"), "g", "expected 140 to 210 g"
     yield "stroke speed", scene.stroke.speed, _usual(Stroke, "speed"), "m/s", "expected 0.5 to 12 m/s"
+    yield "friction", scene.tip.friction, (0.2, 1.2), "", "expected 0.5 to 0.8 for chalked leather"
+    tips = "expected 0.5 to 0.9, of the tip alone"
+    yield "restitution", scene.tip.restitution, (0.0, 0.95), "", tips
     dome = "expected 9 to 10.6 mm, dime to nickel"
     yield "dome radius", scene.dome_radius or None, _usual(TipDome, "radius"), "mm", dome
 
@@ -72,7 +75,8 @@ def _of_drawing(cue: Cue) -> Iterator[Check]:
 
 def _of_mass(scene: Scene) -> Iterator[Check]:
     mass = float(scene.cue.mass)
-    yield "mass of the whole cue", mass, (0.0, 1.0), "kg", "expected 0.4 to 0.7 kg"
+    whole = "expected 0.4 to 0.7 kg: check the unit of --body-mass (body_mass), or omit it if FILE draws the whole cue"
+    yield "mass of the whole cue", mass, (0.0, 1.0), "kg", whole
     if not scene.cue.segments or scene.shaft.shaft_mass >= MIN_DRAWN_MASS:  # else the drawing itself is too light
         too_low = "squirt is too low (a maple cue: by about 20 %) and cannot be compared"
         body = f'{too_low}; add the butt with --body-mass "15 oz" (body_mass in a file)'
@@ -94,7 +98,7 @@ def plausibility_warnings(scene: Scene, *, with_impact: bool = True) -> list[str
         *(_of_mass(scene) if with_impact else ()),
     ]
     outside = [
-        f"{name} {SCALES.get(unit, 1) * value:.6g} {unit}; {hint}"
+        f"{name} {SCALES.get(unit, 1) * value:.6g} {unit}".rstrip() + f"; {hint}"
         for name, value, (low, high), unit, hint in checks
         if value is not None and not low <= value <= high
     ]
@@ -112,7 +116,8 @@ def _of_outline(segments: tuple[Segment, ...]) -> list[str]:
     if segments and segments[0].tip_diameter > segments[-1].butt_diameter:
         ends = segments[0].tip_diameter, segments[-1].butt_diameter
         sizes = " and ".join(f"{to_display(end, 'm'):.4g}" for end in ends)
-        lines.append(f"the tip is thicker than the butt, {sizes} mm; is the profile butt first?")
+        order = "list the rows from tip to butt, or head their column `from butt [mm]`"
+        lines.append(f"the tip end is thicker than the butt end, {sizes} mm: {order}")
     for i, segment in enumerate(segments):
         bores = {"tip": segment.tip_bore, "butt": segment.butt_bore}
         missing = [end for end, bore in bores.items() if bore == 0 < max(bores.values())]

@@ -74,7 +74,7 @@ SPELT = {"Hard Maple": "hard maple", " HARD_MAPLE": "hard maple", "sugar maple":
 
 def test_material_unknown_name_suggests_and_spelling_variant_loads() -> None:
     for name, offer in OFFERS.items():
-        with pytest.raises(ValueError, match=f"no material is called {name!r}; .*{offer}"):
+        with pytest.raises(ValueError, match=f"unknown material {name!r}; .*{offer}"):
             material(name)
     for name, expected in (SPELT | {"Carbon Fiber": "carbon fibre", "ABS": "abs"}).items():
         assert material(name) is MATERIALS[expected].material

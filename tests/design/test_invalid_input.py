@@ -97,7 +97,7 @@ FILES = [
     (STUDY, 'low = "0 mm"', 'low = "15 mm"', "vary[0]: low must be below high; got"),
     (STUDY, "count = 16", "count = 0", "vary[0]: count must be a whole number in [1, 1048576]"),
     (STUDY, '"cue.segments[0].butt_bore"', '"ball.mass"', "path must name fields of one unit"),
-    (STUDY, '"ash"]', '"ahs"]', "vary[2].values[1]: no material is called 'ahs'"),
+    (STUDY, '"ash"]', '"ahs"]', "vary[2].values[1]: unknown material 'ahs'"),
     (STUDY, '"ash"]', "5]", "vary[2].values[1]: must be the name of a material"),
     (STUDY, 'values = ["hard maple", "ash"]', 'low = "ash"', "vary[2]: must have values, a list"),
     (STUDY, "count = 16", 'count = 16\nvalues = ["1 mm"]', "or median and sd; got values, and low and high"),

@@ -33,7 +33,7 @@ def with_tip(tip: cf.Tip, *effects: cf.Effect, **more: Any) -> Callable[[], cf.S
 
 CALLS: list[tuple[Callable[[], object], str]] = [  # one line for each `raise`
     (listed(SHEAR, RAISED), "TipShear; got Elevation, which does not"),
-    (lambda: replace(LEATHER, dome_radius=6e-3).mass(0.013), "a leather tip of 13 mm needs at least 6.5 mm, half"),
+    (lambda: replace(LEATHER, dome_radius=6e-3).mass(0.013), "a 13 mm tip needs at least 6.5 mm"),
     (lambda: replace(LEATHER, height=2e-3).mass(0.01275), "must be higher than 2.457 mm, the depth"),
     (lambda: replace(FLAT, height=6e-4).mass(0.01275), "must be 0.638 to 38.2 mm high; got "),
     (lambda: FLAT.mass(-1.0), "diameter must be in (0, 10] m; got -1.0"),
@@ -51,7 +51,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [  # one line for each `raise`
     (with_tip(cf.Tip(stiffness=1e6), LEATHER), "Tip.stiffness must be omitted with an effect that models the whole"),
     (with_tip(cf.Tip(), WAVES, LEATHER, cue=pool()), "Scene.effects[1] must be the only leather: draw the cue"),
     (lambda: cf.modes(pool(), effects=(LEATHER,)), "LeatherTip must be the only leather: draw the cue without its"),
-    (with_tip(cf.Tip(), replace(LEATHER, dome_radius=5e-3)), "dome radius 5 mm is too small: a leather tip of 12 mm"),
+    (with_tip(cf.Tip(), replace(LEATHER, dome_radius=5e-3)), "dome radius 5 mm is too small: a 12 mm tip"),
     (lambda: cf.modes(KIM, 3, effects=(3,)), "TypeError: modes effects must be effects"),  # type: ignore[arg-type]
     (lambda: replace(kim_scene(), effects=SHEAR), "TypeError: Scene.effects must be a sequence of effects"),  # type: ignore[arg-type]
     (lambda: replace(LEATHER, rolling="no"), "TypeError: LeatherTip.rolling must be a bool; got 'no'"),

@@ -45,7 +45,7 @@ toml | [ball]\ndiameter = '6 mm'\n[cue]\nmass = '1 kg'\nend_mass = '6 g' | ball.
 toml | [cue]\nmass = '540 g'\nend_mass = '6 g'\ncoupling = '99 1/kg'     | cue.coupling: must be in (
 toml | [tip]\ncontact_time = '1 ms'\nstiffness = '1e5 N/m'\n[cue]\nmass = '1 kg'\nend_mass = '6 g' | tip: Tip takes
 toml | shaft = 3                            | shaft: must be text; got 3
-toml | shaft = 'carbon'\nbody_mass = '15 oz'\nbore = 'wide' | shaft: bore must be a width and a depth
+toml | shaft = 'carbon'\nbody_mass = '15 oz'\nbore = 'wide' | shaft: bore: must be a width and a depth
 toml | shaft = 'carbon'\nbody_mass = '15 oz'\nsegments = [] | segments: must be omitted with shaft, which defines
 csv  |                                      | must hold a cue or a scene; got an empty file
 csv  | # x                                  | must begin with the header "x [mm],diameter [mm]"; got only
@@ -68,7 +68,7 @@ csv  | x [kg],diameter [mm]\n0,12           | line 1, x: must be in a unit of le
 csv  | x [mm],diameter 1 [mm],diameter 2 [mm]\n0,12.75,12.9\n700,21,22 | line 1: two columns may be the diameter,
 csv  | x [mm],diameter [mm],bore [mm]\n700,21,\n0,12,6  | line 1, x: must increase from tip to butt: bores and
 csv  | x [mm],diameter [mm],bore [mm]\n0,12,12\n700,21, | line 2, bore: must be less than 12 mm, the diameter there;
-csv  | x [mm],diameter [mm],material\n0,12,hard mapel\n700,21, | line 2, material: no material is called 'hard mapel'
+csv  | x [mm],diameter [mm],material\n0,12,hard mapel\n700,21, | line 2, material: unknown material 'hard mapel'
 csv  | x [mm],diameter [mm],core\n0,12.75,foam\n736.6,21.5,foam | line 2, core: needs a bore in its row
 csv  | x [mm],radius [mm],inner radius (mm)\n0,6.4,3\n700,10, | line 1, bore: must be a column of diameters
 csv  | x [mm];diameter [mm]\n0;12.75\n330,5;13     | line 3, x: must be written with the decimal point of the other
@@ -129,10 +129,10 @@ def test_load_missing_file_or_foreign_option_is_rejected(tmp_path: Path) -> None
     assert rejection(tmp_path / "folder.toml") == rejection(tmp_path) == "must be a file; got a folder"
     assert rejection(tmp_path / "cue.vtu").startswith("must end in .toml, .csv, .stl")
     shaft = write_surface(tmp_path / "shaft.stl", POINTS, FACES)
-    assert rejection(shaft, length_unit="kg").startswith("length unit: must be a unit of length")
+    assert rejection(shaft, length_unit="kg").startswith("length_unit: must be a unit of length")
     for name in ("shaft.xlsx", "shaft.txt"):
         (tmp_path / name).write_bytes(b"PK\x03\x04")
         assert rejection(tmp_path / name).endswith("save the table as .csv")
-    assert rejection(shaft, material="hard mapel").startswith("material: no material is called 'hard mapel'")
+    assert rejection(shaft, material="hard mapel").startswith("material: unknown material 'hard mapel'")
     (tmp_path / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
     assert rejection(tmp_path / "shaft.csv", length_unit="mm").startswith("already names its units")
