@@ -33,14 +33,14 @@ class EigenSolution:
     """Mass-normalised modes of ascending frequency, those of the truncation correction last.
 
     omega: (n,) rad/s. loads: (free, loads). participation: (loads, n), the work of each load on each mode, 1/sqrt(kg).
-    highest: rad/s, of the retained modes. radiation: (k, k) of the k correction modes, 1/s; None without a correction.
+    cutoff: rad/s, of the retained modes. radiation: (k, k) of the k correction modes, 1/s; None without a correction.
     shapes: computes the vectors.
     """
 
     omega: Array
     loads: Array
     participation: Array
-    highest: float
+    cutoff: float
     radiation: Array | None
     shapes: Callable[[], Array]
 
@@ -56,42 +56,42 @@ class EigenSolution:
             self,
             omega=omega,
             participation=self.participation[:, index],
-            highest=omega[-1],
+            cutoff=omega[-1],
             radiation=None,
             shapes=lambda: self.vectors[:, index],
         )
 
 
 def solve_eigenproblem(
-    K: Any, M: Any, loads: Array, *, shift: float, rigid: int, count: int, below: float = np.inf, corrected: int = 0
+    K: Any, M: Any, loads: Array, *, shift: float, rigid: int, count: int, cutoff: float = np.inf, n_corrected: int = 0
 ) -> EigenSolution:
-    """The ``count`` lowest flexible modes, or those of them up to ``below`` rad/s.
+    """The ``count`` lowest flexible modes, or those of them up to ``cutoff`` rad/s.
 
-    loads: (free, loads). rigid: number of modes of zero frequency, which come first and are not returned. corrected:
-    number of loads with a truncation correction; 0 for none.
+    loads: (free, loads). rigid: number of modes of zero frequency, which come first and are not returned.
+    n_corrected: number of loads with a truncation correction; 0 for none.
     """
     if not isinstance(K, np.ndarray) and is_dense_faster(K.shape[0], count):
         K, M = K.toarray(), M.toarray()
-    corrected_loads = np.flatnonzero(loads[:, :corrected].any(axis=0))  # loads on clamped degrees of freedom are zero
+    corrected_loads = np.flatnonzero(loads[:, :n_corrected].any(axis=0))  # loads on clamped degrees of freedom are zero
     if isinstance(K, np.ndarray):
-        form = _Tridiagonal(K, M, shift)
-        mu, z = form.eigen(rigid + count, leading=len(corrected_loads) == 1 and not loads[1:, corrected_loads].any())
-        work, vectors = form.loads(loads)[: len(z)].T @ z, lambda mix: form.vectors(z @ mix)
+        problem = _Tridiagonal(K, M, shift)
+        mu, z = problem.eigen(rigid + count, leading=len(corrected_loads) == 1 and not loads[1:, corrected_loads].any())
+        work, vectors = problem.loads(loads)[: len(z)].T @ z, lambda mix: problem.vectors(z @ mix)
     else:
         mu, basis = _sparse(K, M, loads[:, corrected_loads], shift, rigid + count)
         work, vectors = loads.T @ basis, lambda mix: basis @ mix
-    last = rigid + int(np.sum(1 / mu[rigid : rigid + count] - shift <= below**2))
-    if last == rigid and np.isinf(below):
+    stop = rigid + int(np.sum(1 / mu[rigid : rigid + count] - shift <= cutoff**2))
+    if stop == rigid and np.isinf(cutoff):
         raise np.linalg.LinAlgError("the frequencies of all modes are NaN: check sizes and materials")
     # on a nearly vanishing support, the squared frequency is round-off error
-    omega = np.sqrt(np.maximum(1 / mu[rigid:last] - shift, np.finfo(float).eps * shift))
-    mix = np.eye(len(mu), last)[:, rigid:] / np.sqrt(mu[rigid:last]) * np.where(work[0, rigid:last] < 0, -1.0, 1.0)
-    highest, radiation = float(omega[-1]) if np.isinf(below) else below, None
+    omega = np.sqrt(np.maximum(1 / mu[rigid:stop] - shift, np.finfo(float).eps * shift))
+    mix = np.eye(len(mu), stop)[:, rigid:] / np.sqrt(mu[rigid:stop]) * np.where(work[0, rigid:stop] < 0, -1.0, 1.0)
+    cutoff, radiation = float(omega[-1]) if np.isinf(cutoff) else cutoff, None
     if len(corrected_loads):
-        rest = truncation_correction(mu[last:], work[corrected_loads, last:].T, shift=shift, highest=highest)
-        omega, radiation = np.append(omega, rest.omega), rest.radiation
-        mix = np.concatenate([mix, np.concatenate([np.zeros((last, len(rest.omega))), rest.mix])], axis=1)
-    return EigenSolution(omega, loads, work @ mix, highest, radiation, lambda: vectors(mix))
+        correction = truncation_correction(mu[stop:], work[corrected_loads, stop:].T, shift=shift, cutoff=cutoff)
+        omega, radiation = np.append(omega, correction.omega), correction.radiation
+        mix = np.concatenate([mix, np.concatenate([np.zeros((stop, len(correction.omega))), correction.mix])], axis=1)
+    return EigenSolution(omega, loads, work @ mix, cutoff, radiation, lambda: vectors(mix))
 
 
 def _sparse(K: Any, M: Any, loads: Array, shift: float, count: int) -> tuple[Array, Array]:
@@ -108,17 +108,17 @@ def _sparse(K: Any, M: Any, loads: Array, shift: float, count: int) -> tuple[Arr
     mu, vectors = 1 / (squares[order] + shift), vectors[:, order]
     if not loads.size:
         return mu, vectors * np.sqrt(mu)
-    S, steps, forces = K + shift * M, [], loads
-    deflect = splu(S.tocsc()).solve
+    S, ritz, forces = K + shift * M, [], loads
+    solve = splu(S.tocsc()).solve
     for _ in range(LANCZOS_STEPS):
-        step = deflect(forces)
+        vector = solve(forces)
         for _ in range(2):  # the second pass removes round-off error
-            step -= vectors @ ((M @ vectors).T @ step)
-        steps.append(step / np.sqrt(np.sum(step * (M @ step), axis=0)))
-        forces = M @ steps[-1]
-    rest = np.concatenate(steps, axis=1)
-    own, mix = la.eigh(rest.T @ (M @ rest), rest.T @ (S @ rest))
-    return np.append(mu, own[::-1]), np.concatenate([vectors * np.sqrt(mu), rest @ mix[:, ::-1]], axis=1)
+            vector -= vectors @ ((M @ vectors).T @ vector)
+        ritz.append(vector / np.sqrt(np.sum(vector * (M @ vector), axis=0)))
+        forces = M @ ritz[-1]
+    basis = np.concatenate(ritz, axis=1)
+    ritz_mu, mix = la.eigh(basis.T @ (M @ basis), basis.T @ (S @ basis))
+    return np.append(mu, ritz_mu[::-1]), np.concatenate([vectors * np.sqrt(mu), basis @ mix[:, ::-1]], axis=1)
 
 
 class _Tridiagonal:
@@ -133,12 +133,12 @@ class _Tridiagonal:
         self.shift, self.upper, inertia = shift, K[::-1, ::-1].copy().T, M[::-1, ::-1].copy().T
         inertia *= shift
         self.upper += inertia
-        _checked(lapack.dpotrf(self.upper, lower=0, clean=0, overwrite_a=1))
-        _checked(lapack.dsygst(inertia, self.upper, lower=0, overwrite_a=1))
+        _outputs(lapack.dpotrf(self.upper, lower=0, clean=0, overwrite_a=1))
+        _outputs(lapack.dsygst(inertia, self.upper, lower=0, overwrite_a=1))
         size, matrix = len(M), inertia.T[::-1, ::-1].copy().T
         # wider blocks take longer for matrices of this size
-        found = _checked(lapack.dsytrd(matrix, lower=1, lwork=10 * size, overwrite_a=1))
-        _, self.diagonal, self.off, self.tau = found
+        outputs = _outputs(lapack.dsytrd(matrix, lower=1, lwork=10 * size, overwrite_a=1))
+        _, self.diagonal, self.off, self.tau = outputs
         self.reflectors = (
             matrix.T.ravel()[1 : 1 + size * (size - 1)].reshape(size - 1, size).T
         )  # matrix[1:], not copied
@@ -146,22 +146,22 @@ class _Tridiagonal:
     def eigen(self, count: int, *, leading: bool) -> tuple[Array, Array]:
         """(mu, y), (m,) and (m, m), mu descending, of the matrix or its leading part; the first ``count`` are exact."""
         size = len(self.diagonal)
-        part = min(int(LEADING * count) + SPARE, size) if leading else size
-        mu, y = (each[..., ::-1] for each in _checked(lapack.dstevd(self.diagonal[:part], self.off[: part - 1])))
-        if part < size and np.any(abs(self.off[part - 1] * y[-1, :count]) > ROUNDING * mu[:count]):
+        rows = min(int(LEADING * count) + SPARE, size) if leading else size
+        mu, y = (a[..., ::-1] for a in _outputs(lapack.dstevd(self.diagonal[:rows], self.off[: rows - 1])))
+        if rows < size and np.any(abs(self.off[rows - 1] * y[-1, :count]) > ROUNDING * mu[:count]):
             return self.eigen(count, leading=False)
         return mu / self.shift, y
 
     def loads(self, loads: Array) -> Array:
         """y of loads (free, k): Q' U'^-1 loads."""
-        y = _checked(lapack.dtrtrs(self.upper, loads[::-1], trans=1))[::-1].copy()
+        y = _outputs(lapack.dtrtrs(self.upper, loads[::-1], trans=1))[::-1].copy()
         return self._apply_reflectors(y, "T")
 
     def vectors(self, y: Array) -> Array:
         """q (free, k) of y (rows of the leading part, k): U^-1 Q y."""
         padded = np.zeros((len(self.upper), y.shape[1]))
         padded[: len(y)] = y
-        return np.asarray(_checked(lapack.dtrtrs(self.upper, self._apply_reflectors(padded, "N")[::-1]))[::-1])
+        return np.asarray(_outputs(lapack.dtrtrs(self.upper, self._apply_reflectors(padded, "N")[::-1]))[::-1])
 
     def _apply_reflectors(self, y: Array, trans: str) -> Array:
         """Q y, or Q' y if ``trans`` is "T"; y is overwritten."""
@@ -170,9 +170,9 @@ class _Tridiagonal:
         return y
 
 
-def _checked(answer: tuple[Any, ...]) -> Any:
+def _outputs(result: tuple[Any, ...]) -> Any:
     """The outputs of a LAPACK routine; LinAlgError if it failed."""
-    *found, failed = answer
-    if failed:
-        raise np.linalg.LinAlgError(f"the eigenproblem of the modes has no solution (LAPACK {failed})")
-    return found[0] if len(found) == 1 else found
+    *outputs, info = result
+    if info:
+        raise np.linalg.LinAlgError(f"the eigenproblem of the modes has no solution (LAPACK {info})")
+    return outputs[0] if len(outputs) == 1 else outputs

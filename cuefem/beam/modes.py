@@ -77,8 +77,8 @@ class Modes(EigenSolution):
             self.system.points.section,
             self.system.points.weights,
         )
-        bent, sheared = (weights * loss.EI * section.EI) @ fields.dtheta**2, fields.dw - fields.theta
-        return np.asarray((bent + (weights * loss.kGA * section.kGA) @ sheared**2) / self.omega**2)
+        bending, shear = (weights * loss.EI * section.EI) @ fields.dtheta**2, fields.dw - fields.theta
+        return np.asarray((bending + (weights * loss.kGA * section.kGA) @ shear**2) / self.omega**2)
 
 
 def modes(
@@ -126,24 +126,24 @@ def modes(
     --------
     >>> import cuefem as cf
     >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
-    >>> found = cf.modes(cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),)), count=2)
-    >>> [round(float(f), 1) for f in found.frequencies]
+    >>> result = cf.modes(cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),)), count=2)
+    >>> [round(float(f), 1) for f in result.frequencies]
     [128.0, 343.8]
     """
     check_kind("modes cue", cue, Cue)
     check_count("modes count", count, 1)
-    effects = _on_the_cue(effects)
+    effects = _cue_effects(effects)
     if near is not None:
         near = Quantity("Hz", "[0, inf)").check("modes near", near)
-    below = 0 if near is None else modes_below(cue, 2 * np.pi * near)
-    wanted = below + count + (0 if near is None else 2)
-    system = assemble(cue, wanted if at is None else at, effects, wanted)
+    n_below = 0 if near is None else modes_below(cue, 2 * np.pi * near)
+    n_modes = n_below + count + (0 if near is None else 2)
+    system = assemble(cue, n_modes if at is None else at, effects, n_modes)
     if near is None:
         return solve(system, count)
-    return _nearest(solve(system, min(wanted, system.size - system.rigid_basis.shape[1])), count, near)
+    return _nearest(solve(system, min(n_modes, system.size - system.rigid_basis.shape[1])), count, near)
 
 
-def _on_the_cue(effects: tuple[Any, ...]) -> tuple[BeamEffect, ...]:
+def _cue_effects(effects: tuple[Any, ...]) -> tuple[BeamEffect, ...]:
     """The effects that act on the cue; effects at the tip do not change its modes."""
     for effect in effects:
         if not hasattr(effect, "axial_mass"):
@@ -151,21 +151,21 @@ def _on_the_cue(effects: tuple[Any, ...]) -> tuple[BeamEffect, ...]:
     return tuple(effect for effect in effects if hasattr(effect, "add_to"))
 
 
-def solve(system: System, count: int, *, corrected: int = 0, position: float = 0.0) -> Modes:
+def solve(system: System, count: int, *, n_corrected: int = 0, position: float = 0.0) -> Modes:
     """The lowest ``count`` flexible modes of an assembled beam; the rigid-body modes need no eigenproblem.
 
-    corrected: number of loads with a truncation correction (`cuefem.beam.truncation`): 1 for a force at ``position``, a
-    node, m from the tip; 2 for a couple too, as where the contact lies off the cue's axis; 0 for none.
+    n_corrected: number of loads with a truncation correction (`cuefem.beam.truncation`): 1 for a force at ``position``,
+    a node, m from the tip; 2 for a couple too, as where the contact lies off the cue's axis; 0 for none.
     """
-    most = system.size - system.rigid_basis.shape[1]
-    if count > most:
-        raise ValueError(f"modes count must be at most {most} on this mesh; got {count}: use more elements")
+    limit = system.size - system.rigid_basis.shape[1]
+    if count > limit:
+        raise ValueError(f"modes count must be at most {limit} on this mesh; got {count}: use more elements")
     rigid = rigid_body_modes(system)
     loads = system.unit_loads_at(position)
-    found = solve_eigenproblem(
-        system.K, system.M, loads, shift=system.shift, rigid=rigid.shape[1], count=count, corrected=corrected
+    solution = solve_eigenproblem(
+        system.K, system.M, loads, shift=system.shift, rigid=rigid.shape[1], count=count, n_corrected=n_corrected
     )
-    return Modes(**vars(found), system=system, rigid_vectors=rigid)
+    return Modes(**vars(solution), system=system, rigid_vectors=rigid)
 
 
 def rigid_body_modes(system: System) -> Array:

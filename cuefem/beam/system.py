@@ -32,8 +32,8 @@ class Points(NamedTuple):
 
     x: (points,) m from the tip. weights: (points,) of the integral over x, m. segment: (points,) index of the point's
     segment; from_segment_end: (points,) m from the segment's tip end. section: arrays (points,). first_point: (elements
-    + 1,) the first point of each element, and the number of points. tabulated: (elements,) whether the element's points
-    are the Gauss points of one segment, at which the basis is tabulated.
+    + 1,) the first point of each element, and the number of points. is_tabulated: (elements,) whether the element's
+    points are the Gauss points of one segment, at which the basis is tabulated.
     """
 
     mesh: Mesh
@@ -43,7 +43,7 @@ class Points(NamedTuple):
     from_segment_end: Array
     section: Section
     first_point: list[int]
-    tabulated: list[bool]
+    is_tabulated: list[bool]
 
     def element(self, e: int) -> slice:
         """The points of an element."""
@@ -52,7 +52,7 @@ class Points(NamedTuple):
     def line_basis(self, e: int) -> tuple[Array, Array]:
         """scikit-fem's hierarchical line basis in an element at its points, and its derivatives, 1/m: (degrees, q)."""
         start, end = self.mesh.nodes[e : e + 2]
-        if self.tabulated[e]:
+        if self.is_tabulated[e]:
             values, slopes = tabulated_line_basis(int(self.mesh.orders[e]))
         else:
             values, slopes = line_basis(int(self.mesh.orders[e]) + 1, (self.x[self.element(e)] - start) / (end - start))
@@ -125,21 +125,21 @@ class System:
         the tip, because it accelerates the mass behind x. The slope is w', not the section's rotation, as in Engesser's
         column. masses: (position m, mass kg) of each point mass, also (cue.length, cue.body_mass).
         """
-        root = np.sqrt(self.share_behind(masses) * self.points.weights)
-        rows = root[:, None] * self.fields(vectors).dw
+        root_weights = np.sqrt(self.share_behind(masses) * self.points.weights)
+        rows = root_weights[:, None] * self.fields(vectors).dw
         return np.asarray(rows.T @ rows)
 
     def share_behind(self, masses: Sequence[tuple[float, float]]) -> Array:
         """Share of the cue's mass behind each Gauss point, (points,)."""
         points, cue = self.points, self.cue
         x = points.from_segment_end
-        first, middle = (cue.section_in(points.segment, part * x).rhoA for part in (0.0, 0.5))
+        first, middle = (cue.section_in(points.segment, fraction * x).rhoA for fraction in (0.0, 0.5))
         mass = np.bincount(points.segment, points.section.rhoA * points.weights, len(cue.segments))
         # Simpson's rule is exact for the mass of a cone, whose rho A is a parabola
         ahead = (np.cumsum(mass) - mass)[points.segment] + x / 6 * (first + 4 * middle + points.section.rhoA)
-        for position, lump in masses:
-            ahead = ahead + lump * (points.x > position)
-        return np.asarray(1 - ahead / (mass.sum() + sum(lump for _, lump in masses)))
+        for position, point_mass in masses:
+            ahead = ahead + point_mass * (points.x > position)
+        return np.asarray(1 - ahead / (mass.sum() + sum(point_mass for _, point_mass in masses)))
 
     def interpolate(self, vectors: Array, x: Array) -> tuple[Array, Array]:
         """(w, theta) of the degrees of freedom ``vectors`` (free, k) at positions ``x``: two arrays (k, *x.shape)."""
@@ -169,8 +169,8 @@ def gauss_points(cue: Cue, mesh: Mesh) -> Points:
     sizes = np.diff(x)
     element = np.searchsorted(mesh.nodes, (x[:-1] + x[1:]) / 2) - 1
     # a polynomial varies fastest at the ends of its element, like cos(n arccos x): a part s needs n sqrt(s) points
-    part = np.sqrt(sizes / np.diff(mesh.nodes)[element])
-    counts = np.ceil(mesh.orders[element] * part - POSITION_TOLERANCE).astype(int) + EXTRA_POINTS
+    fraction = np.sqrt(sizes / np.diff(mesh.nodes)[element])
+    counts = np.ceil(mesh.orders[element] * fraction - POSITION_TOLERANCE).astype(int) + EXTRA_POINTS
     rules = [gauss_rule(n) for n in counts.tolist()]
     return _points(
         cue,
@@ -181,12 +181,12 @@ def gauss_points(cue: Cue, mesh: Mesh) -> Points:
     )
 
 
-def _points(cue: Cue, mesh: Mesh, x: Array, weights: Array, tabulated: list[bool]) -> Points:
+def _points(cue: Cue, mesh: Mesh, x: Array, weights: Array, is_tabulated: list[bool]) -> Points:
     """The points ``x``, ascending."""
     segment = np.searchsorted(cue.nodes[1:-1], x, side="right")
     from_end = x - cue.nodes[segment]
     first_point = [0, *np.searchsorted(x, mesh.nodes[1:-1]).tolist(), len(x)]
-    return Points(mesh, x, weights, segment, from_end, cue.section_in(segment, from_end), first_point, tabulated)
+    return Points(mesh, x, weights, segment, from_end, cue.section_in(segment, from_end), first_point, is_tabulated)
 
 
 def assemble(
@@ -238,7 +238,7 @@ def assemble(
     K, M = assemble_blocks(stiffness, springs, dense), assemble_blocks(inertia, free_diagonal(terms.mass), dense)
     dashpots = free_diagonal(terms.dashpot) if terms.dashpot.any() else None
     shift, mass = _shift(cue, points), float(points.weights @ points.section.rhoA)
-    rigid_basis = _free_rigid_motions(mesh, cue.length, index, springs > MIN_STIFFNESS * shift * mass)
+    rigid_basis = _rigid_basis(mesh, cue.length, index, springs > MIN_STIFFNESS * shift * mass)
     return System(cue, mesh, points, K, M, index, rigid_basis, dashpots, shift)
 
 
@@ -269,21 +269,21 @@ def assemble_blocks(
     pairs = [[np.repeat(indices, len(indices)), np.tile(indices, len(indices))] for indices, _ in blocks]
     positions = np.concatenate(pairs, axis=1) % (size + 1)
     values = np.concatenate([block.ravel() for _, block in blocks])
-    summed = scipy.sparse.coo_matrix((values, positions), shape=(size + 1,) * 2).tocsc()[:size, :size]
-    return scipy.sparse.csc_matrix(summed + scipy.sparse.diags(diagonal))
+    matrix = scipy.sparse.coo_matrix((values, positions), shape=(size + 1,) * 2).tocsc()[:size, :size]
+    return scipy.sparse.csc_matrix(matrix + scipy.sparse.diags(diagonal))
 
 
-def _free_rigid_motions(mesh: Mesh, length: float, index: NDArray[np.intp], has_spring: NDArray[np.bool_]) -> Array:
+def _rigid_basis(mesh: Mesh, length: float, index: NDArray[np.intp], has_spring: NDArray[np.bool_]) -> Array:
     """The combinations of translation and rotation about the tip that no spring or clamp resists, (free, r)."""
     motions = np.zeros((mesh.n_dof, 2))
     for w, x in ((mesh.first, mesh.nodes[:-1]), (mesh.last, mesh.nodes[1:])):
         motions[w, 0], motions[w, 1] = 1.0, x / length
         motions[w + 1, 1] = 1.0
-    free = np.zeros((len(has_spring) + 1, 2))
-    free[index] = motions
-    resisted = np.concatenate([motions[index < 0], free[:-1][has_spring]])
-    if not len(resisted):
-        return free[:-1]
-    _, singular_values, directions = np.linalg.svd(resisted)
+    basis = np.zeros((len(has_spring) + 1, 2))
+    basis[index] = motions
+    resisted_motions = np.concatenate([motions[index < 0], basis[:-1][has_spring]])
+    if not len(resisted_motions):
+        return basis[:-1]
+    _, singular_values, directions = np.linalg.svd(resisted_motions)
     rank = int(np.sum(singular_values > 1e-12 * singular_values[0]))
-    return free[:-1] @ directions[rank:].T
+    return basis[:-1] @ directions[rank:].T

@@ -39,8 +39,8 @@ class TipModes:
     @property
     def total_damping(self) -> Array | None:
         """Damping and radiation together, (n, n), 1/s; None without either."""
-        parts = [part for part in (self.damping, self.radiation) if part is not None]
-        return sum(parts[1:], parts[0]) if parts else None
+        matrices = [matrix for matrix in (self.damping, self.radiation) if matrix is not None]
+        return sum(matrices[1:], matrices[0]) if matrices else None
 
     @cached_property
     def without_geometric_stiffness(self) -> TipModes:
@@ -49,29 +49,29 @@ class TipModes:
 
     def subset(self, index: NDArray[np.intp]) -> TipModes:
         """The modes of these indices, in their order."""
-        pairs = (self.damping, self.radiation, self.geometric)
-        parts = (None if part is None else part[np.ix_(index, index)] for part in pairs)
-        damping, radiation, geometric = (part if part is not None and part.any() else None for part in parts)
+        matrices = (self.damping, self.radiation, self.geometric)
+        subsets = (None if matrix is None else matrix[np.ix_(index, index)] for matrix in matrices)
+        damping, radiation, geometric = (matrix if matrix is not None and matrix.any() else None for matrix in subsets)
         omega, amplitude, approach, rotation = self.omega, self.amplitude, self.approach, self.rotation
         return TipModes(omega[index], amplitude[index], approach[index], rotation[index], damping, radiation, geometric)
 
-    def with_axial_modes(self, omega: Array, along: Array, radiation: Array | None = None) -> TipModes:
-        """These modes followed by n undamped axial modes of tip amplitude ``along``, (n,), 1/sqrt(kg).
+    def with_axial_modes(self, omega: Array, axial: Array, radiation: Array | None = None) -> TipModes:
+        """These modes followed by n undamped axial modes of tip amplitude ``axial``, (n,), 1/sqrt(kg).
 
         radiation: of the last of them, if they have a truncation correction.
         """
-        n, before = len(omega), len(self.omega)
-        own = None if self.radiation is None else np.pad(self.radiation, (0, n))
+        n, n_before = len(omega), len(self.omega)
+        bending = None if self.radiation is None else np.pad(self.radiation, (0, n))
         if radiation is not None:
-            theirs = np.pad(radiation, (before + n - len(radiation), 0))
-            own = theirs if own is None else own + theirs
+            axial_radiation = np.pad(radiation, (n_before + n - len(radiation), 0))
+            bending = axial_radiation if bending is None else bending + axial_radiation
         return TipModes(
             np.concatenate([self.omega, omega]),
-            np.concatenate([self.amplitude, np.column_stack([along, np.zeros(n)])]),
+            np.concatenate([self.amplitude, np.column_stack([axial, np.zeros(n)])]),
             np.concatenate([self.approach, np.zeros(n)]),
             np.concatenate([self.rotation, np.zeros(n)]),
             None if self.damping is None else np.pad(self.damping, (0, n)),
-            own,
+            bending,
             None if self.geometric is None else np.pad(self.geometric, (0, n)),
         )
 
@@ -84,15 +84,15 @@ class TipModes:
         """The modes for a centre-ball impact, where a lumped cue's coupling is 0: it changes sign with the offset."""
         if not np.any(self.amplitude[:, 0] * self.amplitude[:, 1]):
             return self
-        along, across = np.sqrt(np.sum(self.amplitude**2, axis=0))
-        return replace(self, amplitude=np.diag([along, across]), approach=np.array([1 / along, 0.0]))
+        axial, lateral = np.sqrt(np.sum(self.amplitude**2, axis=0))
+        return replace(self, amplitude=np.diag([axial, lateral]), approach=np.array([1 / axial, 0.0]))
 
 
 def lumped_tip_modes(cue: LumpedCue) -> TipModes:
     """The two modes of zero frequency of a lumped cue."""
     root = math.sqrt(cue.mass)
-    across = math.sqrt(1 / cue.end_mass - cue.coupling**2 * cue.mass)
-    amplitude = np.array([[1 / root, cue.coupling * root], [0.0, across]])
+    lateral = math.sqrt(1 / cue.end_mass - cue.coupling**2 * cue.mass)
+    amplitude = np.array([[1 / root, cue.coupling * root], [0.0, lateral]])
     return TipModes(np.zeros(2), amplitude, np.linalg.solve(amplitude.T, [1.0, 0.0]), np.zeros(2))
 
 
@@ -118,11 +118,11 @@ def side_modes(bending: Modes) -> TipModes:
     The first direction of the contact is that of the body's rebound, opposite to the deflection w of the beam; in the
     second the beam does not move.
     """
-    deflection, turning = bending.at_tip
+    deflection, rotation = bending.at_tip
     omega = np.concatenate([np.zeros(bending.rigid), bending.omega])
     damping, radiation = _resistances(bending, len(omega))
     amplitude = np.column_stack([-deflection, np.zeros(len(omega))])
-    return TipModes(omega, amplitude, np.zeros(len(omega)), turning, damping, radiation)
+    return TipModes(omega, amplitude, np.zeros(len(omega)), rotation, damping, radiation)
 
 
 def _resistances(bending: Modes, count: int) -> tuple[Array | None, Array | None]:
@@ -130,7 +130,7 @@ def _resistances(bending: Modes, count: int) -> tuple[Array | None, Array | None
     damping = None
     if bending.system.dashpots is not None:
         vectors = np.concatenate([bending.rigid_vectors, bending.vectors], axis=1)
-        own = vectors.T @ (bending.system.dashpots[:, None] * vectors)
-        damping = np.pad(own, (count - len(own), 0))
+        modal = vectors.T @ (bending.system.dashpots[:, None] * vectors)
+        damping = np.pad(modal, (count - len(modal), 0))
     radiation = None if bending.radiation is None else np.pad(bending.radiation, (count - len(bending.radiation), 0))
     return damping, radiation

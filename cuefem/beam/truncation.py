@@ -29,17 +29,17 @@ class TruncationCorrection(NamedTuple):
     radiation: Array
 
 
-def truncation_correction(mu: Array, participation: Array, *, shift: float, highest: float) -> TruncationCorrection:
+def truncation_correction(mu: Array, participation: Array, *, shift: float, cutoff: float) -> TruncationCorrection:
     """Correction for the truncated modes, from their mu = 1/(omega^2 + shift), descending, and their participation.
 
     participation: (modes, loads), the work of the loads on the modes, with q' (K + shift M) q = 1. `LANCZOS_STEPS`
     Lanczos steps from the static deflections match the first moments of the flexibility in mu. The chain ends in a
-    dashpot, like a matched transmission line: waves above the ``highest`` retained frequency, rad/s, leave the tip
-    without reflection.
+    dashpot, like a matched transmission line: waves above the ``cutoff``, the highest retained frequency, rad/s, leave
+    the tip without reflection.
     """
     weights = mu[:, None]
     basis = np.linalg.qr(np.concatenate([weights**step * participation for step in range(LANCZOS_STEPS)], axis=1))[0]
     t, mix = np.linalg.eigh(basis.T @ (weights * basis))
     t, mix = t[::-1], (mix / np.sqrt(t))[:, ::-1]
     ends = mix[-participation.shape[1] :]
-    return TruncationCorrection(np.sqrt(1 / t - shift), basis @ mix, TERMINATION_DASHPOT / highest * (ends.T @ ends))
+    return TruncationCorrection(np.sqrt(1 / t - shift), basis @ mix, TERMINATION_DASHPOT / cutoff * (ends.T @ ends))

@@ -16,7 +16,7 @@ SHAPE_ERROR = 3e-4
 # Few long elements need the fewest degrees of freedom.
 MAX_PHASE = 150.0  # phase of the waves on an element, rad
 MAX_ORDER = 110
-_GUESSES = np.geomspace(1e0, 1e9, 100)  # angular frequencies between which `mode_phases` interpolates, rad/s
+_FREQUENCIES = np.geomspace(1e0, 1e9, 100)  # angular frequencies between which `mode_phases` interpolates, rad/s
 
 
 def wave_phase(cue: Cue, omega: ArrayLike) -> Array:
@@ -30,8 +30,8 @@ def wave_phase(cue: Cue, omega: ArrayLike) -> Array:
     piece = np.arange(len(lengths))[:, None]
     s = cue.section_in(piece, lengths[:, None] * np.array([0.5 - 0.15**0.5, 0.5, 0.5 + 0.15**0.5]))
     shear, rotary = s.rhoA / s.kGA, s.rhoI / s.EI
-    split = np.sqrt((shear - rotary) ** 2 + 4 * s.rhoA / (s.EI * np.maximum(omega, 1e-9) ** 2))
-    branches = np.array([shear + rotary + split, np.maximum(shear + rotary - split, 0)])
+    root = np.sqrt((shear - rotary) ** 2 + 4 * s.rhoA / (s.EI * np.maximum(omega, 1e-9) ** 2))
+    branches = np.array([shear + rotary + root, np.maximum(shear + rotary - root, 0)])
     phase = omega * np.sqrt(branches / 2) @ (np.array([5, 8, 5]) / 18) * lengths
     return np.moveaxis(phase, -1, 1)
 
@@ -43,13 +43,13 @@ def modes_below(cue: Cue, omega: float) -> int:
 
 @functools.lru_cache(maxsize=32)
 def _log_phases(cue: Cue) -> Array:
-    """Logarithm of the total phase of all waves at `_GUESSES`; cached, because a sweep meshes one cue many times."""
-    return np.asarray(np.log(wave_phase(cue, _GUESSES).sum(axis=(0, 1))))
+    """Logarithm of the total phase of all waves at `_FREQUENCIES`; cached: a sweep meshes one cue many times."""
+    return np.asarray(np.log(wave_phase(cue, _FREQUENCIES).sum(axis=(0, 1))))
 
 
 def mode_phases(cue: Cue, count: int) -> Array:
     """Phase over each segment, rad, of the shortest waves in the ``count`` lowest flexible modes."""
-    highest = math.exp(np.interp(math.log((count + 1) * math.pi), _log_phases(cue), np.log(_GUESSES)))
+    highest = math.exp(np.interp(math.log((count + 1) * math.pi), _log_phases(cue), np.log(_FREQUENCIES)))
     return np.asarray(wave_phase(cue, highest)[0])  # the first branch has the shortest waves
 
 
@@ -65,8 +65,8 @@ def orders_for(phase: Array, taper: Array) -> NDArray[np.intp]:
     n = np.arange(2, MAX_ORDER + 2)[:, None]
     ratio = np.maximum(2 * n / np.maximum(phase, 1e-9), 1 + 1e-9)
     slope = np.sqrt(1 - 1 / ratio**2)
-    left = 2 * np.exp(n * (slope - np.arccosh(ratio))) / np.sqrt(2 * np.pi * n * slope)
-    waves = 1 + np.argmax(left < SHAPE_ERROR, axis=0)
+    error = 2 * np.exp(n * (slope - np.arccosh(ratio))) / np.sqrt(2 * np.pi * n * slope)
+    order = 1 + np.argmax(error < SHAPE_ERROR, axis=0)
     root = np.sqrt(taper)
-    cone = np.ceil(-math.log(SHAPE_ERROR) / np.log((root + 1) / np.maximum(root - 1, 1e-9)))
-    return np.minimum(np.maximum(waves, cone), MAX_ORDER).astype(np.intp)
+    cone_order = np.ceil(-math.log(SHAPE_ERROR) / np.log((root + 1) / np.maximum(root - 1, 1e-9)))
+    return np.minimum(np.maximum(order, cone_order), MAX_ORDER).astype(np.intp)

@@ -39,13 +39,13 @@ class _PointTerms:
         self.stiffness, self.mass, self.dashpot = (sp.lil_matrix((size, size)) for _ in range(3))
         self.source = np.arange(size)  # the degree of freedom that each is equal to; -1 where clamped
 
-    def at(self, x: float) -> Any:
+    def dofs_at(self, x: float) -> Any:
         """Degrees of freedom (w, theta) of the nodes at ``x``: (1 or 2, 2)."""
         return self.dofs[abs(self.x - x) < POSITION_TOLERANCE * self.cue.length]
 
     def add(self, x: float, kind: str, *values: float) -> None:
         """Springs, masses or dashpots to the ground, for deflection and rotation; inf clamps."""
-        for dof, value in zip(self.at(x)[-1], values, strict=True):
+        for dof, value in zip(self.dofs_at(x)[-1], values, strict=True):
             if np.isinf(value):
                 self.source[dof] = -1
             else:
@@ -55,7 +55,7 @@ class _PointTerms:
         """Springs between the two sides of a joint; no jump if the compliance is negligible."""
         section = self.cue.section(min(x, self.cue.length))
         stiffness = (section.kGA, section.EI)
-        for (before, after), compliance, rigidity in zip(self.at(x).T, compliances, stiffness, strict=True):
+        for (before, after), compliance, rigidity in zip(self.dofs_at(x).T, compliances, stiffness, strict=True):
             if compliance * rigidity > MIN_COMPLIANCE * self.cue.length:
                 self.stiffness[np.ix_([before, after], [before, after])] += np.array([[1, -1], [-1, 1]]) / compliance
             else:
@@ -80,13 +80,13 @@ def assemble(
         effect.add_to(points)  # type: ignore[arg-type]
     clamped = points.source < 0
     free, column = np.unique(points.source[~clamped], return_inverse=True)
-    spread = sp.csc_matrix((np.ones(len(column)), (np.flatnonzero(~clamped), column)), (basis.N, len(free)))
+    expansion = sp.csc_matrix((np.ones(len(column)), (np.flatnonzero(~clamped), column)), (basis.N, len(free)))
     coefficients = {name: fields[name] for name in ("EI", "kGA", "rhoA", "rhoI")}
     K, M = (
         stiffness.assemble(basis, **coefficients) + points.stiffness,
         inertia.assemble(basis, **coefficients) + points.mass,
     )
-    return sp.csc_matrix(spread.T @ K @ spread), sp.csc_matrix(spread.T @ M @ spread)
+    return sp.csc_matrix(expansion.T @ K @ expansion), sp.csc_matrix(expansion.T @ M @ expansion)
 
 
 def frequencies(K: sp.csc_matrix, M: sp.csc_matrix, *, shift: float) -> Array:

@@ -330,7 +330,7 @@ def _position_modes(scene: SideStrike, at: Resolution | None) -> TipModes:
     fineness = at or mode_count_for(scene.cue, scene.contact_time)
     system = assemble(scene.cue, fineness, scene.cue_effects, positions=[scene.position])
     count = (fineness if isinstance(fineness, int) else fineness.modes) + 2 - system.rigid_basis.shape[1]
-    modes = solve(system, count, corrected=int(at is None), position=scene.position)
+    modes = solve(system, count, n_corrected=int(at is None), position=scene.position)
     place = side_modes(modes)
     for effect in scene.cue_effects:
         place = effect.damp(place, ((scene.cue, modes),))

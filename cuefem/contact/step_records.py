@@ -256,7 +256,7 @@ def _failure(model: ContactModel, c: KernelContact) -> Exception:
     if c.status == _NO_MEMORY:
         return MemoryError("no memory for the steps of a contact")
     if c.status == _INDENTATION_OUT_OF_RANGE and isinstance(model.law, LeatherLaw):
-        return model.law.too_deep(c.depth)
+        return model.law.out_of_range(c.depth)
     if c.status == _SLOPE_OUT_OF_RANGE:
         return SlopeOutOfRange(
             f"the axial force of {c.axial_force:.4g} N bends the shaft by {c.max_slope:.3g} rad at its tip, beyond the "

@@ -19,8 +19,8 @@ class TipModel:
 
     diameter: m. dome_radius: m; 0 for a flat tip. rim: the contact's angle at which the dome ends, rad; beyond it the
     ball rolls on an edge. surface_restitution: square root of the part of the tangential strain energy that the leather
-    returns. lever: displacement (u, w) of the contact per unit rotation of the tip's end section, m, at an angle >= 0,
-    rad. law: the forces on a ball by its radius, m, the offset b/R >= 0 and the restitution.
+    returns. moment_arm: displacement (u, w) of the contact per unit rotation of the tip's end section, m, at an angle
+    >= 0, rad. law: the forces on a ball by its radius, m, the offset b/R >= 0 and the restitution.
     """
 
     diameter: float
@@ -86,9 +86,9 @@ class ContactTerms:
         """Add a rigid dome of ``radius``, m, on the end section; radii add, and so do their moment arms."""
         self.dome_radii.append(radius)
 
-    def add_compliance(self, part: float) -> None:
+    def add_compliance(self, value: float) -> None:
         """Add tangential compliance, relative to the normal loading compliance; compliances in series add."""
-        self.compliances.append(part)
+        self.compliances.append(value)
 
     def set_once(self, name: str, value: Any) -> None:
         """Set a term that a contact has `ONCE`; ValueError the second time."""

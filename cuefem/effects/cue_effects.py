@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from cuefem.beam.tip_modes import TipModes
     from cuefem.effects.rod_modes import RodModes
 
-SHORTEST_REST = 0.05  # m: shortest butt behind a drawing that is a rod
-BUTT = "cue_length, butt_diameter and wave_speed"
+MIN_BUTT_LENGTH = 0.05  # m: shortest butt behind a drawing that is a rod
+BUTT_FIELDS = "cue_length, butt_diameter and wave_speed"
 
 
 @dataclass(frozen=True)
@@ -253,9 +253,9 @@ class StructuralDamping(CueEffect):
 
     def damp(self, tip: TipModes, families: Sequence[tuple[Cue, Modes | RodModes]]) -> TipModes:
         """The tip modes with every vibrating mode damped."""
-        from cuefem.effects.damping import damped  # loaded when used: it solves the beam
+        from cuefem.effects.damping import damp_tip_modes  # loaded when used: it solves the beam
 
-        return damped(tip, families, loss=self.loss)
+        return damp_tip_modes(tip, families, loss=self.loss)
 
 
 @dataclass(frozen=True)
@@ -320,29 +320,29 @@ class AxialWaves(CueEffect):
     def __post_init__(self) -> None:
         super().__post_init__()
         if len({value is None for value in (self.cue_length, self.butt_diameter, self.wave_speed)}) > 1:
-            raise ValueError(f"AxialWaves must be given {BUTT} together, or none of them; got {self}")
+            raise ValueError(f"AxialWaves must be given {BUTT_FIELDS} together, or none of them; got {self}")
 
     def with_butt(self, cue: Cue) -> Cue:
         """The cue with its butt as a segment; unchanged without a butt, or with one that is too short."""
         if self.cue_length is None or self.butt_diameter is None or self.wave_speed is None or not cue.body_mass:
             return cue
         length, last = self.cue_length - cue.length, cue.segments[-1]
-        if length < SHORTEST_REST:
+        if length < MIN_BUTT_LENGTH:
             return cue
         first = last.butt_diameter
-        square = first**2 + first * self.butt_diameter + self.butt_diameter**2
-        rho = cue.body_mass / (math.pi / 12 * square * length)
-        stiffer = rho * self.wave_speed**2 / last.material.E
-        wood = replace(last.material, E=stiffer * last.material.E, G=stiffer * last.material.G, rho=rho)
-        rest = Segment(length, first, self.butt_diameter, wood)
-        return replace(cue, segments=(*cue.segments, rest), body_mass=0.0)
+        area_ratio = first**2 + first * self.butt_diameter + self.butt_diameter**2
+        rho = cue.body_mass / (math.pi / 12 * area_ratio * length)
+        modulus_ratio = rho * self.wave_speed**2 / last.material.E
+        wood = replace(last.material, E=modulus_ratio * last.material.E, G=modulus_ratio * last.material.G, rho=rho)
+        butt = Segment(length, first, self.butt_diameter, wood)
+        return replace(cue, segments=(*cue.segments, butt), body_mass=0.0)
 
     def axial_modes(self, bending: Modes, cue: Cue, effects: Sequence[CueEffect]) -> tuple[RodModes, ...]:
         """The rod modes."""
         from cuefem.effects.rod_modes import rod_modes  # loaded when used: it solves the beam
 
-        rod, tailed = self.with_butt(cue), bending.radiation is not None
-        return (rod_modes(rod, point_masses_on(rod, effects), below=bending.highest, tailed=tailed),)
+        rod, n_corrected = self.with_butt(cue), int(bending.radiation is not None)
+        return (rod_modes(rod, point_masses_on(rod, effects), cutoff=bending.cutoff, n_corrected=n_corrected),)
 
 
 @dataclass(frozen=True)

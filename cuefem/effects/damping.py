@@ -15,7 +15,7 @@ from cuefem.cue.geometry import SegmentRows, section_properties
 from cuefem.effects.rod_modes import RodModes
 
 
-def damped(tip: TipModes, families: Sequence[tuple[Cue, Modes | RodModes]], *, loss: float | None) -> TipModes:
+def damp_tip_modes(tip: TipModes, families: Sequence[tuple[Cue, Modes | RodModes]], *, loss: float | None) -> TipModes:
     """Tip modes in which each vibrating mode k is damped at the rate eta_k omega_k.
 
     families: the vibrating modes of the tip, one family after the other, each with its cue. loss: loss factor used for
@@ -35,7 +35,7 @@ def section_loss(cue: Cue, points: Points, loss: float | None) -> Section:
     """
     rows = np.array([_lossy(segment, loss) for segment in cue.segments]).T
     lossy = section_properties(SegmentRows(*rows[:, points.segment]), points.from_segment_end)
-    return Section(*(part / whole for part, whole in zip(lossy, points.section, strict=True)))
+    return Section(*(imaginary / real for imaginary, real in zip(lossy, points.section, strict=True)))
 
 
 def _lossy(segment: Segment, loss: float | None) -> Array:

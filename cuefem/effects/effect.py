@@ -128,14 +128,14 @@ def acting_on_cue(effects: Iterable[Effect]) -> tuple[CueEffect, ...]:
 def effect_kinds() -> dict[str, type[Effect]]:
     """Every effect by its name, the ``type`` in a file; without base classes."""
 
-    def below(kind: type[Effect]) -> Iterator[type[Effect]]:
+    def subclasses(kind: type[Effect]) -> Iterator[type[Effect]]:
         children = kind.__subclasses__()
         for child in children:
-            yield from below(child)
+            yield from subclasses(child)
         if not children and is_dataclass(kind):
             yield kind
 
-    return {kind.__name__: kind for kind in sorted(below(Effect), key=lambda kind: kind.__name__)}
+    return {kind.__name__: kind for kind in sorted(subclasses(Effect), key=lambda kind: kind.__name__)}
 
 
 def check_effects(cue: Cue | LumpedCue, effects: Any, scene: str = "Scene") -> tuple[Effect, ...]:

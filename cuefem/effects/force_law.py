@@ -80,7 +80,7 @@ class LeatherLaw:
     depth_limit: float
 
     @classmethod
-    def fitted(cls, depth: Array, force: Array, shear: Array, restitution: float) -> LeatherLaw:
+    def fit(cls, depth: Array, force: Array, shear: Array, restitution: float) -> LeatherLaw:
         """The law through computed curves, (n,), ascending, without zero, by least squares of relative differences.
 
         depth, force: of a central impact, m and N. shear: tangential stiffness of the patch at that depth, N/m.
@@ -125,13 +125,13 @@ class LeatherLaw:
             if abs(step) < 1e-12:
                 break
         if max_indentation > self.depth_limit:
-            raise self.too_deep(max_indentation)
+            raise self.out_of_range(max_indentation)
         cosine, sine = np.cos(_ANGLES), np.sin(_ANGLES)
-        left = self.work(max_indentation) - self.work(max_indentation * cosine**2)
-        rates = 2 * max_indentation * cosine * sine / np.sqrt(2 * left / mass)
-        return max_indentation, float(rates @ _WEIGHTS) * math.pi / 4
+        kinetic_energy = self.work(max_indentation) - self.work(max_indentation * cosine**2)
+        slowness = 2 * max_indentation * cosine * sine / np.sqrt(2 * kinetic_energy / mass)
+        return max_indentation, float(slowness @ _WEIGHTS) * math.pi / 4
 
-    def too_deep(self, depth: float) -> IndentationOutOfRange:
+    def out_of_range(self, depth: float) -> IndentationOutOfRange:
         """The error of an indentation beyond the law's range."""
         return IndentationOutOfRange(
             f"tip too soft or stroke too fast: indentation {1e3 * depth:.3g} mm exceeds the valid range "

@@ -147,8 +147,8 @@ class LeatherTip(CueEffect):
     --------
     >>> import cuefem as cf
     >>> tip = cf.LeatherTip(height=6e-3, dome_radius=9.5e-3, E=100e6)
-    >>> give = tip.compliance(diameter=12.75e-3, offset=0.375, patch=2e-3)
-    >>> bool(give[1, 1] > 2 * give[0, 0])
+    >>> compliance = tip.compliance(diameter=12.75e-3, offset=0.375, patch=2e-3)
+    >>> bool(compliance[1, 1] > 2 * compliance[0, 0])
     True
     """
 
@@ -174,7 +174,7 @@ class LeatherTip(CueEffect):
         super().__post_init__()
         check_kind("LeatherTip.layers", self.layers, (tuple, list))
         object.__setattr__(self, "layers", tuple(self.layers))
-        low, high = (part * self.E for part in MODULI)
+        low, high = (bound * self.E for bound in MODULI)
         for i, layer in enumerate(self.layers):
             check_kind(f"LeatherTip.layers[{i}]", layer, TipLayer)
             if not low <= layer.E <= high:
@@ -222,7 +222,7 @@ class LeatherTip(CueEffect):
 
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The complete tip model, and the rolling contact."""
-        if terms.tip_diameter is not None:  # a lumped cue is refused in words
+        if terms.tip_diameter is not None:  # `check_effects` rejects a lumped cue
             terms.set_once("tip", tip_model(self, self.diameter_on(terms.tip_diameter)))
         if self.rolling:
             terms.set_once("turns", True)
@@ -246,19 +246,19 @@ class LeatherTip(CueEffect):
                 f"dome radius {1e3 * self.dome_radius:.4g} mm is too small: a {1e3 * diameter:.4g} mm tip "
                 f"needs at least {500 * diameter:.4g} mm"
             )
-        deep = self._drop(diameter / 2)
-        if self.height <= deep:
+        dome = self._dome_depth(diameter / 2)
+        if self.height <= dome:
             raise ValueError(
-                f"a leather tip on {1e3 * diameter:.4g} mm must be higher than {1e3 * deep:.4g} mm, the depth of its "
+                f"a leather tip on {1e3 * diameter:.4g} mm must be higher than {1e3 * dome:.4g} mm, the depth of its "
                 f"dome; got {1e3 * self.height:.4g} mm"
             )
-        below = math.fsum(layer.height for layer in self.layers)
-        if self.layers and below > self.height - deep - MIN_SIDE * diameter:
+        layers = math.fsum(layer.height for layer in self.layers)
+        if self.layers and layers > self.height - dome - MIN_SIDE * diameter:
             raise ValueError(
-                f"layers of a leather tip must be at most {1e3 * (self.height - deep - MIN_SIDE * diameter):.4g} mm "
-                f"high together, to end below its dome; got {1e3 * below:.4g} mm"
+                f"layers of a leather tip must be at most {1e3 * (self.height - dome - MIN_SIDE * diameter):.4g} mm "
+                f"high together, to end below its dome; got {1e3 * layers:.4g} mm"
             )
-        low, high = (part * diameter for part in HEIGHTS)
+        low, high = (bound * diameter for bound in HEIGHTS)
         if not low * (1 - 1e-9) <= self.height <= high * (1 + 1e-9):
             raise ValueError(
                 f"a leather tip on {1e3 * diameter:.4g} mm must be {1e3 * low:.3g} to {1e3 * high:.3g} mm high; "
@@ -279,10 +279,10 @@ class LeatherTip(CueEffect):
             Mass of the domed cylinder, kg, with its layers.
         """
         self.check_diameter(diameter)
-        deep, rim = self._drop(diameter / 2), diameter / 2
-        dome = math.pi * deep * (3 * rim**2 + deep**2) / 6
-        more = math.fsum((layer.rho - self.rho) * layer.height for layer in self.layers)  # instead of leather
-        return self.rho * (math.pi * rim**2 * (self.height - deep) + dome) + math.pi * rim**2 * more
+        depth, rim = self._dome_depth(diameter / 2), diameter / 2
+        cap = math.pi * depth * (3 * rim**2 + depth**2) / 6
+        excess = math.fsum((layer.rho - self.rho) * layer.height for layer in self.layers)  # instead of leather
+        return self.rho * (math.pi * rim**2 * (self.height - depth) + cap) + math.pi * rim**2 * excess
 
     def moment_arm(self, phi: float, diameter: float) -> tuple[float, float]:
         """Moment arm of the contact about the end of the ferrule.
@@ -300,8 +300,8 @@ class LeatherTip(CueEffect):
             Displacement (u, w) of the contact per unit rotation of the ferrule's end section, m: along the cue and
             across it. On the dome (-r sin(phi), -(h - r (1 - cos(phi)))), on the rim (-D/2, -(h - depth of the dome)).
         """
-        off = min(self._off_axis(phi), diameter / 2)
-        return -math.copysign(off, phi), -(self.height - self._drop(off))
+        distance = min(self._axis_distance(phi), diameter / 2)
+        return -math.copysign(distance, phi), -(self.height - self._dome_depth(distance))
 
     def compliance(self, diameter: float, offset: float, patch: ArrayLike) -> Array:
         """Compliance of a patch under Hertz's pressure: its mean displacement weighted with the load.
@@ -383,33 +383,31 @@ class LeatherTip(CueEffect):
         half-space, 0.05 (1 - nu/2)/(G a); less of it on thin leather and for a wide patch, more on a dome
         (`cuefem.solid.tip_table.rigid_patch_gain`).
         """
-        below = self.height - self._drop(self._place(diameter, offset)[0] * diameter / 2)
-        give = self._compliance(diameter, offset, RADII[1:])[:, 1, 1]
-        give -= rigid_patch_gain(self.nu, self._curvature(diameter), below / diameter, RADII[1:])
-        stiffness = np.maximum.accumulate(1 / give)  # near the rim it levels off, to a thousandth
+        height = self.height - self._dome_depth(self._position(diameter, offset)[0] * diameter / 2)
+        compliance = self._compliance(diameter, offset, RADII[1:])[:, 1, 1]
+        compliance -= rigid_patch_gain(self.nu, self._curvature(diameter), height / diameter, RADII[1:])
+        stiffness = np.maximum.accumulate(1 / compliance)  # near the rim it levels off, to a thousandth
         return RADII * diameter, np.append(0.0, self.E * diameter * stiffness)
 
-    def _drop(self, off: float) -> float:
+    def _dome_depth(self, distance: float) -> float:
         """Depth of the dome below its apex at a distance from the axis, m."""
-        return off**2 / self.dome_radius / (1 + math.sqrt(max(1 - (off / self.dome_radius) ** 2, 0.0)))
+        return distance**2 / self.dome_radius / (1 + math.sqrt(max(1 - (distance / self.dome_radius) ** 2, 0.0)))
 
-    def _off_axis(self, phi: float) -> float:
+    def _axis_distance(self, phi: float) -> float:
         """Distance of the contact from the axis on a dome without a rim, m."""
         return abs(self.dome_radius * math.sin(phi)) if phi else 0.0
 
     def _table(self, diameter: float) -> TipTable:
         self.check_diameter(diameter)
-        own = self._own(diameter)
-        return (
-            table_of_tip(self.height / diameter, self._curvature(diameter), self.nu)
-            if own is None
-            else cached_table(own)
-        )
+        tip = self._untabulated_tip(diameter)
+        if tip is not None:
+            return cached_table(tip)
+        return table_of_tip(self.height / diameter, self._curvature(diameter), self.nu)
 
     def _curvature(self, diameter: float) -> float:
         return min(diameter / self.dome_radius, CURVATURE[1])
 
-    def _own(self, diameter: float) -> UntabulatedTip | None:
+    def _untabulated_tip(self, diameter: float) -> UntabulatedTip | None:
         """The tip, lengths over its diameter, if the table does not cover it; else None."""
         height = self.height / diameter
         if not self.layers and is_tabulated(height, self.nu):
@@ -431,34 +429,34 @@ class LeatherTip(CueEffect):
             False if the next use takes about ten seconds of computation.
         """
         self.check_diameter(diameter)
-        own = self._own(diameter)
-        return own is None or read_table(own) is not None
+        tip = self._untabulated_tip(diameter)
+        return tip is None or read_table(tip) is not None
 
-    def _place(self, diameter: float, offset: float) -> tuple[float, float]:
+    def _position(self, diameter: float, offset: float) -> tuple[float, float]:
         """Distance of the patch's centre from the axis over the tip's radius, and by how much the contact's angle
         exceeds that of the dome there, rad."""
         Quantity("", "(-1, 1)").check("offset", offset)
         phi, curvature = math.asin(abs(offset)), diameter / self.dome_radius
-        place = min(2 * self._off_axis(phi) / diameter, max_position(min(curvature, CURVATURE[1])))
-        return place, phi - math.asin(min(curvature * place / 2, 1.0))
+        position = min(2 * self._axis_distance(phi) / diameter, max_position(min(curvature, CURVATURE[1])))
+        return position, phi - math.asin(min(curvature * position / 2, 1.0))
 
     def _compliance(self, diameter: float, offset: float, radii: Array) -> Array:
         """E D times the compliance at radii over D."""
-        place, missing = self._place(diameter, offset)
-        matrices = compliance(self._table(diameter), place, radii)
-        turn = np.array([[math.cos(missing), -math.sin(missing)], [math.sin(missing), math.cos(missing)]])
-        matrices = turn @ matrices @ turn.T
+        position, tilt = self._position(diameter, offset)
+        matrices = compliance(self._table(diameter), position, radii)
+        rotation = np.array([[math.cos(tilt), -math.sin(tilt)], [math.sin(tilt), math.cos(tilt)]])
+        matrices = rotation @ matrices @ rotation.T
         matrices = (matrices + matrices.transpose(0, 2, 1)) / 2  # of rounding
         return matrices * np.array([[1, math.copysign(1, offset)], [math.copysign(1, offset), 1]])
 
 
 def tip_model(tip: LeatherTip, diameter: float) -> TipModel:
     """Tip model of a leather tip of this diameter, m."""
-    ends = tip.dome_radius > diameter / 2  # the dome ends at a rim
+    has_rim = tip.dome_radius > diameter / 2  # the dome ends at a rim
     return TipModel(
         diameter=diameter,
         dome_radius=tip.dome_radius if math.isfinite(tip.dome_radius) else 0.0,
-        rim=math.asin(diameter / 2 / tip.dome_radius) if ends else math.pi / 2,
+        rim=math.asin(diameter / 2 / tip.dome_radius) if has_rim else math.pi / 2,
         surface_restitution=tip.surface_restitution,
         moment_arm=lambda phi: tip.moment_arm(phi, diameter),
         law=lambda ball_radius, offset, restitution: _law(tip, diameter, ball_radius, offset, restitution),
@@ -466,18 +464,19 @@ def tip_model(tip: LeatherTip, diameter: float) -> TipModel:
 
 
 @lru_cache(maxsize=64)
-def _pressed(tip: LeatherTip, diameter: float, ball_radius: float) -> tuple[Array, Array, Array]:
+def _loading_curve(tip: LeatherTip, diameter: float, ball_radius: float) -> tuple[Array, Array, Array]:
     """Patch radius, indentation and force of a central impact, without zero, shared by the laws of all offsets."""
     patch, depth, force = tip.head_on(diameter, ball_radius)
-    for part in (patch, depth, force):
-        part.flags.writeable = False
+    for values in (patch, depth, force):
+        values.flags.writeable = False
     return patch[1:], depth[1:], force[1:]
 
 
 @lru_cache(maxsize=256)
 def _law(tip: LeatherTip, diameter: float, ball_radius: float, offset: float, restitution: float) -> LeatherLaw:
     """The force-indentation law of a tip."""
-    patch, depth, force = _pressed(tip, diameter, ball_radius)
+    patch, depth, force = _loading_curve(tip, diameter, ball_radius)
     radius, shear = tip.shear_stiffness(diameter, offset)
-    of_patch = patch * np.interp(patch, radius[1:], shear[1:] / radius[1:])  # nearly straight, other than the stiffness
-    return LeatherLaw.fitted(depth, force, of_patch, restitution)
+    # stiffness over radius is nearly straight
+    stiffness = patch * np.interp(patch, radius[1:], shear[1:] / radius[1:])
+    return LeatherLaw.fit(depth, force, stiffness, restitution)

@@ -16,10 +16,10 @@ from cuefem.cue import Array, Cue, Section
 
 @dataclass(frozen=True, eq=False)
 class RodModes(EigenSolution):
-    """Flexible rod modes of a cue: of the chain of elements behind the leather, felt by a force at the tip.
+    """Flexible rod modes of a cue, of the chain of elements behind the leather, and their participation at the tip.
 
-    element_dofs: those of each element
-    in the chain, from the element ``front`` on; what lies before moves as one piece.
+    element_dofs: degrees of freedom of each element in the chain, from the element ``front`` on; the elements before it
+    move as one rigid body.
     """
 
     cue: Cue
@@ -34,51 +34,51 @@ class RodModes(EigenSolution):
 
     def loss_factors(self, loss: Section) -> Array:
         """Loss factor of every mode, (n,), from the loss factor of EA at the Gauss points, (points,)."""
-        lost, stiffness = np.zeros(len(self.omega)), loss.EA * self.points.section.EA * self.points.weights
-        for e, own in enumerate(self.element_dofs, start=self.front):
-            strains = _rod_basis(self.points, e)[1].T @ self.vectors[own]
-            lost += stiffness[self.points.element(e)] @ strains**2
-        return lost / self.omega**2
+        loss_sum, stiffness = np.zeros(len(self.omega)), loss.EA * self.points.section.EA * self.points.weights
+        for e, dofs in enumerate(self.element_dofs, start=self.front):
+            strains = _rod_basis(self.points, e)[1].T @ self.vectors[dofs]
+            loss_sum += stiffness[self.points.element(e)] @ strains**2
+        return loss_sum / self.omega**2
 
 
-def rod_modes(cue: Cue, masses: Sequence[tuple[float, float]], *, below: float, tailed: bool = False) -> RodModes:
-    """Rod modes up to the angular frequency ``below``, rad/s, of a cue that is free at both ends.
+def rod_modes(cue: Cue, masses: Sequence[tuple[float, float]], *, cutoff: float, n_corrected: int = 0) -> RodModes:
+    """Rod modes up to the angular frequency ``cutoff``, rad/s, of a cue that is free at both ends.
 
     masses: (position m, mass kg) of each lump. Leather drawn at the tip (`Cue.leather_height`) moves rigidly with it.
-    tailed: whether to add the tail of the modes left out. The cost is one symmetric eigenproblem with as many
-    element_dofs as the elements' orders add up to.
+    n_corrected: number of loads with a truncation correction, 1 or 0. The cost is one symmetric eigenproblem with as
+    many degrees of freedom as the elements' orders add up to.
     """
     lengths, pieces = np.diff(cue.nodes), np.arange(len(cue.segments))
     middle = cue.section_in(pieces, lengths / 2)
     # about pi^2 EA/(rhoA L^2), the lowest free mode of the uniform rod with the mean stiffness and mass
     shift = float(10 * (lengths @ middle.EA) / (lengths @ middle.rhoA) / cue.length**2)
-    phases = lengths * np.sqrt(middle.rhoA / middle.EA)  # at 1 rad/s; the tail takes waves of twice ``below``
-    mesh = mesh_for_phases(cue, phases * max(2 * below, 4 * shift**0.5), [x for x, _ in masses])
+    phases = lengths * np.sqrt(middle.rhoA / middle.EA)  # at 1 rad/s; the correction needs waves of twice the cutoff
+    mesh = mesh_for_phases(cue, phases * max(2 * cutoff, 4 * shift**0.5), [x for x, _ in masses])
     points, front, orders = gauss_points(cue, mesh), mesh.node(cue.leather_height), mesh.orders
     EA, rhoA = points.section.EA * points.weights, points.section.rhoA * points.weights
     first = np.append(np.zeros(front, int), np.append(0, np.cumsum(orders[front:])))  # of each element, and the butt
     element_dofs = [first[e] + np.arange(orders[e] + 1) for e in range(front, len(orders))]
-    stiff, heavy = [], []
-    for e, own in enumerate(element_dofs, start=front):
+    stiffness, inertia = [], []
+    for e, dofs in enumerate(element_dofs, start=front):
         rows, (values, slopes) = points.element(e), _rod_basis(points, e)
-        stiff.append((own, (slopes * EA[rows]) @ slopes.T))
-        heavy.append((own, (values * rhoA[rows]) @ values.T))
+        stiffness.append((dofs, (slopes * EA[rows]) @ slopes.T))
+        inertia.append((dofs, (values * rhoA[rows]) @ values.T))
     lumps = np.zeros(first[-1] + 1)
     lumps[0] = rhoA[: points.first_point[front]].sum()
-    for x, lump in masses:
-        lumps[first[mesh.node(x)]] += lump
+    for x, mass in masses:
+        lumps[first[mesh.node(x)]] += mass
     # jumps of the section and lumps may let a few more modes lie below than the phase says
-    count = min(int(2 * below * phases.sum() / np.pi) + 3 + len(masses), len(lumps) - 1)
+    count = min(int(2 * cutoff * phases.sum() / np.pi) + 3 + len(masses), len(lumps) - 1)
     dense = is_dense_faster(len(lumps), count)
-    K, M = assemble_blocks(stiff, np.zeros(len(lumps)), dense), assemble_blocks(heavy, lumps, dense)
-    found = solve_eigenproblem(
-        K, M, np.eye(len(lumps), 1), shift=shift, rigid=1, count=count, below=below, corrected=int(tailed)
+    K, M = assemble_blocks(stiffness, np.zeros(len(lumps)), dense), assemble_blocks(inertia, lumps, dense)
+    solution = solve_eigenproblem(
+        K, M, np.eye(len(lumps), 1), shift=shift, rigid=1, count=count, cutoff=cutoff, n_corrected=n_corrected
     )
-    return RodModes(**vars(found), cue=cue, points=points, front=front, element_dofs=element_dofs)
+    return RodModes(**vars(solution), cue=cue, points=points, front=front, element_dofs=element_dofs)
 
 
 def _rod_basis(points: Points, e: int) -> tuple[Array, Array]:
-    """Displacement and strain of an element's element_dofs, tip end, bubbles, butt end: (order + 1, q) each."""
+    """Displacement and strain of an element's degrees of freedom, tip end, bubbles, butt end: (order + 1, q) each."""
     functions = np.r_[0, 2 : points.mesh.orders[e] + 1, 1]
     values, slopes = points.line_basis(e)
     return values[functions], slopes[functions]

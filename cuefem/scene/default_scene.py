@@ -108,8 +108,8 @@ def without_leather(cue: Cue) -> Cue:
     """The cue without the leather that is drawn at its tip (`Cue.leather_height`)."""
     if not cue.leather_height:
         return cue
-    first = next(i for i, segment in enumerate(cue.segments) if segment.material.E >= MAX_LEATHER_MODULUS)
-    return replace(cue, segments=cue.segments[first:])
+    front = next(i for i, segment in enumerate(cue.segments) if segment.material.E >= MAX_LEATHER_MODULUS)
+    return replace(cue, segments=cue.segments[front:])
 
 
 def default_tip(cue: Cue, game: str = DEFAULT_GAME) -> LeatherTip:
@@ -181,10 +181,10 @@ def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = 
     check_kind("usual_scene cue", cue, Cue)
     if game == KIM and tip is None:
         return Scene(cue)
-    known = _game(game)
-    effects = (default_tip(cue, game) if tip is None else tip, *known.effects)
-    stroke = Stroke(known.speed, known.offset)
-    return Scene(without_leather(cue), known.ball, known.tip_with(effects), stroke, effects)
+    defaults = _game(game)
+    effects = (default_tip(cue, game) if tip is None else tip, *defaults.effects)
+    stroke = Stroke(defaults.speed, defaults.offset)
+    return Scene(without_leather(cue), defaults.ball, defaults.tip_with(effects), stroke, effects)
 
 
 def _game(name: str) -> Game:

@@ -223,8 +223,8 @@ class Scene:
         if self.lumped is not None:
             return replace(self, effects=tuple(effect for effect in self.effects if not effect.at_tip))
         effects = tuple(chain.from_iterable(effect.without_tip(self.shaft) for effect in self.effects))
-        timed = self.tip if self.contact_terms.tip is None else replace(self.tip, contact_time=self.contact_time)
-        return replace(self, tip=timed, effects=effects)
+        tip = self.tip if self.contact_terms.tip is None else replace(self.tip, contact_time=self.contact_time)
+        return replace(self, tip=tip, effects=effects)
 
     @property
     def contact_terms(self) -> ContactTerms:
@@ -303,7 +303,7 @@ class Scene:
         """The force-indentation law of the `LeatherTip` on this cue and ball; ValueError without one."""
         tip = self.contact_terms.tip
         if tip is None:
-            raise ValueError("Scene.effects must hold a LeatherTip, whose law is required; got none")
+            raise ValueError("Scene.effects must hold a LeatherTip for its force-indentation law; got none")
         return tip.law(self.ball.radius, abs(offset), restitution)
 
     @property
@@ -336,18 +336,18 @@ def _loading_phase(law: LeatherLaw, mass: float, speed: float) -> tuple[float, f
     return law.central_impact(mass, speed)
 
 
-def equal_fields(this: Any, other: Any) -> bool:
+def equal_fields(first: Any, second: Any) -> bool:
     """``__eq__`` of dataclasses with arrays: whether two of one class have equal fields."""
-    if type(this) is not type(other):
+    if type(first) is not type(second):
         return NotImplemented
-    pairs = ((getattr(this, field.name), getattr(other, field.name)) for field in fields(this))
+    pairs = ((getattr(first, field.name), getattr(second, field.name)) for field in fields(first))
     return all(_equal(a, b) for a, b in pairs)
 
 
-def _equal(this: Any, other: Any) -> bool:
-    if isinstance(this, dict) and isinstance(other, dict):
-        return this.keys() == other.keys() and all(_equal(this[name], other[name]) for name in this)
-    return np.array_equal(this, other) if isinstance(this, np.ndarray) else bool(np.all(this == other))
+def _equal(first: Any, second: Any) -> bool:
+    if isinstance(first, dict) and isinstance(second, dict):
+        return first.keys() == second.keys() and all(_equal(first[name], second[name]) for name in first)
+    return np.array_equal(first, second) if isinstance(first, np.ndarray) else bool(np.all(first == second))
 
 
 @dataclass(frozen=True, eq=False)

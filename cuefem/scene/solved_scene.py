@@ -46,22 +46,22 @@ def strike_mode_count(scene: Scene) -> int:
     """Default number of modes of a strike."""
     has_tip_model = scene.contact_terms.tip is not None
     return default_mode_count(
-        scene, **(dict(periods=LEATHER_PERIODS, least=MIN_LEATHER_MODES) if has_tip_model else {})
+        scene, **(dict(periods=LEATHER_PERIODS, min_modes=MIN_LEATHER_MODES) if has_tip_model else {})
     )
 
 
-def default_mode_count(scene: Scene, *, periods: float = PERIODS, least: int = MIN_MODES) -> int:
-    """The number of modes up to the frequency ``periods`` / contact time, at least ``least``."""
+def default_mode_count(scene: Scene, *, periods: float = PERIODS, min_modes: int = MIN_MODES) -> int:
+    """The number of modes up to the frequency ``periods`` / contact time, at least ``min_modes``."""
     # a contact time in the input is within bounds; one computed from a stiffness or a leather tip may not be
     if not CONTACT_TIME.contains(scene.contact_time):
         got = f"{scene.stiffness:.6g} N/m, {scene.contact_time:.3g} s"
         raise ValueError(f"Tip.stiffness must make a head-on contact time in {CONTACT_TIME.bounds}; got {got}")
-    return mode_count_for(scene.shaft, scene.contact_time, periods=periods, least=least)
+    return mode_count_for(scene.shaft, scene.contact_time, periods=periods, min_modes=min_modes)
 
 
-def mode_count_for(cue: Cue, time: float, *, periods: float = PERIODS, least: int = MIN_MODES) -> int:
-    """The number of modes up to the frequency ``periods`` / time, at least ``least``."""
-    return min(max(modes_below(cue, 2 * np.pi * periods / time), least), MAX_DEFAULT_MODES)
+def mode_count_for(cue: Cue, time: float, *, periods: float = PERIODS, min_modes: int = MIN_MODES) -> int:
+    """The number of modes up to the frequency ``periods`` / time, at least ``min_modes``."""
+    return min(max(modes_below(cue, 2 * np.pi * periods / time), min_modes), MAX_DEFAULT_MODES)
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,13 +69,13 @@ class SolvedScene:
     """A scene and its modes; each eigenproblem is solved once, on first use.
 
     Nothing here depends on the stroke: one solved scene serves strikes at every speed and offset. at: the resolution of
-    all modes; by default the modes of `strike_mode_count`, with a truncation correction. known: solved modes by
+    all modes; by default the modes of `strike_mode_count`, with a truncation correction. solved_modes: solved modes by
     resolution or number, which scenes of one cue with the same effects on it share.
     """
 
     scene: Scene
     at: Resolution | Solid | None = None
-    known: dict[tuple[Resolution | int, int], Modes] = field(default_factory=dict, repr=False)
+    solved_modes: dict[tuple[Resolution | int, int], Modes] = field(default_factory=dict, repr=False)
 
     @property
     def modes(self) -> Modes:
@@ -83,7 +83,7 @@ class SolvedScene:
         if isinstance(self.at, Solid):
             raise ValueError("at must be a Resolution, because mode shapes of a beam are required; got a Solid")
         if self.at is not None:
-            return self._bending(self.at, corrected=False)
+            return self._bending(self.at, with_correction=False)
         return self._default(strike_mode_count(self.scene))
 
     @cached_property
@@ -103,28 +103,29 @@ class SolvedScene:
         """Tip modes for an end mass, whose drive may begin with a step: at least `MIN_STICK_MODES` by default."""
         if self.at is not None or self.scene.lumped is not None:
             return self.tip
-        return tip_modes_from(self._default(default_mode_count(self.scene, least=MIN_STICK_MODES)), self.scene)
+        return tip_modes_from(self._default(default_mode_count(self.scene, min_modes=MIN_STICK_MODES)), self.scene)
 
     def _default(self, count: int) -> Modes:
-        return self._bending(count, corrected=True, meshed=min(count, MESHED_MODES))
+        return self._bending(count, with_correction=True, mesh_modes=min(count, MESHED_MODES))
 
-    def _bending(self, at: Resolution | int, *, corrected: bool, meshed: int | None = None) -> Modes:
+    def _bending(self, at: Resolution | int, *, with_correction: bool, mesh_modes: int | None = None) -> Modes:
         """Bending modes at a resolution, or a number of them; each solved once.
 
-        corrected: with a truncation correction; otherwise a truncated sum. meshed: number of modes that the mesh
-        resolves, by default all.
+        with_correction: with a truncation correction; otherwise a truncated sum. mesh_modes: number of modes that the
+        mesh resolves, by default all.
         """
         scene = self.scene
-        loads = 0 if not corrected else 2 if has_moment_arm(scene) else 1
-        if (at, loads) not in self.known:
+        loads = 0 if not with_correction else 2 if has_moment_arm(scene) else 1
+        if (at, loads) not in self.solved_modes:
             from cuefem.beam import modes, system
 
-            wanted = at if isinstance(at, int) else at.modes
-            beam = system.assemble(scene.shaft, meshed or at, scene.cue_effects, wanted)
+            n_modes = at if isinstance(at, int) else at.modes
+            beam = system.assemble(scene.shaft, mesh_modes or at, scene.cue_effects, n_modes)
             # a support makes rigid-body modes flexible; the total number of modes stays the same, so that results
             # are continuous as its stiffness vanishes
-            self.known[at, loads] = modes.solve(beam, wanted + 2 - beam.rigid_basis.shape[1], corrected=loads)
-        return self.known[at, loads]
+            n_modes += 2 - beam.rigid_basis.shape[1]
+            self.solved_modes[at, loads] = modes.solve(beam, n_modes, n_corrected=loads)
+        return self.solved_modes[at, loads]
 
 
 def tip_modes_of(scene: Scene, at: Resolution | Solid | None = None) -> TipModes:
@@ -134,7 +135,7 @@ def tip_modes_of(scene: Scene, at: Resolution | Solid | None = None) -> TipModes
 
 def corrected_tip_modes(scene: Scene, count: int) -> TipModes:
     """Tip modes of a finite-element cue from ``count`` bending modes with a truncation correction."""
-    return tip_modes_from(SolvedScene(scene)._bending(count, corrected=True), scene)
+    return tip_modes_from(SolvedScene(scene)._bending(count, with_correction=True), scene)
 
 
 def has_moment_arm(scene: Scene) -> bool:
@@ -146,28 +147,26 @@ def tip_modes_from(bending: Modes, scene: Scene) -> TipModes:
     """Tip modes of the scene's finite-element cue from its bending modes and its effects."""
     cue, effects = scene.shaft, scene.cue_effects
     tip = tip_modes(bending, scene.axial_mass)
-    bent = [
-        part for part in (effect.geometric_stiffness(bending, cue, effects) for effect in effects) if part is not None
-    ]
-    if bent:  # the first of the tip modes is the axial rigid-body mode
-        tip = replace(tip, geometric=np.pad(sum(bent[1:], bent[0]), (1, 0)))
-    along = tuple(chain.from_iterable(effect.axial_modes(bending, cue, effects) for effect in effects))
-    for family in along:
+    matrices = [m for m in (effect.geometric_stiffness(bending, cue, effects) for effect in effects) if m is not None]
+    if matrices:  # the first of the tip modes is the axial rigid-body mode
+        tip = replace(tip, geometric=np.pad(sum(matrices[1:], matrices[0]), (1, 0)))
+    families = tuple(chain.from_iterable(effect.axial_modes(bending, cue, effects) for effect in effects))
+    for family in families:
         tip = tip.with_axial_modes(family.omega, family.tip_displacement, family.radiation)
     for effect in effects:
-        tip = effect.damp(tip, [(cue, bending), *((rod.cue, rod) for rod in along)])
-    return tip.ascending() if along else tip
+        tip = effect.damp(tip, [(cue, bending), *((rod.cue, rod) for rod in families)])
+    return tip.ascending() if families else tip
 
 
 def mass_on_face(scene: Scene) -> float:
     """Mass that the scene's effects put on the tip's face, kg; ValueError for effects that a solid cannot have."""
     mass = 0.0
     for effect in scene.cue_effects:
-        more = effect.mass_on_face(scene.shaft)
-        if more is None:
+        added = effect.mass_on_face(scene.shaft)
+        if added is None:
             raise ValueError(
                 "Scene.effects must be those that a Solid can have, at the tip or masses on its face; got "
                 f"{type(effect).__name__}"
             )
-        mass += more
+        mass += added
     return mass

@@ -29,7 +29,7 @@ def reference(scene: cf.Scene, modes: int) -> np.ndarray:
     """Squirt, ball speed and spin from far more modes, on the mesh for twice as many."""
     assert isinstance(scene.cue, cf.Cue)
     system = assemble(scene.cue, 2 * modes, scene.cue_effects)
-    result = solve(system, modes, corrected=2 if has_moment_arm(scene) else 1)
+    result = solve(system, modes, n_corrected=2 if has_moment_arm(scene) else 1)
     return checked_numbers(strike_modes(scene, tip_modes_from(result, scene), steps=3200))
 
 
@@ -50,7 +50,7 @@ def test_truncation_correction_conserves_moments_of_truncated_modes(name: str, e
     """Two Lanczos steps conserve four moments; with a force alone, those of the deflection."""
     whole = all_modes(scene(name, 1e-3, 0.3, effects=effects), 40)
     for loads in (2, 1):
-        corrected, part = solve(whole.system, 20, corrected=loads), slice(loads)
+        corrected, part = solve(whole.system, 20, n_corrected=loads), slice(loads)
         assert len(corrected.omega) == 20 + 2 * loads
         for power in (1, 2, 3, 4):
             computed, expected = (moment(each, power, past=20)[part, part] for each in (corrected, whole))
@@ -60,7 +60,7 @@ def test_truncation_correction_conserves_moments_of_truncated_modes(name: str, e
 
 def test_resolve_end_mass_error_is_within_rtol() -> None:
     here = scene("kim", 1e-3, 0.3)
-    tip = tip_modes_from(solve(assemble(here.shaft, 140), 130, corrected=1), here)
+    tip = tip_modes_from(solve(assemble(here.shaft, 140), 130, n_corrected=1), here)
     for drive in ("stick", "velocity", "force"):
         value, error = cf.resolve_end_mass(here, drive, 1e-3)
         assert error <= 1e-3
