@@ -60,8 +60,8 @@ class ContactModel:
     def inverse_mass(self) -> Array:
         """Inverse mass of the contact at the first touch, (forces, forces), 1/kg."""
         ports = len(self.propagator.rows)
-        of_cue, of_ball = self.kinematics[:, :ports], self.kinematics[:, ports:]
-        return np.asarray(of_cue @ self.propagator.mobility @ of_cue.T + (of_ball * self.inverse_masses) @ of_ball.T)
+        cue, ball = self.kinematics[:, :ports], self.kinematics[:, ports:]
+        return np.asarray(cue @ self.propagator.mobility @ cue.T + (ball * self.inverse_masses) @ ball.T)
 
     @property
     def approach(self) -> Array:
@@ -89,8 +89,8 @@ class ContactModel:
         omega = self.propagator.omega
         forces = len(self.kinematics)
         rolls, has_compliance = bool(self.terms.get("rolling")), self.patch != RIGID_PATCH
-        of_tip_and_ball = {2: 3 + 2 * rolls + has_compliance, 6: 8}[forces]
-        return len(omega) + int(np.count_nonzero(omega)) + of_tip_and_ball
+        n_tip_and_ball = {2: 3 + 2 * rolls + has_compliance, 6: 8}[forces]
+        return len(omega) + int(np.count_nonzero(omega)) + n_tip_and_ball
 
 
 def model_of(scene: Scene, tip: TipModes) -> ContactModel:
@@ -115,8 +115,8 @@ def model_of(scene: Scene, tip: TipModes) -> ContactModel:
     check_restitution(
         "Tip.restitution", model["restitution"], MIN_RESTITUTION if terms.tip is None else MIN_LEATHER_RESTITUTION
     )
-    raised = terms.table is not None
-    if raised and (terms.compliance or terms.turns or terms.window is not None or terms.tip is not None):
+    is_elevated = terms.table is not None
+    if is_elevated and (terms.compliance or terms.turns or terms.window is not None or terms.tip is not None):
         raise ValueError("Elevation takes a tip without tangential compliance, a fixed normal and a single hit")
     model |= _power_tip(scene, terms, model) if terms.tip is None else _leather(scene, terms.tip, model)
     if model["patch"] == RIGID_PATCH and terms.window is not None and math.isinf(model["friction"]):
@@ -129,17 +129,17 @@ def model_of(scene: Scene, tip: TipModes) -> ContactModel:
         terms.dome_radius,
         math.inf if terms.tip is None else terms.tip.rim,
     )
-    if raised and (u or w):
+    if is_elevated and (u or w):
         tip = replace(tip, amplitude=tip.amplitude + np.outer(tip.rotation, (u, w)))
-    ports = "raised" if raised else "turning" if u or w or (terms.turns and dome) else "straight"
+    ports = "raised" if is_elevated else "turning" if u or w or (terms.turns and dome) else "straight"
     propagator = propagator_of(tip, ports, model["time"], terms.window or 0.0)
     if len(propagator.slopes):  # in one plane or two; the last of each plane is the slope of the cue's end
         # distance from the end section forwards to the dome's centre, m
         ahead = -w - (dome * math.cos(model["phi"]) if model["phi"] < rim else 0.0)
-        planes = 1 + raised
+        planes = 1 + is_elevated
         weights = np.append(np.ones(len(propagator.slopes) // planes - 1), ahead)
         model["arrays"] |= {"slope_weights": np.tile(weights, planes)}
-    kinematics = _level(model["phi"], u, w)
+    kinematics = _level_rows(model["phi"], u, w)
     if terms.turns:
         arm_t, arm_n = -kinematics[:, 2]
         model["terms"] |= {"rolling": 1, "dome": dome, "rim": min(rim, math.pi), "radius": model["radius"]}
@@ -149,13 +149,13 @@ def model_of(scene: Scene, tip: TipModes) -> ContactModel:
     if terms.table is not None:
         model["axes"] = _table_axes(model["phi"], terms.table.angle)
         model["terms"] |= {"table_friction": terms.table.friction}
-        kinematics = _raised(model["phi"], model["axes"])
+        kinematics = _elevated_rows(model["phi"], model["axes"])
     velocity, spin = 1 / model["ball_mass"], 1 / (model["inertia"] * model["ball_mass"])
-    inverse_masses = np.array([velocity] * 3 + [spin] * 3 if raised else [velocity, velocity, spin])
+    inverse_masses = np.array([velocity] * 3 + [spin] * 3 if is_elevated else [velocity, velocity, spin])
     return ContactModel(propagator, kinematics, inverse_masses, 0 * inverse_masses, **model)
 
 
-def _level(phi: float, u: float, w: float) -> Array:
+def _level_rows(phi: float, u: float, w: float) -> Array:
     """From the velocities of the ports (u, w, rotation) and of the ball to those of a level contact (t, n)."""
     s, c = math.sin(phi), math.cos(phi)
     return np.array([[-s, -c, -s * u - c * w, 1.0, 0.0, 1.0], [-c, s, s * w - c * u, 0.0, 1.0, 0.0]])
@@ -167,7 +167,7 @@ def _table_axes(phi: float, angle: float) -> Array:
     return np.array([[c, -s, 0], [cos_a * s, cos_a * c, sin_a], [-sin_a * s, -sin_a * c, cos_a]])
 
 
-def _raised(phi: float, axes: Array) -> Array:
+def _elevated_rows(phi: float, axes: Array) -> Array:
     """As `_level`, of a cue that points down by an angle, over a table (handbook: Effects).
 
     In (t, n, p), p = t x n. The contact has the three velocities of the ball against the tip, and those of the ball's
@@ -183,38 +183,38 @@ def _raised(phi: float, axes: Array) -> Array:
     return kinematics
 
 
-def check_restitution(name: str, restitution: float, least: float = MIN_RESTITUTION) -> None:
-    """ValueError for a restitution below ``least``."""
-    if restitution < least:
+def check_restitution(name: str, restitution: float, bound: float = MIN_RESTITUTION) -> None:
+    """ValueError for a restitution below ``bound``."""
+    if restitution < bound:
         raise ValueError(
-            f"{name} must be in [{least:g}, 1] for a contact computed in time; got {restitution:g} "
+            f"{name} must be in [{bound:g}, 1] for a contact computed in time; got {restitution:g} "
             "(cuefem.impulse takes any)"
         )
 
 
-def _leather(scene: Scene, tip: TipModel, common: dict[str, Any]) -> dict[str, Any]:
+def _leather(scene: Scene, tip: TipModel, inputs: dict[str, Any]) -> dict[str, Any]:
     """Fields of a leather tip, whose patch slips annulus by annulus."""
-    law = tip.law(common["radius"], abs(float(scene.stroke.offset)), common["restitution"])
+    law = tip.law(inputs["radius"], abs(float(scene.stroke.offset)), inputs["restitution"])
     terms = {"law": 1, "depth_limit": law.depth_limit, "terms": len(law.force_terms), "annuli": ANNULI}
     terms["surface_restitution"] = tip.surface_restitution
     arrays = {"force_terms": np.array(law.force_terms), "compliance_terms": np.array(law.compliance_terms)}
     # the last annulus also has what lies beyond its edge
-    edges = min(law.depth_limit, TABLE_MARGIN * scene.max_indentation) * np.linspace(0.0, 1.0, ANNULI + 1) ** 2
-    force, stiffness = law.at(edges)
+    indentation = min(law.depth_limit, TABLE_MARGIN * scene.max_indentation) * np.linspace(0.0, 1.0, ANNULI + 1) ** 2
+    force, stiffness = law.at(indentation)
     arrays |= {
-        "annulus_edges": edges,
+        "annulus_edges": indentation,
         "annulus_forces": force,
         "annulus_stiffness": stiffness,
-        "annulus_slopes": law.slope(edges),
+        "annulus_slopes": law.slope(indentation),
     }
     return {"law": law, "patch": PARTIAL_SLIP, "terms": terms, "arrays": arrays}
 
 
-def _power_tip(scene: Scene, terms: ContactTerms, common: dict[str, Any]) -> dict[str, Any]:
+def _power_tip(scene: Scene, terms: ContactTerms, inputs: dict[str, Any]) -> dict[str, Any]:
     """Fields of a power-law tip, that of an effect or the linear one; its patch is rigid or a spring."""
-    exponent, speed = terms.law or PowerLaw(1.0, common["speed"])
-    usual = {"mass": scene.reduced_mass, "speed": speed, "time": common["time"]}
-    law = TipLaw.for_contact_time(exponent, common["restitution"], **usual)
+    exponent, speed = terms.law or PowerLaw(1.0, inputs["speed"])
+    impact = {"mass": scene.reduced_mass, "speed": speed, "time": inputs["time"]}
+    law = TipLaw.for_contact_time(exponent, inputs["restitution"], **impact)
     compliance = terms.compliance / scene.stiffness
     patch = SPRING_PATCH if compliance else RIGID_PATCH
     return {
@@ -222,7 +222,7 @@ def _power_tip(scene: Scene, terms: ContactTerms, common: dict[str, Any]) -> dic
         "patch": patch,
         "terms": power_law(law) | {"compliance": compliance},
         "arrays": {},
-        "time": common["time"] * contact_time_ratio(exponent, common["speed"] / speed),
+        "time": inputs["time"] * contact_time_ratio(exponent, inputs["speed"] / speed),
     }
 
 

@@ -30,32 +30,32 @@ def half_octave(time: float) -> float:
     return float(2.0 ** (round(2 * math.log2(time)) / 2))
 
 
-def slope_rows(tip: TipModes, time: float, until: float) -> Array:
+def slope_rows(tip: TipModes, time: float, end: float) -> Array:
     """Rows over the modes, (rows, n), 1/sqrt(m kg), and as the last one the tip's rotation, 1/(m sqrt(kg)).
 
-    time: approximate contact time, s. until: end of the simulated time, s, where that is later than the contact. (0, n)
+    time: approximate contact time, s. end: end of the simulated time, s, where that is later than the contact. (0, n)
     without geometric stiffness.
     """
     if tip.geometric is None:
         return np.zeros((0, len(tip.omega)))
-    times = np.linspace(0.0, max(SAMPLED_TIME * time, until), SAMPLES + 1)[1:]
+    times = np.linspace(0.0, max(SAMPLED_TIME * time, end), SAMPLES + 1)[1:]
     responses = [_half_sine_response(tip.omega, length * time, times) for length in PULSE_LENGTHS]
-    shapes = [load[:, None] * each for load in (tip.amplitude[:, 1], tip.rotation) for each in responses]
+    shapes = [load[:, None] * response for load in (tip.amplitude[:, 1], tip.rotation) for response in responses]
     shapes = [shape / math.sqrt(np.sum(shape * (tip.geometric @ shape))) for shape in shapes if shape.any()]
     basis = np.concatenate(shapes, axis=1)
     loads = tip.geometric @ basis
     squares, directions = np.linalg.eigh(basis.T @ loads)
-    strongest = np.flatnonzero(squares > MIN_SHARE * squares[-1])[-MAX_ROWS:]
+    retained = np.flatnonzero(squares > MIN_SHARE * squares[-1])[-MAX_ROWS:]
     return np.concatenate(
-        [(loads @ (directions[:, strongest] / np.sqrt(squares[strongest]))).T[::-1], tip.rotation[None]]
+        [(loads @ (directions[:, retained] / np.sqrt(squares[retained]))).T[::-1], tip.rotation[None]]
     )
 
 
-def _half_sine_response(omega: Array, span: float, times: Array) -> Array:
-    """Displacement of each mode at ``times``, (n, times), under sin(pi t/span) up to ``span``, from rest."""
-    rate = math.pi / span
-    nearest = np.abs(omega / rate - 1).min()
-    rate *= 1.0 if nearest > 1e-6 else 1 + 3e-6  # at resonance the quotient below is 0/0
+def _half_sine_response(omega: Array, duration: float, times: Array) -> Array:
+    """Displacement of each mode at ``times``, (n, times), under sin(pi t/duration) up to ``duration``, from rest."""
+    rate = math.pi / duration
+    detuning = np.abs(omega / rate - 1).min()
+    rate *= 1.0 if detuning > 1e-6 else 1 + 3e-6  # at resonance the quotient below is 0/0
     return np.asarray(_sine_response(omega, rate, times) + _sine_response(omega, rate, times - math.pi / rate))
 
 

@@ -70,7 +70,7 @@ class _Solution(NamedTuple):
     impulse, N s; velocity (t, n) at separation, m/s; losses, J; index of the regime; jam."""
 
     slip_end: Array
-    compressed: Array
+    compression_impulse: Array
     final: Array
     tangential: Array
     final_t: Array
@@ -98,7 +98,7 @@ def _solve(B: InverseMass, v_t: Array, v_n: Array, *, mu: Array, e: Array) -> _S
         v_s = np.where(sticks_at_touch, v_n, np.where(always_slips, np.inf, (B.cross_t - mu * B.cross_n) / slip_rate_t))
         compressed_in_slip = v_s >= 0  # greatest compression before slip ends
         # compression, and the work done on the tip
-        in_slip = compressed_in_slip | reverses  # else v_t = v_n = 0 at greatest compression, where B p = -v
+        has_slip_end = compressed_in_slip | reverses  # else v_t = v_n = 0 at greatest compression, where B p = -v
         p_c = np.where(
             compressed_in_slip, -v_n / slip_rate_n, np.where(reverses, p_s - v_s / after_n, B.cross_n / B.det)
         )
@@ -113,7 +113,7 @@ def _solve(B: InverseMass, v_t: Array, v_n: Array, *, mu: Array, e: Array) -> _S
         p_f = np.where(compressed_in_slip, p_s + 2 * returned_later / (v_s + v_n_late), p_c + v_n_early / after_n)
         p_f = np.where(miscue, p_c * (1 + e), p_f)
         p_after = np.where(miscue, 0.0, p_f - p_s)
-        tangential = np.where(in_slip, t_s + after_t * p_after, B.cross_t / B.det + mu_c * (p_f - p_c))
+        tangential = np.where(has_slip_end, t_s + after_t * p_after, B.cross_t / B.det + mu_c * (p_f - p_c))
         tangential = np.where(miscue, mu * p_f, tangential)
         final_t = np.where(miscue, v_t + slip_rate_t * p_f, B.tt * deficit * p_after)
         final_n = np.where(miscue, -e * v_n, np.where(compressed_in_slip, v_n_late, v_n_early))
@@ -135,15 +135,15 @@ def impulse_inputs(scene: Scene, cue: LumpedCue) -> dict[str, float]:
     }
 
 
-def impact(numbers: Mapping[str, Any]) -> Outcome:
+def impact(inputs: Mapping[str, Any]) -> Outcome:
     """Outcome of a lumped cue's stroke by `impulse_inputs`, every regime; of many strokes where some are arrays, (n,).
 
     phases: the events "slip ends", "greatest compression", "separation" with the normal impulse until then. energy:
     "ball translation", "ball rotation", "cue", "tip loss", "friction loss", which add up to "initial". The coupling of
     a LumpedCue is meant for positive offsets and changes sign with them, so that all is odd in the offset.
     """
-    flat, many = _strokes(**numbers), any(np.ndim(number) for number in numbers.values())
-    return _outcome(flat if many else {name: values[0].item() for name, values in flat.items()})
+    flat, is_batch = _strokes(**inputs), any(np.ndim(value) for value in inputs.values())
+    return _outcome(flat if is_batch else {name: values[0].item() for name, values in flat.items()})
 
 
 def _strokes(
@@ -159,7 +159,7 @@ def _strokes(
     speed: Any,
     offset: Any,
 ) -> dict[str, Array]:
-    """Flat arrays by name."""
+    """Results of the strokes by name, each an array, (n,)."""
     m, m_e, M, nu, R, U = mass, end_mass, ball_mass, inertia, radius, speed
     offset = np.atleast_1d(offset)
     side, distance = np.sign(offset), np.abs(offset)
@@ -176,9 +176,9 @@ def _strokes(
     p_w = np.where(np.less(m_e, m) & (solution.regime < SLIPPING), p_w, c * p_t - s * p_n)
     # the cue's tip velocity after the impact in (u, w), and kinetic energies with the inverse of B_cue
     tip_u, tip_w = U - p_u / m - coupling * p_w, -coupling * p_u - p_w / m_e
-    free = 1 - coupling**2 * m * m_e  # m/free: the inertia of a cue that moves axially as a rigid body
-    cue_energy = (m * tip_u**2 + m_e * tip_w**2 - 2 * coupling * m * m_e * tip_u * tip_w) / (2 * free)
-    out = {
+    axial_factor = 1 - coupling**2 * m * m_e  # m/axial_factor: the inertia of a cue that moves axially as a rigid body
+    cue_energy = (m * tip_u**2 + m_e * tip_w**2 - 2 * coupling * m * m_e * tip_u * tip_w) / (2 * axial_factor)
+    results = {
         "squirt": side * np.arctan2(-p_w, p_u) + 0.0,
         "p_t": side * p_t,
         "p_n": p_n,
@@ -186,20 +186,20 @@ def _strokes(
         "v_n": p_n / M,
         "ball_speed": np.hypot(p_t, p_n) / M,
         "spin": side * p_t / (nu * M * R),
-        "cue_speed": U - p_u * free / m,
+        "cue_speed": U - p_u * axial_factor / m,
         "regime": REGIMES[solution.regime],
         "jam": solution.jam,
         "slip ends": U * solution.slip_end,
-        "greatest compression": U * solution.compressed,
+        "greatest compression": U * solution.compression_impulse,
         "separation": p_n,
-        "initial": m * U**2 / (2 * free),
+        "initial": m * U**2 / (2 * axial_factor),
         "ball translation": (p_t**2 + p_n**2) / (2 * M),
         "ball rotation": p_t**2 / (2 * nu * M),
         "cue": cue_energy,
         "tip loss": U**2 * solution.tip_loss,
         "friction loss": U**2 * solution.friction_loss,
     }
-    return dict(zip(out, np.broadcast_arrays(*out.values()), strict=True))
+    return dict(zip(results, np.broadcast_arrays(*results.values()), strict=True))
 
 
 EVENTS = ("slip ends", "greatest compression", "separation")

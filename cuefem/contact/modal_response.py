@@ -32,9 +32,9 @@ class ModalPropagator:
     rows: (ports, modes), output and input matrix of the ports, 1/sqrt(kg). slopes: (slopes, modes), the same for the
     slopes of the bent cue (`cuefem.contact.geometric_stiffness`); empty without geometric stiffness. omega, approach:
     of the tip modes. eigenvalues: (coordinates,), 1/s, i omega of an undamped mode. displacements, velocities: (modes,
-    coordinates), from the coordinates to omega q and the modal velocities. onto: (coordinates, modes), from modal
-    velocities to coordinates. dampers: (rows, modes), rows r of the damping and then of the radiation, whose (r v)^2
-    add up to the power, W, at the modal velocities v. n_dissipative: number of the first of these, whose energy is
+    coordinates), from the coordinates to omega q and the modal velocities. modal_inputs: (coordinates, modes), from
+    modal velocities to coordinates. dampers: (rows, modes), rows r of the damping and then of the radiation, whose
+    (r v)^2 add up to the power, W, at the modal velocities v. n_dissipative: number of the first of these, whose energy is
     dissipated; the others radiate it.
     """
 
@@ -43,21 +43,21 @@ class ModalPropagator:
         omega, count = tip.omega, len(tip.omega)
         resistance = np.zeros((count, count)) if tip.total_damping is None else tip.total_damping
         coupled = resistance != 0
-        parts = [_uncoupled_modes(omega, np.flatnonzero(~coupled.any(axis=1)))]
-        parts += [_coupled(omega, resistance, group) for group in _coupled_groups(coupled)]
-        self.eigenvalues = np.concatenate([part.eigenvalues for part in parts])
+        groups = [_uncoupled_modes(omega, np.flatnonzero(~coupled.any(axis=1)))]
+        groups += [_couple(omega, resistance, group) for group in _coupled_groups(coupled)]
+        self.eigenvalues = np.concatenate([group.eigenvalues for group in groups])
         self.displacements, self.velocities = (np.zeros((count, len(self.eigenvalues)), complex) for _ in range(2))
-        self.onto = np.zeros((len(self.eigenvalues), count), complex)
+        self.modal_inputs = np.zeros((len(self.eigenvalues), count), complex)
         first = 0
-        for part in parts:
-            here = slice(first, first + len(part.eigenvalues))
-            self.displacements[part.modes, here], self.velocities[part.modes, here] = (
-                part.displacements,
-                part.velocities,
+        for group in groups:
+            columns = slice(first, first + len(group.eigenvalues))
+            self.displacements[group.modes, columns], self.velocities[group.modes, columns] = (
+                group.displacements,
+                group.velocities,
             )
-            self.onto[here, part.modes] = part.onto
-            first = here.stop
-        dampers = [_rows_of_power(damping) for damping in (tip.damping, tip.radiation) if damping is not None]
+            self.modal_inputs[columns, group.modes] = group.modal_inputs
+            first = columns.stop
+        dampers = [_power_rows(damping) for damping in (tip.damping, tip.radiation) if damping is not None]
         self.n_dissipative = len(dampers[0]) if tip.damping is not None else 0
         self.dampers = np.concatenate([np.zeros((0, count)), *dampers])
 
@@ -69,7 +69,7 @@ class ModalPropagator:
     @cached_property
     def approach_state(self) -> Complex:
         """Coordinates of a cue that moves along its axis at 1 m/s."""
-        return np.asarray(self.onto @ self.approach, complex)
+        return np.asarray(self.modal_inputs @ self.approach, complex)
 
     @property
     def mobility(self) -> Array:
@@ -84,10 +84,10 @@ class ModalPropagator:
     @cached_property
     def input_rows(self) -> Complex:
         """Change of the coordinates per unit impulse on ports and slopes, (ports + slopes, coordinates)."""
-        return np.ascontiguousarray((self.onto @ self.loaded_rows.T).T)
+        return np.ascontiguousarray((self.modal_inputs @ self.loaded_rows.T).T)
 
     @cached_property
-    def _damped(self) -> Complex:
+    def _damper_rows(self) -> Complex:
         return np.asarray((self.dampers @ self.velocities).T)
 
     def dissipated(self, xi: Complex, lengths: Array) -> Array:
@@ -97,12 +97,12 @@ class ModalPropagator:
         squares have the mean (4 v^2 + 4 w^2 - 2 v w)/30 + m (6 m - v - w)/5. Under constant loads the mean of xi is
         (phi_1 - exp(z) phi_2/phi_1) xi_0 + phi_2/phi_1 xi_1.
         """
-        ends, means = (xi @ self._damped).real, np.zeros((len(lengths), len(self.dampers)))
+        ends, means = (xi @ self._damper_rows).real, np.zeros((len(lengths), len(self.dampers)))
         for length in np.unique(lengths[lengths > 0]):
-            here = np.flatnonzero(lengths == length)
+            steps = np.flatnonzero(lengths == length)
             exp_z, phi_1, phi_2 = phi_functions(self.eigenvalues * length)
             before, after = (phi_1 - exp_z * phi_2 / phi_1)[:, None], (phi_2 / phi_1)[:, None]
-            means[here] = (xi[here] @ (before * self._damped) + xi[here + 1] @ (after * self._damped)).real
+            means[steps] = (xi[steps] @ (before * self._damper_rows) + xi[steps + 1] @ (after * self._damper_rows)).real
         v, w = ends[:-1], ends[1:]
         squares = (4 * v**2 + 4 * w**2 - 2 * v * w) / 30 + means * (6 * means - v - w) / 5
         squares *= lengths[:, None]
@@ -113,11 +113,11 @@ class ModalPropagator:
 def phi_functions(z: Complex) -> tuple[Complex, Complex, Complex]:
     """exp(z), phi_1 = (exp(z) - 1)/z and phi_2 = (phi_1 - 1)/z, of a mode's response to a constant load."""
     large = np.abs(z) > 0.5
-    safe = np.where(large, z, 1.0)
-    second = np.where(
-        large, (np.exp(safe) - 1 - safe) / safe**2, sum(z ** (n - 2) / math.factorial(n) for n in range(2, 16))
+    nonzero = np.where(large, z, 1.0)
+    phi_2 = np.where(
+        large, (np.exp(nonzero) - 1 - nonzero) / nonzero**2, sum(z ** (n - 2) / math.factorial(n) for n in range(2, 16))
     )
-    return 1 + z * (1 + z * second), 1 + z * second, second
+    return 1 + z * (1 + z * phi_2), 1 + z * phi_2, phi_2
 
 
 class _Group(NamedTuple):
@@ -127,53 +127,53 @@ class _Group(NamedTuple):
     eigenvalues: Complex
     displacements: Complex
     velocities: Complex
-    onto: Complex
+    modal_inputs: Complex
 
 
 def _uncoupled_modes(omega: Array, modes: Index) -> _Group:
     """Each mode is a coordinate v + i omega q, a rigid one its velocity."""
-    own = np.eye(len(modes), dtype=complex)
-    return _Group(modes, np.asarray(1j * omega[modes], complex), -1j * own * (omega[modes] > 0), own, own)
+    one = np.eye(len(modes), dtype=complex)
+    return _Group(modes, np.asarray(1j * omega[modes], complex), -1j * one * (omega[modes] > 0), one, one)
 
 
-def _coupled(omega: Array, resistance: Array, modes: Index) -> _Group:
+def _couple(omega: Array, resistance: Array, modes: Index) -> _Group:
     """The eigenvectors of (omega q, v)' = (omega v, -omega (omega q) - C v); one of each conjugate pair, doubled."""
     vibrating = np.flatnonzero(omega[modes])  # a rigid mode has no displacement among the states
-    count, turning = len(vibrating), omega[modes[vibrating]]
+    count, rates = len(vibrating), omega[modes[vibrating]]
     states = np.zeros((count + len(modes), count + len(modes)))
     states[count:, count:] = -resistance[modes[:, None], modes]
-    states[np.arange(count), count + vibrating], states[count + vibrating, np.arange(count)] = turning, -turning
+    states[np.arange(count), count + vibrating], states[count + vibrating, np.arange(count)] = rates, -rates
     eigenvalues, right = np.linalg.eig(states)
     if np.linalg.cond(right, "fro") > MAX_CONDITION:  # equal eigenvalues, as of a critically damped mode
-        nudge = DIAGONAL_SHIFT * np.linalg.norm(states) * np.diag(np.linspace(-1.0, 0.0, len(states)))
-        eigenvalues, right = np.linalg.eig(states + nudge)
+        perturbation = DIAGONAL_SHIFT * np.linalg.norm(states) * np.diag(np.linspace(-1.0, 0.0, len(states)))
+        eigenvalues, right = np.linalg.eig(states + perturbation)
     left = np.linalg.inv(right).astype(complex)
     upper = np.flatnonzero(eigenvalues.imag >= 0)
     right = (right[:, upper] * np.where(eigenvalues[upper].imag > 0, 2.0, 1.0)).astype(complex)
     displacements = np.zeros((len(modes), len(upper)), complex)
     displacements[vibrating] = right[:count]
-    velocities, onto = np.asarray(right[count:], complex), np.asarray(left[upper][:, count:], complex)
-    return _Group(modes, eigenvalues[upper].astype(complex), displacements, velocities, onto)
+    velocities, modal_inputs = np.asarray(right[count:], complex), np.asarray(left[upper][:, count:], complex)
+    return _Group(modes, eigenvalues[upper].astype(complex), displacements, velocities, modal_inputs)
 
 
 def _coupled_groups(coupled: Any) -> Iterator[Index]:
     """The groups of modes that damping couples with each other."""
-    left = coupled.any(axis=1)
-    while left.any():
-        group = coupled[np.argmax(left)]
-        while (wider := coupled[group].any(axis=0) | group).sum() > group.sum():
-            group = wider
+    remaining = coupled.any(axis=1)
+    while remaining.any():
+        group = coupled[np.argmax(remaining)]
+        while (extended := coupled[group].any(axis=0) | group).sum() > group.sum():
+            group = extended
         yield np.flatnonzero(group)
-        left &= ~group
+        remaining &= ~group
 
 
-def _rows_of_power(damping: Array) -> Array:
+def _power_rows(damping: Array) -> Array:
     """Rows r over the modes, with the power of a damping matrix as the sum of (r v)^2, v the modal velocities."""
     modes = np.flatnonzero(damping.any(axis=1))
-    strengths, directions = np.linalg.eigh(damping[np.ix_(modes, modes)])
-    acting = strengths > 1e-14 * strengths.max(initial=0.0)
-    rows = np.zeros((int(acting.sum()), len(damping)))
-    rows[:, modes] = (directions[:, acting] * np.sqrt(strengths[acting])).T
+    rates, directions = np.linalg.eigh(damping[np.ix_(modes, modes)])
+    positive = rates > 1e-14 * rates.max(initial=0.0)
+    rows = np.zeros((int(positive.sum()), len(damping)))
+    rows[:, modes] = (directions[:, positive] * np.sqrt(rates[positive])).T
     return rows
 
 
@@ -183,13 +183,13 @@ def propagator_of(tip: TipModes, ports: str = "straight", time: float = 0.0, win
     time: approximate contact time, s; window: the time simulated after it, s. The slopes of a bent cue depend on both
     (`slope_rows`). Strikes with the same tip modes share the propagator.
     """
-    bends = tip.geometric is not None
-    return _propagator(tip, ports, *((half_octave(time), half_octave(time) + window) if bends else (0.0, 0.0)))
+    has_slopes = tip.geometric is not None
+    return _propagator(tip, ports, *((half_octave(time), half_octave(time) + window) if has_slopes else (0.0, 0.0)))
 
 
 @lru_cache(maxsize=32)
-def _propagator(tip: TipModes, ports: str, time: float, until: float) -> ModalPropagator:
-    rows, slopes = tip.amplitude.T, slope_rows(tip, time, until)
+def _propagator(tip: TipModes, ports: str, time: float, end: float) -> ModalPropagator:
+    rows, slopes = tip.amplitude.T, slope_rows(tip, time, end)
     if ports == "turning":
         rows = np.concatenate([rows, tip.rotation[None]])
     return ModalPropagator(*(_in_two_planes(tip, slopes) if ports == "raised" else (tip, rows, slopes)))
@@ -198,16 +198,16 @@ def _propagator(tip: TipModes, ports: str, time: float, until: float) -> ModalPr
 def _in_two_planes(tip: TipModes, slopes: Array) -> tuple[TipModes, Array, Array]:
     """Modes, rows of the ports (u, w, p) and slopes: each bending mode a second time, in the plane out of (u, w)."""
     bending = np.flatnonzero(tip.amplitude[:, 1] != 0)
-    count, more = len(tip.omega), len(bending)
-    source = np.append(np.arange(count), bending)
-    one_plane = np.equal.outer(np.arange(len(source)) < count, np.arange(len(source)) < count)
-    amplitude, nothing = np.pad(tip.amplitude, ((0, more), (0, 0))), np.zeros(more)
+    count, n_bending = len(tip.omega), len(bending)
+    indices = np.append(np.arange(count), bending)
+    one_plane = np.equal.outer(np.arange(len(indices)) < count, np.arange(len(indices)) < count)
+    amplitude, zeros = np.pad(tip.amplitude, ((0, n_bending), (0, 0))), np.zeros(n_bending)
     damping, radiation = (
-        None if matrix is None else matrix[np.ix_(source, source)] * one_plane
+        None if matrix is None else matrix[np.ix_(indices, indices)] * one_plane
         for matrix in (tip.damping, tip.radiation)
     )
-    approach, rotation = np.append(tip.approach, nothing), np.append(tip.rotation, nothing)
-    modes = TipModes(tip.omega[source], amplitude, approach, rotation, damping, radiation)
+    approach, rotation = np.append(tip.approach, zeros), np.append(tip.rotation, zeros)
+    modes = TipModes(tip.omega[indices], amplitude, approach, rotation, damping, radiation)
     rows = np.concatenate([amplitude.T, np.append(np.zeros(count), tip.amplitude[bending, 1])[None]])
     out_of_plane = np.pad(slopes[:, bending], ((0, 0), (count, 0)))
-    return modes, rows, np.concatenate([np.pad(slopes, ((0, 0), (0, more))), out_of_plane])
+    return modes, rows, np.concatenate([np.pad(slopes, ((0, 0), (0, n_bending))), out_of_plane])

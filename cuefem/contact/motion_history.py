@@ -123,10 +123,10 @@ def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Moti
     times = ascending(times)
     if scene.contact_terms.table is not None:
         raise ValueError("motion takes strokes in the plane of cue and ball; got Elevation")
-    solved = SolvedScene(scene, at)
-    bending, tip = solved.modes, solved.tip
-    contact = solve_contact(model_of(scene, tip), steps=steps_of(at), keep_states=True)
-    return _motion_of(scene, bending, tip, solved=contact, times=times)
+    design = SolvedScene(scene, at)
+    bending, tip = design.modes, design.tip
+    contact = solve_contact(model_of(scene, tip), steps=steps_of(at), store_states=True)
+    return _motion_of(scene, bending, tip, contact=contact, times=times)
 
 
 def ascending(times: ArrayLike) -> Array:
@@ -137,26 +137,26 @@ def ascending(times: ArrayLike) -> Array:
     return times
 
 
-def _motion_of(scene: Scene, bending: Modes, tip: TipModes, *, solved: SolvedContact, times: Array) -> Motion:
-    phi, side = solved.model.phi, math.copysign(1.0, scene.stroke.offset)
+def _motion_of(scene: Scene, bending: Modes, tip: TipModes, *, contact: SolvedContact, times: Array) -> Motion:
+    phi, side = contact.model.phi, math.copysign(1.0, scene.stroke.offset)
     tangent, normal = np.array([math.sin(phi), math.cos(phi)]), np.array([math.cos(phi), -math.sin(phi)])
-    modes, ball = _path(solved, times)
-    vectors, across = _bending(bending, tip)
-    R, in_contact = scene.ball.radius, solved.steps["length"] > 0
+    modes, ball = _path(contact, times)
+    vectors, lateral = _bending(bending, tip)
+    R, in_contact = scene.ball.radius, contact.steps["length"] > 0
     u, w = scene.contact_terms.moment_arm(phi)  # of the contact per unit rotation of the end: it lies at (-w, u)
     centre = R * normal + [-w, u] + ball[:, :2] @ np.array([tangent, normal])
-    angle = phi + np.interp(times, np.append(0.0, solved.steps["time"]), np.append(0.0, solved.steps["angle"]))
+    angle = phi + np.interp(times, np.append(0.0, contact.steps["time"]), np.append(0.0, contact.steps["angle"]))
     s, c, force = np.sin(angle), np.cos(angle), np.zeros((2, len(times)))
     if in_contact.any():
-        history = solved.history(np.minimum(times, solved.time))
-        force = np.where(times < solved.time, [side * history["force_t"], history["force_n"]], 0.0)
+        history = contact.history(np.minimum(times, contact.time))
+        force = np.where(times < contact.time, [side * history["force_t"], history["force_n"]], 0.0)
     F_t, F_n = force
     shortening = 0.0 if tip.geometric is None else np.einsum("it,ij,jt->t", modes, tip.geometric, modes) / 2
     return Motion(
         times,
-        solved.time,
+        contact.time,
         bending,
-        fields=side * vectors @ modes[across],
+        fields=side * vectors @ modes[lateral],
         axial=tip.amplitude[:, 0] @ modes - shortening,
         centre=centre * [1.0, side],
         rotation=-side * ball[:, 2] / R,
@@ -168,34 +168,34 @@ def _bending(bending: Modes, tip: TipModes) -> tuple[Array, Any]:
     """Vectors of the bending modes, (free, k), and their indices among the tip modes."""
     vectors = np.concatenate([bending.rigid_vectors, bending.vectors], axis=1)
     columns = np.argsort(np.concatenate([np.zeros(bending.rigid), bending.omega]), kind="stable")
-    across = np.flatnonzero(tip.amplitude[:, 0] == 0)
-    return vectors[:, columns], across[np.argsort(tip.omega[across], kind="stable")]
+    lateral = np.flatnonzero(tip.amplitude[:, 0] == 0)
+    return vectors[:, columns], lateral[np.argsort(tip.omega[lateral], kind="stable")]
 
 
-def _path(solved: SolvedContact, times: Array) -> tuple[Array, Array]:
+def _path(contact: SolvedContact, times: Array) -> tuple[Array, Array]:
     """Displacements of the modes, (modes, times), and of the ball along each of its velocities, m, (times, n).
 
     Under a load that is constant over a step of length h, xi = exp(s t) xi_0 + a (exp(s t) - 1)/s with the eigenvalue
     s, and its integral follows; a follows from xi at the step's end. After the contact cue and ball move freely.
     """
-    assert solved.states is not None
-    p, model, steps = solved.model.propagator, solved.model, solved.steps
+    assert contact.states is not None
+    p, model, steps = contact.model.propagator, contact.model, contact.steps
     ends, rigid = np.append(0.0, steps["time"]), p.omega == 0
     lengths, nonzero = np.append(steps["length"], 0.0), np.flatnonzero(steps["length"])
     step = np.searchsorted(ends, times, side="right") - 1  # the step of each time; after the last, free motion
     t, h = (times - ends[step])[:, None], lengths[nonzero, None]
     balls = np.vstack([model.ball, steps["ball"][:, : len(model.ball)]])
-    loads, accelerations = np.zeros_like(solved.states), np.zeros_like(balls)
+    loads, accelerations = np.zeros_like(contact.states), np.zeros_like(balls)
     exp_z, phi_1, _ = phi_functions(p.eigenvalues * h)
-    loads[nonzero] = (solved.states[nonzero + 1] - exp_z * solved.states[nonzero]) / (h * phi_1)
+    loads[nonzero] = (contact.states[nonzero + 1] - exp_z * contact.states[nonzero]) / (h * phi_1)
     accelerations[nonzero] = (balls[nonzero + 1] - balls[nonzero]) / h
-    xi, integral = _driven(solved.states[step], loads[step], p.eigenvalues, t)
-    before = _driven(solved.states[:-1], loads[:-1], p.eigenvalues, lengths[:-1, None])[1] @ p.velocities[rigid].T
-    rigid_displacements = np.vstack([np.zeros(int(rigid.sum())), np.cumsum(before.real, axis=0)])
-    travelled = np.vstack([0 * balls[:1], np.cumsum(lengths[:-1, None] * (balls[1:] + balls[:-1]) / 2, axis=0)])
-    displaced = (xi @ p.displacements.T).real / np.where(rigid, 1.0, p.omega)
-    displaced[:, rigid] = rigid_displacements[step] + (integral @ p.velocities[rigid].T).real
-    return displaced.T, travelled[step] + t * (balls[step] + t * accelerations[step] / 2)
+    xi, integral = _driven(contact.states[step], loads[step], p.eigenvalues, t)
+    integrals = _driven(contact.states[:-1], loads[:-1], p.eigenvalues, lengths[:-1, None])[1] @ p.velocities[rigid].T
+    rigid_displacements = np.vstack([np.zeros(int(rigid.sum())), np.cumsum(integrals.real, axis=0)])
+    ball_path = np.vstack([0 * balls[:1], np.cumsum(lengths[:-1, None] * (balls[1:] + balls[:-1]) / 2, axis=0)])
+    displacements = (xi @ p.displacements.T).real / np.where(rigid, 1.0, p.omega)
+    displacements[:, rigid] = rigid_displacements[step] + (integral @ p.velocities[rigid].T).real
+    return displacements.T, ball_path[step] + t * (balls[step] + t * accelerations[step] / 2)
 
 
 def _driven(xi: Complex, loads: Complex, eigenvalues: Complex, t: Array) -> tuple[Complex, Complex]:

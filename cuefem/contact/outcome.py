@@ -99,10 +99,10 @@ class History:
             raise ValueError("History takes times in [0, duration] s; this contact is an impact of zero duration")
         if not np.all((time >= 0) & (time <= self.duration * (1 + 1e-12))):
             raise ValueError(f"History takes times in [0, {self.duration}] s, the contact's; got {time}")
-        named = {"force": (self.force_times, self.forces), "velocity": (self.ends, self.velocities)}
+        series = {"force": (self.force_times, self.forces), "velocity": (self.ends, self.velocities)}
         return {
-            f"{name}_{axis}": np.asarray(np.interp(time, known, values[:, i]))
-            for name, (known, values) in named.items()
+            f"{name}_{axis}": np.asarray(np.interp(time, times, values[:, i]))
+            for name, (times, values) in series.items()
             for i, axis in enumerate("tn")
         }
 
@@ -121,8 +121,8 @@ def contact_state(phases: Sequence[Phase], energy: Mapping[str, float]) -> str:
         return "miscue"
     if share > GROSS_SLIP_SHARE:
         return "gross slip"
-    partly = energy["friction loss"] > PARTIAL_SLIP_LOSS * (energy["ball translation"] + energy["ball rotation"])
-    return "partial slip" if state == "stick" and partly else state
+    slips = energy["friction loss"] > PARTIAL_SLIP_LOSS * (energy["ball translation"] + energy["ball rotation"])
+    return "partial slip" if state == "stick" and slips else state
 
 
 def slips_at_end(outcome: Outcome) -> bool:
@@ -136,7 +136,7 @@ def _slip_shares(phases: Sequence[Phase]) -> tuple[float, float]:
     """Shares of the normal impulse during slip: in total, and without interruption up to the end."""
     slips = [(phase.state in SLIP_STATES, abs(phase.impulse[1])) for phase in phases]
     total = sum(impulse for _, impulse in slips) or 1.0
-    last = takewhile(lambda each: each[0] or each[1] < 1e-3 * total, reversed(slips))
+    last = takewhile(lambda item: item[0] or item[1] < 1e-3 * total, reversed(slips))
     return sum(impulse for slip, impulse in slips if slip) / total, sum(impulse for _, impulse in last) / total
 
 

@@ -81,9 +81,9 @@ class Striker:
     def __post_init__(self) -> None:
         check_fields(self)
         units = (("stiffness", "N/m"), ("contact_time", "s"), ("modulus", "Pa"), ("radius", "m"))
-        stated = [(name, getattr(self, name), unit) for name, unit in units if getattr(self, name) is not None]
-        if [name for name, _, _ in stated] not in (["stiffness"], ["contact_time"], ["modulus", "radius"]):
-            got = ", ".join(f"{name} {value} {unit}" for name, value, unit in stated) or "none of them"
+        values = [(name, getattr(self, name), unit) for name, unit in units if getattr(self, name) is not None]
+        if [name for name, _, _ in values] not in (["stiffness"], ["contact_time"], ["modulus", "radius"]):
+            got = ", ".join(f"{name} {value} {unit}" for name, value, unit in values) or "none of them"
             raise ValueError(
                 "Striker takes one law of contact: stiffness (N/m), contact_time (s), "
                 f"or modulus (Pa) with radius (m); got {got}"
@@ -183,8 +183,8 @@ class SideStrike:
     @property
     def rigid_mass(self) -> float:
         """Effective mass at the position if the beam were rigid and free, kg."""
-        massive = tuple(effect for effect in self.cue_effects if effect.mass_on(self.cue))
-        system = assemble(self.cue, Resolution(1, 4, 1), massive, positions=[self.position])
+        inertial = tuple(effect for effect in self.cue_effects if effect.mass_on(self.cue))
+        system = assemble(self.cue, Resolution(1, 4, 1), inertial, positions=[self.position])
         modes = solve(system, 1, position=self.position)
         motion = side_modes(modes).amplitude[: modes.rigid, 0]
         return 1 / float(motion @ motion)
@@ -282,26 +282,26 @@ def side_strike(scene: SideStrike, at: Resolution | None = None) -> SideOutcome:
     3.999
     """
     check_kind("side_strike scene", scene, SideStrike)
-    solved = solve_side_contact(scene, at)
+    contact = solve_side_contact(scene, at)
     m, e = scene.striker.mass, scene.striker.restitution
-    rebound = float(solved.ball[1])
-    apparent = rebound / scene.speed
+    rebound_speed = float(contact.ball[1])
+    e_app = rebound_speed / scene.speed
     return SideOutcome(
-        rebound_speed=rebound,
-        apparent_restitution=apparent,
-        impulse=m * (rebound + scene.speed),
-        duration=solved.time,
-        effective_mass=m * (1 + apparent) / (e - apparent) if e != apparent else math.inf,
-        contact_point_speed=solved.velocity[1] - rebound,
-        phases=solved.phases,
-        energy=solved.energies({"initial": m * scene.speed**2 / 2, "striker": m * rebound**2 / 2}),
-        unknowns=solved.model.unknowns,
-        history=solved.history,
+        rebound_speed=rebound_speed,
+        apparent_restitution=e_app,
+        impulse=m * (rebound_speed + scene.speed),
+        duration=contact.time,
+        effective_mass=m * (1 + e_app) / (e - e_app) if e != e_app else math.inf,
+        contact_point_speed=contact.velocity[1] - rebound_speed,
+        phases=contact.phases,
+        energy=contact.energies({"initial": m * scene.speed**2 / 2, "striker": m * rebound_speed**2 / 2}),
+        unknowns=contact.model.unknowns,
+        history=contact.history,
     )
 
 
 def solve_side_contact(scene: SideStrike, at: Resolution | None = None) -> SolvedContact:
-    """The solution of the contact: a normal contact with a body that moves at the speed of the strike."""
+    """Solve the contact of a side strike: normal force only, with a striker at the strike's speed."""
     striker, law, time = scene.striker, scene.striker.law, scene.contact_time
     if not CONTACT_TIME.contains(time):
         raise ValueError(f"SideStrike must make a contact time in {CONTACT_TIME.bounds}; got {time:.3g} s")
@@ -327,11 +327,11 @@ def solve_side_contact(scene: SideStrike, at: Resolution | None = None) -> Solve
 
 def _position_modes(scene: SideStrike, at: Resolution | None) -> TipModes:
     """Frequencies of the beam, and the struck point's displacement in each mode; truncation is corrected by default."""
-    fineness = at or mode_count_for(scene.cue, scene.contact_time)
-    system = assemble(scene.cue, fineness, scene.cue_effects, positions=[scene.position])
-    count = (fineness if isinstance(fineness, int) else fineness.modes) + 2 - system.rigid_basis.shape[1]
+    resolution = at or mode_count_for(scene.cue, scene.contact_time)
+    system = assemble(scene.cue, resolution, scene.cue_effects, positions=[scene.position])
+    count = (resolution if isinstance(resolution, int) else resolution.modes) + 2 - system.rigid_basis.shape[1]
     modes = solve(system, count, n_corrected=int(at is None), position=scene.position)
-    place = side_modes(modes)
+    tip = side_modes(modes)
     for effect in scene.cue_effects:
-        place = effect.damp(place, ((scene.cue, modes),))
-    return place
+        tip = effect.damp(tip, ((scene.cue, modes),))
+    return tip

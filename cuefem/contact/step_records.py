@@ -72,10 +72,10 @@ class SolvedContact:
     def cue_energy(self) -> tuple[float, float]:
         """Energies of the cue's rigid-body modes and of its vibration, J."""
         propagator = self.model.propagator
-        stretched, moving = (propagator.displacements @ self.xi).real, (propagator.velocities @ self.xi).real
+        displacements, velocities = (propagator.displacements @ self.xi).real, (propagator.velocities @ self.xi).real
         rigid = propagator.omega == 0
-        vibrating = stretched @ stretched + moving[~rigid] @ moving[~rigid]
-        return float(moving[rigid] @ moving[rigid]) / 2, float(vibrating) / 2
+        vibration = displacements @ displacements + velocities[~rigid] @ velocities[~rigid]
+        return float(velocities[rigid] @ velocities[rigid]) / 2, float(vibration) / 2
 
     @cached_property
     def phases(self) -> tuple[Phase, ...]:
@@ -114,23 +114,23 @@ class SolvedContact:
         (p_t, p_n), approach = self.impulse, model.propagator.approach
         inertia = float(approach @ approach)  # of a cue that moves axially as a rigid body, kg
         if model.axes is None:
-            turning, axial = float(self.ball[2]), s * p_t + c * p_n
+            spin, axial_impulse = float(self.ball[2]), s * p_t + c * p_n
         else:  # R times the ball's spin about the vertical; the axial momentum that the cue lost
-            turning = float(model.axes[2] @ self.ball[3:])
-            axial = model.speed * inertia - float(approach @ (model.propagator.velocities @ self.xi).real)
+            spin = float(model.axes[2] @ self.ball[3:])
+            axial_impulse = model.speed * inertia - float(approach @ (model.propagator.velocities @ self.xi).real)
         energy = self.energies(
             {
                 "initial": inertia * model.speed**2 / 2,
                 "ball translation": (p_t**2 + p_n**2) / (2 * M),
-                "ball rotation": model.inertia * M * turning**2 / 2,
+                "ball rotation": model.inertia * M * spin**2 / 2,
             }
         )
         return Outcome(
             squirt=side * math.atan2(s * p_n - c * p_t, s * p_t + c * p_n) + 0.0,
             ball_velocity=np.array([side * p_t, p_n]) / M,
             ball_speed=math.hypot(p_t, p_n) / M,
-            spin=side * turning / model.radius,
-            cue_speed=model.speed - axial / inertia,
+            spin=side * spin / model.radius,
+            cue_speed=model.speed - axial_impulse / inertia,
             impulse=np.array([side * p_t, p_n]),
             duration=self.time,
             regime=self._regime(energy),
@@ -146,13 +146,13 @@ class SolvedContact:
             return "late stick" if abs(self.velocity[0]) <= 1e-12 * self.model.speed else "miscue"
         return contact_state(self.phases, energy)
 
-    def energies(self, of_ball: dict[str, float]) -> dict[str, float]:
-        """Energies after the contact by name, J; of_ball: the initial energy, and those of the ball or striker."""
-        model, losses, (rigid, vibrating) = self.model, self.losses, self.cue_energy
+    def energies(self, ball_energies: dict[str, float]) -> dict[str, float]:
+        """Energies after the contact by name, J; ball_energies: initial energy, and those of the ball or striker."""
+        model, losses, (rigid, vibration) = self.model, self.losses, self.cue_energy
         energy = {
-            **of_ball,
+            **ball_energies,
             "cue": rigid,
-            "cue vibration": vibrating + losses["radiated"],
+            "cue vibration": vibration + losses["radiated"],
             "tip loss": losses["tip"],
             "friction loss": losses["friction"],
         }
@@ -168,10 +168,10 @@ class SolvedContact:
         return {name: float(joules) for name, joules in energy.items()}
 
 
-def solve_contact(model: ContactModel, *, steps: int | None = None, keep_states: bool = False) -> SolvedContact:
+def solve_contact(model: ContactModel, *, steps: int | None = None, store_states: bool = False) -> SolvedContact:
     """Solve a contact from first touch to separation, and through the window of a second hit.
 
-    steps: in a head-on contact time. keep_states: store the modal coordinates after every step. RuntimeError if
+    steps: in a head-on contact time. store_states: store the modal coordinates after every step. RuntimeError if
     the ball does not separate; ValueError if the indentation or the slope of the shaft leaves its theory's range.
     """
     kernel, propagator = library(), model.propagator
@@ -186,7 +186,7 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, keep_states:
         **model.arrays,
     }
     arrays = {name: np.ascontiguousarray(values) for name, values in arrays.items()}
-    numbers = {
+    scalars = {
         "modes": len(propagator.eigenvalues),
         "ports": len(propagator.rows),
         "slopes": len(propagator.slopes),
@@ -201,9 +201,9 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, keep_states:
         "max_time": MAX_CONTACT_TIMES * model.time,
         "window": model.window or 0.0,
     }
-    c = KernelContact(**numbers | model.terms | {name: array.ctypes.data for name, array in arrays.items()})
+    c = KernelContact(**scalars | model.terms | {name: array.ctypes.data for name, array in arrays.items()})
     records, states, dissipated = [], [arrays["xi"][None].copy()], []
-    needs_states = keep_states or len(propagator.dampers) > 0
+    needs_states = store_states or len(propagator.dampers) > 0
     work = kernel.contact_new(ctypes.byref(c))
     if not work:
         raise MemoryError("no memory for the steps of a contact")
@@ -216,14 +216,14 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, keep_states:
                 )
             rows = np.empty(STEPS_PER_CALL, STEP)
             after = np.empty((STEPS_PER_CALL if needs_states else 0, 2, len(propagator.eigenvalues)))
-            stored = after.ctypes.data if needs_states else None
-            count = kernel.contact_steps(work, STEPS_PER_CALL, rows.ctypes.data, stored)
+            states_address = after.ctypes.data if needs_states else None
+            count = kernel.contact_steps(work, STEPS_PER_CALL, rows.ctypes.data, states_address)
             records.append(rows[:count])
             if needs_states:
                 states.append(after[:count, 0] + 1j * after[:count, 1])
                 xi = np.concatenate([states[-2][-1:], states[-1]])
                 dissipated.append(propagator.dissipated(xi, rows["length"][:count]))
-                states = states if keep_states else states[-1:]
+                states = states if store_states else states[-1:]
     finally:
         kernel.contact_free(work)
     if c.status != _ENDED:
@@ -244,7 +244,7 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, keep_states:
     return SolvedContact(
         model,
         np.concatenate(records)[: c.steps_to_last_separation],
-        np.concatenate(states)[: c.steps_to_last_separation + 1] if keep_states else None,
+        np.concatenate(states)[: c.steps_to_last_separation + 1] if store_states else None,
         arrays["xi"],
         arrays["ball"],
         losses,

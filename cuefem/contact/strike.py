@@ -124,12 +124,12 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None) -> Outco
     results = []
     for i, scene in enumerate(scenes):
         try:
-            key = _modes_of(scene, at)
+            key = _mode_inputs(scene, at)
             tip = tips[key] = tips.get(key) or tip_modes_of(scene, at)
             results.append(strike_modes(scene, tip, steps=steps_of(at)))
         except (ValueError, RuntimeError) as error:
-            kind = ValueError if isinstance(error, ValueError) else RuntimeError
-            raise kind(f"scene {i}: {error}") from error
+            error_type = ValueError if isinstance(error, ValueError) else RuntimeError
+            raise error_type(f"scene {i}: {error}") from error
     names = dict.fromkeys(name for outcome in results for name in outcome.energy)
     energy = {name: np.array([outcome.energy.get(name, 0.0) for outcome in results]) for name in names}
     columns = {name: np.array([getattr(outcome, name) for outcome in results]) for name in BATCH_FIELDS}
@@ -137,7 +137,7 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None) -> Outco
     return Outcome(**columns, phases=(), energy=energy, unknowns=unknowns)  # type: ignore[arg-type]
 
 
-def _modes_of(scene: Scene, at: Resolution | None) -> tuple[Any, ...]:
+def _mode_inputs(scene: Scene, at: Resolution | None) -> tuple[Any, ...]:
     """Inputs that determine the tip modes of a scene."""
     if scene.lumped is not None:
         return (scene.lumped,)

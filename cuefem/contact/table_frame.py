@@ -88,15 +88,15 @@ def place(outcome: Outcome, point: ArrayLike, direction: ArrayLike, *, ball: Bal
     if getattr(outcome.history, "velocity", None) is not None:
         raise ValueError("place takes planar outcomes; after Elevation use outcome.history.velocity and .spin")
     ball = Ball() if ball is None else ball
-    offset, axis, along = _geometry(point, direction, ball)
+    offset, axis, forward = _geometry(point, direction, ball)
     angle = outcome.squirt + math.atan2(*outcome.ball_velocity)  # phi, as the outcome was computed
     if not abs(offset - abs(math.sin(angle))) <= OFFSET_TOLERANCE:
         raise ValueError(
             f"outcome must be that of a stroke at the offset of point and direction, {offset:.10g} or {-offset:.10g}; "
             f"got one at {math.sin(angle):.10g}"
         )
-    turn = math.copysign(1.0, angle) * outcome.squirt
-    velocity = outcome.ball_speed * (math.cos(turn) * along + math.sin(turn) * np.cross(axis, along))
+    angle_out = math.copysign(1.0, angle) * outcome.squirt
+    velocity = outcome.ball_speed * (math.cos(angle_out) * forward + math.sin(angle_out) * np.cross(axis, forward))
     return BallMotion(velocity, math.copysign(1.0, angle) * outcome.spin * axis)
 
 

@@ -73,28 +73,28 @@ def identify_tip(scene: Scene, contact_time: float, rebound: float) -> Identifie
     contact_time = CONTACT_TIME.check("identify_tip contact_time", contact_time)
     rebound = REBOUND.check("identify_tip rebound", rebound)
     tip = tip_modes_of(with_tip(scene, IdentifiedTip(1e9, 0.5)))  # neither number changes the modes of the cue
-    lowest, highest = math.log(MIN_E), math.log(MAX_E)
+    low, high = math.log(MIN_E), math.log(MAX_E)
 
     def central_impact(log_E: float, e: float) -> tuple[float, float]:
         """Contact time, s, and rebound; `NO_SEPARATION` and 0 if the indentation leaves the range of the law."""
         try:
-            made = with_tip(scene, IdentifiedTip(math.exp(log_E), e))
-            outcome = strike_modes(_centred(made), tip)
+            trial = with_tip(scene, IdentifiedTip(math.exp(log_E), e))
+            outcome = strike_modes(_centre_ball(trial), tip)
         except IndentationOutOfRange:
             return NO_SEPARATION, 0.0
-        return float(outcome.duration), rebound_of_outcome(outcome, made)
+        return float(outcome.duration), rebound_of_outcome(outcome, trial)
 
     def residuals(guess: Any) -> Any:
-        tried = np.clip(guess, [lowest, MIN_RESTITUTION], [highest, 1.0])  # the residuals grow beyond the bounds
-        time, computed = central_impact(*tried)
-        return [math.log(time / contact_time), computed - rebound] + np.array([-1.0, 1.0]) * (guess - tried)
+        clipped = np.clip(guess, [low, MIN_RESTITUTION], [high, 1.0])  # the residuals grow beyond the bounds
+        time, computed = central_impact(*clipped)
+        return [math.log(time / contact_time), computed - rebound] + np.array([-1.0, 1.0]) * (guess - clipped)
 
-    first = [math.log(GUESS.E) - 3 * math.log(contact_time / GUESS_TIME), GUESS.restitution]
-    near = root(residuals, np.clip(first, [lowest, MIN_RESTITUTION], [highest, 1.0]), tol=TOLERANCE)
-    if near.success and lowest < near.x[0] < highest and MIN_RESTITUTION <= near.x[1] <= 1:
-        return IdentifiedTip(math.exp(near.x[0]), float(near.x[1]))
+    start = [math.log(GUESS.E) - 3 * math.log(contact_time / GUESS_TIME), GUESS.restitution]
+    solution = root(residuals, np.clip(start, [low, MIN_RESTITUTION], [high, 1.0]), tol=TOLERANCE)
+    if solution.success and low < solution.x[0] < high and MIN_RESTITUTION <= solution.x[1] <= 1:
+        return IdentifiedTip(math.exp(solution.x[0]), float(solution.x[1]))
 
-    E, e = np.clip(near.x, [lowest, MIN_RESTITUTION], [highest, 1.0])
+    E, e = np.clip(solution.x, [low, MIN_RESTITUTION], [high, 1.0])
     time, computed = central_impact(E, e)
     raise ValueError(
         f"identify_tip: no leather has a contact time of {contact_time:g} s and a rebound of {rebound:g} on this cue; "
@@ -105,7 +105,7 @@ def identify_tip(scene: Scene, contact_time: float, rebound: float) -> Identifie
 def with_tip(scene: Scene, tip: IdentifiedTip) -> Scene:
     """The scene with the identified E of its leather and restitution of its tip."""
     leather = scene.leather_tip
-    effects = tuple(replace(leather, E=tip.E) if each is leather else each for each in scene.effects)
+    effects = tuple(replace(leather, E=tip.E) if effect is leather else effect for effect in scene.effects)
     return replace(scene, tip=replace(scene.tip, restitution=tip.restitution), effects=effects)
 
 
@@ -132,10 +132,10 @@ def rebound(scene: Scene) -> float:
     >>> cf.rebound(cf.Scene(cue, tip=cf.Tip(0.73, contact_time=1e-3), effects=(waves,))) > 0.73
     True
     """
-    return rebound_of_outcome(strike(_centred(scene)), scene)
+    return rebound_of_outcome(strike(_centre_ball(scene)), scene)
 
 
-def _centred(scene: Scene) -> Scene:
+def _centre_ball(scene: Scene) -> Scene:
     return replace(scene, stroke=replace(scene.stroke, offset=0.0))
 
 

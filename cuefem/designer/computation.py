@@ -74,7 +74,7 @@ def numbers(scene: Scene) -> dict[str, Any]:
 
 def _end_mass(name: str, solved: SolvedScene) -> float | None:
     try:
-        return float(DEFINITIONS[name].of_solved(solved))
+        return float(DEFINITIONS[name].of_design(solved))
     except ValueError:
         return None
 

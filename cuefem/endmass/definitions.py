@@ -87,7 +87,7 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
     definition = definition_of(drive)
     if scene.lumped is not None:
         return scene.lumped.end_mass
-    return definition.of_solved(SolvedScene(scene, at))
+    return definition.of_design(SolvedScene(scene, at))
 
 
 def _couples(tip: TipModes, scene: Scene) -> bool:
@@ -137,8 +137,8 @@ def stick_at_offset(tip: TipModes, scene: Scene) -> float:
     """
     b = abs(scene.stroke.offset)
     if _couples(tip, scene):
-        here = replace(scene, stroke=Stroke(scene.stroke.speed, b))
-        return _with_squirt(sticking_squirt(tip, here), without_slip(here), "offset") if b else stick(tip, here)
+        scene = replace(scene, stroke=Stroke(scene.stroke.speed, b))
+        return _with_squirt(sticking_squirt(tip, scene), without_slip(scene), "offset") if b else stick(tip, scene)
     limit = limit_at(scene, b)
     return limit.end_mass(limit.transverse_impulse(tip))
 
@@ -176,8 +176,8 @@ def small_offset_slope(tip: TipModes, scene: Scene) -> float:
     if scene.lumped is None and not _couples(tip, scene):
         limit = StickLimit.of(scene)
         return limit.transverse_impulse(tip) / limit.normal
-    small = _near_centre(scene)
-    return sticking_squirt(tip, small) / float(small.stroke.angle)
+    near_centre = _near_centre(scene)
+    return sticking_squirt(tip, near_centre) / float(near_centre.stroke.angle)
 
 
 def _near_centre(scene: Scene) -> Scene:
@@ -197,11 +197,11 @@ def sticking_squirt(tip: TipModes, scene: Scene) -> float:
 def without_slip(scene: Scene) -> Scene:
     """The scene with infinite friction, without the table and double hits, which do not belong to an end mass."""
 
-    def of_contact(effect: Effect) -> bool:
+    def in_contact(effect: Effect) -> bool:
         terms = replace(scene, effects=(effect,)).contact_terms
         return terms.table is None and terms.window is None
 
-    return replace(scene, tip=replace(scene.tip, friction=math.inf), effects=tuple(filter(of_contact, scene.effects)))
+    return replace(scene, tip=replace(scene.tip, friction=math.inf), effects=tuple(filter(in_contact, scene.effects)))
 
 
 def squirt_equivalent(tip: TipModes, scene: Scene) -> float:
@@ -243,17 +243,17 @@ def lumped_number(name: str, values: Array, squirt: float, *, scene: Scene, cue:
     values: ascending, (n,), the range. squirt: rad, away from the side struck. None unless squirt is smaller at the
     lower end of the range and larger at the upper: light end masses, whose tip slips until separation, have one squirt.
     """
-    side, numbers = np.sign(scene.stroke.offset), impulse_inputs(scene, cue)
+    side, inputs = np.sign(scene.stroke.offset), impulse_inputs(scene, cue)
 
     def excess(values: Array) -> Array:
-        return np.asarray(side * impact(numbers | {name: values}).squirt - squirt)
+        return np.asarray(side * impact(inputs | {name: values}).squirt - squirt)
 
-    least, *_, most = excess(values)
-    if not least < -SQUIRT_TOLERANCE < SQUIRT_TOLERANCE < most:
+    low, *_, high = excess(values)
+    if not low < -SQUIRT_TOLERANCE < SQUIRT_TOLERANCE < high:
         return None
     for _ in range(SEARCH_ROUNDS):
-        above = int(np.argmax(excess(values) >= 0))
-        values = np.linspace(values[above - 1], values[above], len(values))
+        index = int(np.argmax(excess(values) >= 0))
+        values = np.linspace(values[index - 1], values[index], len(values))
     return float(values[-1])
 
 
@@ -272,12 +272,12 @@ class Definition(NamedTuple):
     at_offset: bool = False
     includes_tip: bool = False
 
-    def of_solved(self, solved: SolvedScene) -> Any:
+    def of_design(self, design: SolvedScene) -> Any:
         """The end mass of a solved scene, kg."""
-        return self.of(solved.stick_tip, solved.scene)
+        return self.of(design.stick_tip, design.scene)
 
     def of(self, tip: TipModes, scene: Scene) -> Any:
-        """The end mass of any cue by this definition, kg; of a lumped cue its own."""
+        """The end mass of any cue by this definition, kg; of a lumped cue its `LumpedCue.end_mass`."""
         return self.value(tip, scene) if scene.lumped is None else scene.lumped.end_mass
 
     def label_at(self, offset: Any) -> str:

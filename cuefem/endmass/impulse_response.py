@@ -56,15 +56,15 @@ class ImpulseResponse(NamedTuple):
         """
         h = T / STEPS
         z = self.rates * h
-        _, mean, own = phi_functions(z)
-        within, rows = np.exp(z[:, None] * np.arange(TABLE_ROW)), np.exp(z * np.arange(0, STEPS, TABLE_ROW)[:, None])
+        _, phi_1, phi_2 = phi_functions(z)
+        columns, rows = np.exp(z[:, None] * np.arange(TABLE_ROW)), np.exp(z * np.arange(0, STEPS, TABLE_ROW)[:, None])
 
-        def summed(weights: Complex) -> Array:
-            return np.asarray(((rows * weights) @ within).real.ravel())
+        def modal_sum(weights: Complex) -> Array:
+            return np.asarray(((rows * weights) @ columns).real.ravel())
 
-        first = (self.weights * h * own).real.sum() + c * h / 2
-        later = summed(self.weights * h * mean**2)[:-1] + c * h
-        return summed(self.weights * mean) + c, np.append(first, later)
+        first = (self.weights * h * phi_2).real.sum() + c * h / 2
+        later = modal_sum(self.weights * h * phi_1**2)[:-1] + c * h
+        return modal_sum(self.weights * phi_1) + c, np.append(first, later)
 
     def smooth_start_impulse(self, T: float) -> float:
         """Impulse for the tip velocity (1 - cos(pi t/T))/2 from 0 to T, N s per m/s."""
@@ -83,16 +83,16 @@ def step_means(edges: Array) -> Array:
 
 
 def solve_toeplitz(column: Array, right_side: Array) -> Array:
-    """x of L x = wanted, L lower triangular and Toeplitz with the first ``column``, (n,).
+    """x of L x = right_side, L lower triangular and Toeplitz with the first ``column``, (n,).
 
     It is a quotient of power series, evaluated at 4 n points of the circle on which the last of the n terms has fallen
     to `DECAY`. The column is the response of a passive body and has no zero there, except near z = -1 from the mean
     over steps: the factor 1 + z is divided out first and multiplied back.
     """
     n = len(column)
-    fade = DECAY ** (np.arange(n) / n)
-    above, below = (np.fft.rfft(series * fade, 4 * n) for series in (right_side, _over_one_plus_z(column)))
-    return _over_one_plus_z(np.fft.irfft(above / below)[:n] / fade)
+    decay = DECAY ** (np.arange(n) / n)
+    numerator, denominator = (np.fft.rfft(series * decay, 4 * n) for series in (right_side, _over_one_plus_z(column)))
+    return _over_one_plus_z(np.fft.irfft(numerator / denominator)[:n] / decay)
 
 
 def _over_one_plus_z(series: Array) -> Array:

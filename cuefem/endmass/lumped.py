@@ -66,8 +66,8 @@ def lump_modes(scene: Scene, tip: TipModes) -> LumpedCue:
     cue = LumpedCue(scene.axial_mass, stick_at_offset(tip, scene.without_tip_effects))
     if not scene.at_tip or scene.stroke.offset == 0:
         return cue
-    most, squirt = (1 - 1e-9) / math.sqrt(cue.mass * cue.end_mass), sticking_squirt(tip, scene)
-    couplings = most * np.linspace(-1.0, 1.0, SEARCH_POINTS)
+    limit, squirt = (1 - 1e-9) / math.sqrt(cue.mass * cue.end_mass), sticking_squirt(tip, scene)
+    couplings = limit * np.linspace(-1.0, 1.0, SEARCH_POINTS)
     coupling = lumped_number("coupling", couplings, squirt, scene=without_slip(scene), cue=cue)
     if coupling is None:
         raise ValueError(f"lump: no coupling of a lumped cue has the squirt {squirt:.6g} rad of a sticking tip")
@@ -109,8 +109,8 @@ def impulse(scene: Scene | Sequence[Scene]) -> Outcome:
     """
     if isinstance(scene, Scene):
         return impact(_lumped_numbers(scene))
-    each = [_lumped_numbers(one) for one in as_scenes("impulse scene", scene)]
-    return impact({name: np.array([numbers[name] for numbers in each]) for name in each[0]})
+    inputs = [_lumped_numbers(item) for item in as_scenes("impulse scene", scene)]
+    return impact({name: np.array([numbers[name] for numbers in inputs]) for name in inputs[0]})
 
 
 def _lumped_numbers(scene: Scene) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""The contact of a tip that sticks from the first touch, straight along the cue, and the end mass that it feels."""
+"""The contact of a tip that sticks from the first touch, with an axial force, and its end mass."""
 
 from __future__ import annotations
 
@@ -44,8 +44,8 @@ class StickLimit(NamedTuple):
         Two quarter periods: (1 - cos)/(1 + e) in compression, T/(1 + e) long, then (1 + e sin)/(1 + e).
         """
         x = np.pi / 2 * (1 + self.e) * np.clip(t / self.T, 0.0, 1.0)
-        unloaded = np.sin((x - np.pi / 2) / (self.e or 1.0))
-        return np.asarray(np.where(x < np.pi / 2, 1 - np.cos(x), 1 + self.e * unloaded) / (1 + self.e))
+        unloading = np.sin((x - np.pi / 2) / (self.e or 1.0))
+        return np.asarray(np.where(x < np.pi / 2, 1 - np.cos(x), 1 + self.e * unloading) / (1 + self.e))
 
     def transverse_impulse(self, tip: TipModes) -> float:
         """J, kg, from the impulse of a velocity step (`ImpulseResponse.velocity_step_impulse`)."""

@@ -171,13 +171,13 @@ class Steps:
                 if self.raised:
                     tangent = self._rubbed(self.output_rows @ z, 0.0, tangent)
             z = z + self.impulses[0] * impulse + tangent @ self.impulses[1:]
-            lost += self._damped(z)
+            lost += self._damping_power(z)
             z = self.half @ z
             time += h / 2
             assert time < 300 * self.time, "the small steps do not end"
         return self._seen(z, left, touches, lost, first)
 
-    def _damped(self, z: Array) -> float:
+    def _damping_power(self, z: Array) -> float:
         """Energy that dampers dissipate in a step, J."""
         if not self.bent.damping.any():
             return 0.0
