@@ -37,7 +37,7 @@ def of_study(result: StudyResult) -> pd.DataFrame:
     -------
     pandas.DataFrame
         A row for each design, by its number: the varied parameters, the responses in SI (nan where one is missing), and
-        ``failure``, the reason. ``attrs``: "units", "varied", "responses".
+        ``failure``, the reason. ``attrs``: "units", "varied_fields", "responses".
     """
     varied = [vary.name for vary in result.study.vary]
     responses = [response.name for response in result.study.responses]
@@ -50,5 +50,5 @@ def of_study(result: StudyResult) -> pd.DataFrame:
         lines, columns=["design", *varied, *responses, "failure"], index="design"
     )
     frame[responses] = frame[responses].astype(float)
-    frame.attrs = {"units": result.units, "varied": varied, "responses": responses}
+    frame.attrs = {"units": result.units, "varied_fields": varied, "responses": responses}
     return frame

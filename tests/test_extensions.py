@@ -102,7 +102,7 @@ def test_added_cue_effect_is_displayed_saved_and_varied(tmp_path: Path) -> None:
     assert cf.load(tmp_path / "scene.toml").effects == scene.effects
     assert cf.strike(scene, AT).squirt > 1.01 * cf.strike(bare, AT).squirt
     (added,) = (one for one in variants(bare) if one.name == "Collar")
-    assert (added.listed, added.scene) == (False, scene)
+    assert (added.is_listed, added.scene) == (False, scene)
     study = Study(scene, (Vary(("effects[0].mass",), Levels((0.0, 4e-3))),), (Response.of("squirt"),))
     assert (study.scene((4e-3,)), study.units[0]) == (scene, "kg")
     assert with_parameters(scene, {"effects[0].mass": 5e-3}).effects == (kind(0.03, 5e-3),)

@@ -160,7 +160,7 @@ def full_record(
 ) -> Record:
     """The JSON record: the file, assumptions, warnings, the scene, the result, the units."""
     warnings = plausibility_warnings(solved, with_impact=with_impact)
-    about = {"file": str(file), "assumed": notes, "warnings": warnings, "scene": scene_record(solved)}
+    about = {"file": str(file), "assumptions": notes, "warnings": warnings, "scene": scene_record(solved)}
     return about | more | record | {"units": UNITS | record.get("units", {})}
 
 

@@ -99,7 +99,7 @@ def _side_by_side(files: Sequence[Path], options: dict[str, Any], output: Path |
     ]
     with errors_name_file(files[0], options):
         record = comparison_record(scenes, same_shaft=same_shaft, progress=with_progress_bar)
-    about: dict[str, Any] = {"files": [str(file) for file in files], "assumed": notes}
+    about: dict[str, Any] = {"files": [str(file) for file in files], "assumptions": notes}
     about |= {"scenes": {name: scene_record(scene) for name, scene in with_same_stroke(scenes).items()}}
     things: list[Any] = [*comparison_sentences(record), "", tabulate_comparison(record)]
     if output is not None and output.suffix == ".html":

@@ -142,7 +142,7 @@ def improve(file: Path, take: int | None, output: Path | None, force: bool, **op
     if take > len(rows):
         raise InputError(file, "--take", f"must be a row of the table, 1 to {len(rows)}; got {take}")
     row = rows[take - 1]
-    changed = with_parameters(scene, row["set"])
+    changed = with_parameters(scene, row["values"])
     save(changed, output)
     click.echo(f"wrote {output}: {row['change']}")
     if not any(value for name, value in options.items() if name != "as_json"):  # options would apply to both files

@@ -34,7 +34,7 @@ def convert(file: Path, output: Path, force: bool, as_json: bool, **options: str
     save(drawing, output)
     notes = assumption_texts(drawing_assumptions(file, drawing, given), options) if isinstance(drawing, Cue) else []
     if as_json:
-        print_json({"written": str(output), "assumed": notes})
+        print_json({"output_file": str(output), "assumptions": notes})
         return
     for line in (*assumed_lines(notes), f"wrote {output}"):
         click.echo(line)

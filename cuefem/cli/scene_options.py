@@ -142,7 +142,7 @@ def with_options(scene: Scene, file: Path, options: dict[str, Any]) -> Scene:
         if not error.name.endswith("cue.body_mass") or options.get("body_mass") is None:
             raise InputError(file, "", str(error)) from None
         bounds = error.bounds.bounds_in(error.bounds.unit)
-        raise InputError(file, "--body-mass", f"must be {bounds}{error.why}; got {options['body_mass']}") from None
+        raise InputError(file, "--body-mass", f"must be {bounds}{error.reason}; got {options['body_mass']}") from None
     except ValueError as error:
         raise InputError(file, "", str(error)) from None
 

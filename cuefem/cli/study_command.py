@@ -86,8 +86,8 @@ def study(
     else:
         kept = SqliteStore(store or file.with_suffix(".sqlite"), designs)
         result = _kept(file, asked, kept, workers)
-    record: dict[str, Any] = {"file": str(file), "kind": result.kind, "assumed": notes, "units": result.units}
-    record |= {"varied": varied_segments(designs.vary, designs.base), "resolution": designs.at and vars(designs.at)}
+    record: dict[str, Any] = {"file": str(file), "assumptions": notes, "resolution": designs.at and vars(designs.at)}
+    record |= {"kind": result.kind, "varied_fields": varied_segments(designs.vary, designs.base), "units": result.units}
     stored = []
     if kept:
         record |= {"store": str(kept.path), "evaluated": kept.computed}

@@ -18,7 +18,7 @@ from cuefem.results.quantities import to_display, with_unit
 from cuefem.results.records import Record
 from cuefem.results.solved_design import SolvedDesign, off_centre
 from cuefem.results.uncertainty import model_share, ratio_error, squirt_changes
-from cuefem.results.verdict import refuse_miscue
+from cuefem.results.verdict import reject_miscue
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
 
@@ -41,27 +41,27 @@ Progress = Callable[[Sequence[Any]], Iterable[Any]]
 class DesignChange(NamedTuple):
     """A change: its label, and the values that it sets, SI or names of materials, by parameter.
 
-    replaced: uncertain parameters whose value it replaces, so that the error of the new one is independent.
+    resets: uncertain parameters whose value it replaces, so that the error of the new one is independent.
     """
 
     label: str
     values: dict[str, Any]
-    replaced: tuple[str, ...] = ()
+    resets: tuple[str, ...] = ()
 
 
 def changes_of(scene: Scene) -> list[DesignChange]:
     """Candidate changes of this cue; `design_changes` drops those that its geometry does not allow."""
-    own = {key: known.value(scene) for key, known in PARAMETERS.items()}
+    values = {key: parameter.value(scene) for key, parameter in PARAMETERS.items()}
     return [
-        *_bores(own),
-        *_fronts(own),
-        *_tips(own),
-        *_woods_and_tapers(scene.shaft, own),
+        *_bores(values),
+        *_ferrules(values),
+        *_tips(values),
+        *_woods_and_tapers(scene.shaft, values),
     ]
 
 
-def _bores(own: Record) -> Iterator[DesignChange]:
-    depth, width = own["bore_depth"], own["bore_width"]
+def _bores(values: Record) -> Iterator[DesignChange]:
+    depth, width = values["bore_depth"], values["bore_width"]
     if depth is None:
         return
     if depth <= 0:
@@ -72,8 +72,8 @@ def _bores(own: Record) -> Iterator[DesignChange]:
     yield DesignChange(f"bore deeper, {_from_to(depth, depth + DEEPER)}", {"bore depth": depth + DEEPER})
 
 
-def _fronts(own: Record) -> Iterator[DesignChange]:
-    length, material = own["ferrule_length"], own["ferrule_material"]
+def _ferrules(values: Record) -> Iterator[DesignChange]:
+    length, material = values["ferrule_length"], values["ferrule_material"]
     if length is None:
         return
     if length - SHORTER >= MIN_FERRULE:
@@ -85,8 +85,8 @@ def _fronts(own: Record) -> Iterator[DesignChange]:
             yield DesignChange(f"{'ABS' if name == 'abs' else name} ferrule", {"ferrule material": name})
 
 
-def _tips(own: Record) -> Iterator[DesignChange]:
-    height, dome = own["tip_height"], own["dome"]
+def _tips(values: Record) -> Iterator[DesignChange]:
+    height, dome = values["tip_height"], values["dome"]
     if height is not None and height - LOWER >= MIN_TIP:
         yield DesignChange(f"tip height {_from_to(height, height - LOWER)}", {"tip height": height - LOWER})
     for name in ("dime", "nickel"):
@@ -94,30 +94,30 @@ def _tips(own: Record) -> Iterator[DesignChange]:
             yield DesignChange(f"tip radius of a {name}", {"dome": DOMES[name]}, ("dome",))
 
 
-def _woods_and_tapers(cue: Cue, own: Record) -> Iterator[DesignChange]:
+def _woods_and_tapers(cue: Cue, values: Record) -> Iterator[DesignChange]:
     """Changes of a wooden shaft; a tube is made on a mandrel, and is neither turned nor replaced by solid wood."""
-    if table_name(own["shaft_material"]) != "carbon fibre":
-        yield from _tapers(cue, own)
+    if table_name(values["shaft_material"]) != "carbon fibre":
+        yield from _tapers(cue, values)
         yield from _woods(cue)
 
 
-def _tapers(cue: Cue, own: Record) -> Iterator[DesignChange]:
-    tip, taper, end = (own[f"{name}_diameter"] for name in ("tip", "taper", "butt"))
+def _tapers(cue: Cue, values: Record) -> Iterator[DesignChange]:
+    tip, taper, end = (values[f"{name}_diameter"] for name in ("tip", "taper", "butt"))
     x = taper_position(cue)
     at = with_unit(x, "m", decimals=0)
     thinner = {"tip diameter": tip - THINNER, "taper diameter": taper - THINNER}
     yield DesignChange(f"{with_unit(THINNER, 'm')} thinner from the front to {at}", thinner)
     cone, pro = tip + (end - tip) * x / cue.length, tip + PRO_GAIN
-    for name, wanted in (("straight taper, a cone", cone), ("pro taper", pro)):
-        if abs(wanted - taper) > 0.2 * MM:
-            yield DesignChange(f"{name}, {with_unit(wanted, 'm')} at {at}", {"taper diameter": wanted})
+    for name, diameter in (("straight taper, a cone", cone), ("pro taper", pro)):
+        if abs(diameter - taper) > 0.2 * MM:
+            yield DesignChange(f"{name}, {with_unit(diameter, 'm')} at {at}", {"taper diameter": diameter})
 
 
 def _woods(cue: Cue) -> Iterator[DesignChange]:
     shaft = Layout.of(cue).shaft
-    own = table_name(cue.segments[shaft.start].material)
+    current = table_name(cue.segments[shaft.start].material)
     for name in WOODS:
-        if name != own:
+        if name != current:
             yield DesignChange(f"{name} shaft", {"shaft material": name}, WOOD)
     tube: dict[str, Any] = {}
     for i in shaft:
@@ -149,9 +149,9 @@ def design_changes(scene: Scene, *, solved: SolvedScene | None = None, progress:
     Returns
     -------
     dict
-        "offset", b/R; "regime", the contact's (`Outcome.regime`); "own", the cue's squirt (rad), tip
+        "offset", b/R; "regime", the contact's (`Outcome.regime`); "unmodified", the cue's squirt (rad), tip
         stiffness (N/m), shaft mass (kg) and first natural frequency (Hz); "changes", a list of dicts sorted by squirt,
-        lowest first: "change", the label, "set", the argument of `cuefem.parameters.parameter.with_parameters`, the
+        lowest first: "change", the label, "values", the argument of `cuefem.parameters.parameter.with_parameters`, the
         four numbers, relative changes of squirt (with "squirt_change_error", 1 sigma) and stiffness, absolute ones of
         mass and frequency, and a "verdict": a change of squirt smaller than its error is "within uncertainty".
 
@@ -172,25 +172,25 @@ def design_changes(scene: Scene, *, solved: SolvedScene | None = None, progress:
     struck = off_centre(scene)
     solved = SolvedScene(struck) if solved is None or struck is not scene else solved
     outcome = SolvedDesign(solved).strike()
-    refuse_miscue(struck, outcome)
-    own = _numbers(solved)
-    before = {key: x for key, x in squirt_changes(solved, own["squirt"]).items() if abs(x) > MIN_CONTRIBUTION}
+    reject_miscue(struck, outcome)
+    base = _numbers(solved)
+    before = {key: x for key, x in squirt_changes(solved, base["squirt"]).items() if abs(x) > MIN_CONTRIBUTION}
     rows = []
     for change in progress(changes_of(struck)):
         try:
-            made = with_parameters(struck, change.values)
-            if _wall(made) < min(MIN_WALL, _wall(struck)):
+            variant = with_parameters(struck, change.values)
+            if _wall(variant) < min(MIN_WALL, _wall(struck)):
                 continue
-            new = SolvedScene(made)
+            new = SolvedScene(variant)
             numbers = _numbers(new)
             after = squirt_changes(new, numbers["squirt"], before)
-            residual = (_residual(before.get(key, 0.0), after.get(key, 0.0), key in change.replaced) for key in before)
-            error = ratio_error(numbers["squirt"] / own["squirt"], model_share(struck, made), *residual)
-            rows.append(_row(change, own, numbers, error))
+            residual = (_residual(before.get(key, 0.0), after.get(key, 0.0), key in change.resets) for key in before)
+            error = ratio_error(numbers["squirt"] / base["squirt"], model_share(struck, variant), *residual)
+            rows.append(_row(change, base, numbers, error))
         except (ValueError, RuntimeError):
             continue
     rows.sort(key=lambda row: row["squirt_change"])
-    return {"offset": float(struck.stroke.offset), "regime": outcome.regime, "own": own, "changes": rows}
+    return {"offset": float(struck.stroke.offset), "regime": outcome.regime, "unmodified": base, "changes": rows}
 
 
 def _numbers(solved: SolvedScene) -> Record:
@@ -204,20 +204,20 @@ def _wall(scene: Scene) -> float:
     return min((min(s.tip_diameter - s.tip_bore, s.butt_diameter - s.butt_bore) / 2 for s in empty), default=np.inf)
 
 
-def _residual(before: float, after: float, replaced: bool) -> float:
-    """Uncertainty of an uncertain parameter in ln(after/before); replaced: the change replaces its value.
+def _residual(before: float, after: float, independent: bool) -> float:
+    """Uncertainty of an uncertain parameter in ln(after/before); independent: the change replaces its value.
 
     A parameter of the changed cue alone, such as the width of a drilled bore, is known.
     """
-    return math.hypot(before, after) if replaced else after - before
+    return math.hypot(before, after) if independent else after - before
 
 
-def _row(change: DesignChange, own: Record, made: Record, error: float) -> Record:
-    relative = {name: made[name] / own[name] - 1 for name in ("squirt", "tip_stiffness")}
-    absolute = {name: made[name] - own[name] for name in ("shaft_mass", "frequency")}
+def _row(change: DesignChange, base: Record, numbers: Record, error: float) -> Record:
+    relative = {name: numbers[name] / base[name] - 1 for name in ("squirt", "tip_stiffness")}
+    absolute = {name: numbers[name] - base[name] for name in ("shaft_mass", "frequency")}
     changes = {f"{name}_change": value for name, value in (relative | absolute).items()}
     verdict = {"squirt_change_error": error, "verdict": _verdict(relative, error)}
-    return {"change": change.label, "set": change.values} | made | changes | verdict
+    return {"change": change.label, "values": change.values} | numbers | changes | verdict
 
 
 def _verdict(relative: Record, error: float) -> str:

@@ -16,13 +16,13 @@ NO_DEFAULT_VALUE = "no default value"
 class Variant:
     """A scene that differs by one effect.
 
-    name: of the effect. effect: the one removed or added; None if it has no default. listed: whether the scene lists
+    name: of the effect. effect: the one removed or added; None if it has no default. is_listed: whether the scene lists
     it. scene: the other scene; None if it is invalid; reason: why.
     """
 
     name: str
     effect: Effect | None
-    listed: bool
+    is_listed: bool
     scene: Scene | None
     reason: str = ""
 
@@ -32,15 +32,15 @@ def variants(scene: Scene) -> tuple[Variant, ...]:
 
     A kind without typical values (`Effect.trial_values`) is added at its defaults, if every field has one.
     """
-    dropped = [_without(scene, i) for i in range(len(scene.effects))]
-    listed = {type(effect).__name__ for effect in scene.effects}
-    return (*dropped, *(_with(scene, name, kind) for name, kind in effect_kinds().items() if name not in listed))
+    removed = [_without(scene, i) for i in range(len(scene.effects))]
+    names = {type(effect).__name__ for effect in scene.effects}
+    return (*removed, *(_with(scene, name, kind) for name, kind in effect_kinds().items() if name not in names))
 
 
 def _without(scene: Scene, index: int) -> Variant:
     effect = scene.effects[index]
-    rest = scene.effects[:index] + scene.effects[index + 1 :]
-    return Variant(type(effect).__name__, effect, True, replace(scene, effects=rest))
+    others = scene.effects[:index] + scene.effects[index + 1 :]
+    return Variant(type(effect).__name__, effect, True, replace(scene, effects=others))
 
 
 def _with(scene: Scene, name: str, kind: type[Effect]) -> Variant:
@@ -83,10 +83,10 @@ class OutcomeChange:
 def outcome_change(outcome: Outcome, base: Outcome, *, offset: Any) -> OutcomeChange:
     """The change from the outcome ``base`` of a scene to that of a variant, at ``offset`` b/R."""
     names = ("squirt", "ball_speed", "spin") if offset else ("ball_speed",)
-    gaps = dict.fromkeys(("squirt", "ball_speed", "spin"), 0.0)
-    gaps |= {name: float(getattr(outcome, name) - getattr(base, name)) for name in names}
-    return OutcomeChange(**gaps, relative={name: _relative(gaps[name], float(getattr(base, name))) for name in names})
+    changes = dict.fromkeys(("squirt", "ball_speed", "spin"), 0.0)
+    changes |= {name: float(getattr(outcome, name) - getattr(base, name)) for name in names}
+    return OutcomeChange(**changes, relative={n: _relative(changes[n], float(getattr(base, n))) for n in names})
 
 
-def _relative(gap: float, value: float) -> float:
-    return 0.0 if gap == 0 else gap / abs(value) if value else float("inf")
+def _relative(change: float, value: float) -> float:
+    return 0.0 if change == 0 else change / abs(value) if value else float("inf")

@@ -89,16 +89,16 @@ def _usage(kind: str) -> str:
 
 
 def _argument(kind: str, argument: str | None, text: str) -> float | int | None:
-    wanted = computable_results()[kind].argument
-    if argument is None and wanted != "mode":
+    expected = computable_results()[kind].argument
+    if argument is None and expected != "mode":
         return None
-    if wanted == "":
+    if expected == "":
         raise ValueError(f"must be {kind}, without brackets; got {text!r}")
     try:
         number = float(argument or "nan")
     except ValueError:
         number = float("nan")
-    if wanted == "mode":
+    if expected == "mode":
         if not (number >= 1 and number.is_integer()):
             raise ValueError(f"must be {kind}(n), n a whole number >= 1; got {text!r}")
         return int(number)
@@ -127,15 +127,15 @@ def evaluate(
     modes of a scene are solved once for all responses, and once for consecutive scenes with equal cue and effects on
     it. A failed response does not affect the others. ValueError for an unknown name.
     """
-    wanted = [Response.of(response) if isinstance(response, str) else response for response in responses]
-    values, reasons = np.full((len(scenes), len(wanted)), np.nan), list[str | None]([None] * len(scenes))
-    before: tuple[Any, ...] | None = None
-    known: dict[tuple[Resolution | int, int], Modes] = {}
+    parsed = [Response.of(response) if isinstance(response, str) else response for response in responses]
+    values, reasons = np.full((len(scenes), len(parsed)), np.nan), list[str | None]([None] * len(scenes))
+    previous: tuple[Any, ...] | None = None
+    solved: dict[tuple[Resolution | int, int], Modes] = {}
     for i, scene in enumerate(scenes):
         on_cue = scene.cue, scene.cue_effects
-        before, known = on_cue, known if on_cue == before else {}
-        design = SolvedDesign(SolvedScene(scene, at, known))
-        for j, response in enumerate(wanted):
+        previous, solved = on_cue, solved if on_cue == previous else {}
+        design = SolvedDesign(SolvedScene(scene, at, solved))
+        for j, response in enumerate(parsed):
             try:
                 values[i, j] = response.value(design)
             except Failed as error:

@@ -57,7 +57,7 @@ class Round(NamedTuple):
     best: float
 
 
-class ListedValues(NamedTuple):
+class ChoiceResult(NamedTuple):
     """Result for one combination of listed values: the best objective, or nan and the reason."""
 
     values: dict[str, Value]
@@ -70,21 +70,21 @@ class Optimum(StudyDesign):
     """The best design of an optimization.
 
     active: active limits and ends of ranges, such as "tip_stiffness >= 1500". evaluations: number of designs computed.
-    unfinished: why the search stopped without convergence, "" if it converged. choices: one for each combination of
+    stop_reason: why the search stopped without convergence, "" if it converged. choices: one for each combination of
     listed values, if there are any.
     """
 
     active: tuple[str, ...] = ()
     evaluations: int = 0
-    unfinished: str = ""
-    choices: tuple[ListedValues, ...] = ()
+    stop_reason: str = ""
+    choices: tuple[ChoiceResult, ...] = ()
 
 
 @dataclass(frozen=True)
 class Problem:
     """An optimization: objective to minimize (maximize, if ``maximize``), variables and limits.
 
-    at: as of a `Study`. listed: values of the variables over a list, by index; by default those of the base. Points are
+    at: as of a `Study`. choice: values of the variables over a list, by index; by default those of the base. Points are
     values of the other variables, those with low and high.
     """
 
@@ -94,7 +94,7 @@ class Problem:
     limits: tuple[Limit, ...] = ()
     at: Resolution | None = None
     maximize: bool = False
-    listed: Mapping[int, Value] = field(default_factory=dict)
+    choice: Mapping[int, Value] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for vary in self.vary:
@@ -116,13 +116,13 @@ class Problem:
     def choices(self) -> list[Problem]:
         """The problem with every combination of the values in lists."""
         lists = {i: vary.range.values for i, vary in enumerate(self.vary) if isinstance(vary.range, Levels)}
-        return [replace(self, listed=dict(zip(lists, v, strict=True))) for v in product(*lists.values())]
+        return [replace(self, choice=dict(zip(lists, v, strict=True))) for v in product(*lists.values())]
 
-    def points(self, parts: Array) -> Array:
+    def points(self, shares: Array) -> Array:
         """Points from fractions in [0, 1] of the ranges, (..., variables); of logarithms for logarithmic spacing."""
-        return _each(Span.quantile, self.spans, parts)
+        return _each(Span.quantile, self.spans, shares)
 
-    def parts(self, points: Array) -> Array:
+    def shares(self, points: Array) -> Array:
         """The inverse of `points`."""
         return _each(Span.share, self.spans, points)
 
@@ -132,13 +132,13 @@ class Problem:
         point = list[float]()
         for i, span in self.spans.items():
             vary = self.vary[i]
-            own = 1.0 if vary.factor else 0.0 if vary.shift else value_at(self.base, vary.fields(self.base)[0])
-            point.append(span.quantile(0.5) if own is None else min(max(own, span.low), span.high))
+            value = 1.0 if vary.factor else 0.0 if vary.shift else value_at(self.base, vary.fields(self.base)[0])
+            point.append(span.quantile(0.5) if value is None else min(max(value, span.low), span.high))
         return np.array(point)
 
     def design(self, point: Array) -> tuple[Value, ...]:
         """The values of all variables at a point."""
-        values = {**self.listed, **dict(zip(self.spans, point.tolist(), strict=True))}
+        values = {**self.choice, **dict(zip(self.spans, point.tolist(), strict=True))}
         return tuple(values[i] for i in range(len(self.vary)))
 
     def scene(self, point: Array) -> Scene:
@@ -147,7 +147,7 @@ class Problem:
 
     def values(self, points: Array) -> Array:
         """Responses of the study at points (n, variables): (n, responses), nan if there is none."""
-        return self.study.evaluated([self.design(point) for point in points]).values
+        return self.study.evaluate([self.design(point) for point in points]).values
 
     def margins(self, values: Array) -> Array:
         """Margins of values (n, responses) to the limits, relative to each limit: (n, sides).
@@ -174,7 +174,7 @@ def optimum(
     start: Array | None = None,
     rounds: int = 60,
     seed: int = 0,
-    progress: Callable[[Round], object] = lambda reached: None,
+    progress: Callable[[Round], object] = lambda round: None,
 ) -> Optimum:
     """The best design within ranges and limits.
 
@@ -207,21 +207,21 @@ def optimum(
     logarithmic); its gradients are forward differences of `STEP`, all of a step in one batch. Differential evolution
     (`scipy.optimize.differential_evolution`) prefers, among designs that violate a limit, the smallest violation.
     """
-    found, choices, reasons = list[Optimum](), list[ListedValues](), list[str]()
+    optima, choices, reasons = list[Optimum](), list[ChoiceResult](), list[str]()
     sign, count = -1 if problem.maximize else 1, 0
-    for chosen in problem.choices():
-        search = _Search(chosen, progress, count)
-        first = chosen.parts(chosen.start if start is None else np.asarray(start, float))
+    for case in problem.choices():
+        search = _Search(case, progress, count)
+        first = case.shares(case.start if start is None else np.asarray(start, float))
         try:
-            found.append(search.optimum(first, rounds, seed))
-            choices.append(ListedValues(search.listed, found[-1].responses[problem.objective.name]))
+            optima.append(search.optimum(first, rounds, seed))
+            choices.append(ChoiceResult(search.choice, optima[-1].responses[problem.objective.name]))
         except ValueError as error:
             reasons.append(str(error))
-            choices.append(ListedValues(search.listed, np.nan, str(error)))
+            choices.append(ChoiceResult(search.choice, np.nan, str(error)))
         count = search.evaluations
-    if not found:
+    if not optima:
         raise ValueError(reasons[0])
-    best = min(found, key=lambda each: sign * each.responses[problem.objective.name])
+    best = min(optima, key=lambda each: sign * each.responses[problem.objective.name])
     return replace(best, evaluations=count, choices=tuple(choices) if len(choices) > 1 else ())
 
 
@@ -234,28 +234,28 @@ class _Search:
 
     def __init__(self, problem: Problem, progress: Callable[[Round], object], count: int) -> None:
         self.problem, self.progress, self.evaluations = problem, progress, count
-        self.listed = {problem.vary[i].name: value for i, value in problem.listed.items()}
+        self.choice = {problem.vary[i].name: value for i, value in problem.choice.items()}
         self.rounds, self.best, self.scale = 0, np.inf, -1.0 if problem.maximize else 1.0
-        self._known, self._slopes = dict[bytes, Array](), dict[bytes, Array]()
+        self._responses, self._slopes = dict[bytes, Array](), dict[bytes, Array]()
 
-    def rows(self, parts: Array) -> Array:
+    def rows(self, shares: Array) -> Array:
         """Responses at points (n, variables)."""
-        values = self.problem.values(self.problem.points(parts))
-        self.evaluations += len(parts)
+        values = self.problem.values(self.problem.points(shares))
+        self.evaluations += len(shares)
         self.best = min(self.best, self.scores(values).min(initial=np.inf))
         return values
 
     def scores(self, values: Array) -> Array:
         """The scores to minimize: the objective, or `EXCLUDED` plus the violation of the limits."""
         violation = np.minimum(self.problem.margins(values) + TOLERANCE, 0).sum(axis=1)
-        own = np.nan_to_num(self.scale * values[:, 0], nan=EXCLUDED)
-        return np.asarray(np.where(violation < 0, EXCLUDED - violation, own))
+        objective = np.nan_to_num(self.scale * values[:, 0], nan=EXCLUDED)
+        return np.asarray(np.where(violation < 0, EXCLUDED - violation, objective))
 
     def report(self, *_: Any, **__: Any) -> None:
         """Count a round and report progress."""
         self.rounds += 1
         best = self.best / self.scale if self.best < EXCLUDED else np.nan
-        self.progress(Round(self.listed, self.rounds, self.evaluations, best))
+        self.progress(Round(self.choice, self.rounds, self.evaluations, best))
 
     def optimum(self, start: Array, rounds: int, seed: int) -> Optimum:
         """The best design; ValueError if none is within the limits."""
@@ -268,10 +268,10 @@ class _Search:
                 ends.append(self.by_evolution(start, rounds, seed))
                 ends.append(self.by_slsqp(ends[-1][0], rounds))
         u = min((u for u, _ in ends), key=lambda u: self.scores(self.at(u)[None])[0])
-        violated, unfinished = self.violated(u), ends[-1][1]
+        violated, stop_reason = self.violated(u), ends[-1][1]
         if violated or not np.isfinite(self.at(u)).all():
-            what = f"within {', '.join(violated)}" if violated else f"that has {self.problem.objective.name}"
-            raise ValueError(f"no design {what} was found: {unfinished or 'none is near'}")
+            condition = f"within {', '.join(violated)}" if violated else f"that has {self.problem.objective.name}"
+            raise ValueError(f"no design {condition} was found: {stop_reason or 'none is near'}")
         point, study = self.problem.points(u), self.problem.study
         return Optimum(
             self.problem.scene(point),
@@ -279,16 +279,16 @@ class _Search:
             dict(zip((response.name for response in study.responses), self.at(u).tolist(), strict=True)),
             tuple(text for text, margin in self.sides(u) if margin < TOLERANCE),
             self.evaluations,
-            unfinished,
+            stop_reason,
         )
 
     def at(self, u: Array) -> Array:
         """Responses at one point, (responses,)."""
         u = np.clip(u, 0, 1)  # SLSQP oversteps by rounding
         key = u.tobytes()
-        if key not in self._known:
-            self._known[key] = self.rows(u[None])[0]
-        return self._known[key]
+        if key not in self._responses:
+            self._responses[key] = self.rows(u[None])[0]
+        return self._responses[key]
 
     def slopes(self, u: Array) -> Array:
         """Derivatives of the responses by forward differences into the ranges, (responses, variables)."""
@@ -363,11 +363,11 @@ class _Search:
     def sides(self, u: Array) -> list[tuple[str, float]]:
         """(text, relative margin) of every limit and every end of a range."""
         bounds = [(limit.response.name, *side) for limit in self.problem.limits for side in limit.sides]
-        texts = [f"{name} {'>=' if sign > 0 else '<='} {bound:g}" for name, sign, bound in bounds]
-        margins = list(zip(texts, self.problem.margins(self.at(u)[None])[0].tolist(), strict=True))
-        for (i, span), part in zip(self.problem.spans.items(), u.tolist(), strict=True):
+        labels = [f"{name} {'>=' if sign > 0 else '<='} {bound:g}" for name, sign, bound in bounds]
+        margins = list(zip(labels, self.problem.margins(self.at(u)[None])[0].tolist(), strict=True))
+        for (i, span), share in zip(self.problem.spans.items(), u.tolist(), strict=True):
             name = self.problem.vary[i].name
-            margins += [(f"{name} >= {span.low:g}", part), (f"{name} <= {span.high:g}", 1 - part)]
+            margins += [(f"{name} >= {span.low:g}", share), (f"{name} <= {span.high:g}", 1 - share)]
         return margins
 
     def violated(self, u: Array) -> list[str]:

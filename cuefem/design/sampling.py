@@ -122,8 +122,8 @@ class Normal:
         return self._at(-CUT_DEVIATIONS), self._at(CUT_DEVIATIONS)
 
     def _at(self, deviations: float) -> float:
-        moved = self.sd * deviations
-        return self.median * math.exp(moved) if self.logarithmic else self.median + moved
+        deviation = self.sd * deviations
+        return self.median * math.exp(deviation) if self.logarithmic else self.median + deviation
 
 
 @dataclass(frozen=True)

@@ -67,19 +67,19 @@ class Scatter:
         check_count("count", self.count, 2)
         check_count("seed", self.seed, 0)
         if self.count & (self.count - 1):
-            near = 1 << (self.count.bit_length() - 1)
-            raise ValueError(f"count must be a power of two; got {self.count}: take {near} or {2 * near}")
-        listed: set[frozenset[str]] = set()
+            power = 1 << (self.count.bit_length() - 1)
+            raise ValueError(f"count must be a power of two; got {self.count}: take {power} or {2 * power}")
+        pairs: set[frozenset[str]] = set()
         for pair, r in self.correlations.items():
             self._check_names("a correlation", pair)
             levels = [name for name in pair if isinstance(self.study.vary[self.names.index(name)].range, Levels)]
             if levels:
                 raise ValueError(f"a correlation must be between numbers; got {levels[0]!r}, which is a list of values")
-            if frozenset(pair) in listed or len(set(pair)) != 2:
+            if frozenset(pair) in pairs or len(set(pair)) != 2:
                 raise ValueError(f"a correlation must be of two numbers, listed once; got {' and '.join(pair)}")
             if not -1 < r < 1:
                 raise ValueError(f"the correlation of {' and '.join(pair)} must be in (-1, 1); got {r}")
-            listed.add(frozenset(pair))
+            pairs.add(frozenset(pair))
         if np.linalg.eigvalsh(self.correlation_matrix)[0] < 1e-9:
             raise ValueError("the correlations must have a positive definite matrix: some contradict others")
         self._check_groups()
@@ -88,9 +88,9 @@ class Scatter:
         grouped = [name for names in self.groups.values() for name in names]
         for group, names in self.groups.items():
             self._check_names(f"group {group!r}", names)
-        twice = [name for name in grouped if grouped.count(name) > 1]
-        if twice:
-            raise ValueError(f"a parameter must be in one group; got {twice[0]!r} in two")
+        repeated = [name for name in grouped if grouped.count(name) > 1]
+        if repeated:
+            raise ValueError(f"a parameter must be in one group; got {repeated[0]!r} in two")
         for indices in self.factor_indices:
             correlated = {self.names[i] for i in indices}
             for group, names in self.groups.items():
@@ -100,11 +100,11 @@ class Scatter:
         if len(set(self.factors)) < len(self.factor_indices):
             raise ValueError(f"factors must have different names; got {', '.join(self.factors)}")
 
-    def _check_names(self, what: str, names: tuple[str, ...]) -> None:
+    def _check_names(self, owner: str, names: tuple[str, ...]) -> None:
         for name in names:
             if name not in self.names:
-                known = ", ".join(self.names)
-                raise ValueError(f"{what} must name parameters of the study, {known}; got {name!r}")
+                valid = ", ".join(self.names)
+                raise ValueError(f"{owner} must name parameters of the study, {valid}; got {name!r}")
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -123,13 +123,13 @@ class Scatter:
     @cached_property
     def factor_indices(self) -> tuple[tuple[int, ...], ...]:
         """Parameter indices of each factor, in order of the first parameter."""
-        joined = self.correlation_matrix != 0  # (i, j): in one factor
+        connected = self.correlation_matrix != 0  # (i, j): in one factor
         for names in self.groups.values():
             rows = [self.names.index(name) for name in names]
-            joined[np.ix_(rows, rows)] = True
+            connected[np.ix_(rows, rows)] = True
         for _ in self.names:  # transitive closure
-            joined = joined @ joined
-        return tuple(dict.fromkeys(tuple(int(i) for i in np.flatnonzero(row)) for row in joined))
+            connected = connected @ connected
+        return tuple(dict.fromkeys(tuple(int(i) for i in np.flatnonzero(row)) for row in connected))
 
     @property
     def factors(self) -> tuple[str, ...]:

@@ -90,30 +90,30 @@ def sensitivity(scene: Scene, at: Resolution | int | None = None) -> Sensitivity
     system, count = assemble(scene.shaft, at), at if isinstance(at, int) else at.modes
     bending = solve(system, system.size - system.rigid_basis.shape[1])
     squares, phi = bending.omega**2, bending.vectors[0]
-    still = bending.rigid_vectors[0]
-    gradient = _stick(squares[:count], phi[:count], float(still @ still), scene)
-    stiff, heavy = _forms(gradient, squares, phi, still)
-    return _densities(system, np.concatenate([bending.rigid_vectors, bending.vectors], axis=1), stiff, heavy, gradient)
+    rigid_phi = bending.rigid_vectors[0]
+    gradient = _stick(squares[:count], phi[:count], float(rigid_phi @ rigid_phi), scene)
+    to_K, to_M = _forms(gradient, squares, phi, rigid_phi)
+    return _densities(system, np.concatenate([bending.rigid_vectors, bending.vectors], axis=1), to_K, to_M, gradient)
 
 
-def _forms(gradient: _Gradient, squares: Array, phi: Array, still: Array) -> tuple[Array, Array]:
+def _forms(gradient: _Gradient, squares: Array, phi: Array, rigid_phi: Array) -> tuple[Array, Array]:
     """The quadratic forms of dm in the modes (rigid-body modes first), for dK and for dM."""
-    rigid, modes = len(still), len(gradient.squares)
-    all_squares, all_phi = np.concatenate([np.zeros(rigid), squares]), np.concatenate([still, phi])
+    rigid, modes = len(rigid_phi), len(gradient.squares)
+    all_squares, all_phi = np.concatenate([np.zeros(rigid), squares]), np.concatenate([rigid_phi, phi])
     size = len(all_phi)
-    stiff, heavy = np.zeros((size, size)), np.zeros((size, size))
+    to_K, to_M = np.zeros((size, size)), np.zeros((size, size))
     rows = rigid + np.arange(modes)
-    gaps = squares[:modes, None] - all_squares
-    gaps[np.arange(modes), rows] = np.inf
-    stiff[rows] = gradient.amplitudes[:, None] * all_phi / gaps
-    stiff[rows, rows] = gradient.squares
-    heavy[rows] = -squares[:modes, None] * stiff[rows]
-    heavy[rows, rows] -= gradient.amplitudes * phi[:modes] / 2
-    heavy[:rigid, :rigid] -= gradient.rigid * np.outer(still, still)
-    return (stiff + stiff.T) / 2, (heavy + heavy.T) / 2
+    differences = squares[:modes, None] - all_squares
+    differences[np.arange(modes), rows] = np.inf
+    to_K[rows] = gradient.amplitudes[:, None] * all_phi / differences
+    to_K[rows, rows] = gradient.squares
+    to_M[rows] = -squares[:modes, None] * to_K[rows]
+    to_M[rows, rows] -= gradient.amplitudes * phi[:modes] / 2
+    to_M[:rigid, :rigid] -= gradient.rigid * np.outer(rigid_phi, rigid_phi)
+    return (to_K + to_K.T) / 2, (to_M + to_M.T) / 2
 
 
-def _densities(system: System, vectors: Array, stiff: Array, heavy: Array, gradient: _Gradient) -> Sensitivity:
+def _densities(system: System, vectors: Array, to_K: Array, to_M: Array, gradient: _Gradient) -> Sensitivity:
     fields, points = system.fields(vectors), system.points
 
     def density(form: Array, fields: Array) -> Array:
@@ -122,10 +122,10 @@ def _densities(system: System, vectors: Array, stiff: Array, heavy: Array, gradi
     return Sensitivity(
         x=points.x,
         weights=points.weights,
-        rhoA=density(heavy, fields.w),
-        rhoI=density(heavy, fields.theta),
-        EI=density(stiff, fields.dtheta),
-        kGA=density(stiff, fields.dw - fields.theta),
+        rhoA=density(to_M, fields.w),
+        rhoI=density(to_M, fields.theta),
+        EI=density(to_K, fields.dtheta),
+        kGA=density(to_K, fields.dw - fields.theta),
         ball_mass=gradient.ball_mass,
         axial_mass=gradient.axial_mass,
         end_mass=gradient.value,
@@ -145,8 +145,8 @@ def _stick(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
     velocity_after, column = tip.mean_velocities_with_ball(c, T)
     first_impulse = 1 / (float(phi @ phi) + rigid + c)
     force = solve_toeplitz(column, 1 - first_impulse * velocity_after)
-    given = -np.diff(limit.normal_impulse(T - np.append(t, T)))
-    normal = (np.append(given, 0.0) + np.append(0.0, given)) / 2  # of the edges in the part of J that goes with K
+    steps = -np.diff(limit.normal_impulse(T - np.append(t, T)))
+    normal = (np.append(steps, 0.0) + np.append(0.0, steps)) / 2  # of the edges in the part of J that goes with K
     edges = K * normal
     edges[-1] -= 1
     adjoint = solve_toeplitz(column, h * np.cumsum(edges[:0:-1]))[::-1]
@@ -158,11 +158,11 @@ def _stick(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
         half = omega * h / 2
         mean = np.sin(half) / half
         d_velocity_after = mean * np.cos(omega * (t[:, None] + h / 2))
-        pushed = h * mean**2 * np.cos(omega * t[:, None])
-        return np.asarray(impulse_adjoint - first_impulse * (adjoint @ d_velocity_after) + of_column @ pushed)
+        displacement = h * mean**2 * np.cos(omega * t[:, None])
+        return np.asarray(impulse_adjoint - first_impulse * (adjoint @ d_velocity_after) + of_column @ displacement)
 
     impulses = np.append(first_impulse, first_impulse + h * np.cumsum(force))
-    J, to_K, still = float(edges @ impulses), float(normal @ impulses), float(R(np.full(1, 1e-9 / T))[0])
+    J, to_K, to_rigid = float(edges @ impulses), float(normal @ impulses), float(R(np.full(1, 1e-9 / T))[0])
     m = limit.end_mass(J)
     scale = m**2 * (K - 1) / J**2  # dm/dJ at fixed c and K
     M, m_a, head_on = scene.ball.mass, scene.axial_mass, limit.reduced_mass
@@ -170,14 +170,14 @@ def _stick(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
     dc_dM = -c / M
     dK_dM = (1 + limit.e) * head_on * dc_dM + K * head_on / M**2
     dK_dma = (-(1 + limit.e) * head_on + K * head_on) / m_a**2
-    per_c, per_K = scale * still + m**2, scale * to_K - m**2 / J
+    per_c, per_K = scale * to_rigid + m**2, scale * to_K - m**2 / J
     response, step = R(omega), 1e-30
     slope = np.imag(R(omega * (1 + 1j * step))) / (step * omega)  # by a complex step, exact to rounding
     return _Gradient(
         m,
         scale * phi**2 * slope / (2 * omega),
         scale * response * 2 * phi,
-        scale * still,
+        scale * to_rigid,
         ball_mass=float(per_c * dc_dM + per_K * dK_dM),
         axial_mass=float(per_K * dK_dma),
     )

@@ -105,7 +105,7 @@ class Vary:
         """How its value changes the fields: "set", "factor" or "shift"."""
         return "factor" if self.factor else "shift" if self.shift else "set"
 
-    def applied(self, value: float, before: Any) -> float:
+    def apply(self, value: float, before: Any) -> float:
         """The new value of a field, from its value ``before`` and the value of the range."""
         return before * value if self.factor else before + value if self.shift else value
 
@@ -154,12 +154,12 @@ class Study:
             raise ValueError("a study must have parameters and responses; got none")
         self._check_fields()
         names = [name.casefold() for name in (*self.columns, "design", "failure")]
-        twice = [name for name in names if names.count(name) > 1]
-        if twice:
-            raise ValueError(f"columns must have different names; got {twice[0]!r} twice")
-        drawn = [response.name for response in self.responses if response.result.segments]
-        if drawn and not self.base.cue.segments:
-            raise ValueError(f"{drawn[0]} needs a cue of segments; got a lumped cue")
+        repeated = [name for name in names if names.count(name) > 1]
+        if repeated:
+            raise ValueError(f"columns must have different names; got {repeated[0]!r} twice")
+        needs_segments = [response.name for response in self.responses if response.result.segments]
+        if needs_segments and not self.base.cue.segments:
+            raise ValueError(f"{needs_segments[0]} needs a cue of segments; got a lumped cue")
 
     def _check_fields(self) -> None:
         changed: set[tuple[Path, str]] = set()
@@ -210,11 +210,11 @@ class Study:
 
         Order: materials, numbers, factors, shifts, and last the compensating fields.
         """
-        named = {p: material(v) for i, v in enumerate(values) if isinstance(v, str) for p in self._fields[i]}
-        scene: Scene = with_values_at(self.base, named) if named else self.base
+        materials = {p: material(v) for i, v in enumerate(values) if isinstance(v, str) for p in self._fields[i]}
+        scene: Scene = with_values_at(self.base, materials) if materials else self.base
         numbers, shifts = dict[Path, Any](), list[tuple[Path, Any]]()
 
-        def now(path: Path) -> Any:
+        def current(path: Path) -> Any:
             return numbers.get(path, value_at(scene, path))
 
         for operation in ("set", "factor", "shift"):
@@ -222,14 +222,14 @@ class Study:
                 vary, fields = self.vary[i], self._fields[i]
                 if isinstance(value, str) or vary.operation != operation:
                     continue
-                before = [now(path) for path in fields]
-                numbers |= {p: vary.applied(value, old) for p, old in zip(fields, before, strict=True)}
+                before = [current(path) for path in fields]
+                numbers |= {p: vary.apply(value, old) for p, old in zip(fields, before, strict=True)}
                 shifts += [(path, numbers[fields[0]] - before[0]) for path in self._compensating_fields[i]]
         for path, gain in shifts:
-            numbers[path] = now(path) - gain
+            numbers[path] = current(path) - gain
         return with_values_at(scene, numbers) if numbers else scene
 
-    def evaluated(self, designs: Sequence[tuple[Value, ...]]) -> Evaluation:
+    def evaluate(self, designs: Sequence[tuple[Value, ...]]) -> Evaluation:
         """The responses of designs with these values; nan and a reason for an invalid one."""
         scenes, reasons = dict[int, Scene](), dict[int, str | None]()
         for i, values in enumerate(designs):
@@ -240,5 +240,5 @@ class Study:
         valid, missing = evaluate([*scenes.values()], self.responses, at=self.at), [np.nan] * len(self.responses)
         rows = dict(zip(scenes, valid.values.tolist(), strict=True))
         reasons |= dict(zip(scenes, valid.reasons, strict=True))
-        every = range(len(designs))
-        return Evaluation(np.array([rows.get(i, missing) for i in every]), tuple(reasons[i] for i in every))
+        indices = range(len(designs))
+        return Evaluation(np.array([rows.get(i, missing) for i in indices]), tuple(reasons[i] for i in indices))

@@ -141,8 +141,8 @@ class StudyResult:
     def __repr__(self) -> str:
         failed = f", {len(self.failures)} failed" if self.failures else ""
         count = self.optimum.evaluations if self.optimum else len(self.rows)
-        head = f"StudyResult({self.kind} of {count} designs{failed})"
-        return "\n  ".join([head, *(f"{name}: {value}, {at}" for name, value, at in self._lines())])
+        title = f"StudyResult({self.kind} of {count} designs{failed})"
+        return "\n  ".join([title, *(f"{name}: {value}, {at}" for name, value, at in self._lines())])
 
 
 def compute_study(
@@ -150,7 +150,7 @@ def compute_study(
     *,
     store: Store | None = None,
     workers: int | None = None,
-    progress: Callable[[Any], object] = lambda reached: None,
+    progress: Callable[[Any], object] = lambda step: None,
     rounds: int = 60,
 ) -> StudyResult:
     """Compute a study.

@@ -44,8 +44,8 @@ class SweepStatistics:
     @cached_property
     def ranked(self) -> list[int]:
         """The responses with a preferred direction; all of them if there is none."""
-        every = range(len(self.responses))
-        return [k for k in every if self.responses[k].result.better] or [*every]
+        indices = range(len(self.responses))
+        return [k for k in indices if self.responses[k].result.better] or [*indices]
 
     @cached_property
     def losses(self) -> Array:
@@ -76,12 +76,12 @@ class SweepStatistics:
 
 def sweep_statistics(result: StudyResult) -> SweepStatistics | None:
     """The statistics of a sweep; None if fewer than two designs have all responses."""
-    good = [row for row in result.rows if None not in row.responses]
-    if len(good) < 2:
+    complete = [row for row in result.rows if None not in row.responses]
+    if len(complete) < 2:
         return None
-    columns = tuple(np.array(column) for column in zip(*(row.values for row in good), strict=True))
-    names, units = (part[: len(columns)] for part in (result.study.columns, result.study.units))
-    numbers, results = np.array([row.design for row in good]), np.array([row.responses for row in good], float)
+    columns = tuple(np.array(column) for column in zip(*(row.values for row in complete), strict=True))
+    names, units = (texts[: len(columns)] for texts in (result.study.columns, result.study.units))
+    numbers, results = np.array([row.design for row in complete]), np.array([row.responses for row in complete], float)
     return SweepStatistics(names, units, result.study.responses, numbers, columns, results)
 
 
@@ -98,8 +98,8 @@ def explained_variance(column: np.ndarray, results: Array) -> Array:
         group = np.unique(np.searchsorted(edges, column, side="right"), return_inverse=True)[1]
     member = np.eye(group.max() + 1)[group]
     between = np.var(member @ ((member.T @ results) / member.sum(axis=0)[:, None]), axis=0)
-    whole = results.var(axis=0)
-    share = np.divide(between, whole, out=np.zeros_like(whole), where=whole > 0)
+    total = results.var(axis=0)
+    share = np.divide(between, total, out=np.zeros_like(total), where=total > 0)
     count, groups = member.shape
     return np.clip(1 - (1 - share) * (count - 1) / (count - groups), 0, 1) if chance and count > groups else share
 

@@ -53,7 +53,7 @@ class Store(Protocol):
 class MemoryStore:
     """A store in memory."""
 
-    stored: list[Row] = field(default_factory=list)
+    results: list[Row] = field(default_factory=list)
 
     def missing(self, designs: dict[int, tuple[Value, ...]]) -> dict[int, tuple[Value, ...]]:
         """All designs."""
@@ -61,20 +61,20 @@ class MemoryStore:
 
     def write(self, rows: list[Row]) -> None:
         """Store rows."""
-        self.stored += rows
+        self.results += rows
 
     def rows(self) -> Iterator[Row]:
         """All rows in the order of the designs."""
-        return iter(sorted(self.stored, key=lambda row: row.design))
+        return iter(sorted(self.results, key=lambda row: row.design))
 
 
 def compute_rows(study: Study, designs: dict[int, tuple[Value, ...]]) -> list[Row]:
     """The rows of designs, bit for bit independent of the other designs of the block."""
-    evaluation = study.evaluated([*designs.values()])
-    answers = zip(designs.items(), evaluation.values.tolist(), evaluation.reasons, strict=True)
+    evaluation = study.evaluate([*designs.values()])
+    results = zip(designs.items(), evaluation.values.tolist(), evaluation.reasons, strict=True)
     return [
         Row(design, values, tuple(None if x != x else x for x in numbers), reason)
-        for (design, values), numbers, reason in answers
+        for (design, values), numbers, reason in results
     ]
 
 

@@ -26,7 +26,7 @@ from cuefem.parameters.parts import main_material
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.comparison import comparison_record
 from cuefem.results.records import Record
-from cuefem.results.solved_design import MIN_SOLVED_MODES, SolvedDesign, coupled_curve, listed
+from cuefem.results.solved_design import MIN_SOLVED_MODES, SolvedDesign, coupled_curve, listed_results
 from cuefem.results.verdict import verdict_record
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import SolvedScene, default_mode_count
@@ -69,7 +69,7 @@ def numbers(scene: Scene) -> dict[str, Any]:
     design = SolvedDesign(strike.solved, strike.outcome)
     masses = {f"end_mass_{name}": _end_mass(name, strike.solved) for name in DEFINITIONS}
     frequencies = [design.frequency(mode) for mode in range(1, MIN_SOLVED_MODES + 1)]
-    return listed(design) | first_numbers(scene) | masses | {"frequencies": frequencies}
+    return listed_results(design) | first_numbers(scene) | masses | {"frequencies": frequencies}
 
 
 def _end_mass(name: str, solved: SolvedScene) -> float | None:

@@ -15,7 +15,7 @@ from cuefem.cue.materials import LEATHERS, material_name, table_name
 from cuefem.designer.state import FAILURES, Design, Step, one_line
 from cuefem.io.shaft_additions import with_additions
 from cuefem.parameters.parameter import PARAMETERS, with_parameters
-from cuefem.parameters.parts import Layout, bore_mouth, deepest_bore, split_segment, taper_position
+from cuefem.parameters.parts import Layout, bore_mouth, max_bore_depth, split_segment, taper_position
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.units import split_quantity, unit_of
 from cuefem.scene import Scene
@@ -176,7 +176,7 @@ def _with_value(scene: Scene, key: str, new: Any) -> Scene:
     if key == "ferrule":
         return _with_ferrule(scene, new)
     if key == "bore":
-        depth = min(NEW_DEPTH, deepest_bore(scene.shaft))
+        depth = min(NEW_DEPTH, max_bore_depth(scene.shaft))
         return with_parameters(
             scene, {"bore depth": 0.0} if new == NONE else {"bore depth": depth, "bore width": NEW_BORE}
         )
@@ -265,7 +265,7 @@ def limits(key: str, scene: Scene) -> tuple[float, float, str]:
         narrow = min(min(cue.segments[i].tip_diameter, cue.segments[i].butt_diameter) for i in bore)
         most, why = narrow - 2 * MIN_WALL, f"a wall of {1e3 * MIN_WALL:g} mm in {1e3 * narrow:.2f} mm"
     elif key == "bore_depth":
-        most, why = deepest_bore(cue), f"to the end, from {1e3 * bore_mouth(cue):.0f} mm behind the tip"
+        most, why = max_bore_depth(cue), f"to the end, from {1e3 * bore_mouth(cue):.0f} mm behind the tip"
     elif key == "dome":
         least, why = max(least, scene.tip_diameter / 2), f"half of the tip's {1e3 * scene.tip_diameter:.2f} mm"
     return least, most, why

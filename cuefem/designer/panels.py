@@ -106,7 +106,7 @@ def changes_panel(step: Step, results: Results, attempt: Callable[[Mapping[str, 
                     for j, cell in enumerate(cells):
                         _cell("td", cell, text=j in made.texts)
                     with ui.element("td"):
-                        button = ui.button("Try", on_click=lambda places=row["set"]: attempt(places))
+                        button = ui.button("Try", on_click=lambda places=row["values"]: attempt(places))
                         button.props(f'outline dense no-caps aria-label="Try {row["change"]}"')
     for note in made.notes:
         ui.label(note).classes("soft")

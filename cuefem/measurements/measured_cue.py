@@ -117,7 +117,7 @@ class Residual(NamedTuple):
     """A measured and a computed value, both with one standard deviation, SI.
 
     spread: of the computed value, from the priors of the uncertain parameters. residual: measured less computed, in
-    units of the measurement's error. pull: the same in units of both errors together.
+    units of the measurement's error. normalized_residual: the same in units of both errors together.
     """
 
     measurement: Measurement
@@ -126,7 +126,7 @@ class Residual(NamedTuple):
     computed: float
     spread: float
     residual: float
-    pull: float
+    normalized_residual: float
 
 
 def compare(cue: MeasuredCue, *, progress: Progress = iter) -> tuple[Residual, ...]:
@@ -166,7 +166,7 @@ class OffsetZero(NamedTuple):
     """
 
     measurement: Squirt
-    zero: float
+    zero_error: float
     error: float
 
 

@@ -117,10 +117,10 @@ class Parameter:
 
     def quantity(self, scene: Scene) -> Quantity:
         """Unit and bounds of its number, and the names of values; ValueError if the scene has no such number."""
-        known = quantity_at(scene, self.steps())
-        if known is None:
+        number = quantity_at(scene, self.steps())
+        if number is None:
             raise ValueError(f"{self.name} must be a number of this scene; got none")
-        return replace(known, names=tuple((n, v[self.path]) for n, v in self.sets.items())) if self.sets else known
+        return replace(number, names=tuple((n, v[self.path]) for n, v in self.sets.items())) if self.sets else number
 
     def named_value(self, name: str) -> dict[Path, float]:
         """The values by path for a name of its value; empty if there is no such name."""
@@ -146,8 +146,8 @@ def _part(step: Step) -> Part | None:
     """The part at which a path begins; None if it begins at a field of scenes."""
     if step in PARTS or step in _SCENE_FIELDS:
         return PARTS.get(str(step))
-    known = parameter(str(step))
-    return known.part if known else None
+    entry = parameter(str(step))
+    return entry.part if entry else None
 
 
 @cache
@@ -157,7 +157,7 @@ def _steps(text: str) -> Path:
     while start < len(text) or not text:
         step = _STEP.match(text, start)
         if not step:
-            hint = suggestion(text, [known.name for known in PARAMETERS.values()])
+            hint = suggestion(text, [entry.name for entry in PARAMETERS.values()])
             raise ValueError(f"must be a path such as cue.segments[0].tip_bore; got {text!r}{hint}")
         steps.append(step[1] or (step[2] if step[2] == "*" else int(step[2])))
         start = step.end()
@@ -169,16 +169,16 @@ def paths(scene: Scene, text: str) -> tuple[Path, ...]:
 
     Each leads to a number or a material.
     """
-    known = parameter(text)
-    if known is not None and value_at(scene, known.steps()) is None and quantity_at(scene, known.steps()) is None:
+    entry = parameter(text)
+    if entry is not None and value_at(scene, entry.steps()) is None and quantity_at(scene, entry.steps()) is None:
         raise ValueError(f"must name a parameter of the scene; got {text!r}, which this scene does not have")
     ends: list[tuple[Path, Any]] = [((), scene)]
-    for step in known.steps() if known else _steps(text):
+    for step in entry.steps() if entry else _steps(text):
         ends = [end for path, value in ends for end in _below(path, value, step, text)]
     expanded = tuple(path for path, _ in ends)
     if not expanded or any(quantity_at(scene, path) is None and not is_material(scene, path) for path in expanded):
-        holds = ", which holds " + ", ".join(map(str, _inner(ends[0][1]))) if ends and _inner(ends[0][1]) else ""
-        raise ValueError(f"must name one number or a material; got {text!r}{holds}")
+        contents = ", which holds " + ", ".join(map(str, _inner(ends[0][1]))) if ends and _inner(ends[0][1]) else ""
+        raise ValueError(f"must name one number or a material; got {text!r}{contents}")
     return expanded
 
 
@@ -198,10 +198,10 @@ def _below(path: Path, value: Any, step: Step, text: str) -> list[tuple[Path, An
         return [((*path, step), inner[step])]
     if not path and (part := _part(step)):
         return [((step,), part.read(value))]
-    here, names = path_text(path) or "the scene", [name for name in inner if isinstance(name, str)]
-    offered = names if path else [*names, *(known.name for known in PARAMETERS.values()), *PARTS]
-    holds = ", ".join(names) if names else f"{len(inner)} items"
-    hint = suggestion(str(step), offered) or f", where {here} has {holds}"
+    owner, names = path_text(path) or "the scene", [name for name in inner if isinstance(name, str)]
+    valid = names if path else [*names, *(entry.name for entry in PARAMETERS.values()), *PARTS]
+    contents = ", ".join(names) if names else f"{len(inner)} items"
+    hint = suggestion(str(step), valid) or f", where {owner} has {contents}"
     raise ValueError(f"must name a field of the scene; got {text!r}{hint}")
 
 
@@ -301,11 +301,11 @@ def with_parameters(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     """
     values = dict[Path, Any]()
     for text, value in changes.items():
-        known = parameter(text)
-        named: dict[Path, Any] = known.named_value(value) if known and isinstance(value, str) else {}
+        entry = parameter(text)
+        by_name: dict[Path, Any] = entry.named_value(value) if entry and isinstance(value, str) else {}
         for path in paths(scene, text):
-            by_name = is_material(scene, path) and isinstance(value, str)
-            values |= named if named else {path: named_material(value) if by_name else value}
+            is_name = is_material(scene, path) and isinstance(value, str)
+            values |= by_name if by_name else {path: named_material(value) if is_name else value}
     return with_values_at(scene, values)
 
 
@@ -319,19 +319,19 @@ def with_values_at(scene: Scene, changes: Mapping[Path, Any]) -> Scene:
         below.setdefault(str(head), {})[tuple(rest)] = value
     draft = _Draft(**{name: getattr(scene, name) for name in _SCENE_FIELDS})
     draft = with_fields(draft, {path: value for path, value in changes.items() if path[0] in _SCENE_FIELDS})
-    heads = (*(known.name for known in PARAMETERS.values()), *PARTS, *below)
+    heads = (*(entry.name for entry in PARAMETERS.values()), *PARTS, *below)
     parts = {head: part for head in heads if (part := _part(head))}  # in writing order
-    written = {
+    values = {
         head: with_fields(None if () in inner else parts[head].read(draft), inner)
         for head, inner in below.items()
         if head in parts
     }
-    check_bore(draft, written)
-    unchanged = {name for head in written for name in parts[head].unchanged} - {*written}
-    written |= {name: parts[name].read(draft) for name in unchanged}
+    check_bore(draft, values)
+    unchanged = {name for head in values for name in parts[head].unchanged} - {*values}
+    values |= {name: parts[name].read(draft) for name in unchanged}
     for head, part in parts.items():
-        if written.get(head) is not None:
-            draft = part.write(draft, written[head])
+        if values.get(head) is not None:
+            draft = part.write(draft, values[head])
     return Scene(**{name: getattr(draft, name) for name in _SCENE_FIELDS})
 
 
@@ -341,7 +341,7 @@ def check_bore(scene: Any, names: Container[Step]) -> None:
         raise ValueError("bore width has no effect: the cue has no bore; change bore depth too, or draw a bore")
 
 
-def with_fields(thing: Any, changes: Mapping[Path, Any]) -> Any:
+def with_fields(instance: Any, changes: Mapping[Path, Any]) -> Any:
     """A dataclass (or tuple) with the values at some paths replaced, changed together and then checked.
 
     A material is replaced before its own fields.
@@ -352,10 +352,10 @@ def with_fields(thing: Any, changes: Mapping[Path, Any]) -> Any:
     below: dict[Step, dict[Path, Any]] = {}
     for (step, *rest), value in changes.items():
         below.setdefault(step, {})[tuple(rest)] = value
-    if isinstance(thing, tuple):
-        return tuple(with_fields(item, below[i]) if i in below else item for i, item in enumerate(thing))
-    new = {str(step): with_fields(getattr(thing, str(step)), inner) for step, inner in below.items()}
-    return replace(thing, **new)
+    if isinstance(instance, tuple):
+        return tuple(with_fields(item, below[i]) if i in below else item for i, item in enumerate(instance))
+    new = {str(step): with_fields(getattr(instance, str(step)), inner) for step, inner in below.items()}
+    return replace(instance, **new)
 
 
 # --- the table -------------------------------------------------------------------------------------
@@ -378,8 +378,8 @@ def _leather_spread(scene: Scene) -> float | None:
     """From a contact time of ±10 % (1.0 to 1.2 ms) for a named leather, ±5 % for a custom E; None without one."""
     if scene.contact_terms.tip is None:
         return None
-    named = any(own.E == scene.leather_tip.E for own in LEATHERS.values())
-    return CONTACT_TIME_POWER * (0.1 if named else 0.05)
+    is_tabulated = any(tip.E == scene.leather_tip.E for tip in LEATHERS.values())
+    return CONTACT_TIME_POWER * (0.1 if is_tabulated else 0.05)
 
 
 def _dependent_restitution(scene: Scene, E: float) -> dict[Path, float]:
@@ -402,15 +402,15 @@ SHAFTS = (*WOODS, "carbon fibre")
 CONTACT_TIME_POWER = 3.5  # a leather's E goes as that power of 1/contact time (`cuefem.identify_tip`)
 FERRULES = tuple(name for name in MATERIALS if name not in (*SHAFTS, "foam", "leather"))
 _LEATHERS = {
-    name: {"leather.E": own.E, "leather.nu": own.nu, "leather.rho": own.rho, "tip.restitution": own.restitution}
-    for name, own in LEATHER_BY_NAME.items()
+    name: {"leather.E": tip.E, "leather.nu": tip.nu, "leather.rho": tip.rho, "tip.restitution": tip.restitution}
+    for name, tip in LEATHER_BY_NAME.items()
 }
 
 # Parts are written in this order: the shaft mass first, because it is measured before other changes; materials last,
 # because ferrule and shaft are identified by theirs.
 PARAMETERS: dict[str, Parameter] = {
-    known.key: known
-    for known in (
+    entry.key: entry
+    for entry in (
         Parameter("E", "E of the wood", "wood.E", spread=_wood_spread("E")),
         Parameter("G", "G of the wood", "wood.G", spread=_wood_spread("G")),
         Parameter("rho", "density of the wood", "wood.rho", spread=_wood_spread("rho")),

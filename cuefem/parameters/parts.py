@@ -88,7 +88,7 @@ def bore_mouth(cue: Cue) -> float:
     return 0.0 if bore is None else float(cue.nodes[bore.start])
 
 
-def deepest_bore(cue: Cue) -> float:
+def max_bore_depth(cue: Cue) -> float:
     """Maximum depth of the bore, m from its mouth: up to a filled bore, or the end of the cue."""
     bore = Layout.of(cue).bore
     if bore is None:
@@ -174,20 +174,20 @@ def _with_ferrule_length(scene: Any, length: float) -> Any:
     segments, old, at = list(scene.shaft.segments), _ferrule_length(scene), Layout.of(scene.shaft).ferrule.stop
     if old is None or length == old:
         return scene
-    ferrule, behind = segments[at - 1], segments[at]
-    more = length - old
-    if not -ferrule.length < more < behind.length:
-        least, most = (1e3 * (old + by) for by in (-ferrule.length, behind.length))
+    ferrule, wood = segments[at - 1], segments[at]
+    gain = length - old
+    if not -ferrule.length < gain < wood.length:
+        least, most = (1e3 * (old + by) for by in (-ferrule.length, wood.length))
         raise ValueError(
             f"the ferrule must be more than {least:.6g} and less than {most:.6g} mm long, as its neighbours allow; "
             f"got {1e3 * length:.6g} mm"
         )
-    onward = -more / behind.length  # along the unchanged cone behind the ferrule
-    outer = behind.tip_diameter + (behind.tip_diameter - behind.butt_diameter) * onward
-    bore = max(0.0, behind.tip_bore + (behind.tip_bore - behind.butt_bore) * onward)
-    flush = ferrule.butt_diameter + outer - behind.tip_diameter
-    segments[at - 1] = replace(ferrule, length=ferrule.length + more, butt_diameter=flush)
-    segments[at] = replace(behind, length=behind.length - more, tip_diameter=outer, tip_bore=bore)
+    shift = -gain / wood.length  # along the unchanged cone behind the ferrule
+    outer = wood.tip_diameter + (wood.tip_diameter - wood.butt_diameter) * shift
+    bore = max(0.0, wood.tip_bore + (wood.tip_bore - wood.butt_bore) * shift)
+    flush = ferrule.butt_diameter + outer - wood.tip_diameter
+    segments[at - 1] = replace(ferrule, length=ferrule.length + gain, butt_diameter=flush)
+    segments[at] = replace(wood, length=wood.length - gain, tip_diameter=outer, tip_bore=bore)
     return with_segments(scene, segments)
 
 
@@ -227,20 +227,20 @@ SHAFT_MATERIAL = Part(_material_of("shaft"), _with_shaft_material)
 # --- the taper -------------------------------------------------------------------------------------
 
 
-def _grown(scene: Any, positions: Sequence[float], more: Sequence[float]) -> Any:
-    """The scene with diameters that are larger by ``more`` at the cue's ends and one position between them."""
+def _with_gains(scene: Any, positions: Sequence[float], gains: Sequence[float]) -> Any:
+    """The scene with diameters that are larger by ``gains`` at the cue's ends and one position between them."""
     cue, (_, middle, end) = scene.shaft, positions
-    if abs(more[1] - np.interp(middle, [0, end], [more[0], more[2]])) > SAME_POSITION * end:
+    if abs(gains[1] - np.interp(middle, [0, end], [gains[0], gains[2]])) > SAME_POSITION * end:
         cue = split_at(cue, middle)
 
-    def grown(segment: Segment, start: float) -> Segment:
-        first, last = np.interp([start, start + segment.length], positions, more)
+    def widen(segment: Segment, start: float) -> Segment:
+        first, last = np.interp([start, start + segment.length], positions, gains)
         ends = segment.tip_diameter + float(first), segment.butt_diameter + float(last)
         if min(ends) <= 0:
             raise ValueError(f"the cue's diameter must be more than 0 mm; got {1e3 * min(ends):.4g} mm")
         return replace(segment, tip_diameter=ends[0], butt_diameter=ends[1])
 
-    return with_segments(scene, [grown(segment, float(x)) for segment, x in zip(cue.segments, cue.nodes, strict=False)])
+    return with_segments(scene, [widen(segment, float(x)) for segment, x in zip(cue.segments, cue.nodes, strict=False)])
 
 
 def diameter_at(position: Callable[[Cue], float]) -> Part:
@@ -254,7 +254,7 @@ def diameter_at(position: Callable[[Cue], float]) -> Part:
         cue, x = scene.shaft, position(scene.shaft)
         more = value - outer_diameter(cue, x)
         knots = [0.0, x if 0 < x < cue.length else taper_position(cue), cue.length]
-        return _grown(scene, knots, [more if knot == x else 0.0 for knot in knots]) if more else scene
+        return _with_gains(scene, knots, [more if knot == x else 0.0 for knot in knots]) if more else scene
 
     return Part(read, write, DIAMETER)
 
@@ -266,11 +266,11 @@ def _growth(scene: Any) -> float | None:
 
 def _with_growth(scene: Any, value: float) -> Any:
     segments, d0, f = scene.shaft.segments, scene.shaft.segments[0].tip_diameter, value / (_growth(scene) or value)
-    grown = (
+    scaled = (
         replace(s, tip_diameter=d0 + f * (s.tip_diameter - d0), butt_diameter=d0 + f * (s.butt_diameter - d0))
         for s in segments
     )
-    return with_segments(scene, tuple(grown))
+    return with_segments(scene, tuple(scaled))
 
 
 GROWTH = Part(_growth, _with_growth, DIAMETER)
@@ -293,21 +293,21 @@ def _with_bore(scene: Any, depth: float | None = None, width: float | None = Non
     if old is None or (depth in (None, old[0]) and width in (None, old[1])):
         return scene
     depth, new_width = old[0] if depth is None else depth, old[1] if width is None else width
-    bore, deepest, near = Layout.of(cue).bore or range(0), deepest_bore(cue), SAME_POSITION * cue.length
+    bore, deepest, tolerance = Layout.of(cue).bore or range(0), max_bore_depth(cue), SAME_POSITION * cue.length
     mouth = bore_mouth(cue)
     old_end = mouth + old[0]
-    if depth > deepest + near:
+    if depth > deepest + tolerance:
         raise ValueError(f"the bore must be at most {1e3 * deepest:g} mm deep; got {1e3 * depth:g} mm")
     wider = new_width / old[1]
-    onward = wider * cue.segments[bore.stop - 1].butt_bore if bore else new_width
+    new_bore = wider * cue.segments[bore.stop - 1].butt_bore if bore else new_width
     end = mouth + min(depth, deepest)
 
-    def bored(segment: Segment, start: float) -> Segment:
-        before, after = (mouth - near <= start < stop - near for stop in (old_end, end))
+    def drill(segment: Segment, start: float) -> Segment:
+        before, after = (mouth - tolerance <= start < stop - tolerance for stop in (old_end, end))
         if not (before or after):
             return segment
         widened = (wider * segment.tip_bore, wider * segment.butt_bore)
-        ends = (0.0, 0.0) if not after else widened if before else (onward, onward)
+        ends = (0.0, 0.0) if not after else widened if before else (new_bore, new_bore)
         outside = ((segment.tip_diameter, start), (segment.butt_diameter, start + segment.length))
         for inner, (outer, x) in zip(ends, outside, strict=True):
             if inner >= outer:
@@ -316,7 +316,7 @@ def _with_bore(scene: Any, depth: float | None = None, width: float | None = Non
         return replace(segment, tip_bore=ends[0], butt_bore=ends[1])
 
     cue = split_at(cue, end)
-    return with_segments(scene, [bored(piece, float(x)) for piece, x in zip(cue.segments, cue.nodes, strict=False)])
+    return with_segments(scene, [drill(piece, float(x)) for piece, x in zip(cue.segments, cue.nodes, strict=False)])
 
 
 def split_at(cue: Cue, x: float) -> Cue:

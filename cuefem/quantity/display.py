@@ -33,40 +33,40 @@ def brief_repr(kind: str, fields: Iterable[tuple[str, Any]]) -> str:
 
 
 @cache
-def _shown_fields(kind: type) -> tuple[str, ...]:
+def _repr_fields(kind: type) -> tuple[str, ...]:
     """The names of a dataclass's fields with ``repr``."""
     return tuple(field.name for field in dataclasses.fields(kind) if field.repr)
 
 
-def full_repr(thing: Any) -> str:
+def full_repr(value: Any) -> str:
     """The full representation of an object, equal for equal objects."""
-    if type(thing) is float:
-        return repr(thing)
-    if getattr(thing, "ndim", 0):
-        return f"array({thing.tolist()!r}, {thing.dtype})"
-    if dataclasses.is_dataclass(thing) and not isinstance(thing, type):
-        inner = ", ".join(f"{name}={full_repr(getattr(thing, name))}" for name in _shown_fields(type(thing)))
-        return f"{type(thing).__qualname__}({inner})"
-    if type(thing) is tuple:
-        return f"({', '.join(map(full_repr, thing))}{',' if len(thing) == 1 else ''})"
-    return repr(thing)
+    if type(value) is float:
+        return repr(value)
+    if getattr(value, "ndim", 0):
+        return f"array({value.tolist()!r}, {value.dtype})"
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        inner = ", ".join(f"{name}={full_repr(getattr(value, name))}" for name in _repr_fields(type(value)))
+        return f"{type(value).__qualname__}({inner})"
+    if type(value) is tuple:
+        return f"({', '.join(map(full_repr, value))}{',' if len(value) == 1 else ''})"
+    return repr(value)
 
 
 def one_line(text: str) -> str:
-    """The text in one line of printable characters, with long values and lists shortened; paths stay whole."""
+    """The text in one line of printable characters, with long values and lists shortened, paths excepted."""
 
     def cut(match: re.Match[str]) -> str:
         quote = match["quote"] or ""
         return f"{quote}{match['quoted'] or match['word']}...{quote}"
 
-    return "; ".join(map(_shortened, _LONG.sub(cut, printable(text)).split("; ")))
+    return "; ".join(map(_shorten, _LONG.sub(cut, printable(text)).split("; ")))
 
 
-def _shortened(part: str) -> str:
-    """A part of a message whose list of names is cut after `MAX_LISTED`; a final item with "or" remains."""
-    names = part.split(", ")
-    rest = next((i for i, name in enumerate(names) if i >= MAX_LISTED and name.startswith("or ")), len(names))
-    return part if rest <= MAX_LISTED else ", ".join([*names[:MAX_LISTED], "...", *names[rest:]])
+def _shorten(item: str) -> str:
+    """An item of a message, its list of names cut after `MAX_LISTED`; a final name with "or" remains."""
+    names = item.split(", ")
+    final = next((i for i, name in enumerate(names) if i >= MAX_LISTED and name.startswith("or ")), len(names))
+    return item if final <= MAX_LISTED else ", ".join([*names[:MAX_LISTED], "...", *names[final:]])
 
 
 def printable(text: str) -> str:

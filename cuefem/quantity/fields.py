@@ -66,16 +66,16 @@ class Quantity:
     @property
     def example(self) -> str:
         """What the unit measures, with an example: 'a length with its unit, such as "12 mm"'."""
-        what, example, *_ = self._examples
-        return f'{what} with its unit, such as "{example}"{self._named}'
+        noun, example, *_ = self._examples
+        return f'{noun} with its unit, such as "{example}"{self._name_list}'
 
     @property
     def _examples(self) -> tuple[str, ...]:
-        what, *examples = examples_of(self.unit)
-        return (what, "200 MPa") if self.unit == "Pa" and self.names else (what, *examples)  # of leather, not of wood
+        noun, *examples = examples_of(self.unit)
+        return (noun, "200 MPa") if self.unit == "Pa" and self.names else (noun, *examples)  # of leather, not of wood
 
     @property
-    def _named(self) -> str:
+    def _name_list(self) -> str:
         return ", or " + ", ".join(f'"{name}"' for name, _ in self.names[:3]) if self.names else ""
 
     @property
@@ -99,24 +99,24 @@ class Quantity:
     def read(self, value: Any) -> float:
         """The value of a file or an option as a checked SI number; ValueError in the units of the file."""
         if self.unit == "":
-            return self._bare(value)
-        known = dict(self.names) | ({"inf": math.inf} if self.interval.endswith("inf]") else {})
+            return self._pure_number(value)
+        named_values = dict(self.names) | ({"inf": math.inf} if self.interval.endswith("inf]") else {})
         word = str(value).strip().lower()
-        if word in known:
-            return known[word]
+        if word in named_values:
+            return named_values[word]
         digits, unit = split_quantity(str(value)) if isinstance(value, str | int | float) else ("", "")
         if digits and not unit and digits[-3:].lower() not in ("inf", "nan"):
-            named = " or ".join(f'"{text}"' for text in self._examples[1:])
-            raise ValueError(f"needs a unit: {named}{self._named}; got {quote(value)}")
+            examples = " or ".join(f'"{text}"' for text in self._examples[1:])
+            raise ValueError(f"needs a unit: {examples}{self._name_list}; got {quote(value)}")
         try:
             result = parse_number(str(value), self.unit)
         except ValueError as error:
-            raise ValueError(f"must be {self.example}; got {quote(value)}{self._why(error, value, unit)}") from None
+            raise ValueError(f"must be {self.example}; got {quote(value)}{self._reason(error, value, unit)}") from None
         if not self.contains(result):
             raise ValueError(f"must be {self.bounds_in(unit)}; got {digits} {unit}")
         return result
 
-    def _why(self, error: ValueError, value: Any, unit: str) -> str:
+    def _reason(self, error: ValueError, value: Any, unit: str) -> str:
         """The reason why a text is no quantity of this unit, for the end of a message; "" if unknown."""
         if not unit or comma_hint(value):
             return comma_hint(value)
@@ -126,7 +126,7 @@ class Quantity:
         hint = suggestion(error.name, valid) or suggestion(error.name, UNITS) or f"; valid: {', '.join(valid)}"
         return f": unknown unit {quote(error.name)}{hint}"
 
-    def _bare(self, value: Any) -> float:
+    def _pure_number(self, value: Any) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise ValueError(f"must be {self.expected}; got {quote(value)}{comma_hint(value)}")
         try:
@@ -174,15 +174,15 @@ def comma_hint(value: Any) -> str:
 class OutOfBounds(ValueError):
     """A number outside bounds that depend on other fields; the message is in SI, `file_message` in units of files."""
 
-    def __init__(self, name: str, bounds: Quantity, value: float, why: str = "") -> None:
-        self.name, self.bounds, self.value, self.why = name, bounds, value, why
-        super().__init__(f"{name} must be in {bounds.bounds}{why}; got {value}")
+    def __init__(self, name: str, bounds: Quantity, value: float, reason: str = "") -> None:
+        self.name, self.bounds, self.value, self.reason = name, bounds, value, reason
+        super().__init__(f"{name} must be in {bounds.bounds}{reason}; got {value}")
 
     @property
     def file_message(self) -> str:
         """The message without the name, in the units of files."""
         got = str(self.bounds.as_text(self.value))
-        return f"must be {self.bounds.bounds_in(got.partition(' ')[2])}{self.why}; got {got}"
+        return f"must be {self.bounds.bounds_in(got.partition(' ')[2])}{self.reason}; got {got}"
 
 
 # Bounds of a cue and an impact reject wrong units before they cost hours. Each bound is far from real values, so that
@@ -198,14 +198,14 @@ MAX_DOF = 50_000  # of a beam: a cue of 30 segments takes 10,000 for the modes o
 def quantity_fields(kind: type) -> tuple[tuple[str, Quantity, bool], ...]:
     """The dimensioned fields of a dataclass: (name, quantity, whether None is allowed)."""
     hints = typing.get_type_hints(kind, include_extras=True)
-    listed = []
+    declared = []
     for field in dataclasses.fields(kind):
         hint = hints[field.name]
         if typing.get_origin(hint) is Annotated:
-            for mark in hint.__metadata__:
-                if isinstance(mark, Quantity):
-                    listed.append((field.name, mark, type(None) in typing.get_args(hint.__origin__)))
-    return tuple(listed)
+            for annotation in hint.__metadata__:
+                if isinstance(annotation, Quantity):
+                    declared.append((field.name, annotation, type(None) in typing.get_args(hint.__origin__)))
+    return tuple(declared)
 
 
 def check_fields(instance: Any) -> None:
@@ -225,8 +225,8 @@ def check_fields(instance: Any) -> None:
 def check_kind(name: str, value: Any, kind: type | tuple[type, ...]) -> None:
     """TypeError unless ``value`` is an instance of ``kind``; the message names a field of it that is one."""
     if not isinstance(value, kind):
-        wanted = " or ".join(k.__name__ for k in (kind if isinstance(kind, tuple) else (kind,)))
-        raise TypeError(f"{name} must be {_a(wanted)}; got {_brief_value(value, kind)}")
+        expected = " or ".join(k.__name__ for k in (kind if isinstance(kind, tuple) else (kind,)))
+        raise TypeError(f"{name} must be {_a(expected)}; got {_brief_value(value, kind)}")
 
 
 def _a(noun: str) -> str:
@@ -249,9 +249,9 @@ def quote(value: Any) -> str:
 
 def suggestion(name: str, names: Iterable[str]) -> str:
     """A hint at the most similar valid name, or "" if none is similar."""
-    known = {known.casefold(): known for known in names}
-    close = difflib.get_close_matches(name.casefold(), known, n=1)
-    return f"; did you mean {known[close[0]]!r}?" if close else ""
+    spellings = {each.casefold(): each for each in names}
+    close = difflib.get_close_matches(name.casefold(), spellings, n=1)
+    return f"; did you mean {spellings[close[0]]!r}?" if close else ""
 
 
 def check_count(name: str, value: Any, least: int, most: int | None = None) -> None:

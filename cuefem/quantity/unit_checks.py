@@ -42,16 +42,16 @@ SHAFT_LENGTH = (0.3, 1.2)  # m, of a shaft in real size: a scale model causes no
 _PACKAGE = str(Path(__file__).parents[1])
 
 
-def unit_hint(name: str, value: float, unit: str, usual: tuple[float, float]) -> str:
+def unit_hint(name: str, value: float, unit: str, typical_range: tuple[float, float]) -> str:
     """The warning for a number outside its typical range that lies inside it in another unit; "" otherwise."""
-    least, most = usual
+    least, most = typical_range
     if least / IMPLAUSIBLE_FACTOR <= value <= IMPLAUSIBLE_FACTOR * most or not math.isfinite(value):
         return ""
     scales = ((other, float(conversion_factor(other, unit))) for other in COMMON_UNITS.get(unit, ()))
-    meant = {other: value * per for other, per in scales if least <= value * per <= most}
-    units = " or ".join(f"{value:g} {other}" for other in meant)
-    written = " or ".join(f"{number:.4g}" for number in meant.values())
-    return f"{name} is {value:g} {unit}, which no cue has: is it {units}? Write {written} ({unit})" if meant else ""
+    readings = {other: value * per for other, per in scales if least <= value * per <= most}
+    units = " or ".join(f"{value:g} {other}" for other in readings)
+    numbers = " or ".join(f"{number:.4g}" for number in readings.values())
+    return f"{name} is {value:g} {unit}, which no cue has: is it {units}? Write {numbers} ({unit})" if readings else ""
 
 
 def warn(message: str) -> None:
@@ -71,5 +71,5 @@ def _level() -> int:
     """The stack level, for `warnings.warn` in `warn`, of the line that calls this package."""
     files = [frame.f_code.co_filename for frame, _ in traceback.walk_stack(sys._getframe())]
     last = max(i for i, file in enumerate(files) if file.startswith(_PACKAGE))
-    made = files[last + 1 : last + 2] == ["<string>"]  # a dataclass's own __init__
-    return last + 1 + made
+    is_generated = files[last + 1 : last + 2] == ["<string>"]  # a dataclass's own __init__
+    return last + 1 + is_generated

@@ -96,8 +96,8 @@ def unit_of(text: str) -> Unit:
     """The unit of a text such as "g/cm^3"; UnknownUnit if it is not in the table."""
     numerator, denominator = _FRACTION_BAR.fullmatch(text.strip().translate(_POWERS).replace("**", "^")).groups()  # type: ignore[union-attr]
     scale, powers = _NO_UNIT
-    for part, sign in ((numerator, 1), (denominator, -1)):
-        parts = _OPERATORS.split(part.strip()) if part is not None else []
+    for side, sign in ((numerator, 1), (denominator, -1)):
+        parts = _OPERATORS.split(side.strip()) if side is not None else []
         for operator, word in zip(["*", *parts[1::2]], parts[::2], strict=False):
             factor = _factor(word)
             power = -sign if operator == "/" else sign
@@ -111,11 +111,11 @@ def _factor(text: str) -> Unit:
     if text == "1":
         return _NO_UNIT
     match = _FACTOR.fullmatch(text)
-    known = match and (UNITS.get(match[1]) or UNITS.get(match[1].lower()))
-    if not match or not known:
+    entry = match and (UNITS.get(match[1]) or UNITS.get(match[1].lower()))
+    if not match or not entry:
         raise UnknownUnit(match[1] if match else text)
     power = int(match[2] or match[3] or 1)
-    return Unit(known.scale**power, tuple(power * p for p in known.powers))  # type: ignore[arg-type]
+    return Unit(entry.scale**power, tuple(power * p for p in entry.powers))  # type: ignore[arg-type]
 
 
 def conversion_factor(unit: str, target: str) -> Decimal:
@@ -123,10 +123,10 @@ def conversion_factor(unit: str, target: str) -> Decimal:
 
     ``unit`` may omit an angle of ``target`` (N m for N m/rad), but not add one: 1 rad/s is not 1 Hz.
     """
-    own, other = unit_of(unit), unit_of(target)
-    if own.powers != other.powers and (own.powers != (*other.powers[:3], 0) or not any(own.powers)):
+    source, goal = unit_of(unit), unit_of(target)
+    if source.powers != goal.powers and (source.powers != (*goal.powers[:3], 0) or not any(source.powers)):
         raise ValueError(f"a unit of another kind, {unit!r}")
-    return own.scale / other.scale
+    return source.scale / goal.scale
 
 
 def examples_of(unit: str) -> tuple[str, ...]:
@@ -137,7 +137,7 @@ def examples_of(unit: str) -> tuple[str, ...]:
 def dimension_of(unit: str) -> str:
     """The dimension of a unit, such as "a mass"; UnknownUnit if it is not in the table."""
     powers = unit_of(unit).powers
-    return next((what for si, (what, *_) in EXAMPLES.items() if unit_of(si).powers == powers), "something else")
+    return next((noun for si, (noun, *_) in EXAMPLES.items() if unit_of(si).powers == powers), "something else")
 
 
 def preferred_name(unit: str) -> str:
@@ -160,8 +160,8 @@ def split_quantity(text: str) -> tuple[str, str]:
 def parse_decimal(digits: str) -> Decimal:
     """The value of a decimal number, a fraction (5/16) or a mixed number (1 1/4)."""
     if fraction := FRACTION.fullmatch(digits):
-        whole, above, below = fraction.groups(default="0")
-        return Decimal(whole) + Decimal(above) / Decimal(below)
+        whole, numerator, denominator = fraction.groups(default="0")
+        return Decimal(whole) + Decimal(numerator) / Decimal(denominator)
     return Decimal(digits)
 
 
@@ -171,11 +171,11 @@ def parse_number(text: str, unit: str) -> float:
     inf beyond the range of floats, nan beyond that of decimals. ValueError if the number or its unit is missing, or the
     unit is unknown (UnknownUnit) or of another dimension.
     """
-    digits, own = split_quantity(text)
-    if not own:
+    digits, source = split_quantity(text)
+    if not source:
         raise ValueError("a number and a unit")
     try:
-        return float(parse_decimal(digits) * conversion_factor(own, unit))
+        return float(parse_decimal(digits) * conversion_factor(source, unit))
     except (DecimalException, OverflowError):
         return math.nan  # in no interval
 
@@ -189,9 +189,9 @@ def format_number(value: float, unit: str) -> str:
     if math.isfinite(value):
         exact, per = Decimal(repr(value)), conversion_factor(convenient, unit)
         for digits in range(len(exact.normalize().as_tuple().digits)):
-            written = f"{_plain(Decimal(f'{exact / per:.{digits}e}'))} {convenient}"
-            if math.isclose(parse_number(written, unit), value, rel_tol=ROUND_TRIP_TOLERANCE):
-                return written
+            text = f"{_plain(Decimal(f'{exact / per:.{digits}e}'))} {convenient}"
+            if math.isclose(parse_number(text, unit), value, rel_tol=ROUND_TRIP_TOLERANCE):
+                return text
     return f"{value!r} {unit}"
 
 

@@ -31,7 +31,7 @@ def convergence_record(scene: Scene, *, max_modes: int = MAX_MODES, progress: Pr
     refined = _timed_levels(scene, max_modes, progress)
     best = refined[-1][0].result
     rows = [_level_record(scene, level, seconds, best) for level, seconds in refined]
-    return {"levels": rows, "recommended": [_recommended(rtol, rows) for rtol in RECOMMENDED_RTOLS]}
+    return {"levels": rows, "recommended_resolutions": [_recommended(rtol, rows) for rtol in RECOMMENDED_RTOLS]}
 
 
 def _timed_levels(scene: Scene, max_modes: int, progress: Progress) -> list[tuple[Level, float]]:
@@ -60,12 +60,12 @@ def _level_record(scene: Scene, level: Level, seconds: float, best: Any) -> Reco
 
 
 def _recommended(rtol: float, rows: Sequence[Record]) -> Record:
-    """The first level with an estimated error of at most ``rtol``; otherwise the last, with "reached" False."""
+    """The first level with an estimated error of at most ``rtol``; otherwise the last, with "is_reached" False."""
     estimated = [row for row in rows if row["estimate"] is not None]
     first = next((row for row in estimated if row["estimate"] <= rtol), None)
     names = ("modes", "steps", "unknowns", "estimate", "seconds")
     last = estimated[-1] if estimated else rows[-1]
-    return {"rtol": rtol, "reached": first is not None, **{name: (first or last)[name] for name in names}}
+    return {"rtol": rtol, "is_reached": first is not None, **{name: (first or last)[name] for name in names}}
 
 
 def tabulate_convergence(record: Record) -> list[Table]:
@@ -87,14 +87,14 @@ def tabulate_convergence(record: Record) -> list[Table]:
         tabulate(
             "Recommended resolution",
             {"accuracy": _accuracy} | sizes | last,
-            record["recommended"],
+            record["recommended_resolutions"],
             "With the truncation correction, as `resolve(scene, rtol)` and the rtol of a file's [accuracy] table.",
         ),
     ]
 
 
 def _accuracy(row: Mapping[str, Any]) -> str:
-    return f"{row['rtol']:.0e}" + ("" if row["reached"] else ", not reached; the best:")
+    return f"{row['rtol']:.0e}" + ("" if row["is_reached"] else ", not reached; the best:")
 
 
 def convergence_charts(record: Record) -> list[Chart]:

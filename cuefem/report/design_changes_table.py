@@ -40,7 +40,7 @@ def design_change_notes(record: Record) -> list[str]:
     return [
         *([warning] if warning else []),
         f"Each change on its own, by the coupled strike at b/R {record['offset']:.4g}; this cue: "
-        f"{with_unit(record['own']['squirt'], 'rad', decimals=2)}. ±: uncertainty of the change (1σ): model, "
+        f"{with_unit(record['unmodified']['squirt'], 'rad', decimals=2)}. ±: uncertainty of the change (1σ): model, "
         "unmeasured wood and tip, and 1 %. Worthwhile: squirt falls by more than its uncertainty; within uncertainty: "
         "the change is smaller than its uncertainty.",
         "Stiffness: static, at the tip, joint end clamped. Costs stiffness: by 5 % or more.",

@@ -71,7 +71,7 @@ def _row(variant: Variant, scene: Scene, base: Outcome, *, rtol: float, modes: i
         "name": variant.name,
         "values": None if variant.effect is None else asdict(variant.effect),
         "label": variant.name if variant.effect is None else effect_text(variant.effect),
-        "listed": variant.listed,
+        "is_listed": variant.is_listed,
     }
     if variant.scene is None:
         return about | _failed(variant.reason)
@@ -106,9 +106,10 @@ def recommendation(rows: Sequence[Record]) -> Record:
     tried = [row for row in rows if row["failure"] is None]
 
     def labels(listed: bool, significant: bool) -> list[str]:
-        return [row["label"] for row in tried if (row["listed"], row["significant"]) == (listed, significant)]
+        return [row["label"] for row in tried if (row["is_listed"], row["significant"]) == (listed, significant)]
 
-    return {"keep": labels(True, True), "remove": labels(True, False), "add": labels(False, True)}
+    cases = {"keep": (True, True), "remove": (True, False), "add": (False, True)}
+    return {f"effects_to_{verb}": labels(*case) for verb, case in cases.items()}
 
 
 def tabulate_effects(record: Record, scene: Record) -> Table:
@@ -151,7 +152,7 @@ def _not_tried(rows: Sequence[Record]) -> list[str]:
 
 
 def _cells(row: Record) -> tuple[str, ...]:
-    word = "without" if row["listed"] else "with"
+    word = "without" if row["is_listed"] else "with"
     squirt, speed, spin = (_percent(row["change"][name]["relative"]) for name in ("squirt", "ball_speed", "spin"))
     return (f"{word} {row['label']}", squirt, format_value("mass", row["end_mass"]), speed, spin)
 
@@ -166,8 +167,8 @@ def recommendation_text(record: Record, percent: str) -> list[str]:
     """The recommendation as sentences."""
     names = record["recommendation"]
     lines = []
-    if names["remove"]:
-        lines.append(f"Negligible, removing each changes less than {percent}: {', '.join(names['remove'])}.")
-    if names["add"]:
-        lines.append(f"Missing, each changes {percent} or more: {', '.join(names['add'])}.")
+    if names["effects_to_remove"]:
+        lines.append(f"Negligible, removing each changes less than {percent}: {', '.join(names['effects_to_remove'])}.")
+    if names["effects_to_add"]:
+        lines.append(f"Missing, each changes {percent} or more: {', '.join(names['effects_to_add'])}.")
     return lines or [f"At a tolerance of {percent} no listed effect is negligible and no unlisted effect matters."]

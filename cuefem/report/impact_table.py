@@ -29,12 +29,12 @@ def impact_record(scene: Scene) -> Record:
         try:
             indentation, loading = law.central_impact(scene.reduced_mass, speed)
         except ValueError:
-            return dict.fromkeys(("contact_time", "force", "depth", "stiffness", "patch")) | {"speed": speed}
+            return dict.fromkeys(("contact_time", "force", "indentation", "stiffness", "patch")) | {"speed": speed}
         return {
             "speed": speed,
             "contact_time": (1 + law.restitution) * loading,
             "force": float(law.at(indentation)[0]),
-            "depth": float(indentation),
+            "indentation": float(indentation),
             "stiffness": float(law.slope(indentation)),
             "patch": 2 * float(np.interp(indentation, depths, patches)),
         }
@@ -45,10 +45,11 @@ def impact_record(scene: Scene) -> Record:
 
 def tabulate_impacts(record: Record) -> Table:
     """A row for each speed."""
+    columns = by_label("contact_time", "force", "indentation", "patch")
     outside = any(impact["force"] is None for impact in record["impacts"])
     return tabulate(
         "Leather tip, head-on impact",
-        {"speed": "{speed:g} m/s", **by_label("contact_time", "force", "depth", "patch"), "stiffness": _stiffness},
+        {"speed": "{speed:g} m/s", **columns, "stiffness": _stiffness},
         record["impacts"],
         f"leather of {format_value('mass', record['tip_mass'])}, E {significant(record['E'] / 1e6)} MPa; force, "
         "indentation, contact diameter and stiffness at maximum indentation",

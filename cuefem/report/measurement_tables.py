@@ -12,15 +12,15 @@ from cuefem.measurements.measured_cue import MeasuredCue, OffsetZero, Residual
 from cuefem.results.quantities import DASH, with_unit
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 
-LARGE_PULL = 3.0  # a larger one is a contradiction
-UNITS = {"residual": "", "pull": "", "zero": "m", "squirt_error": "rad"}
+LARGE_RESIDUAL = 3.0  # a larger one is a contradiction
+UNITS = {"residual": "", "normalized_residual": "", "zero_error": "m", "squirt_error": "rad"}
 MIN_OUTLIER_PROBABILITY = 0.2  # of a measurement with a note
 
 
 def row_record(row: Residual) -> Record:
     """A measurement with the model's value, both SI with 1 sigma; see `Residual`."""
     measurement = row.measurement
-    names = ("measured", "error", "computed", "spread", "residual", "pull")
+    names = ("measured", "error", "computed", "spread", "residual", "normalized_residual")
     return {
         "kind": measurement.key,
         "label": measurement.label,
@@ -35,8 +35,8 @@ def measured_record(cue: MeasuredCue, rows: Sequence[Residual], zeros: Sequence[
         "name": cue.name,
         "source": cue.source,
         "rows": [row_record(row) for row in rows],
-        "rms_pull": float(np.sqrt(np.mean([row.pull**2 for row in rows]))) if rows else None,
-        "zeros": [{"label": zero.measurement.label, "zero": zero.zero, "error": zero.error} for zero in zeros],
+        "rms_normalized_residual": float(np.sqrt(np.mean([r.normalized_residual**2 for r in rows]))) if rows else None,
+        "zero_errors": [{"label": z.measurement.label, "zero_error": z.zero_error, "error": z.error} for z in zeros],
         "uncertain_parameters": [parameter.label for parameter in cue.parameters],
         "missing": cue.missing,
         "units": UNITS,
@@ -48,7 +48,7 @@ def tabulate_measured(record: Record) -> list[Table | str]:
     sourced = ["source"] if any(row["source"] for row in record["rows"]) else []
     blocks: list[Table | str] = []
     if record["rows"]:
-        blocks.append(_tabulate_fit("Measured and computed", record, "pull", *sourced))
+        blocks.append(_tabulate_fit("Measured and computed", record, "normalized residual", *sourced))
     blocks += [*contradictions(record), *zero_lines(record)]
     if record["missing"]:
         blocks += ["Missing measurements and their consequences:", *(f"  {line}" for line in record["missing"])]
@@ -69,41 +69,41 @@ def _with_error(value: str, error: str) -> ColumnEntry:
     return lambda row: with_unit(row[value], row["unit"], error=row[error])
 
 
-OPTIONAL_COLUMNS = {"pull": "{pull:+.1f}", "source": "{source}"}
+OPTIONAL_COLUMNS = {"normalized residual": "{normalized_residual:+.1f}", "source": "{source}"}
 VALUES_WITH_ERRORS = (("measured", "error"), ("computed", "spread"))
 
 
 def captions(record: Record) -> list[str]:
-    """Definitions of the table's columns; an estimate's table has no pull."""
+    """Definitions of the table's columns; an estimate's table has no normalized residual."""
     residual = "Residual: measured minus computed, over the measurement's 1σ"
-    if "rms_pull" not in record:
+    if "rms_normalized_residual" not in record:
         return [f"±: 1σ; that of a computed value comes from the estimated parameters. {residual}."]
     return [
         "±: 1σ; that of a computed value comes from the uncertain parameters of the drawing: "
         f"{', '.join(record['uncertain_parameters'])}.",
-        f"{residual}; pull: over the 1σ of both combined (RMS {record['rms_pull']:.2f}).",
+        f"{residual}; normalized residual: over both 1σ combined (RMS {record['rms_normalized_residual']:.2f}).",
     ]
 
 
 def contradictions(record: Record) -> list[str]:
-    """The measurements with a large pull, in words."""
+    """The measurements with a large normalized residual, as text."""
     lines = []
     for row in record["rows"]:
-        if abs(row["pull"]) > LARGE_PULL:
+        if (sigmas := abs(row["normalized_residual"])) > LARGE_RESIDUAL:
             measured, computed = (
                 with_unit(row[value], row["unit"], error=row[error]) for value, error in VALUES_WITH_ERRORS
             )
-            difference = f"measured {measured}, computed {computed}, a difference of {abs(row['pull']):.1f} combined σ"
+            difference = f"measured {measured}, computed {computed}, a difference of {sigmas:.1f} combined σ"
             lines.append(f"{row['label']} contradicts the drawing: {difference}")
     return lines
 
 
 def zero_lines(record: Record) -> list[str]:
     """The zero error of the offset, from strokes on the left and on the right; empty without them."""
-    if not record["zeros"]:
+    if not record["zero_errors"]:
         return []
-    weights = np.array([1 / zero["error"] ** 2 for zero in record["zeros"]])
-    mean = float(weights @ [zero["zero"] for zero in record["zeros"]] / weights.sum())
+    weights = np.array([1 / zero["error"] ** 2 for zero in record["zero_errors"]])
+    mean = float(weights @ [zero["zero_error"] for zero in record["zero_errors"]] / weights.sum())
     zero, side = with_unit(abs(mean), "m", error=float(weights.sum() ** -0.5)), "left" if mean > 0 else "right"
     return [f"The strokes hit {zero} to the {side} of their aim; the mean of left and right is free of it"]
 
@@ -131,14 +131,14 @@ def estimate_record(
         "misfit": estimate.misfit,
         "measurement_count": len(estimate.cue.measurements),
         "outlier_probability": estimate.outlier_probability.tolist(),
-        "unchecked": [
+        "unchecked_measurements": [
             {"label": each.measurement.label, "without": each.without._asdict()} for each in estimate.unchecked
         ],
         "converged": estimate.converged,
         "squirt": squirt[0],
         "squirt_error": squirt[1],
         "offset": offset,
-        "recommended": [gain_record(gain) for gain in gains],
+        "recommended_measurements": [gain_record(gain) for gain in gains],
         "units": UNITS,
     }
 
@@ -166,7 +166,7 @@ def tabulate_estimate(record: Record) -> list[Table | str]:
                 "its σ, after/before": "{error_ratio:.0 %}",
                 "σ of squirt after": "{relative_squirt_error:.1 %}",
             },
-            record["recommended"],
+            record["recommended_measurements"],
             "Sorted by the relative uncertainty (1σ) of squirt after the measurement.",
         ),
     ]
@@ -193,7 +193,7 @@ def _estimate_notes(record: Record) -> list[str]:
                 f"{row['label']} contradicts the others: outlier with a probability of {100 * probability:.0f} %, and "
                 "its weight is reduced."
             )
-    for each in record["unchecked"]:
+    for each in record["unchecked_measurements"]:
         without = each["without"]
         low, high = (with_unit(without[end], without["unit"]) for end in ("low", "high"))
         notes.append(

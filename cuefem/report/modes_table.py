@@ -11,14 +11,14 @@ def modes_record(scene: Scene, *, count: int, near: float | None) -> Record:
     """Natural frequencies and tip amplitudes of the ``count`` lowest bending modes, or of those nearest ``near``, Hz.
 
     "frequencies", Hz; "tip_amplitudes", kg^-1/2, of mass-normalised modes; "rigid", the number of rigid-body modes;
-    "nearest", the frequency nearest ``near``, or None.
+    "nearest_frequency", the frequency nearest ``near``, or None.
     """
     bending = modes(scene.shaft, count, near, effects=scene.cue_effects)
     amplitudes, _ = bending.shape(0.0)
     nearest = None if near is None else min(bending.frequencies.tolist(), key=lambda f: abs(f - near))
     return {
-        "near": near,
-        "nearest": nearest,
+        "requested_frequency": near,
+        "nearest_frequency": nearest,
         "rigid": bending.rigid,
         "frequencies": bending.frequencies.tolist(),
         "tip_amplitudes": amplitudes.tolist(),
@@ -27,7 +27,7 @@ def modes_record(scene: Scene, *, count: int, near: float | None) -> Record:
 
 def tabulate_modes(record: Record) -> Table:
     """A row for each mode of the cue, with the scene's effects on the cue."""
-    near, nearest = record["near"], record["nearest"]
+    near, nearest = record["requested_frequency"], record["nearest_frequency"]
     rows = [
         {"frequency": frequency, "period": 1 / frequency, "tip_amplitude": amplitude}
         for frequency, amplitude in zip(record["frequencies"], record["tip_amplitudes"], strict=True)

@@ -129,7 +129,7 @@ def page_and_headline(
 
 def _screen(name: str, scene: Scene, records: Record, other: tuple[str, Scene] | None) -> dict[str, str]:
     """The parts of the first screen as markup."""
-    outcome, drives = records["outcome"], records["end_masses"]["drives"]
+    outcome, drives = records["outcome"], records["end_masses"]["definitions"]
     squirt = {"squirt": float(outcome.squirt), "pivot_length": records["strike"]["models"]["coupled"]["pivot_length"]}
     own = Shown(
         name, scene, records["numbers"] | squirt | {"end_mass_squirt": drives["squirt"]["end_mass"]}, records["verdict"]

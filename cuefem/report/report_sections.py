@@ -17,7 +17,7 @@ from cuefem.report.strike_table import regime_warning
 from cuefem.report.verdict_table import tabulate_verdict
 from cuefem.results.quantities import format_value
 from cuefem.results.records import Record, Table, tabulate_values, value_rows
-from cuefem.results.solved_design import OFFSETS, SolvedDesign, listed
+from cuefem.results.solved_design import OFFSETS, SolvedDesign, listed_results
 from cuefem.results.verdict import Miscue, verdict_record
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import SolvedScene
@@ -47,7 +47,7 @@ def report_record(
     except (IndentationOutOfRange, SlopeOutOfRange) as error:
         return record | {"no_contact": str(error)}
     record |= squirts | ({} if scene.contact_terms.tip is None else {"tip": impact_record(scene)})
-    numbers = listed(SolvedDesign(solved, outcome))
+    numbers = listed_results(SolvedDesign(solved, outcome))
     record |= {"numbers": numbers, "regime": outcome.regime}
     try:
         return record | {"verdict": verdict_record(scene, outcome, reference_cues(), solved=solved)}
@@ -68,7 +68,7 @@ def tabulate_report(record: Record, scene: Record) -> list[Table | str]:
         first = [*([warning, ""] if warning else []), *tabulate_verdict(record["verdict"])]
     first += [record["model_error"]["summary"], ""] if "model_error" in record else []
     title = f"Cue, and stroke at offset b/R {scene['stroke']['offset']:.4g}"
-    end_mass = (SQUIRT_END_MASS, format_value("mass", record["end_masses"]["drives"]["squirt"]["end_mass"]))
+    end_mass = (SQUIRT_END_MASS, format_value("mass", record["end_masses"]["definitions"]["squirt"]["end_mass"]))
     numbers = tabulate_values(title, [end_mass, *value_rows(record["numbers"])], assumptions(scene))
     return [
         *first,

@@ -274,7 +274,7 @@ def optimum_record(problem: Problem, best: Optimum) -> Record:
         "responses": best.responses,
         "active": best.active,
         "evaluations": best.evaluations,
-        "unfinished": best.unfinished,
+        "stop_reason": best.stop_reason,
         "choices": [choice._asdict() for choice in best.choices],
     }
 
@@ -297,8 +297,8 @@ def tabulate_optimum(problem: Problem, best: Optimum) -> list[Table | str]:
         Table("Best design", ("", "value"), tuple((names[name], text(name, value)) for name, value in both.items())),
         f"active constraints: {', '.join(active) or 'none'}",
     ]
-    if best.unfinished:
-        tables.append(f"not finished: {best.unfinished}; more --iterations may find a better design")
+    if best.stop_reason:
+        tables.append(f"not finished: {best.stop_reason}; more --iterations may find a better design")
     if best.choices:
         head = (*map(column_label, best.choices[0].values), problem.objective.heading, "")
         rows = tuple(

@@ -25,7 +25,7 @@ SHAPE_FLOOR = 2e-3  # relative, of shape, weights, frequencies: 0.2 g of 100 g, 
 Progress = Callable[[Sequence[Any]], Iterable[Any]]
 
 
-class _Compared(NamedTuple):
+class _CueResults(NamedTuple):
     """A scene, its results, the contact state of its strike ("" if it fails), and their relative changes with
     each uncertain input."""
 
@@ -46,30 +46,30 @@ def comparison_record(
 
     An error that two cues share cancels in their difference: that of a tip of the same value on both, and of the wood
     if they are one shaft before and after a change (same_shaft). To squirt and what follows from it, the model adds
-    its part of the logarithm (`model_share`), and `FLOOR`; other numbers have `OTHER_FLOOR`. "distinct": whether a
-    difference exceeds its uncertainty (1 sigma), whichever of two cues is the first. ValueError for one shaft
-    of two woods.
+    its part of the logarithm (`model_share`), and `RATIO_FLOOR`; other numbers have `SHAPE_FLOOR`. "distinct": whether
+    a difference exceeds its uncertainty (1 sigma), whichever of two cues is the first. ValueError for one shaft of two
+    woods.
 
-    All cues are struck with the ball, the speed and the offset of the first. names: the numbers that are compared.
+    All cues have the ball, the speed and the offset of the first. names: the numbers that are compared.
     progress: wraps the list of cues, to show progress.
     """
     struck = with_same_stroke(scenes)
     woods = {main_material(scene.shaft).E for scene in struck.values()}
     if same_shaft and len(woods) > 1:
-        found = " and ".join(f"{E / 1e9:.4g} GPa" for E in sorted(woods))
-        raise ValueError(f"one shaft before and after a change must be of one wood; got E of {found}")
-    compared = {name: _compared(struck[name], tuple(names)) for name in progress([*struck])}
-    reference, *others = compared
+        moduli = " and ".join(f"{E / 1e9:.4g} GPa" for E in sorted(woods))
+        raise ValueError(f"one shaft before and after a change must be of one wood; got E of {moduli}")
+    results = {name: _cue_results(struck[name], tuple(names)) for name in progress([*struck])}
+    reference, *others = results
     first = struck[reference]
     return {
         "offset": float(first.stroke.offset),
         "speed": float(first.stroke.speed),
         "same_shaft": same_shaft,
         "reference": reference,
-        "regimes": {name: each.regime for name, each in compared.items()},
-        "cues": {name: each.numbers for name, each in compared.items()},
+        "regimes": {name: each.regime for name, each in results.items()},
+        "cues": {name: each.numbers for name, each in results.items()},
         "differences": {
-            name: _differences(compared[reference], compared[name], same_shaft=same_shaft) for name in others
+            name: _differences(results[reference], results[name], same_shaft=same_shaft) for name in others
         },
     }
 
@@ -81,23 +81,23 @@ def with_same_stroke(scenes: Mapping[str, Scene]) -> dict[str, Scene]:
 
 
 @lru_cache(maxsize=16)  # the reference usually remains while the other cue changes
-def _compared(scene: Scene, names: tuple[str, ...]) -> _Compared:
+def _cue_results(scene: Scene, names: tuple[str, ...]) -> _CueResults:
     numbers = _numbers(scene, names)
     try:
         regime = SolvedDesign(SolvedScene(scene)).strike().regime
     except (ValueError, RuntimeError):  # no squirt either
         regime = ""
-    return _Compared(scene, numbers, regime, changes_by_input(scene, numbers, lambda made: _numbers(made, names)))
+    return _CueResults(scene, numbers, regime, changes_by_input(scene, numbers, lambda other: _numbers(other, names)))
 
 
 def _numbers(scene: Scene, names: Sequence[str]) -> dict[str, float]:
     """The compared results of a scene; nan where it has none, such as squirt of a miscue."""
     _ = scene.shaft  # ValueError for a lumped cue, which has no shape
-    design, known = SolvedDesign(SolvedScene(scene)), computable_results()
+    design, registry = SolvedDesign(SolvedScene(scene)), computable_results()
 
     def value(name: str) -> float:
         base, _, mode = name.partition("frequency_")
-        of = known[base or "frequency"].of
+        of = registry[base or "frequency"].of
         argument: Any = int(mode) if mode else float(scene.stroke.offset) if name == "pivot_length" else None
         assert of is not None
         try:
@@ -110,11 +110,11 @@ def _numbers(scene: Scene, names: Sequence[str]) -> dict[str, float]:
     return {name: value(name) for name in names}
 
 
-def _differences(first: _Compared, other: _Compared, *, same_shaft: bool) -> dict[str, Record]:
+def _differences(first: _CueResults, other: _CueResults, *, same_shaft: bool) -> dict[str, Record]:
     """Relative differences, their uncertainty, and whether they are distinct, by number, if both have a value."""
-    made: dict[str, Record] = {}
-    for name, own in first.numbers.items():
-        ratio = other.numbers[name] / own
+    records: dict[str, Record] = {}
+    for name, value in first.numbers.items():
+        ratio = other.numbers[name] / value
         if not ratio > 0:
             continue
         inputs = {**first.inputs, **other.inputs}
@@ -124,13 +124,13 @@ def _differences(first: _Compared, other: _Compared, *, same_shaft: bool) -> dic
             share, floor = model_share(first.scene, other.scene), RATIO_FLOOR
         difference = difference_record(ratio, share, *errors, floor=floor)
         if not math.isnan(difference["error"]):  # a strike at a limit of an input's range is a miscue
-            made[name] = difference
-    return made
+            records[name] = difference
+    return records
 
 
-def _input_error(first: _Compared, other: _Compared, key: str, name: str, *, same_shaft: bool) -> float:
+def _input_error(first: _CueResults, other: _CueResults, key: str, name: str, *, same_shaft: bool) -> float:
     """Uncertainty of the logarithm of a ratio of two cues' results by one input."""
     changes = [each.inputs.get(key, {}).get(name, 0.0) for each in (first, other)]
-    known = PARAMETERS[key]
-    shared = known.value(first.scene) == known.value(other.scene) if known.is_shareable else same_shaft
+    parameter = PARAMETERS[key]
+    shared = parameter.value(first.scene) == parameter.value(other.scene) if parameter.is_shareable else same_shaft
     return abs(changes[1] - changes[0]) if shared else math.hypot(*changes)

@@ -146,12 +146,12 @@ def resolve_end_mass(scene: Scene, drive: str = "stick", rtol: float = 1e-4) -> 
 def relative_error(outcome: Outcome, best: Outcome, scene: Scene) -> float:
     """Largest relative difference of squirt, ball speed and spin from those of ``best``, as in `resolve`."""
     min_scale = np.array([MIN_SQUIRT * abs(float(scene.stroke.offset)), 0.0, 0.0])
-    scale = np.maximum(np.abs(_compared(best)), min_scale)
+    scale = np.maximum(np.abs(_compared_numbers(best)), min_scale)
     scale = np.where(scale > 0, scale, 1.0)  # head-on: squirt and spin are zero at every level
-    return float((np.abs(_compared(outcome) - _compared(best)) / scale).max())
+    return float((np.abs(_compared_numbers(outcome) - _compared_numbers(best)) / scale).max())
 
 
-def _compared(outcome: Outcome) -> Array:
+def _compared_numbers(outcome: Outcome) -> Array:
     return np.array([outcome.squirt, outcome.ball_speed, outcome.spin], float)
 
 

@@ -43,7 +43,7 @@ class Result:
     scene's own offset), or a ValueError with the reason why it is undefined; without it, only records have it and
     compute it. argument: its argument in brackets, "", "mode" or "offset". segments: whether it needs cue segments.
     limit: whether without an offset it is the limit of small offsets. better: "lower" or "higher", the direction in
-    which a summary ranks designs. listed: whether a report and the designer list it (not if it has its own table).
+    which a summary ranks designs. is_listed: whether a report and the designer list it (not if it has its own table).
     """
 
     label: str
@@ -58,7 +58,7 @@ class Result:
     segments: bool = False
     limit: bool = False
     better: str = ""
-    listed: bool = True
+    is_listed: bool = True
 
     @property
     def column_heading(self) -> str:
@@ -77,7 +77,7 @@ class Result:
         return f"{self.scale * value:.{self.decimals}f}"
 
     def format(self, value: Any) -> str:
-        """A value with its unit; a dash if there is no value; words unchanged."""
+        """A value with its unit; a dash if there is no value; text unchanged."""
         if isinstance(value, str):
             return value
         if value is None or not math.isfinite(value):
@@ -136,8 +136,8 @@ def balance_point(scene: Scene) -> float:
 
 def _added_masses(scene: Scene) -> list[tuple[float, float]]:
     """Position and mass, m and kg, of the tip and of masses on the cue."""
-    own = ((effect, effect.mass_on(scene.shaft)) for effect in scene.cue_effects if effect.part_of_cue)
-    return [(effect.positions[0], mass) for effect, mass in own if mass]
+    masses = ((effect, effect.mass_on(scene.shaft)) for effect in scene.cue_effects if effect.part_of_cue)
+    return [(effect.positions[0], mass) for effect, mass in masses if mass]
 
 
 def _thinnest_wall(scene: Scene) -> float:
@@ -162,7 +162,7 @@ RESULTS = {
         argument="offset",
         limit=True,
         better="lower",
-        listed=False,
+        is_listed=False,
     ),
     "cue_end_mass": Result("mass of the cue's end", "kg"),
     "length": Result("length", "m", 0),
@@ -186,7 +186,7 @@ RESULTS = {
         about="squirt over phi in the limit of small offsets",
         of=lambda design, _: design.squirt_slope,
         better="lower",
-        listed=False,
+        is_listed=False,
     ),
     "pivot_length": Result(
         *("natural pivot length", "m", 0),
@@ -195,7 +195,7 @@ RESULTS = {
         argument="offset",
         limit=True,
         better="higher",
-        listed=False,
+        is_listed=False,
     ),
     "speed": Result("speed", "m/s", 2),
     "ball_speed": Result(
@@ -253,14 +253,14 @@ RESULTS = {
         of=lambda design, mode: design.frequency(mode),
         argument="mode",
         segments=True,
-        listed=False,
+        is_listed=False,
     ),
     "frequencies": Result("frequency", "Hz"),
-    "near": Result("requested frequency", "Hz"),
-    "nearest": Result("nearest frequency", "Hz"),
+    "requested_frequency": Result("requested frequency", "Hz"),
+    "nearest_frequency": Result("nearest frequency", "Hz"),
     "tip_amplitudes": Result("tip amplitude", "1/sqrt(kg)", 3),
     "force": Result("force", "N"),
-    "depth": Result("indentation", "m", 2),
+    "indentation": Result("indentation", "m", 2),
     "stiffness": Result("stiffness of the tip", "N/m"),
     "patch": Result("contact diameter", "m", 1),
     "tip_mass": Result("mass of the tip", "kg"),
@@ -288,13 +288,13 @@ def with_unit(
 ) -> str:
     """An SI number in its display unit, to some digits or decimals; with an error, to the error's second digit."""
     scale, name = DISPLAY_UNITS.get(unit, (1.0, unit))
-    tail = f" {name}" if name not in ("", "°") else name
+    suffix = f" {name}" if name not in ("", "°") else name
     if decimals is not None:
-        return f"{scale * value:.{decimals}f}{tail}"
+        return f"{scale * value:.{decimals}f}{suffix}"
     if error is None or not math.isfinite(error) or error <= 0:
-        return f"{scale * value:.{digits}g}{tail}"
+        return f"{scale * value:.{digits}g}{suffix}"
     decimals = max(0, 1 - math.floor(math.log10(scale * error)))
-    return f"{scale * value:.{decimals}f} ± {scale * error:.{decimals}f}{tail}"
+    return f"{scale * value:.{decimals}f} ± {scale * error:.{decimals}f}{suffix}"
 
 
 def to_display(values: Any, unit: str) -> Array:
@@ -302,10 +302,10 @@ def to_display(values: Any, unit: str) -> Array:
     return np.asarray(values) * DISPLAY_UNITS.get(unit, (1.0, unit))[0]
 
 
-def with_heading(words: str, unit: str) -> str:
+def with_heading(label: str, unit: str) -> str:
     """The name of a column with its display unit."""
     name = DISPLAY_UNITS.get(unit, (1.0, unit))[1]
-    return f"{words}, {name}" if name else words
+    return f"{label}, {name}" if name else label
 
 
 def units_of(*names: str) -> dict[str, str]:

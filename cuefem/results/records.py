@@ -1,7 +1,7 @@
 """Records (SI numbers by the names of their quantities), and the tables that display them.
 
-Programs read records. A sheet declares the column of each number; heading, unit and digits
-of a column are those of its quantity. A terminal, a page and a CSV file show the same sheet
+Programs read records. A table declares the column of each number; heading, unit and digits
+of a column are those of its quantity. A terminal, a page and a CSV file show the same table
 (`cuefem.report.renderers`).
 """
 
@@ -64,7 +64,7 @@ def _cell(entry: ColumnEntry, row: Mapping[str, Any]) -> str:
 class _Templates(Formatter):
     """Templates with a format after the colon of each number; a missing number becomes a dash.
 
-    {felt:end_mass}: as that quantity; {swing:m}: in the display unit of an SI unit; {share:.1 %}: in per
+    {mass:end_mass}: as that quantity; {swing:m}: in the display unit of an SI unit; {share:.1 %}: in per
     cent; otherwise as in Python.
     """
 
@@ -91,7 +91,7 @@ _TEMPLATES = _Templates()
 
 
 def tabulate_values(title: str, rows: Iterable[tuple[str, str]], *notes: str) -> Table:
-    """A sheet of one record: a name and a value in each row."""
+    """A table of one record: a name and a value in each row."""
     return Table(title, ("", "value"), tuple(rows), notes)
 
 

@@ -106,8 +106,8 @@ class SolvedDesign:
 
 def computable_results() -> dict[str, Result]:
     """All results of a design, by name: also "end_mass_NAME" for every definition of the end mass."""
-    own = {name: result for name, result in RESULTS.items() if result.of is not None}
-    return own | {f"end_mass_{name}": _defined(definition) for name, definition in DEFINITIONS.items()}
+    results = {name: result for name, result in RESULTS.items() if result.of is not None}
+    return results | {f"end_mass_{name}": _defined(definition) for name, definition in DEFINITIONS.items()}
 
 
 def _defined(definition: Definition) -> Result:
@@ -118,16 +118,16 @@ def _defined(definition: Definition) -> Result:
         of=lambda design, offset: design.end_mass(definition.name, offset),
         argument="offset" if definition.at_offset else "",
         better="lower",
-        listed=False,
+        is_listed=False,
     )
 
 
-def listed(design: SolvedDesign) -> dict[str, float | None]:
+def listed_results(design: SolvedDesign) -> dict[str, float | None]:
     """Every listed result of a design, None where it has none: what a report and the designer show by its name."""
     return {
         name: _value(result, design)
         for name, result in RESULTS.items()
-        if result.of is not None and result.listed and (design.scene.cue.segments or not result.segments)
+        if result.of is not None and result.is_listed and (design.scene.cue.segments or not result.segments)
     }
 
 

@@ -22,7 +22,7 @@ from cuefem.scene.solved_scene import SolvedScene
 MODEL_ERROR = 0.18
 SPRING_ERROR = 0.29
 # The error of the logarithm of a ratio of squirt as a part of that logarithm: of two shafts (upper end, from pairs of
-# shafts in one series, their inputs included), and of a shaft with and without a mass on it (31 places of two masses).
+# shafts in one series, their inputs included), and of a shaft with and without a mass on it (two masses, 31 positions).
 SHAFT_ERROR = 0.31
 MASS_ERROR = 0.54
 RATIO_FLOOR = 0.01  # relative, of any ratio of squirt: calipers and numerical error
@@ -42,7 +42,7 @@ class Uncertainty(NamedTuple):
 
     @property
     def total(self) -> float:
-        """All of them in quadrature."""
+        """Total relative uncertainty: the parts in quadrature."""
         return math.hypot(*self)
 
 
@@ -56,17 +56,17 @@ def shaft_uncertainty(inputs: Mapping[str, float]) -> float:
     return math.hypot(*(share for key, share in inputs.items() if not PARAMETERS[key].is_shareable))
 
 
-def squirt_changes(solved: SolvedScene, own: float, of: Iterable[str] = PARAMETERS) -> dict[str, float]:
-    """`changes_by_input` of squirt alone; own: that of the scene, rad."""
-    if not own:
+def squirt_changes(solved: SolvedScene, base: float, of: Iterable[str] = PARAMETERS) -> dict[str, float]:
+    """`changes_by_input` of squirt alone; base: that of the scene, rad."""
+    if not base:
         return {}
-    changes = changes_by_input(solved.scene, {"squirt": own}, lambda made: {"squirt": variant_squirt(solved, made)}, of)
+    changes = changes_by_input(solved.scene, {"squirt": base}, lambda new: {"squirt": variant_squirt(solved, new)}, of)
     return {key: change["squirt"] for key, change in changes.items()}
 
 
 def changes_by_input(
     scene: Scene,
-    own: Mapping[str, float],
+    base: Mapping[str, float],
     of: Callable[[Scene], Mapping[str, float]],
     inputs: Iterable[str] = PARAMETERS,
     spreads: Mapping[str, float] = MappingProxyType({}),
@@ -74,32 +74,32 @@ def changes_by_input(
     """Relative changes of results of a scene with each uncertain input, by its standard deviation.
 
     Half the difference between one standard deviation up and one down; of one side where the other gives no valid cue.
-    own: results of the scene. of: computes those of a changed scene. inputs: the requested inputs. spreads: standard
+    base: results of the scene. of: computes those of a changed scene. inputs: the requested inputs. spreads: standard
     deviations of logarithms that replace the usual ones, by input. Signs are those of a larger value of the input.
     """
     changes: dict[str, dict[str, float]] = {}
     for key in inputs if scene.cue.segments else ():
-        known = PARAMETERS[key]
-        spread = spreads.get(key, known.spread_in(scene))
-        ways = (spread, -spread) if spread is not None else (math.log1p(-known.below),) if known.below else ()
-        found = []
-        for off in ways if known.value(scene) else ():
+        parameter = PARAMETERS[key]
+        spread = spreads.get(key, parameter.spread_in(scene))
+        steps = (spread, -spread) if spread is not None else (math.log1p(-parameter.below),) if parameter.below else ()
+        sides = []
+        for step in steps if parameter.value(scene) else ():
             with suppress(ValueError, RuntimeError):  # no valid cue there
-                made = of(with_values_at(scene, known.scaled(scene, math.exp(off))))
-                found.append({name: math.copysign(1.0, off) * (made[name] / own[name] - 1) for name in own})
-        if found:
-            changes[key] = {name: sum(each[name] for each in found) / len(found) for name in own}
+                variant = of(with_values_at(scene, parameter.scaled(scene, math.exp(step))))
+                sides.append({name: math.copysign(1.0, step) * (variant[name] / base[name] - 1) for name in base})
+        if sides:
+            changes[key] = {name: sum(each[name] for each in sides) / len(sides) for name in base}
     return changes
 
 
 def variant_squirt(solved: SolvedScene, variant: Scene) -> float:
     """Squirt of a changed scene, rad; it reuses the solved modes if the vibrating cue is unchanged."""
-    if _vibrating(variant) == _vibrating(solved.scene):
+    if _cue_and_effects(variant) == _cue_and_effects(solved.scene):
         return float(strike_modes(variant, solved.tip).squirt)
     return squirt_of(variant)
 
 
-def _vibrating(scene: Scene) -> tuple[object, ...]:
+def _cue_and_effects(scene: Scene) -> tuple[object, ...]:
     """The cue and the effects on it: of a tip only its mass."""
     return scene.cue, *chain.from_iterable(effect.without_tip(scene.shaft) for effect in scene.cue_effects)
 
@@ -111,7 +111,7 @@ def squirt_of(scene: Scene) -> float:
 
 
 def model_share(first: Scene, other: Scene) -> float:
-    """The model's part of the logarithm of a ratio: `MASSES` if the masses on the two shafts differ, else `SHAFTS`."""
+    """The model's part of the logarithm of a ratio: `MASS_ERROR` if the shafts' masses differ, else `SHAFT_ERROR`."""
     masses = [[effect for effect in scene.effects if effect.axial_mass] for scene in (first, other)]
     return SHAFT_ERROR if masses[0] == masses[1] else MASS_ERROR
 

@@ -33,7 +33,7 @@ def lacks_butt(scene: Scene) -> bool:
     return float(scene.cue.mass) < MIN_CUE_MASS
 
 
-def refuse_miscue(scene: Scene, outcome: Outcome) -> None:
+def reject_miscue(scene: Scene, outcome: Outcome) -> None:
     """ValueError for a miscue, whose squirt hardly depends on the cue."""
     if outcome.regime == "miscue":
         raise Miscue(
@@ -81,15 +81,15 @@ def verdict_record(
     head_on = struck is not scene
     solved = SolvedScene(struck) if solved is None or head_on else solved
     outcome = strike_modes(struck, solved.tip) if head_on else outcome
-    refuse_miscue(struck, outcome)
+    reject_miscue(struck, outcome)
     squirt = float(outcome.squirt)
     # at the resolution of the reference cues, since the outcome may be finer
-    own = squirt if outcome.error is None else variant_squirt(solved, struck)
-    inputs = {key: abs(change) for key, change in squirt_changes(solved, own).items()}
+    base = squirt if outcome.error is None else variant_squirt(solved, struck)
+    inputs = {key: abs(change) for key, change in squirt_changes(solved, base).items()}
     computation = NUMERICAL_ERROR if outcome.error is None else outcome.error
     uncertainty = Uncertainty(model_error(struck), math.hypot(*inputs.values()), computation)
-    shaft, compared = shaft_uncertainty(inputs), {} if lacks_butt(struck) else reference_cues
-    reference_rows = {name: _reference_row(struck, own, cue, shaft) for name, cue in compared.items()}
+    shaft, cues = shaft_uncertainty(inputs), {} if lacks_butt(struck) else reference_cues
+    reference_rows = {name: _reference_row(struck, base, cue, shaft) for name, cue in cues.items()}
     return {
         "offset": float(struck.stroke.offset),
         "head_on": head_on,

@@ -48,7 +48,7 @@ def test_report_json_of_lumped_cue_equals_library(folder: Path) -> None:
     cf.save(cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=KIM_SCENE.stroke), "lumped.toml")
     lumped = as_json("report", "lumped.toml")
     assert "modes" not in lumped
-    assert lumped["end_masses"]["drives"]["force"]["end_mass"] == 0.006
+    assert lumped["end_masses"]["definitions"]["force"]["end_mass"] == 0.006
     paper = cf.Scene(cf.LumpedCue.two_part(0.54, 0.012), stroke=KIM_SCENE.stroke)
     reported = lumped["squirt"]["models"]["two-part, 12 g"]["squirt"][2]
     assert reported == pytest.approx(cf.impulse(paper).squirt, rel=1e-12)
@@ -56,7 +56,7 @@ def test_report_json_of_lumped_cue_equals_library(folder: Path) -> None:
 
 def test_strike_options_replace_values_of_scene_file(folder: Path) -> None:
     result = as_json("strike", "scene.toml")
-    assert result["assumed"] == []
+    assert result["assumptions"] == []
     clip = {"type": "PointMass", "position": 0.1, "mass": 0.005, "rotary_inertia": 0, "axial_share": 1}
     assert result["scene"]["effects"][0] == clip
     assert result["models"]["coupled"]["squirt"] == pytest.approx(cf.strike(SCENE).squirt, rel=1e-12)

@@ -21,7 +21,8 @@ def test_compare_json_equals_library_and_page_lists_measurements(tmp_path: Path)
     result, (cue, _) = as_json("compare", folder), load_measured(folder)
     for reported, row in zip(result["rows"], compare(cue), strict=True):
         assert reported["label"] == row.measurement.label
-        assert [reported[name] for name in ("computed", "spread", "pull")] == [row.computed, row.spread, row.pull]
+        for name in ("computed", "spread", "normalized_residual"):
+            assert reported[name] == getattr(row, name)
     assert (result["name"], result["missing"]) == ("a cue", cue.missing)
     out = stdout_of("compare", folder)
     assert all(phrase in out for phrase in ("weight of the shaft", "100.00 ± 0.50 g", "Missing measurements"))
@@ -78,5 +79,5 @@ def test_compare_estimate_json_equals_library(tmp_path: Path) -> None:
     expected = estimate(load_measured(folder)[0])
     assert [value["value"] for value in reported["values"]] == pytest.approx([value.value for value in expected.values])
     assert (reported["misfit"], reported["converged"]) == (pytest.approx(expected.misfit), True)
-    assert {gain["kind"] for gain in reported["recommended"]} <= set(MEASUREMENT_TYPES)
-    assert all(0 < gain["error_ratio"] <= 1 and gain["bits"] >= 0 for gain in reported["recommended"])
+    assert {gain["kind"] for gain in reported["recommended_measurements"]} <= set(MEASUREMENT_TYPES)
+    assert all(0 < gain["error_ratio"] <= 1 and gain["bits"] >= 0 for gain in reported["recommended_measurements"])

@@ -30,7 +30,7 @@ def test_drawn_leather_becomes_leather_tip_of_its_height(folder: Path) -> None:
     assert as_json("strike", "drawn.toml", "--tip-height", "4 mm")["scene"]["effects"][0]["height"] == 4e-3
     modes = as_json("modes", "drawn.toml")
     assert modes["scene"] == {name: result["scene"][name] for name in ("cue", "effects")}
-    assert [re.findall(r"--[a-z-]+", line) for line in modes["assumed"]] == [
+    assert [re.findall(r"--[a-z-]+", line) for line in modes["assumptions"]] == [
         [option] for option in ("--game", "--tip-height", "--dome", "--leather")
     ]
 
@@ -49,12 +49,12 @@ OPTIONS = {
 def test_every_assumption_has_an_option(folder: Path) -> None:
     arguments = [word for name, (text, *_) in OPTIONS.items() for word in (name, text)]
     result, plain = as_json("strike", "shaft.toml", *arguments), as_json("strike", "shaft.toml")
-    assert result["assumed"] == plain["assumed"][:3]  # the game and its ball
-    assert {*OPTIONS} <= {*re.findall(r"--[a-z-]+", " ".join(plain["assumed"]))}
+    assert result["assumptions"] == plain["assumptions"][:3]  # the game and its ball
+    assert {*OPTIONS} <= {*re.findall(r"--[a-z-]+", " ".join(plain["assumptions"]))}
     for name, (_, value, expected) in OPTIONS.items():
         assert value(result["scene"]) == pytest.approx(expected, rel=1e-12), name
     changed = as_json("strike", "leather.toml", *arguments)  # a complete scene
-    assert (changed["assumed"], changed["scene"]) == ([], result["scene"])
+    assert (changed["assumptions"], changed["scene"]) == ([], result["scene"])
 
 
 def test_leather_too_soft_for_stroke_omits_contact_results(folder: Path) -> None:

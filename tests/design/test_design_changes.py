@@ -38,10 +38,10 @@ def test_design_changes_rows_equal_strikes_of_changed_cues(computed: tuple[cf.Sc
     scene, record = computed
     own = cf.strike(scene)
     frequency = cf.modes(scene.cue, effects=scene.cue_effects).frequencies[0]
-    assert record["own"]["squirt"] == pytest.approx(own.squirt, rel=1e-9)
+    assert record["unmodified"]["squirt"] == pytest.approx(own.squirt, rel=1e-9)
     assert record["changes"]
     for row in record["changes"]:
-        changed = with_parameters(scene, row["set"])
+        changed = with_parameters(scene, row["values"])
         assert row["squirt_change"] == pytest.approx(cf.strike(changed).squirt / own.squirt - 1, abs=1e-8)
         assert row["shaft_mass_change"] == pytest.approx(changed.cue.shaft_mass - scene.cue.shaft_mass, abs=1e-12)
         new_frequency = cf.modes(changed.cue, effects=changed.cue_effects).frequencies[0]
@@ -68,7 +68,7 @@ def test_design_changes_are_sorted_with_verdicts(computed: tuple[cf.Scene, dict]
 def test_design_change_error_equals_comparison_of_same_shaft() -> None:
     scene = scene_of("pool_maple")
     (row,) = (row for row in design_changes(scene)["changes"] if row["change"] == "ABS ferrule")
-    pair = {"before": scene, "after": with_parameters(scene, row["set"])}
+    pair = {"before": scene, "after": with_parameters(scene, row["values"])}
     error = comparison_record(pair, same_shaft=True)["differences"]["after"]["squirt"]["error"]
     assert row["squirt_change_error"] == pytest.approx(error, rel=0.01)
 
@@ -78,7 +78,7 @@ def test_design_changes_walls_are_thick_enough(computed: tuple[cf.Scene, dict]) 
     for row in record["changes"]:
         bored = [
             s
-            for s in with_parameters(scene, row["set"]).cue.segments
+            for s in with_parameters(scene, row["values"]).cue.segments
             if s.core is None and max(s.tip_bore, s.butt_bore)
         ]
         walls = [min(s.tip_diameter - s.tip_bore, s.butt_diameter - s.butt_bore) / 2 for s in bored]

@@ -62,7 +62,7 @@ def test_committed_study_equals_optimum_of_exact_gradients(tmp_path: Path) -> No
     """The optimum of exact gradients; the saved scene has the required stiffness."""
     goal = tmp_path / "best.toml"
     record = json.loads(stdout_of("study", STUDY, "--json", "-o", goal))
-    assert (record["kind"], record["objective"], record["unfinished"]) == ("optimum", {"minimize": "squirt_slope"}, "")
+    assert (record["kind"], record["objective"], record["stop_reason"]) == ("optimum", {"minimize": "squirt_slope"}, "")
     # by the closed form of the end mass; equal steps leave 2e-7 of it
     assert record["value"] == pytest.approx(0.03951969007, rel=1e-6)
     assert record["values"] == pytest.approx(OPTIMAL, rel=1e-6)
@@ -81,7 +81,7 @@ def test_optimum_of_strike_converges_to_same_design() -> None:
     """Squirt of a strike at b/R 0.3, for which differential evolution takes thousands of strikes."""
     problem, rounds = replace(load_study(STUDY), objective=Response("squirt", 0.3)), list[Round]()
     result = optimum(problem, progress=rounds.append)
-    assert (result.unfinished, rounds[-1].evaluations < 200) == ("", True)
+    assert (result.stop_reason, rounds[-1].evaluations < 200) == ("", True)
     assert result.responses["squirt(0.3)"] == pytest.approx(0.010864, abs=2e-6)
     assert result.values == pytest.approx(OPTIMAL, rel=1e-4)
 
@@ -91,7 +91,7 @@ def test_active_limits_constrain_the_optimum() -> None:
     """Removing a limit improves the objective if and only if the limit is active."""
     point = np.array([best().values[v.name] for v in PROBLEM.vary])
     assert PROBLEM.margins(PROBLEM.values(point[None])).min() == pytest.approx(0.0, abs=1e-6)
-    assert (best().scene, best().unfinished) == (PROBLEM.scene(point), "")
+    assert (best().scene, best().stop_reason) == (PROBLEM.scene(point), "")
     assert best().active
     for limit in LIMITS:
         rest = tuple(other for other in LIMITS if other != limit)
@@ -116,7 +116,7 @@ def test_invalid_start_uses_evolution_then_slsqp() -> None:
     problem = Problem(SCENE, (wide, TIP), SQUIRT, (Limit(WALL, low=0.0015),), cf.Resolution(1, 6, 8))
     good, bad = (optimum(problem, start=np.array([x, 0.0125]), rounds=15) for x in (0.005, 0.0139))
     assert bad.evaluations > 100 > good.evaluations
-    assert (bad.unfinished, bad.values) == ("", pytest.approx(good.values, rel=1e-4))
+    assert (bad.stop_reason, bad.values) == ("", pytest.approx(good.values, rel=1e-4))
 
 
 NAMES = OPTIMUM + '[[vary]]\npath = "cue.segments[0].material"\nvalues = ["hard maple", "ash", "purpleheart"]\n'

@@ -46,7 +46,7 @@ def test_study_segments_are_numbered_as_in_file(path: str, of: str, tmp_path: Pa
     assert getattr(expected.base.cue.segments[i], field) == pytest.approx(before)
     for value in (0.005, 0.007):
         assert getattr(expected.scene((value,)).cue.segments[i], field) == pytest.approx(value)
-    assert as_json("study", file)["varied"] == {path: [piece]}
+    assert as_json("study", file)["varied_fields"] == {path: [piece]}
 
 
 def test_study_compensated_length_of_segment_in_file(tmp_path: Path) -> None:
@@ -70,7 +70,7 @@ def test_study_of_cue_has_default_stroke_of_game(tmp_path: Path) -> None:
         file = varying(tmp_path, "bore width")
         file.write_text((f'game = "{game}"\n' if game else "") + file.read_text(encoding="utf-8"), encoding="utf-8")
         assert load_study(file).base == usual(cf.load(tmp_path / "cue.toml"))
-        assert f"cue speed {1 if game else 2} m/s" in as_json("study", file)["assumed"]
+        assert f"cue speed {1 if game else 2} m/s" in as_json("study", file)["assumptions"]
     file.write_text('game = "chess"\n' + file.read_text(encoding="utf-8"), encoding="utf-8")
     assert_rejects("study.toml: game: must be one of pool, carom, snooker, kim", "study", file)
     of_scene = write_study(tmp_path, f'game = "pool"\n{STUDY}')

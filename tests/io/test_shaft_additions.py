@@ -82,6 +82,6 @@ def test_load_body_mass_equals_the_option(tmp_path: Path) -> None:
 
 def test_ferrule_without_tenon_text_reports_the_default_tenon(tmp_path: Path) -> None:
     assumed = [
-        as_json("modes", shaft(tmp_path), "--ferrule", f"25 mm melamine{end}")["assumed"] for end in ("", ", no tenon")
+        as_json("modes", shaft(tmp_path), "--ferrule", f"25 mm melamine{x}")["assumptions"] for x in ("", ", no tenon")
     ]
     assert ["tenon" in " ".join(each) for each in assumed] == [True, False]

@@ -88,7 +88,7 @@ def test_offset_zero_moves_one_side_and_not_the_mean() -> None:
     assert sides.computed(setup) == pytest.approx(cf.strike(SCENE).squirt, rel=1e-12)
     cue = measured_cue(sides)
     (result,) = offset_zeros(cue, compare(cue))
-    assert result.zero == pytest.approx(shift, rel=0.2)
+    assert result.zero_error == pytest.approx(shift, rel=0.2)
     assert result.error > 0
 
 
@@ -96,7 +96,7 @@ def test_residuals_are_in_units_of_errors() -> None:
     rows = compare(measured_cue(*cheap_measurements()))
     for row in rows:
         assert row.residual == pytest.approx((row.measured - row.computed) / row.error)
-        assert row.pull == pytest.approx((row.measured - row.computed) / np.hypot(row.error, row.spread))
+        assert row.normalized_residual == pytest.approx((row.measured - row.computed) / np.hypot(row.error, row.spread))
     weight, tone = rows[0], rows[1]
     # closed form: weight proportional to density, frequency to the root of E/rho
     assert weight.spread / weight.computed == pytest.approx(np.log(780 / 630) / 2, rel=2e-2)

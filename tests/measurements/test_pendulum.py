@@ -97,5 +97,5 @@ def test_compare_contradiction_with_drawing_is_reported(tmp_path: Path) -> None:
     (row,) = as_json("compare", directory)["rows"]
     assert (1e3 * row["measured"], 1e3 * row["computed"]) == pytest.approx((8.95, 6.06), abs=0.02)
     assert row["residual"] > 15
-    assert row["pull"] > 5
+    assert row["normalized_residual"] > 5
     assert "contradicts the drawing" in stdout_of("compare", directory)

@@ -19,14 +19,14 @@ def record() -> dict:
 
 
 def test_recommended_resolution_equals_resolve(record: dict) -> None:
-    assert [row["rtol"] for row in record["recommended"]] == list(RECOMMENDED_RTOLS)
-    for row in record["recommended"]:
-        if row["reached"]:
+    assert [row["rtol"] for row in record["recommended_resolutions"]] == list(RECOMMENDED_RTOLS)
+    for row in record["recommended_resolutions"]:
+        if row["is_reached"]:
             result = resolve(scene("kim", 1e-3, 0.3), row["rtol"])
             assert (result.unknowns, result.error) == (row["unknowns"], row["estimate"])
-    assert [row["reached"] for row in record["recommended"]] == [True, False, False, False]
+    assert [row["is_reached"] for row in record["recommended_resolutions"]] == [True, False, False, False]
     best = min(level["estimate"] for level in record["levels"] if level["estimate"] is not None)
-    assert record["recommended"][-1]["estimate"] == best
+    assert record["recommended_resolutions"][-1]["estimate"] == best
 
 
 def test_cost_command_prints_table_and_draws_chart(tmp_path: Path) -> None:

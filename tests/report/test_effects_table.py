@@ -29,15 +29,15 @@ def rows(record: Any) -> dict[str, Any]:
 def test_variants_remove_or_add_each_effect_once() -> None:
     result = variants(SCENE)
     assert sorted(variant.name for variant in result) == sorted(effect_kinds())
-    assert [v.name for v in result if v.listed] == ["TipDome", "PointMass", "Support"]
+    assert [v.name for v in result if v.is_listed] == ["TipDome", "PointMass", "Support"]
     for v in result:
-        changed = tuple(e for e in SCENE.effects if e != v.effect) if v.listed else (*SCENE.effects, v.effect)
+        changed = tuple(e for e in SCENE.effects if e != v.effect) if v.is_listed else (*SCENE.effects, v.effect)
         assert v.reason if v.scene is None else v.scene.effects == changed
 
 
 def test_variants_of_repeated_effect_remove_one_and_invalid_has_reason() -> None:
     two = replace(SCENE, effects=(CLAY, cf.PointMass(0.1, 0.003)))
-    remaining = [v.scene.effects for v in variants(two) if v.listed and v.scene is not None]
+    remaining = [v.scene.effects for v in variants(two) if v.is_listed and v.scene is not None]
     assert remaining == [two.effects[1:], two.effects[:1]]
     short = cf.Cue((cf.Segment(0.15, 0.012, 0.013, KIM.segments[0].material),), 0.5)
     (support,) = (v for v in variants(replace(SCENE, cue=short, effects=(DOME,))) if v.name == "Support")
@@ -63,8 +63,8 @@ def test_effect_change_equals_difference_of_strikes(record: Any, name: str) -> N
 @pytest.mark.heavy
 def test_recommendation_depends_on_tolerance(record: Any) -> None:
     worth = record["recommendation"]
-    assert worth["remove"] == ["Support (position 203.2 mm, stiffness 5000 N/m)"]
-    assert "TipDome (radius 9.5 mm)" in worth["keep"]
-    assert "TipShear (ratio 0.75)" in worth["add"]
+    assert worth["effects_to_remove"] == ["Support (position 203.2 mm, stiffness 5000 N/m)"]
+    assert "TipDome (radius 9.5 mm)" in worth["effects_to_keep"]
+    assert "TipShear (ratio 0.75)" in worth["effects_to_add"]
     loose = effects_record(cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=cf.Stroke(offset=0.3)), rtol=0.9)
-    assert loose["recommendation"] == {"keep": [], "remove": [], "add": []}
+    assert loose["recommendation"] == {"effects_to_keep": [], "effects_to_remove": [], "effects_to_add": []}
