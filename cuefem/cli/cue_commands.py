@@ -74,7 +74,9 @@ def report(file: Path, output: Path | None, check: bool, **options: Any) -> None
         return record | ({"model_error": _model_error(scene)} if checked else {})
 
     if output is None:
-        run_on_scene(file, options, results, partial(_sheets, file))
+        record = run_on_scene(file, options, results, partial(_sheets, file))
+        if "no_contact" in record:
+            raise InputError(file, "", f"{record['no_contact']} (--tip-height, --leather, --speed)")
     else:
         _write_page(file, output, options, check=check)
 

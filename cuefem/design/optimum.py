@@ -271,7 +271,9 @@ class _Search:
         violated, stop_reason = self.violated(u), ends[-1][1]
         if violated or not np.isfinite(self.at(u)).all():
             condition = f"within {', '.join(violated)}" if violated else f"that has {self.problem.objective.name}"
-            raise ValueError(f"no design {condition} was found: {stop_reason or 'none is near'}")
+            nearest = zip(self.problem.study.responses, self.at(u), strict=True)
+            has = ", ".join(f"{response.name} {value:.6g} {response.unit}".strip() for response, value in nearest)
+            raise ValueError(f"no design {condition} was found; the nearest has {has}: relax a limit or widen a range")
         point, study = self.problem.points(u), self.problem.study
         return Optimum(
             self.problem.scene(point),

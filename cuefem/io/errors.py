@@ -50,6 +50,15 @@ def as_input_error(path: str | PathLike[str], key: str) -> Iterator[None]:
         raise InputError(path, key, str(error)) from None
 
 
+@contextmanager
+def errors_name_key(path: str | PathLike[str], key: str) -> Iterator[None]:
+    """Prefix an InputError about a whole file with the file and the key that refer to it."""
+    try:
+        yield
+    except InputError as error:
+        raise error if error.key else InputError(path, key, str(error)) from None
+
+
 def file_state(path: Path) -> os.stat_result:
     """Size and time of a file; InputError if it is not a regular file (opening a pipe would block)."""
     try:

@@ -50,9 +50,9 @@ def load_measured(folder: Path) -> tuple[MeasuredCue, list[str]]:
     path = folder / MEASURED
     tables = read_tables(path) if path.exists() else {}
     known = [*OWN_KEYS, *SCENE_KEYS, *MEASUREMENT_TYPES, *READINGS]
-    for name, value in tables.items():
+    for name in tables:
         if name not in known:
-            raise unknown_key(name, value, known, file=str(path), key="")
+            raise unknown_key(name, known, file=str(path), key="")
     scene, notes = _scene(folder, path, tables)
     measurements = (*_measurements(folder, path, tables), *_readings(folder, path, tables, scene))
     priors = tuple(_priors(path, tables, scene))

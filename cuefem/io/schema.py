@@ -64,9 +64,9 @@ def named_material(name: str, file: str | PathLike[str], key: str) -> Material:
 def _made(kind: type, table: dict[str, Any], file: str, key: str) -> Any:
     """A dataclass from a table; unknown keys are reported first, since a missing key is often misspelt."""
     values, known = {}, field_types(kind)
-    for name, value in table.items():
+    for name in table:
         if name not in known:
-            raise unknown_key(name, value, keys_of(kind), file=file, key=key)
+            raise unknown_key(name, keys_of(kind), file=file, key=key)
     for name, hint in known.items():
         if name in table:
             values[name] = _read(hint, table[name], file, key_path(key, name))
@@ -117,11 +117,10 @@ def keys_of(kind: type) -> list[str]:
     return [*names, *(kind.presets if issubclass(kind, Effect) else ())]
 
 
-def unknown_key(name: str, value: Any, names: list[str], *, file: str, key: str) -> InputError:
+def unknown_key(name: str, names: list[str], *, file: str, key: str) -> InputError:
     """The error for a key that is not among ``names``."""
-    wanted = f"must be one of the keys {', '.join(names)}"
-    hint = suggestion(name, names)
-    return InputError(file, key_path(key, name), f"{wanted}; got {name} = {quote(value)}{hint}")
+    hint = suggestion(name, names) or f"; valid: {', '.join(names)}"
+    return InputError(file, key_path(key, name), f"unknown key{hint}")
 
 
 def _key_and_problem(error: TypeError | ValueError, path: str) -> tuple[str, str]:
@@ -142,7 +141,7 @@ def _expected(hint: Any) -> str:
         named = " or a name from `cuefem parts`" if first is Material else ""
         return f"a table with the keys {', '.join(keys_of(cast(type, first)))}{named}"
     if typing.get_origin(first) is tuple:
-        return "an array of tables" if is_dataclass(typing.get_args(first)[0]) else "an array"
+        return "an array of tables, with [[ ]]" if is_dataclass(typing.get_args(first)[0]) else "an array"
     if typing.get_origin(first) is dict:
         return "a table"
     if len(member_types(hint)) > 1 and first is str:

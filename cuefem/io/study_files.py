@@ -18,7 +18,7 @@ from cuefem.design.scatter import Scatter
 from cuefem.design.study_result import StudyResult, compute_study
 from cuefem.io import load_stroke, replaced_segments
 from cuefem.io.defaults_report import assumption_texts, assumptions
-from cuefem.io.errors import InputError, as_input_error, file_state, quote
+from cuefem.io.errors import InputError, as_input_error, errors_name_key, file_state, quote
 from cuefem.io.lathe_profile import SHAPE_EXTENSIONS
 from cuefem.io.schema import build, key_path, named_material
 from cuefem.io.store import SqliteStore
@@ -234,7 +234,9 @@ def _study_tables(path: Path) -> dict[str, Any]:
 
 
 def _base(tables: StudyTable, path: Path) -> Scene:
-    base, game = load_stroke(path.parent / tables.scene), _game(tables, path)
+    game = _game(tables, path)
+    with errors_name_key(path, "scene"):
+        base = load_stroke(path.parent / tables.scene)
     if not isinstance(base, Scene):
         with as_input_error(path, "game"):
             return Scene(base, stroke=Stroke(offset=OFFSET)) if game == KIM else usual_scene(base, game)

@@ -16,7 +16,7 @@ from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue, LumpedCue
 from cuefem.effects.effect import Effect, effect_kinds
 from cuefem.io.csv_reader import read_text
-from cuefem.io.errors import InputError, as_input_error, quote, suggestion
+from cuefem.io.errors import InputError, as_input_error, errors_name_key, quote, suggestion
 from cuefem.io.parts_catalogue import assemble_shaft
 from cuefem.io.schema import build, key_path, keys_of, table, unknown_key
 from cuefem.parameters.parts import with_shaft_mass
@@ -60,7 +60,9 @@ def read_tables(path: Path) -> dict[str, Any]:
 
 
 def _unquoted(text: str, error: str) -> str:
-    """A hint if the line of a syntax error has an unquoted value with a unit."""
+    """A hint for a table of an array in single brackets, and for an unquoted value with a unit."""
+    if twice := re.search(r"declare \('(vary|limit|segments|effects)',\) twice", error):
+        return f"; write [[{twice[1]}]] with double brackets"
     match = re.search(r"at line (\d+)", error)
     line = text.splitlines()[int(match[1]) - 1] if match else ""
     return "; put a value with a unit in quotes" if re.search(r"=\s*[-+.\d]+\s*[^\W\d_]", line) else ""
@@ -183,7 +185,7 @@ def _check_keys(table: dict[str, Any], names: list[str], path: Path) -> None:
     unknown = [name for name in table if name not in names]
     if unknown:  # misspelt keys first: for [[segment]] and body_mass, report segment
         name = next((name for name in unknown if suggestion(name, ["segments", *names])), unknown[0])
-        raise unknown_key(name, table[name], ["segments", *names], file=str(path), key="")
+        raise unknown_key(name, ["segments", *names], file=str(path), key="")
 
 
 def _parts(tables: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> dict[str, Any]:
@@ -221,12 +223,8 @@ def _check_effects(scene: Scene, path: Path) -> None:
 
 def _scene_cue(cue: Any, path: Path, cue_file: Callable[[Path], Cue]) -> Cue | LumpedCue:
     if isinstance(cue, str):
-        try:
+        with errors_name_key(path, "cue"):
             return cue_file(path.parent / cue)
-        except InputError as error:
-            if error.key:  # an error inside the cue file
-                raise
-            raise InputError(path, "cue", str(error)) from None
     if not isinstance(cue, dict):
         raise InputError(path, "cue", f"must be a table or the path of a cue file; got {quote(cue)}")
     lumped = {"mass", "end_mass"} & set(cue) and not {"segments", "shaft"} & set(cue)

@@ -158,7 +158,8 @@ def _steps(text: str) -> Path:
         step = _STEP.match(text, start)
         if not step:
             hint = suggestion(text, [entry.name for entry in PARAMETERS.values()])
-            raise ValueError(f"must be a path such as cue.segments[0].tip_bore; got {text!r}{hint}")
+            hint = hint or '; write a name such as "bore width" or a path such as cue.segments[0].tip_bore'
+            raise ValueError(f"unknown parameter {text!r}{hint}")
         steps.append(step[1] or (step[2] if step[2] == "*" else int(step[2])))
         start = step.end()
     return ("cue", *steps) if steps[0] == "segments" else tuple(steps)

@@ -59,7 +59,7 @@ def tabulate_report(record: Record, scene: Record) -> list[Table | str]:
     """The tables of a report: the verdict first, the assumptions last."""
     frequencies: list[Table | str] = [tabulate_modes(record["modes"])] if "modes" in record else []
     if "no_contact" in record:
-        return [*frequencies, f"no end mass and no squirt: {record['no_contact']}"]
+        return [f"no end mass and no squirt: {record['no_contact']}", "", *frequencies]
     warning = regime_warning(record["regime"])
     first: list[Table | str]
     if "no_squirt" in record:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -130,8 +130,13 @@ def tabulate_study(result: StudyResult) -> list[Table | str]:
         return [varies, *tabulate_optimum(result.definition, result.optimum)]
     if isinstance(result.definition, Scatter) and result.sobol_indices:
         return [varies, *tabulate_scatter(result, result.definition, result.sobol_indices)]
-    sweep, failures = sweep_statistics(result), [*result.failures.items()]
-    lines = [f"{len(failures)} failed, the first of them design {n}: {reason}" for n, reason in failures[:1]]
+    sweep, failures = sweep_statistics(result), [row for row in result.rows if row.failure]
+    lines = list[str]()
+    for row in failures[:1]:
+        levels = [replace(vary, range=Levels((x,))) for vary, x in zip(result.study.vary, row.values, strict=True)]
+        values = map(range_text, levels, result.study.units)
+        design = ", ".join(f"{column_label(vary.name)} {x}" for vary, x in zip(levels, values, strict=True))
+        lines = [f"{len(failures)} failed, the first of them design {row.design} ({design}): {row.failure}"]
     return [*lines, varies, *([] if sweep is None else tabulate_sweep(sweep))]
 
 

@@ -59,7 +59,10 @@ def test_every_assumption_has_an_option(folder: Path) -> None:
 
 def test_leather_too_soft_for_stroke_omits_contact_results(folder: Path) -> None:
     soft = ("shaft.toml", "--leather", "1 MPa")
-    report = as_json("report", *soft)
+    status, out, err = call("report", *soft, "--json")
+    report = json.loads(out)
+    assert status == 2
+    assert "(--tip-height, --leather, --speed)" in err
     assert report["modes"]["frequencies"] == as_json("modes", *soft)["frequencies"]
     assert "exceeds the valid range" in report["no_contact"]
     assert_one_fails("leather.toml", "path = 'leather.E'\nvalues = ['1 MPa', '140 MPa']", "exceeds the valid range")

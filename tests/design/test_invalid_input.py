@@ -122,7 +122,12 @@ FILES = [
     (SCATTER, '{ wood = ["E", "density"] }', "5", "tolerances.groups: must be a table"),
     (SCATTER, "[tolerances]", '[objective]\nminimize = "mass"\n[tolerances]', "a study has one kind"),
     (SCATTER, 'median = "12 GPa"', 'median = "3 GPa"', "designs failed: narrow the ranges"),
-    (OPTIMUM, 'minimize = "squirt_slope"', 'minimise = "squirt_slope"', "objective.minimise: must be one of the keys"),
+    (
+        OPTIMUM,
+        'minimize = "squirt_slope"',
+        'minimise = "squirt_slope"',
+        "objective.minimise: unknown key",
+    ),
     (OPTIMUM, '"tip_stiffness"', '"stiffness"', "limit[0].response: must be one of"),
     (OPTIMUM, LEAST, "", "limit on tip_stiffness must have low <= high, one finite; got -inf and inf"),
     (OPTIMUM, BETWEEN, 'median = "5 mm"\nsd = "1 mm"', "bore must have low and high"),

@@ -36,12 +36,12 @@ toml | cue = 3                              | cue: must be a table or the path o
 toml | cue = 'x.toml'                       | cue: must be absent: the cue of a scene is a cue file
 toml | cue = 'none.toml'                    | cue: none.toml: cannot be read: No such file or directory
 toml | segments = []                        | segments: must hold at least one Segment; got none
-toml | [segments]\nx = 1                    | segments: must be an array of tables; got {'x': 1}
+toml | [segments]\nx = 1                    | segments: must be an array of tables, with [[ ]]; got {'x': 1}
 toml | [accuracy]\nrtol = 2\n[cue]\nmass = '1 kg'\nend_mass = '6 g' | accuracy.rtol: must be between 0 and 1; got 2
 toml | game = 'snoker'\n[cue]               | game: must be one of pool, carom, snooker, kim; got 'snoker'; did
 toml | effects = 3\n[cue]\nmass = '1 kg'    | cue.end_mass: must be given
 toml | effects = [{type = 'P'}]\n[cue]\nmass = '1 kg'\nend_mass = '6 g' | effects[0].type: must be one of
-toml | [ball]\ndiameter = '6 mm'\n[cue]\nmass = '1 kg'\nend_mass = '6 g' | ball.diameter: must be one of the keys
+toml | [ball]\ndiameter = '6 mm'\n[cue]\nmass = '1 kg'\nend_mass = '6 g' | ball.diameter: unknown key;
 toml | [cue]\nmass = '540 g'\nend_mass = '6 g'\ncoupling = '99 1/kg'     | cue.coupling: must be in (
 toml | [tip]\ncontact_time = '1 ms'\nstiffness = '1e5 N/m'\n[cue]\nmass = '1 kg'\nend_mass = '6 g' | tip: Tip takes
 toml | shaft = 3                            | shaft: must be text; got 3

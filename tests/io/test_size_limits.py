@@ -59,7 +59,7 @@ def test_commands_on_unbounded_sizes_reject_them(folder: Path, name: str) -> Non
     Path(name).write_text(content)
     Path("study.toml").write_text(STUDY.format(name, "0.7 m"))
     for command in (("modes", name), ("convert", name, "made.toml"), ("study", "study.toml")):
-        assert rejection(*command).startswith(f"{name}: {line}")
+        assert f"{name}: {line}" in rejection(*command)
 
 
 def test_constructors_beyond_bounds_raise() -> None:

@@ -60,7 +60,7 @@ PENDULUM = (
 PENDULUM += r"""contact_time = "1 ms"\nposition = "10 mm"\n"""
 # A file of the folder, its content (P: a pendulum test without the rebound), and a part of the message.
 FILES = r"""
-measured.toml | [[weigth]]\nvalue = "1 g"\n | measured.toml: weigth: must be one of the keys
+measured.toml | [[weigth]]\nvalue = "1 g"\n | measured.toml: weigth: unknown key; did you mean 'weight'?
 measured.toml | [[weight]]\nvalue = 100\nerror = "1 g"\n | weight[0].value: needs a unit
 measured.toml | [[weight]]\nvalue = "100 g"\n | weight[0].error: must be given
 measured.toml | weight = "100 g"\n | weight: must be tables, [[weight]]
@@ -71,7 +71,7 @@ measured.toml | cue = { mass = "0.5 kg", end_mass = "6 g" }\n | cue: must be a c
 measured.toml | Prebound = ["250 cm"]\n | pendulum[0].rebound: must be displacements less
 measured.toml | [[recording]]\nfile = "none.wav"\n | none.wav: cannot be read: No such file
 measured.toml | [[recording]]\nfile = "tap.mp3"\n | tap.mp3: must end in .wav
-measured.toml | [[recording]]\nfile = "tap.wav"\nloud = 1\n | recording[0].loud: must be one of the keys
+measured.toml | [[recording]]\nfile = "tap.wav"\nloud = 1\n | recording[0].loud: unknown key; valid:
 measured.toml | [[recording]]\nfile = "\u0000.wav"\n | .wav: embedded null byte
 squirt.csv | offset,sqirt [deg]\n0.3,2\n | must have headings source, offset, value
 squirt.csv | offset,value,error [deg]\n0.3,2,1\n | line 1, value: must be the heading "value [rad]"

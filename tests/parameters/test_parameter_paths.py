@@ -37,11 +37,11 @@ def test_path_resolves_to_its_field(path: str, value: float) -> None:
         ("cue.segments[0].core.E", "where cue.segments[0].core has 0 items"),
         ("cue.segments[0]", "must name one number or a material"),
         ("effects[0].mass", "where effects has 0 items"),
-        ("cue..length", "must be a path such as cue.segments[0].tip_bore"),
+        ("cue..length", "unknown parameter 'cue..length'; write a name such as"),
     ],
 )
 def test_path_without_field_raises(path: str, message: str) -> None:
-    with pytest.raises(ValueError, match="must") as error:
+    with pytest.raises(ValueError, match=r"must|unknown") as error:
         paths(BASE, path)
     assert message in str(error.value)
 

@@ -122,7 +122,7 @@ def test_field_invalid_value_in_file_raises(tmp_path: Path, key: str) -> None:
             assert line.startswith(f"{key}.{name}: "), line
             assert message in line, line
         line = error_line(f"{name}x", 1)
-        assert line.startswith(f"{key}.{name}x: must be one of the keys "), line
+        assert line.startswith(f"{key}.{name}x: unknown key; did you mean "), line
         assert len(name) < 4 or line.endswith(f"; did you mean '{name}'?"), line
         if name in required_keys(kind):
             assert error_line(name, None).startswith(f"{key}.{name}: must be given, ")
