@@ -73,16 +73,15 @@ class Estimate:
     """The uncertain parameters of a cue after its measurements.
 
     z: (parameters,) posterior mean, in standard deviations of the priors. covariance: (parameters, parameters), of z.
-    computed: (n,) values of the measurements at z, SI. slopes: (n, parameters), their derivatives with respect to z.
-    misfit: the least sum of squares of the residuals and of z, at full weights. converged: whether
-    the last step was below `STEP_TOLERANCE`. outlier_probability: (n,) that the error of a measurement is far larger
-    than stated.
+    computed_values: (n,) of the measurements at z, SI. slopes: (n, parameters), their derivatives with respect to z.
+    misfit: the least sum of squares of the residuals and of z, at full weights. converged: whether the last step was
+    below `STEP_TOLERANCE`. outlier_probability: (n,) that the error of a measurement is far larger than stated.
     """
 
     cue: MeasuredCue
     z: Array
     covariance: Array
-    computed: Array
+    computed_values: Array
     slopes: Array
     misfit: float
     converged: bool
@@ -94,36 +93,36 @@ class Estimate:
         return self._values(self.z, self.covariance)
 
     def _values(self, mean: Array, covariance: Array) -> tuple[EstimatedParameter, ...]:
-        made = []
+        estimates = []
         for parameter, z, sd in zip(self.cue.parameters, mean, np.sqrt(np.diag(covariance)), strict=True):
             names = (parameter.name, parameter.label, parameter.unit, parameter.median)
             at, low, high = (parameter.value(float(each)) for each in (z, z - sd, z + sd))
-            made.append(EstimatedParameter(*names, at, low, high, float(sd)))
-        return tuple(made)
+            estimates.append(EstimatedParameter(*names, at, low, high, float(sd)))
+        return tuple(estimates)
 
     @property
-    def unchecked(self) -> tuple[UncheckedMeasurement, ...]:
+    def unchecked_measurements(self) -> tuple[UncheckedMeasurement, ...]:
         """The measurements without redundancy.
 
         The others predict a measurement with some error. An outlier of `OUTLIER_FACTOR` of its own errors is detected
         if that is `DETECTABLE` errors of prediction and measurement together (reliability: W. Baarda, 1968).
         """
-        J, residuals = _scaled(self.cue, self.z, self.computed, self.slopes)
-        made = []
+        J, residuals = _scaled(self.cue, self.z, self.computed_values, self.slopes)
+        unchecked = []
         for i, measurement in enumerate(self.cue.measurements):
             others = np.arange(len(J)) != i
             predicted_variance = J[i] @ np.linalg.solve(J[others].T @ J[others] + np.eye(len(self.z)), J[i])
             if DETECTABLE**2 * (1 + predicted_variance) > OUTLIER_FACTOR**2:
                 mean, covariance, _ = posterior(J[others], residuals[others])
                 largest = int(np.argmax(np.diag(covariance) / np.diag(self.covariance)))
-                made.append(UncheckedMeasurement(measurement, self._values(mean, covariance)[largest]))
-        return tuple(made)
+                unchecked.append(UncheckedMeasurement(measurement, self._values(mean, covariance)[largest]))
+        return tuple(unchecked)
 
     @property
     def residuals(self) -> tuple[Residual, ...]:
         """The measurements and the values computed with the estimated parameters."""
         spread = np.sqrt(np.einsum("ij,jk,ik->i", self.slopes, self.covariance, self.slopes))
-        return residuals_of(self.cue, self.computed, spread)
+        return residuals_of(self.cue, self.computed_values, spread)
 
     def predict(self, measurement: Measurement) -> tuple[float, float]:
         """Value of another measurement by the model with the estimated parameters, and its error; SI."""
@@ -131,10 +130,10 @@ class Estimate:
         return float(at[0]), float(np.sqrt(slope[0] @ self.covariance @ slope[0]))
 
     def _values_of(self, others: Sequence[Measurement]) -> tuple[Array, Array]:
-        bare = MeasuredCue(self.cue.name, self.cue.scene, (), self.cue.priors)
-        bare.__dict__["parameters"] = self.cue.parameters  # those of all measurements, the zeros too
-        at = bare.computed(self.z, others)
-        return at, bare.jacobian(self.z, others)
+        cue = MeasuredCue(self.cue.name, self.cue.scene, (), self.cue.priors)
+        cue.__dict__["parameters"] = self.cue.parameters  # those of all measurements, the zeros too
+        at = cue.compute(self.z, others)
+        return at, cue.jacobian(self.z, others)
 
     def next_measurements(self) -> tuple[InformationGain, ...]:
         """Information gain of each candidate measurement, the one with the least error of squirt first.
@@ -144,26 +143,26 @@ class Estimate:
         target = predicted_squirt(self.cue)
         others = [measurement for kind in MEASUREMENT_TYPES.values() for measurement in kind.candidates(self.cue.scene)]
         at, slopes = self._values_of((target, *others))
-        J, residuals = _scaled(self.cue, self.z, self.computed, self.slopes)
-        made = []
+        J, residuals = _scaled(self.cue, self.z, self.computed_values, self.slopes)
+        gains = []
         for measurement, slope in zip(others, slopes[1:] / [[measurement.sd] for measurement in others], strict=True):
             after = posterior(np.vstack([J, slope]), np.append(residuals, slope @ self.z)).covariance
             error_ratios = np.sqrt(np.diag(after) / np.diag(self.covariance))
             i = int(np.argmin(error_ratios))
             bits = 0.5 / np.log(2) * (np.linalg.slogdet(self.covariance)[1] - np.linalg.slogdet(after)[1])
             relative = float(np.sqrt(slopes[0] @ after @ slopes[0])) / abs(float(at[0]))
-            made.append(
+            gains.append(
                 InformationGain(
                     measurement, float(bits), self.cue.parameters[i].label, float(error_ratios[i]), relative
                 )
             )
-        return tuple(sorted(made, key=lambda gain: gain.relative_squirt_error))
+        return tuple(sorted(gains, key=lambda gain: gain.relative_squirt_error))
 
 
 def predicted_squirt(cue: MeasuredCue) -> Squirt:
-    """The squirt that an estimate predicts, at the scene's own offset; its value has no effect."""
-    own = abs(float(cue.scene.stroke.offset))
-    return Squirt(offset=own or TARGET_OFFSET, left=0.0, right=0.0, error=1.0)
+    """The squirt that an estimate predicts, at the scene's offset; its value has no effect."""
+    offset = abs(float(cue.scene.stroke.offset))
+    return Squirt(offset=offset or TARGET_OFFSET, left=0.0, right=0.0, error=1.0)
 
 
 def estimate(cue: MeasuredCue, *, progress: Progress = iter) -> Estimate:
@@ -174,7 +173,7 @@ def estimate(cue: MeasuredCue, *, progress: Progress = iter) -> Estimate:
     cue : MeasuredCue
         At least one measurement.
     progress : callable, optional
-        Iterates over the steps with a progress bar.
+        Wraps the list of steps, to show progress.
 
     Returns
     -------
@@ -193,11 +192,11 @@ def estimate(cue: MeasuredCue, *, progress: Progress = iter) -> Estimate:
     weight. Cost: some seven steps, each two computations of all values for every parameter.
     """
     if not cue.measurements or not cue.parameters:
-        what = "measurements" if not cue.measurements else "uncertain parameters"
-        raise ValueError(f"estimate takes a cue with {what}; got none")
-    measured, sd = np.array([[measurement.measured, measurement.sd] for measurement in cue.measurements]).T
+        missing = "measurements" if not cue.measurements else "uncertain parameters"
+        raise ValueError(f"estimate takes a cue with {missing}; got none")
+    measured, sd = np.array([[measurement.measured_value, measurement.sd] for measurement in cue.measurements]).T
     z = np.zeros(len(cue.parameters))
-    at = cue.computed(z)
+    at = cue.compute(z)
     cost, converged = _cost(z, (measured - at) / sd), False
     for _ in progress(range(MAX_ITERATIONS)):
         if converged:
@@ -225,14 +224,14 @@ def _reweighted(cue: MeasuredCue, z: Array, at: Array, misfit: float) -> Estimat
         if converged or last == MAX_OUTLIER_ITERATIONS:
             break
         trials = (z + _limited(step) / 2**halving for halving in range(MAX_HALVINGS))
-        valid = ((trial, computed) for trial in trials if (computed := cue.computed_or_none(trial)) is not None)
+        valid = ((trial, computed) for trial in trials if (computed := cue.compute_or_none(trial)) is not None)
         z, at = next(valid, (z, at))
     return Estimate(cue, z, covariance, at, slopes, misfit, converged, outlier_probability)
 
 
 def _scaled(cue: MeasuredCue, z: Array, at: Array, slopes: Array) -> tuple[Array, Array]:
     """The linear problem about z: slopes and residuals (of z = 0) in the measurements' errors."""
-    measured, sd = np.array([[measurement.measured, measurement.sd] for measurement in cue.measurements]).T
+    measured, sd = np.array([[measurement.measured_value, measurement.sd] for measurement in cue.measurements]).T
     J = slopes / sd[:, None]
     return J, (measured - at) / sd + J @ z
 
@@ -252,7 +251,7 @@ def _line_search(
     best = None
     for halving in range(MAX_HALVINGS):
         trial = z + step / 2**halving
-        computed = cue.computed_or_none(trial)
+        computed = cue.compute_or_none(trial)
         after = np.inf if computed is None else _cost(trial, (measured - computed) / sd)
         if computed is not None and after < (cost if best is None else best[2]):
             best = trial, computed, after

@@ -16,7 +16,7 @@ from cuefem.quantity.fields import check_kind
 from cuefem.scene import Scene
 
 STEP = 0.1  # of differences, in standard deviations of a prior
-MAX_HALVINGS = 8  # of that step, towards the limit of what can be
+MAX_HALVINGS = 8  # of that step, where the cue would be invalid
 
 Progress = Callable[[Sequence[Any]], Iterable[Any]]
 
@@ -65,15 +65,15 @@ class MeasuredCue:
 
     def setup(self, z: Array | None = None) -> Setup:
         """The scene with its uncertain parameters ``z`` standard deviations of their priors from the drawing."""
-        made = Setup(self.scene)
+        setup = Setup(self.scene)
         for parameter, each in zip(self.parameters, np.zeros(len(self.parameters)) if z is None else z, strict=True):
-            made = parameter.setup(made, float(each))
-        return made
+            setup = parameter.setup(setup, float(each))
+        return setup
 
-    def computed(self, z: Array | None = None, extra: Sequence[Measurement] = ()) -> Array:
+    def compute(self, z: Array | None = None, extra: Sequence[Measurement] = ()) -> Array:
         """The values of its measurements by the model, SI, and of others ``extra``."""
         setup = self.setup(z)
-        return np.array([measurement.computed(setup) for measurement in (*self.measurements, *extra)])
+        return np.array([measurement.compute(setup) for measurement in (*self.measurements, *extra)])
 
     def jacobian(
         self, z: Array, extra: Sequence[Measurement] = (), *, step: float = STEP, progress: Progress = iter
@@ -86,20 +86,20 @@ class MeasuredCue:
 
     def _slope(self, z: Array, move: Array, extra: Sequence[Measurement]) -> Array:
         """Change of the values over ``move``, from a smaller move or one side only where the cue would be invalid."""
-        for part in 0.5 ** np.arange(MAX_HALVINGS):
-            above = self.computed_or_none(z + part * move, extra)
-            below = self.computed_or_none(z - part * move, extra)
+        for share in 0.5 ** np.arange(MAX_HALVINGS):
+            above = self.compute_or_none(z + share * move, extra)
+            below = self.compute_or_none(z - share * move, extra)
             if above is not None and below is not None:
-                return (above - below) / (2 * part)
-        here = self.computed(z, extra)
+                return (above - below) / (2 * share)
+        middle = self.compute(z, extra)
         if below is not None:
-            return (here - below) / part
-        return (self.computed(z + part * move, extra) - here) / part
+            return (middle - below) / share
+        return (self.compute(z + share * move, extra) - middle) / share
 
-    def computed_or_none(self, z: Array, extra: Sequence[Measurement] = ()) -> Array | None:
-        """The values of `computed`; None for an invalid cue, such as one with a bore wider than itself."""
+    def compute_or_none(self, z: Array, extra: Sequence[Measurement] = ()) -> Array | None:
+        """The values of `compute`; None for an invalid cue, such as one with a bore wider than itself."""
         try:
-            return self.computed(z, extra)
+            return self.compute(z, extra)
         except ValueError:
             return None
 
@@ -121,9 +121,9 @@ class Residual(NamedTuple):
     """
 
     measurement: Measurement
-    measured: float
+    measured_value: float
     error: float
-    computed: float
+    computed_value: float
     spread: float
     residual: float
     normalized_residual: float
@@ -137,32 +137,32 @@ def compare(cue: MeasuredCue, *, progress: Progress = iter) -> tuple[Residual, .
     """
     z = np.zeros(len(cue.parameters))
     spread = np.sqrt(np.sum(cue.jacobian(z, step=1.0, progress=progress) ** 2, axis=1))
-    return residuals_of(cue, cue.computed(z), spread)
+    return residuals_of(cue, cue.compute(z), spread)
 
 
 def residuals_of(cue: MeasuredCue, computed: Array, spread: Array) -> tuple[Residual, ...]:
     """The table of computed values with their standard deviations."""
-    made = []
+    rows = []
     for measurement, value, error in zip(cue.measurements, computed.tolist(), spread.tolist(), strict=True):
-        gap = measurement.measured - value
-        made.append(
+        difference = measurement.measured_value - value
+        rows.append(
             Residual(
                 measurement,
-                measurement.measured,
+                measurement.measured_value,
                 measurement.sd,
                 value,
                 error,
-                gap / measurement.sd,
-                gap / float(np.hypot(measurement.sd, error)),
+                difference / measurement.sd,
+                difference / float(np.hypot(measurement.sd, error)),
             )
         )
-    return tuple(made)
+    return tuple(rows)
 
 
 class OffsetZero(NamedTuple):
     """The zero error of the offset by a squirt measured on both sides, m, with its error.
 
-    Positive if squirt is larger on the left: every stroke hit by so much to the left of its aim.
+    Positive if squirt is larger on the left: every stroke is that far to the left of its aim.
     """
 
     measurement: Squirt
@@ -176,12 +176,12 @@ def offset_zeros(cue: MeasuredCue, rows: Sequence[Residual]) -> tuple[OffsetZero
     It assumes that squirt is proportional to the offset, which is accurate to 20 %.
     """
     radius = float(cue.scene.ball.radius)
-    made = []
+    zeros = []
     for row in rows:
         measurement = row.measurement
         if isinstance(measurement, Squirt) and measurement.left is not None and measurement.right is not None:
-            slope = row.measured / (measurement.offset * radius)
-            made.append(
+            slope = row.measured_value / (measurement.offset * radius)
+            zeros.append(
                 OffsetZero(measurement, (measurement.left - measurement.right) / 2 / slope, abs(measurement.sd / slope))
             )
-    return tuple(made)
+    return tuple(zeros)

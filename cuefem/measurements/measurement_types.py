@@ -62,7 +62,7 @@ class Measurement:
         check_fields(self)
 
     @property
-    def measured(self) -> float:
+    def measured_value(self) -> float:
         """The measured value."""
         return float(self.value)  # type: ignore[attr-defined]
 
@@ -76,7 +76,7 @@ class Measurement:
         """Label of the measurement."""
         return self.title
 
-    def computed(self, setup: Setup) -> float:
+    def compute(self, setup: Setup) -> float:
         """The value by the model, SI."""
         raise NotImplementedError
 
@@ -114,7 +114,7 @@ class Weight(Measurement):
         """Of which part."""
         return f"weight of the {self.part}"
 
-    def computed(self, setup: Setup) -> float:
+    def compute(self, setup: Setup) -> float:
         """That of the drawing."""
         return setup.predictions.shaft_mass + (setup.scene.shaft.body_mass if self.part == "cue" else 0.0)
 
@@ -136,7 +136,7 @@ class Balance(Measurement):
     value: Annotated[float, LENGTH]
     error: Annotated[float, Quantity("m", POSITIVE)]
 
-    def computed(self, setup: Setup) -> float:
+    def compute(self, setup: Setup) -> float:
         """That of the drawing."""
         return setup.predictions.balance_point
 
@@ -174,7 +174,7 @@ class Tone(Measurement):
         """Which one."""
         return f"natural frequency {self.mode}"
 
-    def computed(self, setup: Setup) -> float:
+    def compute(self, setup: Setup) -> float:
         """Of the beam."""
         return float(setup.predictions.frequencies[self.mode - 1])
 
@@ -206,7 +206,7 @@ class Stiffness(Measurement):
         """Over which length."""
         return "stiffness, whole" if self.free_length is None else f"stiffness, {1e3 * self.free_length:.4g} mm free"
 
-    def computed(self, setup: Setup) -> float:
+    def compute(self, setup: Setup) -> float:
         """One linear solution of the beam."""
         wood = setup.scene.shaft.length - setup.scene.shaft.leather_height
         return setup.predictions.stiffness(wood if self.free_length is None else self.free_length)
@@ -222,12 +222,12 @@ class Stiffness(Measurement):
     def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
         """The whole shaft, and its last 8 in."""
         lengths = (None, 8 * INCH)
-        made = []
-        for free in lengths:
-            if free is None or free < scene.shaft.length:
-                value = cls(free_length=free, value=1.0, error=1.0).computed(Setup(scene))
-                made.append(cls(free_length=free, value=value, error=STIFFNESS_ERROR * value))
-        return tuple(made)
+        results = []
+        for length in lengths:
+            if length is None or length < scene.shaft.length:
+                value = cls(free_length=length, value=1.0, error=1.0).compute(Setup(scene))
+                results.append(cls(free_length=length, value=value, error=STIFFNESS_ERROR * value))
+        return tuple(results)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -267,7 +267,7 @@ class Squirt(Measurement):
         return " and ".join(present) or "none of them"
 
     @property
-    def measured(self) -> float:
+    def measured_value(self) -> float:
         """The mean of both sides."""
         if self.left is not None and self.right is not None:
             return (self.left + self.right) / 2
@@ -285,7 +285,7 @@ class Squirt(Measurement):
         at = "" if self.speed is None else f", {self.speed:.3g} m/s"
         return f"squirt at b/R {self.offset:g}{at}{', ' + self.series if self.series else ''}"
 
-    def computed(self, setup: Setup) -> float:
+    def compute(self, setup: Setup) -> float:
         """Of the coupled strike; the mean of both sides, to first order, if both were measured."""
         shift = 0.0 if self.left is not None else setup.zeros.get(self.series, 0.0)
         offset = self.offset + shift / float(setup.scene.ball.radius)
@@ -334,7 +334,7 @@ class PivotLength(Measurement):
         """At which offset and speed."""
         return f"{self.title} at b/R {self.offset:g}{'' if self.speed is None else f', {self.speed:.3g} m/s'}"
 
-    def computed(self, setup: Setup) -> float:
+    def compute(self, setup: Setup) -> float:
         """Of the coupled strike's squirt and the radii of ball and dome [B.1]; ValueError without squirt."""
         squirt = setup.squirt_factor * setup.predictions.squirt(self.offset, self.speed)
         if not squirt > 0:
@@ -365,7 +365,7 @@ class AddedMass(Measurement):
     speed: Annotated[float | None, Quantity("m/s", "(0, inf)")] = None
 
     @property
-    def measured(self) -> float:
+    def measured_value(self) -> float:
         """The ratio."""
         return self.value / self.baseline
 
@@ -379,7 +379,7 @@ class AddedMass(Measurement):
         """Which mass, where."""
         return f"squirt ratio, {1e3 * self.mass:.3g} g at {1e3 * self.position:.4g} mm"
 
-    def computed(self, setup: Setup) -> float:
+    def compute(self, setup: Setup) -> float:
         """Two coupled strikes."""
         with_mass = setup.predictions.squirt(self.offset, self.speed, (self.mass, self.position))
         return with_mass / setup.predictions.squirt(self.offset, self.speed)
@@ -403,7 +403,7 @@ class ContactTime(Measurement):
         """At which speed."""
         return self.title if self.speed is None else f"contact time at {self.speed:.3g} m/s"
 
-    def computed(self, setup: Setup) -> float:
+    def compute(self, setup: Setup) -> float:
         """Of the coupled strike."""
         return setup.predictions.duration(self.speed)
 
@@ -439,7 +439,7 @@ class EndMass(Measurement):
         """At which contact time."""
         return f"end mass, pendulum, {1e3 * self.contact_time:.3g} ms"
 
-    def computed(self, setup: Setup) -> float:
+    def compute(self, setup: Setup) -> float:
         """Of a side strike."""
         time = self.contact_time * setup.time_factor
         striker = Striker(self.ball_mass, self.restitution, contact_time=time)
@@ -448,9 +448,9 @@ class EndMass(Measurement):
     @classmethod
     def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
         """A ball of 8 g that touches a wall for 1 ms, 10 mm behind the ferrule's end."""
-        place = 0.01 + predictions_of(scene).tip_height
-        blank = cls(value=1.0, error=1.0, ball_mass=8e-3, restitution=0.8, contact_time=1e-3, position=place)
-        value = blank.computed(Setup(scene))
+        position = 0.01 + predictions_of(scene).tip_height
+        blank = cls(value=1.0, error=1.0, ball_mass=8e-3, restitution=0.8, contact_time=1e-3, position=position)
+        value = blank.compute(Setup(scene))
         return (replace(blank, value=value, error=END_MASS_ERROR * value),)
 
 

@@ -37,21 +37,21 @@ def posterior(slopes: Array, residuals: Array) -> Posterior:
     """
     count, parameters = slopes.shape
     sets = [each for size in range(min(MAX_OUTLIERS, count) + 1) for each in combinations(range(count), size)]
-    bad = np.zeros((len(sets), count))
-    for row, each in zip(bad, sets, strict=True):
+    outliers = np.zeros((len(sets), count))
+    for row, each in zip(outliers, sets, strict=True):
         row[list(each)] = 1.0
-    weights = np.where(bad, OUTLIER_FACTOR**-2, 1.0)
+    weights = np.where(outliers, OUTLIER_FACTOR**-2, 1.0)
     inverse = np.einsum("sm,mi,mj->sij", weights, slopes, slopes) + np.eye(parameters)
     covariance = np.linalg.inv(inverse)
-    right = (weights * residuals) @ slopes
-    means = np.einsum("sij,sj->si", covariance, right)
-    fit = (weights * residuals) @ residuals - np.einsum("si,si->s", means, right)
-    odds = bad.sum(axis=1) * np.log(OUTLIER_SHARE / (1 - OUTLIER_SHARE) / OUTLIER_FACTOR)
+    rhs = (weights * residuals) @ slopes
+    means = np.einsum("sij,sj->si", covariance, rhs)
+    fit = (weights * residuals) @ residuals - np.einsum("si,si->s", means, rhs)
+    odds = outliers.sum(axis=1) * np.log(OUTLIER_SHARE / (1 - OUTLIER_SHARE) / OUTLIER_FACTOR)
     level = odds - fit / 2 - np.linalg.slogdet(inverse)[1] / 2
     share = np.exp(level - level.max())
     share /= share.sum()
     mean = share @ means
-    apart = means - mean
+    shift = means - mean
     return Posterior(
-        mean, np.einsum("s,sij->ij", share, covariance + apart[:, :, None] * apart[:, None, :]), share @ bad
+        mean, np.einsum("s,sij->ij", share, covariance + shift[:, :, None] * shift[:, None, :]), share @ outliers
     )

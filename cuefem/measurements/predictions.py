@@ -82,8 +82,8 @@ class Predictions:
 
     def _strike(self, offset: float, speed: float | None, added_mass: tuple[float, float] | None) -> Outcome:
         scene = self._with_added_mass(added_mass)
-        own = float(scene.stroke.speed)
-        scene = replace(scene, stroke=Stroke(own if speed is None else speed, offset))
+        default = float(scene.stroke.speed)
+        scene = replace(scene, stroke=Stroke(default if speed is None else speed, offset))
         if scene not in self._outcomes:
             self._outcomes[scene] = strike_modes(scene, self._solved[scene.effects].tip)
         return self._outcomes[scene]
@@ -114,6 +114,6 @@ def predictions_of(scene: Scene) -> Predictions:
 
 def _without_leather(cue: Cue) -> Cue:
     """The cue from the ferrule's end on."""
-    soft = cue.leather_height
-    segments: Any = tuple(s for s, x in zip(cue.segments, cue.nodes, strict=False) if x >= soft * (1 - 1e-9))
-    return replace(cue, segments=segments) if soft else cue
+    height = cue.leather_height
+    segments: Any = tuple(s for s, x in zip(cue.segments, cue.nodes, strict=False) if x >= height * (1 - 1e-9))
+    return replace(cue, segments=segments) if height else cue

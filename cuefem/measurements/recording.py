@@ -49,20 +49,20 @@ def spectral_peaks(samples: Array, rate: float, low: float, high: float) -> list
     size = np.abs(samples - samples.mean(axis=0)).max(axis=1)
     if not size.max() > 0:
         raise ValueError("must hold a sound; got silence")
-    after = samples[size.argmax() :][: int(TRANSFORM_TIME * rate)]
-    if len(after) < MIN_TIME * rate:
-        raise ValueError(f"must last {MIN_TIME:g} s or more after its loudest tap; got {len(after) / rate:.2g} s")
-    fading = np.hanning(2 * len(after))[len(after) :, None]
+    sound = samples[size.argmax() :][: int(TRANSFORM_TIME * rate)]
+    if len(sound) < MIN_TIME * rate:
+        raise ValueError(f"must last {MIN_TIME:g} s or more after its loudest tap; got {len(sound) / rate:.2g} s")
+    window = np.hanning(2 * len(sound))[len(sound) :, None]
     count = 1 << int(np.ceil(np.log2(4 * rate)))  # bins of 1/4 Hz or less
-    power = np.square(np.abs(np.fft.rfft(fading * (after - after.mean(axis=0)), count, axis=0))).sum(axis=1)
+    power = np.square(np.abs(np.fft.rfft(window * (sound - sound.mean(axis=0)), count, axis=0))).sum(axis=1)
     level, step = 10 * np.log10(power + 1e-30), rate / count
     noise = _noise(level, int(NOISE_BLOCK / step))
-    top = 1 + np.flatnonzero((level[1:-1] > level[:-2]) & (level[1:-1] >= level[2:]))
-    top = top[(top * step > low) & (top * step < high) & (level[top] > noise[top] + MIN_ABOVE_NOISE)]
+    maxima = 1 + np.flatnonzero((level[1:-1] > level[:-2]) & (level[1:-1] >= level[2:]))
+    maxima = maxima[(maxima * step > low) & (maxima * step < high) & (level[maxima] > noise[maxima] + MIN_ABOVE_NOISE)]
     peaks: list[int] = []
-    for at in top[np.argsort(-level[top])].tolist():
+    for at in maxima[np.argsort(-level[maxima])].tolist():
         if level[at] > level[peaks[0] if peaks else at] - MAX_BELOW_PEAK and all(
-            abs(np.log(at / near)) > MIN_SPACING for near in peaks
+            abs(np.log(at / other)) > MIN_SPACING for other in peaks
         ):
             peaks.append(at)
     return [_peak(level, at, noise[at], step) for at in peaks]
@@ -77,12 +77,12 @@ def _noise(level: Array, block: int) -> Array:
 
 def _peak(level: Array, at: int, noise: float, step: float) -> Peak:
     """The vertex of the parabola through three levels; error: half the width at -3 dB times noise over signal."""
-    before, here, after = level[at - 1 : at + 2]
-    vertex = at + (before - after) / 2 / (before - 2 * here + after)
-    below = np.flatnonzero(level < here - 3)
+    before, peak, after = level[at - 1 : at + 2]
+    vertex = at + (before - after) / 2 / (before - 2 * peak + after)
+    below = np.flatnonzero(level < peak - 3)
     i = int(np.searchsorted(below, at))
     width = (below[i] if i < len(below) else len(level)) - (below[i - 1] if i else 0)
-    return Peak(float(vertex * step), float(width / 2 * 10 ** ((noise - here) / 20) * step))
+    return Peak(float(vertex * step), float(width / 2 * 10 ** ((noise - peak) / 20) * step))
 
 
 def assign_modes(peaks: Sequence[Peak], frequencies: Array) -> dict[int, Peak]:
@@ -92,10 +92,10 @@ def assign_modes(peaks: Sequence[Peak], frequencies: Array) -> dict[int, Peak]:
     peaks nearest to modes, and is near 1. A silent mode therefore does not shift the numbers of the others.
     """
     shifts = np.linspace(-MAX_SHIFT, MAX_SHIFT, 281)
-    apart = np.log([[peak.frequency] for peak in peaks]) - np.log(frequencies)  # (peaks, modes)
-    off = np.abs(apart - shifts[:, None, None])
-    cost = np.minimum(off.min(axis=2) / MAX_MODE_DISTANCE, 1) ** 2
-    best = off[np.argmin(cost.sum(axis=1) + (shifts / SHIFT_SD) ** 2)]
+    distances = np.log([[peak.frequency] for peak in peaks]) - np.log(frequencies)  # (peaks, modes)
+    errors = np.abs(distances - shifts[:, None, None])
+    cost = np.minimum(errors.min(axis=2) / MAX_MODE_DISTANCE, 1) ** 2
+    best = errors[np.argmin(cost.sum(axis=1) + (shifts / SHIFT_SD) ** 2)]
     nearest = best.argmin(axis=0)  # of the peaks, for each mode
     return {mode + 1: peaks[i] for mode, i in enumerate(nearest) if best[i, mode] == best[i].min() < MAX_MODE_DISTANCE}
 
@@ -131,22 +131,22 @@ def tones_in(samples: Array, rate: float, frequencies: Array, source: str = "") 
     """
     margin = np.exp(MAX_SHIFT)
     peaks = spectral_peaks(samples, rate, frequencies[0] / margin, frequencies[-1] * margin)
-    found = assign_modes(peaks, frequencies) if peaks else {}
-    if len(found) < MIN_TONES:
-        there = ", ".join(f"{peak.frequency:.0f}" for peak in sorted(peaks)) or "none"
+    numbered = assign_modes(peaks, frequencies) if peaks else {}
+    if len(numbered) < MIN_TONES:
+        text = ", ".join(f"{peak.frequency:.0f}" for peak in sorted(peaks)) or "none"
         modes = ", ".join(f"{hertz:.0f}" for hertz in frequencies)
-        raise ValueError(f"must have at least {MIN_TONES} peaks near the natural frequencies, {modes} Hz; got {there}")
-    return tuple(Tone(mode=k, value=peak.frequency, error=peak.error, source=source) for k, peak in found.items())
+        raise ValueError(f"must have at least {MIN_TONES} peaks near the natural frequencies, {modes} Hz; got {text}")
+    return tuple(Tone(mode=k, value=peak.frequency, error=peak.error, source=source) for k, peak in numbered.items())
 
 
 def combine_tones(tones: Sequence[Tone]) -> tuple[Tone, ...]:
     """One frequency per mode from several recordings: the weighted mean, its error at least that of their scatter."""
-    made = []
+    means = []
     for mode in sorted({tone.mode for tone in tones}):
-        own = [tone for tone in tones if tone.mode == mode]
-        values, weights = np.array([tone.value for tone in own]), np.array([tone.error**-2.0 for tone in own])
+        group = [tone for tone in tones if tone.mode == mode]
+        values, weights = np.array([tone.value for tone in group]), np.array([tone.error**-2.0 for tone in group])
         mean, error = float(np.average(values, weights=weights)), float(weights.sum() ** -0.5)
-        scatter = float(np.sqrt(np.average((values - mean) ** 2, weights=weights) / max(len(own) - 1, 1)))
-        sources = ", ".join(dict.fromkeys(tone.source for tone in own))
-        made.append(replace(own[0], value=mean, error=max(error, scatter), source=sources))
-    return tuple(made)
+        scatter = float(np.sqrt(np.average((values - mean) ** 2, weights=weights) / max(len(group) - 1, 1)))
+        sources = ", ".join(dict.fromkeys(tone.source for tone in group))
+        means.append(replace(group[0], value=mean, error=max(error, scatter), source=sources))
+    return tuple(means)

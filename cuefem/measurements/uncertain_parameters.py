@@ -69,13 +69,13 @@ class Prior:
 
 def names() -> tuple[str, ...]:
     """Names of possible uncertain parameters: the numerical parameters of a scene, and the model error."""
-    return (*(known.name for known in PARAMETERS.values() if not known.materials), SQUIRT_MODEL)
+    return (*(entry.name for entry in PARAMETERS.values() if not entry.materials), SQUIRT_MODEL)
 
 
 def _key(name: str) -> str:
     """The key of the parameter that a prior names; the name itself if there is no such parameter."""
-    known = parameter(name)
-    return known.key if known else name
+    entry = parameter(name)
+    return entry.key if entry else name
 
 
 def parameters_of(
@@ -85,28 +85,28 @@ def parameters_of(
 
     ValueError if a prior is of something that the scene does not have.
     """
-    named = {_key(prior.name): prior for prior in priors}
+    by_key = {_key(prior.name): prior for prior in priors}
     parameters = []
-    for key, known in PARAMETERS.items():
-        if known.spread is None and key not in named:
+    for key, entry in PARAMETERS.items():
+        if entry.spread is None and key not in by_key:
             continue
-        drawn, prior = known.value(scene), named.get(key)
-        if drawn is None or isinstance(drawn, Material):
+        value, prior = entry.value(scene), by_key.get(key)
+        if value is None or isinstance(value, Material):
             if prior:
                 raise ValueError(
                     f"uncertain parameters must be of this cue; got {prior.name!r}, which it does not have"
                 )
             continue
-        if not drawn > 0:
+        if not value > 0:
             raise ValueError(
-                f"uncertain parameters must be above 0, since their logarithm is estimated; got {key}, {drawn:g}"
+                f"uncertain parameters must be above 0, since their logarithm is estimated; got {key}, {value:g}"
             )
-        spread = known.spread_in(scene) or 0.0
-        median, spread = _prior(prior, drawn, spread)
-        unit = known.quantity(scene).unit
-        parameters.append(UncertainParameter(known.name, known.label, unit, median, spread, _on_scene(known.steps())))
+        spread = entry.spread_in(scene) or 0.0
+        median, spread = _prior(prior, value, spread)
+        unit = entry.quantity(scene).unit
+        parameters.append(UncertainParameter(entry.name, entry.label, unit, median, spread, _on_scene(entry.steps())))
     squirts = [measurement for measurement in measurements if isinstance(measurement, Squirt)]
-    _, spread = _prior(named.get(SQUIRT_MODEL), 1.0, model_error(scene))
+    _, spread = _prior(by_key.get(SQUIRT_MODEL), 1.0, model_error(scene))
     if any(isinstance(measurement, Squirt | PivotLength) for measurement in measurements):
         factor: Any = lambda setup, value: setup._replace(squirt_factor=value)  # noqa: E731
         parameters.append(UncertainParameter(SQUIRT_MODEL, "true squirt over the model's", "", 1.0, spread, factor))
@@ -128,14 +128,14 @@ def parameters_of(
     return tuple(parameter for parameter in parameters if parameter.spread > 0)
 
 
-def _prior(prior: Prior | None, usual: float, spread: float) -> tuple[float, float]:
+def _prior(prior: Prior | None, median: float, spread: float) -> tuple[float, float]:
     """Middle and spread."""
     if prior is None:
-        return usual, spread
+        return median, spread
     if prior.low is not None and prior.high is not None:
         return math.sqrt(prior.low * prior.high), math.log(prior.high / prior.low) / 2
     assert prior.spread is not None
-    return usual, prior.spread
+    return median, prior.spread
 
 
 def _on_scene(path: Path) -> Callable[[Setup, float], Setup]:

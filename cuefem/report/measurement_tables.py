@@ -20,7 +20,7 @@ MIN_OUTLIER_PROBABILITY = 0.2  # of a measurement with a note
 def row_record(row: Residual) -> Record:
     """A measurement with the model's value, both SI with 1 sigma; see `Residual`."""
     measurement = row.measurement
-    names = ("measured", "error", "computed", "spread", "residual", "normalized_residual")
+    names = ("measured_value", "error", "computed_value", "spread", "residual", "normalized_residual")
     return {
         "kind": measurement.key,
         "label": measurement.label,
@@ -58,9 +58,8 @@ def tabulate_measured(record: Record) -> list[Table | str]:
 def _tabulate_fit(title: str, record: Record, *optional: str) -> Table:
     """A row for each measurement with its computed value. optional: names of `OPTIONAL_COLUMNS`."""
     columns: dict[str, ColumnEntry] = {"measurement": "{label}"}
-    columns |= {value: _with_error(value, error) for value, error in VALUES_WITH_ERRORS} | {
-        "residual": "{residual:+.1f}"
-    }
+    columns |= {heading: _with_error(*names) for heading, names in VALUES_WITH_ERRORS.items()}
+    columns["residual"] = "{residual:+.1f}"
     columns |= {heading: entry for heading, entry in OPTIONAL_COLUMNS.items() if heading in optional}
     return tabulate(title, columns, record["rows"], *captions(record), texts=(0, 5))
 
@@ -70,7 +69,7 @@ def _with_error(value: str, error: str) -> ColumnEntry:
 
 
 OPTIONAL_COLUMNS = {"normalized residual": "{normalized_residual:+.1f}", "source": "{source}"}
-VALUES_WITH_ERRORS = (("measured", "error"), ("computed", "spread"))
+VALUES_WITH_ERRORS = {"measured": ("measured_value", "error"), "computed": ("computed_value", "spread")}
 
 
 def captions(record: Record) -> list[str]:
@@ -91,7 +90,7 @@ def contradictions(record: Record) -> list[str]:
     for row in record["rows"]:
         if (sigmas := abs(row["normalized_residual"])) > LARGE_RESIDUAL:
             measured, computed = (
-                with_unit(row[value], row["unit"], error=row[error]) for value, error in VALUES_WITH_ERRORS
+                with_unit(row[value], row["unit"], error=row[error]) for value, error in VALUES_WITH_ERRORS.values()
             )
             difference = f"measured {measured}, computed {computed}, a difference of {sigmas:.1f} combined σ"
             lines.append(f"{row['label']} contradicts the drawing: {difference}")
@@ -132,7 +131,8 @@ def estimate_record(
         "measurement_count": len(estimate.cue.measurements),
         "outlier_probability": estimate.outlier_probability.tolist(),
         "unchecked_measurements": [
-            {"label": each.measurement.label, "without": each.without._asdict()} for each in estimate.unchecked
+            {"label": each.measurement.label, "without": each.without._asdict()}
+            for each in estimate.unchecked_measurements
         ],
         "converged": estimate.converged,
         "squirt": squirt[0],

@@ -83,7 +83,7 @@ def as_squirt(measurement: Measurement, value: float) -> float:
 
 def squirts(own: MeasuredCue, scene: cf.Scene) -> dict[str, float]:
     """The measurements of a cue as squirts, computed with another scene."""
-    return {str(i): as_squirt(m, float(m.computed(Setup(scene)))) for i, m in enumerate(own.measurements)}
+    return {str(i): as_squirt(m, float(m.compute(Setup(scene)))) for i, m in enumerate(own.measurements)}
 
 
 @cache
@@ -93,17 +93,17 @@ def rows(model: str) -> tuple[Row, ...]:
     for folder in CUES:
         own = measured(folder, model)
         spreads = {known.key: each.spread for each in own.parameters if (known := parameter(each.name))}
-        at = own.computed().tolist()
+        at = own.compute().tolist()
         base = {str(i): as_squirt(m, value) for i, (m, value) in enumerate(zip(own.measurements, at, strict=True))}
         changes = changes_by_input(own.scene, base, partial(squirts, own), spreads=spreads)
         for i, (m, value) in enumerate(zip(own.measurements, at, strict=True)):
             assert isinstance(m, Squirt | PivotLength)
             pivot = isinstance(m, PivotLength)
-            difference = math.log(as_squirt(m, m.measured) / base[str(i)])
+            difference = math.log(as_squirt(m, m.measured_value) / base[str(i)])
             inputs = {key: change[str(i)] for key, change in changes.items()}
             by_hand = isinstance(m, Squirt) and m.series == "2007"
             series = own.name if folder != PLAYERS else "angles, 2007" if by_hand else "robot, 2008"
-            found.append(Row(folder, own.name, series, m.offset, pivot, m.measured, value, difference, inputs))
+            found.append(Row(folder, own.name, series, m.offset, pivot, m.measured_value, value, difference, inputs))
     return tuple(found)
 
 
@@ -118,7 +118,7 @@ def mass_ratios(model: str = "whole") -> dict[tuple[int, float], tuple[float, fl
     """Measured and computed squirt ratio of the Players shaft by the mass on it, g, and its distance, in."""
     own = measured(PLAYERS, model, (AddedMass,))
     return {
-        (round(1e3 * m.mass), round(m.position / INCH, 2)): (m.measured, float(value))
-        for m, value in zip(own.measurements, own.computed(), strict=True)
+        (round(1e3 * m.mass), round(m.position / INCH, 2)): (m.measured_value, float(value))
+        for m, value in zip(own.measurements, own.compute(), strict=True)
         if isinstance(m, AddedMass)
     }

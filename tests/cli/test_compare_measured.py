@@ -21,7 +21,7 @@ def test_compare_json_equals_library_and_page_lists_measurements(tmp_path: Path)
     result, (cue, _) = as_json("compare", folder), load_measured(folder)
     for reported, row in zip(result["rows"], compare(cue), strict=True):
         assert reported["label"] == row.measurement.label
-        for name in ("computed", "spread", "normalized_residual"):
+        for name in ("computed_value", "spread", "normalized_residual"):
             assert reported[name] == getattr(row, name)
     assert (result["name"], result["missing"]) == ("a cue", cue.missing)
     out = stdout_of("compare", folder)

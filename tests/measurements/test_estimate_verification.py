@@ -30,10 +30,10 @@ def random_cue(
     generator = np.random.default_rng(seed)
     cue = measured_cue(*measurements, priors=(CLOSED,))
     z = size * generator.normal(size=len(cue.parameters))
-    exact = cue.computed(z)
+    exact = cue.compute(z)
     # errors follow the values, as a user would state them
     scaled = tuple(
-        replace(one, value=float(value), error=one.error * float(value) / one.measured)  # type: ignore[call-arg,attr-defined]
+        replace(one, value=float(value), error=one.error * float(value) / one.measured_value)  # type: ignore[call-arg,attr-defined]
         for one, value in zip(cue.measurements, exact, strict=True)
     )
     cue = replace(cue, measurements=scaled)
@@ -46,7 +46,7 @@ def test_estimate_exact_data_recovers_the_parameters() -> None:
     small = tuple(replace(one, error=1e-3 * one.error) for one in cheap_measurements() if not isinstance(one, Tone))  # type: ignore[call-arg,attr-defined]
     cue = measured_cue(*small, priors=(CLOSED, Prior("G", 0.0)))
     z = np.array([0.7, -0.4, 0.5])
-    result = estimate(measured_as(cue, cue.computed(z)))
+    result = estimate(measured_as(cue, cue.compute(z)))
     assert [parameter.name for parameter in cue.parameters] == ["E", "rho", "bore width"]
     assert result.converged
     assert result.z == pytest.approx(z, abs=2e-3)
@@ -74,14 +74,14 @@ def linear() -> tuple[MeasuredCue, np.ndarray]:
     """A cue whose measured values equal the computed ones, and their Jacobian."""
     cue = random_cue(0, size=0.0)[0]
     zero = np.zeros(len(cue.parameters))
-    return measured_as(cue, cue.computed(zero)), cue.jacobian(zero)
+    return measured_as(cue, cue.compute(zero)), cue.jacobian(zero)
 
 
 def linear_estimate(cue: MeasuredCue, slopes: np.ndarray, values: np.ndarray) -> Estimate:
     """The estimate of a linear model with measured values ``values`` above those of the drawing."""
     sd = np.array([one.sd for one in cue.measurements])
     mean, covariance, wrong = posterior(slopes / sd[:, None], values / sd)
-    base = np.array([one.measured for one in cue.measurements])
+    base = np.array([one.measured_value for one in cue.measurements])
     off = measured_as(cue, base + values)
     return Estimate(off, mean, covariance, base + slopes @ mean, slopes, 0.0, True, wrong)
 
@@ -101,7 +101,7 @@ def test_intervals_with_outlier_cover_or_name_it(outlier: int | None, linear: tu
         result = linear_estimate(cue, slopes, slopes @ z + sd * noise)
         pulls.append(np.abs(result.z - z) / np.sqrt(np.diag(result.covariance)))
         label = None if outlier is None else cue.measurements[outlier].label
-        named.append(label in {each.measurement.label for each in result.unchecked})
+        named.append(label in {each.measurement.label for each in result.unchecked_measurements})
     covered, wide = (np.mean(np.array(pulls) < each) for each in (1.0, SIGMAS_95))
     if outlier is None:
         assert covered == pytest.approx(0.683, abs=0.04)

@@ -26,17 +26,17 @@ CALLS: dict[str, Callable[[], object]] = {
     "or left and right without it; got left": lambda: Squirt(offset=0.3, left=0.03, error=1e-3),
     "or left and right without it; got none of them": lambda: Squirt(offset=0.3, error=1e-3),
     "Squirt.zero_error must be absent": lambda: Squirt(offset=0.3, left=0.03, right=0.03, error=1e-3, zero_error=1e-3),
-    "pivot_length must be of a stroke with squirt": lambda: PIVOT.computed(Setup(SCENE, squirt_factor=0.0)),
+    "pivot_length must be of a stroke with squirt": lambda: PIVOT.compute(Setup(SCENE, squirt_factor=0.0)),
     "Prior.name must be one of E, G, rho, ": lambda: Prior("colour", 0.1),
     "Prior.spread must be given": lambda: Prior("E", 0.1, 1e9, 2e9),
     "Prior.low must be in (0, high)": lambda: Prior("E", low=2e9, high=1e9),
     "got 'dome', which it does not have": lambda: measured_cue(priors=(Prior("dome", 0.1),)),
     "TypeError: MeasuredCue.scene must be a Scene": lambda: MeasuredCue("a", "cue", ()),  # type: ignore[arg-type]
     "TypeError: MeasuredCue.measurements[0] must be a Measurement": lambda: measured_cue("a tone"),  # type: ignore[arg-type]
-    "stiffness free_length must be in (0, 0.73] m": lambda: Stiffness(free_length=0.8, value=1.0, error=1.0).computed(
+    "stiffness free_length must be in (0, 0.73] m": lambda: Stiffness(free_length=0.8, value=1.0, error=1.0).compute(
         Setup(SCENE)
     ),
-    "added_mass position must be in [0, 0.73] m": lambda: FAR.computed(Setup(SCENE)),
+    "added_mass position must be in [0, 0.73] m": lambda: FAR.compute(Setup(SCENE)),
     "estimate takes a cue with measurements": lambda: estimate(measured_cue()),
     "Pendulum.release must be displacements less than thread_length, 0.1 m": lambda: replace(GOOD, thread_length=0.1),
     "Pendulum.rebound must be displacements": lambda: replace(GOOD, rebound=()),

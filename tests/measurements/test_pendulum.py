@@ -67,7 +67,7 @@ def test_pendulum_on_shaft_equals_side_strike() -> None:
     outcome = cf.side_strike(cf.SideStrike(SCENE.shaft, ball, 0.02))
     result = of_speeds(8e-3, 0.6 * outcome.apparent_restitution, 0.6 * 0.8).end_mass
     assert result.value == pytest.approx(outcome.effective_mass, rel=1e-9)
-    assert result.computed(Setup(SCENE)) == pytest.approx(outcome.effective_mass, rel=1e-9)
+    assert result.compute(Setup(SCENE)) == pytest.approx(outcome.effective_mass, rel=1e-9)
 
 
 def test_pendulum_error_covers_noise_of_readings() -> None:
@@ -95,7 +95,7 @@ def test_compare_contradiction_with_drawing_is_reported(tmp_path: Path) -> None:
     drawing = (Path(__file__).parents[2] / "meshes" / "pool_maple.toml").read_text(encoding="utf-8")
     directory = measured_folder(tmp_path / "cue", TEXT.replace("-34 mm", "-9 mm"), drawing)
     (row,) = as_json("compare", directory)["rows"]
-    assert (1e3 * row["measured"], 1e3 * row["computed"]) == pytest.approx((8.95, 6.06), abs=0.02)
+    assert (1e3 * row["measured_value"], 1e3 * row["computed_value"]) == pytest.approx((8.95, 6.06), abs=0.02)
     assert row["residual"] > 15
     assert row["normalized_residual"] > 5
     assert "contradicts the drawing" in stdout_of("compare", directory)

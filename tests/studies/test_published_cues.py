@@ -31,7 +31,7 @@ def test_measured_folders_have_every_row_of_data() -> None:
     for name in CUES.values():
         for one in load_measured(HOME / name)[0].measurements:
             if isinstance(one, Squirt):
-                own.add(("squirt", name, one.offset, round(math.degrees(one.measured), 6)))
+                own.add(("squirt", name, one.offset, round(math.degrees(one.measured_value), 6)))
             elif isinstance(one, PivotLength):
                 own.add(("pivot", name, one.offset, round(one.value / 0.0254, 6)))
             elif isinstance(one, AddedMass):
@@ -48,8 +48,8 @@ def test_measured_readme_states_computed_values() -> None:
         cue, _ = load_measured(path)
         for one in cue.measurements:
             if not isinstance(one, AddedMass):
-                computed = with_unit(one.computed(cue.setup()), one.unit)
-                measured = with_unit(one.measured, one.unit, error=one.sd)
+                computed = with_unit(one.compute(cue.setup()), one.unit)
+                measured = with_unit(one.measured_value, one.unit, error=one.sd)
                 assert f"| {cue.name} | {one.label} | {measured} | {computed} |" in text
 
 
