@@ -195,11 +195,12 @@ def check_restitution(name: str, restitution: float, bound: float = MIN_RESTITUT
 def _leather(scene: Scene, tip: TipModel, inputs: dict[str, Any]) -> dict[str, Any]:
     """Fields of a leather tip, whose patch slips annulus by annulus."""
     law = tip.law(inputs["radius"], abs(float(scene.stroke.offset)), inputs["restitution"])
-    terms = {"law": 1, "depth_limit": law.depth_limit, "terms": len(law.force_terms), "annuli": ANNULI}
+    terms = {"law": 1, "indentation_limit": law.indentation_limit, "terms": len(law.force_terms), "annuli": ANNULI}
     terms["surface_restitution"] = tip.surface_restitution
     arrays = {"force_terms": np.array(law.force_terms), "compliance_terms": np.array(law.compliance_terms)}
     # the last annulus also has what lies beyond its edge
-    indentation = min(law.depth_limit, TABLE_MARGIN * scene.max_indentation) * np.linspace(0.0, 1.0, ANNULI + 1) ** 2
+    limit = min(law.indentation_limit, TABLE_MARGIN * scene.max_indentation)
+    indentation = limit * np.linspace(0.0, 1.0, ANNULI + 1) ** 2
     force, stiffness = law.at(indentation)
     arrays |= {
         "annulus_edges": indentation,

@@ -34,8 +34,8 @@ class ModalPropagator:
     of the tip modes. eigenvalues: (coordinates,), 1/s, i omega of an undamped mode. displacements, velocities: (modes,
     coordinates), from the coordinates to omega q and the modal velocities. modal_inputs: (coordinates, modes), from
     modal velocities to coordinates. dampers: (rows, modes), rows r of the damping and then of the radiation, whose
-    (r v)^2 add up to the power, W, at the modal velocities v. n_dissipative: number of the first of these, which
-    dissipate energy; the others radiate it.
+    (r v)^2 add up to the power, W, at the modal velocities v. n_dissipative: number of the first of these, whose energy
+    is dissipated; the others radiate it.
     """
 
     def __init__(self, tip: TipModes, rows: Array, slopes: Array) -> None:

@@ -177,8 +177,8 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
     kernel, propagator = library(), model.propagator
     arrays = {
         "eigenvalues": propagator.eigenvalues,
-        "rows": propagator.output_rows,
-        "drives": propagator.input_rows,
+        "outputs": propagator.output_rows,
+        "inputs": propagator.input_rows,
         "kinematics": model.kinematics,
         "inverse_masses": model.inverse_masses,
         "xi": propagator.approach_state * model.speed,
@@ -234,7 +234,7 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
         np.concatenate([*dissipated, np.zeros((1, 2))])[: c.steps_to_last_separation].sum(axis=0).tolist()
     )
     losses = {
-        "tip": model.law.loss(c.max_depth),
+        "tip": model.law.loss(c.max_indentation),
         "friction": tangential - shear,
         "shear": shear,
         "table": sum(c.work[3:]),
@@ -256,7 +256,7 @@ def _failure(model: ContactModel, c: KernelContact) -> Exception:
     if c.status == _NO_MEMORY:
         return MemoryError("no memory for the steps of a contact")
     if c.status == _INDENTATION_OUT_OF_RANGE and isinstance(model.law, LeatherLaw):
-        return model.law.out_of_range(c.depth)
+        return model.law.out_of_range(c.indentation)
     if c.status == _SLOPE_OUT_OF_RANGE:
         return SlopeOutOfRange(
             f"the axial force of {c.axial_force:.4g} N bends the shaft by {c.max_slope:.3g} rad at its tip, beyond the "
@@ -268,6 +268,6 @@ def _failure(model: ContactModel, c: KernelContact) -> Exception:
             f"{FRICTION_STATES[c.friction_state]}; take more steps, or fewer modes"
         )
     return RuntimeError(
-        f"the ball does not leave the cue: after {c.time:.6g} s (head-on contact time {model.time:.6g} s) the tip is "
-        f"indented by {c.depth:.3g} m, in {FRICTION_STATES[c.friction_state]}; check restitution, contact time, masses"
+        f"the ball does not leave the cue: after {c.time:.6g} s (head-on contact time {model.time:.6g} s) the tip is indented "
+        f"by {c.indentation:.3g} m, in {FRICTION_STATES[c.friction_state]}; check restitution, contact time, masses"
     )

@@ -77,7 +77,7 @@ class LeatherLaw:
     force_terms: tuple[float, ...]
     compliance_terms: tuple[float, ...]
     restitution: float
-    depth_limit: float
+    indentation_limit: float
 
     @classmethod
     def fit(cls, depth: Array, force: Array, shear: Array, restitution: float) -> LeatherLaw:
@@ -117,14 +117,14 @@ class LeatherLaw:
 
     def central_impact(self, mass: float, speed: float) -> tuple[float, float]:
         """(maximum indentation, m, time to it, s) of a central impact of a reduced mass, kg, at a speed, m/s."""
-        energy, max_indentation = mass * speed**2 / 2, self.depth_limit
+        energy, max_indentation = mass * speed**2 / 2, self.indentation_limit
         for _ in range(60):  # Newton's method in logarithms, where the law is nearly straight
             work = float(self.work(max_indentation))
             step = math.log(work / energy) * work / (max_indentation * float(self.at(max_indentation)[0]))
             max_indentation *= math.exp(-min(max(step, -1.0), 1.0))
             if abs(step) < 1e-12:
                 break
-        if max_indentation > self.depth_limit:
+        if max_indentation > self.indentation_limit:
             raise self.out_of_range(max_indentation)
         cosine, sine = np.cos(_ANGLES), np.sin(_ANGLES)
         kinetic_energy = self.work(max_indentation) - self.work(max_indentation * cosine**2)
@@ -135,7 +135,7 @@ class LeatherLaw:
         """The error of an indentation beyond the law's range."""
         return IndentationOutOfRange(
             f"tip too soft or stroke too fast: indentation {1e3 * depth:.3g} mm exceeds the valid range "
-            f"({1e3 * self.depth_limit:.3g} mm); raise height or E of the leather, or lower the speed"
+            f"({1e3 * self.indentation_limit:.3g} mm); raise height or E of the leather, or lower the speed"
         )
 
 

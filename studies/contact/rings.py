@@ -47,7 +47,7 @@ def stepped(scene: cf.Scene, leather: Leather) -> tuple[float, float, float]:
     tip, at, own = scene.leather_tip, scene.stroke, scene.tip.restitution
     diameter, mass = scene.tip_diameter, scene.ball.mass
     law, modes = scene.tip_law(own, at.offset), SolvedScene(scene).tip
-    edges = law.depth_limit * np.linspace(0, 1, RINGS + 1) ** 2
+    edges = law.indentation_limit * np.linspace(0, 1, RINGS + 1) ** 2
     begin, stiff = (edges[1:] + edges[:-1]) / 2, np.array([np.diff(law.slope(edges)), np.diff(law.at(edges)[1])])
     radius, depth_, _ = tip.head_on(diameter, scene.ball.radius)
     C = tip.compliance(diameter, at.offset, np.minimum(radius[1:], diameter / 2))

@@ -74,9 +74,9 @@ def test_leather_law_stiffness_of_every_annulus_is_positive(tip: LeatherTip, dia
     ferrule, and the contact area is at that rim, its series of seven terms falls by up to 0.9 % (30 of 4632 such tips).
     """
     law = tip_model(possible(tip, diameter), diameter).law(0.028575, offset, 0.7)
-    depth = law.depth_limit * np.linspace(0.0, 1.0, 1000) ** 2
+    depth = law.indentation_limit * np.linspace(0.0, 1.0, 1000) ** 2
     slope, stiffness = law.slope(depth), law.at(depth)[1]
-    assert np.all(np.diff(slope)[depth[1:] < 0.8 * law.depth_limit] > 0)
+    assert np.all(np.diff(slope)[depth[1:] < 0.8 * law.indentation_limit] > 0)
     rim = tip.moment_arm(math.pi / 2, diameter)[1] / diameter  # where the dome ends
     part = 0.02 if -rim < 0.03 else 4e-3 if tip.dome_radius > 3.5 * diameter else 2e-3
     assert np.all(stiffness > (1 - part) * np.maximum.accumulate(stiffness) - 1e-9)

@@ -8,7 +8,7 @@
    and dry friction in finite freedom dynamics (1988); M. Jean, The non-smooth contact dynamics method,
    Comput. Methods Appl. Mech. Engrg. 177 (1999) 235.
 
-   A mode is one complex coordinate xi with xi' = eigenvalue xi + drive . loads. The cue has ports (axial and
+   A mode is one complex coordinate xi with xi' = eigenvalue xi + input . loads. The cue has ports (axial and
    lateral velocity of its tip, rotation rate) and the slopes of the bent shaft; the ball has its velocities.
    With y all these velocities, the contact's velocities are v = C y and its forces F load them by C' F, so
    that energy is conserved.
@@ -74,7 +74,7 @@ typedef struct {
     int rolling;                              /* whether the contact rolls over ball and dome */
     int law, terms, patch, annuli;            /* terms: of the leather law's series */
     const double *eigenvalues;      /* complex, (modes,), 1/s: a free xi grows with exp(eigenvalue t) */
-    const double *rows, *drives;    /* output and input rows: complex, (ports + slopes, modes), 1/sqrt(kg) */
+    const double *outputs, *inputs; /* output and input rows: complex, (ports + slopes, modes), 1/sqrt(kg) */
     const double *kinematics;       /* C at the first touch, (forces, ports + speeds) */
     const double *inverse_masses;   /* of the ball's velocities, (speeds,), 1/kg */
     const double *slope_weights;    /* of each slope in the tip's axial shortening, (slopes,) */
@@ -88,14 +88,14 @@ typedef struct {
     double restitution, friction;    /* of the tip */
     double table_friction;
     double stiffness, exponent;    /* power law F = stiffness d^exponent */
-    double depth_limit;            /* largest indentation of the leather law, m */
+    double indentation_limit;      /* largest indentation of the leather law, m */
     double compliance;             /* of a spring patch, m/N */
     double surface_restitution;    /* its square: recovered part of an annulus's strain energy */
     double phi, dome, rim;         /* angle of the first touch, rad; radius of the dome, m; its end, rad */
     double radius;                 /* of the ball, m */
     double arm_t, arm_n;           /* moment arms of (t, n) about the end section at the first touch, m */
     double step, max_time, window; /* step; longest contact; time followed after the first separation, s */
-    double time, depth, max_depth; /* s; indentation and its maximum, m */
+    double time, indentation, max_indentation; /* s; indentation and its maximum, m */
     double angle;                  /* rolled, rad */
     double height;                 /* of the ball above the table, m */
     double shear_loss;             /* dissipated strain energy of the patch, J */
@@ -109,7 +109,7 @@ typedef struct {
 typedef struct {
     double h, *propagator; /* s; factor of a free mode */
     double *ends, *means; /* from the modes to the velocities at the end of the step and on average over it */
-    double *push;         /* change of the modes per load */
+    double *response;     /* change of the modes per load */
     double end[CUE_VELOCITIES][CUE_VELOCITIES],
         mean[CUE_VELOCITIES][CUE_VELOCITIES]; /* velocities per load */
 } Tables;
@@ -118,11 +118,11 @@ typedef struct {
 typedef struct {
     Contact *c;
     Tables t;
-    double *rows, *drives, *state; /* output and input rows and modal coordinates, as in Tables */
+    double *outputs, *inputs, *state; /* output and input rows and modal coordinates, as in Tables */
     double ball[BALL_VELOCITIES];
     double port_velocities[CUE_VELOCITIES]; /* of ports and slopes */
     double slopes[SLOPES];
-    double C[FORCES][VELOCITIES], v[FORCES], u[FORCES], rest[FORCES]; /* contact_matrices */
+    double C[FORCES][VELOCITIES], v[FORCES], u[FORCES], u_stick[FORCES]; /* contact_matrices */
     double V[FORCES][FORCES], W[FORCES][FORCES];
     double end_free[CUE_VELOCITIES], mean_free[CUE_VELOCITIES]; /* of ports and slopes without loads */
     double F[FORCES];
@@ -150,14 +150,14 @@ void apply_impulses(Work *w, const double *impulses);
 double mobility(const Work *w, int p, int q);
 
 /* laws.c */
-double tip_force(const Contact *c, int phase, double depth, double *slope, double *virtual);
-double residual_depth(const Contact *c);
+double tip_force(const Contact *c, int phase, double indentation, double *slope, double *virtual);
+double residual(const Contact *c);
 double unloading_scale(const Contact *c, int phase);
-double tangential_stiffness(const Contact *c, double depth);
+double tangential_stiffness(const Contact *c, double virtual);
 void contact_kinematics(const Work *w, double angle, const double *slopes, double C[FORCES][VELOCITIES]);
 
 /* partial_slip.c */
-double shift_annuli(Work *w, double depth, double shift, double *by_shift, double *by_virtual);
+double shift_annuli(Work *w, double virtual, double shift, double *by_shift, double *by_virtual);
 
 /* forces.c */
 void contact_matrices(Work *w);

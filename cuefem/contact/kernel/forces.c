@@ -8,7 +8,7 @@ static const double REL_TOL_ACCEPTED = 1e-7;                 /* largest accepted
 static const double MIN_FORCE = 1e-9;                        /* N, least scale of the relative change */
 
 /* C at mid-step; with it the contact's velocities without forces at the end of the step (v) and on average
-   over it (u), m/s, and their change per force (V, W), (m/s)/N; in impact() per impulse, 1/kg. rest: mean
+   over it (u), m/s, and their change per force (V, W), (m/s)/N; in impact() per impulse, 1/kg. u_stick: mean
    velocity of a sticking point, m/s: 0, or half of the initial velocity where it slipped before and comes to
    rest. Handbook: The contact, Ports and the matrix C: v = C y, loads = C' F. */
 void contact_matrices(Work *w)
@@ -23,12 +23,12 @@ void contact_matrices(Work *w)
         const double *C = w->C[f];
         w->v[f] = w->u[f] = 0;
         for (int b = 0; b < n_ball; b++) w->v[f] += C[n_cue + b] * w->ball[b];
-        w->u[f] = w->v[f], w->rest[f] = w->v[f] / 2;
+        w->u[f] = w->v[f], w->u_stick[f] = w->v[f] / 2;
         for (int q = 0; q < n_cue; q++) {
             w->v[f] += C[q] * w->end_free[q], w->u[f] += C[q] * w->mean_free[q];
-            w->rest[f] += C[q] * w->port_velocities[q] / 2;
+            w->u_stick[f] += C[q] * w->port_velocities[q] / 2;
         }
-        if (f == UP ? w->on_table : f > UP ? w->table_stuck : w->tip_stuck) w->rest[f] = 0;
+        if (f == UP ? w->on_table : f > UP ? w->table_stuck : w->tip_stuck) w->u_stick[f] = 0;
         for (int q = 0; q < n_cue; q++) {
             end[f][q] = mean[f][q] = 0;
             for (int p = 0; p < n_cue; p++)
@@ -65,12 +65,12 @@ static int newton(Work *w, int slip)
     for (int i = 0; i < MAX_ITERATIONS; i++) {
         double slope, by_shift, by_virtual, g[2], J[2][2];
         velocities(w, v, u);
-        double force = tip_force(c, w->phase, c->depth - half * u[N], &slope, &w->virtual_now),
+        double force = tip_force(c, w->phase, c->indentation - half * u[N], &slope, &w->virtual_now),
                shift = w->shift - half * u[T];
         g[N] = w->F[N] - force, J[N][T] = slope * half * w->W[N][T], J[N][N] = 1 + slope * half * w->W[N][N];
         if (c->patch == PARTIAL_SLIP) {
             g[T] = w->F[T] - shift_annuli(w, w->virtual_now, shift - w->shift_mid, &by_shift, &by_virtual);
-            by_virtual /= w->virtual_now < c->max_depth ? unloading_scale(c, w->phase) : 1;
+            by_virtual /= w->virtual_now < c->max_indentation ? unloading_scale(c, w->phase) : 1;
             for (int f = 0; f < 2; f++)
                 J[T][f] = (f == T) + half * (by_shift * w->W[T][f] + by_virtual * w->W[N][f]);
         } else if (slip)
@@ -79,7 +79,7 @@ static int newton(Work *w, int slip)
             g[T] = w->F[T] - (shift - w->origin) / c->compliance;
             for (int f = 0; f < 2; f++) J[T][f] = (f == T) + half * w->W[T][f] / c->compliance;
         } else {
-            g[T] = u[T] - w->rest[T];
+            g[T] = u[T] - w->u_stick[T];
             for (int f = 0; f < 2; f++) J[T][f] = w->W[T][f];
         }
         double det = J[0][0] * J[1][1] - J[0][1] * J[1][0];
@@ -115,7 +115,7 @@ static int plane_friction(Work *w, int a, int b, double bound)
     const double (*W)[FORCES] = w->W;
     double *F = w->F, u[2] = {w->u[a], w->u[b]}, det = W[a][a] * W[b][b] - W[a][b] * W[b][a];
     for (int f = 0; f < w->c->forces; f++) u[0] += W[a][f] * F[f], u[1] += W[b][f] * F[f];
-    double x = u[0] - w->rest[a], y = u[1] - w->rest[b];
+    double x = u[0] - w->u_stick[a], y = u[1] - w->u_stick[b];
     double p = F[a] - (W[b][b] * x - W[a][b] * y) / det, q = F[b] - (W[a][a] * y - W[b][a] * x) / det;
     double stick = hypot(p, q), rho = 1 / larger(W[a][a], W[b][b]);
     int sticks = stick <= bound * (1 + REL_TOL);
@@ -146,7 +146,7 @@ static int solve_gauss_seidel(Work *w, int is_impact, double bound)
         for (int i = 0; i < MAX_ITERATIONS && !is_impact; i++) {
             double u = w->u[N], slope, unused;
             for (int f = 0; f < FORCES; f++) u += w->W[N][f] * F[f];
-            double correction = (F[N] - tip_force(c, w->phase, c->depth - half * u, &slope, &unused)) /
+            double correction = (F[N] - tip_force(c, w->phase, c->indentation - half * u, &slope, &unused)) /
                                 (1 + slope * half * w->W[N][N]);
             F[N] -= correction;
             if (fabs(correction) <= REL_TOL * fabs(F[N])) break;
@@ -154,7 +154,8 @@ static int solve_gauss_seidel(Work *w, int is_impact, double bound)
         tip_sticks = plane_friction(w, T, P, bound < 0 ? c->friction * larger(F[N], 0) : bound);
         double u = w->u[UP] - w->W[UP][UP] * F[UP]; /* without the table */
         for (int f = 0; f < FORCES; f++) u += w->W[UP][f] * F[f];
-        F[UP] = c->height > 0 && c->height + w->t.h * u > 0 ? 0 : larger(0, (w->rest[UP] - u) / w->W[UP][UP]);
+        int leaves = c->height > 0 && c->height + w->t.h * u > 0;
+        F[UP] = leaves ? 0 : larger(0, (w->u_stick[UP] - u) / w->W[UP][UP]);
         table_sticks = plane_friction(w, LATERAL, FORWARD, c->table_friction * F[UP]);
         change = 0, scale = MIN_FORCE;
         for (int f = 0; f < FORCES; f++)
@@ -193,7 +194,7 @@ int impact(Work *w, Step *row)
     double loads[VELOCITIES] = {0}, *F = w->F;
     contact_kinematics(w, c->angle, w->slopes, w->C);
     for (int f = 0; f < c->forces; f++) {
-        w->v[f] = w->rest[f] = 0;
+        w->v[f] = w->u_stick[f] = 0;
         for (int p = 0; p < n_velocities; p++)
             w->v[f] += w->C[f][p] * (p < n_cue ? w->port_velocities[p] : w->ball[p - n_cue]);
         for (int g = 0; g < c->forces; g++) {
@@ -210,11 +211,11 @@ int impact(Work *w, Step *row)
         F[T] = -w->v[T] / w->V[T][T];
     else if (!solve_gauss_seidel(w, 1, HUGE_VAL))
         c->status = UNSOLVED;
-    double gained = 0, unused[FORCES]; /* gained: normal velocity, m/s */
-    for (int f = 0; f < c->forces; f++) gained += w->V[N][f] * F[f];
-    int separates = w->v[N] + gained > 0;
+    double gain = 0, unused[FORCES]; /* gain: of the normal velocity, m/s */
+    for (int f = 0; f < c->forces; f++) gain += w->V[N][f] * F[f];
+    int separates = w->v[N] + gain > 0;
     for (int f = 0; f < c->forces && separates; f++)
-        F[f] *= fmin(1, (1 + c->restitution) * fabs(w->v[N] / gained));
+        F[f] *= fmin(1, (1 + c->restitution) * fabs(w->v[N] / gain));
     velocities(w, row->v, unused);
     for (int f = 0; f < c->forces; f++) {
         c->work[f] -= F[f] * (w->v[f] + row->v[f]) / 2;

@@ -11,14 +11,14 @@ double unloading_scale(const Contact *c, int phase)
 }
 
 /* Residual indentation d0, m, where the unloading force vanishes. */
-double residual_depth(const Contact *c) { return (1 - c->restitution * c->restitution) * c->max_depth; }
+double residual(const Contact *c) { return (1 - c->restitution * c->restitution) * c->max_indentation; }
 
 /* Normal force, N, its slope dF/dd, N/m, and the virtual indentation, m. Beyond D the tip loads again. */
-double tip_force(const Contact *c, int phase, double depth, double *slope, double *virtual)
+double tip_force(const Contact *c, int phase, double indentation, double *slope, double *virtual)
 {
-    int on_loading_curve = phase == LOADING || depth > c->max_depth;
-    double d = on_loading_curve ? depth : (depth - residual_depth(c)) / unloading_scale(c, phase), F = 0,
-           dF = 0;
+    int on_loading_curve = phase == LOADING || indentation > c->max_indentation;
+    double d = on_loading_curve ? indentation : (indentation - residual(c)) / unloading_scale(c, phase),
+           F = 0, dF = 0;
     *virtual = d;
     if (d > 0 && c->law == POWER_LAW)
         F = c->stiffness * (c->exponent == 1 ? d : pow(d, c->exponent)), dF = c->exponent * F / d;
@@ -33,9 +33,9 @@ double tip_force(const Contact *c, int phase, double depth, double *slope, doubl
 }
 
 /* Tangential stiffness of a leather patch, N/m, at a virtual indentation, m. */
-double tangential_stiffness(const Contact *c, double depth)
+double tangential_stiffness(const Contact *c, double virtual)
 {
-    double y = sqrt(larger(depth, 0)), compliance = 0;
+    double y = sqrt(larger(virtual, 0)), compliance = 0;
     for (int i = c->terms - 1; i >= 0; i--) compliance = compliance * y + c->compliance_terms[i];
     return y / compliance;
 }

@@ -11,12 +11,13 @@ from cuefem.contact.kernel import BINARY, BUILD, KernelError, check
 
 _INTEGERS = "modes ports slopes forces speeds planes rolling law terms patch annuli"
 _ARRAYS = (
-    "eigenvalues rows drives kinematics inverse_masses slope_weights force_terms compliance_terms annulus_edges "
-    "annulus_forces annulus_slopes annulus_stiffness xi ball"
+    "eigenvalues outputs inputs kinematics inverse_masses slope_weights force_terms compliance_terms "
+    "annulus_edges annulus_forces annulus_slopes annulus_stiffness xi ball"
 )
 _NUMBERS = (
-    "restitution friction table_friction stiffness exponent depth_limit compliance surface_restitution phi dome rim "
-    "radius arm_t arm_n step max_time window time depth max_depth angle height shear_loss axial_force max_slope"
+    "restitution friction table_friction stiffness exponent indentation_limit compliance surface_restitution phi "
+    "dome rim radius arm_t arm_n step max_time window time indentation max_indentation angle height shear_loss "
+    "axial_force max_slope"
 )
 # The structure Step of kernel/contact.h; F and v have one entry a force, ball one a velocity of the ball.
 _ONE, _SIX = ("time", "length", "friction_state", "phase", "angle"), ("F", "v", "ball")

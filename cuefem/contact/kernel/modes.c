@@ -35,25 +35,25 @@ FAST int tabulate(Work *w, double h)
     const int K = w->c->modes, n_cue = w->c->ports + w->c->slopes, n_state = 2 * K;
     if (!t->propagator) t->propagator = malloc((size_t)(4 * n_cue + 1) * n_state * sizeof(double));
     if (!t->propagator) return 0;
-    double *mean_push = t->propagator + (size_t)(1 + 3 * n_cue) * n_state;
+    double *mean_response = t->propagator + (size_t)(1 + 3 * n_cue) * n_state;
     t->h = h, t->ends = t->propagator + n_state, t->means = t->ends + n_cue * n_state,
-    t->push = t->means + n_cue * n_state;
+    t->response = t->means + n_cue * n_state;
     for (int k = 0; k < K; k++) {
         double complex z = h * (w->c->eigenvalues[2 * k] + I * w->c->eigenvalues[2 * k + 1]), phi2 = phi_2(z),
                        phi1 = 1 + z * phi2;
         double complex propagated = 1 + z * phi1;
         t->propagator[k] = creal(propagated), t->propagator[K + k] = cimag(propagated);
         for (int q = 0; q < n_cue; q++) {
-            multiply(t->ends + q * n_state, w->rows + q * n_state, K, k, propagated, -1);
-            multiply(t->means + q * n_state, w->rows + q * n_state, K, k, phi1, -1);
-            multiply(t->push + q * n_state, w->drives + q * n_state, K, k, h * phi1, 1);
-            multiply(mean_push + q * n_state, w->drives + q * n_state, K, k, h * phi2, 1);
+            multiply(t->ends + q * n_state, w->outputs + q * n_state, K, k, propagated, -1);
+            multiply(t->means + q * n_state, w->outputs + q * n_state, K, k, phi1, -1);
+            multiply(t->response + q * n_state, w->inputs + q * n_state, K, k, h * phi1, 1);
+            multiply(mean_response + q * n_state, w->inputs + q * n_state, K, k, h * phi2, 1);
         }
     }
     for (int p = 0; p < n_cue; p++)
         for (int q = 0; q < n_cue; q++) {
-            t->end[p][q] = product(w->rows + p * n_state, t->push + q * n_state, n_state);
-            t->mean[p][q] = product(w->rows + p * n_state, mean_push + q * n_state, n_state);
+            t->end[p][q] = product(w->outputs + p * n_state, t->response + q * n_state, n_state);
+            t->mean[p][q] = product(w->outputs + p * n_state, mean_response + q * n_state, n_state);
         }
     return 1;
 }
@@ -81,8 +81,8 @@ FAST void advance_modes(Work *w, const double *loads)
         x[k] = re[k] * before - im[k] * y[k], y[k] = re[k] * y[k] + im[k] * before;
     }
     for (int q = 0; q < n_cue; q++) {
-        const double *push = w->t.push + q * 2 * K;
-        for (int i = 0; i < 2 * K && loads[q] != 0; i++) x[i] += loads[q] * push[i];
+        const double *response = w->t.response + q * 2 * K;
+        for (int i = 0; i < 2 * K && loads[q] != 0; i++) x[i] += loads[q] * response[i];
     }
 }
 
@@ -91,12 +91,12 @@ void apply_impulses(Work *w, const double *impulses)
 {
     const int n_cue = w->c->ports + w->c->slopes, n_state = 2 * w->c->modes;
     for (int q = 0; q < n_cue; q++)
-        for (int i = 0; i < n_state; i++) w->state[i] += impulses[q] * w->drives[q * n_state + i];
+        for (int i = 0; i < n_state; i++) w->state[i] += impulses[q] * w->inputs[q * n_state + i];
 }
 
 /* Mobility: velocity of port p per unit impulse on port q, 1/kg. */
 double mobility(const Work *w, int p, int q)
 {
     const int n_state = 2 * w->c->modes;
-    return product(w->rows + p * n_state, w->drives + q * n_state, n_state);
+    return product(w->outputs + p * n_state, w->inputs + q * n_state, n_state);
 }

@@ -26,27 +26,27 @@ static double mean_stiffness(double in, double out, double from, double to, doub
 
 /* Forces of the annuli, N, at a virtual indentation, m, after a shift, m, since the middle of the last step.
    Returns their sum; by_shift, by_virtual: its derivatives by the two, N/m. */
-FAST double shift_annuli(Work *w, double depth, double shift, double *by_shift, double *by_virtual)
+FAST double shift_annuli(Work *w, double virtual, double shift, double *by_shift, double *by_virtual)
 {
     const Contact *c = w->c;
     const double *edge = c->annulus_edges, *F = c->annulus_forces, *S = c->annulus_slopes,
                  *K = c->annulus_stiffness, *last = w->annulus_force;
     double *force_now = w->annulus_force_now, e2 = c->surface_restitution * c->surface_restitution,
            mu = c->friction, before = w->virtual_mid;
-    double unused, slope, force = tip_force(c, LOADING, depth, &slope, &unused), sum = 0, loss = 0;
-    double K_now = tangential_stiffness(c, depth), K_before = tangential_stiffness(c, before);
+    double unused, slope, force = tip_force(c, LOADING, virtual, &slope, &unused), sum = 0, loss = 0;
+    double K_now = tangential_stiffness(c, virtual), K_before = tangential_stiffness(c, before);
     *by_shift = *by_virtual = 0;
     for (int r = 0; r < c->annuli; r++) {
         double in = edge[r], out = r + 1 < c->annuli ? edge[r + 1] : HUGE_VAL; /* the last annulus grows on */
-        if (depth <= in) {
+        if (virtual <= in) {
             force_now[r] = 0;
             continue;
         }
-        int covered = depth > out;
-        double k_after = (covered ? K[r + 1] : K_now) - K[r], inner = F[r] + S[r] * (depth - in);
+        int covered = virtual > out;
+        double k_after = (covered ? K[r + 1] : K_now) - K[r], inner = F[r] + S[r] * (virtual - in);
         double k_before = before <= in ? 0 : (before > out ? K[r + 1] : K_before) - K[r];
-        double normal = (covered ? F[r + 1] + S[r + 1] * (depth - out) : force) - inner,
-               k = mean_stiffness(in, out, before, depth, k_before, k_after);
+        double normal = (covered ? F[r + 1] + S[r + 1] * (virtual - out) : force) - inner,
+               k = mean_stiffness(in, out, before, virtual, k_before, k_after);
         double bound = mu * larger(normal, 0), old = last[r] * (k_before > k_after ? k_after / k_before : 1);
         double change = k * shift, tangent = k, f = old + change;
         if (e2 < 1 && old * change < 0) {

@@ -13,13 +13,13 @@ static void update_port_velocities(Work *w)
     const int n_cue = w->c->ports + w->c->slopes, n_state = 2 * w->c->modes;
     for (int q = 0; q < n_cue; q++) {
         w->port_velocities[q] = 0;
-        for (int i = 0; i < n_state; i++) w->port_velocities[q] += w->rows[q * n_state + i] * w->state[i];
+        for (int i = 0; i < n_state; i++) w->port_velocities[q] += w->outputs[q * n_state + i] * w->state[i];
     }
 }
 
 EXPORTED void contact_free(Work *w)
 {
-    if (w) free(w->t.propagator), free(w->rows), free(w);
+    if (w) free(w->t.propagator), free(w->outputs), free(w);
 }
 
 /* A contact at its first touch; NULL if memory runs out. */
@@ -27,15 +27,15 @@ EXPORTED Work *contact_new(Contact *c)
 {
     const int K = c->modes, n_cue = c->ports + c->slopes, n_state = 2 * K;
     Work *w = calloc(1, sizeof *w);
-    if (!w || !(w->rows = malloc((size_t)(2 * n_cue + 1) * n_state * sizeof(double))))
+    if (!w || !(w->outputs = malloc((size_t)(2 * n_cue + 1) * n_state * sizeof(double))))
         return contact_free(w), NULL;
-    w->c = c, w->drives = w->rows + n_cue * n_state, w->state = w->drives + n_cue * n_state;
+    w->c = c, w->inputs = w->outputs + n_cue * n_state, w->state = w->inputs + n_cue * n_state;
     for (int k = 0; k < K; k++) {
         w->state[k] = c->xi[2 * k], w->state[K + k] = c->xi[2 * k + 1];
         for (int q = 0; q < n_cue; q++) {
-            const double *row = c->rows + 2 * (q * K + k), *drive = c->drives + 2 * (q * K + k);
-            w->rows[q * n_state + k] = row[0], w->rows[q * n_state + K + k] = -row[1];
-            w->drives[q * n_state + k] = drive[0], w->drives[q * n_state + K + k] = drive[1];
+            const double *output = c->outputs + 2 * (q * K + k), *input = c->inputs + 2 * (q * K + k);
+            w->outputs[q * n_state + k] = output[0], w->outputs[q * n_state + K + k] = -output[1];
+            w->inputs[q * n_state + k] = input[0], w->inputs[q * n_state + K + k] = input[1];
         }
     }
     memcpy(w->ball, c->ball, c->speeds * sizeof(double));
@@ -75,13 +75,14 @@ static void next_phase(Work *w, double v_n)
                                 : c->step,
            h = w->t.h;
     if (w->phase == LOADING && v_n > 0) {
-        c->max_depth = larger(c->max_depth, c->depth), w->phase = UNLOADING, h = unloading_step;
-    } else if (w->phase == UNLOADING && (w->ends_at_event || c->depth <= residual_depth(c)))
+        c->max_indentation = larger(c->max_indentation, c->indentation);
+        w->phase = UNLOADING, h = unloading_step;
+    } else if (w->phase == UNLOADING && (w->ends_at_event || c->indentation <= residual(c)))
         separate(w, w->shift), h = c->step;
-    else if (w->phase == UNLOADING && c->depth > c->max_depth)
+    else if (w->phase == UNLOADING && c->indentation > c->max_indentation)
         w->phase = LOADING, h = c->step;
-    else if (w->phase == FREE && (w->ends_at_event || c->depth > residual_depth(c)))
-        /* below max_depth a second contact follows the unloading curve, beyond it the loading curve */
+    else if (w->phase == FREE && (w->ends_at_event || c->indentation > residual(c)))
+        /* below max_indentation a second contact follows the unloading curve, beyond it the loading curve */
         w->phase = UNLOADING, w->ends_at_event = 0, h = unloading_step;
     if (!set_step(w, h)) c->status = NO_MEMORY;
 }
@@ -95,7 +96,7 @@ static int friction_state_of(const Work *w, double u)
     /* a rigid patch that comes to rest within the step has slipped in a part of it: counted as slip */
     int stops = !w->slip && !w->tip_stuck && c->patch == RIGID_PATCH;
     if (c->patch != PARTIAL_SLIP)
-        return !stops || w->rest[T] == 0 ? w->slip : w->rest[T] < 0 ? SLIP : SLIP_BACK;
+        return !stops || w->u_stick[T] == 0 ? w->slip : w->u_stick[T] < 0 ? SLIP : SLIP_BACK;
     if (fabs(w->F[T]) < c->friction * w->F[N] * (1 - 1e-6)) return STICK;
     return w->F[T] > 0 ? SLIP : w->F[T] < 0 ? SLIP_BACK : c->friction_state;
 }
@@ -112,7 +113,7 @@ static int take_step(Work *w, Step *row)
     contact_matrices(w);
     if (w->phase != FREE && !(c->forces == 2 ? level_forces(w) : raised_forces(w))) c->status = UNSOLVED;
     velocities(w, v, u);
-    double excess = c->depth - residual_depth(c), excess_at_end = excess - h * u[N];
+    double excess = c->indentation - residual(c), excess_at_end = excess - h * u[N];
     int crosses_zero =
         w->phase == UNLOADING ? excess_at_end < 0 : w->phase == FREE && excess < 0 && excess_at_end > 0;
     if (crosses_zero && !w->ends_at_event) {
@@ -153,7 +154,7 @@ static int take_step(Work *w, Step *row)
         c->friction_state = friction_state_of(w, u[T]), w->tip_stuck = !w->slip;
     } else
         c->friction_state = SEPARATED, middle = w->origin = w->shift - h * u[T]; /* unstrained at touch */
-    w->shift -= h * u[T], w->shift_mid = middle, c->depth -= h * u[N], c->time += h;
+    w->shift -= h * u[T], w->shift_mid = middle, c->indentation -= h * u[N], c->time += h;
     if (c->forces > 2) c->height = larger(0, c->height + h * u[UP]);
     *row = (Step){.time = c->time,
                   .length = h,
@@ -173,10 +174,10 @@ static int update_status(Work *w)
         double slope = fabs(w->slopes[a - 1]);
         if (slope > c->max_slope) c->max_slope = slope, c->axial_force = w->axial_force;
     }
-    double sum = c->depth + c->time; /* NaN or infinite if any of its terms is */
+    double sum = c->indentation + c->time; /* NaN or infinite if any of its terms is */
     for (int f = 0; f < c->forces; f++) sum += w->F[f];
     if (!isfinite(sum)) return UNSOLVED;
-    if (c->law == LEATHER_LAW && c->depth > c->depth_limit) return INDENTATION_OUT_OF_RANGE;
+    if (c->law == LEATHER_LAW && c->indentation > c->indentation_limit) return INDENTATION_OUT_OF_RANGE;
     if (c->max_slope > SLOPE_LIMIT) return SLOPE_OUT_OF_RANGE;
     if (w->phase == FREE) return c->time >= w->window_end ? ENDED : RUNNING;
     return c->time > w->deadline ? TIME_LIMIT : RUNNING;
@@ -188,26 +189,26 @@ static int update_status(Work *w)
 EXPORTED int contact_steps(Work *w, int max_steps, Step *rows, double *states)
 {
     Contact *c = w->c;
-    int done = 0;
-    while (done < max_steps && c->status == RUNNING) {
+    int count = 0;
+    while (count < max_steps && c->status == RUNNING) {
         /* first touch of a rigid patch with infinite friction: an impulse stops the tangential motion */
         if (!c->steps && c->friction >= INFINITE_FRICTION && c->patch == RIGID_PATCH && c->phi > 0) {
-            rows[done] = (Step){.friction_state = IMPACT};
-            int stays = impact(w, rows + done);
+            rows[count] = (Step){.friction_state = IMPACT};
+            int stays = impact(w, rows + count);
             update_port_velocities(w);
             c->steps++;
             if (!stays && c->status == RUNNING) separate(w, w->shift), c->status = ENDED;
-        } else if (take_step(w, rows + done)) {
+        } else if (take_step(w, rows + count)) {
             c->steps++;
-            next_phase(w, rows[done].v[N]);
+            next_phase(w, rows[count].v[N]);
             if (c->status == RUNNING) c->status = update_status(w);
         } else
             continue;
-        memcpy(rows[done].ball, w->ball, sizeof w->ball);
-        if (states) memcpy(states + (size_t)2 * c->modes * done, w->state, 2 * c->modes * sizeof(double));
-        done++;
+        memcpy(rows[count].ball, w->ball, sizeof w->ball);
+        if (states) memcpy(states + (size_t)2 * c->modes * count, w->state, 2 * c->modes * sizeof(double));
+        count++;
     }
-    return done;
+    return count;
 }
 
 EXPORTED const size_t contact_size = sizeof(Contact), step_size = sizeof(Step);
