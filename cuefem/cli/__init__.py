@@ -23,7 +23,7 @@ for _threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(_threads, "1")
 
 # Every command by its name: its file and function, its group, and its line in `cuefem --help`.
-CUE, SURE, STUDIES, FILES, PAGE = "Cue", "Verification", "Studies", "Files and parts", "Designer"
+CUE, VERIFICATION, STUDIES, FILES, PAGE = "Cue", "Verification", "Studies", "Files and parts", "Designer"
 COMMANDS = {
     "report": ("cuefem.cli.cue_commands:report", CUE, "Squirt with its uncertainty, and all other numbers of a cue."),
     "improve": ("cuefem.cli.cue_commands:improve", CUE, "Design changes, each with its squirt, stiffness and mass."),
@@ -31,11 +31,15 @@ COMMANDS = {
     "end-mass": ("cuefem.cli.cue_commands:end_mass", CUE, "Effective end mass, by five definitions."),
     "strike": ("cuefem.cli.cue_commands:strike", CUE, "Squirt, ball speed, spin and pivot length of one stroke."),
     "compare": ("cuefem.cli.compare_command:compare", CUE, "Compare cues, or computed and measured values."),
-    "effects": ("cuefem.cli.accuracy_commands:effects", SURE, "Sensitivity to each physical effect, removed or added."),
-    "cost": ("cuefem.cli.accuracy_commands:cost", SURE, "Convergence study, and the resolution it recommends."),
+    "effects": (
+        "cuefem.cli.accuracy_commands:effects",
+        VERIFICATION,
+        "Sensitivity to each physical effect, removed or added.",
+    ),
+    "cost": ("cuefem.cli.accuracy_commands:cost", VERIFICATION, "Convergence study, and the resolution it recommends."),
     "check": (
         "cuefem.cli.accuracy_commands:check",
-        SURE,
+        VERIFICATION,
         "Error of the beam model against a 3-D elastic solid, a part of all errors.",
     ),
     "study": (
@@ -106,7 +110,7 @@ class _OneLine(_Commands):
         try:
             return super().make_context(*arguments, **options)
         except click.UsageError as error:
-            _refuse_usage(error)
+            _exit_with_usage_error(error)
 
     def invoke(self, ctx: click.Context) -> Any:
         import numpy as np  # not for --help
@@ -118,7 +122,7 @@ class _OneLine(_Commands):
                 )  # commands print their own warning: `warn`
                 return super().invoke(ctx)
         except click.UsageError as error:
-            _refuse_usage(error)
+            _exit_with_usage_error(error)
         except (ArithmeticError, MemoryError) as error:
             what = "numerical overflow: check the units of sizes, masses and times"
             if isinstance(error, MemoryError):
@@ -128,18 +132,19 @@ class _OneLine(_Commands):
         except (ValueError, RuntimeError, KernelError) as error:
             if isinstance(error, click.exceptions.Exit | click.exceptions.Abort):
                 raise
-            said = str(error) if hasattr(error, "problem") else one_line(str(error))  # an InputError is brief already
-            click.echo(f"cuefem: {said}", err=True)
+            text = str(error) if hasattr(error, "problem") else one_line(str(error))  # an InputError is brief already
+            click.echo(f"cuefem: {text}", err=True)
             raise click.exceptions.Exit(2 if isinstance(error, ValueError | KernelError) else 1) from None
 
 
-def _refuse_usage(error: click.UsageError) -> NoReturn:
+def _exit_with_usage_error(error: click.UsageError) -> NoReturn:
     """Print a one-line usage error with the help command; a request for help passes."""
     if type(error).__name__ == "NoArgsIsHelpError":
         raise error
-    words = one_line(error.format_message()).rstrip(".")
-    more = "" if error.ctx is None else f" (`{error.ctx.command_path} --help` lists the options)"
-    click.echo(f"cuefem: {words}{more}", err=True)
+    text = one_line(error.format_message()).rstrip(".")
+    listed = "commands" if text.startswith("No such command") else "options"
+    hint = "" if error.ctx is None else f" (`{error.ctx.command_path} --help` lists the {listed})"
+    click.echo(f"cuefem: {text}{hint}", err=True)
     sys.exit(2)
 
 

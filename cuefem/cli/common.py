@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from cuefem.cli.output import assumed_lines, json_option, print_result, shared_option
+from cuefem.cli.output import assumption_lines, json_option, print_result, shared_option
 from cuefem.cli.scene_options import (
     impact_options,
     offset_option,
@@ -172,4 +172,4 @@ def head_line(file: Path, about: dict[str, Any]) -> str:
 def basis_lines(effects: Sequence[Any], notes: Sequence[str]) -> list[str]:
     """The lines below a command's tables: the effects, and the assumptions."""
     acting = [f"effects: {', '.join(map(effect_text, effects))}"] if effects else []
-    return [*acting, *assumed_lines(notes)]
+    return [*acting, *assumption_lines(notes)]

@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from cuefem.cli.common import cue_options, errors_name_file, full_record, print_warnings, scene_of
-from cuefem.cli.output import assumed_lines, command, page_option, print_result
+from cuefem.cli.output import assumption_lines, command, page_option, print_result
 from cuefem.cli.progress import with_progress_bar
 from cuefem.cli.scene_options import impact_options, offset_option, option
 from cuefem.io import InputError
@@ -106,7 +106,7 @@ def _side_by_side(files: Sequence[Path], options: dict[str, Any], output: Path |
         things += comparison_figures(scenes, record)
     title = f"{', '.join([*scenes][:-1])} and {[*scenes][-1]}"
     print_result(
-        options["as_json"], about | record | {"units": UNITS}, [*things, "", *assumed_lines(notes)], output, title
+        options["as_json"], about | record | {"units": UNITS}, [*things, "", *assumption_lines(notes)], output, title
     )
 
 
@@ -133,4 +133,4 @@ def _with_measurements(folder: Path, output: Path | None, *, as_json: bool, esti
             record = measured_record(cue, rows, offset_zeros(cue, rows))
             sheets = tabulate_measured(record)
     whole = full_record(folder, notes, cue.scene, record)
-    print_result(as_json, whole, [cue.name, "", *sheets, "", *assumed_lines(notes)], output)
+    print_result(as_json, whole, [cue.name, "", *sheets, "", *assumption_lines(notes)], output)

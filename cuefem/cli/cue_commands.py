@@ -128,7 +128,7 @@ def improve(file: Path, take: int | None, output: Path | None, force: bool, **op
     """
     drawing = output is not None and output.suffix == ".toml"
     if (take is not None) != drawing:
-        raise InputError(file, "--take", "--take ROW requires -o FILE.toml, and -o FILE.toml requires --take ROW")
+        raise InputError(file, "--take", "requires -o FILE.toml, which requires --take ROW")
     if take is None or output is None:
         run_on_scene(
             file,

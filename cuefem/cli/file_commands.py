@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from cuefem.cli.common import check_overwrite, force_option, load_with_options, shape_options
-from cuefem.cli.output import assumed_lines, command, json_option, page_option, print_json, print_result
+from cuefem.cli.output import assumption_lines, command, json_option, page_option, print_json, print_result
 from cuefem.cli.scene_options import with_body_option, with_shaft_mass_option
 from cuefem.cue import Cue
 from cuefem.io import load, save
@@ -36,7 +36,7 @@ def convert(file: Path, output: Path, force: bool, as_json: bool, **options: str
     if as_json:
         print_json({"output_file": str(output), "assumptions": notes})
         return
-    for line in (*assumed_lines(notes), f"wrote {output}"):
+    for line in (*assumption_lines(notes), f"wrote {output}"):
         click.echo(line)
 
 

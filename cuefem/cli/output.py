@@ -95,7 +95,7 @@ def output_option(*extensions: str, required: bool = False, many: bool = False) 
 page_option = output_option(".html", ".json")
 
 
-def assumed_lines(notes: Sequence[str]) -> list[str]:
+def assumption_lines(notes: Sequence[str]) -> list[str]:
     """The assumptions, one per line, each with its option; empty without assumptions."""
     return ["assumed:", *(f"  {note}" for note in notes)] if notes else []
 

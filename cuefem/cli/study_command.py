@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from cuefem.cli.common import check_overwrite, errors_name_file, force_option, print_warnings
-from cuefem.cli.output import assumed_lines, command, json_option, output_option, print_result, write_result
+from cuefem.cli.output import assumption_lines, command, json_option, output_option, print_result, write_result
 from cuefem.cli.progress import progress_bar
 from cuefem.design import Study
 from cuefem.design.optimum import Problem, Round
@@ -96,7 +96,7 @@ def study(
             f"{len(result.rows)} designs in {kept.path}" + (f", {before} of them from before" if before else "")
         )
     record |= study_record(result)
-    title, things = f"{file.name}: {result.kind}", [*tabulate_study(result), "", *assumed_lines(notes)]
+    title, things = f"{file.name}: {result.kind}", [*tabulate_study(result), "", *assumption_lines(notes)]
     for path in output:
         _write(path, result, record, things, title)
     print_result(as_json, record, [title, *stored, *things, *(f"wrote {path}" for path in output)])

@@ -23,7 +23,7 @@ def end_mass_record(scene: Scene, *, solved: SolvedScene | None = None) -> Recor
     return {
         "contact_time": scene.contact_time,
         "offset": scene.stroke.offset,
-        "definitions": {drive: _end_mass(solved, drive) for drive in DEFINITIONS},
+        "definitions": {name: _end_mass(solved, name) for name in DEFINITIONS},
     }
 
 
@@ -47,7 +47,7 @@ def tabulate_end_masses(record: Record, scene: Record, *, paper: bool = False) -
     """A row for each definition. paper: add [Kim]'s m_c and eps."""
     papers = {"m_c": "cue_end_mass", "eps": "{eps:.4f}"} if paper else {}
     their = "m_c = 4 m_e: end mass of the two-part cue in Kim's paper (nu_c 1/3); eps: m_c over the mass of the ball"
-    rows = [{"name": drive, **values} for drive, values in record["definitions"].items()]
+    rows = [{"name": name, **values} for name, values in record["definitions"].items()]
     return tabulate(
         "Effective end mass",
         {

@@ -57,7 +57,7 @@ def test_every_assumption_has_an_option(folder: Path) -> None:
     assert (changed["assumptions"], changed["scene"]) == ([], result["scene"])
 
 
-def test_leather_too_soft_for_stroke_omits_contact_results(folder: Path) -> None:
+def test_report_leather_too_soft_omits_contact_results(folder: Path) -> None:
     soft = ("shaft.toml", "--leather", "1 MPa")
     status, out, err = call("report", *soft, "--json")
     report = json.loads(out)

@@ -105,5 +105,5 @@ def test_improve_take_saves_row_and_replaces_no_file(tmp_path: Path, computed: t
     assert f"cuefem compare {path} {target}" in out
     assert cf.strike(cf.load(target)).squirt == pytest.approx(rows[1]["squirt"], rel=1e-9)
     assert_rejects("--force", "improve", path, "--take", "2", "-o", target)
-    assert_rejects("--take ROW requires -o FILE.toml", "improve", path, "--take", "1")
+    assert_rejects("--take: requires -o FILE.toml", "improve", path, "--take", "1")
     assert_rejects("must be a row of the table, 1 to ", "improve", path, "--take", "99", "-o", tmp_path / "x.toml")
