@@ -268,6 +268,7 @@ def _failure(model: ContactModel, c: KernelContact) -> Exception:
             f"{FRICTION_STATES[c.friction_state]}; take more steps, or fewer modes"
         )
     return RuntimeError(
-        f"the ball does not leave the cue: after {c.time:.6g} s (head-on contact time {model.time:.6g} s) the tip is indented "
-        f"by {c.indentation:.3g} m, in {FRICTION_STATES[c.friction_state]}; check restitution, contact time, masses"
+        f"the ball does not leave the cue: after {c.time:.6g} s (head-on contact time {model.time:.6g} s) the tip is "
+        f"indented by {c.indentation:.3g} m, in {FRICTION_STATES[c.friction_state]}; check restitution, contact time and "
+        "masses"
     )

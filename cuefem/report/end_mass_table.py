@@ -30,7 +30,7 @@ def end_mass_record(scene: Scene, *, solved: SolvedScene | None = None) -> Recor
 def _end_mass(solved: SolvedScene, drive: str) -> Record:
     scene = solved.scene
     try:
-        end_mass = float(DEFINITIONS[drive].of_solved(solved))
+        end_mass = float(DEFINITIONS[drive].of_design(solved))
     except ValueError as error:
         return {"end_mass": None, "cue_end_mass": None, "eps": None, "reason": str(error)}
     if not end_mass > 0:

@@ -59,7 +59,7 @@ def test_dome_radius_by_coin_length_or_flat_is_read(file: Path, text: str, radiu
         ({"leather": None}, "effects[0].leather: must be one of soft, medium, hard, kamui soft"),
         ({"leather": "'sofd'"}, "got 'sofd'; did you mean 'soft'?"),
         ({"E": "'1 MPa'"}, "effects[0].E: must be omitted with leather, which sets it"),
-        ({"leather": None, "lether": "'soft'"}, "got lether = 'soft'; did you mean 'leather'?"),
+        ({"leather": None, "lether": "'soft'"}, "unknown key; did you mean 'leather'?"),
         ({"dome_radius": "'penny'"}, 'such as "12 mm", or "dime", "nickel", "flat"; got \'penny\''),
         ({"dome_radius": "9.5"}, 'needs a unit: "12 mm" or "0.5 in", or "dime", "nickel", "flat"; got 9.5'),
         ({"height": "inf"}, "effects[0].height: must be a length with its unit"),
