@@ -262,13 +262,13 @@ def _failure(model: ContactModel, c: KernelContact) -> Exception:
             f"the axial force of {c.axial_force:.4g} N bends the shaft by {c.max_slope:.3g} rad at its tip, beyond the "
             "range of GeometricStiffness: lower the speed, or stiffen the shaft"
         )
+    state = FRICTION_STATES[c.friction_state]
     if c.status == _UNSOLVED:
         return RuntimeError(
-            f"the forces of the contact have no solution after {c.time:.6g} s and {c.steps} steps, in "
-            f"{FRICTION_STATES[c.friction_state]}; take more steps, or fewer modes"
+            f"the forces of the contact have no solution after {c.time:.6g} s and {c.steps} steps, in {state}; "
+            "take more steps, or fewer modes"
         )
     return RuntimeError(
         f"the ball does not leave the cue: after {c.time:.6g} s (head-on contact time {model.time:.6g} s) the tip is "
-        f"indented by {c.indentation:.3g} m, in {FRICTION_STATES[c.friction_state]}; check restitution, contact time and "
-        "masses"
+        f"indented by {c.indentation:.3g} m, in {state}; check restitution, contact time, masses"
     )

@@ -108,15 +108,15 @@ def test_frequency_error_has_order_2p(order: int, mode: int) -> None:
     assert_order(2 * order, 1 / elements, errors, within=20.0 / elements[:-1] ** 2)
 
 
-@pytest.mark.parametrize(("cue", "most"), [(kim(), 1e-10), (soft_tip(), 1e-10), (stiff_ferrule(), 1e-6)])
-def test_inverse_form_low_modes_have_small_roundoff_error(cue: Cue, most: float) -> None:
+@pytest.mark.parametrize(("cue", "tolerance"), [(kim(), 1e-10), (soft_tip(), 1e-10), (stiff_ferrule(), 1e-6)])
+def test_inverse_form_low_modes_have_small_roundoff_error(cue: Cue, tolerance: float) -> None:
     """On every mesh; `eigh(K, M)` has 30 times the error. A 1 mm steel ferrule leaves the round-off error of K."""
     reference = frequencies(cue, 1, 24, 4)
     for elements, order in ((2, 18), (4, 18), (8, 12), (8, 20), (40, 8)):
-        np.testing.assert_allclose(frequencies(cue, elements, order, 4), reference, rtol=most)
+        np.testing.assert_allclose(frequencies(cue, elements, order, 4), reference, rtol=tolerance)
     beam = system.assemble(cue, Resolution(8, 20, 1), count=400)
-    plain = la.eigh(beam.K, beam.M, eigvals_only=True)[2] ** 0.5 / (2 * np.pi)
-    assert abs(plain / reference[0] - 1) > 30 * abs(solve(beam, 1).frequencies[0] / reference[0] - 1)
+    frequency = la.eigh(beam.K, beam.M, eigvals_only=True)[2] ** 0.5 / (2 * np.pi)
+    assert abs(frequency / reference[0] - 1) > 30 * abs(solve(beam, 1).frequencies[0] / reference[0] - 1)
 
 
 def test_modes_dense_and_sparse_solvers_agree(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -168,9 +168,9 @@ def sliced(cue: Cue, count: int) -> Cue:
 
 
 def test_mesh_sliced_cone_equals_whole_cone() -> None:
-    whole = mesh_cue(COMPOSITE, 12)
+    expected = mesh_cue(COMPOSITE, 12)
     slices = sliced(COMPOSITE, 300)
-    np.testing.assert_allclose(mesh_cue(slices, 12).nodes, whole.nodes, rtol=1e-12)
+    np.testing.assert_allclose(mesh_cue(slices, 12).nodes, expected.nodes, rtol=1e-12)
     np.testing.assert_allclose(modes(slices, 12).frequencies, modes(COMPOSITE, 12).frequencies, rtol=1e-6)
 
 
@@ -182,14 +182,14 @@ def test_frequencies_alternating_slices_converge_to_mean_material(n: int) -> Non
     def mean(a: float, b: float) -> float:
         return 2 / (1 / a + 1 / b)
 
-    one = Material(mean(light.E, heavy.E), mean(light.G, heavy.G), (light.rho + heavy.rho) / 2)
-    exact = modes(Cue((Segment(0.7, d, d, one, kappa=0.9),)), 3).frequencies
-    slices = tuple(Segment(0.35 / n, d, d, of, kappa=0.9) for _ in range(n) for of in (light, heavy))
+    mean_material = Material(mean(light.E, heavy.E), mean(light.G, heavy.G), (light.rho + heavy.rho) / 2)
+    exact = modes(Cue((Segment(0.7, d, d, mean_material, kappa=0.9),)), 3).frequencies
+    slices = tuple(Segment(0.35 / n, d, d, material, kappa=0.9) for _ in range(n) for material in (light, heavy))
     assert abs(modes(Cue(slices), 3).frequencies / exact - 1).max() < 0.3 / n
 
 
 def test_joint_negligible_compliance_changes_no_frequency() -> None:
-    none = modes(kim(), 3).frequencies
-    for least in (3.5e-202, 1e-15):
-        result = modes(kim(), 3, effects=(Joint(0.5, 0.0, least), Joint(0.5, least))).frequencies
-        np.testing.assert_allclose(result, none, rtol=1e-6)
+    expected = modes(kim(), 3).frequencies
+    for compliance in (3.5e-202, 1e-15):
+        result = modes(kim(), 3, effects=(Joint(0.5, 0.0, compliance), Joint(0.5, compliance))).frequencies
+        np.testing.assert_allclose(result, expected, rtol=1e-6)

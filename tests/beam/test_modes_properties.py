@@ -39,13 +39,13 @@ drives = st.sampled_from(["force", "velocity", "stick"])
 def test_modes_scaled_units_scale(cue: Cue, length: float, time: float, mass: float) -> None:
     """Units of length, time, mass a, b, c times smaller: E and G c/(a b^2), rho c/a^3, frequency 1/b, w 1/sqrt(c)."""
     stiff, heavy = mass / (length * time**2), mass / length**3
-    other = scaled(cue, E=stiff, G=stiff, rho=heavy, length=length)
-    one, two = modes(cue, 5, at=AT), modes(other, 5, at=AT)
-    np.testing.assert_allclose(two.frequencies * time, one.frequencies, rtol=1e-8)
-    shape = one.shape(0.0)
-    np.testing.assert_allclose(two.shape(0.0)[0] * mass**0.5, shape[0], rtol=1e-5)
+    scaled_cue = scaled(cue, E=stiff, G=stiff, rho=heavy, length=length)
+    original, result = modes(cue, 5, at=AT), modes(scaled_cue, 5, at=AT)
+    np.testing.assert_allclose(result.frequencies * time, original.frequencies, rtol=1e-8)
+    shape = original.shape(0.0)
+    np.testing.assert_allclose(result.shape(0.0)[0] * mass**0.5, shape[0], rtol=1e-5)
     np.testing.assert_allclose(
-        two.shape(0.0)[1] * mass**0.5 * length, shape[1], rtol=1e-4, atol=1e-6 * abs(shape[1]).max()
+        result.shape(0.0)[1] * mass**0.5 * length, shape[1], rtol=1e-4, atol=1e-6 * abs(shape[1]).max()
     )
 
 
@@ -64,11 +64,11 @@ def test_end_mass_scaled_units_scales(cue: Cue, drive: str, length: float, time:
 @settings(max_examples=20)
 def test_frequencies_rise_with_stiffness_and_fall_with_mass(cue: Cue, factor: float) -> None:
     """Rayleigh: a larger E lowers no frequency; a larger density divides all by its root."""
-    plain = modes(cue, 6, at=AT).frequencies
-    stiff, both = (
+    original = modes(cue, 6, at=AT).frequencies
+    stiff, heavy = (
         modes(scaled(cue, E=factor), 6, at=AT).frequencies,
         modes(scaled(cue, rho=factor), 6, at=AT).frequencies,
     )
-    assert np.all(stiff >= plain * (1 - 1e-12))
-    assert np.all(stiff <= plain * factor**0.5 * (1 + 1e-12))
-    np.testing.assert_allclose(both, plain / factor**0.5, rtol=1e-11)
+    assert np.all(stiff >= original * (1 - 1e-12))
+    assert np.all(stiff <= original * factor**0.5 * (1 + 1e-12))
+    np.testing.assert_allclose(heavy, original / factor**0.5, rtol=1e-11)

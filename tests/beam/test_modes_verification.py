@@ -78,6 +78,6 @@ def test_tip_modes_sum_to_inverse_mass_at_tip() -> None:
     np.testing.assert_allclose(tip.approach @ tip.approach, cue.mass, rtol=1e-14)
     x, weights = stations(cue)
     s, centre = cue.section(x), cue.balance_point
-    spun = weights @ (s.rhoA * (x - centre) ** 2 + s.rhoI)
+    inertia = weights @ (s.rhoA * (x - centre) ** 2 + s.rhoI)
     rigid = tip.amplitude[:3, 1] @ tip.amplitude[:3, 1]
-    np.testing.assert_allclose(rigid, 1 / cue.shaft_mass + centre**2 / spun, rtol=1e-12)
+    np.testing.assert_allclose(rigid, 1 / cue.shaft_mass + centre**2 / inertia, rtol=1e-12)

@@ -46,20 +46,20 @@ def draw(rng: np.random.Generator, kind: str) -> Scene:
     return Scene(cue, Ball(M, 0.03, nu), Tip(e, mu), Stroke(rng.uniform(0.5, 4), b))
 
 
-def everything(out: Outcome) -> dict[str, object]:
+def numbers_of(outcome: Outcome) -> dict[str, object]:
     """Every number of an outcome, by name."""
-    named = {event.name: event.impulse for event in out.phases} | out.energy
+    numbers = {event.name: event.impulse for event in outcome.phases} | outcome.energy
     fields = ("squirt", "ball_velocity", "ball_speed", "spin", "cue_speed", "impulse")
-    return named | {name: getattr(out, name) for name in fields}
+    return numbers | {name: getattr(outcome, name) for name in fields}
 
 
 def columns(singles: list[Scene]) -> dict[str, np.ndarray]:
     """The numbers that the solver takes."""
-    rows = [impulse_inputs(each, each.cue) for each in singles]
+    rows = [impulse_inputs(scene, scene.cue) for scene in singles]
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
-def energy_closes(singles: list[Scene], out: Outcome) -> None:
+def assert_energy_balance(singles: list[Scene], out: Outcome) -> None:
     n = columns(singles)
     initial, *parts = (out.energy[name] for name in ENERGIES)
     assert set(out.energy) == set(ENERGIES)
@@ -71,11 +71,11 @@ def energy_closes(singles: list[Scene], out: Outcome) -> None:
     np.testing.assert_allclose(out.energy["ball translation"], n["ball_mass"] * out.ball_speed**2 / 2, rtol=1e-13)
 
 
-def mirrors(singles: list[Scene], right: Outcome) -> None:
-    left = impulse([replace(each, stroke=replace(each.stroke, offset=-each.stroke.offset)) for each in singles])
-    turned = {"squirt": -1, "spin": -1, "ball_velocity": [-1, 1], "impulse": [-1, 1]}
-    for name, value in everything(right).items():
-        assert np.array_equal(everything(left)[name] * np.array(turned.get(name, 1)), value), name
+def assert_mirrored(singles: list[Scene], right: Outcome) -> None:
+    left = impulse([replace(scene, stroke=replace(scene.stroke, offset=-scene.stroke.offset)) for scene in singles])
+    signs = {"squirt": -1, "spin": -1, "ball_velocity": [-1, 1], "impulse": [-1, 1]}
+    for name, value in numbers_of(right).items():
+        assert np.array_equal(numbers_of(left)[name] * np.array(signs.get(name, 1)), value), name
     assert np.array_equal(right.regime, left.regime)
     assert np.array_equal(right.jam, left.jam)
 
@@ -84,14 +84,14 @@ def mirrors(singles: list[Scene], right: Outcome) -> None:
 def test_impulse_every_regime_agrees_with_oracle(kind: str) -> None:
     rng = np.random.default_rng([8, REGIMES.index(kind)])
     singles = [draw(rng, kind) for _ in range(100)]
-    n, out, solutions = columns(singles), impulse(singles), [exact_impulse(each) for each in singles]
-    energy_closes(singles, out)
-    mirrors(singles, out)
+    n, out, solutions = columns(singles), impulse(singles), [exact_impulse(item) for item in singles]
+    assert_energy_balance(singles, out)
+    assert_mirrored(singles, out)
     counts = Counter([*map(regime_of, solutions), *(["jam"] * int(out.jam.sum()))])
     assert counts[kind] >= 30, counts
     assert out.regime.tolist() == [*map(regime_of, solutions)]
     p, mass = np.hypot(*out.impulse.T), n["ball_mass"]
-    tangent, p_t, p_n, cue_speed, tip_loss, friction_loss = np.array([each[:6] for each in solutions], float).T
+    tangent, p_t, p_n, cue_speed, tip_loss, friction_loss = np.array([item[:6] for item in solutions], float).T
     atol = 1e-12
     assert np.all(abs(np.tan(out.squirt) - tangent) < atol * (1 + tangent**2))  # the decimal solution has the tangent
     assert np.all(abs(np.array([p_t, p_n]) - out.impulse.T) < atol * p)
@@ -104,17 +104,17 @@ def test_impulse_every_regime_agrees_with_oracle(kind: str) -> None:
 
 def test_impulse_edge_cases_conserve_energy_and_mirror() -> None:
     out = impulse(EDGES)
-    assert all(np.all(np.isfinite(value)) for name, value in everything(out).items() if name != "slip ends")
-    energy_closes(EDGES, out)
-    mirrors(EDGES, out)
+    assert all(np.all(np.isfinite(value)) for name, value in numbers_of(out).items() if name != "slip ends")
+    assert_energy_balance(EDGES, out)
+    assert_mirrored(EDGES, out)
 
 
 def test_impulse_of_sequence_equals_single_strokes() -> None:
     rng = np.random.default_rng(5)
     singles = [draw(rng, kind) for kind in REGIMES for _ in range(8)]
     out = impulse(singles)
-    for at, single in enumerate(singles):
-        one = impulse(single)
-        assert (one.regime, one.jam) == (out.regime[at], out.jam[at])
-        for name, value in everything(one).items():
-            np.testing.assert_allclose(everything(out)[name][at], value, rtol=1e-13, atol=1e-300)
+    for i, single in enumerate(singles):
+        expected = impulse(single)
+        assert (expected.regime, expected.jam) == (out.regime[i], out.jam[i])
+        for name, value in numbers_of(expected).items():
+            np.testing.assert_allclose(numbers_of(out)[name][i], value, rtol=1e-13, atol=1e-300)

@@ -25,7 +25,7 @@ from cuefem.contact.outcome import Phase
 from tests.oracle.small_steps import SmallStepsOutcome, solve_small_steps
 
 
-class Draw:
+class RandomScene:
     """Random numbers of one scene."""
 
     def __init__(self, seed: int) -> None:
@@ -37,8 +37,8 @@ class Draw:
     def scaled(self, low: float, high: float) -> float:
         return float(np.exp(self.rng.uniform(np.log(low), np.log(high))))
 
-    def often(self, part: float) -> bool:
-        return bool(self.rng.random() < part)
+    def often(self, probability: float) -> bool:
+        return bool(self.rng.random() < probability)
 
     def cue(self) -> cf.Cue:
         """A ferrule and a shaft of two pieces, one of them bored and filled, with losses of their own."""
@@ -55,26 +55,26 @@ class Draw:
             body_mass=self.between(0.3, 0.5),
         )
 
-    def tip(self, least: float = 0.3) -> cf.Tip:
+    def tip(self, min_restitution: float = 0.3) -> cf.Tip:
         friction = self.between(0.1, 0.5) if self.often(0.4) else self.between(0.5, 0.9)
-        return cf.Tip(self.between(least, 1.0), friction, contact_time=self.scaled(6e-4, 3e-3))
+        return cf.Tip(self.between(min_restitution, 1.0), friction, contact_time=self.scaled(6e-4, 3e-3))
 
-    def stroke(self, most: float = 0.7) -> cf.Stroke:
+    def stroke(self, max_offset: float = 0.7) -> cf.Stroke:
         side = -1 if self.often(0.4) else 1
-        return cf.Stroke(self.scaled(0.5, 6.0), side * self.between(0.05, most))
+        return cf.Stroke(self.scaled(0.5, 6.0), side * self.between(0.05, max_offset))
 
     def scene(self, cue: cf.Cue | cf.LumpedCue, *effects: cf.Effect, tip: cf.Tip | None = None) -> cf.Scene:
         ball = cf.Ball(self.between(0.14, 0.22), self.between(0.026, 0.031), self.between(0.35, 0.45))
-        more: tuple[cf.Effect, ...] = ()
-        raised = any(isinstance(effect, cf.Elevation) for effect in effects)
+        tip_effects: tuple[cf.Effect, ...] = ()
+        is_elevated = any(isinstance(effect, cf.Elevation) for effect in effects)
         if isinstance(cue, cf.Cue) and self.often(0.4):
-            more = (cf.TipDome(self.between(5e-3, 12e-3)),)
-        elif not raised and self.often(0.4):
-            more = (cf.TipShear(self.scaled(0.4, 2.0)),)
-        return cf.Scene(cue, ball, tip or self.tip(), self.stroke(), (*effects, *more))
+            tip_effects = (cf.TipDome(self.between(5e-3, 12e-3)),)
+        elif not is_elevated and self.often(0.4):
+            tip_effects = (cf.TipShear(self.scaled(0.4, 2.0)),)
+        return cf.Scene(cue, ball, tip or self.tip(), self.stroke(), (*effects, *tip_effects))
 
 
-def supported(draw: Draw) -> cf.Scene:
+def with_support(draw: RandomScene) -> cf.Scene:
     """A spring and a dashpot near the tip, or a clamp."""
     cue = draw.cue()
     if draw.often(0.25):
@@ -83,29 +83,29 @@ def supported(draw: Draw) -> cf.Scene:
     return draw.scene(cue, cf.Support(position, draw.scaled(1e3, 1e6), draw.scaled(0.1, 50.0), draw.scaled(1.0, 50.0)))
 
 
-def all_on_the_cue(draw: Draw) -> cf.Scene:
+def all_cue_effects(draw: RandomScene) -> cf.Scene:
     """Loss of materials or one for all, a mass, a hand and a joint with one or two compliances, at one position."""
-    position, lump = draw.between(0.05, 0.3), cf.PointMass(draw.between(0.01, 0.1), draw.scaled(1e-3, 2e-2), 1e-6)
+    position, mass = draw.between(0.05, 0.3), cf.PointMass(draw.between(0.01, 0.1), draw.scaled(1e-3, 2e-2), 1e-6)
     hand = cf.Support(position, draw.scaled(1e3, 1e5), 0.0, draw.scaled(1.0, 30.0))
     joint = cf.Joint(position, draw.scaled(1e-4, 1e-1), draw.scaled(1e-9, 1e-6) if draw.often(0.5) else 0.0)
     loss = cf.StructuralDamping(None if draw.often(0.5) else draw.scaled(1e-2, 0.3))
-    return draw.scene(draw.cue(), loss, joint, lump, hand)
+    return draw.scene(draw.cue(), loss, joint, mass, hand)
 
 
-def raised(draw: Draw) -> cf.Scene:
+def elevated(draw: RandomScene) -> cf.Scene:
     """A raised cue on a table with or without friction."""
     table = 0.0 if draw.often(0.25) else draw.scaled(0.05, 2.0)
     cue = cf.LumpedCue(draw.between(0.45, 0.65), draw.scaled(3e-3, 0.05)) if draw.often(0.3) else draw.cue()
     return draw.scene(cue, cf.Elevation(draw.between(0.02, 0.5), table))
 
 
-def raised_and_stuck(draw: Draw) -> cf.Scene:
+def elevated_and_stuck(draw: RandomScene) -> cf.Scene:
     """A steep cue whose tip never slips; its impulse presses the ball onto a table with friction."""
-    tip, lowered = cf.Tip(0.75, math.inf, contact_time=1e-3), cf.Elevation(draw.between(0.4, 0.6), 0.2)
-    return cf.Scene(draw.cue(), tip=tip, stroke=cf.Stroke(1.0, draw.between(0.5, 0.7)), effects=(lowered,))
+    tip, elevation = cf.Tip(0.75, math.inf, contact_time=1e-3), cf.Elevation(draw.between(0.4, 0.6), 0.2)
+    return cf.Scene(draw.cue(), tip=tip, stroke=cf.Stroke(1.0, draw.between(0.5, 0.7)), effects=(elevation,))
 
 
-def hit_again(draw: Draw) -> cf.Scene:
+def second_hit_scene(draw: RandomScene) -> cf.Scene:
     """A tip of low restitution on a vibrating, often heavy cue, which may hit the ball again."""
     cue = replace(draw.cue(), body_mass=draw.between(0.4, 2.0))
     tip = cf.Tip(draw.scaled(0.12, 0.6), draw.between(0.2, 0.9), contact_time=draw.scaled(1e-3, 8e-3))
@@ -116,7 +116,7 @@ def hit_again(draw: Draw) -> cf.Scene:
 class Kind(NamedTuple):
     """A kind of scene, the tolerance of any number with ``STEPS`` steps, and seeds and steps of everyday tests."""
 
-    make: Callable[[Draw], cf.Scene]
+    make: Callable[[RandomScene], cf.Scene]
     within: float
     daily: tuple[int, ...]
     steps: int
@@ -124,34 +124,34 @@ class Kind(NamedTuple):
 
 MODES, STEPS = 12, 800
 KINDS = {
-    "Support": Kind(supported, 1e-4, (0, 1, 2, 3), STEPS),
-    "all on the cue": Kind(all_on_the_cue, 1e-4, (0, 1, 2, 3), STEPS),
-    "Elevation": Kind(raised, 2e-4, (0, 3), STEPS // 4),
-    "Elevation, infinite friction": Kind(raised_and_stuck, 3e-3, (2,), STEPS // 4),
-    "SecondHit": Kind(hit_again, 5e-4, (6, 20, 24), STEPS),  # 2, 4 and 2 touches
+    "Support": Kind(with_support, 1e-4, (0, 1, 2, 3), STEPS),
+    "all on the cue": Kind(all_cue_effects, 1e-4, (0, 1, 2, 3), STEPS),
+    "Elevation": Kind(elevated, 2e-4, (0, 3), STEPS // 4),
+    "Elevation, infinite friction": Kind(elevated_and_stuck, 3e-3, (2,), STEPS // 4),
+    "SecondHit": Kind(second_hit_scene, 5e-4, (6, 20, 24), STEPS),  # 2, 4 and 2 touches
 }
 AT = cf.Resolution(3, 14, MODES, 2 * STEPS)
 
 
-def differences(scene: cf.Scene, ours: cf.Outcome, theirs: SmallStepsOutcome) -> dict[str, float]:
+def differences(scene: cf.Scene, outcome: cf.Outcome, reference: SmallStepsOutcome) -> dict[str, float]:
     """Difference of each number, over a typical size."""
-    first, speed = ours.energy["initial"], ours.ball_speed
+    initial, speed = outcome.energy["initial"], outcome.ball_speed
     return {
-        "squirt": abs(theirs.squirt - ours.squirt) / max(abs(ours.squirt), 0.01),
-        "ball speed": abs(theirs.ball_speed / speed - 1),
-        "spin": abs(theirs.spin - ours.spin) * scene.ball.radius / speed,
-        "cue speed": abs(theirs.cue_speed - ours.cue_speed) / scene.stroke.speed,
-        "duration": abs(theirs.duration / ours.duration - 1),
-        "vibration": abs(theirs.vibration - ours.energy["cue vibration"] / first),
-        "damping loss": abs(theirs.lost - ours.energy.get("damping loss", 0.0) / first),
+        "squirt": abs(reference.squirt - outcome.squirt) / max(abs(outcome.squirt), 0.01),
+        "ball speed": abs(reference.ball_speed / speed - 1),
+        "spin": abs(reference.spin - outcome.spin) * scene.ball.radius / speed,
+        "cue speed": abs(reference.cue_speed - outcome.cue_speed) / scene.stroke.speed,
+        "duration": abs(reference.duration / outcome.duration - 1),
+        "vibration": abs(reference.vibration - outcome.energy["cue vibration"] / initial),
+        "damping loss": abs(reference.damping_loss - outcome.energy.get("damping loss", 0.0) / initial),
     }
 
 
-def compared(scene: cf.Scene, steps: int) -> dict[str, float]:
+def scene_differences(scene: cf.Scene, steps: int) -> dict[str, float]:
     """Differences of a strike from its small steps; both must have the same number of contacts."""
-    ours, theirs = cf.strike(scene, AT), solve_small_steps(scene, MODES, steps)
-    assert 1 + len(flights(ours)) == len(theirs.touches)
-    return differences(scene, ours, theirs)
+    outcome, reference = cf.strike(scene, AT), solve_small_steps(scene, MODES, steps)
+    assert 1 + len(flights(outcome)) == len(reference.touches)
+    return differences(scene, outcome, reference)
 
 
 DAILY = [(name, [seed], kind.steps) for name, kind in KINDS.items() for seed in kind.daily]
@@ -166,15 +166,15 @@ def flights(outcome: cf.Outcome) -> list[Phase]:
 
 @pytest.mark.parametrize(("kind", "seeds", "steps"), [*DAILY, *HEAVY, *MANY])
 def test_strike_each_kind_of_effects_agrees_with_small_steps(kind: str, seeds: Iterable[int], steps: int) -> None:
-    off = [compared(KINDS[kind].make(Draw(seed)), steps) for seed in seeds]
-    worst = {name: max(each[name] for each in off) for name in off[0]}
-    print(kind, len(off), {name: f"{value:.1e}" for name, value in worst.items()})
+    rows = [scene_differences(KINDS[kind].make(RandomScene(seed)), steps) for seed in seeds]
+    worst = {name: max(row[name] for row in rows) for name in rows[0]}
+    print(kind, len(rows), {name: f"{value:.1e}" for name, value in worst.items()})
     assert max(worst.values()) < KINDS[kind].within * max(1, STEPS / steps), worst
 
 
 @pytest.mark.parametrize("seed", [1, 6, 20, 24])
 def test_second_hit_window_counts_from_first_separation(seed: int) -> None:
-    scene = hit_again(Draw(seed))
+    scene = second_hit_scene(RandomScene(seed))
     others = tuple(effect for effect in scene.effects if not isinstance(effect, cf.SecondHit))
 
     def within(window: float) -> cf.Outcome:
@@ -182,8 +182,8 @@ def test_second_hit_window_counts_from_first_separation(seed: int) -> None:
 
     outcome = cf.strike(scene, AT)
     flight = flights(outcome)[0]
-    pushed = np.sum([phase.impulse for phase in outcome.phases], axis=0)
-    assert pushed == pytest.approx(outcome.impulse, rel=1e-12)
+    impulse = np.sum([phase.impulse for phase in outcome.phases], axis=0)
+    assert impulse == pytest.approx(outcome.impulse, rel=1e-12)
     wait = flight.end - flight.start
     assert wait > 0
     missed, alone = within(0.8 * wait), cf.strike(replace(scene, effects=others), AT)

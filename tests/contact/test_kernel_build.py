@@ -30,7 +30,7 @@ def folder(tmp_path: Path) -> Path:
 def run(folder: Path, *arguments: str, **environment: str) -> tuple[int, str, list[str]]:
     """(exit status, stdout, lines of stderr) of Python in a folder."""
     others = {name: value for name, value in os.environ.items() if name not in ("CC", "CFLAGS")}
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, *arguments],
         cwd=folder,
         env=others | {"PYTHONPATH": str(folder)} | environment,
@@ -38,10 +38,10 @@ def run(folder: Path, *arguments: str, **environment: str) -> tuple[int, str, li
         text=True,
         check=False,
     )
-    return done.returncode, done.stdout.strip(), done.stderr.strip().splitlines()
+    return process.returncode, process.stdout.strip(), process.stderr.strip().splitlines()
 
 
-SPOILED = {  # the changed file of the kernel, its new bytes, and the message
+DAMAGES = {  # the changed file of the kernel, its new bytes, and the message
     "missing": (BINARY.name, lambda whole: None, "is missing"),
     "cut short": (BINARY.name, lambda whole: whole[: len(whole) // 2], "is damaged: it is not the one that was built"),
     "half a digest": ("_kernel.sha256", lambda whole: b"half", "is damaged: it is not the one that was built"),
@@ -50,20 +50,20 @@ SPOILED = {  # the changed file of the kernel, its new bytes, and the message
 
 
 @pytest.mark.heavy
-@pytest.mark.parametrize("how", SPOILED)
-def test_kernel_of_other_sources_raises_until_built(folder: Path, how: str) -> None:
-    name, spoil, message = SPOILED[how]
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_kernel_of_other_sources_raises_until_built(folder: Path, damage: str) -> None:
+    name, change, message = DAMAGES[damage]
     binary = folder / BINARY.relative_to(ROOT)
     file = binary.parent / name
-    spoiled = spoil(file.read_bytes())
+    content = change(file.read_bytes())
     file.unlink()
-    if spoiled is not None:
-        file.write_bytes(spoiled)
+    if content is not None:
+        file.write_bytes(content)
     (folder / "scene.toml").write_text(SCENE)
     status, printed, errors = run(folder, "-m", "cuefem", "strike", "scene.toml")
     assert (status, printed, len(errors)) == (2, "", 1)
     assert errors[0].endswith(f"the contact's compiled kernel {message}; {BUILD}")
-    if how == "other sources":
+    if damage == "other sources":
         assert run(folder, "-c", STRIKE)[2][-1].startswith("cuefem.contact.kernel.KernelError: ")
         assert run(folder, "hatch_build.py", CFLAGS="-O0") == (0, str(binary), [])
         assert run(folder, "-c", STRIKE) == (0, "", [])

@@ -27,7 +27,7 @@ BEND = 1.5
 @pytest.mark.parametrize(("speed", "chain"), [(0.8, 2.30), (2.0, 2.32), (4.0, 2.33), (7.0, 2.31)])
 def test_leather_strike_on_maple_equals_exact_chain(speed: float, chain: float) -> None:
     """The full model against a geometrically exact chain."""
-    outcome = strike(maple_scene(0.375, speed, more=(cf.AxialWaves(), cf.GeometricStiffness())))
+    outcome = strike(maple_scene(0.375, speed, effects=(cf.AxialWaves(), cf.GeometricStiffness())))
     assert np.degrees(outcome.squirt) == pytest.approx(chain, rel=0.02)
 
 

@@ -44,8 +44,8 @@ def test_motion_relative_velocity_equals_history(name: str, offset: float) -> No
     scene = replace(SCENE, stroke=replace(SCENE.stroke, offset=offset), effects=EFFECTS[name])
     outcome = cf.strike(scene, AT)
     times = outcome.history.ends[: int(0.8 * len(outcome.history.ends))]
-    known, until = outcome.history(times), times[-1]
-    expected = [np.trapezoid(known["velocity_t"], times), np.trapezoid(known["velocity_n"], times)]
-    result = motion(scene, [0.0, until], AT)
-    np.testing.assert_allclose(sliding_path(result, scene)[1], expected, rtol=0, atol=1e-5 * SCENE.stroke.speed * until)
+    history, end = outcome.history(times), times[-1]
+    expected = [np.trapezoid(history["velocity_t"], times), np.trapezoid(history["velocity_n"], times)]
+    result = motion(scene, [0.0, end], AT)
+    np.testing.assert_allclose(sliding_path(result, scene)[1], expected, rtol=0, atol=1e-5 * SCENE.stroke.speed * end)
     assert result.duration == outcome.phases[-1].end

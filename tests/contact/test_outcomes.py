@@ -69,12 +69,12 @@ def strike_with(effects: tuple[cf.Effect, ...]) -> cf.Outcome:
 @pytest.mark.heavy
 def test_outcome_in_another_process_is_equal() -> None:
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as executor:
-        for effects, sent in zip(EFFECTS, executor.map(strike_with, EFFECTS), strict=True):
+        for effects, received in zip(EFFECTS, executor.map(strike_with, EFFECTS), strict=True):
             outcome = strike_with(effects)
             times = np.linspace(0, outcome.duration, 7)
-            for other in (sent, pickle.loads(pickle.dumps(outcome)), deepcopy(outcome)):
-                assert other == outcome
-                assert all(np.array_equal(other.history(times)[k], v) for k, v in outcome.history(times).items())
+            for copy in (received, pickle.loads(pickle.dumps(outcome)), deepcopy(outcome)):
+                assert copy == outcome
+                assert all(np.array_equal(copy.history(times)[k], v) for k, v in outcome.history(times).items())
             history = replace(outcome.history, forces=outcome.history.forces * (1 + 1e-15))
             changes = ({"squirt": np.nextafter(outcome.squirt, 1)}, {"history": None}, {"history": history})
             assert all(outcome != replace(outcome, **change) for change in changes)

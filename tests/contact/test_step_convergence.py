@@ -61,12 +61,12 @@ def test_strike_lumped_cue_converges_to_impulse_solver_second_order() -> None:
         exact = cf.impulse(replace(scene, effects=()))
         for steps, deviations in errors.items():
             outcome = cf.strike(scene, cf.Resolution(1, 1, 1, steps))
-            off = [outcome.squirt - exact.squirt, outcome.ball_speed / exact.ball_speed - 1]
-            off += [(outcome.energy[name] - joules) / exact.energy["initial"] for name, joules in exact.energy.items()]
-            deviations.append(float(np.abs(off).max()))
+            errors_ = [outcome.squirt - exact.squirt, outcome.ball_speed / exact.ball_speed - 1]
+            errors_ += [(outcome.energy[name] - e) / exact.energy["initial"] for name, e in exact.energy.items()]
+            deviations.append(float(np.abs(errors_).max()))
         counts.update([exact.regime])
         assert end_of_first_slip(outcome.phases) == exact.regime
-    coarse, fine = (np.array(each) for each in errors.values())
+    coarse, fine = (np.array(values) for values in errors.values())
     assert coarse.max() < 2e-3
     assert np.log(np.sqrt(np.mean(coarse**2) / np.mean(fine**2))) / math.log(4) == pytest.approx(ORDER, abs=WITHIN)
     assert all(counts[regime] >= 2 for regime in ("stick", "late stick", "miscue", "slip reversal")), counts
@@ -110,10 +110,10 @@ def default_scene(kind: str) -> tuple[cf.Scene, TipModes]:
     return scene, tip_modes_of(scene)
 
 
-def squirts_over(kind: str, offsets: np.ndarray, **more: int) -> np.ndarray:
+def squirts_over(kind: str, offsets: np.ndarray, **options: int) -> np.ndarray:
     scene, tip = default_scene(kind)
     strokes = (replace(scene.stroke, offset=float(b)) for b in offsets)
-    return np.array([strike_modes(replace(scene, stroke=stroke), tip, **more).squirt for stroke in strokes])
+    return np.array([strike_modes(replace(scene, stroke=stroke), tip, **options).squirt for stroke in strokes])
 
 
 @pytest.mark.heavy
@@ -130,12 +130,12 @@ def test_squirt_over_offsets_fine_grid_has_no_jump(kind: str) -> None:
     assert np.abs((rises[10:-10] - slope) / squirts[11:-10]).max() < 1e-5
 
 
-@pytest.mark.parametrize(("kind", "most"), [("usual", 1e-5), ("bare", 2e-4)])
-def test_squirt_over_offsets_is_smooth(kind: str, most: float) -> None:
+@pytest.mark.parametrize(("kind", "tolerance"), [("usual", 1e-5), ("bare", 2e-4)])
+def test_squirt_over_offsets_is_smooth(kind: str, tolerance: float) -> None:
     x = np.linspace(0.30, 0.32, 41)
     squirts = squirts_over(kind, x)
     smooth = np.polyval(np.polyfit(x - 0.31, squirts, 4), x - 0.31)
-    assert np.abs(squirts / smooth - 1).max() < most
+    assert np.abs(squirts / smooth - 1).max() < tolerance
 
 
 def second_hits() -> Iterator[tuple[cf.Scene, TipModes]]:

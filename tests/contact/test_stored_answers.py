@@ -41,9 +41,9 @@ def test_strike_each_kind_equals_stored_answers(kind: str) -> None:
     assert np.quantile(errors, 0.95) < 1e-3
     assert errors.max() < 2e-3
     assert max(map(energy_residual, outcomes)) < (2e-4 if kind == INFINITE_FRICTION else 2e-5)
-    for name, most in (("ball_speed", 5e-4), ("cue_speed", 5e-4), ("spin", 5e-4), ("duration", 1e-3)):
+    for name, tolerance in (("ball_speed", 5e-4), ("cue_speed", 5e-4), ("spin", 5e-4), ("duration", 1e-3)):
         pairs = [(getattr(outcome, name), row["answer"][name]) for outcome, row in zip(outcomes, rows, strict=True)]
-        assert max(abs(value / stored - 1) for value, stored in pairs) < most, name
+        assert max(abs(value / stored - 1) for value, stored in pairs) < tolerance, name
     for outcome, row in zip(outcomes, rows, strict=True):
         initial = row["answer"]["energy"]["initial"]
         for name, joules in row["answer"]["energy"].items():
@@ -71,7 +71,7 @@ def test_end_mass_equals_stored_answers(damped: bool) -> None:
 
 
 def test_frequencies_equal_stored_answers() -> None:
-    with_modes = [row for row in cues() if "frequencies" in row]
-    assert len(with_modes) == 30
-    for row in with_modes[::3]:
+    rows = [row for row in cues() if "frequencies" in row]
+    assert len(rows) == 30
+    for row in rows[::3]:
         np.testing.assert_allclose(cf.modes(cue_of(row), 12).frequencies[:12], row["frequencies"], rtol=1e-6)

@@ -66,7 +66,7 @@ LEVEL = (
 )
 RAISED = st.builds(cf.Elevation, st.floats(0.0, 1.2), st.sampled_from([0.0, 0.2, 3.0]))
 WHOLE_TIP = st.builds(
-    lambda E, rolls, lost: replace(LEATHER, E=E, rolling=rolls, surface_restitution=lost),
+    lambda E, rolls, e_t: replace(LEATHER, E=E, rolling=rolls, surface_restitution=e_t),
     st.floats(1.5e8, 6e8),
     st.booleans(),
     st.just(1.0) | st.floats(0.3, 1.0),
@@ -123,13 +123,13 @@ def test_strike_conserves_energy_mirrors_and_ignores_effect_order(examples: int)
         )
         if outcome.history.velocity is not None:
             assert outcome.history.velocity[2] > -1e-9  # the ball does not move into the table
-        other = strike(replace(scene, stroke=replace(scene.stroke, offset=-scene.stroke.offset)))
-        assert other is not None
-        assert_mirrored(outcome, other)
+        mirrored = strike(replace(scene, stroke=replace(scene.stroke, offset=-scene.stroke.offset)))
+        assert mirrored is not None
+        assert_mirrored(outcome, mirrored)
         effects = scene.effects[turn:] + scene.effects[:turn]
-        turned = strike(replace(scene, effects=effects[::-1] if turn % 2 else effects))
-        assert turned is not None
-        assert outcome_vector(turned) == pytest.approx(outcome_vector(outcome), rel=1e-9, abs=1e-12)
+        reordered = strike(replace(scene, effects=effects[::-1] if turn % 2 else effects))
+        assert reordered is not None
+        assert outcome_vector(reordered) == pytest.approx(outcome_vector(outcome), rel=1e-9, abs=1e-12)
 
     everywhere()
 
@@ -145,17 +145,17 @@ SPLIT: dict[str, tuple[Effect, ...]] = {  # the first is the sum of the others
 @pytest.mark.parametrize("name", SPLIT)
 def test_effect_split_in_parts_equals_whole(name: str) -> None:
     """For strike, end mass, motion and the impulse solver alike."""
-    whole, *parts = SPLIT[name]
-    one, other = (replace(kim_scene(), effects=tuple(effects)) for effects in ([whole], parts))
-    assert outcome_vector(cf.strike(other, AT)) == pytest.approx(
-        outcome_vector(cf.strike(one, AT)), rel=1e-9, abs=1e-14
+    total, *parts = SPLIT[name]
+    expected, result = (replace(kim_scene(), effects=tuple(effects)) for effects in ([total], parts))
+    assert outcome_vector(cf.strike(result, AT)) == pytest.approx(
+        outcome_vector(cf.strike(expected, AT)), rel=1e-9, abs=1e-14
     )
     for drive in ("offset", "velocity"):
-        assert cf.end_mass(other, drive, AT) == pytest.approx(cf.end_mass(one, drive, AT), rel=1e-9)
-    assert cf.impulse(other).squirt == pytest.approx(cf.impulse(one).squirt, rel=1e-9)
-    centres = [cf.motion(scene, [0.0, 3e-4, 2e-3], AT).centre for scene in (one, other)]
+        assert cf.end_mass(result, drive, AT) == pytest.approx(cf.end_mass(expected, drive, AT), rel=1e-9)
+    assert cf.impulse(result).squirt == pytest.approx(cf.impulse(expected).squirt, rel=1e-9)
+    centres = [cf.motion(scene, [0.0, 3e-4, 2e-3], AT).centre for scene in (expected, result)]
     np.testing.assert_allclose(*centres, rtol=1e-9, atol=1e-14)
-    assert one.dome_radius == pytest.approx(other.dome_radius, abs=1e-15)
+    assert expected.dome_radius == pytest.approx(result.dome_radius, abs=1e-15)
 
 
 NODE = cf.PointMass(POSITION, 0.0)  # a node alone: the mesh's error is the same with and without the effect
@@ -196,14 +196,14 @@ def test_strike_other_limits_are_reached() -> None:
     assert squirt(cf.Elevation(0.0, 0.2)) == pytest.approx(bare, rel=1e-8)
     slow = [squirt(cf.GeometricStiffness(), speed=speed) / bare - 1 for speed in (0.1, 0.2)]
     assert slow[1] / slow[0] == pytest.approx(2.0, rel=1e-2)
-    rolled = []
+    changes = []
     for time in 1e-3 * 2.0 ** -np.arange(5, 9):
         scene = kim_scene(0.3, contact_time=float(time))
-        turned, fixed = (
+        rolling, fixed = (
             strike_modes(replace(scene, effects=e), rotating_modes()) for e in ((cf.RollingContact(),), ())
         )
-        rolled.append(turned.squirt / fixed.squirt - 1)
-    assert_order(1, 2.0 ** -np.arange(4.0), rolled, within=[0.04, 0.02, 0.01])
+        changes.append(rolling.squirt / fixed.squirt - 1)
+    assert_order(1, 2.0 ** -np.arange(4.0), changes, within=[0.04, 0.02, 0.01])
 
 
 LOUD = cf.Scene(cf.LumpedCue(0.54, 0.01), tip=cf.Tip(0.3, 0.05, contact_time=3e-3), stroke=cf.Stroke(1.5, 0.5))
@@ -231,12 +231,12 @@ def test_history_forces_obey_friction_and_integrate_to_impulse(name: str) -> Non
     force_times, force, lengths = history.force_times[1:-1], history.forces[1:-1], np.diff(history.ends)
     assert np.all(force[:, 1] >= 0)
     for phase in outcome.phases:
-        here = (force_times > phase.start) & (force_times < phase.end)
-        if not here.any():
+        in_phase = (force_times > phase.start) & (force_times < phase.end)
+        if not in_phase.any():
             assert (phase.state, phase.start) == ("impulse", phase.end)
             continue
-        f_t, f_n = force[here].T
-        integrals = [lengths[here] @ f_t, lengths[here] @ f_n]
+        f_t, f_n = force[in_phase].T
+        integrals = [lengths[in_phase] @ f_t, lengths[in_phase] @ f_n]
         np.testing.assert_allclose(integrals, phase.impulse, rtol=0, atol=1e-10 * outcome.impulse[1])
         if not isinf(mu):
             assert np.all(np.abs(f_t) <= mu * f_n * (1 + 1e-9))
@@ -244,5 +244,5 @@ def test_history_forces_obey_friction_and_integrate_to_impulse(name: str) -> Non
             direction = side * (1 if phase.state == "slip" else -1)
             last = slice(None, -1)  # sliding may stop in the last step of a phase
             assert np.abs(f_t - direction * mu * f_n)[last].max() < 1e-9 * f_n.max()
-            assert np.all(direction * history.velocities[1:][here][last, 0] < 1e-3 * scene.stroke.speed)
+            assert np.all(direction * history.velocities[1:][in_phase][last, 0] < 1e-3 * scene.stroke.speed)
     assert np.sum([phase.impulse for phase in outcome.phases], axis=0) == pytest.approx(outcome.impulse, rel=1e-12)

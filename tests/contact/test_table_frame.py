@@ -23,8 +23,8 @@ def stroke(offset, speed=2.0, end_mass=0.004):
     return cf.impulse(cf.Scene(cf.LumpedCue(0.54, end_mass), BALL, cf.Tip(0.75, 0.7), cf.Stroke(speed, offset)))
 
 
-def strike_and_place(point, direction=NORTH, **how):
-    outcome = stroke(offset_of(point, direction, ball=BALL), **how)
+def strike_and_place(point, direction=NORTH, **options):
+    outcome = stroke(offset_of(point, direction, ball=BALL), **options)
     return outcome, cf.place(outcome, point, direction, ball=BALL)
 
 

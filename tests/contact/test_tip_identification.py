@@ -29,10 +29,10 @@ def whole_cue() -> cf.Scene:
 @pytest.mark.parametrize("E", [60e6, 400e6])
 def test_identify_tip_rigid_cue_recovers_tip(E: float) -> None:
     """In a centre-ball impact a cue without axial waves is rigid: its rebound is the tip's restitution."""
-    known = leather_scene(leather=replace(LEATHER, E=E))
-    assert cf.rebound(known) == pytest.approx(0.73, rel=1e-4)
+    scene = leather_scene(leather=replace(LEATHER, E=E))
+    assert cf.rebound(scene) == pytest.approx(0.73, rel=1e-4)
     soft = leather_scene(leather=replace(LEATHER, E=1e6))  # too soft for the stroke; its E has no effect
-    assert cf.identify_tip(soft, float(known.contact_time), 0.73) == pytest.approx((E, 0.73), rel=2e-4)
+    assert cf.identify_tip(soft, float(scene.contact_time), 0.73) == pytest.approx((E, 0.73), rel=2e-4)
 
 
 def test_identify_tip_with_axial_waves_recovers_tip() -> None:
@@ -46,11 +46,11 @@ def test_identify_tip_with_axial_waves_recovers_tip() -> None:
 
 @pytest.mark.parametrize("name", LEATHERS)
 def test_identify_tip_reproduces_measured_contact_time_and_rebound(name: str) -> None:
-    known = LEATHERS[name]
-    result = cf.identify_tip(whole_cue(), known.contact_time, 0.73)
-    assert (known.E, known.restitution) == pytest.approx(result, rel=3e-3)  # three digits are stored
-    assert head_on(with_tip(whole_cue(), IdentifiedTip(known.E, known.restitution))) == pytest.approx(
-        (known.contact_time, 0.73), rel=1e-3
+    leather = LEATHERS[name]
+    result = cf.identify_tip(whole_cue(), leather.contact_time, 0.73)
+    assert (leather.E, leather.restitution) == pytest.approx(result, rel=3e-3)  # three digits are stored
+    assert head_on(with_tip(whole_cue(), IdentifiedTip(leather.E, leather.restitution))) == pytest.approx(
+        (leather.contact_time, 0.73), rel=1e-3
     )
 
 

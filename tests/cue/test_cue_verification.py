@@ -11,7 +11,7 @@ from cuefem.cue.geometry import shear_coefficient
 from tests.helpers.cues import CARBON, FAMILY, FOAM, LEATHER, MAPLE, kim, soft_tip
 from tests.helpers.invalid_input import assert_raises
 
-POINTS, WEIGHTS = (part / 2 for part in np.polynomial.legendre.leggauss(8))
+POINTS, WEIGHTS = (half / 2 for half in np.polynomial.legendre.leggauss(8))
 
 
 def integral(cue: Cue, property_: str, power: int = 0) -> float:

@@ -12,16 +12,16 @@ FIELDS = {"E", "G", "rho", "loss", "nu"}
 
 @pytest.mark.parametrize("name", MATERIALS)
 def test_material_has_source_and_valid_ranges(name: str) -> None:
-    known = MATERIALS[name]
+    entry = MATERIALS[name]
     assert name == name.lower().strip()
-    assert len(known.source) > 20
-    assert "[" in known.source or "," in known.source
-    assert set(known.ranges) == FIELDS
-    for key, (low, high) in known.ranges.items():
-        assert low <= getattr(known.material, key) <= high, key
+    assert len(entry.source) > 20
+    assert "[" in entry.source or "," in entry.source
+    assert set(entry.ranges) == FIELDS
+    for key, (low, high) in entry.ranges.items():
+        assert low <= getattr(entry.material, key) <= high, key
         assert low < high, key
         for end in (low, high):
-            assert getattr(dataclasses.replace(known.material, **{key: end}), key) == end
+            assert getattr(dataclasses.replace(entry.material, **{key: end}), key) == end
 
 
 @pytest.mark.parametrize(
@@ -59,7 +59,7 @@ def test_leather_ranges_are_soft_to_hard() -> None:
     scene = cf.Scene(cf.LumpedCue(0.567, 0.008), cf.Ball(0.170, 0.028575), cf.Tip(0.73, 0.7, contact_time=1e-3))
     assert scene.stiffness == pytest.approx(0.97e6, rel=0.01)
     assert MATERIALS["leather"].ranges["E"] == pytest.approx((LEATHERS["soft"].E, LEATHERS["hard"].E), rel=0.02)
-    losses = {name: (1 - known.restitution**2) / 3.141592653589793 for name, known in LEATHERS.items()}
+    losses = {name: (1 - entry.restitution**2) / 3.141592653589793 for name, entry in LEATHERS.items()}
     assert material("leather").loss == pytest.approx(losses["medium"], rel=0.02)
     assert MATERIALS["leather"].ranges["loss"] == pytest.approx((losses["soft"], losses["hard"]), rel=0.02)
 

@@ -46,19 +46,19 @@ def step_chain(cue: cf.Cue, pieces: int = 200) -> tuple[float, float]:
     )
     m[-1] += cue.body_mass
     k, e = head_on(cue).stiffness, TIP.restitution
-    v, squeeze = np.ones(pieces + 1), np.zeros(pieces)
-    ball = compression = most = time = 0.0
+    v, strain = np.ones(pieces + 1), np.zeros(pieces)
+    ball = compression = max_compression = time = 0.0
     dt = 0.2 * h / math.sqrt(MAPLE.E / MAPLE.rho)
     while True:
-        most = max(most, compression)
-        force = max(k * most - k / e**2 * (most - compression), 0.0)
+        max_compression = max(max_compression, compression)
+        force = max(k * max_compression - k / e**2 * (max_compression - compression), 0.0)
         if time > 0 and force == 0:
             return time, ball * (1 + cf.Ball().mass / cue.mass) - 1
-        net = np.r_[0.0, springs * squeeze] - np.r_[springs * squeeze, 0.0]
+        net = np.r_[0.0, springs * strain] - np.r_[springs * strain, 0.0]
         net[0] -= force
         v += dt * net / m
         ball += dt * force / cf.Ball().mass
-        squeeze += dt * (v[:-1] - v[1:])
+        strain += dt * (v[:-1] - v[1:])
         compression += dt * (v[0] - ball)
         time += dt
 
@@ -75,11 +75,11 @@ BUTT = {"cue_length": 1.4732, "butt_diameter": 0.03175}
 def test_axial_waves_stated_butt_equals_drawn_butt():
     """The stated butt equals a tapered segment of its mass and wave speed along the axis, and is absent across it."""
     waves, cue = cf.AxialWaves(**BUTT, wave_speed=4430.0), reference_cue("pool_maple")
-    whole, scene = waves.with_butt(cue), replace(head_on(cue), effects=(waves,))
-    rest = whole.segments[-1]
-    assert (whole.length, whole.mass) == pytest.approx((1.4732, cue.mass), rel=1e-12)
-    assert (rest.material.E / rest.material.rho) ** 0.5 == pytest.approx(4430.0, rel=1e-12)
-    assert contact_of(cf.strike(scene), cue) == pytest.approx(contact_of(cf.strike(head_on(whole)), whole), rel=1e-5)
+    drawn, scene = waves.with_butt(cue), replace(head_on(cue), effects=(waves,))
+    butt = drawn.segments[-1]
+    assert (drawn.length, drawn.mass) == pytest.approx((1.4732, cue.mass), rel=1e-12)
+    assert (butt.material.E / butt.material.rho) ** 0.5 == pytest.approx(4430.0, rel=1e-12)
+    assert contact_of(cf.strike(scene), cue) == pytest.approx(contact_of(cf.strike(head_on(drawn)), drawn), rel=1e-5)
     assert cf.end_mass(scene, "velocity") == cf.end_mass(head_on(cue), "velocity")
 
 
@@ -95,6 +95,6 @@ def test_rod_truncation_correction_has_compliance_of_all_modes(cutoff):
     result = rod_modes(cue, (), cutoff=cutoff, n_corrected=1)
     assert len(result.omega) == 2 + np.sum(result.omega[:-2] <= cutoff)
     assert np.sum(result.tip_displacement**2 / (result.omega**2 + s)) == pytest.approx(exact, rel=1e-6)
-    plain = rod_modes(cue, (), cutoff=cutoff)
-    assert plain.radiation is None
-    assert np.sum(plain.tip_displacement**2 / (plain.omega**2 + s)) < 0.95 * exact
+    truncated = rod_modes(cue, (), cutoff=cutoff)
+    assert truncated.radiation is None
+    assert np.sum(truncated.tip_displacement**2 / (truncated.omega**2 + s)) < 0.95 * exact

@@ -27,11 +27,13 @@ NODE = cf.PointMass(POSITION, 0.0)  # a node alone: the mesh's error is the same
 @pytest.mark.parametrize("share", [0.0, 0.4, 1.0])
 def test_point_mass_adds_its_axial_share_to_axial_mass(share):
     """Bending modes include the whole mass; in a centre-ball impact the cue's mass includes the axial share."""
-    lump = cf.PointMass(POSITION, 0.05, axial_share=share)
-    across = [cf.modes(kim(), 3, effects=(each,)).frequencies for each in (lump, cf.PointMass(POSITION, 0.05))]
-    np.testing.assert_allclose(*across, rtol=1e-12)
+    point_mass = cf.PointMass(POSITION, 0.05, axial_share=share)
+    frequencies = [
+        cf.modes(kim(), 3, effects=(effect,)).frequencies for effect in (point_mass, cf.PointMass(POSITION, 0.05))
+    ]
+    np.testing.assert_allclose(*frequencies, rtol=1e-12)
     heavier = replace(kim(), body_mass=kim().body_mass + 0.05 * share)
-    assert cf.strike(cf.Scene(kim(), effects=(lump,))).ball_speed == pytest.approx(
+    assert cf.strike(cf.Scene(kim(), effects=(point_mass,))).ball_speed == pytest.approx(
         cf.strike(cf.Scene(heavier)).ball_speed
     )
 
@@ -84,21 +86,21 @@ def lossy_cue(shell: float = 1.0, core: float = 1.0) -> cf.Cue:
 def test_structural_damping_equals_strain_energy_loss(effects: tuple[Effect, ...]) -> None:
     """A material's share of a mode's strain energy is what its moduli do to the frequency: d ln omega^2 / d ln E."""
 
-    def modes(shell: float = 1.0, core: float = 1.0, *more: Effect) -> TipModes:
-        scene = cf.Scene(lossy_cue(shell, core), effects=(*more, *effects))
+    def modes(shell: float = 1.0, core: float = 1.0, *added: Effect) -> TipModes:
+        scene = cf.Scene(lossy_cue(shell, core), effects=(*added, *effects))
         return tip_modes_of(scene, cf.Resolution(3, 16, 12))
 
     h, lossy = 1e-4, modes(1.0, 1.0, cf.StructuralDamping())
-    moving, damping = lossy.omega > 0, np.diag(lossy.damping)
+    vibrating, damping = lossy.omega > 0, np.diag(lossy.damping)
     pairs = (modes(1 + h), modes(1 - h)), (modes(core=1 + h), modes(core=1 - h))
-    front, inside = (np.log(up.omega[moving] / down.omega[moving]) / h for up, down in pairs)
-    computed, expected = (
-        damping[moving] / lossy.omega[moving],
+    front, inside = (np.log(up.omega[vibrating] / down.omega[vibrating]) / h for up, down in pairs)
+    loss, expected = (
+        damping[vibrating] / lossy.omega[vibrating],
         0.05 * front + 0.2 * inside + 0.012 * (1 - front - inside),
     )
-    np.testing.assert_allclose(computed, expected, rtol=1e-5)
-    assert np.ptp(computed) > 1e-3
-    assert np.count_nonzero(lossy.damping - np.diag(damping)) == np.count_nonzero(damping[~moving]) == 0
+    np.testing.assert_allclose(loss, expected, rtol=1e-5)
+    assert np.ptp(loss) > 1e-3
+    assert np.count_nonzero(lossy.damping - np.diag(damping)) == np.count_nonzero(damping[~vibrating]) == 0
 
 
 def test_joint_strain_energy_is_not_dissipated() -> None:
@@ -127,8 +129,8 @@ def rigid_domed(offset: float) -> tuple[cf.Cue, cf.LumpedCue]:
     phi = np.arcsin(offset)
     forward, lateral = x - RADIUS + RADIUS * np.cos(phi), -RADIUS * np.sin(phi)
     u, w = -lateral, forward
-    along, across = 1 / stub.mass + u**2 / inertia, 1 / stub.mass + w**2 / inertia
-    return stub, cf.LumpedCue(1 / along, 1 / across, u * w / inertia)
+    axial, transverse = 1 / stub.mass + u**2 / inertia, 1 / stub.mass + w**2 / inertia
+    return stub, cf.LumpedCue(1 / axial, 1 / transverse, u * w / inertia)
 
 
 @pytest.mark.parametrize("offset", [0.05, 0.3, 0.6, -0.3])

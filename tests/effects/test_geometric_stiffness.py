@@ -32,18 +32,18 @@ def column(G: float, *supports: cf.Support, count: int = 60) -> tuple[Any, float
 def test_geometric_stiffness_cantilever_deflection_equals_tangent_formula(G: float) -> None:
     """Deflection under a transverse end load and an axial force: tan(kL)/k, with Engesser's shear."""
     clamp = cf.Support(LENGTH, math.inf, rotational_stiffness=math.inf)
-    off = []
+    errors = []
     for count in (20, 40, 80):
         tip, kGA = column(G, clamp, count=count)
-        thrust = 0.7 * math.pi**2 * EI / 4 / LENGTH**2
-        k = math.sqrt(thrust / EI / (1 - thrust / kGA))
-        exact = (kGA / thrust * (math.tan(k * LENGTH) / k - LENGTH) + LENGTH) / (kGA - thrust)
-        matrix = np.diag(tip.omega**2) - thrust * tip.geometric
+        axial_force = 0.7 * math.pi**2 * EI / 4 / LENGTH**2
+        k = math.sqrt(axial_force / EI / (1 - axial_force / kGA))
+        exact = (kGA / axial_force * (math.tan(k * LENGTH) / k - LENGTH) + LENGTH) / (kGA - axial_force)
+        matrix = np.diag(tip.omega**2) - axial_force * tip.geometric
         matrix[0, 0] = 1.0  # the motion along the axis
-        across = tip.amplitude[:, 1]
-        off.append(abs(across @ np.linalg.solve(matrix, across) / exact - 1))
-    assert off[0] > off[1] > off[2]
-    assert off[2] < (1e-5 if G > 1e10 else 3e-3)  # shear under a point load: like 1/count
+        deflection = tip.amplitude[:, 1]
+        errors.append(abs(deflection @ np.linalg.solve(matrix, deflection) / exact - 1))
+    assert errors[0] > errors[1] > errors[2]
+    assert errors[2] < (1e-5 if G > 1e10 else 3e-3)  # shear under a point load: like 1/count
 
 
 STIFFNESS, SHEAR = 6e5, 2e5  # of the tip, N/m
@@ -53,10 +53,10 @@ def wood(x: Any) -> Any:
     return 0.00625 + 0.0045 * x / LENGTH
 
 
-def chain_of(stiffer: float) -> Chain:
-    """A shaft of wood with 430 g at its butt; stiffer: factor of the axial stiffness."""
+def chain_of(factor: float) -> Chain:
+    """A shaft of wood with 430 g at its butt; factor: factor of the axial stiffness."""
     chain = Chain(LENGTH, wood, 700.0, 12.6e9, 0.43, 60)
-    chain.stretch = chain.stretch * stiffer
+    chain.stretch = chain.stretch * factor
     return chain
 
 
@@ -71,19 +71,19 @@ def struck_shaft(speed: float, offset: float) -> cf.Scene:
 
 def modes_of(chain: Chain) -> TipModes:
     """Modes of the linear chain, with the geometric stiffness of its links."""
-    count, nudge = len(chain.mass), 1e-6
+    count, displacement = len(chain.mass), 1e-6
     stiffness = np.zeros((2, count, count))
     for axis, i in np.ndindex(2, count):
-        at = chain.rest.copy()
-        at[i, axis] += nudge
-        stiffness[axis, :, i] = -chain.forces(at, exact=False)[:, axis] / nudge
-    (along, u), (across, w) = (scipy.linalg.eigh(matrix, np.diag(chain.mass)) for matrix in stiffness)
-    along[0] = across[0] = across[1] = 0.0
+        positions = chain.rest.copy()
+        positions[i, axis] += displacement
+        stiffness[axis, :, i] = -chain.forces(positions, exact=False)[:, axis] / displacement
+    (axial, u), (lateral, w) = (scipy.linalg.eigh(matrix, np.diag(chain.mass)) for matrix in stiffness)
+    axial[0] = lateral[0] = lateral[1] = 0.0
     amplitude, approach = np.zeros((2 * count, 2)), np.zeros(2 * count)
     amplitude[:count, 0], amplitude[count:, 1], approach[0] = u[0], w[0], u[:, 0] @ chain.mass
-    share, turns = 1 - np.cumsum(chain.mass)[:-1] / chain.mass.sum(), np.diff(w, axis=0)
-    geometric = np.pad(turns.T @ ((share / chain.link)[:, None] * turns), (count, 0))
-    omega = np.sqrt(np.concatenate([along, across]))
+    share, rotations = 1 - np.cumsum(chain.mass)[:-1] / chain.mass.sum(), np.diff(w, axis=0)
+    geometric = np.pad(rotations.T @ ((share / chain.link)[:, None] * rotations), (count, 0))
+    omega = np.sqrt(np.concatenate([axial, lateral]))
     return TipModes(omega, amplitude, approach, np.zeros(2 * count), geometric=geometric)
 
 
@@ -99,11 +99,11 @@ def changes(chain: Chain, scene: cf.Scene) -> float:
 @pytest.mark.parametrize(("speed", "offset"), [(7.0, 0.187), (4.0, 0.6)])
 def test_geometric_stiffness_squirt_equals_exact_chain(speed: float, offset: float) -> None:
     """The change of squirt, 12 to 57 %, within 0.1 %: the chain's modes in the package; the chain in small steps."""
-    chain, scene = chain_of(stiffer=16.0), struck_shaft(speed, offset)
+    chain, scene = chain_of(factor=16.0), struck_shaft(speed, offset)
     tip = modes_of(chain)
-    bends, straight = (strike_modes(scene, each).squirt for each in (tip, replace(tip, geometric=None)))
-    assert bends / straight - 1 == pytest.approx(changes(chain, scene), rel=1e-3)
-    assert bends < 0.95 * straight
+    squirt, straight = (strike_modes(scene, modes).squirt for modes in (tip, replace(tip, geometric=None)))
+    assert squirt / straight - 1 == pytest.approx(changes(chain, scene), rel=1e-3)
+    assert squirt < 0.95 * straight
 
 
 def test_geometric_stiffness_out_of_range_raises_with_its_force() -> None:

@@ -14,7 +14,7 @@ from tests.helpers.invalid_input import assert_raises
 from tests.helpers.strike_scenes import KIM, energy_residual, kim_scene
 
 
-def listed(*effects: cf.Effect) -> Callable[[], cf.Scene]:
+def with_effects(*effects: cf.Effect) -> Callable[[], cf.Scene]:
     return lambda: replace(kim_scene(), effects=effects)
 
 
@@ -27,12 +27,12 @@ LEATHER, FLAT = cf.LeatherTip(6e-3, 9.5e-3, 1.4e8), cf.LeatherTip(6e-3, inf, 1e8
 DOME, RAISED, WAVES, FAR = cf.TipDome(0.01), cf.Elevation(0.1), cf.AxialWaves(), cf.Joint(0.9)
 
 
-def with_tip(tip: cf.Tip, *effects: cf.Effect, **more: Any) -> Callable[[], cf.Scene]:
-    return lambda: replace(kim_scene(), tip=tip, effects=effects, **more)
+def with_tip(tip: cf.Tip, *effects: cf.Effect, **fields: Any) -> Callable[[], cf.Scene]:
+    return lambda: replace(kim_scene(), tip=tip, effects=effects, **fields)
 
 
 CALLS: list[tuple[Callable[[], object], str]] = [  # one line for each `raise`
-    (listed(SHEAR, RAISED), "TipShear; got Elevation, which does not"),
+    (with_effects(SHEAR, RAISED), "TipShear; got Elevation, which does not"),
     (lambda: replace(LEATHER, dome_radius=6e-3).mass(0.013), "a 13 mm tip needs at least 6.5 mm"),
     (lambda: replace(LEATHER, height=2e-3).mass(0.01275), "must be higher than 2.457 mm, the depth"),
     (lambda: replace(FLAT, height=6e-4).mass(0.01275), "must be 0.638 to 38.2 mm high; got "),
@@ -40,14 +40,14 @@ CALLS: list[tuple[Callable[[], object], str]] = [  # one line for each `raise`
     (lambda: FLAT.compliance(0.012, 0.1, 7e-3), "patch must be in (0, 0.006] m; got 0.007"),
     (lambda: FLAT.compliance(0.012, 1.0, 1e-3), "offset must be in (-1, 1); got 1.0"),
     (lambda: FLAT.head_on(0.012, 0.0), "ball_radius must be in (0, inf) m; got 0.0"),
-    (listed(SHEAR, cf.PointMass(0.71, 0.01)), "Scene.effects[1].position must be in [0, 0.7] m, on the cue"),
-    (listed(SHEAR, FAR), "Scene.effects[1].position must be in (0, 0.7) m, between the ends"),
+    (with_effects(SHEAR, cf.PointMass(0.71, 0.01)), "Scene.effects[1].position must be in [0, 0.7] m, on the cue"),
+    (with_effects(SHEAR, FAR), "Scene.effects[1].position must be in (0, 0.7) m, between the ends"),
     (lumped(SHEAR, cf.Joint(0.1)), "got Joint, which needs a finite-element Cue"),
     (lumped(SHEAR, WAVES), "Scene.effects[1] must be an effect that a LumpedCue can have"),
     (lambda: cf.AxialWaves(1.47), "AxialWaves must be given cue_length, butt_diameter and wave_speed together"),
-    (listed(WAVES, SHEAR, WAVES), "Scene.effects[2] must be another effect, AxialWaves acts once; got Axial"),
-    (listed(DOME, LEATHER), "must be an effect that goes with effects[0], TipDome; got LeatherTip"),
-    (listed(LEATHER), "Tip.contact_time must be omitted with an effect that models the whole tip"),
+    (with_effects(WAVES, SHEAR, WAVES), "Scene.effects[2] must be another effect, AxialWaves acts once; got Axial"),
+    (with_effects(DOME, LEATHER), "must be an effect that goes with effects[0], TipDome; got LeatherTip"),
+    (with_effects(LEATHER), "Tip.contact_time must be omitted with an effect that models the whole tip"),
     (with_tip(cf.Tip(stiffness=1e6), LEATHER), "Tip.stiffness must be omitted with an effect that models the whole"),
     (with_tip(cf.Tip(), WAVES, LEATHER, cue=pool()), "Scene.effects[1] must be the only leather: draw the cue"),
     (lambda: cf.modes(pool(), effects=(LEATHER,)), "LeatherTip must be the only leather: draw the cue without its"),
@@ -55,7 +55,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [  # one line for each `raise`
     (lambda: cf.modes(KIM, 3, effects=(3,)), "TypeError: modes effects must be effects"),  # type: ignore[arg-type]
     (lambda: replace(kim_scene(), effects=SHEAR), "TypeError: Scene.effects must be a sequence of effects"),  # type: ignore[arg-type]
     (lambda: replace(LEATHER, rolling="no"), "TypeError: LeatherTip.rolling must be a bool; got 'no'"),
-    (listed(SHEAR, "TipDome"), "TypeError: Scene.effects[1] must be an Effect; got 'TipDome'"),  # type: ignore[arg-type]
+    (with_effects(SHEAR, "TipDome"), "TypeError: Scene.effects[1] must be an Effect; got 'TipDome'"),  # type: ignore[arg-type]
 ]
 
 

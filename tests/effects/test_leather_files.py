@@ -36,8 +36,8 @@ def tip_of(file: Path) -> cf.LeatherTip:
 
 @pytest.mark.parametrize("name", LEATHERS)
 def test_leather_name_in_file_sets_constants(file: Path, name: str) -> None:
-    known = LEATHERS[name]
-    assert tip_of(write_scene(file, leather=f"'{name}'")) == cf.LeatherTip(6e-3, 9.5e-3, known.E, known.nu, known.rho)
+    leather, tip = LEATHERS[name], tip_of(write_scene(file, leather=f"'{name}'"))
+    assert tip == cf.LeatherTip(6e-3, 9.5e-3, leather.E, leather.nu, leather.rho)
 
 
 @pytest.mark.parametrize(

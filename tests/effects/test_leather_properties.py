@@ -51,17 +51,17 @@ def test_leather_compliance_is_positive_definite(tip: LeatherTip, diameter: floa
 @given(TIPS, DIAMETERS, st.floats(-0.6, 0.6))
 def test_leather_moment_arm_lies_on_dome_or_rim(tip: LeatherTip, diameter: float, phi: float) -> None:
     """The contact lies on the dome or its rim; the mass is between 1/3 of the cylinder's and the cylinder's."""
-    along, across = possible(tip, diameter).moment_arm(phi, diameter)
-    assert abs(along) <= diameter / 2
-    assert math.copysign(1, along) == -math.copysign(1, phi)
-    assert -tip.height <= across < 0
+    u, w = possible(tip, diameter).moment_arm(phi, diameter)
+    assert abs(u) <= diameter / 2
+    assert math.copysign(1, u) == -math.copysign(1, phi)
+    assert -tip.height <= w < 0
     if abs(math.sin(phi)) * tip.dome_radius < diameter / 2:
-        np.testing.assert_allclose(along, -tip.dome_radius * math.sin(phi) if phi else 0.0)
+        np.testing.assert_allclose(u, -tip.dome_radius * math.sin(phi) if phi else 0.0)
         if math.isfinite(tip.dome_radius):
-            drop = 2 * tip.dome_radius * math.sin(phi / 2) ** 2
-            np.testing.assert_allclose(-across, tip.height - drop, rtol=1e-9)
-    whole = tip.rho * math.pi / 4 * diameter**2 * tip.height
-    assert whole / 3 < tip.mass(diameter) <= whole * (1 + 1e-12)
+            depth = 2 * tip.dome_radius * math.sin(phi / 2) ** 2
+            np.testing.assert_allclose(-w, tip.height - depth, rtol=1e-9)
+    cylinder = tip.rho * math.pi / 4 * diameter**2 * tip.height
+    assert cylinder / 3 < tip.mass(diameter) <= cylinder * (1 + 1e-12)
 
 
 @settings(max_examples=40)
@@ -78,5 +78,5 @@ def test_leather_law_stiffness_of_every_annulus_is_positive(tip: LeatherTip, dia
     slope, stiffness = law.slope(depth), law.at(depth)[1]
     assert np.all(np.diff(slope)[depth[1:] < 0.8 * law.indentation_limit] > 0)
     rim = tip.moment_arm(math.pi / 2, diameter)[1] / diameter  # where the dome ends
-    part = 0.02 if -rim < 0.03 else 4e-3 if tip.dome_radius > 3.5 * diameter else 2e-3
-    assert np.all(stiffness > (1 - part) * np.maximum.accumulate(stiffness) - 1e-9)
+    tolerance = 0.02 if -rim < 0.03 else 4e-3 if tip.dome_radius > 3.5 * diameter else 2e-3
+    assert np.all(stiffness > (1 - tolerance) * np.maximum.accumulate(stiffness) - 1e-9)

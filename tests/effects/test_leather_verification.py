@@ -30,8 +30,8 @@ TIP, DIAMETER = LeatherTip(6e-3, 9.5e-3, 100e6), 12.75e-3
 def test_leather_long_tip_equals_rod() -> None:
     """EA/h along the axis, from the difference of two lengths, which cancels the local compliance; 3EI/h^3 across it
     on a slender rod. Over D: EA is pi/4, EI pi/64."""
-    how = graded_fineness(4, 4, 6, 1)
-    short, long, slender = (solved(Shape(h, 0.0), 0.3, Patch(0.0, 0.45), how) for h in (4.0, 6.0, 30.0))
+    fineness = graded_fineness(4, 4, 6, 1)
+    short, long, slender = (solved(Shape(h, 0.0), 0.3, Patch(0.0, 0.45), fineness) for h in (4.0, 6.0, 30.0))
     assert abs((long - short)[0, 0] * math.pi / 4 / 2 - 1) < 1e-3
     assert abs(slender[1, 1] * 3 * math.pi / 64 / 30**3 - 1) < 5e-3
 
@@ -41,8 +41,8 @@ def test_leather_small_patch_equals_half_space() -> None:
     """Within 5 % at a/h = 1/16, and the difference falls as a/h."""
     errors = []
     for radius in (1 / 32, 1 / 64, 1 / 128):
-        shape, how = Shape(0.5, 0.0), contact_fineness(0.5, radius, 4)._replace(harmonics=1)
-        computed = np.diagonal(solved(shape, 0.4, Patch(0.0, radius), how))
+        shape, fineness = Shape(0.5, 0.0), contact_fineness(0.5, radius, 4)._replace(harmonics=1)
+        computed = np.diagonal(solved(shape, 0.4, Patch(0.0, radius), fineness))
         errors.append(1 - computed / tt.half_space(0.4, radius))
     assert np.all(np.abs(errors[0]) < 0.05)
     np.testing.assert_allclose(np.divide(errors[0], errors[1]), 2, rtol=0.05)
@@ -51,8 +51,8 @@ def test_leather_small_patch_equals_half_space() -> None:
 
 def test_leather_central_impact_equals_hertz() -> None:
     """Force and indentation of a small contact, for gaps of second and fourth order."""
-    shape, how = Shape(1.0, 0.0), contact_fineness(1.0, 0.01)
-    computed = central_contact(shape, TipSolid(shape, how).surface(0.3, 0), 0.01, how)
+    shape, fineness = Shape(1.0, 0.0), contact_fineness(1.0, 0.01)
+    computed = central_contact(shape, TipSolid(shape, fineness).surface(0.3, 0), 0.01, fineness)
     np.testing.assert_allclose(computed / tt.half_space_head_on(0.3, np.array(0.01)), 1, rtol=5e-3)
 
 
@@ -99,9 +99,9 @@ def test_leather_central_impact_table_equals_solution(
         Shape(height / diameter, diameter / dome),
         28.575,
     )
-    how = contact_fineness(shape.height, patch / diameter)
+    fineness = contact_fineness(shape.height, patch / diameter)
     gaps = np.array([shape.curvature, diameter / ball, (diameter / ball) ** 3])
-    force, depth = central_contact(shape, TipSolid(shape, how).surface(nu, 0), patch / diameter, how) @ gaps
+    force, depth = central_contact(shape, TipSolid(shape, fineness).surface(nu, 0), patch / diameter, fineness) @ gaps
     radii, depths, forces = tip.head_on(1e-3 * diameter, 1e-3 * ball)
     assert abs(np.interp(1e-3 * patch, radii, depths) / (depth * 1e-3 * diameter) - 1) < 5e-3
     assert abs(np.interp(1e-3 * patch, radii, forces) / (force * (1e-3 * diameter) ** 2) - 1) < 5e-3
@@ -113,9 +113,9 @@ def test_leather_table_equals_its_program() -> None:
     panel, i, j, u = 1, 2, 3, 1
     k = curvatures(panel, COUNTS["curvature"])[i]
     nu = (1 - np.exp(-tt.chebyshev_nodes(*tt.NU, COUNTS["nu"])[u])) / 2
-    own = tip_table(shape_at(k, tt.chebyshev_nodes(*tt.heights(k), COUNTS["height"])[j]), nu)
-    for part, whole in zip((own.patches, own.head_on), tt.table(), strict=True):
-        np.testing.assert_allclose(part, whole[panel, i, j, u], rtol=1e-5, atol=1e-6)
+    tip = tip_table(shape_at(k, tt.chebyshev_nodes(*tt.heights(k), COUNTS["height"])[j]), nu)
+    for values, tabulated in zip((tip.patches, tip.head_on), tt.table(), strict=True):
+        np.testing.assert_allclose(values, tabulated[panel, i, j, u], rtol=1e-5, atol=1e-6)
 
 
 @pytest.mark.heavy

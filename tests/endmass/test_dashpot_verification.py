@@ -26,11 +26,11 @@ def dashpot_scene(contact_time: float, dashpot: float, position: float = 0.1) ->
 
 def stepped_end_mass(scene: Scene, steps: int) -> float:
     """Sum of impulses, each at the middle of a step, after which the tip has the velocity (1 - cos(pi t/T))/2."""
-    bent = bending(SHAFT, scene.cue_effects, MODES + 2)
-    n, T = len(bent.omega), float(scene.contact_time)
-    A = np.block([[np.zeros((n, n)), np.eye(n)], [-np.diag(bent.omega**2), -bent.damping]])
+    modes = bending(SHAFT, scene.cue_effects, MODES + 2)
+    n, T = len(modes.omega), float(scene.contact_time)
+    A = np.block([[np.zeros((n, n)), np.eye(n)], [-np.diag(modes.omega**2), -modes.damping]])
     half = la.expm(A * T / steps / 2)
-    drive = np.concatenate([np.zeros(n), bent.across])
+    drive = np.concatenate([np.zeros(n), modes.deflection])
     sensor = drive @ half
     z, total = np.zeros(2 * n), 0.0
     for i in range(steps):
@@ -44,8 +44,8 @@ def stepped_end_mass(scene: Scene, steps: int) -> float:
 @pytest.mark.parametrize(("contact_time", "dashpot"), [(0.5e-3, 5.0), (1e-3, 20.0), (2e-3, 60.0)])
 def test_velocity_end_mass_equals_small_steps(contact_time: float, dashpot: float) -> None:
     scene = dashpot_scene(contact_time, dashpot)
-    own = end_mass(scene, "velocity", AT)
-    assert stepped_end_mass(scene, 8000) == pytest.approx(own, rel=1e-5)
+    expected = end_mass(scene, "velocity", AT)
+    assert stepped_end_mass(scene, 8000) == pytest.approx(expected, rel=1e-5)
 
 
 @pytest.mark.parametrize("drive", ["velocity", "force", "stick", "offset"])

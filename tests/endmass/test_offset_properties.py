@@ -24,7 +24,7 @@ EFFECTS = {
 }
 
 
-def at(scene: cf.Scene, offset: object) -> cf.Scene:
+def at_offset(scene: cf.Scene, offset: object) -> cf.Scene:
     return replace(scene, stroke=replace(scene.stroke, offset=offset))
 
 
@@ -37,10 +37,10 @@ def test_offset_end_mass_small_offsets_converges_to_stick(effects: tuple[object,
     scene = replace(kim_scene(0.0), effects=effects)
     limit = cf.end_mass(scene, "stick", KIM_AT)
     assert offset_mass(scene) == pytest.approx(limit, rel=1e-12)
-    gaps = [offset_mass(at(scene, b)) / limit - 1 for b in (0.02, 0.01)]
+    gaps = [offset_mass(at_offset(scene, b)) / limit - 1 for b in (0.02, 0.01)]
     assert gaps[0] / gaps[1] == pytest.approx(4, rel=0.05)
     assert abs(gaps[0]) < 1e-2
-    assert offset_mass(at(scene, -0.3)) == pytest.approx(offset_mass(at(scene, 0.3)), rel=1e-12)
+    assert offset_mass(at_offset(scene, -0.3)) == pytest.approx(offset_mass(at_offset(scene, 0.3)), rel=1e-12)
 
 
 def test_offset_end_mass_equals_impulse_and_lump() -> None:
@@ -51,8 +51,8 @@ def test_offset_end_mass_equals_impulse_and_lump() -> None:
     curve = squirt_record(scene, (0.1, 0.4))
     assert curve["end_mass"][1] == pytest.approx(lumped.end_mass, rel=1e-12)
     assert curve["models"]["two-part, this cue"]["squirt"][1] == pytest.approx(cf.impulse(scene).squirt, rel=1e-12)
-    both = cf.impulse([at(scene, 0.1), at(scene, 0.4)]).squirt
-    assert both == pytest.approx(curve["models"]["two-part, this cue"]["squirt"], rel=1e-12)
+    squirts = cf.impulse([at_offset(scene, 0.1), at_offset(scene, 0.4)]).squirt
+    assert squirts == pytest.approx(curve["models"]["two-part, this cue"]["squirt"], rel=1e-12)
 
 
 def test_offset_end_mass_of_kim_cue_has_smaller_error_than_stick() -> None:
@@ -73,7 +73,7 @@ def test_lump_with_dome_squirt_equals_strike_without_slip(offset: float) -> None
 
 def test_lumped_cue_coupling_is_the_same_at_all_offsets() -> None:
     """A cue's own coupling is a constant, that by effects at the tip is proportional to the offset."""
-    scene = at(cf.Scene(cf.LumpedCue(0.54, 0.006, coupling=3.0), tip=cf.Tip(contact_time=1e-3)), 0.2)
+    scene = at_offset(cf.Scene(cf.LumpedCue(0.54, 0.006, coupling=3.0), tip=cf.Tip(contact_time=1e-3)), 0.2)
     models = squirt_record(scene, (-0.3, 0.3))["models"]
     assert models["lumped, this cue"]["squirt"] == pytest.approx(models["coupled, this cue"]["squirt"], rel=1e-3)
     assert strike_record(scene)["coupling"] == 3.0

@@ -13,9 +13,9 @@ from cuefem.cli import main
 def call(*arguments: object) -> tuple[object, str, str]:
     """Exit status, stdout and stderr of ``cuefem ARGUMENTS`` (click's own runner joins the streams before 8.2)."""
     out, err = io.StringIO(), io.StringIO()
-    with redirect_stdout(out), redirect_stderr(err), pytest.raises(SystemExit) as ended:
+    with redirect_stdout(out), redirect_stderr(err), pytest.raises(SystemExit) as exit_:
         main([str(argument) for argument in arguments])
-    return ended.value.code, out.getvalue(), err.getvalue()
+    return exit_.value.code, out.getvalue(), err.getvalue()
 
 
 def stdout_of(*arguments: object) -> str:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from cuefem import Ball, Cue, Effect, LeatherTip, Resolution, Scene, Segment, Stroke, Tip
 from tests.helpers.strike_scenes import maple
 
@@ -21,7 +19,7 @@ def leather_scene(
     e: float = 0.73,
     friction: float = 0.7,
     leather: LeatherTip = LEATHER,
-    **more: Any,
+    cue: Cue = SHAFT,
 ) -> Scene:
     """A shaft with a leather tip that strikes a pool ball."""
-    return Scene(more.get("cue", SHAFT), POOL, Tip(e, friction), Stroke(speed, offset), (leather, *effects))
+    return Scene(cue, POOL, Tip(e, friction), Stroke(speed, offset), (leather, *effects))

@@ -49,18 +49,18 @@ def picture(height: int, label: str, *inside: str) -> str:
     return "\n".join([head, *inside, "</svg>", ""])
 
 
-def svg_text(x: float, y: float, text: str, more: str = "") -> str:
+def svg_text(x: float, y: float, text: str, attributes: str = "") -> str:
     """A text at x, y."""
-    return f'<text x="{x:.0f}" y="{y:.0f}"{more}>{escape(text)}</text>'
+    return f'<text x="{x:.0f}" y="{y:.0f}"{attributes}>{escape(text)}</text>'
 
 
 MIDDLE, END, CAPTION = ' text-anchor="middle"', ' text-anchor="end"', ' class="label"'
 
 
-def on_scale(rows: dict[str, float], verdict: Any, label: str, own: str, *, x0: int, unit: int, last: float) -> str:
+def on_scale(rows: dict[str, float], verdict: Any, label: str, caption: str, *, x0: int, unit: int, last: float) -> str:
     """Squirts of other cues, and the own one with its uncertainty, on a scale from 0 to ``last``, degrees."""
     squirt = math.degrees(verdict["squirt"])
-    off = squirt * verdict["uncertainty"]["total"]
+    outside = squirt * verdict["uncertainty"]["total"]
 
     def at(degrees: float) -> str:
         return f"{x0 + unit * degrees:.0f}"
@@ -74,8 +74,8 @@ def on_scale(rows: dict[str, float], verdict: Any, label: str, own: str, *, x0: 
         y + 40,
         label,
         *texts,
-        svg_text(x0 - 10, y, own, f"{END}{CAPTION}"),
-        f'<path class="arrow" d="M{at(squirt - off)} {y - 4}H{at(squirt + off)}"/>',
+        svg_text(x0 - 10, y, caption, f"{END}{CAPTION}"),
+        f'<path class="arrow" d="M{at(squirt - outside)} {y - 4}H{at(squirt + outside)}"/>',
         f'<circle class="wood" cx="{at(squirt)}" cy="{y - 4}" r="5"/>',
         f'<path class="measure" d="M{at(0)} {y + 12}H{at(last)}"/>',
         *(svg_text(float(at(d)), y + 26, f"{d:g}°", MIDDLE) for d in np.arange(0, last + 0.1, 0.5)),

@@ -30,23 +30,23 @@ def tap_sound(shaft: cf.Cue, rate: float = 44100.0, *, missing: Sequence[int] = 
     loss = loss if loss.max() > 0 else np.full(len(loss), LOSS)
     at_butt, _ = result.shape(shaft.length)
     t = np.arange(int(SECONDS * rate)) / rate - BEFORE
-    sound, after = np.zeros((len(t), len(MICROPHONES))), t >= 0
+    sound, sounding = np.zeros((len(t), len(MICROPHONES))), t >= 0
     for k, w in enumerate(result.omega):
         if k + 1 in missing or result.frequencies[k] > 0.45 * rate:
             continue
         amplitude = at_butt[k] * result.shape(shaft.length * np.array(MICROPHONES))[0][k]
         x, decay = w * PULSE / np.pi, loss[k] * w / 2
         pulse = np.pi / 4 * (np.sinc((x - 1) / 2) + np.sinc((x + 1) / 2))
-        tone = np.exp(-decay * t[after]) * np.cos(np.sqrt(w**2 - decay**2) * t[after])
-        sound[after] += pulse * amplitude * tone[:, None]
+        tone = np.exp(-decay * t[sounding]) * np.cos(np.sqrt(w**2 - decay**2) * t[sounding])
+        sound[sounding] += pulse * amplitude * tone[:, None]
     return sound
 
 
 def recording(sound: np.ndarray, snr: float, seed: int, *, taps: int = 3) -> np.ndarray:
     """Taps of a sound in white noise ``snr`` dB below its mean power, 16 bits of full scale 1."""
-    whole = np.tile(sound, (taps, 1))
-    noise = np.sqrt(np.mean(whole**2) * 10 ** (-snr / 10))
-    signal = whole + noise * np.random.default_rng(seed).standard_normal(whole.shape)
+    clean = np.tile(sound, (taps, 1))
+    noise = np.sqrt(np.mean(clean**2) * 10 ** (-snr / 10))
+    signal = clean + noise * np.random.default_rng(seed).standard_normal(clean.shape)
     return np.round(signal / np.abs(signal).max() * 0.98 * 32767) / 32768
 
 

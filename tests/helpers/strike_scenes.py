@@ -41,10 +41,10 @@ def weighted_cue() -> Cue:
     return Cue((*KIM.segments, Segment(0.004, 0.021, 0.021, heavy)))
 
 
-def custom_tip_modes(omega: list[float], across: list[float], *, mass: float = 0.54, rigid: float = 4.0) -> TipModes:
-    """Tip modes of a rigid axial motion, a rigid transverse one, and vibrating modes of amplitude ``across``."""
+def custom_tip_modes(omega: list[float], lateral: list[float], *, mass: float = 0.54, rigid: float = 4.0) -> TipModes:
+    """Tip modes of a rigid axial motion, a rigid transverse one, and vibrating modes of amplitude ``lateral``."""
     amplitude = np.zeros((2 + len(omega), 2))
-    amplitude[0, 0], amplitude[1, 1], amplitude[2:, 1] = mass**-0.5, rigid, across
+    amplitude[0, 0], amplitude[1, 1], amplitude[2:, 1] = mass**-0.5, rigid, lateral
     approach = np.zeros(len(amplitude))
     approach[0] = mass**0.5
     return TipModes(np.r_[0.0, 0.0, omega], amplitude, approach, np.zeros(len(amplitude)))
@@ -59,9 +59,9 @@ def rotating_modes(damping: float = 0.0) -> TipModes:
 
 def energy_residual(outcome: Outcome) -> float:
     """Energy residual relative to the initial energy."""
-    parts = dict(outcome.energy)
-    initial = parts.pop("initial")
-    return abs(sum(parts.values()) - initial) / initial
+    energies = dict(outcome.energy)
+    initial = energies.pop("initial")
+    return abs(sum(energies.values()) - initial) / initial
 
 
 def outcome_vector(outcome: Outcome) -> np.ndarray:
@@ -84,10 +84,10 @@ def assert_valid_outcome(outcome: Outcome, within: float = ENERGY_TOLERANCE) -> 
     """Finite numbers, nonnegative losses, a small energy residual and contiguous phases."""
     assert np.all(np.isfinite(outcome_vector(outcome)))
     initial = outcome.energy["initial"]
-    assert all(part >= -ENERGY_TOLERANCE * initial for part in outcome.energy.values())
+    assert all(value >= -ENERGY_TOLERANCE * initial for value in outcome.energy.values())
     assert energy_residual(outcome) < within
-    separates_at_once = [phase.state for phase in outcome.phases] == ["impulse"]  # separated by infinite friction alone
-    assert outcome.impulse[1] == 0 if separates_at_once else outcome.impulse[1] > 0
+    is_instant = [phase.state for phase in outcome.phases] == ["impulse"]  # separated by infinite friction alone
+    assert outcome.impulse[1] == 0 if is_instant else outcome.impulse[1] > 0
     assert abs(outcome.impulse[0]) >= 0
     times = [(phase.start, phase.end) for phase in outcome.phases]
     assert times[0][0] == 0

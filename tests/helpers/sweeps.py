@@ -68,10 +68,10 @@ def write_study(folder: Path, study: str = STUDY, scene: str = SCENE, name: str 
     return folder / name
 
 
-def computed_rows(study: Path, output: Path, **more: Any) -> list[tuple[Any, ...]]:
+def computed_rows(study: Path, output: Path, **options: Any) -> list[tuple[Any, ...]]:
     """Compute a study into a store; its rows as stored."""
     with SqliteStore(output, load_study(study)) as store:
-        compute_study(store.study, store=store, **more)
+        compute_study(store.study, store=store, **options)
         return [(row.design, *row.values, *row.responses, row.failure) for row in store.rows()]
 
 

@@ -66,8 +66,8 @@ def _exact(x: dict[str, Decimal], *, M: Decimal, U: Decimal) -> ImpulseSolution:
         if compression_work is None:
             end = -v_n / r_n if r_n > 0 else None
         else:
-            missing = compression_work * (1 - e * e) - normal_work
-            end = 2 * missing / (v_n + (v_n * v_n + 2 * r_n * missing).sqrt()) if missing > 0 else Decimal(0)
+            work = compression_work * (1 - e * e) - normal_work  # still to be returned
+            end = 2 * work / (v_n + (v_n * v_n + 2 * r_n * work).sqrt()) if work > 0 else Decimal(0)
         stick_impulse = -v_t / r_t if v_t < 0 < r_t else None
         sticks = stick_impulse is not None and (end is None or stick_impulse < end)
         step = stick_impulse if sticks else end
@@ -82,12 +82,12 @@ def _exact(x: dict[str, Decimal], *, M: Decimal, U: Decimal) -> ImpulseSolution:
             break
         compression_work, v_n = normal_work, Decimal(0)
     p_u, p_w = s * p_t + c * p_n, c * p_t - s * p_n
-    free = 1 - x["coupling"] ** 2 / (x["along"] * x["across"])
+    axial_factor = 1 - x["coupling"] ** 2 / (x["along"] * x["across"])
     return ImpulseSolution(
         tangent=-p_w / p_u,
         p_t=M * U * p_t,
         p_n=M * U * p_n,
-        cue_speed=U * (1 - p_u * x["along"] * free),
+        cue_speed=U * (1 - p_u * x["along"] * axial_factor),
         tip_loss=-M * U**2 * normal_work,
         friction_loss=M * U**2 * friction_work,
         friction_states=friction_states,

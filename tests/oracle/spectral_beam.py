@@ -19,19 +19,19 @@ from numpy.typing import NDArray
 from cuefem import Cue, Effect, Joint, Material, PointMass, Segment, StructuralDamping, Support
 
 Array = NDArray[np.float64]
-DEGREE, LONGEST = 8, 0.06  # of an element; m
+DEGREE, MAX_LENGTH = 8, 0.06  # of an element; m
 
 
 @cache
 def lobatto(degree: int) -> tuple[Array, Array, Array]:
     """Nodes in [0, 1], weights, and the derivative matrix of the polynomials through the nodes."""
-    top = np.zeros(degree + 1)
-    top[-1] = 1.0
-    x = np.concatenate([[-1.0], np.sort(legendre.legroots(legendre.legder(top)).real), [1.0]])
-    at = legendre.legval(x, top)
-    weights = 2 / (degree * (degree + 1) * at**2)
+    coefficients = np.zeros(degree + 1)
+    coefficients[-1] = 1.0
+    x = np.concatenate([[-1.0], np.sort(legendre.legroots(legendre.legder(coefficients)).real), [1.0]])
+    values = legendre.legval(x, coefficients)
+    weights = 2 / (degree * (degree + 1) * values**2)
     differences = x[:, None] - x + np.eye(degree + 1)
-    slopes = (at[:, None] / at) / differences * (1 - np.eye(degree + 1))
+    slopes = (values[:, None] / values) / differences * (1 - np.eye(degree + 1))
     slopes -= np.diag(slopes.sum(axis=1))  # a constant has no slope
     return (x + 1) / 2, weights / 2, 2 * slopes
 
@@ -41,8 +41,8 @@ class Bending:
     """Modes of a beam: angular frequency, rad/s, deflection and rotation of the tip, and the damping matrix, 1/s."""
 
     omega: Array
-    across: Array
-    turning: Array
+    deflection: Array
+    rotation: Array
     damping: Array
 
 
@@ -74,7 +74,7 @@ class Assembly:
         for (start, end), segment in zip(pairwise(ends), cue.segments, strict=True):
             cuts = [start, *sorted({x for x in positions if start + 1e-9 < x < end - 1e-9}), end]
             for a, b in pairwise(cuts):
-                many = math.ceil((b - a) / LONGEST)
+                many = math.ceil((b - a) / MAX_LENGTH)
                 for i in range(many):
                     nodes = np.concatenate([[last], np.arange(count, count + DEGREE)])
                     self.blocks.append((nodes, (b - a) / many, segment, a - start + i * (b - a) / many))
@@ -95,15 +95,15 @@ class Assembly:
         for nodes, length, segment, start in self.blocks:
             w, theta, n = 2 * nodes, 2 * nodes + 1, len(nodes)
             slope = slopes / length
-            bend, shear = np.zeros((n, 2 * n)), np.zeros((n, 2 * n))
-            bend[:, n:], shear[:, :n], shear[:, n:] = slope, slope, -np.eye(n)
-            both = np.concatenate([w, theta])
+            curvature, shear = np.zeros((n, 2 * n)), np.zeros((n, 2 * n))
+            curvature[:, n:], shear[:, :n], shear[:, n:] = slope, slope, -np.eye(n)
+            dofs = np.concatenate([w, theta])
             for material, area, moment in section(segment, start + x * length):
                 assert segment.kappa is not None
-                stiff = bend.T @ np.diag(weights * length * material.E * moment) @ bend
-                stiff += shear.T @ np.diag(weights * length * segment.kappa * material.G * area) @ shear
-                K[np.ix_(both, both)] += stiff
-                lossy[np.ix_(both, both)] += stiff * (material.loss if loss is None else loss)
+                stiffness = curvature.T @ np.diag(weights * length * material.E * moment) @ curvature
+                stiffness += shear.T @ np.diag(weights * length * segment.kappa * material.G * area) @ shear
+                K[np.ix_(dofs, dofs)] += stiffness
+                lossy[np.ix_(dofs, dofs)] += stiffness * (material.loss if loss is None else loss)
                 M[w] += weights * length * material.rho * area
                 M[theta] += weights * length * material.rho * moment
         for effect in self.effects:
@@ -121,7 +121,7 @@ class Assembly:
     def reduced(self) -> tuple[Array, Array, Array, Array]:
         """The matrices with joint springs, without clamped degrees of freedom, with rigid joint directions tied."""
         K, lossy, C, M = self.matrices()
-        into = np.arange(2 * self.count)
+        targets = np.arange(2 * self.count)
         for effect in self.effects:
             if isinstance(effect, Joint):
                 ahead, behind = 2 * self.before[effect.position], 2 * self.node[effect.position]
@@ -130,7 +130,7 @@ class Assembly:
                         pair = [ahead + i, behind + i]
                         K[np.ix_(pair, pair)] += np.array([[1, -1], [-1, 1]]) / compliance
                     else:
-                        into[ahead + i] = into[behind + i]
+                        targets[ahead + i] = targets[behind + i]
         clamped = {
             2 * self.node[effect.position] + i
             for effect in self.effects
@@ -138,9 +138,9 @@ class Assembly:
             for i, spring in enumerate((effect.stiffness, effect.rotational_stiffness))
             if math.isinf(spring)
         }
-        free = sorted(set(into.tolist()) - clamped)
-        T = np.zeros((len(into), len(free)))
-        for i, degree in enumerate(into.tolist()):
+        free = sorted(set(targets.tolist()) - clamped)
+        T = np.zeros((len(targets), len(free)))
+        for i, degree in enumerate(targets.tolist()):
             if degree in free:
                 T[i, free.index(degree)] = 1.0
         return T.T @ K @ T, T.T @ lossy @ T, T.T @ C @ T, T.T @ np.diag(M) @ T
@@ -152,13 +152,13 @@ def bending(cue: Cue, effects: tuple[Effect, ...], count: int) -> Bending:
     shift = 4e4
     size = len(K)
     inverse, vectors = la.eigh(M, K + shift * M, subset_by_index=[size - count, size - 1])
-    squared = 1 / inverse[::-1] - shift
+    omega2 = 1 / inverse[::-1] - shift
     shapes = vectors[:, ::-1] / np.sqrt(np.einsum("in,ij,jn->n", vectors, M, vectors))[::-1]
-    omega = np.where(squared > 1e-5 * shift, np.sqrt(np.abs(squared)), 0.0)
+    omega = np.where(omega2 > 1e-5 * shift, np.sqrt(np.abs(omega2)), 0.0)
     damping = shapes.T @ C @ shapes
     if any(isinstance(effect, StructuralDamping) for effect in effects):
-        moving = omega > 0
-        lost = np.einsum("in,ij,jn->n", shapes, lossy, shapes)
+        flexible = omega > 0
+        loss_energy = np.einsum("in,ij,jn->n", shapes, lossy, shapes)
         strain = np.einsum("in,ij,jn->n", shapes, K, shapes)
-        damping = damping + np.diag(np.where(moving, lost / np.where(moving, strain, 1.0) * omega, 0.0))
+        damping = damping + np.diag(np.where(flexible, loss_energy / np.where(flexible, strain, 1.0) * omega, 0.0))
     return Bending(omega, shapes[0], shapes[1], damping)

@@ -21,15 +21,15 @@ def leather(length: float) -> cf.Segment:
 @pytest.mark.parametrize("game", GAMES)
 def test_default_scene_cue_without_leather_gets_tip_of_game(game: str) -> None:
     cue = cf.Cue((WOOD,), 0.4)
-    scene, known = cf.usual_scene(cue, game), GAMES[game]
+    scene, defaults = cf.usual_scene(cue, game), GAMES[game]
     assert scene.cue == cue
-    waves = cf.AxialWaves(known.cue_length, known.butt_diameter, 4430.0)
-    assert set(scene.effects) == {known.tip, waves, cf.GeometricStiffness()}
-    assert (scene.ball, scene.stroke) == (known.ball, cf.Stroke(known.speed, known.offset))
-    assert scene.tip == cf.Tip(LEATHERS[known.leather].restitution, known.friction)
-    assert known.tip.E == LEATHERS["medium"].E
+    waves = cf.AxialWaves(defaults.cue_length, defaults.butt_diameter, 4430.0)
+    assert set(scene.effects) == {defaults.tip, waves, cf.GeometricStiffness()}
+    assert (scene.ball, scene.stroke) == (defaults.ball, cf.Stroke(defaults.speed, defaults.offset))
+    assert scene.tip == cf.Tip(LEATHERS[defaults.leather].restitution, defaults.friction)
+    assert defaults.tip.E == LEATHERS["medium"].E
     assert 2e-4 < scene.contact_time < 3e-3
-    assert len(known.source) > 40
+    assert len(defaults.source) > 40
 
 
 def test_default_tip_has_height_of_drawn_leather() -> None:
@@ -63,20 +63,19 @@ def test_axial_waves_short_butt_is_rigid_mass() -> None:
     """A cue drawn up to 3 mm before the butt, with 100 g behind it."""
     cue = cf.Cue((WOOD, cf.Segment(0.7702, 0.021, 0.031, material("hard maple"))), body_mass=0.1)
     scene = cf.usual_scene(cue)
-    rigid = replace(
-        scene, effects=tuple(cf.AxialWaves() if isinstance(one, cf.AxialWaves) else one for one in scene.effects)
-    )
+    effects = tuple(cf.AxialWaves() if isinstance(effect, cf.AxialWaves) else effect for effect in scene.effects)
+    rigid = replace(scene, effects=effects)
     assert cf.strike(scene).squirt == cf.strike(rigid).squirt
 
 
 def test_restitution_of_stated_modulus_lies_between_named_leathers() -> None:
     """Equal to a named leather's at its modulus; without axial waves, the whole cue's."""
 
-    def own(E: float) -> float:
+    def restitution(E: float) -> float:
         effects = (replace(GAMES["pool"].tip, E=E), cf.AxialWaves())
         return float(GAMES["pool"].tip_with(effects).restitution)
 
     for leather in LEATHERS.values():
-        assert own(leather.E) == leather.restitution
+        assert restitution(leather.E) == leather.restitution
     assert GAMES["pool"].tip_with((GAMES["pool"].tip,)) == cf.Tip(0.73, 0.7)
-    assert LEATHERS["medium"].restitution < own(100e6) < LEATHERS["soft"].restitution == own(10e6)
+    assert LEATHERS["medium"].restitution < restitution(100e6) < LEATHERS["soft"].restitution == restitution(10e6)

@@ -10,7 +10,7 @@ import cuefem as cf
 from cuefem.results.convergence import resolve
 
 SCENES = Path(__file__).parents[2] / "studies" / "scenes"
-READY = ("break_cue", "carom", "clay_on_shaft", "kim", "pool_low_deflection", "snooker")
+NAMES = ("break_cue", "carom", "clay_on_shaft", "kim", "pool_low_deflection", "snooker")
 
 
 def rows() -> dict[str, list[str]]:
@@ -27,7 +27,7 @@ def scene(name: str) -> cf.Scene:
 
 
 def test_ready_scenes_are_all_listed() -> None:
-    assert tuple(sorted(path.stem for path in SCENES.glob("*.toml"))) == tuple(sorted(rows())) == READY
+    assert tuple(sorted(path.stem for path in SCENES.glob("*.toml"))) == tuple(sorted(rows())) == NAMES
 
 
 def test_readme_of_meshes_states_computed_squirts() -> None:
@@ -41,12 +41,12 @@ def test_readme_of_meshes_states_computed_squirts() -> None:
 
 
 @pytest.mark.heavy
-@pytest.mark.parametrize("name", READY)
+@pytest.mark.parametrize("name", NAMES)
 def test_ready_scene_equals_its_readme(name: str) -> None:
-    ready, outcome = scene(name), resolve(scene(name), 1e-3)
+    reference, outcome = scene(name), resolve(scene(name), 1e-3)
     _, ball, offset, squirt, effects = rows()[name]
-    assert ball == f"{2e3 * ready.ball.radius:g} mm, {1e3 * ready.ball.mass:g} g"
-    assert float(offset) == ready.stroke.offset
-    assert effects == (", ".join(type(effect).__name__ for effect in ready.effects) or "none")
+    assert ball == f"{2e3 * reference.ball.radius:g} mm, {1e3 * reference.ball.mass:g} g"
+    assert float(offset) == reference.stroke.offset
+    assert effects == (", ".join(type(effect).__name__ for effect in reference.effects) or "none")
     assert outcome.regime == "stick"
     assert math.degrees(outcome.squirt) == pytest.approx(float(squirt), rel=1e-3, abs=5e-4)

@@ -21,9 +21,9 @@ COARSE = cf.Solid(order=3, modes=20)
 
 
 def test_strike_point_mass_on_solid_agrees_with_beam() -> None:
-    laden = replace(SCENE, effects=(cf.PointMass(0.0, 2e-3),))
+    weighted = replace(SCENE, effects=(cf.PointMass(0.0, 2e-3),))
     beam, solid = (
-        cf.strike(laden, at=at).squirt / cf.strike(SCENE, at=at).squirt for at in (cf.Resolution(3, 16, 20), COARSE)
+        cf.strike(weighted, at=at).squirt / cf.strike(SCENE, at=at).squirt for at in (cf.Resolution(3, 16, 20), COARSE)
     )
     assert solid == pytest.approx(beam, rel=2e-3)
 
@@ -32,8 +32,8 @@ def test_solid_modes_agree_with_beam() -> None:
     beam, solid = cf.modes(SCENE.cue, 4), cf.solid_modes(SCENE.cue, 4)
     assert solid.rigid == beam.rigid == 2
     np.testing.assert_allclose(solid.frequencies, beam.frequencies, rtol=2e-4)
-    for ours, theirs in zip(solid.at_tip, beam.at_tip, strict=True):
-        np.testing.assert_allclose(ours[2:], theirs[2:], rtol=2e-3)
+    for motion, expected in zip(solid.at_tip, beam.at_tip, strict=True):
+        np.testing.assert_allclose(motion[2:], expected[2:], rtol=2e-3)
     assert np.sum(solid.at_tip[0][:2] ** 2) == pytest.approx(np.sum(beam.at_tip[0][:2] ** 2), rel=1e-9)
 
 
@@ -71,9 +71,9 @@ def test_model_error_short_cone_lists_quantities_and_exclusions() -> None:
     for row in rows.values():
         assert row["discretisation_error"] < 1e-2
         assert row["difference"] == pytest.approx(row["beam"] / row["solid"] - 1, abs=1e-15)
-    laden = cf.modes(short, 1, effects=scene.effects).frequencies[0]
-    assert rows["natural frequency 1"]["beam"] == pytest.approx(laden, rel=1e-6)
-    assert 0 < abs(rows["natural frequency 1"]["solid"] / laden - 1) < 0.1
+    frequency = cf.modes(short, 1, effects=scene.effects).frequencies[0]
+    assert rows["natural frequency 1"]["beam"] == pytest.approx(frequency, rel=1e-6)
+    assert 0 < abs(rows["natural frequency 1"]["solid"] / frequency - 1) < 0.1
     assert record["summary"].startswith("Error of the beam model for this shaft: ")
     assert record["excluded_effects"] == ["AxialWaves"]
     table = tabulate_model_error(record)

@@ -60,17 +60,17 @@ def exact_wave(halves: int, motion: int) -> float:
     return float(brentq(traction, 0.95 * guess, 1.05 * guess, (k, motion), xtol=1e-9, rtol=1e-14))
 
 
-def standing_wave(halves: int, motion: int, how: Fineness) -> float:
+def standing_wave(halves: int, motion: int, fineness: Fineness) -> float:
     """The mode with ``halves`` half waves between faces that do not move within their planes."""
-    omega = SolidBody(CYLINDER, how, motion).modes(5, supported=True).omega
+    omega = SolidBody(CYLINDER, fineness, motion).modes(5, supported=True).omega
     return float(omega[halves - (motion == BENDING)])
 
 
 @pytest.mark.parametrize("halves", [1, 2, 3])
 @pytest.mark.parametrize("motion", [BENDING, AXIAL], ids=["bending", "axial"])
 def test_solid_cylinder_agrees_with_pochhammer_chree_waves(motion: int, halves: int) -> None:
-    measured = standing_wave(halves, motion, Fineness(8, 1.0, 0.01))
-    assert measured == pytest.approx(exact_wave(halves, motion), rel=1e-9)
+    omega = standing_wave(halves, motion, Fineness(8, 1.0, 0.01))
+    assert omega == pytest.approx(exact_wave(halves, motion), rel=1e-9)
 
 
 @pytest.mark.parametrize("order", [2, 3])
@@ -89,9 +89,9 @@ def test_solid_pure_bending_energy_is_exact(wood: Material) -> None:
     rod = Cue((Segment(LENGTH, 2 * RADIUS, 2 * RADIUS, wood),))
     body = SolidBody(rod, Fineness(2, 1.0, 0.01, layers=2))
     fields = (lambda x: (x[0] ** 2 + wood.nu * x[1] ** 2) / 2, lambda x: wood.nu * x[1] ** 2, lambda x: -x[1] * x[0])
-    bent = np.concatenate([body.basis.project(field) for field in fields])
+    vector = np.concatenate([body.basis.project(field) for field in fields])
     K, _ = body.matrices
-    assert bent @ K @ bent == pytest.approx(float(rod.section(0.0).EI) * LENGTH, rel=1e-10)
+    assert vector @ K @ vector == pytest.approx(float(rod.section(0.0).EI) * LENGTH, rel=1e-10)
 
 
 @pytest.mark.parametrize("wood", [STEEL, MAPLE], ids=["steel", "maple"])

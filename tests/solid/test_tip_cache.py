@@ -65,18 +65,18 @@ def test_tip_cache_invalid_file_is_computed_again(cache: Path, computed_tips: li
     first = contact_inputs(FLAT)
     (file,) = cache.iterdir()
     cached_table.cache_clear()
-    for again, before in zip(contact_inputs(FLAT), first, strict=True):
-        np.testing.assert_array_equal(again, before)
+    for result, expected in zip(contact_inputs(FLAT), first, strict=True):
+        np.testing.assert_array_equal(result, expected)
     content, half = file.read_bytes(), len(file.read_bytes()) // 2
     with np.load(file) as stored:
-        parts = dict(stored)
+        arrays = dict(stored)
     invalid = [content[:half], b"", b"hello", content[:half] + b"\0" * 40 + content[half + 40 :]]
-    for damaged in (*invalid, *({name: parts[name][..., :1]} for name in ("patches", "head_on"))):
-        file.write_bytes(damaged) if isinstance(damaged, bytes) else np.savez(file, **parts | damaged)
+    for replacement in (*invalid, *({name: arrays[name][..., :1]} for name in ("patches", "head_on"))):
+        file.write_bytes(replacement) if isinstance(replacement, bytes) else np.savez(file, **arrays | replacement)
         cached_table.cache_clear()
         assert not FLAT.is_cached(D)
-        for again, before in zip(contact_inputs(FLAT), first, strict=True):
-            np.testing.assert_array_equal(again, before)
+        for result, expected in zip(contact_inputs(FLAT), first, strict=True):
+            np.testing.assert_array_equal(result, expected)
         assert FLAT.is_cached(D)
     assert len(computed_tips) == 7
 
@@ -96,7 +96,7 @@ def test_tip_cache_without_home_folder_stores_nothing(
 
 
 @pytest.mark.parametrize(
-    ("more", "message"),
+    ("entries", "message"),
     [
         ('height = "6 mm"\nlayers = [{ height = "0 mm", E = "2 GPa" }]', "effects[0].layers[0].height: must be"),
         ('height = "6 mm"\nlayers = [{ height = "1 mm" }]', "effects[0].layers[0].E: must be given"),
@@ -109,8 +109,8 @@ def test_tip_cache_without_home_folder_stores_nothing(
         ('height = "6 mm"\nnu = 0.5', "nu: must be 0 to 0.49; got 0.5"),
     ],
 )
-def test_leather_tip_invalid_input_prints_one_line(tmp_path: Path, more: str, message: str) -> None:
+def test_leather_tip_invalid_input_prints_one_line(tmp_path: Path, entries: str, message: str) -> None:
     """Before any computation."""
     file = tmp_path / "scene.toml"
-    file.write_text(SCENE + more + "\n")
+    file.write_text(SCENE + entries + "\n")
     assert_rejects(message, "strike", file)
