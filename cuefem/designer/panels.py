@@ -21,7 +21,7 @@ from cuefem.report.squirt_table import offset_charts
 from cuefem.report.strike_table import regime_warning
 from cuefem.report.templates import chart_markup, shading_markup, table_markup
 from cuefem.report.verdict_table import difference_text
-from cuefem.results.quantities import DASH, RESULTS, format_change
+from cuefem.results.quantities import DASH, RESULTS, format_change, unbroken
 from cuefem.results.records import Record, Table
 from cuefem.results.uncertainty import SHAFT_ERROR
 from cuefem.scene import Scene
@@ -114,7 +114,7 @@ def changes_panel(step: Step, results: Results, attempt: Callable[[Mapping[str, 
 
 def _cell(kind: str, content: str, *, text: bool = False) -> None:
     with ui.element(kind).classes("text" if text else "") as cell:
-        ui.label(content.replace(" mm", "\u00a0mm").replace(" →", "\u00a0→"))
+        ui.label(unbroken(content).replace(" →", "\u00a0→"))
     if kind == "th":
         cell.props("scope=col")
 

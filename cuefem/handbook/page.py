@@ -15,6 +15,7 @@ from markdown_it.renderer import RendererHTML
 from markdown_it.token import Token
 
 from cuefem.handbook import MAKERS, chapters
+from cuefem.results.quantities import unbroken
 
 SUBSCRIPT = re.compile(r"\b([A-Za-zα-ωΩ]{1,2})_([A-Za-z∥⊥0]{1,4})(?![A-Za-z0-9_])")
 PAGE = Template("""<!DOCTYPE html>
@@ -76,7 +77,7 @@ def page() -> str:
 
 def _text(_: object, tokens: Sequence[Token], index: int, *__: object) -> str:
     """A text token with letters such as m_e as subscripts, and its citations of chapters as links."""
-    return _linked(SUBSCRIPT.sub(r"\1<sub>\2</sub>", escape(tokens[index].content)))
+    return _linked(SUBSCRIPT.sub(r"\1<sub>\2</sub>", escape(unbroken(tokens[index].content))))
 
 
 def _linked(text: str) -> str:

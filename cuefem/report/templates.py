@@ -14,6 +14,7 @@ from markupsafe import Markup
 
 from cuefem.report.charts import Chart
 from cuefem.report.drawings import CueDrawing
+from cuefem.results.quantities import unbroken
 from cuefem.results.records import Table
 
 
@@ -26,6 +27,7 @@ def environment() -> Environment:
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
+        finalize=lambda value: unbroken(value) if type(value) is str else value,
     )
     made.filters["code"] = code_markup
     return made
@@ -33,7 +35,7 @@ def environment() -> Environment:
 
 def code_markup(text: str) -> Markup:
     """A text with `code` between backticks as HTML."""
-    return Markup(re.sub(r"`([^`]*)`", r"<code>\1</code>", escape(text, quote=False)))
+    return Markup(re.sub(r"`([^`]*)`", r"<code>\1</code>", escape(unbroken(text), quote=False)))
 
 
 def page_style() -> str:

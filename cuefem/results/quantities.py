@@ -7,6 +7,7 @@ response of sweeps, scatters and optima, with their tables, pages and pandas fra
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
 from typing import TYPE_CHECKING, Any
@@ -32,6 +33,8 @@ DISPLAY_UNITS = {
     "kg/m^3": (1.0, "kg/m³"),
     "1/sqrt(kg)": (1.0, "/√kg"),
 }
+
+_NUMBER_UNIT = re.compile(r'(?<=\d) (?=(?:[cmµ]?m|in|k?g|oz|%|m?s|k?Hz|k?N(?:/m?m)?|[MG]Pa|m/s|mph|m?J)(?![\w/"`]))')
 
 
 @dataclass(frozen=True)
@@ -85,6 +88,11 @@ class Result:
         unit = DISPLAY_UNITS.get(self.unit, (1.0, self.unit))[1]
         space = "" if unit in ("°", "") else " "
         return f"{self.number(float(value))}{space}{unit}"
+
+
+def unbroken(text: str) -> str:
+    """A text for a page with no line break between a number and its unit; values in quotes, to be copied, unchanged."""
+    return _NUMBER_UNIT.sub("\u00a0", text)
 
 
 def format_change(change: float, decimals: int, unit: str) -> str:

@@ -27,7 +27,7 @@ def cells(table: Table) -> dict[str, list[list[str]]]:
     page = [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in re.findall(r"<tr.*?</tr>", markup)]
     return {
         "terminal": [re.split(r"\s{2,}", line.strip()) for line in lines],
-        "page": [[unescape(cell) for cell in row] for row in page],
+        "page": [[unescape(cell).replace("\u00a0", " ") for cell in row] for row in page],
         "spreadsheet": list(csv.reader(io.StringIO(csv_text(table.head, table.rows)))),
     }
 
