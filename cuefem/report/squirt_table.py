@@ -82,7 +82,7 @@ def offset_charts(
     height: float,
     regimes: Sequence[str] = (),
 ) -> tuple[Chart, Chart]:
-    """Charts of squirt and natural pivot length against the offset, up to the first miscue.
+    """Charts of squirt and natural pivot length against the offset, to the last one before a miscue.
 
     lines: name, CSS class and `coupled_curve` (or a record with the same keys) of every cue or model. own: offset b/R
     of the scene's stroke, which is marked. regimes: contact state at each offset; long slip and miscue are shaded.
@@ -91,7 +91,7 @@ def offset_charts(
     per_metre, unit = DISPLAY_UNITS["m"]
     squirt, pivot = [], []
     for name, style, curve in lines:
-        beyond = np.cumsum([regime == "miscue" for regime in curve.get("regime", [""] * len(x))]) > 1
+        beyond = np.cumsum([regime == "miscue" for regime in curve.get("regime", [""] * len(x))]) > 0
         angle = np.where(beyond, np.nan, curve["squirt"])
         squirt.append(Curve(name, np.r_[0.0, x], np.degrees(np.r_[0.0, angle]), style))
         pivot.append(Curve(name, x, per_metre * np.where(angle > 0, curve["pivot_length"], np.nan), style))
