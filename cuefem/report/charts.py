@@ -133,7 +133,7 @@ def chart(
     height: float = 260.0,
 ) -> Chart:
     """A chart of curves, clipped at the ends of the axes."""
-    left, top, right, bottom = 44.0, 22.0 if marks else 10.0, WIDTH - 8, height - 36
+    left, top, right, bottom = 44.0, 22.0 if marks else 10.0, WIDTH - 8, height - 40
     x_scale = x.scale_for([curve.x for curve in curves])
     y_scale = y.scale_for([curve.y for curve in curves])
     lines = tuple(Tick(float(x_scale.position(mark.at, left, right)), mark.label) for mark in marks)
