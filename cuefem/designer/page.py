@@ -40,7 +40,7 @@ from cuefem.report.report_page import page as report_page
 from cuefem.report.strike_table import regime_warning
 from cuefem.report.templates import chart_script, page_style
 from cuefem.results.quantities import REGIMES
-from cuefem.results.verdict import with_cue
+from cuefem.results.verdict import lacks_butt, with_cue
 from cuefem.scene import Scene
 from cuefem.solid.tip_cache import computing_message
 
@@ -48,6 +48,7 @@ MAX_FILE = 5_000_000  # bytes
 KINDS = (".toml", ".csv", ".stl", ".ply", ".obj")
 TABS = ("Curves", "Changes", "Numbers", "Check", "File")
 NOTHING, OPENED, NOW, FILE = "nothing", "as it was opened", "as it is now", "a file …"
+NO_BUTT = "butt missing or too light: squirt is too low and cannot be compared; enter Rest of cue"
 OPTIONS = {"opened": OPENED, "now": NOW}
 # What is computed of a design before its tabs, and for each tab.
 FIRST = ("solved_strike", "numbers", "verdict")
@@ -382,7 +383,7 @@ class Page:
         if own is None:
             return
         regime = self.results.own["solved_strike"].outcome.regime
-        warning = REGIMES[regime] if regime_warning(regime) else ""
+        warning = REGIMES[regime] if regime_warning(regime) else NO_BUTT if lacks_butt(own.scene) else ""
         difference = self.results.difference
         self.headline.set_content(with_term_buttons(headline_markup(own, other, difference, warning)))
         self.scale.set_content(scale_markup(own, other))
