@@ -11,7 +11,7 @@ from rich.console import Console
 
 from cuefem.report.renderers import csv_text, json_text, terminal
 from cuefem.report.templates import environment
-from cuefem.results.quantities import DASH
+from cuefem.results.quantities import DASH, unbroken
 from cuefem.results.records import Table, tabulate
 
 ROWS = [{"at": 0.01, "mass": 0.0062, "part": 0.25}, {"at": 0.02, "mass": None, "part": -0.5}]
@@ -70,3 +70,7 @@ def test_table_in_narrow_terminal_wraps_headings_first_and_numbers_never() -> No
     assert (above.split(), head.split()) == (["a", "long", "another"], ["what", "heading", "one"])
     assert re.fullmatch(r"\[words\] of text +-1.2345 m/s +3.4e-12", row)
     assert "-1.2345 m/s  3.4e-12" in rendered([table], 20)  # wider than the terminal
+
+
+def test_number_stays_on_line_of_its_unit() -> None:
+    assert unbroken('1 %: 6 mm of 25 minutes, "15 oz"') == '1\u00a0%: 6\u00a0mm of 25 minutes, "15 oz"'
