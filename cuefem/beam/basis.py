@@ -48,9 +48,9 @@ def element_basis(order: int, values: Array, slopes: Array, length: float = 1.0)
     Rotational degrees of freedom are theta times ``length``.
     """
     out = np.zeros((4, 2 * order + 3, values.shape[1]))
-    w, of_w, theta, of_theta = _rows(order)
-    out[0, w], out[1, w] = values[of_w], slopes[of_w]
-    out[2, theta], out[3, theta] = values[of_theta] / length, slopes[of_theta] / length
+    w, w_functions, theta, theta_functions = _rows(order)
+    out[0, w], out[1, w] = values[w_functions], slopes[w_functions]
+    out[2, theta], out[3, theta] = values[theta_functions] / length, slopes[theta_functions] / length
     return out
 
 

@@ -32,7 +32,7 @@ class ContactModel:
     moment of inertia. speed: of the cue, m/s. time: head-on contact time, s. law: the force-indentation law. patch:
     tangential compliance, `RIGID_PATCH`, `SPRING_PATCH` or `PARTIAL_SLIP`. terms, arrays: further fields of
     `kernel/contact.h`, by name. axes: right, forward and up in (t, n, p), (3, 3), above a table; None for a level cue.
-    window: time simulated after separation, s; None without second hits. side: struck side of the ball, 1 or -1; all
+    window: time simulated after separation, s; None without double hits. side: struck side of the ball, 1 or -1; all
     other fields are those of the mirrored stroke, on side 1. radius: of the ball, m.
     """
 

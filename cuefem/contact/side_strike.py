@@ -35,7 +35,7 @@ HERTZ_EXPONENT = 1.5
 class Striker:
     """A ball or hammer that strikes a beam from the side, with its force-indentation law.
 
-    Exactly one law is given: a ``stiffness``, a ``contact_time``, or Hertz's law by ``modulus`` and ``radius``.
+    It has exactly one law: a ``stiffness``, a ``contact_time``, or Hertz's law by ``modulus`` and ``radius``.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ class Striker:
     Raises
     ------
     ValueError
-        If a number is out of bounds, or if not exactly one law is given.
+        If a number is out of bounds, or unless it has exactly one law.
 
     Examples
     --------
@@ -202,7 +202,7 @@ class SideOutcome:
     Attributes
     ----------
     rebound_speed : float
-        Of the striker, m/s; negative if it goes on in its initial direction.
+        Of the striker, m/s; negative if it continues in its initial direction.
     apparent_restitution : float
         e_A, the rebound speed over the initial speed.
     impulse : float
@@ -217,7 +217,7 @@ class SideOutcome:
     phases : tuple
         Phases of the contact (`cuefem.contact.outcome.Phase`); impulses are (0, along the strike), N s.
     energy : dict
-        J by name: "initial", and the parts that add up to it: "striker", "cue" (rigid motion of the beam), "cue
+        J by name: "initial", and the parts that add up to it: "striker", "cue" (rigid-body modes), "cue
         vibration", "tip loss" (of the striker's contact), "friction loss" (none), and what effects add.
     unknowns : int
         Number of state variables of the model.
@@ -260,7 +260,7 @@ def side_strike(scene: SideStrike, at: Resolution | None = None) -> SideOutcome:
     Raises
     ------
     ValueError
-        If the contact would take less than 1e-6 s or more than 10 s.
+        If the contact time would be below 1e-6 s or above 10 s.
     RuntimeError
         If the striker does not leave the beam.
 

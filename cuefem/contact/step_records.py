@@ -25,7 +25,7 @@ NORMAL_PHASES = ("load", "unload", "free")
 # Steps in a head-on contact time: squirt of a default strike then has an error below 0.1 %
 # (tests/contact/test_stored_answers.py).
 DEFAULT_STEPS = 400
-INFINITE_FRICTION = 1e12  # finite stand-in for infinite friction, as in kernel/step.c
+INFINITE_FRICTION = 1e12  # finite value for infinite friction, as in kernel/step.c
 STEPS_PER_CALL = 2048  # of the kernel
 MAX_CONTACT_TIMES = 200  # longest contact, in head-on contact times; beyond it the strike raises an error
 MAX_RECORDED_STEPS = 2_000_000  # 0.4 GB of records

@@ -34,8 +34,8 @@ def strike(scene: Scene, at: Resolution | Solid | None = None) -> Outcome:
     Returns
     -------
     Outcome
-        Its ``phases`` are `cuefem.contact.outcome.Phase`; its ``history`` gives forces and velocities at any time. Its
-        ``energy`` names "ball translation", "ball rotation", "cue" (rigid motion), "cue vibration", "tip loss" and
+        Its ``phases`` are `cuefem.contact.outcome.Phase`; its ``history`` has forces and velocities at any time. Its
+        ``energy`` names "ball translation", "ball rotation", "cue" (rigid-body modes), "cue vibration", "tip loss" and
         "friction loss", and what effects add.
 
     Raises

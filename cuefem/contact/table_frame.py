@@ -134,26 +134,26 @@ def offset_of(point: ArrayLike, direction: ArrayLike, *, ball: Ball | None = Non
 
 def _geometry(point: ArrayLike, direction: ArrayLike, ball: Ball) -> tuple[float, Array, Array]:
     """Offset b/R, the axis of the spin (zero head-on), and the unit vector along the cue."""
-    contact, along = _contact(point, direction, ball.radius)
-    axis, facing = np.cross(contact, along), -float(contact @ along)
+    contact, unit = _contact(point, direction, ball.radius)
+    axis, cosine = np.cross(contact, unit), -float(contact @ unit)
     offset = float(np.linalg.norm(axis))
-    if not facing > 0:
+    if not cosine > 0:
         raise ValueError(
             "point must be on the side of the ball that the direction meets, less than 90 degrees between direction "
-            f"and inward normal; got {math.degrees(math.atan2(offset, facing)):.6g} degrees"
+            f"and inward normal; got {math.degrees(math.atan2(offset, cosine)):.6g} degrees"
         )
-    return offset, axis / (offset or 1.0), along
+    return offset, axis / (offset or 1.0), unit
 
 
 def _contact(point: ArrayLike, direction: ArrayLike, radius: float) -> tuple[Array, Array]:
     """R_I/R, from the ball's centre to the contact, and the unit vector along the cue."""
     h, contact_height = _vector("point", point, 2, _COORDINATE)
-    along = _vector("direction", direction, 3, _COMPONENT)
-    if not along.any():
+    unit = _vector("direction", direction, 3, _COMPONENT)
+    if not unit.any():
         raise ValueError("direction must have a non-zero length; got (0, 0, 0)")
-    along = along / np.linalg.norm(along)
+    unit = unit / np.linalg.norm(unit)
     # the player of a vertical cue looks towards +y
-    forward = complex(along[0], along[1]) or 1j
+    forward = complex(unit[0], unit[1]) or 1j
     right, height = h / radius, contact_height / radius - 1
     depth_squared = (1 - right) * (1 + right) - height**2
     if not depth_squared >= 0:
@@ -161,7 +161,7 @@ def _contact(point: ArrayLike, direction: ArrayLike, radius: float) -> tuple[Arr
             f"point must be on the ball, h^2 + (l - R)^2 <= R^2 with R = {radius} m; got ({h}, {contact_height}) m"
         )
     horizontal = -complex(math.sqrt(depth_squared), right) * forward / abs(forward)  # x + iy, behind and to the right
-    return np.array([horizontal.real, horizontal.imag, height]), along
+    return np.array([horizontal.real, horizontal.imag, height]), unit
 
 
 def _vector(name: str, value: ArrayLike, size: int, quantity: Quantity) -> Array:

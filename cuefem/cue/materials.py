@@ -66,10 +66,10 @@ LEATHER_BY_NAME: Mapping[str, LeatherEntry] = MappingProxyType(
     {**LEATHERS, **{name: LEATHERS[tip["leather"]] for name, tip in TIPS.items()}}
 )
 # E, nu and rho by the name of the leather or the tip, for files, options and the designer.
-LEATHER_NAMES: Mapping[str, Mapping[str, float]] = MappingProxyType(
-    {name: {each: getattr(its, each) for each in ("E", "nu", "rho")} for name, its in LEATHER_BY_NAME.items()}
+LEATHER_CONSTANTS: Mapping[str, Mapping[str, float]] = MappingProxyType(
+    {name: {field: getattr(entry, field) for field in ("E", "nu", "rho")} for name, entry in LEATHER_BY_NAME.items()}
 )
-_ALIASES = {other: name for name, row in _ROWS.items() for other in row.get("aliases", ())}
+_ALIASES = {alias: name for name, row in _ROWS.items() for alias in row.get("aliases", ())}
 
 
 def material(name: str) -> Material:

@@ -51,7 +51,7 @@ ONCE = {
     "tip": "whole tip",
     "turns": "turning normal",
     "table": "table",
-    "window": "window for a second hit",
+    "window": "window for a double hit",
 }
 
 
@@ -93,7 +93,7 @@ class ContactTerms:
     def set_once(self, name: str, value: Any) -> None:
         """Set a term that a contact has `ONCE`; ValueError the second time."""
         if getattr(self, name) is not None:
-            raise ValueError(f"Scene.effects must give the contact one {ONCE[name]}; got a second one")
+            raise ValueError(f"Scene.effects must add one {ONCE[name]} to the contact; got a second one")
         setattr(self, name, value)
 
     @property

@@ -83,7 +83,7 @@ class PointMass(CueEffect):
         terms.add(self.position, "mass", self.mass, self.rotary_inertia)
 
     def mass_on_face(self, cue: Cue) -> float | None:
-        """The mass, if it sits at the tip and does not turn."""
+        """The mass, if it is at the tip and has no rotary inertia."""
         return self.mass if self.position == 0 and self.rotary_inertia == 0 else None
 
 
@@ -166,7 +166,7 @@ class Joint(CueEffect):
     own again. Other effects at the same position are attached to the butt side.
 
     Matters when: The joint lies within the distance that bending waves travel during the contact; the joint in the
-    middle of a cue hardly matters.
+    middle of a cue has little effect.
 
     Wrong when: The joint rattles or dissipates energy.
 
@@ -201,7 +201,7 @@ class Joint(CueEffect):
         return (self.position,) if self.rotational_compliance or self.shear_compliance else ()
 
     def check_on(self, cue: Cue, name: str) -> None:
-        """ValueError unless the cue goes on at both sides of the joint."""
+        """ValueError unless the joint lies between the ends of the cue."""
         if not POSITION_TOLERANCE * cue.length < self.position < cue.length * (1 - POSITION_TOLERANCE):
             raise ValueError(
                 f"{name}.position must be in (0, {cue.length}) m, between the ends of the cue; got {self.position}"
@@ -228,11 +228,11 @@ class StructuralDamping(CueEffect):
     half-power width. The mode's loss factor is the mean of the materials' loss factors, weighted by the strain energy
     that each material stores in this mode. Springs and joints store energy without loss.
 
-    Matters when: The decay of the free vibration is computed. Within one contact it hardly matters: with maple's 0.012
-    an oscillation loses 4 % of its amplitude in a period.
+    Matters when: The decay of the free vibration is computed. Within one contact it has little effect: with maple's
+    0.012 an oscillation loses 4 % of its amplitude in a period.
 
     Wrong when: The loss factors of E and G differ or vary with frequency, or the damping couples the modes.
-    Stiffness-proportional damping is not used because it damps high modes far too much.
+    Stiffness-proportional damping is not used because its damping of high modes is too large.
 
     Limit: The effect vanishes in proportion to the loss factors as they go to zero.
 

@@ -158,10 +158,10 @@ def check_effects(cue: Cue | LumpedCue, effects: Any, scene: str = "Scene") -> t
             )
         if effect.once and names[i] in names[:i]:
             raise ValueError(f"{scene}.effects[{i}] must be another effect, {names[i]} acts once; got {effect}")
-        other = next((name for name in effect.excludes if name in names), None)
-        if other is not None:
+        excluded = next((name for name in effect.excludes if name in names), None)
+        if excluded is not None:
             raise ValueError(
-                f"{scene}.effects[{i}] must be an effect that goes with effects[{names.index(other)}], {other}; "
+                f"{scene}.effects[{i}] must be an effect that goes with effects[{names.index(excluded)}], {excluded}; "
                 f"got {names[i]}, which does not"
             )
     return effects

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cuefem.cue import MAX_LEATHER_MODULUS, Array, Cue
-from cuefem.cue.materials import LEATHER_NAMES
+from cuefem.cue.materials import LEATHER_CONSTANTS
 from cuefem.effects.contact_terms import ContactTerms, TipModel
 from cuefem.effects.cue_effects import PointMass
 from cuefem.effects.effect import CueEffect, Effect
@@ -126,10 +126,10 @@ class LeatherTip(CueEffect):
     Matters when: Always. The tip's tangential compliance is two to three times its normal one, where the patch alone
     has 4/3, and the contact grows stiffer and shorter with the speed of the stroke.
 
-    Wrong when: The leather is strained far (it is linear here), or loose, or its patch grows over the rim,
-    where the pressure is cut off. The end section of the ferrule stays plane: its own compliance under the tip lowers
-    squirt by 0.06 % (maple, a ferrule of 8.6 GPa) to 0.4 % (carbon, 2.3 GPa). The annuli are exact on a half-space; on
-    a bonded layer of 6 mm squirt is off by 0.04, 0.3 and 1.1 % at b/R 0.187, 0.375 and 0.453.
+    Wrong when: The strain of the leather is large (the model is linear), the leather is loose, or its patch grows over
+    the rim, where the pressure is cut off. The end section of the ferrule stays plane: its compliance under the tip
+    lowers squirt by 0.06 % (maple, a ferrule of 8.6 GPa) to 0.4 % (carbon, 2.3 GPa). The annuli are exact on a
+    half-space; on a bonded layer of 6 mm squirt is off by 0.04, 0.3 and 1.1 % at b/R 0.187, 0.375 and 0.453.
 
     Limit: The compliance vanishes in proportion to 1/E; a stiff leather keeps the moment arm of its dome.
 
@@ -158,7 +158,7 @@ class LeatherTip(CueEffect):
     part_of_cue: ClassVar[bool] = True
     defines_tip: ClassVar[bool] = True
     excludes: ClassVar[tuple[str, ...]] = ("TipDome", "TipShear", "PowerLawTip", "RollingContact", "Elevation")
-    presets: ClassVar[Mapping[str, Mapping[str, Mapping[str, float]]]] = {"leather": LEATHER_NAMES}
+    presets: ClassVar[Mapping[str, Mapping[str, Mapping[str, float]]]] = {"leather": LEATHER_CONSTANTS}
 
     height: Annotated[float, Quantity("m", "(0, inf)").with_typical_range(0.001, 0.015)]
     dome_radius: Annotated[float, Quantity("m", "(0, inf]", tuple(DOMES.items())).with_typical_range(0.005, 0.02)]
@@ -326,7 +326,7 @@ class LeatherTip(CueEffect):
         Notes
         -----
         Where the patch reaches over the rim, the traction there is cut off and the rest scaled up. On a steep dome
-        (b/R > 0.75) the patch is kept where the table ends, short of the rim, and only normal and tangent turn further.
+        (b/R > 0.75) the patch stays at the end of the table, short of the rim; only normal and tangent turn further.
         """
         self.check_diameter(diameter)
         bounds, patch = Quantity("m", f"(0, {diameter / 2}]"), np.asarray(patch)
@@ -348,8 +348,8 @@ class LeatherTip(CueEffect):
         -------
         tuple of ndarray
             Radius of the patch, m; depth by which ball and ferrule have come closer, m; force, N. All start at zero
-            and rise, up to the largest patch, of radius 0.45 diameters. Beyond it take the force to go on along
-            the slope of the last two points, that of the patch as it is: its edge is at the rim by then.
+            and rise, up to the largest patch, of radius 0.45 diameters. Beyond it, extrapolate
+            the force with the slope of the last two points: the patch, whose edge is at the rim, no longer grows.
 
         Notes
         -----

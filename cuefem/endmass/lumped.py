@@ -30,7 +30,7 @@ def lump(scene: Scene, at: Resolution | None = None) -> LumpedCue:
     Parameters
     ----------
     scene
-        The cue, ball, tip and stroke. A `LumpedCue` is returned as it is.
+        The cue, ball, tip and stroke. A `LumpedCue` is returned unchanged.
     at
         A `Resolution`; by default as in `cuefem.strike`.
 

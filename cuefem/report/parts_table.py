@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from cuefem.cue.materials import LEATHER_NAMES, LEATHERS, MATERIALS, TIPS, WOODS
+from cuefem.cue.materials import LEATHER_CONSTANTS, LEATHERS, MATERIALS, TIPS, WOODS
 from cuefem.io.parts_catalogue import CATALOGUE_SHAFTS
 from cuefem.parameters.parameter import FERRULES
 from cuefem.results.quantities import RESULTS, units_of, with_heading
@@ -30,7 +30,7 @@ def parts_record() -> Record:
             }
             for name, known in MATERIALS.items()
         },
-        "tips": {name: {**LEATHER_NAMES[name], "source": source} for name, source in sources.items()},
+        "tips": {name: {**LEATHER_CONSTANTS[name], "source": source} for name, source in sources.items()},
         "units": units_of("E", "G", "rho"),
     }
 

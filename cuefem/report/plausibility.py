@@ -34,7 +34,7 @@ def _usual(kind: type, name: str) -> tuple[float, float]:
 
 def _of_stroke(scene: Scene) -> Iterator[Check]:
     leather, ball = "expected 0.001 to 0.002 s for leather", scene.ball
-    yield "contact time, rigid cue head-on,", scene.known_contact_time, _usual(Tip, "contact_time"), "s", leather
+    yield "contact time, rigid cue head-on,", scene.valid_contact_time, _usual(Tip, "contact_time"), "s", leather
     diameter = "expected 26 to 31 mm; is this the diameter?"
     yield "ball radius", ball.radius, _usual(Ball, "radius"), "mm", diameter
     yield "ball mass", ball.mass, _usual(Ball, "mass"), "g", "expected 140 to 210 g"

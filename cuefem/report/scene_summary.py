@@ -29,7 +29,7 @@ def scene_record(scene: Scene) -> Record:
         "cue": cue_record(scene.cue),
         "ball": asdict(scene.ball),
         "tip": {name: value for name, value in asdict(scene.tip).items() if value is not None}
-        | {"contact_time": scene.known_contact_time},
+        | {"contact_time": scene.valid_contact_time},
         "stroke": asdict(scene.stroke),
         "effects": [{"type": type(effect).__name__, **asdict(effect)} for effect in scene.effects],
         "effects_at_tip": [type(effect).__name__ for effect in scene.at_tip],

@@ -259,7 +259,7 @@ class Scene:
 
     @cached_property
     def contact_time(self) -> float:
-        """Contact time T of a central impact, s, given or from the tip's stiffness (handbook: The strike).
+        """Contact time T of a central impact, s: the tip's, or from its stiffness (handbook: The strike).
 
         For a `LeatherTip` it follows from the force-indentation law, at the stroke's speed, on an axially rigid cue.
         With the stiffness it defines the equivalent linear tip for end masses, the choice of modes, and reports.
@@ -271,7 +271,7 @@ class Scene:
         return math.pi / 2 * (1 + self.tip.restitution) * math.sqrt(self.reduced_mass / self.tip.stiffness)
 
     @property
-    def known_contact_time(self) -> float | None:
+    def valid_contact_time(self) -> float | None:
         """The `contact_time`, s; None if the impact indents the leather beyond the range of its law."""
         try:
             return self.contact_time
@@ -280,7 +280,7 @@ class Scene:
 
     @property
     def stiffness(self) -> float:
-        """Loading stiffness k of the tip, N/m, given or from the contact time (handbook: The strike)."""
+        """Loading stiffness k of the tip, N/m: the tip's, or from its contact time (handbook: The strike)."""
         if self.tip.stiffness is not None:
             return self.tip.stiffness
         return (math.pi / 2 * (1 + self.tip.restitution) / self.contact_time) ** 2 * self.reduced_mass

@@ -113,7 +113,7 @@ def lagrange(radius: Array, fineness: TipFineness) -> Array:
 
 
 class TipSolid:
-    """A meshed domed cylinder on a clamped base: the given rows within the leather, three rows within every layer."""
+    """A meshed domed cylinder on a clamped base: rows of elements within the leather, three rows within every layer."""
 
     def __init__(self, shape: Shape, fineness: TipFineness) -> None:
         ends = np.append(0.0, np.cumsum([height for height, _, _ in shape.layers]) / shape.height)
