@@ -132,7 +132,8 @@ def text() -> str:
         "What lowers the squirt of a shaft, and what does it cost in stiffness?",
         "A wider bore: in a shaft that is already bored, 1 mm wider lowers squirt by "
         f"{100 * (1 - wider[2] / base[2]):.0f} % with a leather tip "
-        f"({100 * (1 - wider[1] / base[1]):.0f} % with a spring tip) and stiffness by {100 * (1 - wider[0] / base[0]):.1f} %; a tip 0.5 mm narrower lowers squirt by "
+        f"({100 * (1 - wider[1] / base[1]):.0f} % with a spring tip) and stiffness by "
+        f"{100 * (1 - wider[0] / base[0]):.1f} %; a tip 0.5 mm narrower lowers squirt by "
         f"{100 * (broad[2] / base[2] - 1):.0f} %. A bore 6 in deep instead of 5 in lowers it by "
         f"{100 * (1 - deep[2] / base[2]):.0f} %. At the stiffness of a solid shaft the lowest squirt found is "
         f"{best[2] / solid[2]:.2f} of its squirt.",
