@@ -9,7 +9,6 @@ from typing import Any
 
 import click
 
-import cuefem.report
 from cuefem.cli.common import (
     check_overwrite,
     errors_name_file,
@@ -57,28 +56,17 @@ class WithDefinitions(Command):
 @command()
 @stroke_options
 @page_option
-@click.option(
-    "--check",
-    is_flag=True,
-    help="Also compute the error of the beam model for this shaft; takes seconds (see `cuefem check`).",
-)
-def report(file: Path, output: Path | None, check: bool, **options: Any) -> None:
+def report(file: Path, output: Path | None, **options: Any) -> None:
     """Report the squirt of a cue with its uncertainty, then natural frequencies, end mass, pivot length and masses.
 
     Prints tables; -o FILE.html writes a page with figures. Assumptions are listed last, each with its option.
     """
-
-    def results(scene: Scene) -> Record:
-        record = report_record(scene)
-        checked = check and "no_contact" not in record
-        return record | ({"model_error": _model_error(scene)} if checked else {})
-
     if output is None:
-        record = run_on_scene(file, options, results, partial(_sheets, file))
+        record = run_on_scene(file, options, report_record, partial(_sheets, file))
         if "no_contact" in record:
             raise InputError(file, "", f"{record['no_contact']} (--tip-height, --leather, --speed)")
     else:
-        _write_page(file, output, options, check=check)
+        _write_page(file, output, options)
 
 
 def _sheets(file: Path, record: Record, about: Record) -> list[Table | str]:
@@ -91,21 +79,14 @@ def _sheets(file: Path, record: Record, about: Record) -> list[Table | str]:
     )
 
 
-def _model_error(scene: Scene) -> Record:
-    return cuefem.report.model_error_record(scene, with_progress_bar)  # loads scikit-fem, which other reports need not
-
-
-def _write_page(file: Path, output: Path, options: dict[str, Any], *, check: bool) -> None:
-    from cuefem.report.report_page import (
-        page_and_headline,
-    )  # templates and charts take 0.1 s to load
+def _write_page(file: Path, output: Path, options: dict[str, Any]) -> None:
+    from cuefem.report.report_page import page_and_headline  # templates and charts take 0.1 s to load
 
     if options["as_json"]:
         raise InputError(output, "--output", "cannot be combined with --json")
     scene, notes = scene_of(file, options)
     with errors_name_file(file, options):
-        checks = [_model_error(scene)["summary"]] if check else []
-        more: dict[str, Any] = {"rtol": load_accuracy(file), "warnings": plausibility_warnings(scene), "checks": checks}
+        more: dict[str, Any] = {"rtol": load_accuracy(file), "warnings": plausibility_warnings(scene)}
         text, line = page_and_headline(file.name, scene, notes=notes, progress=with_progress_bar, **more)
     save_page(text, output)
     click.echo(f"{line}\nwrote {output}")

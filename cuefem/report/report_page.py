@@ -75,7 +75,6 @@ def page_and_headline(
     rtol: float | None = None,
     notes: Sequence[str] = (),
     warnings: Sequence[str] = (),
-    checks: Sequence[str] = (),
     other: tuple[str, Scene] | None = None,
     progress: Any = iter,
 ) -> tuple[str, str]:
@@ -89,8 +88,8 @@ def page_and_headline(
         The stroke to report.
     rtol : float, optional
         Relative numerical error target of the strike; by default that of a default strike.
-    notes, warnings, checks : sequence of str
-        Assumptions, warnings of implausible values, and results of verification to show.
+    notes, warnings : sequence of str
+        Assumptions, and warnings of implausible values.
     other : tuple of str and Scene, optional
         Name and scene of a cue to compare with, with the same ball and stroke.
     progress : callable
@@ -118,7 +117,7 @@ def page_and_headline(
     records |= records.pop("report")
     if "no_squirt" in records:
         raise ValueError(records["no_squirt"])
-    lines = {"notes": list(notes), "warnings": list(warnings), "checks": list(checks)}
+    lines = {"notes": list(notes), "warnings": list(warnings)}
     context = _context(scene, records) | {"screen": _screen(name, scene, records, other), "comparison": None}
     if other is not None:
         curves = {name: records["squirt"]["models"]["coupled, this cue"], other[0]: records["other"]}

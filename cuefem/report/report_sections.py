@@ -66,7 +66,6 @@ def tabulate_report(record: Record, scene: Record) -> list[Table | str]:
         first = [record["no_squirt"], ""]
     else:
         first = [*([warning, ""] if warning else []), *tabulate_verdict(record["verdict"])]
-    first += [record["model_error"]["summary"], ""] if "model_error" in record else []
     title = f"Cue, and stroke at offset b/R {scene['stroke']['offset']:.4g}"
     end_mass = (SQUIRT_END_MASS, format_value("mass", record["end_masses"]["definitions"]["squirt"]["end_mass"]))
     numbers = tabulate_values(title, [end_mass, *value_rows(record["numbers"])], assumptions(scene))

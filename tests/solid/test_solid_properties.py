@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +11,6 @@ import pytest
 import cuefem as cf
 from cuefem.report.model_error_table import model_error_record, tabulate_model_error
 from cuefem.solid.shaft import SolidBody
-from tests.helpers.command_line import call
 
 WOOD = cf.Material(E=12.6e9, G=1.1e9, rho=700.0, nu=0.45, transverse_ratio=0.0985, nu_transverse=0.52)
 CONE = cf.Segment(0.7, 0.012, 0.021, WOOD)
@@ -81,18 +79,3 @@ def test_model_error_short_cone_lists_quantities_and_exclusions() -> None:
     assert abs(record["scikit_fem"]["difference"]) < 1e-9
     assert table.rows[-1][0] == "natural frequency 1, same beam by scikit-fem"
     assert "axial waves" in table.notes[-1]
-
-
-def test_report_with_check_states_model_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The page states it once, for the scene of the report."""
-    requested: list[cf.Scene] = []
-
-    def record(scene: cf.Scene, follow: object) -> dict[str, object]:
-        requested.append(scene)
-        return {"summary": "Beam theory is 0.125 % off."}
-
-    monkeypatch.setattr("cuefem.report.model_error_record", record)
-    cf.save(SCENE, tmp_path / "scene.toml")
-    assert call("report", tmp_path / "scene.toml", "--check", "-o", tmp_path / "page.html")[0] == 0
-    assert (tmp_path / "page.html").read_text(encoding="utf-8").count("0.125 % off") == 1
-    assert requested == [SCENE]
