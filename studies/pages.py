@@ -95,14 +95,14 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[Any]], digits: int = 3
 
 def span(values: Iterable[float], digits: int = 2) -> str:
     """Least and largest of some numbers."""
-    found = list(values)
-    return f"{min(found):.{digits}f} to {max(found):.{digits}f}"
+    numbers = list(values)
+    return f"{min(numbers):.{digits}f} to {max(numbers):.{digits}f}"
 
 
 def change(values: Iterable[float]) -> str:
     """Largest over smallest of some numbers, less 1, per cent."""
-    found = list(values)
-    return f"{100 * (max(found) / min(found) - 1):.0f} %"
+    numbers = list(values)
+    return f"{100 * (max(numbers) / min(numbers) - 1):.0f} %"
 
 
 def rms(values: Iterable[float]) -> float:
@@ -139,20 +139,20 @@ _NUMBER = re.compile(r"(?<![\w.])[+-]?\d+(?:\.\d*)?(?:e[+-]?\d+)?(?![\w.]*\w)")
 
 def disagreements(committed: str, derived: str) -> list[str]:
     """Pairs of lines of two pages that differ: other text, or numbers more than one apart in the last printed place."""
-    ours, theirs = committed.splitlines(), derived.splitlines()
-    if len(ours) != len(theirs):
-        return [f"{len(ours)} lines committed, {len(theirs)} derived"]
-    return [f"{a}\n{b}" for a, b in zip(ours, theirs, strict=True) if not _same(a, b)]
+    old, new = committed.splitlines(), derived.splitlines()
+    if len(old) != len(new):
+        return [f"{len(old)} lines committed, {len(new)} derived"]
+    return [f"{a}\n{b}" for a, b in zip(old, new, strict=True) if not _agree(a, b)]
 
 
-def _same(ours: str, theirs: str) -> bool:
-    if _NUMBER.sub("#", ours) != _NUMBER.sub("#", theirs):
+def _agree(old: str, new: str) -> bool:
+    if _NUMBER.sub("#", old) != _NUMBER.sub("#", new):
         return False
-    pairs = zip(_NUMBER.findall(ours), _NUMBER.findall(theirs), strict=True)
-    return all(abs(float(a) - float(b)) <= 1.01 * max(_last_place(a), _last_place(b)) for a, b in pairs if a != b)
+    pairs = zip(_NUMBER.findall(old), _NUMBER.findall(new), strict=True)
+    return all(abs(float(a) - float(b)) <= 1.01 * max(_resolution(a), _resolution(b)) for a, b in pairs if a != b)
 
 
-def _last_place(text: str) -> float:
+def _resolution(text: str) -> float:
     digits, _, exponent = text.partition("e")
     decimals = len(digits.partition(".")[2])
     return 10.0 ** (int(exponent or 0) - decimals)

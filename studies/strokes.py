@@ -19,24 +19,24 @@ INCH, MPH = 0.0254, 0.44704
 POOL = cf.Ball(mass=0.170, radius=0.028575)
 # Textbook tip of the models before LeatherTip: Alciatore's dime to nickel, and Mindlin's ratio of stiffnesses.
 DOME, SHEAR = cf.TipDome(9.5e-3), cf.TipShear(0.75)
-# Bores of the hollow shaft, m, that the measured static stiffness of such a shaft asks for (measured/squirt.py).
+# Bores of the hollow shaft, m, that the measured static stiffness of such a shaft requires (measured/squirt.py).
 BORES = (7.4e-3, 8.5e-3, 10.2e-3)
 
 
 @cache
 def cue(name: str) -> cf.Cue:
     """A cue of meshes/."""
-    drawn = cf.load(MESHES / f"{name}.toml")
-    assert isinstance(drawn, cf.Cue)
-    return drawn
+    result = cf.load(MESHES / f"{name}.toml")
+    assert isinstance(result, cf.Cue)
+    return result
 
 
 @cache
 def hollow(bore: float) -> cf.Cue:
     """The hollow shaft of meshes/ with another bore in front, m."""
-    found = cue("pool_hollow")
-    drilled = (replace(s, tip_bore=bore, butt_bore=bore) if s.tip_bore else s for s in found.segments)
-    return replace(found, segments=tuple(drilled))
+    base = cue("pool_hollow")
+    drilled = (replace(s, tip_bore=bore, butt_bore=bore) if s.tip_bore else s for s in base.segments)
+    return replace(base, segments=tuple(drilled))
 
 
 def wood(draw: np.random.Generator) -> cf.Material:
@@ -53,9 +53,9 @@ def random_cue(draw: np.random.Generator, kind: str | None = None) -> cf.Cue:
     front, back, length, power, wall = u(0.010, 0.0135), u(0.019, 0.024), u(0.65, 0.8), u(1, 2.5), u(0.001, 0.002)
     carbon, foam = cf.Material(u(40e9, 130e9), 5e9, 1550.0), cf.Material(7e7, 2.5e7, 60.0)
     leather, plastic = cf.Material(u(5e7, 4e8), 4e7, 1000.0), cf.Material(u(2e9, 10e9), 2e9, 1200.0)
-    head = [cf.Segment(u(0.003, 0.012), front, front, leather)] if "leather" in kind else []
+    front_pieces = [cf.Segment(u(0.003, 0.012), front, front, leather)] if "leather" in kind else []
     if "ferrule" in kind:
-        head.append(cf.Segment(u(0.005, 0.03), front, front, plastic, 0.55 * front, 0.55 * front, core=timber))
+        front_pieces.append(cf.Segment(u(0.005, 0.03), front, front, plastic, 0.55 * front, 0.55 * front, core=timber))
     ends = np.r_[0, np.sort(u(0.1, 0.9, draw.integers(0, 4))), 1]
     depth = u(0.3, 0.65) * front if draw.random() < 0.3 else 0.0  # of a bore, as wide, in the first piece
     shaft = []
@@ -63,7 +63,7 @@ def random_cue(draw: np.random.Generator, kind: str | None = None) -> cf.Cue:
         a, b = (front + (back - front) * x**power for x in (first, last))
         bores = (a - 2 * wall, b - 2 * wall, foam) if tube else (depth, depth, None) if i == 0 else (0.0, 0.0, None)
         shaft.append(cf.Segment(length * (last - first), a, b, carbon if tube else timber, *bores))
-    return cf.Cue((*head, *shaft), u(0.3, 0.5))
+    return cf.Cue((*front_pieces, *shaft), u(0.3, 0.5))
 
 
 def scene(struck: cf.Cue | cf.LumpedCue, contact_time: float = 1e-3, offset: float = 0.0) -> cf.Scene:
@@ -76,11 +76,11 @@ def pool_scene(struck: cf.Cue, contact_time: float, offset: float, effects: Sequ
     return cf.Scene(struck, POOL, cf.Tip(0.73, 0.7, contact_time), cf.Stroke(2.0, offset), tuple(effects))
 
 
-def whole(drawn: cf.Cue, offset: float = 0.375, speed: float = 2.0, **leather: float) -> cf.Scene:
+def full_model(shaft: cf.Cue, offset: float = 0.375, speed: float = 2.0, **leather: float) -> cf.Scene:
     """Pool's default stroke: LeatherTip, axial waves, axial force on the bent shaft. leather: fields of the tip."""
-    usual = cf.usual_scene(drawn)
-    effects = tuple(replace(e, **leather) if isinstance(e, cf.LeatherTip) else e for e in usual.effects)
-    return replace(usual, stroke=cf.Stroke(speed, offset), effects=effects)
+    base = cf.usual_scene(shaft)
+    effects = tuple(replace(e, **leather) if isinstance(e, cf.LeatherTip) else e for e in base.effects)
+    return replace(base, stroke=cf.Stroke(speed, offset), effects=effects)
 
 
 def with_tip(struck: cf.Scene, E: float, restitution: float) -> cf.Scene:
@@ -95,7 +95,7 @@ def robot_speeds() -> tuple[float, float]:
 
     It timed the ball, 3.6 to 7.8 mph between two beams; at b/R 0.375 the ball is faster than the cue was.
     """
-    ratio = float(cf.strike(whole(cue("pool_maple"))).ball_speed) / 2.0
+    ratio = float(cf.strike(full_model(cue("pool_maple"))).ball_speed) / 2.0
     return 3.6 * MPH / ratio, 7.8 * MPH / ratio
 
 

@@ -41,20 +41,20 @@ def errors() -> dict[str, np.ndarray]:
     """Relative errors of the default by quantity, over random cues and those of meshes/, three strokes each."""
     draw = np.random.default_rng(SEED)
     cues = [*map(strokes.cue, strokes.NAMES), *(strokes.random_cue(draw) for _ in range(RANDOM))]
-    found: dict[str, list[float]] = {"squirt": [], "squirt, axial waves": [], "end mass, stick": []}
-    found |= {"end mass, force": [], "squirt by resolve to 1e-3": []}
+    result: dict[str, list[float]] = {"squirt": [], "squirt, axial waves": [], "end mass, stick": []}
+    result |= {"end mass, force": [], "squirt by resolve to 1e-3": []}
     for cue in cues:
         for turn in range(3):
             scene = strokes.scene(cue, draw.uniform(0.5e-3, 3e-3), draw.uniform(0.05, 0.5))
             waves = replace(scene, effects=(axial_waves(cue),))
             fine = cf.resolve(scene, FINE).squirt
-            found["squirt"].append(cf.strike(scene).squirt / fine - 1)
-            found["squirt by resolve to 1e-3"].append(cf.resolve(scene, 1e-3).squirt / fine - 1)
-            found["squirt, axial waves"].append(cf.strike(waves).squirt / cf.resolve(waves, FINE).squirt - 1)
+            result["squirt"].append(cf.strike(scene).squirt / fine - 1)
+            result["squirt by resolve to 1e-3"].append(cf.resolve(scene, 1e-3).squirt / fine - 1)
+            result["squirt, axial waves"].append(cf.strike(waves).squirt / cf.resolve(waves, FINE).squirt - 1)
             for drive in ("force", "stick")[: 1 if turn else 2]:
                 exact = cf.resolve_end_mass(scene, drive, FINE)[0]
-                found[f"end mass, {drive}"].append(cf.end_mass(scene, drive) / exact - 1)
-    return {name: np.abs(errors) for name, errors in found.items()}
+                result[f"end mass, {drive}"].append(cf.end_mass(scene, drive) / exact - 1)
+    return {name: np.abs(errors) for name, errors in result.items()}
 
 
 def error_table() -> str:
@@ -101,7 +101,7 @@ def mode_table() -> str:
 
 @cache
 def ladder() -> dict[str, np.ndarray]:
-    """Squirt by every model over that of the whole stroke, less 1."""
+    """Squirt by every model over that of the full model, less 1."""
     models: dict[str, Callable[[cf.Scene], Any]] = {
         "Kim's closed form, 12 g": lambda s: (
             cf.impulse(replace(s, cue=cf.LumpedCue.two_part(s.axial_mass, 0.012))).squirt
@@ -111,23 +111,23 @@ def ladder() -> dict[str, np.ndarray]:
         models[f"lumped, {drive} end mass"] = lambda s, d=drive: strokes.lumped_squirt(s, cf.end_mass(s, d))
     models["coupled beam"] = lambda s: cf.strike(s).squirt
     for i, (name, _) in enumerate(EFFECTS, 1):
-        effects = tuple(effect for _, some in EFFECTS[:i] for effect in some)
+        effects = tuple(effect for _, group in EFFECTS[:i] for effect in group)
         models[f"... and {name}"] = lambda s, effects=effects: cf.strike(replace(s, effects=effects)).squirt
-    found: dict[str, list[float]] = {name: [] for name in models}
+    result: dict[str, list[float]] = {name: [] for name in models}
     for name in strokes.NAMES:
         for E, speed, offset in PLAYED:
-            struck = replace(strokes.whole(strokes.cue(name), offset, speed, E=E), ball=cf.Ball())
+            struck = replace(strokes.full_model(strokes.cue(name), offset, speed, E=E), ball=cf.Ball())
             head_on = cf.strike(replace(struck, stroke=cf.Stroke(speed, 0.0)))
-            tip, own = cf.Tip(cf.rebound(struck), 0.7, contact_time=head_on.duration), cf.strike(struck).squirt
-            told = cf.Scene(strokes.cue(name), tip=tip, stroke=cf.Stroke(speed, offset))
+            tip, expected = cf.Tip(cf.rebound(struck), 0.7, contact_time=head_on.duration), cf.strike(struck).squirt
+            spring = cf.Scene(strokes.cue(name), tip=tip, stroke=cf.Stroke(speed, offset))
             for model, squirt in models.items():
-                found[model].append(float(squirt(told)) / own - 1)
-    return {name: 100 * np.array(values) for name, values in found.items()}
+                result[model].append(float(squirt(spring)) / expected - 1)
+    return {name: 100 * np.array(values) for name, values in result.items()}
 
 
 def text() -> str:
     squirt, stick = (100 * errors()[name] for name in ("squirt", "end mass, stick"))
-    off = {name: f"{np.median(np.abs(values)):.0f} %" for name, values in ladder().items()}
+    medians = {name: f"{np.median(np.abs(values)):.0f} %" for name, values in ladder().items()}
     rows = [[name, *(f"{f(v):+.0f}" for f in (np.median, np.min, np.max))] for name, v in ladder().items()]
     return pages.page(
         "Numerical errors and model errors",
@@ -135,9 +135,9 @@ def text() -> str:
         f"At the default resolution the error of squirt is {np.quantile(squirt, 0.95):.2f} % (95th percentile) and "
         f"{squirt.max():.1f} % (maximum) over {len(squirt)} strokes with a spring tip, that of the stick end mass "
         f"{np.quantile(stick, 0.95):.2f} and {stick.max():.1f} %. The choice of model matters more. Median difference "
-        f"of squirt from the full model: Kim's 12 g {off[next(iter(off))]}, the stick end mass "
-        f"{off['lumped, stick end mass']}, a beam without effects {off['coupled beam']}, with the tip's dome and shear "
-        f"{off['... and tip shear']}. The model error of the full model is up to 18 % "
+        f"of squirt from the full model: Kim's 12 g {medians[next(iter(medians))]}, the stick end mass "
+        f"{medians['lumped, stick end mass']}, a beam without effects {medians['coupled beam']}, with the tip's dome "
+        f"and shear {medians['... and tip shear']}. The model error of the full model is up to 18 % "
         "([uncertainty](../measured/uncertainty.md)).",
         "## Numerical errors at the default resolution",
         "Five cues of meshes/ and 12 random ones, 3 strokes each, against `resolve` to 2e-4. A brass tip, which "

@@ -143,28 +143,28 @@ def peer_rows() -> list[list[str]]:
 
 
 def text() -> str:
-    whole, n = strokes.whole(strokes.cue("pool_maple")), 20
+    full, n = strokes.full_model(strokes.cue("pool_maple")), 20
     offsets = np.linspace(0.02, 0.5, n)
     batches = {
         name: [strokes.at_offset(s, float(b)) for b in offsets]
-        for name, s in {"bare": scene(1e-3), "whole": whole}.items()
+        for name, s in {"bare tip": scene(1e-3), "full model": full}.items()
     }
     calls: dict[str, Callable[[], Any]] = {
         "scipy.linalg.expm, 50 x 50": lambda: la.expm(np.full((50, 50), 0.02)),
         "modes(cue, 5)": lambda: cf.modes(scene(1e-3).shaft, 5),
         "end_mass(scene)": lambda: cf.end_mass(scene(2e-3)),
         "end_mass(scene, 'force')": lambda: cf.end_mass(scene(2e-3), "force"),
-        "strike(scene), bare": lambda: cf.strike(scene(1e-3)),
-        "strike(scene), pool's whole stroke": lambda: cf.strike(whole),
-        f"batch_strike of {n}, bare": lambda: cf.batch_strike(batches["bare"]),
-        f"batch_strike of {n}, whole stroke": lambda: cf.batch_strike(batches["whole"]),
+        "strike(scene), bare tip": lambda: cf.strike(scene(1e-3)),
+        "strike(scene), full model": lambda: cf.strike(full),
+        f"batch_strike of {n}, bare tip": lambda: cf.batch_strike(batches["bare tip"]),
+        f"batch_strike of {n}, full model": lambda: cf.batch_strike(batches["full model"]),
         "resolve(scene, 1e-3)": lambda: cf.resolve(scene(1e-3), 1e-3),
     }
     spent, peers = seconds(calls), peer_rows()
     return pages.page(
         "Run time and other programs",
         "What is the run time of the public calls, and that of the same result by other programs?",
-        f"A strike with a spring tip takes {1e3 * spent['strike(scene), bare']:.0f} ms, the default stroke of pool "
+        f"A strike with a spring tip takes {1e3 * spent['strike(scene), bare tip']:.0f} ms, the default stroke of pool "
         f"{1e3 * spent[list(spent)[5]]:.0f} ms. For f3 to f5 of one cone to 1e-6 "
         f"scikit-fem takes {peers[1][4]} times cuefem's processor time, NGSolve 1.5 times, OpenSeesPy 114 times.",
         f"{pages.machine()}, one thread.",

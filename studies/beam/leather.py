@@ -38,7 +38,7 @@ from cuefem.solid.tip_compliance import (
 from studies import pages
 from studies.pages import table
 
-KEPT = Path(tt.__file__).with_suffix(".npz")
+STORE = Path(tt.__file__).with_suffix(".npz")
 # Nodes of the table along the axes that one tip does not have, per panel for the curvature.
 COUNTS = {"curvature": 6, "height": 8, "nu": 4}
 
@@ -69,7 +69,7 @@ def build() -> tt.LeatherTable:
 # The page
 
 
-def solved(shape: Shape, nu: float, patch: Patch, how: TipFineness = TABLE_FINENESS) -> Array:
+def by_solid(shape: Shape, nu: float, patch: Patch, how: TipFineness = TABLE_FINENESS) -> Array:
     """E D times the compliance of one Hertz-weighted patch, by the solid itself."""
     return compliance(surface_compliances(TipSolid(shape, how), nu), patch_loads(shape, patch, how))
 
@@ -77,14 +77,14 @@ def solved(shape: Shape, nu: float, patch: Patch, how: TipFineness = TABLE_FINEN
 def exact() -> Iterator[list[str | float]]:
     """The solid over exact solutions, less 1."""
     how = graded_fineness(4, 4, 6, 1)
-    short, long, slender = (solved(Shape(h, 0.0), 0.3, Patch(0.0, 0.45), how) for h in (4.0, 6.0, 30.0))
+    short, long, slender = (by_solid(Shape(h, 0.0), 0.3, Patch(0.0, 0.45), how) for h in (4.0, 6.0, 30.0))
     yield ["rod, EA/h, from the difference of two lengths", (long - short)[0, 0] * np.pi / 8 - 1]
     case = "cantilever 30 diameters long, 3EI/h^3 (shear and local compliance: 0.001)"
     yield [case, slender[1, 1] * np.pi / 64 / 9e3 - 1]
     for part in (16, 32, 64):
         radius = 0.5 / part
-        found = solved(Shape(0.5, 0.0), 0.4, Patch(0.0, radius), contact_fineness(0.5, radius)._replace(harmonics=1))
-        n, t = np.diagonal(found) / tt.half_space(0.4, np.array(radius)) - 1
+        C = by_solid(Shape(0.5, 0.0), 0.4, Patch(0.0, radius), contact_fineness(0.5, radius)._replace(harmonics=1))
+        n, t = np.diagonal(C) / tt.half_space(0.4, np.array(radius)) - 1
         yield [f"half-space, contact radius 1/{part} of the height, normal", n]
         yield [f"half-space, contact radius 1/{part} of the height, tangential", t]
 
@@ -126,7 +126,7 @@ def refined() -> Iterator[list[str | float]]:
     """The compliance of one tip, h 6, D 12.75, r 9.5 mm, nu 0.4, E 100 MPa, b/R 0.375, a 2 mm, um/N."""
     shape, patch = Shape(6 / 12.75, 12.75 / 9.5), Patch(2 * 0.375 * 9.5 / 12.75, 2 / 12.75)
     for how in MESHES:
-        C = solved(shape, 0.4, patch, how) * 1e6 / (100e6 * 12.75e-3)
+        C = by_solid(shape, 0.4, patch, how) * 1e6 / (100e6 * 12.75e-3)
         mesh = f"{len(how.radial) - 1} x {len(how.axial) - 1} of order {how.order}, {how.harmonics} harmonics"
         yield [mesh + (", the table's" if how is TABLE_FINENESS else ""), C[0, 0], C[1, 1], C[0, 1]]
 
@@ -167,19 +167,19 @@ def errors(tips: int = 20, seed: int = 1) -> Errors:
     return found
 
 
-def measured(found: Errors) -> Iterator[list[str | float]]:
-    for words, part, names in (
-        ("area within the rim", found.within, ("C_nn", "C_tt", "C_nt")),
-        ("area cut by the rim", found.cut, ("C_nn", "C_tt", "C_nt")),
-        ("head-on", found.head_on, ("force", "indentation")),
+def measured(errors: Errors) -> Iterator[list[str | float]]:
+    for group, values, names in (
+        ("area within the rim", errors.within, ("C_nn", "C_tt", "C_nt")),
+        ("area cut by the rim", errors.cut, ("C_nn", "C_tt", "C_nt")),
+        ("head-on", errors.head_on, ("force", "indentation")),
     ):
-        for name, column in zip(names, 100 * np.abs(part).T, strict=True):
-            yield [words, name, str(len(column)), *(f"{q:.2f}" for q in np.quantile(column, (0.5, 0.95, 1.0)))]
+        for name, column in zip(names, 100 * np.abs(values).T, strict=True):
+            yield [group, name, str(len(column)), *(f"{q:.2f}" for q in np.quantile(column, (0.5, 0.95, 1.0)))]
 
 
 def text() -> str:
-    found = errors()
-    middle, high = (np.quantile(100 * np.abs(found.within[:, :2]), q) for q in (0.5, 0.95))
+    result = errors()
+    middle, high = (np.quantile(100 * np.abs(result.within[:, :2]), q) for q in (0.5, 0.95))
     return pages.page(
         "Compliance of a leather tip",
         "How compliant is a leather tip, from its geometry, and what are the errors of LeatherTip's table?",
@@ -194,7 +194,7 @@ def text() -> str:
         "## The table against the solid at random tips, %",
         "h 2 to 12, D 8 to 15, r 6 to 15 mm or flat, nu 0.2 to 0.45, contact areas of 0.06 to 0.5 diameters anywhere "
         "up to the rim (b/R 0.75 on steep domes); C_nt over the root of C_nn C_tt.",
-        table(["contact", "quantity", "points", "median", "95th percentile", "maximum"], measured(found)),
+        table(["contact", "quantity", "points", "median", "95th percentile", "maximum"], measured(result)),
         "## The compliance of a patch that sticks, against the solid, %",
         "12.75 mm wide, on the axis, heights of 0.3 to 0.7 and radii of 0.1 to 0.25 diameters; along the surface, by "
         "the table's compliance of the Hertz-weighted patch less `rigid_patch_gain`, that compliance being exact here.",
@@ -207,6 +207,6 @@ STUDY = pages.Study(__file__, text)
 
 if __name__ == "__main__":
     if sys.argv[1:] != ["page"]:
-        np.savez_compressed(KEPT, **{name: part.astype(np.float32) for name, part in build()._asdict().items()})
+        np.savez_compressed(STORE, **{name: part.astype(np.float32) for name, part in build()._asdict().items()})
         tt.table.cache_clear()
     STUDY.write()

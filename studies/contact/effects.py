@@ -21,7 +21,7 @@ from studies.strokes import DOME, SHEAR, squirt
 
 SCENES = ("kim", "pool_low_deflection", "carom", "snooker", "clay_on_shaft", "break_cue")
 WAVES = cf.usual_scene(strokes.cue("pool_maple")).effects[1]
-USUAL: dict[str, cf.Effect | None] = {
+TYPICAL: dict[str, cf.Effect | None] = {
     "TipDome": DOME,
     "TipShear": SHEAR,
     "RollingContact": cf.RollingContact(),
@@ -40,40 +40,40 @@ AT_TIP = ("TipDome", "TipShear", "RollingContact", "PowerLawTip")
 @cache
 def scene(name: str) -> cf.Scene:
     """A reference scene."""
-    found = cf.load(pages.STUDIES / "scenes" / f"{name}.toml")
-    assert isinstance(found, cf.Scene)
-    return found
+    result = cf.load(pages.STUDIES / "scenes" / f"{name}.toml")
+    assert isinstance(result, cf.Scene)
+    return result
 
 
 @cache
 def change(struck: cf.Scene, effect: str) -> float | None:
     """Squirt with an effect over squirt without it, less 1, %; None where it does not apply."""
-    rest = tuple(e for e in struck.effects if type(e).__name__ != effect)
-    if len(rest) < len(struck.effects):
-        return 100 * (squirt(struck) / squirt(replace(struck, effects=rest)) - 1)
-    added = USUAL[effect]
-    return 100 * (squirt(replace(struck, effects=(*rest, added))) / squirt(struck) - 1) if added else None
+    others = tuple(e for e in struck.effects if type(e).__name__ != effect)
+    if len(others) < len(struck.effects):
+        return 100 * (squirt(struck) / squirt(replace(struck, effects=others)) - 1)
+    added = TYPICAL[effect]
+    return 100 * (squirt(replace(struck, effects=(*others, added))) / squirt(struck) - 1) if added else None
 
 
 @cache
-def whole(name: str) -> cf.Scene:
+def full_model(name: str) -> cf.Scene:
     """A reference scene by the full model: LeatherTip instead of its leather and of the effects of its tip."""
-    found = scene(name)
-    leather = found.cue.segments[0].length if found.cue.segments[0].material.E < 1e9 else 0.0
-    domes = [e.radius for e in found.effects if isinstance(e, cf.TipDome)]
+    result = scene(name)
+    leather = result.cue.segments[0].length if result.cue.segments[0].material.E < 1e9 else 0.0
+    domes = [e.radius for e in result.effects if isinstance(e, cf.TipDome)]
     tip = cf.LeatherTip(leather or 6e-3, *(domes or [9.5e-3]), LEATHERS["medium"].E)
-    cue = replace(found.cue, segments=found.cue.segments[1:]) if leather else found.cue
-    rest = [e for e in found.effects if type(e).__name__ not in (*AT_TIP, "AxialWaves", "GeometricStiffness")]
-    moved = [replace(e, position=e.position - leather) if hasattr(e, "position") else e for e in rest]
-    plain = replace(found.tip, contact_time=None, stiffness=None)
-    struck = replace(found, cue=cue, tip=plain, effects=(tip, WAVES, cf.GeometricStiffness(), *moved))
-    return strokes.with_tip(struck, *cf.identify_tip(struck, float(found.contact_time), found.tip.restitution))
+    cue = replace(result.cue, segments=result.cue.segments[1:]) if leather else result.cue
+    others = [e for e in result.effects if type(e).__name__ not in (*AT_TIP, "AxialWaves", "GeometricStiffness")]
+    shifted = [replace(e, position=e.position - leather) if hasattr(e, "position") else e for e in others]
+    plain = replace(result.tip, contact_time=None, stiffness=None)
+    struck = replace(result, cue=cue, tip=plain, effects=(tip, WAVES, cf.GeometricStiffness(), *shifted))
+    return strokes.with_tip(struck, *cf.identify_tip(struck, float(result.contact_time), result.tip.restitution))
 
 
 def cell(struck: cf.Scene, effect: str) -> str:
     """A change in per cent, bold where the scene lists the effect."""
-    found = change(struck, effect)
-    text = "–" if found is None else f"{found:+.1f}".replace("-0.0", "+0.0")
+    value = change(struck, effect)
+    text = "–" if value is None else f"{value:+.1f}".replace("-0.0", "+0.0")
     return f"**{text}**" if any(type(e).__name__ == effect for e in struck.effects) else text
 
 
@@ -81,42 +81,42 @@ def text() -> str:
     slow = SCENES[:-1]  # the break's tip is phenolic
 
     def span(effect: str, scenes: Any) -> str:
-        found = [c for s in scenes if (c := change(s, effect)) is not None]
-        return f"{min(found):+.0f} to {max(found):+.0f} %"
+        changes = [c for s in scenes if (c := change(s, effect)) is not None]
+        return f"{min(changes):+.0f} to {max(changes):+.0f} %"
 
-    listed, wholes = [scene(n) for n in slow], [whole(n) for n in slow]
+    drawn, full = [scene(n) for n in slow], [full_model(n) for n in slow]
     rows = []
     for name in SCENES:
         struck = scene(name)
         stroke = f"{1e3 * float(struck.contact_time):.1f}", f"{struck.stroke.offset:g}", f"{struck.stroke.speed:g}"
-        own = f"{squirt(whole(name)):.2f}" if name in slow else "–"
-        rows.append([name, *stroke, f"{squirt(struck):.2f}", own])
+        full_squirt = f"{squirt(full_model(name)):.2f}" if name in slow else "–"
+        rows.append([name, *stroke, f"{squirt(struck):.2f}", full_squirt])
     return pages.page(
         "Sensitivity of squirt to each effect",
         "How much does each effect change squirt in the reference scenes?",
-        f"The tip dome changes squirt most, by {span('TipDome', listed)}; tip shear by "
-        f"{span('TipShear', listed)}, the rolling contact by {span('RollingContact', listed)}, axial waves by "
-        f"{span('AxialWaves', listed)}, geometric stiffness by {span('GeometricStiffness', listed)}. In the full model "
-        f"axial waves change squirt by {span('AxialWaves', wholes)} and geometric stiffness by "
-        f"{span('GeometricStiffness', wholes)}. A bridge hand, damping and a double hit change it by less than 0.6 %. "
+        f"The tip dome changes squirt most, by {span('TipDome', drawn)}; tip shear by "
+        f"{span('TipShear', drawn)}, the rolling contact by {span('RollingContact', drawn)}, axial waves by "
+        f"{span('AxialWaves', drawn)}, geometric stiffness by {span('GeometricStiffness', drawn)}. In the full model "
+        f"axial waves change squirt by {span('AxialWaves', full)} and geometric stiffness by "
+        f"{span('GeometricStiffness', full)}. A bridge hand, damping and a double hit change it by less than 0.6 %. "
         "In the break, at 11 m/s, geometric stiffness reverses the sign.",
         "## Scenes",
         table(["scene", "T, ms", "b/R", "speed, m/s", "squirt, deg", "squirt by the full model, deg"], rows),
         "## Change of squirt by the effect, %",
         "Bold: the scene lists the effect. The break violates the assumptions of RollingContact.",
-        table(["effect", *SCENES], [[e, *(cell(scene(n), e) for n in SCENES)] for e in USUAL]),
+        table(["effect", *SCENES], [[e, *(cell(scene(n), e) for n in SCENES)] for e in TYPICAL]),
         "## Change of squirt by the effect in the full model, %",
-        table(["effect", *slow], [[e, *(cell(whole(n), e) for n in slow)] for e in BESIDE]),
+        table(["effect", *slow], [[e, *(cell(full_model(n), e) for n in slow)] for e in BESIDE]),
     )
 
 
 def draw(axes: Any) -> None:
     """The change of squirt by all effects."""
     for i, name in enumerate(SCENES):
-        found = {e: change(scene(name), e) for e in USUAL}
-        places = [k + 0.13 * (i - 2.5) for k, value in enumerate(found.values()) if value is not None]
-        axes.barh(places, [v for v in found.values() if v is not None], height=0.12, color=f"C{i}", label=name)
-    axes.set_yticks(range(len(USUAL)), map(effect_name, USUAL))
+        changes = {e: change(scene(name), e) for e in TYPICAL}
+        positions = [k + 0.13 * (i - 2.5) for k, value in enumerate(changes.values()) if value is not None]
+        axes.barh(positions, [v for v in changes.values() if v is not None], height=0.12, color=f"C{i}", label=name)
+    axes.set_yticks(range(len(TYPICAL)), map(effect_name, TYPICAL))
     axes.invert_yaxis()
     axes.axvline(0, color="k", lw=0.8)
     axes.set(xlabel="change of squirt by the effect, per cent")

@@ -20,7 +20,7 @@ import cuefem as cf
 from studies import pages, strokes
 from studies.contact.rings import Leather, plain, stepped
 from studies.pages import table
-from studies.strokes import INCH, at_offset, cue, pool_scene, squirt, whole
+from studies.strokes import INCH, at_offset, cue, full_model, pool_scene, squirt
 
 OFFSETS = (0.187, 0.375, 0.453)  # b/R
 TIMES = (1e-4, 4e-4)  # s, of relaxation
@@ -64,49 +64,49 @@ def stiffening(tip: cf.LeatherTip, diameter: float, ball_radius: float) -> tuple
 
 def stiffened(offset: float) -> float:
     """Change of squirt by large strain."""
-    usual = whole(cue("pool_maple"), offset)
-    unlike = whole(cue("pool_maple"), offset, E=UNLIKE * usual.leather_tip.E)
-    squirt(usual)
+    default = full_model(cue("pool_maple"), offset)
+    unlike = full_model(cue("pool_maple"), offset, E=UNLIKE * default.leather_tip.E)
+    squirt(default)
     with patch.object(cf.LeatherTip, "head_on", stiffening):
-        return change(unlike, usual, offset)
+        return change(unlike, default, offset)
 
 
 @cache
 def rows() -> dict[str, tuple[str, ...]]:
     """Changes of squirt at `OFFSETS`, %, by what is changed."""
-    usual, drawn = whole(cue("pool_maple")), whole(cue("whole_cue"))
-    domed = pool_scene(cue("pool_maple"), float(usual.contact_time), 0.375, (strokes.DOME,))
+    default, drawn = full_model(cue("pool_maple")), full_model(cue("whole_cue"))
+    domed = pool_scene(cue("pool_maple"), float(default.contact_time), 0.375, (strokes.DOME,))
     grip = drawn.shaft.length - 10 * INCH
 
-    def more(scene: cf.Scene, *effects: cf.Effect) -> cf.Scene:
+    def added(scene: cf.Scene, *effects: cf.Effect) -> cf.Scene:
         return replace(scene, effects=(*scene.effects, *effects))
 
-    def scenes(made: Iterable[cf.Scene], base: cf.Scene = usual) -> list[Change]:
-        return [partial(change, scene, base) for scene in made]
+    def scenes(variants: Iterable[cf.Scene], base: cf.Scene = default) -> list[Change]:
+        return [partial(change, scene, base) for scene in variants]
 
-    hands = (more(drawn, cf.PointMass(grip, mass)) for mass in (0.05, 0.3, 1.0))
-    bridges = (more(usual, cf.Support(x * INCH, k)) for x in (6, 8, 10, 12) for k in (1e3, 1e4))
-    raised = (more(domed, cf.Elevation(math.radians(angle))) for angle in (2, 4, 6))
-    slippery = (replace(usual, tip=replace(usual.tip, friction=mu)) for mu in (0.6, 0.55))
-    lossy = (whole(cue("pool_maple"), surface_restitution=e) for e in (0.95, 0.9))
+    hands = (added(drawn, cf.PointMass(grip, mass)) for mass in (0.05, 0.3, 1.0))
+    bridges = (added(default, cf.Support(x * INCH, k)) for x in (6, 8, 10, 12) for k in (1e3, 1e4))
+    raised = (added(domed, cf.Elevation(math.radians(angle))) for angle in (2, 4, 6))
+    slippery = (replace(default, tip=replace(default.tip, friction=mu)) for mu in (0.6, 0.55))
+    lossy = (full_model(cue("pool_maple"), surface_restitution=e) for e in (0.95, 0.9))
     relaxed = [relaxing(time) for time in TIMES]
-    both = [replace(leather, surface=True) for leather in relaxed]
+    tangential = [replace(leather, surface=True) for leather in relaxed]
     changes: dict[str, list[Change]] = {
         NORMAL: [partial(alone, leather) for leather in relaxed],
-        "the same, with tangential loss too (isotropic)": [partial(alone, leather) for leather in both],
+        "the same, with tangential loss too (isotropic)": [partial(alone, leather) for leather in tangential],
         "tangential loss: tangential restitution 0.95, 0.9": scenes(lossy),
         "normal-tangential coupling compliance (C_nt)": [partial(alone, Leather(coupled=True))],
         "large strain: a neo-Hookean tip": [stiffened],
         "a hand of 0.05, 0.3, 1 kg that moves with the grip": scenes(hands, drawn),
         "a bridge hand, 1e3 to 1e4 N/m, 6 to 12 in from the tip": scenes(bridges),
-        "a ball of 156 g": scenes([replace(usual, ball=replace(usual.ball, mass=0.156))]),
+        "a ball of 156 g": scenes([replace(default, ball=replace(default.ball, mass=0.156))]),
         "friction 0.6, 0.55": scenes(slippery),
         "a cue raised by 2, 4, 6° (spring tip with a dome)": scenes(raised, domed),
     }
-    return {name: tuple(written([100 * one(b) for one in each]) for b in OFFSETS) for name, each in changes.items()}
+    return {name: tuple(text_of([100 * one(b) for one in each]) for b in OFFSETS) for name, each in changes.items()}
 
 
-def written(values: list[float]) -> str:
+def text_of(values: list[float]) -> str:
     """Some changes, or the least and the most of many."""
     many = len(values) > 3
     return (" to " if many else ", ").join(f"{v:+.1f}" for v in ((min(values), max(values)) if many else values))
@@ -114,9 +114,9 @@ def written(values: list[float]) -> str:
 
 def left_out_table(offsets: tuple[float, ...] = OFFSETS) -> str:
     """The table, at some of the offsets."""
-    kept = [OFFSETS.index(b) for b in offsets]
-    made = [[name, *(values[i] for i in kept)] for name, values in rows().items()]
-    return table(["neglected or assumed", *(f"b/R {b:g}" for b in offsets)], made)
+    columns = [OFFSETS.index(b) for b in offsets]
+    lines = [[name, *(values[i] for i in columns)] for name, values in rows().items()]
+    return table(["neglected or assumed", *(f"b/R {b:g}" for b in offsets)], lines)
 
 
 def text() -> str:

@@ -17,7 +17,7 @@ import scipy.linalg as la
 
 import cuefem as cf
 from cuefem.scene.solved_scene import SolvedScene
-from studies.strokes import cue, whole
+from studies.strokes import cue, full_model
 
 RINGS, STEP = 200, 1e-6
 
@@ -38,15 +38,15 @@ class Leather:
 
 def plain(offset: float, speed: float = 2.0) -> cf.Scene:
     """The stroke that `stepped` makes: the leather's rings on a bending shaft, alone."""
-    scene = whole(cue("pool_maple"), offset, speed, rolling=False)
+    scene = full_model(cue("pool_maple"), offset, speed, rolling=False)
     return replace(scene, effects=scene.effects[:1])
 
 
 def stepped(scene: cf.Scene, leather: Leather) -> tuple[float, float, float]:
     """Squirt, deg, contact time, s, and speed of the ball over the cue's. The package's loss where nothing relaxes."""
-    tip, at, own = scene.leather_tip, scene.stroke, scene.tip.restitution
+    tip, at, restitution = scene.leather_tip, scene.stroke, scene.tip.restitution
     diameter, mass = scene.tip_diameter, scene.ball.mass
-    law, modes = scene.tip_law(own, at.offset), SolvedScene(scene).tip
+    law, modes = scene.tip_law(restitution, at.offset), SolvedScene(scene).tip
     edges = law.indentation_limit * np.linspace(0, 1, RINGS + 1) ** 2
     begin, stiff = (edges[1:] + edges[:-1]) / 2, np.array([np.diff(law.slope(edges)), np.diff(law.at(edges)[1])])
     radius, depth_, _ = tip.head_on(diameter, scene.ball.radius)

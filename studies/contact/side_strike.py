@@ -47,7 +47,7 @@ def exact(parameter: float) -> float:
 
 
 @cache
-def computed(where: str, parameter: float) -> float:
+def compute(where: str, parameter: float) -> float:
     """e_A of a long beam, nearly Euler's."""
     spread = THIN * DIAMETER
     E = 16 * DENSITY * (spread**2 / T) ** 2 / DIAMETER**2
@@ -57,13 +57,13 @@ def computed(where: str, parameter: float) -> float:
     C = (1 if where == "middle" else 4) / (2 * math.sqrt(2) * float(section.EI) ** 0.25 * float(section.rhoA) ** 0.75)
     mass = parameter / C * math.sqrt(unit)
     striker = cf.Striker(mass, 1.0, stiffness=mass / unit**2)
-    place = cue.length / 2 if where == "middle" else 0.0
-    return cf.side_strike(cf.SideStrike(cue, striker, place)).apparent_restitution
+    position = cue.length / 2 if where == "middle" else 0.0
+    return cf.side_strike(cf.SideStrike(cue, striker, position)).apparent_restitution
 
 
 def curve_table() -> str:
     """e_A over the parameter: exact, and by long beams."""
-    rows = [[f"{p:g}", *(f"{e:.4f}" for e in (exact(p), *(computed(w, p) for w in LENGTHS)))] for p in PARAMETERS]
+    rows = [[f"{p:g}", *(f"{e:.4f}" for e in (exact(p), *(compute(w, p) for w in LENGTHS)))] for p in PARAMETERS]
     return table(["Λ", "exact", "struck in the middle", "struck at the end"], rows)
 
 
@@ -80,15 +80,15 @@ CASES = {
 
 
 @cache
-def bounces(name: str, place: float) -> tuple[float, float, float]:
-    """e_A at a place: of a rigid beam, of the flexible one, and with its far end clamped (a bat's last 10 cm)."""
-    cue, striker, _, grip = CASES[name]
-    free = cf.SideStrike(cue, striker, place)
+def bounces(name: str, position: float) -> tuple[float, float, float]:
+    """e_A at a position: of a rigid beam, of the flexible one, and with its far end clamped (a bat's last 10 cm)."""
+    cue, striker, _, clamp_position = CASES[name]
+    free = cf.SideStrike(cue, striker, position)
     ratio = striker.mass / free.rigid_mass
     rigid = (striker.restitution - ratio) / (1 + ratio)
-    clamp = cf.Support(cue.length - grip, math.inf, math.inf)
-    held = replace(free, effects=(clamp,))
-    return rigid, *(cf.side_strike(each).apparent_restitution for each in (free, held))
+    clamp = cf.Support(cue.length - clamp_position, math.inf, math.inf)
+    clamped = replace(free, effects=(clamp,))
+    return rigid, *(cf.side_strike(each).apparent_restitution for each in (free, clamped))
 
 
 def bounce_table(name: str) -> str:
@@ -112,8 +112,8 @@ SPEED, WINDOW = 0.5, 6e-3  # m/s, s: assumed, because those of the experiments w
 
 def touches(phases: Sequence[Any]) -> tuple[tuple[float, float], ...]:
     """Contacts (start, duration), s: phases of contact without separation between them."""
-    held = [list(part) for apart, part in groupby(phases, lambda phase: phase.state == "separated") if not apart]
-    return tuple((part[0].start, part[-1].end - part[0].start) for part in held)
+    contacts = [list(part) for apart, part in groupby(phases, lambda phase: phase.state == "separated") if not apart]
+    return tuple((part[0].start, part[-1].end - part[0].start) for part in contacts)
 
 
 @cache
@@ -127,13 +127,13 @@ def fall() -> tuple[tuple[tuple[float, float], ...], tuple[float, float, float]]
     mass = STEEL.rho * 4 / 3 * math.pi * SPHERE**3
     hertz = cf.Striker(mass, 1.0, modulus=STEEL.E / (1 - 0.3**2) / 2, radius=SPHERE)
     wall = hertz.wall_time(SPEED)
-    held = (cf.Support(0.0, math.inf), cf.Support(beam.length, math.inf))
-    once = cf.SideStrike(beam, hertz, beam.length / 2, SPEED, held)
+    supports = (cf.Support(0.0, math.inf), cf.Support(beam.length, math.inf))
+    once = cf.SideStrike(beam, hertz, beam.length / 2, SPEED, supports)
     spring = cf.Striker(mass, 1.0, contact_time=wall)
-    often = replace(once, striker=spring, effects=(*held, cf.SecondHit(WINDOW)))
-    found = touches(cf.side_strike(often).phases)
+    often = replace(once, striker=spring, effects=(*supports, cf.SecondHit(WINDOW)))
+    contacts = touches(cf.side_strike(often).phases)
     first = cf.side_strike(once, cf.Resolution(2, 16, 20)).duration
-    return found, (first, hertz.contact_time_on(beam.shaft_mass, SPEED), wall)
+    return contacts, (first, hertz.contact_time_on(beam.shaft_mass, SPEED), wall)
 
 
 SOURCES = """\
@@ -147,10 +147,10 @@ Warehouse University, 2020), arXiv:2207.00795 (abstracts only) and W. Goldsmith,
 
 
 def text() -> str:
-    worst = max(abs(computed(w, p) - exact(p)) for w in LENGTHS for p in PARAMETERS)
+    worst = max(abs(compute(w, p) - exact(p)) for w in LENGTHS for p in PARAMETERS)
     rod, bat = (np.array([bounces(name, x) for x in CASES[name][2]]) for name in CASES)
-    found, (first, free, wall) = fall()
-    near = [f"{1e3 * x:.0f}" for x, row in zip(CASES["bat"][2], bat, strict=True) if abs(row[1] - row[0]) < 0.02]
+    contacts, (first, free, wall) = fall()
+    insensitive = [f"{1e3 * x:.0f}" for x, row in zip(CASES["bat"][2], bat, strict=True) if abs(row[1] - row[0]) < 0.02]
     return pages.page(
         "Transverse impact of a ball on a beam",
         "How does a ball rebound from the side of a beam, and does the model agree with publications?",
@@ -168,15 +168,15 @@ def text() -> str:
         bounce_table("rod"),
         "## A wooden bat of 840 mm, 64 mm at the barrel, a ball of 145 g, e 0.5, 1 ms (assumed)",
         "[Nathan] finds the rigid exit speed only over a small region of the barrel, for any support of the handle. "
-        f"Here rigid and flexible agree within 0.02 at {', '.join(near)} mm from the end and differ by up to "
+        f"Here rigid and flexible agree within 0.02 at {', '.join(insensitive)} mm from the end and differ by up to "
         f"{np.abs(bat[:, 0] - bat[:, 1]).max():.2f}.",
         bounce_table("bat"),
         "## A steel sphere of 70 mm radius on a steel beam of 60 x 27.8 x 780 mm, 0.5 m/s, midspan",
         "The experiments find several contacts in most falls, the first of about the duration by Hertz's law. "
-        f"Computed: {len(found)} contacts in {1e3 * (found[-1][0] + found[-1][1]):.1f} ms, of "
-        f"{1e3 * min(d for _, d in found):.1f} to {1e3 * max(d for _, d in found):.1f} ms; by Hertz's law the first "
-        f"lasts {1e3 * first:.2f} ms, {1e3 * free:.2f} on a free rigid beam, {1e3 * wall:.2f} against a wall. Speed, "
-        "position, E = 206 GPa and e = 1 are assumed.",
+        f"Computed: {len(contacts)} contacts in {1e3 * (contacts[-1][0] + contacts[-1][1]):.1f} ms, of "
+        f"{1e3 * min(d for _, d in contacts):.1f} to {1e3 * max(d for _, d in contacts):.1f} ms; by Hertz's law the "
+        f"first lasts {1e3 * first:.2f} ms, {1e3 * free:.2f} on a free rigid beam, {1e3 * wall:.2f} against a wall. "
+        "Speed, position, E = 206 GPa and e = 1 are assumed.",
         "## Sources",
         SOURCES,
     )
@@ -186,9 +186,9 @@ def draw(panels: Any) -> None:
     """The curve of infinite beams, and the bat."""
     grid = np.geomspace(0.03, 3.5, 60)
     panels[0].plot(grid, [exact(float(p)) for p in grid], "k-", lw=1, label="infinite Euler beam, exact")
-    for where, mark in zip(LENGTHS, "o+", strict=True):
-        found = [computed(where, p) for p in PARAMETERS]
-        panels[0].plot(PARAMETERS, found, mark, ms=7, mfc="none", label=f"computed, {where}")
+    for where, marker in zip(LENGTHS, "o+", strict=True):
+        values = [compute(where, p) for p in PARAMETERS]
+        panels[0].plot(PARAMETERS, values, marker, ms=7, mfc="none", label=f"computed, {where}")
     panels[0].set(xscale="log", xlabel="inelasticity Λ", ylabel="apparent restitution $e_A$", title="long beam")
     panels[0].legend(fontsize=8)
     x = np.array(CASES["bat"][2])

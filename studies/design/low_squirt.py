@@ -34,13 +34,13 @@ CHANGES = {  # by what each number of START grows
 def shaft(bore: float, depth: float, ferrule: float, tip: float, taper: float) -> cf.Cue:
     """The hollow shaft with other sizes, m; its length stays."""
     leather, end, front, solid, opening, butt = cue("pool_hollow").segments
-    bored = {"tip_bore": bore, "butt_bore": bore}
-    rest = end.length + front.length + solid.length - ferrule - depth
+    bores = {"tip_bore": bore, "butt_bore": bore}
+    remainder = end.length + front.length + solid.length - ferrule - depth
     pieces = (
         replace(leather, tip_diameter=tip, butt_diameter=tip),
-        replace(end, length=ferrule, tip_diameter=tip, butt_diameter=tip, **bored),
-        replace(front, length=depth, tip_diameter=tip, **bored),
-        replace(solid, length=rest, butt_diameter=taper),
+        replace(end, length=ferrule, tip_diameter=tip, butt_diameter=tip, **bores),
+        replace(front, length=depth, tip_diameter=tip, **bores),
+        replace(solid, length=remainder, butt_diameter=taper),
         replace(opening, tip_diameter=taper),
         butt,
     )
@@ -48,24 +48,24 @@ def shaft(bore: float, depth: float, ferrule: float, tip: float, taper: float) -
 
 
 @cache
-def measures(drawn: cf.Cue) -> tuple[float, float, float]:
+def measures(struck: cf.Cue) -> tuple[float, float, float]:
     """Tip stiffness, N/m; squirt at b/R 0.3, deg, with a spring tip and in the default stroke."""
-    stiffness = float(evaluate([cf.Scene(drawn)], ["tip_stiffness"]).values[0, 0])
-    return stiffness, squirt(strokes.scene(drawn, 1e-3, 0.3)), squirt(strokes.whole(drawn, 0.3))
+    stiffness = float(evaluate([cf.Scene(struck)], ["tip_stiffness"]).values[0, 0])
+    return stiffness, squirt(strokes.scene(struck, 1e-3, 0.3)), squirt(strokes.full_model(struck, 0.3))
 
 
 def change_table() -> str:
     """What one change makes."""
     base, rows = measures(shaft(*START)), []
     for name, by in CHANGES.items():
-        found = measures(shaft(*np.add(START, by)))
+        result = measures(shaft(*np.add(START, by)))
         rows.append(
-            [name, *(f"{100 * (new / old - 1):+.1f}" for new, old in zip(found[::-1], base[::-1], strict=True))]
+            [name, *(f"{100 * (new / value - 1):+.1f}" for new, value in zip(result[::-1], base[::-1], strict=True))]
         )
     tip, ferrule, *rest = cue("pool_hollow").segments
     heavy = replace(ferrule, material=replace(ferrule.material, rho=1.5 * ferrule.material.rho))
-    found = measures(replace(cue("pool_hollow"), segments=(tip, heavy, *rest)))
-    gained = (f"{100 * (new / old - 1):+.1f}" for new, old in zip(found[::-1], base[::-1], strict=True))
+    result = measures(replace(cue("pool_hollow"), segments=(tip, heavy, *rest)))
+    gained = (f"{100 * (new / value - 1):+.1f}" for new, value in zip(result[::-1], base[::-1], strict=True))
     rows.append([f"ferrule {1e3 * (heavy.mass - ferrule.mass):.2f} g heavier", *gained])
     return table(["change", "squirt, default stroke, %", "squirt, spring tip, %", "tip stiffness, %"], rows)
 
@@ -73,45 +73,45 @@ def change_table() -> str:
 @cache
 def optimum() -> tuple[float, ...]:
     """Sizes of the shaft of lowest squirt as stiff as the solid one, walls of 2 mm."""
-    wanted, scale = measures(cue("pool_maple"))[0], np.array(START)
+    target, scale = measures(cue("pool_maple"))[0], np.array(START)
     limits = (
-        {"type": "ineq", "fun": lambda x: measures(shaft(*(scale * x)))[0] / wanted - 1},
+        {"type": "ineq", "fun": lambda x: measures(shaft(*(scale * x)))[0] / target - 1},
         {"type": "ineq", "fun": lambda x: (scale[3] * x[3] - scale[0] * x[0] - 4e-3) / 1e-3},
     )
     bounds = [(low / s, high / s) for (low, high), s in zip(BOUNDS, scale, strict=True)]
     start = np.clip(1.0 + np.array([0.0, 0.0, 0.0, 0.05, 0.1]), *np.transpose(bounds))
     options = {"maxiter": 25, "eps": 1e-3, "ftol": 1e-4}
-    found = minimize(
+    result = minimize(
         lambda x: measures(shaft(*(scale * x)))[2], start, bounds=bounds, constraints=limits, options=options
     )
-    return tuple(float(x) for x in scale * found.x)
+    return tuple(float(x) for x in scale * result.x)
 
 
 def shafts() -> dict[str, cf.Cue]:
     """The shafts that are compared."""
-    found = {
+    shapes = {
         "solid pro taper": cue("pool_maple"),
         "hollow front, bore 6 mm": cue("pool_hollow"),
         "carbon tube": cue("carbon"),
     }
-    found |= {f"hollow front, bore {1e3 * bore:g} mm": hollow(bore) for bore in strokes.BORES}
-    found["bore 7 mm, tip 11 mm, taper to 14.3 mm"] = shaft(7e-3, *START[1:3], 11e-3, 14.3e-3)
-    return found | {"lowest squirt, as stiff as the solid": shaft(*optimum())}
+    shapes |= {f"hollow front, bore {1e3 * bore:g} mm": hollow(bore) for bore in strokes.BORES}
+    shapes["bore 7 mm, tip 11 mm, taper to 14.3 mm"] = shaft(7e-3, *START[1:3], 11e-3, 14.3e-3)
+    return shapes | {"lowest squirt, as stiff as the solid": shaft(*optimum())}
 
 
 def shaft_table() -> str:
     """The shafts, and squirt over that of the solid one."""
     solid, rows = measures(cue("pool_maple")), []
-    for name, drawn in shafts().items():
-        stiffness, bare, whole = measures(drawn)
+    for name, cue_ in shafts().items():
+        stiffness, spring, full = measures(cue_)
         rows.append(
             [
                 name,
                 f"{stiffness:.0f}",
-                f"{bare:.2f}",
-                f"{bare / solid[1]:.2f}",
-                f"{whole:.2f}",
-                f"{whole / solid[2]:.2f}",
+                f"{spring:.2f}",
+                f"{spring / solid[1]:.2f}",
+                f"{full:.2f}",
+                f"{full / solid[2]:.2f}",
             ]
         )
     return table(
@@ -153,17 +153,17 @@ def text() -> str:
 def draw(axes: Any) -> None:
     """Squirt of the default stroke against tip stiffness, by bore and taper."""
     for taper in (12.45e-3, 13.4e-3, 14.3e-3):
-        found = [measures(shaft(bore, *START[1:4], taper)) for bore in (1e-3, 3e-3, 5e-3, 6e-3, 7e-3, 8e-3, 9e-3)]
+        results = [measures(shaft(bore, *START[1:4], taper)) for bore in (1e-3, 3e-3, 5e-3, 6e-3, 7e-3, 8e-3, 9e-3)]
         axes.plot(
-            [f[0] for f in found],
-            [f[2] for f in found],
+            [f[0] for f in results],
+            [f[2] for f in results],
             "o-",
             ms=3,
             label=f"taper ends at {1e3 * taper:g} mm, bore 1 to 9 mm",
         )
-    for name, drawn in shafts().items():
+    for name, cue_ in shafts().items():
         if "bore" not in name and name != "carbon tube":
-            axes.plot(measures(drawn)[0], measures(drawn)[2], "k^" if "lowest" in name else "ks", label=name)
+            axes.plot(measures(cue_)[0], measures(cue_)[2], "k^" if "lowest" in name else "ks", label=name)
     axes.set(xlabel="static tip stiffness, N/m", ylabel="squirt of the default stroke, degrees")
     axes.legend(fontsize=8)
 

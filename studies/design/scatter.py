@@ -44,12 +44,12 @@ def scene(point: Sequence[float]) -> cf.Scene:
     longer, density = 0.5e-3 * (2 * at[6] - 1), 1400 + 120 * at[7]
     leather = {"height": 4e-3 + 4e-3 * at[8], "rho": 850 + 250 * at[9], "E": 80e6 * (300 / 80) ** at[10]}
     leather |= {"dome_radius": 8.95e-3 + 1.65e-3 * at[13], "nu": 0.3 + 0.15 * at[14]}
-    found = strokes.whole(strokes.cue("pool_maple"), 0.3, 1 + 3 * at[11], **leather)
+    base = strokes.full_model(strokes.cue("pool_maple"), 0.3, 1 + 3 * at[11], **leather)
 
     def grown(wood: cf.Material) -> cf.Material:
         return replace(wood, E=E * wood.E, G=G * wood.G, rho=rho * wood.rho)
 
-    ferrule, front, middle, *rest = found.shaft.segments
+    ferrule, front, middle, *back = base.shaft.segments
     ferrule = replace(
         ferrule,
         length=ferrule.length + longer,
@@ -71,13 +71,13 @@ def scene(point: Sequence[float]) -> cf.Scene:
         butt_diameter=middle.butt_diameter + second,
         material=grown(middle.material),
     )
-    butt = replace(rest[0], tip_diameter=rest[0].tip_diameter + second, material=grown(rest[0].material))
-    cue = replace(found.shaft, segments=(ferrule, front, middle, butt, *rest[1:]))
-    return replace(found, cue=cue, ball=replace(found.ball, mass=0.156 + 0.014 * at[12]))
+    butt = replace(back[0], tip_diameter=back[0].tip_diameter + second, material=grown(back[0].material))
+    cue = replace(base.shaft, segments=(ferrule, front, middle, butt, *back[1:]))
+    return replace(base, cue=cue, ball=replace(base.ball, mass=0.156 + 0.014 * at[12]))
 
 
 @cache
-def drawn() -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
+def samples() -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
     """Squirt, deg, of points A, of points B, and of A with one cause from B."""
     both = qmc.Sobol(2 * DIMENSIONS, seed=SEED).random(COUNT)
     A, B = both[:, :DIMENSIONS], both[:, DIMENSIONS:]
@@ -96,21 +96,21 @@ def drawn() -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
 @cache
 def shares() -> dict[str, float]:
     """Share of the variance that a cause makes, alone and with others, %."""
-    a, b, mixed = drawn()
+    a, b, mixed = samples()
     variance = np.var(np.r_[a, b])
-    found = {cause: float(100 * np.mean((a - ab) ** 2) / 2 / variance) for cause, ab in mixed.items()}
-    return dict(sorted(found.items(), key=lambda item: -item[1]))
+    parts = {cause: float(100 * np.mean((a - ab) ** 2) / 2 / variance) for cause, ab in mixed.items()}
+    return dict(sorted(parts.items(), key=lambda item: -item[1]))
 
 
 def text() -> str:
-    every = np.concatenate([*drawn()[:2]])
-    low, middle, high = np.quantile(every, (0.05, 0.5, 0.95))
-    said = [f"{cause.split(',')[0].split(':')[0]} {share:.0f} %" for cause, share in list(shares().items())[:3]]
+    squirts = np.concatenate([*samples()[:2]])
+    low, middle, high = np.quantile(squirts, (0.05, 0.5, 0.95))
+    parts = [f"{cause.split(',')[0].split(':')[0]} {share:.0f} %" for cause, share in list(shares().items())[:3]]
     return pages.page(
         "Tolerance analysis of maple pool shafts",
         "How much do two maple pool shafts of one drawing differ in squirt, and why?",
         f"Squirt of 90 % of the strokes is {low:.2f} to {high:.2f}° (median {middle:.2f}°, standard deviation "
-        f"{np.std(every):.2f}°). Causes of the variance: {', '.join(said)}. Turning to 0.05 mm contributes nothing.",
+        f"{np.std(squirts):.2f}°). Causes of the variance: {', '.join(parts)}. Turning to 0.05 mm contributes nothing.",
         f"Default stroke of pool at b/R 0.3; {COUNT * (len(CAUSES) + 2)} strikes, so the standard error of a share is "
         "about 10 % of the variance. The shares are total Sobol indices: they include interactions with other causes, "
         "and their sum exceeds 100 %.",
@@ -121,7 +121,7 @@ def text() -> str:
 def draw(panels: Any) -> None:
     """The spread, and the shares."""
     left, right = panels
-    left.hist(np.concatenate([*drawn()[:2]]), 20)
+    left.hist(np.concatenate([*samples()[:2]]), 20)
     left.set(xlabel="squirt at b/R 0.3, degrees", ylabel="shafts and strokes")
     names = [textwrap.fill(cause, 26) for cause in shares()][::-1]
     right.barh(names, list(shares().values())[::-1])

@@ -40,14 +40,14 @@ def squirt(name: str, time: float, offset: float) -> float:
 @cache
 def errors(definition: str, offset: float) -> np.ndarray:
     """Relative errors of squirt that a definition makes, over all cues and times."""
-    found = []
+    ratios = []
     for name in strokes.NAMES:
         for time in TIMES:
             lumped = strokes.lumped_squirt(
                 strokes.scene(strokes.cue(name), time, offset), mass(definition, name, time, offset)
             )
-            found.append(lumped / squirt(name, time, offset) - 1)
-    return np.array(found)
+            ratios.append(lumped / squirt(name, time, offset) - 1)
+    return np.array(ratios)
 
 
 def error_table() -> str:
@@ -81,16 +81,16 @@ def growth_table() -> str:
 
 
 def text() -> str:
-    own, stick, kim = (
+    offset, stick, kim = (
         [100 * float(np.median(np.abs(errors(d, b)))) for b in OFFSETS]
         for d in ("stick at the offset", "stick", "Kim's 3 g")
     )
     return pages.page(
         "End mass: which definition predicts squirt",
         "Which definition of effective end mass gives a lumped cue the squirt of the vibrating shaft?",
-        f"Stick, computed at the offset: median errors of {own[0]:.1f}, {own[1]:.1f} and {own[2]:.0f} % at b/R 0.1, "
-        f"0.3 and 0.5 (20 strokes). Stick in the limit of small offsets has {stick[0]:.0f}, {stick[1]:.0f} and "
-        f"{stick[2]:.0f} %, the paper's 12 g {kim[1]:.0f} % at b/R 0.3, because it does not grow with the contact "
+        f"Stick, computed at the offset: median errors of {offset[0]:.1f}, {offset[1]:.1f} and {offset[2]:.0f} % at "
+        f"b/R 0.1, 0.3 and 0.5 (20 strokes). Stick in the limit of small offsets has {stick[0]:.0f}, {stick[1]:.0f} "
+        f"and {stick[2]:.0f} %, the paper's 12 g {kim[1]:.0f} % at b/R 0.3, because it does not grow with the contact "
         "time.",
         "## Error of squirt",
         error_table(),

@@ -1,7 +1,7 @@
-"""Published squirt of real cues beside what two models compute: the rows that the pages of this folder share.
+"""Published and computed squirt of real cues: the rows that the pages of this folder share.
 
-The folders beside this file contain cues, strokes, measured values and their sources. bare: the bare-tip model; whole:
-the full model, of the folder's scene.
+The folders beside this file contain cues, strokes, measured values and their sources. Models: "bare tip", and the
+"full model" of the folder's scene.
 """
 
 from __future__ import annotations
@@ -22,8 +22,7 @@ from studies.strokes import INCH
 
 HOME = pages.STUDIES / "measured"
 PLAYERS, PREDATOR, STINGER = CUES = ("players_maple", "predator_z", "stinger")
-MODELS = ("bare", "whole")
-LABELS = {"bare": "bare tip", "whole": "full model"}
+MODELS = ("bare tip", "full model")
 INCHES = (2, 3, 4, 5, 6, 6.5, 7, 8, 9, 10)
 RADIUS = strokes.POOL.radius
 
@@ -31,14 +30,14 @@ RADIUS = strokes.POOL.radius
 @cache
 def measured(folder: str, model: str, kinds: tuple[type, ...] = (Squirt, PivotLength)) -> MeasuredCue:
     """A published cue in a model, with its measurements of some kinds."""
-    found, _ = load_measured(HOME / folder)
-    scene = found.scene
-    if model == "bare":
+    cue, _ = load_measured(HOME / folder)
+    scene = cue.scene
+    if model == "bare tip":
         scene = replace(
             scene.without_tip_effects,
             tip=replace(scene.without_tip_effects.tip, restitution=0.85 if folder == STINGER else 0.73),
         )
-    return replace(found, scene=scene, measurements=tuple(m for m in found.measurements if isinstance(m, kinds)))
+    return replace(cue, scene=scene, measurements=tuple(m for m in cue.measurements if isinstance(m, kinds)))
 
 
 class Row(NamedTuple):
@@ -69,11 +68,11 @@ class Row(NamedTuple):
         return measured, computed
 
     @property
-    def told(self) -> tuple[str, str, str]:
+    def texts(self) -> tuple[str, str, str]:
         """Offset, measured and computed value as they are published."""
         values = (self.measured, self.computed)
-        written = (f"{v / INCH:.1f} in" if self.pivot else f"{math.degrees(v):.2f}°" for v in values)
-        return (f"{self.offset:.3f}", *written)
+        printed = (f"{v / INCH:.1f} in" if self.pivot else f"{math.degrees(v):.2f}°" for v in values)
+        return (f"{self.offset:.3f}", *printed)
 
 
 def as_squirt(measurement: Measurement, value: float) -> float:
@@ -81,30 +80,30 @@ def as_squirt(measurement: Measurement, value: float) -> float:
     return 1 / (value + RADIUS) if isinstance(measurement, PivotLength) else value
 
 
-def squirts(own: MeasuredCue, scene: cf.Scene) -> dict[str, float]:
+def squirts(cue: MeasuredCue, scene: cf.Scene) -> dict[str, float]:
     """The measurements of a cue as squirts, computed with another scene."""
-    return {str(i): as_squirt(m, float(m.compute(Setup(scene)))) for i, m in enumerate(own.measurements)}
+    return {str(i): as_squirt(m, float(m.compute(Setup(scene)))) for i, m in enumerate(cue.measurements)}
 
 
 @cache
 def rows(model: str) -> tuple[Row, ...]:
     """Every published squirt and pivot length."""
-    found = []
+    result = []
     for folder in CUES:
-        own = measured(folder, model)
-        spreads = {known.key: each.spread for each in own.parameters if (known := parameter(each.name))}
-        at = own.compute().tolist()
-        base = {str(i): as_squirt(m, value) for i, (m, value) in enumerate(zip(own.measurements, at, strict=True))}
-        changes = changes_by_input(own.scene, base, partial(squirts, own), spreads=spreads)
-        for i, (m, value) in enumerate(zip(own.measurements, at, strict=True)):
+        cue = measured(folder, model)
+        spreads = {entry.key: each.spread for each in cue.parameters if (entry := parameter(each.name))}
+        at = cue.compute().tolist()
+        base = {str(i): as_squirt(m, value) for i, (m, value) in enumerate(zip(cue.measurements, at, strict=True))}
+        changes = changes_by_input(cue.scene, base, partial(squirts, cue), spreads=spreads)
+        for i, (m, value) in enumerate(zip(cue.measurements, at, strict=True)):
             assert isinstance(m, Squirt | PivotLength)
             pivot = isinstance(m, PivotLength)
             difference = math.log(as_squirt(m, m.measured_value) / base[str(i)])
             inputs = {key: change[str(i)] for key, change in changes.items()}
             by_hand = isinstance(m, Squirt) and m.series == "2007"
-            series = own.name if folder != PLAYERS else "angles, 2007" if by_hand else "robot, 2008"
-            found.append(Row(folder, own.name, series, m.offset, pivot, m.measured_value, value, difference, inputs))
-    return tuple(found)
+            series = cue.name if folder != PLAYERS else "angles, 2007" if by_hand else "robot, 2008"
+            result.append(Row(folder, cue.name, series, m.offset, pivot, m.measured_value, value, difference, inputs))
+    return tuple(result)
 
 
 def series(model: str) -> dict[str, tuple[Row, ...]]:
@@ -114,11 +113,11 @@ def series(model: str) -> dict[str, tuple[Row, ...]]:
 
 
 @cache
-def mass_ratios(model: str = "whole") -> dict[tuple[int, float], tuple[float, float]]:
+def mass_ratios(model: str = "full model") -> dict[tuple[int, float], tuple[float, float]]:
     """Measured and computed squirt ratio of the Players shaft by the mass on it, g, and its distance, in."""
-    own = measured(PLAYERS, model, (AddedMass,))
+    cue = measured(PLAYERS, model, (AddedMass,))
     return {
         (round(1e3 * m.mass), round(m.position / INCH, 2)): (m.measured_value, float(value))
-        for m, value in zip(own.measurements, own.compute(), strict=True)
+        for m, value in zip(cue.measurements, cue.compute(), strict=True)
         if isinstance(m, AddedMass)
     }

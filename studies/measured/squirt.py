@@ -1,7 +1,7 @@
 """Does computed squirt agree with measured squirt of real cues, with nothing fitted?
 
-Two models of one stroke: bare (the bare-tip model: a normal spring with the leather's contact time, e 0.73), and whole
-(the full model: LeatherTip, AxialWaves, GeometricStiffness). The folders beside this file contain cues, strokes,
+Two models of one stroke: bare tip (a normal spring with the leather's contact time, e 0.73), and full model
+(LeatherTip, AxialWaves, GeometricStiffness). The folders beside this file contain cues, strokes,
 measured values and their sources: D. Alciatore, Billiards Digest, September 2007 (angles, by hand), November 2007
 (pivot lengths), February 2008 (robot), TP B.1. Only the diameter of each tip is published; a typical drawing represents
 each cue.
@@ -21,24 +21,24 @@ from cuefem.cue.materials import material
 from cuefem.design import evaluate
 from cuefem.results.closed_forms import natural_pivot_length
 from studies import pages, strokes
-from studies.measured.published import INCHES, LABELS, MODELS, PLAYERS, RADIUS, Row, mass_ratios, measured, rows, series
+from studies.measured.published import INCHES, MODELS, PLAYERS, RADIUS, Row, mass_ratios, measured, rows, series
 from studies.pages import table
-from studies.strokes import INCH, at_offset, cue, hollow, pool_scene, squirt, whole
+from studies.strokes import INCH, at_offset, cue, full_model, hollow, pool_scene, squirt
 
 DIME = 8.96e-3  # m, the dome of TP B.1
 
 
 def both() -> list[tuple[Row, Row]]:
-    """The rows of the whole and of the bare model."""
-    return list(zip(rows("whole"), rows("bare"), strict=True))
+    """The rows of the full model and of the bare tip."""
+    return list(zip(rows("full model"), rows("bare tip"), strict=True))
 
 
 def squirt_table() -> str:
     """Measured beside computed."""
-    made = [[row.name, row.series, *row.told[:2], bare.told[2], row.told[2]] for row, bare in both()]
-    miss = [f"{100 * pages.rms(pair[i].difference for pair in both()):.0f} %" for i in (1, 0)]
-    head = ["cue", "series", "b/R", "measured", *LABELS.values()]
-    return table(head, [*made, ["RMS of the differences", "", "", "", *miss]])
+    lines = [[row.name, row.series, *row.texts[:2], spring.texts[2], row.texts[2]] for row, spring in both()]
+    errors = [f"{100 * pages.rms(pair[i].difference for pair in both()):.0f} %" for i in (1, 0)]
+    columns = ["cue", "series", "b/R", "measured", *MODELS]
+    return table(columns, [*lines, ["RMS of the differences", "", "", "", *errors]])
 
 
 def depends_table() -> str:
@@ -49,71 +49,71 @@ def depends_table() -> str:
         ("height, mm", "height", [3e-3, 5e-3, 6e-3, 8e-3]),
         ("dome, mm", "dome_radius", [7e-3, 9.5e-3, 15e-3, math.inf]),
     ]
-    made = []
+    lines = []
     for name, field, values in changes:
-        found = [whole(cue("pool_maple"), **{field: value}) for value in values]
-        bare = [pool_scene(cue("pool_maple"), float(s.contact_time), 0.375) for s in found]
-        shown = ", ".join(f"{v * {'E': 1e-6, 'speed': 1}.get(field, 1e3):g}" for v in values)
-        degrees = [", ".join(f"{squirt(s):.2f}" for s in some) for some in (found, bare)]
-        made.append([name, shown, *degrees, *(pages.change(map(squirt, some)) for some in (found, bare))])
-    head = ["changed", "values", "full model, deg", "bare tip at that contact time", "full model, range"]
-    return table([*head, "bare tip, range"], made)
+        scenes = [full_model(cue("pool_maple"), **{field: value}) for value in values]
+        springs = [pool_scene(cue("pool_maple"), float(s.contact_time), 0.375) for s in scenes]
+        texts = ", ".join(f"{v * {'E': 1e-6, 'speed': 1}.get(field, 1e3):g}" for v in values)
+        degrees = [", ".join(f"{squirt(s):.2f}" for s in group) for group in (scenes, springs)]
+        lines.append([name, texts, *degrees, *(pages.change(map(squirt, group)) for group in (scenes, springs))])
+    columns = ["changed", "values", "full model, deg", "bare tip at that contact time", "full model, range"]
+    return table([*columns, "bare tip, range"], lines)
 
 
 def mass_table() -> str:
     """Measured and computed ratios of 11 g."""
-    found = {model: mass_ratios(model) for model in MODELS}
-    made = [
-        [f"{x:g} in", *(f"{v:.2f}" for v in (found["bare"][11, x][0], *(found[m][11, x][1] for m in MODELS)))]
+    ratios = {model: mass_ratios(model) for model in MODELS}
+    lines = [
+        [f"{x:g} in", *(f"{v:.2f}" for v in (ratios["bare tip"][11, x][0], *(ratios[m][11, x][1] for m in MODELS)))]
         for x in INCHES
     ]
-    miss = [f"{pages.rms(a - b for a, b in (found[m][11, x] for x in INCHES)):.2f}" for m in MODELS]
-    return table(["11 g at", "measured", *LABELS.values()], [*made, ["RMS of the difference", "", *miss]])
+    errors = [f"{pages.rms(a - b for a, b in (ratios[m][11, x] for x in INCHES)):.2f}" for m in MODELS]
+    return table(["11 g at", "measured", *MODELS], [*lines, ["RMS of the difference", "", *errors]])
 
 
 def bore_table() -> str:
     """Squirt of the hollow shaft over the maple one at b/R 0.453, by bore."""
-    solid = squirt(whole(cue("pool_maple"), 0.453))
+    solid = squirt(full_model(cue("pool_maple"), 0.453))
     bores = (6e-3, *strokes.BORES)
-    made = [[f"{squirt(whole(hollow(bore), 0.453)) / solid:.2f}" for bore in bores]]
-    return table([f"{1e3 * bore:g} mm" for bore in bores], made)
+    ratios = [[f"{squirt(full_model(hollow(bore), 0.453)) / solid:.2f}" for bore in bores]]
+    return table([f"{1e3 * bore:g} mm" for bore in bores], ratios)
 
 
-def asked_bore(E: float) -> float:
+def required_bore(E: float) -> float:
     """The bore, mm, with which the last 8 in of the hollow shaft, of wood of this E, have the measured 3480 N/m."""
 
     def stiffness(bore: float) -> float:
-        kept, ahead = [], 8 * INCH
+        pieces, remaining = [], 8 * INCH
         for s in hollow(bore).segments:
-            part = min(ahead / s.length, 1.0)
-            end = s.tip_diameter + part * (s.butt_diameter - s.tip_diameter)
+            share = min(remaining / s.length, 1.0)
+            end = s.tip_diameter + share * (s.butt_diameter - s.tip_diameter)
             wood = replace(s.material, E=E) if s.material == material("hard maple") else s.material
-            if part > 1e-9:
-                kept.append(replace(s, length=part * s.length, butt_diameter=end, material=wood))
-            ahead -= part * s.length
-        return float(evaluate([cf.Scene(cf.Cue(tuple(kept), 0.4))], ["tip_stiffness"]).values[0, 0])
+            if share > 1e-9:
+                pieces.append(replace(s, length=share * s.length, butt_diameter=end, material=wood))
+            remaining -= share * s.length
+        return float(evaluate([cf.Scene(cf.Cue(tuple(pieces), 0.4))], ["tip_stiffness"]).values[0, 0])
 
     return 1e3 * float(brentq(lambda bore: stiffness(bore) - 3480, 4e-3, 11.5e-3))
 
 
 def as_pivots() -> str:
     """The angles of 2007 of the maple cue as natural pivot lengths, in."""
-    angles = [(row.offset, row.measured) for row in series("whole")["angles, 2007"]]
-    found = [natural_pivot_length(b, angle, radius=RADIUS, dome_radius=DIME) / INCH for b, angle in angles]
-    return ", ".join(f"{float(p):.1f}" for p in found)
+    angles = [(row.offset, row.measured) for row in series("full model")["angles, 2007"]]
+    lengths = [natural_pivot_length(b, angle, radius=RADIUS, dome_radius=DIME) / INCH for b, angle in angles]
+    return ", ".join(f"{float(p):.1f}" for p in lengths)
 
 
 def text() -> str:
     low, high = strokes.robot_speeds()
-    robot = series("whole")["robot, 2008"][0]
-    hollow_ratio = squirt(whole(hollow(strokes.BORES[1]), 0.453)) / squirt(whole(cue("pool_maple"), 0.453))
+    robot = series("full model")["robot, 2008"][0]
+    hollow_ratio = squirt(full_model(hollow(strokes.BORES[1]), 0.453)) / squirt(full_model(cue("pool_maple"), 0.453))
     small = (mass_ratios()[3, x][1] - 1 for x in (2.12, 4.12))
     added = ", ".join(f"{one / (mass_ratios()[11, x][1] - 1):.2f}" for one, x in zip(small, (2, 4), strict=True))
-    bores = ", ".join(f"{asked_bore(E):.1f} mm for {E / 1e9:g} GPa" for E in (10.8e9, 13.9e9, 16.9e9))
+    bores = ", ".join(f"{required_bore(E):.1f} mm for {E / 1e9:g} GPa" for E in (10.8e9, 13.9e9, 16.9e9))
     return pages.page(
         "Computed and measured squirt",
         "Does computed squirt agree with measured squirt of real cues, with nothing fitted?",
-        f"At b/R 0.375 the full model gives {robot.told[2]} (a robot measured 2.30 and 2.43°). A low-deflection "
+        f"At b/R 0.375 the full model gives {robot.texts[2]} (a robot measured 2.30 and 2.43°). A low-deflection "
         f"shaft has {hollow_ratio:.2f} of a maple shaft's squirt (measured 0.72). The angles of 2007 disagree with the "
         "model. Nothing is fitted to squirt: E and restitution of the leather follow from a published contact time and "
         "restitution of whole cues. Model error: [uncertainty](uncertainty.md).",
@@ -150,13 +150,13 @@ def draw(panels: Any) -> None:
     offsets = np.linspace(0.05, 0.5, 12)
     for i, model in enumerate(MODELS):
         scene = measured(PLAYERS, model).scene
-        left.plot(offsets, [squirt(at_offset(scene, float(b))) for b in offsets], f"C{i}", label=LABELS[model])
-        places = [x for mass, x in mass_ratios(model) if mass == 11]
-        right.plot(places, [mass_ratios(model)[11, x][1] for x in places], f"C{i}", label=LABELS[model])
+        left.plot(offsets, [squirt(at_offset(scene, float(b))) for b in offsets], f"C{i}", label=model)
+        positions = [x for mass, x in mass_ratios(model) if mass == 11]
+        right.plot(positions, [mass_ratios(model)[11, x][1] for x in positions], f"C{i}", label=model)
     for name, mark in (("angles, 2007", "ks"), ("robot, 2008", "ko")):
-        some = [row for row in series("whole")[name] if not row.pivot]
-        left.plot([row.offset for row in some], [math.degrees(row.measured) for row in some], mark, label=name)
-    right.plot(places, [mass_ratios()[11, x][0] for x in places], "ko", label="measured")
+        points = [row for row in series("full model")[name] if not row.pivot]
+        left.plot([row.offset for row in points], [math.degrees(row.measured) for row in points], mark, label=name)
+    right.plot(positions, [mass_ratios()[11, x][0] for x in positions], "ko", label="measured")
     left.set(xlabel="offset b/R", ylabel="squirt, degrees", title="maple shaft")
     right.set(xlabel="11 g, inches from the tip", ylabel="squirt over that without it")
     for axis in panels:

@@ -36,13 +36,13 @@ def rigid_end_mass() -> float:
 @cache
 def long_contact() -> dict[str, np.ndarray]:
     """Largest relative errors in windows of contact time, (windows,), because the errors oscillate."""
-    found: dict[str, list[float]] = {drive: [] for drive in DRIVES}
+    result: dict[str, list[float]] = {drive: [] for drive in DRIVES}
     for time in np.ravel(STARTS[:, None] * 2.0 ** (np.arange(WINDOW) / WINDOW)):
         scene = strokes.scene(KIM, float(time), 0.3)
         for drive in DRIVES[:3]:
-            found[drive].append(cf.end_mass(scene, drive, at=FEW) / rigid_end_mass() - 1)
-        found["squirt"].append(cf.strike(scene, FEW).squirt / strokes.lumped_squirt(scene, rigid_end_mass()) - 1)
-    return {drive: np.abs(np.reshape(errors, (-1, WINDOW))).max(axis=1) for drive, errors in found.items()}
+            result[drive].append(cf.end_mass(scene, drive, at=FEW) / rigid_end_mass() - 1)
+        result["squirt"].append(cf.strike(scene, FEW).squirt / strokes.lumped_squirt(scene, rigid_end_mass()) - 1)
+    return {drive: np.abs(np.reshape(errors, (-1, WINDOW))).max(axis=1) for drive, errors in result.items()}
 
 
 def rates() -> dict[str, float]:
@@ -53,19 +53,19 @@ def rates() -> dict[str, float]:
 @cache
 def light(offset: float) -> dict[str, np.ndarray]:
     """Squirt of lighter shafts over Kim's first order, less 1, with the stick end mass and with that at the offset."""
-    found: dict[str, list[float]] = {"stick": [], "offset": []}
+    result: dict[str, list[float]] = {"stick": [], "offset": []}
     for factor in FACTORS:
         (cone,) = KIM.segments
         wood = replace(cone.material, **{name: factor * getattr(cone.material, name) for name in ("E", "G", "rho")})
         shaft = replace(cone, material=wood)
         scene = strokes.scene(cf.Cue((shaft,), KIM.mass - shaft.mass), 1e-3, offset)
         squirt = float(cf.strike(scene, MANY).squirt)
-        for drive, errors in found.items():
+        for drive, errors in result.items():
             ratio = scene.axial_mass / scene.ball.mass
             # nu_c drops out of the first order when it is written in the end mass
             mass = cue_end_mass(float(cf.end_mass(scene, drive, at=MANY)), 1.0) / scene.ball.mass
             errors.append(squirt / float(squirt_slope(offset, cue_mass_ratio=ratio, nu_c=1.0) * mass) - 1)
-    return {drive: np.array(errors) for drive, errors in found.items()}
+    return {drive: np.array(errors) for drive, errors in result.items()}
 
 
 def element_table() -> str:

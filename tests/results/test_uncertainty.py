@@ -38,7 +38,7 @@ def test_squirt_changes_surface_restitution_is_one_sided() -> None:
 @pytest.mark.heavy
 def test_model_errors_agree_with_published_series() -> None:
     """The constants are the upper ends of the study's intervals."""
-    errors = [uncertainty.model_error(model).high for model in ("whole", "bare")]
+    errors = [uncertainty.model_error(model).high for model in ("full model", "bare tip")]
     constants = [MODEL_ERROR, SPRING_ERROR, SHAFT_ERROR, MASS_ERROR]
     assert [*errors, *uncertainty.ratio_errors()] == pytest.approx(constants, abs=5.1e-3)
 
