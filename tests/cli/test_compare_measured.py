@@ -27,7 +27,7 @@ def test_compare_json_equals_library_and_page_lists_measurements(tmp_path: Path)
     out = stdout_of("compare", folder)
     assert all(phrase in out for phrase in ("weight of the shaft", "100.00 ± 0.50 g", "Missing measurements"))
     assert call("compare", folder, "-o", page) == (0, f"wrote {page}\n", "")
-    text = page.read_text(encoding="utf-8")
+    text = page.read_text(encoding="utf-8").replace("\u00a0", " ")
     assert all(f">{one.label}<" in text for one in cue.measurements)
     assert "http" not in text.replace("http://www.w3.org", "")
 
