@@ -15,7 +15,7 @@ from cuefem.cli.scene_options import (
     offset_option,
     option,
     parameter_options,
-    refuse_game,
+    reject_game,
     scene_from_cue,
     with_options,
 )
@@ -105,7 +105,7 @@ def scene_of(
     """
     opened = load_with_options(load_stroke, file, options)
     if isinstance(opened, Scene):
-        refuse_game(file, options)
+        reject_game(file, options)
         scene = with_options(opened, file, options)
     else:
         scene = scene_from_cue(opened, file, options)

@@ -185,7 +185,7 @@ def _absent(scene: Scene, known: Parameter) -> str:
     return NO_SHAFT if scene.lumped else f"does not apply: the scene has no {known.label}"
 
 
-def refuse_game(file: Path, options: dict[str, Any]) -> None:
+def reject_game(file: Path, options: dict[str, Any]) -> None:
     """Reject a game for a scene, which has its own ball, tip and stroke."""
     if options.get("game") is not None:
         raise InputError(file, "--game", "does not apply: FILE is a scene, which has its own ball, tip and stroke")

@@ -79,13 +79,13 @@ def study(
         with errors_name_file(file), progress_bar() as bar:
             task = bar.add_task("first round", total=iterations)
 
-            def tell_round(reached: Round) -> None:
+            def show_round(reached: Round) -> None:
                 bar.update(task, completed=reached.number, description=round_text(asked, reached, iterations))
 
-            result = compute_study(asked, rounds=iterations, progress=tell_round)
+            result = compute_study(asked, rounds=iterations, progress=show_round)
     else:
         kept = SqliteStore(store or file.with_suffix(".sqlite"), designs)
-        result = _kept(file, asked, kept, workers)
+        result = _run_stored(file, asked, kept, workers)
     record: dict[str, Any] = {"file": str(file), "assumptions": notes, "resolution": designs.at and vars(designs.at)}
     record |= {"kind": result.kind, "varied_fields": varied_segments(designs.vary, designs.base), "units": result.units}
     stored = []
@@ -102,7 +102,7 @@ def study(
     print_result(as_json, record, [title, *stored, *things, *(f"wrote {path}" for path in output)])
 
 
-def _kept(file: Path, asked: Study | Scatter, designs: SqliteStore, workers: int | None) -> StudyResult:
+def _run_stored(file: Path, asked: Study | Scatter, designs: SqliteStore, workers: int | None) -> StudyResult:
     """The result of a sweep or a scatter; an interrupted one prints which designs are stored."""
     with progress_bar() as bar, designs:
         task = bar.add_task("designs", total=designs.study.size)

@@ -312,7 +312,7 @@ class KnobRow:
             self.note = ui.label().classes("note")
             if self.knob.range is None:
                 self.root.classes("pick")
-                self.field: Any = ui.select([], on_change=self._chosen).props("outlined dense options-dense")
+                self.field: Any = ui.select([], on_change=self._on_choice).props("outlined dense options-dense")
             else:
                 if self.knob.range.high and not short:
                     self.slider = ui.element("input").classes("slide").props("type=range")
@@ -321,7 +321,7 @@ class KnobRow:
                         "keydown.ctrl.y", lambda: page.undo_redo(1)
                     )
                 self.field = ui.input().props("outlined dense autocomplete=off").classes("number")
-                self.field.on("keydown.enter", lambda: self._typed(entered=True)).on("blur", self._typed)
+                self.field.on("keydown.enter", lambda: self._on_input(entered=True)).on("blur", self._on_input)
             self.error = ui.label().classes("error").props("role=alert")
 
     def show(self) -> None:
@@ -346,7 +346,7 @@ class KnobRow:
             self.field.set_value(self.shown)
             if self.key == "shaft_mass":
                 self.field.props(f'placeholder="{"not weighed" if self.short else "weigh it"}"')
-        _named(self.field, name)
+        _set_accessible_name(self.field, name)
         if self.slider is not None:
             self._place(name, mine, beside, design.scene)
         alike = other is None or _alike(mine, beside)
@@ -410,7 +410,7 @@ class KnobRow:
         self.error.set_visibility(bool(words))
         _classes(self.field, "wrong", bool(words))
 
-    def _chosen(self, event: Any) -> None:
+    def _on_choice(self, event: Any) -> None:
         if event.value is not None and event.value != value(self.key, self.page.step.design.scene):
             self._set(event.value)
 
@@ -421,7 +421,7 @@ class KnobRow:
         if mine is not None and isinstance(at, int | float) and abs(at - known.scale * mine) > 1e-9 * known.step:
             self._set(float(f"{at / known.scale:.12g}"), slid=True)
 
-    def _typed(self, *_: Any, entered: bool = False) -> None:
+    def _on_input(self, *_: Any, entered: bool = False) -> None:
         text, scene = str(self.field.value or "").strip(), self.page.step.design.scene
         if text == self.shown and not (entered and self.key in self.page.step.design.assumed):
             self._fail("")
@@ -448,5 +448,5 @@ def _classes(element: Any, name: str, on: bool) -> None:
     element.classes(**{"add" if on else "remove": name})
 
 
-def _named(element: Any, name: str) -> None:
+def _set_accessible_name(element: Any, name: str) -> None:
     element.props(f'aria-label="{name}"')

@@ -33,7 +33,14 @@ from cuefem.io.defaults_report import tenon_assumption
 from cuefem.io.reference_cues import PRESETS, REFERENCE_FILES
 from cuefem.io.toml_writer import toml_text
 from cuefem.parameters.parameter import parameter, with_parameters
-from cuefem.report.first_screen import Shown, drawings_markup, headline_markup, parts_line, scale_markup, tiles_markup
+from cuefem.report.first_screen import (
+    HeadlineCue,
+    drawings_markup,
+    headline_markup,
+    parts_line,
+    scale_markup,
+    tiles_markup,
+)
 from cuefem.report.glossary import definitions, with_term_buttons
 from cuefem.report.renderers import csv_text
 from cuefem.report.report_page import page as report_page
@@ -101,7 +108,7 @@ class Page:
     def _header(self) -> None:
         with ui.element("header").classes("head"):
             ui.html("<h1>cuefem designer</h1>", sanitize=False).classes("brand")
-            self.name = ui.input(on_change=self._renamed).props(
+            self.name = ui.input(on_change=self._on_rename).props(
                 f'borderless dense debounce=400 maxlength={MAX_NAME} aria-label="Name of the design"'
             )
             self.changed = ui.label().classes("soft setup")
@@ -133,7 +140,7 @@ class Page:
             with ui.element("div"):
                 with ui.element("div").classes("compare"):
                     ui.label("Compare with").classes("soft")
-                    self.compare = ui.select([NOTHING], value=NOTHING, on_change=self._compared)
+                    self.compare = ui.select([NOTHING], value=NOTHING, on_change=self._on_compare)
                     self.compare.props('outlined dense options-dense aria-label="Compare with"')
                     self.swap = ui.button("Swap", on_click=self._swap).props("outline dense no-caps")
                 self.scale = ui.html(sanitize=False).classes("num")
@@ -188,7 +195,7 @@ class Page:
         ui.html('<p class="mark-key soft"><i></i>assumed. Fields take any unit: 1/4 in, 15 oz.</p>', sanitize=False)
 
     def _tabs(self) -> None:
-        with ui.tabs(on_change=self._opened).props("no-caps align=left") as tabs:
+        with ui.tabs(on_change=self._on_open).props("no-caps align=left") as tabs:
             for name in TABS:
                 ui.tab(name)
         with ui.tab_panels(tabs, value=TABS[0], animated=False):
@@ -256,7 +263,7 @@ class Page:
         if event.action.keydown and (event.modifiers.ctrl or event.modifiers.meta) and key in ("z", "y"):
             self.undo_redo(1 if key == "y" or event.modifiers.shift else -1)
 
-    def _renamed(self, event: Any) -> None:
+    def _on_rename(self, event: Any) -> None:
         name = str(event.value or "").strip()[:MAX_NAME]
         if name and name != self.step.design.name:
             self.push(Step(replace(self.step.design, name=name), self.step.other), "name", when=time.monotonic())
@@ -319,7 +326,7 @@ class Page:
 
     # --- comparing ---------------------------------------------------------------------------------
 
-    def _compared(self, event: Any) -> None:
+    def _on_compare(self, event: Any) -> None:
         name, step = event.value, self.step
         if name == _other_name(step.other):
             return
@@ -394,12 +401,12 @@ class Page:
         self.fold.props(f'label="{words}" caption="{parts_line(own.verdict) if own.verdict else ""}"')
         self._show_tab()
 
-    def _shown(self, side: Mapping[str, Any], i: int) -> Shown | None:
+    def _shown(self, side: Mapping[str, Any], i: int) -> HeadlineCue | None:
         if "solved_strike" not in side:
             return None
         name, design = panels.named_designs(self.step)[i]
         numbers = side.get("numbers") or computation.first_numbers(design.scene if i == 0 else self._compared_scene())
-        return Shown(name, design.scene, numbers, side.get("verdict"))
+        return HeadlineCue(name, design.scene, numbers, side.get("verdict"))
 
     def _compared_scene(self) -> Scene:
         """The other design with this one's ball and stroke; a reference cue with this tip too."""
@@ -421,7 +428,7 @@ class Page:
         elif self.tab == "Check":
             self.check.set_content(panels.tables_markup(panels.tabulate_check(self.step, self.results)))
 
-    def _opened(self, event: Any) -> None:
+    def _on_open(self, event: Any) -> None:
         self.tab = str(event.value)
         if self.tab == "File":
             if self.file is None:

@@ -71,7 +71,7 @@ class RequestValidation:
                 await receive()
                 await send({"type": "websocket.close", "code": 1008})
             else:
-                await _refused(403, "this page is for this computer's own browser", scope, receive, send)
+                await _reject(403, "this page is for this computer's own browser", scope, receive, send)
         elif scope["type"] == "http":
             await self._bounded(headers, scope, receive, send)
         else:
@@ -101,9 +101,9 @@ class RequestValidation:
             await self.app(scope, counted, noted)
         except TooBig:
             if not begun:
-                await _refused(413, REJECTED, scope, receive, send)
+                await _reject(413, REJECTED, scope, receive, send)
 
 
-async def _refused(status: int, text: str, scope: Scope, receive: Receive, send: Send) -> None:
+async def _reject(status: int, text: str, scope: Scope, receive: Receive, send: Send) -> None:
     answer: Any = PlainTextResponse(text, status_code=status, headers={"connection": "close"})  # the rest is not read
     await answer(scope, receive, send)

@@ -24,10 +24,10 @@ OMITTED_IF_ZERO = ("tip_bore", "butt_bore", "shaft_mass_measured")  # not writte
 
 def build(kind: type[Kind], table: Any, *, file: str, key: str) -> Kind:
     """An instance of ``kind`` from a file's table; InputError names file, key path, limit, unit and value."""
-    return cast(Kind, _read(kind, table, file, key))
+    return cast(Kind, _convert(kind, table, file, key))
 
 
-def _read(hint: Any, value: Any, file: str, key: str) -> Any:
+def _convert(hint: Any, value: Any, file: str, key: str) -> Any:
     """A file's value converted to the type of a field."""
     if hint is Any:
         return value
@@ -39,17 +39,17 @@ def _read(hint: Any, value: Any, file: str, key: str) -> Any:
         if typing.get_origin(choice) is tuple:
             if isinstance(value, list):
                 inner, *_ = typing.get_args(choice)
-                return tuple(_read(inner, item, file, key_path(key, i)) for i, item in enumerate(value))
+                return tuple(_convert(inner, item, file, key_path(key, i)) for i, item in enumerate(value))
         elif typing.get_origin(choice) is dict:
             if isinstance(value, dict):
                 _, inner = typing.get_args(choice)
-                return {name: _read(inner, item, file, key_path(key, name)) for name, item in value.items()}
+                return {name: _convert(inner, item, file, key_path(key, name)) for name, item in value.items()}
         elif isinstance(value, choice) and isinstance(value, bool) == (choice is bool):
             return value
         elif isinstance(value, str) and choice is Material:
             return named_material(value, file, key)
         elif isinstance(value, dict) and is_dataclass(choice):
-            return _made(cast(type, choice), value, file, key)
+            return _build_table(cast(type, choice), value, file, key)
     raise InputError(file, key, f"must be {_expected(hint)}; got {quote(value)}")
 
 
@@ -61,7 +61,7 @@ def named_material(name: str, file: str | PathLike[str], key: str) -> Material:
         raise InputError(file, key, f"{error}; see `cuefem parts`") from None
 
 
-def _made(kind: type, table: dict[str, Any], file: str, key: str) -> Any:
+def _build_table(kind: type, table: dict[str, Any], file: str, key: str) -> Any:
     """A dataclass from a table; unknown keys are reported first, since a missing key is often misspelt."""
     values, known = {}, field_types(kind)
     for name in table:
@@ -69,7 +69,7 @@ def _made(kind: type, table: dict[str, Any], file: str, key: str) -> Any:
             raise unknown_key(name, keys_of(kind), file=file, key=key)
     for name, hint in known.items():
         if name in table:
-            values[name] = _read(hint, table[name], file, key_path(key, name))
+            values[name] = _convert(hint, table[name], file, key_path(key, name))
         elif name in required_keys(kind):
             raise InputError(file, key_path(key, name), f"must be given, {_expected(hint)}; got nothing")
     try:

@@ -34,7 +34,7 @@ TILES = {
 
 
 @dataclass(frozen=True)
-class Shown:
+class HeadlineCue:
     """A design with its computed numbers, SI, by name, and its verdict if computed."""
 
     name: str
@@ -54,7 +54,9 @@ class Tile(NamedTuple):
     more: str
 
 
-def headline_markup(own: Shown, other: Shown | None = None, difference: Record | None = None, warning: str = "") -> str:
+def headline_markup(
+    own: HeadlineCue, other: HeadlineCue | None = None, difference: Record | None = None, warning: str = ""
+) -> str:
     """Squirt with its uncertainty, and its difference from another design's and from a reference cue's.
 
     difference: of `cuefem.results.comparison`, from the other design. warning: about the contact state.
@@ -76,7 +78,7 @@ def headline_markup(own: Shown, other: Shown | None = None, difference: Record |
     return _macro("headline", squirt, text, error, where, lines, warning)
 
 
-def tiles(own: Shown, other: Shown | None = None) -> list[Tile]:
+def tiles(own: HeadlineCue, other: HeadlineCue | None = None) -> list[Tile]:
     """The four numbers, each with its difference from the other design's."""
     made = []
     for key, (label, unit, decimals, per, hint) in TILES.items():
@@ -88,19 +90,19 @@ def tiles(own: Shown, other: Shown | None = None) -> list[Tile]:
     return made
 
 
-def _value(design: Shown, key: str) -> float | None:
+def _value(design: HeadlineCue, key: str) -> float | None:
     squirt = design.numbers.get("squirt")
     value = (math.tan(abs(squirt)) if squirt else None) if key == "off_line" else design.numbers.get(key)
     return value if value is not None and math.isfinite(value) else None
 
 
-def scale_markup(own: Shown, other: Shown | None = None) -> str:
+def scale_markup(own: HeadlineCue, other: HeadlineCue | None = None) -> str:
     """The reference cues, this design with its uncertainty, and the other one, sorted by squirt."""
     beside = None if other is None else (other.name, other.numbers["squirt"])
     return _macro("scale", reference_scale(own.verdict, own.name, beside) if own.verdict else [], other)
 
 
-def tiles_markup(own: Shown, other: Shown | None = None) -> str:
+def tiles_markup(own: HeadlineCue, other: HeadlineCue | None = None) -> str:
     """The four numbers as markup."""
     return _macro("tiles", tiles(own, other))
 

@@ -17,7 +17,7 @@ from cuefem.report.design_changes_table import tabulate_design_changes
 from cuefem.report.drawings import modes_chart
 from cuefem.report.end_mass_table import tabulate_end_masses
 from cuefem.report.first_screen import (
-    Shown,
+    HeadlineCue,
     drawings_markup,
     headline_markup,
     parts_line,
@@ -130,13 +130,13 @@ def _screen(name: str, scene: Scene, records: Record, other: tuple[str, Scene] |
     """The parts of the first screen as markup."""
     outcome, drives = records["outcome"], records["end_masses"]["definitions"]
     squirt = {"squirt": float(outcome.squirt), "pivot_length": records["strike"]["models"]["coupled"]["pivot_length"]}
-    own = Shown(
+    own = HeadlineCue(
         name, scene, records["numbers"] | squirt | {"end_mass_squirt": drives["squirt"]["end_mass"]}, records["verdict"]
     )
     beside, difference = None, None
     if other is not None:
         compared = records["comparison"]
-        beside = Shown(*other, compared["cues"][other[0]])
+        beside = HeadlineCue(*other, compared["cues"][other[0]])
         difference = compared["differences"][name].get("squirt")
     scenes = {name: scene} | ({} if other is None else {other[0]: other[1]})
     return {
