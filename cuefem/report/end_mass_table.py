@@ -58,8 +58,8 @@ def tabulate_end_masses(record: Record, scene: Record, *, paper: bool = False) -
         rows,
         assumptions(scene),
         *(f"{row['name']}: {row['reason']}" for row in rows if row["end_mass"] is None),
-        "m_e: effective end mass, the transverse inertia of the cue at its tip; `report` and `compare` use squirt, "
-        "the lumped models offset, published end masses [A.31]",
+        "m_e: effective end mass, the transverse inertia of the cue at its tip; `report` and `compare` use squirt; "
+        "lumped models: offset without tip effects; published end masses and pooltool: [A.31]",
         *([their] if paper else []),
         *tip_effect_notes(scene, _tip_effects_note()),
     )

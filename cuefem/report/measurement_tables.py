@@ -9,11 +9,13 @@ import numpy as np
 
 from cuefem.measurements.estimate import STEP_TOLERANCE, Estimate, InformationGain
 from cuefem.measurements.measured_cue import MeasuredCue, OffsetZero, Residual
+from cuefem.measurements.uncertain_parameters import SQUIRT_MODEL
 from cuefem.results.quantities import DASH, with_unit
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
+from cuefem.results.uncertainty import model_error
 
 LARGE_RESIDUAL = 3.0  # a larger one is a contradiction
-UNITS = {"residual": "", "normalized_residual": "", "zero_error": "m", "squirt_error": "rad"}
+UNITS = {"model_error": "", "residual": "", "normalized_residual": "", "zero_error": "m", "squirt_error": "rad"}
 MIN_OUTLIER_PROBABILITY = 0.2  # of a measurement with a note
 
 
@@ -119,9 +121,11 @@ def estimate_record(
 ) -> Record:
     """The estimated parameters, the fit, squirt and recommended measurements.
 
-    squirt: value and 1σ, rad, at ``offset``, b/R. gains: of the recommended measurements.
+    squirt: value and 1σ, rad, at ``offset``, b/R, with the model error only if squirt was measured. gains: of the
+    recommended measurements.
     """
     sd = np.sqrt(np.diag(estimate.covariance))
+    measured_squirt = any(value.name == SQUIRT_MODEL for value in estimate.values)
     return {
         "name": estimate.cue.name,
         "values": [value._asdict() for value in estimate.values],
@@ -137,6 +141,7 @@ def estimate_record(
         "converged": estimate.converged,
         "squirt": squirt[0],
         "squirt_error": squirt[1],
+        "model_error": None if measured_squirt else model_error(estimate.cue.scene),
         "offset": offset,
         "recommended_measurements": [gain_record(gain) for gain in gains],
         "units": UNITS,
@@ -145,7 +150,7 @@ def estimate_record(
 
 def tabulate_estimate(record: Record) -> list[Table | str]:
     """The estimated parameters, the fit of the measurements, squirt, and recommended measurements."""
-    squirt = with_unit(record["squirt"], "rad", error=record["squirt_error"])
+    squirt, model = with_unit(record["squirt"], "rad", error=record["squirt_error"]), record["model_error"]
     return [
         tabulate(
             "Estimated parameters",
@@ -155,7 +160,10 @@ def tabulate_estimate(record: Record) -> list[Table | str]:
         ),
         _tabulate_fit("Measured and computed with the estimate", record),
         "",
-        f"squirt at b/R {record['offset']:.4g} by the model with these parameters: {squirt}",
+        f"squirt at b/R {record['offset']:.4g} by the model with these parameters: {squirt} "
+        + (
+            f"(parameters only; the model error of {100 * model:.0f} % comes on top)" if model else "(with model error)"
+        ),
         "",
         tabulate(
             "Recommended measurements",

@@ -53,9 +53,9 @@ def _of_drawing(cue: Cue) -> Iterator[Check]:
         for i, segment in enumerate(cue.segments)
         for end in ("tip_diameter", "butt_diameter")
     )
-    radii = "expected 8.5 to 14 mm at the tip; check the unit: are these radii?"
     for name, diameter in [end for end in ends if not CUE_DIAMETER[0] <= end[1] <= CUE_DIAMETER[1]][:1]:
-        yield name, diameter, CUE_DIAMETER, "mm", radii
+        check = "are these radii?" if diameter < CUE_DIAMETER[0] else "check the decimal point and the unit"
+        yield name, diameter, CUE_DIAMETER, "mm", f"expected 8.5 to 14 mm at the tip; {check}"
     yield "drawn mass", cue.shaft_mass, (MIN_DRAWN_MASS, inf), "g", "check the sizes and the densities"
     wood = main_material(cue)
     known = table_name(wood)

@@ -2,14 +2,15 @@
 
 pooltool computes squirt by [A.31] with nu = 2/5 for every ball: alpha = -atan((5/2) a sqrt(1 - a^2)/(1 + m/end_mass
 + (5/2)(1 - a^2))) in `pooltool.physics.resolve.stick_ball.squirt`; a is b/R of the contact, positive on the ball's
-left, alpha positive to the left. [A.31] has neither restitution nor dome: with the stick end mass it gives 14 to 36 %
-less squirt than the coupled strike of the reference scenes. The exported end mass is the one with which [A.31] gives
-the squirt of the coupled strike at the scene's offset and speed.
+left, alpha positive to the left. [A.31] has neither restitution nor dome: with the stick end mass it gives 13 to 36 %
+less squirt than the coupled strikes of studies/scenes and meshes. The exported end mass is the one with which [A.31]
+gives the squirt of the coupled strike at the scene's offset and speed.
 """
 
 from __future__ import annotations
 
 from cuefem.contact.strike import strike_modes
+from cuefem.report.strike_table import UNCERTAINTY_NOTE
 from cuefem.results.closed_forms import alciatore_a31, alciatore_a31_mass_ratio
 from cuefem.results.quantities import RESULTS, units_of, with_unit
 from cuefem.results.records import Record, Table, tabulate
@@ -103,7 +104,8 @@ def _notes(scene: Scene) -> list[str]:
 
 def tabulate_pooltool(record: Record, written: bool) -> list[Table | str]:
     """The end mass beside pooltool's default, and the line that reads the file. written: whether there is a file."""
-    stroke = f"b/R {record['offset']:.4g}, {record['speed']:g} m/s, contact {with_unit(record['contact_time'], 's', 3)}"
+    time = with_unit(record["contact_time"], "s", 3)
+    stroke = f"b/R {record['offset']:.4g}, {record['speed']:g} m/s, contact time {time} (rigid cue head-on)"
     rows = [
         ("this cue", record["CueSpecs"]["end_mass"], record["squirt"]),
         ("pooltool's default cue", record["default_end_mass"], record["default_squirt"]),
@@ -117,6 +119,7 @@ def tabulate_pooltool(record: Record, written: bool) -> list[Table | str]:
         ],
         record["meaning"],
         *record["notes"],
+        UNCERTAINTY_NOTE,
     )
     reads = f"pooltool {record['version']} reads it: {record['line']}"
     return [table, reads if written else f"-o cue.json writes the file; {reads}", f"install: {record['install']}"]

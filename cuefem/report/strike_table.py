@@ -14,7 +14,7 @@ from cuefem.endmass.definitions import stick_at_offsets
 from cuefem.endmass.lumped import impulse, lump_modes
 from cuefem.report.scene_summary import assumptions, tip_effect_notes
 from cuefem.results.closed_forms import alciatore_a31, pivot_length
-from cuefem.results.quantities import MISCUE_DEFINITION, REGIMES, RESULTS, format_value
+from cuefem.results.quantities import MISCUE_DEFINITION, REGIMES, RESULTS, format_value, with_unit
 from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import at_offset
 from cuefem.scene import Outcome, Scene
@@ -160,14 +160,12 @@ def _model_notes(record: Record, scene: Record, accuracy: str) -> list[str]:
         own = [f"two-part and A.31 exclude the cue's {coupling}"] if record["coupling"] else []
         models = "coupled: contact integrated in time; two-part and A.31: two masses, with the cue's end mass"
         return [use, models, *own, *tip_effect_notes(scene, "only coupled includes the effects at the tip")]
-    masses, beam = (
-        "one axial mass and one end mass (`cuefem end-mass`: offset)",
-        f"coupled: vibrating shaft in time{accuracy}",
-    )
+    beam, offset, mass = f"coupled: vibrating shaft in time{accuracy}", scene["stroke"]["offset"], record["end_mass"]
+    end_mass = f"an end mass of {with_unit(mass, 'kg')}, " if mass else "an end mass, "
+    masses = f"one axial mass and {end_mass}stick at b/R {offset:.4g} without tip effects"
     if not record["coupling"]:
-        return [use, beam, f"two-part and A.31: {masses}, without effects at the tip"]
-    lumped = f"lumped: {masses}, with the effects at the tip as a {coupling}"
-    return [use, beam, f"{lumped}; two-part and A.31: the same without them"]
+        return [use, beam, f"two-part and A.31: {masses}"]
+    return [use, beam, f"two-part and A.31: {masses}; lumped: the same, with the tip effects as a {coupling}"]
 
 
 def _speed_notes(record: Record, scene: Record) -> list[str]:

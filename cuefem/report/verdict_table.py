@@ -9,7 +9,7 @@ from cuefem.contact.strike import strike_modes
 from cuefem.io.reference_cues import reference_cues
 from cuefem.results.quantities import format_change, to_display, with_unit
 from cuefem.results.records import Record, Table
-from cuefem.results.uncertainty import SHAFT_ERROR
+from cuefem.results.uncertainty import SHAFT_ERROR, SPRING_ERROR
 from cuefem.results.verdict import verdict_record
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
@@ -96,8 +96,9 @@ def reference_comparison(record: Record) -> list[str]:
 def uncertainty_line(record: Record) -> str:
     """The parts of the uncertainty as one line."""
     parts = {name: _percent(share) for name, share in record["uncertainty"].items()}
+    tip = "spring tip; " if record["uncertainty"]["model"] == SPRING_ERROR else ""
     return (
-        f"±: uncertainty (1σ): model {parts['model']} (from published squirt), unmeasured wood and tip "
+        f"±: uncertainty (1σ): model {parts['model']} ({tip}from published squirt), unmeasured wood and tip "
         f"{parts['inputs']}, numerical {parts['computation']}; combined {parts['total']}. Of a difference between "
         f"two shafts: {_percent(SHAFT_ERROR)} of it (model) or that of their wood if larger, and 1 % of squirt."
     )
