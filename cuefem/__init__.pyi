@@ -40,7 +40,7 @@ from .io.paraview import save_motion as save_motion
 from .io.study_files import study as study
 from .report.verdict_table import verdict as verdict
 from .quantity.unit_checks import PlausibilityWarning as PlausibilityWarning
-from .solid.resolution import Solid as Solid
+from .solid.solid_resolution import Solid as Solid
 from .solid.shaft import SolidModes as SolidModes, solid_modes as solid_modes
 from .scene.scene import (
     Ball as Ball,

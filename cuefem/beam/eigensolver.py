@@ -18,7 +18,7 @@ import scipy.linalg as la
 from numpy.typing import NDArray
 from scipy.linalg import lapack
 
-from cuefem.beam.system import is_dense_faster
+from cuefem.beam.assembly import is_dense_faster
 from cuefem.beam.truncation import LANCZOS_STEPS, truncation_correction
 from cuefem.cue import Array
 

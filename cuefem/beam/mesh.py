@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from cuefem.beam.wave_phases import MAX_PHASE, mode_phases, orders_for
+from cuefem.beam.mode_count import MAX_PHASE, mode_phases, orders_for
 from cuefem.cue import Array, Cue
 from cuefem.quantity.fields import MAX_DOF, check_count
 

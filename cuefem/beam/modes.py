@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from cuefem.beam.assembly import Points, System, assemble
 from cuefem.beam.eigensolver import EigenSolution, solve_eigenproblem
 from cuefem.beam.mesh import BeamEffect
-from cuefem.beam.system import Points, System, assemble
-from cuefem.beam.wave_phases import modes_below
+from cuefem.beam.mode_count import modes_below
 from cuefem.cue import Array, Cue, Section
 from cuefem.quantity.display import brief
 from cuefem.quantity.fields import Quantity, check_count, check_kind

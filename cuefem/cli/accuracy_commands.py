@@ -8,9 +8,9 @@ from typing import Any
 import click
 
 import cuefem.report
-from cuefem.cli.common import run_on_scene, stroke_options
 from cuefem.cli.output import command, page_option
 from cuefem.cli.progress import with_progress_bar
+from cuefem.cli.scene_command import run_on_scene, stroke_options
 from cuefem.io import load_accuracy
 from cuefem.report import DEFAULT_RTOL, effects_record, tabulate_effects
 from cuefem.report.convergence_table import convergence_charts, convergence_record, tabulate_convergence

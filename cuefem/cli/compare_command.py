@@ -8,9 +8,9 @@ from typing import Any
 
 import click
 
-from cuefem.cli.common import cue_options, errors_name_file, full_record, print_warnings, scene_of
 from cuefem.cli.output import assumption_lines, command, page_option, print_result
 from cuefem.cli.progress import with_progress_bar
+from cuefem.cli.scene_command import cue_options, errors_name_file, full_record, print_warnings, scene_of
 from cuefem.cli.scene_options import impact_options, offset_option, option
 from cuefem.io import InputError
 from cuefem.io.measured_folder import load_measured, write_template

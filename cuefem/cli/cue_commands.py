@@ -9,7 +9,9 @@ from typing import Any
 
 import click
 
-from cuefem.cli.common import (
+from cuefem.cli.output import Command, command, output_option, page_option, print_tables
+from cuefem.cli.progress import with_progress_bar
+from cuefem.cli.scene_command import (
     check_overwrite,
     errors_name_file,
     file_options,
@@ -18,8 +20,6 @@ from cuefem.cli.common import (
     scene_of,
     stroke_options,
 )
-from cuefem.cli.output import Command, command, output_option, page_option, print_tables
-from cuefem.cli.progress import with_progress_bar
 from cuefem.cli.scene_options import tip_options
 from cuefem.design.design_changes import design_changes
 from cuefem.endmass.definitions import DEFINITIONS

@@ -10,8 +10,8 @@ from typing import Any
 
 import click
 
-from cuefem.cli.common import cue_options, errors_name_file, print_warnings, scene_of
 from cuefem.cli.output import command, print_json
+from cuefem.cli.scene_command import cue_options, errors_name_file, print_warnings, scene_of
 from cuefem.cli.scene_options import option
 from cuefem.io.reference_cues import PRESETS
 

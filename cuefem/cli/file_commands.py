@@ -6,8 +6,8 @@ from pathlib import Path
 
 import click
 
-from cuefem.cli.common import check_overwrite, force_option, load_with_options, shape_options
 from cuefem.cli.output import assumption_lines, command, json_option, page_option, print_json, print_result
+from cuefem.cli.scene_command import check_overwrite, force_option, load_with_options, shape_options
 from cuefem.cli.scene_options import with_body_option, with_shaft_mass_option
 from cuefem.cue import Cue
 from cuefem.io import load, save

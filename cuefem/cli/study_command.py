@@ -8,9 +8,9 @@ from typing import Any
 
 import click
 
-from cuefem.cli.common import check_overwrite, errors_name_file, force_option, print_warnings
 from cuefem.cli.output import assumption_lines, command, json_option, output_option, print_result, write_result
 from cuefem.cli.progress import progress_bar
+from cuefem.cli.scene_command import check_overwrite, errors_name_file, force_option, print_warnings
 from cuefem.design import Study
 from cuefem.design.optimum import Problem, Round
 from cuefem.design.scatter import Scatter

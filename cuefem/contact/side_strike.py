@@ -12,8 +12,8 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from cuefem.beam.assembly import assemble
 from cuefem.beam.modes import solve
-from cuefem.beam.system import assemble
 from cuefem.beam.tip_modes import TipModes, side_modes
 from cuefem.contact.contact_model import ContactModel, check_restitution, power_law
 from cuefem.contact.modal_response import propagator_of

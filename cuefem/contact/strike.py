@@ -14,7 +14,7 @@ from cuefem.cue import Cue
 from cuefem.quantity.fields import check_kind
 from cuefem.scene import Outcome, Resolution, Scene, as_scenes
 from cuefem.scene.solved_scene import has_moment_arm, strike_mode_count, tip_modes_of
-from cuefem.solid.resolution import Solid
+from cuefem.solid.solid_resolution import Solid
 
 BATCH_FIELDS = ("squirt", "ball_velocity", "ball_speed", "spin", "cue_speed", "impulse", "duration", "regime", "jam")
 

@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
+from cuefem.beam.assembly import System, assemble
 from cuefem.beam.modes import solve
-from cuefem.beam.system import System, assemble
 from cuefem.cue import Array
 from cuefem.endmass.impulse_response import STEPS, ImpulseResponse, solve_toeplitz
 from cuefem.endmass.sticking_contact import StickLimit

@@ -14,10 +14,10 @@ from cuefem.effects.effect import POSITION_TOLERANCE, CueEffect, TrialValues
 from cuefem.quantity.fields import DIAMETER, LENGTH, Quantity
 
 if TYPE_CHECKING:
+    from cuefem.beam.axial_modes import RodModes
     from cuefem.beam.mesh import PointTerms
     from cuefem.beam.modes import Modes
     from cuefem.beam.tip_modes import TipModes
-    from cuefem.effects.rod_modes import RodModes
 
 MIN_BUTT_LENGTH = 0.05  # m: shortest butt behind a drawing that is a rod
 BUTT_FIELDS = "cue_length, butt_diameter and wave_speed"
@@ -339,7 +339,7 @@ class AxialWaves(CueEffect):
 
     def axial_modes(self, bending: Modes, cue: Cue, effects: Sequence[CueEffect]) -> tuple[RodModes, ...]:
         """The rod modes."""
-        from cuefem.effects.rod_modes import rod_modes  # loaded when used: it solves the beam
+        from cuefem.beam.axial_modes import rod_modes  # loaded when used: it solves the beam
 
         rod, n_corrected = self.with_butt(cue), int(bending.radiation is not None)
         return (rod_modes(rod, point_masses_on(rod, effects), cutoff=bending.cutoff, n_corrected=n_corrected),)

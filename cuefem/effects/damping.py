@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from cuefem.beam.assembly import Points
+from cuefem.beam.axial_modes import RodModes
 from cuefem.beam.modes import Modes
-from cuefem.beam.system import Points
 from cuefem.beam.tip_modes import TipModes
 from cuefem.cue import Array, Cue, Section, Segment
 from cuefem.cue.geometry import SegmentRows, section_properties
-from cuefem.effects.rod_modes import RodModes
 
 
 def damp_tip_modes(tip: TipModes, families: Sequence[tuple[Cue, Modes | RodModes]], *, loss: float | None) -> TipModes:

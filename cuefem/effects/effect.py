@@ -11,11 +11,11 @@ from cuefem.cue import Array, Cue, LumpedCue
 from cuefem.quantity.fields import OutOfBounds, Quantity, check_fields, check_kind
 
 if TYPE_CHECKING:
+    from cuefem.beam.axial_modes import RodModes
     from cuefem.beam.mesh import PointTerms
     from cuefem.beam.modes import Modes
     from cuefem.beam.tip_modes import TipModes
     from cuefem.effects.contact_terms import ContactTerms
-    from cuefem.effects.rod_modes import RodModes
 
 # Tolerance of positions on the cue, relative to its length: round-off of summed lengths.
 POSITION_TOLERANCE = 1e-9

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from cuefem.beam.assembly import assemble
 from cuefem.beam.modes import modes
-from cuefem.beam.system import assemble
 from cuefem.contact.side_strike import SideStrike, Striker, side_strike
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, Cue

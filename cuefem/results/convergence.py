@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.beam.mesh import MAX_STEPS
+from cuefem.beam.mode_count import modes_below
 from cuefem.beam.tip_modes import TipModes, lumped_tip_modes
-from cuefem.beam.wave_phases import modes_below
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
 from cuefem.endmass.definitions import definition_of

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from cuefem.beam.assembly import assemble
 from cuefem.beam.modes import modes
-from cuefem.beam.system import assemble
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.strike import steps_of, strike_modes
 from cuefem.cue import Array

@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cuefem.beam.mode_count import modes_below
 from cuefem.beam.tip_modes import TipModes, free_tip_modes, lumped_tip_modes, tip_modes
-from cuefem.beam.wave_phases import modes_below
 from cuefem.cue import Cue
 from cuefem.quantity.fields import CONTACT_TIME
 from cuefem.scene import Resolution, Scene
-from cuefem.solid.resolution import Solid
+from cuefem.solid.solid_resolution import Solid
 
 if TYPE_CHECKING:
     from cuefem.beam.modes import Modes
@@ -117,10 +117,10 @@ class SolvedScene:
         scene = self.scene
         loads = 0 if not with_correction else 2 if has_moment_arm(scene) else 1
         if (at, loads) not in self.solved_modes:
-            from cuefem.beam import modes, system
+            from cuefem.beam import assembly, modes
 
             n_modes = at if isinstance(at, int) else at.modes
-            beam = system.assemble(scene.shaft, mesh_modes or at, scene.cue_effects, n_modes)
+            beam = assembly.assemble(scene.shaft, mesh_modes or at, scene.cue_effects, n_modes)
             # a support makes rigid-body modes flexible; the total number of modes stays the same, so that results
             # are continuous as its stiffness vanishes
             n_modes += 2 - beam.rigid_basis.shape[1]

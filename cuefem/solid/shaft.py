@@ -20,7 +20,7 @@ from cuefem.quantity.display import brief
 from cuefem.quantity.fields import check_count, check_kind
 from cuefem.solid import elasticity
 from cuefem.solid.meridian_mesh import SAME, Fineness, check_mesh_size, half_section
-from cuefem.solid.resolution import Solid
+from cuefem.solid.solid_resolution import Solid
 
 BENDING, AXIAL = 1, 0  # Fourier harmonics
 # (rad/s)^2, far below the first natural frequency of every cue: K is singular, K + SHIFT M is not.

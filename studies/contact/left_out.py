@@ -1,7 +1,7 @@
 """Which effects does the default stroke neglect or assume, with what sign and size in squirt?
 
 Every row is the maple shaft's default stroke at 2 m/s with one change. Most are scenes; three are not in the package
-and come from annuli in small steps (`studies.contact.rings`).
+and come from annuli in small steps (`studies.contact.annuli`).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from scipy.optimize import fsolve
 
 import cuefem as cf
 from studies import pages, strokes
-from studies.contact.rings import Leather, plain, stepped
+from studies.contact.annuli import Leather, plain, stepped
 from studies.pages import table
 from studies.strokes import INCH, at_offset, cue, full_model, pool_scene, squirt
 

@@ -13,7 +13,7 @@ import scipy.linalg as la
 from scipy.optimize import brentq
 
 from cuefem import Cue, Joint, Material, PointMass, Resolution, Segment, Support, modes
-from cuefem.beam import system
+from cuefem.beam import assembly
 from cuefem.beam.mesh import mesh_cue
 from cuefem.beam.modes import solve
 from tests.helpers.cues import CARBON, FOAM, MAPLE, isotropic_kim, kim, rod, soft_tip, stiff_ferrule
@@ -114,16 +114,16 @@ def test_inverse_form_low_modes_have_small_roundoff_error(cue: Cue, tolerance: f
     reference = frequencies(cue, 1, 24, 4)
     for elements, order in ((2, 18), (4, 18), (8, 12), (8, 20), (40, 8)):
         np.testing.assert_allclose(frequencies(cue, elements, order, 4), reference, rtol=tolerance)
-    beam = system.assemble(cue, Resolution(8, 20, 1), count=400)
+    beam = assembly.assemble(cue, Resolution(8, 20, 1), count=400)
     frequency = la.eigh(beam.K, beam.M, eigvals_only=True)[2] ** 0.5 / (2 * np.pi)
     assert abs(frequency / reference[0] - 1) > 30 * abs(solve(beam, 1).frequencies[0] / reference[0] - 1)
 
 
 def test_modes_dense_and_sparse_solvers_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     cue, results = soft_tip(), {}
-    monkeypatch.setattr(system, "BREAK_EVEN_DOF", 1)  # for any number of modes
+    monkeypatch.setattr(assembly, "BREAK_EVEN_DOF", 1)  # for any number of modes
     for limit in (0, 10**6):
-        monkeypatch.setattr(system, "DENSE_LIMIT", limit)
+        monkeypatch.setattr(assembly, "DENSE_LIMIT", limit)
         results[limit] = modes(cue, 8, effects=(Joint(0.3, 1e-3), Support(0.5, np.inf)), at=Resolution(2, 16, 8))
     assert isinstance(results[10**6].system.K, np.ndarray)
     assert not isinstance(results[0].system.K, np.ndarray)

@@ -7,8 +7,8 @@ import pytest
 
 from cuefem import Joint, PointMass, Resolution, Support
 from cuefem.beam import weak_forms
+from cuefem.beam.assembly import assemble
 from cuefem.beam.modes import solve
-from cuefem.beam.system import assemble
 from studies.strokes import NAMES, cue
 
 EFFECTS = {

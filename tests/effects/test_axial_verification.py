@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.beam.axial_modes import rod_modes
 from cuefem.cue.materials import MATERIALS
-from cuefem.effects.rod_modes import rod_modes
 
 MESHES = Path(__file__).parents[2] / "meshes"
 MAPLE = MATERIALS["hard maple"].material

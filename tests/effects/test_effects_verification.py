@@ -8,11 +8,11 @@ import pytest
 from scipy.optimize import brentq
 
 import cuefem as cf
-from cuefem.beam.system import assemble
+from cuefem.beam.assembly import assemble
+from cuefem.beam.axial_modes import rod_modes
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.strike import strike_modes
 from cuefem.effects.effect import Effect
-from cuefem.effects.rod_modes import rod_modes
 from cuefem.scene.solved_scene import tip_modes_of
 from tests.helpers.cues import MAPLE, kim
 from tests.helpers.orders import assert_error_falls_with_the_step

@@ -19,7 +19,7 @@ from cuefem.solid.tip_compliance import (
     graded_fineness,
     tip_table,
 )
-from studies.beam.leather import COUNTS, curvatures, shape_at, solved, stuck
+from studies.beam.leather import COUNTS, by_solid, curvatures, shape_at, stuck
 
 TIP, DIAMETER = LeatherTip(6e-3, 9.5e-3, 100e6), 12.75e-3
 
@@ -31,7 +31,7 @@ def test_leather_long_tip_equals_rod() -> None:
     """EA/h along the axis, from the difference of two lengths, which cancels the local compliance; 3EI/h^3 across it
     on a slender rod. Over D: EA is pi/4, EI pi/64."""
     fineness = graded_fineness(4, 4, 6, 1)
-    short, long, slender = (solved(Shape(h, 0.0), 0.3, Patch(0.0, 0.45), fineness) for h in (4.0, 6.0, 30.0))
+    short, long, slender = (by_solid(Shape(h, 0.0), 0.3, Patch(0.0, 0.45), fineness) for h in (4.0, 6.0, 30.0))
     assert abs((long - short)[0, 0] * math.pi / 4 / 2 - 1) < 1e-3
     assert abs(slender[1, 1] * 3 * math.pi / 64 / 30**3 - 1) < 5e-3
 
@@ -42,7 +42,7 @@ def test_leather_small_patch_equals_half_space() -> None:
     errors = []
     for radius in (1 / 32, 1 / 64, 1 / 128):
         shape, fineness = Shape(0.5, 0.0), contact_fineness(0.5, radius, 4)._replace(harmonics=1)
-        computed = np.diagonal(solved(shape, 0.4, Patch(0.0, radius), fineness))
+        computed = np.diagonal(by_solid(shape, 0.4, Patch(0.0, radius), fineness))
         errors.append(1 - computed / tt.half_space(0.4, radius))
     assert np.all(np.abs(errors[0]) < 0.05)
     np.testing.assert_allclose(np.divide(errors[0], errors[1]), 2, rtol=0.05)
@@ -84,7 +84,7 @@ def test_leather_table_equals_solution(
 ) -> None:
     position = 2 * offset * dome / diameter if offset else 0.0
     tip = LeatherTip(1e-3 * height, 1e-3 * dome, 1.0, nu)
-    exact = solved(Shape(height / diameter, diameter / dome), nu, Patch(position, patch / diameter))
+    exact = by_solid(Shape(height / diameter, diameter / dome), nu, Patch(position, patch / diameter))
     compliance = 1e-3 * diameter * tip.compliance(1e-3 * diameter, offset, 1e-3 * patch)
     np.testing.assert_allclose(np.diagonal(compliance), np.diagonal(exact), rtol=5e-3)
     assert abs(compliance[0, 1] - exact[0, 1]) < 5e-3 * math.sqrt(exact[0, 0] * exact[1, 1])

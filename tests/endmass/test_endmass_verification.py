@@ -10,8 +10,8 @@ import pytest
 from scipy.integrate import quad
 
 from cuefem import Cue, LumpedCue, Resolution, Scene, end_mass, modes
+from cuefem.beam.assembly import assemble
 from cuefem.beam.modes import solve
-from cuefem.beam.system import assemble
 from cuefem.beam.tip_modes import TipModes
 from cuefem.endmass.definitions import force, velocity
 from cuefem.scene.solved_scene import default_mode_count, tip_modes_from, tip_modes_of

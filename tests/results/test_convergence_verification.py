@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.beam.assembly import assemble
 from cuefem.beam.modes import Modes, solve
-from cuefem.beam.system import assemble
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.definitions import definition_of
 from cuefem.results.convergence import refinement_levels
