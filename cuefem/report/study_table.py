@@ -22,6 +22,7 @@ from cuefem.design.study_result import StudyResult
 from cuefem.design.study_statistics import SweepStatistics, sweep_statistics
 from cuefem.parameters.parameter import Path
 from cuefem.parameters.parts import Layout
+from cuefem.report.scene_summary import assumptions, scene_record
 from cuefem.results.quantities import DASH, DISPLAY_UNITS, significant, with_heading, with_unit
 from cuefem.results.records import Record, Table
 from cuefem.scene import Scene
@@ -59,13 +60,18 @@ def _segments(cue: Cue, paths: Sequence[Path]) -> list[str]:
 
 
 def tabulate_parameters(study: Study) -> Table:
-    """A row for each varied parameter: its name, its range with the unit, and the segments that it varies."""
+    """A row for each varied parameter: its name, range and segments; stroke and definitions of results as notes."""
     pieces = varied_segments(study.vary, study.base)
     rows = tuple(
         (column_label(vary.name), range_text(vary, unit), ", ".join(pieces.get(vary.name, ())))
         for vary, unit in zip(study.vary, study.units, strict=False)
     )
-    notes = ("positions from the front of the modelled cue",) if pieces else ()
+    about = {each.result.column_heading: each.result.about for each in study.responses if each.result.about}
+    notes = (
+        *(("positions from the front of the modelled cue",) if pieces else ()),
+        f"unless varied: {assumptions(scene_record(study.base))}, offset b/R {study.base.stroke.offset:.4g}",
+        *(f"{name}: {text}" for name, text in about.items()),
+    )
     head = ("parameter", "range", "segments")
     return Table(
         "Varied parameters",
@@ -252,7 +258,12 @@ def tabulate_scatter(result: StudyResult, scatter: Scatter, drivers: SobolIndice
         *(f"{factor}: {', '.join(names)}" for factor, names in scatter.groups.items()),
     )
     return [
-        Table(f"Spread of {2 * scatter.count} designs", ("response", *numbers), tuple(spreads), (quantiles,)),
+        Table(
+            f"Spread of {2 * scatter.count} designs, the two independent samples",
+            ("response", *numbers),
+            tuple(spreads),
+            (quantiles,),
+        ),
         Table(
             "Sensitivity: share of the variance, %",
             ("response, factor", "first-order", "total"),
@@ -290,7 +301,7 @@ def tabulate_optimum(problem: Problem, best: Optimum) -> list[Table | str]:
     labels = {response.name: response.label for response in problem.study.responses}
 
     def text(name: str, value: Any) -> str:
-        return value if isinstance(value, str) else with_unit(value, units[name], 6)
+        return value if isinstance(value, str) else with_unit(value, units[name])
 
     both = {**best.responses, **best.values}
     names = {name: labels.get(name) or column_label(name) for name in both}

@@ -191,7 +191,7 @@ RESULTS = {
     ),
     "squirt_slope": Result(
         "squirt slope",
-        about="squirt over phi in the limit of small offsets",
+        about="squirt over phi = asin(b/R), rad/rad, in the limit of small offsets",
         of=lambda design, _: design.squirt_slope,
         better="lower",
         is_listed=False,

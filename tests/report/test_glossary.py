@@ -26,6 +26,10 @@ def test_every_term_has_button_of_its_entry() -> None:
     assert len({entry.id for entry in entries()}) == len(entries()) > 30
 
 
+def test_terms_are_in_alphabetical_order() -> None:
+    assert (first := [entry.words[0].lower() for entry in entries()]) == sorted(first)
+
+
 @pytest.mark.parametrize("tag", ["svg", "h1", "title", "button", "summary", "code", "label"])
 def test_terms_in_headings_and_controls_have_no_button(tag: str) -> None:
     markup = f"<{tag}>squirt <b>spin</b></{tag}>"
