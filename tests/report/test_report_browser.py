@@ -49,7 +49,7 @@ def test_report_by_keyboard_shows_values_and_definitions_and_prints(opened: Any)
     opened.keyboard.press("Home")
     for _ in range(3):
         opened.keyboard.press("PageUp")
-    at, *values = opened.locator("p.spoken").inner_text().split("; ")
+    at, *values = opened.locator("p.spoken").inner_text().replace("\u00a0", " ").split("; ")
     assert at == "tip offset b/R: 0.300"
     read = {name: float(value) for name, value in (line.rsplit(" ", 1) for line in values)}
     i = PAGE_OFFSETS.index(0.3)
