@@ -23,7 +23,7 @@ def tabulate_design_changes(record: Record) -> Table:
             ),
             "stiffness change": lambda row: _percent(row["tip_stiffness_change"]),
             "mass change": lambda row: format_change(1e3 * row["shaft_mass_change"], 1, "g"),
-            "1st natural frequency change": lambda row: format_change(row["frequency_change"], 1, "Hz"),
+            "natural frequency change": lambda row: format_change(row["frequency_change"], 1, "Hz"),
             "recommendation": "{verdict}",
         },
         rows,
@@ -43,7 +43,8 @@ def design_change_notes(record: Record) -> list[str]:
         f"{with_unit(record['unmodified']['squirt'], 'rad', decimals=2)}. ±: uncertainty of the change (1σ): model, "
         "unmeasured wood and tip, and 1 %. Worthwhile: squirt falls by more than its uncertainty; within uncertainty: "
         "the change is smaller than its uncertainty.",
-        "Stiffness: static, at the tip, joint end clamped. Costs stiffness: by 5 % or more.",
+        "Stiffness: static, at the tip, joint end clamped. Costs stiffness: by 5 % or more. Natural frequency: of the "
+        "first mode.",
     ]
 
 
