@@ -61,74 +61,74 @@ def study(
     command; an edited study computes only its new designs. -o FILE.toml writes the best design (of a sweep: by its
     first response).
     """
-    asked = load_study(file)
-    designs = asked if isinstance(asked, Study) else asked.sobol_study if isinstance(asked, Scatter) else asked.study
+    plan = load_study(file)
+    designs = plan if isinstance(plan, Study) else plan.sobol_study if isinstance(plan, Scatter) else plan.study
     notes = base_assumptions(file, designs.base)
-    if isinstance(asked, Problem) and (store or workers):
+    if isinstance(plan, Problem) and (store or workers):
         raise click.UsageError("--store and --workers do not apply to an optimum, which runs in one process")
     for path in output:
         if path.suffix == ".toml":
-            if isinstance(asked, Scatter):
+            if isinstance(plan, Scatter):
                 raise InputError(
                     path, "--output", "must end in .html, .csv or .json: a tolerance analysis has no best design"
                 )
             check_overwrite(path, force=force)
     print_warnings(designs.base)
-    kept = None
-    if isinstance(asked, Problem):
+    database = None
+    if isinstance(plan, Problem):
         with errors_name_file(file), progress_bar() as bar:
             task = bar.add_task("first round", total=iterations)
 
             def show_round(reached: Round) -> None:
-                bar.update(task, completed=reached.number, description=round_text(asked, reached, iterations))
+                bar.update(task, completed=reached.number, description=round_text(plan, reached, iterations))
 
-            result = compute_study(asked, rounds=iterations, progress=show_round)
+            result = compute_study(plan, rounds=iterations, progress=show_round)
     else:
-        kept = SqliteStore(store or file.with_suffix(".sqlite"), designs)
-        result = _run_stored(file, asked, kept, workers)
+        database = SqliteStore(store or file.with_suffix(".sqlite"), designs)
+        result = _run_stored(file, plan, database, workers)
     record: dict[str, Any] = {"file": str(file), "assumptions": notes, "resolution": designs.at and vars(designs.at)}
     record |= {"kind": result.kind, "varied_fields": varied_segments(designs.vary, designs.base), "units": result.units}
     stored = []
-    if kept:
-        record |= {"store": str(kept.path), "evaluated": kept.computed}
-        before = len(result.rows) - kept.computed
+    if database:
+        record |= {"store": str(database.path), "evaluated": database.computed}
+        before = len(result.rows) - database.computed
         stored.append(
-            f"{len(result.rows)} designs in {kept.path}" + (f", {before} of them from before" if before else "")
+            f"{len(result.rows)} designs in {database.path}" + (f", {before} of them from before" if before else "")
         )
     record |= study_record(result)
-    title, things = f"{file.name}: {result.kind}", [*tabulate_study(result), "", *assumption_lines(notes)]
+    title, tables = f"{file.name}: {result.kind}", [*tabulate_study(result), "", *assumption_lines(notes)]
     for path in output:
-        _write(path, result, record, things, title)
-    print_result(as_json, record, [title, *stored, *things, *(f"wrote {path}" for path in output)])
+        _write(path, result, record, tables, title)
+    print_result(as_json, record, [title, *stored, *tables, *(f"wrote {path}" for path in output)])
 
 
-def _run_stored(file: Path, asked: Study | Scatter, designs: SqliteStore, workers: int | None) -> StudyResult:
+def _run_stored(file: Path, plan: Study | Scatter, designs: SqliteStore, workers: int | None) -> StudyResult:
     """The result of a sweep or a scatter; an interrupted one prints which designs are stored."""
     with progress_bar() as bar, designs:
         task = bar.add_task("designs", total=designs.study.size)
         try:
             with errors_name_file(file):
                 return compute_study(
-                    asked,
+                    plan,
                     store=designs,
                     workers=workers,
                     progress=lambda rows: bar.update(task, completed=designs.done),
                 )
         except (KeyboardInterrupt, RuntimeError) as error:
             bar.stop()
-            kept = f"{designs.done} of {designs.study.size} designs are stored in {designs.path}"
+            message = f"{designs.done} of {designs.study.size} designs are stored in {designs.path}"
             if isinstance(error, RuntimeError):
-                raise RuntimeError(f"{error}; {kept}; run the same command to resume") from None
-            click.echo(f"cuefem: interrupted; {kept}; run the same command to resume", err=True)
+                raise RuntimeError(f"{error}; {message}; run the same command to resume") from None
+            click.echo(f"cuefem: interrupted; {message}; run the same command to resume", err=True)
             raise click.exceptions.Exit(130) from None
 
 
-def _write(path: Path, result: StudyResult, record: Any, things: list[Any], title: str) -> None:
+def _write(path: Path, result: StudyResult, record: Any, tables: list[Any], title: str) -> None:
     """Write the tables as a page, the record, the designs as a table, or the best design."""
     if path.suffix == ".csv":
         write_atomically(path, lambda temporary: write_table(result.study, result.rows, temporary))
     elif path.suffix != ".toml":
-        write_result(path, record, things, title)
+        write_result(path, record, tables, title)
     elif not result.best:
         raise InputError(path, "--output", "has no design to write: every design failed")
     else:

@@ -83,7 +83,7 @@ def material(name: str) -> Material:
 
 
 def table_name(material: Material) -> str | None:
-    """The name in the table of a material, or of one that differs from it in density alone; None if there is none."""
+    """The name of a material in the table, or of one of another density alone; None for other materials."""
     similar = (name for name, entry in MATERIALS.items() if replace(entry.material, rho=material.rho) == material)
     return next((name for name, entry in MATERIALS.items() if entry.material == material), next(similar, None))
 

@@ -146,7 +146,7 @@ class Problem:
         return self.study.scene(self.design(point))
 
     def values(self, points: Array) -> Array:
-        """Responses of the study at points (n, variables): (n, responses), nan if there is none."""
+        """Responses of the study at points (n, variables): (n, responses), nan where a design has none."""
         return self.study.evaluate([self.design(point) for point in points]).values
 
     def margins(self, values: Array) -> Array:

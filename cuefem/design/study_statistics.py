@@ -43,7 +43,7 @@ class SweepStatistics:
 
     @cached_property
     def ranked(self) -> list[int]:
-        """The responses with a preferred direction; all of them if there is none."""
+        """The responses with a preferred direction, or all responses if none has one."""
         indices = range(len(self.responses))
         return [k for k in indices if self.responses[k].result.better] or [*indices]
 

@@ -207,7 +207,7 @@ def without_slip(scene: Scene) -> Scene:
 def squirt_equivalent(tip: TipModes, scene: Scene) -> float:
     """The lumped end mass with the squirt of the coupled strike, kg; at the centre that at b/R = 1e-5.
 
-    ValueError if there is none: see `equivalent_end_mass`.
+    ValueError if no end mass has this squirt: see `equivalent_end_mass`.
     """
     off_centre = scene if scene.stroke.offset else _near_centre(scene)
     return equivalent_end_mass(strike_modes(off_centre, tip), off_centre)

@@ -56,8 +56,8 @@ class StickLimit(NamedTuple):
     def end_mass(self, J: float) -> float:
         """The end mass of a lumped cue with the transverse impulse J, kg: (K - 1)/J = 1/m + c.
 
-        ValueError if there is none: squirt is negative if the end of the cue is so light that its tip moves faster
-        than the ball.
+        ValueError if no end mass has this squirt: squirt is negative if the end of the cue is so light that its tip
+        moves faster than the ball.
         """
         if not 0 < J < (self.K - 1) / self.c:
             got = f"got {J / self.normal:.4g} phi; see cuefem.lump"

@@ -54,7 +54,7 @@ def _convert(hint: Any, value: Any, file: str, key: str) -> Any:
 
 
 def named_material(name: str, file: str | PathLike[str], key: str) -> Material:
-    """The material of this name; InputError with similar names if there is none."""
+    """The material of this name; InputError with similar names if it is unknown."""
     try:
         return material(name)
     except ValueError as error:

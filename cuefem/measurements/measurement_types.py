@@ -11,6 +11,7 @@ from cuefem.contact.side_strike import Striker
 from cuefem.measurements.predictions import N_FREQUENCIES, Predictions, predictions_of
 from cuefem.quantity.fields import CONTACT_TIME, LENGTH, Quantity, check_fields
 from cuefem.results.closed_forms import pivot_length
+from cuefem.results.quantities import balance_point, drawn_mass, tip_height
 from cuefem.scene import Scene
 
 MASS = Quantity("kg", "(0, inf)")
@@ -116,12 +117,12 @@ class Weight(Measurement):
 
     def compute(self, setup: Setup) -> float:
         """That of the drawing."""
-        return setup.predictions.shaft_mass + (setup.scene.shaft.body_mass if self.part == "cue" else 0.0)
+        return drawn_mass(setup.scene) + (setup.scene.shaft.body_mass if self.part == "cue" else 0.0)
 
     @classmethod
     def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
         """The shaft on a kitchen scale."""
-        return (cls(value=predictions_of(scene).shaft_mass, error=SCALE_ERROR),)
+        return (cls(value=drawn_mass(scene), error=SCALE_ERROR),)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,12 +139,12 @@ class Balance(Measurement):
 
     def compute(self, setup: Setup) -> float:
         """That of the drawing."""
-        return setup.predictions.balance_point
+        return balance_point(setup.scene)
 
     @classmethod
     def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
         """The shaft on an edge."""
-        return (cls(value=predictions_of(scene).balance_point, error=BALANCE_ERROR),)
+        return (cls(value=balance_point(scene), error=BALANCE_ERROR),)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -448,7 +449,7 @@ class EndMass(Measurement):
     @classmethod
     def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
         """A ball of 8 g that touches a wall for 1 ms, 10 mm behind the ferrule's end."""
-        position = 0.01 + predictions_of(scene).tip_height
+        position = 0.01 + tip_height(scene)
         blank = cls(value=1.0, error=1.0, ball_mass=8e-3, restitution=0.8, contact_time=1e-3, position=position)
         value = blank.compute(Setup(scene))
         return (replace(blank, value=value, error=END_MASS_ERROR * value),)

@@ -15,7 +15,7 @@ from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, Cue
 from cuefem.effects.cue_effects import PointMass, Support
 from cuefem.effects.effect import Effect
-from cuefem.results.quantities import balance_point, drawn_mass
+from cuefem.results.quantities import tip_height
 from cuefem.scene import Outcome, Scene, Stroke
 from cuefem.scene.solved_scene import SolvedScene
 
@@ -32,24 +32,9 @@ class Predictions:
     _outcomes: dict[Scene, Outcome] = field(default_factory=dict, init=False, repr=False)
 
     @property
-    def tip_height(self) -> float:
-        """Height of a LeatherTip, which is in front of the first segment, m; 0 if the drawing has the tip."""
-        return 0.0 if self.scene.contact_terms.tip is None else self.scene.leather_tip.height
-
-    @property
     def suspended_effects(self) -> tuple[Effect, ...]:
         """The effects on a freely suspended or weighed cue."""
         return tuple(effect for effect in self.scene.cue_effects if effect.part_of_cue)
-
-    @property
-    def shaft_mass(self) -> float:
-        """Mass of the drawn part with its tip, kg."""
-        return drawn_mass(self.scene)
-
-    @property
-    def balance_point(self) -> float:
-        """Centre of mass of the drawn part with its tip, m from the end of the tip."""
-        return balance_point(self.scene)
 
     @cached_property
     def frequencies(self) -> Array:
@@ -90,11 +75,11 @@ class Predictions:
 
     def drawing_position(self, position: float, name: str) -> float:
         """Position in the drawing of a point ``position`` m from the end of the tip, m; ValueError off the shaft."""
-        at, length = position - self.tip_height, self.scene.shaft.length
-        if not 0 <= at <= length:
-            bound = f"[{self.tip_height:.4g}, {self.tip_height + length:.4g}] m, on the shaft"
+        height, length = tip_height(self.scene), self.scene.shaft.length
+        if not 0 <= position - height <= length:
+            bound = f"[{height:.4g}, {height + length:.4g}] m, on the shaft"
             raise ValueError(f"{name} must be in {bound}; got {position}")
-        return at
+        return position - height
 
     def _with_added_mass(self, added_mass: tuple[float, float] | None) -> Scene:
         scene = self.scene

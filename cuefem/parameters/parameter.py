@@ -166,7 +166,7 @@ def _steps(text: str) -> Path:
 
 
 def paths(scene: Scene, text: str) -> tuple[Path, ...]:
-    """The paths of a name or a path in a scene, "[*]" expanded; ValueError, suggesting similar names, if there is none.
+    """The paths of a name or a path in a scene, "[*]" expanded; ValueError, with similar names, if it is unknown.
 
     Each leads to a number or a material.
     """
@@ -337,7 +337,7 @@ def with_values_at(scene: Scene, changes: Mapping[Path, Any]) -> Scene:
 
 
 def check_bore(scene: Any, names: Container[Step]) -> None:
-    """ValueError if the width of a bore changes and there is none: "bore width" is then that of a new one."""
+    """ValueError if the width of a bore changes in a cue without one: "bore width" is then that of a new bore."""
     if "bore width" in names and "bore depth" not in names and BORE_DEPTH.read(scene) == 0:
         raise ValueError("bore width has no effect: the cue has no bore; change bore depth too, or draw a bore")
 

@@ -31,8 +31,8 @@ SAME_POSITION = 1e-9  # relative to a length: positions closer than this are the
 class Part(NamedTuple):
     """A part of a scene, identified from its drawing or its effects.
 
-    read: its value in a scene: an effect, a material or, with its ``quantity``, a number; None if there is none. write:
-    the scene with another value. unchanged: parameters that a change of it must not change.
+    read: its value in a scene: an effect, a material or, with its ``quantity``, a number; None if it is absent.
+    write: the scene with another value. unchanged: parameters that a change of it must not change.
     """
 
     read: Callable[[Any], Any]
@@ -351,12 +351,12 @@ BORE_WIDTH = Part(_of_bore(1), lambda scene, width: _with_bore(scene, width=widt
 
 
 def _leather(scene: Any) -> Any:
-    """The `LeatherTip` effect; None if there is none."""
+    """The `LeatherTip` effect, or None."""
     return next((effect for effect in scene.effects if effect.defines_tip), None)
 
 
 def _waves(scene: Any) -> Any:
-    """The effect that models the rest of the cue as a rod; None if there is none."""
+    """The effect that models the rest of the cue as a rod, or None."""
     rods = (effect for effect in scene.effects if getattr(effect, "wave_speed", None) is not None)
     return next((effect for effect in rods if effect.with_butt(scene.shaft) is not scene.shaft), None)
 

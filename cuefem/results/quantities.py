@@ -130,6 +130,11 @@ def of_drawing(value: Callable[[Scene], Any]) -> Callable[[SolvedDesign, Any], f
     return lambda design, _: float(value(design.scene))
 
 
+def tip_height(scene: Scene) -> float:
+    """Height of a LeatherTip, which is in front of the first segment, m; 0 if the drawing has the tip."""
+    return 0.0 if scene.contact_terms.tip is None else float(scene.leather_tip.height)
+
+
 def drawn_mass(scene: Scene) -> float:
     """Mass of the drawn part with its tip, kg, as on a scale."""
     return float(scene.shaft.shaft_mass + sum(mass for _, mass in _added_masses(scene)))
@@ -137,9 +142,9 @@ def drawn_mass(scene: Scene) -> float:
 
 def balance_point(scene: Scene) -> float:
     """Centre of mass of the drawn part with its tip, m from the end of the tip; a LeatherTip's mass is at its base."""
-    cue, height = scene.shaft, 0.0 if scene.contact_terms.tip is None else scene.leather_tip.height
+    cue = scene.shaft
     moment = cue.shaft_mass * cue.balance_point + sum(x * mass for x, mass in _added_masses(scene))
-    return float(height + moment / drawn_mass(scene))
+    return float(tip_height(scene) + moment / drawn_mass(scene))
 
 
 def _added_masses(scene: Scene) -> list[tuple[float, float]]:

@@ -28,6 +28,10 @@ from cuefem.scene.default_scene import without_leather
 from cuefem.scene.solved_scene import SolvedScene
 
 
+class Miscue(ValueError):
+    """A stroke that has no squirt to report."""
+
+
 def lacks_butt(scene: Scene) -> bool:
     """Whether a cue is too light for a whole one: its squirt is then too low to compare (of maple by about 20 %)."""
     return float(scene.cue.mass) < MIN_CUE_MASS
@@ -40,10 +44,6 @@ def reject_miscue(scene: Scene, outcome: Outcome) -> None:
             f"miscue at b/R {scene.stroke.offset:.4g}: no squirt is reported. Use a smaller offset "
             f"(miscue: {MISCUE_DEFINITION})"
         )
-
-
-class Miscue(ValueError):
-    """A stroke that has no squirt to report."""
 
 
 def verdict_record(

@@ -14,7 +14,6 @@ import cuefem as cf
 from cuefem.cue.materials import material
 from cuefem.design import Levels, Normal, Response, Sample, Span, Study, Vary, evaluate
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.measurements.predictions import predictions_of
 from cuefem.results.quantities import RESULTS
 from cuefem.results.solved_design import computable_results
 from studies.paper.closed_forms import natural_pivot_length
@@ -89,12 +88,15 @@ def singly(scene: cf.Scene, at: cf.Resolution | None) -> dict[str, float]:
     domes = [effect.radius for effect in scene.effects if isinstance(effect, cf.TipDome)]
     squirts = {b: cf.strike(at_offset(scene, b), at).squirt for b in (-0.2, 0.4)}
     flexible = cf.modes(scene.cue, 5, effects=scene.cue_effects, at=at).frequencies
+    added = [effect for effect in scene.effects if isinstance(effect, cf.PointMass)]
+    masses = [scene.shaft.shaft_mass, *(effect.mass for effect in added)]
+    centres = [scene.shaft.balance_point, *(effect.position for effect in added)]
     pivot = natural_pivot_length(0.4, squirts[0.4], radius=scene.ball.radius, dome_radius=sum(domes))
     return {
         "end_mass": cf.end_mass(scene, at=at),
         "mass": scene.cue.mass,
         "shaft_mass": scene.cue.shaft_mass,
-        "balance_point": predictions_of(scene).balance_point,
+        "balance_point": np.average(centres, weights=masses),
         "frequency(1)": flexible[0],
         "frequency(3)": flexible[2],
         "squirt": cf.strike(scene, at).squirt,
