@@ -53,14 +53,14 @@ def changes_of(scene: Scene) -> list[DesignChange]:
     """Candidate changes of this cue; `design_changes` drops those that its geometry does not allow."""
     values = {key: parameter.value(scene) for key, parameter in PARAMETERS.items()}
     return [
-        *_bores(values),
+        *_bores(scene.shaft, values),
         *_ferrules(values),
         *_tips(values),
         *_woods_and_tapers(scene.shaft, values),
     ]
 
 
-def _bores(values: Record) -> Iterator[DesignChange]:
+def _bores(cue: Cue, values: Record) -> Iterator[DesignChange]:
     depth, width = values["bore_depth"], values["bore_width"]
     if depth is None:
         return
@@ -68,7 +68,10 @@ def _bores(values: Record) -> Iterator[DesignChange]:
         new = {"bore depth": NEW_DEPTH, "bore width": NEW_BORE}
         yield DesignChange(f"bore, {with_unit(NEW_BORE, 'm')} wide and {with_unit(NEW_DEPTH, 'm')} deep", new)
         return
-    yield DesignChange(f"bore wider, {_from_to(width, width + WIDER)}", {"bore width": width + WIDER})
+    bored = [cue.segments[i] for i in Layout.of(cue).bore or ()]
+    is_cylinder = all(s.tip_bore == s.butt_bore == width for s in bored)
+    at_mouth = "" if is_cylinder else " at its mouth"
+    yield DesignChange(f"bore wider, {_from_to(width, width + WIDER)}{at_mouth}", {"bore width": width + WIDER})
     yield DesignChange(f"bore deeper, {_from_to(depth, depth + DEEPER)}", {"bore depth": depth + DEEPER})
 
 

@@ -107,8 +107,8 @@ def value(key: str, scene: Scene) -> Any:
     if key == "ferrule":
         return _name(cue.segments[layout.ferrule.start].material) if layout.ferrule else NONE
     if key in ("bore", "bore_width", "bore_depth") and not layout.bore:
-        core = cue.segments[layout.shaft.start].core
-        return None if key != "bore" else f"{_name(core)} core" if core else NONE
+        filling = layout.filling
+        return None if key != "bore" else f"{_name(filling)} core" if filling else NONE
     if key == "bore":
         return DRILLED
     if key == "shaft_material":

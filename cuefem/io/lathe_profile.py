@@ -93,21 +93,38 @@ def read_profile(path: Path, material: Material, length_unit: str | None = None)
     if any(each != Interior() for each in inside) and (measured_from_butt(position) or points[0][0] != x[0]):
         problem = "must increase from tip to butt: bores and materials apply from their row towards the butt"
         raise InputError(path, f"line {header.line}, x", problem)
-    interiors = dict(zip(x, inside, strict=True))
+    sides = _sides(path, header, x, inside)
+    before, behind = zip(*(sides.get(at, (Interior(), Interior())) for at, _ in points), strict=True)
     with as_input_error(path, ""):
-        cue, bored = _drawn(points, [interiors.get(at, Interior()) for at, _ in points], material, position.unit)
+        cue, bored = _drawn(points, before, behind, material, position.unit)
         ferrule = _ferrule_with_length(path, header, inside)
         notes = [*_notes(header, position, diameter, points), *bored]
         return with_additions(cue, ferrule=ferrule) if ferrule else cue, notes
 
 
-def _drawn(points: Sequence[Point], inside: Sequence[Interior], material: Material, unit: str) -> tuple[Cue, list[str]]:
-    """The cue of points with the interior from each of them on, and notes on its bores."""
+def _sides(
+    path: Path, header: Header, x: Sequence[float], inside: Sequence[Interior]
+) -> dict[float, tuple[Interior, Interior]]:
+    """The interior in front of each position and the one behind it: two rows of one position make a step."""
+    sides = dict[float, tuple[Interior, Interior]]()
+    for (line, _), at, interior in zip(header.rows, x, inside, strict=True):
+        before, behind = sides.get(at, (interior, interior))
+        if before != behind != interior:
+            problem = "must have at most two rows, in front of and behind a step of the bore or of a material"
+            raise InputError(path, f"line {line}, x", f"{problem}; got a third row at {1e3 * at:.6g} mm")
+        sides[at] = before, interior
+    return sides
+
+
+def _drawn(
+    points: Sequence[Point], before: Sequence[Interior], inside: Sequence[Interior], material: Material, unit: str
+) -> tuple[Cue, list[str]]:
+    """The cue of points with the interior in front of each of them and behind it, and notes on its bores."""
     unit_size, segments, bored = parse_number(f"1 {unit}", "m"), list[Segment](), list[str]()
 
     def bores(i: int) -> tuple[float, float]:
         """Bore at both ends of interval i: it tapers to the bore of the next row if the materials are the same."""
-        here, following = inside[i], inside[i + 1]
+        here, following = inside[i], before[i + 1]
         same = i + 2 == len(inside) or replace(here, bore=0.0) == replace(following, bore=0.0)
         return (here.bore, following.bore) if here.bore and following.bore and same else (here.bore, here.bore)
 
@@ -258,7 +275,7 @@ def _ordered(path: Path, header: Header, position: ProfileColumn, points: list[P
     ordered: list[Point] = []
     for line, (x, d) in lines:
         if ordered and (x, d) == ordered[-1]:
-            continue  # a duplicate row
+            continue  # a step of the bore or of a material, or a duplicate row
         if ordered and x <= ordered[-1][0]:
             unit_size = parse_number(f"1 {position.unit}", "m")
             before, here = (f"{value / unit_size:g}" for value in (ordered[-1][0], x))

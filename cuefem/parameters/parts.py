@@ -6,8 +6,9 @@
   `taper_position`. Every segment remains a cone.
 - A longer ferrule replaces wood behind it and ends flush with that wood. The lengths of cue and bore and the cone of
   the shaft do not change.
-- The bore is the empty one behind the leather, or behind the ferrule if the ferrule is on a tenon. Its depth is
-  measured from where it begins. A filled bore cannot be varied.
+- The bore is the first hollow, tenons excepted, that begins in front of `taper_position`: at the front, behind a
+  ferrule on a tenon or behind a plug. Its depth is measured from where it begins. A filled bore cannot be varied. A new
+  or deeper bore leaves wider ones on its way as they are.
 """
 
 from __future__ import annotations
@@ -42,11 +43,15 @@ class Part(NamedTuple):
 
 
 class Layout(NamedTuple):
-    """Segment indices of a cue's parts. ferrule: empty without one. bore: None if it is filled."""
+    """Segment indices of a cue's parts, and the material that fills its bore.
+
+    ferrule: empty without one. bore: empty without one, None if it is filled.
+    """
 
     ferrule: range
     shaft: range
     bore: range | None
+    filling: Material | None
 
     @classmethod
     def of(cls, cue: Cue) -> Layout:
@@ -57,10 +62,22 @@ class Layout(NamedTuple):
         first = _next_material(segments, front)
         if first > last or cue.nodes[first] - cue.nodes[front] > MAX_FERRULE * (1 + SAME_POSITION):
             first = front
-        mouth = front if _is_bored(segments[front]) else first
+        shaft = range(first, _next_material(segments, first))
+        mouth = _mouth(cue, front, first)
         closed = next((i for i in range(mouth, len(segments)) if not _is_bored(segments[i])), len(segments))
-        bore = None if segments[mouth].core else range(mouth, closed)
-        return cls(range(front, first), range(first, _next_material(segments, first)), bore)
+        filling = segments[mouth].core
+        return cls(range(front, first), shaft, None if filling else range(mouth, closed), filling)
+
+
+def _mouth(cue: Cue, front: int, first: int) -> int:
+    """Index of the segment with which the bore begins; without a bore, of the first one behind the ferrule."""
+    for i in range(front, len(cue.segments)):
+        if cue.nodes[i] > taper_position(cue) * (1 + SAME_POSITION):
+            break
+        is_tenon = i < first and cue.segments[i].core is not None
+        if _width(cue.segments[i]) > 0 and not is_tenon:
+            return i
+    return first
 
 
 def _next_material(segments: Sequence[Segment], first: int) -> int:
@@ -307,7 +324,8 @@ def _with_bore(scene: Any, depth: float | None = None, width: float | None = Non
         if not (before or after):
             return segment
         widened = (wider * segment.tip_bore, wider * segment.butt_bore)
-        ends = (0.0, 0.0) if not after else widened if before else (new_bore, new_bore)
+        deeper = (max(new_bore, segment.tip_bore), max(new_bore, segment.butt_bore))  # another bore may be there
+        ends = (0.0, 0.0) if not after else widened if before else deeper
         outside = ((segment.tip_diameter, start), (segment.butt_diameter, start + segment.length))
         for inner, (outer, x) in zip(ends, outside, strict=True):
             if inner >= outer:

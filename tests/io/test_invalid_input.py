@@ -68,6 +68,7 @@ csv  | x [kg],diameter [mm]\n0,12           | line 1, x: must be in a unit of le
 csv  | x [mm],diameter 1 [mm],diameter 2 [mm]\n0,12.75,12.9\n700,21,22 | line 1: two columns may be the diameter,
 csv  | x [mm],diameter [mm],bore [mm]\n700,21,\n0,12,6  | line 1, x: must increase from tip to butt: bores and
 csv  | x [mm],diameter [mm],bore [mm]\n0,12,12\n700,21, | line 2, bore: must be less than 12 mm, the diameter there;
+csv  | x [mm],diameter [mm],bore [mm]\n0,12,6\n7,12,6\n7,12,5\n7,12,4\n700,21, | line 5, x: must have at most two rows
 csv  | x [mm],diameter [mm],material\n0,12,hard mapel\n700,21, | line 2, material: unknown material 'hard mapel'
 csv  | x [mm],diameter [mm],core\n0,12.75,foam\n736.6,21.5,foam | line 2, core: needs a bore in its row
 csv  | x [mm],radius [mm],inner radius (mm)\n0,6.4,3\n700,10, | line 1, bore: must be a column of diameters
