@@ -12,7 +12,7 @@ from typing import Any
 
 from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue
-from cuefem.io.errors import InputError, as_input_error, os_error_text, quote
+from cuefem.io.errors import InputError, as_input_error, check_path, os_error_text, quote
 from cuefem.io.lathe_profile import DEFAULT_MATERIAL, SHAPE_EXTENSIONS, SPREADSHEET_EXTENSIONS, read_profile
 from cuefem.io.schema import named_material
 from cuefem.io.shaft_additions import with_additions, with_shaft_material
@@ -210,6 +210,7 @@ def save_page(text: str, path: str | os.PathLike[str]) -> None:
 
 def write_atomically(path: Path, write: Callable[[Path], object]) -> None:
     """Write a temporary file beside ``path`` and rename it to ``path``, so that no partial file appears."""
+    check_path(path)
     goal = Path(os.path.realpath(path))
     temporary = goal.with_name(f".{goal.stem}.{os.getpid()}{goal.suffix}")
     try:
@@ -223,6 +224,7 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> None:
 
 def check_new_folder(folder: Path) -> None:
     """InputError if the folder, or a file of its name, exists."""
+    check_path(folder)
     if folder.exists() or folder.is_symlink():
         raise InputError(folder, "", "must be a new folder; a folder or file of this name exists")
 
@@ -243,6 +245,7 @@ def write_folder_atomically(folder: Path, write: Callable[[Path], object]) -> No
 
 def check_writable(path: Path) -> None:
     """InputError if no file can be written at ``path``; called before the computation."""
+    check_path(path)
     goal = Path(os.path.realpath(path))
     exists = goal.parent.is_dir()
     if goal.is_dir() or not exists or not os.access(goal.parent, os.W_OK):

@@ -15,6 +15,7 @@ from cuefem.quantity.fields import quote, suggestion
 __all__ = [
     "InputError",
     "as_input_error",
+    "check_path",
     "check_size",
     "file_state",
     "os_error_text",
@@ -59,8 +60,15 @@ def errors_name_key(path: str | PathLike[str], key: str) -> Iterator[None]:
         raise error if error.key else InputError(path, key, str(error)) from None
 
 
+def check_path(path: Path) -> None:
+    """InputError if no file can have this path, before the operating system says so in the words of one Python."""
+    if "\0" in str(path):
+        raise InputError(path, "", "must be a path without null characters")
+
+
 def file_state(path: Path) -> os.stat_result:
     """Size and time of a file; InputError if it is not a regular file (opening a pipe would block)."""
+    check_path(path)
     try:
         state = path.stat()
     except OSError as error:

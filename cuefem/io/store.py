@@ -22,7 +22,7 @@ from typing import Any, Self
 from cuefem.design import Row, Study
 from cuefem.design.evaluation import Failed
 from cuefem.design.sampling import Value
-from cuefem.io.errors import InputError
+from cuefem.io.errors import InputError, check_path
 from cuefem.quantity.display import full_repr
 
 APPLICATION_ID = 0x43754665  # SQLite's application_id in the header of the file
@@ -53,6 +53,7 @@ def code_digest() -> str:
 @contextmanager
 def _opened(path: Path) -> Iterator[sqlite3.Connection]:
     """A connection to a store; InputError for a damaged file and for errors of SQLite."""
+    check_path(path)
     try:
         with closing(sqlite3.connect(f"{path.resolve().as_uri()}?mode=rwc", timeout=LOCK_TIMEOUT, uri=True)) as file:
             questions = ("SELECT count(*) FROM sqlite_master", "PRAGMA application_id", "PRAGMA integrity_check(1)")

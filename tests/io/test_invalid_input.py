@@ -4,13 +4,16 @@ Every declared field of every table: tests/quantity/test_declared_fields.py.
 """
 
 import struct
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.design import Levels, Response, Study, Vary
 from cuefem.io import InputError
+from cuefem.io.store import SqliteStore
 from tests.helpers.command_line import call
 from tests.helpers.surfaces import revolve, write_surface
 
@@ -121,6 +124,21 @@ def test_load_signalling_nan_in_surface_is_rejected(tmp_path: Path) -> None:
     triangle = struct.pack("<I", 1) + bytes(12) + struct.pack("<I", 0x7F80FF00) + bytes(34)
     (tmp_path / "shaft.stl").write_bytes(bytes(80) + triangle)
     assert rejection(tmp_path / "shaft.stl").startswith("corners: must be finite")
+
+
+KIM = cf.load(Path(__file__).parents[2] / "meshes" / "kim.toml")
+
+
+def open_store(path: Path) -> None:
+    with SqliteStore(path, Study(cf.Scene(KIM), (Vary(("ball.mass",), Levels((0.16, 0.17))),), (Response("squirt"),))):
+        pass
+
+
+@pytest.mark.parametrize("open_file", [cf.load, lambda path: cf.save(KIM, path), open_store])
+def test_path_with_null_character_is_rejected(open_file: Callable[[Path], object]) -> None:
+    """In words that do not depend on the version of Python."""
+    with pytest.raises(InputError, match=r"^a\\x00.toml: must be a path without null characters$"):
+        open_file(Path("a\0.toml"))
 
 
 def test_load_missing_file_or_foreign_option_is_rejected(tmp_path: Path) -> None:

@@ -72,7 +72,7 @@ measured.toml | Prebound = ["250 cm"]\n | pendulum[0].rebound: must be displacem
 measured.toml | [[recording]]\nfile = "none.wav"\n | none.wav: cannot be read: No such file
 measured.toml | [[recording]]\nfile = "tap.mp3"\n | tap.mp3: must end in .wav
 measured.toml | [[recording]]\nfile = "tap.wav"\nloud = 1\n | recording[0].loud: unknown key; valid:
-measured.toml | [[recording]]\nfile = "\u0000.wav"\n | .wav: embedded null byte
+measured.toml | [[recording]]\nfile = "\u0000.wav"\n | x00.wav: must be a path without null
 squirt.csv | offset,sqirt [deg]\n0.3,2\n | must have headings source, offset, value
 squirt.csv | offset,value,error [deg]\n0.3,2,1\n | line 1, value: must be the heading "value [rad]"
 squirt.csv | offset,value [deg],error [deg]\n0.3,2\n | line 2: must have 3 cells
