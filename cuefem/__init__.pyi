@@ -38,7 +38,7 @@ from .scene.default_scene import usual_scene as usual_scene
 from .io import load as load, save as save
 from .io.paraview import save_motion as save_motion
 from .io.study_files import study as study
-from .report.verdict_table import verdict as verdict
+from .show.verdict_table import verdict as verdict
 from .quantity.unit_checks import PlausibilityWarning as PlausibilityWarning
 from .solid.solid_resolution import Solid as Solid
 from .solid.shaft import SolidModes as SolidModes, solid_modes as solid_modes

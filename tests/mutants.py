@@ -19,26 +19,26 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).parents[1]
-INTERFACE = ("cli", "design", "designer", "handbook", "io", "measurements", "report")
+INTERFACE = ("cli", "design", "designer", "handbook", "io", "measurements", "show")
 # room -> folders of its tests, fastest detection first; default: the folder of the room's name
 TEST_FOLDERS = {
-    "": ("contact", "endmass", "effects", "results", "report", "io", "cli"),
+    "": ("contact", "endmass", "effects", "results", "show", "io", "cli"),
     "beam": ("beam", "endmass", "contact", "effects"),
     "contact": ("contact", "effects", "endmass"),
     "effects": ("effects", "contact", "solid"),
     "endmass": ("endmass", "contact", "results"),
     "cue": ("cue", "beam", "io", "contact"),
     "parameters": ("parameters", "design", "cli", "io"),
-    "quantity": ("quantity", "io", "cli", "report", "design"),
+    "quantity": ("quantity", "io", "cli", "show", "design"),
     "scene": ("scene", "contact", "io", "cli"),
-    "results": ("results", "report", "design"),
+    "results": ("results", "show", "design"),
     "solid": ("solid", "effects"),
     "handbook": ("handbook", "cli"),
-    "io": ("io", "cli", "effects", "report", "design"),
-    "report": ("report", "results", "cli", "handbook", "design"),
+    "io": ("io", "cli", "effects", "show", "design"),
+    "show": ("show", "results", "cli", "handbook", "design"),
     "measurements": ("measurements", "cli"),
-    "design": ("design", "cli", "report"),
-    "designer": ("designer", "results", "report"),
+    "design": ("design", "cli", "show"),
+    "designer": ("designer", "results", "show"),
 }
 SWAPS: dict[type, type] = {
     **{ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult},

@@ -7,14 +7,14 @@ from typing import Any
 
 import click
 
-import cuefem.report
+import cuefem.show
 from cuefem.cli.output import command, page_option
 from cuefem.cli.progress import with_progress_bar
 from cuefem.cli.scene_command import run_on_scene, stroke_options
 from cuefem.io import load_accuracy
-from cuefem.report import DEFAULT_RTOL, effects_record, tabulate_effects
-from cuefem.report.convergence_table import convergence_charts, convergence_record, tabulate_convergence
 from cuefem.scene import Scene
+from cuefem.show import DEFAULT_RTOL, effects_record, tabulate_effects
+from cuefem.show.convergence_table import convergence_charts, convergence_record, tabulate_convergence
 
 
 @command()
@@ -66,10 +66,10 @@ def check(file: Path, **options: Any) -> None:
     """
 
     def results(scene: Scene) -> Any:
-        return cuefem.report.model_error_record(
+        return cuefem.show.model_error_record(
             scene, with_progress_bar
         )  # loads scikit-fem, which only this command needs
 
     run_on_scene(
-        file, options, results, lambda record, about: [cuefem.report.tabulate_model_error(record), record["summary"]]
+        file, options, results, lambda record, about: [cuefem.show.tabulate_model_error(record), record["summary"]]
     )

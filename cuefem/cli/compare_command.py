@@ -18,11 +18,11 @@ from cuefem.measurements.estimate import estimate as estimated
 from cuefem.measurements.estimate import predicted_squirt
 from cuefem.measurements.measured_cue import compare as compared
 from cuefem.measurements.measured_cue import offset_zeros
-from cuefem.report.comparison_table import comparison_figures, comparison_sentences, tabulate_comparison
-from cuefem.report.measurement_tables import estimate_record, measured_record, tabulate_estimate, tabulate_measured
-from cuefem.report.scene_summary import scene_record
 from cuefem.results.comparison import comparison_record, with_same_stroke
 from cuefem.results.quantities import UNITS
+from cuefem.show.comparison_table import comparison_figures, comparison_sentences, tabulate_comparison
+from cuefem.show.measurement_tables import estimate_record, measured_record, tabulate_estimate, tabulate_measured
+from cuefem.show.scene_summary import scene_record
 
 MAX_CUES = 5
 SHARED_ASSUMPTIONS = (

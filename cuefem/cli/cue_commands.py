@@ -26,7 +26,10 @@ from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.io import InputError, load_accuracy, save, save_page
 from cuefem.parameters.parameter import with_parameters
 from cuefem.parameters.parts import main_material
-from cuefem.report import (
+from cuefem.results.convergence import resolve
+from cuefem.results.records import Record, Table
+from cuefem.scene import Scene
+from cuefem.show import (
     end_mass_record,
     modes_record,
     report_record,
@@ -36,12 +39,9 @@ from cuefem.report import (
     tabulate_report,
     tabulate_strike,
 )
-from cuefem.report.design_changes_table import tabulate_design_changes
-from cuefem.report.plausibility import plausibility_warnings
-from cuefem.report.simulator_export import pooltool_record, tabulate_pooltool
-from cuefem.results.convergence import resolve
-from cuefem.results.records import Record, Table
-from cuefem.scene import Scene
+from cuefem.show.design_changes_table import tabulate_design_changes
+from cuefem.show.plausibility import plausibility_warnings
+from cuefem.show.simulator_export import pooltool_record, tabulate_pooltool
 
 
 class WithDefinitions(Command):
@@ -80,7 +80,7 @@ def _sheets(file: Path, record: Record, about: Record) -> list[Table | str]:
 
 
 def _write_page(file: Path, output: Path, options: dict[str, Any]) -> None:
-    from cuefem.report.report_page import page_and_headline  # templates and charts take 0.1 s to load
+    from cuefem.show.report_page import page_and_headline  # templates and charts take 0.1 s to load
 
     if options["as_json"]:
         raise InputError(output, "--output", "cannot be combined with --json")

@@ -12,7 +12,7 @@ from cuefem.cli.scene_options import with_body_option, with_shaft_mass_option
 from cuefem.cue import Cue
 from cuefem.io import load, save
 from cuefem.io.defaults_report import assumption_texts, drawing_assumptions
-from cuefem.report.parts_table import parts_record, tabulate_parts
+from cuefem.show.parts_table import parts_record, tabulate_parts
 
 
 @command()

@@ -12,7 +12,7 @@ import click
 from rich.console import Console
 
 from cuefem.io import InputError, check_writable, save_page, write_atomically
-from cuefem.report.renderers import json_text, terminal
+from cuefem.show.renderers import json_text, terminal
 
 # The heading of an option that many commands share, in the order of a command's help.
 HEADINGS = ("Cue", "Tip", "Stroke", "Output")
@@ -123,7 +123,7 @@ def write_result(path: Path, record: Any, things: Sequence[Any], title: str = ""
     if path.suffix == ".json":
         write_atomically(path, lambda temporary: temporary.write_text(json_text(record) + "\n", encoding="utf-8"))
     else:
-        from cuefem.report.templates import plain_page  # templates take 0.1 s to load
+        from cuefem.show.templates import plain_page  # templates take 0.1 s to load
 
         save_page(plain_page(title or path.stem, things), path)
 

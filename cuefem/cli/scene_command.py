@@ -23,11 +23,11 @@ from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.io import InputError, check_writable, load_stroke
 from cuefem.io.defaults_report import assumption_texts, assumptions
 from cuefem.io.shaft_additions import SHAFT_ADDITIONS
-from cuefem.report.plausibility import plausibility_warnings
-from cuefem.report.scene_summary import cue_line, effect_text, scene_record
 from cuefem.results.quantities import UNITS
 from cuefem.results.records import Record, json_value
 from cuefem.scene import Scene
+from cuefem.show.plausibility import plausibility_warnings
+from cuefem.show.scene_summary import cue_line, effect_text, scene_record
 from cuefem.solid.tip_cache import computing_message
 
 

@@ -22,9 +22,9 @@ from cuefem.parameters.parameter import Path as Steps
 from cuefem.parameters.parts import main_material, with_material
 from cuefem.quantity.fields import OutOfBounds, Quantity, comma_hint
 from cuefem.quantity.units import parse_number
-from cuefem.report.plausibility import plausibility_warnings
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, GAMES, default_tip, usual_scene
+from cuefem.show.plausibility import plausibility_warnings
 
 Command = Callable[..., Any]
 

@@ -19,9 +19,9 @@ from cuefem.io import InputError, save, write_atomically
 from cuefem.io.store import SqliteStore, write_table
 from cuefem.io.study_files import base_assumptions, load_study
 from cuefem.parameters.parameter import value_at, with_values_at
-from cuefem.report.study_table import study_record, tabulate_study, varied_segments
 from cuefem.results.quantities import with_unit
 from cuefem.scene import Scene
+from cuefem.show.study_table import study_record, tabulate_study, varied_segments
 
 
 @command()

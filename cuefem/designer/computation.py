@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from nicegui import run
 
-import cuefem.report
+import cuefem.show
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
 from cuefem.design.design_changes import design_changes
@@ -123,7 +123,7 @@ def changes(scene: Scene) -> Record:
 
 def solid(scene: Scene) -> Record:
     """The scene by the beam and by the solid model."""
-    return cuefem.report.model_error_record(scene)  # loads scikit-fem, which the page's start need not
+    return cuefem.show.model_error_record(scene)  # loads scikit-fem, which the page's start need not
 
 
 async def run_in_thread(work: Callable[..., Any], *arguments: Any) -> Any:

@@ -33,7 +33,10 @@ from cuefem.io.defaults_report import tenon_assumption
 from cuefem.io.reference_cues import PRESETS, REFERENCE_FILES
 from cuefem.io.toml_writer import toml_text
 from cuefem.parameters.parameter import parameter, with_parameters
-from cuefem.report.first_screen import (
+from cuefem.results.quantities import REGIMES
+from cuefem.results.verdict import lacks_butt, with_cue
+from cuefem.scene import Scene
+from cuefem.show.first_screen import (
     HeadlineCue,
     drawings_markup,
     headline_markup,
@@ -41,14 +44,11 @@ from cuefem.report.first_screen import (
     scale_markup,
     tiles_markup,
 )
-from cuefem.report.glossary import definitions, with_term_buttons
-from cuefem.report.renderers import csv_text
-from cuefem.report.report_page import page as report_page
-from cuefem.report.strike_table import regime_warning
-from cuefem.report.templates import chart_script, page_style
-from cuefem.results.quantities import REGIMES
-from cuefem.results.verdict import lacks_butt, with_cue
-from cuefem.scene import Scene
+from cuefem.show.glossary import definitions, with_term_buttons
+from cuefem.show.renderers import csv_text
+from cuefem.show.report_page import page as report_page
+from cuefem.show.strike_table import regime_warning
+from cuefem.show.templates import chart_script, page_style
 from cuefem.solid.tip_cache import computing_message
 
 MAX_FILE = 5_000_000  # bytes

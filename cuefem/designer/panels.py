@@ -9,22 +9,22 @@ from typing import Any
 
 from nicegui import ui
 
-import cuefem.report
+import cuefem.show
 from cuefem.designer.computation import CURVE_OFFSETS
 from cuefem.designer.knobs import KNOBS, label, value, value_text
 from cuefem.designer.state import Design, Step
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.report.charts import Axis, Curve, chart
-from cuefem.report.design_changes_table import tabulate_design_changes
-from cuefem.report.plausibility import plausibility_warnings
-from cuefem.report.squirt_table import offset_charts
-from cuefem.report.strike_table import regime_warning
-from cuefem.report.templates import chart_markup, shading_markup, table_markup
-from cuefem.report.verdict_table import difference_text
 from cuefem.results.quantities import DASH, RESULTS, format_change, unbroken
 from cuefem.results.records import Record, Table
 from cuefem.results.uncertainty import SHAFT_ERROR
 from cuefem.scene import Scene
+from cuefem.show.charts import Axis, Curve, chart
+from cuefem.show.design_changes_table import tabulate_design_changes
+from cuefem.show.plausibility import plausibility_warnings
+from cuefem.show.squirt_table import offset_charts
+from cuefem.show.strike_table import regime_warning
+from cuefem.show.templates import chart_markup, shading_markup, table_markup
+from cuefem.show.verdict_table import difference_text
 
 HALF = 0.5 * (CURVE_OFFSETS[1] - CURVE_OFFSETS[0])
 STYLES = ("c1", "c2")
@@ -179,7 +179,7 @@ def tabulate_check(step: Step, results: Results) -> list[Table]:
     rows += [("warning", line) for line in plausibility_warnings(step.design.scene)] or [("warnings", "none")]
     first = Table(f"Check of {step.design.name}", ("check", "result"), tuple(rows), texts=(0, 1))
     solid = results.own.get("solid")
-    return [first] if solid is None else [first, cuefem.report.tabulate_model_error(solid)]
+    return [first] if solid is None else [first, cuefem.show.tabulate_model_error(solid)]
 
 
 def tables_markup(sheets: Sequence[Table | None]) -> str:

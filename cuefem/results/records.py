@@ -2,7 +2,7 @@
 
 Programs read records. A table declares the column of each number; heading, unit and digits
 of a column are those of its quantity. A terminal, a page and a CSV file show the same table
-(`cuefem.report.renderers`).
+(`cuefem.show.renderers`).
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from typing import Any
 
 import cuefem as cf
 from cuefem.cue.materials import LEATHERS
-from cuefem.report.scene_summary import effect_name
+from cuefem.show.scene_summary import effect_name
 from studies import pages, strokes
 from studies.pages import table
 from studies.strokes import DOME, SHEAR, squirt

@@ -4,8 +4,8 @@ from collections import Counter
 
 from rich.console import Console
 
-from cuefem.report.renderers import terminal
 from cuefem.results.records import tabulate
+from cuefem.show.renderers import terminal
 from studies.pages import number
 from studies.paper.claims import Claim, gap
 from studies.paper.kim import claims

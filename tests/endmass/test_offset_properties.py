@@ -11,9 +11,9 @@ import pytest
 import cuefem as cf
 from cuefem.endmass.definitions import squirt_equivalent
 from cuefem.endmass.lumped import lump
-from cuefem.report.squirt_table import squirt_record
-from cuefem.report.strike_table import strike_record
 from cuefem.scene.solved_scene import tip_modes_of
+from cuefem.show.squirt_table import squirt_record
+from cuefem.show.strike_table import strike_record
 from tests.helpers.strike_scenes import KIM_AT, kim_scene
 
 EFFECTS = {

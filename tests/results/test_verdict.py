@@ -9,10 +9,10 @@ import pytest
 import cuefem as cf
 from cuefem.io.reference_cues import REFERENCE_FILES, reference_cues
 from cuefem.parameters.parameter import with_parameters
-from cuefem.report.verdict_table import reference_comparison, reference_scale, squirt_text
 from cuefem.results.uncertainty import NUMERICAL_ERROR, RATIO_FLOOR
 from cuefem.results.verdict import verdict_record, with_cue
 from cuefem.scene.default_scene import without_leather
+from cuefem.show.verdict_table import reference_comparison, reference_scale, squirt_text
 
 ROOT = Path(__file__).parents[2]
 SCENE = cf.usual_scene(cf.load(ROOT / "meshes" / "pool_hollow.toml"))

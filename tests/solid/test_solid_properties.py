@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.report.model_error_table import model_error_record, tabulate_model_error
+from cuefem.show.model_error_table import model_error_record, tabulate_model_error
 from cuefem.solid.shaft import SolidBody
 
 WOOD = cf.Material(E=12.6e9, G=1.1e9, rho=700.0, nu=0.45, transverse_ratio=0.0985, nu_transverse=0.52)

@@ -12,17 +12,17 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from cuefem.report.charts import Chart
-from cuefem.report.drawings import CueDrawing
 from cuefem.results.quantities import unbroken
 from cuefem.results.records import Table
+from cuefem.show.charts import Chart
+from cuefem.show.drawings import CueDrawing
 
 
 @cache
 def environment() -> Environment:
     """The templates in this folder; inserted text is escaped."""
     made = Environment(
-        loader=PackageLoader("cuefem", "report"),
+        loader=PackageLoader("cuefem", "show"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

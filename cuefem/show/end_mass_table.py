@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.report.scene_summary import assumptions, listed, tip_effect_notes
 from cuefem.results.closed_forms import cue_end_mass
 from cuefem.results.quantities import with_unit
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
+from cuefem.show.scene_summary import assumptions, listed, tip_effect_notes
 
 SQUIRT_END_MASS = "squirt-equivalent end mass"  # the one that pages and tables for people show
 

@@ -13,9 +13,9 @@ import numpy as np
 from cuefem.beam.modes import modes
 from cuefem.cue import Material, Segment
 from cuefem.cue.materials import MATERIALS, material_name, table_name
-from cuefem.report.charts import WIDTH, Axis, Chart, Curve, Tick, chart, path
 from cuefem.results.quantities import significant, to_display, with_heading
 from cuefem.scene import Scene
+from cuefem.show.charts import WIDTH, Axis, Chart, Curve, Tick, chart, path
 
 DIAMETER_SCALE = 4.0  # enlargement of the diameters in the drawing of a whole cue
 FRONT_LENGTH = 0.16  # m, length of the drawing of the front, true to scale

@@ -17,11 +17,11 @@ from cuefem.contact.strike import strike_modes
 from cuefem.cue import Cue
 from cuefem.effects.effect import CueEffect
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.report.scene_summary import effect_name
 from cuefem.results.quantities import DISPLAY_UNITS
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import mass_on_face
+from cuefem.show.scene_summary import effect_name
 from cuefem.solid.meridian_mesh import Fineness, blocks, check_mesh_size
 from cuefem.solid.shaft import AXIAL, SolidBody
 

@@ -10,29 +10,6 @@ from cuefem.contact.strike import strike_modes
 from cuefem.cue.materials import material_name
 from cuefem.design.design_changes import design_changes
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.report.charts import Chart
-from cuefem.report.comparison_table import tabulate_comparison
-from cuefem.report.contact_charts import contact_section
-from cuefem.report.design_changes_table import tabulate_design_changes
-from cuefem.report.drawings import modes_chart
-from cuefem.report.end_mass_table import tabulate_end_masses
-from cuefem.report.first_screen import (
-    HeadlineCue,
-    drawings_markup,
-    headline_markup,
-    parts_line,
-    scale_markup,
-    tiles_markup,
-)
-from cuefem.report.glossary import with_glossary
-from cuefem.report.impact_table import tabulate_impacts
-from cuefem.report.modes_table import tabulate_modes
-from cuefem.report.report_sections import report_record
-from cuefem.report.scene_summary import assumptions, plain_cue_line, plain_effect_line, scene_record
-from cuefem.report.squirt_table import offset_charts
-from cuefem.report.strike_table import regime_warning, strike_record, tabulate_strike
-from cuefem.report.templates import environment
-from cuefem.report.verdict_table import headline, uncertainty_line
 from cuefem.results.closed_forms import alciatore_a31_mass_ratio
 from cuefem.results.comparison import comparison_record
 from cuefem.results.convergence import resolve
@@ -41,6 +18,29 @@ from cuefem.results.records import Record, Table, tabulate_values, value_rows
 from cuefem.results.solved_design import coupled_curve
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import SolvedScene
+from cuefem.show.charts import Chart
+from cuefem.show.comparison_table import tabulate_comparison
+from cuefem.show.contact_charts import contact_section
+from cuefem.show.design_changes_table import tabulate_design_changes
+from cuefem.show.drawings import modes_chart
+from cuefem.show.end_mass_table import tabulate_end_masses
+from cuefem.show.first_screen import (
+    HeadlineCue,
+    drawings_markup,
+    headline_markup,
+    parts_line,
+    scale_markup,
+    tiles_markup,
+)
+from cuefem.show.glossary import with_glossary
+from cuefem.show.impact_table import tabulate_impacts
+from cuefem.show.modes_table import tabulate_modes
+from cuefem.show.report_sections import report_record
+from cuefem.show.scene_summary import assumptions, plain_cue_line, plain_effect_line, scene_record
+from cuefem.show.squirt_table import offset_charts
+from cuefem.show.strike_table import regime_warning, strike_record, tabulate_strike
+from cuefem.show.templates import environment
+from cuefem.show.verdict_table import headline, uncertainty_line
 
 PAGE_OFFSETS = tuple(round(0.03 * i, 2) for i in range(1, 21))  # b/R of the curves
 # Notes on the accuracy of the model; its size is in `cuefem.results.uncertainty`.

@@ -13,7 +13,7 @@ from hypothesis.extra.numpy import arrays
 import cuefem as cf
 from cuefem.design import Response
 from cuefem.design.study_statistics import SweepStatistics
-from cuefem.report.study_table import column_label
+from cuefem.show.study_table import column_label
 from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.invalid_input import assert_rejects
 from tests.helpers.sweeps import STUDY, write_study

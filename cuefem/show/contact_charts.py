@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from cuefem.contact.outcome import Phase
-from cuefem.report.charts import Axis, Chart, Curve, Shade, Tick, chart
 from cuefem.results.quantities import to_display, with_heading
 from cuefem.results.records import Record
 from cuefem.results.solved_design import time_history
 from cuefem.scene import Outcome
+from cuefem.show.charts import Axis, Chart, Curve, Shade, Tick, chart
 
 MAX_EVENTS = 12
 MIN_SHARE = 0.01  # of the normal impulse: near separation, where F_n is near 0, the contact state changes each step

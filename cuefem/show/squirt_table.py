@@ -8,15 +8,15 @@ from itertools import groupby
 import numpy as np
 
 from cuefem.cue import LumpedCue
-from cuefem.report.charts import Axis, Chart, Curve, Shade, Tick, chart
-from cuefem.report.scene_summary import assumptions
-from cuefem.report.strike_table import PIVOT_NOTE, a31_squirt, lumped_cues, lumped_strike
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.quantities import DISPLAY_UNITS, format_value
 from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import OFFSETS, at_offset, coupled_curve
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
+from cuefem.show.charts import Axis, Chart, Curve, Shade, Tick, chart
+from cuefem.show.scene_summary import assumptions
+from cuefem.show.strike_table import PIVOT_NOTE, a31_squirt, lumped_cues, lumped_strike
 
 PAPER_CUE_END_MASS = 0.012  # kg, [Kim]'s m_c of a real cue: four times the effective end mass
 

@@ -5,18 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from cuefem.report.charts import Chart
-from cuefem.report.drawings import DIAMETER_SCALE, CueDrawing, cue_drawing
-from cuefem.report.end_mass_table import SQUIRT_END_MASS
-from cuefem.report.squirt_table import offset_charts
-from cuefem.report.strike_table import regime_warning
-from cuefem.report.verdict_table import difference_text, squirt_difference
 from cuefem.results.comparison import with_same_stroke
 from cuefem.results.quantities import DASH, RESULTS, format_value, with_unit
 from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import coupled_curve
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
+from cuefem.show.charts import Chart
+from cuefem.show.drawings import DIAMETER_SCALE, CueDrawing, cue_drawing
+from cuefem.show.end_mass_table import SQUIRT_END_MASS
+from cuefem.show.squirt_table import offset_charts
+from cuefem.show.strike_table import regime_warning
+from cuefem.show.verdict_table import difference_text, squirt_difference
 
 CURVE_OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 13))  # b/R
 STYLES = ("c1", "c2", "c3", "c4", "c5")

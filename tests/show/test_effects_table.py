@@ -8,9 +8,9 @@ import pytest
 import cuefem as cf
 from cuefem.design.effect_sensitivity import variants
 from cuefem.effects.effect import effect_kinds
-from cuefem.report import effects_record
-from cuefem.report.effects_table import MARGIN
 from cuefem.results.convergence import resolve
+from cuefem.show import effects_record
+from cuefem.show.effects_table import MARGIN
 from tests.helpers.strike_scenes import KIM
 
 DOME, CLAY, HAND = cf.TipDome(9.5e-3), cf.PointMass(0.05, 0.011), cf.Support(0.2032, 5e3)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from cuefem.report.strike_table import regime_warning
 from cuefem.results.quantities import format_change, with_unit
 from cuefem.results.records import Record, Table, tabulate
+from cuefem.show.strike_table import regime_warning
 
 STYLES = {"worthwhile": "bold", "more squirt": "dim", "within uncertainty": "dim"}
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cuefem.report.glossary import definitions, entries, with_term_buttons
+from cuefem.show.glossary import definitions, entries, with_term_buttons
 
 WORDS = [word for entry in entries() for word in entry.words]
 TAGS = re.compile(r"<[^>]*>")

@@ -12,10 +12,10 @@ import pytest
 import cuefem as cf
 from cuefem.design import Response
 from cuefem.design.study_statistics import SweepStatistics
-from cuefem.report.report_page import PAGE_OFFSETS, page
-from cuefem.report.squirt_table import squirt_record
-from cuefem.report.study_table import tabulate_sweep
-from cuefem.report.templates import plain_page
+from cuefem.show.report_page import PAGE_OFFSETS, page
+from cuefem.show.squirt_table import squirt_record
+from cuefem.show.study_table import tabulate_sweep
+from cuefem.show.templates import plain_page
 from tests.helpers.designer_browser import BROWSER, empty_page, open_browser
 
 pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")

@@ -9,10 +9,10 @@ from typing import Any
 
 from rich.console import Console
 
-from cuefem.report.renderers import csv_text, json_text, terminal
-from cuefem.report.templates import environment
 from cuefem.results.quantities import DASH, unbroken
 from cuefem.results.records import Table, tabulate
+from cuefem.show.renderers import csv_text, json_text, terminal
+from cuefem.show.templates import environment
 
 ROWS = [{"at": 0.01, "mass": 0.0062, "part": 0.25}, {"at": 0.02, "mass": None, "part": -0.5}]
 

@@ -11,12 +11,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from cuefem.report.drawings import DIAMETER_SCALE, FRONT_LENGTH, cue_drawing, legend
-from cuefem.report.templates import environment
-from cuefem.report.verdict_table import reference_scale, squirt_difference, squirt_text
 from cuefem.results.quantities import DASH, DISPLAY_UNITS, with_unit
 from cuefem.results.records import Record
 from cuefem.scene import Scene
+from cuefem.show.drawings import DIAMETER_SCALE, FRONT_LENGTH, cue_drawing, legend
+from cuefem.show.templates import environment
+from cuefem.show.verdict_table import reference_scale, squirt_difference, squirt_text
 
 # The four numbers: label, SI unit, decimals, suffix, tooltip.
 TILES = {

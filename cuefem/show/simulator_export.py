@@ -10,12 +10,12 @@ gives the squirt of the coupled strike at the scene's offset and speed.
 from __future__ import annotations
 
 from cuefem.contact.strike import strike_modes
-from cuefem.report.strike_table import UNCERTAINTY_NOTE
 from cuefem.results.closed_forms import alciatore_a31, alciatore_a31_mass_ratio
 from cuefem.results.quantities import RESULTS, units_of, with_unit
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
+from cuefem.show.strike_table import UNCERTAINTY_NOTE
 
 VERSION = "0.6.0"  # the release whose CueSpecs these are; .ci/pooltool installs it
 INERTIA = 0.4  # its 5/2

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.report.plausibility import plausibility_warnings
+from cuefem.show.plausibility import plausibility_warnings
 from tests.helpers.command_line import call
 
 ROOT = Path(__file__).parents[2]

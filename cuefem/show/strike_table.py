@@ -12,13 +12,13 @@ from cuefem.contact.strike import strike_modes
 from cuefem.cue import LumpedCue
 from cuefem.endmass.definitions import stick_at_offsets
 from cuefem.endmass.lumped import impulse, lump_modes
-from cuefem.report.scene_summary import assumptions, tip_effect_notes
 from cuefem.results.closed_forms import alciatore_a31, pivot_length
 from cuefem.results.quantities import MISCUE_DEFINITION, REGIMES, RESULTS, format_value, with_unit
 from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import at_offset
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import SolvedScene
+from cuefem.show.scene_summary import assumptions, tip_effect_notes
 
 
 def lumped_cues(scene: Scene, offsets: Sequence[float], tip: TipModes) -> dict[str, list[LumpedCue | None]]:

@@ -8,19 +8,19 @@ from cuefem.contact.geometric_stiffness import SlopeOutOfRange
 from cuefem.contact.strike import strike_modes
 from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.io.reference_cues import reference_cues
-from cuefem.report.end_mass_table import SQUIRT_END_MASS, end_mass_record
-from cuefem.report.impact_table import impact_record, tabulate_impacts
-from cuefem.report.modes_table import modes_record, tabulate_modes
-from cuefem.report.scene_summary import assumptions
-from cuefem.report.squirt_table import squirt_record, tabulate_squirt
-from cuefem.report.strike_table import regime_warning
-from cuefem.report.verdict_table import tabulate_verdict
 from cuefem.results.quantities import format_value
 from cuefem.results.records import Record, Table, tabulate_values, value_rows
 from cuefem.results.solved_design import OFFSETS, SolvedDesign, listed_results
 from cuefem.results.verdict import Miscue, verdict_record
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import SolvedScene
+from cuefem.show.end_mass_table import SQUIRT_END_MASS, end_mass_record
+from cuefem.show.impact_table import impact_record, tabulate_impacts
+from cuefem.show.modes_table import modes_record, tabulate_modes
+from cuefem.show.scene_summary import assumptions
+from cuefem.show.squirt_table import squirt_record, tabulate_squirt
+from cuefem.show.strike_table import regime_warning
+from cuefem.show.verdict_table import tabulate_verdict
 
 
 def report_record(

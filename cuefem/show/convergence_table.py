@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.report.charts import Axis, Chart, Curve, chart
 from cuefem.results.convergence import MAX_MODES, Level, refinement_levels, relative_error
 from cuefem.results.quantities import significant, to_display
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.scene import Scene
+from cuefem.show.charts import Axis, Chart, Curve, chart
 
 RECOMMENDED_RTOLS = (1e-2, 1e-3, 1e-4, 1e-6)
 

@@ -22,10 +22,10 @@ from cuefem.design.study_result import StudyResult
 from cuefem.design.study_statistics import SweepStatistics, sweep_statistics
 from cuefem.parameters.parameter import Path
 from cuefem.parameters.parts import Layout
-from cuefem.report.scene_summary import assumptions, scene_record
 from cuefem.results.quantities import DASH, DISPLAY_UNITS, significant, with_heading, with_unit
 from cuefem.results.records import Record, Table
 from cuefem.scene import Scene
+from cuefem.show.scene_summary import assumptions, scene_record
 
 _FIELD = re.compile(rf"({'|'.join(field.name for field in fields(Scene))})(\[[\d*]+\])?(\.\w+(\[[\d*]+\])?)+")
 _ITEM = re.compile(r"(\w+)s\[(\d+|\*)\]")

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from cuefem import resolve
-from cuefem.report.convergence_table import RECOMMENDED_RTOLS, convergence_record
+from cuefem.show.convergence_table import RECOMMENDED_RTOLS, convergence_record
 from studies.strokes import MESHES
 from tests.helpers.accuracy_scenes import scene
 from tests.helpers.command_line import stdout_of

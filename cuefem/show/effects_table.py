@@ -8,12 +8,12 @@ from dataclasses import asdict
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.design.effect_sensitivity import OutcomeChange, Variant, outcome_change, variants
 from cuefem.endmass.definitions import equivalent_end_mass
-from cuefem.report.scene_summary import assumptions, effect_text
 from cuefem.results.convergence import refinement_levels
 from cuefem.results.quantities import DASH, format_value
 from cuefem.results.records import Record, Table
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import corrected_tip_modes
+from cuefem.show.scene_summary import assumptions, effect_text
 
 DEFAULT_RTOL = 1e-2
 # The numerical error of the strikes is the tolerance over this.
