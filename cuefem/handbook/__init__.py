@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import inspect
+import re
 from importlib.resources import files
 from typing import NamedTuple
 
-__all__ = ["CHAPTERS", "LINES", "MAKERS", "Chapter", "chapters", "effect_lines"]
+__all__ = ["CHAPTERS", "LINES", "MAKERS", "Chapter", "Section", "chapters", "effect_lines", "sections_with"]
 
 # The chapters' files in the order of reading, first those for makers (tests/helpers/maker_pictures.py draws for them).
 MAKERS = (
@@ -59,6 +60,26 @@ class Chapter(NamedTuple):
 def chapters() -> tuple[Chapter, ...]:
     """Every chapter in the order of reading, the effects' lines included."""
     return tuple(_chapter(name) for name in CHAPTERS)
+
+
+class Section(NamedTuple):
+    """A section that contains a word: its chapter's name, its heading, and the count of the word."""
+
+    chapter: str
+    title: str
+    matches: int
+
+
+def sections_with(word: str) -> tuple[Section, ...]:
+    """The sections with words that begin with ``word``, in upper or lower case, in the order of reading."""
+    pattern = re.compile(rf"\b{re.escape(word)}", re.IGNORECASE)
+    sections = []
+    for chapter in chapters():
+        for text in re.split(r"\n(?=## )", chapter.text):
+            title = text.partition("\n")[0].lstrip("# ")
+            if matches := len(pattern.findall(text)):
+                sections.append(Section(chapter.name, title, matches))
+    return tuple(sections)
 
 
 def _chapter(name: str) -> Chapter:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from functools import cache
 from html import escape
 from importlib.resources import files
+from itertools import zip_longest
 from string import Template
 from typing import Any
 
@@ -14,7 +15,7 @@ from markdown_it import MarkdownIt
 from markdown_it.renderer import RendererHTML
 from markdown_it.token import Token
 
-from cuefem.handbook import MAKERS, chapters
+from cuefem.handbook import CHAPTERS, MAKERS, Chapter, chapters
 from cuefem.results.quantities import unbroken
 
 SUBSCRIPT = re.compile(r"\b([A-Za-zα-ωΩ]{1,2})_([A-Za-z∥⊥0]{1,4})(?![A-Za-z0-9_])")
@@ -57,22 +58,34 @@ $script</script>
 """)
 
 
-def page() -> str:
-    """The whole handbook with its table of contents."""
+def page(opens_with: str = CHAPTERS[0]) -> str:
+    """The whole handbook with its table of contents; a browser shows one chapter at a time, first ``opens_with``."""
     entries, bodies = [], []
-    for chapter in chapters():
+    every_chapter = chapters()
+    for chapter, following in zip_longest(every_chapter, every_chapter[1:]):
         tokens, headings = _parsed(chapter.name, chapter.text)
         inner = "".join(f'<li><a href="#{anchor}">{escape(title)}</a></li>\n' for anchor, title in headings)
         below = f"<ul>\n{inner}</ul>\n" if inner else ""
         entries.append(f'<li><a href="#{chapter.name}">{escape(chapter.title)}</a>\n{below}</li>\n')
         html = _MARKDOWN.renderer.render(tokens, _MARKDOWN.options, {})
-        html = html.replace("<table>", '<div class="scroll"><table>').replace("</table>", "</table></div>")
-        bodies.append(f"<section>\n{html}</section>\n")
+        html = html.replace("<table>", f"{_scrolled(chapter)}<table>").replace("</table>", "</table></div>")
+        onward = (
+            f'<p class="next"><a href="#{following.name}">Next: {escape(following.title)}</a></p>\n'
+            if following
+            else ""
+        )
+        first = ' class="first"' if chapter.name == opens_with else ""
+        bodies.append(f"<section{first}>\n{html}{onward}</section>\n")
     style, script = (
         files(__package__).joinpath(name).read_text(encoding="utf-8") for name in ("page.css", "search.js")
     )
     makers, engineers = "".join(entries[: len(MAKERS)]), "".join(entries[len(MAKERS) :])
     return PAGE.substitute(style=style, script=script, makers=makers, engineers=engineers, body="".join(bodies))
+
+
+def _scrolled(chapter: Chapter) -> str:
+    """The start of a block that scrolls sideways where the window is narrow, also by keyboard."""
+    return f'<div class="scroll" role="region" tabindex="0" aria-label="Table in {escape(chapter.title)}">'
 
 
 def _text(_: object, tokens: Sequence[Token], index: int, *__: object) -> str:
@@ -101,7 +114,7 @@ def _fence(renderer: RendererHTML, tokens: Sequence[Token], index: int, *more: A
     """A block of code; one of the kind "drawing" names a drawing beside this file, which replaces it."""
     token = tokens[index]
     if token.info != "drawing":
-        return RendererHTML.fence(renderer, tokens, index, *more)
+        return RendererHTML.fence(renderer, tokens, index, *more).replace("<pre>", '<pre tabindex="0">', 1)
     drawn = files(__package__).joinpath(f"{token.content.strip()}.svg").read_text(encoding="utf-8")
     return f"<figure>\n{drawn}</figure>\n"
 

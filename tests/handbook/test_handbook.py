@@ -1,5 +1,6 @@
 """The handbook: citations, lines of every effect, page and command (regression)."""
 
+import json
 import re
 import webbrowser
 from functools import cache
@@ -75,7 +76,7 @@ def test_handbook_page_is_self_contained_with_valid_links() -> None:
 @pytest.mark.parametrize("has_browser", [True, False])
 def test_guide_opens_prints_and_writes(has_browser: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     opened: list[str] = []
-    monkeypatch.setattr(import_module("cuefem.cli.guide_command"), "page", whole)
+    monkeypatch.setattr(import_module("cuefem.cli.guide_command"), "page", lambda opens_with="": whole())
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     monkeypatch.setattr(webbrowser, "open", lambda address: opened.append(address) or has_browser)
     assert stdout_of("guide", "glossary").startswith("opened file:" if has_browser else "no browser found")
@@ -85,14 +86,26 @@ def test_guide_opens_prints_and_writes(has_browser: bool, tmp_path: Path, monkey
     assert page_file.read_text(encoding="utf-8") == (tmp_path / "guide.html").read_text(encoding="utf-8") == whole()
     printed = stdout_of("guide", "glossary", "--print")
     assert ("effective end mass" in printed, "Hutchinson" in printed) == (True, False)
+    section_list = stdout_of("guide", "ferrule")
+    assert ("measure_your_shaft" in section_list, "impulse_solver" in section_list) == (True, False)
     listed = " ".join(stdout_of("guide", "--help").split())
     assert [name for name in CHAPTERS if name not in listed] == []
+
+
+def test_guide_writes_one_chapter_as_json_and_opens_page_with_it(tmp_path: Path) -> None:
+    stdout_of("guide", "beam", "-o", tmp_path / "beam.json")
+    record = json.loads((tmp_path / "beam.json").read_text(encoding="utf-8"))
+    assert (list(record), record["beam"].splitlines()[0]) == (["beam"], "# The beam")
+    first = [text for text in page(opens_with="beam").split("<section") if text.startswith(' class="first"')]
+    assert len(first) == 1
+    assert 'id="beam"' in first[0]
 
 
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ("glosary", "got 'glosary'; did you mean 'glossary'?"),
+        ("glosary", "got 'glosary'; the nearest chapters are glossary,"),
+        ("qqqq", "CHAPTER must be a chapter, or a word of the handbook; got 'qqqq'"),
         ("--print -o guide.html", "cannot be combined with --print"),
         ("-o guide.txt", "must end in .html or .json; got '.txt'"),
     ],
