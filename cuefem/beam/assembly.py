@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cuefem.beam.basis import EXTRA_POINTS, element_basis, gauss_rule, line_basis, tabulated_line_basis
+from cuefem.beam.blas_threads import one_blas_thread
 from cuefem.beam.mesh import POSITION_TOLERANCE, BeamEffect, Mesh, PointTerms, Resolution, mesh_cue
 from cuefem.cue import Array, Cue, Section
 
@@ -189,6 +190,7 @@ def _points(cue: Cue, mesh: Mesh, x: Array, weights: Array, is_tabulated: list[b
     return Points(mesh, x, weights, segment, from_end, cue.section_in(segment, from_end), first_point, is_tabulated)
 
 
+@one_blas_thread
 def assemble(
     cue: Cue,
     at: int | Resolution,

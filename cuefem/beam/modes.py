@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cuefem.beam.assembly import Points, System, assemble
+from cuefem.beam.blas_threads import one_blas_thread
 from cuefem.beam.eigensolver import EigenSolution, solve_eigenproblem
 from cuefem.beam.mesh import BeamEffect
 from cuefem.beam.mode_count import modes_below
@@ -151,6 +152,7 @@ def _cue_effects(effects: tuple[Any, ...]) -> tuple[BeamEffect, ...]:
     return tuple(effect for effect in effects if hasattr(effect, "add_to"))
 
 
+@one_blas_thread
 def solve(system: System, count: int, *, n_corrected: int = 0, position: float = 0.0) -> Modes:
     """The lowest ``count`` flexible modes of an assembled beam; the rigid-body modes need no eigenproblem.
 

@@ -15,7 +15,7 @@ from click.shell_completion import CompletionItem
 
 from cuefem.contact.kernel import KernelError
 from cuefem.quantity.display import one_line
-from cuefem.quantity.unit_checks import PlausibilityWarning
+from cuefem.quantity.unit_checks import FLOAT_ERRORS, PlausibilityWarning
 
 # Before NumPy is loaded: small dense matrices gain nothing from BLAS threads, and two of them on a busy machine can be
 # a hundred times slower than one.
@@ -116,7 +116,7 @@ class _OneLine(_Commands):
         import numpy as np  # not for --help
 
         try:
-            with np.errstate(over="raise", divide="raise", invalid="raise"), warnings.catch_warnings():
+            with np.errstate(**FLOAT_ERRORS), warnings.catch_warnings():
                 warnings.filterwarnings(
                     "ignore", category=PlausibilityWarning
                 )  # commands print their own warning: `warn`

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from cuefem.beam.blas_threads import one_blas_thread
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.contact_model import model_of
 from cuefem.contact.step_records import solve_contact
@@ -73,6 +74,7 @@ def steps_of(at: Resolution | Solid | None) -> int | None:
     return at.steps if isinstance(at, Resolution) else None
 
 
+@one_blas_thread
 def strike_modes(scene: Scene, tip: TipModes, *, steps: int | None = None) -> Outcome:
     """The strike of a cue represented by its tip modes, as `strike`; steps: `Resolution.steps`.
 

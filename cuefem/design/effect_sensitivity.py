@@ -67,7 +67,8 @@ def _reason(scene: Scene, effect: Effect, error: ValueError) -> str:
 @dataclass(frozen=True)
 class OutcomeChange:
     """Change of a strike, variant minus scene: squirt, rad; ball_speed, m/s; spin, rad/s; and relative to the scene's
-    own, by the same names. At the centre, squirt and spin are zero by symmetry and omitted."""
+    own, by the same names, positive where its size increases. At the centre, squirt and spin are zero by symmetry and
+    omitted."""
 
     squirt: float
     ball_speed: float
@@ -89,4 +90,4 @@ def outcome_change(outcome: Outcome, base: Outcome, *, offset: Any) -> OutcomeCh
 
 
 def _relative(change: float, value: float) -> float:
-    return 0.0 if change == 0 else change / abs(value) if value else float("inf")
+    return 0.0 if change == 0 else change / value if value else float("inf")

@@ -13,6 +13,7 @@ from cuefem.beam.modes import Modes
 from cuefem.cue import Array
 from cuefem.quantity.display import one_line
 from cuefem.quantity.fields import suggestion
+from cuefem.quantity.unit_checks import FLOAT_ERRORS
 from cuefem.results.quantities import Result, with_heading
 from cuefem.results.solved_design import SolvedDesign, computable_results
 from cuefem.scene import Resolution, Scene
@@ -72,6 +73,14 @@ class Response:
         """The label with its display unit."""
         return with_heading(self.label, self.unit)
 
+    def size(self, values: Any) -> Any:
+        """Values (numbers or arrays) as designs are compared: squirt, negative at a left-hand offset, by its size."""
+        return abs(values) if self.result.odd else values
+
+    def loss(self, values: Any) -> Any:
+        """Values of which the lowest is best."""
+        return -self.size(values) if self.result.better == "higher" else self.size(values)
+
     def value(self, design: SolvedDesign) -> float:
         """The response of a design; ValueError if it has none."""
         if self.result.segments and not design.scene.cue.segments:
@@ -118,6 +127,7 @@ class Evaluation:
     reasons: tuple[str | None, ...]
 
 
+@np.errstate(**FLOAT_ERRORS)
 def evaluate(
     scenes: Sequence[Scene], responses: Sequence[Response | str], *, at: Resolution | None = None
 ) -> Evaluation:

@@ -30,7 +30,7 @@ POPULATION = 15  # designs per variable in differential evolution
 
 @dataclass(frozen=True)
 class Limit:
-    """A response that must be in [low, high], in SI units."""
+    """A response that must be in [low, high], in SI units; of squirt, which has the sign of the offset, its size."""
 
     response: Response
     low: float = -np.inf
@@ -40,6 +40,9 @@ class Limit:
         if not self.low <= self.high or not np.isfinite([self.low, self.high]).any():
             bounds = f"{self.low} and {self.high}"
             raise ValueError(f"limit on {self.response.name} must have low <= high, one finite; got {bounds}")
+        negative = [f"{bound:g}" for _, bound in self.sides if bound < 0 and self.response.result.odd]
+        if negative:
+            raise ValueError(f"limit on {self.response.name} is on its size and must be >= 0; got {negative[0]}")
 
     @property
     def sides(self) -> list[tuple[int, float]]:
@@ -149,13 +152,19 @@ class Problem:
         """Responses of the study at points (n, variables): (n, responses), nan where a design has none."""
         return self.study.evaluate([self.design(point) for point in points]).values
 
+    def sizes(self, values: Array) -> Array:
+        """Values (n, responses) as they are compared: `Response.size`."""
+        columns = zip(self.study.responses, values.T, strict=True)
+        return np.stack([response.size(column) for response, column in columns], axis=1)
+
     def margins(self, values: Array) -> Array:
         """Margins of values (n, responses) to the limits, relative to each limit: (n, sides).
 
         Negative outside, and for a missing response.
         """
+        sizes = self.sizes(values)
         margins = [
-            sign * (values[:, self.study.responses.index(limit.response)] - bound) / (abs(bound) or 1.0)
+            sign * (sizes[:, self.study.responses.index(limit.response)] - bound) / (abs(bound) or 1.0)
             for limit in self.limits
             for sign, bound in limit.sides
         ]
@@ -221,7 +230,7 @@ def optimum(
         count = search.evaluations
     if not optima:
         raise ValueError(reasons[0])
-    best = min(optima, key=lambda each: sign * each.responses[problem.objective.name])
+    best = min(optima, key=lambda each: sign * problem.objective.size(each.responses[problem.objective.name]))
     return replace(best, evaluations=count, choices=tuple(choices) if len(choices) > 1 else ())
 
 
@@ -248,7 +257,7 @@ class _Search:
     def scores(self, values: Array) -> Array:
         """The scores to minimize: the objective, or `EXCLUDED` plus the violation of the limits."""
         violation = np.minimum(self.problem.margins(values) + TOLERANCE, 0).sum(axis=1)
-        objective = np.nan_to_num(self.scale * values[:, 0], nan=EXCLUDED)
+        objective = np.nan_to_num(self.scale * self.problem.sizes(values)[:, 0], nan=EXCLUDED)
         return np.asarray(np.where(violation < 0, EXCLUDED - violation, objective))
 
     def report(self, *_: Any, **__: Any) -> None:
@@ -293,12 +302,13 @@ class _Search:
         return self._responses[key]
 
     def slopes(self, u: Array) -> Array:
-        """Derivatives of the responses by forward differences into the ranges, (responses, variables)."""
+        """Derivatives of the responses' sizes by forward differences into the ranges, (responses, variables)."""
         u = np.clip(u, 0, 1)
         key = u.tobytes()
         if key not in self._slopes:
             steps = STEP * np.where(u > 0.5, -1, 1)
-            self._slopes[key] = ((self.rows(u + np.diag(steps)) - self.at(u)) / steps[:, None]).T
+            ahead, here = (self.problem.sizes(rows) for rows in (self.rows(u + np.diag(steps)), self.at(u)[None]))
+            self._slopes[key] = ((ahead - here) / steps[:, None]).T
         if not np.isfinite(self._slopes[key]).all():
             raise _NoDesign
         return self._slopes[key]
@@ -310,11 +320,11 @@ class _Search:
         responses, last = self.problem.study.responses, start
 
         def value(u: Array, k: int, missing: float) -> float:
-            """A response; ``missing`` for a design without one, so that SLSQP shortens the step."""
+            """The size of a response; ``missing`` for a design without one, so that SLSQP shortens the step."""
             nonlocal last
             values = self.at(u)
             last = u if np.isfinite(values).all() else last
-            return float(values[k]) if np.isfinite(values).all() else missing
+            return float(responses[k].size(values[k])) if np.isfinite(values).all() else missing
 
         def constraint(k: int, sign: int, bound: float) -> dict[str, Any]:
             unit = sign / (abs(bound) or 1.0)

@@ -20,7 +20,7 @@ from scipy.special import ndtr, ndtri
 
 from cuefem.cue import Array
 from cuefem.design.sampling import Levels
-from cuefem.design.study import Study
+from cuefem.design.study import Study, check_column_name
 from cuefem.design.sweep import Row
 from cuefem.quantity.fields import check_count
 
@@ -87,6 +87,7 @@ class Scatter:
     def _check_groups(self) -> None:
         grouped = [name for names in self.groups.values() for name in names]
         for group, names in self.groups.items():
+            check_column_name("a group", group)
             self._check_names(f"group {group!r}", names)
         repeated = [name for name in grouped if grouped.count(name) > 1]
         if repeated:

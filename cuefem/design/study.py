@@ -16,6 +16,8 @@ from cuefem.design.evaluation import Evaluation, Failed, Response, evaluate
 from cuefem.design.sampling import Levels, Normal, Span, Value
 from cuefem.parameters.parameter import Path, check_bore, path_text, paths, quantity_at, value_at, with_values_at
 from cuefem.quantity.display import one_line
+from cuefem.quantity.fields import quote
+from cuefem.quantity.unit_checks import FLOAT_ERRORS
 from cuefem.scene import Resolution, Scene
 
 
@@ -28,6 +30,12 @@ class DesignSample(Protocol):
 
     def points(self, dimensions: int) -> Iterator[list[float]]:
         """The points, each of ``dimensions`` numbers."""
+
+
+def check_column_name(what: str, name: str) -> None:
+    """ValueError for control characters, and for a first character that makes a cell of a spreadsheet a formula."""
+    if not name.isprintable() or name.strip()[:1] in "=+-@":
+        raise ValueError(f"{what} must be printable text that begins with none of = + - @; got {quote(name)}")
 
 
 @dataclass(frozen=True)
@@ -64,6 +72,7 @@ class Vary:
         if self.factor and self.shift:
             raise ValueError("factor and shift must not both be set")
         object.__setattr__(self, "name", self.name or ", ".join(self.paths))
+        check_column_name("name", self.name)
 
     def fields(self, base: Scene) -> tuple[Path, ...]:
         """The fields of a scene that vary; ValueError if a path names no field, or a value does not fit the field."""
@@ -205,6 +214,7 @@ class Study:
     def _compensating_fields(self) -> tuple[tuple[Path, ...], ...]:
         return tuple(vary.compensating_fields(self.base) for vary in self.vary)
 
+    @np.errstate(**FLOAT_ERRORS)
     def scene(self, values: tuple[Value, ...]) -> Scene:
         """The design with these values; ValueError if it is invalid, such as a bore wider than its shaft.
 

@@ -100,8 +100,7 @@ class StudyResult:
         for response in ranked:
             column = self.responses[response.name]
             if np.isfinite(column).any():
-                i = int(np.nanargmax(column) if response.result.better == "higher" else np.nanargmin(column))
-                best[response.name] = self._design(i)
+                best[response.name] = self._design(int(np.nanargmin(response.loss(column))))
         return best
 
     def _design(self, i: int) -> StudyDesign:

@@ -49,8 +49,9 @@ class SweepStatistics:
 
     @cached_property
     def losses(self) -> Array:
-        """The results, negative where higher is better."""
-        return self.results * [-1.0 if response.result.better == "higher" else 1.0 for response in self.responses]
+        """The results as losses, (designs, responses): the lowest is best."""
+        columns = zip(self.responses, self.results.T, strict=True)
+        return np.stack([response.loss(column) for response, column in columns], axis=1)
 
     def best(self, k: int) -> int:
         """The row of the best design for a response."""

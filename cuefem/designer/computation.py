@@ -23,6 +23,7 @@ from cuefem.design.sensitivity import sensitivity
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.io.reference_cues import reference_cues
 from cuefem.parameters.parts import main_material
+from cuefem.quantity.unit_checks import FLOAT_ERRORS
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.comparison import comparison_record
 from cuefem.results.records import Record
@@ -130,7 +131,7 @@ async def run_in_thread(work: Callable[..., Any], *arguments: Any) -> Any:
     """Run the work in a thread, with overflows as errors; RuntimeError at the time limit."""
 
     def guarded() -> Any:
-        with np.errstate(over="raise", divide="raise", invalid="raise"):
+        with np.errstate(**FLOAT_ERRORS):
             return work(*arguments)
 
     try:

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from cuefem.beam.blas_threads import one_blas_thread
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.impulse_solver import impact, impulse_inputs
 from cuefem.contact.outcome import slips_at_end
@@ -276,6 +277,7 @@ class Definition(NamedTuple):
         """The end mass of a solved scene, kg."""
         return self.of(design.stick_tip, design.scene)
 
+    @one_blas_thread
     def of(self, tip: TipModes, scene: Scene) -> Any:
         """The end mass of any cue by this definition, kg; of a lumped cue its `LumpedCue.end_mass`."""
         return self.value(tip, scene) if scene.lumped is None else scene.lumped.end_mass

@@ -11,6 +11,7 @@ import sys
 import traceback
 import warnings
 from pathlib import Path
+from typing import Any
 
 from cuefem.quantity.units import conversion_factor
 
@@ -36,6 +37,8 @@ class PlausibilityWarning(UserWarning):
 CUE_LENGTH, CUE_DIAMETER = (0.3, 1.6), (0.0075, 0.04)  # m, of drawings of real cues
 # Common units by the SI unit of a field.
 COMMON_UNITS = {"m": ("mm", "in"), "kg": ("g", "oz"), "s": ("ms", "us"), "Pa": ("GPa", "MPa"), "kg/m^3": ("g/cm^3",)}
+# Of `numpy.errstate` where results are computed: an overflow, as by a wrong unit, is an error and never a number.
+FLOAT_ERRORS: Any = {"over": "raise", "divide": "raise", "invalid": "raise"}
 IMPLAUSIBLE_FACTOR = 5.0  # factor beyond the typical range from which a number is implausible
 MIN_CUE_MASS = 0.25  # kg, of a whole cue: a child's
 SHAFT_LENGTH = (0.3, 1.2)  # m, of a shaft in real size: a scale model causes no warning

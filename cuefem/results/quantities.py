@@ -46,7 +46,8 @@ class Result:
     scene's own offset), or a ValueError with the reason why it is undefined; without it, only records have it and
     compute it. argument: its argument in brackets, "", "mode" or "offset". segments: whether it needs cue segments.
     limit: whether without an offset it is the limit of small offsets. better: "lower" or "higher", the direction in
-    which a summary ranks designs. is_listed: whether a report and the designer list it (not if it has its own table).
+    which a summary ranks designs. odd: whether it changes its sign with the offset b/R, so that designs are compared by
+    its size. is_listed: whether a report and the designer list it (not if it has its own table).
     """
 
     label: str
@@ -61,6 +62,7 @@ class Result:
     segments: bool = False
     limit: bool = False
     better: str = ""
+    odd: bool = False
     is_listed: bool = True
 
     @property
@@ -193,6 +195,7 @@ RESULTS = {
         of=of_strike(lambda outcome: outcome.squirt),
         argument="offset",
         better="lower",
+        odd=True,
     ),
     "squirt_slope": Result(
         "squirt slope",

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cuefem.beam.blas_threads import one_blas_thread
 from cuefem.beam.mode_count import modes_below
 from cuefem.beam.tip_modes import TipModes, free_tip_modes, lumped_tip_modes, tip_modes
 from cuefem.cue import Cue
@@ -143,6 +144,7 @@ def has_moment_arm(scene: Scene) -> bool:
     return any(scene.contact_terms.moment_arm(math.pi / 6))
 
 
+@one_blas_thread
 def tip_modes_from(bending: Modes, scene: Scene) -> TipModes:
     """Tip modes of the scene's finite-element cue from its bending modes and its effects."""
     cue, effects = scene.shaft, scene.cue_effects

@@ -184,6 +184,7 @@ def tabulate_sweep(sweep: SweepStatistics) -> list[Table | str]:
         response, i = sweep.responses[k], sweep.best(k)
         ends = " to ".join(shown(end(sweep.results[:, k]), response.unit) for end in (np.min, np.max))
         which = f"{response.result.better} is better" if response.result.better else "the lowest"
+        which += ", by size" if response.result.odd else ""
         value, *rest = cells(i, [k])
         best.append((f"{response.heading} ({which})", value, ends, str(sweep.numbers[i]), *rest))
     for k, response in enumerate(sweep.responses):

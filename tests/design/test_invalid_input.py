@@ -73,6 +73,8 @@ CALLS: dict[str, Callable[[], object]] = {
     "count must be a whole number >= 2": lambda: scattered(count=1),
     "TypeError: count must be a whole number": lambda: scattered(count=64.0),
     "shaft_mass is constant": lambda: cf.study(scattered(vary=(TIME,))),
+    "limit on squirt(-0.3) is on its size and must be >= 0; got -0.02": lambda: Limit(Response("squirt", -0.3), -0.02),
+    "a group must be printable text": lambda: scattered(groups={"wood\x1b": ("E", "rho")}),
     "limit on mass must have low <= high, one finite; got 2.0": lambda: Limit(Response("mass"), 2.0, 1.0),
     "a study must have parameters and responses": lambda: replace(PROBLEM, vary=()),
     "E must have low and high, or values": lambda: replace(PROBLEM, vary=(E,)),

@@ -109,6 +109,24 @@ def test_maximum_under_limit_equals_minimum_under_limit() -> None:
     assert stiffest.responses["tip_stiffness"] == pytest.approx(least.responses["tip_stiffness"], rel=1e-4)
 
 
+def test_optimum_of_left_hand_offset_is_that_of_right_hand() -> None:
+    """Objective, maximum and limits compare the size of squirt; the result has its sign."""
+    right, left = Response("squirt", 0.3), Response("squirt", -0.3)
+    bores = replace(PROBLEM, vary=(BORE,), limits=(), at=cf.Resolution(1, 6, 6))
+    results = [optimum(replace(bores, objective=each)) for each in (right, left)]
+    assert [result.values["bore"] for result in results] == pytest.approx([0.01, 0.01], rel=1e-9)
+    assert results[1].responses[left.name] == pytest.approx(-results[0].responses[right.name], rel=1e-9)
+    assert optimum(replace(bores, objective=left, maximize=True)).values["bore"] == pytest.approx(0.002, rel=1e-9)
+    most = 1.05 * results[0].responses[right.name]
+    limited = [
+        optimum(replace(bores, objective=STIFFNESS, maximize=True, limits=(Limit(each, high=most),)))
+        for each in (right, left)
+    ]
+    assert limited[1].values == pytest.approx(limited[0].values, rel=1e-5)
+    assert limited[0].values["bore"] < 0.0099
+    assert limited[1].active == (f"squirt(-0.3) <= {most:g}",)
+
+
 @pytest.mark.heavy
 def test_invalid_start_uses_evolution_then_slsqp() -> None:
     """A bore wider than the tip: SLSQP cannot start there; the optimum equals that of a valid start."""

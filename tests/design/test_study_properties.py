@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 import cuefem as cf
 from cuefem.cue.materials import material
 from cuefem.design import Levels, Normal, Response, Sample, Span, Study, Vary, evaluate
+from cuefem.design.study_statistics import sweep_statistics
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.results.quantities import RESULTS
 from cuefem.results.solved_design import computable_results
@@ -155,6 +156,63 @@ def test_evaluate_failed_design_does_not_affect_others() -> None:
     assert np.isnan(result.values[2]).tolist() == [True, False, False]
     assert result.values[2, 1] < 0
     assert f"got {result.values[2, 1]:.4g} phi" in result.reasons[2]
+
+
+OVERFLOWS = Vary(("cue.segments[0].material.E",), Levels((1e300, 12e9)), "modulus")
+
+
+@pytest.mark.parametrize("workers", [None, pytest.param(2, marks=pytest.mark.heavy)])
+def test_study_overflow_fails_one_design(workers: int | None) -> None:
+    """Under any NumPy setting of the caller, also in a worker process."""
+    with np.errstate(all="ignore"):
+        result = cf.study(study(OVERFLOWS), workers=workers)
+    assert [*result.failures] == [0]
+    assert "overflow" in result.failures[0]
+    assert np.isfinite(result.responses["end_mass"]).tolist() == [False, True]
+
+
+def test_odd_results_change_sign_with_offset() -> None:
+    """`Result.odd` is true for those computable results that are odd in the offset, by their values."""
+    at_b = {name: each for name, each in computable_results().items() if each.argument == "offset"}
+    names = [f"{name}({b})" for name in at_b for b in (0.3, -0.3)]
+    right, left = evaluate([BASE], names, at=AT).values.reshape(-1, 2).T
+    signs = dict(zip(at_b, left / right, strict=True))
+    assert signs == pytest.approx({name: -1.0 if each.odd else 1.0 for name, each in at_b.items()}, rel=1e-9)
+
+
+BORES = Vary(
+    tuple(f"cue.segments[{i}].{end}_bore" for i in (1, 2) for end in ("tip", "butt")),
+    Levels((4e-3, 6e-3, 8e-3)),
+    "bore",
+)
+
+
+def test_best_design_of_left_hand_offset_is_that_of_right_hand() -> None:
+    """The widest bore has the least squirt, in results, statistics and optima, by response or by the scene's stroke."""
+    right, left = (Response("squirt", b) for b in (0.3, -0.3))
+    stiffness = Response("tip_stiffness")
+    result = cf.study(replace(study(BORES), responses=(right, left, stiffness)))
+    assert result.best[left.name].values == result.best[right.name].values == {"bore": 8e-3}
+    statistics = sweep_statistics(result)
+    assert statistics is not None
+    assert statistics.best(0) == statistics.best(1) == 2
+    sides = [sweep_statistics(cf.study(replace(study(BORES), responses=(each, stiffness)))) for each in (right, left)]
+    assert sides[0].front == sides[1].front == [2, 1, 0]  # type: ignore[union-attr]
+    mirrored = cf.study(replace(study(BORES, responses=("squirt",)), base=at_offset(BASE, -0.3)))
+    assert mirrored.best["squirt"].values == {"bore": 8e-3}
+
+
+def test_best_offset_through_zero_has_least_squirt() -> None:
+    offsets = Vary(("stroke.offset",), Levels((-0.4, -0.1, 0.2)), "offset")
+    assert cf.study(study(offsets, responses=("squirt",))).best["squirt"].values == {"offset": -0.1}
+
+
+@pytest.mark.parametrize(("name", "shown"), [("=cmd|' /C calc'!A0", "=cmd"), ("bore\nwidth", "bore"), (" @bore", "@")])
+def test_vary_name_is_text_of_a_spreadsheet(name: str, shown: str) -> None:
+    with pytest.raises(
+        ValueError, match=f"name must be printable text that begins with none of = . - @; got .*{shown}"
+    ):
+        varied("cue.body_mass", 0.1, name=name)
 
 
 DEPTH = Vary(("cue.segments[2].length",), Span(0.05, 0.25), "bore depth", compensating_path=("cue.segments[3].length",))

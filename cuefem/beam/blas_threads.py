@@ -1,0 +1,49 @@
+"""One BLAS thread while a beam is solved and struck.
+
+The matrices have 30 to 300 rows. More threads do not shorten that, and on a busy machine they take several times the
+processor time.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from contextlib import ContextDecorator
+from functools import cache
+from threading import Lock
+from typing import Any
+
+from threadpoolctl import OpenBLASController, ThreadpoolController
+
+
+@cache
+def _libraries(scipy_is_loaded: bool) -> ThreadpoolController:
+    """The BLAS libraries of the process; SciPy has its own."""
+    return ThreadpoolController()
+
+
+class _OneThread(ContextDecorator):
+    """Limit BLAS to one thread, for all threads of the process, until the last of nested or concurrent uses ends."""
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        self._users = 0
+        self._restore: Callable[[], object] = int
+
+    def __enter__(self) -> None:
+        with self._lock:
+            if self._users == 0:
+                OpenBLASController.clear_controlling_thread(force=True)
+                limited = _libraries("scipy.linalg" in sys.modules).limit(limits=1, user_api="blas")
+                self._restore = limited.restore_original_limits
+            self._users += 1
+
+    def __exit__(self, *error: Any) -> None:
+        with self._lock:
+            self._users -= 1
+            if self._users == 0:  # perhaps in another thread than the first use, whose limit OpenBLAS would keep
+                OpenBLASController.clear_controlling_thread(force=True)
+                self._restore()
+
+
+one_blas_thread = _OneThread()

@@ -1,0 +1,51 @@
+"""One BLAS thread while small matrices are solved, and the caller's number afterwards (properties)."""
+
+from concurrent.futures import ThreadPoolExecutor
+from threading import Barrier
+
+import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
+
+import cuefem as cf
+from cuefem.beam import modes
+from cuefem.beam.blas_threads import one_blas_thread
+from tests.helpers.cues import kim
+
+
+def blas_threads() -> set[int]:
+    """The numbers of threads of the BLAS libraries of this process."""
+    return {library["num_threads"] for library in threadpool_info() if library["user_api"] == "blas"}
+
+
+def test_modes_are_solved_by_one_blas_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    during, solve = list[set[int]](), modes.solve_eigenproblem
+
+    def recorded(*arguments: object, **options: object) -> object:
+        during.append(blas_threads())
+        return solve(*arguments, **options)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(modes, "solve_eigenproblem", recorded)
+    with threadpool_limits(2, user_api="blas"):
+        cf.modes(kim(), 3)
+        cf.strike(cf.Scene(kim()))
+        assert blas_threads() == {2}
+    assert during == [{1}] * 2
+
+
+def test_blas_threads_are_restored_after_concurrent_uses() -> None:
+    """The second thread begins before the first ends, and ends after it."""
+    both, first_has_ended = Barrier(2), Barrier(2)
+
+    def use(first: bool) -> set[int]:
+        with one_blas_thread:
+            both.wait(timeout=10)
+            if not first:
+                first_has_ended.wait(timeout=10)
+                return blas_threads()
+        first_has_ended.wait(timeout=10)
+        return blas_threads()
+
+    with threadpool_limits(2, user_api="blas"), ThreadPoolExecutor(2) as pool:
+        during = [*pool.map(use, (True, False))]
+        assert blas_threads() == {2}
+    assert during[1] == {1}
