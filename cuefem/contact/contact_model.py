@@ -132,7 +132,7 @@ def model_of(scene: Scene, tip: TipModes) -> ContactModel:
     if is_elevated and (u or w):
         tip = replace(tip, amplitude=tip.amplitude + np.outer(tip.rotation, (u, w)))
     ports = "raised" if is_elevated else "turning" if u or w or (terms.turns and dome) else "straight"
-    propagator = propagator_of(tip, ports, model["time"], terms.window or 0.0)
+    propagator = propagator_of(tip, ports, model["time"])
     if len(propagator.slopes):  # in one plane or two; the last of each plane is the slope of the cue's end
         # distance from the end section forwards to the dome's centre, m
         ahead = -w - (dome * math.cos(model["phi"]) if model["phi"] < rim else 0.0)

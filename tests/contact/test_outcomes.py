@@ -82,6 +82,13 @@ def test_outcome_in_another_process_is_equal() -> None:
             assert (outcome == strike_with(())) == (effects in ((), (cf.SecondHit(),)))
 
 
+@pytest.mark.parametrize(("offset", "window"), [(0.1, 1e-3), (0.1, 2e-2), (0.4, 0.15)])
+def test_second_hit_that_does_not_occur_changes_nothing(offset: float, window: float) -> None:
+    """On a bent shaft too: its slopes belong to the contact, and the cue turns by 0.3 rad in 0.15 s of free flight."""
+    scene, at = leather_scene(offset, cf.GeometricStiffness(), speed=7.0), cf.Resolution(2, 12, 24)
+    assert cf.strike(replace(scene, effects=(*scene.effects, cf.SecondHit(window))), at) == cf.strike(scene, at)
+
+
 def test_outcome_of_batch_copies_and_pickles_equal() -> None:
     scenes = [kim_scene(offset) for offset in (0.1, 0.2, 0.3)]
     outcome = cf.batch_strike(scenes, AT)

@@ -169,7 +169,8 @@ static int take_step(Work *w, Step *row)
 static int update_status(Work *w)
 {
     Contact *c = w->c;
-    const int per_plane = c->slopes / c->planes; /* the last slope of each plane is that of the cue's end */
+    /* of a cue in contact: one in free flight turns without being bent. The last slope of each plane is its end's */
+    const int per_plane = w->phase == FREE ? 0 : c->slopes / c->planes;
     for (int a = per_plane; a && a <= c->slopes; a += per_plane) {
         double slope = fabs(w->slopes[a - 1]);
         if (slope > c->max_slope) c->max_slope = slope, c->axial_force = w->axial_force;
