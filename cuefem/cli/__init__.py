@@ -13,6 +13,7 @@ from typing import Any, NoReturn
 import click
 from click.shell_completion import CompletionItem
 
+from cuefem.cli.encoding import spell_lacking_characters
 from cuefem.contact.kernel import KernelError
 from cuefem.quantity.display import one_line
 from cuefem.quantity.unit_checks import FLOAT_ERRORS, PlausibilityWarning
@@ -98,6 +99,7 @@ class _OneLine(_Commands):
     """Invalid input: a one-line error on stderr, status 2; a numerical failure: one line, status 1; no tracebacks."""
 
     def main(self, *arguments: Any, **options: Any) -> Any:
+        spell_lacking_characters()
         try:
             return super().main(*arguments, **options)
         except OSError as error:  # what could not be printed, onto a full disk for one; click ends broken pipes itself

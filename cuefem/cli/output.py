@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import Any
 import click
 from rich.console import Console
 
+from cuefem.cli.encoding import is_unicode
 from cuefem.io import InputError, check_writable, save_page, write_atomically
 from cuefem.show.renderers import json_text, terminal
 
@@ -101,8 +103,8 @@ def assumption_lines(notes: Sequence[str]) -> list[str]:
 
 
 def print_json(record: Any) -> None:
-    """Print a record as JSON."""
-    click.echo(json_text(record))
+    """Print a record as JSON, escaped where stdout lacks characters."""
+    click.echo(json_text(record, escaped=not is_unicode(sys.stdout.encoding)))
 
 
 def print_result(as_json: bool, record: Any, things: Sequence[Any], page: Path | None = None, title: str = "") -> None:

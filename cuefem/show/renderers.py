@@ -56,9 +56,9 @@ def terminal(sheet: Table) -> Group:
     return Group(table, *notes, *([""] if sheet.notes else []))
 
 
-def json_text(record: Any) -> str:
-    """A record as JSON."""
-    return json.dumps(json_value(record), indent=2, allow_nan=False, ensure_ascii=False)
+def json_text(record: Any, *, escaped: bool = False) -> str:
+    """A record as JSON. escaped: whether in ASCII, other characters as escape sequences."""
+    return json.dumps(json_value(record), indent=2, allow_nan=False, ensure_ascii=escaped)
 
 
 def csv_text(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

@@ -1,0 +1,52 @@
+"""Output in encodings that lack characters: all lines are printed, status 0."""
+
+import io
+import json
+from contextlib import redirect_stdout
+
+import pytest
+
+from cuefem.cli import main
+from tests.helpers.command_line import stdout_of
+
+ENCODINGS = ("utf-8", "cp1252", "cp850", "cp932", "gbk", "ascii", "latin-1")
+SCENE = "studies/scenes/kim.toml"
+
+
+def printed(encoding: str, *arguments: str) -> str:
+    """What a command with exit status 0 writes to a stdout of an encoding."""
+    stream = io.TextIOWrapper(io.BytesIO(), encoding=encoding)
+    with redirect_stdout(stream), pytest.raises(SystemExit) as exit_:
+        main([*arguments])
+    stream.flush()
+    assert exit_.value.code == 0
+    content = stream.buffer
+    assert isinstance(content, io.BytesIO)
+    return content.getvalue().decode(encoding)
+
+
+@pytest.mark.parametrize("encoding", ENCODINGS)
+@pytest.mark.parametrize("arguments", [("parts",), ("end-mass", SCENE), ("guide", "measured", "--print")])
+def test_command_prints_all_lines_in_every_encoding(encoding: str, arguments: tuple[str, ...]) -> None:
+    lines = printed(encoding, *arguments).splitlines()
+    assert len(lines) == len(stdout_of(*arguments).splitlines())
+    assert encoding == "utf-8" or "?" not in "".join(lines).replace("?", "", stdout_of(*arguments).count("?"))
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("encoding", ENCODINGS)
+@pytest.mark.parametrize("command", ["report", "modes", "strike", "improve"])
+def test_numbers_of_a_cue_print_all_lines_in_every_encoding(encoding: str, command: str) -> None:
+    arguments = (command, "meshes/pool_maple.toml")
+    assert len(printed(encoding, *arguments).splitlines()) == len(stdout_of(*arguments).splitlines())
+
+
+def test_json_in_ascii_equals_json_in_unicode() -> None:
+    arguments = ("guide", "glossary", "--json")
+    assert json.loads(printed("ascii", *arguments)) == json.loads(printed("utf-8", *arguments))
+    assert "σ" in printed("utf-8", *arguments)
+
+
+def test_lacking_characters_are_spelt_in_ascii() -> None:
+    text = printed("ascii", "guide", "glossary", "--print")
+    assert "sigma" in text
