@@ -72,6 +72,10 @@ class Effect:
         """The effects that remain of it in `Scene.without_tip_effects`."""
         return () if self.at_tip else (self,)
 
+    def on_other_cue(self, own: Cue, other: Cue) -> Effect:
+        """The effect, which is on its own cue, for another one."""
+        return self
+
     def check_on(self, cue: Cue, name: str) -> None:
         """ValueError, which begins with ``name``, unless the effect's positions lie on the cue."""
         for x in self.positions:

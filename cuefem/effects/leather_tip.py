@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
@@ -199,6 +199,29 @@ class LeatherTip(CueEffect):
             why = ", the end of the ferrule"
             raise OutOfBounds(f"{name}.diameter", Quantity("m", f"(0, {end}]"), self.diameter, why)
         self.check_diameter(self.diameter_on(end))
+
+    def on_other_cue(self, own: Cue, other: Cue) -> LeatherTip:
+        """The tip for another cue, whose face it fits (`fitted_to`)."""
+        return self.fitted_to(other, own.segments[0].tip_diameter)
+
+    def fitted_to(self, cue: Cue, face: float) -> LeatherTip:
+        """The tip for a cue, where one that is made for a ferrule's end of ``face``, m, may not fit.
+
+        Of these the first that fits, else the tip: the tip; with a dome of the same shape; scaled as a whole.
+        """
+        scale = cue.segments[0].tip_diameter / face
+        domed = replace(self, dome_radius=scale * self.dome_radius)
+        layers = tuple(replace(layer, height=scale * layer.height) for layer in self.layers)
+        diameter = None if self.diameter is None else scale * self.diameter
+        scaled = replace(domed, height=scale * self.height, layers=layers, diameter=diameter)
+        return next((tip for tip in (self, domed, scaled) if tip._fits(cue)), self)
+
+    def _fits(self, cue: Cue) -> bool:
+        try:
+            self.check_on(cue, "")
+        except ValueError:
+            return False
+        return True
 
     def diameter_on(self, end: float) -> float:
         """Diameter of the tip, m, on a ferrule whose end has this one, m."""

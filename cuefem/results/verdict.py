@@ -121,11 +121,13 @@ def with_cue(scene: Scene, cue: Cue) -> Scene:
     """The scene's ball, tip, stroke and effects with another cue.
 
     Effects that are part of the scene's own cue (a mass, a joint) or lie beyond the other's end are dropped. The other
-    cue retains leather in its drawing only if the scene's own cue has it.
+    cue retains leather in its drawing only if the scene's own cue has it. A tip that does not fit the other's face is
+    adapted (`cuefem.effects.leather_tip.LeatherTip.fitted_to`).
     """
     has_leather = scene.lumped is None and scene.shaft.leather_height
     other = cue if has_leather else without_leather(cue)
     remaining = (
         e for e in scene.effects if e.at_tip or not (e.part_of_cue or any(x >= other.length for x in e.positions))
     )
-    return replace(scene, cue=other, effects=tuple(remaining))
+    effects = remaining if scene.lumped else (e.on_other_cue(scene.shaft, other) for e in remaining)
+    return replace(scene, cue=other, effects=tuple(effects))

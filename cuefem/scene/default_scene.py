@@ -33,6 +33,8 @@ class Game:
         Name of the leather in `cuefem.cue.materials.LEATHERS`.
     restitution
         Of the whole cue in a central impact, as measured: that of the tip without axial waves.
+    face_diameter
+        Of the end of the ferrule that height and dome are usual for, m.
     cue_length, butt_diameter
         Of a whole cue, m: axial waves run in a butt up to there if the drawing ends at the joint.
     friction
@@ -51,6 +53,7 @@ class Game:
     speed: float
     cue_length: float
     butt_diameter: float
+    face_diameter: float
     source: str
     leather: str = "medium"
     restitution: float = 0.73
@@ -84,16 +87,16 @@ _ALL = (
 GAMES: Mapping[str, Game] = MappingProxyType(
     {
         "pool": Game(
-            *(Ball(mass=0.170, radius=0.028575), 6e-3, 9.5e-3, 2.0, 1.4732, 0.03175),
+            *(Ball(mass=0.170, radius=0.028575), 6e-3, 9.5e-3, 2.0, 1.4732, 0.03175, 0.01275),
             "Ball: WPA 57.15 mm, 156 to 170 g. Height: usual, 4 to 8 mm. Dome: usual, between a dime's (8.96 mm) and a "
             f"nickel's (10.6 mm) radius. Speed: a medium stroke (usual). {_ALL}",
         ),
         "carom": Game(
-            *(Ball(mass=0.210, radius=0.03075), 4e-3, 9.5e-3, 3.0, 1.397, 0.030),
+            *(Ball(mass=0.210, radius=0.03075), 4e-3, 9.5e-3, 3.0, 1.397, 0.030, 0.012),
             f"Ball: UMB 61 to 61.5 mm, 205 to 220 g. Height, dome and speed: assumed. {_ALL}",
         ),
         "snooker": Game(
-            *(Ball(mass=0.142, radius=0.02625), 4e-3, 7e-3, 3.0, 1.4605, 0.029),
+            *(Ball(mass=0.142, radius=0.02625), 4e-3, 7e-3, 3.0, 1.4605, 0.029, 0.0095),
             "Ball: WPBSA 52.5 mm; sets are sold at 140 to 143 g. Height, dome (flatter than half-round, on a tip of "
             f"9.5 mm) and speed: assumed. {_ALL}",
         ),
@@ -114,6 +117,8 @@ def without_leather(cue: Cue) -> Cue:
 
 def default_tip(cue: Cue, game: str = DEFAULT_GAME) -> LeatherTip:
     """The default tip of a game, with the height of the leather drawn on the cue, if any.
+
+    A dome that is too small for the cue's face is wider, of the same shape.
 
     Parameters
     ----------
@@ -139,8 +144,13 @@ def default_tip(cue: Cue, game: str = DEFAULT_GAME) -> LeatherTip:
     >>> default_tip(cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 700.0)),))).height
     0.006
     """
-    tip = _game(game).tip
-    return replace(tip, height=cue.leather_height) if cue.leather_height else tip
+    defaults, face = _game(game), without_leather(cue)
+    tip = defaults.tip
+    if cue.leather_height:
+        tip = replace(tip, height=cue.leather_height)
+    fitted = tip.fitted_to(face, defaults.face_diameter)
+    is_drawn_height_changed = bool(cue.leather_height) and fitted.height != tip.height
+    return tip if is_drawn_height_changed else fitted
 
 
 def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = None) -> Scene:

@@ -11,7 +11,7 @@ from cuefem.io.reference_cues import REFERENCE_FILES, reference_cues
 from cuefem.parameters.parameter import with_parameters
 from cuefem.results.uncertainty import NUMERICAL_ERROR, RATIO_FLOOR
 from cuefem.results.verdict import verdict_record, with_cue
-from cuefem.scene.default_scene import without_leather
+from cuefem.scene.default_scene import GAMES, default_tip, without_leather
 from cuefem.show.verdict_table import reference_comparison, reference_scale, squirt_text
 
 ROOT = Path(__file__).parents[2]
@@ -84,6 +84,30 @@ def test_same_stroke_excludes_effects_on_own_cue() -> None:
     types = {type(effect).__name__ for effect in with_cue(scene, short).effects}
     assert types == {"LeatherTip", "Support", "AxialWaves", "GeometricStiffness"}
     assert sum(isinstance(effect, cf.Support) for effect in with_cue(scene, short).effects) == 1
+
+
+@pytest.mark.parametrize(("game", "front", "dome"), [("snooker", 0.00875, None), ("pool", 0.011, 0.006)])
+def test_reference_cue_has_a_tip_that_fits_its_own_face(game: str, front: float, dome: float | None) -> None:
+    wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    cue = cf.Cue((cf.Segment(1.4, front, 0.03, wood),))
+    tip = default_tip(cue, game) if dome is None else replace(default_tip(cue, game), dome_radius=dome)
+    scene = cf.usual_scene(cue, game, tip=tip)
+    assert [*cf.verdict(scene)["references"]] == [*REFERENCE_FILES]
+    for reference in reference_cues().values():
+        other = with_cue(scene, reference)
+        face = other.shaft.segments[0].tip_diameter
+        fits = tip.height > tip.dome_radius - math.sqrt(max(tip.dome_radius**2 - face**2 / 4, 0)) < tip.dome_radius
+        expected = replace(tip, dome_radius=tip.dome_radius * (1 if fits else face / front))
+        assert other.leather_tip == expected
+
+
+@pytest.mark.parametrize("front", [0.0085, 0.0095, 0.01275, 0.014])
+@pytest.mark.parametrize("game", GAMES)
+def test_default_tip_fits_every_usual_front(game: str, front: float) -> None:
+    wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    scene = cf.usual_scene(cf.Cue((cf.Segment(1.4, front, 0.03, wood),)), game)
+    assert scene.leather_tip.height == GAMES[game].height
+    assert front > GAMES[game].face_diameter or scene.leather_tip == GAMES[game].tip
 
 
 def test_reference_scale_is_ascending_and_relative_to_maple() -> None:
