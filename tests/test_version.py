@@ -1,0 +1,45 @@
+"""The version: one number in package, citation and changelog (regression)."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+import cuefem
+
+ROOT = Path(__file__).parents[1]
+CHANGELOG = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+
+
+def released_version(changelog: str) -> str:
+    """The newest version of a changelog that has a date."""
+    return re.findall(r"^## (\d+\.\d+\.\d+), \d{4}-\d\d-\d\d$", changelog, re.M)[0]
+
+
+def has_unreleased_changes(changelog: str) -> bool:
+    unreleased = changelog.partition("## Unreleased\n")[2].partition("\n## ")[0]
+    return "\n- " in unreleased
+
+
+def test_citation_names_package_version() -> None:
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert re.findall(r"^version: (.+)$", citation, re.M) == [cuefem.__version__]
+
+
+@pytest.mark.parametrize(
+    ("changelog", "unreleased"),
+    [
+        (CHANGELOG, cuefem.__version__.endswith(".dev0")),
+        ("## Unreleased\n\n### Added\n\n- A line.\n\n## 0.2.0, 2026-11-23\n", True),
+        ("## Unreleased\n\n## 0.2.0, 2026-11-23\n\n- A line.\n", False),
+    ],
+)
+def test_version_is_of_development_while_unreleased_holds_changes(changelog: str, unreleased: bool) -> None:
+    assert has_unreleased_changes(changelog) == unreleased
+
+
+def test_version_under_development_follows_last_release() -> None:
+    base, _, development = cuefem.__version__.partition(".dev")
+    numbers = tuple(map(int, base.split(".")))
+    released = tuple(map(int, released_version(CHANGELOG).split(".")))
+    assert numbers > released if development else numbers == released
