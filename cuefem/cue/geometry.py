@@ -278,7 +278,7 @@ class Cue:
     Parameters
     ----------
     segments
-        `Segment`s from the tip on.
+        `Segment` objects from the tip on.
     body_mass
         Mass of the rest of the cue, kg. It moves axially only ([Kim] sec. 4): it adds to the axial mass, but not to
         the inertia of bending.

@@ -1,0 +1,197 @@
+"""The documentation site: README, handbook, studies and notebooks of the repository, and the public names.
+
+sphinx-build -W --keep-going -c .ci . site
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from pathlib import Path
+from typing import Any
+
+import latex2mathml.converter
+from docutils import nodes
+from pygments.lexers.special import TextLexer
+from sphinx.application import Sphinx
+
+import cuefem
+from cuefem.handbook import MAKERS, chapters
+
+ROOT = Path(__file__).parents[1]
+
+project, author, release = "cuefem", "The cuefem developers", cuefem.__version__
+extensions = [
+    "myst_nb",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.viewcode",
+    "sphinx_design",
+    "sphinx_copybutton",
+]
+root_doc = "README"
+include_patterns = [
+    "README.md",
+    "CHANGELOG.md",
+    "CONTRIBUTING.md",
+    "cuefem/handbook/**",
+    "meshes/README.md",
+    "studies/**.md",
+    "studies/notebooks/**",
+]
+html_theme, html_title = "furo", f"cuefem {release}"
+html_copy_source, html_show_sphinx = False, False
+html_theme_options = {"navigation_with_keys": True}
+html_static_path = ["site.css", "site.js"]
+html_css_files, html_js_files = ["site.css"], [("site.js", {"defer": "defer"})]
+default_role = "py:obj"  # a name in backticks is a link
+html_math_renderer = "mathml"  # no script, no network
+nb_execution_mode = "off"  # outputs as stored; tests/studies executes the notebooks
+autosummary_generate = True
+autodoc_typehints = "description"
+autodoc_member_order = "bysource"
+autodoc_default_options = {"members": True}
+napoleon_google_docstring = False
+myst_enable_extensions, myst_heading_anchors = ["colon_fence", "dollarmath"], 3
+
+HANDBOOK = "cuefem/handbook"
+REFERENCE = f"{HANDBOOK}/api"
+# The public names by the room of the package that defines them; a room without a title fails the build.
+TITLES = {
+    "A cue and a scene": ("cue", "scene", "parameters", "quantity"),
+    "Files": ("io", "files"),
+    "Questions about a cue": ("analysis", "results", "report", "show"),
+    "Natural frequencies and end mass": ("beam", "endmass", "solid"),
+    "The strike": ("contact",),
+    "Effects": ("effects",),
+    "Studies and measurements": ("design", "designs", "measurements"),
+    "Figures": ("plot", "frames"),
+}
+SUMMARY = """
+## {title}
+
+```{{eval-rst}}
+.. currentmodule:: cuefem
+.. autosummary::
+   :toctree: api
+
+{rows}
+```
+"""
+STUDY = re.compile(r"^\| (.+\?) \| (.+) \| \[(\w+)\]\((.+)\.md\) \|$", re.MULTILINE)
+CARD = """::::{{grid-item-card}} {question}
+:link: /studies/{page}
+:link-type: doc
+:img-bottom: /studies/{page}.svg
+{answer}
+::::
+"""
+
+
+def contents(caption: str, *documents: str) -> str:
+    """A table of contents of the side bar."""
+    return "\n".join(["\n```{toctree}", ":hidden:", f":caption: {caption}", "", *documents, "```", ""])
+
+
+def side_bar() -> str:
+    """The tables of contents, in the order of the side bar."""
+    engineers = [chapter.name for chapter in chapters() if chapter.name not in MAKERS]
+    notebooks = sorted(path.stem for path in (ROOT / "studies/notebooks").glob("*.ipynb"))
+    # pages that the gallery opens; the side bar would have forty lines
+    pages = sorted(
+        str(path.relative_to(ROOT).with_suffix(""))
+        for path in (ROOT / "studies").rglob("*.md")
+        if path.parent != ROOT / "studies"
+    )
+    return "".join(
+        [
+            contents("For makers", *(f"/{HANDBOOK}/{name}" for name in MAKERS)),
+            contents("For engineers", *(f"/{HANDBOOK}/{name}" for name in engineers)),
+            contents("Python", f"/{REFERENCE}", *(f"/studies/notebooks/{name}" for name in notebooks)),
+            contents("Project", "Studies and gallery </studies/README>", "/CHANGELOG", "/CONTRIBUTING"),
+            "\n```{toctree}\n:hidden:\n:titlesonly:\n\n/meshes/README\n"
+            + "\n".join(f"/{page}" for page in pages)
+            + "\n```\n",
+        ]
+    )
+
+
+def gallery() -> str:
+    """The studies that have a picture, as cards with question and answer."""
+    rows = STUDY.findall((ROOT / "studies/README.md").read_text(encoding="utf-8"))
+    cards = [
+        CARD.format(question=question, answer=answer, page=page)
+        for question, answer, _, page in rows
+        if (ROOT / f"studies/{page}.svg").exists()
+    ]
+    return "\n## Gallery\n\n:::::{grid} 1 2 2 3\n" + "".join(cards) + ":::::\n"
+
+
+def room_of(name: str) -> str:
+    """The room of the package that defines a public name."""
+    value = getattr(cuefem, name)
+    module = getattr(value, "__module__", None) or value.__name__
+    return module.split(".")[1]
+
+
+def reference() -> str:
+    """Every public name under the title of its room."""
+    names = defaultdict(list)
+    for name in sorted(cuefem.__all__, key=str.lower):
+        names[room_of(name)].append(name)
+    text = "# Python reference\n\n`import cuefem as cf`. Lengths in m, masses in kg, times in s, angles in rad.\n"
+    for title, rooms in TITLES.items():
+        listed = [name for room in rooms for name in names.pop(room, [])]
+        if listed:
+            rows = "\n".join(f"   {name}" for name in listed)
+            text += SUMMARY.format(title=title, rows=rows)
+    if names:
+        raise ValueError(f"public names of rooms without a title in TITLES: {dict(names)}")
+    return text
+
+
+def write_reference(app: Sphinx, config: Any) -> None:
+    """Write the page of public names, which autosummary reads from a file."""
+    path = ROOT / f"{REFERENCE}.md"
+    if not path.exists() or path.read_text(encoding="utf-8") != reference():
+        path.write_text(reference(), encoding="utf-8")
+
+
+def source_read(app: Sphinx, document: str, source: list[str]) -> None:
+    """Add what stands in no file: side bar, gallery, texts that the handbook's code adds, drawings."""
+    text = WRITTEN.get(document, source[0])
+    if document == root_doc:
+        text += side_bar()
+    if document == "studies/README":
+        text += gallery()
+    text = re.sub(r"\[([^\]]+)\]\([\w/]+/\)", r"`\1`", text)  # a folder is no page of the site
+    source[0] = re.sub(r"```drawing\n(\w+)\n```", r"```{image} \1.svg\n```", text)
+
+
+def formula(display: str) -> tuple[Any, None]:
+    """A visitor that writes LaTeX as MathML."""
+
+    def visit(writer: Any, node: nodes.math) -> None:
+        writer.body.append(latex2mathml.converter.convert(node.astext(), display=display))
+        raise nodes.SkipNode
+
+    return visit, None
+
+
+def redirect(app: Sphinx, error: Exception | None) -> None:
+    """Let index.html open the first page."""
+    page = f'<meta http-equiv="refresh" content="0; url={root_doc}.html">'
+    Path(app.outdir, "index.html").write_text(page, encoding="utf-8")
+
+
+WRITTEN = {f"{HANDBOOK}/{chapter.name}": chapter.text for chapter in chapters()}
+
+
+def setup(app: Sphinx) -> None:
+    """Connect the parts above."""
+    app.add_lexer("csv", TextLexer)
+    app.connect("config-inited", write_reference)
+    app.connect("source-read", source_read)
+    app.connect("build-finished", redirect)
+    app.add_html_math_renderer("mathml", formula("inline"), formula("block"))
