@@ -13,9 +13,9 @@ from typing import Any, NoReturn
 import click
 from click.shell_completion import CompletionItem
 
-from cuefem.cli.encoding import spell_lacking_characters
 from cuefem.contact.kernel import KernelError
 from cuefem.quantity.display import one_line
+from cuefem.quantity.encoding import spell_lacking_characters
 from cuefem.quantity.unit_checks import FLOAT_ERRORS, PlausibilityWarning
 
 # Before NumPy is loaded: small dense matrices gain nothing from BLAS threads, and two of them on a busy machine can be

@@ -10,9 +10,10 @@ import click
 
 from cuefem.cli.output import assumption_lines, command, page_option, print_result
 from cuefem.cli.progress import with_progress_bar
-from cuefem.cli.scene_command import cue_options, errors_name_file, full_record, print_warnings, scene_of
+from cuefem.cli.scene_command import completed_scene, cue_options, errors_name_file, full_record, print_warnings
 from cuefem.cli.scene_options import impact_options, offset_option, option
-from cuefem.io import InputError
+from cuefem.io import InputError, load_stroke
+from cuefem.io.defaults_report import STROKE, Assumption, given_keys
 from cuefem.io.measured_folder import load_measured, write_template
 from cuefem.measurements.estimate import estimate as estimated
 from cuefem.measurements.estimate import predicted_squirt
@@ -25,11 +26,6 @@ from cuefem.show.measurement_tables import estimate_record, measured_record, tab
 from cuefem.show.scene_summary import scene_record
 
 MAX_CUES = 5
-SHARED_ASSUMPTIONS = (
-    "ball ",
-    "cue speed ",
-    "offset ",
-)  # assumptions on ball and stroke, which are those of the first cue
 
 
 @command()
@@ -86,17 +82,13 @@ def _side_by_side(files: Sequence[Path], options: dict[str, Any], output: Path |
             "must be set in each cue's file (shaft_mass) when cues are compared; `cuefem convert` writes such a .toml"
         )
         raise InputError(files[0], option("shaft_mass"), problem)
-    loaded = [scene_of(file, options) for file in files]
-    scenes = {name: scene for name, (scene, _) in zip(_names(files), loaded, strict=True)}
-    notes = [f"{name}: {note}" for name, (_, own) in zip(scenes, loaded, strict=True) for note in own]
-    shared = [
-        note for note in loaded[0][1] if note.startswith(SHARED_ASSUMPTIONS) or all(note in own for _, own in loaded)
-    ]
-    notes = shared + [
-        note
-        for note in notes
-        if not (own := note.partition(": ")[2]).startswith(SHARED_ASSUMPTIONS) and own not in shared
-    ]
+    for file in files:
+        _reject_given(file, options)
+    loaded = [completed_scene(file, options) for file in files]
+    scenes = {name: scene for name, (scene, *_) in zip(_names(files), loaded, strict=True)}
+    for scene in scenes.values():
+        print_warnings(scene)
+    notes = _assumption_texts([*scenes], [listed for _, listed, _ in loaded], [offered for *_, offered in loaded])
     with errors_name_file(files[0], options):
         record = comparison_record(scenes, same_shaft=same_shaft, progress=with_progress_bar)
     about: dict[str, Any] = {"files": [str(file) for file in files], "assumptions": notes}
@@ -108,6 +100,26 @@ def _side_by_side(files: Sequence[Path], options: dict[str, Any], output: Path |
     print_result(
         options["as_json"], about | record | {"units": UNITS}, [*things, "", *assumption_lines(notes)], output, title
     )
+
+
+def _reject_given(file: Path, options: dict[str, Any]) -> None:
+    """InputError for an option of cue or tip whose value the file has itself, other than that of compared cues."""
+    opened = load_stroke(file, length_unit=options["length_unit"])
+    for name in sorted(given_keys(file, opened, options["length_unit"])):
+        if options.get(name) is not None:
+            problem = "would replace this file's own value: options of compare set what a file leaves open"
+            raise InputError(file, option(name), f"{problem}; got {options[name]!r}")
+
+
+def _assumption_texts(
+    names: Sequence[str], listed: Sequence[list[Assumption]], offered: Sequence[set[str]]
+) -> list[str]:
+    """Assumptions on all cues, and on the stroke, which is that of the first; then those on each cue, with its name."""
+    shared = [each for each in listed[0] if each.of == STROKE or all(each in own for own in listed)]
+    texts = [each.line(offered[0]) for each in shared]
+    for name, own, options in zip(names, listed, offered, strict=True):
+        texts += [f"{name}: {each.line(options)}" for each in own if each.of != STROKE and each not in shared]
+    return texts
 
 
 def _names(files: Sequence[Path]) -> list[str]:

@@ -31,7 +31,7 @@ def designer(scene: Path | None, port: int, show: bool, as_json: bool, **options
     """Open a browser page with sliders: squirt, end mass, stiffness and natural frequencies update as they move.
 
     SCENE is a cue or scene file (default: a maple pool shaft). A cue alone gets the default stroke of the game. The
-    rest of a profile's cue weighs 15 oz unless --body-mass sets it. The page is served on this computer only.
+    page is served on this computer only.
     """
     try:
         from cuefem.designer.server import serve

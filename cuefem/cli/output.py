@@ -12,8 +12,8 @@ from typing import Any
 import click
 from rich.console import Console
 
-from cuefem.cli.encoding import is_unicode
 from cuefem.io import InputError, check_writable, save_page, write_atomically
+from cuefem.quantity.encoding import is_unicode
 from cuefem.show.renderers import json_text, terminal
 
 # The heading of an option that many commands share, in the order of a command's help.

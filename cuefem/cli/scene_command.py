@@ -21,7 +21,7 @@ from cuefem.cli.scene_options import (
 )
 from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.io import InputError, check_writable, load_stroke
-from cuefem.io.defaults_report import assumption_texts, assumptions
+from cuefem.io.defaults_report import Assumption, assumption_texts, assumptions
 from cuefem.io.shaft_additions import SHAFT_ADDITIONS
 from cuefem.results.quantities import UNITS
 from cuefem.results.records import Record, json_value
@@ -98,10 +98,21 @@ def errors_name_file(file: Path, options: Collection[str] = ()) -> Iterator[None
 def scene_of(
     file: Path, options: dict[str, Any], *, with_impact: bool = True, warn: bool = True
 ) -> tuple[Scene, list[str]]:
-    """The scene of a command, and the assumptions: values set neither in the file nor by options.
+    """The scene of a command, and the texts of its assumptions.
 
-    A cue alone gets a game's default stroke (`cuefem.scene.default_scene`). with_impact: whether ball, tip and stroke
-    matter to the command, so that assumptions on them are listed too. warn: whether to warn of implausible numbers.
+    with_impact: whether ball, tip and stroke matter to the command, so that assumptions on them are listed too. warn:
+    whether to warn of implausible numbers.
+    """
+    scene, listed, offered = completed_scene(file, options)
+    if warn:
+        print_warnings(scene, with_impact=with_impact)
+    return scene, assumption_texts(listed, offered, with_impact=with_impact)
+
+
+def completed_scene(file: Path, options: dict[str, Any]) -> tuple[Scene, list[Assumption], set[str]]:
+    """The scene of a file, the assumptions: values set neither in the file nor by options, and the options that apply.
+
+    A cue alone gets a game's default stroke (`cuefem.scene.default_scene`).
     """
     opened = load_with_options(load_stroke, file, options)
     if isinstance(opened, Scene):
@@ -111,12 +122,9 @@ def scene_of(
         scene = scene_from_cue(opened, file, options)
     given = {name: value for name, value in options.items() if value is not None}
     offered = {*options} - ({"game"} if isinstance(opened, Scene) else set())
-    notes = assumption_texts(assumptions(file, scene, given), offered, with_impact=with_impact)
     with errors_name_file(file):
         compute_tip(scene)
-    if warn:
-        print_warnings(scene, with_impact=with_impact)
-    return scene, notes
+    return scene, assumptions(file, scene, given), offered
 
 
 def compute_tip(scene: Scene) -> None:

@@ -285,6 +285,9 @@ class Cue:
     shaft_mass_measured
         Whether the density of the main material was computed from the measured mass of the shaft. It is then no
         uncertain parameter.
+    assumed_body_mass
+        The body mass that was assumed because a drawing has none, kg (`usual_scene`). While ``body_mass`` equals it, it
+        is an uncertain parameter.
 
     Raises
     ------
@@ -305,6 +308,7 @@ class Cue:
     segments: tuple[Segment, ...]
     body_mass: Annotated[float, Quantity("kg", "[0, inf)").with_typical_range(0.05, 0.8)] = 0.0
     shaft_mass_measured: bool = False
+    assumed_body_mass: Annotated[float, Quantity("kg", "[0, inf)")] = 0.0
 
     def __repr__(self) -> str:
         count = f"{len(self.segments)} segment{'s' if len(self.segments) > 1 else ''}"
@@ -344,6 +348,11 @@ class Cue:
     def shaft_mass(self) -> float:
         """Mass of the segments, kg."""
         return math.fsum(s.mass for s in self.segments)
+
+    @property
+    def is_body_mass_assumed(self) -> bool:
+        """Whether the body mass was assumed and not changed since."""
+        return 0.0 < self.body_mass == self.assumed_body_mass
 
     @property
     def mass(self) -> float:

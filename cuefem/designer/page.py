@@ -29,7 +29,7 @@ from cuefem.designer.state import (
     read_design,
     reference_design,
 )
-from cuefem.io.defaults_report import tenon_assumption
+from cuefem.io.defaults_report import assumption_texts, tenon_assumption
 from cuefem.io.reference_cues import PRESETS, REFERENCE_FILES
 from cuefem.io.toml_writer import toml_text
 from cuefem.parameters.parameter import parameter, with_parameters
@@ -170,10 +170,8 @@ class Page:
         return [key for key in KNOBS if key in self.step.design.assumed and value(key, scene) is not None]
 
     def _notes(self) -> list[str]:
-        return [
-            *self.step.design.notes,
-            *(f"{words} (change it in File)" for _, words in tenon_assumption(self.step.design.scene.shaft)),
-        ]
+        tenon = assumption_texts(tenon_assumption(self.step.design.scene.shaft))
+        return [*self.step.design.notes, *(f"{text} (change it in File)" for text in tenon)]
 
     def _assumption_lines(self) -> list[str]:
         scene = self.step.design.scene

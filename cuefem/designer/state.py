@@ -15,8 +15,6 @@ from cuefem.io import load_stroke
 from cuefem.io.defaults_report import assumptions
 from cuefem.io.parts_catalogue import data_folder
 from cuefem.io.reference_cues import Preset, preset_scene, reference_cue_file
-from cuefem.parameters.parameter import with_parameters
-from cuefem.quantity.units import parse_number
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, usual_scene
 
@@ -24,7 +22,6 @@ SLIDE_PAUSE = 1.5  # s: moves of one slider that follow each other within it are
 MAX_STEPS = 60
 MAX_SEGMENTS = 300  # the natural frequencies and the stiffness of as many take 15 s and 0.6 GB
 MAX_NAME = 80
-DEFAULT_BUTT = "15 oz"  # of a drawing without body_mass
 FAILURES = (ValueError, RuntimeError, ArithmeticError, MemoryError, OSError)
 _CUE = re.compile(r"""^\s*cue\s*=\s*["']([^"'\n]+)["']""", re.MULTILINE)
 
@@ -125,14 +122,11 @@ class UndoHistory:
 def design_from_file(path: Path, name: str, scene: Scene, options: Mapping[str, Any] = MappingProxyType({})) -> Design:
     """A scene read from a file, and its assumptions.
 
-    options: the values of options that supplement the file, by name. A shape without body_mass gets
-    `DEFAULT_BUTT`.
+    options: the values of options that supplement the file, by name.
     """
     found = assumptions(path, scene, options)
-    keys = {{"material": "shaft_material"}.get(key, key) for key, _ in found if key}
-    if "body_mass" in keys:
-        scene = with_parameters(scene, {"body mass": parse_number(DEFAULT_BUTT, "kg")})
-    return Design(name[:MAX_NAME], scene, frozenset(keys), {}, tuple(words for key, words in found if not key))
+    keys = {{"material": "shaft_material"}.get(each.key, each.key) for each in found if each.key}
+    return Design(name[:MAX_NAME], scene, frozenset(keys), {}, tuple(each.text for each in found if not each.key))
 
 
 def reference_design(preset: Preset) -> Design:

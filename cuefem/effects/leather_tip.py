@@ -201,22 +201,20 @@ class LeatherTip(CueEffect):
         self.check_diameter(self.diameter_on(end))
 
     def on_other_cue(self, own: Cue, other: Cue) -> LeatherTip:
-        """The tip for another cue, whose face it fits (`fitted_to`)."""
-        return self.fitted_to(other, own.segments[0].tip_diameter)
-
-    def fitted_to(self, cue: Cue, face: float) -> LeatherTip:
-        """The tip for a cue, where one that is made for a ferrule's end of ``face``, m, may not fit.
-
-        Of these the first that fits, else the tip: the tip; with a dome of the same shape; scaled as a whole.
-        """
-        scale = cue.segments[0].tip_diameter / face
-        domed = replace(self, dome_radius=scale * self.dome_radius)
+        """The tip for another cue: the first that fits of itself, with a dome of the same shape, scaled as a whole."""
+        scale = other.segments[0].tip_diameter / own.segments[0].tip_diameter
+        domed = self.with_scaled_dome(scale)
         layers = tuple(replace(layer, height=scale * layer.height) for layer in self.layers)
         diameter = None if self.diameter is None else scale * self.diameter
         scaled = replace(domed, height=scale * self.height, layers=layers, diameter=diameter)
-        return next((tip for tip in (self, domed, scaled) if tip._fits(cue)), self)
+        return next((tip for tip in (self, domed, scaled) if tip.fits(other)), self)
 
-    def _fits(self, cue: Cue) -> bool:
+    def with_scaled_dome(self, scale: float) -> LeatherTip:
+        """The tip with another radius of the dome: of the same shape on a face scaled as much."""
+        return replace(self, dome_radius=scale * self.dome_radius)
+
+    def fits(self, cue: Cue) -> bool:
+        """Whether a cue may have the tip."""
         try:
             self.check_on(cue, "")
         except ValueError:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from cuefem.contact.side_strike import SideStrike
-from cuefem.cue import Cue
+from cuefem.cue import Cue, LumpedCue
 from cuefem.io.errors import InputError, as_input_error, check_path, os_error_text, quote
 from cuefem.io.lathe_profile import DEFAULT_MATERIAL, SHAPE_EXTENSIONS, SPREADSHEET_EXTENSIONS, read_profile
 from cuefem.io.schema import named_material
@@ -21,6 +21,7 @@ from cuefem.parameters.parameter import with_fields
 from cuefem.parameters.parts import with_shaft_mass
 from cuefem.quantity.fields import Quantity
 from cuefem.scene import Scene
+from cuefem.scene.default_scene import without_leather
 
 __all__ = [
     "DEFAULT_MATERIAL",
@@ -123,7 +124,8 @@ def with_body_mass(thing: Any, path: Path, key: str, mass: str | float) -> Any:
     """The cue, scene or side strike with another mass behind the drawing: a text with its unit, or a number in kg."""
     with as_input_error(path, key):
         value = Quantity("kg", "[0, inf)").read(mass if isinstance(mass, str) else f"{mass!r} kg")
-    return with_fields(thing, {("body_mass",) if isinstance(thing, Cue) else ("cue", "body_mass"): value})
+    cue: tuple[str, ...] = () if isinstance(thing, Cue) else ("cue",)
+    return with_fields(thing, {(*cue, "body_mass"): value, (*cue, "assumed_body_mass"): 0.0})
 
 
 def _load_cue(path: Path, material: str | None = None, length_unit: str | None = None) -> Cue:
@@ -153,10 +155,16 @@ def load_stroke(path: Path, **options: str | None) -> Cue | Scene:
     return stroke
 
 
-def replaced_segments(path: Path, scene: Scene) -> int:
-    """Number of drawn segments, the first of the file, that a `LeatherTip` replaces in the scene."""
-    drawn = cue_as_drawn(path, _load_cue) if isinstance(load_stroke(path), Scene) else _load_cue(path)
-    return len(drawn.segments) - len(scene.cue.segments)
+def replaced_segments(path: Path, scene: Scene, **options: Any) -> int:
+    """Number of drawn segments, the first of the file, that a `LeatherTip` replaces in the scene.
+
+    options: of `load`, with which the scene was loaded.
+    """
+    loaded = load_stroke(path, **options)
+    drawn = cue_as_drawn(path, _load_cue) if isinstance(loaded, Scene) else loaded
+    if isinstance(drawn, LumpedCue) or scene.shaft.leather_height:
+        return 0
+    return len(drawn.segments) - len(without_leather(drawn).segments)
 
 
 def save(obj: Cue | Scene | SideStrike, path: str | os.PathLike[str]) -> None:

@@ -19,7 +19,7 @@ from cuefem.quantity.fields import OutOfBounds, Quantity
 Kind = TypeVar("Kind")
 
 MATERIAL_NAMES = {known.material: name for name, known in MATERIALS.items()}
-OMITTED_IF_ZERO = ("tip_bore", "butt_bore", "shaft_mass_measured")  # not written if 0 or false, their default
+OMITTED_IF_ZERO = ("tip_bore", "butt_bore", "shaft_mass_measured", "assumed_body_mass")  # if 0 or false, their default
 
 
 def build(kind: type[Kind], table: Any, *, file: str, key: str) -> Kind:

@@ -21,9 +21,10 @@ from cuefem.io.defaults_report import assumption_texts, assumptions
 from cuefem.io.errors import InputError, as_input_error, errors_name_key, file_state, quote
 from cuefem.io.lathe_profile import SHAPE_EXTENSIONS
 from cuefem.io.schema import build, key_path, named_material
+from cuefem.io.shaft_additions import SHAFT_ADDITIONS
 from cuefem.io.store import SqliteStore
 from cuefem.io.toml_reader import game_of, read_tables
-from cuefem.parameters.parameter import paths, quantity_at
+from cuefem.parameters.parameter import PARAMETERS, paths, quantity_at, with_parameters
 from cuefem.quantity.fields import Quantity
 from cuefem.scene import Resolution, Scene, Stroke
 from cuefem.scene.default_scene import KIM, usual_scene
@@ -95,6 +96,13 @@ class StudyTable:
     vary: tuple[VaryTable, ...]
     responses: tuple[str, ...] = ()
     game: str | None = None
+    material: str | None = None
+    length_unit: str | None = None
+    front: str | None = None
+    ferrule: str | None = None
+    bore: str | None = None
+    body_mass: str | None = None
+    shaft_mass: str | None = None
     resolution: Resolution | None = None
     sample: Sample | None = None
     tolerances: TolerancesTable | None = None
@@ -109,6 +117,11 @@ class StudyTable:
             raise ValueError("StudyTable.responses must be omitted with [objective], which names the response")
         if self.limit and not self.objective:
             raise ValueError("StudyTable.limit needs an [objective]")
+
+    @property
+    def drawing_options(self) -> dict[str, str]:
+        """The options of `cuefem.load` that are set: they supplement or replace values of the drawing."""
+        return {name: value for name in SHAFT_ADDITIONS if (value := getattr(self, name)) is not None}
 
 
 def load_study(path: str | PathLike[str]) -> Study | Scatter | Problem:
@@ -236,14 +249,25 @@ def _study_tables(path: Path) -> dict[str, Any]:
 def _base(tables: StudyTable, path: Path) -> Scene:
     game = _game(tables, path)
     with errors_name_key(path, "scene"):
-        base = load_stroke(path.parent / tables.scene)
+        base = load_stroke(path.parent / tables.scene, **tables.drawing_options)
     if not isinstance(base, Scene):
         with as_input_error(path, "game"):
-            return Scene(base, stroke=Stroke(offset=OFFSET)) if game == KIM else usual_scene(base, game)
+            scene = Scene(base, stroke=Stroke(offset=OFFSET)) if game == KIM else usual_scene(base, game)
+        return _with_masses(scene, tables, path)
     if tables.game is not None:
         problem = f"must be omitted: {tables.scene} is a scene, which has its own ball, tip and stroke"
         raise InputError(path, "game", f"{problem}; got {quote(game)}")
-    return base
+    return _with_masses(base, tables, path)
+
+
+def _with_masses(scene: Scene, tables: StudyTable, path: Path) -> Scene:
+    """The scene with the masses that the study sets: of the butt, and of the shaft with its tip."""
+    for name in ("body_mass", "shaft_mass"):
+        text = getattr(tables, name)
+        if text is not None:
+            with as_input_error(path, name):
+                scene = with_parameters(scene, {name: PARAMETERS[name].quantity(scene).read(text)})
+    return scene
 
 
 def _game(tables: StudyTable, path: Path) -> str:
@@ -253,9 +277,8 @@ def _game(tables: StudyTable, path: Path) -> str:
 def base_assumptions(path: Path, base: Scene) -> list[str]:
     """Texts of the assumptions for the base file of a study."""
     tables = read_tables(path)
-    return assumption_texts(
-        assumptions(path.parent / tables["scene"], base, {k: tables[k] for k in ("game",) if k in tables})
-    )
+    options = {key: tables[key] for key in ("game", "body_mass", "shaft_mass", *SHAFT_ADDITIONS) if key in tables}
+    return assumption_texts(assumptions(path.parent / tables["scene"], base, options))
 
 
 def _response(text: str, path: Path, key: str) -> Response:
@@ -265,7 +288,7 @@ def _response(text: str, path: Path, key: str) -> Response:
 
 def _varied(tables: StudyTable, base: Scene, path: Path) -> tuple[Vary, ...]:
     """The [[vary]] tables of a study as objects."""
-    replaced = replaced_segments(path.parent / tables.scene, base)
+    replaced = replaced_segments(path.parent / tables.scene, base, **tables.drawing_options)
     grid = tables.objective is None and tables.tolerances is None and tables.sample is None
     return tuple(_vary(table, base, replaced, path, i, grid) for i, table in enumerate(tables.vary))
 

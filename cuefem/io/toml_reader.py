@@ -22,7 +22,7 @@ from cuefem.io.schema import build, key_path, keys_of, table, unknown_key
 from cuefem.parameters.parts import with_shaft_mass
 from cuefem.quantity.fields import MAX_SEGMENTS, Quantity, check_fields, quantity_fields
 from cuefem.scene import Scene, Stroke
-from cuefem.scene.default_scene import DEFAULT_GAME, GAMES, KIM, STROKES, usual_scene
+from cuefem.scene.default_scene import DEFAULT_GAME, GAMES, KIM, STROKES, usual_scene, with_usual_rest
 
 # Keys of a scene that default to those of its game.
 GAME_KEYS = {"ball": ("mass", "radius"), "tip": ("restitution", "friction"), "stroke": ("speed", "offset")}
@@ -137,7 +137,10 @@ def scene_from_tables(tables: dict[str, Any], path: Path, cue_file: Callable[[Pa
         raise InputError(path, "cue", "must be given: [[segments]] make a cue, [cue] a scene; got neither")
     game = game_of(tables, path)
     parts = _parts({name: value for name, value in tables.items() if name != "game"}, path, cue_file)
-    scene = build(Scene, parts if game == KIM else _completed(parts, game, path), file=str(path), key="")
+    if game != KIM:
+        is_body_mass_given = isinstance(tables["cue"], dict) and "body_mass" in tables["cue"]
+        parts = _completed(parts, game, path, is_body_mass_given=is_body_mass_given)
+    scene = build(Scene, parts, file=str(path), key="")
     _check_effects(scene, path)
     return scene
 
@@ -162,9 +165,12 @@ def missing_keys(tables: dict[str, Any]) -> list[str]:
     return missing + ["effects"] * ("effects" not in tables)
 
 
-def _completed(parts: dict[str, Any], game: str, path: Path) -> dict[str, Any]:
+def _completed(parts: dict[str, Any], game: str, path: Path, *, is_body_mass_given: bool) -> dict[str, Any]:
     """The fields of a scene, completed from a game; a spring tip and a lumped cue get no leather tip."""
     known, cue, tip = GAMES[game], parts["cue"], parts.get("tip", {})
+    if isinstance(cue, Cue) and not is_body_mass_given:
+        cue = with_usual_rest(cue, game)
+        parts = parts | {"cue": cue}
     if "effects" not in parts and isinstance(cue, LumpedCue):
         parts = parts | {"effects": []}
     elif "effects" not in parts and isinstance(tip, dict) and {"contact_time", "stiffness"} & {*tip}:

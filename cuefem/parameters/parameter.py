@@ -19,6 +19,7 @@ from cuefem.cue import Cue, LumpedCue, Material
 from cuefem.cue.materials import LEATHER_BY_NAME, LEATHERS, MATERIALS, WOODS, leather_restitution, table_name
 from cuefem.cue.materials import material as named_material
 from cuefem.parameters.parts import (
+    BODY_MASS,
     BORE_DEPTH,
     BORE_WIDTH,
     CONTACT_TIME_OF_SPRING,
@@ -37,6 +38,7 @@ from cuefem.parameters.parts import (
 from cuefem.quantity.fields import Quantity, quantity_fields, suggestion
 from cuefem.quantity.units import parse_number
 from cuefem.scene import Scene
+from cuefem.scene.default_scene import BODY_MASS_RANGE
 
 Step = str | int
 Path = tuple[Step, ...]
@@ -394,6 +396,11 @@ def _restitution_spread(scene: Scene) -> float | None:
     return None if scene.contact_terms.tip is None else 0.05
 
 
+def _body_spread(scene: Scene) -> float | None:
+    """Half the range of usual cues, in logarithms, of an assumed mass; None for another."""
+    return math.log(BODY_MASS_RANGE[1] / BODY_MASS_RANGE[0]) / 2 if scene.shaft.is_body_mass_assumed else None
+
+
 def _bore_spread(scene: Scene) -> float | None:
     """Half the range of drilled bores, 6 to 7.5 mm (meshes/README.md), in logarithms; None without a bore."""
     return math.log(7.5 / 6) / 2 if Layout.of(scene.shaft).bore else None
@@ -478,7 +485,9 @@ PARAMETERS: dict[str, Parameter] = {
             help='Tip offset from the ball centre: b/R in (-1, 1), or a length, e.g. "8 mm".',
         ),
         Parameter(
-            *("body mass", "mass of the butt", "cue.body_mass"),
+            *("body mass", "mass of the butt"),
+            part=BODY_MASS,
+            spread=_body_spread,
             option="MASS",
             help='Mass of the butt, the rest of the cue behind what FILE draws, e.g. "420 g".',
         ),

@@ -179,6 +179,12 @@ WEIGHT = Part(
 )
 
 
+def _with_body_mass(scene: Any, mass: float) -> Any:
+    return replace(scene, cue=replace(scene.shaft, body_mass=mass, assumed_body_mass=0.0))
+
+
+BODY_MASS = Part(lambda scene: scene.shaft.body_mass, _with_body_mass, Quantity("kg", "[0, inf)"))
+
 # --- the ferrule, and the materials of ferrule and shaft ----------------------------------
 
 

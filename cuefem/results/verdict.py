@@ -122,7 +122,7 @@ def with_cue(scene: Scene, cue: Cue) -> Scene:
 
     Effects that are part of the scene's own cue (a mass, a joint) or lie beyond the other's end are dropped. The other
     cue retains leather in its drawing only if the scene's own cue has it. A tip that does not fit the other's face is
-    adapted (`cuefem.effects.leather_tip.LeatherTip.fitted_to`).
+    adapted (`cuefem.effects.leather_tip.LeatherTip.on_other_cue`).
     """
     has_leather = scene.lumped is None and scene.shaft.leather_height
     other = cue if has_leather else without_leather(cue)

@@ -12,8 +12,11 @@ from cuefem.effects.cue_effects import AxialWaves, GeometricStiffness
 from cuefem.effects.effect import Effect
 from cuefem.effects.leather_tip import LeatherTip
 from cuefem.quantity.fields import check_kind
+from cuefem.quantity.unit_checks import MIN_CUE_MASS
 from cuefem.scene.scene import Ball, Scene, Stroke, Tip
 
+OUNCE = 0.45359237 / 16  # kg
+BODY_MASS_RANGE = (13.5, 17.5)  # oz, of pool: cues of 18 to 21 oz less shafts of 3.5 to 4.5 oz
 WAVE_SPEED = 4430.0  # m/s in the butt: the root of E over the density of maple, and of ash
 
 
@@ -33,6 +36,8 @@ class Game:
         Name of the leather in `cuefem.cue.materials.LEATHERS`.
     restitution
         Of the whole cue in a central impact, as measured: that of the tip without axial waves.
+    body_mass
+        Of the rest of the cue, kg, behind a drawing that is too light to be a whole cue.
     face_diameter
         Of the end of the ferrule that height and dome are usual for, m.
     cue_length, butt_diameter
@@ -54,6 +59,7 @@ class Game:
     cue_length: float
     butt_diameter: float
     face_diameter: float
+    body_mass: float
     source: str
     leather: str = "medium"
     restitution: float = 0.73
@@ -82,21 +88,22 @@ _ALL = (
     "Restitution: playing cues 0.71 to 0.75 (billiards.colostate.edu, FAQ, cue tip efficiency; TP A.30), of the whole "
     "cue; the tip's own follows from it. Friction: chalked leather, 0.6 to 0.7 (usual). Leather: see `cuefem parts`. "
     "Butt: length and diameter usual, its mass is the cue's, its waves are as fast as in maple or ash (4,430 m/s; "
-    "purpleheart 4,480, rosewood 4,040)"
+    "purpleheart 4,480, rosewood 4,040). Rest of the cue: usual cues of 19 oz (pool), 17.5 oz (carom) and 18 oz "
+    "(snooker) less shafts of 4, 4 and 5.5 oz"
 )
 GAMES: Mapping[str, Game] = MappingProxyType(
     {
         "pool": Game(
-            *(Ball(mass=0.170, radius=0.028575), 6e-3, 9.5e-3, 2.0, 1.4732, 0.03175, 0.01275),
+            *(Ball(mass=0.170, radius=0.028575), 6e-3, 9.5e-3, 2.0, 1.4732, 0.03175, 0.01275, 15 * OUNCE),
             "Ball: WPA 57.15 mm, 156 to 170 g. Height: usual, 4 to 8 mm. Dome: usual, between a dime's (8.96 mm) and a "
             f"nickel's (10.6 mm) radius. Speed: a medium stroke (usual). {_ALL}",
         ),
         "carom": Game(
-            *(Ball(mass=0.210, radius=0.03075), 4e-3, 9.5e-3, 3.0, 1.397, 0.030, 0.012),
+            *(Ball(mass=0.210, radius=0.03075), 4e-3, 9.5e-3, 3.0, 1.397, 0.030, 0.012, 13.5 * OUNCE),
             f"Ball: UMB 61 to 61.5 mm, 205 to 220 g. Height, dome and speed: assumed. {_ALL}",
         ),
         "snooker": Game(
-            *(Ball(mass=0.142, radius=0.02625), 4e-3, 7e-3, 3.0, 1.4605, 0.029, 0.0095),
+            *(Ball(mass=0.142, radius=0.02625), 4e-3, 7e-3, 3.0, 1.4605, 0.029, 0.0095, 12.5 * OUNCE),
             "Ball: WPBSA 52.5 mm; sets are sold at 140 to 143 g. Height, dome (flatter than half-round, on a tip of "
             f"9.5 mm) and speed: assumed. {_ALL}",
         ),
@@ -113,6 +120,19 @@ def without_leather(cue: Cue) -> Cue:
         return cue
     front = next(i for i, segment in enumerate(cue.segments) if segment.material.E >= MAX_LEATHER_MODULUS)
     return replace(cue, segments=cue.segments[front:])
+
+
+def with_usual_rest(cue: Cue, game: str = DEFAULT_GAME) -> Cue:
+    """The cue; without a body mass and too light to be a whole one, it gets the usual rest of a game's cue.
+
+    So does a cue with the usual rest of another game.
+    """
+    if cue.is_body_mass_assumed:
+        cue = replace(cue, body_mass=0.0, assumed_body_mass=0.0)
+    if cue.body_mass or cue.mass >= MIN_CUE_MASS or game == KIM:
+        return cue
+    rest = _game(game).body_mass
+    return replace(cue, body_mass=rest, assumed_body_mass=rest)
 
 
 def default_tip(cue: Cue, game: str = DEFAULT_GAME) -> LeatherTip:
@@ -144,13 +164,12 @@ def default_tip(cue: Cue, game: str = DEFAULT_GAME) -> LeatherTip:
     >>> default_tip(cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 700.0)),))).height
     0.006
     """
-    defaults, face = _game(game), without_leather(cue)
+    defaults, ferrule = _game(game), without_leather(cue)
     tip = defaults.tip
     if cue.leather_height:
         tip = replace(tip, height=cue.leather_height)
-    fitted = tip.fitted_to(face, defaults.face_diameter)
-    is_drawn_height_changed = bool(cue.leather_height) and fitted.height != tip.height
-    return tip if is_drawn_height_changed else fitted
+    wider = tip.with_scaled_dome(ferrule.segments[0].tip_diameter / defaults.face_diameter)
+    return wider if wider.fits(ferrule) and not tip.fits(ferrule) else tip
 
 
 def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = None) -> Scene:
@@ -160,7 +179,8 @@ def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = 
     ----------
     cue
         A drawing. The tip replaces leather drawn on it; a drawing without leather ends at the ferrule, and the tip is
-        added in front of it.
+        added in front of it. Without a body mass and too light to be a whole cue, it gets that of the game, an
+        uncertain parameter.
     game
         "pool", "carom" or "snooker": `GAMES` has their values and sources. "kim" is ``Scene(cue)``, the cue as drawn
         with the ball, tip and stroke of Kim's paper and without effects.
@@ -187,6 +207,9 @@ def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = 
     >>> scene = cf.usual_scene(cue)
     >>> scene.ball.mass, scene.stroke.speed, scene.leather_tip.dome_radius
     (0.17, 2.0, 0.0095)
+    >>> shaft = cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),))
+    >>> cf.usual_scene(shaft).cue.body_mass, cf.Scene(shaft).cue.body_mass  # 15 oz, none
+    (0.425242846875, 0.0)
     """
     check_kind("usual_scene cue", cue, Cue)
     if game == KIM and tip is None:
@@ -194,7 +217,8 @@ def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = 
     defaults = _game(game)
     effects = (default_tip(cue, game) if tip is None else tip, *defaults.effects)
     stroke = Stroke(defaults.speed, defaults.offset)
-    return Scene(without_leather(cue), defaults.ball, defaults.tip_with(effects), stroke, effects)
+    struck = with_usual_rest(without_leather(cue), game)
+    return Scene(struck, defaults.ball, defaults.tip_with(effects), stroke, effects)
 
 
 def _game(name: str) -> Game:

@@ -7,7 +7,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.cue.materials import material
-from cuefem.io.defaults_report import assumption_texts, drawing_assumptions
+from cuefem.io.defaults_report import Assumption, assumption_texts, drawing_assumptions
 
 MAPLE = material("hard maple")
 POINTS = ((0.0, 12.75), (330.0, 13.2), (736.6, 21.5))  # mm
@@ -153,9 +153,9 @@ def test_profile_in_unusual_format_is_read(name: str, tmp_path: Path) -> None:
         sizes = segment.length, segment.tip_diameter, segment.butt_diameter
         assert sizes == pytest.approx(((b[0] - a[0]) / 1e3, a[1] / 1e3, b[1] / 1e3), rel=1e-12, abs=0)
     assumed = drawing_assumptions(tmp_path / "shaft.csv", result, {"material": "ash", "body_mass": 0.4})
-    notes = [("", NOTES[name])] if name in NOTES else []
+    notes = [Assumption("", NOTES[name])] if name in NOTES else []
     assert assumed[: len(notes)] == notes
-    assert [key for key, _ in assumed[len(notes) :]] == ["ferrule", "bore", "front"]
+    assert [each.key for each in assumed[len(notes) :]] == ["ferrule", "bore", "front"]
 
 
 def test_profile_without_unit_takes_length_unit(tmp_path: Path) -> None:

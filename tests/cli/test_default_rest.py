@@ -1,0 +1,132 @@
+"""A drawing without its butt: the same usual rest of the cue from every door, and what options of compare fill in."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from cuefem.cue import Cue
+from cuefem.designer.state import read_design
+from cuefem.io.study_files import load_study
+from cuefem.scene.default_scene import GAMES, OUNCE
+from tests.helpers.command_line import as_json, call
+
+PROFILE = "x [mm],diameter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n"
+PREDATOR = Path(__file__).parents[2] / "studies/measured/predator_z2/cue.toml"
+STUDY = 'scene = "{scene}"\nresponses = ["squirt"]\n{more}[[vary]]\npath = "speed"\nvalues = ["2 m/s"]\n'
+RESTS = {"pool": 15, "carom": 13.5, "snooker": 12.5}  # oz
+
+
+@pytest.fixture
+def shaft(tmp_path: Path) -> Path:
+    path = tmp_path / "shaft.csv"
+    path.write_text(PROFILE, encoding="utf-8")
+    (tmp_path / "scene.toml").write_text('cue = "shaft.csv"\n[stroke]\nspeed = "2 m/s"\n', encoding="utf-8")
+    return path
+
+
+def study_scene(shaft: Path, scene: str, more: str = "") -> cf.Scene:
+    path = shaft.parent / "study.toml"
+    path.write_text(STUDY.format(scene=scene, more=more), encoding="utf-8")
+    return load_study(path).base  # type: ignore[no-any-return]
+
+
+@pytest.mark.parametrize("game", GAMES)
+def test_light_drawing_gets_usual_rest_of_its_game(game: str, shaft: Path) -> None:
+    drawn = cf.load(shaft)
+    assert isinstance(drawn, Cue)
+    expected = cf.usual_scene(drawn, game)
+    assert expected.cue.body_mass == pytest.approx(RESTS[game] * OUNCE, rel=1e-12)
+    assert read_design("shaft.csv", PROFILE.encode(), game).scene == expected
+    assert study_scene(shaft, "shaft.csv", f'game = "{game}"\n') == expected
+    reported = as_json("end-mass", shaft, "--game", game)
+    assert reported["scene"]["cue"]["body_mass"] == expected.cue.body_mass
+    assert f"usual rest of the cue, {1e3 * expected.cue.body_mass:.4g} g (--body-mass)" in reported["assumptions"]
+
+
+def test_scene_file_of_light_drawing_gets_usual_rest(shaft: Path) -> None:
+    scene = cf.load(shaft.parent / "scene.toml")
+    assert scene == cf.usual_scene(cf.load(shaft))
+    assert scene == study_scene(shaft, "scene.toml") == read_design("scene.toml", _whole(shaft)).scene
+    cf.save(scene, shaft.parent / "saved.toml")
+    assert cf.load(shaft.parent / "saved.toml") == scene
+    bare = replace(scene, cue=replace(scene.cue, body_mass=0.0))
+    cf.save(bare, shaft.parent / "bare.toml")
+    assert cf.load(shaft.parent / "bare.toml").cue.body_mass == 0.0
+
+
+def _whole(shaft: Path) -> bytes:
+    """The scene file with its drawing inside."""
+    cf.save(cf.load(shaft), shaft.parent / "cue.toml")
+    drawing = (shaft.parent / "cue.toml").read_text(encoding="utf-8").replace('body_mass = "0 kg"\n', "")
+    return f'cue.segments = [{_inline(drawing)}]\n[stroke]\nspeed = "2 m/s"\n'.encode()
+
+
+def _inline(drawing: str) -> str:
+    tables = drawing.split("[[segments]]")[1:]
+    return ", ".join("{" + ", ".join(filter(None, table.strip().splitlines())) + "}" for table in tables)
+
+
+@pytest.mark.heavy
+def test_assumed_rest_is_an_uncertain_input_until_it_is_set(shaft: Path) -> None:
+    record = as_json("report", shaft)["verdict"]
+    assert 0.001 < record["inputs"]["body_mass"] < 0.05
+    given = as_json("report", shaft, "--body-mass", "15 oz")["verdict"]
+    assert given["squirt"] == record["squirt"]
+    assert "body_mass" not in given["inputs"]
+    assert given["uncertainty"]["inputs"] < record["uncertainty"]["inputs"]
+    scene = cf.usual_scene(cf.load(shaft))
+    other = replace(scene, cue=replace(scene.cue, body_mass=0.43))
+    assert not other.cue.is_body_mass_assumed
+
+
+def test_whole_cue_gets_no_rest(tmp_path: Path) -> None:
+    whole = tmp_path / "whole.csv"
+    whole.write_text("x [mm],diameter [mm]\n0,12.75\n1470,31\n", encoding="utf-8")
+    scene = cf.usual_scene(cf.load(whole))
+    assert (scene.cue.body_mass, scene.cue.is_body_mass_assumed) == (0.0, False)
+    assert read_design("whole.csv", whole.read_bytes()).scene == scene
+
+
+def test_study_file_sets_options_of_its_cue(shaft: Path) -> None:
+    more = 'body_mass = "14 oz"\nmaterial = "ash"\nferrule = "20 mm melamine"\nbore = "6 mm wide, 100 mm deep"\n'
+    drawn = cf.load(shaft, material="ash", ferrule="20 mm melamine", bore="6 mm wide, 100 mm deep", body_mass="14 oz")
+    assert study_scene(shaft, "shaft.csv", more) == cf.usual_scene(drawn)
+    weighed = study_scene(shaft, "shaft.csv", 'shaft_mass = "120 g"\n')
+    assert weighed.shaft.shaft_mass + weighed.leather_tip.mass_on(weighed.shaft) == pytest.approx(0.12, rel=1e-12)
+
+
+@pytest.mark.heavy
+def test_compare_fills_in_the_usual_rest(shaft: Path) -> None:
+    record = as_json("compare", shaft, PREDATOR)
+    difference = record["differences"]["cue"]["squirt"]
+    assert difference["difference"] == pytest.approx(-0.278, abs=5e-4)
+    assert difference["error"] >= 0.086
+    assert "shaft: usual rest of the cue, 425.2 g (--body-mass)" in record["assumptions"]
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("--bore", "6 mm wide, 100 mm deep"),
+        ("--material", "ash"),
+        ("--ferrule", "25 mm melamine"),
+        ("--body-mass", "15 oz"),
+    ],
+)
+def test_compare_option_of_a_value_in_a_file_is_refused(name: str, value: str, shaft: Path) -> None:
+    status, out, err = call("compare", shaft, PREDATOR, name, value)
+    assert (status, out) == (2, "")
+    assert err.startswith(f"cuefem: {PREDATOR}: {name}: would replace this file's own value")
+    assert err.count("\n") == 1
+
+
+@pytest.mark.heavy
+def test_compare_option_fills_in_every_open_file(shaft: Path) -> None:
+    other = shaft.with_name("other.csv")
+    other.write_text(PROFILE.replace("13.2", "13.6"), encoding="utf-8")
+    record = as_json("compare", shaft, other, "--body-mass", "16 oz", "--leather", "hard", "--offset", "0.2")
+    assert [scene["cue"]["body_mass"] for scene in record["scenes"].values()] == [pytest.approx(16 * OUNCE)] * 2
+    assert not math.isnan(record["cues"]["other"]["squirt"])
