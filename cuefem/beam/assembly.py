@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 scipy = lazy_loader.load("scipy")  # loaded when used: few cues need sparse matrices
 # A sparse eigenproblem costs in proportion to the modes, a dense one to the cube of the degrees of freedom (dof). They
-# cost the same when the number of modes is (dof/BREAK_EVEN_DOF)^3. Measured: 6 modes of 270 dof, 30 of 450, 150 of 780.
-# Below DENSE_LIMIT dof a dense one is always faster.
-BREAK_EVEN_DOF, DENSE_LIMIT = 145, 220
+# cost the same at about dof^2/BREAK_EVEN modes: measured with 10 to 400 modes of 522 to 1,180 dof. Below DENSE_LIMIT
+# dof a dense one is always faster.
+BREAK_EVEN, DENSE_LIMIT = 8000, 220
 # A spring softer than this times mass and `System.shift` leaves the cue free: the squared frequency of its mode would
 # be round-off error.
 MIN_STIFFNESS = 1e-10
@@ -251,7 +251,7 @@ def _shift(cue: Cue, points: Points) -> float:
 
 def is_dense_faster(n_dof: int, count: int) -> bool:
     """Whether a dense eigenproblem computes the lowest ``count`` modes faster than a sparse one."""
-    return n_dof <= DENSE_LIMIT or count > (n_dof / BREAK_EVEN_DOF) ** 3
+    return n_dof <= DENSE_LIMIT or count > n_dof**2 / BREAK_EVEN
 
 
 def assemble_blocks(

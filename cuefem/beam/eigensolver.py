@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 import scipy.linalg as la
@@ -62,6 +62,18 @@ class EigenSolution:
         )
 
 
+class Spectrum(NamedTuple):
+    """Modes of M q = mu (K + shift M) q, q' (K + shift M) q = 1, of descending mu.
+
+    mu: (m,), 1/(omega^2 + shift); the first of them are exact, the others stand for all truncated modes. work: (loads,
+    m), of each load on each mode. combine: the vectors (free, k) of a combination (m, k) of the modes.
+    """
+
+    mu: Array
+    work: Array
+    combine: Callable[[Array], Array]
+
+
 def solve_eigenproblem(
     K: Any, M: Any, loads: Array, *, shift: float, rigid: int, count: int, cutoff: float = np.inf, n_corrected: int = 0
 ) -> EigenSolution:
@@ -72,57 +84,66 @@ def solve_eigenproblem(
     """
     if not isinstance(K, np.ndarray) and is_dense_faster(K.shape[0], count):
         K, M = K.toarray(), M.toarray()
-    corrected_loads = np.flatnonzero(loads[:, :n_corrected].any(axis=0))  # loads on clamped degrees of freedom are zero
-    if isinstance(K, np.ndarray):
-        problem = _Tridiagonal(K, M, shift)
-        mu, z = problem.eigen(rigid + count, leading=len(corrected_loads) == 1 and not loads[1:, corrected_loads].any())
-        work, vectors = problem.loads(loads)[: len(z)].T @ z, lambda mix: problem.vectors(z @ mix)
-    else:
-        mu, basis = _sparse(K, M, loads[:, corrected_loads], shift, rigid + count)
-        work, vectors = loads.T @ basis, lambda mix: basis @ mix
+    problem = Dense(K, M, shift) if isinstance(K, np.ndarray) else Sparse(K, M, shift)
+    corrected = np.flatnonzero(loads[:, :n_corrected].any(axis=0))  # loads on clamped degrees of freedom are zero
+    mu, work, combine = problem.spectrum(rigid + count, loads, corrected)
     stop = rigid + int(np.sum(1 / mu[rigid : rigid + count] - shift <= cutoff**2))
     if stop == rigid and np.isinf(cutoff):
         raise np.linalg.LinAlgError("the frequencies of all modes are NaN: check sizes and materials")
     # on a nearly vanishing support, the squared frequency is round-off error
     omega = np.sqrt(np.maximum(1 / mu[rigid:stop] - shift, np.finfo(float).eps * shift))
-    mix = np.eye(len(mu), stop)[:, rigid:] / np.sqrt(mu[rigid:stop]) * np.where(work[0, rigid:stop] < 0, -1.0, 1.0)
     cutoff, radiation = float(omega[-1]) if np.isinf(cutoff) else cutoff, None
-    if len(corrected_loads):
-        correction = truncation_correction(mu[stop:], work[corrected_loads, stop:].T, shift=shift, cutoff=cutoff)
+    mix = np.eye(len(mu), stop)[:, rigid:] / np.sqrt(mu[rigid:stop]) * np.where(work[0, rigid:stop] < 0, -1.0, 1.0)
+    if len(corrected):
+        correction = truncation_correction(mu[stop:], work[corrected, stop:].T, shift=shift, cutoff=cutoff)
         omega, radiation = np.append(omega, correction.omega), correction.radiation
-        mix = np.concatenate([mix, np.concatenate([np.zeros((stop, len(correction.omega))), correction.mix])], axis=1)
-    return EigenSolution(omega, loads, work @ mix, cutoff, radiation, lambda: vectors(mix))
+        mix = np.concatenate([mix, np.pad(correction.mix, ((stop, 0), (0, 0)))], axis=1)
+    return EigenSolution(omega, loads, work @ mix, cutoff, radiation, lambda: combine(mix))
 
 
-def _sparse(K: Any, M: Any, loads: Array, shift: float, count: int) -> tuple[Array, Array]:
-    """(mu, q), q' (K + shift M) q = 1, of the ``count`` lowest modes, then of a few vectors that replace all others.
+class Sparse:
+    """The eigenproblem by shift-invert Lanczos of ARPACK, in proportion to the number of modes."""
 
-    These are Ritz vectors of the static deflections under the loads, and under the inertia of those, orthogonal to the
-    modes. A truncation correction is the same with them as with all other modes.
-    """
-    from scipy.sparse.linalg import eigsh, splu
+    def __init__(self, K: Any, M: Any, shift: float) -> None:
+        self.K, self.M, self.shift = K, M, shift
 
-    start = np.ones(K.shape[0])  # a fixed start, so that results are reproducible
-    squares, vectors = eigsh(K, count, M, sigma=-shift, v0=start)
-    order = np.argsort(squares)
-    mu, vectors = 1 / (squares[order] + shift), vectors[:, order]
-    if not loads.size:
-        return mu, vectors * np.sqrt(mu)
-    S, ritz, forces = K + shift * M, [], loads
-    solve = splu(S.tocsc()).solve
-    for _ in range(LANCZOS_STEPS):
-        vector = solve(forces)
-        for _ in range(2):  # the second pass removes round-off error
-            vector -= vectors @ ((M @ vectors).T @ vector)
-        ritz.append(vector / np.sqrt(np.sum(vector * (M @ vector), axis=0)))
-        forces = M @ ritz[-1]
-    basis = np.concatenate(ritz, axis=1)
-    ritz_mu, mix = la.eigh(basis.T @ (M @ basis), basis.T @ (S @ basis))
-    return np.append(mu, ritz_mu[::-1]), np.concatenate([vectors * np.sqrt(mu), basis @ mix[:, ::-1]], axis=1)
+    def spectrum(self, count: int, loads: Array, corrected: NDArray[np.intp]) -> Spectrum:
+        """The ``count`` lowest modes, then the Ritz vectors of the ``corrected`` columns of the loads (free, k)."""
+        from scipy.sparse.linalg import eigsh
+
+        start = np.ones(self.K.shape[0])  # a fixed start, so that results are reproducible
+        squares, vectors = eigsh(self.K, count, self.M, sigma=-self.shift, v0=start)
+        order = np.argsort(squares)
+        mu, vectors = 1 / (squares[order] + self.shift), vectors[:, order]
+        basis = vectors * np.sqrt(mu)
+        if len(corrected):
+            ritz_mu, ritz = self._ritz_vectors(vectors, loads[:, corrected])
+            mu, basis = np.append(mu, ritz_mu), np.concatenate([basis, ritz], axis=1)
+        return Spectrum(mu, loads.T @ basis, lambda mix: basis @ mix)
+
+    def _ritz_vectors(self, vectors: Array, forces: Array) -> tuple[Array, Array]:
+        """(mu, q) of a few vectors that replace all modes but ``vectors`` in a truncation correction.
+
+        They span the static deflections under the forces, and under the inertia of those, orthogonal to the modes. A
+        truncation correction is the same with them as with all other modes.
+        """
+        from scipy.sparse.linalg import splu
+
+        S, ritz = self.K + self.shift * self.M, []
+        solve = splu(S.tocsc()).solve
+        for _ in range(LANCZOS_STEPS):
+            vector = solve(forces)
+            for _ in range(2):  # the second pass removes round-off error
+                vector -= vectors @ ((self.M @ vectors).T @ vector)
+            ritz.append(vector / np.sqrt(np.sum(vector * (self.M @ vector), axis=0)))
+            forces = self.M @ ritz[-1]
+        basis = np.concatenate(ritz, axis=1)
+        mu, mix = la.eigh(basis.T @ (self.M @ basis), basis.T @ (S @ basis))
+        return mu[::-1], basis @ mix[:, ::-1]
 
 
-class _Tridiagonal:
-    """M q = mu S q with S = K + shift M as a tridiagonal problem T y = mu shift y: y = Q' U q, U' U = S, y' y = q' S q.
+class Dense:
+    """The eigenproblem, S = K + shift M, as a tridiagonal one, T y = mu shift y: y = Q' U q, U' U = S, y' y = q' S q.
 
     U factors S in reverse order, so that y begins with the first degree of freedom's load, which Q does not change.
     """
@@ -143,21 +164,27 @@ class _Tridiagonal:
             matrix.T.ravel()[1 : 1 + size * (size - 1)].reshape(size - 1, size).T
         )  # matrix[1:], not copied
 
-    def eigen(self, count: int, *, leading: bool) -> tuple[Array, Array]:
+    def spectrum(self, count: int, loads: Array, corrected: NDArray[np.intp]) -> Spectrum:
+        """The modes of the matrix, or those of its leading part if the only ``corrected`` load begins there."""
+        starts_at_load = len(corrected) == 1 and not loads[1:, corrected].any()
+        mu, y = self._eigen(count, leading=starts_at_load)
+        return Spectrum(mu, self._reduced(loads)[: len(y)].T @ y, lambda mix: self._vectors(y @ mix))
+
+    def _eigen(self, count: int, *, leading: bool) -> tuple[Array, Array]:
         """(mu, y), (m,) and (m, m), mu descending, of the matrix or its leading part; the first ``count`` are exact."""
         size = len(self.diagonal)
         rows = min(int(LEADING * count) + SPARE, size) if leading else size
         mu, y = (a[..., ::-1] for a in _outputs(lapack.dstevd(self.diagonal[:rows], self.off[: rows - 1])))
         if rows < size and np.any(abs(self.off[rows - 1] * y[-1, :count]) > ROUNDING * mu[:count]):
-            return self.eigen(count, leading=False)
+            return self._eigen(count, leading=False)
         return mu / self.shift, y
 
-    def loads(self, loads: Array) -> Array:
+    def _reduced(self, loads: Array) -> Array:
         """y of loads (free, k): Q' U'^-1 loads."""
         y = _outputs(lapack.dtrtrs(self.upper, loads[::-1], trans=1))[::-1].copy()
         return self._apply_reflectors(y, "T")
 
-    def vectors(self, y: Array) -> Array:
+    def _vectors(self, y: Array) -> Array:
         """q (free, k) of y (rows of the leading part, k): U^-1 Q y."""
         padded = np.zeros((len(self.upper), y.shape[1]))
         padded[: len(y)] = y

@@ -121,7 +121,7 @@ def test_inverse_form_low_modes_have_small_roundoff_error(cue: Cue, tolerance: f
 
 def test_modes_dense_and_sparse_solvers_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     cue, results = soft_tip(), {}
-    monkeypatch.setattr(assembly, "BREAK_EVEN_DOF", 1)  # for any number of modes
+    monkeypatch.setattr(assembly, "BREAK_EVEN", 1)  # for any number of modes
     for limit in (0, 10**6):
         monkeypatch.setattr(assembly, "DENSE_LIMIT", limit)
         results[limit] = modes(cue, 8, effects=(Joint(0.3, 1e-3), Support(0.5, np.inf)), at=Resolution(2, 16, 8))
