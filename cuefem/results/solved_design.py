@@ -91,7 +91,7 @@ class SolvedDesign:
 
     def end_mass(self, name: str, offset: float | None) -> float:
         """End mass by a definition, kg, at an offset b/R or at the scene's own."""
-        return float(DEFINITIONS[name].of(self.solved.stick_tip, self._at(offset)))
+        return float(DEFINITIONS[name].of_design(self.solved, self._at(offset)))
 
     def strike(self, offset: float | None = None) -> Outcome:
         """The coupled strike at an offset b/R, or at the scene's own."""

@@ -100,6 +100,13 @@ class SolvedScene:
         return tip_modes_from(self.modes, self.scene)
 
     @cached_property
+    def pulse_tip(self) -> TipModes:
+        """Tip modes for an end mass whose drive begins smoothly: those of a strike with a spring tip by default."""
+        if self.at is not None or self.scene.lumped is not None:
+            return self.tip
+        return tip_modes_from(self._default(default_mode_count(self.scene)), self.scene)
+
+    @cached_property
     def stick_tip(self) -> TipModes:
         """Tip modes for an end mass, whose drive may begin with a step: at least `MIN_STICK_MODES` by default."""
         if self.at is not None or self.scene.lumped is not None:
