@@ -32,7 +32,9 @@ from cuefem.scene.solved_scene import SolvedScene
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["end_mass", "forces", "modes", "shaft", "squirt"]
+    from cuefem.analysis.reduction import Reduction
+
+__all__ = ["end_mass", "forces", "modes", "reduction", "shaft", "squirt"]
 
 
 def __dir__() -> list[str]:
@@ -252,3 +254,42 @@ def end_mass(scene: Scene, ax: Axes | None = None, *, at: Resolution | None = No
     )
     axes.set_title(f"end mass {with_unit(drivers.end_mass, 'kg', 3)}{excluded}", fontsize="medium")
     return axes
+
+
+def reduction(own: Reduction, axes: Sequence[Axes] | None = None) -> tuple[Axes, Axes]:
+    """Draw a reduction: squirt against the offset, and the end mass against the contact time.
+
+    Parameters
+    ----------
+    own : Reduction
+        The result of `cuefem.reduction` for a cue of segments.
+    axes : two matplotlib axes, optional
+        Where to draw; by default on a new figure.
+
+    Returns
+    -------
+    tuple of matplotlib axes
+        Degrees against b/R, of the given end masses, the reduced and the vibrating shaft; effective end mass, g,
+        against ms, with the contact time of Kim's paper and the filmed one as vertical lines.
+    """
+    left, right = _two_axes() if axes is None else axes
+    colours = {name: f"C{i}" for i, name in enumerate(own.models)}
+    for name, angles in own.squirt_curves().items():
+        left.plot(own.chart_offsets, to_display(angles, "rad"), color=colours[name], label=name)
+    for name, masses in own.end_mass_curves().items():
+        right.plot(to_display(own.chart_times, "s"), to_display(masses, "kg"), color=colours[name])
+    for time in own.marked_times:
+        at = float(to_display(time, "s"))
+        right.axvline(at, color="#888", linewidth=0.8, linestyle="--")
+        right.annotate(with_unit(time, "s"), (at, 0), xytext=(3, 4), textcoords="offset points")
+    left.set(xlabel="tip offset b/R", ylabel="squirt, degrees", xlim=(0, None), ylim=(0, None))
+    right.set(xlabel=with_heading("contact time", "s"), ylabel=with_heading("effective end mass", "kg"), ylim=(0, None))
+    left.legend(fontsize="small")
+    return left, right
+
+
+def _two_axes() -> tuple[Axes, Axes]:
+    import matplotlib.pyplot as plt
+
+    left, right = plt.subplots(1, 2, figsize=(10, 3.8), layout="constrained")[1]
+    return left, right

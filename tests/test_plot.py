@@ -75,3 +75,14 @@ def test_end_mass_figure_behind_leather_tip_equals_bare_shaft() -> None:
     assert "without" not in cf.plot.end_mass(bare, at=AT).get_title()
     with pytest.raises(ValueError, match=r"takes a scene without effects other than LeatherTip; got TipDome"):
         cf.plot.end_mass(replace(SCENE, effects=(cf.TipDome(0.0095),)))
+
+
+def test_reduction_figure_shows_every_model_and_both_contact_times() -> None:
+    own = cf.reduction(replace(SCENE, tip=cf.Tip(0.73, 0.6, contact_time=2e-3)))
+    left, right = cf.plot.reduction(own)
+    assert [text.get_text() for text in left.get_legend().get_texts()] == [*own.models]
+    x, y = line(left, len(own.models) - 1)
+    assert y[x.tolist().index(0.3)] == pytest.approx(np.degrees(own.models["this shaft, vibrating"]["squirt"][1]))
+    times, masses = line(right)
+    assert masses[times.tolist().index(2.0)] == pytest.approx(1e3 * cf.end_mass(own.scene))
+    assert [text.get_text() for text in right.texts] == ["1.135 ms", "2 ms"]

@@ -181,6 +181,7 @@ RESULTS = {
     ),
     "cue_end_mass": Result("mass of the cue's end", "kg"),
     "length": Result("length", "m", 0),
+    "rigid_length": Result("rigid length", "m", 0),
     "balance_point": Result(
         *("balance point of the drawn part, from the end of the tip", "m", 1),
         heading="balance point",
