@@ -18,7 +18,7 @@ from cuefem.results.quantities import to_display, with_unit
 from cuefem.results.records import Record
 from cuefem.results.solved_design import SolvedDesign, off_centre
 from cuefem.results.uncertainty import model_share, ratio_error, squirt_changes
-from cuefem.results.verdict import reject_miscue
+from cuefem.results.verdict import reject_no_verdict
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
 
@@ -175,7 +175,7 @@ def design_changes(scene: Scene, *, solved: SolvedScene | None = None, progress:
     struck = off_centre(scene)
     solved = SolvedScene(struck) if solved is None or struck is not scene else solved
     outcome = SolvedDesign(solved).strike()
-    reject_miscue(struck, outcome)
+    reject_no_verdict(struck, outcome)
     base = _numbers(solved)
     before = {key: x for key, x in squirt_changes(solved, base["squirt"]).items() if abs(x) > MIN_CONTRIBUTION}
     rows = []

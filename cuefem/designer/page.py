@@ -34,7 +34,7 @@ from cuefem.io.reference_cues import PRESETS, REFERENCE_FILES
 from cuefem.io.toml_writer import toml_text
 from cuefem.parameters.parameter import parameter, with_parameters
 from cuefem.results.quantities import REGIMES
-from cuefem.results.verdict import lacks_butt, with_cue
+from cuefem.results.verdict import verdict_problem, with_cue
 from cuefem.scene import Scene
 from cuefem.show.first_screen import (
     HeadlineCue,
@@ -55,12 +55,11 @@ MAX_FILE = 5_000_000  # bytes
 KINDS = (".toml", ".csv", ".stl", ".ply", ".obj")
 TABS = ("Curves", "Changes", "Numbers", "Check", "File")
 NOTHING, OPENED, NOW, FILE = "nothing", "as it was opened", "as it is now", "a file …"
-NO_BUTT = "butt missing or too light: squirt is too low and cannot be compared; enter Rest of cue"
 OPTIONS = {"opened": OPENED, "now": NOW}
 # What is computed of a design before its tabs, and for each tab.
 FIRST = ("solved_strike", "numbers", "verdict")
 OF_TAB = {"Curves": ("curve", "end_mass_distribution"), "Changes": ("changes",)}
-NO_MISCUE = ("verdict", "changes")  # which need a squirt
+OF_VERDICT = ("verdict", "changes")  # which need a squirt that can be reported
 SHARED = ("solved_strike", "numbers", "curve", "end_mass_distribution")  # also computed of the other design
 
 
@@ -387,8 +386,8 @@ class Page:
         own, other = self._shown(self.results.own, 0), self._shown(self.results.other, 1)
         if own is None:
             return
-        regime = self.results.own["solved_strike"].outcome.regime
-        warning = REGIMES[regime] if regime_warning(regime) else NO_BUTT if lacks_butt(own.scene) else ""
+        outcome = self.results.own["solved_strike"].outcome
+        warning = REGIMES[outcome.regime] if regime_warning(outcome.regime) else verdict_problem(own.scene, outcome)
         difference = self.results.difference
         self.headline.set_content(with_term_buttons(headline_markup(own, other, difference, warning)))
         self.scale.set_content(scale_markup(own, other))
@@ -467,8 +466,10 @@ class Page:
                 self.show_message(computing_message())
             failures = list[str]()
             for name in (*FIRST, *OF_TAB.get(self.tab, ())):
-                if name in NO_MISCUE and results.own["solved_strike"].outcome.regime == "miscue":
-                    continue
+                if name in OF_VERDICT:
+                    outcome = results.own["solved_strike"].outcome
+                    if verdict_problem(step.design.scene, outcome):
+                        continue
                 for scene, side in scenes:
                     if side is results.own or name in SHARED:
                         failures += await self._compute(side, name, getattr(computation, name), scene)

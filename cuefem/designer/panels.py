@@ -17,6 +17,7 @@ from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.results.quantities import DASH, RESULTS, format_change, unbroken
 from cuefem.results.records import Record, Table
 from cuefem.results.uncertainty import SHAFT_ERROR
+from cuefem.results.verdict import verdict_problem
 from cuefem.scene import Scene
 from cuefem.show.charts import Axis, Curve, chart
 from cuefem.show.design_changes_table import tabulate_design_changes
@@ -89,8 +90,9 @@ def changes_panel(step: Step, results: Results, attempt: Callable[[Mapping[str, 
     """The design changes, each with a button that applies it."""
     record = results.own.get("changes")
     if record is None:
-        missed = "solved_strike" in results.own and results.own["solved_strike"].outcome.regime == "miscue"
-        ui.html('<p class="soft">none for a miscue</p>' if missed else COMPUTING, sanitize=False)
+        solved = results.own.get("solved_strike")
+        problem = solved and verdict_problem(step.design.scene, solved.outcome)
+        ui.html(f'<p class="soft">{escape(problem)}</p>' if problem else COMPUTING, sanitize=False)
         return
     made = tabulate_design_changes(record)
     ui.label(f"Changes to {step.design.name}, each alone").classes("h2")

@@ -13,6 +13,7 @@ from cuefem.parameters.parts import main_material
 from cuefem.results.records import Record
 from cuefem.results.solved_design import SolvedDesign, computable_results, off_centre
 from cuefem.results.uncertainty import RATIO_FLOOR, changes_by_input, difference_record, model_share
+from cuefem.results.verdict import verdict_problem
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
 
@@ -26,12 +27,13 @@ Progress = Callable[[Sequence[Any]], Iterable[Any]]
 
 
 class _CueResults(NamedTuple):
-    """A scene, its results, the contact state of its strike ("" if it fails), and their relative changes with
-    each uncertain input."""
+    """A scene, its results, the contact state of its strike ("" if it fails), why it has no verdict ("" if it has), and
+    the relative changes of the results with each uncertain input."""
 
     scene: Scene
     numbers: dict[str, float]
     regime: str
+    problem: str
     inputs: dict[str, dict[str, float]]
 
 
@@ -67,6 +69,7 @@ def comparison_record(
         "same_shaft": same_shaft,
         "reference": reference,
         "regimes": {name: each.regime for name, each in results.items()},
+        "problems": {name: each.problem for name, each in results.items() if each.problem},
         "cues": {name: each.numbers for name, each in results.items()},
         "differences": {
             name: _differences(results[reference], results[name], same_shaft=same_shaft) for name in others
@@ -84,10 +87,13 @@ def with_same_stroke(scenes: Mapping[str, Scene]) -> dict[str, Scene]:
 def _cue_results(scene: Scene, names: tuple[str, ...]) -> _CueResults:
     numbers = _numbers(scene, names)
     try:
-        regime = SolvedDesign(SolvedScene(scene)).strike().regime
-    except (ValueError, RuntimeError):  # no squirt either
-        regime = ""
-    return _CueResults(scene, numbers, regime, changes_by_input(scene, numbers, lambda other: _numbers(other, names)))
+        outcome = SolvedDesign(SolvedScene(scene)).strike()
+        regime, problem = outcome.regime, verdict_problem(scene, outcome)
+    except (ValueError, RuntimeError) as error:
+        regime, problem = "", str(error)
+    return _CueResults(
+        scene, numbers, regime, problem, changes_by_input(scene, numbers, lambda other: _numbers(other, names))
+    )
 
 
 def _numbers(scene: Scene, names: Sequence[str]) -> dict[str, float]:
@@ -101,7 +107,7 @@ def _numbers(scene: Scene, names: Sequence[str]) -> dict[str, float]:
         argument: Any = int(mode) if mode else float(scene.stroke.offset) if name == "pivot_length" else None
         assert of is not None
         try:
-            if name in SQUIRT_RESULTS and design.strike().regime == "miscue":
+            if name in SQUIRT_RESULTS and verdict_problem(scene, design.strike()):
                 return math.nan
             return of(design, argument)
         except (ValueError, RuntimeError):

@@ -8,6 +8,8 @@ from dataclasses import replace
 
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Cue
+from cuefem.cue.materials import MATERIALS, table_name
+from cuefem.parameters.parts import main_material
 from cuefem.quantity.unit_checks import MIN_CUE_MASS
 from cuefem.results.quantities import MISCUE_DEFINITION
 from cuefem.results.records import Record
@@ -27,23 +29,64 @@ from cuefem.scene import Outcome, Scene
 from cuefem.scene.default_scene import without_leather
 from cuefem.scene.solved_scene import SolvedScene
 
-
-class Miscue(ValueError):
-    """A stroke that has no squirt to report."""
+MAX_DENSITY_MARGIN = 0.25  # relative, beyond the range of a wood: no piece of it has such a density
 
 
-def lacks_butt(scene: Scene) -> bool:
-    """Whether a cue is too light for a whole one: its squirt is then too low to compare (of maple by about 20 %)."""
-    return float(scene.cue.mass) < MIN_CUE_MASS
+class NoVerdict(ValueError):
+    """A stroke whose squirt is neither reported nor compared."""
 
 
-def reject_miscue(scene: Scene, outcome: Outcome) -> None:
-    """ValueError for a miscue, whose squirt hardly depends on the cue."""
-    if outcome.regime == "miscue":
-        raise Miscue(
+def mass_problem(scene: Scene) -> str:
+    """Why the masses of a cue are impossible; an empty text for others.
+
+    A cue without its butt has too little squirt (maple about 20 %). The measured mass of a shaft sets the density of
+    its wood.
+    """
+    whole = float(scene.cue.mass)
+    if whole < MIN_CUE_MASS:
+        return (
+            f"the whole cue weighs {1e3 * whole:.4g} g, expected 400 to 700 g: squirt is too low to compare; add the "
+            'butt, such as --body-mass "15 oz" (body_mass in a file)'
+        )
+    if scene.lumped is not None or not scene.shaft.shaft_mass_measured:
+        return ""
+    return density_problem(scene.shaft, MAX_DENSITY_MARGIN)
+
+
+def density_problem(cue: Cue, margin: float) -> str:
+    """Why the density of a weighed shaft is impossible, or ""; margin: relative, beyond the range of its wood."""
+    wood = main_material(cue)
+    name = table_name(wood)
+    if name is None:
+        return ""
+    low, high = MATERIALS[name].ranges["rho"]
+    if (1 - margin) * low <= wood.rho <= (1 + margin) * high:
+        return ""
+    reason = "the mass is too large: does it include a joint or the butt, or is the drawing too thin?"
+    if wood.rho < low:
+        reason = "the mass is too small: is a digit missing, or is the drawing too large?"
+    return (
+        f"by the weight of the shaft the density of its {name} is {wood.rho:.4g} kg/m3, expected {low:g} to {high:g} "
+        f"kg/m3; {reason}"
+    )
+
+
+def verdict_problem(scene: Scene, outcome: Outcome) -> str:
+    """Why the squirt of a stroke is neither reported nor compared, or "": a miscue, or an impossible mass."""
+    if outcome.regime == "miscue":  # whose squirt hardly depends on the cue
+        return (
             f"miscue at b/R {scene.stroke.offset:.4g}: no squirt is reported. Use a smaller offset "
             f"(miscue: {MISCUE_DEFINITION})"
         )
+    mass = mass_problem(scene)
+    return mass and f"no verdict: {mass}"
+
+
+def reject_no_verdict(scene: Scene, outcome: Outcome) -> None:
+    """NoVerdict for a stroke whose squirt is neither reported nor compared."""
+    problem = verdict_problem(scene, outcome)
+    if problem:
+        raise NoVerdict(problem)
 
 
 def verdict_record(
@@ -69,27 +112,26 @@ def verdict_record(
         uncertainty: relative, 1 sigma, by its causes model, inputs and computation, and in total. inputs: contribution
         of each uncertain input to "inputs". references: by name squirt, rad; difference, own squirt over it less 1,
         both at the default resolution; error of the difference, 1 sigma; distinct, whether the difference exceeds it.
-        Reference cues whose strike fails, or whose squirt is zero or of the opposite sign, are left out; all of them,
-        if the scene's cue lacks its butt.
+        Reference cues whose strike fails, or whose squirt is zero or of the opposite sign, are left out.
 
     Raises
     ------
-    Miscue
-        If the stroke is a miscue.
+    NoVerdict
+        If the stroke is a miscue, or the mass of the cue impossible (`verdict_problem`).
     """
     struck = off_centre(scene)
     head_on = struck is not scene
     solved = SolvedScene(struck) if solved is None or head_on else solved
     outcome = strike_modes(struck, solved.tip) if head_on else outcome
-    reject_miscue(struck, outcome)
+    reject_no_verdict(struck, outcome)
     squirt = float(outcome.squirt)
     # at the resolution of the reference cues, since the outcome may be finer
     base = squirt if outcome.error is None else variant_squirt(solved, struck)
     inputs = {key: abs(change) for key, change in squirt_changes(solved, base).items()}
     computation = NUMERICAL_ERROR if outcome.error is None else outcome.error
     uncertainty = Uncertainty(model_error(struck), math.hypot(*inputs.values()), computation)
-    shaft, cues = shaft_uncertainty(inputs), {} if lacks_butt(struck) else reference_cues
-    reference_rows = {name: _reference_row(struck, base, cue, shaft) for name, cue in cues.items()}
+    shaft = shaft_uncertainty(inputs)
+    reference_rows = {name: _reference_row(struck, base, cue, shaft) for name, cue in reference_cues.items()}
     return {
         "offset": float(struck.stroke.offset),
         "head_on": head_on,

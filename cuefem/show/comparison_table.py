@@ -30,11 +30,9 @@ def comparison_sentences(record: Record) -> list[str]:
     for name, differences in record["differences"].items():
         squirt = differences.get("squirt")
         if squirt is None:
-            miscues = [cue for cue in (first, name) if math.isnan(record["cues"][cue]["squirt"])]
-            which = (
-                f"the stroke of {' and of '.join(miscues)} is a miscue" if miscues else "a stroke is nearly a miscue"
-            )
-            sentences.append(f"{name} and {first} cannot be compared in squirt: {which}.")
+            problems = [f"{cue}: {record['problems'][cue]}" for cue in (first, name) if cue in record["problems"]]
+            reason = "; ".join(problems) or "a stroke is nearly a miscue"
+            sentences.append(f"{name} and {first} cannot be compared in squirt: {reason}.")
         else:
             sentences.append(f"{name}: {squirt_difference(**squirt)} {first} (1σ).")
     return sentences

@@ -8,12 +8,11 @@ from math import inf
 from typing import Any
 
 from cuefem.cue import Cue, Segment
-from cuefem.cue.materials import MATERIALS, table_name
 from cuefem.effects.tip_effects import TipDome
-from cuefem.parameters.parts import main_material
 from cuefem.quantity.fields import quantity_fields
 from cuefem.quantity.unit_checks import CUE_DIAMETER, CUE_LENGTH, MIN_CUE_MASS
 from cuefem.results.quantities import to_display
+from cuefem.results.verdict import density_problem, mass_problem
 from cuefem.scene import Ball, Scene, Stroke, Tip
 
 MAX_STEP = 1.5  # ratio of the diameters at the joint of two segments
@@ -57,13 +56,6 @@ def _of_drawing(cue: Cue) -> Iterator[Check]:
         check = "are these radii?" if diameter < CUE_DIAMETER[0] else "check the decimal point and the unit"
         yield name, diameter, CUE_DIAMETER, "mm", f"expected 8.5 to 14 mm at the tip; {check}"
     yield "drawn mass", cue.shaft_mass, (MIN_DRAWN_MASS, inf), "g", "check the sizes and the densities"
-    wood = main_material(cue)
-    known = table_name(wood)
-    if cue.shaft_mass_measured and known is not None:
-        low, high = MATERIALS[known].ranges["rho"]
-        own = f"by the weight of the shaft the density of its {known} is"
-        joint = "does the measured mass include a joint or the butt?"
-        yield own, wood.rho, ((1 - DENSITY_MARGIN) * low, (1 + DENSITY_MARGIN) * high), "kg/m3", joint
     if any(
         segment.length > LONG and segment.material.E > STIFF and segment.material.rho < LIGHT
         for segment in cue.segments
@@ -77,10 +69,6 @@ def _of_mass(scene: Scene) -> Iterator[Check]:
     mass = float(scene.cue.mass)
     whole = "expected 0.4 to 0.7 kg: check the unit of --body-mass (body_mass), or omit it if FILE draws the whole cue"
     yield "mass of the whole cue", mass, (0.0, 1.0), "kg", whole
-    if not scene.cue.segments or scene.shaft.shaft_mass >= MIN_DRAWN_MASS:  # else the drawing itself is too light
-        too_low = "squirt is too low (a maple cue: by about 20 %) and cannot be compared"
-        body = f'{too_low}; add the butt with --body-mass "15 oz" (body_mass in a file)'
-        yield "butt missing or too light: the whole cue weighs", mass, (MIN_CUE_MASS, inf), "g", body
 
 
 SCALES = {"mm": 1e3, "g": 1e3}  # of the SI unit; others: 1
@@ -102,7 +90,17 @@ def plausibility_warnings(scene: Scene, *, with_impact: bool = True) -> list[str
         for name, value, (low, high), unit, hint in checks
         if value is not None and not low <= value <= high
     ]
-    return [*outside, *_of_outline(drawn)]
+    return [*outside, *_of_masses(scene, with_impact=with_impact), *_of_outline(drawn)]
+
+
+def _of_masses(scene: Scene, *, with_impact: bool) -> Iterator[str]:
+    """Warnings of a missing butt, and of the density of a weighed shaft."""
+    drawn = scene.lumped is None
+    if drawn and scene.shaft.shaft_mass_measured:
+        yield from filter(None, [density_problem(scene.shaft, DENSITY_MARGIN)])
+    is_drawing_too_light = drawn and scene.shaft.shaft_mass < MIN_DRAWN_MASS  # has a warning of its own
+    if with_impact and scene.cue.mass < MIN_CUE_MASS and not is_drawing_too_light:
+        yield mass_problem(scene)
 
 
 def _of_outline(segments: tuple[Segment, ...]) -> list[str]:

@@ -11,7 +11,7 @@ from cuefem.io.reference_cues import reference_cues
 from cuefem.results.quantities import format_value
 from cuefem.results.records import Record, Table, tabulate_values, value_rows
 from cuefem.results.solved_design import OFFSETS, SolvedDesign, listed_results
-from cuefem.results.verdict import Miscue, verdict_record
+from cuefem.results.verdict import NoVerdict, verdict_record
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import SolvedScene
 from cuefem.show.end_mass_table import SQUIRT_END_MASS, end_mass_record
@@ -51,7 +51,7 @@ def report_record(
     record |= {"numbers": numbers, "regime": outcome.regime}
     try:
         return record | {"verdict": verdict_record(scene, outcome, reference_cues(), solved=solved)}
-    except Miscue as error:
+    except NoVerdict as error:
         return record | {"no_squirt": str(error)}
 
 

@@ -98,7 +98,7 @@ def test_comparison_miscue_has_no_squirt() -> None:
     record = comparison_record(miscues)
     assert record["cues"]["a"]["squirt"] != record["cues"]["a"]["squirt"]
     assert not {"squirt", "pivot_length"} & {*record["differences"]["b"]}
-    assert "is a miscue" in comparison_sentences(record)[0]
+    assert "a: miscue at b/R 0.8" in comparison_sentences(record)[0]
 
 
 @pytest.mark.parametrize(

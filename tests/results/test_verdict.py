@@ -1,16 +1,19 @@
 """The verdict: squirt, its uncertainty and the reference cues agree with strikes (properties)."""
 
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 import cuefem as cf
+from cuefem.cue.materials import MATERIALS
 from cuefem.io.reference_cues import REFERENCE_FILES, reference_cues
 from cuefem.parameters.parameter import with_parameters
+from cuefem.results.comparison import comparison_record
 from cuefem.results.uncertainty import NUMERICAL_ERROR, RATIO_FLOOR
-from cuefem.results.verdict import verdict_record, with_cue
+from cuefem.results.verdict import mass_problem, verdict_record, with_cue
 from cuefem.scene.default_scene import GAMES, default_tip, without_leather
 from cuefem.show.verdict_table import reference_comparison, reference_scale, squirt_text
 
@@ -60,15 +63,46 @@ def test_verdict_difference_within_error_is_not_distinct(depth: float, distinct:
     assert reference_comparison(record)[0].startswith("not distinct") != distinct
 
 
-def test_verdict_without_butt_or_in_miscue_is_not_compared() -> None:
+LIGHT = replace(SCENE, cue=replace(SCENE.cue, body_mass=0.0))
+MISCUE = replace(SCENE, stroke=cf.Stroke(2.0, 0.9))
+# The measured mass of a shaft of 117 g, a digit missing or one with its joint: see `density_problem`.
+DIGIT_MISSING = with_parameters(SCENE, {"shaft mass": 0.0117})
+WITH_JOINT = with_parameters(SCENE, {"shaft mass": 0.195})
+IMPOSSIBLE = {
+    "miscue": (MISCUE, r"^miscue at b/R 0\.9: no squirt"),
+    "no butt": (LIGHT, r"^no verdict: the whole cue weighs 89\.02 g"),
+    "too light": (DIGIT_MISSING, "is a digit missing, or is the drawing too large"),
+    "too heavy": (WITH_JOINT, "does it include a joint"),
+}
+
+
+@pytest.mark.parametrize("name", IMPOSSIBLE)
+def test_impossible_mass_or_miscue_has_no_verdict(name: str) -> None:
     """The maple shaft alone has 23 % less squirt than with its butt, as a low-deflection shaft."""
-    light = replace(SCENE, cue=replace(SCENE.cue, body_mass=0.0))
-    record = verdict_record(light, cf.strike(light), reference_cues())
-    assert (record["references"], reference_scale(record)) == ({}, [])
-    miscue = replace(SCENE, stroke=cf.Stroke(2.0, 0.9))
+    scene, words = IMPOSSIBLE[name]
     for results in (cf.verdict, cf.design_changes):
-        with pytest.raises(ValueError, match=r"^miscue at b/R 0\.9: no squirt"):
-            results(miscue)
+        with pytest.raises(ValueError, match=words):
+            results(scene)
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("name", IMPOSSIBLE)
+def test_impossible_mass_or_miscue_has_no_difference_of_squirt(name: str) -> None:
+    scene, words = IMPOSSIBLE[name]
+    record = comparison_record({"this": scene, "other": SCENE if name != "miscue" else scene}, names=("squirt",))
+    assert math.isnan(record["cues"]["this"]["squirt"])
+    assert record["differences"]["other"] == {}
+    assert re.search(words, record["problems"]["this"])
+
+
+@pytest.mark.parametrize(("share", "possible"), [(0.76, True), (0.74, False), (1.24, True), (1.26, False)])
+def test_weighed_shaft_has_a_verdict_within_a_quarter_of_its_wood(share: float, possible: bool) -> None:
+    low, high = MATERIALS["hard maple"].ranges["rho"]
+    density = share * (low if share < 1 else high)
+    weighed = with_parameters(SCENE, {"shaft mass": SCENE.shaft.shaft_mass})
+    scene = with_parameters(weighed, {"rho": density})
+    assert scene.shaft.shaft_mass_measured
+    assert (mass_problem(scene) == "") == possible
 
 
 def test_verdict_head_on_outcome_error_is_not_of_the_default_offset() -> None:
