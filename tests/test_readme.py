@@ -14,6 +14,8 @@ from pathlib import Path
 import pytest
 
 import cuefem
+from cuefem.results.uncertainty import MODEL_ERROR, SHAFT_ERROR, SPRING_ERROR
+from studies.paper import chain
 from tests.helpers.command_line import call
 from tests.helpers.surfaces import outline_of, revolve, write_surface
 
@@ -42,6 +44,29 @@ def test_sample_output_equals_command() -> None:
     status, out, _ = call("report", ROOT / "meshes" / "pool_maple.toml")
     assert status == 0
     assert " ".join(sample.split()) in " ".join(out.split())
+
+
+def test_chain_of_readme_equals_reduction_and_study() -> None:
+    """Every number of the section on Kim's 12 g; the study's page is compared with its program."""
+    scene = cuefem.load(ROOT / "studies" / "scenes" / "kim.toml")
+    assert isinstance(scene, cuefem.Scene)
+    own = cuefem.reduction(scene)
+    rows = [line for line in README.splitlines() if line.startswith(("| Kim's guess", "| this shaft"))]
+    assert rows == [f"| {' | '.join(row)} |" for row in chain.chain_rows(own)]
+    frequencies = ", ".join(f"{frequency:.0f}" for frequency in own.frequencies)
+    pinned = own.nearest["pinned"]
+    E = pinned["stiffness_ratio"] * scene.shaft.segments[0].material.E / 1e9
+    assert f"{frequencies} Hz when\nfree; {pinned['frequency']:.0f} Hz pinned at the joint" in README
+    assert f"if E is {E:.1f} instead of 12.6 GPa" in README
+    for phrase in ("2.3 to 2.7 times", "12 cm", "27 to 31 cm", "1.135 ms", "20 to 23 g"):
+        assert phrase in README
+        assert phrase in chain.STUDY.committed
+
+
+def test_trust_table_states_uncertainties_of_the_model() -> None:
+    errors = (100 * error for error in (MODEL_ERROR, SPRING_ERROR))
+    assert "model {:.0f} % with a leather tip, {:.0f} % with a spring tip".format(*errors) in README
+    assert f"{100 * SHAFT_ERROR:.0f} % of the difference" in README
 
 
 def test_code_blocks_are_of_tested_languages() -> None:
@@ -85,8 +110,9 @@ def test_python_blocks_run(
     monkeypatch.chdir(tmp_path)  # a writable folder
     namespace: dict[str, object] = {}
     exec(compile(code, "README.md", "exec"), namespace)
+    printed = capsys.readouterr().out
     for value in re.findall(r"# (\d+\.\d+) g$", code, flags=re.MULTILINE):
-        assert value in capsys.readouterr().out
+        assert value in printed
 
 
 def test_drawing_and_scene_blocks_load(tmp_path: Path) -> None:
@@ -110,13 +136,10 @@ def test_links_and_paths_exist() -> None:
     assert [path for path in paths if not (ROOT / path).exists()] == []
 
 
-def test_citation_names_current_release() -> None:
+def test_citation_names_project_and_license() -> None:
+    """Its version: tests/test_version.py."""
     cited = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     keys = dict(re.findall(r"^([a-z-]+): (.+)$", cited, flags=re.MULTILINE))
     assert keys["cff-version"] == "1.2.0"
-    assert (keys["version"], keys["title"]) == (project["version"], project["name"])
-    assert keys["license"] == project["license"]
-    released = re.search(r"^## (\S+), (\d{4}-\d\d-\d\d)$", (ROOT / "CHANGELOG.md").read_text(), flags=re.MULTILINE)
-    assert released is not None
-    assert (released[1], released[2]) == (cuefem.__version__, keys["date-released"])
+    assert (keys["title"], keys["license"]) == (project["name"], project["license"])

@@ -113,7 +113,7 @@ def test_deeper_bore_changes_squirt_by_shaft_not_ferrule(name: str, ferrule: str
 
 
 def test_speed_and_tip_hardness_change_squirt_as_stated() -> None:
-    readme, cue = Path("README.md").read_text(encoding="utf-8"), cf.load("meshes/pool_maple.toml")
+    limits, cue = TEXTS["limits"], cf.load("meshes/pool_maple.toml")
     scene = cf.usual_scene(cue)  # type: ignore[arg-type]
 
     def squirt(offset: float, **values: Any) -> float:
@@ -123,14 +123,14 @@ def test_speed_and_tip_hardness_change_squirt_as_stated() -> None:
     for offset in (0.3, 0.375, 0.45):
         by_speed = [squirt(offset, speed=speed) for speed in (0.8, 2.4, 3.4, 4.2, 7.0)]  # minima at 4.2, 3.4, 2.4
         ranges.append(round(100 * (max(by_speed) / min(by_speed) - 1)))
-    assert "maximum {}, {}, {} % above minimum at b/R 0.3, 0.375, 0.45".format(*ranges) in readme
+    assert "maximum {}, {}, {} % above minimum at b/R 0.3, 0.375, 0.45".format(*ranges) in limits
     assert f"by {ranges[0]} % at b/R 0.3 and {ranges[2]} % at b/R 0.45" in TEXTS["what_squirt_is"]
     soft, hard = (
         [100 - 100 * squirt(offset, leather=name) / squirt(offset) for offset in (0.3, 0.375)]
         for name in ("soft", "hard")
     )
     stated = f"soft {soft[0]:.0f} % and hard {hard[0]:.0f} % below medium at b/R 0.3, {soft[1]:.0f} and {hard[1]:.0f} %"
-    assert stated in readme
+    assert stated in limits
     assert f"soft leather is {soft[0]:.0f} % below medium, of hard {hard[0]:.0f} % below (b/R 0.3)" in LAW
 
 
