@@ -19,6 +19,7 @@ from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement
 from cuefem.measurements.outliers import DETECTABLE, OUTLIER_FACTOR, posterior
 
 MAX_ITERATIONS = 12
+MIN_FALL = 0.02  # of the cost over a step, relative: below it the search at full weights ends
 STEP_TOLERANCE = (
     0.05  # length of a step, in standard deviations of the posterior, below which the estimate has converged
 )
@@ -189,7 +190,8 @@ def estimate(cue: MeasuredCue, *, progress: Progress = iter) -> Estimate:
     -----
     First all measurements have full weight: the Gauss-Newton method, steps of at most 1.5 standard deviations of the
     priors, halved while the cost rises or the cue is invalid. Then measurements that contradict the others get less
-    weight. Cost: some seven steps, each two computations of all values for every parameter.
+    weight. Either search ends when it has converged, or makes no progress: the cost falls by less than 2 %, the steps
+    get no shorter. Cost: some seven steps, each two computations of all values for every parameter.
     """
     if not cue.measurements or not cue.parameters:
         missing = "measurements" if not cue.measurements else "uncertain parameters"
@@ -197,35 +199,45 @@ def estimate(cue: MeasuredCue, *, progress: Progress = iter) -> Estimate:
     measured, sd = np.array([[measurement.measured_value, measurement.sd] for measurement in cue.measurements]).T
     z = np.zeros(len(cue.parameters))
     at = cue.compute(z)
-    cost, converged = _cost(z, (measured - at) / sd), False
+    cost = _cost(z, (measured - at) / sd)
+    slopes: Array | None = None
+    finished = False
     for _ in progress(range(MAX_ITERATIONS)):
-        if converged:
+        if finished:
             continue  # a progress bar runs to its end
-        J = cue.jacobian(z) / sd[:, None]
+        slopes = cue.jacobian(z)
+        J = slopes / sd[:, None]
         precision = J.T @ J + np.eye(len(z))
         step = np.linalg.solve(precision, J.T @ ((measured - at) / sd) - z)
-        converged = float(np.sqrt(step @ precision @ step)) < STEP_TOLERANCE
-        if converged:
-            continue
-        best = _line_search(cue, z, _limited(step), cost, measured, sd)
+        finished = float(np.sqrt(step @ precision @ step)) < STEP_TOLERANCE
+        best = None if finished else _line_search(cue, z, _limited(step), cost, measured, sd)
         if best is None:
-            break
+            finished = True
+            continue
+        finished = cost - best.cost < MIN_FALL * cost
         z, at, cost = best
-    return _reweighted(cue, z, at, cost)
+        slopes = None
+    return _reweighted(cue, z, at, cost, slopes)
 
 
-def _reweighted(cue: MeasuredCue, z: Array, at: Array, misfit: float) -> Estimate:
-    """The estimate about a start, in which a measurement that contradicts the others has less weight."""
+def _reweighted(cue: MeasuredCue, z: Array, at: Array, misfit: float, slopes: Array | None) -> Estimate:
+    """The estimate about a start, in which a measurement that contradicts the others has less weight.
+
+    slopes: the derivatives at the start, if known.
+    """
+    slopes = cue.jacobian(z) if slopes is None else slopes
+    length = np.inf
     for last in range(1, MAX_OUTLIER_ITERATIONS + 1):
-        slopes = cue.jacobian(z)
         mean, covariance, outlier_probability = posterior(*_scaled(cue, z, at, slopes))
         step = mean - z
-        converged = float(np.sqrt(step @ np.linalg.solve(covariance, step))) < STEP_TOLERANCE
-        if converged or last == MAX_OUTLIER_ITERATIONS:
+        length, before = float(np.sqrt(step @ np.linalg.solve(covariance, step))), length
+        converged = length < STEP_TOLERANCE
+        if converged or length >= before or last == MAX_OUTLIER_ITERATIONS:
             break
         trials = (z + _limited(step) / 2**halving for halving in range(MAX_HALVINGS))
         valid = ((trial, computed) for trial in trials if (computed := cue.compute_or_none(trial)) is not None)
         z, at = next(valid, (z, at))
+        slopes = cue.jacobian(z)
     return Estimate(cue, z, covariance, at, slopes, misfit, converged, outlier_probability)
 
 
@@ -241,9 +253,15 @@ def _limited(step: Array) -> Array:
     return step * min(1.0, MAX_STEP / max(float(np.abs(step).max()), 1e-12))
 
 
-def _line_search(
-    cue: MeasuredCue, z: Array, step: Array, cost: float, measured: Array, sd: Array
-) -> tuple[Array, Array, float] | None:
+class _Trial(NamedTuple):
+    """A point of a search: its parameters, computed values and cost."""
+
+    z: Array
+    computed_values: Array
+    cost: float
+
+
+def _line_search(cue: MeasuredCue, z: Array, step: Array, cost: float, measured: Array, sd: Array) -> _Trial | None:
     """Line search: the lowest point along a step, halved while the cost decreases; None if none is below ``cost``.
 
     The first half is always tried: far from the measurements full steps oscillate.
@@ -253,8 +271,8 @@ def _line_search(
         trial = z + step / 2**halving
         computed = cue.compute_or_none(trial)
         after = np.inf if computed is None else _cost(trial, (measured - computed) / sd)
-        if computed is not None and after < (cost if best is None else best[2]):
-            best = trial, computed, after
+        if computed is not None and after < (cost if best is None else best.cost):
+            best = _Trial(trial, computed, after)
         elif best is not None:
             break
     return best

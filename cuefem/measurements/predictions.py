@@ -4,23 +4,31 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from cuefem.beam.assembly import assemble
 from cuefem.beam.modes import modes
+from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.side_strike import SideStrike, Striker, side_strike
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, Cue
 from cuefem.effects.cue_effects import PointMass, Support
 from cuefem.effects.effect import Effect
 from cuefem.results.quantities import tip_height
-from cuefem.scene import Outcome, Scene, Stroke
+from cuefem.scene import Scene, Stroke
 from cuefem.scene.solved_scene import SolvedScene
 
 N_FREQUENCIES = 8  # natural frequencies that are solved together
 STATIC_MODES = 8  # modes that the mesh of a static load resolves: error 1e-8
+
+
+class _Strike(NamedTuple):
+    """What is kept of a strike: squirt, rad, and contact time, s."""
+
+    squirt: float
+    duration: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,8 +36,9 @@ class Predictions:
     """Computed values of the measurements on a scene's cue."""
 
     scene: Scene
-    _solved: dict[tuple[Effect, ...], SolvedScene] = field(default_factory=dict, init=False, repr=False)
-    _outcomes: dict[Scene, Outcome] = field(default_factory=dict, init=False, repr=False)
+    # tip modes and results, not the solved beams: 32 of these, of a shaft with and without masses, have 35 MB
+    _tips: dict[tuple[Effect, ...], TipModes] = field(default_factory=dict, init=False, repr=False)
+    _strikes: dict[Scene, _Strike] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def suspended_effects(self) -> tuple[Effect, ...]:
@@ -53,11 +62,11 @@ class Predictions:
 
     def squirt(self, offset: float, speed: float | None = None, added_mass: tuple[float, float] | None = None) -> float:
         """Squirt of the coupled strike, rad; added_mass: mass, kg, and its position, m from the end of the tip."""
-        return float(self._strike(offset, speed, added_mass).squirt)
+        return self._strike(offset, speed, added_mass).squirt
 
     def duration(self, speed: float | None = None) -> float:
         """Contact time of a central impact, s."""
-        return float(self._strike(0.0, speed, None).duration)
+        return self._strike(0.0, speed, None).duration
 
     def end_mass(self, striker: Striker, position: float) -> float:
         """Effective transverse mass, kg, of the freely suspended shaft; position: m from the end of the tip."""
@@ -65,13 +74,16 @@ class Predictions:
         at = self.drawing_position(position, "end_mass position")
         return side_strike(SideStrike(self.scene.shaft, striker, at, effects=effects)).effective_mass
 
-    def _strike(self, offset: float, speed: float | None, added_mass: tuple[float, float] | None) -> Outcome:
+    def _strike(self, offset: float, speed: float | None, added_mass: tuple[float, float] | None) -> _Strike:
         scene = self._with_added_mass(added_mass)
         default = float(scene.stroke.speed)
         scene = replace(scene, stroke=Stroke(default if speed is None else speed, offset))
-        if scene not in self._outcomes:
-            self._outcomes[scene] = strike_modes(scene, self._solved[scene.effects].tip)
-        return self._outcomes[scene]
+        if scene not in self._strikes:
+            if scene.effects not in self._tips:
+                self._tips[scene.effects] = SolvedScene(scene).tip
+            outcome = strike_modes(scene, self._tips[scene.effects])
+            self._strikes[scene] = _Strike(float(outcome.squirt), float(outcome.duration))
+        return self._strikes[scene]
 
     def drawing_position(self, position: float, name: str) -> float:
         """Position in the drawing of a point ``position`` m from the end of the tip, m; ValueError off the shaft."""
@@ -87,11 +99,11 @@ class Predictions:
             mass, position = added_mass
             at = self.drawing_position(position, "added_mass position")
             scene = replace(scene, effects=(*scene.effects, PointMass(at, mass)))
-        self._solved.setdefault(scene.effects, SolvedScene(scene))
         return scene
 
 
-@lru_cache(maxsize=128)
+# the drawing, and two setups for each of a dozen parameters: the next derivatives are about another point
+@lru_cache(maxsize=32)
 def predictions_of(scene: Scene) -> Predictions:
     """The computed values of a scene's cue, the same object for the same scene."""
     return Predictions(scene)

@@ -1,6 +1,11 @@
 """Estimates: exact data, coverage of intervals, next measurement, limits of the geometry (verification)."""
 
+import os
+import pickle
+import subprocess
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +15,7 @@ from cuefem.measurements.estimate import Estimate, estimate
 from cuefem.measurements.measured_cue import MeasuredCue, compare
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Stiffness, Tone, Weight
 from cuefem.measurements.outliers import posterior
+from cuefem.measurements.predictions import Predictions
 from cuefem.measurements.uncertain_parameters import Prior
 from tests.helpers.measured_cues import SCENE, cheap_measurements, measured_cue
 
@@ -54,6 +60,43 @@ def test_estimate_exact_data_recovers_the_parameters() -> None:
         assert value.value == pytest.approx(parameter.value(float(each)), rel=1e-3)
         assert value.low < value.value < value.high
         assert value.error_ratio < 0.05
+
+
+def test_estimate_of_contradictory_measurements_ends_early(monkeypatch: pytest.MonkeyPatch) -> None:
+    """When the cost falls no longer: 5 derivatives of all values, not 18."""
+    points = []
+    jacobian = MeasuredCue.jacobian
+
+    def recorded(cue: MeasuredCue, z: np.ndarray) -> np.ndarray:
+        points.append(z)
+        return jacobian(cue, z)
+
+    monkeypatch.setattr(MeasuredCue, "jacobian", recorded)
+    weights = (Weight(value=value, error=5e-4) for value in (0.05, 0.1, 0.2))
+    tones = (Tone(mode=1, value=value, error=0.2) for value in (50.0, 100.0, 200.0))
+    stiffnesses = (Stiffness(value=value, error=7.0) for value in (100.0, 400.0, 1600.0))
+    assert not estimate(measured_cue(*weights, *tones, *stiffnesses)).converged
+    assert 2 <= len(points) <= 9
+
+
+def test_predictions_keep_no_solved_beams() -> None:
+    """Eight strikes with added masses leave their tip modes, 0.15 MB; the beams have 8 MB."""
+    predictions = Predictions(SCENE)
+    for mass in range(1, 9):
+        predictions.squirt(0.3, added_mass=(1e-3 * mass, 0.1))
+    assert len(pickle.dumps(predictions)) < 3e5
+
+
+@pytest.mark.nightly
+def test_estimate_of_32_beams_has_bounded_memory() -> None:
+    """players_maple, 31 added masses that contradict each other; 4.8 GB when each setup kept its beams."""
+    folder = Path(__file__).parents[2] / "studies" / "measured" / "players_maple"
+    command = [sys.executable, "-m", "cuefem", "compare", folder, "--estimate"]
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL) as running:
+        _, status, usage = os.wait4(running.pid, 0)
+        running.returncode = status
+    assert status == 0
+    assert usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024) < 2e8
 
 
 @pytest.mark.heavy
