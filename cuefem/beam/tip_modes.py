@@ -22,38 +22,60 @@ class TipModes:
 
     omega: (n,) rad/s, rigid-body modes (zero) first. amplitude: (n, 2), mass-normalised axial and transverse
     displacement (u, w) of the contact, 1/sqrt(kg). approach: (n,), modal velocities of a cue that moves axially at 1
-    m/s, sqrt(kg). rotation: (n,) of the tip's section, 1/(m sqrt(kg)). damping: (n, n) viscous, 1/s, of the modal
-    equations q'' + damping q' + omega^2 q = f, or None. radiation: (n, n), likewise, but its energy is not dissipated:
-    waves carry it into the truncated modes. geometric: (n, n), 1/(m kg), the decrease of the modal stiffness per newton
-    of axial force, or None. A lumped cue has omega = 0 throughout.
+    m/s, sqrt(kg). rotation: (n,) of the tip's section, 1/(m sqrt(kg)). The others are None where the cue has none.
+    geometric: (n, n), 1/(m kg), the decrease of the modal stiffness per newton of axial force. A lumped cue has omega =
+    0 throughout.
+
+    The modal equations are q'' + damping q' + omega^2 q = f. Their damping, (n, n), 1/s, has three parts. loss: (n,),
+    in [0, 1), the loss factor of each mode, which damps it at the rate loss omega. dashpots: (d, n), 1/sqrt(s), a row r
+    for each dashpot, which dissipates the power (r v)^2 at the modal velocities v. radiation: (n, n), 1/s, whose energy
+    is not dissipated: waves carry it into the truncated modes.
     """
 
     omega: Array
     amplitude: Array
     approach: Array
     rotation: Array
-    damping: Array | None = None
+    loss: Array | None = None
+    dashpots: Array | None = None
     radiation: Array | None = None
     geometric: Array | None = None
 
     @property
-    def total_damping(self) -> Array | None:
-        """Damping and radiation together, (n, n), 1/s; None without either."""
-        matrices = [matrix for matrix in (self.damping, self.radiation) if matrix is not None]
-        return sum(matrices[1:], matrices[0]) if matrices else None
+    def damping(self) -> Array:
+        """Damping matrix of the modal equations, all parts together, (n, n), 1/s."""
+        matrix = np.zeros((len(self.omega), len(self.omega)))
+        if self.loss is not None:
+            matrix += np.diag(self.loss * self.omega)
+        if self.dashpots is not None:
+            matrix += self.dashpots.T @ self.dashpots
+        if self.radiation is not None:
+            matrix += self.radiation
+        return matrix
 
     @cached_property
     def without_geometric_stiffness(self) -> TipModes:
         """These modes without geometric stiffness."""
         return self if self.geometric is None else replace(self, geometric=None)
 
+    @cached_property
+    def lateral(self) -> TipModes:
+        """The modes that move the tip transversely, without geometric stiffness."""
+        return self.without_geometric_stiffness.subset(np.flatnonzero(self.amplitude[:, 1]))
+
     def subset(self, index: NDArray[np.intp]) -> TipModes:
         """The modes of these indices, in their order."""
-        matrices = (self.damping, self.radiation, self.geometric)
-        subsets = (None if matrix is None else matrix[np.ix_(index, index)] for matrix in matrices)
-        damping, radiation, geometric = (matrix if matrix is not None and matrix.any() else None for matrix in subsets)
-        omega, amplitude, approach, rotation = self.omega, self.amplitude, self.approach, self.rotation
-        return TipModes(omega[index], amplitude[index], approach[index], rotation[index], damping, radiation, geometric)
+        square = np.ix_(index, index)
+        return TipModes(
+            omega=self.omega[index],
+            amplitude=self.amplitude[index],
+            approach=self.approach[index],
+            rotation=self.rotation[index],
+            loss=None if self.loss is None else self.loss[index],
+            dashpots=None if self.dashpots is None else self.dashpots[:, index],
+            radiation=None if self.radiation is None else self.radiation[square],
+            geometric=None if self.geometric is None else self.geometric[square],
+        )
 
     def with_axial_modes(self, omega: Array, axial: Array, radiation: Array | None = None) -> TipModes:
         """These modes followed by n undamped axial modes of tip amplitude ``axial``, (n,), 1/sqrt(kg).
@@ -61,18 +83,19 @@ class TipModes:
         radiation: of the last of them, if they have a truncation correction.
         """
         n, n_before = len(omega), len(self.omega)
-        bending = None if self.radiation is None else np.pad(self.radiation, (0, n))
+        both = None if self.radiation is None else np.pad(self.radiation, (0, n))
         if radiation is not None:
             axial_radiation = np.pad(radiation, (n_before + n - len(radiation), 0))
-            bending = axial_radiation if bending is None else bending + axial_radiation
+            both = axial_radiation if both is None else both + axial_radiation
         return TipModes(
-            np.concatenate([self.omega, omega]),
-            np.concatenate([self.amplitude, np.column_stack([axial, np.zeros(n)])]),
-            np.concatenate([self.approach, np.zeros(n)]),
-            np.concatenate([self.rotation, np.zeros(n)]),
-            None if self.damping is None else np.pad(self.damping, (0, n)),
-            bending,
-            None if self.geometric is None else np.pad(self.geometric, (0, n)),
+            omega=np.concatenate([self.omega, omega]),
+            amplitude=np.concatenate([self.amplitude, np.column_stack([axial, np.zeros(n)])]),
+            approach=np.pad(self.approach, (0, n)),
+            rotation=np.pad(self.rotation, (0, n)),
+            loss=None if self.loss is None else np.pad(self.loss, (0, n)),
+            dashpots=None if self.dashpots is None else np.pad(self.dashpots, ((0, 0), (0, n))),
+            radiation=both,
+            geometric=None if self.geometric is None else np.pad(self.geometric, (0, n)),
         )
 
     def ascending(self) -> TipModes:
@@ -99,8 +122,8 @@ def lumped_tip_modes(cue: LumpedCue) -> TipModes:
 def tip_modes(bending: Modes, axial_mass: float) -> TipModes:
     """Tip modes from bending modes and a rigid-body axial mode of ``axial_mass`` kg, which comes first."""
     omega = np.concatenate([np.zeros(bending.rigid), bending.omega])
-    damping, radiation = _resistances(bending, 1 + len(omega))
-    return replace(free_tip_modes(omega, *bending.at_tip, axial_mass), damping=damping, radiation=radiation)
+    dashpots, radiation = _dampers(bending, 1 + len(omega))
+    return replace(free_tip_modes(omega, *bending.at_tip, axial_mass), dashpots=dashpots, radiation=radiation)
 
 
 def free_tip_modes(omega: Array, deflection: Array, rotation: Array, axial_mass: float) -> TipModes:
@@ -120,17 +143,19 @@ def side_modes(bending: Modes) -> TipModes:
     """
     deflection, rotation = bending.at_tip
     omega = np.concatenate([np.zeros(bending.rigid), bending.omega])
-    damping, radiation = _resistances(bending, len(omega))
+    dashpots, radiation = _dampers(bending, len(omega))
     amplitude = np.column_stack([-deflection, np.zeros(len(omega))])
-    return TipModes(omega, amplitude, np.zeros(len(omega)), rotation, damping, radiation)
+    return TipModes(omega, amplitude, np.zeros(len(omega)), rotation, dashpots=dashpots, radiation=radiation)
 
 
-def _resistances(bending: Modes, count: int) -> tuple[Array | None, Array | None]:
-    """Damping by dashpots, and radiation, (n, n), 1/s, of ``count`` modes, the last of which are ``bending``."""
-    damping = None
+def _dampers(bending: Modes, count: int) -> tuple[Array | None, Array | None]:
+    """Dashpots and radiation of ``count`` modes, the last of which are ``bending``, as in `TipModes`."""
+    dashpots, radiation = None, None
     if bending.system.dashpots is not None:
         vectors = np.concatenate([bending.rigid_vectors, bending.vectors], axis=1)
-        modal = vectors.T @ (bending.system.dashpots[:, None] * vectors)
-        damping = np.pad(modal, (count - len(modal), 0))
-    radiation = None if bending.radiation is None else np.pad(bending.radiation, (count - len(bending.radiation), 0))
-    return damping, radiation
+        at = np.flatnonzero(bending.system.dashpots)
+        rows = np.sqrt(bending.system.dashpots[at])[:, None] * vectors[at]
+        dashpots = np.pad(rows, ((0, 0), (count - rows.shape[1], 0)))
+    if bending.radiation is not None:
+        radiation = np.pad(bending.radiation, (count - len(bending.radiation), 0))
+    return dashpots, radiation

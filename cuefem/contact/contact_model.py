@@ -59,14 +59,15 @@ class ContactModel:
     @property
     def inverse_mass(self) -> Array:
         """Inverse mass of the contact at the first touch, (forces, forces), 1/kg."""
-        ports = len(self.propagator.rows)
+        ports = len(self.propagator.ports)
         cue, ball = self.kinematics[:, :ports], self.kinematics[:, ports:]
-        return np.asarray(cue @ self.propagator.mobility @ cue.T + (ball * self.inverse_masses) @ ball.T)
+        mobility = self.propagator.mobility[:ports, :ports]
+        return np.asarray(cue @ mobility @ cue.T + (ball * self.inverse_masses) @ ball.T)
 
     @property
     def approach(self) -> Array:
         """Velocities of the contact (t, n) at the first touch, m/s."""
-        cue = self.propagator.rows @ self.propagator.approach * self.speed
+        cue = self.propagator.ports @ self.propagator.tip.approach * self.speed
         return np.asarray(self.kinematics @ np.concatenate([cue, self.ball]))[:2]
 
     @property
@@ -86,7 +87,7 @@ class ContactModel:
     @property
     def unknowns(self) -> int:
         """Number of state variables: modal displacements and velocities, the ball's, and the tip's."""
-        omega = self.propagator.omega
+        omega = self.propagator.tip.omega
         forces = len(self.kinematics)
         rolls, has_compliance = bool(self.terms.get("rolling")), self.patch != RIGID_PATCH
         n_tip_and_ball = {2: 3 + 2 * rolls + has_compliance, 6: 8}[forces]

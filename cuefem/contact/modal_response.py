@@ -1,180 +1,246 @@
-"""Modal propagation: the exact response of a cue's modes to loads at its tip.
+"""Modal propagation: the exact response of a cue's modes to loads at its tip that are constant over a time step.
 
-An undamped mode of angular frequency omega is one complex coordinate xi = v + i omega q, with xi' = i omega xi + input.
-Modes that a damper couples are replaced by the eigenvectors of their group. The velocities of ports and slopes are
-Re(output_rows xi). All of it depends on the cue alone: strikes at other speeds and offsets share it.
+The state of a mode of angular frequency omega is its velocity v and a = omega q, its displacement in the same unit.
+Under a modal load f, v' = -loss omega v - omega a + f and a' = omega v. Three kinds of damping act:
+
+- the loss factor of a mode stays within its own 2 x 2 block, which has a closed form (`Oscillators`);
+- radiation couples the few modes of the truncation correction, which a matrix exponential propagates
+  (`cuefem.contact.coupled_modes`);
+- a dashpot is one more port of the cue: its force over a step opposes its mean velocity over that step.
+
+All of it depends on the cue and the length of a step: strikes at other speeds and offsets share it.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
+from dataclasses import replace
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.geometric_stiffness import half_octave, slope_rows
 from cuefem.cue import Array
 
-Complex = NDArray[np.complex128]
-Index = NDArray[np.intp]
-# Above MAX_CONDITION the eigenvectors of coupled modes lose accuracy. The diagonal is then shifted by up to
-# DIAGONAL_SHIFT of the norm, which separates equal eigenvalues.
-MAX_CONDITION, DIAGONAL_SHIFT = 1e7, 1e-9
+if TYPE_CHECKING:
+    from cuefem.contact.coupled_modes import CoupledModes
+
+# Gauss points of a step in the integral of a mode's loss: these, and one more per radian of its fastest oscillation.
+# Relative error 1e-14 at 1 and at 100 rad; more than MAX_LOSS_POINTS are not needed by steps that resolve a contact.
+LOSS_POINTS, MAX_LOSS_POINTS = 8, 108
+
+
+NOTHING = np.zeros(0)  # a table that no mode has
+
+
+class Oscillators(NamedTuple):
+    """Uncoupled modes after a time t, s, each array (n,), from the state (v, a) under a constant modal load f.
+
+    v becomes v_v v - sine a + t mean f, and a becomes a_a a + sine v + t z versine f, with z = omega t. The mean of v
+    is mean v - z versine a + t versine f. Without loss v_v = a_a = cos z, sine = sin z, mean = sin(z)/z and versine =
+    (1 - cos z)/z^2.
+    """
+
+    v_v: Array
+    sine: Array
+    a_a: Array
+    mean: Array
+    versine: Array
+
+    @classmethod
+    def after(cls, t: float | Array, omega: Array, loss: Array) -> Oscillators:
+        """With x = loss z/2 and y^2 = z^2 - x^2 the impulse response is exp(-x) sin(y)/y.
+
+        z^2 versine = 1 - a_a is a sum of 1 - exp(-x) - x mean and exp(-x) (1 - cos y), which are not negative.
+        """
+        z, ratio = omega * t, loss / 2
+        x, y = ratio * z, np.sqrt(1 - ratio**2) * z
+        decay = np.exp(-x)
+        mean = decay * np.sinc(y / np.pi)
+        from_decay = (-np.expm1(-x) - x * mean) / np.where(z > 0, z**2, 1.0)
+        versine = from_decay + decay * (1 - ratio**2) * np.sinc(y / (2 * np.pi)) ** 2 / 2
+        a_a = 1 - z**2 * versine
+        return cls(v_v=a_a - 2 * x * mean, sine=z * mean, a_a=a_a, mean=mean, versine=versine)
+
+
+def structural_loss(h: float, omega: Array, loss: Array) -> Array:
+    """The energy that uncoupled modes lose in a step, (3, n): coefficients of v^2, v g and g^2, with g = f - omega a.
+
+    Over the step the velocity is v_v(t) v + t mean(t) g. Its square is integrated at Gauss points.
+    """
+    fastest = float(np.max(omega, initial=0.0)) * h
+    points, weights = np.polynomial.legendre.leggauss(min(LOSS_POINTS + int(fastest), MAX_LOSS_POINTS))
+    coefficients = np.zeros((3, len(omega)))
+    for point, weight in zip((points + 1) / 2, weights / 2, strict=True):
+        after = Oscillators.after(point * h, omega, loss)
+        per_v, per_g = after.v_v, point * h * after.mean
+        coefficients += weight * np.array([per_v**2, 2 * per_v * per_g, per_g**2])
+    return np.asarray(h * loss * omega * coefficients)
+
+
+class _RowVelocities(NamedTuple):
+    """Velocities of ports, slopes and dashpots in a step: of_state: (r, 2 n), from the state. of_loads: (r, r)."""
+
+    of_state: Array
+    of_loads: Array
+
+    def with_dashpots(self, dashpots: Array) -> _RowVelocities:
+        """Those of the c ports and slopes, with the d dashpots' forces, (d, 2 n + c), from the state and the loads."""
+        n, c = self.of_state.shape[1], len(self.of_loads) - len(dashpots)
+        per_force = self.of_loads[:c, c:]
+        return _RowVelocities(
+            of_state=self.of_state[:c] + per_force @ dashpots[:, :n],
+            of_loads=self.of_loads[:c, :c] + per_force @ dashpots[:, n:],
+        )
+
+
+class StepTables(NamedTuple):
+    """What the modes do in a step of the length h, s: the structure of the same name in kernel/contact.h.
+
+    c is the number of ports and slopes, d that of dashpots, n that of modes, m that of radiating modes. A state is (2
+    n,): the velocities, then a.
+
+    own: (3, n), v_v, sine and a_a of `Oscillators`; 0 of the modes that radiate. ends, means: (c, 2 n), from the state
+    to the velocities of ports and slopes at the end of the step and on average over it, dashpots included.
+    end_per_load, mean_per_load: (c, c), the same from loads on ports and slopes. response: (c + d, 2 n), change of the
+    state of the modes that do not radiate, per load. dashpots: (d, 2 n + c), the dashpots' forces from the state and
+    the loads. loss: (3, n), of `structural_loss`. radiating: (2 m, 3 m), state of the modes that radiate, from the x of
+    `CoupledModes`. radiated, dissipated: (3 m, 3 m), their losses by radiation and by loss factors, quadratic forms in
+    x.
+    """
+
+    h: float
+    own: Array
+    ends: Array
+    means: Array
+    end_per_load: Array
+    mean_per_load: Array
+    response: Array
+    dashpots: Array
+    loss: Array
+    radiating: Array
+    radiated: Array
+    dissipated: Array
 
 
 class ModalPropagator:
-    """Tip modes and their ports in the complex coordinates that the compiled kernel propagates.
+    """Tip modes and their ports, and the tables by which the compiled kernel propagates them.
 
-    rows: (ports, modes), output and input matrix of the ports, 1/sqrt(kg). slopes: (slopes, modes), the same for the
-    slopes of the bent cue (`cuefem.contact.geometric_stiffness`); empty without geometric stiffness. omega, approach:
-    of the tip modes. eigenvalues: (coordinates,), 1/s, i omega of an undamped mode. displacements, velocities: (modes,
-    coordinates), from the coordinates to omega q and the modal velocities. modal_inputs: (coordinates, modes), from
-    modal velocities to coordinates. dampers: (rows, modes), rows r of the damping and then of the radiation, whose
-    (r v)^2 add up to the power, W, at the modal velocities v. n_dissipative: number of the first of these, whose energy
-    is dissipated; the others radiate it.
+    tip: the modes, (n,). ports: (p, n), rows of the ports over the modal velocities, 1/sqrt(kg). slopes: (s, n), rows
+    of the slopes of the bent cue (`cuefem.contact.geometric_stiffness`); none without geometric stiffness. loss: (n,)
+    and dashpots: (d, n), those of the modes. radiating: (m,), indices of the modes that radiate.
     """
 
-    def __init__(self, tip: TipModes, rows: Array, slopes: Array) -> None:
-        self.rows, self.slopes, self.omega, self.approach = rows, slopes, tip.omega, tip.approach
-        omega, count = tip.omega, len(tip.omega)
-        resistance = np.zeros((count, count)) if tip.total_damping is None else tip.total_damping
-        coupled = resistance != 0
-        groups = [_uncoupled_modes(omega, np.flatnonzero(~coupled.any(axis=1)))]
-        groups += [_couple(omega, resistance, group) for group in _coupled_groups(coupled)]
-        self.eigenvalues = np.concatenate([group.eigenvalues for group in groups])
-        self.displacements, self.velocities = (np.zeros((count, len(self.eigenvalues)), complex) for _ in range(2))
-        self.modal_inputs = np.zeros((len(self.eigenvalues), count), complex)
-        first = 0
-        for group in groups:
-            columns = slice(first, first + len(group.eigenvalues))
-            self.displacements[group.modes, columns], self.velocities[group.modes, columns] = (
-                group.displacements,
-                group.velocities,
-            )
-            self.modal_inputs[columns, group.modes] = group.modal_inputs
-            first = columns.stop
-        dampers = [_power_rows(damping) for damping in (tip.damping, tip.radiation) if damping is not None]
-        self.n_dissipative = len(dampers[0]) if tip.damping is not None else 0
-        self.dampers = np.concatenate([np.zeros((0, count)), *dampers])
-
-    @property
-    def loaded_rows(self) -> Array:
-        """Input rows of the ports, then of the slopes, (ports + slopes, modes)."""
-        return np.concatenate([self.rows, self.slopes])
+    def __init__(self, tip: TipModes, ports: Array, slopes: Array) -> None:
+        n = len(tip.omega)
+        self.tip, self.ports, self.slopes = tip, ports, slopes
+        self.loss = np.zeros(n) if tip.loss is None else tip.loss
+        self.dashpots = np.zeros((0, n)) if tip.dashpots is None else tip.dashpots
+        radiation = np.zeros((n, n)) if tip.radiation is None else tip.radiation
+        self.radiating = np.flatnonzero(radiation.any(axis=1))
+        self._radiation = radiation[np.ix_(self.radiating, self.radiating)]
+        self._group_loss = np.diag((self.loss * tip.omega)[self.radiating])
+        self.tables = lru_cache(maxsize=8)(self._tables)
 
     @cached_property
-    def approach_state(self) -> Complex:
-        """Coordinates of a cue that moves along its axis at 1 m/s."""
-        return np.asarray(self.modal_inputs @ self.approach, complex)
+    def _group(self) -> CoupledModes:
+        """The modes that radiate."""
+        from cuefem.contact.coupled_modes import CoupledModes  # loaded when used: a lumped cue needs no SciPy
+
+        return CoupledModes(self.tip.omega[self.radiating], self._radiation + self._group_loss)
 
     @property
+    def dissipates(self) -> bool:
+        """Whether dashpots or loss factors take energy from the modes."""
+        return bool(self.loss.any() or self.dashpots.any())
+
+    @cached_property
+    def rows(self) -> Array:
+        """Rows of the ports, of the slopes and of the dashpots, (ports + slopes + dashpots, modes)."""
+        return np.concatenate([self.ports, self.slopes, self.dashpots])
+
+    @cached_property
     def mobility(self) -> Array:
-        """Inverse masses of the ports, (ports, ports), 1/kg."""
-        return np.asarray(self.rows @ self.rows.T)
+        """Velocities of ports and slopes per impulse on them, 1/kg."""
+        rows = np.concatenate([self.ports, self.slopes])
+        return np.asarray(rows @ rows.T)
 
-    @cached_property
-    def output_rows(self) -> Complex:
-        """From the coordinates to the velocities of ports and slopes, (ports + slopes, coordinates), as real parts."""
-        return np.ascontiguousarray(self.loaded_rows @ self.velocities)
+    def _tables(self, h: float) -> StepTables:
+        omega, rows = self.tip.omega, self.rows
+        by_itself = np.ones(len(omega))
+        by_itself[self.radiating] = 0
+        after = Oscillators(*(by_itself * array for array in Oscillators.after(h, omega, self.loss)))
+        rise = omega * h * after.versine
+        end = _RowVelocities(np.hstack([rows * after.v_v, -rows * after.sine]), h * (rows * after.mean) @ rows.T)
+        mean = _RowVelocities(np.hstack([rows * after.mean, -rows * rise]), h * (rows * after.versine) @ rows.T)
+        radiating, radiated, dissipated = self._add_radiating(h, end, mean)
+        # A dashpot's force is minus its mean velocity, which the state and all forces determine.
+        c = len(self.ports) + len(self.slopes)
+        own_response = np.eye(len(self.dashpots)) + mean.of_loads[c:, c:]
+        dashpots = np.asarray(
+            -np.linalg.solve(own_response, np.hstack([mean.of_state[c:], mean.of_loads[c:, :c]])), float
+        )
+        end, mean = end.with_dashpots(dashpots), mean.with_dashpots(dashpots)
+        arrays = {
+            "own": np.array([after.v_v, after.sine, after.a_a]),
+            "ends": end.of_state,
+            "means": mean.of_state,
+            "end_per_load": end.of_loads,
+            "mean_per_load": mean.of_loads,
+            "response": h * np.hstack([rows * after.mean, rows * rise]),
+            "dashpots": dashpots,
+            "loss": structural_loss(h, omega, by_itself * self.loss) if self.loss.any() else NOTHING,
+            "radiating": radiating,
+            "radiated": radiated,
+            "dissipated": dissipated,
+        }
+        return StepTables(h, **{name: np.ascontiguousarray(array) for name, array in arrays.items()})
 
-    @cached_property
-    def input_rows(self) -> Complex:
-        """Change of the coordinates per unit impulse on ports and slopes, (ports + slopes, coordinates)."""
-        return np.ascontiguousarray((self.modal_inputs @ self.loaded_rows.T).T)
+    def _add_radiating(self, h: float, end: _RowVelocities, mean: _RowVelocities) -> tuple[Array, Array, Array]:
+        """Add the modes that radiate to the rows' velocities in a step; their own tables of `StepTables`."""
+        m, rows = len(self.radiating), self.rows[:, self.radiating]
+        if not m:
+            return NOTHING, NOTHING, NOTHING
+        columns = np.append(self.radiating, len(self.tip.omega) + self.radiating)
+        state, mean_velocity = self._group.after(h)
+        for velocities, of_group in ((end, state[:m]), (mean, mean_velocity)):
+            velocities.of_state[:, columns] += rows @ of_group[:, : 2 * m]
+            velocities.of_loads[:] += rows @ of_group[:, 2 * m :] @ rows.T
+        dissipated = self._group.energy_lost(h, self._group_loss) if self.loss.any() else NOTHING
+        return state, self._group.energy_lost(h, self._radiation), dissipated
 
-    @cached_property
-    def _damper_rows(self) -> Complex:
-        return np.asarray((self.dampers @ self.velocities).T)
+    def advanced(self, states: Array, loads: Array, times: Array) -> Array:
+        """States after k times, s, (k, 2, n), from states, (k, 2, n), under modal loads, (k, n), dashpots' included."""
+        t, omega, m = times[:, None], self.tip.omega, len(self.radiating)
+        v, a = states[:, 0], states[:, 1]
+        after = Oscillators.after(t, omega, self.loss)
+        v_after = after.v_v * v - after.sine * a + t * after.mean * loads
+        a_after = after.sine * v + after.a_a * a + t**2 * omega * after.versine * loads
+        result = np.stack([v_after, a_after], axis=1)
+        if m:
+            x = np.concatenate([states[:, :, self.radiating].reshape(-1, 2 * m), loads[:, self.radiating]], axis=1)
+            moved = [self._group.state_after(time) @ start for time, start in zip(times, x, strict=True)]
+            result[:, :, self.radiating] = np.reshape(moved, (-1, 2, m))
+        return result
 
-    def dissipated(self, xi: Complex, lengths: Array) -> Array:
-        """Energy dissipated and radiated in each of n steps, (n, 2), J; xi: (n + 1, coordinates), at their ends.
+    def modal_loads(self, states: Array, lengths: Array) -> Array:
+        """The constant modal loads of k steps, (k, n), from the states at their ends, (k + 1, 2, n).
 
-        The dampers' velocities are parabolas with the values v, w at the ends of a step and the mean m over it, whose
-        squares have the mean (4 v^2 + 4 w^2 - 2 v w)/30 + m (6 m - v - w)/5. Under constant loads the mean of xi is
-        (phi_1 - exp(z) phi_2/phi_1) xi_0 + phi_2/phi_1 xi_1.
+        lengths: (k,), s. The loads of an impact, a step of no length, are 0.
         """
-        ends, means = (xi @ self._damper_rows).real, np.zeros((len(lengths), len(self.dampers)))
-        for length in np.unique(lengths[lengths > 0]):
-            steps = np.flatnonzero(lengths == length)
-            exp_z, phi_1, phi_2 = phi_functions(self.eigenvalues * length)
-            before, after = (phi_1 - exp_z * phi_2 / phi_1)[:, None], (phi_2 / phi_1)[:, None]
-            means[steps] = (xi[steps] @ (before * self._damper_rows) + xi[steps + 1] @ (after * self._damper_rows)).real
-        v, w = ends[:-1], ends[1:]
-        squares = (4 * v**2 + 4 * w**2 - 2 * v * w) / 30 + means * (6 * means - v - w) / 5
-        squares *= lengths[:, None]
-        dissipated, radiated = np.split(squares, [self.n_dissipative], axis=1)
-        return np.column_stack([dissipated.sum(axis=1), radiated.sum(axis=1)])
-
-
-def phi_functions(z: Complex) -> tuple[Complex, Complex, Complex]:
-    """exp(z), phi_1 = (exp(z) - 1)/z and phi_2 = (phi_1 - 1)/z, of a mode's response to a constant load."""
-    large = np.abs(z) > 0.5
-    nonzero = np.where(large, z, 1.0)
-    phi_2 = np.where(
-        large, (np.exp(nonzero) - 1 - nonzero) / nonzero**2, sum(z ** (n - 2) / math.factorial(n) for n in range(2, 16))
-    )
-    return 1 + z * (1 + z * phi_2), 1 + z * phi_2, phi_2
-
-
-class _Group(NamedTuple):
-    """Uncoupled modes, or a group coupled by dampers, in uncoupled coordinates (`ModalPropagator`)."""
-
-    modes: Index
-    eigenvalues: Complex
-    displacements: Complex
-    velocities: Complex
-    modal_inputs: Complex
-
-
-def _uncoupled_modes(omega: Array, modes: Index) -> _Group:
-    """Each mode is a coordinate v + i omega q, a rigid one its velocity."""
-    one = np.eye(len(modes), dtype=complex)
-    return _Group(modes, np.asarray(1j * omega[modes], complex), -1j * one * (omega[modes] > 0), one, one)
-
-
-def _couple(omega: Array, resistance: Array, modes: Index) -> _Group:
-    """The eigenvectors of (omega q, v)' = (omega v, -omega (omega q) - C v); one of each conjugate pair, doubled."""
-    vibrating = np.flatnonzero(omega[modes])  # a rigid mode has no displacement among the states
-    count, rates = len(vibrating), omega[modes[vibrating]]
-    states = np.zeros((count + len(modes), count + len(modes)))
-    states[count:, count:] = -resistance[modes[:, None], modes]
-    states[np.arange(count), count + vibrating], states[count + vibrating, np.arange(count)] = rates, -rates
-    eigenvalues, right = np.linalg.eig(states)
-    if np.linalg.cond(right, "fro") > MAX_CONDITION:  # equal eigenvalues, as of a critically damped mode
-        perturbation = DIAGONAL_SHIFT * np.linalg.norm(states) * np.diag(np.linspace(-1.0, 0.0, len(states)))
-        eigenvalues, right = np.linalg.eig(states + perturbation)
-    left = np.linalg.inv(right).astype(complex)
-    upper = np.flatnonzero(eigenvalues.imag >= 0)
-    right = (right[:, upper] * np.where(eigenvalues[upper].imag > 0, 2.0, 1.0)).astype(complex)
-    displacements = np.zeros((len(modes), len(upper)), complex)
-    displacements[vibrating] = right[:count]
-    velocities, modal_inputs = np.asarray(right[count:], complex), np.asarray(left[upper][:, count:], complex)
-    return _Group(modes, eigenvalues[upper].astype(complex), displacements, velocities, modal_inputs)
-
-
-def _coupled_groups(coupled: Any) -> Iterator[Index]:
-    """The groups of modes that damping couples with each other."""
-    remaining = coupled.any(axis=1)
-    while remaining.any():
-        group = coupled[np.argmax(remaining)]
-        while (extended := coupled[group].any(axis=0) | group).sum() > group.sum():
-            group = extended
-        yield np.flatnonzero(group)
-        remaining &= ~group
-
-
-def _power_rows(damping: Array) -> Array:
-    """Rows r over the modes, with the power of a damping matrix as the sum of (r v)^2, v the modal velocities."""
-    modes = np.flatnonzero(damping.any(axis=1))
-    rates, directions = np.linalg.eigh(damping[np.ix_(modes, modes)])
-    positive = rates > 1e-14 * rates.max(initial=0.0)
-    rows = np.zeros((int(positive.sum()), len(damping)))
-    rows[:, modes] = (directions[:, positive] * np.sqrt(rates[positive])).T
-    return rows
+        loads, steps, m = np.zeros((len(lengths), len(self.tip.omega))), np.flatnonzero(lengths), len(self.radiating)
+        t = lengths[steps, None]
+        change = states[steps + 1] - self.advanced(states[steps], loads[steps], lengths[steps])
+        after = Oscillators.after(t, self.tip.omega, self.loss)
+        v_per_load, a_per_load = t * after.mean, t**2 * self.tip.omega * after.versine
+        loads[steps] = (change[:, 0] * v_per_load + change[:, 1] * a_per_load) / (v_per_load**2 + a_per_load**2)
+        for length in np.unique(lengths[steps]) if m else ():
+            same = lengths[steps] == length
+            per_load = self._group.state_after(length)[:, 2 * m :]
+            of_group = change[same][:, :, self.radiating].reshape(-1, 2 * m)
+            loads[np.ix_(steps[same], self.radiating)] = of_group @ np.linalg.pinv(per_load).T
+        return loads
 
 
 def propagator_of(tip: TipModes, ports: str = "straight", time: float = 0.0, window: float = 0.0) -> ModalPropagator:
@@ -198,16 +264,23 @@ def _propagator(tip: TipModes, ports: str, time: float, end: float) -> ModalProp
 def _in_two_planes(tip: TipModes, slopes: Array) -> tuple[TipModes, Array, Array]:
     """Modes, rows of the ports (u, w, p) and slopes: each bending mode a second time, in the plane out of (u, w)."""
     bending = np.flatnonzero(tip.amplitude[:, 1] != 0)
-    count, n_bending = len(tip.omega), len(bending)
-    indices = np.append(np.arange(count), bending)
-    one_plane = np.equal.outer(np.arange(len(indices)) < count, np.arange(len(indices)) < count)
-    amplitude, zeros = np.pad(tip.amplitude, ((0, n_bending), (0, 0))), np.zeros(n_bending)
-    damping, radiation = (
-        None if matrix is None else matrix[np.ix_(indices, indices)] * one_plane
-        for matrix in (tip.damping, tip.radiation)
+    count = len(tip.omega)
+    modes = np.append(np.arange(count), bending)
+    is_second = np.arange(len(modes)) >= count
+    both = tip.subset(modes)
+    amplitude, out_of_plane = both.amplitude.copy(), np.where(is_second, both.amplitude[:, 1], 0.0)
+    amplitude[is_second] = 0.0
+
+    def in_each_plane(rows: Array) -> Array:
+        return np.concatenate([np.where(is_second, 0.0, rows), np.where(is_second, rows, 0.0)])
+
+    two_planes = replace(
+        both,
+        amplitude=amplitude,
+        approach=np.where(is_second, 0.0, both.approach),
+        rotation=np.where(is_second, 0.0, both.rotation),
+        dashpots=None if both.dashpots is None else in_each_plane(both.dashpots),
+        radiation=None if both.radiation is None else both.radiation * np.equal.outer(is_second, is_second),
+        geometric=None,
     )
-    approach, rotation = np.append(tip.approach, zeros), np.append(tip.rotation, zeros)
-    modes = TipModes(tip.omega[indices], amplitude, approach, rotation, damping, radiation)
-    rows = np.concatenate([amplitude.T, np.append(np.zeros(count), tip.amplitude[bending, 1])[None]])
-    out_of_plane = np.pad(slopes[:, bending], ((0, 0), (count, 0)))
-    return modes, rows, np.concatenate([np.pad(slopes, ((0, 0), (0, n_bending))), out_of_plane])
+    return two_planes, np.concatenate([amplitude.T, out_of_plane[None]]), in_each_plane(slopes[:, modes])

@@ -13,12 +13,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import expm
 
 from cuefem.beam.modes import Modes
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.contact_model import model_of
-from cuefem.contact.modal_response import Complex, phi_functions
+from cuefem.contact.coupled_modes import CoupledModes
 from cuefem.contact.step_records import SolvedContact, solve_contact
 from cuefem.contact.strike import steps_of
 from cuefem.cue import Array
@@ -175,30 +176,46 @@ def _bending(bending: Modes, tip: TipModes) -> tuple[Array, Any]:
 def _path(contact: SolvedContact, times: Array) -> tuple[Array, Array]:
     """Displacements of the modes, (modes, times), and of the ball along each of its velocities, m, (times, n).
 
-    Under a load that is constant over a step of length h, xi = exp(s t) xi_0 + a (exp(s t) - 1)/s with the eigenvalue
-    s, and its integral follows; a follows from xi at the step's end. After the contact cue and ball move freely.
+    The loads of a step, constant over it, follow from the states at its ends. After the contact cue and ball move
+    freely.
     """
     assert contact.states is not None
-    p, model, steps = contact.model.propagator, contact.model, contact.steps
-    ends, rigid = np.append(0.0, steps["time"]), p.omega == 0
-    lengths, nonzero = np.append(steps["length"], 0.0), np.flatnonzero(steps["length"])
+    propagator, states, lengths = contact.model.propagator, contact.states, contact.steps["length"]
+    ends, rigid = np.append(0.0, contact.steps["time"]), propagator.tip.omega == 0
     step = np.searchsorted(ends, times, side="right") - 1  # the step of each time; after the last, free motion
-    t, h = (times - ends[step])[:, None], lengths[nonzero, None]
-    balls = np.vstack([model.ball, steps["ball"][:, : len(model.ball)]])
-    loads, accelerations = np.zeros_like(contact.states), np.zeros_like(balls)
-    exp_z, phi_1, _ = phi_functions(p.eigenvalues * h)
-    loads[nonzero] = (contact.states[nonzero + 1] - exp_z * contact.states[nonzero]) / (h * phi_1)
-    accelerations[nonzero] = (balls[nonzero + 1] - balls[nonzero]) / h
-    xi, integral = _driven(contact.states[step], loads[step], p.eigenvalues, t)
-    integrals = _driven(contact.states[:-1], loads[:-1], p.eigenvalues, lengths[:-1, None])[1] @ p.velocities[rigid].T
-    rigid_displacements = np.vstack([np.zeros(int(rigid.sum())), np.cumsum(integrals.real, axis=0)])
-    ball_path = np.vstack([0 * balls[:1], np.cumsum(lengths[:-1, None] * (balls[1:] + balls[:-1]) / 2, axis=0)])
-    displacements = (xi @ p.displacements.T).real / np.where(rigid, 1.0, p.omega)
-    displacements[:, rigid] = rigid_displacements[step] + (integral @ p.velocities[rigid].T).real
-    return displacements.T, ball_path[step] + t * (balls[step] + t * accelerations[step] / 2)
+    t = times - ends[step]
+    loads = np.vstack([propagator.modal_loads(states, lengths), np.zeros(states.shape[2])])
+    at_times = propagator.advanced(states[step], loads[step], t)
+    travel = t[:, None] * (states[step, 0] + at_times[:, 0]) / 2  # of rigid-body modes, since the start of the step
+    flight = step == len(lengths)
+    if len(propagator.dashpots):
+        at_times[flight], travel[flight] = _damped_flight(propagator.tip, states[-1], t[flight])
+    travelled = np.cumsum(lengths[:, None] * (states[:-1, 0] + states[1:, 0]) / 2, axis=0)
+    rigid_path = np.vstack([0 * states[:1, 0], travelled])[step] + travel
+    displacements = np.where(rigid, rigid_path, at_times[:, 1] / np.where(rigid, 1.0, propagator.tip.omega))
+    return displacements.T, _ball_path(contact, step, t)
 
 
-def _driven(xi: Complex, loads: Complex, eigenvalues: Complex, t: Array) -> tuple[Complex, Complex]:
-    """Coordinates after times t, (n, 1), from ``xi`` under constant loads, and their integrals, (n, coordinates)."""
-    exp_z, phi_1, phi_2 = phi_functions(eigenvalues * t)
-    return exp_z * xi + t * phi_1 * loads, t * phi_1 * xi + t**2 * phi_2 * loads
+def _damped_flight(tip: TipModes, state: Array, times: Array) -> tuple[Array, Array]:
+    """States of free modes with dashpots after ascending times, s, (k, 2, n), and their integrals of v, (k, n)."""
+    n = len(tip.omega)
+    loads = slice(2 * n, 3 * n)
+    system = np.delete(np.delete(CoupledModes(tip.omega, tip.damping).system, loads, axis=0), loads, axis=1)
+    x = np.append(state, np.zeros(n))
+    path = []
+    for interval in np.diff(times, prepend=0.0):
+        x = expm(system * interval) @ x
+        path.append(x)
+    result = np.reshape(path, (len(times), 3, n))
+    return result[:, :2], result[:, 2]
+
+
+def _ball_path(contact: SolvedContact, step: NDArray[np.intp], t: Array) -> Array:
+    """Displacements of the ball along each of its velocities, m, (k, n), at times t after the start of each step."""
+    steps, model = contact.steps, contact.model
+    lengths, t = np.append(steps["length"], 0.0)[:, None], t[:, None]
+    velocities = np.vstack([model.ball, steps["ball"][:, : len(model.ball)]])
+    after = np.vstack([velocities[1:], velocities[-1:]])
+    accelerations = (after - velocities) / np.where(lengths > 0, lengths, 1.0) * (lengths > 0)
+    path = np.vstack([0 * velocities[:1], np.cumsum(lengths * (velocities + after) / 2, axis=0)[:-1]])
+    return np.asarray(path[step] + t * (velocities[step] + t * accelerations[step] / 2))

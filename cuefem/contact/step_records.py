@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from cuefem.contact.contact_model import PARTIAL_SLIP, RIGID_PATCH, ContactModel
 from cuefem.contact.geometric_stiffness import SlopeOutOfRange
-from cuefem.contact.kernel.library import STEP, KernelContact, library
-from cuefem.contact.modal_response import Complex
+from cuefem.contact.kernel.library import STEP, KernelContact, KernelTables, library, mode_fields
 from cuefem.contact.outcome import IMPACT, SEPARATION, History, Phase, contact_state
 from cuefem.cue import Array
 from cuefem.effects.force_law import LeatherLaw
@@ -29,7 +28,7 @@ INFINITE_FRICTION = 1e12  # finite value for infinite friction, as in kernel/ste
 STEPS_PER_CALL = 2048  # of the kernel
 MAX_CONTACT_TIMES = 200  # longest contact, in head-on contact times; beyond it the strike raises an error
 MAX_RECORDED_STEPS = 2_000_000  # 0.4 GB of records
-_RUNNING, _ENDED, _, _INDENTATION_OUT_OF_RANGE, _SLOPE_OUT_OF_RANGE, _UNSOLVED, _NO_MEMORY = range(7)
+_RUNNING, _ENDED, _, _INDENTATION_OUT_OF_RANGE, _SLOPE_OUT_OF_RANGE, _UNSOLVED = range(6)
 
 
 Steps = NDArray[np.void]
@@ -39,15 +38,16 @@ Steps = NDArray[np.void]
 class SolvedContact:
     """The solution of a contact.
 
-    steps: records (`STEP`) up to the last separation. states: (steps + 1, coordinates), modal coordinates before and
-    after each step; None unless stored. xi: final modal coordinates. ball: final velocities of the ball, m/s: (t, n)
-    and R times its spin, or above a table (t, n, p) and R times (t, n, p) of its spin. losses: J by name.
+    steps: records (`STEP`) up to the last separation. states: (steps + 1, 2, modes), state of the modes (v, omega q)
+    before and after each step; None unless stored. state: (2, modes), the final one. ball: final velocities of the
+    ball, m/s: (t, n) and R times its spin, or above a table (t, n, p) and R times (t, n, p) of its spin. losses: J by
+    name.
     """
 
     model: ContactModel
     steps: Steps
-    states: Complex | None
-    xi: Complex
+    states: Array | None
+    state: Array
     ball: Array
     losses: dict[str, float]
 
@@ -71,9 +71,8 @@ class SolvedContact:
     @property
     def cue_energy(self) -> tuple[float, float]:
         """Energies of the cue's rigid-body modes and of its vibration, J."""
-        propagator = self.model.propagator
-        displacements, velocities = (propagator.displacements @ self.xi).real, (propagator.velocities @ self.xi).real
-        rigid = propagator.omega == 0
+        velocities, displacements = self.state
+        rigid = self.model.propagator.tip.omega == 0
         vibration = displacements @ displacements + velocities[~rigid] @ velocities[~rigid]
         return float(velocities[rigid] @ velocities[rigid]) / 2, float(vibration) / 2
 
@@ -111,13 +110,13 @@ class SolvedContact:
         """The outcome of the strike."""
         model, side = self.model, self.model.side
         M, s, c = model.ball_mass, math.sin(model.phi), math.cos(model.phi)
-        (p_t, p_n), approach = self.impulse, model.propagator.approach
+        (p_t, p_n), approach = self.impulse, model.propagator.tip.approach
         inertia = float(approach @ approach)  # of a cue that moves axially as a rigid body, kg
         if model.axes is None:
             spin, axial_impulse = float(self.ball[2]), s * p_t + c * p_n
         else:  # R times the ball's spin about the vertical; the axial momentum that the cue lost
             spin = float(model.axes[2] @ self.ball[3:])
-            axial_impulse = model.speed * inertia - float(approach @ (model.propagator.velocities @ self.xi).real)
+            axial_impulse = model.speed * inertia - float(approach @ self.state[0])
         energy = self.energies(
             {
                 "initial": inertia * model.speed**2 / 2,
@@ -156,7 +155,7 @@ class SolvedContact:
             "tip loss": losses["tip"],
             "friction loss": losses["friction"],
         }
-        if model.propagator.n_dissipative:
+        if model.propagator.dissipates:
             energy["damping loss"] = losses["damping"]
         if model.patch != RIGID_PATCH:
             energy["tip shear"] = losses["shear"]
@@ -175,21 +174,19 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
     the ball does not separate; ValueError if the indentation or the slope of the shaft leaves its theory's range.
     """
     kernel, propagator = library(), model.propagator
+    sizes, modes = mode_fields(propagator)
     arrays = {
-        "eigenvalues": propagator.eigenvalues,
-        "outputs": propagator.output_rows,
-        "inputs": propagator.input_rows,
+        **modes,
+        "mobility": propagator.mobility,
         "kinematics": model.kinematics,
         "inverse_masses": model.inverse_masses,
-        "xi": propagator.approach_state * model.speed,
+        "state": np.array([model.speed * propagator.tip.approach, np.zeros_like(propagator.tip.approach)]),
         "ball": model.ball.copy(),
         **model.arrays,
     }
     arrays = {name: np.ascontiguousarray(values) for name, values in arrays.items()}
     scalars = {
-        "modes": len(propagator.eigenvalues),
-        "ports": len(propagator.rows),
-        "slopes": len(propagator.slopes),
+        **sizes,
         "forces": len(model.kinematics),
         "speeds": len(model.ball),
         "planes": 1 if model.axes is None else 2,
@@ -202,8 +199,7 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
         "window": model.window or 0.0,
     }
     c = KernelContact(**scalars | model.terms | {name: array.ctypes.data for name, array in arrays.items()})
-    records, states, dissipated = [], [arrays["xi"][None].copy()], []
-    needs_states = store_states or len(propagator.dampers) > 0
+    records, states = [], [arrays["state"][None].copy()]
     work = kernel.contact_new(ctypes.byref(c))
     if not work:
         raise MemoryError("no memory for the steps of a contact")
@@ -215,37 +211,36 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
                     "far: lower Resolution.steps, or the window of SecondHit"
                 )
             rows = np.empty(STEPS_PER_CALL, STEP)
-            after = np.empty((STEPS_PER_CALL if needs_states else 0, 2, len(propagator.eigenvalues)))
-            states_address = after.ctypes.data if needs_states else None
-            count = kernel.contact_steps(work, STEPS_PER_CALL, rows.ctypes.data, states_address)
+            after = np.empty((STEPS_PER_CALL if store_states else 0, *arrays["state"].shape))
+            tables = propagator.tables(c.next_step)
+            count = kernel.contact_steps(
+                work,
+                ctypes.byref(KernelTables.of(tables)),
+                STEPS_PER_CALL,
+                rows.ctypes.data,
+                after.ctypes.data if store_states else None,
+            )
             records.append(rows[:count])
-            if needs_states:
-                states.append(after[:count, 0] + 1j * after[:count, 1])
-                xi = np.concatenate([states[-2][-1:], states[-1]])
-                dissipated.append(propagator.dissipated(xi, rows["length"][:count]))
-                states = states if store_states else states[-1:]
+            states.append(after[:count])
     finally:
         kernel.contact_free(work)
     if c.status != _ENDED:
         raise _failure(model, c)
     tangential = c.work[0] + c.work[2]
     shear = tangential if model.patch == PARTIAL_SLIP and model.friction >= INFINITE_FRICTION else c.shear_loss
-    damping, radiated = (
-        np.concatenate([*dissipated, np.zeros((1, 2))])[: c.steps_to_last_separation].sum(axis=0).tolist()
-    )
     losses = {
         "tip": model.law.loss(c.max_indentation),
         "friction": tangential - shear,
         "shear": shear,
         "table": sum(c.work[3:]),
-        "damping": damping,
-        "radiated": radiated,
+        "damping": c.damping_loss,
+        "radiated": c.radiated,
     }
     return SolvedContact(
         model,
         np.concatenate(records)[: c.steps_to_last_separation],
         np.concatenate(states)[: c.steps_to_last_separation + 1] if store_states else None,
-        arrays["xi"],
+        arrays["state"],
         arrays["ball"],
         losses,
     )
@@ -253,8 +248,6 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
 
 def _failure(model: ContactModel, c: KernelContact) -> Exception:
     """The exception for a contact that did not end."""
-    if c.status == _NO_MEMORY:
-        return MemoryError("no memory for the steps of a contact")
     if c.status == _INDENTATION_OUT_OF_RANGE and isinstance(model.law, LeatherLaw):
         return model.law.out_of_range(c.indentation)
     if c.status == _SLOPE_OUT_OF_RANGE:

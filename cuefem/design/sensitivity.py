@@ -16,11 +16,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy.linalg
 
 from cuefem.beam.assembly import System, assemble
 from cuefem.beam.modes import solve
 from cuefem.cue import Array
-from cuefem.endmass.impulse_response import STEPS, ImpulseResponse, solve_toeplitz
+from cuefem.endmass.impulse_response import STEPS
 from cuefem.endmass.sticking_contact import StickLimit
 from cuefem.scene import Resolution, Scene
 from cuefem.scene.solved_scene import TRUNCATED_SUM_PERIODS, default_mode_count
@@ -133,36 +134,42 @@ def _densities(system: System, vectors: Array, to_K: Array, to_M: Array, gradien
 
 
 def _stick(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
-    """Derivatives of the stick end mass, by the adjoint of the linear solve for its J (`velocity_step_impulse`).
+    """Derivatives of the stick end mass, by the adjoint of the linear solve for its J.
 
-    J is a sum of ``edges`` times the impulse at the edges of the steps. The mean velocities over the steps are linear
-    in the modes' phi^2; a response R(omega) is the derivative of J to the phi^2 of a mode of this frequency.
+    The solve is that of `cuefem.endmass.impulse_response.imposed_velocity_impulse`: after the first impulse the
+    forces, constant over steps, follow from the mean velocities by a lower triangular Toeplitz matrix. All of it is
+    linear in the modes' phi^2; a response R(omega) is the derivative of J to the phi^2 of a mode of this frequency.
     """
     limit, omega = StickLimit.of(scene), np.sqrt(squares)
     T, c, K = limit.T, limit.c, limit.K
-    tip = ImpulseResponse(np.append(rigid, phi**2).astype(complex), 1j * np.append(0.0, omega))
     h, t = T / STEPS, T / STEPS * np.arange(STEPS)
-    velocity_after, column = tip.mean_velocities_with_ball(c, T)
-    first_impulse = 1 / (float(phi @ phi) + rigid + c)
-    force = solve_toeplitz(column, 1 - first_impulse * velocity_after)
-    steps = -np.diff(limit.normal_impulse(T - np.append(t, T)))
-    normal = (np.append(steps, 0.0) + np.append(0.0, steps)) / 2  # of the edges in the part of J that goes with K
-    edges = K * normal
-    edges[-1] -= 1
-    adjoint = solve_toeplitz(column, h * np.cumsum(edges[:0:-1]))[::-1]
-    of_column = -np.correlate(adjoint, force, "full")[STEPS - 1 :]
-    of_column[0] /= 2
-    impulse_adjoint = -(first_impulse**2) * (float(edges.sum()) - float(adjoint @ velocity_after))
 
-    def R(omega: Any) -> Array:
+    def mean_velocities(omega: Any) -> tuple[Array, Array]:
+        """Of modes of phi = 1, (steps, modes): after an impulse at the start, and after a force over the first step."""
         half = omega * h / 2
         mean = np.sin(half) / half
-        d_velocity_after = mean * np.cos(omega * (t[:, None] + h / 2))
-        displacement = h * mean**2 * np.cos(omega * t[:, None])
-        return np.asarray(impulse_adjoint - first_impulse * (adjoint @ d_velocity_after) + of_column @ displacement)
+        after_force = h * mean**2 * np.cos(omega * t[:, None])
+        after_force[0] /= 2
+        return mean * np.cos(omega * (t[:, None] + h / 2)), after_force
 
-    impulses = np.append(first_impulse, first_impulse + h * np.cumsum(force))
-    J, to_K, to_rigid = float(edges @ impulses), float(normal @ impulses), float(R(np.full(1, 1e-9 / T))[0])
+    of_impulse, of_force = mean_velocities(omega)
+    after_impulse, column = of_impulse @ phi**2 + rigid + c, of_force @ phi**2 + h * (rigid + c)
+    column[0] -= h * (rigid + c) / 2
+    P = limit.normal_impulse(np.append(t, T))
+    mean_P = (P[1:] + P[:-1]) / 2
+    first = -1 / (float(phi @ phi) + rigid + c)  # the velocity K P - 1 begins with -1
+    matrix = scipy.linalg.toeplitz(column, np.zeros(STEPS))
+    force = scipy.linalg.solve_triangular(matrix, K * mean_P - 1 - first * after_impulse, lower=True)
+    adjoint = scipy.linalg.solve_triangular(matrix, np.full(STEPS, h), trans="T", lower=True)
+    of_column = -np.correlate(adjoint, force, "full")[STEPS - 1 :]
+
+    def R(omega: Any) -> Array:
+        of_impulse, of_force = mean_velocities(omega)
+        return np.asarray(
+            first**2 * (1 - float(adjoint @ after_impulse)) - first * (adjoint @ of_impulse) + of_column @ of_force
+        )
+
+    J, to_K, to_rigid = first + h * float(force.sum()), float(adjoint @ mean_P), float(R(np.full(1, 1e-9 / T))[0])
     m = limit.end_mass(J)
     scale = m**2 * (K - 1) / J**2  # dm/dJ at fixed c and K
     M, m_a, head_on = scene.ball.mass, scene.axial_mass, limit.reduced_mass

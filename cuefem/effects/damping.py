@@ -16,15 +16,20 @@ from cuefem.cue.geometry import SegmentRows, section_properties
 
 
 def damp_tip_modes(tip: TipModes, families: Sequence[tuple[Cue, Modes | RodModes]], *, loss: float | None) -> TipModes:
-    """Tip modes in which each vibrating mode k is damped at the rate eta_k omega_k.
+    """Tip modes with the loss factor eta_k of each vibrating mode k, which is damped at the rate eta_k omega_k.
 
     families: the vibrating modes of the tip, one family after the other, each with its cue. loss: loss factor used for
     every material instead of its own.
     """
-    rates = [family.loss_factors(section_loss(cue, family.points, loss)) * family.omega for cue, family in families]
-    flexible = np.concatenate(rates)
-    diagonal = np.diag(np.concatenate([np.zeros(len(tip.omega) - len(flexible)), flexible]))
-    return replace(tip, damping=diagonal if tip.damping is None else tip.damping + diagonal)
+    factors = np.concatenate([family.loss_factors(section_loss(cue, family.points, loss)) for cue, family in families])
+    of_modes = np.pad(factors, (len(tip.omega) - len(factors), 0))  # rigid-body modes come first and have no loss
+    together = of_modes if tip.loss is None else tip.loss + of_modes
+    if together.max(initial=0.0) >= 1:
+        raise ValueError(
+            "StructuralDamping: the loss factors of all such effects must add up to less than 1; got "
+            f"{together.max():.4g} in a mode"
+        )
+    return replace(tip, loss=together)
 
 
 def section_loss(cue: Cue, points: Points, loss: float | None) -> Section:

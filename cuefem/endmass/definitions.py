@@ -22,7 +22,7 @@ from cuefem.contact.outcome import slips_at_end
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, LumpedCue
 from cuefem.effects.effect import Effect
-from cuefem.endmass.impulse_response import ImpulseResponse
+from cuefem.endmass.impulse_response import STEPS, half_sine_velocity, imposed_velocity_impulse
 from cuefem.endmass.sticking_contact import StickLimit
 from cuefem.quantity.fields import check_kind
 from cuefem.scene import Outcome, Resolution, Scene, Stroke
@@ -112,12 +112,13 @@ def force(tip: TipModes, scene: Scene) -> float:
     and only its inverse is accurate.
     """
     T = float(scene.contact_time)
-    return 2 * T / np.pi / ImpulseResponse.of(tip).half_sine_velocity(T)
+    return 2 * T / np.pi / half_sine_velocity(tip, T)
 
 
 def velocity(tip: TipModes, scene: Scene) -> float:
     """Impulse for the tip velocity (1 - cos(pi t/T))/2, over the final velocity, kg."""
-    return ImpulseResponse.of(tip).smooth_start_impulse(float(scene.contact_time))
+    raised_cosine = (1 - np.cos(np.pi * np.linspace(0.0, 1.0, STEPS + 1))) / 2
+    return imposed_velocity_impulse(tip, float(scene.contact_time), raised_cosine)
 
 
 def stick(tip: TipModes, scene: Scene) -> float:

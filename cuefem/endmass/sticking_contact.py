@@ -8,7 +8,7 @@ import numpy as np
 
 from cuefem.beam.tip_modes import TipModes
 from cuefem.cue import Array
-from cuefem.endmass.impulse_response import ImpulseResponse, step_means
+from cuefem.endmass.impulse_response import STEPS, imposed_velocity_impulse
 from cuefem.scene import Scene
 
 
@@ -48,10 +48,9 @@ class StickLimit(NamedTuple):
         return np.asarray(np.where(x < np.pi / 2, 1 - np.cos(x), 1 + self.e * unloading) / (1 + self.e))
 
     def transverse_impulse(self, tip: TipModes) -> float:
-        """J, kg, from the impulse of a velocity step (`ImpulseResponse.velocity_step_impulse`)."""
-        step_impulse = ImpulseResponse.of(tip).velocity_step_impulse(self.c, self.T)
-        P = self.normal_impulse(self.T * np.linspace(1.0, 0.0, len(step_impulse)))
-        return float(-self.K * (np.diff(P) @ step_means(step_impulse)) - step_impulse[-1])
+        """J, kg."""
+        P = self.normal_impulse(self.T * np.linspace(0.0, 1.0, STEPS + 1))
+        return imposed_velocity_impulse(tip, self.T, self.K * P - 1, self.c)
 
     def end_mass(self, J: float) -> float:
         """The end mass of a lumped cue with the transverse impulse J, kg: (K - 1)/J = 1/m + c.

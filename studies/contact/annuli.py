@@ -55,8 +55,7 @@ def stepped(scene: cf.Scene, leather: Leather) -> tuple[float, float, float]:
     n, omega = len(modes.omega), modes.omega
     turn = np.zeros((3 * n, 3 * n))  # of q, omega q and q'
     turn[:n, 2 * n :], turn[n : 2 * n, 2 * n :], turn[2 * n :, n : 2 * n] = np.eye(n), np.diag(omega), np.diag(-omega)
-    if modes.total_damping is not None:
-        turn[2 * n :, 2 * n :] = -modes.total_damping
+    turn[2 * n :, 2 * n :] = -modes.damping
     turn, fade = la.expm(turn * STEP), math.exp(-STEP / leather.time)
     phi = math.asin(at.offset)
     t, normal = np.array([math.sin(phi), math.cos(phi)]), np.array([math.cos(phi), -math.sin(phi)])

@@ -59,7 +59,14 @@ PARTS = ("omega", "amplitude", "approach", "rotation", "damping", "radiation", "
 def rebuilt(parts: dict[str, Any]) -> TipModes:
     """Tip modes from their stored parts; a matrix is stored as its square root, rows^T rows."""
     squares = {name: rows.T @ rows for name in PARTS[4:] if (rows := parts.get(name)) is not None}
-    return TipModes(*(parts[name] for name in PARTS[:4]), **squares)
+    modes = TipModes(
+        *(parts[name] for name in PARTS[:4]), radiation=squares.get("radiation"), geometric=squares.get("geometric")
+    )
+    if "damping" not in squares:
+        return modes
+    rates = np.diag(squares["damping"])  # of structural damping alone, which couples no modes
+    assert np.count_nonzero(squares["damping"] - np.diag(rates)) == 0
+    return replace(modes, loss=rates / np.where(modes.omega > 0, modes.omega, 1.0))
 
 
 def scene_of(row: dict[str, Any]) -> Scene:

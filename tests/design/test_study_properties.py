@@ -158,14 +158,17 @@ def test_evaluate_failed_design_does_not_affect_others() -> None:
     assert f"got {result.values[2, 1]:.4g} phi" in result.reasons[2]
 
 
-OVERFLOWS = Vary(("cue.segments[0].material.E",), Levels((1e300, 12e9)), "modulus")
+WEIGHTED = replace(BASE, effects=(cf.PointMass(position=0.3, mass=1e-3),))
+OVERFLOWS = Study(
+    WEIGHTED, (Vary(("effects[0].mass",), Levels((1e308, 1e-3)), "mass"),), (Response.of("end_mass"),), at=AT
+)
 
 
 @pytest.mark.parametrize("workers", [None, pytest.param(2, marks=pytest.mark.heavy)])
 def test_study_overflow_fails_one_design(workers: int | None) -> None:
     """Under any NumPy setting of the caller, also in a worker process."""
     with np.errstate(all="ignore"):
-        result = cf.study(study(OVERFLOWS), workers=workers)
+        result = cf.study(OVERFLOWS, workers=workers)
     assert [*result.failures] == [0]
     assert "overflow" in result.failures[0]
     assert np.isfinite(result.responses["end_mass"]).tolist() == [False, True]

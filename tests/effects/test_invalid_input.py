@@ -22,7 +22,7 @@ def lumped(*effects: cf.Effect) -> Callable[[], cf.Scene]:
     return lambda: replace(kim_scene(), cue=cf.LumpedCue(0.54, 0.005), effects=effects)
 
 
-CLAMP, SHEAR = cf.Support(0.7, inf, inf), cf.TipShear(0.75)
+CLAMP, SHEAR, LOSSY = cf.Support(0.7, inf, inf), cf.TipShear(0.75), cf.StructuralDamping(0.6)
 LEATHER, FLAT = cf.LeatherTip(6e-3, 9.5e-3, 1.4e8), cf.LeatherTip(6e-3, inf, 1e8)
 DOME, RAISED, WAVES, FAR = cf.TipDome(0.01), cf.Elevation(0.1), cf.AxialWaves(), cf.Joint(0.9)
 
@@ -33,6 +33,7 @@ def with_tip(tip: cf.Tip, *effects: cf.Effect, **fields: Any) -> Callable[[], cf
 
 CALLS: list[tuple[Callable[[], object], str]] = [  # one line for each `raise`
     (with_effects(SHEAR, RAISED), "TipShear; got Elevation, which does not"),
+    (lambda: cf.strike(with_effects(LOSSY, LOSSY)()), "loss factors of all such effects must add up to less than 1"),
     (lambda: replace(LEATHER, dome_radius=6e-3).mass(0.013), "a 13 mm tip needs at least 6.5 mm"),
     (lambda: replace(LEATHER, height=2e-3).mass(0.01275), "must be higher than 2.457 mm, the depth"),
     (lambda: replace(FLAT, height=6e-4).mass(0.01275), "must be 0.638 to 38.2 mm high; got "),

@@ -50,11 +50,10 @@ def custom_tip_modes(omega: list[float], lateral: list[float], *, mass: float = 
     return TipModes(np.r_[0.0, 0.0, omega], amplitude, approach, np.zeros(len(amplitude)))
 
 
-def rotating_modes(damping: float = 0.0) -> TipModes:
-    """Three vibrating modes that rotate the end section, with modal damping if ``damping`` > 0."""
+def rotating_modes() -> TipModes:
+    """Three vibrating modes that rotate the end section."""
     tip = custom_tip_modes([500.0, 3000.0, 9000.0], [5.0, 8.0, 7.0], rigid=9.0)
-    tip = replace(tip, rotation=np.array([0, -50.0, -60.0, -80.0, -120.0]))
-    return replace(tip, damping=np.diag(damping * tip.omega)) if damping else tip
+    return replace(tip, rotation=np.array([0, -50.0, -60.0, -80.0, -120.0]))
 
 
 def energy_residual(outcome: Outcome) -> float:

@@ -84,8 +84,7 @@ def small_step_squirt(scene: Scene, step: float = 1e-6) -> float:
     propagator = np.zeros((3 * n, 3 * n))  # of q, omega q and q'
     propagator[:n, 2 * n :] = np.eye(n)
     propagator[n : 2 * n, 2 * n :], propagator[2 * n :, n : 2 * n] = np.diag(omega), np.diag(-omega)
-    if modes.total_damping is not None:
-        propagator[2 * n :, 2 * n :] = -modes.total_damping
+    propagator[2 * n :, 2 * n :] = -modes.damping
     propagator = la.expm(propagator * step)
     z = np.concatenate([np.zeros(2 * n), stroke.speed * modes.approach])
     velocity, spin, inertia = np.zeros(2), 0.0, ball.inertia * ball.mass

@@ -8,17 +8,18 @@
    and dry friction in finite freedom dynamics (1988); M. Jean, The non-smooth contact dynamics method,
    Comput. Methods Appl. Mech. Engrg. 177 (1999) 235.
 
-   A mode is one complex coordinate xi with xi' = eigenvalue xi + input . loads. The cue has ports (axial and
-   lateral velocity of its tip, rotation rate) and the slopes of the bent shaft; the ball has its velocities.
-   With y all these velocities, the contact's velocities are v = C y and its forces F load them by C' F, so
-   that energy is conserved.
+   A mode of angular frequency omega is its velocity v and a = omega q, its displacement in the same unit. The
+   cue has ports (axial and lateral velocity of its tip, rotation rate) and the slopes of the bent shaft; the
+   ball has its velocities. With y all these velocities, the contact's velocities are v = C y and its forces F
+   load them by C' F, so that energy is conserved. A dashpot is one more port of the cue, whose force opposes
+   its mean velocity over the step.
 
-   Python fills a Contact, calls contact_steps until the status is no longer RUNNING, and reads the results.
+   Python fills a Contact and calls contact_steps, with StepTables of the length Contact.next_step, until the
+   status is no longer RUNNING.
  */
 #ifndef CUEFEM_CONTACT_H
 #define CUEFEM_CONTACT_H
 
-#include <complex.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -47,6 +48,9 @@ enum {
     FORCES = 6,
     ANNULI = 256
 };
+/* Ports of the cue: axial and lateral velocity of the tip; the third is the rotation rate of its section or,
+   of a raised cue, the velocity out of the plane of the first two. */
+enum { U_PORT, W_PORT, THIRD_PORT };
 /* Components of the contact's forces F and velocities v. At the tip: tangential, normal, out of the plane; at
    the ball's point on the table: upwards, lateral, forwards. A level cue has the first two, a raised one (the
    effect Elevation) all six. */
@@ -55,7 +59,7 @@ enum { STICK = 0, SLIP = 1, SLIP_BACK = -1, IMPACT = 2, SEPARATED = 3 }; /* fric
 enum { LOADING, UNLOADING, FREE };                                       /* normal phases */
 enum { RIGID_PATCH, SPRING_PATCH, PARTIAL_SLIP }; /* tangential compliance of the tip */
 enum { POWER_LAW, LEATHER_LAW };
-enum { RUNNING, ENDED, TIME_LIMIT, INDENTATION_OUT_OF_RANGE, SLOPE_OUT_OF_RANGE, UNSOLVED, NO_MEMORY };
+enum { RUNNING, ENDED, TIME_LIMIT, INDENTATION_OUT_OF_RANGE, SLOPE_OUT_OF_RANGE, UNSOLVED };
 
 /* One step, or an impact: a step of zero length whose F is an impulse, N s. */
 typedef struct {
@@ -73,8 +77,12 @@ typedef struct {
     int planes;                               /* planes in which the cue bends, 1 or 2 */
     int rolling;                              /* whether the contact rolls over ball and dome */
     int law, terms, patch, annuli;            /* terms: of the leather law's series */
-    const double *eigenvalues;      /* complex, (modes,), 1/s: a free xi grows with exp(eigenvalue t) */
-    const double *outputs, *inputs; /* output and input rows: complex, (ports + slopes, modes), 1/sqrt(kg) */
+    int dashpots, radiating;        /* numbers of dashpots, and of modes that radiate */
+    int structural_loss;            /* whether modes have loss factors */
+    const int *radiating_modes;     /* indices of the modes that radiate, (radiating,) */
+    const double *omega;            /* (modes,), rad/s */
+    const double *rows;             /* (ports + slopes + dashpots, modes), 1/sqrt(kg): velocities are rows v */
+    const double *mobility;         /* of ports and slopes, 1/kg */
     const double *kinematics;       /* C at the first touch, (forces, ports + speeds) */
     const double *inverse_masses;   /* of the ball's velocities, (speeds,), 1/kg */
     const double *slope_weights;    /* of each slope in the tip's axial shortening, (slopes,) */
@@ -84,7 +92,8 @@ typedef struct {
     const double *annulus_forces;   /* F at the edges, N */
     const double *annulus_slopes;   /* dF/dd at the edges, N/m */
     const double *annulus_stiffness; /* tangential stiffness at the edges, N/m */
-    double *xi, *ball;               /* before the first touch; after the last separation */
+    double *state, *ball; /* of the modes, v and a, (2, modes), and of the ball: before the first touch; after
+                             the last separation */
     double restitution, friction;    /* of the tip */
     double table_friction;
     double stiffness, exponent;    /* power law F = stiffness d^exponent */
@@ -95,30 +104,39 @@ typedef struct {
     double radius;                 /* of the ball, m */
     double arm_t, arm_n;           /* moment arms of (t, n) about the end section at the first touch, m */
     double step, max_time, window; /* step; longest contact; time followed after the first separation, s */
+    double next_step;              /* length of the next step, s */
     double time, indentation, max_indentation; /* s; indentation and its maximum, m */
     double angle;                  /* rolled, rad */
     double height;                 /* of the ball above the table, m */
     double shear_loss;             /* dissipated strain energy of the patch, J */
+    double damping_loss, radiated; /* by dashpots and loss factors; by waves, up to the last separation, J */
     double axial_force;            /* on the cue at its largest slope, N */
     double max_slope;              /* of the cue's end, rad */
     double work[FORCES];           /* dissipated by each force, J */
     int status, friction_state, steps, steps_to_last_separation;
 } Contact;
 
-/* Modal propagation over a step of one length h (modes.c). Rows of 2 modes: real, then imaginary parts. */
+/* What the modes do in a step of one length (modal_response.py, where the shapes are). */
 typedef struct {
-    double h, *propagator; /* s; factor of a free mode */
-    double *ends, *means; /* from the modes to the velocities at the end of the step and on average over it */
-    double *response;     /* change of the modes per load */
-    double end[CUE_VELOCITIES][CUE_VELOCITIES],
-        mean[CUE_VELOCITIES][CUE_VELOCITIES]; /* velocities per load */
-} Tables;
+    double h;                                     /* s */
+    const double *own;                            /* of each mode by itself: v per v, a per v, a per a */
+    const double *ends, *means;                   /* from the state to the velocities of ports and slopes */
+    const double *end_per_load, *mean_per_load;   /* velocities per load on ports and slopes */
+    const double *response;                       /* change of the state per load */
+    const double *dashpots;                       /* forces of the dashpots from the state and the loads */
+    const double *loss;                           /* energy lost by each mode */
+    const double *radiating;                      /* modes that radiate, from their state and loads */
+    const double *radiated, *dissipated;          /* their losses, quadratic forms in state and loads */
+} StepTables;
 
 /* State of a contact, and the equations of the step under way. */
 typedef struct {
     Contact *c;
-    Tables t;
-    double *outputs, *inputs, *state; /* output and input rows and modal coordinates, as in Tables */
+    StepTables t;
+    double *state;             /* of the modes */
+    double *loads;             /* on ports, slopes and dashpots */
+    double *group;             /* state and loads of the modes that radiate */
+    double damping_loss, radiated; /* so far, J */
     double ball[BALL_VELOCITIES];
     double port_velocities[CUE_VELOCITIES]; /* of ports and slopes */
     double slopes[SLOPES];
@@ -143,11 +161,11 @@ typedef struct {
 static inline double larger(double a, double b) { return a > b ? a : b; }
 
 /* modes.c */
-int tabulate(Work *w, double h);
 void free_motion(Work *w);
-void advance_modes(Work *w, const double *loads);
+void load_modes(Work *w, const double *cue_loads);
+void add_losses(Work *w);
+void advance_modes(Work *w);
 void apply_impulses(Work *w, const double *impulses);
-double mobility(const Work *w, int p, int q);
 
 /* laws.c */
 double tip_force(const Contact *c, int phase, double indentation, double *slope, double *virtual);

@@ -32,7 +32,8 @@ void contact_matrices(Work *w)
         for (int q = 0; q < n_cue; q++) {
             end[f][q] = mean[f][q] = 0;
             for (int p = 0; p < n_cue; p++)
-                end[f][q] += C[p] * w->t.end[p][q], mean[f][q] += C[p] * w->t.mean[p][q];
+                end[f][q] += C[p] * w->t.end_per_load[p * n_cue + q],
+                    mean[f][q] += C[p] * w->t.mean_per_load[p * n_cue + q];
         }
     }
     for (int f = 0; f < n; f++)
@@ -202,7 +203,7 @@ int impact(Work *w, Step *row)
             for (int b = 0; b < c->speeds; b++)
                 sum += w->C[f][n_cue + b] * c->inverse_masses[b] * w->C[g][n_cue + b];
             for (int p = 0; p < n_cue; p++)
-                for (int q = 0; q < n_cue; q++) sum += w->C[f][p] * mobility(w, p, q) * w->C[g][q];
+                for (int q = 0; q < n_cue; q++) sum += w->C[f][p] * c->mobility[p * n_cue + q] * w->C[g][q];
             w->V[f][g] = w->W[f][g] = sum;
         }
         w->u[f] = w->v[f];

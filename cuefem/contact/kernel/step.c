@@ -10,38 +10,33 @@ static const double INFINITE_FRICTION = 1e12; /* as in step_records.py */
 
 static void update_port_velocities(Work *w)
 {
-    const int n_cue = w->c->ports + w->c->slopes, n_state = 2 * w->c->modes;
+    const int n_modes = w->c->modes, n_cue = w->c->ports + w->c->slopes;
     for (int q = 0; q < n_cue; q++) {
         w->port_velocities[q] = 0;
-        for (int i = 0; i < n_state; i++) w->port_velocities[q] += w->outputs[q * n_state + i] * w->state[i];
+        for (int k = 0; k < n_modes; k++) w->port_velocities[q] += w->c->rows[q * n_modes + k] * w->state[k];
     }
 }
 
 EXPORTED void contact_free(Work *w)
 {
-    if (w) free(w->t.propagator), free(w->outputs), free(w);
+    if (w) free(w->state), free(w);
 }
 
 /* A contact at its first touch; NULL if memory runs out. */
 EXPORTED Work *contact_new(Contact *c)
 {
-    const int K = c->modes, n_cue = c->ports + c->slopes, n_state = 2 * K;
+    const size_t n_modes = c->modes, n_loads = c->ports + c->slopes + c->dashpots;
     Work *w = calloc(1, sizeof *w);
-    if (!w || !(w->outputs = malloc((size_t)(2 * n_cue + 1) * n_state * sizeof(double))))
+    if (!w || !(w->state = malloc((2 * n_modes + n_loads + 3 * c->radiating) * sizeof(double))))
         return contact_free(w), NULL;
-    w->c = c, w->inputs = w->outputs + n_cue * n_state, w->state = w->inputs + n_cue * n_state;
-    for (int k = 0; k < K; k++) {
-        w->state[k] = c->xi[2 * k], w->state[K + k] = c->xi[2 * k + 1];
-        for (int q = 0; q < n_cue; q++) {
-            const double *output = c->outputs + 2 * (q * K + k), *input = c->inputs + 2 * (q * K + k);
-            w->outputs[q * n_state + k] = output[0], w->outputs[q * n_state + K + k] = -output[1];
-            w->inputs[q * n_state + k] = input[0], w->inputs[q * n_state + K + k] = input[1];
-        }
-    }
+    w->c = c;
+    w->loads = w->state + 2 * n_modes;
+    w->group = w->loads + n_loads;
+    memcpy(w->state, c->state, 2 * n_modes * sizeof(double));
     memcpy(w->ball, c->ball, c->speeds * sizeof(double));
+    c->next_step = c->step;
     w->window_end = HUGE_VAL, w->deadline = c->max_time;
     update_port_velocities(w);
-    if (!tabulate(w, c->step)) return contact_free(w), NULL;
     return w;
 }
 
@@ -58,12 +53,12 @@ static void separate(Work *w, double shift)
     w->phase = FREE, w->ends_at_event = 0, w->tip_stuck = 0, w->virtual_mid = 0,
     w->origin = w->shift_mid = shift;
     memset(w->annulus_force, 0, sizeof w->annulus_force), memset(w->F, 0, sizeof w->F);
-    for (int k = 0; k < c->modes; k++) c->xi[2 * k] = w->state[k], c->xi[2 * k + 1] = w->state[c->modes + k];
+    memcpy(c->state, w->state, 2 * c->modes * sizeof(double));
     memcpy(c->ball, w->ball, c->speeds * sizeof(double));
+    c->damping_loss = w->damping_loss;
+    c->radiated = w->radiated;
     if (!isfinite(w->window_end)) w->window_end = c->time + c->window;
 }
-
-static int set_step(Work *w, double h) { return w->t.h == h || tabulate(w, h); }
 
 /* Normal phase and length of the next step; v_n: normal velocity of the contact at the end of this one.
    Handbook: The strike: F = k d loading, (k/e^2)(d - (1 - e^2) D) unloading; Low restitution: h e/0.5. */
@@ -84,7 +79,7 @@ static void next_phase(Work *w, double v_n)
     else if (w->phase == FREE && (w->ends_at_event || c->indentation > residual(c)))
         /* below max_indentation a second contact follows the unloading curve, beyond it the loading curve */
         w->phase = UNLOADING, w->ends_at_event = 0, h = unloading_step;
-    if (!set_step(w, h)) c->status = NO_MEMORY;
+    c->next_step = h;
 }
 
 /* Friction state of the step, at a mean tangential velocity u. */
@@ -118,7 +113,7 @@ static int take_step(Work *w, Step *row)
         w->phase == UNLOADING ? excess_at_end < 0 : w->phase == FREE && excess < 0 && excess_at_end > 0;
     if (crosses_zero && !w->ends_at_event) {
         w->ends_at_event = 1;
-        if (!tabulate(w, h * larger(excess / (h * u[N]), 1e-6))) c->status = NO_MEMORY;
+        c->next_step = h * larger(excess / (h * u[N]), 1e-6);
         return 0;
     }
     for (int f = 0; f < c->forces; f++) {
@@ -126,10 +121,14 @@ static int take_step(Work *w, Step *row)
         for (int p = 0; p < n_cue + c->speeds; p++) loads[p] += w->C[f][p] * w->F[f];
     }
     w->axial_force = -loads[0];
-    advance_modes(w, loads);
+    load_modes(w, loads);
+    add_losses(w);
+    advance_modes(w);
     for (int p = 0; p < n_cue; p++) {
         double end = w->end_free[p], mean = w->mean_free[p];
-        for (int q = 0; q < n_cue; q++) end += w->t.end[p][q] * loads[q], mean += w->t.mean[p][q] * loads[q];
+        for (int q = 0; q < n_cue; q++)
+            end += w->t.end_per_load[p * n_cue + q] * loads[q],
+                mean += w->t.mean_per_load[p * n_cue + q] * loads[q];
         /* port 2: rotation rate of the end section; of a raised cue, without rolling, out-of-plane velocity
          */
         if (p == 2 && c->ports > 2) section_rotation_rate = mean;
@@ -184,14 +183,15 @@ static int update_status(Work *w)
     return c->time > w->deadline ? TIME_LIMIT : RUNNING;
 }
 
-/* Take up to max_steps steps and return their number; call again while the status is RUNNING.
-   rows: (max_steps,), a record of each step. states: NULL, or (max_steps, 2, modes), the modal coordinates
-   after each step, first all real parts, then all imaginary parts (Contact.xi is interleaved). */
-EXPORTED int contact_steps(Work *w, int max_steps, Step *rows, double *states)
+/* Take up to max_steps steps of the tables' length and return their number. Call again while the status is
+   RUNNING, with tables of the length Contact.next_step. rows: (max_steps,), a record of each step. states:
+   NULL, or (max_steps, 2, modes), the state of the modes after each step. */
+EXPORTED int contact_steps(Work *w, const StepTables *tables, int max_steps, Step *rows, double *states)
 {
     Contact *c = w->c;
     int count = 0;
-    while (count < max_steps && c->status == RUNNING) {
+    w->t = *tables;
+    while (count < max_steps && c->status == RUNNING && c->next_step == w->t.h) {
         /* first touch of a rigid patch with infinite friction: an impulse stops the tangential motion */
         if (!c->steps && c->friction >= INFINITE_FRICTION && c->patch == RIGID_PATCH && c->phi > 0) {
             rows[count] = (Step){.friction_state = IMPACT};
@@ -212,4 +212,5 @@ EXPORTED int contact_steps(Work *w, int max_steps, Step *rows, double *states)
     return count;
 }
 
-EXPORTED const size_t contact_size = sizeof(Contact), step_size = sizeof(Step);
+EXPORTED const size_t contact_size = sizeof(Contact), step_size = sizeof(Step),
+                      tables_size = sizeof(StepTables);

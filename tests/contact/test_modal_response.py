@@ -1,0 +1,110 @@
+"""Propagation of the modes over a step and their losses against exponentials of the whole system (verification)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy.linalg as la
+
+import cuefem as cf
+from cuefem.beam.tip_modes import TipModes
+from cuefem.contact.modal_response import ModalPropagator, propagator_of
+from tests.helpers.strike_scenes import custom_tip_modes
+
+# A rigid axial and a rigid transverse mode, and modes of 1e-6 to 30 radians in a step of 1e-5 s.
+OMEGA = [0.1, 300.0, 2e4, 1e5, 3e5, 3e6]
+H = 1e-5
+
+
+def damped_modes(*, loss: float, radiation: float) -> TipModes:
+    tip = custom_tip_modes(OMEGA, [5.0, 6.0, -7.0, 8.0, -3.0, 2.0])
+    rows = np.array([[0, 0, 0, 0, 0, 0, 1.0, -0.4], [0, 0, 0, 0, 0, 0, 0.3, 0.8]])
+    return replace(
+        tip, loss=loss * (tip.omega > 0) * np.linspace(0.5, 1.0, len(tip.omega)), radiation=radiation * rows.T @ rows
+    )
+
+
+def whole_system(tip: TipModes) -> np.ndarray:
+    """Of the velocities v, a = omega q, constant modal loads and the integral of v."""
+    n = len(tip.omega)
+    zero, one, rates = np.zeros((n, n)), np.eye(n), np.diag(tip.omega)
+    return np.block([[-tip.damping, -rates, one, zero], [rates, zero, zero, zero], [zero] * 4, [one, zero, zero, zero]])
+
+
+@pytest.mark.parametrize("loss", [0.0, 0.01, 0.99])
+@pytest.mark.parametrize("radiation", [0.0, 1e5])
+def test_step_of_modes_equals_exponential_of_whole_system(loss: float, radiation: float) -> None:
+    tip = damped_modes(loss=loss, radiation=radiation)
+    propagator, n, rng = propagator_of(tip), len(tip.omega), np.random.default_rng(1)
+    state, load = rng.normal(size=(2, n)), rng.normal(size=2)
+    exact = la.expm(whole_system(tip) * H) @ np.concatenate([*state, load @ propagator.ports * 1e5, np.zeros(n)])
+    tables = propagator.tables(H)
+    end = tables.ends @ state.ravel() + tables.end_per_load @ load * 1e5
+    mean = tables.means @ state.ravel() + tables.mean_per_load @ load * 1e5
+    np.testing.assert_allclose(end, propagator.ports @ exact[:n], rtol=1e-11)
+    np.testing.assert_allclose(mean * H, propagator.ports @ exact[3 * n :], rtol=1e-11)
+    advanced = propagator.advanced(state[None], load[None] @ propagator.ports * 1e5, np.array([H]))
+    np.testing.assert_allclose(advanced.ravel(), exact[: 2 * n], rtol=1e-9)
+    states = np.concatenate([state[None], advanced])
+    np.testing.assert_allclose(
+        propagator.modal_loads(states, np.array([H]))[0], load @ propagator.ports * 1e5, rtol=1e-5
+    )
+
+
+@pytest.mark.parametrize("loss", [0.01, 0.99])
+def test_losses_of_a_step_equal_integrals_of_power(loss: float) -> None:
+    """Gauss points of the power over the step, with an exponential of the whole system at each."""
+    tip = damped_modes(loss=loss, radiation=1e5)
+    propagator, n = propagator_of(tip), len(tip.omega)
+    state, loads = np.random.default_rng(2).normal(size=(2, n)), np.linspace(1e5, 2e5, n)
+    tables, group = propagator.tables(H), propagator.radiating
+    g = loads - tip.omega * state[1]
+    own = tables.loss * [state[0] ** 2, state[0] * g, g**2]
+    x = np.concatenate([state[0, group], state[1, group], loads[group]])
+    points, weights = np.polynomial.legendre.leggauss(80)
+    dissipated, radiated = 0.0, 0.0
+    for point, weight in zip((points + 1) / 2, weights / 2, strict=True):
+        v = (la.expm(whole_system(tip) * point * H) @ np.concatenate([*state, loads, np.zeros(n)]))[:n]
+        dissipated += weight * H * float(tip.loss * tip.omega @ v**2)
+        radiated += weight * H * float(v @ tip.radiation @ v)
+    assert own.sum() + x @ tables.dissipated @ x == pytest.approx(dissipated, rel=1e-10)
+    assert x @ tables.radiated @ x == pytest.approx(radiated, rel=1e-10)
+
+
+def test_dashpot_is_second_order_and_takes_the_energy_that_the_modes_lose() -> None:
+    """Free decay of two modes with a dashpot of rate 2e4 1/s, against an exponential of the whole system."""
+    tip = replace(custom_tip_modes([3e3, 2e4], [5.0, 6.0]), dashpots=np.array([[0.0, 0.0, 100.0, 100.0]]))
+    propagator, state = propagator_of(tip), np.array([0.0, 0.0, 1.0, -0.5, 0.0, 0.0, 0.3, 0.8])
+    exact = la.expm(whole_system(tip)[:8, :8] * 1e-3) @ state
+    errors = []
+    for steps in (100, 400):
+        moved, lost = free_decay(propagator, state, 1e-3 / steps, steps)
+        assert lost == pytest.approx((state @ state - moved @ moved) / 2, rel=1e-12)
+        errors.append(np.abs(moved - exact).max())
+    assert errors[0] / errors[1] == pytest.approx(16, rel=0.05)
+
+
+def free_decay(propagator: ModalPropagator, state: np.ndarray, h: float, steps: int) -> tuple[np.ndarray, float]:
+    """The state after steps without loads, and the energy that the dashpots dissipate."""
+    tables, n, lost = propagator.tables(h), len(propagator.tip.omega), 0.0
+    v_v, sine, a_a = tables.own
+    for _ in range(steps):
+        forces = tables.dashpots[:, : 2 * n] @ state
+        lost += h * float(forces @ forces)
+        v, a = state[:n], state[n:]
+        state = np.concatenate([v_v * v - sine * a, sine * v + a_a * a]) + forces @ tables.response[2:]
+    return state, lost
+
+
+def test_strike_energy_closes_with_every_damper() -> None:
+    """handbook: The contact; the law's force at mid-step leaves 1e-10."""
+    shaft = cf.Segment(0.7, 0.0125, 0.021, cf.Material(12.6e9, 0.84e9, 700.0))
+    effects = (cf.StructuralDamping(0.02), cf.Support(0.2, 1e3, 0.0, 30.0), cf.AxialWaves())
+    scene = cf.Scene(
+        cf.Cue((shaft,), body_mass=0.42), tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(2.0, 0.3), effects=effects
+    )
+    energy = dict(cf.strike(scene).energy)
+    assert energy["damping loss"] > 1e-3 * energy["initial"]
+    assert sum(energy.values()) == pytest.approx(2 * energy["initial"], rel=1e-9)
