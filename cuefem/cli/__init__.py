@@ -16,7 +16,7 @@ from click.shell_completion import CompletionItem
 from cuefem.contact.kernel import KernelError
 from cuefem.quantity.display import one_line
 from cuefem.quantity.encoding import spell_lacking_characters
-from cuefem.quantity.unit_checks import FLOAT_ERRORS, PlausibilityWarning
+from cuefem.quantity.unit_checks import FLOAT_ERRORS, DrawingWarning, PlausibilityWarning
 
 # Before NumPy is loaded: small dense matrices gain nothing from BLAS threads, and two of them on a busy machine can be
 # a hundred times slower than one.
@@ -119,9 +119,10 @@ class _OneLine(_Commands):
 
         try:
             with np.errstate(**FLOAT_ERRORS), warnings.catch_warnings():
-                warnings.filterwarnings(
-                    "ignore", category=PlausibilityWarning
-                )  # commands print their own warning: `warn`
+                # commands print their own warnings of a scene; those of a drawing's file are known where it is read
+                warnings.filterwarnings("ignore", category=PlausibilityWarning)
+                warnings.filterwarnings("always", category=DrawingWarning)
+                warnings.showwarning = _print_warning
                 return super().invoke(ctx)
         except click.UsageError as error:
             _exit_with_usage_error(error)
@@ -137,6 +138,11 @@ class _OneLine(_Commands):
             text = str(error) if hasattr(error, "problem") else one_line(str(error))  # an InputError is brief already
             click.echo(f"cuefem: {text}", err=True)
             raise click.exceptions.Exit(2 if isinstance(error, ValueError | KernelError) else 1) from None
+
+
+def _print_warning(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
+    """Print a warning as one line on stderr, as commands do."""
+    click.echo(f"warning: {one_line(str(message))}", err=True)
 
 
 def _exit_with_usage_error(error: click.UsageError) -> NoReturn:

@@ -24,6 +24,7 @@ from cuefem.cli.scene_options import tip_options
 from cuefem.design.design_changes import design_changes
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.io import InputError, load_accuracy, save, save_page
+from cuefem.io.drawing_warnings import drawing_warnings
 from cuefem.parameters.parameter import with_parameters
 from cuefem.parameters.parts import main_material
 from cuefem.results.convergence import resolve
@@ -86,7 +87,8 @@ def _write_page(file: Path, output: Path, options: dict[str, Any]) -> None:
         raise InputError(output, "--output", "cannot be combined with --json")
     scene, notes = scene_of(file, options)
     with errors_name_file(file, options):
-        more: dict[str, Any] = {"rtol": load_accuracy(file), "warnings": plausibility_warnings(scene)}
+        lines = [*drawing_warnings(file), *plausibility_warnings(scene)]
+        more: dict[str, Any] = {"rtol": load_accuracy(file), "warnings": lines}
         text, line = page_and_headline(file.name, scene, notes=notes, progress=with_progress_bar, **more)
     save_page(text, output)
     click.echo(f"{line}\nwrote {output}")

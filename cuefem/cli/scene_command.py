@@ -22,6 +22,7 @@ from cuefem.cli.scene_options import (
 from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.io import InputError, check_writable, load_stroke
 from cuefem.io.defaults_report import Assumption, assumption_texts, assumptions
+from cuefem.io.drawing_warnings import drawing_warnings
 from cuefem.io.shaft_additions import SHAFT_ADDITIONS
 from cuefem.results.quantities import UNITS
 from cuefem.results.records import Record, json_value
@@ -167,7 +168,7 @@ def full_record(
     file: Path, notes: Sequence[str], solved: Scene, record: Record, *, with_impact: bool = True, **more: Any
 ) -> Record:
     """The JSON record: the file, assumptions, warnings, the scene, the result, the units."""
-    warnings = plausibility_warnings(solved, with_impact=with_impact)
+    warnings = [*drawing_warnings(file), *plausibility_warnings(solved, with_impact=with_impact)]
     about = {"file": str(file), "assumptions": notes, "warnings": warnings, "scene": scene_record(solved)}
     return about | more | record | {"units": UNITS | record.get("units", {})}
 

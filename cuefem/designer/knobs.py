@@ -17,7 +17,7 @@ from cuefem.io.shaft_additions import with_additions
 from cuefem.parameters.parameter import PARAMETERS, with_parameters
 from cuefem.parameters.parts import Layout, bore_mouth, max_bore_depth, split_segment, taper_position
 from cuefem.quantity.fields import Quantity
-from cuefem.quantity.units import split_quantity, unit_of
+from cuefem.quantity.units import plain_fractions, split_quantity, unit_of
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import GAMES, usual_scene, without_leather
 
@@ -26,7 +26,7 @@ NEW_FERRULE, NEW_BORE, NEW_DEPTH = "25 mm", 0.006, 0.127
 DECIMALS = {"mm": 2, "g": 1}  # the most that are shown; of other units 3
 NONE, DRILLED = "none", "drilled"
 MAX_TEXT = 40
-_UNITLESS = re.compile(r"[-+]?[\d./\s]+")
+_UNITLESS = re.compile(r"[-+]?[\d./\s¼-¾⅐-⅞-]+")
 FERRULE_BEGINS, LEATHER_BEGINS = "the ferrule; tip added", "the tip"
 
 
@@ -244,7 +244,7 @@ def with_unit(key: str, text: str, last: str = "") -> str:
     if not unit or not _UNITLESS.fullmatch(text.replace(",", ".").replace("−", "-")):
         return text
     typed = split_quantity(last.replace(",", "."))[1] or unit
-    if unit == "mm" and "/" in text and unit_of(typed) != unit_of("in"):
+    if unit == "mm" and "/" in plain_fractions(text) and unit_of(typed) != unit_of("in"):
         raise ValueError(f"{text.strip()} in or {text.strip()} {typed}?")
     return f"{text} {typed}"
 

@@ -12,6 +12,7 @@ from typing import Any
 
 from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue, LumpedCue
+from cuefem.io.drawing_warnings import drawing_warnings
 from cuefem.io.errors import InputError, as_input_error, check_path, os_error_text, quote
 from cuefem.io.lathe_profile import DEFAULT_MATERIAL, SHAPE_EXTENSIONS, SPREADSHEET_EXTENSIONS, read_profile
 from cuefem.io.schema import named_material
@@ -20,6 +21,7 @@ from cuefem.io.toml_reader import cue_as_drawn, load_accuracy, load_cue, load_to
 from cuefem.parameters.parameter import with_fields
 from cuefem.parameters.parts import with_shaft_mass
 from cuefem.quantity.fields import Quantity
+from cuefem.quantity.unit_checks import DrawingWarning, warn
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import without_leather
 
@@ -135,10 +137,14 @@ def _load_cue(path: Path, material: str | None = None, length_unit: str | None =
     if ending in SHAPE_EXTENSIONS:
         wood = named_material(material or DEFAULT_MATERIAL, path, "material")
         if ending == ".csv":
-            return read_profile(path, wood, length_unit)[0]
-        from cuefem.io.surface_reader import load_surface
+            cue = read_profile(path, wood, length_unit)[0]
+        else:
+            from cuefem.io.surface_reader import load_surface
 
-        return load_surface(path, wood, length_unit)
+            cue = load_surface(path, wood, length_unit)
+        for line in drawing_warnings(path):
+            warn(line, DrawingWarning)
+        return cue
     if os.path.isdir(path):  # does not raise for a name that is too long, unlike Path.is_dir
         raise InputError(path, "", "must be a file; got a folder")
     hint = "; save the table as .csv" if ending in SPREADSHEET_EXTENSIONS else ""

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from cuefem.io.errors import LARGEST_TEXT, InputError, quote, read_bytes
-from cuefem.quantity.units import FRACTION, parse_decimal
+from cuefem.quantity.units import FRACTION, parse_decimal, plain_fractions
 
 MAX_LINE_CHARACTERS = 10_000
 
@@ -19,6 +19,11 @@ _BYTE_ORDER_MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe
 _COMMENTS = ("#", "//")
 _SEPARATORS = "\t;|,"  # in order of preference: the first one that is in at least half of the lines
 _ANY_SEPARATOR = re.compile(r"[\t;|,]")
+_DIAMETER_SIGNS = "Øø⌀∅"
+# Full-width letters, digits and marks of East Asian keyboards, blanks of spreadsheets and the Swiss mark of thousands.
+_PLAIN_CHARACTERS = {0xFF01 + i: chr(0x21 + i) for i in range(94)} | str.maketrans(
+    dict.fromkeys("\xa0\u2007\u2009\u202f\u3000", " ") | {"’": "'", "−": "-", "㎜": "mm", "㎝": "cm"}
+)
 _THOUSANDS_GAPS = re.compile(r"(?<=\d)[ '](?=\d{3}(?!\d))")  # 1 470 and 1'470
 _PLAIN = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?|[+-]?(?:inf|nan)", re.IGNORECASE)
 _NUMBER = re.compile(rf"(?:{FRACTION.pattern}|[+-]?[\d.,](?:[\d.,' ]*[\d.,])?(?:e[+-]?\d+)?|[+-]?(?:inf|nan))", re.I)
@@ -26,15 +31,21 @@ _NUMBER = re.compile(rf"(?:{FRACTION.pattern}|[+-]?[\d.,](?:[\d.,' ]*[\d.,])?(?:
 
 def read_rows(path: Path) -> list[Row]:
     """The lines of a table as cells, without empty lines and comments; InputError if the file is not text."""
+    lines = read_lines(path)
+    if lines and (first := re.fullmatch(r"sep=(.)", lines[0][1].strip(), re.IGNORECASE)):
+        return _split(lines[1:], first[1])
+    most = [mark for mark in _SEPARATORS if 2 * sum(mark in line for _, line in lines) >= len(lines)]
+    return _split(lines, most[0] if most else None)
+
+
+def read_lines(path: Path) -> list[tuple[int, str]]:
+    """The numbered lines of a table, without empty lines and comments; InputError for a line that is too long."""
     lines = [(i, line) for i, line in enumerate(read_text(path).splitlines(), start=1) if line.strip()]
     lines = [(i, line) for i, line in lines if not line.lstrip().startswith(_COMMENTS)]
     for i, line in lines:
         if len(line) > MAX_LINE_CHARACTERS:
             raise InputError(path, f"line {i}", f"must have at most {MAX_LINE_CHARACTERS} characters; got {len(line)}")
-    if lines and (first := re.fullmatch(r"sep=(.)", lines[0][1].strip(), re.IGNORECASE)):
-        return _split(lines[1:], first[1])
-    most = [mark for mark in _SEPARATORS if 2 * sum(mark in line for _, line in lines) >= len(lines)]
-    return _split(lines, most[0] if most else None)
+    return lines
 
 
 def _split(lines: Iterable[tuple[int, str]], separator: str | None) -> list[Row]:
@@ -45,7 +56,7 @@ def _split(lines: Iterable[tuple[int, str]], separator: str | None) -> list[Row]
             cells = line.split()
         if len(cells) == 1 and _ANY_SEPARATOR.search(line):  # a header with another separator
             cells = _cells(line, _ANY_SEPARATOR.search(line)[0])  # type: ignore[index]
-        cells = [cell.replace("\xa0", " ").strip() for cell in cells]
+        cells = [plain_fractions(cell.translate(_PLAIN_CHARACTERS)).strip() for cell in cells]
         while cells and not cells[-1]:
             cells.pop()
         if cells:
@@ -87,8 +98,11 @@ def _encoding(content: bytes) -> str:
 
 
 def split_unit(cell: str) -> tuple[str, str]:
-    """A cell's number and the unit behind it; the number is empty if the cell does not start with one."""
-    cell = cell.replace("−", "-").lstrip("'")
+    """A cell's number and the unit behind it; the number is empty if the cell does not start with one.
+
+    A diameter sign in front of the number is ignored.
+    """
+    cell = cell.lstrip("'").lstrip(_DIAMETER_SIGNS).lstrip()
     match = _NUMBER.match(cell)
     return (match[0], cell[match.end() :].strip()) if match else ("", cell)
 

@@ -13,14 +13,7 @@ import numpy as np
 from cuefem.cue import MAX_LEATHER_MODULUS, Cue, Material, Segment
 from cuefem.cue.materials import material_name
 from cuefem.io.csv_header import (
-    BORE_COLUMN,
-    CORE_COLUMN,
-    DIAMETER_COLUMN,
     EXAMPLE,
-    FERRULE_COLUMN,
-    MATERIAL_COLUMN,
-    POSITION_COLUMN,
-    RADIUS_COLUMN,
     Header,
     ProfileColumn,
     length_unit_of,
@@ -29,6 +22,15 @@ from cuefem.io.csv_header import (
 )
 from cuefem.io.csv_reader import Row, decimal_mark, python_number, read_rows, split_unit
 from cuefem.io.errors import InputError, as_input_error, quote
+from cuefem.io.heading_words import (
+    BORE_COLUMN,
+    CORE_COLUMN,
+    DIAMETER_COLUMN,
+    FERRULE_COLUMN,
+    MATERIAL_COLUMN,
+    POSITION_COLUMN,
+    RADIUS_COLUMN,
+)
 from cuefem.io.schema import named_material
 from cuefem.io.shaft_additions import ferrule_on_tenon, has_length, with_additions
 from cuefem.io.surface_sections import polyline_corners
@@ -44,6 +46,9 @@ SHAPE_EXTENSIONS = (".csv", *SURFACE_EXTENSIONS)  # files with the shape of a sh
 SPREADSHEET_EXTENSIONS = (".xlsx", ".xls", ".ods", ".numbers", ".txt", ".tsv", ".dat")
 # Points closer than this to a straight taper lie on it, m: the rounding of a file, far below the error of a lathe.
 _STRAIGHTNESS = 1e-9
+# A diameter this many times that of both its neighbours, or as much smaller, which fits them within SLACK times when
+# its decimal point is moved, is misplaced: a cue's largest step, ferrule to collar, is 1.5.
+MAX_RATIO, SLACK = 3.0, 1.5
 _EMPTY = ("none", "no", "-", "–", "—")  # cells for "no bore" or "no material"
 
 _POSITION, _BORE = Quantity("m"), Quantity("m", "[0, 10]")
@@ -86,6 +91,9 @@ def read_profile(path: Path, material: Material, length_unit: str | None = None)
     )
     x = [_number(path, row, position, mark) for row in header.rows]
     d = [_number(path, row, diameter, mark) for row in header.rows]
+    is_lathe = max(x, default=0.0) <= 0 > min(x, default=0.0)  # Z of a lathe, 0 at the front and negative behind it
+    x = [abs(at) for at in x] if is_lathe else x
+    _check_decimal_points(path, header, diameter, x, d)
     points = _ordered(path, header, position, list(zip(x, d, strict=True)))
     if len(points) < 2:
         raise InputError(path, "", f"must hold at least 2 points; got {len(points)}")
@@ -98,8 +106,27 @@ def read_profile(path: Path, material: Material, length_unit: str | None = None)
     with as_input_error(path, ""):
         cue, bored = _drawn(points, before, behind, material, position.unit)
         ferrule = _ferrule_with_length(path, header, inside)
-        notes = [*_notes(header, position, diameter, points), *bored]
+        negative = ["positions are negative, as on a lathe: read as distances from the front"] if is_lathe else []
+        notes = [*_notes(header, position, diameter, points), *negative, *bored]
         return with_additions(cue, ferrule=ferrule) if ferrule else cue, notes
+
+
+def _check_decimal_points(
+    path: Path, header: Header, column: ProfileColumn, x: Sequence[float], diameters: Sequence[float]
+) -> None:
+    """InputError for a diameter that fits its neighbours ten times smaller or larger, and not as it is."""
+    unit_size = parse_number(f"1 {column.unit}", "m") * (2 if column.kind == RADIUS_COLUMN else 1)
+    for i, (line, _) in enumerate(header.rows):
+        neighbours = [diameters[k] for k in (i - 1, i + 1) if 0 <= k < len(x) and x[k] != x[i]]
+        if len(neighbours) < 2:
+            continue
+        low, high = min(neighbours), max(neighbours)
+        for factor in (0.1, 10.0):
+            is_off = not low / MAX_RATIO < diameters[i] < high * MAX_RATIO
+            if is_off and low / SLACK <= factor * diameters[i] <= high * SLACK:
+                own, before, after = (value / unit_size for value in (diameters[i], *neighbours))
+                problem = f"{own:.6g} {column.unit} between {before:.6g} and {after:.6g}: decimal point?"
+                raise InputError(path, f"line {line}, {column.kind}", f"{problem} {factor * own:.6g} would fit")
 
 
 def _sides(

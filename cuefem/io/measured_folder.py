@@ -16,7 +16,7 @@ from typing import Any
 from scipy.io import wavfile
 
 from cuefem.io import InputError, load, write_folder_atomically
-from cuefem.io.csv_reader import read_text
+from cuefem.io.csv_reader import read_lines, read_text
 from cuefem.io.defaults_report import assumption_texts, assumptions_of_tables
 from cuefem.io.errors import as_input_error, quote, read_bytes, suggestion
 from cuefem.io.schema import build, field_types, key_path, member_types, quantity_of, unknown_key
@@ -174,8 +174,7 @@ def _sound(path: Path) -> tuple[Any, float]:
 
 def _series(path: Path, kind: type) -> Iterator[Measurement]:
     """The measurements of a CSV: one column per key, its unit in the heading; empty cells are skipped."""
-    lines = list(enumerate(read_text(path).splitlines(), start=1))
-    rows = [(i, next(csv.reader([line]))) for i, line in lines if line.strip() and not line.lstrip().startswith("#")]
+    rows = [(i, next(csv.reader([line]))) for i, line in read_lines(path)]
     if not rows:
         raise InputError(path, "", "must begin with a line of headings; got comments alone")
     (first, headings), *others = rows

@@ -23,7 +23,7 @@ TENON_RATIO = 0.62  # tenon over ferrule diameter: 5/16 in in a pool ferrule of 
 # Examples.
 FERRULE, BORE, LEATHER = "25 mm melamine", "6 mm wide, 127 mm deep", "leather 6 mm"
 
-_SIZE = re.compile(r"[\d.,/ ]*\d\s*(?:mm|cm|m|in|inch|inches|\"|″)(?!\w)")
+_SIZE = re.compile(r"[\d.,/ ¼-¾⅐-⅞-]*[\d¼-¾⅐-⅞]\s*(?:mm|cm|m|in|inch|inches|\"|″)(?!\w)")
 _BORE = re.compile(r"(.+)\bwide\s*,\s*(.+)\bdeep")
 
 

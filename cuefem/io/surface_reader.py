@@ -49,7 +49,7 @@ def load_surface(path: Path, material: Material, length_unit: str | None = None)
     """Load the shaft inside a closed surface, of one material; its thinner end is the tip.
 
     length_unit: of the coordinates, mm by default. The segments approximate the exact slices of the facets to 5e-5 of
-    the largest diameter. N facets per turn, inscribed in the true shape, make diameters too small by 3.3/N^2, relative.
+    the largest diameter. Where the corners of a slice lie on one circle, that circle is the section.
     """
     unit = DEFAULT_UNIT if length_unit is None else length_unit
     try:

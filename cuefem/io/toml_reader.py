@@ -28,6 +28,11 @@ from cuefem.scene.default_scene import DEFAULT_GAME, GAMES, KIM, STROKES, usual_
 GAME_KEYS = {"ball": ("mass", "radius"), "tip": ("restitution", "friction"), "stroke": ("speed", "offset")}
 
 
+MAX_KEY_PARTS = 32  # of a dotted key, such as 3 of cue.segments.length
+_LONG_KEY = re.compile(rf"(?<![\w-])(?:[\w-]+\s*\.\s*){{{MAX_KEY_PARTS},}}")
+_QUOTED = re.compile(r"""\"(?:[^"\\]|\\.)*\"|'[^']*'""")
+
+
 @dataclass(frozen=True)
 class ShaftParts:
     """The parts of a cue from the catalogue, instead of [[segments]]."""
@@ -51,12 +56,22 @@ class Accuracy:
 def read_tables(path: Path) -> dict[str, Any]:
     """A TOML file as plain tables; InputError if it is not TOML."""
     text = read_text(path)
+    _check_keys_are_short(text, path)
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise InputError(path, "", f"must be TOML; got a syntax error: {error}{_unquoted(text, str(error))}") from None
     except RecursionError:
         raise InputError(path, "", "must be TOML nested less deeply") from None
+
+
+def _check_keys_are_short(text: str, path: Path) -> None:
+    """InputError for a key of more than `MAX_KEY_PARTS` parts: tomllib's memory grows like their square."""
+    for number, line in enumerate(text.splitlines(), start=1):
+        chain = _LONG_KEY.search(_QUOTED.sub("quoted", line).partition("#")[0])
+        if chain:
+            problem = f"must have keys of at most {MAX_KEY_PARTS} parts; got one of {chain[0].count('.') + 1}"
+            raise InputError(path, f"line {number}", problem)
 
 
 def _unquoted(text: str, error: str) -> str:

@@ -34,6 +34,10 @@ class PlausibilityWarning(UserWarning):
     """
 
 
+class DrawingWarning(PlausibilityWarning):
+    """Warning for a drawing's file that may not say what it means, such as a column that is not used."""
+
+
 CUE_LENGTH, CUE_DIAMETER = (0.3, 1.6), (0.0075, 0.04)  # m, of drawings of real cues
 # Common units by the SI unit of a field.
 COMMON_UNITS = {"m": ("mm", "in"), "kg": ("g", "oz"), "s": ("ms", "us"), "Pa": ("GPa", "MPa"), "kg/m^3": ("g/cm^3",)}
@@ -57,10 +61,10 @@ def unit_hint(name: str, value: float, unit: str, typical_range: tuple[float, fl
     return f"{name} is {value:g} {unit}, which no cue has: is it {units}? Write {numbers} ({unit})" if readings else ""
 
 
-def warn(message: str) -> None:
+def warn(message: str, category: type[PlausibilityWarning] = PlausibilityWarning) -> None:
     """Warn with a message, unless it is empty, at the line outside this package."""
     if message:
-        warnings.warn(message, PlausibilityWarning, _level())
+        warnings.warn(message, category, _level())
 
 
 def warn_light_cue(mass: float, length: float) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 import re
+import unicodedata
 from decimal import Decimal, DecimalException
 from typing import NamedTuple
 
@@ -40,8 +41,14 @@ class Unit(NamedTuple):
 # All units without powers or products, by dimension: scale in SI units, and names, first the preferred one.
 # Products, powers and quotients of them ("lb/in^3", "N mm/rad") need no entry.
 _TABLE: dict[Powers, str] = {
-    (1, 0, 0, 0): """0.001 mm millimetre millimetres millimeter millimeters; 1 m metre metres meter meters;
-        0.01 cm centimetre centimetres centimeter centimeters; 0.0254 in inch inches zoll " ″ ” ''; 0.3048 ft foot feet;
+    (
+        1,
+        0,
+        0,
+        0,
+    ): """0.001 mm millimetre millimetres millimeter millimeters мм 毫米 ミリ 밀리미터;
+        1 m metre metres meter meters; 0.01 cm centimetre centimetres centimeter centimeters см 厘米 公分 センチ;
+        0.0254 in inch inches zoll " ″ ” ''; 0.3048 ft foot feet;
         0.0000254 thou mil mils; 0.000001 um µm μm micron microns micrometre micrometres micrometer micrometers;
         0.9144 yd yard yards; 1000 km; 1609.344 mile miles mi""",
     (0, 1, 0, 0): """0.001 g gram grams gramme grammes; 1 kg kilogram kilograms kilo kilos; 1000 t tonne tonnes;
@@ -69,7 +76,8 @@ UNITS = {
     for name in names
 }
 
-FRACTION = re.compile(r"(?:([0-9]+)\s+)?([0-9]+)\s*/\s*([1-9][0-9]*)")  # 5/16 and 1 1/4
+FRACTION = re.compile(r"(?:([0-9]+)(?:\s+|-))?([0-9]+)\s*/\s*([1-9][0-9]*)")  # 5/16, 1 1/4 and 1-1/4
+_VULGAR_FRACTION = re.compile("[¼-¾⅐-⅞]")
 _TEXT = re.compile(
     rf"\s*({FRACTION.pattern}|[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?|[+-]?inf|nan)\s*(.*?)\s*",
     re.IGNORECASE,
@@ -151,14 +159,19 @@ def units_of_dimension(unit: str) -> list[str]:
     return [*reversed(names.values())] or [examples_of(unit)[1].split(" ", 1)[1]]
 
 
+def plain_fractions(text: str) -> str:
+    """The text with 1/2 for ½, behind a blank: "13½" is "13 1/2"."""
+    return _VULGAR_FRACTION.sub(lambda match: " " + unicodedata.normalize("NFKC", match[0]).replace("⁄", "/"), text)
+
+
 def split_quantity(text: str) -> tuple[str, str]:
     """The number and the unit of a text, each "" if missing; both "" if it is no quantity or too long."""
-    parts = _TEXT.fullmatch(text) if len(text) <= MAX_QUANTITY_CHARACTERS else None
+    parts = _TEXT.fullmatch(plain_fractions(text)) if len(text) <= MAX_QUANTITY_CHARACTERS else None
     return (parts[1], parts[5]) if parts else ("", "")
 
 
 def parse_decimal(digits: str) -> Decimal:
-    """The value of a decimal number, a fraction (5/16) or a mixed number (1 1/4)."""
+    """The value of a decimal number, a fraction (5/16) or a mixed number (1 1/4, 1-1/4)."""
     if fraction := FRACTION.fullmatch(digits):
         whole, numerator, denominator = fraction.groups(default="0")
         return Decimal(whole) + Decimal(numerator) / Decimal(denominator)

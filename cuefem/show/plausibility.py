@@ -7,6 +7,8 @@ from itertools import pairwise
 from math import inf
 from typing import Any
 
+import numpy as np
+
 from cuefem.cue import Cue, Segment
 from cuefem.effects.tip_effects import TipDome
 from cuefem.quantity.fields import quantity_fields
@@ -17,6 +19,7 @@ from cuefem.scene import Ball, Scene, Stroke, Tip
 
 MAX_STEP = 1.5  # ratio of the diameters at the joint of two segments
 MIN_DRAWN_MASS = 0.02  # kg
+BUTT_END = 0.01  # of the volume: what lies behind it is no part of the taper
 DENSITY_MARGIN = 0.1  # relative, beyond the density range of a wood
 LONG, STIFF, LIGHT = 0.3, 3e10, 2500.0  # m, Pa, kg/m3: a long segment, stiffer than wood and lighter than metal
 
@@ -48,13 +51,14 @@ def _of_stroke(scene: Scene) -> Iterator[Check]:
 def _of_drawing(cue: Cue) -> Iterator[Check]:
     yield "drawn length", cue.length, CUE_LENGTH, "mm", "check the unit of the lengths"
     ends = (
-        (f"segments[{i}].{end}", getattr(segment, end))
-        for i, segment in enumerate(cue.segments)
+        (f"segments[{i}].{end}", getattr(segment, end), i == 0 and end == "tip_diameter")
+        for i, segment in enumerate(_without_rounded_butt(cue.segments))
         for end in ("tip_diameter", "butt_diameter")
     )
-    for name, diameter in [end for end in ends if not CUE_DIAMETER[0] <= end[1] <= CUE_DIAMETER[1]][:1]:
+    for name, diameter, is_tip in [end for end in ends if not CUE_DIAMETER[0] <= end[1] <= CUE_DIAMETER[1]][:1]:
         check = "are these radii?" if diameter < CUE_DIAMETER[0] else "check the decimal point and the unit"
-        yield name, diameter, CUE_DIAMETER, "mm", f"expected 8.5 to 14 mm at the tip; {check}"
+        usual = "8.5 to 14 mm at the tip" if is_tip else "8.5 to 35 mm along a cue"
+        yield name, diameter, CUE_DIAMETER, "mm", f"expected {usual}; {check}"
     yield "drawn mass", cue.shaft_mass, (MIN_DRAWN_MASS, inf), "g", "check the sizes and the densities"
     if any(
         segment.length > LONG and segment.material.E > STIFF and segment.material.rho < LIGHT
@@ -63,6 +67,22 @@ def _of_drawing(cue: Cue) -> Iterator[Check]:
     ):
         tubes = "carbon shafts are tubes; add the bore (--bore, or `cuefem guide files`)"
         yield "a solid rod as stiff as carbon fibre, drawn mass", cue.shaft_mass, (0.0, 0.0), "g", tubes
+
+
+def _without_rounded_butt(segments: tuple[Segment, ...]) -> tuple[Segment, ...]:
+    """The segments without the last `BUTT_END` of the volume: a chamfer, a rounding or a bumper at the butt."""
+    d0, d1, length = np.array([(s.tip_diameter, s.butt_diameter, s.length) for s in segments]).reshape(-1, 3).T
+    volumes = (d0**2 + d0 * d1 + d1**2) * length
+    behind = np.cumsum(volumes[::-1])[::-1]
+    return tuple(s for s, volume in zip(segments, behind, strict=True) if volume > BUTT_END * behind[0])
+
+
+def _thickest(segments: tuple[Segment, ...], first: float, last: float) -> float:
+    """The largest diameter at 11 positions between two shares of the length."""
+    ends = np.cumsum([0.0, *(s.length for s in segments)])
+    x = np.repeat(ends, 2)[1:-1]
+    d = [diameter for s in segments for diameter in (s.tip_diameter, s.butt_diameter)]
+    return float(np.interp(ends[-1] * np.linspace(first, last, 11), x, d).max())
 
 
 def _of_mass(scene: Scene) -> Iterator[Check]:
@@ -106,13 +126,13 @@ def _of_masses(scene: Scene, *, with_impact: bool) -> Iterator[str]:
 def _of_outline(segments: tuple[Segment, ...]) -> list[str]:
     """Warnings of a cue's outline: steps of the diameter, butt first, and bores that end inside a segment."""
     lines = []
-    for i, (near, other) in enumerate(pairwise(segments)):
+    for i, (near, other) in enumerate(pairwise(_without_rounded_butt(segments))):
         ends = near.butt_diameter, other.tip_diameter
         if max(ends) > MAX_STEP * min(ends):
             sizes = " to ".join(f"{to_display(end, 'm'):.4g}" for end in ends)
             lines.append(f"the diameter jumps from {sizes} mm between segments[{i}] and segments[{i + 1}]")
-    if segments and segments[0].tip_diameter > segments[-1].butt_diameter:
-        ends = segments[0].tip_diameter, segments[-1].butt_diameter
+    ends = (_thickest(segments, 0, 1 / 3), _thickest(segments, 2 / 3, 1)) if segments else (0.0, 0.0)
+    if ends[0] > ends[1]:
         sizes = " and ".join(f"{to_display(end, 'm'):.4g}" for end in ends)
         order = "list the rows from tip to butt, or head their column `from butt [mm]`"
         lines.append(f"the tip end is thicker than the butt end, {sizes} mm: {order}")

@@ -73,6 +73,13 @@ csv  | x [mm],diameter [mm],bore [mm]\n700,21,\n0,12,6  | line 1, x: must increa
 csv  | x [mm],diameter [mm],bore [mm]\n0,12,12\n700,21, | line 2, bore: must be less than 12 mm, the diameter there;
 csv  | x [mm],diameter [mm],bore [mm]\n0,12,6\n7,12,6\n7,12,5\n7,12,4\n700,21, | line 5, x: must have at most two rows
 csv  | x [mm],diameter [mm],material\n0,12,hard mapel\n700,21, | line 2, material: unknown material 'hard mapel'
+csv  | x [mm],diameter [mm],bor [mm]\n0,12,6\n700,21, | line 1: column 'bor [mm]' is unknown; did you mean 'bore'?
+csv  | x [mm],diameter [mm],materail\n0,12,ash\n700,21, | line 1: column 'materail' is unknown; did you mean 'material'?
+csv  | x [mm],diameter [mm],Ferule\n0,12,abs\n700,21, | line 1: column 'Ferule' is unknown; did you mean 'ferrule'?
+csv  | x [mm],diameter [mm]\n0,12.4\n330,131\n700,21.3 | line 3, diameter: 131 mm between 12.4 and 21.3: decimal point?
+csv  | x [mm],diameter [mm]\n0,12.4\nmass,104 g\n700,21.3 | line 3, x: must be a number; got 'mass'
+csv  | x [mm],diameter [mm]\n0,12.4\n700,21.3\nl0,21 | line 4, x: must be a number; got 'l0'
+toml | cue.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a = 1 | line 1: must have keys of at most 32
 csv  | x [mm],diameter [mm],core\n0,12.75,foam\n736.6,21.5,foam | line 2, core: needs a bore in its row
 csv  | x [mm],radius [mm],inner radius (mm)\n0,6.4,3\n700,10, | line 1, bore: must be a column of diameters
 csv  | x [mm];diameter [mm]\n0;12.75\n330,5;13     | line 3, x: must be written with the decimal point of the other

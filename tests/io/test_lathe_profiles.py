@@ -1,6 +1,8 @@
 """Lathe profiles in unusual but unambiguous formats are read; rejected ones: test_invalid_input.py (regression)."""
 
 import itertools
+import json
+import re
 from pathlib import Path
 
 import pytest
@@ -8,6 +10,7 @@ import pytest
 import cuefem as cf
 from cuefem.cue.materials import material
 from cuefem.io.defaults_report import Assumption, assumption_texts, drawing_assumptions
+from tests.helpers.command_line import call
 
 MAPLE = material("hard maple")
 POINTS = ((0.0, 12.75), (330.0, 13.2), (736.6, 21.5))  # mm
@@ -49,11 +52,30 @@ PROFILES: dict[str, str | bytes] = {
     "from the butt": "distance from joint [mm],diameter [mm]\n0,21.5\n406.6,13.2\n736.6,12.75\n",
     "fractions of an inch": 'x [in],diameter [in]\n0,1/2"\n14 1/2,17/32\n29,27/32\n',
     "marks of thousands": '"x [mm]","diameter [mm]"\n"0.0","9.5"\n"800.0","18.0"\n"1,470.5","29.0"\n',
+    "a diameter sign in the cells": PLAIN.replace(",1", ",Ø1").replace(",2", ",⌀ 2"),
+    "narrow blanks as marks of thousands": "x [mm];d [mm]\n0;9.5\n800;18.0\n1\u202f470.5;29.0\n",
+    "mixed fractions": 'x [in],diameter [in]\n0,½\n14-1/2,17/32"\n29,27/32\n',
+    "a fraction in one character": "x [in],diameter [in]\n0,1/2\n14½,17/32\n29,27/32\n",
+    "a weight below": GERMAN + "Gewicht;104 g\n",
+    "Korean": PLAIN.replace("x [mm],diameter [mm]", "팁에서 거리 (mm),직경(mm)"),
+    "Chinese": PLAIN.replace("x [mm],diameter [mm]", "距尖端距离(mm),直径(mm)"),
+    "Japanese, full width": PLAIN.replace("x [mm],diameter [mm]", "先端からの距離（㎜）,直径（ｍｍ）").replace(
+        "0,1", "０,１"
+    ),
+    "digits of full width": PLAIN.replace("12.75", "１２．７５"),
+    "Russian": PLAIN.replace("x [mm],diameter [mm]", "Расстояние от кончика (мм),Диаметр (мм)"),
+    "Japanese, from the butt": "バットからの距離 [mm],外径 [mm]\n0,21.5\n406.6,13.2\n736.6,12.75\n",
+    "Z of a lathe": "Z [mm],diameter [mm]\n0,12.75\n-330,13.2\n-736.6,21.5\n",
+    "Z of a lathe, butt first": "Z [mm],diameter [mm]\n-736.6,21.5\n-330,13.2\n0,12.75\n",
     "a point written twice": "x [mm],diameter [mm]\n0,12.75\n330,13.2\n330,13.2\n736.6,21.5\n",
 }
 OTHER_POINTS = {
     **{"loose names": INCHES, "the unit first": INCHES, "marks of thousands": ((0, 9.5), (800, 18), (1470.5, 29))},
-    "fractions of an inch": ((0, 12.7), (368.3, 25.4 * 17 / 32), (736.6, 25.4 * 27 / 32)),
+    "narrow blanks as marks of thousands": ((0, 9.5), (800, 18), (1470.5, 29)),
+    **dict.fromkeys(
+        ("fractions of an inch", "mixed fractions", "a fraction in one character"),
+        ((0, 12.7), (368.3, 25.4 * 17 / 32), (736.6, 25.4 * 27 / 32)),
+    ),
 }
 NOTES = {
     "extra columns": "columns 'No', 'note' are not used",
@@ -62,6 +84,10 @@ NOTES = {
     "titles above": "lines 1, 2 skipped: without data",
     "notes below": "lines 3, 6 skipped: without data",
     "from the butt": "x is measured from the butt ('distance from joint [mm]')",
+    "Japanese, from the butt": "x is measured from the butt ('バットからの距離 [mm]')",
+    "a weight below": "line 5 skipped: without data",
+    "Z of a lathe": "positions are negative, as on a lathe: read as distances from the front",
+    "Z of a lathe, butt first": "positions are negative, as on a lathe: read as distances from the front",
 }
 
 
@@ -189,3 +215,23 @@ def test_profile_repeated_position_steps_core_and_material(tmp_path: Path) -> No
         (5, 5, MAPLE, None),
         (5, 5, MAPLE, None),
     ]
+
+
+@pytest.mark.parametrize("word", ["Ferrule", "Zwinge", "Hülse", "virola", "virole", "先角", "선골"])
+def test_profile_ferrule_heading_in_another_language_is_read(word: str, tmp_path: Path) -> None:
+    text = f"x [mm],diameter [mm],{word}\n0,12.75,25 mm melamine\n330,13.2,\n736.6,21.5,\n"
+    cue = cf.load(write_profile(tmp_path, text))
+    assert isinstance(cue, cf.Cue)
+    assert cue.segments[0].material == material("melamine")
+
+
+def test_profile_unused_column_is_the_first_warning(tmp_path: Path) -> None:
+    """In Python a PlausibilityWarning, in a command the first line, in JSON the first of the warnings."""
+    path = write_profile(tmp_path, PROFILES["extra columns"])
+    line = "columns 'No', 'note' are not used; a profile may have columns core, material, bore, radius, diameter, x"
+    with pytest.warns(cf.PlausibilityWarning, match=re.escape(line)):
+        cf.load(path)
+    status, out, err = call("modes", path, "--json")
+    assert status == 0
+    assert err.startswith(f"warning: {line}")
+    assert json.loads(out)["warnings"][0].startswith(line)

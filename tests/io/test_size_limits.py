@@ -26,6 +26,8 @@ FILES = {
     "short.toml": (TIP + 'contact_time = "1e-12 s"\n', SHORT),
     "many.toml": (PIECE.format("1 mm", "12 mm") * 2001, "segments: must have at most 2000 segments; got 2001"),
     "more.toml": (PIECE.format("1 mm", "12 mm") * 40_000, "must be a file of at most 1 MB; got 4"),
+    "dots.toml": ("a" + ".a" * 20_000 + " = 1\n", "line 1: must have keys of at most 32 parts; got one of "),
+    "quoted.toml": ("x = {" + '"a".' * 20_000 + "a = 1}\n", "line 1: must have keys of at most 32 parts; got one of "),
     "blank.toml": (PIECE.format("700" + 200_000 * " " + "x", "12 mm"), "segments[0].length: must be a length"),
 }
 STUDY = """scene = "{}"
@@ -101,6 +103,13 @@ def test_load_profile_of_many_points_is_fast(tmp_path: Path) -> None:
 
 KINDS = ["toml", "csv", "stl", "ply", "obj", "wav"]
 LIMITS = {"toml": 1, "csv": 1, "stl": 100, "ply": 100, "obj": 100, "wav": 100}  # MB
+
+
+def test_measured_series_with_a_cell_of_200_000_characters_is_rejected(folder: Path) -> None:
+    Path("measured").mkdir()
+    Path("measured/cue.toml").write_text(f'body_mass = "420 g"\n{GOOD}')
+    Path("measured/squirt.csv").write_text("value [deg],offset\n" + "1" * 200_000 + ",0.3\n")
+    assert "squirt.csv: line 2: must have at most 10000 characters" in rejection("compare", "measured")
 
 
 @pytest.fixture

@@ -92,3 +92,12 @@ def test_solid_carbon_rod_warns(tmp_path: Path) -> None:
     (shaft := tmp_path / "shaft.csv").write_text(PROFILE)
     (line,) = plausibility_warnings(cf.Scene(cf.load(shaft, material="carbon fibre", body_mass="15 oz")))
     assert line.startswith("a solid rod as stiff as carbon fibre, drawn mass 2")
+
+
+BUTTS = {"chamfer": "1460,30\n1470,5\n", "bumper": "1440,30\n1440.1,12\n1470,12\n"}
+
+
+@pytest.mark.parametrize("name", BUTTS)
+def test_chamfer_or_bumper_at_the_butt_causes_no_warning(name: str, tmp_path: Path) -> None:
+    (tmp_path / "cue.csv").write_text("x [mm],diameter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n" + BUTTS[name])
+    assert plausibility_warnings(cf.Scene(cf.load(tmp_path / "cue.csv"))) == []
