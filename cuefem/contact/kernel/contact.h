@@ -129,13 +129,37 @@ typedef struct {
     const double *radiated, *dissipated;          /* their losses, quadratic forms in state and loads */
 } StepTables;
 
-/* State of a contact, and the equations of the step under way. */
+typedef struct Work Work;
+
+/* Normal force of a loading tip, N, and its slope, N/m, at an indentation > 0, m. */
+typedef double Law(const Contact *c, double indentation, double *slope);
+
+/* Two equations g = 0 for the forces (F_t, F_n) of a level contact, and their derivatives. */
 typedef struct {
+    double g[2], J[2][2];
+} Equations;
+
+/* A tip by its tangential compliance (patch_*.c). */
+typedef struct {
+    int slips_in_parts; /* the patch itself limits its force to mu F_n */
+    void (*stick)(Work *w, const double *u, Equations *e); /* row T of the equations, where the tip sticks */
+    void (*keep)(Work *w, double middle);  /* state after a step in contact; middle: shift in its middle, m */
+    void (*release)(Work *w, double shift); /* loss of strain energy at separation */
+    int (*friction_state)(const Work *w);   /* of the last step */
+} Patch;
+
+extern const Patch rigid_patch, spring_patch, partial_slip;
+
+/* State of a contact, and the equations of the step under way. */
+struct Work {
     Contact *c;
     StepTables t;
-    double *state;             /* of the modes */
-    double *loads;             /* on ports, slopes and dashpots */
-    double *group;             /* state and loads of the modes that radiate */
+    Law *law;                 /* the variants of this contact, chosen by contact_new */
+    const Patch *patch;
+    int (*solve_forces)(Work *w); /* returns whether the forces converged */
+    double *state;                 /* of the modes */
+    double *loads;                 /* on ports, slopes and dashpots */
+    double *group;                 /* state and loads of the modes that radiate */
     double damping_loss, radiated; /* so far, J */
     double ball[BALL_VELOCITIES];
     double port_velocities[CUE_VELOCITIES]; /* of ports and slopes */
@@ -155,8 +179,14 @@ typedef struct {
     int phase, slip;             /* slip: its direction, or STICK; a PARTIAL_SLIP patch keeps STICK */
     int tip_stuck, on_table,
         table_stuck;   /* in the last step: tip sticks; table presses the ball; it sticks */
+    int on_table_now, table_sticks_now; /* in this step */
     int ends_at_event; /* whether the step was shortened to end at separation or touch */
-} Work;
+};
+
+enum { MAX_ITERATIONS = 40 };
+/* Relative change of the forces per iteration at convergence, and the largest accepted after the last one. */
+static const double REL_TOL = 1e-12, REL_TOL_ACCEPTED = 1e-7;
+static const double MIN_FORCE = 1e-9; /* N, least scale of the relative change */
 
 static inline double larger(double a, double b) { return a > b ? a : b; }
 
@@ -168,20 +198,27 @@ void advance_modes(Work *w);
 void apply_impulses(Work *w, const double *impulses);
 
 /* laws.c */
-double tip_force(const Contact *c, int phase, double indentation, double *slope, double *virtual);
+double power_law(const Contact *c, double indentation, double *slope);
+double leather_law(const Contact *c, double indentation, double *slope);
+double tip_force(const Work *w, int phase, double indentation, double *slope, double *virtual);
 double residual(const Contact *c);
 double unloading_scale(const Contact *c, int phase);
 double tangential_stiffness(const Contact *c, double virtual);
+
+/* kinematics.c */
 void contact_kinematics(const Work *w, double angle, const double *slopes, double C[FORCES][VELOCITIES]);
-
-/* partial_slip.c */
-double shift_annuli(Work *w, double virtual, double shift, double *by_shift, double *by_virtual);
-
-/* forces.c */
 void contact_matrices(Work *w);
 void velocities(const Work *w, double *end, double *mean);
+
+/* level.c, raised.c, impact.c */
 int level_forces(Work *w);
 int raised_forces(Work *w);
+int raised_impulses(Work *w);
 int impact(Work *w, Step *row);
+
+/* step.c */
+int take_step(Work *w, Step *row);
+void next_phase(Work *w, double v_n);
+void separate(Work *w);
 
 #endif
