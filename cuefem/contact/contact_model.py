@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from cuefem.beam.tip_modes import TipModes
+from cuefem.contact.kernel.declarations import CONSTANTS
 from cuefem.contact.modal_response import ModalPropagator, propagator_of
 from cuefem.cue import Array
 from cuefem.effects.contact_terms import ContactTerms, PowerLaw, TipModel
@@ -19,7 +20,7 @@ from cuefem.scene import Scene
 # of spring tips and of leather, which vibrates on the ball below its bound.
 MIN_RESTITUTION, MIN_LEATHER_RESTITUTION = 0.05, 0.1
 ANNULI, TABLE_MARGIN = 120, 1.05  # annuli uniform in the root of the indentation, up to 1.05 times the largest
-RIGID_PATCH, SPRING_PATCH, PARTIAL_SLIP = range(3)  # as in kernel/contact.h
+RIGID_PATCH, SPRING_PATCH, PARTIAL_SLIP = (CONSTANTS[name] for name in ("RIGID_PATCH", "SPRING_PATCH", "PARTIAL_SLIP"))
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,13 +13,23 @@ from numpy.typing import NDArray
 
 from cuefem.contact.contact_model import PARTIAL_SLIP, RIGID_PATCH, ContactModel
 from cuefem.contact.geometric_stiffness import SlopeOutOfRange
-from cuefem.contact.kernel.library import STEP, KernelContact, KernelTables, library, mode_fields
+from cuefem.contact.kernel.declarations import CONSTANTS, STEP, KernelContact
+from cuefem.contact.kernel.library import library, mode_fields, tables_pointer
 from cuefem.contact.outcome import IMPACT, SEPARATION, History, Phase, contact_state
 from cuefem.cue import Array
 from cuefem.effects.force_law import LeatherLaw
 from cuefem.scene import Outcome
 
-FRICTION_STATES = {0: "stick", 1: "slip", -1: "slip back", 2: IMPACT, 3: SEPARATION[0]}
+FRICTION_STATES = {
+    CONSTANTS[name]: state
+    for name, state in (
+        ("STICK", "stick"),
+        ("SLIP", "slip"),
+        ("SLIP_BACK", "slip back"),
+        ("IMPACT", IMPACT),
+        ("SEPARATED", SEPARATION[0]),
+    )
+}
 NORMAL_PHASES = ("load", "unload", "free")
 # Steps in a head-on contact time: squirt of a default strike then has an error below 0.1 %
 # (tests/contact/test_stored_answers.py).
@@ -28,7 +38,6 @@ INFINITE_FRICTION = 1e12  # finite value for infinite friction, as in kernel/ste
 STEPS_PER_CALL = 2048  # of the kernel
 MAX_CONTACT_TIMES = 200  # longest contact, in head-on contact times; beyond it the strike raises an error
 MAX_RECORDED_STEPS = 2_000_000  # 0.4 GB of records
-_RUNNING, _ENDED, _, _INDENTATION_OUT_OF_RANGE, _SLOPE_OUT_OF_RANGE, _UNSOLVED = range(6)
 
 
 Steps = NDArray[np.void]
@@ -204,7 +213,7 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
     if not work:
         raise MemoryError("no memory for the steps of a contact")
     try:
-        while c.status == _RUNNING:
+        while c.status == CONSTANTS["RUNNING"]:
             if c.steps >= MAX_RECORDED_STEPS:
                 raise RuntimeError(
                     f"the strike takes more than {MAX_RECORDED_STEPS} steps of {c.step:.3g} s, for {c.time:.3g} s so "
@@ -215,7 +224,7 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
             tables = propagator.tables(c.next_step)
             count = kernel.contact_steps(
                 work,
-                ctypes.byref(KernelTables.of(tables)),
+                tables_pointer(tables),
                 STEPS_PER_CALL,
                 rows.ctypes.data,
                 after.ctypes.data if store_states else None,
@@ -224,7 +233,7 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
             states.append(after[:count])
     finally:
         kernel.contact_free(work)
-    if c.status != _ENDED:
+    if c.status != CONSTANTS["ENDED"]:
         raise _failure(model, c)
     tangential = c.work[0] + c.work[2]
     shear = tangential if model.patch == PARTIAL_SLIP and model.friction >= INFINITE_FRICTION else c.shear_loss
@@ -248,15 +257,15 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
 
 def _failure(model: ContactModel, c: KernelContact) -> Exception:
     """The exception for a contact that did not end."""
-    if c.status == _INDENTATION_OUT_OF_RANGE and isinstance(model.law, LeatherLaw):
+    if c.status == CONSTANTS["INDENTATION_OUT_OF_RANGE"] and isinstance(model.law, LeatherLaw):
         return model.law.out_of_range(c.indentation)
-    if c.status == _SLOPE_OUT_OF_RANGE:
+    if c.status == CONSTANTS["SLOPE_OUT_OF_RANGE"]:
         return SlopeOutOfRange(
             f"the axial force of {c.axial_force:.4g} N bends the shaft by {c.max_slope:.3g} rad at its tip, beyond the "
             "range of GeometricStiffness: lower the speed, or stiffen the shaft"
         )
     state = FRICTION_STATES[c.friction_state]
-    if c.status == _UNSOLVED:
+    if c.status == CONSTANTS["UNSOLVED"]:
         return RuntimeError(
             f"the forces of the contact have no solution after {c.time:.6g} s and {c.steps} steps, in {state}; "
             "take more steps, or fewer modes"

@@ -10,7 +10,8 @@ from scipy.linalg import expm
 
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.coupled_modes import CoupledModes
-from cuefem.contact.kernel.library import KernelContact, KernelTables, library, mode_fields
+from cuefem.contact.kernel.declarations import KernelContact
+from cuefem.contact.kernel.library import library, mode_fields, tables_pointer
 from cuefem.contact.modal_response import propagator_of
 from cuefem.cue import Array
 
@@ -80,7 +81,7 @@ def imposed_velocity_impulse(tip: TipModes, T: float, velocity: Array, ball_inve
     if not work:
         raise MemoryError("no memory for the steps of a contact")
     try:
-        pointers = ctypes.byref(KernelTables.of(tables))
+        pointers = tables_pointer(tables)
         return float(
             kernel.imposed_velocity_impulse(work, pointers, STEPS, means.ctypes.data, ball_inverse_mass, first_impulse)
         )

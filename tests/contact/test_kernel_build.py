@@ -10,7 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from cuefem.contact import kernel
 from cuefem.contact.kernel import BINARY, BUILD
+from cuefem.contact.kernel.declarations import KernelContact
 
 ROOT = Path(__file__).parents[2]
 STRIKE = "import cuefem as cf; cf.strike(cf.Scene(cf.LumpedCue(0.54, 0.01), stroke=cf.Stroke(offset=0.3)))"
@@ -68,6 +70,18 @@ def test_kernel_of_other_sources_raises_until_built(folder: Path, damage: str) -
         assert run(folder, "hatch_build.py", CFLAGS="-O0") == (0, str(binary), [])
         assert run(folder, "-c", STRIKE) == (0, "", [])
         assert sorted(path.name for path in binary.parent.glob("_kernel*")) == ["_kernel.sha256", BINARY.name]
+
+
+def test_seal_with_windows_line_ends_loads(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    seal = tmp_path / kernel.DIGESTS.name
+    seal.write_bytes(kernel.DIGESTS.read_bytes().replace(b"\n", b"\r\n"))
+    monkeypatch.setattr(kernel, "DIGESTS", seal)
+    kernel.check()
+
+
+def test_misspelt_field_of_kernel_raises() -> None:
+    with pytest.raises(TypeError, match="KernelContact has no field frction"):
+        KernelContact(frction=0.5)
 
 
 @pytest.mark.parametrize("environment", [{"CC": "no-such-compiler"}, {"PATH": ""}, {"CC": "false"}])

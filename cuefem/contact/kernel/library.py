@@ -1,4 +1,4 @@
-"""The compiled kernel and the structures of its input and results."""
+"""The compiled kernel, loaded, and the fields of its input that describe the modes."""
 
 from __future__ import annotations
 
@@ -10,47 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cuefem.contact.kernel import BINARY, BUILD, KernelError, check
+from cuefem.contact.kernel.declarations import STEP, KernelContact, KernelTables
 from cuefem.contact.modal_response import ModalPropagator, StepTables
 
-_INTEGERS = "modes ports slopes forces speeds planes rolling law terms patch annuli dashpots radiating structural_loss"
-_ARRAYS = (
-    "radiating_modes omega rows mobility kinematics inverse_masses slope_weights force_terms compliance_terms "
-    "annulus_edges annulus_forces annulus_slopes annulus_stiffness state ball"
-)
-_NUMBERS = (
-    "restitution friction table_friction stiffness exponent indentation_limit compliance surface_restitution phi "
-    "dome rim radius arm_t arm_n step max_time window next_step time indentation max_indentation angle height "
-    "shear_loss damping_loss radiated axial_force max_slope"
-)
-# The structure Step of kernel/contact.h; F and v have one entry a force, ball one a velocity of the ball.
-_ONE, _SIX = ("time", "length", "friction_state", "phase", "angle"), ("F", "v", "ball")
-STEP = np.dtype([*((name, float) for name in _ONE), *((name, float, 6) for name in _SIX)])
 
-
-class KernelContact(ctypes.Structure):
-    """The structure Contact of kernel/contact.h, field by field."""
-
-    _fields_ = (
-        *((name, ctypes.c_int) for name in _INTEGERS.split()),
-        *((name, ctypes.c_void_p) for name in _ARRAYS.split()),
-        *((name, ctypes.c_double) for name in _NUMBERS.split()),
-        ("work", ctypes.c_double * 6),
-        *((name, ctypes.c_int) for name in ("status", "friction_state", "steps", "steps_to_last_separation")),
-    )
-
-
-class KernelTables(ctypes.Structure):
-    """The structure StepTables of kernel/contact.h, the addresses of the fields of `StepTables`."""
-
-    _fields_ = (
-        (StepTables._fields[0], ctypes.c_double),
-        *((name, ctypes.c_void_p) for name in StepTables._fields[1:]),
-    )
-
-    @classmethod
-    def of(cls, tables: StepTables) -> KernelTables:
-        """The addresses of tables, which must outlive it."""
-        return cls(tables.h, *(table.ctypes.data for table in tables[1:]))
+def tables_pointer(tables: StepTables) -> Any:
+    """The addresses of tables, which must outlive it, as an argument of the kernel."""
+    addresses = {name: table.ctypes.data for name, table in zip(tables._fields[1:], tables[1:], strict=True)}
+    return ctypes.byref(KernelTables(h=tables.h, **addresses))
 
 
 def mode_fields(propagator: ModalPropagator) -> tuple[dict[str, int], dict[str, NDArray[Any]]]:
