@@ -15,7 +15,14 @@ from .contact.strike import batch_strike as batch_strike, strike as strike
 from .contact.tip_identification import identify_tip as identify_tip
 from .contact.tip_identification import rebound as rebound
 from .cue.geometry import Cue as Cue, LumpedCue as LumpedCue, Material as Material, Segment as Segment
-from .design.design_changes import design_changes as design_changes
+from .analysis.design_changes import design_changes as design_changes
+from .analysis.end_mass import end_masses as end_masses
+from .analysis.natural_frequencies import natural_frequencies as natural_frequencies
+from .analysis.report_sections import report as report
+from .analysis.simulator_export import pooltool_export as pooltool_export
+from .analysis.squirt_curve import squirt_curve as squirt_curve
+from .analysis.strike_models import strike_models as strike_models
+from .analysis.tip_impacts import tip_impacts as tip_impacts
 from .effects.cue_effects import (
     AxialWaves as AxialWaves,
     GeometricStiffness as GeometricStiffness,

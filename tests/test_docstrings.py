@@ -12,7 +12,7 @@ FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
 ROOT = Path(cf.__file__).parent
 FILES = [file for file in ROOT.rglob("*.py") if ">>>" in file.read_text(encoding="utf-8")]
 MODULES = sorted(".".join(file.relative_to(ROOT.parent).with_suffix("").parts) for file in FILES)
-SLOW = "cuefem.design.design_changes"  # strikes a cue for every change
+SLOW = "cuefem.analysis.design_changes"  # strikes a cue for every change
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.heavy if n == SLOW else ()) for n in MODULES])

@@ -69,7 +69,7 @@ def out_of_order(part: str, tree: ast.Module) -> list[str]:
     for name in imported(tree):
         top, _, rest = name.partition(".")
         inner = rest.partition(".")[0]
-        if top == "cuefem" and inner != part and ORDER.index(inner) >= ORDER.index(part):
+        if top == "cuefem" and inner and inner != part and ORDER.index(inner) >= ORDER.index(part):
             wrong.append(name)
         if part not in HOMES.get(top, {part}):
             wrong.append(name)

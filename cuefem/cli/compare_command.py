@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from cuefem.analysis.comparison_table import comparison_figures, comparison_sentences, tabulate_comparison
 from cuefem.cli.output import assumption_lines, command, page_option, print_result
 from cuefem.cli.progress import with_progress_bar
 from cuefem.cli.scene_command import completed_scene, cue_options, errors_name_file, full_record, print_warnings
@@ -21,7 +22,6 @@ from cuefem.measurements.measured_cue import compare as compared
 from cuefem.measurements.measured_cue import offset_zeros
 from cuefem.results.comparison import comparison_record, with_same_stroke
 from cuefem.results.quantities import UNITS
-from cuefem.show.comparison_table import comparison_figures, comparison_sentences, tabulate_comparison
 from cuefem.show.measurement_tables import estimate_record, measured_record, tabulate_estimate, tabulate_measured
 from cuefem.show.scene_summary import scene_record
 

@@ -10,11 +10,10 @@ from pathlib import Path
 from typing import Any
 
 import click
-from rich.console import Console
 
 from cuefem.io import InputError, check_writable, save_page, write_atomically
 from cuefem.quantity.encoding import is_unicode
-from cuefem.show.renderers import json_text, terminal
+from cuefem.show.renderers import json_text, print_tables
 
 # The heading of an option that many commands share, in the order of a command's help.
 HEADINGS = ("Cue", "Tip", "Stroke", "Output")
@@ -128,12 +127,3 @@ def write_result(path: Path, record: Any, things: Sequence[Any], title: str = ""
         from cuefem.show.templates import plain_page  # templates take 0.1 s to load
 
         save_page(plain_page(title or path.stem, things), path)
-
-
-def print_tables(things: Sequence[Any]) -> None:
-    """Print text and tables."""
-    console = Console(highlight=False, emoji=False)
-    if not console.is_terminal:
-        console.width = 120  # files and pipes have no width: do not cut tables
-    for thing in things:
-        console.print(thing, markup=False) if isinstance(thing, str) else console.print(terminal(thing), crop=False)

@@ -4,12 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import wraps
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
 import click
 
-from cuefem.cli.output import assumption_lines, json_option, print_result, shared_option
+from cuefem.analysis.base import Analysis, write
+from cuefem.cli.output import (
+    command,
+    json_option,
+    output_option,
+    print_json,
+    print_tables,
+    shared_option,
+)
 from cuefem.cli.scene_options import (
     impact_options,
     offset_option,
@@ -25,10 +36,10 @@ from cuefem.io.defaults_report import Assumption, assumption_texts, assumptions
 from cuefem.io.drawing_warnings import drawing_warnings
 from cuefem.io.shaft_additions import SHAFT_ADDITIONS
 from cuefem.results.quantities import UNITS
-from cuefem.results.records import Record, json_value
+from cuefem.results.records import Record, Table
 from cuefem.scene import Scene
 from cuefem.show.plausibility import plausibility_warnings
-from cuefem.show.scene_summary import cue_line, effect_text, scene_record
+from cuefem.show.scene_summary import scene_record
 from cuefem.solid.tip_cache import computing_message
 
 
@@ -141,27 +152,74 @@ def print_warnings(scene: Scene, *, with_impact: bool = True) -> None:
         click.echo(f"warning: {line}", err=True)
 
 
-def run_on_scene(
-    file: Path,
-    options: dict[str, Any],
-    results: Callable[[Scene], Any],
-    sheets: Callable[..., Any],
-    *,
-    with_impact: bool = True,
-) -> Record:
-    """Compute all of it first, then print it all: as JSON, or as a heading and tables; or write these into a file.
+@dataclass(frozen=True)
+class Request:
+    """What a command asks: its file, the scene with the options, and the assumptions.
 
-    with_impact: see `scene_of`.
+    hints: lines that the function adds, printed after the tables.
     """
-    page = options.pop("output", None)
-    scene, notes = scene_of(file, options, with_impact=with_impact)
-    with errors_name_file(file, options):
-        about, answer = scene_record(scene), results(scene)
-    struck = about if with_impact else {name: value for name, value in about.items() if name in ("cue", "effects")}
-    record = full_record(file, notes, scene, answer, with_impact=with_impact, scene=struck)
-    lines = [head_line(file, about), "", *sheets(answer, about), "", *basis_lines(scene.effects, notes)]
-    print_result(options["as_json"], record, lines, page, f"{file.name}: {click.get_current_context().info_name}")
-    return record
+
+    file: Path
+    scene: Scene
+    assumptions: list[str]
+    options: dict[str, Any]
+    hints: list[Table | str] = field(default_factory=list)
+
+
+def analysis_command(
+    name: str | None = None,
+    *,
+    shared: Callable[[Any], Any] = stroke_options,
+    formats: tuple[str, ...] = (".html", ".json"),
+    has_stroke: bool = True,
+    **about: Any,
+) -> Callable[[Callable[..., Analysis | None]], click.Command]:
+    """A command whose function gets the `Request` and its own options, and returns the analysis, or None if it is done.
+
+    The command prints the analysis, as tables or JSON, or writes it into the file of -o. has_stroke: see `scene_of`.
+    """
+
+    def decorated(analyse: Callable[..., Analysis | None]) -> click.Command:
+        _, *own = signature(analyse).parameters
+
+        @wraps(analyse)
+        def run(file: Path, **options: Any) -> None:
+            mine = {key: options[key] if key == "output" else options.pop(key) for key in own}
+            output = options.pop("output")
+            scene, assumptions = scene_of(file, options, with_impact=has_stroke)
+            request = Request(file, scene, assumptions, options)
+            with errors_name_file(file, options):
+                analysis = analyse(request, **mine)
+            if analysis is not None:
+                _show(request, analysis, output)
+
+        return command(name, **about)(shared(output_option(*formats)(run)))
+
+    return decorated
+
+
+def _show(request: Request, analysis: Analysis, output: Path | None) -> None:
+    """Print an analysis, or write it into a file."""
+    file, notes = request.file, request.assumptions
+    as_json = request.options["as_json"]
+    warnings = [*drawing_warnings(file), *plausibility_warnings(analysis.scene, with_impact=analysis.has_stroke)]
+
+    def record() -> Record:
+        about = {"file": str(file), "assumptions": notes, "warnings": warnings}
+        return about | analysis.to_dict()
+
+    if output is not None:
+        title = analysis.page_title(file.name, click.get_current_context().info_name or "")
+        with errors_name_file(file, request.options):
+            write(output, record, lambda: analysis.to_html(title, notes, [f"warning: {line}" for line in warnings]))
+    if as_json:
+        print_json(record())
+    elif output is not None:
+        print_tables([*filter(None, [analysis.headline()]), f"wrote {output}", *request.hints])
+    else:
+        print_tables(analysis.lines(file.name, notes, request.hints))
+    if analysis.problem() and output is None:
+        raise InputError(file, "", analysis.problem())
 
 
 def full_record(
@@ -171,14 +229,3 @@ def full_record(
     warnings = [*drawing_warnings(file), *plausibility_warnings(solved, with_impact=with_impact)]
     about = {"file": str(file), "assumptions": notes, "warnings": warnings, "scene": scene_record(solved)}
     return about | more | record | {"units": UNITS | record.get("units", {})}
-
-
-def head_line(file: Path, about: dict[str, Any]) -> str:
-    """The heading of a command's tables: the file and its cue."""
-    return f"{file.name}: {cue_line(json_value(about['cue']))}"
-
-
-def basis_lines(effects: Sequence[Any], notes: Sequence[str]) -> list[str]:
-    """The lines below a command's tables: the effects, and the assumptions."""
-    acting = [f"effects: {', '.join(map(effect_text, effects))}"] if effects else []
-    return [*acting, *assumption_lines(notes)]

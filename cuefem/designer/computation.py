@@ -16,9 +16,9 @@ import numpy as np
 from nicegui import run
 
 import cuefem.show
+from cuefem.analysis.design_changes import DesignChanges, design_changes
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
-from cuefem.design.design_changes import design_changes
 from cuefem.design.sensitivity import sensitivity
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.io.reference_cues import reference_cues
@@ -117,9 +117,10 @@ def end_mass_distribution(scene: Scene) -> tuple[Array, Array]:
 
 
 @lru_cache(CACHED_DESIGNS)
-def changes(scene: Scene) -> Record:
+def changes(scene: Scene) -> DesignChanges:
     """The design changes a maker can make, with their results."""
-    return design_changes(scene, solved=solved_strike(scene).solved)
+    strike = solved_strike(scene)
+    return design_changes(SolvedDesign(strike.solved, strike.outcome))
 
 
 def solid(scene: Scene) -> Record:

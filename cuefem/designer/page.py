@@ -13,6 +13,8 @@ from typing import Any
 
 from nicegui import Client, app, background_tasks, events, ui
 
+from cuefem.analysis.report_page import page as report_page
+from cuefem.analysis.strike_models import regime_warning
 from cuefem.designer import computation, panels
 from cuefem.designer.computation import run_in_thread
 from cuefem.designer.file_editor import FileEditor
@@ -46,8 +48,6 @@ from cuefem.show.first_screen import (
 )
 from cuefem.show.glossary import definitions, with_term_buttons
 from cuefem.show.renderers import csv_text
-from cuefem.show.report_page import page as report_page
-from cuefem.show.strike_table import regime_warning
 from cuefem.show.templates import chart_script, page_style
 from cuefem.solid.tip_cache import computing_message
 

@@ -10,6 +10,7 @@ from typing import Any
 from nicegui import ui
 
 import cuefem.show
+from cuefem.analysis.strike_models import regime_warning
 from cuefem.designer.computation import CURVE_OFFSETS
 from cuefem.designer.knobs import KNOBS, label, value, value_text
 from cuefem.designer.state import Design, Step
@@ -20,10 +21,8 @@ from cuefem.results.uncertainty import SHAFT_ERROR
 from cuefem.results.verdict import verdict_problem
 from cuefem.scene import Scene
 from cuefem.show.charts import Axis, Curve, chart
-from cuefem.show.design_changes_table import tabulate_design_changes
+from cuefem.show.offset_charts import offset_charts
 from cuefem.show.plausibility import plausibility_warnings
-from cuefem.show.squirt_table import offset_charts
-from cuefem.show.strike_table import regime_warning
 from cuefem.show.templates import chart_markup, shading_markup, table_markup
 from cuefem.show.verdict_table import difference_text
 
@@ -94,7 +93,7 @@ def changes_panel(step: Step, results: Results, attempt: Callable[[Mapping[str, 
         problem = solved and verdict_problem(step.design.scene, solved.outcome)
         ui.html(f'<p class="soft">{escape(problem)}</p>' if problem else COMPUTING, sanitize=False)
         return
-    made = tabulate_design_changes(record)
+    made = record.table()
     ui.label(f"Changes to {step.design.name}, each alone").classes("h2")
     around = ui.element("div").classes("scroll").props('tabindex=0 role=region aria-label="Design changes"')
     with around, ui.element("table").classes("changes"):
@@ -103,13 +102,13 @@ def changes_panel(step: Step, results: Results, attempt: Callable[[Mapping[str, 
                 _cell("th", head, text=i in made.texts)
             _cell("td", "")
         with ui.element("tbody"):
-            for i, (cells, row) in enumerate(zip(made.rows, record["changes"], strict=True)):
+            for i, (cells, row) in enumerate(zip(made.rows, record.changes, strict=True)):
                 with ui.element("tr").classes((made.styles or {}).get(i, "")):
                     for j, cell in enumerate(cells):
                         _cell("td", cell, text=j in made.texts)
                     with ui.element("td"):
-                        button = ui.button("Try", on_click=lambda places=row["values"]: attempt(places))
-                        button.props(f'outline dense no-caps aria-label="Try {row["change"]}"')
+                        button = ui.button("Try", on_click=lambda places=row.values: attempt(places))
+                        button.props(f'outline dense no-caps aria-label="Try {row.change}"')
     for note in made.notes:
         ui.label(note).classes("soft")
 

@@ -18,6 +18,7 @@ from cuefem.cue import Array
 from cuefem.effects.cue_effects import Support
 from cuefem.endmass.definitions import DEFINITIONS, Definition, small_offset_slope
 from cuefem.results.closed_forms import pivot_length
+from cuefem.results.convergence import resolve
 from cuefem.results.quantities import RESULTS, Result
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.default_scene import GAMES
@@ -69,6 +70,16 @@ class SolvedDesign:
         self.solved, self.scene = solved, solved.scene
         self._outcomes: dict[float | None, Outcome] = {} if outcome is None else {None: outcome}
         self._frequencies = np.array([])
+
+    @classmethod
+    def of(cls, scene: Scene | SolvedDesign, rtol: float | None = None) -> SolvedDesign:
+        """A scene to solve; a solved one as it is, so that analyses share its modes and its strike.
+
+        rtol: relative error target of the strike; by default that of a default strike.
+        """
+        if isinstance(scene, SolvedDesign):
+            return scene
+        return cls(SolvedScene(scene), None if rtol is None else resolve(scene, rtol))
 
     @property
     def tip_stiffness(self) -> float:

@@ -56,6 +56,22 @@ def terminal(sheet: Table) -> Group:
     return Group(table, *notes, *([""] if sheet.notes else []))
 
 
+def print_tables(things: Sequence[Any], console: Console | None = None) -> None:
+    """Print text and tables."""
+    console = console or Console(highlight=False, emoji=False)
+    if not console.is_terminal:
+        console.width = 120  # files and pipes have no width: do not cut tables
+    for thing in things:
+        console.print(thing, markup=False) if isinstance(thing, str) else console.print(terminal(thing), crop=False)
+
+
+def plain_text(things: Sequence[Any]) -> str:
+    """Text and tables as a terminal shows them."""
+    file = io.StringIO()
+    print_tables(things, Console(file=file, highlight=False, emoji=False))
+    return file.getvalue()
+
+
 def json_text(record: Any, *, escaped: bool = False) -> str:
     """A record as JSON. escaped: whether in ASCII, other characters as escape sequences."""
     return json.dumps(json_value(record), indent=2, allow_nan=False, ensure_ascii=escaped)

@@ -76,7 +76,6 @@ strike of_bad.toml | cuefem: bad.toml: segments[0].length: must be more than 0
 report off.toml -o page.html | cuefem: off.toml: effects[0].position: must be 0 to 700 mm, on the cue
 convert good.toml own.toml | already exists; --force overwrites it
 report lumped.toml -o page.pdf | page.pdf: --output: must end in .html or .json
-report lumped.toml -o page.html --json | page.html: --output: cannot be combined with --json
 strike spring.toml --format pooltool --offset 0 | [A.31] has no squirt at offset 0
 strike spring.toml --format pooltool -o cue.json --offset 0.9 | the stroke is a miscue at offset 0.9
 report spring.toml -o page.html --offset 0.9 | miscue at b/R 0.9: no squirt is reported. Use a smaller offset
@@ -153,7 +152,7 @@ def test_command_out_of_memory_prints_one_line(tmp_path: Path, monkeypatch: pyte
     def full(*_: object, **__: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr("cuefem.cli.cue_commands.modes_record", full)
+    monkeypatch.setattr("cuefem.natural_frequencies", full)
     path = tmp_path / "cue.toml"
     path.write_text(GOOD, encoding="utf-8")
     why = "out of memory: request less, or check the units of sizes, masses and times (MemoryError)"

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.analysis.squirt_curve import squirt_curve
+from cuefem.analysis.strike_models import strike_models
 from cuefem.endmass.definitions import squirt_equivalent
 from cuefem.endmass.lumped import lump
 from cuefem.scene.solved_scene import tip_modes_of
-from cuefem.show.squirt_table import squirt_record
-from cuefem.show.strike_table import strike_record
 from tests.helpers.strike_scenes import KIM_AT, kim_scene
 
 EFFECTS = {
@@ -46,13 +46,13 @@ def test_offset_end_mass_small_offsets_converges_to_stick(effects: tuple[object,
 def test_offset_end_mass_equals_impulse_and_lump() -> None:
     scene = kim_scene(0.4)
     lumped = lump(scene)
-    assert lumped.end_mass == cf.end_mass(scene, "offset") == strike_record(scene)["end_mass"]
+    assert lumped.end_mass == cf.end_mass(scene, "offset") == strike_models(scene).end_mass
     assert cf.impulse(scene).squirt == cf.impulse(replace(scene, cue=lumped)).squirt
-    curve = squirt_record(scene, (0.1, 0.4))
-    assert curve["end_mass"][1] == pytest.approx(lumped.end_mass, rel=1e-12)
-    assert curve["models"]["two-part, this cue"]["squirt"][1] == pytest.approx(cf.impulse(scene).squirt, rel=1e-12)
+    curve = squirt_curve(scene, (0.1, 0.4))
+    assert curve.end_mass[1] == pytest.approx(lumped.end_mass, rel=1e-12)
+    assert curve.models["two-part, this cue"]["squirt"][1] == pytest.approx(cf.impulse(scene).squirt, rel=1e-12)
     squirts = cf.impulse([at_offset(scene, 0.1), at_offset(scene, 0.4)]).squirt
-    assert squirts == pytest.approx(curve["models"]["two-part, this cue"]["squirt"], rel=1e-12)
+    assert squirts == pytest.approx(curve.models["two-part, this cue"]["squirt"], rel=1e-12)
 
 
 def test_offset_end_mass_of_kim_cue_has_smaller_error_than_stick() -> None:
@@ -74,9 +74,9 @@ def test_lump_with_dome_squirt_equals_strike_without_slip(offset: float) -> None
 def test_lumped_cue_coupling_is_the_same_at_all_offsets() -> None:
     """A cue's own coupling is a constant, that by effects at the tip is proportional to the offset."""
     scene = at_offset(cf.Scene(cf.LumpedCue(0.54, 0.006, coupling=3.0), tip=cf.Tip(contact_time=1e-3)), 0.2)
-    models = squirt_record(scene, (-0.3, 0.3))["models"]
+    models = squirt_curve(scene, (-0.3, 0.3)).models
     assert models["lumped, this cue"]["squirt"] == pytest.approx(models["coupled, this cue"]["squirt"], rel=1e-3)
-    assert strike_record(scene)["coupling"] == 3.0
+    assert strike_models(scene).coupling == 3.0
 
 
 def test_strike_record_without_end_mass_omits_lumped_models() -> None:
@@ -84,12 +84,12 @@ def test_strike_record_without_end_mass_omits_lumped_models() -> None:
     scene = replace(kim_scene(0.85), tip=cf.Tip(0.05, 0.7, 1e-3))
     with pytest.raises(ValueError, match="end_mass: no end mass has the squirt of a sticking tip; got"):
         cf.impulse(scene)
-    record = strike_record(scene)
-    assert record["end_mass"] is None
-    assert set(record["models"]) == {"coupled"}
-    curve = squirt_record(scene, (0.3, 0.85))
-    assert curve["end_mass"][1] is None
-    assert np.isnan(curve["models"]["two-part, this cue"]["squirt"]).tolist() == [False, True]
+    record = strike_models(scene)
+    assert record.end_mass is None
+    assert set(record.models) == {"coupled"}
+    curve = squirt_curve(scene, (0.3, 0.85))
+    assert curve.end_mass[1] is None
+    assert np.isnan(curve.models["two-part, this cue"]["squirt"]).tolist() == [False, True]
 
 
 @pytest.mark.parametrize("effects", [(), (cf.GeometricStiffness(),), (cf.Elevation(0.2), cf.GeometricStiffness())])

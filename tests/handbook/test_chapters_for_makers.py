@@ -9,12 +9,12 @@ from typing import Any
 import pytest
 
 import cuefem as cf
+from cuefem.analysis.report_sections import LAW
 from cuefem.handbook import MAKERS, chapters
 from cuefem.parameters.parameter import with_parameters
 from cuefem.results.quantities import drawn_mass
 from cuefem.results.uncertainty import MODEL_ERROR, SHAFT_ERROR
 from cuefem.scene.default_scene import without_leather
-from cuefem.show.report_page import LAW
 from tests.helpers.command_line import call
 from tests.helpers.maker_pictures import FOLDER, PICTURES, command_json, reference_squirts
 

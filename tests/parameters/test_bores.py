@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 
 import cuefem as cf
-from cuefem.design.design_changes import changes_of
+from cuefem.analysis.design_changes import changes_of
 from cuefem.parameters.parameter import PARAMETERS, with_parameters
 from cuefem.parameters.parts import bore_mouth
 from tests.helpers.bored_cues import bored_cues

@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 
 import cuefem as cf
+from cuefem.analysis.comparison_table import comparison_sentences
 from cuefem.parameters.parameter import with_parameters
 from cuefem.parameters.parts import main_material
 from cuefem.results.comparison import SHAPE_FLOOR, comparison_record
 from cuefem.results.uncertainty import MASS_ERROR, RATIO_FLOOR, SHAFT_ERROR
-from cuefem.show.comparison_table import comparison_sentences
 from tests.helpers.command_line import as_json, call
 from tests.helpers.cues import kim
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.show.strike_table import regime_warning
+from cuefem.analysis.strike_models import regime_warning
 
 MAPLE = cf.load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml")
 assert isinstance(MAPLE, cf.Cue)

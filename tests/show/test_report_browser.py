@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.analysis.report_page import PAGE_OFFSETS, page
+from cuefem.analysis.squirt_curve import squirt_curve
 from cuefem.design import Response
 from cuefem.design.study_statistics import SweepStatistics
-from cuefem.show.report_page import PAGE_OFFSETS, page
-from cuefem.show.squirt_table import squirt_record
 from cuefem.show.study_table import tabulate_sweep
 from cuefem.show.templates import plain_page
 from tests.helpers.designer_browser import BROWSER, empty_page, open_browser
@@ -44,7 +44,7 @@ def opened(browser: Any) -> Iterator[Any]:
 
 def test_report_by_keyboard_shows_values_and_definitions_and_prints(opened: Any) -> None:
     opened.set_content(page("pool_maple.toml", SCENE))
-    chart, known = opened.locator("svg.read").first, squirt_record(SCENE, PAGE_OFFSETS)["models"]
+    chart, known = opened.locator("svg.read").first, squirt_curve(SCENE, PAGE_OFFSETS).models
     chart.focus()
     opened.keyboard.press("Home")
     for _ in range(3):

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.analysis.report_page import page
 from cuefem.show.charts import WIDTH, Axis, round_step
 from cuefem.show.drawings import DIAMETER_SCALE, cue_drawing
-from cuefem.show.report_page import page
 from tests.helpers.page_reader import PageReader
 
 MESHES = Path(__file__).parents[2] / "meshes"

@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 import cuefem as cf
-from cuefem.show.simulator_export import DEFAULT, VERSION, pooltool_record
+from cuefem.analysis.simulator_export import DEFAULT, VERSION, pooltool_record
 from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.cues import kim
 

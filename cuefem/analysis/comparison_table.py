@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+from cuefem.analysis.end_mass import SQUIRT_END_MASS
+from cuefem.analysis.strike_models import regime_warning
 from cuefem.results.comparison import with_same_stroke
 from cuefem.results.quantities import DASH, RESULTS, format_value, with_unit
 from cuefem.results.records import Record, Table
@@ -13,9 +15,7 @@ from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
 from cuefem.show.charts import Chart
 from cuefem.show.drawings import DIAMETER_SCALE, CueDrawing, cue_drawing
-from cuefem.show.end_mass_table import SQUIRT_END_MASS
-from cuefem.show.squirt_table import offset_charts
-from cuefem.show.strike_table import regime_warning
+from cuefem.show.offset_charts import offset_charts
 from cuefem.show.verdict_table import difference_text, squirt_difference
 
 CURVE_OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 13))  # b/R

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from cuefem.analysis.base import Analysis
+from cuefem.analysis.strike_models import regime_warning
 from cuefem.cue import Cue
 from cuefem.cue.materials import MATERIALS, WOODS, table_name
 from cuefem.design.evaluation import Response
 from cuefem.effects.leather_tip import DOMES
 from cuefem.parameters.parameter import PARAMETERS, with_parameters
 from cuefem.parameters.parts import Layout, taper_position
-from cuefem.results.quantities import to_display, with_unit
-from cuefem.results.records import Record
+from cuefem.results.quantities import format_change, to_display, with_unit
+from cuefem.results.records import Record, Table, tabulate
 from cuefem.results.solved_design import SolvedDesign, off_centre
 from cuefem.results.uncertainty import model_share, ratio_error, squirt_changes
 from cuefem.results.verdict import reject_no_verdict
@@ -35,6 +38,7 @@ MIN_STIFFNESS_LOSS = 0.05  # perceptible relative loss of stiffness
 MIN_CONTRIBUTION = 0.002  # of squirt: smaller contributions to its uncertainty are neglected in a change
 NUMBERS = tuple(map(Response.of, ("squirt", "tip_stiffness", "shaft_mass", "frequency(1)")))
 WOOD = ("E", "G", "rho")
+STYLES = {"worthwhile": "bold", "more squirt": "dim", "within uncertainty": "dim"}
 Progress = Callable[[Sequence[Any]], Iterable[Any]]
 
 
@@ -138,25 +142,118 @@ def _from_to(old: float, new: float) -> str:
     return f"{to_display(old, 'm'):.4g} → {with_unit(new, 'm')}"
 
 
-def design_changes(scene: Scene, *, solved: SolvedScene | None = None, progress: Progress = list) -> Record:
-    """The design changes of a cue, and the effect of each on its own.
+@dataclass(frozen=True)
+class ChangedDesign:
+    """A cue with one change.
+
+    Parameters
+    ----------
+    change : str
+        The change in words.
+    values : dict of str to object
+        The parameters that it sets, as `cuefem.with_parameters` takes them.
+    squirt, tip_stiffness, shaft_mass, frequency : float
+        Squirt (rad), static stiffness of the tip (N/m), mass of the drawn part (kg) and first natural frequency (Hz).
+    squirt_change, tip_stiffness_change : float
+        Relative changes.
+    shaft_mass_change, frequency_change : float
+        Absolute changes, kg and Hz.
+    squirt_change_error : float
+        Uncertainty of squirt_change, 1 sigma.
+    verdict : str
+        The recommendation: "within uncertainty" if the change of squirt is smaller than its error.
+    """
+
+    change: str
+    values: dict[str, Any]
+    squirt: float
+    tip_stiffness: float
+    shaft_mass: float
+    frequency: float
+    squirt_change: float
+    tip_stiffness_change: float
+    shaft_mass_change: float
+    frequency_change: float
+    squirt_change_error: float
+    verdict: str
+
+
+@dataclass(frozen=True)
+class DesignChanges(Analysis):
+    """Changes that a maker can make to a cue, each on its own.
 
     Parameters
     ----------
     scene : Scene
-        A stroke with a cue of segments, such as that of `usual_scene`. A centre-ball stroke is computed at the game's
+        The analysed scene.
+    offset : float
+        Offset b/R of the strikes: a head-on stroke is computed at the game's default offset.
+    regime : str
+        State of the contact, as `Outcome.regime`.
+    unmodified : dict of str to float
+        Squirt (rad), tip stiffness (N/m), shaft mass (kg) and first natural frequency (Hz) of the cue itself.
+    changes : list of ChangedDesign
+        The changes, lowest squirt first.
+    """
+
+    offset: float
+    regime: str
+    unmodified: dict[str, float]
+    changes: list[ChangedDesign]
+
+    def tables(self) -> list[Table | str]:
+        """A table with a row for each change."""
+        return [self.table()]
+
+    def table(self) -> Table:
+        """A row for each change, the lowest squirt first."""
+        table = tabulate(
+            "Design changes",
+            {
+                "change": "{change}",
+                "squirt change": lambda row: format_change(
+                    100 * row["squirt_change"], 1, f"± {100 * row['squirt_change_error']:.1f} %"
+                ),
+                "stiffness change": lambda row: _percent(row["tip_stiffness_change"]),
+                "mass change": lambda row: format_change(1e3 * row["shaft_mass_change"], 1, "g"),
+                "natural frequency change": lambda row: format_change(row["frequency_change"], 1, "Hz"),
+                "recommendation": "{verdict}",
+            },
+            map(vars, self.changes),
+            *self._notes(),
+            texts=(0, 5),
+        )
+        styles = {i: STYLES[row.verdict] for i, row in enumerate(self.changes) if row.verdict in STYLES}
+        return replace(table, styles=styles)
+
+    def _notes(self) -> list[str]:
+        """Definitions of the table's columns."""
+        warning = regime_warning(self.regime)
+        own = with_unit(self.unmodified["squirt"], "rad", decimals=2)
+        return [
+            *([warning] if warning else []),
+            f"Each change on its own, by the coupled strike at b/R {self.offset:.4g}; this cue: {own}. "
+            "±: uncertainty of the change (1σ): model, unmeasured wood and tip, and 1 %. Worthwhile: squirt falls by "
+            "more than its uncertainty; within uncertainty: the change is smaller than its uncertainty.",
+            "Stiffness: static, at the tip, joint end clamped. Costs stiffness: by 5 % or more. Natural frequency: of "
+            "the first mode.",
+        ]
+
+
+def design_changes(scene: Scene | SolvedDesign, *, progress: Progress = list) -> DesignChanges:
+    """Changes that a maker can make to a cue, and the effect of each on its own.
+
+    Parameters
+    ----------
+    scene : Scene
+        A stroke with a cue of segments, such as that of `usual_scene`. A head-on stroke is computed at the game's
         default offset.
-    solved, progress : optional
-        The solved scene, if it is known; and a function of the list of changes that shows progress.
+    progress : callable
+        Wraps the list of changes, to show progress.
 
     Returns
     -------
-    dict
-        "offset", b/R; "regime", the contact's (`Outcome.regime`); "unmodified", the cue's squirt (rad), tip
-        stiffness (N/m), shaft mass (kg) and first natural frequency (Hz); "changes", a list of dicts sorted by squirt,
-        lowest first: "change", the label, "values", the argument of `cuefem.parameters.parameter.with_parameters`, the
-        four numbers, relative changes of squirt (with "squirt_change_error", 1 sigma) and stiffness, absolute ones of
-        mass and frequency, and a "verdict": a change of squirt smaller than its error is "within uncertainty".
+    DesignChanges
 
     Raises
     ------
@@ -168,16 +265,18 @@ def design_changes(scene: Scene, *, solved: SolvedScene | None = None, progress:
     >>> import cuefem as cf
     >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
     >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43))
-    >>> rows = cf.design_changes(scene)["changes"]
-    >>> rows[0]["squirt_change"] < rows[-1]["squirt_change"]
+    >>> changes = cf.design_changes(scene).changes
+    >>> changes[0].squirt_change < changes[-1].squirt_change
     True
     """
-    struck = off_centre(scene)
-    solved = SolvedScene(struck) if solved is None or struck is not scene else solved
-    outcome = SolvedDesign(solved).strike()
+    design = SolvedDesign.of(scene)
+    struck = off_centre(design.scene)
+    if struck is not design.scene:
+        design = SolvedDesign.of(struck)
+    outcome = design.strike()
     reject_no_verdict(struck, outcome)
-    base = _numbers(solved)
-    before = {key: x for key, x in squirt_changes(solved, base["squirt"]).items() if abs(x) > MIN_CONTRIBUTION}
+    base = _numbers(design.solved)
+    before = {key: x for key, x in squirt_changes(design.solved, base["squirt"]).items() if abs(x) > MIN_CONTRIBUTION}
     rows = []
     for change in progress(changes_of(struck)):
         try:
@@ -189,11 +288,11 @@ def design_changes(scene: Scene, *, solved: SolvedScene | None = None, progress:
             after = squirt_changes(new, numbers["squirt"], before)
             residual = (_residual(before.get(key, 0.0), after.get(key, 0.0), key in change.resets) for key in before)
             error = ratio_error(numbers["squirt"] / base["squirt"], model_share(struck, variant), *residual)
-            rows.append(_row(change, base, numbers, error))
+            rows.append(_changed_design(change, base, numbers, error))
         except (ValueError, RuntimeError):
             continue
-    rows.sort(key=lambda row: row["squirt_change"])
-    return {"offset": float(struck.stroke.offset), "regime": outcome.regime, "unmodified": base, "changes": rows}
+    rows.sort(key=lambda row: row.squirt_change)
+    return DesignChanges(design.scene, float(struck.stroke.offset), outcome.regime, base, rows)
 
 
 def _numbers(solved: SolvedScene) -> Record:
@@ -215,17 +314,29 @@ def _residual(before: float, after: float, independent: bool) -> float:
     return math.hypot(before, after) if independent else after - before
 
 
-def _row(change: DesignChange, base: Record, numbers: Record, error: float) -> Record:
-    relative = {name: numbers[name] / base[name] - 1 for name in ("squirt", "tip_stiffness")}
-    absolute = {name: numbers[name] - base[name] for name in ("shaft_mass", "frequency")}
-    changes = {f"{name}_change": value for name, value in (relative | absolute).items()}
-    verdict = {"squirt_change_error": error, "verdict": _verdict(relative, error)}
-    return {"change": change.label, "values": change.values} | numbers | changes | verdict
+def _changed_design(change: DesignChange, base: Record, numbers: Record, error: float) -> ChangedDesign:
+    squirt = numbers["squirt"] / base["squirt"] - 1
+    stiffness = numbers["tip_stiffness"] / base["tip_stiffness"] - 1
+    return ChangedDesign(
+        change.label,
+        change.values,
+        **numbers,
+        squirt_change=squirt,
+        tip_stiffness_change=stiffness,
+        shaft_mass_change=numbers["shaft_mass"] - base["shaft_mass"],
+        frequency_change=numbers["frequency"] - base["frequency"],
+        squirt_change_error=error,
+        verdict=_verdict(squirt, stiffness, error),
+    )
 
 
-def _verdict(relative: Record, error: float) -> str:
-    if abs(relative["squirt"]) <= error:
+def _verdict(squirt: float, stiffness: float, error: float) -> str:
+    if abs(squirt) <= error:
         return "within uncertainty"
-    if relative["squirt"] > 0:
+    if squirt > 0:
         return "more squirt"
-    return "worthwhile, costs stiffness" if relative["tip_stiffness"] < -MIN_STIFFNESS_LOSS else "worthwhile"
+    return "worthwhile, costs stiffness" if stiffness < -MIN_STIFFNESS_LOSS else "worthwhile"
+
+
+def _percent(share: float) -> str:
+    return format_change(100 * share, 1 if abs(share) < 0.095 else 0, "%")

@@ -9,13 +9,16 @@ gives the squirt of the coupled strike at the scene's offset and speed.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
+from cuefem.analysis.base import Analysis
+from cuefem.analysis.strike_models import UNCERTAINTY_NOTE
 from cuefem.contact.strike import strike_modes
 from cuefem.results.closed_forms import alciatore_a31, alciatore_a31_mass_ratio
 from cuefem.results.quantities import RESULTS, units_of, with_unit
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
-from cuefem.show.strike_table import UNCERTAINTY_NOTE
 
 VERSION = "0.6.0"  # the release whose CueSpecs these are; .ci/pooltool installs it
 INERTIA = 0.4  # its 5/2
@@ -73,6 +76,42 @@ def pooltool_record(name: str, scene: Scene, file: str = "cue.json") -> Record:
         "units": units_of("end_mass", "length", "radius", "squirt", "contact_time")
         | {"M": "kg", "m": "kg", "R": "m", "default_end_mass": "kg", "default_squirt": "rad"},
     }
+
+
+@dataclass(frozen=True)
+class PooltoolExport(Analysis):
+    """The input file of pooltool, and what it will compute from it.
+
+    Parameters
+    ----------
+    scene : Scene
+        The exported stroke.
+    numbers : dict
+        See `pooltool_record`.
+    file : str
+        The JSON file that is written, or "".
+    """
+
+    numbers: Record
+    file: str
+
+    def to_dict(self) -> Record:
+        """The record that pooltool reads, with its own units."""
+        about = super().to_dict()
+        return about | self.numbers | {"units": about["units"] | self.numbers["units"]}
+
+    def values(self) -> Record:
+        """The numbers of `pooltool_record`."""
+        return self.numbers
+
+    def tables(self) -> list[Table | str]:
+        """The end mass beside pooltool's default, and the line that reads the file."""
+        return tabulate_pooltool(self.numbers, written=bool(self.file))
+
+
+def pooltool_export(scene: Scene, name: str, file: str = "") -> PooltoolExport:
+    """pooltool's CueSpecs of a scene's cue. name: brand of the cue. file: the JSON file that will hold it."""
+    return PooltoolExport(scene, pooltool_record(name, scene, file or "cue.json"), file)
 
 
 def _drawn(scene: Scene) -> Record:

@@ -1,0 +1,124 @@
+"""What all analyses share: the record of numbers, and the text, page and notebook views of tables and charts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, is_dataclass
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from cuefem.io import save_page, write_atomically
+from cuefem.results.quantities import UNITS
+from cuefem.results.records import Record, Table, json_value
+from cuefem.scene import Scene
+from cuefem.show.scene_summary import cue_line, effect_text, scene_record
+
+if TYPE_CHECKING:
+    from cuefem.show.charts import Chart
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """The answer to one question about a scene.
+
+    A subclass adds its numbers as fields, in SI units, and defines `items`. A field with ``repr=False`` is not part of
+    the record: intermediate results, and options of the tables.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene that was analysed.
+    """
+
+    scene: Scene
+    has_stroke: ClassVar[bool] = True  # whether ball, tip and stroke matter to the answer
+    about: ClassVar[str] = ""  # definitions, for pages
+
+    def tables(self) -> list[Table | str]:
+        """Tables and lines of text, in the order of terminal, page and notebook."""
+        raise NotImplementedError
+
+    def charts(self) -> list[Chart]:
+        """Charts, for pages and notebooks."""
+        return []
+
+    def headline(self) -> str:
+        """The answer in one line, or an empty line."""
+        return ""
+
+    def problem(self) -> str:
+        """Why a part of the answer is missing; a command then ends with an error."""
+        return ""
+
+    def values(self) -> Record:
+        """The numbers alone, in SI units."""
+        return {field.name: _plain(getattr(self, field.name)) for field in fields(self)[1:] if field.repr}
+
+    def to_dict(self) -> Record:
+        """The record: scene, numbers in SI units, and the unit of each."""
+        about = scene_record(self.scene)
+        if not self.has_stroke:
+            about = {name: about[name] for name in ("cue", "effects")}
+        return {"scene": about, **self.values(), "units": dict(UNITS)}
+
+    def page_title(self, name: str, question: str) -> str:
+        """The title of a page on a file."""
+        return f"{name}: {question}"
+
+    def lines(
+        self, name: str = "", assumptions: Sequence[str] = (), hints: Sequence[Table | str] = ()
+    ) -> list[Table | str]:
+        """What a terminal and a plain page show: heading, tables, hints, effects and assumptions."""
+        heading = cue_line(json_value(scene_record(self.scene)["cue"]))
+        effects = ", ".join(map(effect_text, self.scene.effects))
+        return [
+            f"{name}: {heading}" if name else heading,
+            "",
+            *self.tables(),
+            *(["", *hints] if hints else []),
+            "",
+            *([f"effects: {effects}"] if effects else []),
+            *(["assumed:", *(f"  {text}" for text in assumptions)] if assumptions else []),
+        ]
+
+    def to_html(self, name: str = "", assumptions: Sequence[str] = (), warnings: Sequence[str] = ()) -> str:
+        """A self-contained page with tables and charts."""
+        from cuefem.show.templates import plain_page  # templates take 0.1 s to load
+
+        heading, *others = self.lines(name.partition(":")[0], assumptions)
+        return plain_page(name or type(self).__name__, [heading, *warnings, *self.charts(), *others])
+
+    def save(self, path: str | Path) -> None:
+        """Write the record (.json) or a page (.html); the extension sets the format."""
+        write(Path(path), self.to_dict, self.to_html)
+
+    def __str__(self) -> str:
+        from cuefem.show.renderers import plain_text
+
+        return plain_text(self.lines())
+
+    def _repr_html_(self) -> str:
+        """The page in a frame, so that its style does not change the notebook's."""
+        return f'<iframe srcdoc="{escape(self.to_html())}" style="width: 100%; height: 480px; border: 0"></iframe>'
+
+
+def write(path: Path, record: Callable[[], Record], html: Callable[[], str]) -> None:
+    """Write a record as .json, or a page as .html."""
+    if path.suffix != ".json":
+        return save_page(html(), path)
+    from cuefem.show.renderers import json_text
+
+    text = json_text(record()) + "\n"
+    write_atomically(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+
+
+def _plain(value: Any) -> Any:
+    """A value of a record: dataclasses become dicts."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
+    if isinstance(value, dict):
+        return {key: _plain(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(inner) for inner in value]
+    return value

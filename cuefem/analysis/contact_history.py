@@ -1,0 +1,58 @@
+"""The contact of one strike over time: force, velocity, and the events."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from cuefem.analysis.base import Analysis
+from cuefem.results.quantities import format_value
+from cuefem.results.records import Record, Table
+from cuefem.scene import Outcome
+
+if TYPE_CHECKING:
+    from cuefem.show.charts import Chart
+
+
+@dataclass(frozen=True)
+class ContactHistory(Analysis):
+    """The contact over time, and where the energy went.
+
+    Parameters
+    ----------
+    scene : Scene
+        The analysed stroke.
+    energy : dict of str to float
+        Energy before the strike and by place after it, J.
+    outcome : Outcome
+        The strike.
+    """
+
+    energy: Record
+    outcome: Outcome = field(repr=False)
+
+    def charts(self) -> list[Chart]:
+        """Force and velocity of the tip against time, if the strike has a history."""
+        from cuefem.show.contact_charts import contact_section
+
+        return [] if self.outcome.history is None else contact_section(self.outcome)["charts"]
+
+    def tables(self) -> list[Table | str]:
+        """The events, and the energy balance."""
+        from cuefem.show.contact_charts import contact_section
+
+        events = [] if self.outcome.history is None else contact_section(self.outcome)["events"]
+        return [
+            *([Table("Events", ("", "time", "event"), tuple(events), texts=(0, 2))] if events else []),
+            self.table(),
+        ]
+
+    def table(self) -> Table:
+        """A row for each place of energy after the strike."""
+        whole = self.energy["initial"]
+        rows = (
+            (name, f"{100 * value / whole:.2f} %", format_value("energy", value) if abs(value) > 1e-9 * whole else "0")
+            for name, value in self.energy.items()
+            if name != "initial"
+        )
+        return Table("Energy balance", ("", "share", "energy"), tuple(rows))

@@ -1,0 +1,162 @@
+"""Effective end mass of a cue by each definition."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from cuefem.analysis.base import Analysis
+from cuefem.endmass.definitions import DEFINITIONS
+from cuefem.results.closed_forms import cue_end_mass
+from cuefem.results.quantities import with_unit
+from cuefem.results.records import Record, Table, tabulate
+from cuefem.results.solved_design import SolvedDesign
+from cuefem.scene import Scene
+from cuefem.scene.solved_scene import SolvedScene
+from cuefem.show.scene_summary import assumptions, listed, scene_record, tip_effect_notes
+
+SQUIRT_END_MASS = "squirt-equivalent end mass"  # the one that pages and tables for people show
+
+
+@dataclass(frozen=True)
+class EndMass:
+    """End mass by one definition.
+
+    Parameters
+    ----------
+    end_mass : float or None
+        Effective end mass m_e, kg; None where the definition has no value.
+    cue_end_mass : float or None
+        End mass m_c = 4 m_e of the two-part cue in Kim's paper, kg.
+    eps : float or None
+        m_c over the mass of the ball.
+    reason : str
+        Why there is no value.
+    """
+
+    end_mass: float | None
+    cue_end_mass: float | None
+    eps: float | None
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class EndMasses(Analysis):
+    """Effective end mass of a cue by each definition.
+
+    Parameters
+    ----------
+    scene : Scene
+        The analysed scene.
+    contact_time : float
+        Contact time of a rigid cue head-on, s.
+    offset : float
+        Offset b/R of the stroke.
+    definitions : dict of str to EndMass
+        The end mass by the name of its definition.
+    shows_paper : bool
+        Whether the table also shows m_c and eps.
+    """
+
+    contact_time: float
+    offset: float
+    definitions: dict[str, EndMass]
+    shows_paper: bool = field(default=False, repr=False)
+
+    def values(self) -> Record:
+        """The numbers in SI units; "reason" only where there is no value."""
+        record = super().values()
+        for row in record["definitions"].values():
+            if not row["reason"]:
+                del row["reason"]
+        return record
+
+    def tables(self) -> list[Table | str]:
+        """A table with a row for each definition."""
+        return [self.table()]
+
+    def table(self) -> Table:
+        """A row for each definition."""
+        about = scene_record(self.scene)
+        paper = {"m_c": "cue_end_mass", "eps": "{eps:.4f}"} if self.shows_paper else {}
+        rows = [{"name": name, **vars(mass)} for name, mass in self.definitions.items()]
+        return tabulate(
+            "Effective end mass",
+            {"definition": lambda row: self._label(row["name"]), "m_e": "end_mass", **paper},
+            rows,
+            assumptions(about),
+            *(f"{row['name']}: {row['reason']}" for row in rows if row["reason"]),
+            "m_e: effective end mass, the transverse inertia of the cue at its tip; `report` and `compare` use squirt; "
+            "lumped models: offset without tip effects; published end masses and pooltool: [A.31]",
+            *([PAPER_NOTE] if self.shows_paper else []),
+            *tip_effect_notes(about, _tip_effects_note()),
+        )
+
+    def _label(self, name: str) -> str:
+        """The name of a definition, and its label where that says more."""
+        label = DEFINITIONS[name].label_at(self.offset)
+        return name if label == name else f"{name} ({label})"
+
+
+PAPER_NOTE = "m_c = 4 m_e: end mass of the two-part cue in Kim's paper (nu_c 1/3); eps: m_c over the mass of the ball"
+
+
+def _tip_effects_note() -> str:
+    """Which definitions include effects at the tip: those from a coupled strike."""
+    counting, others = (
+        [definition.name for definition in DEFINITIONS.values() if definition.includes_tip is c] for c in (True, False)
+    )
+    return (
+        f"{listed(counting)} include tip effects (dome, shear), axial waves and the butt; {listed(others)} and the "
+        "two-part model of `strike` and `report` exclude them"
+    )
+
+
+def end_masses(scene: Scene | SolvedDesign, *, paper: bool = False) -> EndMasses:
+    """Effective end mass of a scene's cue, by each definition.
+
+    Parameters
+    ----------
+    scene : Scene or SolvedDesign
+        A stroke, or a solved one. Definitions of an off-centre stroke use its offset.
+    paper : bool
+        Whether the table also shows m_c and eps of Kim's paper.
+
+    Returns
+    -------
+    EndMasses
+        Show it with ``print``, in a notebook, or by ``.save("end_mass.html")``.
+
+    Raises
+    ------
+    ValueError
+        If an end mass is not positive: the tip is too soft for the contact time.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> scene = cf.Scene(cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),), body_mass=0.43), tip=cf.Tip(contact_time=1e-3))
+    >>> masses = cf.end_masses(scene)
+    >>> round(1e3 * masses.definitions["stick"].end_mass, 1)  # g
+    4.8
+    """
+    design = SolvedDesign.of(scene)
+    scene = design.scene
+    masses = {name: _end_mass(design.solved, name) for name in DEFINITIONS}
+    return EndMasses(scene, scene.contact_time, scene.stroke.offset, masses, shows_paper=paper)
+
+
+def _end_mass(solved: SolvedScene, name: str) -> EndMass:
+    scene = solved.scene
+    try:
+        end_mass = float(DEFINITIONS[name].of_design(solved))
+    except ValueError as error:
+        return EndMass(None, None, None, str(error))
+    if not end_mass > 0:
+        time = with_unit(float(scene.contact_time), "s")
+        raise ValueError(
+            f"an end mass of {with_unit(end_mass, 'kg')} ({name}) is not plausible; the tip is too soft for a "
+            f"contact of {time}: check dimensions, E and contact time"
+        )
+    cue_end = float(cue_end_mass(end_mass))
+    return EndMass(end_mass, cue_end, cue_end / scene.ball.mass)

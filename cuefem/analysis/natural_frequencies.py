@@ -1,0 +1,105 @@
+"""Natural frequencies of bending, and the amplitude of the tip in each mode."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+from cuefem.analysis.base import Analysis
+from cuefem.beam.modes import modes
+from cuefem.results.records import ColumnEntry, Table, tabulate
+from cuefem.results.solved_design import SolvedDesign
+from cuefem.scene import Scene
+
+if TYPE_CHECKING:
+    from cuefem.show.charts import Chart
+
+
+@dataclass(frozen=True)
+class NaturalFrequencies(Analysis):
+    """Natural frequencies of a cue's bending modes.
+
+    Parameters
+    ----------
+    scene : Scene
+        The analysed scene.
+    requested_frequency, nearest_frequency : float or None
+        The frequency near which modes were requested, and the nearest of them, Hz.
+    rigid : int
+        Number of rigid-body modes, at 0 Hz.
+    frequencies : list of float
+        Natural frequencies, Hz.
+    tip_amplitudes : list of float
+        Amplitude of the tip in each mass-normalised mode, 1/sqrt(kg).
+    """
+
+    requested_frequency: float | None
+    nearest_frequency: float | None
+    rigid: int
+    frequencies: list[float]
+    tip_amplitudes: list[float]
+    has_stroke: ClassVar[bool] = False
+
+    def tables(self) -> list[Table | str]:
+        """A table with a row for each mode."""
+        return [self.table()]
+
+    def charts(self) -> list[Chart]:
+        """The lowest mode shapes."""
+        from cuefem.show.drawings import modes_chart  # drawings are not for terminals
+
+        return [modes_chart(self.scene)]
+
+    def table(self) -> Table:
+        """A row for each mode of the cue, with the scene's effects on the cue."""
+        near, nearest = self.requested_frequency, self.nearest_frequency
+        rows = [
+            {"frequency": frequency, "period": 1 / frequency, "tip_amplitude": amplitude}
+            for frequency, amplitude in zip(self.frequencies, self.tip_amplitudes, strict=True)
+        ]
+        columns: dict[str, ColumnEntry] = {
+            "frequency": "{frequency:frequencies}",
+            "period": "{period:s}",  # in the display unit of s
+            "tip amplitude": "{tip_amplitude:tip_amplitudes}",
+        }
+        if near is not None:
+            columns[""] = lambda row: "nearest" if row["frequency"] == nearest else ""
+        notes = ["tip amplitude: of the mass-normalised mode", "of the drawn part with its tip, without the butt"]
+        if self.rigid:
+            notes.insert(0, f"{self.rigid} rigid-body mode{'s' * (self.rigid > 1)} at 0 Hz not listed")
+        title = "Natural frequencies" if near is None else f"Natural frequencies nearest {near:g} Hz"
+        return tabulate(title, columns, rows, "; ".join(notes), texts=())
+
+
+def natural_frequencies(
+    scene: Scene | SolvedDesign, count: int = 6, *, near: float | None = None
+) -> NaturalFrequencies:
+    """Natural frequencies of the bending modes of a scene's cue.
+
+    Parameters
+    ----------
+    scene : Scene
+        A scene with a cue of segments; its effects on the cue are included.
+    count : int
+        Number of modes.
+    near : float, optional
+        Frequency whose nearest modes are computed instead of the lowest, Hz.
+
+    Returns
+    -------
+    NaturalFrequencies
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> scene = cf.Scene(cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),), body_mass=0.43))
+    >>> [round(f) for f in cf.natural_frequencies(scene, 2).frequencies]
+    [128, 344]
+    """
+    scene = SolvedDesign.of(scene).scene
+    bending = modes(scene.shaft, count, near, effects=scene.cue_effects)
+    amplitudes, _ = bending.shape(0.0)
+    frequencies: list[float] = bending.frequencies.tolist()
+    nearest = None if near is None else min(frequencies, key=lambda f: abs(f - near))
+    return NaturalFrequencies(scene, near, nearest, bending.rigid, frequencies, amplitudes.tolist())

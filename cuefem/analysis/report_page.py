@@ -1,0 +1,119 @@
+"""The page of a report: the first screen, then every section with its charts and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from cuefem.analysis.comparison_table import tabulate_comparison
+from cuefem.analysis.report_sections import SECTIONS, CueReport, report
+from cuefem.analysis.squirt_curve import FINE_OFFSETS
+from cuefem.analysis.strike_models import regime_warning
+from cuefem.results.closed_forms import pivot_length
+from cuefem.results.comparison import comparison_record
+from cuefem.results.quantities import format_value
+from cuefem.results.records import Record
+from cuefem.results.solved_design import coupled_curve
+from cuefem.scene import Scene
+from cuefem.scene.solved_scene import SolvedScene
+from cuefem.show.first_screen import (
+    HeadlineCue,
+    drawings_markup,
+    headline_markup,
+    parts_line,
+    scale_markup,
+    tiles_markup,
+)
+from cuefem.show.glossary import with_glossary
+from cuefem.show.offset_charts import offset_charts
+from cuefem.show.scene_summary import assumptions, plain_cue_line, plain_effect_line, scene_record
+from cuefem.show.templates import environment
+from cuefem.show.verdict_table import uncertainty_line
+
+PAGE_OFFSETS = FINE_OFFSETS
+Named = tuple[str, Scene]
+
+
+def page(
+    name: str,
+    scene: Scene,
+    *,
+    rtol: float | None = None,
+    notes: Sequence[str] = (),
+    warnings: Sequence[str] = (),
+    other: Named | None = None,
+) -> str:
+    """The report of a scene as HTML; other: name and scene of a cue to compare with, with the same ball and stroke."""
+    return report(scene, rtol, details=True).to_html(name, notes, warnings, other=other)
+
+
+def page_of(
+    own: CueReport, name: str, notes: Sequence[str], warnings: Sequence[str], other: Named | None = None
+) -> str:
+    """A computed report as HTML."""
+    about, scene = scene_record(own.scene), own.scene
+    verdict = own.sections["verdict"].values()
+    compared = None if other is None else comparison_record({other[0]: other[1], name: scene})
+    parts = {section.key: section for section in SECTIONS if section.key in own.sections and section.key != "verdict"}
+    sections = [
+        {
+            "key": key,
+            "title": part.title,
+            "folded": part.folded,
+            "about": own.sections[key].about,
+            "charts": own.sections[key].charts(),
+            "tables": own.sections[key].tables(),
+        }
+        for key, part in parts.items()
+    ]
+    if other is not None and compared is not None:
+        sections.insert(0, _comparison(own, name, other, compared))
+    text = (
+        environment()
+        .get_template("page.html.j2")
+        .render(
+            name=name,
+            notes=list(notes),
+            warnings=[*warnings, *filter(None, [regime_warning(own.regime)])],
+            facts=[
+                plain_cue_line(scene.cue),
+                f"{assumptions(about)}, offset b/R {scene.stroke.offset:.4g}",
+                *map(plain_effect_line, scene.effects),
+            ],
+            squirt=format_value("squirt", verdict["squirt"]),
+            uncertainty=uncertainty_line(verdict),
+            screen=_screen(own, name, other, compared),
+            sections=sections,
+        )
+    )
+    return with_glossary(text) + "\n"
+
+
+def _comparison(own: CueReport, name: str, other: Named, compared: Record) -> Record:
+    """The section that compares with another cue."""
+    beside = coupled_curve(other[1], PAGE_OFFSETS, SolvedScene(other[1]).tip)
+    curves = [(name, "c1", own.sections["squirt"].values()["models"]["coupled, this cue"]), (other[0], "c2", beside)]
+    table = tabulate_comparison(compared)
+    charts = offset_charts(curves, PAGE_OFFSETS, own.scene.stroke.offset, height=300)
+    return {"key": "other", "title": table.title, "folded": False, "about": "", "charts": charts, "tables": [table]}
+
+
+def _screen(own: CueReport, name: str, other: Named | None, compared: Record | None) -> dict[str, str]:
+    """The parts of the first screen as markup."""
+    numbers = own.sections["numbers"]
+    shown: dict[str, Any] = dict(numbers.values())
+    shown["pivot_length"] = pivot_length(own.scene, shown["squirt"])
+    shown["end_mass_squirt"] = numbers.squirt_end_mass  # type: ignore[attr-defined]
+    verdict = own.sections["verdict"].values()
+    mine, beside, difference = HeadlineCue(name, own.scene, shown, verdict), None, None
+    if other is not None and compared is not None:
+        beside = HeadlineCue(*other, compared["cues"][other[0]])
+        difference = compared["differences"][name].get("squirt")
+    scenes = {name: own.scene} | ({} if other is None else {other[0]: other[1]})
+    return {
+        "headline": headline_markup(mine, beside, difference),
+        "scale": scale_markup(mine, beside),
+        "tiles": tiles_markup(mine, beside),
+        "drawings": drawings_markup(scenes) if own.scene.cue.segments else "",
+        "parts": parts_line(verdict),
+    }

@@ -1,0 +1,309 @@
+"""The report of a cue: one list of sections, which terminal, page and JSON show in its order."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from cuefem.analysis.base import Analysis
+from cuefem.analysis.contact_history import ContactHistory
+from cuefem.analysis.design_changes import design_changes
+from cuefem.analysis.end_mass import SQUIRT_END_MASS, end_masses
+from cuefem.analysis.natural_frequencies import natural_frequencies
+from cuefem.analysis.squirt_curve import FINE_OFFSETS, squirt_curve
+from cuefem.analysis.strike_models import regime_warning, strike_models
+from cuefem.analysis.tip_impacts import tip_impacts
+from cuefem.contact.geometric_stiffness import SlopeOutOfRange
+from cuefem.cue.materials import material_name
+from cuefem.effects.force_law import IndentationOutOfRange
+from cuefem.endmass.definitions import DEFINITIONS
+from cuefem.io.reference_cues import reference_cues
+from cuefem.results.closed_forms import alciatore_a31_mass_ratio
+from cuefem.results.quantities import DASH, RESULTS, format_value
+from cuefem.results.records import Record, Table, tabulate_values, value_rows
+from cuefem.results.solved_design import SolvedDesign, listed_results
+from cuefem.results.verdict import NoVerdict, verdict_record
+from cuefem.scene import Scene
+from cuefem.show.scene_summary import assumptions, scene_record
+from cuefem.show.verdict_table import headline, tabulate_verdict
+
+
+@dataclass(frozen=True)
+class Verdict(Analysis):
+    """Squirt of a stroke with its uncertainty, beside that of reference cues."""
+
+    numbers: Record
+
+    def values(self) -> Record:
+        """The numbers of `verdict_record`."""
+        return self.numbers
+
+    def headline(self) -> str:
+        """Squirt with its uncertainty."""
+        return headline(self.numbers)
+
+    def tables(self) -> list[Table | str]:
+        """Headline, comparison, and the table of reference cues."""
+        return tabulate_verdict(self.numbers)
+
+
+@dataclass(frozen=True)
+class CueNumbers(Analysis):
+    """Every listed result of the registry, by its name, in SI units."""
+
+    numbers: dict[str, float | None]
+    squirt_end_mass: float | None
+
+    def values(self) -> Record:
+        """The results by name."""
+        return self.numbers
+
+    def tables(self) -> list[Table | str]:
+        """A row for each result."""
+        about = scene_record(self.scene)
+        title = f"Cue, and stroke at offset b/R {self.scene.stroke.offset:.4g}"
+        end_mass = (SQUIRT_END_MASS, format_value("mass", self.squirt_end_mass))
+        return [tabulate_values(title, [end_mass, *value_rows(self.numbers)], assumptions(about))]
+
+
+@dataclass(frozen=True)
+class Remarks(Analysis):
+    """Tables and texts of a page that no program reads."""
+
+    shown: list[Table | str]
+
+    def tables(self) -> list[Table | str]:
+        """The tables and texts."""
+        return self.shown
+
+
+def segments(design: SolvedDesign) -> Remarks:
+    """A row for each segment, from tip to butt."""
+    cue = design.scene.shaft
+    position, diameter = RESULTS["position"].number, RESULTS["radius"].number
+    rows = (
+        (
+            position(x),
+            position(s.length),
+            f"{diameter(s.tip_diameter)} – {diameter(s.butt_diameter)}",
+            f"{diameter(s.tip_bore)} – {diameter(s.butt_bore)}" if s.tip_bore or s.butt_bore else DASH,
+            format_value("mass", s.mass),
+            material_name(s.material) + (f", core {material_name(s.core)}" if s.core else ""),
+        )
+        for x, s in zip(cue.nodes[:-1], cue.segments, strict=True)
+    )
+    head = ("at, mm", "length, mm", "diameter, mm", "bore, mm", "mass", "material")
+    return Remarks(design.scene, [Table("Segments, from tip to butt", head, tuple(rows), texts=(5,))])
+
+
+def definitions(design: SolvedDesign) -> Remarks:
+    """The definitions of the end mass, and the end mass by Alciatore's formula, which published values use."""
+    scene, squirt = design.scene, design.strike().squirt
+    lines: list[Table | str] = [f"{known.name}: {known.meaning}." for known in DEFINITIONS.values()]
+    try:
+        ratio = alciatore_a31_mass_ratio(float(scene.stroke.offset), squirt, inertia=scene.ball.inertia)
+    except ValueError:
+        return Remarks(scene, lines)
+    mass = float(scene.ball.mass / ratio)
+    if 0 < mass < math.inf:
+        lines.append(
+            f"[A.31]: with {format_value('mass', mass)} Alciatore's formula (technical proof A.31, "
+            "billiards.colostate.edu) gives this squirt. By this definition alone measured cues have 5.8 to 14 g "
+            "(handbook: Effective end mass)."
+        )
+    return Remarks(scene, lines)
+
+
+def accuracy(design: SolvedDesign) -> Remarks:
+    """How far the model can be trusted; the size of its error is in `cuefem.results.uncertainty`."""
+    error = design.strike().error
+    numerical = f"Estimated numerical error of squirt, ball speed and spin: {100 * (error or 0):.2g} %."
+    tip = SPRING if design.scene.contact_terms.tip is None else LAW
+    return Remarks(design.scene, [*([] if error is None else [numerical]), tip, COMPARING])
+
+
+LAW = (
+    "The tip is modelled as elastic leather of given height, dome and E. Its compliance is that of the elastic solid "
+    "to 0.3 % (95 % of the contacts of 36 tips) and 2.0 % (maximum of 20 others); it has not been tested on real tips. "
+    "Computed squirt of soft leather is 9 % below medium, of hard 3 % below (b/R 0.3); players find no difference, to "
+    "±5 % at best. Do not choose a tip's hardness by this number."
+)
+SPRING = (
+    "The tip is modelled as a linear spring with the given contact time. No real tip was measured for it, and squirt "
+    "depends on it: for a spring tip without dome and shear by 50 % from 0.7 to 2 ms."
+)
+COMPARING = (
+    "A ratio of two designs is more accurate than the squirt of one: a low-deflection shaft was measured with 0.72 "
+    "of the squirt of a maple shaft; the model computes 0.70 to 0.78 (handbook: Measured squirt)."
+)
+
+
+def verdict(design: SolvedDesign) -> Verdict:
+    """Squirt with its uncertainty; NoVerdict for a miscue."""
+    record = verdict_record(design.scene, design.strike(), reference_cues(), solved=design.solved)
+    return Verdict(design.scene, record)
+
+
+def cue_numbers(design: SolvedDesign) -> CueNumbers:
+    """All listed results, and the end mass that has the squirt."""
+    try:
+        mass = design.end_mass("squirt", None)
+    except ValueError:
+        mass = None
+    return CueNumbers(design.scene, listed_results(design), mass)
+
+
+def contact_history(design: SolvedDesign) -> ContactHistory:
+    """The contact over time."""
+    return ContactHistory(design.scene, design.strike().energy, design.strike())
+
+
+class Section(NamedTuple):
+    """A part of the report.
+
+    key: of JSON, and of the class of the page's section. page_only: long or slow parts, which terminal and JSON leave
+    out; folded: closed on a page. needs: what the scene must have.
+    """
+
+    key: str
+    title: str
+    analyse: Callable[..., Analysis]
+    page_only: bool = False
+    folded: bool = False
+    needs: Callable[[Scene], Any] = lambda scene: True
+
+
+def _has_segments(scene: Scene) -> bool:
+    return bool(scene.cue.segments)
+
+
+def _has_leather(scene: Scene) -> bool:
+    return scene.contact_terms.tip is not None
+
+
+SECTIONS = (
+    Section("verdict", "Squirt", verdict),
+    Section("advice", "Design changes", design_changes, page_only=True, needs=_has_segments),
+    Section("squirt", "Squirt and tip offset", squirt_curve),
+    Section("modes", "Natural frequencies", natural_frequencies, needs=_has_segments),
+    Section("numbers", "Cue and stroke", cue_numbers),
+    Section("end_masses", "Effective end mass", end_masses),
+    Section("tip", "Leather tip, head-on impact", tip_impacts, needs=_has_leather),
+    Section("strike", "Stroke by model", strike_models, page_only=True, folded=True),
+    Section("contact", "The contact", contact_history, page_only=True, folded=True),
+    Section("segments", "Segments", segments, page_only=True, folded=True, needs=_has_segments),
+    Section("meanings", "Definitions of the end mass", definitions, page_only=True, folded=True),
+    Section("accuracy", "Accuracy of the model", accuracy, page_only=True, folded=True),
+)
+
+
+@dataclass(frozen=True)
+class CueReport(Analysis):
+    """All analyses of one stroke, by the keys of `SECTIONS`.
+
+    Parameters
+    ----------
+    scene : Scene
+        The analysed stroke.
+    sections : dict of str to Analysis
+        The answers, in their order.
+    regime : str
+        State of the contact, as `Outcome.regime`; "" without a contact.
+    no_contact, no_squirt : str
+        Why only the natural frequencies are known; why there is no verdict.
+    """
+
+    sections: dict[str, Analysis]
+    regime: str = ""
+    no_contact: str = ""
+    no_squirt: str = ""
+
+    def headline(self) -> str:
+        """Squirt with its uncertainty."""
+        return self.sections["verdict"].headline() if "verdict" in self.sections else ""
+
+    def problem(self) -> str:
+        """Why there is no squirt."""
+        return self.no_contact and f"{self.no_contact} (--tip-height, --leather, --speed)"
+
+    def values(self) -> Record:
+        """The numbers of every section."""
+        shown = (section.key for section in SECTIONS if section.key in self.sections and not section.page_only)
+        others = {name: getattr(self, name) for name in ("regime", "no_contact", "no_squirt")}
+        return {key: self.sections[key].values() for key in shown} | {k: text for k, text in others.items() if text}
+
+    def tables(self) -> list[Table | str]:
+        """The tables of every section, the warnings first."""
+        first = self.no_contact and f"no end mass and no squirt: {self.no_contact}"
+        first = first or self.no_squirt or regime_warning(self.regime)
+        shown = (section.key for section in SECTIONS if section.key in self.sections and not section.page_only)
+        return [*([first, ""] if first else []), *(table for key in shown for table in self.sections[key].tables())]
+
+    def page_title(self, name: str, question: str) -> str:
+        """The name of the file alone: the page says that it is a report."""
+        return name
+
+    def to_html(
+        self, name: str = "", assumptions: Sequence[str] = (), warnings: Sequence[str] = (), **more: Any
+    ) -> str:
+        """The page with the first screen; ValueError for a miscue."""
+        from cuefem.analysis.report_page import page_of
+
+        if self.no_squirt or self.no_contact:
+            raise ValueError(self.no_squirt or self.no_contact)
+        return page_of(self, name or "cue", assumptions, warnings, **more)
+
+
+def report(
+    scene: Scene,
+    rtol: float | None = None,
+    *,
+    details: bool = False,
+    progress: Callable[[Sequence[Any]], Any] = list,
+) -> CueReport:
+    """All analyses of one stroke of a cue.
+
+    Parameters
+    ----------
+    scene : Scene
+        A stroke.
+    rtol : float, optional
+        Relative numerical error target of the coupled strike; by default that of a default strike.
+    details : bool
+        Whether the sections are computed too that only a page has, and the finer curves.
+    progress : callable
+        Wraps the list of sections, to show progress.
+
+    Returns
+    -------
+    CueReport
+        Beyond the valid range of the force law or of the geometric stiffness it has the natural frequencies only, and
+        the reason as ``no_contact``; of a miscue no verdict, and the reason as ``no_squirt``.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43))
+    >>> list(cf.report(scene).sections)
+    ['verdict', 'squirt', 'modes', 'numbers', 'end_masses', 'tip']
+    """
+    found: dict[str, Analysis] = {}
+    lacking = ""
+    try:
+        scene.contact_time  # noqa: B018
+        design = SolvedDesign.of(scene, rtol)
+        regime = design.strike().regime
+    except (IndentationOutOfRange, SlopeOutOfRange) as error:
+        modes: dict[str, Analysis] = {"modes": natural_frequencies(scene)} if _has_segments(scene) else {}
+        return CueReport(scene, modes, no_contact=str(error))
+    wanted = [section for section in SECTIONS if section.needs(scene) and (details or not section.page_only)]
+    for section in progress(wanted):
+        try:
+            offsets = [FINE_OFFSETS] if details and section.analyse is squirt_curve else []
+            found[section.key] = section.analyse(design, *offsets)
+        except NoVerdict as error:
+            lacking = str(error)
+    return CueReport(scene, found, regime, no_squirt=lacking)

@@ -1,0 +1,132 @@
+"""Squirt and natural pivot length against the tip offset, by every model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from cuefem.analysis.base import Analysis
+from cuefem.analysis.strike_models import PIVOT_NOTE, a31_squirt, lumped_cues, lumped_strike
+from cuefem.cue import LumpedCue
+from cuefem.results.closed_forms import pivot_length
+from cuefem.results.quantities import format_value
+from cuefem.results.records import Record, Table
+from cuefem.results.solved_design import OFFSETS, SolvedDesign, at_offset, coupled_curve
+from cuefem.scene import Scene
+from cuefem.show.scene_summary import assumptions, scene_record
+
+if TYPE_CHECKING:
+    from cuefem.show.charts import Chart
+
+PAPER_CUE_END_MASS = 0.012  # kg, [Kim]'s m_c of a real cue: four times the effective end mass
+FINE_OFFSETS = tuple(round(0.025 * i, 3) for i in range(1, 25))  # b/R of the curves of a page; a table has each 0.1
+MAX_ROWS = 12  # a table of more offsets has only each 0.1
+OWN = "coupled, this cue"
+# CSS classes of the models' curves.
+STYLES = {
+    OWN: "c1",
+    "lumped, this cue": "c2",
+    "two-part, this cue": "c3",
+    "two-part, 12 g": "c5",
+    "A.31, this cue": "c4",
+}
+
+
+@dataclass(frozen=True)
+class SquirtCurve(Analysis):
+    """Squirt and natural pivot length against the tip offset.
+
+    Parameters
+    ----------
+    scene : Scene
+        The analysed stroke.
+    offsets : list of float
+        Offsets b/R.
+    end_mass, coupling : list of float or None
+        End mass, kg, and coupling, 1/kg, of the lumped models at each offset; None where no lumped cue fits.
+    models : dict of str to dict
+        "squirt", rad, and "pivot_length", m, at each offset by the model's name; nan where no lumped cue fits.
+    """
+
+    offsets: list[float]
+    end_mass: list[float | None]
+    coupling: list[float | None]
+    models: dict[str, dict[str, Any]]
+    about: ClassVar[str] = (
+        "The tip offset b/R is the distance of the contact from the ball’s centre line, in ball radii. Pivoting the "
+        "cue about the point at the natural pivot length from the tip cancels squirt. Coupled: the vibrating cue, "
+        "integrated in time. Two-part and A.31 replace the cue by two masses, with the end mass of a tip that sticks "
+        "at each offset and without effects at the tip; lumped adds these effects as a coupling between the cue’s "
+        "axial and transverse motions, computed at the offset of this stroke. 12 g: the two-part cue with the paper’s "
+        "cue end, of which the effective end mass is a quarter."
+    )
+
+    def tables(self) -> list[Table | str]:
+        """A table with a row for each offset."""
+        return [self.table()]
+
+    def table(self) -> Table:
+        """Squirt, natural pivot length and contact state of the coupled strike, a row for each offset."""
+        own = self.models[OWN]
+        rows = []
+        for i, (offset, regime) in enumerate(zip(self.offsets, own["regime"], strict=True)):
+            if len(self.offsets) > MAX_ROWS and round(10 * offset) != 10 * offset:
+                continue
+            values = (None if regime == "miscue" else own[name][i] for name in ("squirt", "pivot_length"))
+            texts = map(format_value, ("squirt", "pivot_length"), values)
+            rows.append((f"{offset:g}", *texts, regime))
+        head = ("b/R", "squirt", "natural pivot length", "contact")
+        notes = (assumptions(scene_record(self.scene)), PIVOT_NOTE)
+        return Table("Squirt and tip offset", head, tuple(rows), notes, texts=(3,))
+
+    def charts(self) -> list[Chart]:
+        """Squirt and natural pivot length against the offset."""
+        from cuefem.show.offset_charts import offset_charts
+
+        lines = [(name, STYLES[name], curve) for name, curve in self.models.items()]
+        regimes = self.models[OWN]["regime"]
+        return [*offset_charts(lines, self.offsets, self.scene.stroke.offset, height=300, regimes=regimes)]
+
+
+def squirt_curve(scene: Scene | SolvedDesign, offsets: Sequence[float] = OFFSETS) -> SquirtCurve:
+    """Squirt and natural pivot length at each offset, by every model.
+
+    Parameters
+    ----------
+    scene : Scene
+        A stroke; its own offset is only marked.
+    offsets : sequence of float
+        Offsets b/R.
+
+    Returns
+    -------
+    SquirtCurve
+        Models: the coupled strike; lumped, if effects at the tip or a lumped cue's own constant couple transverse and
+        axial motion; two-part, with this cue's end mass and with Kim's 12 g; Alciatore's formula [A.31].
+    """
+    design = SolvedDesign.of(scene)
+    scene, solved = design.scene, design.solved
+    own = lumped_cues(scene, offsets, solved.stick_tip)
+    cues = {f"{name}, this cue": each for name, each in own.items()}
+    cues["two-part, 12 g"] = [LumpedCue.two_part(scene.axial_mass, PAPER_CUE_END_MASS)] * len(offsets)
+    cues["A.31, this cue"] = own["two-part"]
+    struck = [at_offset(scene, offset) for offset in offsets]
+    models: Record = {"coupled, this cue": coupled_curve(scene, offsets, solved.tip)}
+    for name, each in cues.items():
+        squirt = a31_squirt if name.startswith("A.31") else lambda at, cue: lumped_strike(at, cue).squirt
+        pairs = [*zip(struck, each, strict=True)]
+        angles = [np.nan if cue is None else float(squirt(at, cue)) for at, cue in pairs]
+        pivots = [
+            np.nan if np.isnan(angle) else pivot_length(at, angle) for at, angle in zip(struck, angles, strict=True)
+        ]
+        models[name] = {"squirt": np.array(angles), "pivot_length": np.array(pivots, float)}
+    return SquirtCurve(
+        scene,
+        list(offsets),
+        [cue.end_mass if cue else None for cue in own["two-part"]],
+        [cue.coupling if cue else None for cue in own.get("lumped", own["two-part"])],
+        models,
+    )

@@ -1,0 +1,100 @@
+"""Central impacts of a leather tip on a rigid cue."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cuefem.analysis.base import Analysis
+from cuefem.results.quantities import DASH, format_value, significant
+from cuefem.results.records import Record, Table, by_label, tabulate
+from cuefem.results.solved_design import SolvedDesign
+from cuefem.scene import Scene
+
+SPEEDS = (0.5, 1.0, 2.0, 3.0, 5.0, 8.0)  # m/s
+
+
+@dataclass(frozen=True)
+class TipImpacts(Analysis):
+    """Central impacts of a leather tip at several speeds, on an axially rigid cue.
+
+    Parameters
+    ----------
+    scene : Scene
+        The analysed scene, with a LeatherTip.
+    tip_mass : float
+        Mass of the leather, kg.
+    E : float
+        Young's modulus of the leather, Pa.
+    impacts : list of dict
+        By speed, m/s: contact time, s, maximum force, N, and at that force indentation, m, stiffness, N/m, and contact
+        diameter, m; None where the indentation is beyond the valid range of the force law.
+    """
+
+    tip_mass: float
+    E: float
+    impacts: list[Record]
+
+    def tables(self) -> list[Table | str]:
+        """A table with a row for each speed."""
+        return [self.table()]
+
+    def table(self) -> Table:
+        """A row for each speed."""
+        columns = by_label("contact_time", "force", "indentation", "patch")
+        outside = any(impact["force"] is None for impact in self.impacts)
+        return tabulate(
+            "Leather tip, head-on impact",
+            {"speed": "{speed:g} m/s", **columns, "stiffness": _stiffness},
+            self.impacts,
+            f"leather of {format_value('mass', self.tip_mass)}, E {significant(self.E / 1e6)} MPa; force, "
+            "indentation, contact diameter and stiffness at maximum indentation",
+            "contact time: of a rigid cue, without axial waves; a measured one is longer (medium leather, 2 m/s: "
+            "1.135 ms)",
+            *([f"{DASH}: indentation beyond the valid range of the force law"] if outside else []),
+            texts=(),
+        )
+
+
+def tip_impacts(scene: Scene | SolvedDesign) -> TipImpacts:
+    """Central impacts of a scene's leather tip at several speeds.
+
+    Parameters
+    ----------
+    scene : Scene
+        A scene with a LeatherTip.
+
+    Returns
+    -------
+    TipImpacts
+    """
+    scene = SolvedDesign.of(scene).scene
+    leather = scene.leather_tip
+    diameter = leather.diameter_on(scene.shaft.segments[0].tip_diameter)
+    law = scene.tip_law(float(scene.tip.restitution))
+    patches, depths, _ = leather.head_on(diameter, float(scene.ball.radius))
+
+    def impact(speed: float) -> Record:
+        try:
+            indentation, loading = law.central_impact(scene.reduced_mass, speed)
+        except ValueError:
+            return dict.fromkeys(("contact_time", "force", "indentation", "stiffness", "patch")) | {"speed": speed}
+        return {
+            "speed": speed,
+            "contact_time": (1 + law.restitution) * loading,
+            "force": float(law.at(indentation)[0]),
+            "indentation": float(indentation),
+            "stiffness": float(law.slope(indentation)),
+            "patch": 2 * float(np.interp(indentation, depths, patches)),
+        }
+
+    impacts = [impact(speed) for speed in sorted({*SPEEDS, float(scene.stroke.speed)})]
+    return TipImpacts(scene, leather.mass(diameter), leather.E, impacts)
+
+
+def _stiffness(impact: Mapping[str, Any]) -> str:
+    value = impact["stiffness"]
+    return DASH if value is None else f"{significant(1e-6 * value)} kN/mm"
