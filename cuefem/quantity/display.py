@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
+import unicodedata
 from collections.abc import Iterable
 from functools import cache
 from typing import Any
@@ -72,3 +73,20 @@ def _shorten(item: str) -> str:
 def printable(text: str) -> str:
     """The text in one line, with control characters as escapes such as \\x1b."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in " ".join(text.split()))
+
+
+def visible(text: str) -> str:
+    r"""A text with control characters, and those that turn the direction of a line, as escapes; line breaks stay.
+
+    >>> visible("oak\x1b[2J \u202e")
+    'oak\\x1b[2J \\u202e'
+    """
+    return "".join(_escape(character) if _is_control(character) else character for character in text)
+
+
+def _is_control(character: str) -> bool:
+    return character != "\n" and unicodedata.category(character) in ("Cc", "Cf", "Cs", "Zl", "Zp")
+
+
+def _escape(character: str) -> str:
+    return character.encode("unicode_escape").decode()

@@ -17,6 +17,7 @@ from rich.padding import Padding
 from rich.table import Table as RichTable
 from rich.text import Text
 
+from cuefem.quantity.display import visible
 from cuefem.results.records import Table, json_value
 
 UNLIMITED = 10_000  # characters: wider than any table
@@ -44,15 +45,15 @@ class UncroppedTable(RichTable):
 
 def terminal(sheet: Table) -> Group:
     """A table for the terminal, its notes below it; no cell is cropped."""
-    table = UncroppedTable(title=sheet.title, box=box.SIMPLE_HEAD, title_justify="left", title_style="bold")
+    table = UncroppedTable(title=visible(sheet.title), box=box.SIMPLE_HEAD, title_justify="left", title_style="bold")
     for i, head in enumerate(sheet.head):
         text = i in sheet.texts
         pieces = [*head.split(), *(piece for row in sheet.rows for piece in (row[i].split() if text else [row[i]]))]
         least = max(map(cell_len, pieces), default=0)
-        table.add_column(Text(head), justify="left" if text else "right", min_width=least)
+        table.add_column(Text(visible(head)), justify="left" if text else "right", min_width=least)
     for i, row in enumerate(sheet.rows):
-        table.add_row(*map(Text, row), style=(sheet.styles or {}).get(i, ""))
-    notes = (Padding(Text(note, style="dim"), (0, 0, 0, 2), expand=False) for note in sheet.notes)
+        table.add_row(*(Text(visible(cell)) for cell in row), style=(sheet.styles or {}).get(i, ""))
+    notes = (Padding(Text(visible(note), style="dim"), (0, 0, 0, 2), expand=False) for note in sheet.notes)
     return Group(table, *notes, *([""] if sheet.notes else []))
 
 
@@ -62,7 +63,10 @@ def print_tables(things: Sequence[Any], console: Console | None = None) -> None:
     if not console.is_terminal:
         console.width = 120  # files and pipes have no width: do not cut tables
     for thing in things:
-        console.print(thing, markup=False) if isinstance(thing, str) else console.print(terminal(thing), crop=False)
+        if isinstance(thing, str):
+            console.print(visible(thing), markup=False)
+        else:
+            console.print(terminal(thing), crop=False)
 
 
 def plain_text(things: Sequence[Any]) -> str:

@@ -3,6 +3,7 @@
 import io
 import json
 from contextlib import redirect_stdout
+from pathlib import Path
 
 import pytest
 
@@ -50,3 +51,13 @@ def test_json_in_ascii_equals_json_in_unicode() -> None:
 def test_lacking_characters_are_spelt_in_ascii() -> None:
     text = printed("ascii", "guide", "glossary", "--print")
     assert "sigma" in text
+
+
+def test_control_characters_of_file_names_are_escaped(tmp_path: Path) -> None:
+    path = tmp_path / "kim\x1b[31m\u202e.toml"
+    path.write_text(Path("meshes/kim.toml").read_text(encoding="utf-8"), encoding="utf-8")
+    for command in ("modes", "end-mass", "compare"):
+        others = ("meshes/kim.toml",) if command == "compare" else ()
+        text = stdout_of(command, path, *others)
+        assert "\\x1b[31m\\u202e" in text
+        assert [character for character in text if character in "\x1b\u202e"] == []
