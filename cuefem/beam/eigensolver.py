@@ -49,6 +49,10 @@ class EigenSolution:
         """Mode shapes, (free, n)."""
         return self.shapes()
 
+    def __getstate__(self) -> dict[str, Any]:
+        """For copies and other processes: the computed vectors in place of the work that computes them."""
+        return {**self.__dict__, "vectors": self.vectors, "shapes": None}
+
     def subset(self, index: NDArray[np.intp]) -> Self:
         """The modes of these indices, without a truncation correction."""
         omega = self.omega[index]

@@ -28,6 +28,13 @@ class Modes(EigenSolution):
     system: System
     rigid_vectors: Array
 
+    def __eq__(self, other: object) -> bool:
+        """Whether cue, frequencies and shapes are equal."""
+        if not isinstance(other, Modes):
+            return NotImplemented
+        pairs = ((self.omega, other.omega), (self.vectors, other.vectors), (self.rigid_vectors, other.rigid_vectors))
+        return self.system.cue == other.system.cue and all(np.array_equal(a, b) for a, b in pairs)
+
     def __repr__(self) -> str:
         first = self.frequencies[:6]
         more = f" and {len(self.frequencies) - len(first)} more" if len(first) < len(self.frequencies) else ""

@@ -23,12 +23,13 @@ from cuefem.contact.coupled_modes import CoupledModes
 from cuefem.contact.step_records import SolvedContact, solve_contact
 from cuefem.contact.strike import steps_of
 from cuefem.cue import Array
+from cuefem.quantity.equality import equal_fields
 from cuefem.quantity.fields import check_kind
 from cuefem.scene import Resolution, Scene
 from cuefem.scene.solved_scene import SolvedScene
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Motion:
     """Cue and ball at given times of a strike.
 
@@ -61,6 +62,8 @@ class Motion:
     centre: Array
     rotation: Array
     force: Array
+
+    __eq__ = equal_fields
 
     def __repr__(self) -> str:
         return f"Motion({len(self.times)} times to {self.times[-1]:.4g} s, duration={self.duration:.4g} s)"

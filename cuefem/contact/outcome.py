@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cuefem.cue import Array
-from cuefem.scene import Outcome, equal_fields
+from cuefem.quantity.equality import equal_fields
+from cuefem.scene import Outcome
 
 # Shares of the normal impulse during slip. Gross slip: above the first. Miscue: above the second in all, or the third
 # without a break up to the end; squirt then grows fast. Both are needed: a bare tip that slips through the first 79 %

@@ -23,8 +23,9 @@ from cuefem.cue import Cue
 from cuefem.effects.contact_terms import ContactTerms
 from cuefem.effects.effect import POSITION_TOLERANCE, CueEffect, Effect, acting_on_cue, check_effects
 from cuefem.effects.force_law import TipLaw, loading_time
+from cuefem.quantity.equality import equal_fields
 from cuefem.quantity.fields import CONTACT_TIME, Quantity, check_fields, check_kind
-from cuefem.scene import Resolution, equal_fields
+from cuefem.scene import Resolution
 from cuefem.scene.solved_scene import mode_count_for
 
 # Exponent of Hertz's law F = 4/3 E* sqrt(R) d^(3/2).
@@ -144,7 +145,7 @@ class SideStrike:
     >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
     >>> shaft = cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),))
     >>> ball = cf.Striker(mass=0.02, restitution=0.8, contact_time=1e-3)
-    >>> scene = cf.SideStrike(shaft, ball, position=0.01, effects=[cf.PointMass(0.1, 2e-3)])
+    >>> scene = cf.SideStrike(shaft, ball, position=0.01, effects=[cf.PointMass(position=0.1, mass=2e-3)])
     >>> round(cf.side_strike(scene).apparent_restitution, 3)
     -0.721
     """

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from cuefem.cue import Array
 from cuefem.quantity.display import brief_repr
+from cuefem.quantity.equality import equal_fields
 from cuefem.quantity.fields import Quantity
 from cuefem.scene import Ball, Outcome
 
@@ -24,7 +25,7 @@ OFFSET_TOLERANCE = 1e-9
 _COORDINATE, _COMPONENT = Quantity("m"), Quantity("")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class BallMotion:
     """The ball after a stroke, in the table's frame.
 
@@ -38,6 +39,8 @@ class BallMotion:
 
     velocity: Array
     spin: Array
+
+    __eq__ = equal_fields
 
     def __repr__(self) -> str:
         return brief_repr("BallMotion", vars(self).items())

@@ -12,6 +12,7 @@ import numpy as np
 from cuefem.beam.modes import Modes
 from cuefem.cue import Array
 from cuefem.quantity.display import one_line
+from cuefem.quantity.equality import equal_fields
 from cuefem.quantity.fields import suggestion
 from cuefem.quantity.unit_checks import FLOAT_ERRORS
 from cuefem.results.quantities import Result, with_heading
@@ -117,7 +118,7 @@ def _argument(kind: str, argument: str | None, text: str) -> float | int | None:
     return number
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Evaluation:
     """Responses of designs: values (designs, responses) in SI units, nan if a response has no value; reasons, the first
     reason for a missing value of a design, None if it has all.
@@ -125,6 +126,8 @@ class Evaluation:
 
     values: Array
     reasons: tuple[str | None, ...]
+
+    __eq__ = equal_fields
 
 
 @np.errstate(**FLOAT_ERRORS)

@@ -22,6 +22,7 @@ from cuefem.cue import Array
 from cuefem.design.sampling import Levels
 from cuefem.design.study import Study, check_column_name
 from cuefem.design.sweep import Row
+from cuefem.quantity.equality import equal_fields
 from cuefem.quantity.fields import check_count
 
 CONFIDENCE, RESAMPLES = 0.95, 400  # of the bootstrapped intervals
@@ -165,7 +166,7 @@ class _Points:
         yield from ndtr(scores @ np.linalg.cholesky(self.scatter.correlation_matrix).T).tolist()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SobolIndices:
     """Sobol indices: the part of each response's variance due to each factor.
 
@@ -184,6 +185,8 @@ class SobolIndices:
     total: Array
     first_interval: Array
     total_interval: Array
+
+    __eq__ = equal_fields
 
 
 def sobol_indices_of(scatter: Scatter, rows: Sequence[Row]) -> SobolIndices:

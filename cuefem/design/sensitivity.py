@@ -23,11 +23,12 @@ from cuefem.beam.modes import solve
 from cuefem.cue import Array
 from cuefem.endmass.impulse_response import STEPS
 from cuefem.endmass.sticking_contact import StickLimit
+from cuefem.quantity.equality import equal_fields
 from cuefem.scene import Resolution, Scene
 from cuefem.scene.solved_scene import TRUNCATED_SUM_PERIODS, default_mode_count
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Sensitivity:
     """Derivatives of an end mass, kg.
 
@@ -45,6 +46,8 @@ class Sensitivity:
     ball_mass: float
     axial_mass: float
     end_mass: float
+
+    __eq__ = equal_fields
 
 
 @dataclass(frozen=True)

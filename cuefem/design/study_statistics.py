@@ -10,13 +10,14 @@ import numpy as np
 from cuefem.cue import Array
 from cuefem.design.evaluation import Response
 from cuefem.design.study_result import StudyResult
+from cuefem.quantity.equality import equal_fields
 
 MAX_LEVELS = 24  # maximum number of values of a parameter that are separate groups
 MAX_GROUPS = 12  # maximum number of groups, each a range, of a parameter with more values
 MIN_TREND = 0.2  # minimum rank correlation of a trend
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SweepStatistics:
     """Designs with all responses.
 
@@ -30,6 +31,8 @@ class SweepStatistics:
     numbers: Array
     values: tuple[np.ndarray, ...]
     results: Array
+
+    __eq__ = equal_fields
 
     @cached_property
     def shares(self) -> Array:

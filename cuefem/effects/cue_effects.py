@@ -23,7 +23,7 @@ MIN_BUTT_LENGTH = 0.05  # m: shortest butt behind a drawing that is a rod
 BUTT_FIELDS = "cue_length, butt_diameter and wave_speed"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class PointMass(CueEffect):
     """A small heavy piece on the cue, such as a clip, a joint pin or a weight bolt.
 
@@ -57,7 +57,7 @@ class PointMass(CueEffect):
     >>> import cuefem as cf
     >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
     >>> shaft = cf.Cue((cf.Segment(0.7, 0.0125, 0.021, wood),), body_mass=0.42)
-    >>> cf.end_mass(cf.Scene(shaft, effects=(cf.PointMass(0.05, 5e-3),))) > cf.end_mass(cf.Scene(shaft))
+    >>> cf.end_mass(cf.Scene(shaft, effects=(cf.PointMass(position=0.05, mass=5e-3),))) > cf.end_mass(cf.Scene(shaft))
     True
     """
 

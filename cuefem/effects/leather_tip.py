@@ -239,7 +239,7 @@ class LeatherTip(CueEffect):
 
     def without_tip(self, cue: Cue) -> tuple[Effect, ...]:
         """The mass of the leather remains."""
-        return (PointMass(0.0, self.mass_on(cue)),)
+        return (PointMass(position=0.0, mass=self.mass_on(cue)),)
 
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The complete tip model, and the rolling contact."""

@@ -110,7 +110,7 @@ class PowerLawTip(TipEffect):
     Parameters
     ----------
     exponent : float, default 1.5
-        Exponent of the loading curve, in [1, inf). 3/2 is Hertz's law for round bodies; 1 is the base model.
+        Exponent of the loading curve, in [1, 10]. 3/2 is Hertz's law for round bodies; 1 is the base model.
     speed : float, default 1.0
         Speed of the head-on stroke, m/s, that has the tip's contact time.
 
@@ -145,7 +145,7 @@ class PowerLawTip(TipEffect):
         {"exponent": 1.5}, "Hertz; the tip's contact time is meant at 1 m/s"
     )
 
-    exponent: Annotated[float, Quantity("", "[1, inf)")] = 1.5
+    exponent: Annotated[float, Quantity("", "[1, 10]")] = 1.5
     speed: Annotated[float, Quantity("m/s", "(0, inf)")] = 1.0
 
     def add_to_contact(self, terms: ContactTerms) -> None:

@@ -98,7 +98,7 @@ class Predictions:
         if added_mass is not None:
             mass, position = added_mass
             at = self.drawing_position(position, "added_mass position")
-            scene = replace(scene, effects=(*scene.effects, PointMass(at, mass)))
+            scene = replace(scene, effects=(*scene.effects, PointMass(position=at, mass=mass)))
         return scene
 
 

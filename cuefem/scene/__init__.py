@@ -9,7 +9,6 @@ from cuefem.scene.scene import (
     Stroke,
     Tip,
     as_scenes,
-    equal_fields,
 )
 
 __all__ = [
@@ -21,5 +20,4 @@ __all__ = [
     "Stroke",
     "Tip",
     "as_scenes",
-    "equal_fields",
 ]

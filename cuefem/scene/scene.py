@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from itertools import chain
 from typing import Annotated, Any
-
-import numpy as np
 
 from cuefem.cue import Array, Cue, LumpedCue
 from cuefem.effects.contact_terms import ContactTerms
@@ -17,6 +15,7 @@ from cuefem.effects.effect import CueEffect, Effect, acting_on_cue, check_effect
 from cuefem.effects.force_law import IndentationOutOfRange, LeatherLaw
 from cuefem.effects.leather_tip import LeatherTip
 from cuefem.quantity.display import brief_repr
+from cuefem.quantity.equality import equal_fields
 from cuefem.quantity.fields import (
     CONTACT_TIME,
     Quantity,
@@ -334,20 +333,6 @@ def as_scenes(name: str, scenes: Any) -> tuple[Scene, ...]:
 def _loading_phase(law: LeatherLaw, mass: float, speed: float) -> tuple[float, float]:
     """Maximum indentation, m, and the time to it, s; cached for all strokes of a sweep at one speed."""
     return law.central_impact(mass, speed)
-
-
-def equal_fields(first: Any, second: Any) -> bool:
-    """``__eq__`` of dataclasses with arrays: whether two of one class have equal fields."""
-    if type(first) is not type(second):
-        return NotImplemented
-    pairs = ((getattr(first, field.name), getattr(second, field.name)) for field in fields(first))
-    return all(_equal(a, b) for a, b in pairs)
-
-
-def _equal(first: Any, second: Any) -> bool:
-    if isinstance(first, dict) and isinstance(second, dict):
-        return first.keys() == second.keys() and all(_equal(first[name], second[name]) for name in first)
-    return np.array_equal(first, second) if isinstance(first, np.ndarray) else bool(np.all(first == second))
 
 
 @dataclass(frozen=True, eq=False)

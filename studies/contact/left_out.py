@@ -84,7 +84,7 @@ def rows() -> dict[str, tuple[str, ...]]:
     def scenes(variants: Iterable[cf.Scene], base: cf.Scene = default) -> list[Change]:
         return [partial(change, scene, base) for scene in variants]
 
-    hands = (added(drawn, cf.PointMass(grip, mass)) for mass in (0.05, 0.3, 1.0))
+    hands = (added(drawn, cf.PointMass(position=grip, mass=mass)) for mass in (0.05, 0.3, 1.0))
     bridges = (added(default, cf.Support(x * INCH, k)) for x in (6, 8, 10, 12) for k in (1e3, 1e4))
     raised = (added(domed, cf.Elevation(math.radians(angle))) for angle in (2, 4, 6))
     slippery = (replace(default, tip=replace(default.tip, friction=mu)) for mu in (0.6, 0.55))

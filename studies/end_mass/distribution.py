@@ -23,7 +23,7 @@ TIMES, POSITIONS, SMALL = (0.7e-3, 1e-3, 2e-3), (0.01, 0.025, 0.05, 0.1, 0.15, 0
 @cache
 def end_mass(name: str, time: float, position: float | None = None) -> float:
     """Stick end mass, kg, with `SMALL` at a position, or without it."""
-    lump = () if position is None else (cf.PointMass(position, SMALL),)
+    lump = () if position is None else (cf.PointMass(position=position, mass=SMALL),)
     return float(cf.end_mass(replace(scene(cue(name), time), effects=lump)))
 
 

@@ -99,7 +99,7 @@ def replace_E(struck: cf.Scene, E: float) -> cf.Scene:
 
 def with_mass(struck: cf.Scene, inches: float) -> float:
     """Squirt with 11 g on the shaft over that without."""
-    lump = cf.PointMass(inches * INCH - struck.leather_tip.height, 11e-3)
+    lump = cf.PointMass(position=inches * INCH - struck.leather_tip.height, mass=11e-3)
     return squirt(replace(struck, effects=(*struck.effects, lump))) / squirt(struck)
 
 

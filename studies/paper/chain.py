@@ -28,7 +28,7 @@ assert isinstance(KIM, cf.Scene)
 AT_OFFSET = "this shaft, b/R 0.3"
 GUESS = 0.012  # kg
 TIMES = (0.5e-3, 1e-3, FILMED_CONTACT_TIME, 2e-3, 3e-3)  # s
-GRIP, BRIDGE = cf.PointMass(1.1, 0.3, axial_share=0.0), cf.Support(0.2, 5e3)
+GRIP, BRIDGE = cf.PointMass(position=1.1, mass=0.3, axial_share=0.0), cf.Support(0.2, 5e3)
 ROBOT = "2.30 and 2.43"  # degrees; studies/measured/squirt
 
 

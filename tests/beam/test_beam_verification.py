@@ -135,7 +135,7 @@ def test_modes_dense_and_sparse_solvers_agree(monkeypatch: pytest.MonkeyPatch) -
 
 def test_mesh_has_node_at_every_jump_and_position() -> None:
     """Nodes lie at jumps and at positions, none twice; a smooth part is one element."""
-    effects = tuple(PointMass(x, 0.0) for x in (0.1, 0.006, 0.1))
+    effects = tuple(PointMass(position=x, mass=0.0) for x in (0.1, 0.006, 0.1))
     for at, elements in ((Resolution(2, 3, 1), 8), (6, 4)):
         mesh = mesh_cue(COMPOSITE, at, effects)
         for x in (0.0, 0.006, 0.1, 0.306, 0.706):

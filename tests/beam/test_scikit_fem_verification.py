@@ -13,7 +13,7 @@ from studies.strokes import NAMES, cue
 
 EFFECTS = {
     "free": (),
-    "mass, springs": (PointMass(0.0, 2e-3), Support(0.2, stiffness=5e3, rotational_stiffness=3.0)),
+    "mass, springs": (PointMass(position=0.0, mass=2e-3), Support(0.2, stiffness=5e3, rotational_stiffness=3.0)),
     "clamp, joint": (Support(0.55, stiffness=np.inf), Joint(0.31, rotational_compliance=1e-3)),
     "fixed": (Support(0.6, np.inf, np.inf), Joint(0.25, rotational_compliance=2e-3, shear_compliance=1e-6)),
     "stiff joint": (Joint(0.5, 0.0, 3.5e-202),),

@@ -25,7 +25,7 @@ def test_end_mass_and_squirt_soft_support_converge_to_free_cue(cue: Cue) -> None
     def results(*effects: Effect) -> np.ndarray:
         return np.array([end_mass(scene(cue, *effects)), strike(scene(cue, *effects)).squirt])
 
-    free = results(PointMass(0.5, 1e-15))  # the same mesh, with an element's end where the support is
+    free = results(PointMass(position=0.5, mass=1e-15))  # the same mesh, with an element's end where the support is
     errors = np.array([abs(results(Support(0.5, k)) / free - 1) for k in (1e3, 1e2, 1e-3, 1e-9)])
     for errors_of_one in errors.T:
         assert_order(1, [1e3, 1e2], errors_of_one[:2], within=0.05)

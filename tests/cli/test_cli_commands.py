@@ -15,7 +15,7 @@ from tests.helpers.cues import kim as kims_shaft
 
 KIM = kims_shaft()
 KIM_SCENE = cf.Scene(KIM, stroke=cf.Stroke(offset=0.3))
-EFFECTS = (cf.PointMass(0.1, 0.005), cf.Elevation(math.radians(5)), cf.AxialWaves(1.45, 0.03, 4400.0))
+EFFECTS = (cf.PointMass(position=0.1, mass=0.005), cf.Elevation(math.radians(5)), cf.AxialWaves(1.45, 0.03, 4400.0))
 SCENE = cf.Scene(KIM, cf.Ball(0.17, 0.028575), cf.Tip(0.8, 0.6, 1e-3), cf.Stroke(2.0, -0.2), EFFECTS)
 CSV = "x [mm],diameter [mm]\n0,12\n700,21\n"
 

@@ -85,7 +85,10 @@ def with_support(draw: RandomScene) -> cf.Scene:
 
 def all_cue_effects(draw: RandomScene) -> cf.Scene:
     """Loss of materials or one for all, a mass, a hand and a joint with one or two compliances, at one position."""
-    position, mass = draw.between(0.05, 0.3), cf.PointMass(draw.between(0.01, 0.1), draw.scaled(1e-3, 2e-2), 1e-6)
+    position, mass = (
+        draw.between(0.05, 0.3),
+        cf.PointMass(position=draw.between(0.01, 0.1), mass=draw.scaled(1e-3, 2e-2), rotary_inertia=1e-6),
+    )
     hand = cf.Support(position, draw.scaled(1e3, 1e5), 0.0, draw.scaled(1.0, 30.0))
     joint = cf.Joint(position, draw.scaled(1e-4, 1e-1), draw.scaled(1e-9, 1e-6) if draw.often(0.5) else 0.0)
     loss = cf.StructuralDamping(None if draw.often(0.5) else draw.scaled(1e-2, 0.3))

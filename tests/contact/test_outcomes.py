@@ -22,7 +22,7 @@ from tests.helpers.strike_scenes import kim_scene
 SCENES = [
     *(kim_scene(offset) for offset in np.linspace(-0.5, 0.6, 19)),
     *(replace(kim_scene(offset), effects=(cf.TipShear(0.75), cf.TipDome(0.0095))) for offset in (0.2, 0.4)),
-    replace(kim_scene(0.3), effects=(cf.StructuralDamping(0.02), cf.PointMass(0.1, 0.01))),
+    replace(kim_scene(0.3), effects=(cf.StructuralDamping(0.02), cf.PointMass(position=0.1, mass=0.01))),
     replace(kim_scene(0.7), cue=cf.LumpedCue(0.54, 0.01)),
     *(leather_scene(offset, speed=speed) for offset, speed in ((0.0, 1.0), (0.3, 1.0), (-0.3, 2.0), (0.45, 6.0))),
     replace(leather_scene(0.2), ball=cf.Ball(mass=0.17, radius=0.028575)),
@@ -54,7 +54,12 @@ def test_batch_strike_equals_single_strikes(scenes: list[cf.Scene], at: cf.Resol
 EFFECTS: list[tuple[cf.Effect, ...]] = [
     (),
     (cf.SecondHit(),),
-    (cf.PointMass(0.1, 0.01), cf.Support(0.2, 5e3, 1.0, 20.0), cf.StructuralDamping(0.02), cf.AxialWaves()),
+    (
+        cf.PointMass(position=0.1, mass=0.01),
+        cf.Support(0.2, 5e3, 1.0, 20.0),
+        cf.StructuralDamping(0.02),
+        cf.AxialWaves(),
+    ),
     (cf.TipShear(0.75), cf.TipDome(0.0095), cf.PowerLawTip(1.5)),
     (cf.Elevation(0.1),),
     (replace(LEATHER, surface_restitution=0.9),),
@@ -97,6 +102,24 @@ def test_outcome_of_batch_copies_and_pickles_equal() -> None:
     striker = cf.Striker(mass=0.02, restitution=0.8, contact_time=1e-3)
     side = cf.side_strike(cf.SideStrike(kim_scene().cue, striker, effects=(cf.SecondHit(),)))
     assert deepcopy(side) == pickle.loads(pickle.dumps(side)) == side
+
+
+def test_results_with_arrays_copy_pickle_and_compare() -> None:
+    """Modes of a dense and of a sparse problem, a motion, a ball's motion: equal after a way to another process."""
+    cue = kim_scene().cue
+    moved = cf.motion(kim_scene(0.3), [0.0, 1e-3], AT)
+    placed = cf.BallMotion(np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 30.0]))
+    for result in (cf.modes(cue, 3), cf.modes(cue, 3, near=600.0), moved, placed):
+        assert deepcopy(result) == pickle.loads(pickle.dumps(result)) == result
+    assert cf.modes(cue, 3) == cf.modes(cue, 3) != cf.modes(cue, 4)
+    assert moved != cf.motion(kim_scene(0.31), [0.0, 1e-3], AT)
+    assert np.array_equal(pickle.loads(pickle.dumps(cf.modes(cue, 3))).shape(0.1), cf.modes(cue, 3).shape(0.1))
+
+
+def test_point_mass_takes_numbers_by_keyword() -> None:
+    """Mass and position swapped were accepted in silence."""
+    with pytest.raises(TypeError, match="positional"):
+        cf.PointMass(1e-3, 0.01)  # type: ignore[misc]
 
 
 @pytest.mark.nightly

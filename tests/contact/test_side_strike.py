@@ -23,7 +23,9 @@ SOFT = Striker(0.005, 0.8, modulus=1e8, radius=0.02)
 FEW = Resolution(2, 10, 8)
 HAND, DAMPED, JOINT = Support(0.5, 1e4, dashpot=3.0), cf.StructuralDamping(0.02), cf.Joint(0.3, 1e-3)
 PLAIN = cf.Cue((cf.Segment(0.7, 0.012, 0.021, MAPLE),), body_mass=0.42)
-SCENE = SideStrike(PLAIN, Striker(0.02, 0.8, contact_time=1e-3), 0.05, 2.0, (PointMass(0.1, 2e-3), Support(0.6, 5e3)))
+SCENE = SideStrike(
+    PLAIN, Striker(0.02, 0.8, contact_time=1e-3), 0.05, 2.0, (PointMass(position=0.1, mass=2e-3), Support(0.6, 5e3))
+)
 
 
 def stiffened(cue: cf.Cue) -> cf.Cue:
@@ -43,7 +45,7 @@ def test_side_strike_stiff_beam_has_rigid_effective_mass(cue: cf.Cue, limit: flo
     striker, at = Striker(0.1 * cue.shaft_mass, restitution, contact_time=1e-3), Resolution(1, 12, 2, 6400)
     scene = SideStrike(stiffened(cue), striker)
     assert cue.shaft_mass / side_strike(scene, at).effective_mass == pytest.approx(limit, rel=1e-6)
-    elsewhere = replace(scene, position=cue.length / 3, effects=(PointMass(0.2, 5e-3),))
+    elsewhere = replace(scene, position=cue.length / 3, effects=(PointMass(position=0.2, mass=5e-3),))
     assert side_strike(elsewhere, at).effective_mass == pytest.approx(elsewhere.rigid_mass, rel=1e-6)
 
 
@@ -107,7 +109,11 @@ def test_side_strike_long_thin_beam_equals_infinite_beam(where: str, lengths: fl
 
 
 @pytest.mark.parametrize("striker", [BALL, SOFT, replace(BALL, restitution=0.05), replace(BALL, mass=0.5)])
-@pytest.mark.parametrize("effects", [(), (PointMass(0.1, 2e-3, 1e-7), HAND, JOINT, DAMPED)], ids=["bare", "effects"])
+@pytest.mark.parametrize(
+    "effects",
+    [(), (PointMass(position=0.1, mass=2e-3, rotary_inertia=1e-7), HAND, JOINT, DAMPED)],
+    ids=["bare", "effects"],
+)
 def test_side_strike_conserves_energy_and_momentum(striker: Striker, effects: tuple[cf.Effect, ...]) -> None:
     scene = SideStrike(kim(), striker, 0.04, 1.7, effects)
     outcome = side_strike(scene, FEW)
@@ -170,7 +176,10 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: Striker(math.nan, 0.8, stiffness=1e5), "Striker.mass must be in (0, inf) kg; got nan"),
     (lambda: SideStrike(kim(), BALL, 0.71), "SideStrike.position must be in [0, 0.7] m, on the cue; got 0.71"),
     (lambda: SideStrike(cf.LumpedCue(0.5, 0.006), BALL), "TypeError: SideStrike.cue must be a Cue"),  # type: ignore[arg-type]
-    (lambda: SideStrike(kim(), BALL, effects=PointMass(0.1, 1e-3)), "TypeError: SideStrike.effects must be a seq"),  # type: ignore[arg-type]
+    (
+        lambda: SideStrike(kim(), BALL, effects=PointMass(position=0.1, mass=1e-3)),
+        "TypeError: SideStrike.effects must be a seq",
+    ),  # type: ignore[arg-type]
     (lambda: SideStrike(kim(), BALL, effects=(cf.TipDome(0.01),)), "does not touch the cue's tip; got TipDome"),
     (lambda: side_strike(kim()), "TypeError: side_strike scene must be a SideStrike; got a Cue"),  # type: ignore[arg-type]
     (lambda: side_strike(SideStrike(kim(), Striker(0.02, 1.0, stiffness=1e15))), "contact time in [1e-6, 10] s"),

@@ -135,7 +135,11 @@ def test_strike_conserves_energy_mirrors_and_ignores_effect_order(examples: int)
 
 
 SPLIT: dict[str, tuple[Effect, ...]] = {  # the first is the sum of the others
-    "mass": (cf.PointMass(0.1, 5e-3, 1e-7), cf.PointMass(0.1, 2e-3, 4e-8), cf.PointMass(0.1, 3e-3, 6e-8)),
+    "mass": (
+        cf.PointMass(position=0.1, mass=5e-3, rotary_inertia=1e-7),
+        cf.PointMass(position=0.1, mass=2e-3, rotary_inertia=4e-8),
+        cf.PointMass(position=0.1, mass=3e-3, rotary_inertia=6e-8),
+    ),
     "support": (cf.Support(0.2, 5e3, 1.0, 20.0), cf.Support(0.2, 2e3, 0.4, 5.0), cf.Support(0.2, 3e3, 0.6, 15.0)),
     "dome": (cf.TipDome(9e-3), cf.TipDome(4e-3), cf.TipDome(5e-3), cf.TipDome(0.0)),
     "shear, in series": (cf.TipShear(0.75), cf.TipShear(3.0), cf.TipShear(2.0), cf.TipShear(2.0)),
@@ -158,10 +162,12 @@ def test_effect_split_in_parts_equals_whole(name: str) -> None:
     assert expected.dome_radius == pytest.approx(result.dome_radius, abs=1e-15)
 
 
-NODE = cf.PointMass(POSITION, 0.0)  # a node alone: the mesh's error is the same with and without the effect
+NODE = cf.PointMass(
+    position=POSITION, mass=0.0
+)  # a node alone: the mesh's error is the same with and without the effect
 VANISHING = {
-    "point mass": (lambda x: cf.PointMass(POSITION, 1e-4 * x), NODE),
-    "rotary inertia": (lambda x: cf.PointMass(POSITION, 0.0, 1e-7 * x), NODE),
+    "point mass": (lambda x: cf.PointMass(position=POSITION, mass=1e-4 * x), NODE),
+    "rotary inertia": (lambda x: cf.PointMass(position=POSITION, mass=0.0, rotary_inertia=1e-7 * x), NODE),
     "support": (lambda x: cf.Support(POSITION, 1e3 * x), NODE),
     "rotational support": (lambda x: cf.Support(POSITION, 0.0, x), NODE),
     "dashpot": (lambda x: cf.Support(POSITION, dashpot=0.1 * x), NODE),

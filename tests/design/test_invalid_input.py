@@ -81,7 +81,9 @@ CALLS: dict[str, Callable[[], object]] = {
     "no design within tip_stiffness >= 1000 was found": lambda: optimum(STIFF, rounds=2),
     "an optimum takes no store or workers": lambda: cf.study(PROBLEM, workers=2),
     "Scene.cue must be a Cue of segments": lambda: sensitivity(LUMPED),
-    "sensitivity scene must have no effects": lambda: sensitivity(replace(MAPLE, effects=(cf.PointMass(0.1, 1e-3),))),
+    "sensitivity scene must have no effects": lambda: sensitivity(
+        replace(MAPLE, effects=(cf.PointMass(position=0.1, mass=1e-3),))
+    ),
 }
 
 

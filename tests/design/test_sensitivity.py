@@ -61,7 +61,7 @@ def test_sensitivity_to_point_mass_equals_difference(cue: Cue) -> None:
     result = sensitivity(scene(cue), fine)
     i = len(result.x) // 3
     mass = 1e-5  # kg: at 1 mg round-off is 1e-6, here 1e-7
-    scenes = (replace(scene(cue), effects=(PointMass(result.x[i], count * mass),)) for count in (1, 2, 3))
+    scenes = (replace(scene(cue), effects=(PointMass(position=result.x[i], mass=count * mass),)) for count in (1, 2, 3))
     first, second, third = (end_mass(each, "stick", fine) for each in scenes)
     bare = end_mass(scene(cue), "stick", fine)
     measured = (18 * first - 9 * second + 2 * third - 11 * bare) / (6 * mass)

@@ -117,7 +117,7 @@ def at_offset(scene: cf.Scene, offset: float) -> cf.Scene:
 
 EFFECTS = {
     "none": (None, ()),
-    "clay": (AT, (cf.PointMass(0.05, 0.011),)),
+    "clay": (AT, (cf.PointMass(position=0.05, mass=0.011),)),
     "bridge": (replace(AT, steps=200), (cf.Support(0.2, 5000.0),)),
     "tip": (AT, (cf.TipDome(0.0095), cf.TipShear(0.75))),
 }

@@ -21,15 +21,18 @@ from tests.helpers.strike_scenes import KIM, kim_scene
 POSITION = 0.213  # m, between the nodes of every mesh used here
 
 
-NODE = cf.PointMass(POSITION, 0.0)  # a node alone: the mesh's error is the same with and without the effect
+NODE = cf.PointMass(
+    position=POSITION, mass=0.0
+)  # a node alone: the mesh's error is the same with and without the effect
 
 
 @pytest.mark.parametrize("share", [0.0, 0.4, 1.0])
 def test_point_mass_adds_its_axial_share_to_axial_mass(share):
     """Bending modes include the whole mass; in a centre-ball impact the cue's mass includes the axial share."""
-    point_mass = cf.PointMass(POSITION, 0.05, axial_share=share)
+    point_mass = cf.PointMass(position=POSITION, mass=0.05, axial_share=share)
     frequencies = [
-        cf.modes(kim(), 3, effects=(effect,)).frequencies for effect in (point_mass, cf.PointMass(POSITION, 0.05))
+        cf.modes(kim(), 3, effects=(effect,)).frequencies
+        for effect in (point_mass, cf.PointMass(position=POSITION, mass=0.05))
     ]
     np.testing.assert_allclose(*frequencies, rtol=1e-12)
     heavier = replace(kim(), body_mass=kim().body_mass + 0.05 * share)

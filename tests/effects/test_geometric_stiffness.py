@@ -65,7 +65,7 @@ def struck_shaft(speed: float, offset: float) -> cf.Scene:
     material = cf.Material(E=12.6e9, G=60e9, rho=700.0, nu=0.05)
     cue = cf.Cue((cf.Segment(LENGTH, 0.0125, 0.0215, material),), body_mass=1e-9)
     tip = cf.Tip(restitution=1.0, friction=math.inf, stiffness=STIFFNESS)
-    effects = (cf.PointMass(LENGTH, 0.43), cf.AxialWaves(), cf.TipShear(SHEAR / STIFFNESS))
+    effects = (cf.PointMass(position=LENGTH, mass=0.43), cf.AxialWaves(), cf.TipShear(SHEAR / STIFFNESS))
     return cf.Scene(cue, cf.Ball(0.17, 0.028575), tip, cf.Stroke(speed, offset), effects)
 
 

@@ -41,7 +41,10 @@ CALLS: list[tuple[Callable[[], object], str]] = [  # one line for each `raise`
     (lambda: FLAT.compliance(0.012, 0.1, 7e-3), "patch must be in (0, 0.006] m; got 0.007"),
     (lambda: FLAT.compliance(0.012, 1.0, 1e-3), "offset must be in (-1, 1); got 1.0"),
     (lambda: FLAT.head_on(0.012, 0.0), "ball_radius must be in (0, inf) m; got 0.0"),
-    (with_effects(SHEAR, cf.PointMass(0.71, 0.01)), "Scene.effects[1].position must be in [0, 0.7] m, on the cue"),
+    (
+        with_effects(SHEAR, cf.PointMass(position=0.71, mass=0.01)),
+        "Scene.effects[1].position must be in [0, 0.7] m, on the cue",
+    ),
     (with_effects(SHEAR, FAR), "Scene.effects[1].position must be in (0, 0.7) m, between the ends"),
     (lumped(SHEAR, cf.Joint(0.1)), "got Joint, which needs a finite-element Cue"),
     (lumped(SHEAR, WAVES), "Scene.effects[1] must be an effect that a LumpedCue can have"),

@@ -7,7 +7,7 @@ from cuefem.effects.effect import Effect
 from studies.strokes import DOME, NAMES, SHEAR, cue
 
 WAVES = cf.AxialWaves()
-BRIDGE, CLAY = cf.Support(0.2, stiffness=1e4, dashpot=5.0), cf.PointMass(0.1, 0.011)
+BRIDGE, CLAY = cf.Support(0.2, stiffness=1e4, dashpot=5.0), cf.PointMass(position=0.1, mass=0.011)
 
 # (contact time in s, offset, restitution, friction) of the cues without effects; each cue takes six of these eight.
 STROKES = (

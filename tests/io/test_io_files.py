@@ -38,7 +38,7 @@ def test_load_scene_resolves_relative_path_of_cue(tmp_path: Path, monkeypatch: p
     ball, tip = cf.Ball(0.17009713875, 0.028575), cf.Tip(friction=math.inf, contact_time=0.0012)
     stroke = cf.Stroke(float("2.777777777777777777777777778"), 0.3)
     monkeypatch.chdir(tmp_path / "cues")
-    assert cf.load("../scene.toml") == cf.Scene(KIM, ball, tip, stroke, (cf.PointMass(0.0254, 0.005),))
+    assert cf.load("../scene.toml") == cf.Scene(KIM, ball, tip, stroke, (cf.PointMass(position=0.0254, mass=0.005),))
     assert (load_accuracy("../scene.toml"), load_accuracy("kim.toml")) == (1e-4, None)
 
 

@@ -68,7 +68,7 @@ def test_pivot_length_follows_from_squirt_and_dome() -> None:
 
 def test_added_mass_position_counts_from_the_leather() -> None:
     scene = leather_scene()
-    added = cf.PointMass(0.05 - scene.leather_tip.height, 5e-3)
+    added = cf.PointMass(position=0.05 - scene.leather_tip.height, mass=5e-3)
     heavy = replace(scene, effects=(*scene.effects, added), stroke=cf.Stroke(scene.stroke.speed, 0.3))
     plain = replace(scene, stroke=cf.Stroke(scene.stroke.speed, 0.3))
     one = AddedMass(mass=5e-3, position=0.05, value=0.05, baseline=0.04, error=1e-3, offset=0.3)

@@ -25,7 +25,13 @@ LEATHER = cf.LeatherTip(6e-3, 9.5e-3, 140e6)
 # An instance of each class with declared fields.
 INSTANCES: list[Any] = [
     *(WOOD, cf.Segment(0.7, 0.012, 0.021, WOOD), cf.Ball(), cf.Tip(), cf.Stroke()),
-    *(cf.LumpedCue(0.54, 0.01), cf.PointMass(0.1, 0.01), cf.Support(0.1, 1e3), cf.Joint(0.1, 1e-3), LEATHER),
+    *(
+        cf.LumpedCue(0.54, 0.01),
+        cf.PointMass(position=0.1, mass=0.01),
+        cf.Support(0.1, 1e3),
+        cf.Joint(0.1, 1e-3),
+        LEATHER,
+    ),
     cf.AxialWaves(1.47, 0.03, 4430.0),
     *(cf.TipDome(0.01), cf.TipShear(0.75), cf.Elevation(0.1), cf.TipLayer(1e-3, 1e9)),
     *(cf.StructuralDamping(0.01), cf.PowerLawTip(), cf.SecondHit(), cf.Striker(0.02, 0.8, contact_time=1e-3)),

@@ -74,7 +74,7 @@ def test_comparison_with_shaft_masses_has_smaller_error() -> None:
 @pytest.mark.heavy
 def test_comparison_with_point_mass_has_larger_error() -> None:
     """The model error of a ratio with a point mass is MASS_ERROR."""
-    clip = replace(SCENE, effects=(*SCENE.effects, cf.PointMass(0.05, 0.011)))
+    clip = replace(SCENE, effects=(*SCENE.effects, cf.PointMass(position=0.05, mass=0.011)))
     squirt = comparison_record({"plain": SCENE, "clip": clip}, same_shaft=True)["differences"]["clip"]["squirt"]
     assert squirt["error"] >= MASS_ERROR * squirt["difference"] > SHAFT_ERROR * squirt["difference"]
 

@@ -112,7 +112,7 @@ def test_verdict_head_on_outcome_error_is_not_of_the_default_offset() -> None:
 
 
 def test_same_stroke_excludes_effects_on_own_cue() -> None:
-    more = (cf.PointMass(0.1, 0.011), cf.Support(0.2, 1e3), cf.Support(0.72, 1e3))
+    more = (cf.PointMass(position=0.1, mass=0.011), cf.Support(0.2, 1e3), cf.Support(0.72, 1e3))
     scene = replace(SCENE, effects=(*SCENE.effects, *more))
     short = replace(SCENE.cue, segments=SCENE.cue.segments[:-1])
     types = {type(effect).__name__ for effect in with_cue(scene, short).effects}

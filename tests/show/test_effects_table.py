@@ -13,7 +13,7 @@ from cuefem.show import effects_record
 from cuefem.show.effects_table import MARGIN
 from tests.helpers.strike_scenes import KIM
 
-DOME, CLAY, HAND = cf.TipDome(9.5e-3), cf.PointMass(0.05, 0.011), cf.Support(0.2032, 5e3)
+DOME, CLAY, HAND = cf.TipDome(9.5e-3), cf.PointMass(position=0.05, mass=0.011), cf.Support(0.2032, 5e3)
 SCENE = cf.Scene(KIM, tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(offset=0.3), effects=(DOME, CLAY, HAND))
 
 
@@ -36,7 +36,7 @@ def test_variants_remove_or_add_each_effect_once() -> None:
 
 
 def test_variants_of_repeated_effect_remove_one_and_invalid_has_reason() -> None:
-    two = replace(SCENE, effects=(CLAY, cf.PointMass(0.1, 0.003)))
+    two = replace(SCENE, effects=(CLAY, cf.PointMass(position=0.1, mass=0.003)))
     remaining = [v.scene.effects for v in variants(two) if v.is_listed and v.scene is not None]
     assert remaining == [two.effects[1:], two.effects[:1]]
     short = cf.Cue((cf.Segment(0.15, 0.012, 0.013, KIM.segments[0].material),), 0.5)

@@ -89,7 +89,7 @@ def layered() -> cf.Scene:
     plain = cf.usual_scene(scene("kim").shaft)
     layers = (cf.TipLayer(1e-3, 2e9), cf.TipLayer(2e-3, 1e9))  # from the ferrule up
     tip = replace(plain.leather_tip, height=9e-3, layers=layers, diameter=10e-3)
-    return replace(plain, effects=(tip, *plain.effects[1:], cf.PointMass(0.05, 0.01)))
+    return replace(plain, effects=(tip, *plain.effects[1:], cf.PointMass(position=0.05, mass=0.01)))
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ COARSE = cf.Solid(order=3, modes=20)
 
 
 def test_strike_point_mass_on_solid_agrees_with_beam() -> None:
-    weighted = replace(SCENE, effects=(cf.PointMass(0.0, 2e-3),))
+    weighted = replace(SCENE, effects=(cf.PointMass(position=0.0, mass=2e-3),))
     beam, solid = (
         cf.strike(weighted, at=at).squirt / cf.strike(SCENE, at=at).squirt for at in (cf.Resolution(3, 16, 20), COARSE)
     )
@@ -62,7 +62,7 @@ def test_solid_invalid_input_raises_before_assembly(
 def test_model_error_short_cone_lists_quantities_and_exclusions() -> None:
     """Rows, summary, and effects that a solid excludes; a short cone is fast."""
     short = cf.Cue((cf.Segment(0.12, 0.012, 0.014, WOOD),), body_mass=0.42)
-    scene = replace(SCENE, cue=short, effects=(cf.AxialWaves(), cf.PointMass(0.0, 1e-3)))
+    scene = replace(SCENE, cue=short, effects=(cf.AxialWaves(), cf.PointMass(position=0.0, mass=1e-3)))
     record = model_error_record(scene, list)
     rows = {row["quantity"]: row for row in record["rows"]}
     assert list(rows)[:6] == [f"natural frequency {k}" for k in range(1, 7)]
