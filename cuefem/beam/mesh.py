@@ -54,7 +54,8 @@ class Resolution:
     modes
         Number of flexible bending modes; the rigid-body modes are always included.
     steps
-        Steps of the contact in a head-on contact time, 20 to 1,000,000; by default 400.
+        Steps of the contact in a head-on contact time, 20 to 1,000,000; by default 400, with a
+        `LeatherTip` 200.
 
     Raises
     ------

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from cuefem.beam.tip_modes import TipModes
-from cuefem.contact.geometric_stiffness import half_octave, slope_rows
+from cuefem.contact.geometric_stiffness import slope_rows
 from cuefem.cue import Array
 
 if TYPE_CHECKING:
@@ -243,22 +243,18 @@ class ModalPropagator:
         return loads
 
 
-def propagator_of(tip: TipModes, ports: str = "straight", time: float = 0.0, window: float = 0.0) -> ModalPropagator:
+@lru_cache(maxsize=32)
+def propagator_of(tip: TipModes, ports: str = "straight") -> ModalPropagator:
     """The propagator of tip modes at the ports "straight" (u, w), "turning" (u, w, rotation) or "raised" (u, w, p).
 
-    time: approximate contact time, s; window: the time simulated after it, s. The slopes of a bent cue depend on both
-    (`slope_rows`). Strikes with the same tip modes share the propagator.
+    Strikes with the same tip modes share the propagator.
     """
-    has_slopes = tip.geometric is not None
-    return _propagator(tip, ports, *((half_octave(time), half_octave(time) + window) if has_slopes else (0.0, 0.0)))
-
-
-@lru_cache(maxsize=32)
-def _propagator(tip: TipModes, ports: str, time: float, end: float) -> ModalPropagator:
-    rows, slopes = tip.amplitude.T, slope_rows(tip, time, end)
+    if ports == "raised":
+        return ModalPropagator(*_in_two_planes(tip, slope_rows(tip, planes=2)))
+    rows = tip.amplitude.T
     if ports == "turning":
         rows = np.concatenate([rows, tip.rotation[None]])
-    return ModalPropagator(*(_in_two_planes(tip, slopes) if ports == "raised" else (tip, rows, slopes)))
+    return ModalPropagator(tip, rows, slope_rows(tip))
 
 
 def _in_two_planes(tip: TipModes, slopes: Array) -> tuple[TipModes, Array, Array]:

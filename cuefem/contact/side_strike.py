@@ -308,7 +308,7 @@ def solve_side_contact(scene: SideStrike, at: Resolution | None = None) -> Solve
         raise ValueError(f"SideStrike must make a contact time in {CONTACT_TIME.bounds}; got {time:.3g} s")
     check_restitution("Striker.restitution", striker.restitution)
     model = ContactModel(
-        propagator_of(_position_modes(scene, at), time=time),
+        propagator_of(_position_modes(scene, at)),
         kinematics=np.array([[0.0, -1.0, 1.0, 0.0, 1.0], [-1.0, 0.0, 0.0, 1.0, 0.0]]),
         inverse_masses=np.full(3, 1 / striker.mass),
         ball=np.array([0.0, -scene.speed, 0.0]),

@@ -31,9 +31,6 @@ FRICTION_STATES = {
     )
 }
 NORMAL_PHASES = ("load", "unload", "free")
-# Steps in a head-on contact time: squirt of a default strike then has an error below 0.1 %
-# (tests/contact/test_stored_answers.py).
-DEFAULT_STEPS = 400
 INFINITE_FRICTION = 1e12  # finite value for infinite friction, as in kernel/step.c
 STEPS_PER_CALL = 2048  # of the kernel
 MAX_CONTACT_TIMES = 200  # longest contact, in head-on contact times; beyond it the strike raises an error
@@ -179,8 +176,9 @@ class SolvedContact:
 def solve_contact(model: ContactModel, *, steps: int | None = None, store_states: bool = False) -> SolvedContact:
     """Solve a contact from first touch to separation, and through the window of a second hit.
 
-    steps: in a head-on contact time. store_states: store the modal coordinates after every step. RuntimeError if
-    the ball does not separate; ValueError if the indentation or the slope of the shaft leaves its theory's range.
+    steps: in a head-on contact time, by default those of the model. store_states: store the modal coordinates after
+    every step. RuntimeError if the ball does not separate; ValueError if the indentation or the slope of the shaft
+    leaves its theory's range.
     """
     kernel, propagator = library(), model.propagator
     sizes, modes = mode_fields(propagator)
@@ -203,7 +201,7 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
         "phi": model.phi,
         "restitution": model.restitution,
         "friction": min(model.friction, INFINITE_FRICTION),
-        "step": model.time / (steps or DEFAULT_STEPS),
+        "step": model.time / (steps or model.steps),
         "max_time": MAX_CONTACT_TIMES * model.time,
         "window": model.window or 0.0,
     }

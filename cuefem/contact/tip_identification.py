@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.quantity.fields import CONTACT_TIME, Quantity
@@ -29,6 +30,7 @@ class IdentifiedTip(NamedTuple):
 
 
 GUESS, GUESS_TIME = IdentifiedTip(230e6, 0.6), 1.135e-3  # s: medium leather, the start of the search
+MANY_MODES = IdentifiedTip(1e9, 0.5)  # whose contact is shorter than any leather's
 
 
 def identify_tip(scene: Scene, contact_time: float, rebound: float) -> IdentifiedTip:
@@ -72,10 +74,9 @@ def identify_tip(scene: Scene, contact_time: float, rebound: float) -> Identifie
 
     contact_time = CONTACT_TIME.check("identify_tip contact_time", contact_time)
     rebound = REBOUND.check("identify_tip rebound", rebound)
-    tip = tip_modes_of(with_tip(scene, IdentifiedTip(1e9, 0.5)))  # neither number changes the modes of the cue
     low, high = math.log(MIN_E), math.log(MAX_E)
 
-    def central_impact(log_E: float, e: float) -> tuple[float, float]:
+    def central_impact(tip: TipModes, log_E: float, e: float) -> tuple[float, float]:
         """Contact time, s, and rebound; `NO_SEPARATION` and 0 if the indentation leaves the range of the law."""
         try:
             trial = with_tip(scene, IdentifiedTip(math.exp(log_E), e))
@@ -84,18 +85,25 @@ def identify_tip(scene: Scene, contact_time: float, rebound: float) -> Identifie
             return NO_SEPARATION, 0.0
         return float(outcome.duration), rebound_of_outcome(outcome, trial)
 
-    def residuals(guess: Any) -> Any:
+    def residuals(guess: Any, tip: TipModes) -> Any:
         clipped = np.clip(guess, [low, MIN_RESTITUTION], [high, 1.0])  # the residuals grow beyond the bounds
-        time, computed = central_impact(*clipped)
+        time, computed = central_impact(tip, *clipped)
         return [math.log(time / contact_time), computed - rebound] + np.array([-1.0, 1.0]) * (guess - clipped)
 
+    # the number of modes depends on the leather: a second search has those of the first one's solution
+    found = MANY_MODES
     start = [math.log(GUESS.E) - 3 * math.log(contact_time / GUESS_TIME), GUESS.restitution]
-    solution = root(residuals, np.clip(start, [low, MIN_RESTITUTION], [high, 1.0]), tol=TOLERANCE)
-    if solution.success and low < solution.x[0] < high and MIN_RESTITUTION <= solution.x[1] <= 1:
-        return IdentifiedTip(math.exp(solution.x[0]), float(solution.x[1]))
+    for _ in range(2):
+        tip = tip_modes_of(with_tip(scene, found))
+        solution = root(residuals, np.clip(start, [low, MIN_RESTITUTION], [high, 1.0]), args=(tip,), tol=TOLERANCE)
+        if not (solution.success and low < solution.x[0] < high and MIN_RESTITUTION <= solution.x[1] <= 1):
+            break
+        found, start = IdentifiedTip(math.exp(solution.x[0]), float(solution.x[1])), solution.x
+    else:
+        return found
 
     E, e = np.clip(solution.x, [low, MIN_RESTITUTION], [high, 1.0])
-    time, computed = central_impact(E, e)
+    time, computed = central_impact(tip, E, e)
     raise ValueError(
         f"identify_tip: no leather has a contact time of {contact_time:g} s and a rebound of {rebound:g} on this cue; "
         f"the nearest tried, E {math.exp(E) / 1e6:.4g} MPa and e {e:.3g}, has {time:.3g} s and {computed:.3g}"
