@@ -66,7 +66,7 @@ TITLES = {
     "The strike": ("contact",),
     "Effects": ("effects",),
     "Studies and measurements": ("design", "designs", "measurements"),
-    "Figures": ("plot", "frames"),
+    "Figures": ("plot",),
 }
 SUMMARY = """
 ## {title}

@@ -1,4 +1,4 @@
-from . import frames as frames, plot as plot
+from . import plot as plot
 from .analysis.reduction import reduction as reduction
 from .results.convergence import resolve as resolve, resolve_end_mass as resolve_end_mass
 from .beam.mesh import Resolution as Resolution

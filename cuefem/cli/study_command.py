@@ -91,9 +91,9 @@ def study(
     stored = []
     if database:
         record |= {"store": str(database.path), "evaluated": database.computed}
-        before = len(result.rows) - database.computed
+        before = database.done - database.computed
         stored.append(
-            f"{len(result.rows)} designs in {database.path}" + (f", {before} of them from before" if before else "")
+            f"{database.done} designs in {database.path}" + (f", {before} of them from before" if before else "")
         )
     record |= study_record(result)
     title, tables = f"{file.name}: {result.kind}", [*tabulate_study(result), "", *assumption_lines(notes)]
@@ -112,7 +112,7 @@ def _run_stored(file: Path, plan: Study | Scatter, designs: SqliteStore, workers
                     plan,
                     store=designs,
                     workers=workers,
-                    progress=lambda rows: bar.update(task, completed=designs.done),
+                    progress=lambda count: bar.update(task, advance=count),
                 )
         except (KeyboardInterrupt, RuntimeError) as error:
             bar.stop()

@@ -10,7 +10,7 @@ part that would remain if all others were known. Single parameters of a group ha
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -21,11 +21,12 @@ from scipy.special import ndtr, ndtri
 from cuefem.cue import Array
 from cuefem.design.sampling import Levels
 from cuefem.design.study import Study, check_column_name
-from cuefem.design.sweep import Row
+from cuefem.design.sweep import Columns
 from cuefem.quantity.equality import equal_fields
 from cuefem.quantity.fields import check_count
 
 CONFIDENCE, RESAMPLES = 0.95, 400  # of the bootstrapped intervals
+CHUNK = 256  # points computed at a time
 HALF_CELL = 2.0**-31  # half the spacing of scipy's Sobol points: added, so that no point is 0
 
 
@@ -162,8 +163,10 @@ class _Points:
         engine = qmc.Sobol(2 * dimensions, seed=np.random.default_rng(self.scatter.seed))
         first, second = np.split(ndtri(engine.random(self.scatter.count) + HALF_CELL), 2, axis=1)
         from_second = (np.isin(np.arange(dimensions), indices) for indices in self.scatter.factor_indices)
-        scores = np.concatenate([first, second, *(np.where(columns, second, first) for columns in from_second)])
-        yield from ndtr(scores @ np.linalg.cholesky(self.scatter.correlation_matrix).T).tolist()
+        root = np.linalg.cholesky(self.scatter.correlation_matrix)
+        for scores in (first, second, *(np.where(columns, second, first) for columns in from_second)):
+            for start in range(0, len(scores), CHUNK):
+                yield from ndtr(scores[start : start + CHUNK] @ root.T).tolist()
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,17 +192,17 @@ class SobolIndices:
     __eq__ = equal_fields
 
 
-def sobol_indices_of(scatter: Scatter, rows: Sequence[Row]) -> SobolIndices:
-    """Sobol indices from the evaluated rows of `Scatter.sobol_study`.
+def sobol_indices_of(scatter: Scatter, columns: Columns) -> SobolIndices:
+    """Sobol indices from the responses of the designs of `Scatter.sobol_study`.
 
     Estimators of Saltelli et al. (Comput. Phys. Commun. 181 (2010) 259, table 2 b, f) as scipy.stats has them; error
     about 1/sqrt(count) or less, see the intervals. ValueError if a design has no response, with the first reason, or
     if a response is constant.
     """
-    failed = [row.failure for row in rows if row.failure]
+    failed, count = columns.failures, len(columns.values)
     if failed:
-        raise ValueError(f"{len(failed)} of {len(rows)} designs failed: narrow the ranges; first: {failed[0]}")
-    results = np.array([row.responses for row in rows]).reshape(-1, scatter.count, len(scatter.study.responses))
+        raise ValueError(f"{len(failed)} of {count} designs failed: narrow the ranges; first: {failed[min(failed)]}")
+    results = columns.values.reshape(-1, scatter.count, len(scatter.study.responses))
     for response, column in zip(scatter.study.responses, np.moveaxis(results[:2], -1, 0), strict=True):
         if column.std() <= 1e-12 * abs(column.mean()):
             raise ValueError(f"{response.name} is constant: no parameter of the study changes it")

@@ -241,14 +241,20 @@ class Study:
 
     def evaluate(self, designs: Sequence[tuple[Value, ...]]) -> Evaluation:
         """The responses of designs with these values; nan and a reason for an invalid one."""
-        scenes, reasons = dict[int, Scene](), dict[int, str | None]()
-        for i, values in enumerate(designs):
-            try:
-                scenes[i] = self.scene(values)
-            except Failed as error:
-                reasons[i] = one_line(str(error))
-        valid, missing = evaluate([*scenes.values()], self.responses, at=self.at), [np.nan] * len(self.responses)
-        rows = dict(zip(scenes, valid.values.tolist(), strict=True))
-        reasons |= dict(zip(scenes, valid.reasons, strict=True))
-        indices = range(len(designs))
-        return Evaluation(np.array([rows.get(i, missing) for i in indices]), tuple(reasons[i] for i in indices))
+        return self.evaluate_scenes([self.scene_or_reason(values) for values in designs])
+
+    def scene_or_reason(self, values: tuple[Value, ...]) -> Scene | str:
+        """The design with these values, or the reason why it is invalid."""
+        try:
+            return self.scene(values)
+        except Failed as error:
+            return one_line(str(error))
+
+    def evaluate_scenes(self, scenes: Sequence[Scene | str]) -> Evaluation:
+        """The responses of scenes; nan for the reason of an invalid one."""
+        valid = {i: scene for i, scene in enumerate(scenes) if not isinstance(scene, str)}
+        evaluation = evaluate([*valid.values()], self.responses, at=self.at)
+        values = np.full((len(scenes), len(self.responses)), np.nan)
+        values[[*valid]] = evaluation.values
+        reasons = dict(zip(valid, evaluation.reasons, strict=True))
+        return Evaluation(values, tuple(s if isinstance(s, str) else reasons[i] for i, s in enumerate(scenes)))

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import importlib
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cuefem.cue import Array
 from cuefem.design.optimum import Optimum, Problem, optimum
+from cuefem.design.sampling import Value
 from cuefem.design.scatter import Scatter, SobolIndices, sobol_indices_of
 from cuefem.design.study import Study, StudyDesign
-from cuefem.design.sweep import MemoryStore, Row, Store, sweep
+from cuefem.design.sweep import Columns, Row, Store, sweep
 from cuefem.results.quantities import with_unit
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of the designs below a quantile
 
@@ -27,8 +33,8 @@ class StudyResult:
     ----------
     definition : Study, Scatter or Problem
         The study.
-    rows : tuple of Row
-        One row per design, in order; of an optimization only the best design.
+    columns : Columns
+        The responses of the designs, in order; of an optimization only the best design.
     optimum : Optimum, optional
         Of a study with an objective: the best design and its active limits.
     sobol_indices : SobolIndices, optional
@@ -36,6 +42,10 @@ class StudyResult:
 
     Attributes
     ----------
+    count : int
+        Number of designs.
+    rows : iterator of Row
+        The designs one by one: number, values, responses (None if missing) and failure.
     kind : str
         "sweep", "scatter" or "optimum".
     units : dict
@@ -54,7 +64,7 @@ class StudyResult:
     """
 
     definition: Study | Scatter | Problem
-    rows: tuple[Row, ...]
+    columns: Columns
     optimum: Optimum | None = None
     sobol_indices: SobolIndices | None = None
 
@@ -69,6 +79,22 @@ class StudyResult:
         return self.definition if isinstance(self.definition, Study) else self.definition.study
 
     @property
+    def count(self) -> int:
+        """Number of designs."""
+        return len(self.columns.values)
+
+    @property
+    def rows(self) -> Iterator[Row]:
+        """The designs one by one, in order."""
+        return (self.columns.row(design, values) for design, values in enumerate(self._values()))
+
+    def _values(self) -> Iterator[tuple[Value, ...]]:
+        """The parameter values of the designs, which the definition determines."""
+        if self.optimum is not None:
+            return iter([tuple(self.optimum.values.values())])
+        return designs_of(self.definition).designs()
+
+    @property
     def units(self) -> dict[str, str]:
         """SI units of all columns."""
         return dict(zip(self.study.columns, self.study.units, strict=True))
@@ -76,19 +102,24 @@ class StudyResult:
     @cached_property
     def designs(self) -> dict[str, np.ndarray]:
         """Parameter values."""
-        columns = zip(*(row.values for row in self.rows), strict=True)
-        return {vary.name: np.array(column) for vary, column in zip(self.study.vary, columns, strict=True)}
+        kinds = [type(values) for values in next(self._values())]
+        columns = [np.empty(self.count, object if kind is str else float) for kind in kinds]
+        for design, values in enumerate(self._values()):
+            for column, value in zip(columns, values, strict=True):
+                column[design] = value
+        columns = [column.astype(str) if kind is str else column for kind, column in zip(kinds, columns, strict=True)]
+        return {vary.name: column for vary, column in zip(self.study.vary, columns, strict=True)}
 
     @cached_property
     def responses(self) -> dict[str, Array]:
         """The responses."""
-        columns = np.array([row.responses for row in self.rows], float).T
+        columns = self.columns.values.T
         return {response.name: column for response, column in zip(self.study.responses, columns, strict=True)}
 
     @property
     def failures(self) -> dict[int, str]:
         """Reasons for missing responses."""
-        return {row.design: row.failure for row in self.rows if row.failure}
+        return dict(sorted(self.columns.failures.items()))
 
     @cached_property
     def best(self) -> dict[str, StudyDesign]:
@@ -104,9 +135,33 @@ class StudyResult:
         return best
 
     def _design(self, i: int) -> StudyDesign:
-        row, names = self.rows[i], [vary.name for vary in self.study.vary]
+        values = {name: column[i].item() for name, column in self.designs.items()}
         numbers = {name: float(column[i]) for name, column in self.responses.items()}
-        return StudyDesign(self.study.scene(row.values), dict(zip(names, row.values, strict=True)), numbers)
+        return StudyDesign(self.study.scene(tuple(values.values())), values, numbers)
+
+    def to_frame(self) -> pd.DataFrame:
+        """The designs as a pandas frame, a row each, by number.
+
+        Returns
+        -------
+        pandas.DataFrame
+            The varied parameters, the responses in SI (nan where one is missing), and ``failure``, the reason.
+            ``attrs``: "units", "varied_fields", "responses".
+
+        Raises
+        ------
+        RuntimeError
+            If pandas is not installed.
+        """
+        try:
+            pandas = importlib.import_module("pandas")
+        except ModuleNotFoundError:
+            raise RuntimeError("frames need pandas: pip install 'cuefem[pandas]'") from None
+        index = pandas.RangeIndex(self.count, name="design")
+        frame: pd.DataFrame = pandas.DataFrame({**self.designs, **self.responses}, index=index)
+        frame["failure"] = [self.columns.failures.get(design) for design in range(self.count)]
+        frame.attrs = {"units": self.units, "varied_fields": [*self.designs], "responses": [*self.responses]}
+        return frame
 
     @cached_property
     def spread(self) -> dict[str, dict[str, float]]:
@@ -139,7 +194,7 @@ class StudyResult:
 
     def __repr__(self) -> str:
         failed = f", {len(self.failures)} failed" if self.failures else ""
-        count = self.optimum.evaluations if self.optimum else len(self.rows)
+        count = self.optimum.evaluations if self.optimum else self.count
         title = f"StudyResult({self.kind} of {count} designs{failed})"
         return "\n  ".join([title, *(f"{name}: {value}, {at}" for name, value, at in self._lines())])
 
@@ -148,22 +203,25 @@ def compute_study(
     definition: Study | Scatter | Problem,
     *,
     store: Store | None = None,
-    workers: int | None = None,
+    workers: int | Executor | None = None,
     progress: Callable[[Any], object] = lambda step: None,
     rounds: int = 60,
 ) -> StudyResult:
     """Compute a study.
 
-    store: stored designs; by default none. workers: as in `sweep`. progress: called with the rows of each block, in an
-    optimization with each `Round`. rounds: of an optimization, which has neither store nor workers.
+    store: stored designs; by default none. workers: as in `sweep`. progress: as in `sweep`, in an
+    optimization called with each `Round`. rounds: of an optimization, which has neither store nor workers.
     """
     if isinstance(definition, Problem):
         best = optimum(definition, rounds=rounds, progress=progress)
-        row = Row(0, tuple(best.values.values()), tuple(best.responses.values()), None)
-        return StudyResult(definition, (row,), best)
-    designs = definition.sobol_study if isinstance(definition, Scatter) else definition
-    store = MemoryStore() if store is None else store
-    sweep(designs, store, workers=workers, progress=progress)
-    rows = tuple(store.rows())
-    drivers = sobol_indices_of(definition, rows) if isinstance(definition, Scatter) else None
-    return StudyResult(definition, rows, None, drivers)
+        return StudyResult(definition, Columns(np.array([[*best.responses.values()]]), {}), best)
+    columns = sweep(designs_of(definition), store, workers=workers, progress=progress)
+    indices = sobol_indices_of(definition, columns) if isinstance(definition, Scatter) else None
+    return StudyResult(definition, columns, None, indices)
+
+
+def designs_of(definition: Study | Scatter | Problem) -> Study:
+    """The study whose designs are computed."""
+    if isinstance(definition, Scatter):
+        return definition.sobol_study
+    return definition if isinstance(definition, Study) else definition.study

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cuefem.cue import Array
 from cuefem.design.evaluation import Response
@@ -28,7 +29,7 @@ class SweepStatistics:
     names: tuple[str, ...]
     units: tuple[str, ...]
     responses: tuple[Response, ...]
-    numbers: Array
+    numbers: NDArray[np.int_]
     values: tuple[np.ndarray, ...]
     results: Array
 
@@ -80,13 +81,12 @@ class SweepStatistics:
 
 def sweep_statistics(result: StudyResult) -> SweepStatistics | None:
     """The statistics of a sweep; None if fewer than two designs have all responses."""
-    complete = [row for row in result.rows if None not in row.responses]
+    complete = np.flatnonzero(~np.isnan(result.columns.values).any(axis=1))
     if len(complete) < 2:
         return None
-    columns = tuple(np.array(column) for column in zip(*(row.values for row in complete), strict=True))
+    columns = tuple(column[complete] for column in result.designs.values())
     names, units = (texts[: len(columns)] for texts in (result.study.columns, result.study.units))
-    numbers, results = np.array([row.design for row in complete]), np.array([row.responses for row in complete], float)
-    return SweepStatistics(names, units, result.study.responses, numbers, columns, results)
+    return SweepStatistics(names, units, result.study.responses, complete, columns, result.columns.values[complete])
 
 
 def explained_variance(column: np.ndarray, results: Array) -> Array:

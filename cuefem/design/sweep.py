@@ -1,30 +1,24 @@
-"""Computation of a study's designs, block by block, in this process or worker processes."""
+"""Computation of a study's designs, block by block: in this process, worker processes, or any executor."""
 
 from __future__ import annotations
 
-import os
-import signal
-import threading
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor
-from concurrent.futures import wait as wait_for
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import dataclass
 from functools import partial
-from itertools import chain, count, islice
-from multiprocessing import get_context, parent_process, resource_tracker
-from typing import NamedTuple, ParamSpec, Protocol, TypeVar
+from typing import NamedTuple, Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
+from cuefem.cue import Array
+from cuefem.design.blocks import BlockResult, Blocks, block_keys, compute_block, lost_block
+from cuefem.design.executors import in_parallel
 from cuefem.design.sampling import Value
 from cuefem.design.study import Study
+from cuefem.quantity.equality import equal_fields
 
-BLOCK = 16  # designs that are evaluated and stored at a time
-ATTEMPTS = 3  # at a pool that breaks without a result in between
-CHECK_INTERVAL = 1.0  # s, of waits: on Windows Ctrl-C does not interrupt a wait without a limit
-
-T = TypeVar("T")
-R = TypeVar("R")
-P = ParamSpec("P")
+ALONE = 2048  # designs whose keys this process makes faster than worker processes start
 
 
 class Row(NamedTuple):
@@ -36,146 +30,121 @@ class Row(NamedTuple):
     failure: str | None
 
 
+@dataclass(frozen=True)
+class Columns:
+    """The responses of all designs, (designs, responses) in SI, nan if missing, and reasons by the design's number."""
+
+    values: Array
+    failures: dict[int, str]
+
+    @classmethod
+    def of(cls, study: Study) -> Columns:
+        """Columns without a value."""
+        return cls(np.full((study.size, len(study.responses)), np.nan), {})
+
+    __eq__ = equal_fields
+
+    def row(self, design: int, values: tuple[Value, ...]) -> Row:
+        """A design as a row."""
+        numbers = tuple(None if x != x else x for x in self.values[design].tolist())
+        return Row(design, values, numbers, self.failures.get(design))
+
+    def add(self, numbers: list[int], values: Array, failures: dict[int, str]) -> None:
+        """Fill in designs by number; failures: by place in ``numbers``."""
+        self.values[numbers] = values
+        self.failures.update({numbers[i]: reason for i, reason in failures.items()})
+
+
+class Stored(NamedTuple):
+    """Stored designs of a block: their places in it, responses (places, responses), and failures by place in those."""
+
+    places: list[int]
+    values: Array
+    failures: dict[int, str]
+
+
 class Store(Protocol):
-    """Stored rows of a study."""
+    """Stored designs, of any number of studies."""
 
-    def missing(self, designs: dict[int, tuple[Value, ...]]) -> dict[int, tuple[Value, ...]]:
-        """The designs of a block, by number, that are not stored."""
+    @property
+    def is_empty(self) -> bool:
+        """Whether it holds no design."""
 
-    def write(self, rows: list[Row]) -> None:
-        """Store the rows of a task, all or none of them."""
+    def read(self, keys: bytes) -> Stored:
+        """The stored designs among those with these keys."""
 
-    def rows(self) -> Iterator[Row]:
-        """All rows in the order of the designs."""
-
-
-@dataclass
-class MemoryStore:
-    """A store in memory."""
-
-    results: list[Row] = field(default_factory=list)
-
-    def missing(self, designs: dict[int, tuple[Value, ...]]) -> dict[int, tuple[Value, ...]]:
-        """All designs."""
-        return designs
-
-    def write(self, rows: list[Row]) -> None:
-        """Store rows."""
-        self.results += rows
-
-    def rows(self) -> Iterator[Row]:
-        """All rows in the order of the designs."""
-        return iter(sorted(self.results, key=lambda row: row.design))
-
-
-def compute_rows(study: Study, designs: dict[int, tuple[Value, ...]]) -> list[Row]:
-    """The rows of designs, bit for bit independent of the other designs of the block."""
-    evaluation = study.evaluate([*designs.values()])
-    results = zip(designs.items(), evaluation.values.tolist(), evaluation.reasons, strict=True)
-    return [
-        Row(design, values, tuple(None if x != x else x for x in numbers), reason)
-        for (design, values), numbers, reason in results
-    ]
+    def write(self, result: BlockResult) -> None:
+        """Store a computed block, all or none of it."""
 
 
 def sweep(
     study: Study,
-    store: Store,
+    store: Store | None = None,
     *,
-    workers: int | None = None,
-    progress: Callable[[list[Row]], object] = lambda rows: None,
-) -> None:
+    workers: int | Executor | None = None,
+    progress: Callable[[int], object] = lambda count: None,
+) -> Columns:
     """Compute the designs of a study that are not stored, and store them, block by block.
 
     Parameters
     ----------
     study : Study
         The study.
-    store : Store
-        The store. Blocks are written in any order.
-    workers : int, optional
-        Number of worker processes that compute the blocks; by default this process does.
+    store : Store, optional
+        The store, by default none. Blocks are written in any order.
+    workers : int or Executor, optional
+        Number of worker processes, or the executor of a cluster, such as Dask's ``Client.get_executor()`` or MPI's
+        ``MPIPoolExecutor``, which the caller closes. By default this process computes.
     progress : callable, optional
-        Called with the rows of every block after they are stored.
+        Called with the number of designs that were added to the result: stored ones, then each computed block.
+
+    Returns
+    -------
+    Columns
+        The responses of all designs. They do not depend on the blocks or on where they are computed.
 
     Raises
     ------
     RuntimeError
-        If worker processes die repeatedly. Stored rows remain.
+        If worker processes die repeatedly, or an executor is lost. Stored designs remain.
+    ValueError
+        If a worker of an executor has no cuefem, or another version.
+
+    Notes
+    -----
+    If the store holds designs, the keys of all designs are made first, by the workers, and only designs that are not
+    stored are computed. Into an empty store the keys come with the responses.
     """
-    designs = enumerate(study.designs())
-    blocks = iter(lambda: dict(islice(designs, BLOCK)), {})
-    for rows in in_parallel(partial(compute_rows, study), filter(None, map(store.missing, blocks)), workers):
-        store.write(rows)
-        progress(rows)
+    columns, designs = Columns.of(study), enumerate(study.designs())
+    if store is not None and not store.is_empty:
+        missing = _without_stored(study, store, columns, workers, progress)
+        designs = ((i, values) for i, values in designs if missing[i])  # type: ignore[assignment]
+    blocks, work = Blocks(designs), partial(compute_block, study, store is not None)
+    for result in in_parallel(work, blocks, workers, partial(lost_block, study)):
+        if store is not None and not result.is_lost:
+            store.write(result)
+        assert result.values is not None
+        columns.add(result.block.numbers, result.values, result.failures)
+        blocks.adapt(result)
+        progress(len(result.block.numbers))
+    return columns
 
 
-def in_parallel(work: Callable[[T], R], tasks: Iterable[T], workers: int | None) -> Iterator[R]:
-    """The results of tasks as they end, with a bounded number of tasks submitted ahead."""
-    if workers is None:
-        yield from map(work, tasks)
-        return
-    queue, numbers, failures = iter(tasks), count(), 0
-    while failures < ATTEMPTS:
-        pending, running = dict[int, T](), dict[Future[R], int]()
-        try:
-            with process_pool(workers) as executor:
-                while True:
-                    for number, task in zip(numbers, islice(queue, 2 * workers + 1 - len(running)), strict=False):
-                        pending[number] = task
-                        running[executor.submit(work, task)] = number
-                    if not running:
-                        return
-                    for future in wait_for(running, timeout=CHECK_INTERVAL, return_when=FIRST_COMPLETED).done:
-                        result = future.result()
-                        del pending[running.pop(future)]
-                        failures = 0
-                        yield result
-        except BrokenExecutor:
-            queue, failures = chain(pending.values(), queue), failures + 1
-    raise RuntimeError(f"worker processes ended {ATTEMPTS} times without a result: out of memory, or killed")
-
-
-@contextmanager
-def process_pool(workers: int) -> Iterator[Executor]:
-    """A pool of worker processes, which end with this process, even if it is killed; tasks not begun are cancelled.
-
-    They are spawned: a fork would copy locks of the threads of this process.
-    """
-
-    executor = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_end_with_parent)
-    resource_tracker.ensure_running()  # starting it enables Ctrl-C again: not during `submit`
-    with _without_interrupts():  # inherited by workers: only this process handles Ctrl-C
-        for _ in range(workers):  # a submission starts a worker while none is idle
-            executor.submit(int)
-    try:
-        yield executor
-    finally:
-        # the pool's own thread cancels: a future cancelled here while a worker dies would break that thread
-        executor.shutdown(wait=True, cancel_futures=True)
-
-
-@contextmanager
-def _without_interrupts() -> Iterator[None]:
-    """Ignore Ctrl-C, in the main thread."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-
-
-def _end_with_parent() -> None:
-    """End this worker when its parent ends, and ignore Ctrl-C."""
-    parent = parent_process()
-    assert parent is not None
-
-    def exit_after_parent() -> None:
-        parent.join()
-        os._exit(1)
-
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=exit_after_parent, daemon=True).start()
+def _without_stored(
+    study: Study,
+    store: Store,
+    columns: Columns,
+    workers: int | Executor | None,
+    progress: Callable[[int], object],
+) -> NDArray[np.bool_]:
+    """Add the stored designs to the columns; (designs,), whether each must be computed."""
+    missing, blocks = np.ones(study.size, bool), Blocks(enumerate(study.designs()))
+    where = None if isinstance(workers, int) and study.size <= ALONE else workers
+    for result in in_parallel(partial(block_keys, study), blocks, where, partial(lost_block, study)):
+        stored = store.read(result.keys)
+        numbers = [result.block.numbers[place] for place in stored.places]
+        columns.add(numbers, stored.values, stored.failures)
+        missing[numbers] = False
+        blocks.adapt(result)
+        progress(len(numbers))
+    return missing

@@ -1,53 +1,46 @@
 """SQLite store of computed designs, keyed by content hash and shared by any number of studies.
 
 The key of a design is a hash of its scene, the resolution and the code, so that a study with changed ranges computes
-only new designs. A block of designs is one transaction: a killed process loses only its current block. Each row has a
-hash of its own, so that an altered file is rejected. The table is internal; export designs by the CSV of `cuefem study`
-or `cuefem.frames`.
+only new designs. A block of designs is one line and one transaction: a killed process loses only its current blocks.
+Each line has a hash of its own, so that an altered file is rejected. The table is internal; export designs by the CSV
+or Parquet of `cuefem study`, or `StudyResult.to_frame`.
 """
 
 from __future__ import annotations
 
 import csv
-import hashlib
+import importlib
 import json
 import sqlite3
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, closing, contextmanager
-from functools import cache
+from functools import lru_cache
+from itertools import islice
 from os import PathLike
 from pathlib import Path
 from typing import Any, Self
 
+import numpy as np
+
 from cuefem.design import Row, Study
-from cuefem.design.evaluation import Failed
-from cuefem.design.sampling import Value
+from cuefem.design.blocks import BlockResult
+from cuefem.design.design_key import KEY_BYTES, digest
+from cuefem.design.sweep import Stored
 from cuefem.io.errors import InputError, check_path
 from cuefem.quantity.display import full_repr
 
-APPLICATION_ID = 0x43754665  # SQLite's application_id in the header of the file
+APPLICATION_ID = 0x43754666  # SQLite's application_id in the header of the file
 LOCK_TIMEOUT = 60.0  # s, to wait for another study that writes to the file
 TABLES = f"""
 BEGIN;
 PRAGMA application_id = {APPLICATION_ID};
-CREATE TABLE designs (scene TEXT, responses TEXT, answers TEXT NOT NULL, failure TEXT, digest TEXT NOT NULL,
-  PRIMARY KEY (scene, responses)) WITHOUT ROWID;
+CREATE TABLE blocks (id INTEGER PRIMARY KEY, names TEXT NOT NULL, keys BLOB NOT NULL, answers BLOB NOT NULL,
+  failures TEXT NOT NULL, digest BLOB NOT NULL);
 COMMIT;
 """
-
-
-def digest(*parts: Any) -> str:
-    """Hash of texts and numbers, all bits included."""
-    return hashlib.blake2b(json.dumps(parts).encode("utf-8", "backslashreplace"), digest_size=16).hexdigest()
-
-
-@cache
-def code_digest() -> str:
-    """Hash of the package's sources and tables: another version computes designs again."""
-    every, content = Path(__file__).parents[1].rglob("*"), hashlib.blake2b(digest_size=16)
-    for path in sorted(path for path in every if path.suffix in (".py", ".c", ".h", ".toml", ".npz")):
-        content.update(path.read_bytes())
-    return content.hexdigest()
+KEY = np.dtype([("first", "<u8"), ("second", "<u8")])
+READ_BLOCKS = 64  # stored blocks in memory: designs in order are in few of them
+CHUNK = 4096  # designs that are exported at a time
 
 
 @contextmanager
@@ -56,10 +49,10 @@ def _opened(path: Path) -> Iterator[sqlite3.Connection]:
     check_path(path)
     try:
         with closing(sqlite3.connect(f"{path.resolve().as_uri()}?mode=rwc", timeout=LOCK_TIMEOUT, uri=True)) as file:
-            questions = ("SELECT count(*) FROM sqlite_master", "PRAGMA application_id", "PRAGMA integrity_check(1)")
+            questions = ("SELECT count(*) FROM sqlite_master", "PRAGMA application_id", "PRAGMA quick_check(1)")
             tables, mark, state = (file.execute(question).fetchone()[0] for question in questions)
             if tables and mark != APPLICATION_ID:
-                raise InputError(path, "", "must be a store of `cuefem study`; got another database")
+                raise InputError(path, "", "must be a store of `cuefem study`; got another database or an older store")
             if state != "ok":
                 raise sqlite3.DatabaseError(state)
             yield file
@@ -78,7 +71,8 @@ class SqliteStore:
         if " at 0x" in full_repr(study.base):  # a memory address, which does not identify its content
             raise InputError(path, "", "cannot store designs of a scene with a function")
         self.path, self.study, self.done, self.computed = Path(path), study, 0, 0
-        self._names, self._scenes = [response.name for response in study.responses], dict[int, str]()
+        self._names = [response.name for response in study.responses]
+        self._block = lru_cache(READ_BLOCKS)(self._read_block)
         self._open = ExitStack()
 
     def __enter__(self) -> Self:
@@ -86,57 +80,121 @@ class SqliteStore:
             self._file = opening.enter_context(_opened(self.path))
             if self._file.execute("SELECT count(*) FROM sqlite_master").fetchone() == (0,):
                 self._file.executescript(TABLES)
+            with self._reading():
+                self._index_keys()
             self._open = opening.pop_all()
         return self
 
     def __exit__(self, *error: Any) -> bool | None:
         return self._open.__exit__(*error)
 
-    def missing(self, designs: dict[int, tuple[Value, ...]]) -> dict[int, tuple[Value, ...]]:
-        """The designs of a block that must be computed."""
-        for design, values in designs.items():
-            try:
-                scene = full_repr(self.study.scene(values))
-            except Failed as error:
-                scene = f"invalid: {error}"
-            self._scenes[design] = digest(code_digest(), scene, repr(self.study.at))
-        left = {design: values for design, values in designs.items() if self._row(design, values) is None}
-        self.done += len(designs) - len(left)
-        return left
+    @contextmanager
+    def _reading(self) -> Iterator[None]:
+        """InputError for lines whose types or texts are damaged, which SQLite does not check."""
+        try:
+            yield
+        except (TypeError, ValueError, AttributeError):
+            raise InputError(self.path, "", "is damaged: a design was altered; delete the file") from None
 
-    def _row(self, design: int, values: tuple[Value, ...]) -> Row | None:
-        """The stored row of a design, of this or another study; None without one. InputError if it was altered."""
-        for line in self._file.execute("SELECT * FROM designs WHERE scene = ?", (self._scenes.get(design),)):
-            *written, stored_digest = line
-            if digest(*written) != stored_digest:
-                raise InputError(self.path, "", "is damaged: a design was altered; delete the file")
-            _, names, numbers, failure = written
-            answers = dict(zip(json.loads(names), json.loads(numbers), strict=True))
-            if [*answers] == self._names or (failure is None and {*self._names} <= {*answers}):
-                return Row(design, values, tuple(answers[name] for name in self._names), failure)
-        return None
+    def _index_keys(self) -> None:
+        """Sort the keys of all stored blocks that have the study's responses, with their blocks and places in those."""
+        ids, keys = list[int](), list[np.ndarray]()
+        for number, names, stored in self._file.execute("SELECT id, names, keys FROM blocks"):
+            if {*self._names} <= {*json.loads(names)}:
+                ids.append(number)
+                keys.append(np.frombuffer(stored[: len(stored) // KEY_BYTES * KEY_BYTES], KEY))
+        every, counts = np.concatenate([np.zeros(0, KEY), *keys]), [len(each) for each in keys]
+        order = np.argsort(every["first"], kind="stable")
+        self._keys = every[order]
+        self._blocks = np.repeat(np.array(ids, int), counts)[order]
+        places = np.concatenate([np.zeros(0, int), *(np.arange(n) for n in counts)])
+        self._places = places[order]
 
-    def write(self, rows: list[Row]) -> None:
-        """Store computed rows in one transaction."""
-        names = json.dumps(self._names)
-        lines = [(self._scenes[row.design], names, json.dumps(row.responses), row.failure) for row in rows]
+    @property
+    def is_empty(self) -> bool:
+        """Whether it held no design of such responses when it was opened."""
+        return not len(self._keys)
+
+    def read(self, keys: bytes) -> Stored:
+        """The stored designs among those with these keys, of this or another study; InputError if one was altered."""
+        asked = np.frombuffer(keys, KEY)
+        at = np.searchsorted(self._keys["first"], asked["first"], side="right") - 1  # the last one stored
+        found = np.flatnonzero((at >= 0) & (self._keys[at] == asked)) if len(self._keys) else np.zeros(0, int)
+        places, values, failures = list[int](), list[np.ndarray](), dict[int, str]()
+        for place in found.tolist():
+            names, answers, reasons = self._block(int(self._blocks[at[place]]))
+            inside = int(self._places[at[place]])
+            reason = reasons.get(str(inside))
+            if reason is not None and names != self._names:  # another response may have failed
+                continue
+            if reason is not None:
+                failures[len(places)] = reason
+            places.append(place)
+            values.append(answers[inside, [names.index(name) for name in self._names]])
+        self.done += len(places)
+        return Stored(places, np.reshape(values, (-1, len(self._names))), failures)
+
+    def _read_block(self, number: int) -> tuple[list[str], np.ndarray, dict[str, str]]:
+        """The names, answers and failures of a stored block; InputError if it was altered."""
+        line = "SELECT names, keys, answers, failures, digest FROM blocks WHERE id = ?"
+        with self._reading():
+            names, keys, answers, failures, stored_digest = self._file.execute(line, (number,)).fetchone()
+            if _line_digest(names, keys, answers, failures) != stored_digest:
+                raise ValueError("digest")
+        listed = json.loads(names)
+        return listed, np.frombuffer(answers, "<f8").reshape(-1, len(listed)), json.loads(failures)
+
+    def write(self, result: BlockResult) -> None:
+        """Store a computed block in one transaction."""
+        assert result.values is not None
+        names, failures = json.dumps(self._names), json.dumps(result.failures)
+        line = names, result.keys, result.values.astype("<f8").tobytes(), failures
         with self._file:
-            self._file.executemany(
-                "INSERT OR REPLACE INTO designs VALUES (?, ?, ?, ?, ?)", [(*line, digest(*line)) for line in lines]
+            self._file.execute(
+                "INSERT INTO blocks (names, keys, answers, failures, digest) VALUES (?, ?, ?, ?, ?)",
+                (*line, _line_digest(*line)),
             )
-        self.done += len(rows)
-        self.computed += len(rows)
+        self.done += len(result.values)
+        self.computed += len(result.values)
 
-    def rows(self) -> Iterator[Row]:
-        """The rows of the study in the order of the designs, so far as they were asked for."""
-        found = (self._row(design, values) for design, values in enumerate(self.study.designs()))
-        return (row for row in found if row)
+
+def _line_digest(names: str, keys: bytes, answers: bytes, failures: str) -> bytes:
+    return digest(names, bytes(keys).hex(), bytes(answers).hex(), failures)
+
+
+def _heads(study: Study) -> list[str]:
+    """The columns of an exported table, with SI units."""
+    pairs = zip(study.columns, study.units, strict=True)
+    return ["design", *(f"{name} [{unit}]" if unit else name for name, unit in pairs), "failure"]
 
 
 def write_table(study: Study, rows: Iterable[Row], path: Path) -> None:
     """Write a study's table as .csv, numbers with all digits, units in the header."""
-    pairs = zip(study.columns, study.units, strict=True)
-    head = ["design", *(f"{name} [{unit}]" if unit else name for name, unit in pairs), "failure"]
     with path.open("w", newline="", encoding="utf-8") as file:
-        lines = ((row.design, *row.values, *row.responses, row.failure) for row in rows)
-        csv.writer(file).writerows((head, *lines))
+        writer = csv.writer(file)
+        writer.writerow(_heads(study))
+        writer.writerows((row.design, *row.values, *row.responses, row.failure) for row in rows)
+
+
+def check_parquet() -> None:
+    """RuntimeError if pyarrow is not installed."""
+    try:
+        importlib.import_module("pyarrow.parquet")
+    except ModuleNotFoundError:
+        raise RuntimeError("a table in .parquet needs pyarrow: pip install 'cuefem[parquet]'") from None
+
+
+def write_parquet(study: Study, rows: Iterable[Row], path: Path) -> None:
+    """Write a study's table as .parquet, with the columns of the CSV, `CHUNK` designs at a time."""
+    check_parquet()
+    arrow = importlib.import_module("pyarrow")
+    parquet = importlib.import_module("pyarrow.parquet")
+    is_text = [isinstance(vary.range.ends[0], str) for vary in study.vary]
+    kinds = [arrow.int64(), *(arrow.string() if text else arrow.float64() for text in is_text)]
+    kinds += [*[arrow.float64()] * len(study.responses), arrow.string()]
+    schema, remaining = arrow.schema([*zip(_heads(study), kinds, strict=True)]), iter(rows)
+    with parquet.ParquetWriter(path, schema) as writer:
+        while chunk := [*islice(remaining, CHUNK)]:
+            lines = ((row.design, *row.values, *row.responses, row.failure) for row in chunk)
+            columns = [arrow.array(column, kind) for column, kind in zip(zip(*lines, strict=True), kinds, strict=True)]
+            writer.write_batch(arrow.record_batch(columns, schema=schema))

@@ -6,6 +6,7 @@ The handbook's chapter on studies lists every key.
 from __future__ import annotations
 
 import re
+from concurrent.futures import Executor
 from contextlib import nullcontext
 from dataclasses import dataclass, field
 from os import PathLike
@@ -151,7 +152,7 @@ def study(
     what: str | PathLike[str] | Study | Scatter | Problem,
     *,
     store: str | PathLike[str] | None = None,
-    workers: int | None = None,
+    workers: int | Executor | None = None,
 ) -> StudyResult:
     """Compute a study: a sweep over designs, a scatter with tolerances, or an optimum within limits.
 
@@ -161,22 +162,24 @@ def study(
         A study's file (.toml; see `cuefem guide study`), or the object that `load_study` makes of it.
     store : str or path, optional
         A file (.sqlite) for the designs, with which an interrupted or edited study resumes. Not for an optimum.
-    workers : int, optional
-        Number of worker processes; by default none.
+    workers : int or Executor, optional
+        Number of worker processes, by default none; or any `concurrent.futures.Executor`, such as a cluster's, which
+        the caller closes.
 
     Returns
     -------
     StudyResult
         ``designs`` and ``responses`` are arrays by name, in the SI ``units``; ``best`` has the best design by response,
-        ``spread`` mean, standard deviation and quantiles; ``optimum`` and ``drivers`` are for such studies only.
-        ``cf.frames.of_study`` converts it to a pandas frame.
+        ``spread`` mean, standard deviation and quantiles; ``optimum`` and ``sobol_indices`` are for such studies only.
+        ``to_frame()`` converts it to a pandas frame.
 
     Raises
     ------
     ValueError
-        If the file is not a study, a response does not exist, or no design is within the limits.
+        If the file is not a study, a response does not exist, no design is within the limits, or a worker has no or
+        another cuefem.
     RuntimeError
-        If worker processes die repeatedly.
+        If worker processes die repeatedly, or the executor is lost.
 
     Examples
     --------

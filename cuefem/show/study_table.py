@@ -125,7 +125,7 @@ def study_record(result: StudyResult) -> Record:
         about = {"count": result.definition.count, "seed": result.definition.seed}
         return about | {"responses": scatter_record(result, result.sobol_indices)}
     sweep, failed = sweep_statistics(result), [*result.failures.values()]
-    counts = {"designs": len(result.rows), "failed": len(failed), "first_failure": failed[0] if failed else None}
+    counts = {"designs": result.count, "failed": len(failed), "first_failure": failed[0] if failed else None}
     return counts | {"summary": sweep and sweep_record(sweep)}
 
 
@@ -136,13 +136,14 @@ def tabulate_study(result: StudyResult) -> list[Table | str]:
         return [varies, *tabulate_optimum(result.definition, result.optimum)]
     if isinstance(result.definition, Scatter) and result.sobol_indices:
         return [varies, *tabulate_scatter(result, result.definition, result.sobol_indices)]
-    sweep, failures = sweep_statistics(result), [row for row in result.rows if row.failure]
+    sweep, failures = sweep_statistics(result), result.failures
     lines = list[str]()
-    for row in failures[:1]:
-        levels = [replace(vary, range=Levels((x,))) for vary, x in zip(result.study.vary, row.values, strict=True)]
-        values = map(range_text, levels, result.study.units)
-        design = ", ".join(f"{column_label(vary.name)} {x}" for vary, x in zip(levels, values, strict=True))
-        lines = [f"{len(failures)} failed, the first of them design {row.design} ({design}): {row.failure}"]
+    for number, failure in [*failures.items()][:1]:
+        values = [column[number].item() for column in result.designs.values()]
+        levels = [replace(vary, range=Levels((x,))) for vary, x in zip(result.study.vary, values, strict=True)]
+        texts = map(range_text, levels, result.study.units)
+        design = ", ".join(f"{column_label(vary.name)} {x}" for vary, x in zip(levels, texts, strict=True))
+        lines = [f"{len(failures)} failed, the first of them design {number} ({design}): {failure}"]
     return [*lines, varies, *([] if sweep is None else tabulate_sweep(sweep))]
 
 

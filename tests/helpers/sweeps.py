@@ -60,6 +60,23 @@ OPTIMUM += '[[limit]]\nresponse = "tip_stiffness"\nlow = "300 N/m"\n'
 OPTIMUM += vary('"cue.segments[0].tip_bore"', 'name = "bore"', 'low = "1 mm"', 'high = "9 mm"')
 OPTIMUM += vary('"cue.segments[0].tip_diameter"', 'name = "tip"', 'low = "10 mm"', 'high = "13 mm"')
 
+# Two bare responses on a coarse mesh.
+GRID = """
+scene = "scene.toml"
+responses = ["end_mass", "mass"]
+[resolution]
+elements = 1
+order = 8
+modes = 4
+[[vary]]
+name = "bore"
+path = "cue.segments[0].tip_bore"
+values = ["0 mm", "1 mm", "2 mm", "3 mm"]
+[[vary]]
+path = "cue.segments[0].tip_diameter"
+values = ["12 mm", "12.5 mm"]
+"""
+
 
 def write_study(folder: Path, study: str = STUDY, scene: str = SCENE, name: str = "study.toml") -> Path:
     """Write a study and its scene; the path of the study."""
@@ -71,14 +88,14 @@ def write_study(folder: Path, study: str = STUDY, scene: str = SCENE, name: str 
 def computed_rows(study: Path, output: Path, **options: Any) -> list[tuple[Any, ...]]:
     """Compute a study into a store; its rows as stored."""
     with SqliteStore(output, load_study(study)) as store:
-        compute_study(store.study, store=store, **options)
-        return [(row.design, *row.values, *row.responses, row.failure) for row in store.rows()]
+        result = compute_study(store.study, store=store, **options)
+        return [(row.design, *row.values, *row.responses, row.failure) for row in result.rows]
 
 
 def stored_count(path: Path) -> int:
     """The number of stored designs."""
     with closing(sqlite3.connect(path)) as file:
-        return int(file.execute("SELECT count(*) FROM designs").fetchone()[0])
+        return int(file.execute("SELECT coalesce(sum(length(keys)), 0) / 16 FROM blocks").fetchone()[0])
 
 
 def alter_store(path: Path, command: str, *values: object) -> None:

@@ -84,7 +84,7 @@ def test_study_command_prints_summary_and_writes_page(tmp_path: Path) -> None:
 
 def test_study_result_has_designs_responses_units_best_and_spread(tmp_path: Path) -> None:
     result = cf.study(write_study(tmp_path), store=tmp_path / "some.sqlite")
-    assert (result.kind, len(result.rows), len(result.failures)) == ("sweep", 64, 16)
+    assert (result.kind, result.count, len(result.failures)) == ("sweep", 64, 16)
     units = ["m", "s", "", "kg", "N/m", "Hz"]
     assert result.units == dict(zip((*result.designs, *result.responses), units, strict=True))
     assert (result.designs["bore"].shape, result.responses["end_mass"].shape) == ((64,), (64,))
@@ -95,7 +95,7 @@ def test_study_result_has_designs_responses_units_best_and_spread(tmp_path: Path
     assert result.spread["end_mass"]["5 %"] < result.spread["end_mass"]["mean"] < result.spread["end_mass"]["95 %"]
     assert repr(result).splitlines()[0] == "StudyResult(sweep of 64 designs, 16 failed)"
     again = cf.study(tmp_path / "study.toml", store=tmp_path / "some.sqlite", workers=1)  # all designs are stored
-    assert again.rows == result.rows
+    assert again.columns == result.columns
 
 
 LABELS = {

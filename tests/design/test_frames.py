@@ -15,7 +15,7 @@ STUDY += vary('"cue.segments[0].material"', 'name = "wood"', 'values = ["hard ma
 
 
 def test_frame_has_designs_units_and_responses(tmp_path: Path) -> None:
-    frame = cf.frames.of_study(cf.study(write_study(tmp_path, STUDY), store=tmp_path / "study.sqlite"))
+    frame = cf.study(write_study(tmp_path, STUDY), store=tmp_path / "study.sqlite").to_frame()
     assert list(frame.columns) == ["tip", "wood", "end_mass", "mass", "failure"]
     assert frame.attrs["units"] == {"tip": "m", "wood": "", "end_mass": "kg", "mass": "kg"}
     assert (len(frame), frame.index.name, frame["failure"].notna().sum()) == (6, "design", 0)
