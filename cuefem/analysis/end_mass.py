@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from cuefem.analysis.base import Analysis
+from cuefem.analysis.reduction import Reduction, reduction
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.results.closed_forms import cue_end_mass
 from cuefem.results.quantities import with_unit
@@ -12,6 +13,7 @@ from cuefem.results.records import Record, Table, tabulate
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
+from cuefem.show.charts import Chart
 from cuefem.show.scene_summary import assumptions, listed, scene_record, tip_effect_notes
 
 SQUIRT_END_MASS = "squirt-equivalent end mass"  # the one that pages and tables for people show
@@ -53,14 +55,14 @@ class EndMasses(Analysis):
         Offset b/R of the stroke.
     definitions : dict of str to EndMass
         The end mass by the name of its definition.
-    shows_paper : bool
-        Whether the table also shows m_c and eps.
+    reduction : Reduction or None
+        The reduction to Kim's two-part cue, if it was asked for.
     """
 
     contact_time: float
     offset: float
     definitions: dict[str, EndMass]
-    shows_paper: bool = field(default=False, repr=False)
+    reduction: Reduction | None = field(default=None, repr=False)
 
     def values(self) -> Record:
         """The numbers in SI units; "reason" only where there is no value."""
@@ -68,26 +70,28 @@ class EndMasses(Analysis):
         for row in record["definitions"].values():
             if not row["reason"]:
                 del row["reason"]
-        return record
+        return record if self.reduction is None else record | {"reduction": self.reduction.values()}
 
     def tables(self) -> list[Table | str]:
-        """A table with a row for each definition."""
-        return [self.table()]
+        """A table with a row for each definition, and those of the reduction."""
+        return [self.table(), *([] if self.reduction is None else self.reduction.tables())]
+
+    def charts(self) -> list[Chart]:
+        """The charts of the reduction."""
+        return [] if self.reduction is None else self.reduction.charts()
 
     def table(self) -> Table:
         """A row for each definition."""
         about = scene_record(self.scene)
-        paper = {"m_c": "cue_end_mass", "eps": "{eps:.4f}"} if self.shows_paper else {}
         rows = [{"name": name, **vars(mass)} for name, mass in self.definitions.items()]
         return tabulate(
             "Effective end mass",
-            {"definition": lambda row: self._label(row["name"]), "m_e": "end_mass", **paper},
+            {"definition": lambda row: self._label(row["name"]), "m_e": "end_mass"},
             rows,
             assumptions(about),
             *(f"{row['name']}: {row['reason']}" for row in rows if row["reason"]),
             "m_e: effective end mass, the transverse inertia of the cue at its tip; `report` and `compare` use squirt; "
             "lumped models: offset without tip effects; published end masses and pooltool: [A.31]",
-            *([PAPER_NOTE] if self.shows_paper else []),
             *tip_effect_notes(about, _tip_effects_note()),
         )
 
@@ -95,9 +99,6 @@ class EndMasses(Analysis):
         """The name of a definition, and its label where that says more."""
         label = DEFINITIONS[name].label_at(self.offset)
         return name if label == name else f"{name} ({label})"
-
-
-PAPER_NOTE = "m_c = 4 m_e: end mass of the two-part cue in Kim's paper (nu_c 1/3); eps: m_c over the mass of the ball"
 
 
 def _tip_effects_note() -> str:
@@ -111,15 +112,15 @@ def _tip_effects_note() -> str:
     )
 
 
-def end_masses(scene: Scene | SolvedDesign, *, paper: bool = False) -> EndMasses:
+def end_masses(scene: Scene | SolvedDesign, *, with_reduction: bool = False) -> EndMasses:
     """Effective end mass of a scene's cue, by each definition.
 
     Parameters
     ----------
     scene : Scene or SolvedDesign
         A stroke, or a solved one. Definitions of an off-centre stroke use its offset.
-    paper : bool
-        Whether the table also shows m_c and eps of Kim's paper.
+    with_reduction : bool
+        Whether the result also has the `cuefem.reduction` to the two-part cue of Kim's paper.
 
     Returns
     -------
@@ -143,7 +144,8 @@ def end_masses(scene: Scene | SolvedDesign, *, paper: bool = False) -> EndMasses
     design = SolvedDesign.of(scene)
     scene = design.scene
     masses = {name: _end_mass(design.solved, name) for name in DEFINITIONS}
-    return EndMasses(scene, scene.contact_time, scene.stroke.offset, masses, shows_paper=paper)
+    reduced = reduction(design) if with_reduction else None
+    return EndMasses(scene, scene.contact_time, scene.stroke.offset, masses, reduced)
 
 
 def _end_mass(solved: SolvedScene, name: str) -> EndMass:

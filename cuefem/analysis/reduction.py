@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from itertools import starmap
 from typing import ClassVar
 
 import numpy as np
 
+from cuefem.analysis.base import Analysis
 from cuefem.beam.mode_count import modes_below
 from cuefem.beam.modes import modes
 from cuefem.contact.impulse_solver import impact, impulse_inputs
@@ -25,7 +26,6 @@ from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.scene import Scene, Stroke
 from cuefem.scene.scene import DEFAULT_CONTACT_TIME
-from cuefem.scene.solved_scene import SolvedScene
 from cuefem.show.charts import Axis, Chart, Curve, Tick, chart
 from cuefem.show.scene_summary import assumptions, scene_record, tip_effect_notes
 
@@ -47,7 +47,7 @@ SMALL_OFFSETS, VIBRATING, LUMPED = "this shaft, small offsets", "this shaft, vib
 
 
 @dataclass(frozen=True)
-class Reduction:
+class Reduction(Analysis):
     """A cue reduced to the two-part cue of Kim's paper, and the squirt of both.
 
     Parameters
@@ -89,7 +89,6 @@ class Reduction:
     chart_times: ClassVar = CHART_TIMES
     marked_times: ClassVar = (FILMED_CONTACT_TIME, DEFAULT_CONTACT_TIME)
 
-    scene: Scene
     frequencies: list[float]
     near: float
     nearest: dict[str, Record]
@@ -104,10 +103,6 @@ class Reduction:
     end_mass_by_contact_time: list[Record]
     design: SolvedDesign = field(repr=False, compare=False)
     cues: dict[str, LumpedCue | None] = field(repr=False, compare=False)
-
-    def values(self) -> Record:
-        """The numbers alone, in SI units."""
-        return {each.name: getattr(self, each.name) for each in fields(self) if each.repr and each.name != "scene"}
 
     def tables(self) -> list[Table | str]:
         """The steps from the drawing, and a row for each end mass with its squirt."""
@@ -132,7 +127,7 @@ class Reduction:
 
 
 def reduction(
-    scene: Scene,
+    scene: Scene | SolvedDesign,
     *,
     near: float = PAPER_TONE,
     cue_ends: Mapping[str, float] | None = None,
@@ -142,8 +137,8 @@ def reduction(
 
     Parameters
     ----------
-    scene : Scene
-        Cue, ball, tip and stroke. The impact lasts the scene's contact time; Kim's paper states 2 ms.
+    scene : Scene or SolvedDesign
+        Cue, ball, tip and stroke, or a solved one. The impact lasts the scene's contact time; Kim's paper states 2 ms.
     near : float
         A frequency, Hz, such as that of a tap: the mode nearest to it is listed.
     cue_ends : dict of str to float, optional
@@ -180,7 +175,8 @@ def reduction(
     """
     near = Quantity("Hz", "(0, inf)").check("reduction near", near)
     offsets = [Stroke(offset=offset).offset for offset in offsets]
-    design = SolvedDesign(SolvedScene(scene))
+    design = SolvedDesign.of(scene)
+    scene = design.scene
     front = RigidFront.of(scene.cue) if isinstance(scene.cue, Cue) else None
     if cue_ends is None:
         cue_ends = PAPER_CUE_ENDS if front else {}

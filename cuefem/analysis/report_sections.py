@@ -12,6 +12,7 @@ from cuefem.analysis.contact_history import ContactHistory
 from cuefem.analysis.design_changes import design_changes
 from cuefem.analysis.end_mass import SQUIRT_END_MASS, end_masses
 from cuefem.analysis.natural_frequencies import natural_frequencies
+from cuefem.analysis.reduction import reduction
 from cuefem.analysis.squirt_curve import FINE_OFFSETS, squirt_curve
 from cuefem.analysis.strike_models import regime_warning, strike_models
 from cuefem.analysis.tip_impacts import tip_impacts
@@ -185,6 +186,7 @@ def _has_leather(scene: Scene) -> bool:
 
 SECTIONS = (
     Section("verdict", "Squirt", verdict),
+    Section("reduction", "From the drawing to squirt", reduction),
     Section("advice", "Design changes", design_changes, page_only=True, needs=_has_segments),
     Section("squirt", "Squirt and tip offset", squirt_curve),
     Section("modes", "Natural frequencies", natural_frequencies, needs=_has_segments),
@@ -288,7 +290,7 @@ def report(
     >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
     >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43))
     >>> list(cf.report(scene).sections)
-    ['verdict', 'squirt', 'modes', 'numbers', 'end_masses', 'tip']
+    ['verdict', 'reduction', 'squirt', 'modes', 'numbers', 'end_masses', 'tip']
     """
     found: dict[str, Analysis] = {}
     lacking = ""

@@ -1,9 +1,11 @@
 """The chain from the drawing to squirt on [Kim]'s cone, its limits, and invalid input (verification)."""
 
+import json
 import math
 import re
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -11,8 +13,10 @@ import pytest
 import cuefem as cf
 from cuefem.analysis.reduction import SMALL_OFFSETS, VIBRATING
 from cuefem.endmass.rigid_front import RigidFront
+from cuefem.show.renderers import json_text
 from studies.pages import STUDIES
 from studies.paper.closed_forms import cone_end_mass, inertia_factor, squirt_slope
+from tests.helpers.command_line import call
 from tests.helpers.cues import rod
 
 KIM: Any = cf.load(STUDIES / "scenes" / "kim.toml")
@@ -148,3 +152,23 @@ def test_leather_states_that_its_end_mass_is_for_the_impulse_solver() -> None:
 def test_invalid_input_names_item_bound_and_value(options: Any, message: str) -> None:
     with pytest.raises(ValueError, match=re.escape(message)):
         cf.reduction(KIM, **options)
+
+
+def test_commands_state_the_numbers_of_the_call() -> None:
+    expected = json.loads(json_text(cf.reduction(KIM).values()))
+    for command in ("end-mass", "report"):
+        status, out, _ = call(command, "--json", STUDIES / "scenes" / "kim.toml")
+        assert status == 0
+        assert json.loads(out)["reduction"] == expected
+        shown = call(command, STUDIES / "scenes" / "kim.toml")[1].splitlines()
+        (row,) = (line.split() for line in shown if line.strip().startswith("this shaft, vibrating"))
+        assert row[-3:] == ["0.59°", "1.62°", "2.42°"]
+
+
+def test_analysis_prints_and_saves_itself(tmp_path: Path) -> None:
+    own = cf.reduction(KIM)
+    assert "this shaft, vibrating" in str(own)
+    own.save(tmp_path / "own.json")
+    own.save(tmp_path / "own.html")
+    assert json.loads((tmp_path / "own.json").read_text("utf-8"))["models"]["Kim's guess"]["end_mass"] == 0.003
+    assert "Effective end mass" in (tmp_path / "own.html").read_text("utf-8")
