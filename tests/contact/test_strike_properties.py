@@ -48,7 +48,7 @@ def size(low: float, high: float) -> st.SearchStrategy[float]:
 
 
 ON_CUE = st.one_of(
-    st.builds(cf.PointMass, POSITIONS, size(1e-5, 0.1), size(1e-9, 1e-3)),
+    st.builds(cf.PointMass, position=POSITIONS, mass=size(1e-5, 0.1), rotary_inertia=size(1e-9, 1e-3)),
     st.builds(cf.Support, POSITIONS, size(1.0, 1e7), size(0.01, 1e3), size(0.1, 100.0)),
     st.just(cf.Support(KIM.length, inf, inf)),
     st.builds(cf.Joint, POSITIONS, size(1e-6, 1e2), size(1e-11, 1e-3)),
