@@ -24,6 +24,7 @@ HOMES = {
     "matplotlib": {"show", "plot"},
     "pandas": {"design"},
     "pyarrow": {"io"},
+    "distributed": {"cli"},
     "pint": set(),
     "pydantic": set(),
     "pydantic_core": set(),

@@ -53,7 +53,13 @@ command = partial(click.command, cls=Command)
 json_option = shared_option("Output", "--json", "as_json", is_flag=True, help="Print JSON (SI units).")
 
 # The formats of -o by extension, as its help names them.
-FORMATS = {".html": ".html (page)", ".csv": ".csv (table)", ".json": ".json", ".toml": ".toml (drawing or scene)"}
+FORMATS = {
+    ".html": ".html (page)",
+    ".csv": ".csv (table)",
+    ".parquet": ".parquet (table, needs pyarrow)",
+    ".json": ".json",
+    ".toml": ".toml (drawing or scene)",
+}
 
 
 class Output(click.Path):

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Executor
+from contextlib import nullcontext
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
 import click
 
+from cuefem.cli.cluster import dask_executor
 from cuefem.cli.output import assumption_lines, command, json_option, output_option, print_result, write_result
-from cuefem.cli.progress import progress_bar
+from cuefem.cli.progress import ProgressLines, progress_bar
 from cuefem.cli.scene_command import check_overwrite, errors_name_file, force_option, print_warnings
 from cuefem.design import Study
 from cuefem.design.optimum import Problem, Round
 from cuefem.design.scatter import Scatter
 from cuefem.design.study_result import StudyResult, compute_study
 from cuefem.io import InputError, save, write_atomically
-from cuefem.io.store import SqliteStore, write_table
+from cuefem.io.store import SqliteStore, check_parquet, write_parquet, write_table
 from cuefem.io.study_files import base_assumptions, load_study
 from cuefem.parameters.parameter import value_at, with_values_at
 from cuefem.results.quantities import with_unit
@@ -32,6 +35,7 @@ from cuefem.show.study_table import study_record, tabulate_study, varied_segment
 @click.option(
     "--workers", type=click.IntRange(min=1), help="Number of worker processes (default: none, all in this one)."
 )
+@click.option("--scheduler", metavar="ADDRESS", help='Dask scheduler whose workers compute, such as "tcp://host:8786".')
 @click.option(
     "--iterations",
     type=click.IntRange(min=1),
@@ -39,7 +43,7 @@ from cuefem.show.study_table import study_record, tabulate_study, varied_segment
     show_default=True,
     help="Largest number of rounds of an optimum.",
 )
-@output_option(".html", ".csv", ".json", ".toml", many=True)
+@output_option(".html", ".csv", ".parquet", ".json", ".toml", many=True)
 @force_option
 @json_option
 def study(
@@ -50,6 +54,7 @@ def study(
     iterations: int,
     store: Path | None,
     workers: int | None,
+    scheduler: str | None,
 ) -> None:
     """Compute the designs of STUDY (.toml), which lists parameters and responses (`cuefem guide study` has the format).
 
@@ -58,21 +63,29 @@ def study(
     the best designs, the main parameter of each response, and the trade-offs.
 
     Sweeps and tolerance analyses store their designs in a SQLite file. An interrupted run resumes with the same
-    command; an edited study computes only its new designs. -o FILE.toml writes the best design (of a sweep: by its
-    first response).
+    command; an edited study computes only its new designs. --workers computes in processes of this machine, --scheduler
+    on a Dask cluster. -o FILE.toml writes the best design (of a sweep: by its first response).
     """
     plan = load_study(file)
     designs = plan if isinstance(plan, Study) else plan.sobol_study if isinstance(plan, Scatter) else plan.study
     notes = base_assumptions(file, designs.base)
-    if isinstance(plan, Problem) and (store or workers):
-        raise click.UsageError("--store and --workers do not apply to an optimum, which runs in one process")
+    if isinstance(plan, Problem) and (store or workers or scheduler):
+        raise click.UsageError(
+            "--store, --workers and --scheduler do not apply to an optimum, which runs in one process"
+        )
+    if workers and scheduler:
+        raise click.UsageError("--workers (of this machine) and --scheduler (of a cluster) cannot be combined")
     for path in output:
         if path.suffix == ".toml":
             if isinstance(plan, Scatter):
                 raise InputError(
-                    path, "--output", "must end in .html, .csv or .json: a tolerance analysis has no best design"
+                    path,
+                    "--output",
+                    "must end in .html, .csv, .parquet or .json: a tolerance analysis has no best design",
                 )
             check_overwrite(path, force=force)
+        if path.suffix == ".parquet":
+            check_parquet()
     print_warnings(designs.base)
     database = None
     if isinstance(plan, Problem):
@@ -85,7 +98,8 @@ def study(
             result = compute_study(plan, rounds=iterations, progress=show_round)
     else:
         database = SqliteStore(store or file.with_suffix(".sqlite"), designs)
-        result = _run_stored(file, plan, database, workers)
+        with dask_executor(scheduler) if scheduler else nullcontext(workers) as where:
+            result = _run_stored(file, plan, database, where)
     record: dict[str, Any] = {"file": str(file), "assumptions": notes, "resolution": designs.at and vars(designs.at)}
     record |= {"kind": result.kind, "varied_fields": varied_segments(designs.vary, designs.base), "units": result.units}
     stored = []
@@ -102,17 +116,22 @@ def study(
     print_result(as_json, record, [title, *stored, *tables, *(f"wrote {path}" for path in output)])
 
 
-def _run_stored(file: Path, plan: Study | Scatter, designs: SqliteStore, workers: int | None) -> StudyResult:
+def _run_stored(file: Path, plan: Study | Scatter, designs: SqliteStore, workers: int | Executor | None) -> StudyResult:
     """The result of a sweep or a scatter; an interrupted one prints which designs are stored."""
     with progress_bar() as bar, designs:
-        task = bar.add_task("designs", total=designs.study.size)
+        task, lines = bar.add_task("designs", total=designs.study.size), ProgressLines(designs.study.size)
+
+        def show(count: int) -> None:
+            bar.update(task, advance=count)
+            lines.add(count)
+
         try:
             with errors_name_file(file):
                 return compute_study(
                     plan,
                     store=designs,
                     workers=workers,
-                    progress=lambda count: bar.update(task, advance=count),
+                    progress=show,
                 )
         except (KeyboardInterrupt, RuntimeError) as error:
             bar.stop()
@@ -125,8 +144,10 @@ def _run_stored(file: Path, plan: Study | Scatter, designs: SqliteStore, workers
 
 def _write(path: Path, result: StudyResult, record: Any, tables: list[Any], title: str) -> None:
     """Write the tables as a page, the record, the designs as a table, or the best design."""
-    if path.suffix == ".csv":
-        write_atomically(path, lambda temporary: write_table(result.study, result.rows, temporary))
+    tables_of_designs = {".csv": write_table, ".parquet": write_parquet}
+    if path.suffix in tables_of_designs:
+        write = tables_of_designs[path.suffix]
+        write_atomically(path, lambda temporary: write(result.study, result.rows, temporary))
     elif path.suffix != ".toml":
         write_result(path, record, tables, title)
     elif not result.best:

@@ -26,7 +26,8 @@ AHEAD = 256  # blocks submitted to an executor whose number of workers is unknow
 ATTEMPTS = 3  # number of workers that a design ends before it fails
 MAX_LOST = 16  # designs in a row that end their workers: there is another reason than a design
 CHECK_INTERVAL = 1.0  # s, of waits: on Windows Ctrl-C does not interrupt a wait without a limit
-KILLED = "KilledWorker"  # of `distributed`, which need not be installed: a task ended several workers
+# Exceptions of `distributed`, which need not be installed: a task ended several workers; the scheduler was lost.
+KILLED, CLOSED = "KilledWorker", "ClosedClientError"
 SAME_VERSION = "install the same version of cuefem on every worker"
 
 Work = Callable[[Block], BlockResult]
@@ -156,7 +157,11 @@ def _on_executor(work: Work, blocks: Iterable[Block], executor: Executor, lost: 
         raise RuntimeError(f"the workers were lost: {one_line(str(error)) or type(error).__name__}") from error
     except _OtherVersion:
         raise
-    except (ImportError, AttributeError, TypeError) as error:
+    except Exception as error:
+        if type(error).__name__ == CLOSED:
+            raise RuntimeError("the scheduler was lost") from error
+        if not isinstance(error, ImportError | AttributeError | TypeError):
+            raise
         raise ValueError(f"a worker cannot run cuefem: {one_line(str(error))}; {SAME_VERSION}") from error
 
 

@@ -162,7 +162,7 @@ def test_study_of_drawing_or_scene_raises(tmp_path: Path, name: str, text: str, 
 FOLDERS: list[tuple[bytes, list[str], str]] = [
     (b"design,end_mass\n" * 100, [], "cannot be read or written as a database: file is not a database"),
     (b"", ["--store", "none/out.sqlite"], "unable to open database file"),
-    (b"", ["-o", "out.xlsx"], "must end in .html or .csv or .json or .toml; got '.xlsx'"),
+    (b"", ["-o", "out.xlsx"], "must end in .html or .csv or .parquet or .json or .toml; got '.xlsx'"),
     (b"", ["-o", "out.sqlite"], "--store names the file of stored designs"),
     (b"", ["-o", "nowhere/out.csv"], "No such file or directory"),
 ]

@@ -5,9 +5,6 @@ import json
 import os
 import random
 import signal
-import sqlite3
-import subprocess
-import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -18,50 +15,25 @@ import pytest
 from cuefem.design import evaluate
 from cuefem.io import InputError
 from cuefem.io.study_files import load_study
-from tests.helpers.command_line import stdout_of
+from tests.helpers.command_line import call, stdout_of
 from tests.helpers.invalid_input import assert_unchanged
-from tests.helpers.sweeps import GRID, SCENE, STRIKES, STUDY, alter_store, computed_rows, stored_count, write_study
-
-ROOT = str(Path(__file__).parents[2])
-ENVIRONMENT = os.environ | {"PYTHONPATH": ROOT}
+from tests.helpers.sweeps import (
+    GRID,
+    SCENE,
+    STRIKES,
+    STUDY,
+    alter_store,
+    computed_rows,
+    start_study,
+    stored_count,
+    wait_for_rows,
+    write_study,
+)
 
 
 def record_of(study: Path, *options: object) -> dict[str, Any]:
     """The record of `study --json`."""
     return dict(json.loads(stdout_of("study", study, "--json", *options)))
-
-
-def command(study: Path, *more: str) -> list[str]:
-    return [sys.executable, "-m", "cuefem", "study", str(study), *more]
-
-
-def start_study(study: Path, *more: str) -> subprocess.Popen[bytes]:
-    quiet = subprocess.PIPE
-    return subprocess.Popen(
-        command(study, *more),
-        env=ENVIRONMENT,
-        stdout=quiet,
-        stderr=quiet,
-        start_new_session=True,
-        preexec_fn=interruptible,
-    )
-
-
-def interruptible() -> None:
-    """Enable Ctrl-C, which shells disable in background processes."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-
-
-def wait_for_rows(store: Path, run: subprocess.Popen[bytes], rows: int) -> int:
-    """Wait until ``rows`` rows are stored or the study has ended; the number of stored rows."""
-    begun, count = time.monotonic(), 0
-    while run.poll() is None and count < rows and time.monotonic() - begun < 60:
-        time.sleep(0.02)
-        try:
-            count = stored_count(store) if store.exists() else 0
-        except sqlite3.OperationalError:  # it is being created
-            count = 0
-    return count
 
 
 # --- kill -9, Ctrl-C, edits ------------------------------------------------------------------------------------------
@@ -203,3 +175,25 @@ def test_store_altered_raises_and_is_unchanged(tmp_path: Path, statement: str, m
     computed_rows(study, store)
     alter_store(store, statement)
     assert_unchanged(tmp_path, message, "study", study)
+
+
+def test_parquet_has_the_table_of_the_csv(tmp_path: Path) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet")
+    study = write_study(tmp_path)
+    stdout_of("study", study, "-o", tmp_path / "out.csv", "-o", tmp_path / "out.parquet")
+    with (tmp_path / "out.csv").open(newline="", encoding="utf-8") as file:
+        head, *lines = csv.reader(file)
+    table = parquet.read_table(tmp_path / "out.parquet")
+    assert table.column_names == head
+    texts = [
+        ["" if x is None else x if isinstance(x, str) else repr(x) for x in row.values()] for row in table.to_pylist()
+    ]
+    assert texts == lines
+
+
+def test_long_study_prints_a_line_every_tenth(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cuefem.cli.progress.FIRST_LINE", 0.0)
+    _, _, err = call("study", write_study(tmp_path))  # 64 designs, blocks of 16
+    assert [line.partition(" after ")[0] for line in err.splitlines()] == [
+        f"cuefem: {share} % of 64 designs" for share in (20, 50, 70, 100)
+    ]

@@ -1,6 +1,11 @@
 """Small studies; no tests."""
 
+import os
+import signal
 import sqlite3
+import subprocess
+import sys
+import time
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -9,6 +14,7 @@ from cuefem.design.study_result import compute_study
 from cuefem.io.store import SqliteStore
 from cuefem.io.study_files import load_study
 
+ENVIRONMENT = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])}
 SCENE = """
 game = "kim"
 [cue]
@@ -103,3 +109,36 @@ def alter_store(path: Path, command: str, *values: object) -> None:
     with sqlite3.connect(path) as file:
         file.execute(command, values)
     file.close()
+
+
+def command(study: Path, *more: str) -> list[str]:
+    return [sys.executable, "-m", "cuefem", "study", str(study), *more]
+
+
+def start_study(study: Path, *more: str) -> subprocess.Popen[bytes]:
+    quiet = subprocess.PIPE
+    return subprocess.Popen(
+        command(study, *more),
+        env=ENVIRONMENT,
+        stdout=quiet,
+        stderr=quiet,
+        start_new_session=True,
+        preexec_fn=interruptible,
+    )
+
+
+def interruptible() -> None:
+    """Enable Ctrl-C, which shells disable in background processes."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def wait_for_rows(store: Path, run: subprocess.Popen[bytes], rows: int) -> int:
+    """Wait until ``rows`` rows are stored or the study has ended; the number of stored rows."""
+    begun, count = time.monotonic(), 0
+    while run.poll() is None and count < rows and time.monotonic() - begun < 60:
+        time.sleep(0.02)
+        try:
+            count = stored_count(store) if store.exists() else 0
+        except sqlite3.OperationalError:  # it is being created
+            count = 0
+    return count
