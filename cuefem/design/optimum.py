@@ -276,7 +276,7 @@ class _Search:
             if ends[-1][1] or self.violated(ends[-1][0]):
                 ends.append(self.by_evolution(start, rounds, seed))
                 ends.append(self.by_slsqp(ends[-1][0], rounds))
-        u = min((u for u, _ in ends), key=lambda u: self.scores(self.at(u)[None])[0])
+        u = self.onto_ends(min((u for u, _ in ends), key=lambda u: self.scores(self.at(u)[None])[0]))
         violated, stop_reason = self.violated(u), ends[-1][1]
         if violated or not np.isfinite(self.at(u)).all():
             condition = f"within {', '.join(violated)}" if violated else f"that has {self.problem.objective.name}"
@@ -312,6 +312,11 @@ class _Search:
         if not np.isfinite(self._slopes[key]).all():
             raise _NoDesign
         return self._slopes[key]
+
+    def onto_ends(self, u: Array) -> Array:
+        """The point with values closer than `TOLERANCE` to an end of a range on that end, if this violates no limit."""
+        ends = np.where(u < TOLERANCE, 0.0, np.where(u > 1 - TOLERANCE, 1.0, u))
+        return u if self.violated(ends) else ends
 
     def by_slsqp(self, start: Array, rounds: int) -> tuple[Array, str]:
         """(The last point of SLSQP; why it stopped without convergence, or "")."""
