@@ -60,12 +60,12 @@ REFERENCE = f"{HANDBOOK}/api"
 # The public names by the room of the package that defines them; a room without a title fails the build.
 TITLES = {
     "A cue and a scene": ("cue", "scene", "parameters", "quantity"),
-    "Files": ("io", "files"),
+    "Files": ("files",),
     "Questions about a cue": ("analysis", "results", "report", "show"),
     "Natural frequencies and end mass": ("beam", "endmass", "solid"),
     "The strike": ("contact",),
     "Effects": ("effects",),
-    "Studies and measurements": ("design", "designs", "measurements"),
+    "Studies and measurements": ("designs", "measurements"),
     "Figures": ("plot",),
 }
 SUMMARY = """

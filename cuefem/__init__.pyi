@@ -43,9 +43,9 @@ from .effects.tip_effects import (
 from .endmass.definitions import end_mass as end_mass
 from .endmass.lumped import impulse as impulse, lump as lump
 from .scene.default_scene import usual_scene as usual_scene
-from .io import load as load, save as save
-from .io.paraview import save_motion as save_motion
-from .io.study_files import study as study
+from .files import load as load, save as save
+from .files.paraview import save_motion as save_motion
+from .designs.study_file import study as study
 from .show.verdict_table import verdict as verdict
 from .quantity.unit_checks import PlausibilityWarning as PlausibilityWarning
 from .solid.solid_resolution import Solid as Solid

@@ -22,7 +22,7 @@ import numpy as np
 from cuefem.beam.modes import modes as solved_modes
 from cuefem.contact.strike import strike
 from cuefem.cue import Cue, Material
-from cuefem.design.sensitivity import sensitivity
+from cuefem.designs.sensitivity import sensitivity
 from cuefem.quantity.fields import check_count, check_kind
 from cuefem.results.quantities import to_display, with_heading, with_unit
 from cuefem.results.solved_design import coupled_curve, time_history

@@ -37,7 +37,7 @@ import scipy.optimize  # noqa: F401
 import skfem  # noqa: F401
 
 ROOT = Path(__file__).parents[1]
-INTERFACE = ("analysis", "cli", "design", "designs", "designer", "files", "handbook", "io", "measurements", "show")
+INTERFACE = ("analysis", "cli", "designs", "designer", "files", "handbook", "measurements", "show")
 EQUIVALENT = Path(__file__).with_name("equivalent_mutants.txt")
 SECONDS = 60.0  # of tests a mutant, as the first run measured them
 FIRST = 12  # tests of the first fork: most mutants are detected by them, and few test files are imported

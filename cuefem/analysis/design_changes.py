@@ -13,7 +13,7 @@ from cuefem.analysis.base import Analysis
 from cuefem.analysis.strike_models import regime_warning
 from cuefem.cue import Cue
 from cuefem.cue.materials import MATERIALS, WOODS, table_name
-from cuefem.design.evaluation import Response
+from cuefem.designs.evaluation import Response
 from cuefem.effects.leather_tip import DOMES
 from cuefem.parameters.parameter import PARAMETERS, with_parameters
 from cuefem.parameters.parts import Layout, taper_position

@@ -20,7 +20,7 @@ from cuefem.contact.geometric_stiffness import SlopeOutOfRange
 from cuefem.cue.materials import material_name
 from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.io.reference_cues import reference_cues
+from cuefem.files.reference_cues import reference_cues
 from cuefem.results.closed_forms import alciatore_a31_mass_ratio
 from cuefem.results.quantities import DASH, RESULTS, format_value
 from cuefem.results.records import Record, Table, tabulate_values, value_rows

@@ -8,7 +8,7 @@ import cuefem.show
 from cuefem.analysis.answer import Answer
 from cuefem.cli.progress import with_progress_bar
 from cuefem.cli.scene_command import Request, analysis_command
-from cuefem.io import load_accuracy
+from cuefem.files import load_accuracy
 from cuefem.show.convergence_table import convergence_charts, convergence_record, tabulate_convergence
 from cuefem.show.scene_summary import scene_record
 

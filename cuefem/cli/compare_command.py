@@ -13,16 +13,21 @@ from cuefem.cli.output import assumption_lines, command, page_option, print_resu
 from cuefem.cli.progress import with_progress_bar
 from cuefem.cli.scene_command import completed_scene, cue_options, errors_name_file, full_record, print_warnings
 from cuefem.cli.scene_options import impact_options, offset_option, option
-from cuefem.io import InputError, load_stroke
-from cuefem.io.defaults_report import STROKE, Assumption, given_keys
-from cuefem.io.measured_folder import load_measured, write_template
+from cuefem.files import InputError, load_stroke
+from cuefem.files.defaults_report import STROKE, Assumption, given_keys
 from cuefem.measurements.estimate import estimate as estimated
 from cuefem.measurements.estimate import predicted_squirt
 from cuefem.measurements.measured_cue import compare as compared
 from cuefem.measurements.measured_cue import offset_zeros
+from cuefem.measurements.measured_folder import load_measured, write_template
+from cuefem.measurements.measurement_tables import (
+    estimate_record,
+    measured_record,
+    tabulate_estimate,
+    tabulate_measured,
+)
 from cuefem.results.comparison import comparison_record, with_same_stroke
 from cuefem.results.quantities import UNITS
-from cuefem.show.measurement_tables import estimate_record, measured_record, tabulate_estimate, tabulate_measured
 from cuefem.show.scene_summary import scene_record
 
 MAX_CUES = 5

@@ -14,7 +14,7 @@ from cuefem.cli.progress import with_progress_bar
 from cuefem.cli.scene_command import Request, analysis_command, check_overwrite, file_options, force_option
 from cuefem.cli.scene_options import tip_options
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.io import InputError, load_accuracy, save
+from cuefem.files import InputError, load_accuracy, save
 from cuefem.parameters.parameter import with_parameters
 from cuefem.parameters.parts import main_material
 

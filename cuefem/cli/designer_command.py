@@ -13,7 +13,7 @@ import click
 from cuefem.cli.output import command, print_json
 from cuefem.cli.scene_command import cue_options, errors_name_file, print_warnings, scene_of
 from cuefem.cli.scene_options import option
-from cuefem.io.reference_cues import PRESETS
+from cuefem.files.reference_cues import PRESETS
 
 
 @command()

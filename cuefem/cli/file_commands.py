@@ -10,8 +10,8 @@ from cuefem.cli.output import assumption_lines, command, json_option, page_optio
 from cuefem.cli.scene_command import check_overwrite, force_option, load_with_options, shape_options
 from cuefem.cli.scene_options import with_body_option, with_shaft_mass_option
 from cuefem.cue import Cue
-from cuefem.io import load, save
-from cuefem.io.defaults_report import assumption_texts, drawing_assumptions
+from cuefem.files import load, save
+from cuefem.files.defaults_report import assumption_texts, drawing_assumptions
 from cuefem.show.parts_table import parts_record, tabulate_parts
 
 

@@ -12,9 +12,9 @@ from rich.console import Console
 from rich.markdown import Markdown
 
 from cuefem.cli.output import command, json_option, page_option, print_json, write_result
+from cuefem.files import InputError, save_page
 from cuefem.handbook import CHAPTERS, chapters, sections_with
 from cuefem.handbook.page import page
-from cuefem.io import InputError, save_page
 
 
 @command()

@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from cuefem.io import InputError, check_writable, save_page, write_atomically
+from cuefem.files import InputError, check_writable, save_page, write_atomically
 from cuefem.quantity.encoding import is_unicode
 from cuefem.show.renderers import json_text, print_tables
 

@@ -31,10 +31,10 @@ from cuefem.cli.scene_options import (
     with_options,
 )
 from cuefem.effects.force_law import IndentationOutOfRange
-from cuefem.io import InputError, check_writable, load_stroke
-from cuefem.io.defaults_report import Assumption, assumption_texts, assumptions
-from cuefem.io.drawing_warnings import drawing_warnings
-from cuefem.io.shaft_additions import SHAFT_ADDITIONS
+from cuefem.files import InputError, check_writable, load_stroke
+from cuefem.files.defaults_report import Assumption, assumption_texts, assumptions
+from cuefem.files.drawing_warnings import drawing_warnings
+from cuefem.files.shaft_additions import SHAFT_ADDITIONS
 from cuefem.results.quantities import UNITS
 from cuefem.results.records import Record, Table
 from cuefem.scene import Scene

@@ -15,8 +15,8 @@ import click
 from cuefem.cli.output import shared_option
 from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue, LumpedCue
-from cuefem.io import InputError, with_body_mass
-from cuefem.io.errors import as_input_error
+from cuefem.files import InputError, with_body_mass
+from cuefem.files.errors import as_input_error
 from cuefem.parameters.parameter import PARAMETERS, Parameter, with_fields, with_parameters, with_values_at
 from cuefem.parameters.parameter import Path as Steps
 from cuefem.parameters.parts import main_material, with_material

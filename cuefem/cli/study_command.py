@@ -14,13 +14,13 @@ from cuefem.cli.cluster import dask_executor
 from cuefem.cli.output import assumption_lines, command, json_option, output_option, print_result, write_result
 from cuefem.cli.progress import ProgressLines, progress_bar
 from cuefem.cli.scene_command import check_overwrite, errors_name_file, force_option, print_warnings
-from cuefem.design import Study
-from cuefem.design.optimum import Problem, Round
-from cuefem.design.scatter import Scatter
-from cuefem.design.study_result import StudyResult, compute_study
-from cuefem.io import InputError, save, write_atomically
-from cuefem.io.store import SqliteStore, check_parquet, write_parquet, write_table
-from cuefem.io.study_files import base_assumptions, load_study
+from cuefem.designs import Study
+from cuefem.designs.optimum import Problem, Round
+from cuefem.designs.scatter import Scatter
+from cuefem.designs.store import SqliteStore, check_parquet, write_parquet, write_table
+from cuefem.designs.study_file import base_assumptions, load_study
+from cuefem.designs.study_result import StudyResult, compute_study
+from cuefem.files import InputError, save, write_atomically
 from cuefem.parameters.parameter import value_at, with_values_at
 from cuefem.results.quantities import with_unit
 from cuefem.scene import Scene

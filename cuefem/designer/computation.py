@@ -19,9 +19,9 @@ import cuefem.show
 from cuefem.analysis.design_changes import DesignChanges, design_changes
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
-from cuefem.design.sensitivity import sensitivity
+from cuefem.designs.sensitivity import sensitivity
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.io.reference_cues import reference_cues
+from cuefem.files.reference_cues import reference_cues
 from cuefem.parameters.parts import main_material
 from cuefem.quantity.unit_checks import FLOAT_ERRORS
 from cuefem.results.closed_forms import pivot_length

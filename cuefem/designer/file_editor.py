@@ -8,7 +8,7 @@ from collections.abc import Callable
 from nicegui import ui
 
 from cuefem.designer.state import FAILURES, Design, one_line, read_design
-from cuefem.io.toml_writer import toml_text
+from cuefem.files.toml_writer import toml_text
 
 NAME = "design.toml"
 

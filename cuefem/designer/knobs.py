@@ -13,7 +13,7 @@ from nicegui import ui
 from cuefem.cue import Cue, Segment
 from cuefem.cue.materials import LEATHERS, material_name, table_name
 from cuefem.designer.state import FAILURES, Design, Step, one_line
-from cuefem.io.shaft_additions import with_additions
+from cuefem.files.shaft_additions import with_additions
 from cuefem.parameters.parameter import PARAMETERS, with_parameters
 from cuefem.parameters.parts import Layout, bore_mouth, max_bore_depth, split_segment, taper_position
 from cuefem.quantity.fields import Quantity

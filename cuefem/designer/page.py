@@ -31,9 +31,9 @@ from cuefem.designer.state import (
     read_design,
     reference_design,
 )
-from cuefem.io.defaults_report import assumption_texts, tenon_assumption
-from cuefem.io.reference_cues import PRESETS, REFERENCE_FILES
-from cuefem.io.toml_writer import toml_text
+from cuefem.files.defaults_report import assumption_texts, tenon_assumption
+from cuefem.files.reference_cues import PRESETS, REFERENCE_FILES
+from cuefem.files.toml_writer import toml_text
 from cuefem.parameters.parameter import parameter, with_parameters
 from cuefem.results.quantities import REGIMES
 from cuefem.results.verdict import verdict_problem, with_cue

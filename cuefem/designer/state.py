@@ -11,10 +11,10 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from cuefem.cue import Cue
-from cuefem.io import load_stroke
-from cuefem.io.defaults_report import assumptions
-from cuefem.io.parts_catalogue import data_folder
-from cuefem.io.reference_cues import Preset, preset_scene, reference_cue_file
+from cuefem.files import load_stroke
+from cuefem.files.defaults_report import assumptions
+from cuefem.files.parts_catalogue import data_folder
+from cuefem.files.reference_cues import Preset, preset_scene, reference_cue_file
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, usual_scene
 

@@ -5,7 +5,9 @@ measurement_types     the types of measurements, one class each
 recording             the natural frequencies of a tapped shaft, from a recording
 pendulum              the end mass by a ball on a thread
 uncertain_parameters  the uncertain parameters of a drawing, and their priors
-measured_cue          a cue with its measurements, and the table of measured and computed values
+measured_cue          a cue with its measurements, and its residuals
+measured_folder       a measured cue from a folder of files, and the template of such a folder
 outliers              measurements of which some may be wrong
 estimate              the uncertain parameters by least squares, their errors, and which measurement to make next
+measurement_tables    records and tables of a measured cue and of an estimate
 """

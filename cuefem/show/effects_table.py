@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict
 
 from cuefem.contact.strike import strike, strike_modes
-from cuefem.design.effect_sensitivity import OutcomeChange, Variant, outcome_change, variants
+from cuefem.designs.effect_sensitivity import OutcomeChange, Variant, outcome_change, variants
 from cuefem.endmass.definitions import equivalent_end_mass
 from cuefem.results.convergence import refinement_levels
 from cuefem.results.quantities import DASH, format_value

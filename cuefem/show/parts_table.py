@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from cuefem.cue.materials import LEATHER_CONSTANTS, LEATHERS, MATERIALS, TIPS, WOODS
-from cuefem.io.parts_catalogue import CATALOGUE_SHAFTS
+from cuefem.files.parts_catalogue import CATALOGUE_SHAFTS
 from cuefem.parameters.parameter import FERRULES
 from cuefem.results.quantities import RESULTS, units_of, with_heading
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate

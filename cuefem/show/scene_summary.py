@@ -9,7 +9,7 @@ from typing import Any
 
 from cuefem.cue import Cue, LumpedCue
 from cuefem.effects.effect import Effect
-from cuefem.io.schema import table as file_table
+from cuefem.files.schema import table as file_table
 from cuefem.results.quantities import format_value, with_unit
 from cuefem.results.records import Record
 from cuefem.scene import Scene

@@ -15,11 +15,11 @@ import numpy as np
 
 from cuefem.cue import Cue
 from cuefem.cue.materials import material_name
-from cuefem.design import Levels, Normal, Span, Study, Vary
-from cuefem.design.optimum import Optimum, Problem
-from cuefem.design.scatter import Scatter, SobolIndices
-from cuefem.design.study_result import StudyResult
-from cuefem.design.study_statistics import SweepStatistics, sweep_statistics
+from cuefem.designs import Levels, Normal, Span, Study, Vary
+from cuefem.designs.optimum import Optimum, Problem
+from cuefem.designs.scatter import Scatter, SobolIndices
+from cuefem.designs.study_result import StudyResult
+from cuefem.designs.study_statistics import SweepStatistics, sweep_statistics
 from cuefem.parameters.parameter import Path
 from cuefem.parameters.parts import Layout
 from cuefem.results.quantities import DASH, DISPLAY_UNITS, significant, with_heading, with_unit

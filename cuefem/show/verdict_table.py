@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 from cuefem.contact.strike import strike_modes
-from cuefem.io.reference_cues import reference_cues
+from cuefem.files.reference_cues import reference_cues
 from cuefem.results.quantities import format_change, to_display, with_unit
 from cuefem.results.records import Record, Table
 from cuefem.results.uncertainty import SHAFT_ERROR, SPRING_ERROR

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 import cuefem as cf
-from cuefem.design import evaluate
+from cuefem.designs import evaluate
 from studies import pages, strokes
 from studies.pages import table
 from studies.strokes import cue, hollow, squirt

@@ -12,8 +12,8 @@ from functools import cache, partial
 from typing import NamedTuple
 
 import cuefem as cf
-from cuefem.io.measured_folder import load_measured
 from cuefem.measurements.measured_cue import MeasuredCue
+from cuefem.measurements.measured_folder import load_measured
 from cuefem.measurements.measurement_types import AddedMass, Measurement, PivotLength, Setup, Squirt
 from cuefem.parameters.parameter import parameter
 from cuefem.results.uncertainty import changes_by_input

@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 
 import cuefem as cf
 from cuefem.cue.materials import material
-from cuefem.design import evaluate
+from cuefem.designs import evaluate
 from cuefem.results.closed_forms import natural_pivot_length
 from studies import pages, strokes
 from studies.measured.published import INCHES, MODELS, PLAYERS, RADIUS, Row, mass_ratios, measured, rows, series

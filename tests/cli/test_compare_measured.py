@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.io.measured_folder import TEMPLATE, load_measured
 from cuefem.measurements.estimate import estimate
 from cuefem.measurements.measured_cue import compare
+from cuefem.measurements.measured_folder import TEMPLATE, load_measured
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES
 from tests.helpers.command_line import as_json, call, stdout_of
 from tests.helpers.invalid_input import assert_rejects

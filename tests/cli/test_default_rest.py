@@ -9,7 +9,7 @@ import pytest
 import cuefem as cf
 from cuefem.cue import Cue
 from cuefem.designer.state import read_design
-from cuefem.io.study_files import load_study
+from cuefem.designs.study_file import load_study
 from cuefem.scene.default_scene import GAMES, OUNCE
 from tests.helpers.command_line import as_json, call
 

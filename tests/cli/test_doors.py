@@ -12,7 +12,7 @@ import cuefem as cf
 from cuefem.designer.computation import solved_strike, verdict
 from cuefem.designer.knobs import with_value
 from cuefem.designer.state import read_design
-from cuefem.io.study_files import load_study
+from cuefem.designs.study_file import load_study
 from cuefem.results.verdict import verdict_problem
 from tests.helpers.command_line import call
 from tests.helpers.random_shafts import RandomShaft, random_shaft

@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
+from cuefem.designs import study_file
+from cuefem.designs.study_file import load_study
+from cuefem.files.schema import keys_of
 from cuefem.handbook import chapters
-from cuefem.io import study_files
-from cuefem.io.schema import keys_of
-from cuefem.io.study_files import load_study
 from cuefem.results.solved_design import computable_results
 
 (TEXT,) = (chapter.text for chapter in chapters() if chapter.name == "study")
@@ -39,7 +39,7 @@ def test_study_chapter_examples_load_as_their_kinds(folder: Path) -> None:
 
 
 def test_study_chapter_lists_every_key_and_response() -> None:
-    tables_of = [value for name, value in vars(study_files).items() if name.endswith("Table")]
+    tables_of = [value for name, value in vars(study_file).items() if name.endswith("Table")]
     keys = {f"`{key}`" for each in tables_of for key in keys_of(each)}
     tables = {"`vary`", "`sample`", "`tolerances`", "`objective`", "`limit`", "`resolution`"}
     assert sorted(key for key in keys - tables if key not in TEXT) == []

@@ -10,9 +10,9 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
-from cuefem.design.study_result import compute_study
-from cuefem.io.store import SqliteStore
-from cuefem.io.study_files import load_study
+from cuefem.designs.store import SqliteStore
+from cuefem.designs.study_file import load_study
+from cuefem.designs.study_result import compute_study
 
 ENVIRONMENT = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])}
 SCENE = """

@@ -117,7 +117,9 @@ def test_template_write_failure_leaves_nothing(tmp_path: Path, monkeypatch: pyte
 
     template = ("compare", tmp_path / "cue", "--template")
     with monkeypatch.context() as patch:
-        patch.setattr("cuefem.io.measured_folder.TEMPLATE", ("README.md", "none"))  # the second file cannot be read
+        patch.setattr(
+            "cuefem.measurements.measured_folder.TEMPLATE", ("README.md", "none")
+        )  # the second file cannot be read
         assert_unchanged(tmp_path, "cannot be written", *template)
         patch.setattr(Path, "write_text", full)
         assert_unchanged(tmp_path, "cannot be written: No space left on device", *template)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.io.measured_folder import load_measured
+from cuefem.measurements.measured_folder import load_measured
 from cuefem.measurements.measurement_types import EndMass, Setup
 from cuefem.measurements.pendulum import GRAVITY, Pendulum
 from tests.helpers.command_line import as_json, stdout_of

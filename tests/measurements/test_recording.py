@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.io.measured_folder import load_measured
 from cuefem.measurements.estimate import estimate
+from cuefem.measurements.measured_folder import load_measured
 from cuefem.measurements.measurement_types import Tone
 from cuefem.measurements.recording import Peak, assign_modes, tones_in
 from tests.helpers.measured_cues import SHAFT, measured_folder

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.cue.materials import LEATHERS, material
-from cuefem.design.evaluation import Response
-from cuefem.design.sampling import Span
-from cuefem.design.study import Study, Vary
-from cuefem.io.reference_cues import PRESETS, preset_scene
+from cuefem.designs.evaluation import Response
+from cuefem.designs.sampling import Span
+from cuefem.designs.study import Study, Vary
+from cuefem.files.reference_cues import PRESETS, preset_scene
 from cuefem.parameters.parameter import PARAMETERS, paths, with_parameters
 from cuefem.parameters.parts import outer_diameter
 

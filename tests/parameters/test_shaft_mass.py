@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import cuefem as cf
-from cuefem.io import InputError
+from cuefem.files import InputError
 from cuefem.parameters.parameter import with_parameters
 from cuefem.parameters.parts import main_material, with_shaft_mass
 from cuefem.results.uncertainty import squirt_changes

@@ -16,8 +16,8 @@ import tomlkit
 
 import cuefem as cf
 from cuefem.effects.effect import effect_kinds
-from cuefem.io import InputError
-from cuefem.io.schema import field_types, quantity_of, required_keys
+from cuefem.files import InputError
+from cuefem.files.schema import field_types, quantity_of, required_keys
 from cuefem.quantity.fields import Quantity, quantity_fields
 
 WOOD = cf.Material(12.6e9, 0.84e9, 700.0)

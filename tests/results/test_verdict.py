@@ -9,7 +9,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.cue.materials import MATERIALS
-from cuefem.io.reference_cues import REFERENCE_FILES, reference_cues
+from cuefem.files.reference_cues import REFERENCE_FILES, reference_cues
 from cuefem.parameters.parameter import with_parameters
 from cuefem.results.comparison import comparison_record
 from cuefem.results.uncertainty import NUMERICAL_ERROR, RATIO_FLOOR

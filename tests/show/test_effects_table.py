@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 import cuefem as cf
-from cuefem.design.effect_sensitivity import variants
+from cuefem.designs.effect_sensitivity import variants
 from cuefem.effects.effect import effect_kinds
 from cuefem.results.convergence import resolve
 from cuefem.show import effects_record

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 import cuefem as cf
-from cuefem.design import Response
-from cuefem.design.study_statistics import SweepStatistics
+from cuefem.designs import Response
+from cuefem.designs.study_statistics import SweepStatistics
 from cuefem.show.study_table import column_label
 from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.invalid_input import assert_rejects

@@ -4,7 +4,7 @@ import csv
 import math
 
 from cuefem.handbook import chapters
-from cuefem.io.measured_folder import load_measured
+from cuefem.measurements.measured_folder import load_measured
 from cuefem.measurements.measurement_types import AddedMass, PivotLength, Squirt
 from cuefem.results.quantities import with_unit
 from studies.pages import STUDIES

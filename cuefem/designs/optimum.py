@@ -1,0 +1,392 @@
+"""Optimization of a design within limits on its responses.
+
+SLSQP on finite differences starts at the base design. If it ends outside the limits, differential evolution searches
+the ranges and SLSQP continues from there. Values in a list (names of materials) are tried one by one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import product
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cuefem.cue import Array
+from cuefem.designs.evaluation import Response
+from cuefem.designs.sampling import Levels, Normal, Span, Value
+from cuefem.designs.study import Study, StudyDesign, Vary
+from cuefem.parameters.parameter import value_at
+from cuefem.scene import Resolution, Scene
+
+TOLERANCE = 1e-6  # relative to a limit's own size (1 if it is 0): a closer value makes the limit active
+EXCLUDED = 1e9  # score of a design that violates a limit: worse than any within the limits
+INVALID_OBJECTIVE = 1e3  # scaled objective of an invalid design in SLSQP
+STEP = 1e-4  # of differences, relative to a range: a hundred times the numerical error of a strike (1e-6)
+POPULATION = 15  # designs per variable in differential evolution
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A response that must be in [low, high], in SI units; of squirt, which has the sign of the offset, its size."""
+
+    response: Response
+    low: float = -np.inf
+    high: float = np.inf
+
+    def __post_init__(self) -> None:
+        if not self.low <= self.high or not np.isfinite([self.low, self.high]).any():
+            bounds = f"{self.low} and {self.high}"
+            raise ValueError(f"limit on {self.response.name} must have low <= high, one finite; got {bounds}")
+        negative = [f"{bound:g}" for _, bound in self.sides if bound < 0 and self.response.result.odd]
+        if negative:
+            raise ValueError(f"limit on {self.response.name} is on its size and must be >= 0; got {negative[0]}")
+
+    @property
+    def sides(self) -> list[tuple[int, float]]:
+        """(1, low) and (-1, high), without infinite bounds."""
+        return [(sign, value) for sign, value in ((1, self.low), (-1, self.high)) if np.isfinite(value)]
+
+
+class Round(NamedTuple):
+    """Progress of a search: its listed values, rounds and designs so far, and the best objective within the limits (nan
+    without one)."""
+
+    choice: dict[str, Value]
+    number: int
+    evaluations: int
+    best: float
+
+
+class ChoiceResult(NamedTuple):
+    """Result for one combination of listed values: the best objective, or nan and the reason."""
+
+    values: dict[str, Value]
+    objective: float
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class Optimum(StudyDesign):
+    """The best design of an optimization.
+
+    active: active limits and ends of ranges, such as "tip_stiffness >= 1500". evaluations: number of designs computed.
+    stop_reason: why the search stopped without convergence, "" if it converged. choices: one for each combination of
+    listed values, if there are any.
+    """
+
+    active: tuple[str, ...] = ()
+    evaluations: int = 0
+    stop_reason: str = ""
+    choices: tuple[ChoiceResult, ...] = ()
+
+
+@dataclass(frozen=True)
+class Problem:
+    """An optimization: objective to minimize (maximize, if ``maximize``), variables and limits.
+
+    at: as of a `Study`. choice: values of the variables over a list, by index; by default those of the base. Points are
+    values of the other variables, those with low and high.
+    """
+
+    base: Scene
+    vary: tuple[Vary, ...]
+    objective: Response
+    limits: tuple[Limit, ...] = ()
+    at: Resolution | None = None
+    maximize: bool = False
+    choice: Mapping[int, Value] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for vary in self.vary:
+            if isinstance(vary.range, Normal):
+                raise ValueError(f"{vary.name} must have low and high, or values, in an optimization")
+        _ = self.study  # checks fields and responses
+
+    @cached_property
+    def study(self) -> Study:
+        """The same variables and responses as a study, the objective first."""
+        responses = dict.fromkeys((self.objective, *(limit.response for limit in self.limits)))
+        return Study(self.base, self.vary, tuple(responses), at=self.at)
+
+    @property
+    def spans(self) -> dict[int, Span]:
+        """The ranges of the variables with low and high, by index."""
+        return {i: vary.range for i, vary in enumerate(self.vary) if isinstance(vary.range, Span)}
+
+    def choices(self) -> list[Problem]:
+        """The problem with every combination of the values in lists."""
+        lists = {i: vary.range.values for i, vary in enumerate(self.vary) if isinstance(vary.range, Levels)}
+        return [replace(self, choice=dict(zip(lists, v, strict=True))) for v in product(*lists.values())]
+
+    def points(self, shares: Array) -> Array:
+        """Points from fractions in [0, 1] of the ranges, (..., variables); of logarithms for logarithmic spacing."""
+        return _each(Span.quantile, self.spans, shares)
+
+    def shares(self, points: Array) -> Array:
+        """The inverse of `points`."""
+        return _each(Span.share, self.spans, points)
+
+    @property
+    def start(self) -> Array:
+        """The base design as a point, (variables,), clipped to the ranges, or their middle if it has no value."""
+        point = list[float]()
+        for i, span in self.spans.items():
+            vary = self.vary[i]
+            value = 1.0 if vary.factor else 0.0 if vary.shift else value_at(self.base, vary.fields(self.base)[0])
+            point.append(span.quantile(0.5) if value is None else min(max(value, span.low), span.high))
+        return np.array(point)
+
+    def design(self, point: Array) -> tuple[Value, ...]:
+        """The values of all variables at a point."""
+        values = {**self.choice, **dict(zip(self.spans, point.tolist(), strict=True))}
+        return tuple(values[i] for i in range(len(self.vary)))
+
+    def scene(self, point: Array) -> Scene:
+        """The design at a point; ValueError if it is invalid."""
+        return self.study.scene(self.design(point))
+
+    def values(self, points: Array) -> Array:
+        """Responses of the study at points (n, variables): (n, responses), nan where a design has none."""
+        return self.study.evaluate([self.design(point) for point in points]).values
+
+    def sizes(self, values: Array) -> Array:
+        """Values (n, responses) as they are compared: `Response.size`."""
+        columns = zip(self.study.responses, values.T, strict=True)
+        return np.stack([response.size(column) for response, column in columns], axis=1)
+
+    def margins(self, values: Array) -> Array:
+        """Margins of values (n, responses) to the limits, relative to each limit: (n, sides).
+
+        Negative outside, and for a missing response.
+        """
+        sizes = self.sizes(values)
+        margins = [
+            sign * (sizes[:, self.study.responses.index(limit.response)] - bound) / (abs(bound) or 1.0)
+            for limit in self.limits
+            for sign, bound in limit.sides
+        ]
+        return np.nan_to_num(np.reshape(margins, (-1, len(values))).T, nan=-EXCLUDED)
+
+
+def _each(of: Callable[[Span, float], float], spans: Mapping[int, Span], values: Array) -> Array:
+    """A function of every range at its column of values (..., variables)."""
+    rows = ([of(*pair) for pair in zip(spans.values(), row, strict=True)] for row in np.atleast_2d(values).tolist())
+    return np.array([*rows], float).reshape(values.shape)
+
+
+def optimum(
+    problem: Problem,
+    *,
+    start: Array | None = None,
+    rounds: int = 60,
+    seed: int = 0,
+    progress: Callable[[Round], object] = lambda round: None,
+) -> Optimum:
+    """The best design within ranges and limits.
+
+    Parameters
+    ----------
+    problem : Problem
+        Variables, objective and limits. Each combination of listed values is a separate search.
+    start : array, optional
+        The point to start from; the default is the base design.
+    rounds : int
+        Maximum number of steps of SLSQP, and of generations of differential evolution.
+    seed : int
+        Of differential evolution.
+    progress : callable, optional
+        Called with a `Round` after each step or generation.
+
+    Returns
+    -------
+    Optimum
+        A local optimum if SLSQP converged from the base: try another ``start`` to search for a better one.
+
+    Raises
+    ------
+    ValueError
+        If no design is within the limits; the message names the violated limits.
+
+    Notes
+    -----
+    SLSQP (`scipy.optimize.minimize`) in numbers scaled to their ranges (their logarithms, if the spacing is
+    logarithmic); its gradients are forward differences of `STEP`, all of a step in one batch. Differential evolution
+    (`scipy.optimize.differential_evolution`) prefers, among designs that violate a limit, the smallest violation.
+    """
+    optima, choices, reasons = list[Optimum](), list[ChoiceResult](), list[str]()
+    sign, count = -1 if problem.maximize else 1, 0
+    for case in problem.choices():
+        search = _Search(case, progress, count)
+        first = case.shares(case.start if start is None else np.asarray(start, float))
+        try:
+            optima.append(search.optimum(first, rounds, seed))
+            choices.append(ChoiceResult(search.choice, optima[-1].responses[problem.objective.name]))
+        except ValueError as error:
+            reasons.append(str(error))
+            choices.append(ChoiceResult(search.choice, np.nan, str(error)))
+        count = search.evaluations
+    if not optima:
+        raise ValueError(reasons[0])
+    best = min(optima, key=lambda each: sign * problem.objective.size(each.responses[problem.objective.name]))
+    return replace(best, evaluations=count, choices=tuple(choices) if len(choices) > 1 else ())
+
+
+class _NoDesign(Exception):
+    """A point whose design is invalid or lacks a response."""
+
+
+class _Search:
+    """One search: points are fractions in [0, 1] of the ranges; evaluations start at ``count``."""
+
+    def __init__(self, problem: Problem, progress: Callable[[Round], object], count: int) -> None:
+        self.problem, self.progress, self.evaluations = problem, progress, count
+        self.choice = {problem.vary[i].name: value for i, value in problem.choice.items()}
+        self.rounds, self.best, self.scale = 0, np.inf, -1.0 if problem.maximize else 1.0
+        self._responses, self._slopes = dict[bytes, Array](), dict[bytes, Array]()
+
+    def rows(self, shares: Array) -> Array:
+        """Responses at points (n, variables)."""
+        values = self.problem.values(self.problem.points(shares))
+        self.evaluations += len(shares)
+        self.best = min(self.best, self.scores(values).min(initial=np.inf))
+        return values
+
+    def scores(self, values: Array) -> Array:
+        """The scores to minimize: the objective, or `EXCLUDED` plus the violation of the limits."""
+        violation = np.minimum(self.problem.margins(values) + TOLERANCE, 0).sum(axis=1)
+        objective = np.nan_to_num(self.scale * self.problem.sizes(values)[:, 0], nan=EXCLUDED)
+        return np.asarray(np.where(violation < 0, EXCLUDED - violation, objective))
+
+    def report(self, *_: Any, **__: Any) -> None:
+        """Count a round and report progress."""
+        self.rounds += 1
+        best = self.best / self.scale if self.best < EXCLUDED else np.nan
+        self.progress(Round(self.choice, self.rounds, self.evaluations, best))
+
+    def optimum(self, start: Array, rounds: int, seed: int) -> Optimum:
+        """The best design; ValueError if none is within the limits."""
+        size = abs(self.at(start)[0]) if self.problem.objective.unit else 1.0
+        self.scale, self.best = self.scale / (size if np.isfinite(size) and size else 1.0), np.inf
+        ends = [(start, "")]
+        if len(start):
+            ends.append(self.by_slsqp(start, rounds))
+            if ends[-1][1] or self.violated(ends[-1][0]):
+                ends.append(self.by_evolution(start, rounds, seed))
+                ends.append(self.by_slsqp(ends[-1][0], rounds))
+        u = self.onto_ends(min((u for u, _ in ends), key=lambda u: self.scores(self.at(u)[None])[0]))
+        violated, stop_reason = self.violated(u), ends[-1][1]
+        if violated or not np.isfinite(self.at(u)).all():
+            condition = f"within {', '.join(violated)}" if violated else f"that has {self.problem.objective.name}"
+            nearest = zip(self.problem.study.responses, self.at(u), strict=True)
+            has = ", ".join(f"{response.name} {value:.6g} {response.unit}".strip() for response, value in nearest)
+            raise ValueError(f"no design {condition} was found; the nearest has {has}: relax a limit or widen a range")
+        point, study = self.problem.points(u), self.problem.study
+        return Optimum(
+            self.problem.scene(point),
+            dict(zip((vary.name for vary in self.problem.vary), self.problem.design(point), strict=True)),
+            dict(zip((response.name for response in study.responses), self.at(u).tolist(), strict=True)),
+            tuple(text for text, margin in self.sides(u) if margin < TOLERANCE),
+            self.evaluations,
+            stop_reason,
+        )
+
+    def at(self, u: Array) -> Array:
+        """Responses at one point, (responses,)."""
+        u = np.clip(u, 0, 1)  # SLSQP oversteps by rounding
+        key = u.tobytes()
+        if key not in self._responses:
+            self._responses[key] = self.rows(u[None])[0]
+        return self._responses[key]
+
+    def slopes(self, u: Array) -> Array:
+        """Derivatives of the responses' sizes by forward differences into the ranges, (responses, variables)."""
+        u = np.clip(u, 0, 1)
+        key = u.tobytes()
+        if key not in self._slopes:
+            steps = STEP * np.where(u > 0.5, -1, 1)
+            ahead, here = (self.problem.sizes(rows) for rows in (self.rows(u + np.diag(steps)), self.at(u)[None]))
+            self._slopes[key] = ((ahead - here) / steps[:, None]).T
+        if not np.isfinite(self._slopes[key]).all():
+            raise _NoDesign
+        return self._slopes[key]
+
+    def onto_ends(self, u: Array) -> Array:
+        """The point with values closer than `TOLERANCE` to an end of a range on that end, if this violates no limit."""
+        ends = np.where(u < TOLERANCE, 0.0, np.where(u > 1 - TOLERANCE, 1.0, u))
+        return u if self.violated(ends) else ends
+
+    def by_slsqp(self, start: Array, rounds: int) -> tuple[Array, str]:
+        """(The last point of SLSQP; why it stopped without convergence, or "")."""
+        from scipy.optimize import minimize  # loaded when used: a second
+
+        responses, last = self.problem.study.responses, start
+
+        def value(u: Array, k: int, missing: float) -> float:
+            """The size of a response; ``missing`` for a design without one, so that SLSQP shortens the step."""
+            nonlocal last
+            values = self.at(u)
+            last = u if np.isfinite(values).all() else last
+            return float(responses[k].size(values[k])) if np.isfinite(values).all() else missing
+
+        def constraint(k: int, sign: int, bound: float) -> dict[str, Any]:
+            unit = sign / (abs(bound) or 1.0)
+            return {
+                "type": "ineq",
+                "fun": lambda u: unit * (value(u, k, bound - INVALID_OBJECTIVE / unit) - bound),
+                "jac": lambda u: unit * self.slopes(u)[k],
+            }
+
+        try:
+            result = minimize(
+                lambda u: self.scale * value(u, 0, INVALID_OBJECTIVE / self.scale),
+                start,
+                jac=lambda u: self.scale * self.slopes(u)[0],
+                method="SLSQP",
+                bounds=[(0, 1)] * len(start),
+                constraints=[
+                    constraint(responses.index(limit.response), *side)
+                    for limit in self.problem.limits
+                    for side in limit.sides
+                ],
+                options={"maxiter": rounds, "ftol": 1e-9},
+                callback=self.report,
+            )
+        except _NoDesign:
+            return last, "a design in the ranges is invalid"
+        return np.clip(result.x, 0, 1), "" if result.success else result.message.rstrip(".")
+
+    def by_evolution(self, start: Array, rounds: int, seed: int) -> tuple[Array, str]:
+        """The same for differential evolution."""
+        from scipy.optimize import differential_evolution
+
+        result = differential_evolution(
+            lambda u: self.scores(self.rows(u.T)),
+            [(0, 1)] * len(start),
+            x0=start,
+            rng=np.random.default_rng(seed),
+            popsize=POPULATION,
+            maxiter=rounds,
+            tol=1e-6,
+            vectorized=True,
+            updating="deferred",
+            polish=False,
+            callback=self.report,
+        )
+        return result.x, "" if result.success else result.message.rstrip(".")
+
+    def sides(self, u: Array) -> list[tuple[str, float]]:
+        """(text, relative margin) of every limit and every end of a range."""
+        bounds = [(limit.response.name, *side) for limit in self.problem.limits for side in limit.sides]
+        labels = [f"{name} {'>=' if sign > 0 else '<='} {bound:g}" for name, sign, bound in bounds]
+        margins = list(zip(labels, self.problem.margins(self.at(u)[None])[0].tolist(), strict=True))
+        for (i, span), share in zip(self.problem.spans.items(), u.tolist(), strict=True):
+            name = self.problem.vary[i].name
+            margins += [(f"{name} >= {span.low:g}", share), (f"{name} <= {span.high:g}", 1 - share)]
+        return margins
+
+    def violated(self, u: Array) -> list[str]:
+        """The limits that a point violates."""
+        return [text for text, margin in self.sides(u) if not margin >= -TOLERANCE]

@@ -1,0 +1,398 @@
+"""Studies as TOML: the path of a base scene, [[vary]] tables, and responses, [tolerances] or an [objective].
+
+The handbook's chapter on studies lists every key.
+"""
+
+from __future__ import annotations
+
+import re
+from concurrent.futures import Executor
+from contextlib import nullcontext
+from dataclasses import dataclass, field
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from cuefem.designs import Levels, Normal, Response, Sample, Span, Study, Vary
+from cuefem.designs.optimum import Limit, Problem
+from cuefem.designs.scatter import Scatter
+from cuefem.designs.store import SqliteStore
+from cuefem.designs.study_result import StudyResult, compute_study
+from cuefem.files import load_stroke, replaced_segments
+from cuefem.files.defaults_report import assumption_texts, assumptions
+from cuefem.files.errors import InputError, as_input_error, errors_name_key, file_state, quote
+from cuefem.files.lathe_profile import SHAPE_EXTENSIONS
+from cuefem.files.schema import build, key_path, named_material
+from cuefem.files.shaft_additions import SHAFT_ADDITIONS
+from cuefem.files.toml_reader import game_of, read_tables
+from cuefem.parameters.parameter import PARAMETERS, paths, quantity_at, with_parameters
+from cuefem.quantity.fields import Quantity
+from cuefem.scene import Resolution, Scene, Stroke
+from cuefem.scene.default_scene import KIM, usual_scene
+
+OFFSET = 0.3  # b/R, for a cue without a scene and the game "kim"
+FACTOR = Quantity("", "(0, inf)")
+_SEGMENT = re.compile(r"((?:cue\.)?segments)\[(\d+)\]")
+Texts = str | tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class VaryTable:
+    """[[vary]] of a file: values, or low and high, or median and sd, in the unit of the field."""
+
+    path: Texts
+    name: str = ""
+    values: tuple[Any, ...] | None = None
+    low: Any = None
+    high: Any = None
+    count: int | None = None
+    median: Any = None
+    sd: Any = None
+    spacing: str = "linear"
+    factor: bool = False
+    shift: bool = False
+    compensating_path: Texts = ()
+
+    def __post_init__(self) -> None:
+        if self.spacing not in ("linear", "logarithmic"):
+            raise ValueError(f"VaryTable.spacing must be linear or logarithmic; got {quote(self.spacing)}")
+
+
+@dataclass(frozen=True)
+class LimitTable:
+    """[[limit]] of a file."""
+
+    response: str
+    low: Any = None
+    high: Any = None
+
+
+@dataclass(frozen=True)
+class ObjectiveTable:
+    """[objective] of a file: the response to minimize or maximize."""
+
+    minimize: str | None = None
+    maximize: str | None = None
+
+    def __post_init__(self) -> None:
+        if (self.minimize is None) == (self.maximize is None):
+            raise ValueError('must be a table such as minimize = "squirt(0.3)"; got both keys or none')
+
+
+@dataclass(frozen=True)
+class TolerancesTable:
+    """[tolerances] of a file; the defaults are those of `Scatter`."""
+
+    count: int = Scatter.count
+    seed: int = Scatter.seed
+    correlations: tuple[Any, ...] = ()
+    groups: dict[str, tuple[str, ...]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class StudyTable:
+    """All keys of a study's file."""
+
+    scene: str
+    vary: tuple[VaryTable, ...]
+    responses: tuple[str, ...] = ()
+    game: str | None = None
+    material: str | None = None
+    length_unit: str | None = None
+    front: str | None = None
+    ferrule: str | None = None
+    bore: str | None = None
+    body_mass: str | None = None
+    shaft_mass: str | None = None
+    resolution: Resolution | None = None
+    sample: Sample | None = None
+    tolerances: TolerancesTable | None = None
+    objective: ObjectiveTable | None = None
+    limit: tuple[LimitTable, ...] = ()
+
+    def __post_init__(self) -> None:
+        kinds = [name for name in ("objective", "tolerances", "sample") if getattr(self, name) is not None]
+        if len(kinds) > 1:
+            raise ValueError(f"StudyTable.{kinds[1]} must be omitted with [{kinds[0]}]: a study has one kind")
+        if self.objective and self.responses:
+            raise ValueError("StudyTable.responses must be omitted with [objective], which names the response")
+        if self.limit and not self.objective:
+            raise ValueError("StudyTable.limit needs an [objective]")
+
+    @property
+    def drawing_options(self) -> dict[str, str]:
+        """The options of `cuefem.load` that are set: they supplement or replace values of the drawing."""
+        return {name: value for name in SHAFT_ADDITIONS if (value := getattr(self, name)) is not None}
+
+
+def load_study(path: str | PathLike[str]) -> Study | Scatter | Problem:
+    """Load a study from a TOML file; InputError for an invalid one.
+
+    [objective] makes it a `Problem`, [tolerances] a `Scatter`, else it is a `Study`. A base without a stroke (a cue)
+    gets the default stroke of the file's ``game``. Values are texts with units.
+    """
+    path = Path(path)
+    tables = build(StudyTable, _study_tables(path), file=str(path), key="")
+    base = _base(tables, path)
+    vary = _varied(tables, base, path)
+    if tables.objective is not None:
+        return _problem(tables, tables.objective, base, vary, path)
+    responses = tuple(_response(text, path, key_path("responses", i)) for i, text in enumerate(tables.responses))
+    with as_input_error(path, ""):
+        study = Study(base, vary, responses, tables.sample, tables.resolution)
+    if tables.tolerances is None:
+        return study
+    tolerances = tables.tolerances
+    correlations = _correlations(tolerances.correlations, path)
+    with as_input_error(path, "tolerances"):
+        return Scatter(study, correlations, tolerances.groups, tolerances.count, tolerances.seed)
+
+
+def study(
+    what: str | PathLike[str] | Study | Scatter | Problem,
+    *,
+    store: str | PathLike[str] | None = None,
+    workers: int | Executor | None = None,
+) -> StudyResult:
+    """Compute a study: a sweep over designs, a scatter with tolerances, or an optimum within limits.
+
+    Parameters
+    ----------
+    what : str, path, Study, Scatter or Problem
+        A study's file (.toml; see `cuefem guide study`), or the object that `load_study` makes of it.
+    store : str or path, optional
+        A file (.sqlite) for the designs, with which an interrupted or edited study resumes. Not for an optimum.
+    workers : int or Executor, optional
+        Number of worker processes, by default none; or any `concurrent.futures.Executor`, such as a cluster's, which
+        the caller closes.
+
+    Returns
+    -------
+    StudyResult
+        ``designs`` and ``responses`` are arrays by name, in the SI ``units``; ``best`` has the best design by response,
+        ``spread`` mean, standard deviation and quantiles; ``optimum`` and ``sobol_indices`` are for such studies only.
+        ``to_frame()`` converts it to a pandas frame.
+
+    Raises
+    ------
+    ValueError
+        If the file is not a study, a response does not exist, no design is within the limits, or a worker has no or
+        another cuefem.
+    RuntimeError
+        If worker processes die repeatedly, or the executor is lost.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> from cuefem.designs import Response, Span, Study, Vary
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 700.0)),), 0.42)
+    >>> tip = Vary(("cue.segments[0].tip_diameter",), Span(0.011, 0.013, count=3), name="tip")
+    >>> result = cf.study(Study(cf.Scene(cue), (tip,), (Response("tip_stiffness"), Response("shaft_mass"))))
+    >>> result
+    StudyResult(sweep of 3 designs)
+      tip_stiffness: 649.4 N/m, tip 13 mm
+      shaft_mass: 107.5 ± 5.8 g, mean ± sd
+    >>> result.designs["tip"], result.units["tip"]
+    (array([0.011, 0.012, 0.013]), 'm')
+    """
+    problem = load_study(what) if isinstance(what, str | PathLike) else what
+    if isinstance(problem, Problem):
+        if store or workers:
+            raise ValueError("an optimum takes no store or workers: it computes one design after the other")
+        return compute_study(problem)
+    designs = problem.sobol_study if isinstance(problem, Scatter) else problem
+    with SqliteStore(store, designs) if store else nullcontext() as stored:
+        return compute_study(problem, store=stored, workers=workers)
+
+
+def _problem(tables: StudyTable, objective: ObjectiveTable, base: Scene, vary: tuple[Vary, ...], path: Path) -> Problem:
+    aim = "maximize" if objective.minimize is None else "minimize"
+    response = _response(getattr(objective, aim), path, key_path("objective", aim))
+    limits = tuple(_limit(table, path, key_path("limit", i)) for i, table in enumerate(tables.limit))
+    with as_input_error(path, ""):
+        return Problem(base, vary, response, limits, tables.resolution, maximize=aim == "maximize")
+
+
+def _limit(tables: LimitTable, path: Path, key: str) -> Limit:
+    response = _response(tables.response, path, key_path(key, "response"))
+    unit, sides = Quantity(response.unit), {"low": tables.low, "high": tables.high}
+    bounds = {
+        side: _number(value, unit, path, key_path(key, side)) for side, value in sides.items() if value is not None
+    }
+    with as_input_error(path, key):
+        return Limit(response, **bounds)
+
+
+def _correlations(listed: tuple[Any, ...], path: Path) -> dict[tuple[str, str], float]:
+    correlations = dict[tuple[str, str], float]()
+    for i, entry in enumerate(listed):
+        key = key_path("tolerances.correlations", i)
+        match entry:
+            case [str(one), str(other), int() | float() as r] if not isinstance(r, bool):
+                if (one, other) in correlations:
+                    raise InputError(path, key, f"must be listed once; got {one} and {other} twice")
+                correlations[one, other] = float(r)
+            case _:
+                raise InputError(path, key, f"must be [name, name, number]; got {quote(entry)}")
+    return correlations
+
+
+def _study_tables(path: Path) -> dict[str, Any]:
+    """The tables of a study's file; InputError for a drawing or a scene."""
+    file_state(path)
+    shape = path.suffix.lower() in SHAPE_EXTENSIONS
+    tables = {} if shape else read_tables(path)
+    if shape or (not {"scene", "vary"} & set(tables) and {"segments", "cue"} & set(tables)):
+        what = "a drawing of a shaft" if shape or "segments" in tables else "a scene"
+        expected = f'must be a study, with scene = "{path.name}" and [[vary]] tables, such as studies/sweeps/bore.toml'
+        raise InputError(path, "", f"{expected}; got {what}")
+    return tables
+
+
+def _base(tables: StudyTable, path: Path) -> Scene:
+    game = _game(tables, path)
+    with errors_name_key(path, "scene"):
+        base = load_stroke(path.parent / tables.scene, **tables.drawing_options)
+    if not isinstance(base, Scene):
+        with as_input_error(path, "game"):
+            scene = Scene(base, stroke=Stroke(offset=OFFSET)) if game == KIM else usual_scene(base, game)
+        return _with_masses(scene, tables, path)
+    if tables.game is not None:
+        problem = f"must be omitted: {tables.scene} is a scene, which has its own ball, tip and stroke"
+        raise InputError(path, "game", f"{problem}; got {quote(game)}")
+    return _with_masses(base, tables, path)
+
+
+def _with_masses(scene: Scene, tables: StudyTable, path: Path) -> Scene:
+    """The scene with the masses that the study sets: of the butt, and of the shaft with its tip."""
+    for name in ("body_mass", "shaft_mass"):
+        text = getattr(tables, name)
+        if text is not None:
+            with as_input_error(path, name):
+                scene = with_parameters(scene, {name: PARAMETERS[name].quantity(scene).read(text)})
+    return scene
+
+
+def _game(tables: StudyTable, path: Path) -> str:
+    return game_of({} if tables.game is None else {"game": tables.game}, path)
+
+
+def base_assumptions(path: Path, base: Scene) -> list[str]:
+    """Texts of the assumptions for the base file of a study."""
+    tables = read_tables(path)
+    options = {key: tables[key] for key in ("game", "body_mass", "shaft_mass", *SHAFT_ADDITIONS) if key in tables}
+    return assumption_texts(assumptions(path.parent / tables["scene"], base, options))
+
+
+def _response(text: str, path: Path, key: str) -> Response:
+    with as_input_error(path, key):
+        return Response.of(text)
+
+
+def _varied(tables: StudyTable, base: Scene, path: Path) -> tuple[Vary, ...]:
+    """The [[vary]] tables of a study as objects."""
+    replaced = replaced_segments(path.parent / tables.scene, base, **tables.drawing_options)
+    grid = tables.objective is None and tables.tolerances is None and tables.sample is None
+    return tuple(_vary(table, base, replaced, path, i, grid) for i, table in enumerate(tables.vary))
+
+
+def _in_scene(text: str, base: Scene, replaced: int, path: Path, key: str) -> str:
+    """Convert a path with the segment numbers of the cue's file to those of the scene.
+
+    In the scene a `LeatherTip` replaces the first ``replaced`` segments.
+    """
+    match = _SEGMENT.match(text)
+    if match is None or not base.cue.segments:
+        return text
+    i, last = int(match[2]), replaced + len(base.cue.segments) - 1
+    if i > last:
+        raise InputError(path, key, f"must name a segment of the cue's file, 0 to {last}, 0 at the tip; got {text!r}")
+    if i < replaced:
+        names = '"tip height" or "leather"'
+        raise InputError(
+            path,
+            key,
+            f"must not name the drawn leather, which LeatherTip replaces: {names} varies the tip; got {text!r}",
+        )
+    return f"{match[1]}[{i - replaced}]{text[match.end() :]}"
+
+
+def _vary(tables: VaryTable, base: Scene, replaced: int, path: Path, i: int, grid: bool) -> Vary:
+    key = key_path("vary", i)
+    fields, compensating_fields = (
+        tuple(_in_scene(text, base, replaced, path, key_path(key, name)) for text in _listed(texts))
+        for name, texts in (("path", tables.path), ("compensating_path", tables.compensating_path))
+    )
+    quantity = _quantity(fields, base, tables, path, key_path(key, "path"))
+    drawn = _range(tables, quantity, path, key, grid)
+    name = tables.name or ", ".join(_listed(tables.path))
+    with as_input_error(path, key):
+        made = Vary(fields, drawn, name, tables.factor, tables.shift, compensating_fields)
+    for name, check in (("path", made.unit), ("compensating_path", made.compensating_fields)):
+        with as_input_error(path, key_path(key, name)):
+            check(base)
+    return made
+
+
+def _listed(texts: Texts) -> tuple[str, ...]:
+    return (texts,) if isinstance(texts, str) else texts
+
+
+def _quantity(texts: tuple[str, ...], base: Scene, tables: VaryTable, path: Path, key: str) -> Quantity | None:
+    """Unit and bounds of the values; None for materials."""
+    with as_input_error(path, key):
+        field = next((place for text in texts for place in paths(base, text)), None)
+        if field is None:
+            raise ValueError("must name a field; got none")
+    value = quantity_at(base, field)
+    if value is None or not (tables.factor or tables.shift):
+        return value
+    return FACTOR if tables.factor else Quantity(value.unit)
+
+
+def _range(tables: VaryTable, quantity: Quantity | None, path: Path, key: str, grid: bool) -> Levels | Span | Normal:
+    """The range by the keys of a table: values, low and high, or median and sd."""
+    pairs = (("values", "values"), ("low", "high"), ("median", "sd"))
+    present = [pair for pair in pairs if any(getattr(tables, name) is not None for name in pair)]
+    if len(present) != 1:
+        got = ", and ".join(" and ".join(dict.fromkeys(pair)) for pair in present) or "none of them"
+        raise InputError(path, key, f"must have values, or low and high, or median and sd; got {got}")
+    if tables.values is not None:
+        levels = tuple(
+            _level(v, quantity, path, key_path(key_path(key, "values"), i)) for i, v in enumerate(tables.values)
+        )
+        with as_input_error(path, key_path(key, "values")):
+            return Levels(levels)
+    normal, logarithmic = tables.low is None and tables.high is None, tables.spacing == "logarithmic"
+    if quantity is None:
+        raise InputError(
+            path, key, "must have values, a list of material names: materials have no low and high, or median and sd"
+        )
+    if normal and grid:
+        raise InputError(path, key, "median and sd need random designs: give [sample] or [tolerances]")
+    for name in (*present[0], *(["count"] if grid else [])):
+        if getattr(tables, name) is None:
+            raise InputError(
+                path, key_path(key, name), f"must be given, beside {' and '.join(present[0])}; got nothing"
+            )
+    deviation = Quantity("" if logarithmic else quantity.unit, "(0, inf)")
+    marks = zip(present[0], (quantity, deviation if normal else quantity), strict=True)
+    first, last = (_number(getattr(tables, name), mark, path, key_path(key, name)) for name, mark in marks)
+    with as_input_error(path, key):
+        if normal:
+            return Normal(first, last, logarithmic)
+        return Span(first, last, 1 if tables.count is None else tables.count, logarithmic)
+
+
+def _number(value: Any, quantity: Quantity, path: Path, key: str) -> float:
+    with as_input_error(path, key):
+        return quantity.read(value)
+
+
+def _level(value: Any, quantity: Quantity | None, path: Path, key: str) -> float | str:
+    if quantity is not None:
+        return _number(value, quantity, path, key)
+    if not isinstance(value, str):
+        raise InputError(path, key, f"must be the name of a material (see `cuefem parts`); got {quote(value)}")
+    named_material(value, path, key)
+    return value

@@ -1,0 +1,118 @@
+"""Statistics of a sweep: which parameter explains which response, and where two responses trade off."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cuefem.cue import Array
+from cuefem.designs.evaluation import Response
+from cuefem.designs.study_result import StudyResult
+from cuefem.quantity.equality import equal_fields
+
+MAX_LEVELS = 24  # maximum number of values of a parameter that are separate groups
+MAX_GROUPS = 12  # maximum number of groups, each a range, of a parameter with more values
+MIN_TREND = 0.2  # minimum rank correlation of a trend
+
+
+@dataclass(frozen=True, eq=False)
+class SweepStatistics:
+    """Designs with all responses.
+
+    names, units: of the parameters. numbers: of the designs. values: of each parameter, numbers or names.
+    results: (designs, responses).
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    responses: tuple[Response, ...]
+    numbers: NDArray[np.int_]
+    values: tuple[np.ndarray, ...]
+    results: Array
+
+    __eq__ = equal_fields
+
+    @cached_property
+    def shares(self) -> Array:
+        """Part of the variance of each response that each parameter explains alone, (parameters, responses)."""
+        return np.array([explained_variance(column, self.results) for column in self.values])
+
+    @cached_property
+    def trends(self) -> list[list[str]]:
+        """ "rises", "falls" or nothing, by parameter and response."""
+        return [[_trend(column, result) for result in self.results.T] for column in self.values]
+
+    @cached_property
+    def ranked(self) -> list[int]:
+        """The responses with a preferred direction, or all responses if none has one."""
+        indices = range(len(self.responses))
+        return [k for k in indices if self.responses[k].result.better] or [*indices]
+
+    @cached_property
+    def losses(self) -> Array:
+        """The results as losses, (designs, responses): the lowest is best."""
+        columns = zip(self.responses, self.results.T, strict=True)
+        return np.stack([response.loss(column) for response, column in columns], axis=1)
+
+    def best(self, k: int) -> int:
+        """The row of the best design for a response."""
+        return int(self.losses[:, k].argmin())
+
+    @cached_property
+    def pair(self) -> tuple[int, int] | None:
+        """The first ranked response and the one with the strongest trade-off; None if there is only one."""
+        first, *others = self.ranked
+        correlations = [_rank_correlation(self.losses[:, first], self.losses[:, k]) for k in others]
+        return (first, others[int(np.argmin(correlations))]) if others else None
+
+    @cached_property
+    def front(self) -> list[int]:
+        """Rows on the Pareto front of the pair of responses, in order of the first."""
+        if self.pair is None:
+            return []
+        first, second = self.losses[:, self.pair].T
+        order = np.lexsort((second, first))
+        least = np.minimum.accumulate(second[order])
+        return order[np.r_[True, least[1:] < least[:-1]]].tolist()
+
+
+def sweep_statistics(result: StudyResult) -> SweepStatistics | None:
+    """The statistics of a sweep; None if fewer than two designs have all responses."""
+    complete = np.flatnonzero(~np.isnan(result.columns.values).any(axis=1))
+    if len(complete) < 2:
+        return None
+    columns = tuple(column[complete] for column in result.designs.values())
+    names, units = (texts[: len(columns)] for texts in (result.study.columns, result.study.units))
+    return SweepStatistics(names, units, result.study.responses, complete, columns, result.columns.values[complete])
+
+
+def explained_variance(column: np.ndarray, results: Array) -> Array:
+    """Variance of the means over equal values, or over ranges of values, over the total variance, (responses,).
+
+    For ranges it is corrected for the share expected by chance.
+    """
+    levels, group = np.unique(column, return_inverse=True)
+    chance = len(levels) > MAX_LEVELS and column.dtype.kind in "fi"
+    if chance:
+        count = max(2, min(MAX_GROUPS, len(column) // 8))
+        edges = np.quantile(column, np.arange(1, count) / count)
+        group = np.unique(np.searchsorted(edges, column, side="right"), return_inverse=True)[1]
+    member = np.eye(group.max() + 1)[group]
+    between = np.var(member @ ((member.T @ results) / member.sum(axis=0)[:, None]), axis=0)
+    total = results.var(axis=0)
+    share = np.divide(between, total, out=np.zeros_like(total), where=total > 0)
+    count, groups = member.shape
+    return np.clip(1 - (1 - share) * (count - 1) / (count - groups), 0, 1) if chance and count > groups else share
+
+
+def _rank_correlation(first: Array, other: Array) -> float:
+    ranks = [np.unique(values, return_inverse=True)[1] for values in (first, other)]
+    return float(np.asarray(np.corrcoef(ranks))[0, 1]) if all(rank.any() for rank in ranks) else 0.0
+
+
+def _trend(column: np.ndarray, result: Array) -> str:
+    correlation = _rank_correlation(column, result) if column.dtype.kind in "fi" else 0.0
+    return "rises" if correlation > MIN_TREND else "falls" if correlation < -MIN_TREND else ""

@@ -1,0 +1,150 @@
+"""Computation of a study's designs, block by block: in this process, worker processes, or any executor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cuefem.cue import Array
+from cuefem.designs.blocks import BlockResult, Blocks, block_keys, compute_block, lost_block
+from cuefem.designs.executors import in_parallel
+from cuefem.designs.sampling import Value
+from cuefem.designs.study import Study
+from cuefem.quantity.equality import equal_fields
+
+ALONE = 2048  # designs whose keys this process makes faster than worker processes start
+
+
+class Row(NamedTuple):
+    """A design: its number, parameter values, responses in SI (None if missing), and the first error, or None."""
+
+    design: int
+    values: tuple[Value, ...]
+    responses: tuple[float | None, ...]
+    failure: str | None
+
+
+@dataclass(frozen=True)
+class Columns:
+    """The responses of all designs, (designs, responses) in SI, nan if missing, and reasons by the design's number."""
+
+    values: Array
+    failures: dict[int, str]
+
+    @classmethod
+    def of(cls, study: Study) -> Columns:
+        """Columns without a value."""
+        return cls(np.full((study.size, len(study.responses)), np.nan), {})
+
+    __eq__ = equal_fields
+
+    def row(self, design: int, values: tuple[Value, ...]) -> Row:
+        """A design as a row."""
+        numbers = tuple(None if x != x else x for x in self.values[design].tolist())
+        return Row(design, values, numbers, self.failures.get(design))
+
+    def add(self, numbers: list[int], values: Array, failures: dict[int, str]) -> None:
+        """Fill in designs by number; failures: by place in ``numbers``."""
+        self.values[numbers] = values
+        self.failures.update({numbers[i]: reason for i, reason in failures.items()})
+
+
+class Stored(NamedTuple):
+    """Stored designs of a block: their places in it, responses (places, responses), and failures by place in those."""
+
+    places: list[int]
+    values: Array
+    failures: dict[int, str]
+
+
+class Store(Protocol):
+    """Stored designs, of any number of studies."""
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether it holds no design."""
+
+    def read(self, keys: bytes) -> Stored:
+        """The stored designs among those with these keys."""
+
+    def write(self, result: BlockResult) -> None:
+        """Store a computed block, all or none of it."""
+
+
+def sweep(
+    study: Study,
+    store: Store | None = None,
+    *,
+    workers: int | Executor | None = None,
+    progress: Callable[[int], object] = lambda count: None,
+) -> Columns:
+    """Compute the designs of a study that are not stored, and store them, block by block.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    store : Store, optional
+        The store, by default none. Blocks are written in any order.
+    workers : int or Executor, optional
+        Number of worker processes, or the executor of a cluster, such as Dask's ``Client.get_executor()`` or MPI's
+        ``MPIPoolExecutor``, which the caller closes. By default this process computes.
+    progress : callable, optional
+        Called with the number of designs that were added to the result: stored ones, then each computed block.
+
+    Returns
+    -------
+    Columns
+        The responses of all designs. They do not depend on the blocks or on where they are computed.
+
+    Raises
+    ------
+    RuntimeError
+        If worker processes die repeatedly, or an executor is lost. Stored designs remain.
+    ValueError
+        If a worker of an executor has no cuefem, or another version.
+
+    Notes
+    -----
+    If the store holds designs, the keys of all designs are made first, by the workers, and only designs that are not
+    stored are computed. Into an empty store the keys come with the responses.
+    """
+    columns, designs = Columns.of(study), enumerate(study.designs())
+    if store is not None and not store.is_empty:
+        missing = _without_stored(study, store, columns, workers, progress)
+        designs = ((i, values) for i, values in designs if missing[i])  # type: ignore[assignment]
+    blocks, work = Blocks(designs), partial(compute_block, study, store is not None)
+    for result in in_parallel(work, blocks, workers, partial(lost_block, study)):
+        if store is not None and not result.is_lost:
+            store.write(result)
+        assert result.values is not None
+        columns.add(result.block.numbers, result.values, result.failures)
+        blocks.adapt(result)
+        progress(len(result.block.numbers))
+    return columns
+
+
+def _without_stored(
+    study: Study,
+    store: Store,
+    columns: Columns,
+    workers: int | Executor | None,
+    progress: Callable[[int], object],
+) -> NDArray[np.bool_]:
+    """Add the stored designs to the columns; (designs,), whether each must be computed."""
+    missing, blocks = np.ones(study.size, bool), Blocks(enumerate(study.designs()))
+    where = None if isinstance(workers, int) and study.size <= ALONE else workers
+    for result in in_parallel(partial(block_keys, study), blocks, where, partial(lost_block, study)):
+        stored = store.read(result.keys)
+        numbers = [result.block.numbers[place] for place in stored.places]
+        columns.add(numbers, stored.values, stored.failures)
+        missing[numbers] = False
+        blocks.adapt(result)
+        progress(len(numbers))
+    return missing

@@ -1,0 +1,267 @@
+"""Reading and writing of files: cues and scenes (TOML), lathe profiles (CSV), CAD surfaces, ParaView."""
+
+from __future__ import annotations
+
+import errno
+import os
+import shutil
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from cuefem.contact.side_strike import SideStrike
+from cuefem.cue import Cue, LumpedCue
+from cuefem.files.drawing_warnings import drawing_warnings
+from cuefem.files.errors import InputError, as_input_error, check_path, os_error_text, quote
+from cuefem.files.lathe_profile import DEFAULT_MATERIAL, SHAPE_EXTENSIONS, SPREADSHEET_EXTENSIONS, read_profile
+from cuefem.files.schema import named_material
+from cuefem.files.shaft_additions import with_additions, with_shaft_material
+from cuefem.files.toml_reader import cue_as_drawn, load_accuracy, load_cue, load_toml
+from cuefem.parameters.parameter import with_fields
+from cuefem.parameters.parts import with_shaft_mass
+from cuefem.quantity.fields import Quantity
+from cuefem.quantity.unit_checks import DrawingWarning, warn
+from cuefem.scene import Scene
+from cuefem.scene.default_scene import without_leather
+
+__all__ = [
+    "DEFAULT_MATERIAL",
+    "InputError",
+    "check_new_folder",
+    "check_writable",
+    "load",
+    "load_accuracy",
+    "load_stroke",
+    "number",
+    "save",
+    "save_page",
+    "write_atomically",
+    "write_folder_atomically",
+]
+
+MESH = ".vtu"
+
+
+def load(
+    path: str | os.PathLike[str],
+    *,
+    material: str | None = None,
+    length_unit: str | None = None,
+    front: str | None = None,
+    ferrule: str | None = None,
+    bore: str | None = None,
+    body_mass: str | float | None = None,
+) -> Cue | Scene | SideStrike:
+    """Load a cue or a scene from a file.
+
+    Parameters
+    ----------
+    path : str or path
+        A drawing or a scene (.toml), a lathe profile (.csv), or a closed CAD surface (.stl, .ply, .obj).
+    material : str, optional
+        Name of the material of the shaft; for a lathe profile or a surface "hard maple" by default.
+    length_unit : str, optional
+        Unit of a surface's coordinates, "mm" by default, or of a lathe profile without units.
+    front : str, optional
+        Front of a lathe profile or a surface: "ferrule" (default) or "leather 6 mm".
+    ferrule : str, optional
+        A ferrule at the front, such as "25 mm melamine", on a wooden tenon of 0.62 of its diameter. The tenon may be
+        named: "25 mm melamine, tenon 8 mm", "25 mm melamine, no tenon".
+    bore : str, optional
+        A bore, such as "6 mm wide, 127 mm deep", drilled from behind the tenon of the ferrule, or from the front.
+    body_mass : str or float, optional
+        Mass of the rest of the cue behind the drawing, such as "15 oz", or a number in kg; by default from the file.
+
+    Returns
+    -------
+    Cue, Scene or SideStrike
+        A .toml file with [[segments]] is a cue, one with [cue] a scene, one with [cue] and [striker] a side strike.
+
+    Raises
+    ------
+    InputError
+        A ValueError in one line that names the file, the key, the bound with its unit, and the value in the file.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 700.0)),))
+    >>> import tempfile, pathlib
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder) / "cue.toml"
+    ...     cf.save(cue, path)
+    ...     cf.load(path) == cue, cf.load(path, body_mass="15 oz").body_mass
+    (True, 0.425242...)
+    """
+    path = Path(path)
+    shape = path.suffix.lower() in SHAPE_EXTENSIONS
+    for name, value, whose in (("length_unit", length_unit, "units of length"), ("front", front, "leather")):
+        if value is not None and not shape:
+            files = f"{', '.join(SHAPE_EXTENSIONS[:-1])} and {SHAPE_EXTENSIONS[-1]}"
+            raise InputError(path, name, f"is only for {files} files: this one has its own {whose}; got {value!r}")
+    if path.suffix.lower() == ".toml":
+        loaded = load_toml(path, _load_cue)
+    else:
+        loaded = _load_cue(path, material if shape else None, length_unit)
+    additions = {"front": front, "ferrule": ferrule, "bore": bore}
+    changed = any(additions.values()) or (material is not None and not shape)
+    if (changed or body_mass is not None) and isinstance(loaded, Scene) and loaded.lumped:
+        raise InputError(path, "cue", "is a lumped cue, without material, ferrule, bore or body mass")
+    if changed:
+        with as_input_error(path, ""):
+            before: Any = loaded if isinstance(loaded, Cue) else loaded.cue
+            cue = before
+            if material is not None and not shape:
+                named_material(material, path, "material")
+                cue = with_shaft_material(cue, material)
+            cue = with_additions(cue, **additions)
+            if before.shaft_mass_measured:  # options on a shaft do not change its measured mass
+                cue = with_shaft_mass(cue, before.shaft_mass)
+            loaded = cue if isinstance(loaded, Cue) else replace(loaded, cue=cue)
+    return loaded if body_mass is None else with_body_mass(loaded, path, "body_mass", body_mass)
+
+
+def with_body_mass(thing: Any, path: Path, key: str, mass: str | float) -> Any:
+    """The cue, scene or side strike with another mass behind the drawing: a text with its unit, or a number in kg."""
+    with as_input_error(path, key):
+        value = Quantity("kg", "[0, inf)").read(mass if isinstance(mass, str) else f"{mass!r} kg")
+    cue: tuple[str, ...] = () if isinstance(thing, Cue) else ("cue",)
+    return with_fields(thing, {(*cue, "body_mass"): value, (*cue, "assumed_body_mass"): 0.0})
+
+
+def _load_cue(path: Path, material: str | None = None, length_unit: str | None = None) -> Cue:
+    ending = path.suffix.lower()
+    if ending == ".toml":
+        return load_cue(path)
+    if ending in SHAPE_EXTENSIONS:
+        wood = named_material(material or DEFAULT_MATERIAL, path, "material")
+        if ending == ".csv":
+            cue = read_profile(path, wood, length_unit)[0]
+        else:
+            from cuefem.files.surface_reader import load_surface
+
+            cue = load_surface(path, wood, length_unit)
+        for line in drawing_warnings(path):
+            warn(line, DrawingWarning)
+        return cue
+    if os.path.isdir(path):  # does not raise for a name that is too long, unlike Path.is_dir
+        raise InputError(path, "", "must be a file; got a folder")
+    hint = "; save the table as .csv" if ending in SPREADSHEET_EXTENSIONS else ""
+    raise InputError(path, "", f"must end in .toml, .csv, .stl, .ply or .obj; got {path.suffix!r}{hint}")
+
+
+def load_stroke(path: Path, **options: str | None) -> Cue | Scene:
+    """Load a cue or the scene of a stroke, with the options of `load`; InputError for a side strike."""
+    stroke = load(path, **options)
+    if isinstance(stroke, SideStrike):
+        raise InputError(
+            path, "striker", "must be absent: commands compute strokes; for a side strike use `cuefem.side_strike`"
+        )
+    return stroke
+
+
+def replaced_segments(path: Path, scene: Scene, **options: Any) -> int:
+    """Number of drawn segments, the first of the file, that a `LeatherTip` replaces in the scene.
+
+    options: of `load`, with which the scene was loaded.
+    """
+    loaded = load_stroke(path, **options)
+    drawn = cue_as_drawn(path, _load_cue) if isinstance(loaded, Scene) else loaded
+    if isinstance(drawn, LumpedCue) or scene.shaft.leather_height:
+        return 0
+    return len(drawn.segments) - len(without_leather(drawn).segments)
+
+
+def save(obj: Cue | Scene | SideStrike, path: str | os.PathLike[str]) -> None:
+    """Save a cue or a scene as TOML for `load`, numbers to 12 digits, or a cue as a line mesh.
+
+    Parameters
+    ----------
+    obj : Cue, Scene or SideStrike
+        The object to save.
+    path : str or path
+        A .toml file; for a cue also a line mesh (.vtu) for other programs: one cell per segment, dimensions and
+        materials as cell data in SI units. Writing is atomic: a failure leaves no partial file.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written.
+    TypeError
+        If ``obj`` is not a cue, scene or side strike.
+    ValueError
+        If the scene contains arrays.
+
+    Examples
+    --------
+    See `load`.
+    """
+    if not isinstance(obj, Cue | Scene | SideStrike):
+        raise TypeError(f"save writes a Cue, a Scene or a SideStrike; got {quote(obj)}")
+    path = Path(path)
+    if path.suffix.lower() == ".toml":
+        from cuefem.files.toml_writer import toml_text
+
+        content = toml_text(obj)
+        write_atomically(path, lambda temporary: temporary.write_text(content, encoding="utf-8"))
+    elif path.suffix.lower() == MESH and isinstance(obj, Cue):
+        from cuefem.files.line_mesh import save_line_mesh
+
+        write_atomically(path, lambda temporary: save_line_mesh(obj, temporary))
+    else:
+        allowed = ".toml or .vtu" if isinstance(obj, Cue) else ".toml, for a scene"
+        raise InputError(path, "", f"must end in {allowed}; got {path.suffix!r}")
+
+
+def save_page(text: str, path: str | os.PathLike[str]) -> None:
+    """Write a page as .html atomically; InputError on failure."""
+    path = Path(path)
+    if path.suffix != ".html":
+        raise InputError(path, "", f"must end in .html; got {path.suffix!r}")
+    write_atomically(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+
+
+def write_atomically(path: Path, write: Callable[[Path], object]) -> None:
+    """Write a temporary file beside ``path`` and rename it to ``path``, so that no partial file appears."""
+    check_path(path)
+    goal = Path(os.path.realpath(path))
+    temporary = goal.with_name(f".{goal.stem}.{os.getpid()}{goal.suffix}")
+    try:
+        write(temporary)
+        temporary.replace(goal)
+    except OSError as error:
+        raise InputError(path, "", f"cannot be written: {os_error_text(error)}") from None
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def check_new_folder(folder: Path) -> None:
+    """InputError if the folder, or a file of its name, exists."""
+    check_path(folder)
+    if folder.exists() or folder.is_symlink():
+        raise InputError(folder, "", "must be a new folder; a folder or file of this name exists")
+
+
+def write_folder_atomically(folder: Path, write: Callable[[Path], object]) -> None:
+    """Write a temporary folder beside ``folder`` and rename it, so that no partial folder appears."""
+    check_new_folder(folder)
+    temporary = folder.with_name(f".{folder.name}.{os.getpid()}")
+    try:
+        temporary.mkdir()
+        write(temporary)
+        temporary.rename(folder)
+    except OSError as error:
+        raise InputError(folder, "", f"cannot be written: {os_error_text(error)}") from None
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+
+
+def check_writable(path: Path) -> None:
+    """InputError if no file can be written at ``path``; called before the computation."""
+    check_path(path)
+    goal = Path(os.path.realpath(path))
+    exists = goal.parent.is_dir()
+    if goal.is_dir() or not exists or not os.access(goal.parent, os.W_OK):
+        code = errno.EISDIR if goal.is_dir() else errno.EACCES if exists else errno.ENOENT
+        raise InputError(path, "", f"cannot be written: {os.strerror(code)}")

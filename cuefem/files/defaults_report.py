@@ -1,0 +1,236 @@
+"""Report of defaults: an `Assumption` for each value that a file lacks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from cuefem.cue import Cue, Material
+from cuefem.files.lathe_profile import (
+    DEFAULT_MATERIAL,
+    DEFAULT_UNIT,
+    SHAPE_EXTENSIONS,
+    SURFACE_EXTENSIONS,
+    read_profile,
+)
+from cuefem.files.shaft_additions import BORE, FERRULE, LEATHER, TENON_RATIO
+from cuefem.files.surface_sections import TOLERANCE
+from cuefem.files.toml_reader import missing_keys, read_tables
+from cuefem.parameters.parts import Layout
+from cuefem.scene import DEFAULT_CONTACT_TIME, Scene
+from cuefem.scene.default_scene import DEFAULT_GAME, GAMES
+
+CUE, TIP, IMPACT, STROKE = "cue", "tip", "impact", "stroke"  # what an assumption is on
+_OF = {
+    **dict.fromkeys(("tip_height", "dome", "leather"), TIP),
+    **dict.fromkeys(("contact_time", "restitution", "friction"), IMPACT),
+    **dict.fromkeys(("ball_mass", "ball_diameter", "speed", "offset"), STROKE),
+}
+_OPTIONS = {"ball_mass": "game", "ball_diameter": "game"}  # of other keys: that of the same name
+_EXAMPLES = {"ferrule": FERRULE, "bore": BORE, "front": LEATHER}
+# Options of missing keys of a scene file; for other keys the name of the field.
+_KEYS = {"ball.mass": ("ball_mass",), "ball.radius": ("ball_diameter",), "effects": ("tip_height", "dome", "leather")}
+_UNNAMED = Material(1e9, 1e9 / 15, 1000.0)  # placeholder for the material of a profile without one
+
+
+@dataclass(frozen=True)
+class Assumption:
+    """A value that neither a file nor an option sets.
+
+    key: the parameter or addition to a drawing that it concerns; "" for none. text: the value. option: the option that
+    sets it. of: what it is on, "cue", "tip" (the leather), "impact" (of tip and ball) or "stroke" (with the ball).
+    """
+
+    key: str
+    text: str
+    option: str = ""
+    of: str = CUE
+
+    @classmethod
+    def on(cls, key: str, text: str) -> Assumption:
+        """The assumption on a parameter or an addition to a drawing."""
+        return cls(key, text, _OPTIONS.get(key, key), _OF.get(key, CUE))
+
+    def line(self, offered: Collection[str] = ()) -> str:
+        """The text, with the option if it is among ``offered``."""
+        example = f' "{_EXAMPLES[self.key]}"' if self.key in _EXAMPLES else ""
+        return f"{self.text} (--{self.option.replace('_', '-')}{example})" if self.option in offered else self.text
+
+
+def assumptions(path: Path, scene: Scene, options: Mapping[str, Any]) -> list[Assumption]:
+    """Assumptions for the scene of a file; options: values of the command's options by name."""
+    tables = read_tables(path) if path.suffix.lower() == ".toml" else {}
+    if "cue" in tables:
+        return assumptions_of_tables(tables, path.parent, scene, options)
+    game = options.get("game") or DEFAULT_GAME
+    known, butt = GAMES.get(game), ""
+    if known and scene.shaft.body_mass:
+        butt = f", butt to {1e3 * known.cue_length:g} mm, {1e3 * known.butt_diameter:g} mm wide, for axial waves"
+    stroke = Assumption.on("game", f"default stroke of {game}{butt}")
+    missing = [] if "game" in options else [stroke]
+    return [*_of_cue(path, scene.shaft, options), *missing, *_stroke({}, game, scene, options)]
+
+
+def assumptions_of_tables(
+    tables: dict[str, Any], folder: Path, scene: Scene, options: Mapping[str, Any]
+) -> list[Assumption]:
+    """Assumptions for a scene of a file's tables."""
+    cue, game = tables["cue"], str(tables.get("game", DEFAULT_GAME))
+    file = folder / cue if isinstance(cue, str) else None
+    drawing = [] if scene.lumped else _of_cue(file, scene.shaft, options)
+    stroke = _stroke(tables, game, scene, options)
+    if stroke and "game" not in tables:
+        stroke = [Assumption("", f"missing values from the default stroke of {game}"), *stroke]
+    return [*drawing, *stroke]
+
+
+def _of_cue(path: Path | None, cue: Cue, options: Mapping[str, Any]) -> list[Assumption]:
+    """Assumptions for the drawing of a stroke's cue, and for the rest of the cue. path: None of a scene's own table."""
+    drawing = [] if path is None else drawing_assumptions(path, cue, options)
+    if not cue.is_body_mass_assumed:
+        return drawing
+    rest = Assumption.on("body_mass", f"usual rest of the cue, {1e3 * cue.body_mass:.4g} g")
+    return [rest, *(each for each in drawing if each.key != "body_mass")]
+
+
+def drawing_assumptions(path: Path, cue: Cue, options: Mapping[str, Any]) -> list[Assumption]:
+    """Assumptions for a drawing: unit, material, parts and rest of the cue of a profile or surface; the tenon."""
+    ending = path.suffix.lower()
+    if ending not in SHAPE_EXTENSIONS:
+        return tenon_assumption(cue)
+    wood = {"material": f"material {DEFAULT_MATERIAL}", "shaft_mass": "mass by the density of that material"}
+    parts = {
+        "body_mass": "no butt behind the shaft",
+        "ferrule": "no ferrule",
+        "bore": "no bore",
+        "front": "the drawing starts at the ferrule, the tip is added",
+    }
+    given = {*options}
+    if ending in SURFACE_EXTENSIONS:
+        notes = [*([] if "length_unit" in options else [f"lengths in {DEFAULT_UNIT} (--length-unit)"]), *_surface(path)]
+    else:
+        drawn, notes = read_profile(path, _UNNAMED, options.get("length_unit"))
+        given |= _given_in_profile(drawn)
+    if any(cue.segments[i].tip_bore and cue.segments[i].core is None for i in Layout.of(cue).ferrule):
+        notes = [*notes, "the ferrule has the bore of the shaft, without a tenon"]
+    lacking = parts if "material" in given else wood | parts
+    return [
+        *(Assumption("", note) for note in notes),
+        *(Assumption.on(key, text) for key, text in lacking.items() if key not in given),
+        *tenon_assumption(cue),
+    ]
+
+
+def _given_in_profile(drawn: Cue) -> set[str]:
+    """The options whose values a lathe profile has itself; drawn: with `_UNNAMED` where it names no material."""
+    woods = [segment.material for segment in drawn.segments]
+    given = {
+        "material": _UNNAMED not in woods,
+        "ferrule": any(wood != _UNNAMED for wood in woods),
+        "bore": _is_bored(drawn),
+        "front": bool(drawn.leather_height),
+    }
+    return {key for key, is_given in given.items() if is_given}
+
+
+def _is_bored(cue: Cue) -> bool:
+    """Whether a drawing has a bore, apart from that of a ferrule for its tenon."""
+    ferrule = Layout.of(cue).ferrule
+    return any(max(s.tip_bore, s.butt_bore) > 0 for i, s in enumerate(cue.segments) if i not in ferrule)
+
+
+def given_keys(path: Path, opened: Cue | Scene, length_unit: str | None = None) -> set[str]:
+    """The options of cue and tip whose values a file has itself; opened: what it holds, without options."""
+    tables = read_tables(path) if path.suffix.lower() == ".toml" else {}
+    tip = {key for key, of in _OF.items() if of in (TIP, IMPACT)} - _missing(tables) if "cue" in tables else set()
+    if isinstance(opened, Scene) and opened.lumped:
+        return tip
+    drawing = path.parent / tables["cue"] if isinstance(tables.get("cue"), str) else path
+    cue = opened.shaft if isinstance(opened, Scene) else opened
+    return tip | _given_in_drawing(drawing, cue, length_unit)
+
+
+def _given_in_drawing(path: Path, cue: Cue, length_unit: str | None) -> set[str]:
+    ending = path.suffix.lower()
+    if ending in SURFACE_EXTENSIONS:
+        return set()
+    if ending in SHAPE_EXTENSIONS:
+        return _given_in_profile(read_profile(path, _UNNAMED, length_unit)[0])
+    given = {
+        "material": True,
+        "ferrule": bool(Layout.of(cue).ferrule),
+        "bore": _is_bored(cue),
+        "body_mass": cue.body_mass > 0 and not cue.is_body_mass_assumed,
+        "shaft_mass": cue.shaft_mass_measured,
+    }
+    return {key for key, is_given in given.items() if is_given}
+
+
+def tenon_assumption(cue: Cue) -> list[Assumption]:
+    """Assumption of a tenon of the default diameter in the ferrule."""
+    pieces = [cue.segments[i] for i in Layout.of(cue).ferrule]
+    if pieces and all(s.core and math.isclose(s.tip_bore, TENON_RATIO * s.tip_diameter, rel_tol=1e-4) for s in pieces):
+        text = f"the ferrule sits on a tenon of the shaft's wood, {TENON_RATIO:g} of its width"
+        return [Assumption("tenon", text)]
+    return []
+
+
+def _surface(path: Path) -> list[str]:
+    """Number of segments from a surface, and the error of its facets."""
+    from cuefem.files.surface_reader import read_surface
+
+    surface = read_surface(path)
+    corners = 2 * surface.facets / surface.widest
+    count = len(surface.pieces)
+    return [
+        f"{count} conical segment{'s' if count > 1 else ''}, diameters within {TOLERANCE:.0e} of the widest",
+        f"facets replaced by circles (corners up to {corners:.0e} of the widest diameter further out)",
+        "the thinner end is the tip",
+    ]
+
+
+def _stroke(tables: dict[str, Any], game: str, scene: Scene, options: Mapping[str, Any]) -> list[Assumption]:
+    """Assumptions for ball, tip, stroke and effects that a scene's tables lack, with the values of the scene."""
+    known, ball, tip = GAMES.get(game), scene.ball, scene.tip
+    missing = _missing(tables) - {*options}
+    whole_cue = ""
+    if known and tip.restitution != known.restitution:
+        whole_cue = f" of the tip (with axial waves, {known.restitution:g} of the whole cue head-on)"
+    words = {"ball_mass": f"ball {1e3 * ball.mass:g} g", "ball_diameter": f"ball {2e3 * ball.radius:g} mm"}
+    if any(effect.defines_tip for effect in scene.effects):
+        leather = scene.leather_tip
+        words |= {
+            "tip_height": f"leather tip {1e3 * leather.height:.4g} mm high, replacing any drawn leather",
+            "dome": f"tip radius (dome) {1e3 * leather.dome_radius:g} mm",
+            "leather": f"tip hardness {known.leather if known else ''}, E {1e-6 * leather.E:g} MPa",
+        }
+    elif tip.contact_time is None and tip.stiffness is None:
+        words["contact_time"] = (
+            f"contact time {1e3 * DEFAULT_CONTACT_TIME:g} ms, rigid cue head-on (leather: about 1 ms)"
+        )
+        missing.add("contact_time")
+    words |= {
+        "restitution": f"restitution {tip.restitution:.3g}{whole_cue}",
+        "friction": f"friction {tip.friction:g}",
+        "speed": f"cue speed {scene.stroke.speed:g} m/s",
+        "offset": f"offset b/R {scene.stroke.offset:.4g}",
+    }
+    return [Assumption.on(key, text) for key, text in words.items() if key in missing]
+
+
+def _missing(tables: dict[str, Any]) -> set[str]:
+    """The options whose values a scene's tables lack."""
+    return {key for left in missing_keys(tables) for key in _KEYS.get(left, (left.rpartition(".")[2],))}
+
+
+def assumption_texts(
+    listed: Iterable[Assumption], offered: Collection[str] = (), *, with_impact: bool = True
+) -> list[str]:
+    """Texts of assumptions, each with the option that changes it if it is among ``offered``.
+
+    with_impact: whether to include ball, tip and stroke.
+    """
+    return [each.line(offered) for each in listed if with_impact or each.of not in (IMPACT, STROKE)]

@@ -1,0 +1,223 @@
+"""A measured cue as a folder: the drawing, measured.toml with the measurements, and a CSV for each long series."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+import struct
+import warnings
+from collections.abc import Iterator
+from contextlib import suppress
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from scipy.io import wavfile
+
+from cuefem.files import InputError, load, write_folder_atomically
+from cuefem.files.csv_reader import read_lines, read_text
+from cuefem.files.defaults_report import assumption_texts, assumptions_of_tables
+from cuefem.files.errors import as_input_error, quote, read_bytes, suggestion
+from cuefem.files.schema import build, field_types, key_path, member_types, quantity_of, unknown_key
+from cuefem.files.toml_reader import GAME_KEYS, game_of, missing_keys, read_tables, scene_from_tables
+from cuefem.measurements.measured_cue import MeasuredCue
+from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Setup, Tone
+from cuefem.measurements.pendulum import Pendulum
+from cuefem.measurements.recording import Recording, combine_tones, tones_in
+from cuefem.measurements.uncertain_parameters import Prior
+from cuefem.parameters.parameter import parameter
+from cuefem.quantity.fields import Quantity
+from cuefem.scene import Scene
+
+MEASURED = "measured.toml"
+DRAWINGS = ("cue.toml", "cue.csv")
+SCENE_KEYS = ("cue", "game", "ball", "tip", "stroke", "effects")
+OWN_KEYS = ("name", "source", "prior")
+READINGS: dict[str, type] = {"recording": Recording, "pendulum": Pendulum}  # tables that yield measurements
+LONGEST, LARGEST_SOUND = 120.0, 100_000_000  # s, bytes of a recording: 120 s of two channels at 96 kHz and 32 bits
+TEMPLATE = ("README.md", "added_mass.csv", "cue.toml", MEASURED, "squirt.csv")
+
+_COLUMN = re.compile(r"\s*([a-z_]+)\s*(?:\[([^\]]+)\])?\s*")
+
+
+def load_measured(folder: Path) -> tuple[MeasuredCue, list[str]]:
+    """Load the measured cue of a folder, and the assumptions for its drawing; InputError for invalid files."""
+    if not folder.is_dir():
+        raise InputError(
+            folder, "", "must be the folder of a measured cue (create one with `--template`); got no folder"
+        )
+    path = folder / MEASURED
+    tables = read_tables(path) if path.exists() else {}
+    known = [*OWN_KEYS, *SCENE_KEYS, *MEASUREMENT_TYPES, *READINGS]
+    for name in tables:
+        if name not in known:
+            raise unknown_key(name, known, file=str(path), key="")
+    scene, notes = _scene(folder, path, tables)
+    measurements = (*_measurements(folder, path, tables), *_readings(folder, path, tables, scene))
+    priors = tuple(_priors(path, tables, scene))
+    name, source = (_text(path, tables, key) for key in ("name", "source"))
+    with as_input_error(path, ""):
+        made = MeasuredCue(name or folder.resolve().name, scene, measurements, priors, source)
+    return made, [*notes, *_examples(folder)]
+
+
+def write_template(folder: Path) -> None:
+    """Create a folder with example files of a measured cue; InputError if it exists."""
+
+    def write(temporary: Path) -> None:
+        for name in TEMPLATE:
+            (temporary / name).write_text(_example(name), encoding="utf-8")
+
+    write_folder_atomically(folder, write)
+
+
+def _example(name: str) -> str:
+    """A file of the template."""
+    return files(__package__).joinpath("measured_template", name).read_text(encoding="utf-8")
+
+
+def _examples(folder: Path) -> list[str]:
+    """A note on files that are unchanged from the template."""
+    there = [name for name in TEMPLATE[1:] if (folder / name).is_file()]
+    left = [name for name in there if read_text(folder / name) == _example(name)]
+    return [f"{', '.join(left)} as in the template, whose numbers are examples: replace them"] if left else []
+
+
+def _text(path: Path, tables: dict[str, Any], key: str) -> str:
+    value = tables.get(key, "")
+    if not isinstance(value, str):
+        raise InputError(path, key, f"must be text; got {quote(value)}")
+    return value
+
+
+def _scene(folder: Path, path: Path, tables: dict[str, Any]) -> tuple[Scene, list[str]]:
+    """The scene, and the assumptions for it: ball, tip, stroke and effects default to those of the game, or of pool."""
+    parts = {key: tables[key] for key in SCENE_KEYS if key in tables}
+    if "cue" not in parts:
+        there = next((name for name in DRAWINGS if (folder / name).exists()), None)
+        if there is None:
+            raise InputError(folder, "", f"must contain the shaft's drawing, {' or '.join(DRAWINGS)}; got none")
+        parts["cue"] = there
+    present = {*GAME_KEYS, "effects"} & {*parts}
+    if not present or missing_keys(parts) == ["stroke.offset"]:  # every measurement has its own offset
+        parts["game"] = game_of(parts, path)
+    scene = scene_from_tables(parts, path, _drawing)
+    if scene.lumped is not None:
+        raise InputError(path, "cue", "must be a cue of segments; got a lumped cue")
+    return scene, assumption_texts(assumptions_of_tables(parts, folder, scene, {"offset": None}))
+
+
+def _drawing(path: Path) -> Any:
+    drawing = load(path)
+    if isinstance(drawing, Scene):
+        raise InputError(path, "cue", "must be absent: this file is the drawing; ball and tip belong in " + MEASURED)
+    return drawing
+
+
+def _measurements(folder: Path, path: Path, tables: dict[str, Any]) -> Iterator[Measurement]:
+    for key, kind in MEASUREMENT_TYPES.items():
+        yield from _rows(path, tables, key, kind)
+        series = folder / f"{key}.csv"
+        if series.exists():
+            yield from _series(series, kind)
+    for other in sorted(folder.glob("*.csv")):
+        if other.name not in DRAWINGS and other.stem not in MEASUREMENT_TYPES:
+            names = ", ".join(f"{key}.csv" for key in MEASUREMENT_TYPES)
+            raise InputError(other, "", f"must be one of {names}{suggestion(other.stem, MEASUREMENT_TYPES)}")
+
+
+def _tables(path: Path, tables: dict[str, Any], key: str) -> list[dict[str, Any]]:
+    """The tables [[key]]."""
+    rows = tables.get(key, [])
+    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+        raise InputError(path, key, f"must be tables, [[{key}]]; got {quote(rows)}")
+    return rows
+
+
+def _rows(path: Path, tables: dict[str, Any], key: str, kind: type[Any]) -> Iterator[Any]:
+    """The objects of the tables [[key]]."""
+    for i, row in enumerate(_tables(path, tables, key)):
+        yield build(kind, row, file=str(path), key=key_path(key, i))
+
+
+def _readings(folder: Path, path: Path, tables: dict[str, Any], scene: Scene) -> Iterator[Measurement]:
+    """Measurements from pendulum tests and recordings: end masses, and one tone for each mode in the recordings."""
+    for pendulum in _rows(path, tables, "pendulum", Pendulum):
+        yield pendulum.end_mass
+    tones: list[Tone] = []
+    for recording in _rows(path, tables, "recording", Recording):
+        sound = folder / recording.file
+        with as_input_error(sound, ""):
+            samples, rate = _sound(sound)
+            source = recording.source or recording.file
+            tones += tones_in(samples, rate, Setup(scene).predictions.frequencies, source)
+    yield from combine_tones(tones)
+
+
+def _sound(path: Path) -> tuple[Any, float]:
+    """Samples, (n, channels), and samples per second of a .wav file; InputError if it cannot be read."""
+    if path.suffix.lower() != ".wav":
+        raise InputError(path, "", f"must end in .wav; got {path.suffix!r} (ffmpeg -i tap.m4a tap.wav converts)")
+    content = read_bytes(path, LARGEST_SOUND)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", wavfile.WavFileWarning)  # for chunks of metadata that phones add
+            rate, samples = wavfile.read(io.BytesIO(content))
+    except (ValueError, TypeError, ArithmeticError, MemoryError, struct.error, UnboundLocalError) as error:
+        detail = "" if isinstance(error, UnboundLocalError) else f" ({error})"  # raised for a file without data
+        raise InputError(path, "", f"must be a .wav file of sound{detail}") from None
+    if samples.size == 0 or not 0 < len(samples) <= LONGEST * rate:
+        raise InputError(path, "", f"must last at most {LONGEST:g} s and contain samples; got {len(samples)} samples")
+    return samples.reshape(len(samples), -1).astype(float), float(rate)
+
+
+def _series(path: Path, kind: type) -> Iterator[Measurement]:
+    """The measurements of a CSV: one column per key, its unit in the heading; empty cells are skipped."""
+    rows = [(i, next(csv.reader([line]))) for i, line in read_lines(path)]
+    if not rows:
+        raise InputError(path, "", "must begin with a line of headings; got comments alone")
+    (first, headings), *others = rows
+    columns = [_column(path, first, heading, kind) for heading in headings]
+    for line, cells in others:
+        if len(cells) != len(columns):
+            raise InputError(path, f"line {line}", f"must have {len(columns)} cells, one per heading; got {len(cells)}")
+        filled = [(*column, cell.strip()) for column, cell in zip(columns, cells, strict=True) if cell.strip()]
+        table = {name: _cell(cell, unit, field_types(kind)[name]) for name, unit, cell in filled}
+        yield build(kind, table, file=str(path), key=f"line {line}")
+
+
+def _column(path: Path, line: int, heading: str, kind: type) -> tuple[str, str]:
+    """Key and unit of a heading such as "value [deg]"."""
+    match, hints = _COLUMN.fullmatch(heading), field_types(kind)
+    if not match or match[1] not in hints:
+        hint = suggestion(heading.partition("[")[0].strip(), hints)
+        raise InputError(path, f"line {line}", f"must have headings {', '.join(hints)}; got {quote(heading)}{hint}")
+    name, unit, mark = match[1], match[2] or "", quantity_of(hints[match[1]])
+    wanted = mark.unit if mark else ""
+    if bool(wanted) != bool(unit):
+        example = f'"{name} [{wanted}]"' if wanted else f'"{name}"'
+        raise InputError(path, f"line {line}, {name}", f"must be the heading {example}; got {quote(heading)}")
+    return name, unit
+
+
+def _cell(cell: str, unit: str, hint: Any) -> Any:
+    """The value of a cell as in a TOML file: a text with its unit, a number, or text."""
+    if unit:
+        return f"{cell} {unit}"
+    with suppress(ValueError):
+        return int(cell) if int in member_types(hint) else float(cell) if quantity_of(hint) else cell
+    return cell
+
+
+def _priors(path: Path, tables: dict[str, Any], scene: Scene) -> Iterator[Prior]:
+    """The [[prior]] tables; low and high have the unit of the parameter."""
+    for i, row in enumerate(_tables(path, tables, "prior")):
+        key, name, read = key_path("prior", i), row.get("name"), dict(row)
+        with as_input_error(path, key):
+            known = parameter(name) if isinstance(name, str) else None
+            unit = known.quantity(scene).unit if known and {"low", "high"} & {*row} else ""
+        for end in [end for end in ("low", "high") if known and end in row]:
+            with as_input_error(path, key_path(key, end)):
+                read[end] = Quantity(unit, "(0, inf)").read(row[end])
+        yield build(Prior, read, file=str(path), key=key)

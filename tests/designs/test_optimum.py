@@ -1,0 +1,178 @@
+"""Optimization: the committed study, active limits, listed values, differential evolution (verification)."""
+
+import json
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem.cli.study_command import round_text
+from cuefem.cue.materials import material
+from cuefem.designs import Response, Span, Vary, evaluate
+from cuefem.designs.optimum import Limit, Optimum, Problem, Round, optimum
+from cuefem.designs.study_file import load_study
+from studies.pages import STUDIES
+from tests.helpers.command_line import stdout_of
+from tests.helpers.cues import low_deflection
+from tests.helpers.invalid_input import assert_rejects
+from tests.helpers.sweeps import OPTIMUM, write_study
+
+STUDY = STUDIES / "design" / "optimum.toml"
+OPTIMAL = {
+    "bore": 7e-3,
+    "bore depth": 0.07981007,
+    "ferrule length": 5e-3,
+    "tip diameter": 11e-3,
+    "end of the taper": 14.3e-3,
+}
+SCENE = cf.Scene(low_deflection(), tip=cf.Tip(contact_time=1e-3))
+SQUIRT, WALL, STIFFNESS = Response("squirt_slope"), Response("wall"), Response("tip_stiffness")
+
+
+def vary(name: str, low: float, high: float, *fields: str, compensating_path: tuple[str, ...] = ()) -> Vary:
+    return Vary(
+        tuple(f"cue.segments{field}" for field in fields), Span(low, high), name, compensating_path=compensating_path
+    )
+
+
+BORE = vary("bore", 0.002, 0.010, *(f"[{i}].{end}_bore" for i in (1, 2) for end in ("tip", "butt")))
+DEPTH = vary("bore depth", 0.03, 0.25, "[2].length", compensating_path=("cue.segments[3].length",))
+TIP = vary("tip", 0.011, 0.0135, *(f"[{i}].{e}_diameter" for i in (0, 1) for e in ("tip", "butt")), "[2].tip_diameter")
+TAPER = vary("taper end", 0.0127, 0.016, "[3].butt_diameter", "[4].tip_diameter")
+LIMITS = (
+    Limit(STIFFNESS, low=430.0),
+    Limit(WALL, low=0.0015),
+    Limit(Response("tip_diameter"), low=0.0118),
+    Limit(Response("shaft_mass"), 0.085, 0.11),
+    Limit(Response("balance_point"), high=0.48),
+    Limit(Response("frequency", 1), low=95.0),
+)
+PROBLEM = Problem(SCENE, (BORE, DEPTH, TIP, TAPER), SQUIRT, LIMITS, cf.Resolution(1, 6, 8))
+
+
+@cache
+def best() -> Optimum:
+    return optimum(PROBLEM)
+
+
+def test_committed_study_equals_optimum_of_exact_gradients(tmp_path: Path) -> None:
+    """The optimum of exact gradients; the saved scene has the required stiffness."""
+    goal = tmp_path / "best.toml"
+    record = json.loads(stdout_of("study", STUDY, "--json", "-o", goal))
+    assert (record["kind"], record["objective"], record["stop_reason"]) == ("optimum", {"minimize": "squirt_slope"}, "")
+    # a vertex: five limits are active and determine the five parameters
+    assert record["value"] == pytest.approx(0.04242492565, rel=1e-6)
+    assert record["values"] == pytest.approx(OPTIMAL, rel=1e-6)
+    assert record["active"][:2] == ["tip_stiffness >= 386.7", "wall >= 0.002"]
+    assert record["responses"] == pytest.approx(
+        {"squirt_slope": record["value"], "tip_stiffness": 386.7, "wall": 0.002}
+    )
+    written_best = cf.load(goal)
+    assert evaluate([cf.Scene(written_best.cue)], [STIFFNESS]).values[0, 0] == pytest.approx(386.7, rel=1e-6)
+    assert written_best.cue.segments[0].tip_diameter == pytest.approx(record["values"]["tip diameter"], rel=1e-8)
+    assert_rejects("--force", "study", STUDY, "-o", goal)
+
+
+@pytest.mark.heavy
+def test_optimum_of_strike_converges_to_same_design() -> None:
+    """Squirt of a strike at b/R 0.3, for which differential evolution takes thousands of strikes."""
+    problem, rounds = replace(load_study(STUDY), objective=Response("squirt", 0.3)), list[Round]()
+    result = optimum(problem, progress=rounds.append)
+    assert (result.stop_reason, rounds[-1].evaluations < 200) == ("", True)
+    assert result.responses["squirt(0.3)"] == pytest.approx(0.011620, abs=2e-6)
+    assert result.values == pytest.approx(OPTIMAL, rel=1e-4)
+
+
+@pytest.mark.heavy
+def test_active_limits_constrain_the_optimum() -> None:
+    """Removing a limit improves the objective if and only if the limit is active."""
+    point = np.array([best().values[v.name] for v in PROBLEM.vary])
+    assert PROBLEM.margins(PROBLEM.values(point[None])).min() == pytest.approx(0.0, abs=1e-6)
+    assert (best().scene, best().stop_reason) == (PROBLEM.scene(point), "")
+    assert best().active
+    for limit in LIMITS:
+        rest = tuple(other for other in LIMITS if other != limit)
+        freed = optimum(replace(PROBLEM, limits=rest), start=point).responses["squirt_slope"]
+        named = any(text.startswith(limit.response.name) for text in best().active)
+        gained = freed / best().responses["squirt_slope"]
+        assert (gained < 1 - 1e-5) == named or (named and gained == pytest.approx(1, abs=1e-6)), limit
+
+
+def test_maximum_under_limit_equals_minimum_under_limit() -> None:
+    """Maximum stiffness at the least squirt of a stiffness limit equals that limit's stiffness."""
+    least = optimum(Problem(SCENE, (BORE, TIP, TAPER), SQUIRT, (Limit(STIFFNESS, low=430.0),), PROBLEM.at))
+    bound = Limit(SQUIRT, high=least.responses["squirt_slope"])
+    stiffest = optimum(Problem(SCENE, (BORE, TIP, TAPER), STIFFNESS, (bound,), PROBLEM.at, maximize=True))
+    assert stiffest.responses["tip_stiffness"] == pytest.approx(least.responses["tip_stiffness"], rel=1e-4)
+
+
+def test_optimum_of_left_hand_offset_is_that_of_right_hand() -> None:
+    """Objective, maximum and limits compare the size of squirt; the result has its sign."""
+    right, left = Response("squirt", 0.3), Response("squirt", -0.3)
+    bores = replace(PROBLEM, vary=(BORE,), limits=(), at=cf.Resolution(1, 6, 6))
+    results = [optimum(replace(bores, objective=each)) for each in (right, left)]
+    assert [result.values["bore"] for result in results] == pytest.approx([0.01, 0.01], rel=1e-9)
+    assert results[1].responses[left.name] == pytest.approx(-results[0].responses[right.name], rel=1e-9)
+    assert optimum(replace(bores, objective=left, maximize=True)).values["bore"] == pytest.approx(0.002, rel=1e-9)
+    most = 1.05 * results[0].responses[right.name]
+    limited = [
+        optimum(replace(bores, objective=STIFFNESS, maximize=True, limits=(Limit(each, high=most),)))
+        for each in (right, left)
+    ]
+    assert limited[1].values == pytest.approx(limited[0].values, rel=1e-5)
+    assert limited[0].values["bore"] < 0.0099
+    assert limited[1].active == (f"squirt(-0.3) <= {most:g}",)
+
+
+@pytest.mark.heavy
+def test_invalid_start_uses_evolution_then_slsqp() -> None:
+    """A bore wider than the tip: SLSQP cannot start there; the optimum equals that of a valid start."""
+    wide = replace(BORE, range=Span(0.002, 0.014))
+    problem = Problem(SCENE, (wide, TIP), SQUIRT, (Limit(WALL, low=0.0015),), cf.Resolution(1, 6, 8))
+    good, bad = (optimum(problem, start=np.array([x, 0.0125]), rounds=15) for x in (0.005, 0.0139))
+    assert bad.evaluations > 100 > good.evaluations
+    assert (bad.stop_reason, bad.values) == ("", pytest.approx(good.values, rel=1e-4))
+
+
+NAMES = OPTIMUM + '[[vary]]\npath = "cue.segments[0].material"\nvalues = ["hard maple", "ash", "purpleheart"]\n'
+
+
+@pytest.mark.heavy
+def test_listed_values_are_searched_one_by_one(tmp_path: Path) -> None:
+    problem = load_study(write_study(tmp_path, NAMES.replace("300 N/m", "700 N/m")))
+    result = optimum(problem, rounds=8)
+    each = {str(choice.values["cue.segments[0].material"]): choice for choice in result.choices}
+    assert [*each] == ["hard maple", "ash", "purpleheart"]
+    assert each["ash"].reason.startswith("no design within tip_stiffness >= 700 was found")
+    for name in ("hard maple", "purpleheart"):
+        base = replace(problem.base, cue=replace(problem.base.cue, segments=(of(problem.base.cue, name),)))
+        alone = optimum(replace(problem, base=base, vary=problem.vary[:2]))
+        assert alone.responses["squirt_slope"] == pytest.approx(each[name].objective, rel=1e-6)
+    assert result.responses["squirt_slope"] == min(each[name].objective for name in ("hard maple", "purpleheart"))
+    assert result.scene.cue.segments[0].material == material(result.values["cue.segments[0].material"])
+
+
+def test_optimum_of_listed_values_alone(tmp_path: Path) -> None:
+    head, *_, last = NAMES.split("[[vary]]")
+    result = cf.study(write_study(tmp_path, f"{head}[[vary]]{last}")).optimum
+    assert result.evaluations == len(result.choices) == 3
+    best = min(result.choices, key=lambda choice: choice.objective)
+    assert (result.values, result.responses["squirt_slope"]) == (best.values, best.objective)
+
+
+def of(cue: cf.Cue, name: str) -> cf.Segment:
+    return replace(cue.segments[0], material=material(name))
+
+
+def test_optimum_output_has_units_limits_and_rounds(tmp_path: Path) -> None:
+    out = stdout_of("study", write_study(tmp_path, OPTIMUM))
+    assert {"bore 9 mm", "tip 10 mm"} <= {" ".join(line.split()) for line in out.splitlines()}
+    assert "active constraints: bore <= 9 mm, tip >= 10 mm" in out
+    assert "not finished: " in stdout_of("study", tmp_path / "study.toml", "--iterations", 1)
+    problem = load_study(tmp_path / "study.toml")
+    texts = [round_text(problem, Round({"wood": "ash"}, 3, 30, best), 60) for best in (np.nan, 0.0412345678)]
+    assert texts[0].endswith("no design within the limits yet")
+    assert texts[1].endswith("squirt slope 0.0412346 so far")

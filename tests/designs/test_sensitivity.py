@@ -1,0 +1,89 @@
+"""Sensitivities: the sum rule, and central differences of the end mass (verification)."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from cuefem import Cue, Material, PointMass, Resolution, Scene, Tip, load
+from cuefem.designs.sensitivity import Sensitivity, sensitivity
+from cuefem.endmass.definitions import end_mass
+from tests.helpers.cues import kim, low_deflection, reference_cue
+
+MESHES = Path(__file__).parents[2] / "meshes"
+AT = Resolution(3, 8, 14)
+
+
+def scene(cue: Cue, contact_time: float = 1e-3) -> Scene:
+    return Scene(cue, tip=Tip(contact_time=contact_time))
+
+
+def integral(result: Sensitivity, cue: Cue, *names: str) -> float:
+    """Integral of densities times their properties."""
+    section = cue.section(result.x)
+    return math.fsum(result.weights @ (getattr(result, name) * getattr(section, name)) for name in names)
+
+
+@pytest.mark.parametrize("path", sorted(MESHES.glob("*.toml")), ids=lambda path: path.stem)
+def test_sensitivity_parts_sum_to_end_mass(path: Path) -> None:
+    """handbook: Effective end mass, on every cue in meshes/."""
+    cue = load(path)
+    assert isinstance(cue, Cue)
+    base = scene(cue)
+    result = sensitivity(base, Resolution(2, 14, 40))
+    whole = result.end_mass - base.ball.mass * result.ball_mass - base.axial_mass * result.axial_mass
+    assert integral(result, cue, "rhoA", "rhoI", "EI", "kGA") == pytest.approx(whole, rel=1e-8)
+    assert result.end_mass == pytest.approx(end_mass(base, "stick", Resolution(2, 14, 40)), rel=1e-11)
+
+
+def test_sensitivity_sum_of_kim_shaft_equals_handbook() -> None:
+    """Kim's shaft, 1 ms: 1.0206 m_e."""
+    result = sensitivity(scene(kim()))
+    sum_of_parts = integral(result, kim(), "rhoA", "rhoI", "EI", "kGA")
+    assert sum_of_parts / result.end_mass == pytest.approx(1.0206, abs=6e-5)
+
+
+def slope(function: Callable[[float], float], step: float) -> float:
+    """Derivative at 0 by central differences of two steps, Richardson's: error of step^4."""
+    wide, narrow = ((function(h) - function(-h)) / (2 * h) for h in (step, step / 2))
+    return (4 * narrow - wide) / 3
+
+
+CUES = pytest.mark.parametrize("cue", [kim(), low_deflection(), reference_cue("carbon")], ids=["kim", "bored", "tube"])
+
+
+@CUES
+def test_sensitivity_to_point_mass_equals_difference(cue: Cue) -> None:
+    """The density of rhoA is the end mass that a point mass there adds."""
+    fine = Resolution(4, 20, 14)  # so fine that the node of the point mass has no effect
+    result = sensitivity(scene(cue), fine)
+    i = len(result.x) // 3
+    mass = 1e-5  # kg: at 1 mg round-off is 1e-6, here 1e-7
+    scenes = (replace(scene(cue), effects=(PointMass(position=result.x[i], mass=count * mass),)) for count in (1, 2, 3))
+    first, second, third = (end_mass(each, "stick", fine) for each in scenes)
+    bare = end_mass(scene(cue), "stick", fine)
+    measured = (18 * first - 9 * second + 2 * third - 11 * bare) / (6 * mass)
+    assert measured == pytest.approx(result.rhoA[i] + result.axial_mass, rel=1e-6)
+
+
+def multiplied(cue: Cue, constant: str, factor: float) -> Cue:
+    """The cue with a constant of every material, and every core, multiplied; Poisson's ratio follows."""
+
+    def material(m: Material | None) -> Material | None:
+        return m and replace(m, nu=0.0, **{constant: getattr(m, constant) * factor})
+
+    segments = (replace(s, material=material(s.material), core=material(s.core)) for s in cue.segments)
+    return replace(cue, segments=tuple(segments))
+
+
+@CUES
+@pytest.mark.parametrize(("constant", "names"), [("E", ["EI"]), ("G", ["kGA"]), ("rho", ["rhoA", "rhoI"])])
+def test_sensitivity_to_material_constant_equals_difference(cue: Cue, constant: str, names: list[str]) -> None:
+    """With nu = 0 the shear coefficient is independent of E and G; a denser cue has a larger axial mass."""
+    cue = multiplied(cue, constant, 1.0)
+    result = sensitivity(scene(cue), AT)
+    expected = integral(result, cue, *names) + (result.axial_mass * cue.shaft_mass if constant == "rho" else 0.0)
+    measured = slope(lambda h: end_mass(scene(multiplied(cue, constant, 1 + h)), "stick", AT), 1e-2)
+    assert measured == pytest.approx(expected, rel=1e-6)

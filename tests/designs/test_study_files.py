@@ -1,0 +1,91 @@
+"""Study files: numbering of segments, default strokes, ranges (properties)."""
+
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from cuefem.designs import Normal, Span
+from cuefem.designs.study_file import load_study
+from cuefem.files import InputError
+from tests.helpers.command_line import as_json
+from tests.helpers.invalid_input import assert_rejects
+from tests.helpers.sweeps import SCENE, STRIKES, STUDY, write_study
+
+LEATHER = ("6 mm", "12.75 mm", "12.75 mm", 'material = "leather"')
+TENON = 'tip_bore = "8 mm"\nbutt_bore = "8 mm"\ncore = "ash"\nmaterial = "melamine"'
+FERRULED = ("20 mm", "12.75 mm", "12.8 mm", TENON)
+BORED = ("126 mm", "12.8 mm", "13 mm", 'tip_bore = "6 mm"\nbutt_bore = "6 mm"\nmaterial = "hard maple"')
+REST = ("550 mm", "13 mm", "21.5 mm", 'material = "hard maple"')
+CUE = 'body_mass = "430 g"\n' + "".join(
+    f'[[segments]]\nlength = "{length}"\ntip_diameter = "{tip}"\nbutt_diameter = "{butt}"\n{more}\n'
+    for length, tip, butt, more in (LEATHER, FERRULED, BORED, REST)
+)
+OF_CUE = 'game = "pool"\ncue = "cue.toml"\n[stroke]\nspeed = "3 m/s"\n'
+# What each path varies: segment and field of the scene, value in the file, m, and the piece that the output names.
+FERRULE, BORE = "ferrule of melamine, 0 to 20 mm", "bored shaft of hard maple, 20 to 146 mm"
+PATHS = {
+    "cue.segments[1].length": (0, "length", 0.020, FERRULE),
+    "segments[2].tip_bore": (1, "tip_bore", 0.006, BORE),
+    "ferrule length": (0, "length", 0.020, FERRULE),
+    "bore width": (1, "tip_bore", 0.006, BORE),
+}
+
+
+def varying(folder: Path, path: str, *, of: str = "cue.toml", more: str = "") -> Path:
+    (folder / "cue.toml").write_text(CUE, encoding="utf-8")
+    text = f'scene = "{of}"\nresponses = ["shaft_mass"]\n[[vary]]\npath = "{path}"\nvalues = ["5 mm", "7 mm"]\n{more}'
+    return write_study(folder, text, OF_CUE)
+
+
+@pytest.mark.parametrize("of", ["cue.toml", "scene.toml"])
+@pytest.mark.parametrize("path", PATHS)
+def test_study_segments_are_numbered_as_in_file(path: str, of: str, tmp_path: Path) -> None:
+    i, field, before, piece = PATHS[path]
+    expected = load_study(file := varying(tmp_path, path, of=of))
+    assert getattr(expected.base.cue.segments[i], field) == pytest.approx(before)
+    for value in (0.005, 0.007):
+        assert getattr(expected.scene((value,)).cue.segments[i], field) == pytest.approx(value)
+    assert as_json("study", file)["varied_fields"] == {path: [piece]}
+
+
+def test_study_compensated_length_of_segment_in_file(tmp_path: Path) -> None:
+    more = 'compensating_path = "cue.segments[2].length"\n'
+    expected = load_study(varying(tmp_path, "cue.segments[1].length", more=more))
+    lengths = [segment.length for segment in expected.scene((0.005,)).cue.segments]
+    assert lengths == pytest.approx([0.005, 0.141, 0.55])
+
+
+@pytest.mark.parametrize(
+    ("path", "message"),
+    [("cue.segments[0].length", "must not name the drawn leather"), ("cue.segments[4].length", "cue's file, 0 to 3")],
+)
+def test_study_segment_off_the_modelled_cue_raises(path: str, message: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=message):
+        load_study(varying(tmp_path, path))
+
+
+def test_study_of_cue_has_default_stroke_of_game(tmp_path: Path) -> None:
+    for game, usual in (("kim", lambda cue: cf.Scene(cue, stroke=cf.Stroke(offset=0.3))), ("", cf.usual_scene)):
+        file = varying(tmp_path, "bore width")
+        file.write_text((f'game = "{game}"\n' if game else "") + file.read_text(encoding="utf-8"), encoding="utf-8")
+        assert load_study(file).base == usual(cf.load(tmp_path / "cue.toml"))
+        assert f"cue speed {1 if game else 2} m/s" in as_json("study", file)["assumptions"]
+    file.write_text('game = "chess"\n' + file.read_text(encoding="utf-8"), encoding="utf-8")
+    assert_rejects("study.toml: game: must be one of pool, carom, snooker, kim", "study", file)
+    of_scene = write_study(tmp_path, f'game = "pool"\n{STUDY}')
+    assert_rejects("study.toml: game: must be omitted: scene.toml is a scene", "study", of_scene)
+
+
+def test_study_file_ranges_are_read(tmp_path: Path) -> None:
+    text = STRIKES.replace('low = "0 mm"\nhigh = "13 mm"', 'median = "5 mm"\nsd = "1 mm"')
+    text = text.replace("low = 0.7\nhigh = 1.3", 'median = 1\nsd = 0.2\nspacing = "logarithmic"')
+    text += '[[vary]]\npath = "cue.segments[0].length"\nlow = "-5 mm"\nhigh = "5 mm"\nshift = true\n'
+    text += 'compensating_path = "cue.segments[1].length"\n'
+    two = SCENE.replace("[tip]", SCENE[SCENE.index("[[") : SCENE.index("[tip]")] + "[tip]")
+    result = load_study(write_study(tmp_path, text, two))
+    bore, modulus, length = result.vary
+    assert (bore.range, modulus.range) == (Normal(5e-3, 1e-3), Normal(1, 0.2, logarithmic=True))
+    assert (length.range, length.shift) == (Span(-5e-3, 5e-3), True)
+    assert length.compensating_path == ("cue.segments[1].length",)
+    assert result.units[:3] == ("m", "", "m")

@@ -1,0 +1,141 @@
+"""Files of every kind load and save exactly (regression)."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import meshio
+import pytest
+
+import cuefem as cf
+from cuefem.cue.materials import material
+from cuefem.files import InputError, load_accuracy
+from tests.helpers.cues import kim
+
+KIM = kim()
+(SEGMENT,) = KIM.segments
+MAPLE = SEGMENT.material
+KIM_TOML = """
+segments = [
+  { length = "700 mm", tip_diameter = "12 mm", butt_diameter = "21 mm", kappa = 0.9, material = MAPLE },
+]
+body_mass = "420 g"
+""".replace("MAPLE", f'{{ E = "12.6 GPa", G = "840 MPa", rho = "{MAPLE.rho!r} kg/m^3" }}')
+SCENE_TOML = """
+cue = "cues/kim.toml"
+ball = { mass = "6 oz", radius = "1.125 in" }
+tip = { restitution = 0.75, friction = inf, contact_time = "1.2 ms" }
+stroke = { speed = "10 km/h", offset = 0.3 }
+effects = [{ type = "PointMass", position = "1 in", mass = "5 g" }]
+accuracy = { rtol = 1e-4 }
+"""
+
+
+def test_load_scene_resolves_relative_path_of_cue(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "cues").mkdir()
+    (tmp_path / "cues" / "kim.toml").write_text(KIM_TOML)
+    (tmp_path / "scene.toml").write_text(SCENE_TOML)
+    ball, tip = cf.Ball(0.17009713875, 0.028575), cf.Tip(friction=math.inf, contact_time=0.0012)
+    stroke = cf.Stroke(float("2.777777777777777777777777778"), 0.3)
+    monkeypatch.chdir(tmp_path / "cues")
+    assert cf.load("../scene.toml") == cf.Scene(KIM, ball, tip, stroke, (cf.PointMass(position=0.0254, mass=0.005),))
+    assert (load_accuracy("../scene.toml"), load_accuracy("kim.toml")) == (1e-4, None)
+
+
+PROFILE = "# a shaft\nx [mm],diameter [in]\n10,0.5\n110,0.5\n210,0.5\n\n310,0.6\n410,0.7\n710,0.8\n"
+
+
+def test_load_profile_merges_straight_tapers(tmp_path: Path) -> None:
+    (tmp_path / "shaft.csv").write_text(PROFILE)
+    cue = cf.load(tmp_path / "shaft.csv")
+    ash = cf.load(tmp_path / "shaft.csv", material="ash")
+    assert [s.length for s in cue.segments] == pytest.approx([0.2, 0.2, 0.3], rel=1e-15, abs=0)
+    ends = [(s.tip_diameter, s.butt_diameter) for s in cue.segments]
+    assert ends == [(0.0127, 0.0127), (0.0127, 0.01778), (0.01778, 0.02032)]
+    assert cue.body_mass == 0
+    assert ash.segments[0].material != cue.segments[0].material
+    assert replace(ash.segments[1], material=cue.segments[1].material) == cue.segments[1]
+
+
+def test_save_vtu_contains_the_cue(tmp_path: Path) -> None:
+    path = tmp_path / "kim.vtu"
+    cf.save(cf.Cue((SEGMENT, replace(SEGMENT, core=MAPLE, kappa=None)), 0.42), path)
+    mesh = meshio.vtu.read(path)
+    assert mesh.points[:, 0].tolist() == [0, 0.7, 1.4]
+    assert mesh.cells_dict["line"].tolist() == [[0, 1], [1, 2]]
+    assert mesh.cell_data["core_E"][0].tolist() == [0, 12.6e9]
+    assert mesh.cell_data["kappa"][0].tolist() == [0.9, 0]
+    assert mesh.cell_data["body_mass"][0].tolist() == [0.42, 0.42]
+
+
+def test_save_toml_uses_readable_units_and_names(tmp_path: Path) -> None:
+    maple, made_up = material("hard maple"), cf.Material(13.5e9, 1.2e9, 700.0)
+    shaft = (cf.Segment(0.0762, 0.0127, 0.0128, made_up, 0.003, 0.003, maple), cf.Segment(0.66, 0.0128, 0.021, maple))
+    cf.save(cf.Scene(cf.Cue(shaft, 0.42), effects=(cf.Elevation(math.radians(3)),)), tmp_path / "scene.toml")
+    text = (tmp_path / "scene.toml").read_text()
+    assert text.startswith("""[cue]
+body_mass = "420 g"
+
+[[cue.segments]]
+length = "76.2 mm"
+tip_diameter = "12.7 mm"
+butt_diameter = "12.8 mm"
+material = {E = "13.5 GPa", G = "1.2 GPa", rho = "700 kg/m^3", loss = 0.0, nu = 0.3}
+tip_bore = "3 mm"
+butt_bore = "3 mm"
+core = "hard maple"
+
+[[cue.segments]]
+length = "660 mm"
+tip_diameter = "12.8 mm"
+butt_diameter = "21 mm"
+material = "hard maple"
+
+[ball]
+""")
+    assert 'angle = "3 deg"' in text
+    assert text.endswith('"\n') or not text.endswith("\n\n")
+
+
+def test_save_over_file_replaces_it(tmp_path: Path) -> None:
+    path = tmp_path / "cue.toml"
+    path.write_text("before")
+    cf.save(cf.Cue((SEGMENT, SEGMENT)), path)
+    assert cf.load(path).length == 1.4
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize(
+    ("item", "name", "message"),
+    [
+        (KIM, "cue.msh", r"must end in .toml or .vtu; got '.msh'"),
+        (cf.Scene(KIM), "scene.vtu", r"must end in .toml, for a scene; got '.vtu'"),
+        (KIM, "nowhere/cue.toml", r"cannot be written: No such file or directory"),
+        (KIM, "nowhere/cue.vtu", r"cannot be written: No such file or directory"),
+    ],
+)
+def test_save_to_invalid_path_is_rejected(tmp_path: Path, item: cf.Cue | cf.Scene, name: str, message: str) -> None:
+    with pytest.raises(InputError, match=f"{name}: {message}"):
+        cf.save(item, tmp_path / name)
+    assert not list(tmp_path.iterdir())
+
+
+def test_save_failure_leaves_no_file(tmp_path: Path) -> None:
+    folder = tmp_path / "cue.toml"
+    folder.mkdir()
+    with pytest.raises(InputError, match=r"cue\.toml: cannot be written: Is a directory"):
+        cf.save(KIM, folder)
+    assert list(tmp_path.iterdir()) == [folder]
+
+
+def test_stored_meshes_equal_their_toml(tmp_path: Path) -> None:
+    folder = Path(__file__).parents[2] / "meshes"
+    cues = sorted(folder.glob("*.toml"))
+    assert cues
+    for path in cues:  # where this fails: cuefem convert meshes/NAME.toml meshes/NAME.vtu --force
+        cf.save(cf.load(path), tmp_path / "made.vtu")
+        saved, stored = (meshio.vtu.read(mesh) for mesh in (tmp_path / "made.vtu", path.with_suffix(".vtu")))
+        assert saved.points.tolist() == stored.points.tolist()
+        assert {name: value[0].tolist() for name, value in saved.cell_data.items()} == {
+            name: value[0].tolist() for name, value in stored.cell_data.items()
+        }
