@@ -1,10 +1,10 @@
-"""The mesh of a cue, and the springs, dashpots, masses and joints that effects add at its nodes."""
+"""The mesh of a cue."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +13,14 @@ from cuefem.beam.mode_count import MAX_PHASE, mode_phases, orders_for
 from cuefem.cue import Array, Cue
 from cuefem.quantity.fields import MAX_DOF, check_count
 
+if TYPE_CHECKING:
+    from cuefem.beam.point_terms import PointTerms
+
 # Positions count as one if they are closer than this fraction of the cue's length.
 POSITION_TOLERANCE = 1e-9
 # An element continues across the end of a segment if the section there differs from the mean of its neighbourhood by
 # less than this, relative. A smooth profile cut into many segments then needs few elements.
 JUMP_TOLERANCE = 2e-3
-# A joint with less compliance than this, relative to the whole shaft's, is rigid: its spring would add round-off error.
-MIN_COMPLIANCE = 1e-9
 MIN_STEPS, MAX_STEPS = 20, 1_000_000  # in a head-on contact time
 
 
@@ -215,32 +216,3 @@ def check_mesh_size(n_dof: float, item: str) -> None:
         remedy = "request fewer modes or elements, draw fewer segments, or check sizes and materials"
         limit = f"the mesh must have at most {MAX_DOF} degrees of freedom"
         raise ValueError(f"{limit}; got {n_dof:.6g}, of {item}: {remedy}")
-
-
-class PointTerms:
-    """What effects add at nodes: springs, dashpots, masses and clamps, and compliances between the sides of a joint.
-
-    At a joint, the degrees of freedom of the node are those of the butt side.
-    """
-
-    def __init__(self, mesh: Mesh, cue: Cue) -> None:
-        self.mesh, self.cue = mesh, cue
-        self.stiffness, self.dashpot, self.mass = np.zeros((3, mesh.n_dof))
-        self.compliance: dict[tuple[int, int], float] = {}
-        self.fixed: set[int] = set()
-
-    def add(self, x: float, kind: str, w: float, theta: float) -> None:
-        """Add diagonal terms at position ``x``: ``w`` for the deflection, ``theta`` for the rotation; inf clamps."""
-        for dof, value in zip(self.mesh.dofs_at(self.mesh.node(x)), (w, theta), strict=True):
-            if np.isinf(value):
-                self.fixed.add(dof)
-            else:
-                getattr(self, kind)[dof] += value
-
-    def join(self, x: float, w: float, theta: float) -> None:
-        """Add a joint at position ``x`` with compliances ``w`` (m/N) and ``theta`` (rad/(N m)); zero: no jump."""
-        node, section = self.mesh.node(x), self.cue.section(min(x, self.cue.length))
-        pairs = zip(self.mesh.dofs_before(node), self.mesh.dofs_at(node), strict=True)
-        for pair, value, stiffness in zip(pairs, (w, theta), (section.kGA, section.EI), strict=True):
-            compliant = value * stiffness > MIN_COMPLIANCE * self.cue.length
-            self.compliance[pair] = self.compliance.get(pair, 0.0) + (value if compliant else 0.0)

@@ -14,7 +14,8 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike
 from skfem import Basis, BilinearForm, ElementLinePp, MeshLine
 
-from cuefem.beam.mesh import MIN_COMPLIANCE, POSITION_TOLERANCE, BeamEffect
+from cuefem.beam.mesh import POSITION_TOLERANCE, BeamEffect
+from cuefem.beam.point_terms import MIN_COMPLIANCE
 from cuefem.cue import Array, Cue
 
 
@@ -43,13 +44,23 @@ class _PointTerms:
         """Degrees of freedom (w, theta) of the nodes at ``x``: (1 or 2, 2)."""
         return self.dofs[abs(self.x - x) < POSITION_TOLERANCE * self.cue.length]
 
-    def add(self, x: float, kind: str, *values: float) -> None:
-        """Springs, masses or dashpots to the ground, for deflection and rotation; inf clamps."""
+    def add_mass(self, x: float, mass: float, rotary_inertia: float = 0.0) -> None:
+        """A mass, and its rotary inertia."""
+        self._add(self.mass, x, mass, rotary_inertia)
+
+    def add_dashpot(self, x: float, lateral: float) -> None:
+        """A dashpot to the ground, for the deflection."""
+        self._add(self.dashpot, x, lateral, 0.0)
+
+    def add_springs(self, x: float, lateral: float, rotational: float) -> None:
+        """Springs to the ground, for deflection and rotation; inf clamps."""
+        values = np.array([lateral, rotational])
+        self.source[self.dofs_at(x)[-1][np.isinf(values)]] = -1
+        self._add(self.stiffness, x, *np.where(np.isinf(values), 0.0, values))
+
+    def _add(self, matrix: Any, x: float, *values: float) -> None:
         for dof, value in zip(self.dofs_at(x)[-1], values, strict=True):
-            if np.isinf(value):
-                self.source[dof] = -1
-            else:
-                getattr(self, kind)[dof, dof] += value
+            matrix[dof, dof] += value
 
     def join(self, x: float, *compliances: float) -> None:
         """Springs between the two sides of a joint; no jump if the compliance is negligible."""

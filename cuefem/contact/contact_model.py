@@ -175,7 +175,7 @@ def _table_axes(phi: float, angle: float) -> Array:
 
 
 def _elevated_rows(phi: float, axes: Array) -> Array:
-    """As `_level`, of a cue that points down by an angle, over a table (handbook: Effects).
+    """As `_level_rows`, of a cue that points down by an angle, over a table (handbook: Effects).
 
     In (t, n, p), p = t x n. The contact has the three velocities of the ball against the tip, and those of the ball's
     lowest point upwards, laterally and forwards; the ball has its velocity and R times its spin.

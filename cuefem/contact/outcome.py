@@ -60,7 +60,7 @@ class History:
     Attributes
     ----------
     force_times : (n + 2,) array
-        The first touch, the force_times of the steps and the last separation, s.
+        The first touch, the middles of the steps and the last separation, s.
     forces : (n + 2, 2) array
         (t, n) there, N.
     ends : (n + 1,) array

@@ -45,16 +45,6 @@ class BilliardTable(NamedTuple):
     friction: float
 
 
-# Terms that a contact has once, with their labels in messages.
-ONCE = {
-    "law": "law of the tip",
-    "tip": "whole tip",
-    "turns": "turning normal",
-    "table": "table",
-    "window": "window for a double hit",
-}
-
-
 class ContactTerms:
     """Terms of the contact; each effect of a scene adds its own (`Effect.add_to_contact`), in any order.
 
@@ -90,11 +80,30 @@ class ContactTerms:
         """Add tangential compliance, relative to the normal loading compliance; compliances in series add."""
         self.compliances.append(value)
 
-    def set_once(self, name: str, value: Any) -> None:
-        """Set a term that a contact has `ONCE`; ValueError the second time."""
-        if getattr(self, name) is not None:
-            raise ValueError(f"Scene.effects must add one {ONCE[name]} to the contact; got a second one")
-        setattr(self, name, value)
+    def set_law(self, law: PowerLaw) -> None:
+        """Set the force-indentation law of the tip; ValueError the second time."""
+        _check_first(self.law, "law of the tip")
+        self.law = law
+
+    def set_tip(self, tip: TipModel) -> None:
+        """Set the model of the whole tip; ValueError the second time."""
+        _check_first(self.tip, "whole tip")
+        self.tip = tip
+
+    def turn_normal(self) -> None:
+        """Let the normal turn as the contact rolls over ball and tip; ValueError the second time."""
+        _check_first(self.turns, "turning normal")
+        self.turns = True
+
+    def set_table(self, table: BilliardTable) -> None:
+        """Set the table under the ball of a raised cue; ValueError the second time."""
+        _check_first(self.table, "table")
+        self.table = table
+
+    def set_window(self, window: float) -> None:
+        """Set the time simulated after the first separation, s; ValueError the second time."""
+        _check_first(self.window, "window for a double hit")
+        self.window = window
 
     @property
     def dome_radius(self) -> float:
@@ -115,3 +124,9 @@ class ContactTerms:
             return self.tip.moment_arm(phi)
         radius = math.fsum(self.dome_radii)
         return -radius * math.sin(phi), radius * (1 - math.cos(phi))
+
+
+def _check_first(present: Any, label: str) -> None:
+    """ValueError if a term that a contact has once is present."""
+    if present is not None:
+        raise ValueError(f"Scene.effects must add one {label} to the contact; got a second one")

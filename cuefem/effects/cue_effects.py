@@ -15,8 +15,8 @@ from cuefem.quantity.fields import DIAMETER, LENGTH, Quantity
 
 if TYPE_CHECKING:
     from cuefem.beam.axial_modes import RodModes
-    from cuefem.beam.mesh import PointTerms
     from cuefem.beam.modes import Modes
+    from cuefem.beam.point_terms import PointTerms
     from cuefem.beam.tip_modes import TipModes
 
 MIN_BUTT_LENGTH = 0.05  # m: shortest butt behind a drawing that is a rod
@@ -80,7 +80,7 @@ class PointMass(CueEffect):
 
     def add_to(self, terms: PointTerms) -> None:
         """Add the mass and the rotary inertia."""
-        terms.add(self.position, "mass", self.mass, self.rotary_inertia)
+        terms.add_mass(self.position, self.mass, self.rotary_inertia)
 
     def mass_on_face(self, cue: Cue) -> float | None:
         """The mass, if it is at the tip and has no rotary inertia."""
@@ -143,8 +143,8 @@ class Support(CueEffect):
 
     def add_to(self, terms: PointTerms) -> None:
         """Add the springs and the dashpot."""
-        terms.add(self.position, "stiffness", self.stiffness, self.rotational_stiffness)
-        terms.add(self.position, "dashpot", self.dashpot, 0.0)
+        terms.add_springs(self.position, self.stiffness, self.rotational_stiffness)
+        terms.add_dashpot(self.position, self.dashpot)
 
 
 @dataclass(frozen=True)

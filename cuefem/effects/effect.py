@@ -12,8 +12,8 @@ from cuefem.quantity.fields import OutOfBounds, Quantity, check_fields, check_ki
 
 if TYPE_CHECKING:
     from cuefem.beam.axial_modes import RodModes
-    from cuefem.beam.mesh import PointTerms
     from cuefem.beam.modes import Modes
+    from cuefem.beam.point_terms import PointTerms
     from cuefem.beam.tip_modes import TipModes
     from cuefem.effects.contact_terms import ContactTerms
 
@@ -88,7 +88,7 @@ class Effect:
 
 @dataclass(frozen=True)
 class CueEffect(Effect):
-    """An effect that acts on the cue: it adds terms to the beam (see `cuefem.beam.CueEffect`) or to its modes."""
+    """An effect that acts on the cue: it adds terms to the beam (see `cuefem.beam.mesh.BeamEffect`) or to its modes."""
 
     needs_beam: ClassVar[bool] = True
 

@@ -34,7 +34,7 @@ from cuefem.solid.tip_table import (
 )
 
 if TYPE_CHECKING:
-    from cuefem.beam.mesh import PointTerms
+    from cuefem.beam.point_terms import PointTerms
 
 # Names of dome radii, m: half of the coin's diameter (United States Mint: 17.91 and 21.21 mm).
 DOMES = {"dime": 8.955e-3, "nickel": 10.605e-3, "flat": math.inf}
@@ -227,7 +227,7 @@ class LeatherTip(CueEffect):
 
     def add_to(self, terms: PointTerms) -> None:
         """Add the mass of the leather, lumped at the end of the ferrule."""
-        terms.add(0.0, "mass", self.mass_on(terms.cue), 0.0)
+        terms.add_mass(0.0, self.mass_on(terms.cue))
 
     def mass_on(self, cue: Cue) -> float:
         """Mass of the leather on this cue, kg."""
@@ -244,9 +244,9 @@ class LeatherTip(CueEffect):
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The complete tip model, and the rolling contact."""
         if terms.tip_diameter is not None:  # `check_effects` rejects a lumped cue
-            terms.set_once("tip", tip_model(self, self.diameter_on(terms.tip_diameter)))
+            terms.set_tip(tip_model(self, self.diameter_on(terms.tip_diameter)))
         if self.rolling:
-            terms.set_once("turns", True)
+            terms.turn_normal()
 
     def check_diameter(self, diameter: float) -> None:
         """Check that the tip fits a shaft, and that its height is computable.

@@ -150,7 +150,7 @@ class PowerLawTip(TipEffect):
 
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The power law."""
-        terms.set_once("law", PowerLaw(self.exponent, self.speed))
+        terms.set_law(PowerLaw(self.exponent, self.speed))
 
 
 @dataclass(frozen=True)
@@ -187,4 +187,4 @@ class RollingContact(TipEffect):
 
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The normal turns."""
-        terms.set_once("turns", True)
+        terms.turn_normal()

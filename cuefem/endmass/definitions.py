@@ -92,10 +92,13 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
     return definition.of_design(SolvedScene(scene, at))
 
 
-def _couples(tip: TipModes, scene: Scene) -> bool:
-    """Whether the tip's velocity is not K P(t) - 1, so that a coupled strike must be solved."""
-    axial = np.any(tip.amplitude[tip.omega > 0, 0] != 0)  # axial modes change the history of the normal impulse
-    return bool(axial) or bool(scene.at_tip)
+def _needs_strike(tip: TipModes, scene: Scene) -> bool:
+    """Whether a coupled strike must be solved, since the tip's velocity is not K P(t) - 1, P the normal impulse.
+
+    Axial modes and effects at the tip change the history of the normal impulse.
+    """
+    has_axial_modes = np.any(tip.amplitude[tip.omega > 0, 0] != 0)
+    return bool(has_axial_modes) or bool(scene.at_tip)
 
 
 def definition_of(drive: str) -> Definition:
@@ -139,7 +142,7 @@ def stick_at_offset(tip: TipModes, scene: Scene) -> float:
     equals `stick` at the centre. ValueError if no end mass has that squirt.
     """
     b = abs(scene.stroke.offset)
-    if _couples(tip, scene):
+    if _needs_strike(tip, scene):
         scene = replace(scene, stroke=Stroke(scene.stroke.speed, b))
         return _with_squirt(sticking_squirt(tip, scene), without_slip(scene), "offset") if b else stick(tip, scene)
     limit = limit_at(scene, b)
@@ -176,7 +179,7 @@ def small_offset_slope(tip: TipModes, scene: Scene) -> float:
     strike at b/R = 1e-5. The initial slip vanishes in the limit, like sqrt(b); infinite friction removes it, which
     leaves an error of b^2.
     """
-    if scene.lumped is None and not _couples(tip, scene):
+    if scene.lumped is None and not _needs_strike(tip, scene):
         limit = StickLimit.of(scene)
         return limit.transverse_impulse(tip) / limit.normal
     near_centre = _near_centre(scene)

@@ -162,7 +162,8 @@ def _thinnest_wall(scene: Scene) -> float:
 
 RESULTS = {
     "shaft_mass": Result(
-        *("mass of the drawn part, without an added tip", "kg"),
+        label="mass of the drawn part, without an added tip",
+        unit="kg",
         heading="shaft mass",
         about="mass of the segments",
         of=of_drawing(lambda scene: scene.shaft.shaft_mass),
@@ -171,7 +172,8 @@ RESULTS = {
     "mass": Result("mass of the cue", "kg", heading="cue mass", of=of_drawing(lambda scene: scene.cue.mass)),
     "body_mass": Result("mass of the butt", "kg"),
     "end_mass": Result(
-        *("end mass", "kg"),
+        label="end mass",
+        unit="kg",
         about="stick definition, small offsets; at an offset: of a tip that sticks",
         of=lambda design, offset: design.end_mass("stick" if offset is None else "offset", offset),
         argument="offset",
@@ -183,7 +185,9 @@ RESULTS = {
     "length": Result("length", "m", 0),
     "rigid_length": Result("rigid length", "m", 0),
     "balance_point": Result(
-        *("balance point of the drawn part, from the end of the tip", "m", 1),
+        label="balance point of the drawn part, from the end of the tip",
+        unit="m",
+        decimals=1,
         heading="balance point",
         about="centre of mass of the drawn part with its tip, from the end of the tip",
         of=of_drawing(balance_point),
@@ -191,7 +195,9 @@ RESULTS = {
     ),
     "radius": Result("radius", "m", 2),
     "squirt": Result(
-        *("squirt", "rad", 2),
+        label="squirt",
+        unit="rad",
+        decimals=2,
         about="of the coupled strike",
         of=of_strike(lambda outcome: outcome.squirt),
         argument="offset",
@@ -206,7 +212,9 @@ RESULTS = {
         is_listed=False,
     ),
     "pivot_length": Result(
-        *("natural pivot length", "m", 0),
+        label="natural pivot length",
+        unit="m",
+        decimals=0,
         about="of small offsets, or of the coupled strike at an offset",
         of=_pivot_length,
         argument="offset",
@@ -216,7 +224,9 @@ RESULTS = {
     ),
     "speed": Result("speed", "m/s", 2),
     "ball_speed": Result(
-        *("ball speed", "m/s", 2),
+        label="ball speed",
+        unit="m/s",
+        decimals=2,
         about="after the coupled strike",
         of=of_strike(lambda outcome: outcome.ball_speed),
         argument="offset",
@@ -231,7 +241,8 @@ RESULTS = {
     "error": Result("estimated error", digits=2),
     "energy": Result("energy", "J", digits=3),
     "vibration_energy": Result(
-        *("energy of vibration", "J"),
+        label="energy of vibration",
+        unit="J",
         digits=3,
         about="energy of the cue's free vibration after the coupled strike",
         of=of_strike(lambda outcome: outcome.energy["cue vibration"]),
@@ -242,7 +253,8 @@ RESULTS = {
     "coupling": Result("coupling", "1/kg"),
     "position": Result("distance from the tip", "m", 1),
     "tip_stiffness": Result(
-        *("shaft stiffness at the tip, static, joint end clamped", "N/m"),
+        label="shaft stiffness at the tip, static, joint end clamped",
+        unit="N/m",
         heading="stiffness at the tip",
         about="static: force across the tip over its deflection, the joint end clamped",
         of=lambda design, _: design.tip_stiffness,
@@ -250,14 +262,18 @@ RESULTS = {
         better="higher",
     ),
     "tip_diameter": Result(
-        *("diameter of the tip", "m", 2),
+        label="diameter of the tip",
+        unit="m",
+        decimals=2,
         heading="tip diameter",
         of=of_drawing(lambda scene: scene.tip_diameter),
         segments=True,
     ),
     "butt_diameter": Result("diameter of the butt", "m", 2),
     "wall": Result(
-        *("thinnest wall (where solid, the radius)", "m", 2),
+        label="thinnest wall (where solid, the radius)",
+        unit="m",
+        decimals=2,
         heading="thinnest wall",
         about="of the segments, at their ends; where solid, the radius",
         of=of_drawing(_thinnest_wall),
@@ -265,7 +281,8 @@ RESULTS = {
         better="higher",
     ),
     "frequency": Result(
-        *("natural frequency", "Hz"),
+        label="natural frequency",
+        unit="Hz",
         about="of a bending mode",
         of=lambda design, mode: design.frequency(mode),
         argument="mode",

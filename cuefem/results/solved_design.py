@@ -42,7 +42,7 @@ def off_centre(scene: Scene) -> Scene:
 def coupled_curve(scene: Scene, offsets: Sequence[float], tip_modes: TipModes) -> dict[str, Any]:
     """Squirt, natural pivot length, and regime of the coupled strike against the offset: every curve of a page.
 
-    tip: the cue's tip modes.
+    tip_modes: those of the cue.
     """
     struck = [strike_modes(at_offset(scene, offset), tip_modes) for offset in offsets]
     squirt = np.array([outcome.squirt for outcome in struck])

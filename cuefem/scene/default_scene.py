@@ -94,18 +94,43 @@ _ALL = (
 GAMES: Mapping[str, Game] = MappingProxyType(
     {
         "pool": Game(
-            *(Ball(mass=0.170, radius=0.028575), 6e-3, 9.5e-3, 2.0, 1.4732, 0.03175, 0.01275, 15 * OUNCE),
-            "Ball: WPA 57.15 mm, 156 to 170 g. Height: usual, 4 to 8 mm. Dome: usual, between a dime's (8.96 mm) and a "
-            f"nickel's (10.6 mm) radius. Speed: a medium stroke (usual). {_ALL}",
+            ball=Ball(mass=0.170, radius=0.028575),
+            height=6e-3,
+            dome_radius=9.5e-3,
+            speed=2.0,
+            cue_length=1.4732,
+            butt_diameter=0.03175,
+            face_diameter=0.01275,
+            body_mass=15 * OUNCE,
+            source=(
+                "Ball: WPA 57.15 mm, 156 to 170 g. Height: usual, 4 to 8 mm. Dome: usual, between a dime's (8.96 mm) "
+                f"and a nickel's (10.6 mm) radius. Speed: a medium stroke (usual). {_ALL}"
+            ),
         ),
         "carom": Game(
-            *(Ball(mass=0.210, radius=0.03075), 4e-3, 9.5e-3, 3.0, 1.397, 0.030, 0.012, 13.5 * OUNCE),
-            f"Ball: UMB 61 to 61.5 mm, 205 to 220 g. Height, dome and speed: assumed. {_ALL}",
+            ball=Ball(mass=0.210, radius=0.03075),
+            height=4e-3,
+            dome_radius=9.5e-3,
+            speed=3.0,
+            cue_length=1.397,
+            butt_diameter=0.030,
+            face_diameter=0.012,
+            body_mass=13.5 * OUNCE,
+            source=f"Ball: UMB 61 to 61.5 mm, 205 to 220 g. Height, dome and speed: assumed. {_ALL}",
         ),
         "snooker": Game(
-            *(Ball(mass=0.142, radius=0.02625), 4e-3, 7e-3, 3.0, 1.4605, 0.029, 0.0095, 12.5 * OUNCE),
-            "Ball: WPBSA 52.5 mm; sets are sold at 140 to 143 g. Height, dome (flatter than half-round, on a tip of "
-            f"9.5 mm) and speed: assumed. {_ALL}",
+            ball=Ball(mass=0.142, radius=0.02625),
+            height=4e-3,
+            dome_radius=7e-3,
+            speed=3.0,
+            cue_length=1.4605,
+            butt_diameter=0.029,
+            face_diameter=0.0095,
+            body_mass=12.5 * OUNCE,
+            source=(
+                "Ball: WPBSA 52.5 mm; sets are sold at 140 to 143 g. Height, dome (flatter than half-round, on a tip "
+                f"of 9.5 mm) and speed: assumed. {_ALL}"
+            ),
         ),
     }
 )

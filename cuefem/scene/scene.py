@@ -228,7 +228,7 @@ class Scene:
     @property
     def contact_terms(self) -> ContactTerms:
         """Terms that the effects add to the contact."""
-        return ContactTerms.of(self.effects, self._end_diameter)
+        return _contact_terms(self.effects, self._end_diameter)
 
     @property
     def tip_diameter(self) -> float:
@@ -327,6 +327,12 @@ def as_scenes(name: str, scenes: Any) -> tuple[Scene, ...]:
     if not scenes:
         raise ValueError(f"{name} must be one scene or more; got none")
     return scenes
+
+
+@lru_cache(maxsize=256)
+def _contact_terms(effects: tuple[Effect, ...], end_diameter: float | None) -> ContactTerms:
+    """Terms of effects at the contact, shared by all scenes that have them."""
+    return ContactTerms.of(effects, end_diameter)
 
 
 @lru_cache(maxsize=256)

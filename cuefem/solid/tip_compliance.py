@@ -272,7 +272,7 @@ def table_patches(curvature: float) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=1)
 def table_loads(curvature: float) -> list[Array]:
-    """Loads of these patches on `TABLE`; they do not depend on the tip's height."""
+    """Loads of these patches at `TABLE_FINENESS`; they do not depend on the tip's height."""
     positions, radii = table_patches(curvature)
     return [patch_loads(Shape(1.0, curvature), Patch(s, a), TABLE_FINENESS) for s in positions for a in radii]
 

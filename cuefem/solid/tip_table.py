@@ -40,7 +40,7 @@ def chebyshev_nodes(low: float, high: float, count: int) -> Array:
 
 
 def node_weights(x: Array | float, low: float, high: float, count: int) -> Array:
-    """Weights of the values at `nodes` in their interpolating polynomial at ``x``, (..., count)."""
+    """Weights of the values at `chebyshev_nodes` in their interpolating polynomial at ``x``, (..., count)."""
     sign = (-1.0) ** np.arange(count)
     sign[[0, -1]] /= 2
     gap = np.clip(x, low, high)[..., None] - chebyshev_nodes(low, high, count)

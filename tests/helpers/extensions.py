@@ -89,7 +89,7 @@ def collar_effect() -> type[CueEffect]:
 
         def add_to(self, terms: Any) -> None:
             """Its mass."""
-            terms.add(self.position, "mass", self.mass, 0.0)
+            terms.add_mass(self.position, self.mass)
 
     return Collar
 
@@ -111,6 +111,6 @@ def cap_effect() -> type[TipEffect]:
             if self.compliance:
                 terms.add_compliance(self.compliance)
             if self.window:
-                terms.set_once("window", self.window)
+                terms.set_window(self.window)
 
     return Cap
