@@ -20,6 +20,10 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+# pip looks for the dependencies first, and would list the versions of scipy that this Python cannot have.
+if sys.version_info < (3, 11):  # noqa: UP036, as requires-python
+    raise SystemExit(f"cuefem needs Python 3.11 or newer; this is {sys.version.split()[0]}")
+
 ROOT = Path(__file__).parent
 ZIG = "ziglang>=0.13.0"
 # Sums may be taken in any order, as vector instructions do; nothing else of -ffast-math, which at the link would switch

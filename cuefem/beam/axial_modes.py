@@ -41,9 +41,12 @@ class RodModes(EigenSolution):
         return loss_sum / self.omega**2
 
 
-def rod_modes(cue: Cue, masses: Sequence[tuple[float, float]], *, cutoff: float, n_corrected: int = 0) -> RodModes:
+def rod_modes(
+    cue: Cue, masses: Sequence[tuple[float, float]], *, cutoff: float, max_count: float = np.inf, n_corrected: int = 0
+) -> RodModes:
     """Rod modes up to the angular frequency ``cutoff``, rad/s, of a cue that is free at both ends.
 
+    max_count: about the largest number of modes; where waves are slow it lowers the cutoff.
     masses: (position m, mass kg) of each lump. Leather drawn at the tip (`Cue.leather_height`) moves rigidly with it.
     n_corrected: number of loads with a truncation correction, 1 or 0. The cost is one symmetric eigenproblem with as
     many degrees of freedom as the elements' orders add up to.
@@ -53,6 +56,7 @@ def rod_modes(cue: Cue, masses: Sequence[tuple[float, float]], *, cutoff: float,
     # about pi^2 EA/(rhoA L^2), the lowest free mode of the uniform rod with the mean stiffness and mass
     shift = float(10 * (lengths @ middle.EA) / (lengths @ middle.rhoA) / cue.length**2)
     phases = lengths * np.sqrt(middle.rhoA / middle.EA)  # at 1 rad/s; the correction needs waves of twice the cutoff
+    cutoff = min(cutoff, np.pi * max_count / phases.sum())
     mesh = mesh_for_phases(cue, phases * max(2 * cutoff, 4 * shift**0.5), [x for x, _ in masses])
     points, front, orders = gauss_points(cue, mesh), mesh.node(cue.leather_height), mesh.orders
     EA, rhoA = points.section.EA * points.weights, points.section.rhoA * points.weights

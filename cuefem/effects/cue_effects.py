@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from cuefem.beam.tip_modes import TipModes
 
 MIN_BUTT_LENGTH = 0.05  # m: shortest butt behind a drawing that is a rod
+# Rod modes beside fewer bending modes. Wood has fewer than bending modes; where axial waves have 100 m/s, these many of
+# a butt of 0.75 m reach 10 kHz.
+MAX_ROD_MODES = 160
 BUTT_FIELDS = "cue_length, butt_diameter and wave_speed"
 
 
@@ -107,8 +110,7 @@ class Support(CueEffect):
     Adds: Two springs and a dashpot act on deflection and rotation; an infinite stiffness removes the degree of freedom
     that it clamps. Nothing acts along the axis.
 
-    Matters when: The support is stiff and near the tip. A hand (up to 1e4 N/m) 8 in behind the tip changes squirt by at
-    most 1 %; a support of 1e6 N/m changes it by up to a quarter.
+    Matters when: The support is stiff and near the tip; a bridge hand is too soft to change squirt much.
 
     Wrong when: The hand's nonlinearity or its sliding along the cue matters. A clamped beam also vibrates 1e-3 lower in
     frequency than a beam with a clamped solid face.
@@ -271,21 +273,20 @@ class AxialWaves(CueEffect):
     butt_diameter : float, optional
         Diameter at the end of the butt, m; with ``cue_length``.
     wave_speed : float, optional
-        Speed of axial waves in the butt, the root of E over its density, m/s; with ``cue_length``.
+        Speed of axial waves in the butt, the root of E over its density, at least 100 m/s; with ``cue_length``.
 
     Notes
     -----
     Adds: Rod modes below the highest bending frequency join the rigid axial motion, with a truncation correction if the
     bending modes have one. Only axial motion uses the rod behind the drawing: bending, weights and natural frequencies
-    are those of the drawing (if the rod bent too, squirt would change by 0.01 %). Point masses act at their positions.
+    are those of the drawing. Point masses act at their positions.
     Leather drawn at the tip (`Cue.leather_height`) is rigid along the axis, because the force-indentation law contains
     its compliance; its mass remains.
 
-    Matters when: The contact is long enough for waves to run along the cue; in 1 ms they run 4.2 m in maple. The
-    contact lasts longer, because the tip's stiffness is still defined with the rigid axial mass, and the ball leaves a
-    little faster, because the rod returns all of its energy. In a central impact, 1.1 ms and a restitution of 0.73
-    become 1.27 ms and 0.78 on meshes/pool_maple.toml. A rigid mass at the joint reflects waves after 0.33 ms, a butt
-    after 0.66 ms: with the rigid mass squirt is off by up to 6 %.
+    Matters when: The contact is long enough for waves to run along the cue and back. The contact of a spring tip lasts
+    longer, because the tip's stiffness is still defined with the rigid axial mass, and the ball leaves a little faster,
+    because the rod returns all of its energy. A rigid mass at the joint reflects waves earlier than a butt, which
+    changes squirt too.
 
     Wrong when: The butt's mass is uneven, as with a heavy pin or bolt. A support or a joint acts
     along the axis; here neither does. The compliance of a hard tip drawn into the cue (phenolic, above 1 GPa) counts
@@ -315,7 +316,7 @@ class AxialWaves(CueEffect):
 
     cue_length: Annotated[float | None, LENGTH] = None
     butt_diameter: Annotated[float | None, DIAMETER] = None
-    wave_speed: Annotated[float | None, Quantity("m/s", "(0, inf)")] = None
+    wave_speed: Annotated[float | None, Quantity("m/s", "[100, inf)")] = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -342,7 +343,9 @@ class AxialWaves(CueEffect):
         from cuefem.beam.axial_modes import rod_modes  # loaded when used: it solves the beam
 
         rod, n_corrected = self.with_butt(cue), int(bending.radiation is not None)
-        return (rod_modes(rod, point_masses_on(rod, effects), cutoff=bending.cutoff, n_corrected=n_corrected),)
+        max_count = max(MAX_ROD_MODES, len(bending.omega))
+        masses = point_masses_on(rod, effects)
+        return (rod_modes(rod, masses, cutoff=bending.cutoff, max_count=max_count, n_corrected=n_corrected),)
 
 
 @dataclass(frozen=True)
@@ -356,12 +359,11 @@ class GeometricStiffness(CueEffect):
     axial force loads the bending modes in proportion to their slopes. Energy is conserved. Slopes of rigid-body
     rotation count, and so does the piece from the end of the shaft to the centre of the dome.
 
-    Matters when: Always for squirt, the more the harder the stroke: in proportion to speed, on a maple shaft with a
-    leather tip at b/R 0.375 about 2 % less squirt at 0.8 m/s, 5 % at 2 m/s and 16 % at 7 m/s.
+    Matters when: Always for squirt, the more the harder the stroke; at small speeds in proportion to speed.
 
     Wrong when: The slope of the shaft exceeds 0.25 rad, which raises an error. The share p is that of a cue that is
-    rigid along its axis: with `AxialWaves` squirt changes by another 0.1 to 0.4 %. Natural frequencies, side strikes
-    and end masses other than "squirt" are without axial force. A joint with shear compliance has no length.
+    rigid along its axis, also with `AxialWaves`. Natural frequencies, side strikes and end masses other than "squirt"
+    are without axial force. A joint with shear compliance has no length.
 
     Limit: The effect vanishes in proportion to the axial force, that is to the speed of the stroke.
 

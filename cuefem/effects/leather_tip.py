@@ -41,6 +41,7 @@ DOMES = {"dime": 8.955e-3, "nickel": 10.605e-3, "flat": math.inf}
 RADII = np.linspace(0.0, 0.5, 101)  # over D: patch radii of the stiffness curve
 HEIGHTS = (0.05, 3.0)  # over D: computable heights; `covers` has the table's range
 MODULI = (1e-3, 1e4)  # over E: of the layers
+MAX_LAYERS = 10  # laminated tips have up to ten; 20 took two minutes
 
 
 @dataclass(frozen=True)
@@ -101,7 +102,7 @@ class LeatherTip(CueEffect):
         Square root of the part of the tangential work that the leather returns, in [0.1, 1]; along the normal this is
         the tip's restitution.
     layers : tuple of TipLayer, optional
-        Layers under the leather, from the ferrule up, within ``height`` and below the dome.
+        At most ten layers under the leather, from the ferrule up, within ``height`` and below the dome.
     diameter : float, optional
         Diameter of the tip, m, where it is smaller than the end of the ferrule; by default it is flush.
 
@@ -174,6 +175,8 @@ class LeatherTip(CueEffect):
         super().__post_init__()
         check_kind("LeatherTip.layers", self.layers, (tuple, list))
         object.__setattr__(self, "layers", tuple(self.layers))
+        if len(self.layers) > MAX_LAYERS:
+            raise ValueError(f"LeatherTip.layers must be at most {MAX_LAYERS}; got {len(self.layers)}: join thin ones")
         low, high = (bound * self.E for bound in MODULI)
         for i, layer in enumerate(self.layers):
             check_kind(f"LeatherTip.layers[{i}]", layer, TipLayer)

@@ -37,6 +37,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [  # one line for each `raise`
     (lambda: replace(LEATHER, dome_radius=6e-3).mass(0.013), "a 13 mm tip needs at least 6.5 mm"),
     (lambda: replace(LEATHER, height=2e-3).mass(0.01275), "must be higher than 2.457 mm, the depth"),
     (lambda: replace(FLAT, height=6e-4).mass(0.01275), "must be 0.638 to 38.2 mm high; got "),
+    (lambda: replace(FLAT, layers=11 * (cf.TipLayer(1e-4, 1e9),)), "LeatherTip.layers must be at most 10; got 11"),
     (lambda: FLAT.mass(-1.0), "diameter must be in (0, 10] m; got -1.0"),
     (lambda: FLAT.compliance(0.012, 0.1, 7e-3), "patch must be in (0, 0.006] m; got 0.007"),
     (lambda: FLAT.compliance(0.012, 1.0, 1e-3), "offset must be in (-1, 1); got 1.0"),
