@@ -13,7 +13,7 @@ MAX_VALUE_CHARACTERS = 60  # characters of an echoed value
 MAX_LISTED = 8  # names of a list
 
 _LONG = re.compile(
-    rf"(?P<quote>['\"])(?P<quoted>[^'\"]{{{MAX_VALUE_CHARACTERS}}})[^'\"]+(?P=quote)|(?P<word>[^\s/'\"]{{{MAX_VALUE_CHARACTERS}}})[^\s/'\"]+"
+    rf"(?<!\w)(?P<quote>['\"])(?P<quoted>[^'\"]{{{MAX_VALUE_CHARACTERS}}})[^'\"]+(?P=quote)|(?P<word>[^\s/'\"]{{{MAX_VALUE_CHARACTERS}}})[^\s/'\"]+"
 )
 
 
