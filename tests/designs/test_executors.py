@@ -1,29 +1,18 @@
 """Studies on executors: the serial results, workers that die, another version (properties)."""
 
-import os
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
-from functools import partial
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.designs.blocks import Block, BlockResult, Blocks, compute_block, lost_block
-from cuefem.designs.executors import in_parallel
+from cuefem.designs.blocks import BlockResult, Blocks
 from cuefem.designs.study import Study
 from cuefem.designs.study_file import load_study
-from tests.helpers.sweeps import GRID, write_study
-
-DEADLY = 21  # the design that ends its worker
-
-
-def deadly_block(study: Study, block: Block) -> BlockResult:
-    """Compute a block; the process ends at `DEADLY`, as if it was killed for its memory."""
-    if DEADLY in block.numbers:
-        os._exit(9)
-    return compute_block(study, False, block)
+from tests.helpers.invalid_input import assert_rejects
+from tests.helpers.sweeps import GRID, assert_deadly_design_fails_alone, write_study
 
 
 class Elsewhere(Executor):
@@ -52,18 +41,18 @@ def test_study_on_executor_of_caller_equals_serial_and_resumes(tmp_path: Path) -
 
 
 @pytest.mark.parametrize(
-    ("result", "error", "message"),
+    ("result", "message"),
     [
-        ("another", ValueError, "a worker has another version of cuefem: install the same version"),
-        (ModuleNotFoundError("No module named 'cuefem'"), ValueError, "a worker cannot run cuefem: No module named"),
+        ("another", "a worker has another version of cuefem: install the same version of cuefem on every worker"),
+        (ModuleNotFoundError("No module named 'cuefem'"), "a worker cannot run cuefem: No module named 'cuefem'; inst"),
     ],
 )
-def test_study_on_worker_without_this_cuefem_raises(
-    tmp_path: Path, result: Any, error: type[Exception], message: str
+def test_study_on_worker_without_this_cuefem_is_rejected(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, result: Any, message: str
 ) -> None:
-    study = load_study(write_study(tmp_path, GRID))
-    with pytest.raises(error, match=message):
-        cf.study(study, workers=Elsewhere(result))
+    study = write_study(tmp_path, GRID)
+    monkeypatch.setattr("cuefem.cli.study_command.dask_executor", lambda address: nullcontext(Elsewhere(result)))
+    assert_rejects(message, "study", study, "--scheduler", "tcp://elsewhere:8786")
 
 
 def test_blocks_grow_while_they_are_short() -> None:
@@ -77,19 +66,4 @@ def test_blocks_grow_while_they_are_short() -> None:
 
 @pytest.mark.heavy
 def test_design_that_ends_its_worker_fails_alone(tmp_path: Path) -> None:
-    study = load_study(
-        write_study(tmp_path, GRID.replace('"12.5 mm"]', '"12.5 mm", "12.6 mm", "12.7 mm", "13 mm", "13.5 mm"]'))
-    )
-    assert isinstance(study, Study)
-    whole, found = cf.study(study).columns, np.full((study.size, 2), np.nan)
-    failures = dict[int, str]()
-    blocks = Blocks(enumerate(study.designs()))
-    for result in in_parallel(partial(deadly_block, study), blocks, 2, partial(lost_block, study)):
-        assert result.values is not None
-        found[result.block.numbers] = result.values
-        failures |= {result.block.numbers[i]: reason for i, reason in result.failures.items()}
-    assert [*failures] == [DEADLY]
-    assert failures[DEADLY].endswith("times: out of memory, or killed")
-    others = np.arange(study.size) != DEADLY
-    np.testing.assert_array_equal(found[others], whole.values[others])
-    assert np.isnan(found[DEADLY]).all()
+    assert_deadly_design_fails_alone(tmp_path, 2)

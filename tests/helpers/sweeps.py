@@ -6,13 +6,21 @@ import sqlite3
 import subprocess
 import sys
 import time
+from concurrent.futures import Executor
 from contextlib import closing
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from cuefem.designs.blocks import Block, BlockResult, Blocks, compute_block, lost_block
+from cuefem.designs.executors import in_parallel
 from cuefem.designs.store import SqliteStore
+from cuefem.designs.study import Study
 from cuefem.designs.study_file import load_study
 from cuefem.designs.study_result import compute_study
+from cuefem.designs.sweep import Columns
 
 ENVIRONMENT = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])}
 SCENE = """
@@ -142,3 +150,29 @@ def wait_for_rows(store: Path, run: subprocess.Popen[bytes], rows: int) -> int:
         except sqlite3.OperationalError:  # it is being created
             count = 0
     return count
+
+
+DEADLY = 21  # the design that ends its worker
+
+
+def deadly_block(study: Study, block: Block) -> BlockResult:
+    """Compute a block; the process ends at `DEADLY`, as if it was killed for its memory."""
+    if DEADLY in block.numbers:
+        os._exit(9)
+    return compute_block(study, False, block)
+
+
+def assert_deadly_design_fails_alone(folder: Path, workers: int | Executor) -> None:
+    """All other designs of a study have the serial values."""
+    wider = '"12.5 mm", "12.6 mm", "12.7 mm", "13 mm", "13.5 mm"]'
+    study = load_study(write_study(folder, GRID.replace('"12.5 mm"]', wider)))
+    assert isinstance(study, Study)
+    found, whole = Columns.of(study), compute_study(study).columns
+    blocks, work = Blocks(enumerate(study.designs())), partial(deadly_block, study)
+    for result in in_parallel(work, blocks, workers, partial(lost_block, study)):
+        assert result.values is not None
+        found.add(result.block.numbers, result.values, result.failures)
+    assert [*found.failures] == [DEADLY]
+    assert found.failures[DEADLY].endswith("out of memory, or killed")
+    whole.values[DEADLY] = np.nan
+    np.testing.assert_array_equal(found.values, whole.values)
