@@ -15,14 +15,17 @@ from .contact.strike import batch_strike as batch_strike, strike as strike
 from .contact.tip_identification import identify_tip as identify_tip
 from .contact.tip_identification import rebound as rebound
 from .cue.geometry import Cue as Cue, LumpedCue as LumpedCue, Material as Material, Segment as Segment
+from .analysis.comparison import compare as compare
 from .analysis.design_changes import design_changes as design_changes
 from .analysis.end_mass import end_masses as end_masses
+from .analysis.measured import estimate as estimate
 from .analysis.natural_frequencies import natural_frequencies as natural_frequencies
 from .analysis.report_sections import report as report
 from .analysis.simulator_export import pooltool_export as pooltool_export
 from .analysis.squirt_curve import squirt_curve as squirt_curve
 from .analysis.strike_models import strike_models as strike_models
 from .analysis.tip_impacts import tip_impacts as tip_impacts
+from .analysis.verdict import verdict as verdict
 from .effects.cue_effects import (
     AxialWaves as AxialWaves,
     GeometricStiffness as GeometricStiffness,
@@ -46,7 +49,6 @@ from .scene.default_scene import usual_scene as usual_scene
 from .files import load as load, save as save
 from .files.paraview import save_motion as save_motion
 from .designs.study_file import study as study
-from .show.verdict_table import verdict as verdict
 from .quantity.unit_checks import PlausibilityWarning as PlausibilityWarning
 from .solid.solid_resolution import Solid as Solid
 from .solid.shaft import SolidModes as SolidModes, solid_modes as solid_modes

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from html import escape
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from cuefem.files import save_page, write_atomically
@@ -16,6 +17,7 @@ from cuefem.show.scene_summary import cue_line, effect_text, scene_record
 
 if TYPE_CHECKING:
     from cuefem.show.charts import Chart
+    from cuefem.show.drawings import CueDrawing
 
 
 @dataclass(frozen=True)
@@ -34,14 +36,23 @@ class Analysis:
     scene: Scene
     has_stroke: ClassVar[bool] = True  # whether ball, tip and stroke matter to the answer
     about: ClassVar[str] = ""  # definitions, for pages
+    own_units: ClassVar[Mapping[str, str]] = MappingProxyType({})  # of numbers that are no quantities of the registry
 
     def tables(self) -> list[Table | str]:
         """Tables and lines of text, in the order of terminal, page and notebook."""
         raise NotImplementedError
 
-    def charts(self) -> list[Chart]:
-        """Charts, for pages and notebooks."""
+    def charts(self) -> Sequence[Chart | CueDrawing]:
+        """Charts and drawings, for pages and notebooks."""
         return []
+
+    def heading(self) -> str:
+        """The first line: the analysed cue."""
+        return cue_line(json_value(scene_record(self.scene)["cue"]))
+
+    def effects(self) -> str:
+        """The effects of the scene as one line, or an empty line."""
+        return ", ".join(map(effect_text, self.scene.effects))
 
     def headline(self) -> str:
         """The answer in one line, or an empty line."""
@@ -60,7 +71,7 @@ class Analysis:
         about = scene_record(self.scene)
         if not self.has_stroke:
             about = {name: about[name] for name in ("cue", "effects")}
-        return {"scene": about, **self.values(), "units": dict(UNITS)}
+        return {"scene": about, **self.values(), "units": {**UNITS, **self.own_units}}
 
     def page_title(self, name: str, question: str) -> str:
         """The title of a page on a file."""
@@ -70,8 +81,7 @@ class Analysis:
         self, name: str = "", assumptions: Sequence[str] = (), hints: Sequence[Table | str] = ()
     ) -> list[Table | str]:
         """What a terminal and a plain page show: heading, tables, hints, effects and assumptions."""
-        heading = cue_line(json_value(scene_record(self.scene)["cue"]))
-        effects = ", ".join(map(effect_text, self.scene.effects))
+        heading, effects = self.heading(), self.effects()
         return [
             f"{name}: {heading}" if name else heading,
             "",

@@ -5,18 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from cuefem.analysis.comparison_table import tabulate_comparison
-from cuefem.analysis.report_sections import SECTIONS, CueReport, report
-from cuefem.analysis.squirt_curve import FINE_OFFSETS
-from cuefem.analysis.strike_models import regime_warning
-from cuefem.results.closed_forms import pivot_length
-from cuefem.results.comparison import comparison_record
-from cuefem.results.quantities import format_value
-from cuefem.results.records import Record
-from cuefem.results.solved_design import coupled_curve
-from cuefem.scene import Scene
-from cuefem.scene.solved_scene import SolvedScene
-from cuefem.show.first_screen import (
+from cuefem.analysis.comparison import Comparison, compare_cues
+from cuefem.analysis.first_screen import (
     HeadlineCue,
     drawings_markup,
     headline_markup,
@@ -24,11 +14,19 @@ from cuefem.show.first_screen import (
     scale_markup,
     tiles_markup,
 )
+from cuefem.analysis.report_sections import SECTIONS, CueReport, report
+from cuefem.analysis.squirt_curve import FINE_OFFSETS
+from cuefem.analysis.strike_models import regime_warning
+from cuefem.results.closed_forms import pivot_length
+from cuefem.results.quantities import format_value
+from cuefem.results.records import Record
+from cuefem.results.solved_design import coupled_curve
+from cuefem.scene import Scene
+from cuefem.scene.solved_scene import SolvedScene
 from cuefem.show.glossary import with_glossary
 from cuefem.show.offset_charts import offset_charts
 from cuefem.show.scene_summary import assumptions, plain_cue_line, plain_effect_line, scene_record
 from cuefem.show.templates import environment
-from cuefem.show.verdict_table import uncertainty_line
 
 PAGE_OFFSETS = FINE_OFFSETS
 Named = tuple[str, Scene]
@@ -52,8 +50,8 @@ def page_of(
 ) -> str:
     """A computed report as HTML."""
     about, scene = scene_record(own.scene), own.scene
-    verdict = own.sections["verdict"].values()
-    compared = None if other is None else comparison_record({other[0]: other[1], name: scene})
+    verdict: Any = own.sections["verdict"]
+    compared = None if other is None else compare_cues({other[0]: other[1], name: scene})
     parts = {section.key: section for section in SECTIONS if section.key in own.sections and section.key != "verdict"}
     sections = [
         {
@@ -80,8 +78,8 @@ def page_of(
                 f"{assumptions(about)}, offset b/R {scene.stroke.offset:.4g}",
                 *map(plain_effect_line, scene.effects),
             ],
-            squirt=format_value("squirt", verdict["squirt"]),
-            uncertainty=uncertainty_line(verdict),
+            squirt=format_value("squirt", verdict.squirt),
+            uncertainty=verdict.uncertainty_line(),
             screen=_screen(own, name, other, compared),
             sections=sections,
         )
@@ -89,26 +87,26 @@ def page_of(
     return with_glossary(text) + "\n"
 
 
-def _comparison(own: CueReport, name: str, other: Named, compared: Record) -> Record:
+def _comparison(own: CueReport, name: str, other: Named, compared: Comparison) -> Record:
     """The section that compares with another cue."""
     beside = coupled_curve(other[1], PAGE_OFFSETS, SolvedScene(other[1]).tip)
     curves = [(name, "c1", own.sections["squirt"].values()["models"]["coupled, this cue"]), (other[0], "c2", beside)]
-    table = tabulate_comparison(compared)
+    table = compared.table()
     charts = offset_charts(curves, PAGE_OFFSETS, own.scene.stroke.offset, height=300)
     return {"key": "other", "title": table.title, "folded": False, "about": "", "charts": charts, "tables": [table]}
 
 
-def _screen(own: CueReport, name: str, other: Named | None, compared: Record | None) -> dict[str, str]:
+def _screen(own: CueReport, name: str, other: Named | None, compared: Comparison | None) -> dict[str, str]:
     """The parts of the first screen as markup."""
     numbers = own.sections["numbers"]
     shown: dict[str, Any] = dict(numbers.values())
     shown["pivot_length"] = pivot_length(own.scene, shown["squirt"])
     shown["end_mass_squirt"] = numbers.squirt_end_mass  # type: ignore[attr-defined]
-    verdict = own.sections["verdict"].values()
+    verdict: Any = own.sections["verdict"]
     mine, beside, difference = HeadlineCue(name, own.scene, shown, verdict), None, None
     if other is not None and compared is not None:
-        beside = HeadlineCue(*other, compared["cues"][other[0]])
-        difference = compared["differences"][name].get("squirt")
+        beside = HeadlineCue(*other, compared.cues[other[0]])
+        difference = compared.differences[name].get("squirt")
     scenes = {name: own.scene} | ({} if other is None else {other[0]: other[1]})
     return {
         "headline": headline_markup(mine, beside, difference),

@@ -16,38 +16,18 @@ from cuefem.analysis.reduction import reduction
 from cuefem.analysis.squirt_curve import FINE_OFFSETS, squirt_curve
 from cuefem.analysis.strike_models import regime_warning, strike_models
 from cuefem.analysis.tip_impacts import tip_impacts
+from cuefem.analysis.verdict import verdict
 from cuefem.contact.geometric_stiffness import SlopeOutOfRange
 from cuefem.cue.materials import material_name
 from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.files.reference_cues import reference_cues
 from cuefem.results.closed_forms import alciatore_a31_mass_ratio
 from cuefem.results.quantities import DASH, RESULTS, format_value
 from cuefem.results.records import Record, Table, tabulate_values, value_rows
 from cuefem.results.solved_design import SolvedDesign, listed_results
-from cuefem.results.verdict import NoVerdict, verdict_record
+from cuefem.results.verdict import NoVerdict
 from cuefem.scene import Scene
 from cuefem.show.scene_summary import assumptions, scene_record
-from cuefem.show.verdict_table import headline, tabulate_verdict
-
-
-@dataclass(frozen=True)
-class Verdict(Analysis):
-    """Squirt of a stroke with its uncertainty, beside that of reference cues."""
-
-    numbers: Record
-
-    def values(self) -> Record:
-        """The numbers of `verdict_record`."""
-        return self.numbers
-
-    def headline(self) -> str:
-        """Squirt with its uncertainty."""
-        return headline(self.numbers)
-
-    def tables(self) -> list[Table | str]:
-        """Headline, comparison, and the table of reference cues."""
-        return tabulate_verdict(self.numbers)
 
 
 @dataclass(frozen=True)
@@ -139,12 +119,6 @@ COMPARING = (
     "A ratio of two designs is more accurate than the squirt of one: a low-deflection shaft was measured with 0.72 "
     "of the squirt of a maple shaft; the model computes 0.70 to 0.78 (handbook: Measured squirt)."
 )
-
-
-def verdict(design: SolvedDesign) -> Verdict:
-    """Squirt with its uncertainty; NoVerdict for a miscue."""
-    record = verdict_record(design.scene, design.strike(), reference_cues(), solved=design.solved)
-    return Verdict(design.scene, record)
 
 
 def cue_numbers(design: SolvedDesign) -> CueNumbers:

@@ -8,32 +8,30 @@ from typing import Any
 
 import click
 
-from cuefem.analysis.comparison_table import comparison_figures, comparison_sentences, tabulate_comparison
-from cuefem.cli.output import assumption_lines, command, page_option, print_result
+import cuefem as cf
+from cuefem.analysis.comparison import MAX_CUES
+from cuefem.cli.output import Command, command, page_option
 from cuefem.cli.progress import with_progress_bar
-from cuefem.cli.scene_command import completed_scene, cue_options, errors_name_file, full_record, print_warnings
+from cuefem.cli.scene_command import completed_scene, cue_options, errors_name_file, print_warnings, show
 from cuefem.cli.scene_options import impact_options, offset_option, option
 from cuefem.files import InputError, load_stroke
 from cuefem.files.defaults_report import STROKE, Assumption, given_keys
-from cuefem.measurements.estimate import estimate as estimated
-from cuefem.measurements.estimate import predicted_squirt
-from cuefem.measurements.measured_cue import compare as compared
-from cuefem.measurements.measured_cue import offset_zeros
+from cuefem.files.drawing_warnings import drawing_warnings
 from cuefem.measurements.measured_folder import load_measured, write_template
-from cuefem.measurements.measurement_tables import (
-    estimate_record,
-    measured_record,
-    tabulate_estimate,
-    tabulate_measured,
-)
-from cuefem.results.comparison import comparison_record, with_same_stroke
-from cuefem.results.quantities import UNITS
-from cuefem.show.scene_summary import scene_record
-
-MAX_CUES = 5
+from cuefem.show.plausibility import plausibility_warnings
 
 
-@command()
+class TwoForms(Command):
+    """A command whose help shows that it takes files or a folder."""
+
+    def format_usage(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write one line for each form."""
+        path = ctx.command_path
+        formatter.write_usage(path, "FILE FILE ... [OPTIONS]")
+        formatter.write_usage(path, "FOLDER [--estimate | --template]", prefix=" " * len("Usage: "))
+
+
+@command(cls=TwoForms)
 @click.argument("files", metavar="FILE FILE ... | FOLDER", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option(
     "--same-shaft",
@@ -55,9 +53,11 @@ def compare(
 ) -> None:
     """Compare cues side by side, or the computed and measured values of one cue, with uncertainties.
 
-    FILE FILE ...: two to five cues or scenes, struck with the ball and stroke of the first. FOLDER: the shaft's
-    drawing (cue.toml or cue.csv, required), measured.toml with single measurements, and one CSV for each long series,
-    such as squirt.csv.
+    FILE FILE ...: two to five cues or scenes, struck with the ball and stroke of the first.
+
+    FOLDER: a measured cue, with the shaft's drawing (cue.toml or cue.csv, required), measured.toml with single
+    measurements, and one CSV for each long series, such as squirt.csv. The options of cue, tip and stroke stand in
+    these files.
     """
     as_json = options["as_json"]
     if len(files) > 1:
@@ -90,21 +90,26 @@ def _side_by_side(files: Sequence[Path], options: dict[str, Any], output: Path |
     for file in files:
         _reject_given(file, options)
     loaded = [completed_scene(file, options) for file in files]
-    scenes = {name: scene for name, (scene, *_) in zip(_names(files), loaded, strict=True)}
+    names = _names(files)
+    scenes = {name: scene for name, (scene, *_) in zip(names, loaded, strict=True)}
     for scene in scenes.values():
         print_warnings(scene)
-    notes = _assumption_texts([*scenes], [listed for _, listed, _ in loaded], [offered for *_, offered in loaded])
     with errors_name_file(files[0], options):
-        record = comparison_record(scenes, same_shaft=same_shaft, progress=with_progress_bar)
-    about: dict[str, Any] = {"files": [str(file) for file in files], "assumptions": notes}
-    about |= {"scenes": {name: scene_record(scene) for name, scene in with_same_stroke(scenes).items()}}
-    things: list[Any] = [*comparison_sentences(record), "", tabulate_comparison(record)]
-    if output is not None and output.suffix == ".html":
-        things += comparison_figures(scenes, record)
-    title = f"{', '.join([*scenes][:-1])} and {[*scenes][-1]}"
-    print_result(
-        options["as_json"], about | record | {"units": UNITS}, [*things, "", *assumption_lines(notes)], output, title
-    )
+        analysis = cf.compare(scenes, same_shaft=same_shaft, progress=with_progress_bar)
+        warnings = [
+            f"{name}: {line}"
+            for name, file in zip(names, files, strict=True)
+            for line in (*drawing_warnings(file), *plausibility_warnings(scenes[name]))
+        ]
+        show(
+            analysis,
+            {"files": [str(file) for file in files]},
+            "",
+            notes=_assumption_texts(names, [listed for _, listed, _ in loaded], [offered for *_, offered in loaded]),
+            warnings=warnings,
+            output=output,
+            as_json=options["as_json"],
+        )
 
 
 def _reject_given(file: Path, options: dict[str, Any]) -> None:
@@ -141,13 +146,8 @@ def _with_measurements(folder: Path, output: Path | None, *, as_json: bool, esti
     cue, notes = load_measured(folder)
     print_warnings(cue.scene)
     with errors_name_file(folder):
-        if estimate:
-            found, target = estimated(cue, progress=with_progress_bar), predicted_squirt(cue)
-            record = estimate_record(found, found.next_measurements(), found.predict(target), target.offset)
-            sheets = tabulate_estimate(record)
-        else:
-            rows = compared(cue, progress=with_progress_bar)
-            record = measured_record(cue, rows, offset_zeros(cue, rows))
-            sheets = tabulate_measured(record)
-    whole = full_record(folder, notes, cue.scene, record)
-    print_result(as_json, whole, [cue.name, "", *sheets, "", *assumption_lines(notes)], output)
+        question = cf.estimate if estimate else cf.compare
+        analysis = question(cue, progress=with_progress_bar)
+        warnings = plausibility_warnings(cue.scene)
+        about = {"file": str(folder)}
+        show(analysis, about, folder.name, notes=notes, warnings=warnings, output=output, as_json=as_json)

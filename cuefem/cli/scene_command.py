@@ -199,27 +199,51 @@ def analysis_command(
 
 
 def _show(request: Request, analysis: Analysis, output: Path | None) -> None:
-    """Print an analysis, or write it into a file."""
-    file, notes = request.file, request.assumptions
-    as_json = request.options["as_json"]
-    warnings = [*drawing_warnings(file), *plausibility_warnings(analysis.scene, with_impact=analysis.has_stroke)]
+    """Print the analysis of a file, or write it."""
+    file = request.file
+    with errors_name_file(file, request.options):
+        show(
+            analysis,
+            {"file": str(file)},
+            file.name,
+            notes=request.assumptions,
+            warnings=[*drawing_warnings(file), *plausibility_warnings(analysis.scene, with_impact=analysis.has_stroke)],
+            hints=request.hints,
+            output=output,
+            as_json=request.options["as_json"],
+        )
+    if analysis.problem() and output is None:
+        raise InputError(file, "", analysis.problem())
+
+
+def show(
+    analysis: Analysis,
+    about: Record,
+    name: str,
+    *,
+    notes: Sequence[str],
+    warnings: Sequence[str],
+    hints: Sequence[Table | str] = (),
+    output: Path | None,
+    as_json: bool,
+) -> None:
+    """Print an analysis as tables or JSON, or write it into a file.
+
+    about: its files, for JSON. name: of what was analysed. notes: the assumptions. hints: lines after the tables.
+    """
 
     def record() -> Record:
-        about = {"file": str(file), "assumptions": notes, "warnings": warnings}
-        return about | analysis.to_dict()
+        return about | {"assumptions": [*notes], "warnings": [*warnings]} | analysis.to_dict()
 
     if output is not None:
-        title = analysis.page_title(file.name, click.get_current_context().info_name or "")
-        with errors_name_file(file, request.options):
-            write(output, record, lambda: analysis.to_html(title, notes, [f"warning: {line}" for line in warnings]))
+        title = analysis.page_title(name, click.get_current_context().info_name or "")
+        write(output, record, lambda: analysis.to_html(title, notes, [f"warning: {line}" for line in warnings]))
     if as_json:
         print_json(record())
     elif output is not None:
-        print_tables([*filter(None, [analysis.headline()]), f"wrote {output}", *request.hints])
+        print_tables([*filter(None, [analysis.headline()]), f"wrote {output}", *hints])
     else:
-        print_tables(analysis.lines(file.name, notes, request.hints))
-    if analysis.problem() and output is None:
-        raise InputError(file, "", analysis.problem())
+        print_tables(analysis.lines(name, notes, hints))
 
 
 def full_record(

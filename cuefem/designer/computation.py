@@ -16,19 +16,19 @@ import numpy as np
 from nicegui import run
 
 import cuefem.show
+from cuefem.analysis.comparison import compare_cues
 from cuefem.analysis.design_changes import DesignChanges, design_changes
+from cuefem.analysis.verdict import Verdict
+from cuefem.analysis.verdict import verdict as verdict_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
 from cuefem.designs.sensitivity import sensitivity
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.files.reference_cues import reference_cues
 from cuefem.parameters.parts import main_material
 from cuefem.quantity.unit_checks import FLOAT_ERRORS
 from cuefem.results.closed_forms import pivot_length
-from cuefem.results.comparison import comparison_record
 from cuefem.results.records import Record
 from cuefem.results.solved_design import MIN_SOLVED_MODES, SolvedDesign, coupled_curve, listed_results
-from cuefem.results.verdict import verdict_record
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import SolvedScene, default_mode_count
 
@@ -81,10 +81,10 @@ def _end_mass(name: str, solved: SolvedScene) -> float | None:
 
 
 @lru_cache(CACHED_DESIGNS)
-def verdict(scene: Scene) -> Record:
+def verdict(scene: Scene) -> Verdict:
     """Squirt with its uncertainty, compared with the reference cues."""
     strike = solved_strike(scene)
-    return verdict_record(scene, strike.outcome, reference_cues(), solved=strike.solved)
+    return verdict_of(SolvedDesign(strike.solved, strike.outcome))
 
 
 def with_stroke_of(scene: Scene, other: Scene) -> Scene:
@@ -95,7 +95,7 @@ def with_stroke_of(scene: Scene, other: Scene) -> Scene:
 def comparison(scene: Scene, other: Scene, same_shaft: bool, names: Sequence[str] = ("squirt",)) -> Record:
     """The differences of a scene from another one by the same stroke; same_shaft applies only to one wood."""
     same = same_shaft and main_material(scene.shaft).E == main_material(other.shaft).E
-    return comparison_record({"other": other, "own": scene}, same_shaft=same, names=names)["differences"]["own"]
+    return compare_cues({"other": other, "own": scene}, same_shaft=same, names=names).differences["own"]
 
 
 @lru_cache(CACHED_DESIGNS)

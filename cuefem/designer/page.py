@@ -13,8 +13,17 @@ from typing import Any
 
 from nicegui import Client, app, background_tasks, events, ui
 
+from cuefem.analysis.first_screen import (
+    HeadlineCue,
+    drawings_markup,
+    headline_markup,
+    parts_line,
+    scale_markup,
+    tiles_markup,
+)
 from cuefem.analysis.report_page import page as report_page
 from cuefem.analysis.strike_models import regime_warning
+from cuefem.analysis.verdict import with_cue
 from cuefem.designer import computation, panels
 from cuefem.designer.computation import run_in_thread
 from cuefem.designer.file_editor import FileEditor
@@ -36,16 +45,8 @@ from cuefem.files.reference_cues import PRESETS, REFERENCE_FILES
 from cuefem.files.toml_writer import toml_text
 from cuefem.parameters.parameter import parameter, with_parameters
 from cuefem.results.quantities import REGIMES
-from cuefem.results.verdict import verdict_problem, with_cue
+from cuefem.results.verdict import verdict_problem
 from cuefem.scene import Scene
-from cuefem.show.first_screen import (
-    HeadlineCue,
-    drawings_markup,
-    headline_markup,
-    parts_line,
-    scale_markup,
-    tiles_markup,
-)
 from cuefem.show.glossary import definitions, with_term_buttons
 from cuefem.show.renderers import csv_text
 from cuefem.show.templates import chart_script, page_style
@@ -178,7 +179,8 @@ class Page:
 
     def _parts(self) -> dict[str, float]:
         """Relative uncertainty of squirt by each control's parameters."""
-        inputs = self.results.own.get("verdict", {}).get("inputs", {})
+        verdict = self.results.own.get("verdict")
+        inputs = verdict.inputs if verdict else {}
         parts = {key: sum(inputs.get(name, 0.0) ** 2 for name in INPUTS.get(key, (key,))) ** 0.5 for key in KNOBS}
         return {key: part for key, part in parts.items() if part}
 

@@ -11,6 +11,7 @@ from nicegui import ui
 
 import cuefem.show
 from cuefem.analysis.strike_models import regime_warning
+from cuefem.analysis.verdict import difference_text
 from cuefem.designer.computation import CURVE_OFFSETS
 from cuefem.designer.knobs import KNOBS, label, value, value_text
 from cuefem.designer.state import Design, Step
@@ -24,7 +25,6 @@ from cuefem.show.charts import Axis, Curve, chart
 from cuefem.show.offset_charts import offset_charts
 from cuefem.show.plausibility import plausibility_warnings
 from cuefem.show.templates import chart_markup, shading_markup, table_markup
-from cuefem.show.verdict_table import difference_text
 
 HALF = 0.5 * (CURVE_OFFSETS[1] - CURVE_OFFSETS[0])
 STYLES = ("c1", "c2")
@@ -168,7 +168,7 @@ def tabulate_check(step: Step, results: Results) -> list[Table]:
     """Checks of the design, and beam against solid once that is computed."""
     rows = []
     if "verdict" in results.own:
-        uncertainty = results.own["verdict"]["uncertainty"]
+        uncertainty = results.own["verdict"].uncertainty
         rows += [
             ("calculation error of squirt", f"{100 * uncertainty['computation']:.1g} %"),
             ("model error, RMS of published strokes", f"{100 * uncertainty['model']:.0f} %"),

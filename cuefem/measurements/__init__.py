@@ -9,5 +9,4 @@ measured_cue          a cue with its measurements, and its residuals
 measured_folder       a measured cue from a folder of files, and the template of such a folder
 outliers              measurements of which some may be wrong
 estimate              the uncertain parameters by least squares, their errors, and which measurement to make next
-measurement_tables    records and tables of a measured cue and of an estimate
 """

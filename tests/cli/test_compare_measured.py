@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.measurements.estimate import estimate
 from cuefem.measurements.measured_cue import compare
 from cuefem.measurements.measured_folder import TEMPLATE, load_measured
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES
@@ -18,7 +17,8 @@ from tests.helpers.measured_cues import MEASURED_TOML, measured_folder
 def test_compare_json_equals_library_and_page_lists_measurements(tmp_path: Path) -> None:
     folder, page = measured_folder(tmp_path / "cue"), tmp_path / "page.html"
     (folder / "squirt.csv").write_text("offset,value [deg],error [deg]\n0.3,1.5,0.1\n", encoding="utf-8")
-    result, (cue, _) = as_json("compare", folder), load_measured(folder)
+    result, compared, (cue, _) = as_json("compare", folder), cf.compare(folder), load_measured(folder)
+    assert result | compared.values() == result
     for reported, row in zip(result["rows"], compare(cue), strict=True):
         assert reported["label"] == row.measurement.label
         for name in ("computed_value", "spread", "normalized_residual"):
@@ -30,6 +30,13 @@ def test_compare_json_equals_library_and_page_lists_measurements(tmp_path: Path)
     text = page.read_text(encoding="utf-8").replace("\u00a0", " ")
     assert all(f">{one.label}<" in text for one in cue.measurements)
     assert "http" not in text.replace("http://www.w3.org", "")
+
+
+def test_compare_help_shows_both_forms() -> None:
+    usage = stdout_of("compare", "--help").partition("\n\n")[0]
+    files, folder = usage.splitlines()
+    assert files.endswith("compare FILE FILE ... [OPTIONS]")
+    assert folder.endswith("compare FOLDER [--estimate | --template]")
 
 
 @pytest.mark.parametrize("drawing", ["cue.toml", "cue.csv"])
@@ -76,8 +83,9 @@ def test_compare_estimate_json_equals_library(tmp_path: Path) -> None:
     known = "".join(f'[[prior]]\nname = "{name}"\nspread = 0.0\n' for name in ("G", "bore width", "contact time"))
     folder = measured_folder(tmp_path / "cue", MEASURED_TOML + known)
     reported = as_json("compare", folder, "--estimate")
-    expected = estimate(load_measured(folder)[0])
-    assert [value["value"] for value in reported["values"]] == pytest.approx([value.value for value in expected.values])
-    assert (reported["misfit"], reported["converged"]) == (pytest.approx(expected.misfit), True)
+    expected = cf.estimate(folder)
+    assert reported | expected.values() == reported
+    assert [each["value"] for each in expected.parameters] == [each.value for each in expected.found.values]
+    assert expected.converged
     assert {gain["kind"] for gain in reported["recommended_measurements"]} <= set(MEASUREMENT_TYPES)
     assert all(0 < gain["error_ratio"] <= 1 and gain["bits"] >= 0 for gain in reported["recommended_measurements"])

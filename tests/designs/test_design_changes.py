@@ -10,7 +10,6 @@ import cuefem as cf
 from cuefem.analysis.design_changes import MIN_STIFFNESS_LOSS, MIN_WALL, DesignChanges, changes_of, design_changes
 from cuefem.cue.materials import material
 from cuefem.parameters.parameter import with_parameters
-from cuefem.results.comparison import comparison_record
 from cuefem.results.uncertainty import RATIO_FLOOR, SHAFT_ERROR
 from tests.helpers.command_line import as_json, call
 from tests.helpers.invalid_input import assert_rejects
@@ -65,7 +64,7 @@ def test_design_change_error_equals_comparison_of_same_shaft() -> None:
     scene = scene_of("pool_maple")
     (row,) = (row for row in design_changes(scene).changes if row.change == "ABS ferrule")
     pair = {"before": scene, "after": with_parameters(scene, row.values)}
-    error = comparison_record(pair, same_shaft=True)["differences"]["after"]["squirt"]["error"]
+    error = cf.compare(pair, same_shaft=True).differences["after"]["squirt"]["error"]
     assert row.squirt_change_error == pytest.approx(error, rel=0.01)
 
 

@@ -77,7 +77,7 @@ def assert_density_and_butt_as_stated() -> None:
         assert f"{less} % less" in TEXTS["what_squirt_is"]
     for scene in (maple, kim):
         weighed = replace(scene, cue=replace(scene.shaft, shaft_mass_measured=True))
-        before, after = (cf.verdict(each)["references"]["plain maple"]["error"] for each in (scene, weighed))
+        before, after = (cf.verdict(each).references["plain maple"]["error"] for each in (scene, weighed))
         assert f"from {100 * before:.1f} to {100 * after:.1f} %" in TEXTS["read_the_report"]
 
 

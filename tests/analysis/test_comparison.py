@@ -3,15 +3,13 @@
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 import cuefem as cf
-from cuefem.analysis.comparison_table import comparison_sentences
+from cuefem.analysis.comparison import SHAPE_FLOOR, Comparison
 from cuefem.parameters.parameter import with_parameters
 from cuefem.parameters.parts import main_material
-from cuefem.results.comparison import SHAPE_FLOOR, comparison_record
 from cuefem.results.uncertainty import MASS_ERROR, RATIO_FLOOR, SHAFT_ERROR
 from tests.helpers.command_line import as_json, call
 from tests.helpers.cues import kim
@@ -21,22 +19,22 @@ BORED = with_parameters(SCENE, {"bore depth": 0.1, "bore width": 0.006})
 
 
 @pytest.fixture(scope="module")
-def both() -> dict[str, Any]:
-    return comparison_record({"plain": SCENE, "bored": BORED})
+def both() -> Comparison:
+    return cf.compare({"plain": SCENE, "bored": BORED})
 
 
-def test_comparison_differences_agree_with_single_cues(both: dict[str, Any]) -> None:
+def test_comparison_differences_agree_with_single_cues(both: Comparison) -> None:
     squirts = [float(cf.strike(scene).squirt) for scene in (SCENE, BORED)]
-    assert [both["cues"][name]["squirt"] for name in ("plain", "bored")] == pytest.approx(squirts, rel=1e-9)
-    assert both["cues"]["plain"]["end_mass_squirt"] == pytest.approx(cf.end_mass(SCENE, "squirt"), rel=1e-9)
-    squirt = both["differences"]["bored"]["squirt"]
+    assert [both.cues[name]["squirt"] for name in ("plain", "bored")] == pytest.approx(squirts, rel=1e-9)
+    assert both.cues["plain"]["end_mass_squirt"] == pytest.approx(cf.end_mass(SCENE, "squirt"), rel=1e-9)
+    squirt = both.differences["bored"]["squirt"]
     assert squirt["difference"] == pytest.approx(squirts[1] / squirts[0] - 1, rel=1e-9)
     assert squirt["error"] > abs(squirt["difference"]) * SHAFT_ERROR / 1.1
 
 
-def test_comparison_reversed_order_has_same_significance(both: dict[str, Any]) -> None:
-    other = comparison_record({"bored": BORED, "plain": SCENE})["differences"]["plain"]
-    for name, each in both["differences"]["bored"].items():
+def test_comparison_reversed_order_has_same_significance(both: Comparison) -> None:
+    other = cf.compare({"bored": BORED, "plain": SCENE}).differences["plain"]
+    for name, each in both.differences["bored"].items():
         sizes = [one["difference"] / (one["error"] or math.inf) for one in (each, other[name])]
         assert sizes[0] == pytest.approx(-sizes[1], rel=1e-6, abs=1e-9)
 
@@ -45,15 +43,15 @@ TWIN = {"a": SCENE, "b": replace(SCENE)}
 
 
 def test_comparison_of_equal_cues_has_error_floor() -> None:
-    same = comparison_record(TWIN, same_shaft=True)["differences"]["b"]
+    same = cf.compare(TWIN, same_shaft=True).differences["b"]
     assert same["squirt"]["error"] == pytest.approx(RATIO_FLOOR, rel=1e-9)
     assert same["shaft_mass"]["error"] == same["frequency_1"]["error"] == pytest.approx(SHAPE_FLOOR, rel=1e-9)
 
 
 def test_comparison_of_two_woods_adds_input_errors() -> None:
-    record = comparison_record(TWIN)
-    two = record["differences"]["b"]
-    assert "not distinct" in comparison_sentences(record)[0]
+    compared = cf.compare(TWIN)
+    two = compared.differences["b"]
+    assert "not distinct" in compared.sentences()[0]
     assert not any(each["distinct"] for each in two.values())
     heavier = with_parameters(SCENE, {"rho": main_material(SCENE.shaft).rho * math.exp(0.1)})
     assert two["shaft_mass"]["error"] > 0.9 * (heavier.shaft.shaft_mass / SCENE.shaft.shaft_mass - 1)
@@ -63,19 +61,19 @@ def test_comparison_of_two_woods_adds_input_errors() -> None:
 def test_comparison_with_shaft_masses_has_smaller_error() -> None:
     faster = replace(SCENE, stroke=cf.Stroke(4.0, 0.1))
     light, heavy = (with_parameters(scene, {"shaft mass": mass}) for scene, mass in ((SCENE, 0.112), (faster, 0.128)))
-    weighed = comparison_record({"light": light, "heavy": heavy})
-    assert (weighed["speed"], weighed["offset"]) == (SCENE.stroke.speed, SCENE.stroke.offset)
-    mass = weighed["differences"]["heavy"]["shaft_mass"]
+    weighed = cf.compare({"light": light, "heavy": heavy})
+    assert (weighed.speed, weighed.offset) == (SCENE.stroke.speed, SCENE.stroke.offset)
+    mass = weighed.differences["heavy"]["shaft_mass"]
     assert (mass["error"] < 0.01, mass["distinct"]) == (True, True)
-    bare = comparison_record({"light": SCENE, "heavy": with_parameters(SCENE, {"rho": 880.0})})
-    assert bare["differences"]["heavy"]["squirt"]["error"] > weighed["differences"]["heavy"]["squirt"]["error"]
+    bare = cf.compare({"light": SCENE, "heavy": with_parameters(SCENE, {"rho": 880.0})})
+    assert bare.differences["heavy"]["squirt"]["error"] > weighed.differences["heavy"]["squirt"]["error"]
 
 
 @pytest.mark.heavy
 def test_comparison_with_point_mass_has_larger_error() -> None:
     """The model error of a ratio with a point mass is MASS_ERROR."""
     clip = replace(SCENE, effects=(*SCENE.effects, cf.PointMass(position=0.05, mass=0.011)))
-    squirt = comparison_record({"plain": SCENE, "clip": clip}, same_shaft=True)["differences"]["clip"]["squirt"]
+    squirt = cf.compare({"plain": SCENE, "clip": clip}, same_shaft=True).differences["clip"]["squirt"]
     assert squirt["error"] >= MASS_ERROR * squirt["difference"] > SHAFT_ERROR * squirt["difference"]
 
 
@@ -93,12 +91,17 @@ def test_compare_files_of_one_name_takes_first_ball_and_stroke(tmp_path: Path, m
     assert Path("both.html").read_text(encoding="utf-8").count("<svg") >= 4
 
 
+def test_compare_of_one_cue_names_the_bound() -> None:
+    with pytest.raises(ValueError, match="2 to 5 cues; got 1"):
+        cf.compare({"alone": SCENE})
+
+
 def test_comparison_miscue_has_no_squirt() -> None:
     miscues = {name: replace(scene, stroke=cf.Stroke(2.0, 0.8)) for name, scene in (("a", SCENE), ("b", BORED))}
-    record = comparison_record(miscues)
-    assert record["cues"]["a"]["squirt"] != record["cues"]["a"]["squirt"]
-    assert not {"squirt", "pivot_length"} & {*record["differences"]["b"]}
-    assert "a: miscue at b/R 0.8" in comparison_sentences(record)[0]
+    compared = cf.compare(miscues)
+    assert math.isnan(compared.cues["a"]["squirt"])
+    assert not {"squirt", "pivot_length"} & {*compared.differences["b"]}
+    assert "a: miscue at b/R 0.8" in compared.sentences()[0]
 
 
 @pytest.mark.parametrize(

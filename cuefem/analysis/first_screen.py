@@ -11,12 +11,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from cuefem.analysis.verdict import Verdict, squirt_difference
 from cuefem.results.quantities import DASH, DISPLAY_UNITS, with_unit
 from cuefem.results.records import Record
 from cuefem.scene import Scene
 from cuefem.show.drawings import DIAMETER_SCALE, FRONT_LENGTH, cue_drawing, legend
 from cuefem.show.templates import environment
-from cuefem.show.verdict_table import reference_scale, squirt_difference, squirt_text
 
 # The four numbers: label, SI unit, decimals, suffix, tooltip.
 TILES = {
@@ -40,7 +40,7 @@ class HeadlineCue:
     name: str
     scene: Scene
     numbers: Mapping[str, float | None]
-    verdict: Record | None = None
+    verdict: Verdict | None = None
 
 
 class Tile(NamedTuple):
@@ -59,19 +59,19 @@ def headline_markup(
 ) -> str:
     """Squirt with its uncertainty, and its difference from another design's and from a reference cue's.
 
-    difference: of `cuefem.results.comparison`, from the other design. warning: about the contact state.
+    difference: of `cuefem.analysis.comparison`, from the other design. warning: about the contact state.
     """
     verdict = own.verdict
-    squirt, where = own.numbers["squirt"], f"{verdict['offset'] if verdict else own.scene.stroke.offset:.2f}"
+    squirt, where = own.numbers["squirt"], f"{verdict.offset if verdict else own.scene.stroke.offset:.2f}"
     if verdict:
-        text, error = squirt_text(verdict)
-        where += " (default; this stroke is head-on)" if verdict["head_on"] else ""
+        text, error = verdict.squirt_text()
+        where += " (default; this stroke is head-on)" if verdict.head_on else ""
     else:
         text, error = DASH if squirt is None else with_unit(abs(squirt), "rad", decimals=2), ""
     lines = []
-    if other is not None and squirt is not None and (not verdict or verdict["references"]):
+    if other is not None and squirt is not None and (not verdict or verdict.references):
         lines.append(("compared with" if difference is None else squirt_difference(**difference), other.name))
-    for first, among in [*(verdict["references"].items() if verdict else ())][:1]:
+    for first, among in [*(verdict.references.items() if verdict else ())][:1]:
         if other is None or other.name != first:
             line = squirt_difference(among["difference"], among["error"], among["distinct"])
             lines.append((line, first))
@@ -99,7 +99,7 @@ def _value(design: HeadlineCue, key: str) -> float | None:
 def scale_markup(own: HeadlineCue, other: HeadlineCue | None = None) -> str:
     """The reference cues, this design with its uncertainty, and the other one, sorted by squirt."""
     beside = None if other is None else (other.name, other.numbers["squirt"])
-    return _macro("scale", reference_scale(own.verdict, own.name, beside) if own.verdict else [], other)
+    return _macro("scale", own.verdict.scale(own.name, beside) if own.verdict else [], other)
 
 
 def tiles_markup(own: HeadlineCue, other: HeadlineCue | None = None) -> str:
@@ -120,10 +120,10 @@ def drawings_markup(designs: Mapping[str, Scene]) -> str:
     return _macro("drawings", fronts, whole, DIAMETER_SCALE, legend(designs.values()))
 
 
-def parts_line(verdict: Record) -> str:
+def parts_line(verdict: Verdict) -> str:
     """The parts of the uncertainty: "± 0.35° (1σ) is 24 %: model 16 %, wood and tip 18 %"."""
-    _, error = squirt_text(verdict)
-    parts = verdict["uncertainty"]
+    _, error = verdict.squirt_text()
+    parts = verdict.uncertainty
     model, inputs = f"{100 * parts['model']:.0f} %", f"{100 * parts['inputs']:.0f} %"
     return f"± {error} (1σ) is {100 * parts['total']:.0f} %: model {model}, wood and tip {inputs}"
 

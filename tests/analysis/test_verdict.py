@@ -8,36 +8,38 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
+from cuefem.analysis.comparison import compare_cues
+from cuefem.analysis.verdict import Verdict, with_cue
 from cuefem.cue.materials import MATERIALS
 from cuefem.files.reference_cues import REFERENCE_FILES, reference_cues
 from cuefem.parameters.parameter import with_parameters
-from cuefem.results.comparison import comparison_record
+from cuefem.results.solved_design import SolvedDesign
 from cuefem.results.uncertainty import NUMERICAL_ERROR, RATIO_FLOOR
-from cuefem.results.verdict import mass_problem, verdict_record, with_cue
+from cuefem.results.verdict import mass_problem
 from cuefem.scene.default_scene import GAMES, default_tip, without_leather
-from cuefem.show.verdict_table import reference_comparison, reference_scale, squirt_text
+from cuefem.scene.solved_scene import SolvedScene
 
 ROOT = Path(__file__).parents[2]
 SCENE = cf.usual_scene(cf.load(ROOT / "meshes" / "pool_hollow.toml"))
-RECORD = verdict_record(SCENE, cf.strike(SCENE), reference_cues())
+VERDICT = cf.verdict(SCENE)
 
 
 @pytest.mark.parametrize("name", REFERENCE_FILES)
 def test_verdict_reference_cues_agree_with_strikes(name: str) -> None:
     outcome = cf.strike(replace(SCENE, cue=without_leather(cf.load(ROOT / REFERENCE_FILES[name]))))
-    reference = RECORD["references"][name]
+    reference = VERDICT.references[name]
     assert reference["squirt"] == pytest.approx(outcome.squirt, rel=1e-12)
     assert reference["difference"] == pytest.approx(cf.strike(SCENE).squirt / outcome.squirt - 1, abs=1e-12)
 
 
 def test_verdict_uncertainty_is_quadrature_sum_of_parts() -> None:
-    uncertainty = RECORD["uncertainty"]
+    uncertainty = VERDICT.uncertainty
     parts = [uncertainty[name] for name in ("model", "inputs", "computation")]
     assert all(part > 0 for part in parts)
     assert uncertainty["total"] == pytest.approx(math.sqrt(sum(part**2 for part in parts)), rel=1e-12)
-    assert RECORD["squirt_error"] == pytest.approx(uncertainty["total"] * RECORD["squirt"], rel=1e-12)
-    assert uncertainty["inputs"] == pytest.approx(math.hypot(*RECORD["inputs"].values()), rel=1e-12)
-    assert {"E", "rho", "tip_height"} <= set(RECORD["inputs"])
+    assert VERDICT.squirt_error == pytest.approx(uncertainty["total"] * VERDICT.squirt, rel=1e-12)
+    assert uncertainty["inputs"] == pytest.approx(math.hypot(*VERDICT.inputs.values()), rel=1e-12)
+    assert {"E", "rho", "tip_height"} <= set(VERDICT.inputs)
 
 
 @pytest.mark.parametrize(
@@ -47,20 +49,20 @@ def test_verdict_uncertainty_is_quadrature_sum_of_parts() -> None:
 )
 def test_verdict_known_input_has_smaller_uncertainty(known: dict[str, float]) -> None:
     scene = with_parameters(SCENE, known)
-    record = verdict_record(scene, cf.strike(scene), {})
-    assert record["uncertainty"]["model"] == RECORD["uncertainty"]["model"]
-    assert record["uncertainty"]["total"] < RECORD["uncertainty"]["total"]
+    known_verdict = cf.verdict(scene, {})
+    assert known_verdict.uncertainty["model"] == VERDICT.uncertainty["model"]
+    assert known_verdict.uncertainty["total"] < VERDICT.uncertainty["total"]
 
 
 @pytest.mark.parametrize(("depth", "distinct"), [(0.01, False), (0.1, True)])
 def test_verdict_difference_within_error_is_not_distinct(depth: float, distinct: bool) -> None:
     maple = cf.load(ROOT / REFERENCE_FILES["plain maple"])
     bored = with_parameters(cf.usual_scene(maple), {"bore depth": depth, "bore width": 0.006})
-    record = verdict_record(bored, cf.strike(bored), {"plain maple": maple})
-    reference = record["references"]["plain maple"]
+    verdict = cf.verdict(bored, {"plain maple": maple})
+    reference = verdict.references["plain maple"]
     assert reference["distinct"] == distinct == (abs(reference["difference"]) > reference["error"])
     assert reference["error"] >= RATIO_FLOOR
-    assert reference_comparison(record)[0].startswith("not distinct") != distinct
+    assert verdict.reference_comparison()[0].startswith("not distinct") != distinct
 
 
 LIGHT = replace(SCENE, cue=replace(SCENE.cue, body_mass=0.0))
@@ -89,10 +91,10 @@ def test_impossible_mass_or_miscue_has_no_verdict(name: str) -> None:
 @pytest.mark.parametrize("name", IMPOSSIBLE)
 def test_impossible_mass_or_miscue_has_no_difference_of_squirt(name: str) -> None:
     scene, words = IMPOSSIBLE[name]
-    record = comparison_record({"this": scene, "other": SCENE if name != "miscue" else scene}, names=("squirt",))
-    assert math.isnan(record["cues"]["this"]["squirt"])
-    assert record["differences"]["other"] == {}
-    assert re.search(words, record["problems"]["this"])
+    compared = compare_cues({"this": scene, "other": SCENE if name != "miscue" else scene}, names=("squirt",))
+    assert math.isnan(compared.cues["this"]["squirt"])
+    assert compared.differences["other"] == {}
+    assert re.search(words, compared.problems["this"])
 
 
 @pytest.mark.parametrize(("share", "possible"), [(0.76, True), (0.74, False), (1.24, True), (1.26, False)])
@@ -107,8 +109,9 @@ def test_weighed_shaft_has_a_verdict_within_a_quarter_of_its_wood(share: float, 
 
 def test_verdict_head_on_outcome_error_is_not_of_the_default_offset() -> None:
     scene = replace(SCENE, stroke=cf.Stroke(2.0, 0.0))
-    record = verdict_record(scene, replace(cf.strike(scene), error=1e-9), {})
-    assert (record["head_on"], record["uncertainty"]["computation"]) == (True, NUMERICAL_ERROR)
+    resolved = SolvedDesign(SolvedScene(scene), replace(cf.strike(scene), error=1e-9))
+    verdict = cf.verdict(resolved, {})
+    assert (verdict.head_on, verdict.uncertainty["computation"]) == (True, NUMERICAL_ERROR)
 
 
 def test_same_stroke_excludes_effects_on_own_cue() -> None:
@@ -126,7 +129,7 @@ def test_reference_cue_has_a_tip_that_fits_its_own_face(game: str, front: float,
     cue = cf.Cue((cf.Segment(1.4, front, 0.03, wood),))
     tip = default_tip(cue, game) if dome is None else replace(default_tip(cue, game), dome_radius=dome)
     scene = cf.usual_scene(cue, game, tip=tip)
-    assert [*cf.verdict(scene)["references"]] == [*REFERENCE_FILES]
+    assert [*cf.verdict(scene).references] == [*REFERENCE_FILES]
     for reference in reference_cues().values():
         other = with_cue(scene, reference)
         face = other.shaft.segments[0].tip_diameter
@@ -145,7 +148,7 @@ def test_default_tip_fits_every_usual_front(game: str, front: float) -> None:
 
 
 def test_reference_scale_is_ascending_and_relative_to_maple() -> None:
-    rows, reference = reference_scale(RECORD), RECORD["references"]
+    rows, reference = VERDICT.scale(), VERDICT.references
     assert [row.at for row in rows] == sorted(row.at for row in rows)
     assert all(0 <= row.low <= row.at <= row.high <= 100 for row in rows)
     assert [row.name for row in rows if row.kind == "own"] == ["yours"]
@@ -160,5 +163,5 @@ def test_reference_scale_is_ascending_and_relative_to_maple() -> None:
     ("squirt", "error", "text"), [(1.847, 0.31, "1.85°"), (0.4, 0.042, "0.40°"), (0.04, 0.0042, "0.040°")]
 )
 def test_squirt_text_has_digits_of_tables(squirt: float, error: float, text: str) -> None:
-    record = {"squirt": math.radians(squirt), "squirt_error": math.radians(error)}
-    assert squirt_text(record)[0] == text
+    verdict: Verdict = replace(VERDICT, squirt=math.radians(squirt), squirt_error=math.radians(error))
+    assert verdict.squirt_text()[0] == text

@@ -1,0 +1,339 @@
+"""Comparison of cues: their results, and each difference with the uncertainty that does not cancel."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple, overload
+
+from cuefem.analysis.base import Analysis
+from cuefem.analysis.end_mass import SQUIRT_END_MASS
+from cuefem.analysis.measured import MeasuredComparison, compare_measured
+from cuefem.analysis.strike_models import regime_warning
+from cuefem.analysis.verdict import difference_text, squirt_difference
+from cuefem.measurements.measured_cue import MeasuredCue
+from cuefem.measurements.measured_folder import load_measured
+from cuefem.parameters.parameter import PARAMETERS
+from cuefem.parameters.parts import main_material
+from cuefem.results.quantities import DASH, RESULTS, UNITS, format_value, with_unit
+from cuefem.results.records import Record, Table
+from cuefem.results.solved_design import SolvedDesign, computable_results, coupled_curve, off_centre
+from cuefem.results.uncertainty import RATIO_FLOOR, changes_by_input, difference_record, model_share
+from cuefem.results.verdict import verdict_problem
+from cuefem.scene import Scene
+from cuefem.scene.solved_scene import SolvedScene
+from cuefem.show.scene_summary import effect_text, listed, scene_record
+
+if TYPE_CHECKING:
+    from cuefem.show.charts import Chart
+    from cuefem.show.drawings import CueDrawing
+
+# The compared results, by their names in the registry.
+SQUIRT_RESULTS = ("squirt", "end_mass_squirt", "pivot_length")  # derived from squirt: they include the model error
+SHAPE_RESULTS = ("tip_stiffness", "shaft_mass", "mass")
+N_FREQUENCIES = 3
+RESULT_NAMES = (*SQUIRT_RESULTS, *SHAPE_RESULTS, *(f"frequency_{k}" for k in range(1, N_FREQUENCIES + 1)))
+SHAPE_FLOOR = 2e-3  # relative, of shape, weights, frequencies: 0.2 g of 100 g, 0.01 mm of 13 mm to the fourth power
+
+CURVE_OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 13))  # b/R
+STYLES = ("c1", "c2", "c3", "c4", "c5")
+MAX_CUES = len(STYLES)
+_LABELS = {"end_mass_squirt": SQUIRT_END_MASS}
+Progress = Callable[[Sequence[Any]], Iterable[Any]]
+
+
+@dataclass(frozen=True)
+class Comparison(Analysis):
+    """Results of some cues, and the relative differences of the others from the first with their uncertainty.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene of the first cue, off centre.
+    offset, speed : float
+        Offset b/R and speed, m/s, of the stroke of all cues.
+    same_shaft : bool
+        Whether the cues are one shaft before and after a change.
+    reference : str
+        Name of the first cue.
+    regimes : dict of str to str
+        State of the contact of each cue, as `Outcome.regime`; "" if its strike fails.
+    problems : dict of str to str
+        Why a cue has no verdict, by its name.
+    cues : dict of str to dict
+        Results of each cue in SI by their names in the registry; nan where it has none, such as squirt of a miscue.
+    differences : dict of str to dict
+        For each other cue, by result, "difference", its value over that of the first less 1; "error", its uncertainty
+        (1 sigma); and "distinct", whether the difference exceeds the error, whichever of two cues is the first.
+    scenes : dict of str to Scene
+        The compared scenes, all with the ball and the stroke of the first.
+    """
+
+    offset: float
+    speed: float
+    same_shaft: bool
+    reference: str
+    regimes: dict[str, str]
+    problems: dict[str, str]
+    cues: dict[str, dict[str, float]]
+    differences: dict[str, dict[str, Record]]
+    scenes: dict[str, Scene] = field(repr=False)
+
+    def heading(self) -> str:
+        """The names of the cues."""
+        return listed([*self.scenes])
+
+    def effects(self) -> str:
+        """The effects of all cues, or of each."""
+        texts = {name: ", ".join(map(effect_text, scene.effects)) for name, scene in self.scenes.items()}
+        if len(set(texts.values())) == 1:
+            return texts[self.reference]
+        return "; ".join(f"{name}: {text or 'none'}" for name, text in texts.items())
+
+    def to_dict(self) -> Record:
+        """The record: every scene, numbers in SI units, and the unit of each."""
+        scenes = {name: scene_record(scene) for name, scene in self.scenes.items()}
+        return {"scenes": scenes, **self.values(), "units": dict(UNITS)}
+
+    def sentences(self) -> list[str]:
+        """A sentence on the squirt of each cue relative to the first."""
+        first = self.reference
+        sentences = []
+        for name, differences in self.differences.items():
+            squirt = differences.get("squirt")
+            if squirt is None:
+                problems = [f"{cue}: {self.problems[cue]}" for cue in (first, name) if cue in self.problems]
+                reason = "; ".join(problems) or "a stroke is nearly a miscue"
+                sentences.append(f"{name} and {first} cannot be compared in squirt: {reason}.")
+            else:
+                sentences.append(f"{name}: {squirt_difference(**squirt)} {first} (1σ).")
+        return sentences
+
+    def tables(self) -> list[Table | str]:
+        """A sentence on each difference of squirt, and the table."""
+        return [*self.sentences(), "", self.table()]
+
+    def table(self) -> Table:
+        """A row for each result: its value for each cue, and the differences of the others from the first."""
+        first, *others = self.cues
+        rows = []
+        for name, own in self.cues[first].items():
+            cells = [_label(name), _value(name, own)]
+            for other in others:
+                text = DASH
+                if difference := self.differences[other].get(name):
+                    text = difference_text(difference["difference"], difference["error"])
+                    text += "" if difference["distinct"] else " *"
+                cells += [_value(name, self.cues[other][name]), text]
+            rows.append(tuple(cells))
+            if name == "squirt":
+                lateral = [_lateral(self.cues[cue][name]) for cue in (first, *others)]
+                rows.append(("off line after 1 m", lateral[0], *(cell for each in lateral[1:] for cell in (each, ""))))
+        head = ("", first, *(cell for other in others for cell in (other, "difference")))
+        shaft = "one shaft, before and after a change" if self.same_shaft else "shafts of different pieces of wood"
+        notes = (
+            f"Same stroke, with the ball of {first}, b/R {self.offset:.3g} at {self.speed:g} m/s. ±: 1σ of the "
+            f"difference, for {shaft}; shared errors cancel.",
+            *(f"{name}: {warning}" for name, regime in self.regimes.items() if (warning := regime_warning(regime))),
+            "* smaller than its uncertainty: the cues are not distinct in this quantity.",
+        )
+        return Table("Side by side", head, tuple(rows), notes)
+
+    def charts(self) -> list[Chart | CueDrawing]:
+        """Squirt and natural pivot length against the offset, and a drawing of each cue."""
+        from cuefem.show.drawings import DIAMETER_SCALE, cue_drawing  # drawings and charts are not for terminals
+        from cuefem.show.offset_charts import offset_charts
+
+        lines = [
+            (name, style, coupled_curve(scene, CURVE_OFFSETS, SolvedScene(scene).tip))
+            for style, (name, scene) in zip(STYLES, self.scenes.items(), strict=False)
+        ]
+        drawings = [
+            cue_drawing(scene, f"{name}, diameters {DIAMETER_SCALE:g} times enlarged")
+            for name, scene in self.scenes.items()
+        ]
+        return [*offset_charts(lines, CURVE_OFFSETS, self.offset, height=300), *drawings]
+
+
+def _label(name: str) -> str:
+    if name.startswith("frequency_"):
+        return f"natural frequency {name.removeprefix('frequency_')}"
+    return _LABELS.get(name) or RESULTS[name].label
+
+
+def _value(name: str, value: float) -> str:
+    """A value with its unit."""
+    quantity = "frequency" if name.startswith("frequency_") else "end_mass" if name in _LABELS else name
+    return format_value(quantity, value)
+
+
+def _lateral(squirt: float) -> str:
+    return DASH if math.isnan(squirt) else with_unit(math.tan(squirt), "m", decimals=0)
+
+
+@overload
+def compare(cues: Mapping[str, Scene], *, same_shaft: bool = False, progress: Progress | None = None) -> Comparison: ...
+@overload
+def compare(cues: MeasuredCue | str | Path, *, progress: Progress | None = None) -> MeasuredComparison: ...
+def compare(
+    cues: Mapping[str, Scene] | MeasuredCue | str | Path,
+    *,
+    same_shaft: bool = False,
+    progress: Progress | None = None,
+) -> Comparison | MeasuredComparison:
+    """Compare cues side by side, or the measured values of one cue with computed ones, with uncertainties.
+
+    Parameters
+    ----------
+    cues : mapping of str to Scene, or str, path or MeasuredCue
+        Two to five cues by their names, struck with the ball and the stroke of the first; or the folder of a measured
+        cue (`cuefem guide measuring` has the format), or what it holds.
+    same_shaft : bool
+        Whether the cues are one shaft before and after a change: the uncertainty of its wood cancels.
+    progress : callable, optional
+        Wraps the list of cues or of uncertain parameters, to show progress.
+
+    Returns
+    -------
+    Comparison or MeasuredComparison
+        Of cues, or of a measured cue. Show it with ``print``, in a notebook, or by ``.save("both.html")``.
+
+    Raises
+    ------
+    ValueError
+        If there are too few or too many cues, one has no shape (a lumped cue), one shaft has two woods, or a file of a
+        measured cue is invalid.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> wide = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43))
+    >>> slim = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.0118, 0.021, wood),), body_mass=0.43))
+    >>> squirt = cf.compare({"wide": wide, "slim": slim}).differences["slim"]["squirt"]
+    >>> f"{squirt['difference']:.0%} ± {squirt['error']:.0%}", squirt["distinct"]
+    ('-15% ± 6%', True)
+    """
+    if isinstance(cues, Mapping):
+        return compare_cues(cues, same_shaft=same_shaft, progress=progress or list)
+    measured = cues if isinstance(cues, MeasuredCue) else load_measured(Path(cues))[0]
+    return compare_measured(measured, progress=progress or iter)
+
+
+def compare_cues(
+    scenes: Mapping[str, Scene],
+    *,
+    same_shaft: bool = False,
+    names: Sequence[str] = RESULT_NAMES,
+    progress: Progress = list,
+) -> Comparison:
+    """Compare cues by the ball and the stroke of the first, with the uncertainty of each difference.
+
+    An error that two cues share cancels in their difference: that of a tip of the same value on both, and of the wood
+    if they are one shaft before and after a change (same_shaft). To squirt and what follows from it, the model adds
+    its part of the logarithm (`model_share`), and `RATIO_FLOOR`; other numbers have `SHAPE_FLOOR`.
+
+    names: the results that are compared. progress: wraps the list of cues, to show progress. ValueError for less than
+    two cues or more than `MAX_CUES`, and for one shaft of two woods.
+    """
+    if not 2 <= len(scenes) <= MAX_CUES:
+        raise ValueError(f"compare takes 2 to {MAX_CUES} cues; got {len(scenes)}")
+    struck = with_same_stroke(scenes)
+    woods = {main_material(scene.shaft).E for scene in struck.values()}
+    if same_shaft and len(woods) > 1:
+        moduli = " and ".join(f"{E / 1e9:.4g} GPa" for E in sorted(woods))
+        raise ValueError(f"one shaft before and after a change must be of one wood; got E of {moduli}")
+    results = {name: _cue_results(struck[name], tuple(names)) for name in progress([*struck])}
+    reference, *others = results
+    first = struck[reference]
+    return Comparison(
+        first,
+        offset=float(first.stroke.offset),
+        speed=float(first.stroke.speed),
+        same_shaft=same_shaft,
+        reference=reference,
+        regimes={name: each.regime for name, each in results.items()},
+        problems={name: each.problem for name, each in results.items() if each.problem},
+        cues={name: each.numbers for name, each in results.items()},
+        differences={name: _differences(results[reference], results[name], same_shaft=same_shaft) for name in others},
+        scenes=struck,
+    )
+
+
+def with_same_stroke(scenes: Mapping[str, Scene]) -> dict[str, Scene]:
+    """The scenes with the ball and the stroke of the first, off centre."""
+    first = off_centre(next(iter(scenes.values())))
+    return {name: replace(scene, ball=first.ball, stroke=first.stroke) for name, scene in scenes.items()}
+
+
+class _CueResults(NamedTuple):
+    """A scene, its results, the contact state of its strike ("" if it fails), why it has no verdict ("" if it has), and
+    the relative changes of the results with each uncertain input."""
+
+    scene: Scene
+    numbers: dict[str, float]
+    regime: str
+    problem: str
+    inputs: dict[str, dict[str, float]]
+
+
+@lru_cache(maxsize=16)  # the reference usually remains while the other cue changes
+def _cue_results(scene: Scene, names: tuple[str, ...]) -> _CueResults:
+    design = SolvedDesign.of(scene)
+    numbers = _numbers(design, names)
+    try:
+        outcome = design.strike()
+        regime, problem = outcome.regime, verdict_problem(scene, outcome)
+    except (ValueError, RuntimeError) as error:
+        regime, problem = "", str(error)
+    changes = changes_by_input(scene, numbers, lambda other: _numbers(SolvedDesign.of(other), names))
+    return _CueResults(scene, numbers, regime, problem, changes)
+
+
+def _numbers(design: SolvedDesign, names: Sequence[str]) -> dict[str, float]:
+    """The compared results of a design; nan where it has none, such as squirt of a miscue."""
+    scene, registry = design.scene, computable_results()
+    _ = scene.shaft  # ValueError for a lumped cue, which has no shape
+
+    def value(name: str) -> float:
+        base, _, mode = name.partition("frequency_")
+        of = registry[base or "frequency"].of
+        argument: Any = int(mode) if mode else float(scene.stroke.offset) if name == "pivot_length" else None
+        assert of is not None
+        try:
+            if name in SQUIRT_RESULTS and verdict_problem(scene, design.strike()):
+                return math.nan
+            return of(design, argument)
+        except (ValueError, RuntimeError):
+            return math.nan
+
+    return {name: value(name) for name in names}
+
+
+def _differences(first: _CueResults, other: _CueResults, *, same_shaft: bool) -> dict[str, Record]:
+    """Relative differences, their uncertainty, and whether they are distinct, by number, if both have a value."""
+    records: dict[str, Record] = {}
+    for name, value in first.numbers.items():
+        ratio = other.numbers[name] / value
+        if not ratio > 0:
+            continue
+        inputs = {**first.inputs, **other.inputs}
+        errors = [_input_error(first, other, key, name, same_shaft=same_shaft) for key in inputs]
+        share, floor = 0.0, SHAPE_FLOOR
+        if name in SQUIRT_RESULTS:
+            share, floor = model_share(first.scene, other.scene), RATIO_FLOOR
+        difference = difference_record(ratio, share, *errors, floor=floor)
+        if not math.isnan(difference["error"]):  # a strike at a limit of an input's range is a miscue
+            records[name] = difference
+    return records
+
+
+def _input_error(first: _CueResults, other: _CueResults, key: str, name: str, *, same_shaft: bool) -> float:
+    """Uncertainty of the logarithm of a ratio of two cues' results by one input."""
+    changes = [each.inputs.get(key, {}).get(name, 0.0) for each in (first, other)]
+    parameter = PARAMETERS[key]
+    shared = parameter.value(first.scene) == parameter.value(other.scene) if parameter.is_shareable else same_shaft
+    return abs(changes[1] - changes[0]) if shared else math.hypot(*changes)

@@ -1,0 +1,274 @@
+"""Verdict on a cue: its squirt with its uncertainty, compared with that of reference cues at the same stroke."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from cuefem.analysis.base import Analysis
+from cuefem.cue import Cue
+from cuefem.files.reference_cues import reference_cues
+from cuefem.results.quantities import format_change, to_display, with_unit
+from cuefem.results.records import Record, Table
+from cuefem.results.solved_design import SolvedDesign, off_centre
+from cuefem.results.uncertainty import (
+    NUMERICAL_ERROR,
+    SHAFT_ERROR,
+    SPRING_ERROR,
+    Uncertainty,
+    difference_record,
+    model_error,
+    model_share,
+    shaft_uncertainty,
+    squirt_changes,
+    squirt_of,
+    variant_squirt,
+)
+from cuefem.results.verdict import reject_no_verdict
+from cuefem.scene import Scene
+from cuefem.scene.default_scene import without_leather
+
+BAR = 32  # characters of the scale in a terminal
+
+
+class ScaleRow(NamedTuple):
+    """A cue on the scale: name, squirt and difference as text; kind "own" for the design, "other" for the compared one;
+    position and interval (1σ), per cent of the scale."""
+
+    name: str
+    text: str
+    difference: str
+    kind: str
+    at: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Verdict(Analysis):
+    """Squirt of a stroke with its uncertainty, beside that of reference cues.
+
+    Parameters
+    ----------
+    scene : Scene
+        The analysed stroke.
+    offset : float
+        Offset b/R of the verdict.
+    head_on : bool
+        Whether that offset is the default one, instead of that of a head-on stroke.
+    squirt : float
+        Squirt, rad, signed.
+    uncertainty : dict of str to float
+        Relative uncertainty of squirt (1 sigma) by its cause, "model", "inputs" and "computation", and "total", these
+        in quadrature.
+    inputs : dict of str to float
+        Relative part of each uncertain parameter in "inputs".
+    squirt_error : float
+        Uncertainty of squirt (1 sigma), rad.
+    references : dict of str to dict
+        By the name of each reference cue "squirt", rad; "difference", squirt of the scene over it less 1, both at the
+        default resolution; "error" of the difference (1 sigma); "distinct", whether the difference exceeds it. A cue
+        whose strike fails, or whose squirt is zero or of the opposite sign, is left out.
+    """
+
+    offset: float
+    head_on: bool
+    squirt: float
+    uncertainty: dict[str, float]
+    inputs: dict[str, float]
+    squirt_error: float
+    references: dict[str, Record]
+
+    def headline(self) -> str:
+        """Squirt with its uncertainty as one line."""
+        squirt, error = self.squirt_text()
+        off_line = with_unit(math.tan(abs(self.squirt)), "m", decimals=0)
+        where = f"at b/R {self.offset:.4g}, {offset_text(self.offset)}"
+        if self.head_on:
+            where += "; the stroke itself is head-on"
+        return f"squirt {squirt.rstrip('°')} ± {error} ({where}): the ball is {off_line} off line after 1 m"
+
+    def squirt_text(self) -> tuple[str, str]:
+        """Squirt and its uncertainty as text: "1.82°" and "0.31°"."""
+        squirt, error = abs(self.squirt), self.squirt_error
+        decimals = 3 if error and to_display(error, "rad") < 0.01 else 2
+        return with_unit(squirt, "rad", decimals=decimals), with_unit(error, "rad", decimals=decimals)
+
+    def reference_comparison(self) -> list[str]:
+        """Squirt relative to the first reference cue as a sentence; empty without reference cues."""
+        return [
+            f"{squirt_difference(own['difference'], own['error'], own['distinct'])} a {first} shaft with the same tip."
+            for first, own in [*self.references.items()][:1]
+        ]
+
+    def uncertainty_line(self) -> str:
+        """The parts of the uncertainty as one line."""
+        parts = {name: _percent(share) for name, share in self.uncertainty.items()}
+        tip = "spring tip; " if self.uncertainty["model"] == SPRING_ERROR else ""
+        return (
+            f"±: uncertainty (1σ): model {parts['model']} ({tip}from published squirt), unmeasured wood and tip "
+            f"{parts['inputs']}, numerical {parts['computation']}; combined {parts['total']}. Of a difference between "
+            f"two shafts: {_percent(SHAFT_ERROR)} of it (model) or that of their wood if larger, and 1 % of squirt."
+        )
+
+    def scale(self, name: str = "yours", other: tuple[str, float | None] | None = None) -> list[ScaleRow]:
+        """The cues by their squirt, the lowest first, the design with its uncertainty; none without reference cues.
+
+        other: name and squirt, rad, of one more cue.
+        """
+        if not self.references:
+            return []
+        mine, error = abs(self.squirt), self.squirt_error
+        squirts = {cue: abs(values["squirt"]) for cue, values in self.references.items()}
+        first = next(iter(squirts))
+        compared, squirt = other or ("", None)
+        if squirt is not None and not self.head_on:
+            squirts.setdefault(compared, abs(squirt))
+        text, error_text = self.squirt_text()
+        decimals = len(text.rstrip("°").partition(".")[2])
+        part = 100 / (1.05 * max([mine + error, *squirts.values()]) or 1.0)
+        interval = (part * max(0.0, mine - error), part * (mine + error))
+        rows = [ScaleRow(name, text, f"± {error_text}", "own", part * mine, *interval)]
+        for cue, own in squirts.items():
+            ratio = round(100 * (own / squirts[first] - 1))
+            more = f"{abs(ratio)} % {'less' if ratio < 0 else 'more'} than {first}" if ratio else f"as much as {first}"
+            text, kind = with_unit(own, "rad", decimals=decimals), "other" if cue == compared else ""
+            rows.append(ScaleRow(cue, text, more if cue != first else "", kind, *3 * (part * own,)))
+        return sorted(rows, key=lambda row: row.at)
+
+    def tables(self) -> list[Table | str]:
+        """Headline, comparison, and the table of reference cues."""
+        text, uncertainty = [self.headline(), *self.reference_comparison(), ""], self.uncertainty_line()
+        if not self.references:
+            return [*text, uncertainty, ""]
+        rows = self.scale()
+        own = {i: "bold" for i, row in enumerate(rows) if row.kind == "own"}
+        head = ("cue", "squirt", "less to more squirt", "")
+        cells = tuple((row.name, row.text, _bar(row), row.difference) for row in rows)
+        title = "Reference pool cues, with this tip, ball and stroke"
+        return [*text, Table(title, head, cells, (uncertainty,), (0, 2, 3), own)]
+
+
+def verdict(scene: Scene | SolvedDesign, references: Mapping[str, Cue] | None = None) -> Verdict:
+    """Squirt of a stroke with its uncertainty, compared with reference cues by the same stroke.
+
+    Parameters
+    ----------
+    scene : Scene or SolvedDesign
+        A stroke with a cue of segments or a lumped cue, or a solved one. A head-on stroke, which has no squirt, is
+        computed at the game's default offset.
+    references : mapping of str to Cue, optional
+        The cues to compare with, the one of sentences first; by default the reference cues of pool.
+
+    Returns
+    -------
+    Verdict
+        Show it with ``print``, in a notebook, or by ``.save("verdict.html")``.
+
+    Raises
+    ------
+    ValueError
+        If the stroke is a miscue, the mass of the cue impossible, or the stroke beyond the valid range of a law, such
+        as an indentation too large for a leather tip.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43))
+    >>> verdict = cf.verdict(scene)
+    >>> 0.1 < verdict.squirt_error / verdict.squirt < 0.3, "plain maple" in verdict.references
+    (True, True)
+    """
+    own = SolvedDesign.of(scene)
+    struck = off_centre(own.scene)
+    head_on = struck is not own.scene
+    design = SolvedDesign.of(struck) if head_on else own
+    outcome = design.strike()
+    reject_no_verdict(struck, outcome)
+    squirt = float(outcome.squirt)
+    # at the resolution of the reference cues, since the outcome may be finer
+    base = squirt if outcome.error is None else variant_squirt(design.solved, struck)
+    inputs = {key: abs(change) for key, change in squirt_changes(design.solved, base).items()}
+    computation = NUMERICAL_ERROR if outcome.error is None else outcome.error
+    uncertainty = Uncertainty(model_error(struck), math.hypot(*inputs.values()), computation)
+    shaft = shaft_uncertainty(inputs)
+    compared = reference_cues() if references is None else references
+    rows = {name: _reference_row(struck, base, cue, shaft) for name, cue in compared.items()}
+    return Verdict(
+        own.scene,
+        offset=float(struck.stroke.offset),
+        head_on=head_on,
+        squirt=squirt,
+        uncertainty=uncertainty._asdict() | {"total": uncertainty.total},
+        inputs=inputs,
+        squirt_error=uncertainty.total * abs(squirt),
+        references={name: row for name, row in rows.items() if row},
+    )
+
+
+def _reference_row(scene: Scene, squirt: float, cue: Cue, inputs: float) -> Record | None:
+    """Comparison with another cue at the same stroke; None if its strike fails or the signs of squirt differ.
+
+    squirt: that of the scene, rad. inputs: relative uncertainty of squirt by the inputs of the scene's shaft; the
+    same is assumed, independently, for the other shaft.
+    """
+    struck = with_cue(scene, cue)
+    try:
+        other = squirt_of(struck)
+    except (ValueError, RuntimeError):
+        return None
+    if not squirt * other > 0:
+        return None
+    return {"squirt": other} | difference_record(squirt / other, model_share(scene, struck), inputs, inputs)
+
+
+def with_cue(scene: Scene, cue: Cue) -> Scene:
+    """The scene's ball, tip, stroke and effects with another cue.
+
+    Effects that are part of the scene's own cue (a mass, a joint) or lie beyond the other's end are dropped. The other
+    cue retains leather in its drawing only if the scene's own cue has it. A tip that does not fit the other's face is
+    adapted (`cuefem.effects.leather_tip.LeatherTip.on_other_cue`).
+    """
+    has_leather = scene.lumped is None and scene.shaft.leather_height
+    other = cue if has_leather else without_leather(cue)
+    remaining = (
+        e for e in scene.effects if e.at_tip or not (e.part_of_cue or any(x >= other.length for x in e.positions))
+    )
+    effects = remaining if scene.lumped else (e.on_other_cue(scene.shaft, other) for e in remaining)
+    return replace(scene, cue=other, effects=tuple(effects))
+
+
+def offset_text(offset: float) -> str:
+    """The offset as a share of the radius: "3/10 of the way to the edge"."""
+    tenths, percent = round(10 * abs(offset)), 100 * abs(offset)
+    part = f"{tenths}/10" if abs(percent - 10 * tenths) < 0.5 else f"{percent:.0f} %"
+    return f"{part} of the way to the edge"
+
+
+def difference_text(difference: float, error: float) -> str:
+    """A relative difference with its uncertainty: "−3.2 ± 8.1 %"."""
+    digits = 0 if error >= 0.1 else 1 if error >= 0.002 else 2
+    return format_change(100 * difference, digits, f"± {100 * error:.{digits}f} %")
+
+
+def squirt_difference(difference: float, error: float, distinct: bool) -> str:
+    """A difference of squirt, followed by the name of the other cue: "15.1 ± 8.2 % less squirt than"."""
+    text, more = difference_text(abs(difference), error).lstrip("+"), "more" if difference > 0 else "less"
+    return f"{'' if distinct else 'not distinct: '}{text} {more} squirt than"
+
+
+def _percent(share: float) -> str:
+    percent = 100 * share
+    return "under 0.1 %" if percent < 0.1 else f"{percent:.1f} %" if percent < 1 else f"{percent:.0f} %"
+
+
+def _bar(row: ScaleRow) -> str:
+    at, low, high = (round(BAR * each / 100) for each in (row.at, row.low, row.high))
+    line = ["·"] * (BAR + 1)
+    if row.kind == "own":
+        line[low : high + 1] = ["━"] * len(line[low : high + 1])
+    line[min(at, BAR)] = "●"
+    return "".join(line)
