@@ -6,11 +6,12 @@ page again and compares every number at its printed precision (`disagreements`).
 
 from __future__ import annotations
 
+import contextlib
+import io
 import os
 import platform
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ import numpy as np
 import scipy
 
 STUDIES = Path(__file__).parent
+IN_PYTHON = "## In Python"
 STYLE = {"svg.hashsalt": "cuefem", "svg.fonttype": "none", "font.size": 10, "axes.grid": True, "grid.alpha": 0.3}
 
 
@@ -39,15 +41,17 @@ class Figure:
 
 @dataclass(frozen=True)
 class Study:
-    """The file of a study's program, its page, and its figures by file name.
+    """The file of a study's program, the text of its page, its figures by file name, and its question in Python.
 
+    example: a few lines that run in the root of the repository; the page ends with them and with what they print.
     seconds: whether the page holds seconds of this machine, which no test compares.
     """
 
     file: str
-    page: Callable[[], str]
+    text: Callable[[], str]
     figures: Mapping[str, Figure] = field(default_factory=dict)
     seconds: bool = False
+    example: str = ""
 
     @property
     def path(self) -> Path:
@@ -59,11 +63,30 @@ class Study:
         """The page as it is committed."""
         return self.path.with_suffix(".md").read_text(encoding="utf-8")
 
+    def page(self) -> str:
+        """The text and the section of Python."""
+        return paragraphs(self.text(), self.in_python())
+
+    def in_python(self) -> str:
+        """The section of Python; what the example prints is not shown where it prints seconds."""
+        printed = output_of(self.example)
+        shown = () if self.seconds else (f"```text\n{printed}```",)
+        return paragraphs(IN_PYTHON, f"```python\n{self.example}```", *shown)
+
     def write(self) -> None:
         """Write the page and the figures."""
         self.path.with_suffix(".md").write_text(self.page(), encoding="utf-8")
         for name, drawing in self.figures.items():
             drawing.save(self.path.with_name(name))
+
+
+def output_of(example: str) -> str:
+    """What an example prints in the root of the repository."""
+    printed = io.StringIO()
+    with contextlib.chdir(STUDIES.parent), contextlib.redirect_stdout(printed):
+        exec(compile(example, "example", "exec"), {})
+    plt.close("all")
+    return printed.getvalue()
 
 
 def page(title: str, question: str, answer: str, *parts: str) -> str:
@@ -115,7 +138,7 @@ def slope(x: Iterable[float], y: Iterable[float]) -> float:
     return float(np.polyfit(np.log(list(x)), np.log(list(y)), 1)[0])
 
 
-@contextmanager
+@contextlib.contextmanager
 def figure(path: Path, panels: tuple[int, int] = (1, 1), size: tuple[float, float] = (6.4, 4.4)) -> Iterator[Any]:
     """Axes to draw on; the figure is saved without a date when the block ends, its text as text."""
     with plt.rc_context(STYLE):

@@ -154,7 +154,16 @@ def text() -> str:
     )
 
 
-STUDY = pages.Study(__file__, text)
+EXAMPLE = """\
+import cuefem as cf
+
+scene = cf.load("studies/scenes/kim.toml")
+fine = cf.strike(scene, cf.Resolution(elements=4, order=20, modes=160)).squirt
+for modes in (4, 8, 16, 32):
+    squirt = cf.strike(scene, cf.Resolution(elements=4, order=20, modes=modes)).squirt
+    print(f"{modes:2} modes: {100 * (squirt / fine - 1):+.3f} %")
+"""
+STUDY = pages.Study(__file__, text, example=EXAMPLE)
 
 if __name__ == "__main__":
     STUDY.write()

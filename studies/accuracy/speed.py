@@ -176,7 +176,15 @@ def text() -> str:
     )
 
 
-STUDY = pages.Study(__file__, text, seconds=True)
+EXAMPLE = """\
+from timeit import timeit
+import cuefem as cf
+
+scene = cf.load("studies/scenes/kim.toml")
+seconds = timeit(lambda: cf.strike(scene), number=10) / 10
+print(f"{1e3 * seconds:.1f} ms a strike")
+"""
+STUDY = pages.Study(__file__, text, seconds=True, example=EXAMPLE)
 
 if __name__ == "__main__":
     STUDY.write()

@@ -202,7 +202,16 @@ def text() -> str:
     )
 
 
-STUDY = pages.Study(__file__, text)
+EXAMPLE = """\
+import numpy as np
+import cuefem as cf
+
+tip = cf.LeatherTip(height=6e-3, dome_radius=9.5e-3, E=100e6)
+radius, depth, force = tip.head_on(diameter=12.75e-3, ball_radius=28.575e-3)
+for pressed in (0.1e-3, 0.2e-3, 0.4e-3):
+    print(f"{1e3 * pressed:.1f} mm deep: {np.interp(pressed, depth, force):.0f} N")
+"""
+STUDY = pages.Study(__file__, text, example=EXAMPLE)
 
 
 if __name__ == "__main__":

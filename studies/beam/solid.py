@@ -153,7 +153,15 @@ def draw(axes: Any) -> None:
     axes.legend(fontsize=8, loc="upper left")
 
 
-STUDY = pages.Study(__file__, text, {"solid.svg": pages.Figure(draw)})
+EXAMPLE = """\
+import cuefem as cf
+
+cue = cf.load("meshes/kim.toml")
+beam = cf.modes(cue, 2).frequencies
+solid = cf.solid_modes(cue, 2).frequencies
+print("beam over solid, less 1:", ", ".join(f"{ratio - 1:+.0e}" for ratio in beam / solid))
+"""
+STUDY = pages.Study(__file__, text, {"solid.svg": pages.Figure(draw)}, example=EXAMPLE)
 
 if __name__ == "__main__":
     STUDY.write()

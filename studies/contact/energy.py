@@ -60,7 +60,15 @@ def draw(axes: Any) -> None:
     axes.figure.legend(handles[::-1], labels[::-1], loc="outside right center", fontsize=9)
 
 
-STUDY = pages.Study(__file__, text, {"energy.svg": pages.Figure(draw, size=(7, 4))})
+EXAMPLE = """\
+import cuefem as cf
+
+energy = dict(cf.strike(cf.usual_scene(cf.load("meshes/pool_maple.toml"))).energy)
+initial = energy.pop("initial")
+for name, part in energy.items():
+    print(f"{name:20}{100 * part / initial:5.1f} %")
+"""
+STUDY = pages.Study(__file__, text, {"energy.svg": pages.Figure(draw, size=(7, 4))}, example=EXAMPLE)
 
 if __name__ == "__main__":
     STUDY.write()

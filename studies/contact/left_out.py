@@ -140,7 +140,16 @@ def text() -> str:
     )
 
 
-STUDY = pages.Study(__file__, text)
+EXAMPLE = """\
+from dataclasses import replace
+import cuefem as cf
+
+scene = cf.usual_scene(cf.load("meshes/pool_maple.toml"))
+lossy = tuple(replace(e, surface_restitution=0.8) if isinstance(e, cf.LeatherTip) else e for e in scene.effects)
+ratio = cf.strike(replace(scene, effects=lossy)).squirt / cf.strike(scene).squirt
+print(f"a tangential loss of the leather: {100 * (ratio - 1):+.1f} % squirt")
+"""
+STUDY = pages.Study(__file__, text, example=EXAMPLE)
 
 if __name__ == "__main__":
     STUDY.write()

@@ -198,7 +198,16 @@ def draw(panels: Any) -> None:
     panels[1].legend(fontsize=8)
 
 
-STUDY = pages.Study(__file__, text, {"side_strike.svg": pages.Figure(draw, (1, 2), (10, 4.2))})
+EXAMPLE = """\
+import cuefem as cf
+
+bat = cf.load("meshes/kim.toml")
+ball = cf.Striker(mass=0.02, restitution=0.8, contact_time=1e-3)
+for position in (0.05, 0.15, 0.35):
+    outcome = cf.side_strike(cf.SideStrike(bat, ball, position=position))
+    print(f"{100 * position:.0f} cm from the end: e_A {outcome.apparent_restitution:+.3f}")
+"""
+STUDY = pages.Study(__file__, text, {"side_strike.svg": pages.Figure(draw, (1, 2), (10, 4.2))}, example=EXAMPLE)
 
 
 if __name__ == "__main__":

@@ -168,7 +168,19 @@ def draw(axes: Any) -> None:
     axes.legend(fontsize=8)
 
 
-STUDY = pages.Study(__file__, text, {"low_squirt.svg": pages.Figure(draw)})
+EXAMPLE = """\
+from dataclasses import replace
+import cuefem as cf
+
+def wider(s):
+    return replace(s, tip_bore=s.tip_bore + 1e-3, butt_bore=s.butt_bore + 1e-3) if s.tip_bore else s
+
+scene = cf.usual_scene(cf.load("meshes/pool_hollow.toml"))
+bored = replace(scene.cue, segments=tuple(wider(segment) for segment in scene.cue.segments))
+ratio = cf.strike(replace(scene, cue=bored)).squirt / cf.strike(scene).squirt
+print(f"bore 1 mm wider: {100 * (ratio - 1):+.1f} % squirt")
+"""
+STUDY = pages.Study(__file__, text, {"low_squirt.svg": pages.Figure(draw)}, example=EXAMPLE)
 
 if __name__ == "__main__":
     STUDY.write()

@@ -114,7 +114,17 @@ def draw(axes: Any) -> None:
     axes.legend(fontsize=8)
 
 
-STUDY = pages.Study(__file__, text, {"definitions.svg": pages.Figure(draw)})
+EXAMPLE = """\
+from math import degrees
+import cuefem as cf
+
+scene = cf.load("studies/scenes/kim.toml")
+for definition in ("stick", "offset", "velocity", "force"):
+    print(f"{definition:9}{1e3 * cf.end_mass(scene, definition):.2f} g")
+print(f"squirt by the end mass at the offset: {degrees(cf.impulse(scene).squirt):.2f} degrees")
+print(f"squirt of the vibrating shaft: {degrees(cf.strike(scene).squirt):.2f} degrees")
+"""
+STUDY = pages.Study(__file__, text, {"definitions.svg": pages.Figure(draw)}, example=EXAMPLE)
 
 if __name__ == "__main__":
     STUDY.write()

@@ -60,7 +60,16 @@ def draw(axes: Any) -> None:
     axes.legend(fontsize=8)
 
 
-STUDY = pages.Study(__file__, text, {"distribution.svg": pages.Figure(draw)})
+EXAMPLE = """\
+from dataclasses import replace
+import cuefem as cf
+
+scene = cf.Scene(cf.load("meshes/pool_maple.toml"), tip=cf.Tip(contact_time=1e-3))
+for position in (0.01, 0.025, 0.1, 0.2):
+    heavier = replace(scene, effects=(cf.PointMass(position=position, mass=1e-3),))
+    print(f"1 g at {100 * position:.1f} cm adds {1e3 * (cf.end_mass(heavier) - cf.end_mass(scene)):+.2f} g")
+"""
+STUDY = pages.Study(__file__, text, {"distribution.svg": pages.Figure(draw)}, example=EXAMPLE)
 
 if __name__ == "__main__":
     STUDY.write()

@@ -186,7 +186,14 @@ def text() -> str:
     )
 
 
-STUDY = pages.Study(__file__, text)
+EXAMPLE = """\
+from math import degrees
+import cuefem as cf
+
+record = cf.verdict(cf.usual_scene(cf.load("meshes/pool_maple.toml")))
+print(f"{degrees(record['squirt']):.2f} ± {degrees(record['squirt_error']):.2f} degrees")
+"""
+STUDY = pages.Study(__file__, text, example=EXAMPLE)
 
 if __name__ == "__main__":
     STUDY.write()

@@ -220,7 +220,16 @@ def draw(panels: Any) -> None:
     cf.plot.reduction(chain(), panels)
 
 
-STUDY = pages.Study(__file__, text, {"chain.svg": pages.Figure(draw, (1, 2), (10, 4))})
+EXAMPLE = """\
+from math import degrees
+import cuefem as cf
+
+chain = cf.reduction(cf.load("studies/scenes/kim.toml"))
+for name, model in chain.models.items():
+    print(f"{name:26}", *(f"{degrees(squirt):.2f}" for squirt in model["squirt"]), "degrees")
+axes = cf.plot.reduction(chain)
+"""
+STUDY = pages.Study(__file__, text, {"chain.svg": pages.Figure(draw, (1, 2), (10, 4))}, example=EXAMPLE)
 
 
 if __name__ == "__main__":

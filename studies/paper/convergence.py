@@ -121,7 +121,16 @@ def draw(panels: Any) -> None:
         axis.legend(fontsize=8)
 
 
-STUDY = pages.Study(__file__, text, {"convergence.svg": pages.Figure(draw, (1, 2), (10, 4.2))})
+EXAMPLE = """\
+from dataclasses import replace
+import cuefem as cf
+
+scene = cf.load("studies/scenes/kim.toml")
+for time in (8e-3, 32e-3, 128e-3):
+    slow = replace(scene, tip=replace(scene.tip, contact_time=time))
+    print(f"T {1e3 * time:.0f} ms: squirt {cf.strike(slow).squirt:.5f} rad")
+"""
+STUDY = pages.Study(__file__, text, {"convergence.svg": pages.Figure(draw, (1, 2), (10, 4.2))}, example=EXAMPLE)
 
 if __name__ == "__main__":
     STUDY.write()

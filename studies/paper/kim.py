@@ -837,7 +837,15 @@ def draw(panels: Any) -> None:
     draw_ends(panels[1])
 
 
-STUDY = pages.Study(__file__, text, {"kim.svg": pages.Figure(draw, (1, 2), (11, 4.2))})
+EXAMPLE = """\
+from math import degrees
+import cuefem as cf
+
+cue = cf.LumpedCue.two_part(0.54, 0.012)  # 540 g, of which a cue end of 12 g moves sideways
+scene = cf.Scene(cue, cf.Ball(mass=0.21), cf.Tip(restitution=0.75, friction=0.7), cf.Stroke(1.0, 0.5))
+print(f"squirt {degrees(cf.impulse(scene).squirt):.3f} degrees; the paper: less than 1 degree")
+"""
+STUDY = pages.Study(__file__, text, {"kim.svg": pages.Figure(draw, (1, 2), (11, 4.2))}, example=EXAMPLE)
 
 
 if __name__ == "__main__":

@@ -133,7 +133,15 @@ def draw(axes: Any) -> None:
     axes.legend(fontsize=8, loc="lower right")
 
 
-STUDY = pages.Study(__file__, text, {"miscue.svg": pages.Figure(draw, size=(6.4, 4.6))})
+EXAMPLE = """\
+import cuefem as cf
+
+cue = cf.LumpedCue.two_part(0.54, 0.012)
+for offset in (0.50, 0.53, 0.54):
+    scene = cf.Scene(cue, tip=cf.Tip(friction=0.6), stroke=cf.Stroke(2.0, offset))
+    print(offset, cf.impulse(scene).regime)
+"""
+STUDY = pages.Study(__file__, text, {"miscue.svg": pages.Figure(draw, size=(6.4, 4.6))}, example=EXAMPLE)
 
 
 if __name__ == "__main__":

@@ -93,7 +93,16 @@ def text() -> str:
     )
 
 
-STUDY = pages.Study(__file__, text)
+EXAMPLE = """\
+import cuefem as cf
+
+shaft = cf.load("meshes/kim.toml")
+joint = cf.Support(position=0.7, stiffness=1e9)
+for name, effects in (("free", ()), ("pinned at the joint", (joint,))):
+    frequencies = cf.modes(shaft, 3, effects=effects).frequencies
+    print(name, ", ".join(f"{frequency:.0f}" for frequency in frequencies), "Hz")
+"""
+STUDY = pages.Study(__file__, text, example=EXAMPLE)
 
 
 if __name__ == "__main__":

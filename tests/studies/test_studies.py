@@ -5,7 +5,7 @@ from importlib import import_module
 
 import pytest
 
-from studies.pages import STUDIES, Study, disagreements
+from studies.pages import IN_PYTHON, STUDIES, Study, disagreements
 
 # Studies whose page takes more than 20 s of processor time; `.ci/nightly` computes them again.
 NIGHTLY = ("accuracy", "leather", "solid")
@@ -30,10 +30,18 @@ def test_study_page_equals_its_program(name: str) -> None:
     assert disagreements(STUDY[name].committed, STUDY[name].page()) == []
 
 
+@pytest.mark.heavy
+@pytest.mark.parametrize("name", STUDY)
+def test_study_example_prints_what_its_page_shows(name: str) -> None:
+    _, head, section = STUDY[name].committed.partition(IN_PYTHON)
+    assert disagreements(head + section, STUDY[name].in_python()) == []
+    assert 5 <= len(STUDY[name].example.splitlines()) <= 12
+
+
 @pytest.mark.parametrize("name", STUDY)
 def test_study_page_has_question_answer_and_index_entry(name: str) -> None:
     study = STUDY[name]
-    lines = study.committed.splitlines()
+    lines = study.committed.partition(IN_PYTHON)[0].rstrip().splitlines()
     assert lines[0].startswith("# ")
     assert lines[2].startswith("**Question.** ")
     assert lines[4].startswith("**Answer.** ")
