@@ -43,8 +43,8 @@ include_patterns = [
 html_theme, html_title = "furo", f"cuefem {release}"
 html_copy_source, html_show_sphinx = False, False
 html_theme_options = {"navigation_with_keys": True}
-html_static_path = ["site.css", "site.js"]
-html_css_files, html_js_files = ["site.css"], [("site.js", {"defer": "defer"})]
+html_static_path = ["site.css", "site.js", "../cuefem/handbook/drawings.css"]
+html_css_files, html_js_files = ["drawings.css", "site.css"], [("site.js", {"defer": "defer"})]
 default_role = "py:obj"  # a name in backticks is a link
 html_math_renderer = "mathml"  # no script, no network
 nb_execution_mode = "off"  # outputs as stored; tests/studies executes the notebooks
@@ -81,11 +81,17 @@ SUMMARY = """
 """
 STUDY = re.compile(r"^\| (.+\?) \| (.+) \| \[(\w+)\]\((.+)\.md\) \|$", re.MULTILINE)
 CARD = """::::{{grid-item-card}} {question}
-:link: /studies/{page}
-:link-type: doc
-:img-bottom: /studies/{page}.svg
 {answer}
+{picture}
+```python
+{example}
+```
+
+[{page}](/studies/{page}.md)
 ::::
+"""
+WORTH = """
+- **Change of squirt in the reference scenes:** {least} to {most} % ([effects](/studies/contact/effects.md)).
 """
 
 
@@ -118,14 +124,38 @@ def side_bar() -> str:
 
 
 def gallery() -> str:
-    """The studies that have a picture, as cards with question and answer."""
+    """The studies as cards: question, answer, picture, and the lines of Python that their pages end with."""
     rows = STUDY.findall((ROOT / "studies/README.md").read_text(encoding="utf-8"))
-    cards = [
-        CARD.format(question=question, answer=answer, page=page)
-        for question, answer, _, page in rows
-        if (ROOT / f"studies/{page}.svg").exists()
-    ]
-    return "\n## Gallery\n\n:::::{grid} 1 2 2 3\n" + "".join(cards) + ":::::\n"
+    cards = [study_card(question, answer, page) for question, answer, _, page in rows]
+    return "\n## Gallery\n\n:::::{grid} 1\n" + "".join(cards) + ":::::\n"
+
+
+def study_card(question: str, answer: str, page: str) -> str:
+    """A card of the gallery."""
+    text = (ROOT / f"studies/{page}.md").read_text(encoding="utf-8")
+    has_picture = (ROOT / f"studies/{page}.svg").exists()
+    return CARD.format(
+        question=question,
+        answer=answer,
+        page=page,
+        picture=f"\n```{{image}} /studies/{page}.svg\n:alt: figure of the study {page}\n```\n" if has_picture else "",
+        example=text.partition("## In Python\n\n```python\n")[2].partition("\n```")[0],
+    )
+
+
+def with_worth(chapter: str) -> str:
+    """The chapter of effects with what each effect changes in the reference scenes, from the study's first table."""
+    study = (ROOT / "studies/contact/effects.md").read_text(encoding="utf-8")
+    table = study.partition("## Change of squirt by the effect, %")[2].partition("\n## ")[0]
+    for name, cells in re.findall(r"^\| ([A-Z]\w+) \| (.*) \|$", table, re.MULTILINE):
+        changes = [cell.strip("*") for cell in cells.split(" | ") if cell != "–"]
+        worth = WORTH.format(least=min(changes, key=float), most=max(changes, key=float))
+        head, found, section = chapter.partition(f"\n## {name}\n")
+        if not found:
+            raise ValueError(f"the chapter of effects has no section {name}, which studies/contact/effects.md lists")
+        lines, separator, rest = section.partition("\n## ")
+        chapter = head + found + lines.rstrip() + worth + separator + rest
+    return chapter
 
 
 def room_of(name: str) -> str:
@@ -165,8 +195,16 @@ def source_read(app: Sphinx, document: str, source: list[str]) -> None:
         text += side_bar()
     if document == "studies/README":
         text += gallery()
+    if document == f"{HANDBOOK}/effects":
+        text = with_worth(text)
     text = re.sub(r"\[([^\]]+)\]\([\w/]+/\)", r"`\1`", text)  # a folder is no page of the site
-    source[0] = re.sub(r"```drawing\n(\w+)\n```", r"```{image} \1.svg\n```", text)
+    source[0] = re.sub(r"```drawing\n(\w+)\n```", drawing, text)
+
+
+def drawing(match: re.Match[str]) -> str:
+    """A drawing of the handbook as part of the page: its colours are those of the page."""
+    drawn = (ROOT / HANDBOOK / f"{match[1]}.svg").read_text(encoding="utf-8")
+    return f"```{{raw}} html\n<figure class='drawing'>\n{drawn}</figure>\n```"
 
 
 def formula(display: str) -> tuple[Any, None]:

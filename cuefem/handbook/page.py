@@ -76,9 +76,11 @@ def page(opens_with: str = CHAPTERS[0]) -> str:
         )
         first = ' class="first"' if chapter.name == opens_with else ""
         bodies.append(f"<section{first}>\n{html}{onward}</section>\n")
-    style, script = (
-        files(__package__).joinpath(name).read_text(encoding="utf-8") for name in ("page.css", "search.js")
+    drawings, own, script = (
+        files(__package__).joinpath(name).read_text(encoding="utf-8")
+        for name in ("drawings.css", "page.css", "search.js")
     )
+    style = drawings + own
     makers, engineers = "".join(entries[: len(MAKERS)]), "".join(entries[len(MAKERS) :])
     return PAGE.substitute(style=style, script=script, makers=makers, engineers=engineers, body="".join(bodies))
 
