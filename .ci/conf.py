@@ -5,6 +5,7 @@ sphinx-build -W --keep-going -c .ci . site
 
 from __future__ import annotations
 
+import inspect
 import re
 from collections import defaultdict
 from pathlib import Path
@@ -165,8 +166,17 @@ def room_of(name: str) -> str:
     return module.split(".")[1]
 
 
+def is_documented(name: str) -> bool:
+    """Whether a public name has a docstring of its own: a dataclass without one is given its signature."""
+    text = inspect.getdoc(getattr(cuefem, name)) or ""
+    return text != "" and not text.startswith(f"{name}(")
+
+
 def reference() -> str:
     """Every public name under the title of its room."""
+    undocumented = [name for name in cuefem.__all__ if not is_documented(name)]
+    if undocumented:
+        raise ValueError(f"public names without a docstring: {undocumented}")
     names = defaultdict(list)
     for name in sorted(cuefem.__all__, key=str.lower):
         names[room_of(name)].append(name)
