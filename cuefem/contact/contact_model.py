@@ -238,4 +238,4 @@ def _power_tip(scene: Scene, terms: ContactTerms, inputs: dict[str, Any]) -> dic
 
 def power_law(law: TipLaw) -> dict[str, float]:
     """Kernel fields of a power law."""
-    return {"stiffness": float(law.stiffness), "exponent": float(law.exponent)}
+    return {"stiffness": float(law.stiffness), "exponent": float(law.exponent), "indentation_limit": math.inf}

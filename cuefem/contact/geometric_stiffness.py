@@ -10,10 +10,11 @@ from __future__ import annotations
 import numpy as np
 
 from cuefem.beam.tip_modes import TipModes
+from cuefem.contact.kernel.declarations import CONSTANTS
 from cuefem.cue import Array
 
 # Largest number of slopes of the compiled kernel, with the slope of the cue's end; a raised cue bends in two planes.
-MAX_SLOPES = 32  # as SLOPES in kernel/contact.h
+MAX_SLOPES = CONSTANTS["SLOPES"]
 N_RIGID = 3
 # Rows below this share of the largest are round-off error.
 MIN_SHARE = 1e-14

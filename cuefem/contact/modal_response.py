@@ -21,6 +21,7 @@ import numpy as np
 
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.geometric_stiffness import slope_rows
+from cuefem.contact.kernel.declarations import KernelInput, StepTables
 from cuefem.cue import Array
 
 if TYPE_CHECKING:
@@ -95,35 +96,6 @@ class _RowVelocities(NamedTuple):
         )
 
 
-class StepTables(NamedTuple):
-    """What the modes do in a step of the length h, s: the structure of the same name in kernel/contact.h.
-
-    c is the number of ports and slopes, d that of dashpots, n that of modes, m that of radiating modes. A state is (2
-    n,): the velocities, then a.
-
-    own: (3, n), v_v, sine and a_a of `Oscillators`; 0 of the modes that radiate. ends, means: (c, 2 n), from the state
-    to the velocities of ports and slopes at the end of the step and on average over it, dashpots included.
-    end_per_load, mean_per_load: (c, c), the same from loads on ports and slopes. response: (c + d, 2 n), change of the
-    state of the modes that do not radiate, per load. dashpots: (d, 2 n + c), the dashpots' forces from the state and
-    the loads. loss: (3, n), of `structural_loss`. radiating: (2 m, 3 m), state of the modes that radiate, from the x of
-    `CoupledModes`. radiated, dissipated: (3 m, 3 m), their losses by radiation and by loss factors, quadratic forms in
-    x.
-    """
-
-    h: float
-    own: Array
-    ends: Array
-    means: Array
-    end_per_load: Array
-    mean_per_load: Array
-    response: Array
-    dashpots: Array
-    loss: Array
-    radiating: Array
-    radiated: Array
-    dissipated: Array
-
-
 class ModalPropagator:
     """Tip modes and their ports, and the tables by which the compiled kernel propagates them.
 
@@ -166,6 +138,19 @@ class ModalPropagator:
         rows = np.concatenate([self.ports, self.slopes])
         return np.asarray(rows @ rows.T)
 
+    def write_to(self, fields: KernelInput) -> None:
+        """Write the modes to the kernel's input."""
+        fields.modes = len(self.tip.omega)
+        fields.ports = len(self.ports)
+        fields.slopes = len(self.slopes)
+        fields.dashpots = len(self.dashpots)
+        fields.radiating = len(self.radiating)
+        fields.structural_loss = bool(self.loss.any())
+        fields.radiating_modes = self.radiating
+        fields.omega = self.tip.omega
+        fields.rows = self.rows
+        fields.mobility = self.mobility
+
     def _tables(self, h: float) -> StepTables:
         omega, rows = self.tip.omega, self.rows
         by_itself = np.ones(len(omega))
@@ -182,20 +167,20 @@ class ModalPropagator:
             -np.linalg.solve(own_response, np.hstack([mean.of_state[c:], mean.of_loads[c:, :c]])), float
         )
         end, mean = end.with_dashpots(dashpots), mean.with_dashpots(dashpots)
-        arrays = {
-            "own": np.array([after.v_v, after.sine, after.a_a]),
-            "ends": end.of_state,
-            "means": mean.of_state,
-            "end_per_load": end.of_loads,
-            "mean_per_load": mean.of_loads,
-            "response": h * np.hstack([rows * after.mean, rows * rise]),
-            "dashpots": dashpots,
-            "loss": structural_loss(h, omega, by_itself * self.loss) if self.loss.any() else NOTHING,
-            "radiating": radiating,
-            "radiated": radiated,
-            "dissipated": dissipated,
-        }
-        return StepTables(h, **{name: np.ascontiguousarray(array) for name, array in arrays.items()})
+        return StepTables(
+            h=h,
+            own=np.array([after.v_v, after.sine, after.a_a]),
+            ends=end.of_state,
+            means=mean.of_state,
+            end_per_load=end.of_loads,
+            mean_per_load=mean.of_loads,
+            response=h * np.hstack([rows * after.mean, rows * rise]),
+            dashpots=dashpots,
+            loss=structural_loss(h, omega, by_itself * self.loss) if self.loss.any() else NOTHING,
+            radiating=radiating,
+            radiated=radiated,
+            dissipated=dissipated,
+        )
 
     def _add_radiating(self, h: float, end: _RowVelocities, mean: _RowVelocities) -> tuple[Array, Array, Array]:
         """Add the modes that radiate to the rows' velocities in a step; their own tables of `StepTables`."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,8 +12,8 @@ from numpy.typing import NDArray
 
 from cuefem.contact.contact_model import PARTIAL_SLIP, RIGID_PATCH, ContactModel
 from cuefem.contact.geometric_stiffness import SlopeOutOfRange
-from cuefem.contact.kernel.declarations import CONSTANTS, STEP, KernelContact
-from cuefem.contact.kernel.library import library, mode_fields, tables_pointer
+from cuefem.contact.kernel.declarations import CONSTANTS, STEP, KernelInput, KernelState
+from cuefem.contact.kernel.library import library
 from cuefem.contact.outcome import IMPACT, SEPARATION, History, Phase, contact_state
 from cuefem.cue import Array
 from cuefem.effects.force_law import LeatherLaw
@@ -30,8 +29,8 @@ FRICTION_STATES = {
         ("SEPARATED", SEPARATION[0]),
     )
 }
-NORMAL_PHASES = ("load", "unload", "free")
-INFINITE_FRICTION = 1e12  # finite value for infinite friction, as in kernel/step.c
+NORMAL_PHASES = {CONSTANTS["LOADING"]: "load", CONSTANTS["UNLOADING"]: "unload", CONSTANTS["FREE"]: "free"}
+INFINITE_FRICTION = 1e12  # finite value for infinite friction
 STEPS_PER_CALL = 2048  # of the kernel
 MAX_CONTACT_TIMES = 200  # longest contact, in head-on contact times; beyond it the strike raises an error
 MAX_RECORDED_STEPS = 2_000_000  # 0.4 GB of records
@@ -181,94 +180,96 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
     leaves its theory's range.
     """
     kernel, propagator = library(), model.propagator
-    sizes, modes = mode_fields(propagator)
-    arrays = {
-        **modes,
-        "mobility": propagator.mobility,
-        "kinematics": model.kinematics,
-        "inverse_masses": model.inverse_masses,
-        "state": np.array([model.speed * propagator.tip.approach, np.zeros_like(propagator.tip.approach)]),
-        "ball": model.ball.copy(),
-        **model.arrays,
-    }
-    arrays = {name: np.ascontiguousarray(values) for name, values in arrays.items()}
-    scalars = {
-        **sizes,
-        "forces": len(model.kinematics),
-        "speeds": len(model.ball),
-        "planes": 1 if model.axes is None else 2,
-        "patch": model.patch,
-        "phi": model.phi,
-        "restitution": model.restitution,
-        "friction": min(model.friction, INFINITE_FRICTION),
-        "step": model.time / (steps or model.steps),
-        "max_time": MAX_CONTACT_TIMES * model.time,
-        "window": model.window or 0.0,
-    }
-    c = KernelContact(**scalars | model.terms | {name: array.ctypes.data for name, array in arrays.items()})
-    records, states = [], [arrays["state"][None].copy()]
-    work = kernel.contact_new(ctypes.byref(c))
-    if not work:
+    start = np.array([model.speed * propagator.tip.approach, np.zeros_like(propagator.tip.approach)])
+    fields = kernel_input(model, step=model.time / (steps or model.steps))
+    state = KernelState(modes=start.copy(), separated_modes=start.copy())
+    state.ball[: len(model.ball)] = model.ball.tolist()
+    records, states = [], [start[None]]
+    contact = kernel.contact_new(fields, state)
+    if not contact:
         raise MemoryError("no memory for the steps of a contact")
     try:
-        while c.status == CONSTANTS["RUNNING"]:
-            if c.steps >= MAX_RECORDED_STEPS:
+        while state.status == CONSTANTS["RUNNING"]:
+            if state.steps >= MAX_RECORDED_STEPS:
                 raise RuntimeError(
-                    f"the strike takes more than {MAX_RECORDED_STEPS} steps of {c.step:.3g} s, for {c.time:.3g} s so "
-                    "far: lower Resolution.steps, or the window of SecondHit"
+                    f"the strike takes more than {MAX_RECORDED_STEPS} steps of {fields.step:.3g} s, for "
+                    f"{state.time:.3g} s so far: lower Resolution.steps, or the window of SecondHit"
                 )
             rows = np.empty(STEPS_PER_CALL, STEP)
-            after = np.empty((STEPS_PER_CALL if store_states else 0, *arrays["state"].shape))
-            tables = propagator.tables(c.next_step)
-            count = kernel.contact_steps(
-                work,
-                tables_pointer(tables),
-                STEPS_PER_CALL,
-                rows.ctypes.data,
-                after.ctypes.data if store_states else None,
-            )
+            after = np.empty((STEPS_PER_CALL if store_states else 0, *start.shape))
+            tables = propagator.tables(state.next_step)
+            after_steps = after.ctypes.data if store_states else None
+            count = kernel.contact_steps(contact, tables, STEPS_PER_CALL, rows.ctypes.data, after_steps)
             records.append(rows[:count])
             states.append(after[:count])
     finally:
-        kernel.contact_free(work)
-    if c.status != CONSTANTS["ENDED"]:
-        raise _failure(model, c)
-    tangential = c.work[0] + c.work[2]
-    shear = tangential if model.patch == PARTIAL_SLIP and model.friction >= INFINITE_FRICTION else c.shear_loss
-    losses = {
-        "tip": model.law.loss(c.max_indentation),
-        "friction": tangential - shear,
-        "shear": shear,
-        "table": sum(c.work[3:]),
-        "damping": c.damping_loss,
-        "radiated": c.radiated,
-    }
+        kernel.contact_free(contact)
+    if state.status != CONSTANTS["ENDED"]:
+        raise _failure(model, state)
+    taken = np.concatenate(records)[: state.steps_to_last_separation]
     return SolvedContact(
-        model,
-        np.concatenate(records)[: c.steps_to_last_separation],
-        np.concatenate(states)[: c.steps_to_last_separation + 1] if store_states else None,
-        arrays["state"],
-        arrays["ball"],
-        losses,
+        model=model,
+        steps=taken,
+        states=np.concatenate(states)[: len(taken) + 1] if store_states else None,
+        state=state.separated_modes,
+        ball=taken["ball"][-1, : len(model.ball)],
+        losses=_losses(model, state, taken[-1]),
     )
 
 
-def _failure(model: ContactModel, c: KernelContact) -> Exception:
+def kernel_input(model: ContactModel, *, step: float) -> KernelInput:
+    """The kernel's input; step: length of the steps, s."""
+    fields = KernelInput(
+        forces=len(model.kinematics),
+        speeds=len(model.ball),
+        planes=1 if model.axes is None else 2,
+        patch=model.patch,
+        begins_with_impact=model.friction >= INFINITE_FRICTION and model.patch == RIGID_PATCH and model.phi > 0,
+        kinematics=model.kinematics,
+        inverse_masses=model.inverse_masses,
+        phi=model.phi,
+        restitution=model.restitution,
+        friction=min(model.friction, INFINITE_FRICTION),
+        step=step,
+        max_time=MAX_CONTACT_TIMES * model.time,
+        window=model.window or 0.0,
+        **model.terms,
+        **model.arrays,
+    )
+    model.propagator.write_to(fields)
+    return fields
+
+
+def _losses(model: ContactModel, state: KernelState, last: np.void) -> dict[str, float]:
+    """Dissipated energies by name, J, up to the last step in contact."""
+    tangential = state.work[0] + state.work[2]
+    shear = tangential if model.patch == PARTIAL_SLIP and model.friction >= INFINITE_FRICTION else state.shear_loss
+    return {
+        "tip": model.law.loss(state.max_indentation),
+        "friction": tangential - shear,
+        "shear": shear,
+        "table": sum(state.work[3:]),
+        "damping": float(last["damping_loss"]),
+        "radiated": float(last["radiated"]),
+    }
+
+
+def _failure(model: ContactModel, state: KernelState) -> Exception:
     """The exception for a contact that did not end."""
-    if c.status == CONSTANTS["INDENTATION_OUT_OF_RANGE"] and isinstance(model.law, LeatherLaw):
-        return model.law.out_of_range(c.indentation)
-    if c.status == CONSTANTS["SLOPE_OUT_OF_RANGE"]:
+    if state.status == CONSTANTS["INDENTATION_OUT_OF_RANGE"] and isinstance(model.law, LeatherLaw):
+        return model.law.out_of_range(state.indentation)
+    if state.status == CONSTANTS["SLOPE_OUT_OF_RANGE"]:
         return SlopeOutOfRange(
-            f"the axial force of {c.axial_force:.4g} N bends the shaft by {c.max_slope:.3g} rad at its tip, beyond the "
-            "range of GeometricStiffness: lower the speed, or stiffen the shaft"
+            f"the axial force of {state.axial_force:.4g} N bends the shaft by {state.max_slope:.3g} rad at its tip, "
+            "beyond the range of GeometricStiffness: lower the speed, or stiffen the shaft"
         )
-    state = FRICTION_STATES[c.friction_state]
-    if c.status == CONSTANTS["UNSOLVED"]:
+    friction = FRICTION_STATES[state.friction_state]
+    if state.status == CONSTANTS["UNSOLVED"]:
         return RuntimeError(
-            f"the forces of the contact have no solution after {c.time:.6g} s and {c.steps} steps, in {state}; "
-            "take more steps, or fewer modes"
+            f"the forces of the contact have no solution after {state.time:.6g} s and {state.steps} steps, in "
+            f"{friction}; take more steps, or fewer modes"
         )
     return RuntimeError(
-        f"the ball does not leave the cue: after {c.time:.6g} s (head-on contact time {model.time:.6g} s) the tip is "
-        f"indented by {c.indentation:.3g} m, in {state}; check restitution, contact time, masses"
+        f"the ball does not leave the cue: after {state.time:.6g} s (head-on contact time {model.time:.6g} s) the tip "
+        f"is indented by {state.indentation:.3g} m, in {friction}; check restitution, contact time, masses"
     )

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import ctypes
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.coupled_modes import CoupledModes
-from cuefem.contact.kernel.declarations import KernelContact
-from cuefem.contact.kernel.library import library, mode_fields, tables_pointer
+from cuefem.contact.kernel.declarations import KernelInput, KernelState
+from cuefem.contact.kernel.library import library
 from cuefem.contact.modal_response import propagator_of
 from cuefem.cue import Array
 
@@ -74,16 +72,14 @@ def imposed_velocity_impulse(tip: TipModes, T: float, velocity: Array, ball_inve
     propagator, kernel = propagator_of(tip), library()
     tables, means = propagator.tables(T / STEPS), (velocity[1:] + velocity[:-1]) / 2
     first_impulse = velocity[0] / (float(propagator.mobility[1, 1]) + ball_inverse_mass)
-    sizes, arrays = mode_fields(propagator)
-    arrays |= {"state": np.zeros((2, len(tip.omega))), "ball": np.zeros(1)}
-    contact = KernelContact(**sizes, **{name: array.ctypes.data for name, array in arrays.items()})
-    work = kernel.contact_new(ctypes.byref(contact))
-    if not work:
+    fields, state = KernelInput(), KernelState(modes=np.zeros((2, len(tip.omega))))
+    propagator.write_to(fields)
+    contact = kernel.contact_new(fields, state)
+    if not contact:
         raise MemoryError("no memory for the steps of a contact")
     try:
-        pointers = tables_pointer(tables)
         return float(
-            kernel.imposed_velocity_impulse(work, pointers, STEPS, means.ctypes.data, ball_inverse_mass, first_impulse)
+            kernel.imposed_velocity_impulse(contact, tables, STEPS, means.ctypes.data, ball_inverse_mass, first_impulse)
         )
     finally:
-        kernel.contact_free(work)
+        kernel.contact_free(contact)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import shutil
 import subprocess
@@ -12,7 +13,8 @@ import pytest
 
 from cuefem.contact import kernel
 from cuefem.contact.kernel import BINARY, BUILD
-from cuefem.contact.kernel.declarations import KernelContact
+from cuefem.contact.kernel.declarations import KernelInput, KernelState, KernelStep, StepTables
+from cuefem.contact.kernel.library import library
 
 ROOT = Path(__file__).parents[2]
 STRIKE = "import cuefem as cf; cf.strike(cf.Scene(cf.LumpedCue(0.54, 0.01), stroke=cf.Stroke(offset=0.3)))"
@@ -79,9 +81,17 @@ def test_seal_with_windows_line_ends_loads(tmp_path: Path, monkeypatch: pytest.M
     kernel.check()
 
 
+def test_structures_have_the_sizes_that_the_library_was_compiled_with() -> None:
+    structures = (KernelInput, KernelState, KernelStep, StepTables)
+    sizes = (ctypes.c_size_t * len(structures)).in_dll(library(), "structure_sizes")
+    assert list(sizes) == [ctypes.sizeof(structure) for structure in structures]
+
+
 def test_misspelt_field_of_kernel_raises() -> None:
-    with pytest.raises(TypeError, match="KernelContact has no field frction"):
-        KernelContact(frction=0.5)
+    with pytest.raises(AttributeError, match="frction"):
+        KernelInput(frction=0.5)
+    with pytest.raises(AttributeError, match="frction"):
+        KernelInput().frction = 0.5
 
 
 @pytest.mark.parametrize("environment", [{"CC": "no-such-compiler"}, {"PATH": ""}, {"CC": "false"}])

@@ -3,144 +3,121 @@
 
 /* Largest slope of the cue's end, rad: there the shortening w'^2/2 exceeds the exact 1 - cos w' by 0.5 %. */
 static const double SLOPE_LIMIT = 0.25;
-static const double INFINITE_FRICTION = 1e12; /* as in step_records.py */
 
-static void update_port_velocities(Work *w)
+EXPORTED const size_t structure_sizes[] = {sizeof(Input), sizeof(State), sizeof(Step), sizeof(StepTables)};
+
+static void choose_variants(Contact *c)
 {
-    const int n_modes = w->c->modes, n_cue = w->c->ports + w->c->slopes;
-    for (int q = 0; q < n_cue; q++) {
-        w->port_velocities[q] = 0;
-        for (int k = 0; k < n_modes; k++)
-            w->port_velocities[q] += w->c->rows[q * n_modes + k] * w->state[k];
-    }
+    static Law *const laws[] = {[POWER_LAW] = power_law, [LEATHER_LAW] = leather_law};
+    static const Patch *const patches[] = {
+        [RIGID_PATCH] = &rigid_patch, [SPRING_PATCH] = &spring_patch, [PARTIAL_SLIP] = &partial_slip};
+    c->law = laws[c->in->law];
+    c->patch = patches[c->in->patch];
+    c->cue = c->in->forces == FORCES ? &raised_cue : &level_cue;
 }
 
-EXPORTED void contact_free(Work *w)
+/* A contact at its first touch; NULL if memory runs out. Input and state must outlive it. */
+EXPORTED Contact *contact_new(const Input *in, State *s)
 {
-    if (!w) return;
-    free(w->state);
-    free(w);
-}
-
-static void choose_variants(Work *w)
-{
-    static const Patch *const patches[] = {&rigid_patch, &spring_patch, &partial_slip};
-    const Contact *c = w->c;
-    w->patch = patches[c->patch];
-    w->law = c->law == LEATHER_LAW ? leather_law : power_law;
-    w->solve_forces = c->forces == 2 ? level_forces : raised_forces;
-}
-
-/* A contact at its first touch; NULL if memory runs out. */
-EXPORTED Work *contact_new(Contact *c)
-{
-    const size_t n_state = 2 * (size_t)c->modes;
-    const size_t n_loads = c->ports + c->slopes + c->dashpots;
-    Work *w = calloc(1, sizeof *w);
-    if (!w) return NULL;
-    w->state = malloc((n_state + n_loads + 3 * c->radiating) * sizeof(double));
-    if (!w->state) {
-        free(w);
+    const size_t n_loads = in->ports + in->slopes + in->dashpots;
+    Contact *c = calloc(1, sizeof *c);
+    if (!c) return NULL;
+    c->loads = malloc((n_loads + 3 * in->radiating) * sizeof(double));
+    if (!c->loads) {
+        free(c);
         return NULL;
     }
-    w->loads = w->state + n_state;
-    w->group = w->loads + n_loads;
-    w->c = c;
-    c->next_step = c->step;
-    w->window_end = HUGE_VAL;
-    w->deadline = c->max_time;
-    memcpy(w->state, c->state, n_state * sizeof(double));
-    if (c->speeds) memcpy(w->ball, c->ball, c->speeds * sizeof(double));
-    choose_variants(w);
-    update_port_velocities(w);
-    return w;
+    c->group = c->loads + n_loads;
+    c->in = in;
+    c->s = s;
+    s->next_step = in->step;
+    s->window_end = HUGE_VAL;
+    s->deadline = in->max_time;
+    choose_variants(c);
+    update_port_velocities(c);
+    return c;
+}
+
+EXPORTED void contact_free(Contact *c)
+{
+    if (!c) return;
+    free(c->loads);
+    free(c);
 }
 
 /* Of a cue in contact: one in free flight turns without being bent. The last slope of each plane is that of the
    cue's end. */
-static void update_max_slope(Work *w)
+static void update_max_slope(Contact *c)
 {
-    Contact *c = w->c;
-    if (w->phase == FREE) return;
-    const int per_plane = c->slopes / c->planes;
-    for (int a = per_plane; a && a <= c->slopes; a += per_plane) {
-        double slope = fabs(w->slopes[a - 1]);
-        if (slope > c->max_slope) {
-            c->max_slope = slope;
-            c->axial_force = w->axial_force;
+    State *s = c->s;
+    if (!phase_of(c)->touches) return;
+    const int per_plane = c->in->slopes / c->in->planes;
+    for (int a = per_plane; a && a <= c->in->slopes; a += per_plane) {
+        double slope = fabs(s->slopes[a - 1]);
+        if (slope > s->max_slope) {
+            s->max_slope = slope;
+            s->axial_force = c->axial_force;
         }
     }
 }
 
-static int is_finite(const Work *w)
+static int is_finite(const Contact *c)
 {
-    double sum = w->c->indentation + w->c->time; /* NaN or infinite if any of its terms is */
-    for (int f = 0; f < w->c->forces; f++) sum += w->F[f];
+    double sum = c->s->indentation + c->s->time; /* NaN or infinite if any of its terms is */
+    for (int f = 0; f < c->in->forces; f++) sum += c->F[f];
     return isfinite(sum);
 }
 
 /* Status after a step: RUNNING, ENDED, or why the contact cannot continue. */
-static int status_of(const Work *w)
+static int status_of(const Contact *c)
 {
-    const Contact *c = w->c;
-    if (!is_finite(w)) return UNSOLVED;
-    if (c->law == LEATHER_LAW && c->indentation > c->indentation_limit) return INDENTATION_OUT_OF_RANGE;
-    if (c->max_slope > SLOPE_LIMIT) return SLOPE_OUT_OF_RANGE;
-    if (w->phase == FREE) return c->time >= w->window_end ? ENDED : RUNNING;
-    return c->time > w->deadline ? TIME_LIMIT : RUNNING;
+    const State *s = c->s;
+    if (!is_finite(c)) return UNSOLVED;
+    if (s->indentation > c->in->indentation_limit) return INDENTATION_OUT_OF_RANGE;
+    if (s->max_slope > SLOPE_LIMIT) return SLOPE_OUT_OF_RANGE;
+    return phase_of(c)->status(s);
 }
 
-/* First touch of a rigid patch with infinite friction: an impulse stops the tangential motion. */
-static int begins_with_impact(const Work *w)
+static void take_impact(Contact *c, Step *row)
 {
-    const Contact *c = w->c;
-    return c->steps == 0 && c->friction >= INFINITE_FRICTION && w->patch == &rigid_patch && c->phi > 0;
-}
-
-static void take_impact(Work *w, Step *row)
-{
-    Contact *c = w->c;
-    *row = (Step){.friction_state = IMPACT};
-    int stays = impact(w, row);
-    update_port_velocities(w);
-    c->steps++;
-    if (stays || c->status != RUNNING) return;
-    separate(w);
-    c->status = ENDED;
+    State *s = c->s;
+    int stays = impact(c, row);
+    s->steps++;
+    if (stays || s->status != RUNNING) return;
+    separate(c);
+    s->status = ENDED;
 }
 
 /* Return whether a step was taken. */
-static int advance(Work *w, Step *row)
+static int advance(Contact *c, Step *row)
 {
-    Contact *c = w->c;
-    if (begins_with_impact(w)) {
-        take_impact(w, row);
+    State *s = c->s;
+    if (s->steps == 0 && c->in->begins_with_impact) {
+        take_impact(c, row);
         return 1;
     }
-    if (!take_step(w, row)) return 0;
-    c->steps++;
-    next_phase(w, row->v[N]);
-    update_max_slope(w);
-    if (c->status == RUNNING) c->status = status_of(w);
+    if (!take_step(c, row)) return 0;
+    s->steps++;
+    s->next_step = c->t.h;
+    phase_of(c)->next(c, row->v[N]);
+    update_max_slope(c);
+    if (s->status == RUNNING) s->status = status_of(c);
     return 1;
 }
 
 /* Take up to max_steps steps of the tables' length and return their number; call again, with tables of the
-   length Contact.next_step, while the status is RUNNING. rows: (max_steps,), a record of each step. states: NULL, or
+   length State.next_step, while the status is RUNNING. rows: (max_steps,), a record of each step. modes: NULL, or
    (max_steps, 2, modes), the state of the modes after each step. */
-EXPORTED int contact_steps(Work *w, const StepTables *tables, int max_steps, Step *rows, double *states)
+EXPORTED int contact_steps(Contact *c, const StepTables *tables, int max_steps, Step *rows, double *modes)
 {
-    Contact *c = w->c;
-    const size_t n_state = 2 * (size_t)c->modes;
+    const State *s = c->s;
+    const size_t n_state = 2 * (size_t)c->in->modes;
     int count = 0;
-    w->t = *tables;
-    while (count < max_steps && c->status == RUNNING && c->next_step == w->t.h) {
-        if (!advance(w, rows + count)) continue;
-        memcpy(rows[count].ball, w->ball, sizeof w->ball);
-        if (states) memcpy(states + n_state * count, w->state, n_state * sizeof(double));
+    c->t = *tables;
+    while (count < max_steps && s->status == RUNNING && s->next_step == c->t.h) {
+        if (!advance(c, rows + count)) continue;
+        if (modes) memcpy(modes + n_state * count, s->modes, n_state * sizeof(double));
         count++;
     }
     return count;
 }
-
-EXPORTED const size_t contact_size = sizeof(Contact), step_size = sizeof(Step), tables_size = sizeof(StepTables);

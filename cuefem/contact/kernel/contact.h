@@ -14,8 +14,8 @@
    load them by C' F, so that energy is conserved. A dashpot is one more port of the cue, whose force opposes
    its mean velocity over the step.
 
-   Python fills a Contact and calls contact_steps, with StepTables of the length Contact.next_step, until the
-   status is no longer RUNNING.
+   Python fills an Input and a State and calls contact_steps, with StepTables of the length State.next_step, until
+   the status is no longer RUNNING. Each step leaves a record, a Step.
  */
 #ifndef CUEFEM_CONTACT_H
 #define CUEFEM_CONTACT_H
@@ -61,60 +61,76 @@ enum { RIGID_PATCH, SPRING_PATCH, PARTIAL_SLIP }; /* tangential compliance of th
 enum { POWER_LAW, LEATHER_LAW };
 enum { RUNNING, ENDED, TIME_LIMIT, INDENTATION_OUT_OF_RANGE, SLOPE_OUT_OF_RANGE, UNSOLVED };
 
-/* One step, or an impact: a step of zero length whose F is an impulse, N s. */
+/* Record of a step, or of an impact: a step of zero length whose F is an impulse, N s. */
 typedef struct {
-    double time, length;          /* at the end of the step; of the step, s */
-    double friction_state, phase; /* of the step */
-    double angle;                 /* rolled by the end of the step, rad */
-    double F[FORCES];             /* over the step, N */
-    double v[FORCES];             /* of the contact at the end of the step, m/s */
-    double ball[BALL_VELOCITIES]; /* velocities of the ball at the end of the step, m/s */
+    double time, length;           /* at the end of the step; of the step, s */
+    double friction_state, phase;  /* of the step */
+    double angle;                  /* rolled by the end of the step, rad */
+    double damping_loss, radiated; /* by dashpots and loss factors, and by waves, up to the end of the step, J */
+    double F[FORCES];              /* over the step, N */
+    double v[FORCES];              /* of the contact at the end of the step, m/s */
+    double ball[BALL_VELOCITIES];  /* velocities of the ball at the end of the step, m/s */
 } Step;
 
-/* Input and results of a contact; lengths of arrays are given by the first line. */
+/* What is constant during a contact; lengths of arrays are given by the first line. */
 typedef struct {
     int modes, ports, slopes, forces, speeds; /* speeds: velocities of the ball */
     int planes;                               /* planes in which the cue bends, 1 or 2 */
     int rolling;                              /* whether the contact rolls over ball and dome */
     int law, terms, patch, annuli;            /* terms: of the leather law's series */
-    int dashpots, radiating;        /* numbers of dashpots, and of modes that radiate */
-    int structural_loss;            /* whether modes have loss factors */
-    const int *radiating_modes;     /* indices of the modes that radiate, (radiating,) */
-    const double *omega;            /* (modes,), rad/s */
-    const double *rows;             /* (ports + slopes + dashpots, modes), 1/sqrt(kg): velocities are rows v */
-    const double *mobility;         /* of ports and slopes, 1/kg */
-    const double *kinematics;       /* C at the first touch, (forces, ports + speeds) */
-    const double *inverse_masses;   /* of the ball's velocities, (speeds,), 1/kg */
-    const double *slope_weights;    /* of each slope in the tip's axial shortening, (slopes,) */
-    const double *force_terms;      /* leather: F = d^(3/2) times a series in the root of the indentation d */
-    const double *compliance_terms; /* tangential compliance: such a series over the root of d */
-    const double *annulus_edges;    /* indentations at which the annuli begin, (annuli + 1,), m */
-    const double *annulus_forces;   /* F at the edges, N */
-    const double *annulus_slopes;   /* dF/dd at the edges, N/m */
+    int dashpots, radiating;         /* numbers of dashpots, and of modes that radiate */
+    int structural_loss;             /* whether modes have loss factors */
+    int begins_with_impact;          /* whether an impulse stops the tangential motion at the first touch */
+    const int *radiating_modes;      /* indices of the modes that radiate, (radiating,) */
+    const double *omega;             /* (modes,), rad/s */
+    const double *rows;              /* (ports + slopes + dashpots, modes), 1/sqrt(kg): velocities are rows v */
+    const double *mobility;          /* of ports and slopes, 1/kg */
+    const double *kinematics;        /* C at the first touch, (forces, ports + speeds) */
+    const double *inverse_masses;    /* of the ball's velocities, (speeds,), 1/kg */
+    const double *slope_weights;     /* of each slope in the tip's axial shortening, (slopes,) */
+    const double *force_terms;       /* leather: F = d^(3/2) times a series in the root of the indentation d */
+    const double *compliance_terms;  /* tangential compliance: such a series over the root of d */
+    const double *annulus_edges;     /* indentations at which the annuli begin, (annuli + 1,), m */
+    const double *annulus_forces;    /* F at the edges, N */
+    const double *annulus_slopes;    /* dF/dd at the edges, N/m */
     const double *annulus_stiffness; /* tangential stiffness at the edges, N/m */
-    double *state, *ball; /* of the modes, v and a, (2, modes), and of the ball: before the first touch; after
-                             the last separation */
     double restitution, friction;    /* of the tip */
     double table_friction;
     double stiffness, exponent;    /* power law F = stiffness d^exponent */
-    double indentation_limit;      /* largest indentation of the leather law, m */
+    double indentation_limit;      /* largest indentation of the law, m */
     double compliance;             /* of a spring patch, m/N */
     double surface_restitution;    /* its square: recovered part of an annulus's strain energy */
     double phi, dome, rim;         /* angle of the first touch, rad; radius of the dome, m; its end, rad */
     double radius;                 /* of the ball, m */
     double arm_t, arm_n;           /* moment arms of (t, n) about the end section at the first touch, m */
     double step, max_time, window; /* step; longest contact; time followed after the first separation, s */
-    double next_step;              /* length of the next step, s */
-    double time, indentation, max_indentation; /* s; indentation and its maximum, m */
-    double angle;                  /* rolled, rad */
-    double height;                 /* of the ball above the table, m */
-    double shear_loss;             /* dissipated strain energy of the patch, J */
-    double damping_loss, radiated; /* by dashpots and loss factors; by waves, up to the last separation, J */
-    double axial_force;            /* on the cue at its largest slope, N */
-    double max_slope;              /* of the cue's end, rad */
-    double work[FORCES];           /* dissipated by each force, J */
-    int status, friction_state, steps, steps_to_last_separation;
-} Contact;
+} Input;
+
+/* What one step leaves to the next. Python fills the first three; the rest begins as zero. */
+typedef struct {
+    double *modes;                /* v and a, (2, modes) */
+    double *separated_modes;      /* the same after the last separation */
+    double ball[BALL_VELOCITIES]; /* velocities, m/s */
+    int status, steps, steps_to_last_separation;
+    int phase, friction_state;
+    double time, next_step;               /* s; length of the next step, s */
+    double deadline, window_end;          /* of this contact; of the window after separation, s */
+    int ends_at_event;                    /* whether the next step was shortened to end at separation or touch */
+    double indentation, max_indentation;  /* m */
+    double angle, rolling_rate;           /* rolled, rad; rad/s */
+    double height;                        /* of the ball above the table, m */
+    double port_velocities[CUE_VELOCITIES]; /* of ports and slopes */
+    double slopes[SLOPES];
+    double max_slope, axial_force; /* largest slope of the cue's end, rad; the force on the cue then, N */
+    int tip_stuck, on_table, table_stuck; /* in the last step: tip sticks; table presses the ball; it sticks */
+    double shift, shift_mid; /* of the tip along t against the ball, m; at the middle of the last step */
+    double origin;           /* shift at which a spring patch is unstrained, m */
+    double virtual_mid;      /* virtual indentation at the middle of the last step, m; see laws.c */
+    double annulus_force[ANNULI];  /* at the middle of the last step, N */
+    double work[FORCES];           /* dissipated by each force so far, J */
+    double shear_loss;             /* dissipated strain energy of the patch so far, J */
+    double damping_loss, radiated; /* by dashpots and loss factors, and by waves, so far, J */
+} State;
 
 /* What the modes do in a step of one length (modal_response.py, where the shapes are). */
 typedef struct {
@@ -129,10 +145,16 @@ typedef struct {
     const double *radiated, *dissipated;          /* their losses, quadratic forms in state and loads */
 } StepTables;
 
-typedef struct Work Work;
+typedef struct Contact Contact;
 
 /* Normal force of a loading tip, N, and its slope, N/m, at an indentation > 0, m. */
-typedef double Law(const Contact *c, double indentation, double *slope);
+typedef double Law(const Input *in, double indentation, double *slope);
+
+/* Normal force of the tip at an indentation: force, N, and slope, N/m. virtual: where the loading curve has this
+   force, m; scale: indentation per virtual indentation. */
+typedef struct {
+    double force, slope, virtual, scale;
+} NormalForce;
 
 /* Two equations g = 0 for the forces (F_t, F_n) of a level contact, and their derivatives. */
 typedef struct {
@@ -142,45 +164,54 @@ typedef struct {
 /* A tip by its tangential compliance (patch_*.c). */
 typedef struct {
     int slips_in_parts; /* the patch itself limits its force to mu F_n */
-    void (*stick)(Work *w, const double *u, Equations *e); /* row T of the equations, where the tip sticks */
-    void (*keep)(Work *w, double middle);  /* state after a step in contact; middle: shift in its middle, m */
-    void (*release)(Work *w, double shift); /* loss of strain energy at separation */
-    int (*friction_state)(const Work *w);   /* of the last step */
+    void (*stick)(Contact *c, const double *u, Equations *e); /* row T of the equations, where the tip sticks */
+    void (*keep)(Contact *c, double middle);   /* state after a step in contact; middle: shift in its middle, m */
+    void (*release)(Contact *c, double shift); /* loss of strain energy at separation */
+    int (*friction_state)(const Contact *c);   /* of the step */
 } Patch;
 
-extern const Patch rigid_patch, spring_patch, partial_slip;
+/* A cue in the plane of t and n (level.c), or one raised over a table (raised.c). Both solvers return whether they
+   converged. */
+typedef struct {
+    int (*forces)(Contact *c);                         /* of a step */
+    int (*impulses)(Contact *c);                       /* of an impact, without a normal one */
+    int (*friction_state)(const Contact *c, double u); /* of a step with the mean tangential velocity u */
+} Cue;
 
-/* State of a contact, and the equations of the step under way. */
-struct Work {
-    Contact *c;
-    StepTables t;
-    Law *law;                 /* the variants of this contact, chosen by contact_new */
+/* The contact while the tip loads, unloads, or is free (phases.c). */
+typedef struct {
+    NormalForce (*curve)(const Contact *c, double indentation);
+    int (*forces)(Contact *c);                         /* of a step; returns whether they converged */
+    int (*has_event)(double excess, double excess_at_end); /* separation or touch within a step */
+    void (*keep)(Contact *c, double u); /* the tip's state after a step with the mean tangential velocity u */
+    void (*next)(Contact *c, double v_n); /* phase and length of the next step; v_n: at the end of this one */
+    int (*status)(const State *s);
+    int touches;
+} Phase;
+
+extern const Patch rigid_patch, spring_patch, partial_slip;
+extern const Cue level_cue, raised_cue;
+extern const Phase phases[];
+
+/* A contact: its input and state, the variants that serve it, and the equations of the step under way. */
+struct Contact {
+    const Input *in;
+    State *s;
+    Law *law;
     const Patch *patch;
-    int (*solve_forces)(Work *w); /* returns whether the forces converged */
-    double *state;                 /* of the modes */
-    double *loads;                 /* on ports, slopes and dashpots */
-    double *group;                 /* state and loads of the modes that radiate */
-    double damping_loss, radiated; /* so far, J */
-    double ball[BALL_VELOCITIES];
-    double port_velocities[CUE_VELOCITIES]; /* of ports and slopes */
-    double slopes[SLOPES];
+    const Cue *cue;
+    StepTables t;
+    double end_free[CUE_VELOCITIES], mean_free[CUE_VELOCITIES]; /* of ports and slopes without loads */
     double C[FORCES][VELOCITIES], v[FORCES], u[FORCES], u_stick[FORCES]; /* contact_matrices */
     double V[FORCES][FORCES], W[FORCES][FORCES];
-    double end_free[CUE_VELOCITIES], mean_free[CUE_VELOCITIES]; /* of ports and slopes without loads */
-    double F[FORCES];
-    double axial_force;           /* on the cue, N */
-    double rolling_rate;          /* rad/s */
-    double shift, shift_mid;      /* of the tip along t against the ball, m; at the middle of the last step */
-    double origin;                /* shift at which a spring patch is unstrained, m */
-    double virtual_mid;           /* virtual indentation at the middle of the last step, m; see laws.c */
-    double annulus_force[ANNULI]; /* at the middle of the last step, N */
-    double virtual_now, annulus_force_now[ANNULI], annuli_loss; /* the same in this step; dissipated, J */
-    double window_end, deadline; /* of the window after separation; of this contact, s */
-    int phase, slip;             /* slip: its direction, or STICK; a PARTIAL_SLIP patch keeps STICK */
-    int tip_stuck, on_table,
-        table_stuck;   /* in the last step: tip sticks; table presses the ball; it sticks */
-    int on_table_now, table_sticks_now; /* in this step */
-    int ends_at_event; /* whether the step was shortened to end at separation or touch */
+    double F[FORCES]; /* the next step's iteration begins with it, N */
+    int slip;         /* its direction, or STICK; a patch that slips in parts keeps STICK */
+    NormalForce normal;
+    double annulus_force[ANNULI], annuli_loss; /* N; dissipated in the step, J */
+    int on_table, table_sticks;
+    double axial_force; /* on the cue, N */
+    double *loads;      /* on ports, slopes and dashpots */
+    double *group;      /* state and loads of the modes that radiate */
 };
 
 enum { MAX_ITERATIONS = 40 };
@@ -189,36 +220,32 @@ static const double REL_TOL = 1e-12, REL_TOL_ACCEPTED = 1e-7;
 static const double MIN_FORCE = 1e-9; /* N, least scale of the relative change */
 
 static inline double larger(double a, double b) { return a > b ? a : b; }
+static inline const Phase *phase_of(const Contact *c) { return &phases[c->s->phase]; }
 
 /* modes.c */
-void free_motion(Work *w);
-void load_modes(Work *w, const double *cue_loads);
-void add_losses(Work *w);
-void advance_modes(Work *w);
-void apply_impulses(Work *w, const double *impulses);
+void update_port_velocities(Contact *c);
+void free_motion(Contact *c);
+void load_modes(Contact *c, const double *cue_loads);
+void add_losses(Contact *c);
+void advance_modes(Contact *c);
+void apply_impulses(Contact *c, const double *impulses);
 
 /* laws.c */
-double power_law(const Contact *c, double indentation, double *slope);
-double leather_law(const Contact *c, double indentation, double *slope);
-double tip_force(const Work *w, int phase, double indentation, double *slope, double *virtual);
+double power_law(const Input *in, double indentation, double *slope);
+double leather_law(const Input *in, double indentation, double *slope);
+NormalForce loading_curve(const Contact *c, double indentation);
+NormalForce unloading_curve(const Contact *c, double indentation);
 double residual(const Contact *c);
-double unloading_scale(const Contact *c, int phase);
-double tangential_stiffness(const Contact *c, double virtual);
+double tangential_stiffness(const Input *in, double virtual);
 
 /* kinematics.c */
-void contact_kinematics(const Work *w, double angle, const double *slopes, double C[FORCES][VELOCITIES]);
-void contact_matrices(Work *w);
-void velocities(const Work *w, double *end, double *mean);
+void contact_kinematics(const Contact *c, double angle, const double *slopes, double C[FORCES][VELOCITIES]);
+void contact_matrices(Contact *c);
+void velocities(const Contact *c, double *end, double *mean);
 
-/* level.c, raised.c, impact.c */
-int level_forces(Work *w);
-int raised_forces(Work *w);
-int raised_impulses(Work *w);
-int impact(Work *w, Step *row);
-
-/* step.c */
-int take_step(Work *w, Step *row);
-void next_phase(Work *w, double v_n);
-void separate(Work *w);
+/* phases.c, step.c, impact.c */
+void separate(Contact *c);
+int take_step(Contact *c, Step *row);
+int impact(Contact *c, Step *row);
 
 #endif

@@ -3,84 +3,83 @@
 #include "contact.h"
 
 /* Inverse mass between two forces of the contact, 1/kg. */
-static double inverse_mass(const Work *w, int f, int g)
+static double inverse_mass(const Contact *c, int f, int g)
 {
-    const Contact *c = w->c;
-    const int n_cue = c->ports + c->slopes;
+    const Input *in = c->in;
+    const int n_cue = in->ports + in->slopes;
     double sum = 0;
-    for (int b = 0; b < c->speeds; b++)
-        sum += w->C[f][n_cue + b] * c->inverse_masses[b] * w->C[g][n_cue + b];
+    for (int b = 0; b < in->speeds; b++)
+        sum += c->C[f][n_cue + b] * in->inverse_masses[b] * c->C[g][n_cue + b];
     for (int p = 0; p < n_cue; p++)
-        for (int q = 0; q < n_cue; q++) sum += w->C[f][p] * c->mobility[p * n_cue + q] * w->C[g][q];
+        for (int q = 0; q < n_cue; q++) sum += c->C[f][p] * in->mobility[p * n_cue + q] * c->C[g][q];
     return sum;
 }
 
 /* The equations of contact_matrices for impulses: V = W, 1/kg, u = v, before the impact. */
-static void impact_matrices(Work *w)
+static void impact_matrices(Contact *c)
 {
-    const Contact *c = w->c;
-    const int n_cue = c->ports + c->slopes;
-    contact_kinematics(w, c->angle, w->slopes, w->C);
-    for (int f = 0; f < c->forces; f++) {
-        w->v[f] = 0;
-        w->u_stick[f] = 0;
-        for (int p = 0; p < n_cue; p++) w->v[f] += w->C[f][p] * w->port_velocities[p];
-        for (int b = 0; b < c->speeds; b++) w->v[f] += w->C[f][n_cue + b] * w->ball[b];
-        w->u[f] = w->v[f];
-        for (int g = 0; g < c->forces; g++) {
-            w->V[f][g] = inverse_mass(w, f, g);
-            w->W[f][g] = w->V[f][g];
+    const Input *in = c->in;
+    const State *s = c->s;
+    const int n_cue = in->ports + in->slopes;
+    contact_kinematics(c, s->angle, s->slopes, c->C);
+    for (int f = 0; f < in->forces; f++) {
+        c->v[f] = 0;
+        c->u_stick[f] = 0;
+        for (int p = 0; p < n_cue; p++) c->v[f] += c->C[f][p] * s->port_velocities[p];
+        for (int b = 0; b < in->speeds; b++) c->v[f] += c->C[f][n_cue + b] * s->ball[b];
+        c->u[f] = c->v[f];
+        for (int g = 0; g < in->forces; g++) {
+            c->V[f][g] = inverse_mass(c, f, g);
+            c->W[f][g] = c->V[f][g];
         }
     }
 }
 
-/* The impulses F, N s. Returns whether they converged. */
-static int impulses(Work *w)
-{
-    if (w->c->forces > 2) return raised_impulses(w);
-    w->F[T] = -w->v[T] / w->V[T][T];
-    return 1;
-}
-
 /* Whether ball and tip separate; the impulses are then scaled so that they do so at e times the approach
    speed. */
-static int separates(Work *w)
+static int separates(Contact *c)
 {
-    const Contact *c = w->c;
+    const Input *in = c->in;
     double gain = 0; /* of the normal velocity, m/s */
-    for (int f = 0; f < c->forces; f++) gain += w->V[N][f] * w->F[f];
-    if (w->v[N] + gain <= 0) return 0;
-    double scale = fmin(1, (1 + c->restitution) * fabs(w->v[N] / gain));
-    for (int f = 0; f < c->forces; f++) w->F[f] *= scale;
+    for (int f = 0; f < in->forces; f++) gain += c->V[N][f] * c->F[f];
+    if (c->v[N] + gain <= 0) return 0;
+    double scale = fmin(1, (1 + in->restitution) * fabs(c->v[N] / gain));
+    for (int f = 0; f < in->forces; f++) c->F[f] *= scale;
     return 1;
 }
 
 /* Apply the impulses to cue and ball; v: velocities of the contact after it. */
-static void apply(Work *w, const double *v)
+static void apply(Contact *c, const double *v)
 {
-    Contact *c = w->c;
-    const int n_cue = c->ports + c->slopes;
+    const Input *in = c->in;
+    State *s = c->s;
+    const int n_cue = in->ports + in->slopes;
     double loads[VELOCITIES] = {0};
-    for (int f = 0; f < c->forces; f++) {
-        c->work[f] -= w->F[f] * (w->v[f] + v[f]) / 2;
-        for (int p = 0; p < n_cue + c->speeds; p++) loads[p] += w->C[f][p] * w->F[f];
+    for (int f = 0; f < in->forces; f++) {
+        s->work[f] -= c->F[f] * (c->v[f] + v[f]) / 2;
+        for (int p = 0; p < n_cue + in->speeds; p++) loads[p] += c->C[f][p] * c->F[f];
     }
-    apply_impulses(w, loads);
-    for (int b = 0; b < c->speeds; b++) w->ball[b] += c->inverse_masses[b] * loads[n_cue + b];
+    apply_impulses(c, loads);
+    for (int b = 0; b < in->speeds; b++) s->ball[b] += in->inverse_masses[b] * loads[n_cue + b];
 }
 
-/* Returns 1 if tip and ball stay in contact. */
-int impact(Work *w, Step *row)
+/* Take the impact; return 1 if tip and ball stay in contact. */
+int impact(Contact *c, Step *row)
 {
+    State *s = c->s;
     double unused[FORCES];
-    impact_matrices(w);
-    if (!impulses(w)) w->c->status = UNSOLVED;
-    int parts = separates(w);
-    velocities(w, row->v, unused);
-    apply(w, row->v);
-    memcpy(row->F, w->F, sizeof row->F);
-    memset(w->F, 0, sizeof w->F);
-    w->tip_stuck = 1;
-    w->on_table = 1;
+    *row = (Step){.friction_state = IMPACT};
+    impact_matrices(c);
+    int solved = c->cue->impulses(c);
+    if (!solved) s->status = UNSOLVED;
+    int parts = separates(c);
+    velocities(c, row->v, unused);
+    apply(c, row->v);
+    update_port_velocities(c);
+    memcpy(row->F, c->F, sizeof row->F);
+    memcpy(row->ball, s->ball, sizeof row->ball);
+    memset(c->F, 0, sizeof c->F);
+    s->tip_stuck = 1;
+    s->on_table = 1;
     return !parts;
 }

@@ -8,55 +8,68 @@ FAST static double product(const double *a, const double *b, int count)
     return sum;
 }
 
-/* Velocities of ports and slopes without loads, m/s, at the end of the step and on average over it. */
-FAST void free_motion(Work *w)
+/* Velocities of ports and slopes at the present state of the modes. */
+void update_port_velocities(Contact *c)
 {
-    const int n_cue = w->c->ports + w->c->slopes, n_state = 2 * w->c->modes;
+    const int n_modes = c->in->modes, n_cue = c->in->ports + c->in->slopes;
+    for (int q = 0; q < n_cue; q++)
+        c->s->port_velocities[q] = product(c->in->rows + q * n_modes, c->s->modes, n_modes);
+}
+
+/* Velocities of ports and slopes without loads, m/s, at the end of the step and on average over it. */
+FAST void free_motion(Contact *c)
+{
+    const int n_cue = c->in->ports + c->in->slopes, n_state = 2 * c->in->modes;
+    const double *state = c->s->modes;
     for (int q = 0; q < n_cue; q++) {
-        const double *ends = w->t.ends + q * n_state, *means = w->t.means + q * n_state;
+        const double *ends = c->t.ends + q * n_state, *means = c->t.means + q * n_state;
         double end = 0, mean = 0;
-        for (int i = 0; i < n_state; i++) end += ends[i] * w->state[i], mean += means[i] * w->state[i];
-        w->end_free[q] = end, w->mean_free[q] = mean;
+        for (int i = 0; i < n_state; i++) {
+            end += ends[i] * state[i];
+            mean += means[i] * state[i];
+        }
+        c->end_free[q] = end;
+        c->mean_free[q] = mean;
     }
 }
 
 /* Loads on ports and slopes, and behind them the forces of the dashpots, which follow from them. */
-static void load_rows(Work *w, const double *cue_loads)
+static void load_rows(Contact *c, const double *cue_loads)
 {
-    const int n_cue = w->c->ports + w->c->slopes, n_state = 2 * w->c->modes;
-    memcpy(w->loads, cue_loads, n_cue * sizeof(double));
-    for (int d = 0; d < w->c->dashpots; d++) {
-        const double *row = w->t.dashpots + d * (n_state + n_cue);
-        w->loads[n_cue + d] = product(row, w->state, n_state) + product(row + n_state, w->loads, n_cue);
+    const int n_cue = c->in->ports + c->in->slopes, n_state = 2 * c->in->modes;
+    memcpy(c->loads, cue_loads, n_cue * sizeof(double));
+    for (int d = 0; d < c->in->dashpots; d++) {
+        const double *row = c->t.dashpots + d * (n_state + n_cue);
+        c->loads[n_cue + d] = product(row, c->s->modes, n_state) + product(row + n_state, c->loads, n_cue);
     }
 }
 
 /* Sum of the loads on one mode. */
-static double modal_load(const Work *w, int mode)
+static double modal_load(const Contact *c, int mode)
 {
-    const int n_rows = w->c->ports + w->c->slopes + w->c->dashpots;
+    const int n_rows = c->in->ports + c->in->slopes + c->in->dashpots;
     double sum = 0;
-    for (int q = 0; q < n_rows; q++) sum += w->loads[q] * w->c->rows[q * w->c->modes + mode];
+    for (int q = 0; q < n_rows; q++) sum += c->loads[q] * c->in->rows[q * c->in->modes + mode];
     return sum;
 }
 
 /* State and loads of the modes that radiate, which all of them change together. */
-static void gather_radiating(Work *w)
+static void gather_radiating(Contact *c)
 {
-    const int n_modes = w->c->modes, m = w->c->radiating;
+    const int n_modes = c->in->modes, m = c->in->radiating;
     for (int i = 0; i < m; i++) {
-        int k = w->c->radiating_modes[i];
-        w->group[i] = w->state[k];
-        w->group[m + i] = w->state[n_modes + k];
-        w->group[2 * m + i] = modal_load(w, k);
+        int k = c->in->radiating_modes[i];
+        c->group[i] = c->s->modes[k];
+        c->group[m + i] = c->s->modes[n_modes + k];
+        c->group[2 * m + i] = modal_load(c, k);
     }
 }
 
 /* Load the modes for the step: loads on ports and slopes, and the dashpots' forces. */
-void load_modes(Work *w, const double *cue_loads)
+void load_modes(Contact *c, const double *cue_loads)
 {
-    load_rows(w, cue_loads);
-    gather_radiating(w);
+    load_rows(c, cue_loads);
+    gather_radiating(c);
 }
 
 static double quadratic_form(const double *matrix, const double *x, int count)
@@ -67,14 +80,14 @@ static double quadratic_form(const double *matrix, const double *x, int count)
 }
 
 /* Energy lost in the step by the loss factor of each mode, a quadratic form in v and g = load - omega a. */
-static double structural_loss(const Work *w)
+static double structural_loss(const Contact *c)
 {
-    const int n_modes = w->c->modes;
-    const double *v = w->state, *a = v + n_modes;
-    const double *per_vv = w->t.loss, *per_vg = per_vv + n_modes, *per_gg = per_vg + n_modes;
+    const int n_modes = c->in->modes;
+    const double *v = c->s->modes, *a = v + n_modes;
+    const double *per_vv = c->t.loss, *per_vg = per_vv + n_modes, *per_gg = per_vg + n_modes;
     double sum = 0;
     for (int k = 0; k < n_modes; k++) {
-        double g = modal_load(w, k) - w->c->omega[k] * a[k];
+        double g = modal_load(c, k) - c->in->omega[k] * a[k];
         sum += (per_vv[k] * v[k] + per_vg[k] * g) * v[k] + per_gg[k] * g * g;
     }
     return sum;
@@ -82,23 +95,23 @@ static double structural_loss(const Work *w)
 
 /* Add the energies that dashpots and loss factors dissipate in the step, and that waves radiate. The row of a
    dashpot includes the root of its constant. */
-void add_losses(Work *w)
+void add_losses(Contact *c)
 {
-    const int n_cue = w->c->ports + w->c->slopes, n_group = 3 * w->c->radiating;
-    for (int d = 0; d < w->c->dashpots; d++)
-        w->damping_loss += w->t.h * w->loads[n_cue + d] * w->loads[n_cue + d];
-    w->radiated += quadratic_form(w->t.radiated, w->group, n_group);
-    if (!w->c->structural_loss) return;
-    w->damping_loss += structural_loss(w) + quadratic_form(w->t.dissipated, w->group, n_group);
+    const int n_cue = c->in->ports + c->in->slopes, n_group = 3 * c->in->radiating;
+    for (int d = 0; d < c->in->dashpots; d++)
+        c->s->damping_loss += c->t.h * c->loads[n_cue + d] * c->loads[n_cue + d];
+    c->s->radiated += quadratic_form(c->t.radiated, c->group, n_group);
+    if (!c->in->structural_loss) return;
+    c->s->damping_loss += structural_loss(c) + quadratic_form(c->t.dissipated, c->group, n_group);
 }
 
-static void advance_radiating(Work *w)
+static void advance_radiating(Contact *c)
 {
-    const int n_modes = w->c->modes, m = w->c->radiating;
+    const int n_modes = c->in->modes, m = c->in->radiating;
     for (int i = 0; i < m; i++) {
-        int k = w->c->radiating_modes[i];
-        w->state[k] = product(w->t.radiating + 3 * m * i, w->group, 3 * m);
-        w->state[n_modes + k] = product(w->t.radiating + 3 * m * (m + i), w->group, 3 * m);
+        int k = c->in->radiating_modes[i];
+        c->s->modes[k] = product(c->t.radiating + 3 * m * i, c->group, 3 * m);
+        c->s->modes[n_modes + k] = product(c->t.radiating + 3 * m * (m + i), c->group, 3 * m);
     }
 }
 
@@ -119,41 +132,41 @@ FAST static void add_scaled(double *restrict sum, double load, const double *res
 }
 
 /* Advance the modes over the step under their loads. */
-void advance_modes(Work *w)
+void advance_modes(Contact *c)
 {
-    const int n_state = 2 * w->c->modes, n_rows = w->c->ports + w->c->slopes + w->c->dashpots;
-    advance_own(w->c->modes, w->t.own, w->state);
+    const int n_state = 2 * c->in->modes, n_rows = c->in->ports + c->in->slopes + c->in->dashpots;
+    advance_own(c->in->modes, c->t.own, c->s->modes);
     for (int q = 0; q < n_rows; q++)
-        if (w->loads[q] != 0) add_scaled(w->state, w->loads[q], w->t.response + q * n_state, n_state);
-    advance_radiating(w);
+        if (c->loads[q] != 0) add_scaled(c->s->modes, c->loads[q], c->t.response + q * n_state, n_state);
+    advance_radiating(c);
 }
 
 /* Apply impulses on ports and slopes, N s. */
-void apply_impulses(Work *w, const double *impulses)
+void apply_impulses(Contact *c, const double *impulses)
 {
-    const int n_modes = w->c->modes, n_cue = w->c->ports + w->c->slopes;
+    const int n_modes = c->in->modes, n_cue = c->in->ports + c->in->slopes;
     for (int q = 0; q < n_cue; q++)
-        for (int k = 0; k < n_modes; k++) w->state[k] += impulses[q] * w->c->rows[q * n_modes + k];
+        for (int k = 0; k < n_modes; k++) c->s->modes[k] += impulses[q] * c->in->rows[q * n_modes + k];
 }
 
 /* Impulse on the tip's lateral port, N s, that imposes mean velocities on it over equal steps, m/s, after a
    first impulse. The velocities are relative to a ball of an inverse mass, 1/kg, that the impulse moves, too. */
-EXPORTED double imposed_velocity_impulse(Work *w, const StepTables *tables, int steps, const double *means,
+EXPORTED double imposed_velocity_impulse(Contact *c, const StepTables *tables, int steps, const double *means,
                                          double ball_inverse_mass, double first_impulse)
 {
-    const int n_cue = w->c->ports + w->c->slopes, n_state = 2 * w->c->modes;
+    const int n_cue = c->in->ports + c->in->slopes, n_state = 2 * c->in->modes;
     const double *mean_velocity = tables->means + W_PORT * n_state;
     const double per_force =
         tables->mean_per_load[W_PORT * n_cue + W_PORT] + ball_inverse_mass * tables->h / 2;
     double loads[CUE_VELOCITIES] = {[W_PORT] = first_impulse};
     double impulse = first_impulse;
-    w->t = *tables;
-    apply_impulses(w, loads);
+    c->t = *tables;
+    apply_impulses(c, loads);
     for (int n = 0; n < steps; n++) {
-        double without_force = product(mean_velocity, w->state, n_state) + ball_inverse_mass * impulse;
+        double without_force = product(mean_velocity, c->s->modes, n_state) + ball_inverse_mass * impulse;
         loads[W_PORT] = (means[n] - without_force) / per_force;
-        load_modes(w, loads);
-        advance_modes(w);
+        load_modes(c, loads);
+        advance_modes(c);
         impulse += tables->h * loads[W_PORT];
     }
     return impulse;

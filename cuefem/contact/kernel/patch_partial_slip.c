@@ -13,21 +13,21 @@
    restitution e: of the work f d(delta) it stores the part e^2, in all f^2 e^2/2k. */
 #include "contact.h"
 
-/* Mean stiffness, N/m, of the annulus between the edges `in` and `out` over the indentations of a step: it
+/* Mean stiffness, N/m, of the annulus between the edges `inner` and `outer` over the indentations of a step: it
    grows between the edges and is constant beyond. The mean of the step's ends is inaccurate if the step
    crosses many annuli, as the first one does. */
-static inline double mean_stiffness(double in, double out, double from, double to, double k_from, double k_to)
+static inline double mean_stiffness(double inner, double outer, double from, double to, double k_from, double k_to)
 {
     if (k_from == k_to || from == to) return k_to;
     double low = fmin(from, to), high = larger(from, to), top = from > to ? k_from : k_to;
-    double begins = larger(low, in), ends = larger(begins, fmin(high, out));
+    double begins = larger(low, inner), ends = larger(begins, fmin(high, outer));
     return ((k_from + k_to) / 2 * (ends - begins) + top * (high - ends)) / (high - low);
 }
 
 /* The patch at a virtual indentation, m, which was `before` at the middle of the last step. */
 typedef struct {
     double before, virtual, stiffness_before, stiffness; /* of the whole patch, N/m */
-    double force, slope;                                 /* of the normal force, N, N/m */
+    NormalForce normal;                                  /* of the whole patch */
 } Growth;
 
 /* One annulus in this step. */
@@ -36,29 +36,29 @@ typedef struct {
     double normal, normal_slope; /* its normal force, N, and the slope of that by the indentation, N/m */
 } Annulus;
 
-static Growth growth_to(const Work *w, double virtual)
+static Growth growth_to(const Contact *c, double virtual)
 {
-    Growth g = {.before = w->virtual_mid, .virtual = virtual};
-    double unused;
-    g.force = tip_force(w, LOADING, virtual, &g.slope, &unused);
-    g.stiffness = tangential_stiffness(w->c, virtual);
-    g.stiffness_before = tangential_stiffness(w->c, g.before);
-    return g;
+    const double before = c->s->virtual_mid;
+    return (Growth){.before = before,
+                    .virtual = virtual,
+                    .stiffness_before = tangential_stiffness(c->in, before),
+                    .stiffness = tangential_stiffness(c->in, virtual),
+                    .normal = loading_curve(c, virtual)};
 }
 
 /* Annulus r, between two edges of the indentation; the last one grows on. */
-static inline Annulus annulus(const Contact *c, int r, const Growth *g)
+static inline Annulus annulus(const Input *in, int r, const Growth *g)
 {
-    const double *F = c->annulus_forces, *S = c->annulus_slopes, *K = c->annulus_stiffness;
-    double in = c->annulus_edges[r], out = r + 1 < c->annuli ? c->annulus_edges[r + 1] : HUGE_VAL;
-    int covered = g->virtual > out;
-    double outer = covered ? F[r + 1] + S[r + 1] * (g->virtual - out) : g->force;
+    const double *F = in->annulus_forces, *S = in->annulus_slopes, *K = in->annulus_stiffness;
+    double inner = in->annulus_edges[r], outer = r + 1 < in->annuli ? in->annulus_edges[r + 1] : HUGE_VAL;
+    int covered = g->virtual > outer;
+    double normal_to_outer = covered ? F[r + 1] + S[r + 1] * (g->virtual - outer) : g->normal.force;
     Annulus a;
     a.k_after = (covered ? K[r + 1] : g->stiffness) - K[r];
-    a.k_before = g->before <= in ? 0 : (g->before > out ? K[r + 1] : g->stiffness_before) - K[r];
-    a.k = mean_stiffness(in, out, g->before, g->virtual, a.k_before, a.k_after);
-    a.normal = outer - (F[r] + S[r] * (g->virtual - in));
-    a.normal_slope = (covered ? S[r + 1] : g->slope) - S[r];
+    a.k_before = g->before <= inner ? 0 : (g->before > outer ? K[r + 1] : g->stiffness_before) - K[r];
+    a.k = mean_stiffness(inner, outer, g->before, g->virtual, a.k_before, a.k_after);
+    a.normal = normal_to_outer - (F[r] + S[r] * (g->virtual - inner));
+    a.normal_slope = (covered ? S[r + 1] : g->normal.slope) - S[r];
     return a;
 }
 
@@ -82,61 +82,68 @@ static inline double strain_loss(double old, double f, double k, double e2)
 
 /* Forces of the annuli, N, at a virtual indentation, m, after a shift, m, since the middle of the last step.
    Returns their sum; by_shift, by_virtual: its derivatives by the two, N/m. */
-FAST static double shift_annuli(Work *w, double virtual, double shift, double *by_shift, double *by_virtual)
+FAST static double shift_annuli(Contact *c, double virtual, double shift, double *by_shift, double *by_virtual)
 {
-    const Contact *c = w->c;
-    const double e2 = c->surface_restitution * c->surface_restitution, mu = c->friction;
-    const Growth g = growth_to(w, virtual);
+    const Input *in = c->in;
+    const double e2 = in->surface_restitution * in->surface_restitution, mu = in->friction;
+    const Growth g = growth_to(c, virtual);
     double sum = 0;
     *by_shift = 0;
     *by_virtual = 0;
-    w->annuli_loss = 0;
-    for (int r = 0; r < c->annuli; r++) {
-        if (virtual <= c->annulus_edges[r]) {
-            w->annulus_force_now[r] = 0;
+    c->annuli_loss = 0;
+    for (int r = 0; r < in->annuli; r++) {
+        if (virtual <= in->annulus_edges[r]) {
+            c->annulus_force[r] = 0;
             continue;
         }
-        Annulus a = annulus(c, r, &g);
-        double old = w->annulus_force[r] * (a.k_before > a.k_after ? a.k_after / a.k_before : 1);
-        double tangent, f = trial_force(old, a.k * shift, a.k, e2, &tangent), bound = mu * larger(a.normal, 0);
+        Annulus a = annulus(in, r, &g);
+        double old = c->s->annulus_force[r] * (a.k_before > a.k_after ? a.k_after / a.k_before : 1);
+        double bound = mu * larger(a.normal, 0);
+        double tangent;
+        double f = trial_force(old, a.k * shift, a.k, e2, &tangent);
         if (fabs(f) < bound) {
             *by_shift += tangent;
         } else {
             f = copysign(bound, f);
             *by_virtual += copysign(mu * a.normal_slope, f);
         }
-        w->annuli_loss += strain_loss(old, f, a.k, e2);
-        w->annulus_force_now[r] = f;
+        c->annuli_loss += strain_loss(old, f, a.k, e2);
+        c->annulus_force[r] = f;
         sum += f;
     }
     return sum;
 }
 
-static void stick(Work *w, const double *u, Equations *e)
+static void stick(Contact *c, const double *u, Equations *e)
 {
-    const double half = w->t.h / 2;
-    double by_shift, by_virtual, shift = w->shift - half * u[T];
-    e->g[T] = w->F[T] - shift_annuli(w, w->virtual_now, shift - w->shift_mid, &by_shift, &by_virtual);
-    if (w->virtual_now < w->c->max_indentation) by_virtual /= unloading_scale(w->c, w->phase);
-    e->J[T][T] = 1 + half * (by_shift * w->W[T][T] + by_virtual * w->W[N][T]);
-    e->J[T][N] = half * (by_shift * w->W[T][N] + by_virtual * w->W[N][N]);
+    const double half = c->t.h / 2;
+    double by_shift, by_virtual;
+    double shift = c->s->shift - half * u[T];
+    e->g[T] = c->F[T] - shift_annuli(c, c->normal.virtual, shift - c->s->shift_mid, &by_shift, &by_virtual);
+    by_virtual /= c->normal.scale;
+    e->J[T][T] = 1 + half * (by_shift * c->W[T][T] + by_virtual * c->W[N][T]);
+    e->J[T][N] = half * (by_shift * c->W[T][N] + by_virtual * c->W[N][N]);
 }
 
-static void keep(Work *w, double middle)
+static void keep(Contact *c, double middle)
 {
     (void)middle;
-    memcpy(w->annulus_force, w->annulus_force_now, sizeof w->annulus_force);
-    w->c->shear_loss += w->annuli_loss;
+    memcpy(c->s->annulus_force, c->annulus_force, sizeof c->s->annulus_force);
+    c->s->shear_loss += c->annuli_loss;
 }
 
-static void release(Work *w, double shift) { (void)w, (void)shift; }
-
-static int friction_state(const Work *w)
+static void release(Contact *c, double shift)
 {
-    const Contact *c = w->c;
-    if (fabs(w->F[T]) < c->friction * w->F[N] * (1 - 1e-6)) return STICK;
-    if (w->F[T] == 0) return c->friction_state;
-    return w->F[T] > 0 ? SLIP : SLIP_BACK;
+    (void)c;
+    (void)shift;
 }
 
-const Patch partial_slip = {1, stick, keep, release, friction_state};
+static int friction_state(const Contact *c)
+{
+    if (fabs(c->F[T]) < c->in->friction * c->F[N] * (1 - 1e-6)) return STICK;
+    if (c->F[T] == 0) return c->s->friction_state;
+    return c->F[T] > 0 ? SLIP : SLIP_BACK;
+}
+
+const Patch partial_slip = {
+    .slips_in_parts = 1, .stick = stick, .keep = keep, .release = release, .friction_state = friction_state};

@@ -2,23 +2,32 @@
 #include "contact.h"
 
 /* The tip has the mean velocity of a sticking point. */
-static void stick(Work *w, const double *u, Equations *e)
+static void stick(Contact *c, const double *u, Equations *e)
 {
-    e->g[T] = u[T] - w->u_stick[T];
-    e->J[T][T] = w->W[T][T];
-    e->J[T][N] = w->W[T][N];
+    e->g[T] = u[T] - c->u_stick[T];
+    e->J[T][T] = c->W[T][T];
+    e->J[T][N] = c->W[T][N];
 }
 
-static void keep(Work *w, double middle) { (void)w, (void)middle; }
+static void keep(Contact *c, double middle)
+{
+    (void)c;
+    (void)middle;
+}
 
-static void release(Work *w, double shift) { (void)w, (void)shift; }
+static void release(Contact *c, double shift)
+{
+    (void)c;
+    (void)shift;
+}
 
 /* A tip that comes to rest within the step has slipped in a part of it: counted as slip. */
-static int friction_state(const Work *w)
+static int friction_state(const Contact *c)
 {
-    int stops = !w->slip && !w->tip_stuck;
-    if (!stops || w->u_stick[T] == 0) return w->slip;
-    return w->u_stick[T] < 0 ? SLIP : SLIP_BACK;
+    int stops = !c->slip && !c->s->tip_stuck;
+    if (!stops || c->u_stick[T] == 0) return c->slip;
+    return c->u_stick[T] < 0 ? SLIP : SLIP_BACK;
 }
 
-const Patch rigid_patch = {0, stick, keep, release, friction_state};
+const Patch rigid_patch = {
+    .slips_in_parts = 0, .stick = stick, .keep = keep, .release = release, .friction_state = friction_state};

@@ -2,28 +2,29 @@
 #include "contact.h"
 
 /* F_t = (shift at mid-step - origin) / compliance. */
-static void stick(Work *w, const double *u, Equations *e)
+static void stick(Contact *c, const double *u, Equations *e)
 {
-    const double half = w->t.h / 2, compliance = w->c->compliance;
-    double shift = w->shift - half * u[T];
-    e->g[T] = w->F[T] - (shift - w->origin) / compliance;
-    e->J[T][T] = 1 + half * w->W[T][T] / compliance;
-    e->J[T][N] = half * w->W[T][N] / compliance;
+    const double half = c->t.h / 2, compliance = c->in->compliance;
+    double shift = c->s->shift - half * u[T];
+    e->g[T] = c->F[T] - (shift - c->s->origin) / compliance;
+    e->J[T][T] = 1 + half * c->W[T][T] / compliance;
+    e->J[T][N] = half * c->W[T][N] / compliance;
 }
 
 /* Slip moves the shift at which the spring is unstrained. */
-static void keep(Work *w, double middle)
+static void keep(Contact *c, double middle)
 {
-    if (w->slip) w->origin = middle - w->c->compliance * w->F[T];
+    if (c->slip) c->s->origin = middle - c->in->compliance * c->F[T];
 }
 
-static void release(Work *w, double shift)
+static void release(Contact *c, double shift)
 {
-    Contact *c = w->c;
-    double F = w->slip ? w->F[T] : (shift - w->origin) / c->compliance;
-    c->shear_loss += c->compliance * F * F / 2;
+    const double compliance = c->in->compliance;
+    double F = c->slip ? c->F[T] : (shift - c->s->origin) / compliance;
+    c->s->shear_loss += compliance * F * F / 2;
 }
 
-static int friction_state(const Work *w) { return w->slip; }
+static int friction_state(const Contact *c) { return c->slip; }
 
-const Patch spring_patch = {0, stick, keep, release, friction_state};
+const Patch spring_patch = {
+    .slips_in_parts = 0, .stick = stick, .keep = keep, .release = release, .friction_state = friction_state};
