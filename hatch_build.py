@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import runpy
 import shlex
 import shutil
 import subprocess
@@ -17,7 +18,6 @@ import sysconfig
 import tempfile
 from functools import cache
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 # pip looks for the dependencies first, and would list the versions of scipy that this Python cannot have.
@@ -25,21 +25,14 @@ if sys.version_info < (3, 11):  # noqa: UP036, as requires-python
     raise SystemExit(f"cuefem needs Python 3.11 or newer; this is {sys.version.split()[0]}")
 
 ROOT = Path(__file__).parent
+# cuefem.contact.kernel, without what the package needs: where the library lies, and the digest of its sources.
+KERNEL = runpy.run_path(str(ROOT / "cuefem" / "contact" / "kernel" / "__init__.py"))
+BINARY: Path = KERNEL["BINARY"]
 ZIG = "ziglang>=0.13.0"
 # Sums may be taken in any order, as vector instructions do; nothing else of -ffast-math, which at the link would switch
 # the whole process to flush denormal numbers to zero.
 SHARED = ["-std=gnu11", "-fPIC", "-fvisibility=hidden", "-shared"]
 FLAGS = ["-O3", "-fno-math-errno", "-fno-trapping-math", "-fno-signed-zeros", "-fassociative-math"]
-
-
-def kernel() -> ModuleType:
-    """cuefem.contact.kernel, without what the package needs."""
-    spec = importlib.util.spec_from_file_location("kernel", ROOT / "cuefem" / "contact" / "kernel" / "__init__.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @cache
@@ -59,28 +52,30 @@ def zig() -> tuple[str, ...] | None:
     """The compiler of the wheel `ziglang`, for any processor of this kind; None where the wheel is not installed."""
     if importlib.util.find_spec("ziglang") is None:
         return None
-    return sys.executable, "-m", "ziglang", "cc", "-mcpu=baseline"
+    return sys.executable, "-m", "ziglang", "cc", "-mcpu=baseline", "-s"
 
 
 def build() -> Path:
     """Compile the kernel beside its sources; SystemExit with the reason where that cannot be."""
-    module = kernel()
-    binary: Path = module.BINARY
     command = compiler() or zig()
     if command is None:
         raise SystemExit(f"cuefem: no C compiler; install one (cc), or `python -m pip install '{ZIG}'`")
-    sources = [str(path) for path in sorted(module.HERE.glob("*.c"))]
-    made = binary.with_suffix(f".{os.getpid()}{binary.suffix}")  # another process may load the kernel meanwhile
-    own = shlex.split(os.environ.get("CFLAGS", ""))
-    line = [*command, *SHARED, *FLAGS, *own, "-o", str(made), *sources, "-lm"]
-    done = subprocess.run(line, capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise SystemExit(f"cuefem: the contact's kernel does not compile with {command[0]}:\n{done.stderr.strip()}")
-    made.replace(binary)
-    for leftover in made.parent.glob(f"{made.stem}.*"):  # a linker for Windows leaves more than the library
-        leftover.unlink()
-    module.seal()
-    return binary
+    sources = [str(path) for path in sorted(BINARY.parent.glob("*.c"))]
+    flags = [
+        *SHARED,
+        *FLAGS,
+        f'-DSOURCES_DIGEST="{KERNEL["sources_digest"]()}"',
+        *shlex.split(os.environ.get("CFLAGS", "")),
+    ]
+    # another process may load the kernel meanwhile; a linker for Windows leaves more than the library
+    with tempfile.TemporaryDirectory(dir=BINARY.parent, prefix="_kernel.") as folder:
+        made = Path(folder) / BINARY.name
+        line = [*command, *flags, "-o", str(made), *sources, "-lm"]
+        done = subprocess.run(line, capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise SystemExit(f"cuefem: the contact's kernel does not compile with {command[0]}:\n{done.stderr.strip()}")
+        made.replace(BINARY)
+    return BINARY
 
 
 def platform_tag() -> str:
@@ -104,8 +99,6 @@ else:
             """Build the kernel before a wheel, or an editable install, is made."""
             if self.target_name != "wheel":
                 return
-            binary = build()
-            for made in (binary, kernel().DIGESTS):
-                build_data["artifacts"].append(str(made.relative_to(ROOT)))
+            build_data["artifacts"].append(str(build().relative_to(ROOT)))
             build_data["pure_python"] = False
             build_data["tag"] = platform_tag()

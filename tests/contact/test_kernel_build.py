@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from cuefem.contact import kernel
-from cuefem.contact.kernel import BINARY, BUILD
+from cuefem.contact.kernel import BINARY, BUILD, sources_digest
 from cuefem.contact.kernel.declarations import KernelInput, KernelState, KernelStep, StepTables
 from cuefem.contact.kernel.library import library
 
@@ -45,11 +45,13 @@ def run(folder: Path, *arguments: str, **environment: str) -> tuple[int, str, li
     return process.returncode, process.stdout.strip(), process.stderr.strip().splitlines()
 
 
+OTHER = "was built from other sources, or is damaged"
 DAMAGES = {  # the changed file of the kernel, its new bytes, and the message
     "missing": (BINARY.name, lambda whole: None, "is missing"),
-    "cut short": (BINARY.name, lambda whole: whole[: len(whole) // 2], "is damaged: it is not the one that was built"),
-    "half a digest": ("_kernel.sha256", lambda whole: b"half", "is damaged: it is not the one that was built"),
-    "other sources": ("step.c", lambda whole: whole + b"/* another version */\n", "was built from other sources"),
+    "cut short": (BINARY.name, lambda whole: whole[: len(whole) // 2], OTHER),
+    "cut behind the code": (BINARY.name, lambda whole: whole[: whole.index(sources_digest().encode()) + 63], OTHER),
+    "empty": (BINARY.name, lambda whole: b"", OTHER),
+    "other sources": ("step.c", lambda whole: whole + b"/* another version */\n", OTHER),
 }
 
 
@@ -71,14 +73,15 @@ def test_kernel_of_other_sources_raises_until_built(folder: Path, damage: str) -
         assert run(folder, "-c", STRIKE)[2][-1].startswith("cuefem.contact.kernel.KernelError: ")
         assert run(folder, "hatch_build.py", CFLAGS="-O0") == (0, str(binary), [])
         assert run(folder, "-c", STRIKE) == (0, "", [])
-        assert sorted(path.name for path in binary.parent.glob("_kernel*")) == ["_kernel.sha256", BINARY.name]
+        assert sorted(path.name for path in binary.parent.glob("_kernel*")) == [BINARY.name]
 
 
-def test_seal_with_windows_line_ends_loads(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    seal = tmp_path / kernel.DIGESTS.name
-    seal.write_bytes(kernel.DIGESTS.read_bytes().replace(b"\n", b"\r\n"))
-    monkeypatch.setattr(kernel, "DIGESTS", seal)
-    kernel.check()
+def test_sources_with_windows_line_ends_have_the_same_digest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for source in [*kernel.HERE.glob("*.c"), *kernel.HERE.glob("*.h")]:
+        (tmp_path / source.name).write_bytes(source.read_bytes().replace(b"\n", b"\r\n"))
+    digest = sources_digest()
+    monkeypatch.setattr(kernel, "HERE", tmp_path)
+    assert sources_digest() == digest
 
 
 def test_structures_have_the_sizes_that_the_library_was_compiled_with() -> None:

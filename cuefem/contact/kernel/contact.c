@@ -4,6 +4,10 @@
 /* Largest slope of the cue's end, rad: there the shortening w'^2/2 exceeds the exact 1 - cos w' by 0.5 %. */
 static const double SLOPE_LIMIT = 0.25;
 
+/* The digest of the sources that the library was built from. It is not constant, so that it stands behind all
+   code: a file that holds it has not been cut short (kernel/__init__.py). */
+EXPORTED char sources_digest[] = SOURCES_DIGEST;
+
 EXPORTED const size_t structure_sizes[] = {sizeof(Input), sizeof(State), sizeof(Step), sizeof(StepTables)};
 
 static void choose_variants(Contact *c)
