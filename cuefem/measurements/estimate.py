@@ -1,7 +1,7 @@
 """Estimates of the uncertain parameters of a measured cue from all its measurements, and the next measurement to make.
 
 The posterior is that of the priors of `cuefem.measurements.uncertain_parameters` and of independent errors, one or two
-of which may be far larger than stated (`cuefem.measurements.outliers`). The Gauss-Newton method finds the best fit;
+of which may be far larger than stated (`cuefem.measurements.outliers`). Nonlinear least squares find the best fit;
 the model, linearised there, gives the mean and the covariance of the posterior.
 """
 
@@ -12,17 +12,17 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import least_squares
 
 from cuefem.cue import Array
 from cuefem.measurements.measured_cue import MeasuredCue, Progress, Residual, residuals_of
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Squirt
 from cuefem.measurements.outliers import DETECTABLE, OUTLIER_FACTOR, posterior
 
-MAX_ITERATIONS = 12
+MAX_EVALUATIONS = 25  # of the search at full weights
 MIN_FALL = 0.02  # of the cost over a step, relative: below it the search at full weights ends
-STEP_TOLERANCE = (
-    0.05  # length of a step, in standard deviations of the posterior, below which the estimate has converged
-)
+INVALID = 1e3  # residuals of an invalid cue, such as one with a bore wider than itself: the search takes a shorter step
+STEP_TOLERANCE = 0.05  # length of a step, in standard deviations of the posterior, below which the estimate converged
 MAX_OUTLIER_ITERATIONS = 6  # of the search that reduces the weight of contradictory measurements
 MAX_HALVINGS = 6
 MAX_STEP = 1.5  # standard deviations of the priors
@@ -188,44 +188,45 @@ def estimate(cue: MeasuredCue, *, progress: Progress = iter) -> Estimate:
 
     Notes
     -----
-    First all measurements have full weight: the Gauss-Newton method, steps of at most 1.5 standard deviations of the
-    priors, halved while the cost rises or the cue is invalid. Then measurements that contradict the others get less
-    weight. Either search ends when it has converged, or makes no progress: the cost falls by less than 2 %, the steps
-    get no shorter. Cost: some seven steps, each two computations of all values for every parameter.
+    First all measurements have full weight: a trust-region Gauss-Newton method (`scipy.optimize.least_squares`), which
+    shortens a step to an invalid cue. Then measurements that contradict the others get less weight. Either search ends
+    when it has converged, or makes no progress: the cost falls by less than 2 %, the steps get no shorter. Cost: some
+    seven steps, each two computations of all values for every parameter.
     """
     if not cue.measurements or not cue.parameters:
         missing = "measurements" if not cue.measurements else "uncertain parameters"
         raise ValueError(f"estimate takes a cue with {missing}; got none")
     measured, sd = np.array([[measurement.measured_value, measurement.sd] for measurement in cue.measurements]).T
-    z = np.zeros(len(cue.parameters))
-    at = cue.compute(z)
-    cost = _cost(z, (measured - at) / sd)
-    slopes: Array | None = None
-    finished = False
-    for _ in progress(range(MAX_ITERATIONS)):
-        if finished:
-            continue  # a progress bar runs to its end
-        slopes = cue.jacobian(z)
-        J = slopes / sd[:, None]
-        precision = J.T @ J + np.eye(len(z))
-        step = np.linalg.solve(precision, J.T @ ((measured - at) / sd) - z)
-        finished = float(np.sqrt(step @ precision @ step)) < STEP_TOLERANCE
-        best = None if finished else _line_search(cue, z, _limited(step), cost, measured, sd)
-        if best is None:
-            finished = True
-            continue
-        finished = cost - best.cost < MIN_FALL * cost
-        z, at, cost = best
-        slopes = None
-    return _reweighted(cue, z, at, cost, slopes)
+    steps = iter(progress(range(MAX_EVALUATIONS)))
+
+    def residuals(z: Array) -> Array:
+        computed = cue.compute_or_none(z)
+        return np.append(np.full(len(sd), INVALID) if computed is None else (computed - measured) / sd, z)
+
+    def slopes(z: Array) -> Array:
+        next(steps, None)
+        return np.vstack([cue.jacobian(z) / sd[:, None], np.eye(len(z))])
+
+    best = least_squares(
+        residuals,
+        np.zeros(len(cue.parameters)),
+        slopes,
+        xtol=STEP_TOLERANCE / 10,
+        ftol=MIN_FALL,
+        gtol=STEP_TOLERANCE / len(cue.parameters),
+        max_nfev=MAX_EVALUATIONS,
+    )
+    for _ in steps:  # a progress bar runs to its end
+        continue
+    count = len(sd)
+    return _reweighted(cue, best.x, measured + sd * best.fun[:count], 2 * best.cost, best.jac[:count] * sd[:, None])
 
 
-def _reweighted(cue: MeasuredCue, z: Array, at: Array, misfit: float, slopes: Array | None) -> Estimate:
+def _reweighted(cue: MeasuredCue, z: Array, at: Array, misfit: float, slopes: Array) -> Estimate:
     """The estimate about a start, in which a measurement that contradicts the others has less weight.
 
-    slopes: the derivatives at the start, if known.
+    at, slopes: the computed values at the start, and their derivatives.
     """
-    slopes = cue.jacobian(z) if slopes is None else slopes
     length = np.inf
     for last in range(1, MAX_OUTLIER_ITERATIONS + 1):
         mean, covariance, outlier_probability = posterior(*_scaled(cue, z, at, slopes))
@@ -251,33 +252,3 @@ def _scaled(cue: MeasuredCue, z: Array, at: Array, slopes: Array) -> tuple[Array
 def _limited(step: Array) -> Array:
     """A step of at most `MAX_STEP` in any parameter."""
     return step * min(1.0, MAX_STEP / max(float(np.abs(step).max()), 1e-12))
-
-
-class _Trial(NamedTuple):
-    """A point of a search: its parameters, computed values and cost."""
-
-    z: Array
-    computed_values: Array
-    cost: float
-
-
-def _line_search(cue: MeasuredCue, z: Array, step: Array, cost: float, measured: Array, sd: Array) -> _Trial | None:
-    """Line search: the lowest point along a step, halved while the cost decreases; None if none is below ``cost``.
-
-    The first half is always tried: far from the measurements full steps oscillate.
-    """
-    best = None
-    for halving in range(MAX_HALVINGS):
-        trial = z + step / 2**halving
-        computed = cue.compute_or_none(trial)
-        after = np.inf if computed is None else _cost(trial, (measured - computed) / sd)
-        if computed is not None and after < (cost if best is None else best.cost):
-            best = _Trial(trial, computed, after)
-        elif best is not None:
-            break
-    return best
-
-
-def _cost(z: Array, r: Array) -> float:
-    """Sum of squares of scaled residuals and of z."""
-    return float(r @ r + z @ z)
