@@ -9,7 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from cuefem.files import save_page, write_atomically
+from cuefem.files import InputError, save_page, write_atomically
 from cuefem.results.quantities import UNITS
 from cuefem.results.records import Record, Table, json_value
 from cuefem.scene import Scene
@@ -114,8 +114,10 @@ class Analysis:
 
 
 def write(path: Path, record: Callable[[], Record], html: Callable[[], str]) -> None:
-    """Write a record as .json, or a page as .html."""
-    if path.suffix != ".json":
+    """Write a record as .json, or a page as .html; InputError for another extension."""
+    if path.suffix not in (".html", ".json"):
+        raise InputError(path, "", f"must end in .html or .json; got {path.suffix!r}")
+    if path.suffix == ".html":
         return save_page(html(), path)
     from cuefem.show.renderers import json_text
 

@@ -10,6 +10,7 @@ from cuefem.beam.modes import modes
 from cuefem.results.records import ColumnEntry, Table, tabulate
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.scene import Scene
+from cuefem.show.scene_summary import effect_name
 
 if TYPE_CHECKING:
     from cuefem.show.charts import Chart
@@ -40,6 +41,11 @@ class NaturalFrequencies(Analysis):
     tip_amplitudes: list[float]
     has_stroke: ClassVar[bool] = False
 
+    def heading(self) -> str:
+        """The cue, and whether a scene adds a tip or other effects to what is drawn."""
+        added = ", ".join(effect_name(type(effect).__name__) for effect in self.scene.effects)
+        return f"{super().heading()}; frequencies {f'with {added}' if added else 'as drawn'}"
+
     def tables(self) -> list[Table | str]:
         """A table with a row for each mode."""
         return [self.table()]
@@ -64,7 +70,8 @@ class NaturalFrequencies(Analysis):
         }
         if near is not None:
             columns[""] = lambda row: "nearest" if row["frequency"] == nearest else ""
-        notes = ["tip amplitude: of the mass-normalised mode", "of the drawn part with its tip, without the butt"]
+        tip = " with its tip" if self.scene.contact_terms.tip is not None else ""
+        notes = ["tip amplitude: of the mass-normalised mode", f"of the drawn part{tip}, without the butt"]
         if self.rigid:
             notes.insert(0, f"{self.rigid} rigid-body mode{'s' * (self.rigid > 1)} at 0 Hz not listed")
         title = "Natural frequencies" if near is None else f"Natural frequencies nearest {near:g} Hz"

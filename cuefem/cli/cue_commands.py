@@ -92,7 +92,10 @@ def _save_change(request: Request, answer: DesignChanges, take: int, output: Pat
 )
 @click.option("--count", type=click.IntRange(min=1), default=6, show_default=True, help="Number of modes.")
 def modes(request: Request, near: float | None, count: int) -> Analysis:
-    """Compute natural frequencies of bending, with period and tip amplitude of each mode."""
+    """Compute natural frequencies of bending, with period and tip amplitude of each mode.
+
+    Of a drawing as drawn, like `cf.modes`; --game, or an option of the tip, adds the game's leather tip and effects.
+    """
     return cf.natural_frequencies(request.scene, count, near=near)
 
 

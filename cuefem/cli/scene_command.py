@@ -27,7 +27,9 @@ from cuefem.cli.scene_options import (
     option,
     parameter_options,
     reject_game,
+    scene_as_drawn,
     scene_from_cue,
+    sets_tip,
     with_options,
 )
 from cuefem.effects.force_law import IndentationOutOfRange
@@ -112,31 +114,38 @@ def scene_of(
 ) -> tuple[Scene, list[str]]:
     """The scene of a command, and the texts of its assumptions.
 
-    with_impact: whether ball, tip and stroke matter to the command, so that assumptions on them are listed too. warn:
-    whether to warn of implausible numbers.
+    with_impact: whether ball, tip and stroke matter to the command: assumptions on them are listed too, and a cue alone
+    gets the default stroke of a game. warn: whether to warn of implausible numbers.
     """
-    scene, listed, offered = completed_scene(file, options)
+    scene, listed, offered = completed_scene(file, options, as_drawn=not with_impact)
     if warn:
         print_warnings(scene, with_impact=with_impact)
     return scene, assumption_texts(listed, offered, with_impact=with_impact)
 
 
-def completed_scene(file: Path, options: dict[str, Any]) -> tuple[Scene, list[Assumption], set[str]]:
+def completed_scene(
+    file: Path, options: dict[str, Any], *, as_drawn: bool = False
+) -> tuple[Scene, list[Assumption], set[str]]:
     """The scene of a file, the assumptions: values set neither in the file nor by options, and the options that apply.
 
-    A cue alone gets a game's default stroke (`cuefem.scene.default_scene`).
+    A cue alone gets a game's default stroke (`cuefem.scene.default_scene`); as_drawn: only if an option sets its game
+    or tip.
     """
     opened = load_with_options(load_stroke, file, options)
     if isinstance(opened, Scene):
         reject_game(file, options)
         scene = with_options(opened, file, options)
+    elif as_drawn and not sets_tip(options):
+        scene = scene_as_drawn(opened, file, options)
     else:
         scene = scene_from_cue(opened, file, options)
+        as_drawn = False
     given = {name: value for name, value in options.items() if value is not None}
     offered = {*options} - ({"game"} if isinstance(opened, Scene) else set())
     with errors_name_file(file):
         compute_tip(scene)
-    return scene, assumptions(file, scene, given), offered
+    listed = [each for each in assumptions(file, scene, given) if not (as_drawn and each.key == "game")]
+    return scene, listed, offered
 
 
 def compute_tip(scene: Scene) -> None:

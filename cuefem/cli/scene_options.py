@@ -133,6 +133,19 @@ def scene_from_cue(cue: Cue, file: Path, options: dict[str, Any]) -> Scene:
     return with_options(scene, file, options)
 
 
+def scene_as_drawn(cue: Cue, file: Path, options: dict[str, Any]) -> Scene:
+    """The scene of a cue without a tip; --shaft-mass weighs it with its usual tip, as in `cuefem convert`."""
+    weight = options.get("shaft_mass")
+    drawn = cue if weight is None else with_shaft_mass_option(cue, file, weight)
+    return with_options(Scene(drawn), file, {**options, "shaft_mass": None})
+
+
+def sets_tip(options: dict[str, Any]) -> bool:
+    """Whether options set the game or the leather tip."""
+    has_leather_option = next(_options(options, _is_leather), None) is not None
+    return options.get("game") is not None or has_leather_option
+
+
 def with_options(scene: Scene, file: Path, options: dict[str, Any]) -> Scene:
     """The scene with the values of the command's options."""
     changes = _changes(scene, file, options)

@@ -33,7 +33,6 @@ __all__ = [
     "load",
     "load_accuracy",
     "load_stroke",
-    "number",
     "save",
     "save_page",
     "write_atomically",

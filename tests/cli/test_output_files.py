@@ -1,0 +1,117 @@
+"""Every format that a command's help names is written; names that a module promises exist; `modes` of a drawing."""
+
+import json
+import pkgutil
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from cuefem.cli import COMMANDS
+from tests.helpers.command_line import as_json, call, stdout_of
+
+KIM = Path("studies/scenes/kim.toml").resolve()
+STUDY = f"""
+scene = "{KIM.as_posix()}"
+responses = ["squirt"]
+[[vary]]
+path = "stroke.speed"
+low = "1 m/s"
+high = "2 m/s"
+count = 2
+"""
+ARGUMENTS = {"compare": (KIM, Path("meshes/kim.toml").resolve()), "parts": (), "guide": ("beam",)}
+MORE = {("improve", ".toml"): ("--take", 1)}
+HEAVY = {"improve", "effects", "cost", "check", "compare"}
+
+
+def formats() -> list[object]:
+    """Commands and the extensions of their -o."""
+    found = []
+    for name, (where, *_) in COMMANDS.items():
+        module, _, function = where.partition(":")
+        for option in getattr(import_module(module), function).params:
+            extensions = getattr(option.type, "extensions", ())
+            marks = [pytest.mark.heavy] if name in HEAVY else []
+            found += [pytest.param(name, extension, marks=marks) for extension in extensions]
+    return found
+
+
+@pytest.mark.parametrize(("command", "extension"), formats())
+def test_command_writes_every_format_of_its_help(command: str, extension: str, tmp_path: Path) -> None:
+    if command == "study":
+        (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
+    output = tmp_path / f"out{extension}"
+    arguments = ARGUMENTS.get(command, (KIM,)) if command != "study" else (tmp_path / "study.toml",)
+    out = stdout_of(command, *arguments, *MORE.get((command, extension), ()), "-o", output)
+    assert f"wrote {output}" in " ".join(out.split())
+    content = output.read_bytes()
+    assert content
+    if extension == ".json":
+        assert json.loads(content)
+    if extension == ".html":
+        assert content.startswith(b"<!DOCTYPE html>")
+        assert content.rstrip().endswith(b"</html>")
+
+
+@pytest.mark.parametrize("command", ["report", "strike", "modes", "end-mass"])
+def test_json_with_page_prints_json_alone(command: str, tmp_path: Path) -> None:
+    record = as_json(command, KIM, "-o", tmp_path / "page.html")
+    assert record["file"] == str(KIM)
+    assert (tmp_path / "page.html").exists()
+
+
+def test_pooltool_export_prints_json_alone(tmp_path: Path) -> None:
+    assert "CueSpecs" in as_json("strike", KIM, "--format", "pooltool", "-o", tmp_path / "cue.json")
+
+
+def test_modules_have_every_name_they_promise() -> None:
+    for found in pkgutil.walk_packages(cf.__path__, "cuefem."):
+        if found.name.endswith(("__main__", "._kernel")):  # runs; is no module of Python
+            continue
+        module = import_module(found.name)
+        missing = [name for name in getattr(module, "__all__", ()) if not hasattr(module, name)]
+        if found.ispkg:
+            missing = [name for name in missing if not (Path(module.__path__[0]) / f"{name}.py").exists()]
+        assert missing == [], found.name
+
+
+def test_no_module_hides_a_public_name() -> None:
+    """An imported submodule overwrites the attribute of its name (`plot` is the module itself)."""
+    rooms = {found.name for found in pkgutil.iter_modules(cf.__path__)}
+    assert {name for name in cf.__all__ if name in rooms} <= {"plot", "frames"}
+
+
+def test_modes_of_a_drawing_are_those_as_drawn() -> None:
+    """`modes` and `cf.modes` agree; --game adds a tip, which the first line says."""
+    file = Path("meshes/kim.toml")
+    cue = cf.load(file)
+    assert isinstance(cue, cf.Cue)
+    assert as_json("modes", file)["frequencies"] == pytest.approx(cf.modes(cue).frequencies[:6], rel=1e-9)
+    assert stdout_of("modes", file).splitlines()[0].endswith("frequencies as drawn")
+    with_tip = " ".join(stdout_of("modes", file, "--game", "pool").split())
+    assert "frequencies with leather tip" in with_tip
+    tip = cf.usual_scene(cue, "pool")
+    expected = cf.modes(cue, effects=tip.cue_effects).frequencies[:6]
+    assert as_json("modes", file, "--game", "pool")["frequencies"] == pytest.approx(expected, rel=1e-9)
+
+
+def test_modes_of_a_weighed_shaft_are_those_of_its_converted_file(tmp_path: Path) -> None:
+    """A scale weighs a shaft with its tip: less wood, in the command as in the file."""
+    (csv := tmp_path / "my.csv").write_text("x [mm],diameter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n")
+    toml = tmp_path / "my.toml"
+    assert call("convert", csv, toml, "--shaft-mass", "112 g")[0] == 0
+    weighed = as_json("modes", csv, "--shaft-mass", "112 g")
+    assert weighed["frequencies"] == pytest.approx(as_json("modes", toml)["frequencies"], rel=1e-9)
+    assert weighed["scene"]["effects"] == []
+    with_tip = as_json("modes", csv, "--shaft-mass", "112 g", "--game", "pool")["scene"]
+    assert with_tip["cue"]["shaft_mass"] == pytest.approx(weighed["scene"]["cue"]["shaft_mass"], rel=1e-11)
+
+
+def test_unknown_extension_names_those_that_can_be_written() -> None:
+    status, out, err = call("improve", KIM, "-o", "x.pdf")
+    assert (status, out) == (2, "")
+    assert "must end in .html or .json or .toml" in err
+    with pytest.raises(ValueError, match=r"\.html or \.json"):
+        cf.natural_frequencies(cf.Scene(cf.load("meshes/kim.toml"))).save("x.pdf")  # type: ignore[arg-type]
