@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from concurrent.futures import Executor
+import re
+from collections.abc import Callable
 from contextlib import nullcontext
+from functools import partial
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import click
 
@@ -20,22 +22,43 @@ from cuefem.designs.scatter import Scatter
 from cuefem.designs.store import SqliteStore, check_parquet, write_parquet, write_table
 from cuefem.designs.study_file import base_assumptions, load_study
 from cuefem.designs.study_result import StudyResult, compute_study
+from cuefem.designs.sweep import sweep
 from cuefem.files import InputError, save, write_atomically
 from cuefem.parameters.parameter import value_at, with_values_at
+from cuefem.quantity.fields import quote
 from cuefem.results.quantities import with_unit
 from cuefem.scene import Scene
 from cuefem.show.study_table import study_record, tabulate_study, varied_segments
+
+Computed = TypeVar("Computed")
+
+
+def read_part(context: click.Context, option: click.Parameter, text: str | None) -> slice | None:
+    """The designs of part "K/N" of a study: every N-th from the K-th on, so that all parts take the same time."""
+    if text is None:
+        return None
+    match = re.fullmatch(r"(\d{1,9})/(\d{1,9})", text)
+    number, count = map(int, match.groups()) if match else (0, 0)
+    if not 1 <= number <= count:
+        raise click.BadParameter(f"must be K/N with 1 <= K <= N, such as 3/10; got {quote(text)}")
+    return slice(number - 1, None, count)
 
 
 @command()
 @click.argument("file", metavar="STUDY", type=click.Path(path_type=Path))
 @click.option(
-    "--store", type=click.Path(path_type=Path), metavar="FILE", help="File of stored designs (default: STUDY.sqlite)."
+    "--store",
+    "stores",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    multiple=True,
+    help="File of stored designs (default: STUDY.sqlite). Repeated: new designs go to the first, the others are read.",
 )
 @click.option(
     "--workers", type=click.IntRange(min=1), help="Number of worker processes (default: none, all in this one)."
 )
 @click.option("--scheduler", metavar="ADDRESS", help='Dask scheduler whose workers compute, such as "tcp://host:8786".')
+@click.option("--part", metavar="K/N", callback=read_part, help="Compute and store only the K-th of N parts.")
 @click.option(
     "--iterations",
     type=click.IntRange(min=1),
@@ -52,9 +75,10 @@ def study(
     force: bool,
     as_json: bool,
     iterations: int,
-    store: Path | None,
+    stores: tuple[Path, ...],
     workers: int | None,
     scheduler: str | None,
+    part: slice | None,
 ) -> None:
     """Compute the designs of STUDY (.toml), which lists parameters and responses (`cuefem guide study` has the format).
 
@@ -69,10 +93,12 @@ def study(
     plan = load_study(file)
     designs = plan if isinstance(plan, Study) else plan.sobol_study if isinstance(plan, Scatter) else plan.study
     notes = base_assumptions(file, designs.base)
-    if isinstance(plan, Problem) and (store or workers or scheduler):
+    if isinstance(plan, Problem) and (stores or workers or scheduler or part):
         raise click.UsageError(
-            "--store, --workers and --scheduler do not apply to an optimum, which runs in one process"
+            "--store, --workers, --scheduler and --part do not apply to an optimum, which runs in one process"
         )
+    if part and output:
+        raise click.UsageError("--output needs all designs, and --part computes some of them")
     if workers and scheduler:
         raise click.UsageError("--workers (of this machine) and --scheduler (of a cluster) cannot be combined")
     for path in output:
@@ -97,10 +123,19 @@ def study(
 
             result = compute_study(plan, rounds=iterations, progress=show_round)
     else:
-        database = SqliteStore(store or file.with_suffix(".sqlite"), designs)
+        name = f".{part.start + 1}_of_{part.step}.sqlite" if part else ".sqlite"
+        first, *others = stores or [file.with_suffix(name)]
+        database = SqliteStore(first, designs, others)
         with dask_executor(scheduler) if scheduler else nullcontext(workers) as where:
-            result = _run_stored(file, plan, database, where)
-    record: dict[str, Any] = {"file": str(file), "assumptions": notes, "resolution": designs.at and vars(designs.at)}
+            if part:
+                compute_part = partial(sweep, designs, database, workers=where, part=part)
+                _run_stored(file, database, len(range(designs.size)[part]), compute_part)
+                record = {"file": str(file), "store": str(first), "designs": database.done}
+                print_result(as_json, record, [f"{database.done} of {designs.size} designs in {first}"])
+                return
+            run = partial(compute_study, plan, store=database, workers=where)
+            result = _run_stored(file, database, designs.size, run)
+    record = {"file": str(file), "assumptions": notes, "resolution": designs.at and vars(designs.at)}
     record |= {"kind": result.kind, "varied_fields": varied_segments(designs.vary, designs.base), "units": result.units}
     stored = []
     if database:
@@ -116,26 +151,21 @@ def study(
     print_result(as_json, record, [title, *stored, *tables, *(f"wrote {path}" for path in output)])
 
 
-def _run_stored(file: Path, plan: Study | Scatter, designs: SqliteStore, workers: int | Executor | None) -> StudyResult:
-    """The result of a sweep or a scatter; an interrupted one prints which designs are stored."""
+def _run_stored(file: Path, designs: SqliteStore, count: int, run: Callable[..., Computed]) -> Computed:
+    """The result of ``run`` for so many designs; an interrupted one prints which designs are stored."""
     with progress_bar() as bar, designs:
-        task, lines = bar.add_task("designs", total=designs.study.size), ProgressLines(designs.study.size)
+        task, lines = bar.add_task("designs", total=count), ProgressLines(count)
 
-        def show(count: int) -> None:
-            bar.update(task, advance=count)
-            lines.add(count)
+        def show(added: int) -> None:
+            bar.update(task, advance=added)
+            lines.add(added)
 
         try:
             with errors_name_file(file):
-                return compute_study(
-                    plan,
-                    store=designs,
-                    workers=workers,
-                    progress=show,
-                )
+                return run(progress=show)
         except (KeyboardInterrupt, RuntimeError) as error:
             bar.stop()
-            message = f"{designs.done} of {designs.study.size} designs are stored in {designs.path}"
+            message = f"{designs.done} of {count} designs are stored in {designs.path}"
             if isinstance(error, RuntimeError):
                 raise RuntimeError(f"{error}; {message}; run the same command to resume") from None
             click.echo(f"cuefem: interrupted; {message}; run the same command to resume", err=True)

@@ -44,14 +44,14 @@ CHUNK = 4096  # designs that are exported at a time
 
 
 @contextmanager
-def _opened(path: Path) -> Iterator[sqlite3.Connection]:
-    """A connection to a store; InputError for a damaged file and for errors of SQLite."""
+def _opened(path: Path, mode: str = "rwc") -> Iterator[sqlite3.Connection]:
+    """A connection to a store; InputError for a damaged file and errors of SQLite. mode: "ro" reads one that exists."""
     check_path(path)
     try:
-        with closing(sqlite3.connect(f"{path.resolve().as_uri()}?mode=rwc", timeout=LOCK_TIMEOUT, uri=True)) as file:
+        with closing(sqlite3.connect(f"{path.resolve().as_uri()}?mode={mode}", timeout=LOCK_TIMEOUT, uri=True)) as file:
             questions = ("SELECT count(*) FROM sqlite_master", "PRAGMA application_id", "PRAGMA quick_check(1)")
             tables, mark, state = (file.execute(question).fetchone()[0] for question in questions)
-            if tables and mark != APPLICATION_ID:
+            if (tables or mode == "ro") and mark != APPLICATION_ID:
                 raise InputError(path, "", "must be a store of `cuefem study`; got another database or an older store")
             if state != "ok":
                 raise sqlite3.DatabaseError(state)
@@ -63,25 +63,27 @@ def _opened(path: Path) -> Iterator[sqlite3.Connection]:
 class SqliteStore:
     """The designs of a study in a file of any number of studies; a `cuefem.designs.sweep.Store` and a context manager.
 
+    others: further stores, such as those of a study's parts, whose designs are read only.
     InputError if the file is not a store or is damaged. done: number of designs of the study that are stored, so far as
     they were asked for. computed: number of them added by this run.
     """
 
-    def __init__(self, path: str | PathLike[str], study: Study) -> None:
+    def __init__(self, path: str | PathLike[str], study: Study, others: Iterable[Path] = ()) -> None:
         if " at 0x" in full_repr(study.base):  # a memory address, which does not identify its content
             raise InputError(path, "", "cannot store designs of a scene with a function")
         self.path, self.study, self.done, self.computed = Path(path), study, 0, 0
+        self._others = tuple(others)
         self._names = [response.name for response in study.responses]
         self._block = lru_cache(READ_BLOCKS)(self._read_block)
         self._open = ExitStack()
 
     def __enter__(self) -> Self:
         with ExitStack() as opening:
-            self._file = opening.enter_context(_opened(self.path))
+            files = {path: opening.enter_context(_opened(path, mode="ro")) for path in self._others}
+            self._file = files[self.path] = opening.enter_context(_opened(self.path))
             if self._file.execute("SELECT count(*) FROM sqlite_master").fetchone() == (0,):
                 self._file.executescript(TABLES)
-            with self._reading():
-                self._index_keys()
+            self._index_keys(files)
             self._open = opening.pop_all()
         return self
 
@@ -89,24 +91,26 @@ class SqliteStore:
         return self._open.__exit__(*error)
 
     @contextmanager
-    def _reading(self) -> Iterator[None]:
+    def _reading(self, path: Path) -> Iterator[None]:
         """InputError for lines whose types or texts are damaged, which SQLite does not check."""
         try:
             yield
         except (TypeError, ValueError, AttributeError):
-            raise InputError(self.path, "", "is damaged: a design was altered; delete the file") from None
+            raise InputError(path, "", "is damaged: a design was altered; delete the file") from None
 
-    def _index_keys(self) -> None:
+    def _index_keys(self, files: dict[Path, sqlite3.Connection]) -> None:
         """Sort the keys of all stored blocks that have the study's responses, with their blocks and places in those."""
-        ids, keys = list[int](), list[np.ndarray]()
-        for number, names, stored in self._file.execute("SELECT id, names, keys FROM blocks"):
-            if {*self._names} <= {*json.loads(names)}:
-                ids.append(number)
-                keys.append(np.frombuffer(stored[: len(stored) // KEY_BYTES * KEY_BYTES], KEY))
+        self._lines, keys = list[tuple[Path, sqlite3.Connection, int]](), list[np.ndarray]()
+        for path, file in files.items():
+            with self._reading(path):
+                for number, names, stored in file.execute("SELECT id, names, keys FROM blocks"):
+                    if {*self._names} <= {*json.loads(names)}:
+                        self._lines.append((path, file, number))
+                        keys.append(np.frombuffer(stored[: len(stored) // KEY_BYTES * KEY_BYTES], KEY))
         every, counts = np.concatenate([np.zeros(0, KEY), *keys]), [len(each) for each in keys]
         order = np.argsort(every["first"], kind="stable")
         self._keys = every[order]
-        self._blocks = np.repeat(np.array(ids, int), counts)[order]
+        self._blocks = np.repeat(np.arange(len(counts)), counts)[order]
         places = np.concatenate([np.zeros(0, int), *(np.arange(n) for n in counts)])
         self._places = places[order]
 
@@ -136,9 +140,10 @@ class SqliteStore:
 
     def _read_block(self, number: int) -> tuple[list[str], np.ndarray, dict[str, str]]:
         """The names, answers and failures of a stored block; InputError if it was altered."""
-        line = "SELECT names, keys, answers, failures, digest FROM blocks WHERE id = ?"
-        with self._reading():
-            names, keys, answers, failures, stored_digest = self._file.execute(line, (number,)).fetchone()
+        path, file, line = self._lines[number]
+        question = "SELECT names, keys, answers, failures, digest FROM blocks WHERE id = ?"
+        with self._reading(path):
+            names, keys, answers, failures, stored_digest = file.execute(question, (line,)).fetchone()
             if _line_digest(names, keys, answers, failures) != stored_digest:
                 raise ValueError("digest")
         listed = json.loads(names)

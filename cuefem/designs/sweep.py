@@ -83,6 +83,7 @@ def sweep(
     *,
     workers: int | Executor | None = None,
     progress: Callable[[int], object] = lambda count: None,
+    part: slice = slice(None),
 ) -> Columns:
     """Compute the designs of a study that are not stored, and store them, block by block.
 
@@ -97,6 +98,8 @@ def sweep(
         ``MPIPoolExecutor``, which the caller closes. By default this process computes.
     progress : callable, optional
         Called with the number of designs that were added to the result: stored ones, then each computed block.
+    part : slice, optional
+        Which of the designs are computed, by default all.
 
     Returns
     -------
@@ -115,10 +118,11 @@ def sweep(
     If the store holds designs, the keys of all designs are made first, by the workers, and only designs that are not
     stored are computed. Into an empty store the keys come with the responses.
     """
-    columns, designs = Columns.of(study), enumerate(study.designs())
+    columns, missing = Columns.of(study), np.zeros(study.size, bool)
+    missing[part] = True
     if store is not None and not store.is_empty:
-        missing = _without_stored(study, store, columns, workers, progress)
-        designs = ((i, values) for i, values in designs if missing[i])  # type: ignore[assignment]
+        _add_stored(study, store, columns, missing, workers, progress)
+    designs = ((i, values) for i, values in enumerate(study.designs()) if missing[i])
     blocks, work = Blocks(designs), partial(compute_block, study, store is not None)
     for result in in_parallel(work, blocks, workers, partial(lost_block, study)):
         if store is not None and not result.is_lost:
@@ -130,15 +134,16 @@ def sweep(
     return columns
 
 
-def _without_stored(
+def _add_stored(
     study: Study,
     store: Store,
     columns: Columns,
+    missing: NDArray[np.bool_],
     workers: int | Executor | None,
     progress: Callable[[int], object],
-) -> NDArray[np.bool_]:
-    """Add the stored designs to the columns; (designs,), whether each must be computed."""
-    missing, blocks = np.ones(study.size, bool), Blocks(enumerate(study.designs()))
+) -> None:
+    """Add those of the missing designs that are stored to the columns; missing: (designs,), whether each is."""
+    blocks = Blocks((i, values) for i, values in enumerate(study.designs()) if missing[i])
     where = None if isinstance(workers, int) and study.size <= ALONE else workers
     for result in in_parallel(partial(block_keys, study), blocks, where, partial(lost_block, study)):
         stored = store.read(result.keys)
@@ -147,4 +152,3 @@ def _without_stored(
         missing[numbers] = False
         blocks.adapt(result)
         progress(len(numbers))
-    return missing

@@ -162,6 +162,13 @@ def test_study_of_drawing_or_scene_raises(tmp_path: Path, name: str, text: str, 
 FOLDERS: list[tuple[bytes, list[str], str]] = [
     (b"design,end_mass\n" * 100, [], "cannot be read or written as a database: file is not a database"),
     (b"", ["--store", "none/out.sqlite"], "unable to open database file"),
+    (b"", ["--store", "a.sqlite", "--store", "none.sqlite"], "none.sqlite: cannot be read or written as a database"),
+    (b"", ["--store", "a.sqlite", "--store", "scene.toml"], "scene.toml: cannot be read or written as a database"),
+    *(
+        (b"", ["--part", text], f"must be K/N with 1 <= K <= N, such as 3/10; got '{text}'")
+        for text in ("0/3", "4/3", "3")
+    ),
+    (b"", ["--part", "1/3", "-o", "out.csv"], "--output needs all designs, and --part computes some of them"),
     (b"", ["-o", "out.xlsx"], "must end in .html or .csv or .parquet or .json or .toml; got '.xlsx'"),
     (b"", ["-o", "out.sqlite"], "--store names the file of stored designs"),
     (b"", ["-o", "nowhere/out.csv"], "No such file or directory"),

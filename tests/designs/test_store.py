@@ -16,7 +16,7 @@ from cuefem.designs import evaluate
 from cuefem.designs.study_file import load_study
 from cuefem.files import InputError
 from tests.helpers.command_line import call, stdout_of
-from tests.helpers.invalid_input import assert_unchanged
+from tests.helpers.invalid_input import assert_unchanged, file_contents
 from tests.helpers.sweeps import (
     GRID,
     SCENE,
@@ -111,6 +111,24 @@ def test_edited_study_computes_only_new_designs(tmp_path: Path) -> None:
     edited = SCENE.replace('tip_diameter = "12 mm"', 'tip_diameter = "12.5 mm"')
     assert record_of(write_study(tmp_path, GRID, edited), "--store", store)["evaluated"] == 0  # the same designs
     assert record_of(write_study(tmp_path, GRID, SCENE.replace("420 g", "421 g")), "--store", store)["evaluated"] == 8
+
+
+def test_parts_in_stores_of_their_own_are_one_study(tmp_path: Path) -> None:
+    study = write_study(tmp_path, GRID)
+    stdout_of("study", study, "--store", tmp_path / "whole.sqlite", "-o", tmp_path / "whole.csv")
+    counts, stores = list[int](), list[object]()
+    for number in (1, 2, 3):
+        record = record_of(study, "--part", f"{number}/3")
+        assert record["store"] == str(tmp_path / f"study.{number}_of_3.sqlite")
+        counts.append(record["designs"])
+        stores += ["--store", record["store"]]
+    assert counts == [3, 3, 2]
+    before = file_contents(tmp_path)
+    assert record_of(study, *stores, "-o", tmp_path / "table.csv")["evaluated"] == 0
+    assert (tmp_path / "table.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()
+    assert {path: file_contents(tmp_path)[path] for path in before} == before
+    assert record_of(study, *stores[:4])["evaluated"] == 2  # into the first
+    assert [stored_count(Path(str(each))) for each in stores[1::2]] == [5, 3, 2]
 
 
 def test_study_of_other_version_computes_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
