@@ -18,6 +18,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cuefem.cue import Array, LumpedCue
 from cuefem.quantity.fields import sine_cosine
@@ -65,64 +66,141 @@ def inverse_mass(offset: Any, *, mass: Any, end_mass: Any, coupling: Any, ball_m
     return InverseMass(ball_tt + cue_tt, ball_nn + cue_nn, tn, det, cross_t, cross_n)
 
 
-class _Solution(NamedTuple):
-    """Of an impact at unit cue speed: normal impulses at slip end, greatest compression and separation and tangential
-    impulse, N s; velocity (t, n) at separation, m/s; losses, J; index of the regime; jam."""
+class _Impact(NamedTuple):
+    """An impact in one regime, at unit cue speed.
 
-    slip_end: Array
-    compression_impulse: Array
-    final: Array
+    compression, separation: normal impulse until then, N s. tangential: impulse, N s. v_t, v_n: velocity at separation,
+    m/s. work, returned: normal work of compression and of restitution on ball and cue, -work and its part e^2, J.
+    friction_loss: J.
+    """
+
+    compression: Array
+    separation: Array
     tangential: Array
-    final_t: Array
-    final_n: Array
-    tip_loss: Array
+    v_t: Array
+    v_n: Array
+    work: Array
+    returned: Array
     friction_loss: Array
-    regime: Array
-    jam: Any
+
+
+class _Contact(NamedTuple):
+    """A contact that starts with v_t = -s <= 0 and v_n = -c < 0, its rates over the normal impulse, and its first slip.
+
+    mu_c: dp_t/dp during stick. slip_t, slip_n: dv_t/dp and dv_n/dp during slip; slip_n is negative in a jam. deficit:
+    dp_t/dp that friction lacks to stick once slip has ended. after_t, after_n: dp_t/dp and dv_n/dp then. p_s, t_s, v_s:
+    normal and tangential impulse, N s, and v_n, m/s, at the end of slip; infinite if it does not end.
+    """
+
+    B: InverseMass
+    v_t: Array
+    v_n: Array
+    mu: Array
+    e: Array
+    mu_c: Array
+    slip_t: Array
+    slip_n: Array
+    deficit: Array
+    after_t: Array
+    after_n: Array
+    p_s: Array
+    t_s: Array
+    v_s: Array
+
+    @classmethod
+    def of(cls, B: InverseMass, v_t: Array, v_n: Array, *, mu: Array, e: Array) -> _Contact:
+        mu_c, stick_n = -B.tn / B.tt, B.det / B.tt
+        slip_t, slip_n = B.tt * (mu - mu_c), stick_n + B.tn * (mu - mu_c)
+        deficit = np.maximum(-mu_c - mu, 0)
+        p_s, t_s, v_s = -v_t / slip_t, mu * -v_t / slip_t, (B.cross_t - mu * B.cross_n) / slip_t
+        always_slips, sticks_at_touch = mu <= mu_c, v_t == 0
+        for end in (p_s, t_s, v_s):
+            end[always_slips] = np.inf
+        p_s[sticks_at_touch] = 0.0
+        t_s[sticks_at_touch] = 0.0
+        v_s[sticks_at_touch] = v_n[sticks_at_touch]
+        after_t, after_n = mu_c + deficit, stick_n + B.tn * deficit
+        return cls(B, v_t, v_n, mu, e, mu_c, slip_t, slip_n, deficit, after_t, after_n, p_s, t_s, v_s)
+
+    def from_slip_end(self, *, compression: Array, separation: Array, v_n: Array, work: Array) -> _Impact:
+        """An impact that slips until p_s, and then sticks or slips back; friction dissipates -v_t dp_t."""
+        p = separation - self.p_s
+        v_t = self.B.tt * self.deficit * p
+        loss = (v_t * self.mu * p - self.v_t * self.t_s) / 2
+        tangential = self.t_s + self.after_t * p
+        return _Impact(compression, separation, tangential, v_t, v_n, work, self.e**2 * -work, loss)
+
+    @property
+    def work_after_slip(self) -> Array:
+        """Work until greatest compression that comes after the end of slip, J."""
+        return (self.v_n + self.v_s) / 2 * self.p_s - self.v_s**2 / (2 * self.after_n)
+
+    @property
+    def compression_in_slip(self) -> tuple[Array, Array]:
+        """Normal impulse, N s, and work, J, until greatest compression before the end of slip."""
+        p_c = -self.v_n / self.slip_n
+        return p_c, self.v_n * p_c / 2
+
+
+def _stick(c: _Contact) -> _Impact:
+    """Slip ends in compression, and the tip sticks: at greatest compression v_t = v_n = 0, where B p = -v."""
+    p_c, work = c.B.cross_n / c.B.det, c.work_after_slip
+    v_n = np.sqrt(2 * c.after_n * c.e**2 * -work)
+    p_f = p_c + v_n / c.after_n
+    sticking = c.from_slip_end(compression=p_c, separation=p_f, v_n=v_n, work=work)
+    return sticking._replace(tangential=c.B.cross_t / c.B.det + c.mu_c * (p_f - p_c))
+
+
+def _reversal(c: _Contact) -> _Impact:
+    """Slip ends in compression, and the tip slips back."""
+    p_c, work = c.p_s - c.v_s / c.after_n, c.work_after_slip
+    v_n = np.sqrt(2 * c.after_n * c.e**2 * -work)
+    return c.from_slip_end(compression=p_c, separation=p_c + v_n / c.after_n, v_n=v_n, work=work)
+
+
+def _late(c: _Contact) -> _Impact:
+    """Slip ends in restitution, and the tip sticks or slips back."""
+    p_c, work = c.compression_in_slip
+    later = np.maximum(c.e**2 * -work - c.v_s**2 / (2 * c.slip_n), 0)  # work returned after slip
+    v_n = np.sqrt(c.v_s**2 + 2 * c.after_n * later)
+    return c.from_slip_end(compression=p_c, separation=c.p_s + 2 * later / (c.v_s + v_n), v_n=v_n, work=work)
+
+
+def _miscue(c: _Contact) -> _Impact:
+    """The tip slips until separation."""
+    p_c, work = c.compression_in_slip
+    p_f = p_c * (1 + c.e)
+    v_t = c.v_t + c.slip_t * p_f
+    loss = -(c.v_t + v_t) / 2 * c.mu * p_f
+    return _Impact(p_c, p_f, c.mu * p_f, v_t, -c.e * c.v_n, work, c.e**2 * -work, loss)
+
+
+class _Solution(NamedTuple):
+    """An impact, its normal impulse until slip ends, N s, the index of its regime, and whether it jams."""
+
+    impact: _Impact
+    slip_end: Array
+    regime: NDArray[np.intp]
+    jam: NDArray[np.bool_]
 
 
 def _solve(B: InverseMass, v_t: Array, v_n: Array, *, mu: Array, e: Array) -> _Solution:
     """Contacts that start with v_t = -s <= 0 and v_n = -c < 0, at unit cue speed."""
-    infinite, mu = np.isinf(mu), np.minimum(mu, INFINITE_FRICTION)
+    is_infinite, mu = np.isinf(mu), np.minimum(mu, INFINITE_FRICTION)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        mu_c = -B.tn / B.tt
-        stick_rate = B.det / B.tt  # dv_n/dp during stick
-        slip_rate_t = B.tt * (mu - mu_c)  # dv_t/dp during slip
-        slip_rate_n = stick_rate + B.tn * (mu - mu_c)  # dv_n/dp during slip; negative in a jam
-        deficit = np.maximum(-mu_c - mu, 0)  # dp_t/dp that friction lacks to stick once slip has ended
-        reverses = deficit > 0
-        after_t, after_n = mu_c + deficit, stick_rate + B.tn * deficit  # dp_t/dp, dv_n/dp after slip
-        sticks_at_touch, always_slips = v_t == 0, mu <= mu_c
-        p_s = np.where(sticks_at_touch, 0.0, np.where(always_slips, np.inf, -v_t / slip_rate_t))
-        t_s = np.where(sticks_at_touch, 0.0, np.where(always_slips, np.inf, mu * -v_t / slip_rate_t))
-        v_s = np.where(sticks_at_touch, v_n, np.where(always_slips, np.inf, (B.cross_t - mu * B.cross_n) / slip_rate_t))
-        compressed_in_slip = v_s >= 0  # greatest compression before slip ends
-        # compression, and the work done on the tip
-        has_slip_end = compressed_in_slip | reverses  # else v_t = v_n = 0 at greatest compression, where B p = -v
-        p_c = np.where(
-            compressed_in_slip, -v_n / slip_rate_n, np.where(reverses, p_s - v_s / after_n, B.cross_n / B.det)
-        )
-        work = np.where(compressed_in_slip, v_n * p_c / 2, (v_n + v_s) / 2 * p_s - v_s**2 / (2 * after_n))
-        returned = -(e**2) * work
-        # restitution: during slip alone, partly during slip, or after it
-        returned_in_slip = v_s**2 / (2 * slip_rate_n)
-        miscue = compressed_in_slip & (returned_in_slip >= returned)
-        returned_later = np.maximum(returned - returned_in_slip, 0)
-        v_n_late = np.sqrt(v_s**2 + 2 * after_n * returned_later)
-        v_n_early = np.sqrt(2 * after_n * returned)
-        p_f = np.where(compressed_in_slip, p_s + 2 * returned_later / (v_s + v_n_late), p_c + v_n_early / after_n)
-        p_f = np.where(miscue, p_c * (1 + e), p_f)
-        p_after = np.where(miscue, 0.0, p_f - p_s)
-        tangential = np.where(has_slip_end, t_s + after_t * p_after, B.cross_t / B.det + mu_c * (p_f - p_c))
-        tangential = np.where(miscue, mu * p_f, tangential)
-        final_t = np.where(miscue, v_t + slip_rate_t * p_f, B.tt * deficit * p_after)
-        final_n = np.where(miscue, -e * v_n, np.where(compressed_in_slip, v_n_late, v_n_early))
-        # friction dissipates -v_t dp_t; v_t is linear in p, zero at p_s
-        dissipated = np.where(miscue, -(v_t + final_t) / 2 * mu * p_f, (final_t * mu * p_after - v_t * t_s) / 2)
-    jam = (slip_rate_n < 0) & (p_s > 0) & ~infinite
-    slip_end = np.where(miscue, np.inf, np.where(infinite & ~compressed_in_slip, 0.0, p_s))
-    regime = np.select([miscue, reverses, compressed_in_slip], [2, 3, 1], 0)
-    return _Solution(slip_end, p_c, p_f, tangential, final_t, final_n, -work - returned, dissipated, regime, jam)
+        contact = _Contact.of(B, v_t, v_n, mu=mu, e=e)
+        late, reverses = contact.v_s >= 0, contact.deficit > 0  # greatest compression in slip; slip back after it
+        returned_in_slip, work = contact.v_s**2 / (2 * contact.slip_n), contact.compression_in_slip[1]
+        slips = late & (returned_in_slip >= e**2 * -work)
+        cases = ((slips, _miscue), (late & ~slips, _late), (reverses & ~late, _reversal), (~reverses & ~late, _stick))
+        occurring = [(strokes, regime(contact)) for strokes, regime in cases if strokes.any()]
+    impact = _Impact(*np.select([strokes for strokes, _ in occurring], [np.array(solved) for _, solved in occurring]))
+    return _Solution(
+        impact=impact,
+        slip_end=np.where(slips, np.inf, np.where(is_infinite & ~late, 0.0, contact.p_s)),
+        regime=np.where(slips, 2, np.where(reverses, 3, late.astype(int))),
+        jam=(contact.slip_n < 0) & (contact.p_s > 0) & ~is_infinite,
+    )
 
 
 def impulse_inputs(scene: Scene, cue: LumpedCue) -> dict[str, float]:
@@ -142,8 +220,32 @@ def impact(inputs: Mapping[str, Any]) -> Outcome:
     "ball translation", "ball rotation", "cue", "tip loss", "friction loss", which add up to "initial". The coupling of
     a LumpedCue is meant for positive offsets and changes sign with them, so that all is odd in the offset.
     """
-    flat, is_batch = _strokes(**inputs), any(np.ndim(value) for value in inputs.values())
-    return _outcome(flat if is_batch else {name: values[0].item() for name, values in flat.items()})
+    strokes = _strokes(**inputs)
+    is_batch = any(np.ndim(value) for value in inputs.values())
+    return _outcome(strokes if is_batch else _Strokes(*(values[0].item() for values in strokes)))
+
+
+class _Strokes(NamedTuple):
+    """Numbers of strokes, arrays, (n,), or of one stroke: the fields of an `Outcome`, its events and energies."""
+
+    squirt: Any
+    p_t: Any
+    p_n: Any
+    v_t: Any
+    v_n: Any
+    ball_speed: Any
+    spin: Any
+    cue_speed: Any
+    regime: Any
+    jam: Any
+    slip_end: Any
+    compression: Any
+    initial: Any
+    translation: Any
+    rotation: Any
+    cue: Any
+    tip_loss: Any
+    friction_loss: Any
 
 
 def _strokes(
@@ -158,19 +260,23 @@ def _strokes(
     friction: Any,
     speed: Any,
     offset: Any,
-) -> dict[str, Array]:
-    """Results of the strokes by name, each an array, (n,)."""
-    m, m_e, M, nu, R, U = mass, end_mass, ball_mass, inertia, radius, speed
-    offset = np.atleast_1d(offset)
+) -> _Strokes:
+    cue, ball = (mass, end_mass, coupling), (ball_mass, inertia, radius)
+    values = (*cue, *ball, restitution, friction, speed, offset)
+    rows = np.empty((len(values), max(np.size(value) for value in values)))
+    for row, value in zip(rows, values, strict=True):
+        row[:] = value
+    m, m_e, coupling, M, nu, R, e, mu, U, offset = rows
     side, distance = np.sign(offset), np.abs(offset)
     coupling = np.where(side == 0, 0.0, coupling)
     B = inverse_mass(distance, mass=m, end_mass=m_e, coupling=coupling, ball_mass=M, inertia=nu)
     s, c = sine_cosine(distance)
-    solution = _solve(B, -s, -c, mu=friction, e=restitution)  # at unit speed
-    p_t, p_n = U * solution.tangential, U * solution.final
+    solution = _solve(B, -s, -c, mu=mu, e=e)  # at unit speed
+    struck = solution.impact
+    p_t, p_n = U * struck.tangential, U * struck.separation
     p_u = s * p_t + c * p_n
     # lateral velocity of the contact at separation: (1/M + 1/m_e) p_w + p_t c/(nu M) + coupling p_u
-    v_w = U * (c * solution.final_t - s * solution.final_n)
+    v_w = U * (c * struck.v_t - s * struck.v_n)
     p_w = (v_w - c * p_t / (nu * M) - coupling * p_u) / (1 / M + 1 / m_e)
     # its round-off error is relative to m_e, that of c p_t - s p_n to m; during slip the latter is as accurate as mu
     p_w = np.where(np.less(m_e, m) & (solution.regime < SLIPPING), p_w, c * p_t - s * p_n)
@@ -178,41 +284,51 @@ def _strokes(
     tip_u, tip_w = U - p_u / m - coupling * p_w, -coupling * p_u - p_w / m_e
     axial_factor = 1 - coupling**2 * m * m_e  # m/axial_factor: the inertia of a cue that moves axially as a rigid body
     cue_energy = (m * tip_u**2 + m_e * tip_w**2 - 2 * coupling * m * m_e * tip_u * tip_w) / (2 * axial_factor)
-    results = {
-        "squirt": side * np.arctan2(-p_w, p_u) + 0.0,
-        "p_t": side * p_t,
-        "p_n": p_n,
-        "v_t": side * p_t / M,
-        "v_n": p_n / M,
-        "ball_speed": np.hypot(p_t, p_n) / M,
-        "spin": side * p_t / (nu * M * R),
-        "cue_speed": U - p_u * axial_factor / m,
-        "regime": REGIMES[solution.regime],
-        "jam": solution.jam,
-        "slip ends": U * solution.slip_end,
-        "greatest compression": U * solution.compression_impulse,
-        "separation": p_n,
-        "initial": m * U**2 / (2 * axial_factor),
-        "ball translation": (p_t**2 + p_n**2) / (2 * M),
-        "ball rotation": p_t**2 / (2 * nu * M),
-        "cue": cue_energy,
-        "tip loss": U**2 * solution.tip_loss,
-        "friction loss": U**2 * solution.friction_loss,
-    }
-    return dict(zip(results, np.broadcast_arrays(*results.values()), strict=True))
+    return _Strokes(
+        squirt=side * np.arctan2(-p_w, p_u) + 0.0,
+        p_t=side * p_t,
+        p_n=p_n,
+        v_t=side * p_t / M,
+        v_n=p_n / M,
+        ball_speed=np.hypot(p_t, p_n) / M,
+        spin=side * p_t / (nu * M * R),
+        cue_speed=U - p_u * axial_factor / m,
+        regime=REGIMES[solution.regime],
+        jam=solution.jam,
+        slip_end=U * solution.slip_end,
+        compression=U * struck.compression,
+        initial=m * U**2 / (2 * axial_factor),
+        translation=(p_t**2 + p_n**2) / (2 * M),
+        rotation=p_t**2 / (2 * nu * M),
+        cue=cue_energy,
+        tip_loss=U**2 * (-struck.work - struck.returned),
+        friction_loss=U**2 * struck.friction_loss,
+    )
 
 
-EVENTS = ("slip ends", "greatest compression", "separation")
-ENERGIES = ("initial", "ball translation", "ball rotation", "cue", "tip loss", "friction loss")
-
-
-def _outcome(flat: dict[str, Any]) -> Outcome:
+def _outcome(strokes: _Strokes) -> Outcome:
     return Outcome(
-        **{name: flat[name] for name in ("squirt", "ball_speed", "spin", "cue_speed", "regime", "jam")},
-        ball_velocity=np.stack([flat["v_t"], flat["v_n"]], axis=-1),
-        impulse=np.stack([flat["p_t"], flat["p_n"]], axis=-1),
+        squirt=strokes.squirt,
+        ball_velocity=np.stack([strokes.v_t, strokes.v_n], axis=-1),
+        ball_speed=strokes.ball_speed,
+        spin=strokes.spin,
+        cue_speed=strokes.cue_speed,
+        impulse=np.stack([strokes.p_t, strokes.p_n], axis=-1),
         duration=None,
-        phases=tuple(Event(name, flat[name]) for name in EVENTS),
-        energy={name: flat[name] for name in ENERGIES},
+        regime=strokes.regime,
+        jam=strokes.jam,
+        phases=(
+            Event("slip ends", strokes.slip_end),
+            Event("greatest compression", strokes.compression),
+            Event("separation", strokes.p_n),
+        ),
+        energy={
+            "initial": strokes.initial,
+            "ball translation": strokes.translation,
+            "ball rotation": strokes.rotation,
+            "cue": strokes.cue,
+            "tip loss": strokes.tip_loss,
+            "friction loss": strokes.friction_loss,
+        },
         unknowns=2,
     )
