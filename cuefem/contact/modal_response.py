@@ -228,18 +228,25 @@ class ModalPropagator:
         return loads
 
 
-@lru_cache(maxsize=32)
-def propagator_of(tip: TipModes, ports: str = "straight") -> ModalPropagator:
-    """The propagator of tip modes at the ports "straight" (u, w), "turning" (u, w, rotation) or "raised" (u, w, p).
+# Strikes with the same tip modes share the propagator.
 
-    Strikes with the same tip modes share the propagator.
-    """
-    if ports == "raised":
-        return ModalPropagator(*_in_two_planes(tip, slope_rows(tip, planes=2)))
-    rows = tip.amplitude.T
-    if ports == "turning":
-        rows = np.concatenate([rows, tip.rotation[None]])
-    return ModalPropagator(tip, rows, slope_rows(tip))
+
+@lru_cache(maxsize=32)
+def straight_propagator(tip: TipModes) -> ModalPropagator:
+    """The propagator of tip modes at the ports (u, w)."""
+    return ModalPropagator(tip, tip.amplitude.T, slope_rows(tip))
+
+
+@lru_cache(maxsize=32)
+def turning_propagator(tip: TipModes) -> ModalPropagator:
+    """The propagator of tip modes at the ports (u, w, rotation of the end section)."""
+    return ModalPropagator(tip, np.concatenate([tip.amplitude.T, tip.rotation[None]]), slope_rows(tip))
+
+
+@lru_cache(maxsize=32)
+def raised_propagator(tip: TipModes) -> ModalPropagator:
+    """The propagator of tip modes, which bend in two planes, at the ports (u, w, p)."""
+    return ModalPropagator(*_in_two_planes(tip, slope_rows(tip, planes=2)))
 
 
 def _in_two_planes(tip: TipModes, slopes: Array) -> tuple[TipModes, Array, Array]:

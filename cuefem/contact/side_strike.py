@@ -15,10 +15,11 @@ import numpy as np
 from cuefem.beam.assembly import assemble
 from cuefem.beam.modes import solve
 from cuefem.beam.tip_modes import TipModes, side_modes
-from cuefem.contact.contact_model import ContactModel, check_restitution, power_law
-from cuefem.contact.modal_response import propagator_of
+from cuefem.contact.contact_model import ContactModel
 from cuefem.contact.outcome import Phase
+from cuefem.contact.ports import FirstTouch, Straight
 from cuefem.contact.step_records import SolvedContact, solve_contact
+from cuefem.contact.tips import PowerTip, check_restitution
 from cuefem.cue import Cue
 from cuefem.effects.contact_terms import ContactTerms
 from cuefem.effects.effect import POSITION_TOLERANCE, CueEffect, Effect, acting_on_cue, check_effects
@@ -303,24 +304,22 @@ def side_strike(scene: SideStrike, at: Resolution | None = None) -> SideOutcome:
 
 def solve_side_contact(scene: SideStrike, at: Resolution | None = None) -> SolvedContact:
     """Solve the contact of a side strike: normal force only, with a striker at the strike's speed."""
-    striker, law, time = scene.striker, scene.striker.law, scene.contact_time
+    striker, time = scene.striker, scene.contact_time
     if not CONTACT_TIME.contains(time):
         raise ValueError(f"SideStrike must make a contact time in {CONTACT_TIME.bounds}; got {time:.3g} s")
     check_restitution("Striker.restitution", striker.restitution)
+    ports = Straight(FirstTouch(phi=0.0))
     model = ContactModel(
-        propagator_of(_position_modes(scene, at)),
-        kinematics=np.array([[0.0, -1.0, 1.0, 0.0, 1.0], [-1.0, 0.0, 0.0, 1.0, 0.0]]),
-        inverse_masses=np.full(3, 1 / striker.mass),
+        propagator=ports.propagator(_position_modes(scene, at)),
+        ports=ports,
+        tip=PowerTip(striker.law),
         ball=np.array([0.0, -scene.speed, 0.0]),
-        phi=0.0,
         ball_mass=striker.mass,
         inertia=1.0,
         restitution=striker.restitution,
         friction=math.inf,
         speed=scene.speed,
         time=time,
-        law=law,
-        terms=power_law(law),
         window=scene.window,
     )
     return solve_contact(model, steps=None if at is None else at.steps)

@@ -10,13 +10,14 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from cuefem.contact.contact_model import PARTIAL_SLIP, RIGID_PATCH, ContactModel
+from cuefem.contact.contact_model import ContactModel
 from cuefem.contact.geometric_stiffness import SlopeOutOfRange
-from cuefem.contact.kernel.declarations import CONSTANTS, STEP, KernelInput, KernelState
+from cuefem.contact.kernel.declarations import CONSTANTS, STEP, KernelState
 from cuefem.contact.kernel.library import library
 from cuefem.contact.outcome import IMPACT, SEPARATION, History, Phase, contact_state
+from cuefem.contact.ports import Raised
+from cuefem.contact.tips import Leather
 from cuefem.cue import Array
-from cuefem.effects.force_law import LeatherLaw
 from cuefem.scene import Outcome
 
 FRICTION_STATES = {
@@ -30,13 +31,27 @@ FRICTION_STATES = {
     )
 }
 NORMAL_PHASES = {CONSTANTS["LOADING"]: "load", CONSTANTS["UNLOADING"]: "unload", CONSTANTS["FREE"]: "free"}
-INFINITE_FRICTION = 1e12  # finite value for infinite friction
 STEPS_PER_CALL = 2048  # of the kernel
-MAX_CONTACT_TIMES = 200  # longest contact, in head-on contact times; beyond it the strike raises an error
 MAX_RECORDED_STEPS = 2_000_000  # 0.4 GB of records
 
 
 Steps = NDArray[np.void]
+
+
+@dataclass(frozen=True)
+class Losses:
+    """Energies that a contact has taken up to the last separation, J.
+
+    tip: along the normal. friction: of tip and ball. shear: of the tip along its surface. table: friction there.
+    damping: of the cue, by dashpots and loss factors. radiated: along the cue, by the truncation correction.
+    """
+
+    tip: float
+    friction: float
+    shear: float
+    table: float
+    damping: float
+    radiated: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,8 +60,7 @@ class SolvedContact:
 
     steps: records (`STEP`) up to the last separation. states: (steps + 1, 2, modes), state of the modes (v, omega q)
     before and after each step; None unless stored. state: (2, modes), the final one. ball: final velocities of the
-    ball, m/s: (t, n) and R times its spin, or above a table (t, n, p) and R times (t, n, p) of its spin. losses: J by
-    name.
+    ball, m/s: (t, n) and R times its spin, or above a table (t, n, p) and R times (t, n, p) of its spin.
     """
 
     model: ContactModel
@@ -54,7 +68,7 @@ class SolvedContact:
     states: Array | None
     state: Array
     ball: Array
-    losses: dict[str, float]
+    losses: Losses
 
     @property
     def time(self) -> float:
@@ -95,20 +109,32 @@ class SolvedContact:
         spans = zip(names, pairwise(times), np.diff(momenta, axis=0).tolist(), strict=True)
         return tuple(Phase(*name, start, end, (p_t, p_n)) for name, (start, end), (p_t, p_n) in spans)
 
-    @property
+    @cached_property
     def history(self) -> History:
         """Forces and velocities."""
         model, steps = self.model, self.steps[self.steps["length"] > 0]  # impacts have no duration
         ends, side = np.append(0.0, steps["time"]), np.array([model.side, 1.0])
-        force_times = np.concatenate([[0.0], ends[1:] - steps["length"] / 2, [self.time]])
         forces = np.zeros((len(steps) + 2, 2))  # zero at touch and separation
         forces[1:-1] = steps["F"][:, :2] * side
-        velocities = np.vstack([model.approach, steps["v"][:, :2]]) * side
-        if model.axes is None:
-            return History(force_times, forces, ends, velocities)
-        velocity, spin = model.axes @ self.ball[:3], model.axes @ self.ball[3:] / model.radius
+        velocity, spin = self._ball_vectors
+        return History(
+            force_times=np.concatenate([[0.0], ends[1:] - steps["length"] / 2, [self.time]]),
+            forces=forces,
+            ends=ends,
+            velocities=np.vstack([model.approach, steps["v"][:, :2]]) * side,
+            velocity=velocity,
+            spin=spin,
+        )
+
+    @property
+    def _ball_vectors(self) -> tuple[Array, Array] | tuple[None, None]:
+        """Velocity, m/s, and spin, rad/s, of the ball: right, forward, up; None of a level cue."""
+        model = self.model
+        if not isinstance(model.ports, Raised):
+            return None, None
+        velocity, spin = model.ports.on_table(self.ball)
         sides = np.array([model.side, 1.0, 1.0])
-        return History(force_times, forces, ends, velocities, velocity * sides, spin * sides * model.side)
+        return velocity * sides, spin / model.radius * sides * model.side
 
     @property
     def outcome(self) -> Outcome:
@@ -117,10 +143,9 @@ class SolvedContact:
         M, s, c = model.ball_mass, math.sin(model.phi), math.cos(model.phi)
         (p_t, p_n), approach = self.impulse, model.propagator.tip.approach
         inertia = float(approach @ approach)  # of a cue that moves axially as a rigid body, kg
-        if model.axes is None:
-            spin, axial_impulse = float(self.ball[2]), s * p_t + c * p_n
-        else:  # R times the ball's spin about the vertical; the axial momentum that the cue lost
-            spin = float(model.axes[2] @ self.ball[3:])
+        spin = model.ports.vertical_spin(self.ball)
+        axial_impulse = s * p_t + c * p_n
+        if isinstance(model.ports, Raised):  # the table takes momentum: what the cue has lost
             axial_impulse = model.speed * inertia - float(approach @ self.state[0])
         energy = self.energies(
             {
@@ -156,19 +181,19 @@ class SolvedContact:
         energy = {
             **ball_energies,
             "cue": rigid,
-            "cue vibration": vibration + losses["radiated"],
-            "tip loss": losses["tip"],
-            "friction loss": losses["friction"],
+            "cue vibration": vibration + losses.radiated,
+            "tip loss": losses.tip,
+            "friction loss": losses.friction,
         }
         if model.propagator.dissipates:
-            energy["damping loss"] = losses["damping"]
-        if model.patch != RIGID_PATCH:
-            energy["tip shear"] = losses["shear"]
-        if model.axes is not None:
-            horizontal_spin, vertical = model.axes[:2] @ self.ball[3:], float(model.axes[2] @ self.ball[:3])
-            energy["ball roll"] = model.inertia * model.ball_mass * float(horizontal_spin @ horizontal_spin) / 2
-            energy["ball hop"] = model.ball_mass * vertical**2 / 2
-            energy["table loss"] = losses["table"]
+            energy["damping loss"] = losses.damping
+        if not model.tip.is_rigid:
+            energy["tip shear"] = losses.shear
+        if isinstance(model.ports, Raised):
+            velocity, spin = model.ports.on_table(self.ball)
+            energy["ball roll"] = model.inertia * model.ball_mass * float(spin[:2] @ spin[:2]) / 2
+            energy["ball hop"] = model.ball_mass * float(velocity[2]) ** 2 / 2
+            energy["table loss"] = losses.table
         return {name: float(joules) for name, joules in energy.items()}
 
 
@@ -181,7 +206,7 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
     """
     kernel, propagator = library(), model.propagator
     start = np.array([model.speed * propagator.tip.approach, np.zeros_like(propagator.tip.approach)])
-    fields = kernel_input(model, step=model.time / (steps or model.steps))
+    fields = model.kernel_input(step=model.time / (steps or model.tip.steps))
     state = KernelState(modes=start.copy(), separated_modes=start.copy())
     state.ball[: len(model.ball)] = model.ball.tolist()
     records, states = [], [start[None]]
@@ -217,47 +242,24 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
     )
 
 
-def kernel_input(model: ContactModel, *, step: float) -> KernelInput:
-    """The kernel's input; step: length of the steps, s."""
-    fields = KernelInput(
-        forces=len(model.kinematics),
-        speeds=len(model.ball),
-        planes=1 if model.axes is None else 2,
-        patch=model.patch,
-        begins_with_impact=model.friction >= INFINITE_FRICTION and model.patch == RIGID_PATCH and model.phi > 0,
-        kinematics=model.kinematics,
-        inverse_masses=model.inverse_masses,
-        phi=model.phi,
-        restitution=model.restitution,
-        friction=min(model.friction, INFINITE_FRICTION),
-        step=step,
-        max_time=MAX_CONTACT_TIMES * model.time,
-        window=model.window or 0.0,
-        **model.terms,
-        **model.arrays,
+def _losses(model: ContactModel, state: KernelState, last: np.void) -> Losses:
+    """Up to the last step in contact."""
+    tangential = state.work[CONSTANTS["T"]] + state.work[CONSTANTS["P"]]
+    shear = tangential if model.tip.slips_in_parts and model.never_slips else state.shear_loss
+    return Losses(
+        tip=model.tip.law.loss(state.max_indentation),
+        friction=tangential - shear,
+        shear=shear,
+        table=sum(state.work[CONSTANTS["UP"] :]),
+        damping=last["damping_loss"],
+        radiated=last["radiated"],
     )
-    model.propagator.write_to(fields)
-    return fields
-
-
-def _losses(model: ContactModel, state: KernelState, last: np.void) -> dict[str, float]:
-    """Dissipated energies by name, J, up to the last step in contact."""
-    tangential = state.work[0] + state.work[2]
-    shear = tangential if model.patch == PARTIAL_SLIP and model.friction >= INFINITE_FRICTION else state.shear_loss
-    return {
-        "tip": model.law.loss(state.max_indentation),
-        "friction": tangential - shear,
-        "shear": shear,
-        "table": sum(state.work[3:]),
-        "damping": float(last["damping_loss"]),
-        "radiated": float(last["radiated"]),
-    }
 
 
 def _failure(model: ContactModel, state: KernelState) -> Exception:
     """The exception for a contact that did not end."""
-    if state.status == CONSTANTS["INDENTATION_OUT_OF_RANGE"] and isinstance(model.law, LeatherLaw):
-        return model.law.out_of_range(state.indentation)
+    if state.status == CONSTANTS["INDENTATION_OUT_OF_RANGE"] and isinstance(model.tip, Leather):
+        return model.tip.law.out_of_range(state.indentation)
     if state.status == CONSTANTS["SLOPE_OUT_OF_RANGE"]:
         return SlopeOutOfRange(
             f"the axial force of {state.axial_force:.4g} N bends the shaft by {state.max_slope:.3g} rad at its tip, "

@@ -94,7 +94,7 @@ def test_contact_invalid_input_raises(call: Callable[[], object], message: str) 
 
 
 def test_strike_without_separation_raises_with_its_state(monkeypatch) -> None:
-    monkeypatch.setattr("cuefem.contact.step_records.MAX_CONTACT_TIMES", 0.3)
+    monkeypatch.setattr("cuefem.contact.contact_model.MAX_CONTACT_TIMES", 0.3)
     message = (
         r"does not leave the cue: after .* s \(head-on contact time .* s\) the tip is indented by .* m, in stick; check"
     )
@@ -113,6 +113,6 @@ def test_strike_of_too_many_steps_raises(monkeypatch) -> None:
 def test_strike_with_nan_force_raises_in_its_step() -> None:
     scene = cf.Scene(cf.LumpedCue(0.54, 0.003), stroke=cf.Stroke(offset=0.3), effects=(cf.Elevation(0.2),))
     model = model_of(scene, lumped_tip_modes(scene.cue))
-    model.kinematics[2, 2] = nan  # out of the plane of the stroke
+    model.ports.kinematics[2, 2] = nan  # out of the plane of the stroke
     with pytest.raises(RuntimeError, match=r"the forces of the contact have no solution after .* s and 1 steps"):
         solve_contact(model)

@@ -10,7 +10,7 @@ import scipy.linalg as la
 
 import cuefem as cf
 from cuefem.beam.tip_modes import TipModes
-from cuefem.contact.modal_response import ModalPropagator, propagator_of
+from cuefem.contact.modal_response import ModalPropagator, straight_propagator
 from tests.helpers.strike_scenes import custom_tip_modes
 
 # A rigid axial and a rigid transverse mode, and modes of 1e-6 to 30 radians in a step of 1e-5 s.
@@ -37,7 +37,7 @@ def whole_system(tip: TipModes) -> np.ndarray:
 @pytest.mark.parametrize("radiation", [0.0, 1e5])
 def test_step_of_modes_equals_exponential_of_whole_system(loss: float, radiation: float) -> None:
     tip = damped_modes(loss=loss, radiation=radiation)
-    propagator, n, rng = propagator_of(tip), len(tip.omega), np.random.default_rng(1)
+    propagator, n, rng = straight_propagator(tip), len(tip.omega), np.random.default_rng(1)
     state, load = rng.normal(size=(2, n)), rng.normal(size=2)
     exact = la.expm(whole_system(tip) * H) @ np.concatenate([*state, load @ propagator.ports * 1e5, np.zeros(n)])
     tables = propagator.tables(H)
@@ -57,7 +57,7 @@ def test_step_of_modes_equals_exponential_of_whole_system(loss: float, radiation
 def test_losses_of_a_step_equal_integrals_of_power(loss: float) -> None:
     """Gauss points of the power over the step, with an exponential of the whole system at each."""
     tip = damped_modes(loss=loss, radiation=1e5)
-    propagator, n = propagator_of(tip), len(tip.omega)
+    propagator, n = straight_propagator(tip), len(tip.omega)
     state, loads = np.random.default_rng(2).normal(size=(2, n)), np.linspace(1e5, 2e5, n)
     tables, group = propagator.tables(H), propagator.radiating
     g = loads - tip.omega * state[1]
@@ -76,7 +76,7 @@ def test_losses_of_a_step_equal_integrals_of_power(loss: float) -> None:
 def test_dashpot_is_second_order_and_takes_the_energy_that_the_modes_lose() -> None:
     """Free decay of two modes with a dashpot of rate 2e4 1/s, against an exponential of the whole system."""
     tip = replace(custom_tip_modes([3e3, 2e4], [5.0, 6.0]), dashpots=np.array([[0.0, 0.0, 100.0, 100.0]]))
-    propagator, state = propagator_of(tip), np.array([0.0, 0.0, 1.0, -0.5, 0.0, 0.0, 0.3, 0.8])
+    propagator, state = straight_propagator(tip), np.array([0.0, 0.0, 1.0, -0.5, 0.0, 0.0, 0.3, 0.8])
     exact = la.expm(whole_system(tip)[:8, :8] * 1e-3) @ state
     errors = []
     for steps in (100, 400):

@@ -19,6 +19,7 @@ from cuefem.beam.tip_modes import TipModes, lumped_tip_modes
 from cuefem.contact.contact_model import model_of
 from cuefem.contact.impulse_solver import inverse_mass
 from cuefem.contact.outcome import end_of_first_slip
+from cuefem.contact.ports import Raised
 from cuefem.contact.step_records import solve_contact
 from cuefem.contact.strike import strike_modes
 from cuefem.scene.solved_scene import tip_modes_of
@@ -299,8 +300,9 @@ def test_elevation_lifted_ball_returns_to_table() -> None:
     law, stroke = cf.Tip(0.8, 3.0, contact_time=3e-3), cf.Stroke(1.0, 0.8)
     scene = cf.Scene(cf.LumpedCue(0.54, 0.01), tip=law, stroke=stroke, effects=(cf.Elevation(0.7, 0.2),))
     model = model_of(scene, tip)
+    assert isinstance(model.ports, Raised)
     steps = solve_contact(model).steps
-    rising = np.append(0.0, steps["ball"][:, :3] @ model.axes[2])
+    rising = np.append(0.0, steps["ball"][:, :3] @ model.ports.axes[2])
     height = np.cumsum(steps["length"] * (rising[1:] + rising[:-1]) / 2)
     assert height.max() > 2e-5
     assert np.abs(height[steps["F"][:, 3] > 0]).max() < 1e-6

@@ -1,0 +1,129 @@
+"""Tips as the compiled kernel knows them: a force-indentation law, and the tangential compliance of the patch."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from cuefem.contact.kernel.declarations import CONSTANTS, KernelInput
+from cuefem.effects.contact_terms import ContactTerms, PowerLaw, TipModel
+from cuefem.effects.force_law import LeatherLaw, TipLaw, contact_time_ratio
+from cuefem.scene import Scene
+
+# A tip of small restitution e unloads 1/e times as fast as it loads, which needs 1/e times as many steps. Lower bounds
+# of spring tips and of leather, which vibrates on the ball below its bound.
+MIN_RESTITUTION, MIN_LEATHER_RESTITUTION = 0.05, 0.1
+ANNULI, TABLE_MARGIN = 120, 1.05  # annuli uniform in the root of the indentation, up to 1.05 times the largest
+# Steps in a head-on contact time, and those of a leather tip that does not slip as a whole: the error of squirt is
+# below 0.1 % (tests/contact/test_stored_answers.py).
+STEPS, LEATHER_STEPS = 400, 200
+
+
+@dataclass(frozen=True)
+class PowerTip:
+    """A tip whose force is a power of its indentation. Its patch sticks or slips as a whole.
+
+    law: F = stiffness d^exponent. compliance: of the tangential spring, m/N; 0 for a rigid patch.
+    """
+
+    law: TipLaw
+    compliance: float = 0.0
+    steps: ClassVar[int] = STEPS
+    slips_in_parts: ClassVar[bool] = False
+
+    @property
+    def is_rigid(self) -> bool:
+        """Whether the tip has no tangential compliance."""
+        return self.compliance == 0
+
+    def write_to(self, fields: KernelInput) -> None:
+        """Write law and patch to the kernel's input."""
+        fields.law = CONSTANTS["POWER_LAW"]
+        fields.stiffness = self.law.stiffness
+        fields.exponent = self.law.exponent
+        fields.indentation_limit = math.inf
+        fields.patch = CONSTANTS["RIGID_PATCH"] if self.is_rigid else CONSTANTS["SPRING_PATCH"]
+        fields.compliance = self.compliance
+
+
+@dataclass(frozen=True)
+class Leather:
+    """A leather tip. Its patch slips annulus by annulus.
+
+    law: series of force and tangential compliance. surface_restitution: square root of the part of the tangential
+    strain energy that the leather returns. largest_indentation: of a head-on impact, m. steps: default number in a
+    head-on contact time.
+    """
+
+    law: LeatherLaw
+    surface_restitution: float
+    largest_indentation: float
+    steps: int
+    slips_in_parts: ClassVar[bool] = True
+    is_rigid: ClassVar[bool] = False
+
+    def write_to(self, fields: KernelInput) -> None:
+        """Write law and patch to the kernel's input; the last annulus has what lies beyond its edge, too."""
+        law = self.law
+        limit = min(law.indentation_limit, TABLE_MARGIN * self.largest_indentation)
+        edges = limit * np.linspace(0.0, 1.0, ANNULI + 1) ** 2
+        force, stiffness = law.at(edges)
+        fields.law = CONSTANTS["LEATHER_LAW"]
+        fields.terms = len(law.force_terms)
+        fields.force_terms = np.array(law.force_terms)
+        fields.compliance_terms = np.array(law.compliance_terms)
+        fields.indentation_limit = law.indentation_limit
+        fields.patch = CONSTANTS["PARTIAL_SLIP"]
+        fields.surface_restitution = self.surface_restitution
+        fields.annuli = ANNULI
+        fields.annulus_edges = edges
+        fields.annulus_forces = force
+        fields.annulus_slopes = law.slope(edges)
+        fields.annulus_stiffness = stiffness
+
+
+def tip_of(scene: Scene) -> PowerTip | Leather:
+    """The tip of a scene. ValueError for a restitution below its bound."""
+    terms = scene.contact_terms
+    return _power_tip(scene, terms) if terms.tip is None else _leather(scene, terms.tip)
+
+
+def _power_tip(scene: Scene, terms: ContactTerms) -> PowerTip:
+    """A tip with the law of an effect, or a linear one."""
+    restitution = scene.tip.restitution
+    check_restitution("Tip.restitution", restitution)
+    exponent, speed = terms.law or PowerLaw(exponent=1.0, speed=scene.stroke.speed)
+    law = TipLaw.for_contact_time(exponent, restitution, mass=scene.reduced_mass, speed=speed, time=scene.contact_time)
+    return PowerTip(law, compliance=terms.compliance / scene.stiffness)
+
+
+def _leather(scene: Scene, tip: TipModel) -> Leather:
+    restitution, offset = scene.tip.restitution, abs(scene.stroke.offset)
+    check_restitution("Tip.restitution", restitution, MIN_LEATHER_RESTITUTION)
+    slips_at_touch = math.tan(math.asin(offset)) > scene.tip.friction
+    return Leather(
+        law=tip.law(scene.ball.radius, offset, restitution),
+        surface_restitution=tip.surface_restitution,
+        largest_indentation=scene.max_indentation,
+        steps=STEPS if slips_at_touch else LEATHER_STEPS,
+    )
+
+
+def contact_time_of(scene: Scene) -> float:
+    """Head-on contact time at the speed of the stroke, s; that of a power law depends on the speed."""
+    law = scene.contact_terms.law
+    if law is None:
+        return scene.contact_time
+    return scene.contact_time * contact_time_ratio(law.exponent, scene.stroke.speed / law.speed)
+
+
+def check_restitution(name: str, restitution: float, bound: float = MIN_RESTITUTION) -> None:
+    """ValueError for a restitution below ``bound``."""
+    if restitution < bound:
+        raise ValueError(
+            f"{name} must be in [{bound:g}, 1] for a contact computed in time; got {restitution:g} "
+            "(cuefem.impulse takes any)"
+        )
