@@ -7,6 +7,7 @@ no end mass, and `cuefem[pooltool]` cannot exist. .ci/pooltool makes an environm
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -52,6 +53,27 @@ def test_pooltool_formula_with_exported_end_mass_equals_strike(offset: float) ->
     assert -pooltool_squirt(0.17, 0.170097 / 30, offset) == pytest.approx(record["default_squirt"], rel=1e-12)
 
 
+@pytest.mark.parametrize("offset", [-0.3, 0.0001, 0.5])
+def test_pooltool_speeds_conserve_momentum_and_energy(offset: float) -> None:
+    """A point of a rigid cue strikes without loss; a strike with restitution 0.75 gives the ball less."""
+    record = pooltool_record("kim", replace(SCENE, stroke=replace(SCENE.stroke, offset=offset)))
+    m, M, R, V = 0.17, record["CueSpecs"]["M"], 0.028575, SCENE.stroke.speed
+    v, spin = record["pooltool_ball_speed"], record["pooltool_spin"]
+    assert 0.4 * m * R**2 * spin == pytest.approx(m * v * offset * R, rel=1e-12)
+    energy = M * (V - m * v / M) ** 2 + m * v**2 + 0.4 * m * (R * spin) ** 2
+    assert energy == pytest.approx(M * V**2, rel=1e-12)
+    assert 0 < record["ball_speed"] < v
+    assert 0 < record["spin"] / spin < 1
+
+
+@pytest.mark.parametrize(("game", "share"), [("pool", "5.667 g"), ("snooker", "4.733 g"), ("carom", "7.000 g")])
+def test_pooltool_table_names_version_and_speeds_of_each_row(game: str, share: str) -> None:
+    text = " ".join(stdout_of("strike", "meshes/pool_maple.toml", "--game", game, "--format", "pooltool").split())
+    assert f"one for all games, with 1/30 of a pool ball of 170.1 g; 1/30 of this ball is {share}" in text
+    assert "its default cue in pooltool 0.6.0 5.670 g" in text
+    assert re.search(r"end mass squirt ball speed spin .* coupled strike [\d.]+° [\d.]+ m/s [\d.]+ rad/s", text)
+
+
 def test_pooltool_export_writes_cue_specs(scene: Path, tmp_path: Path) -> None:
     record, goal = exported(scene), tmp_path / "kim.json"
     mass = pytest.approx(KIM.mass, rel=1e-11)  # of a file
@@ -88,7 +110,7 @@ for offset, record in json.load(sys.stdin):
     ball = pt.Ball("cue", params=pt.BallParams(**record["BallParams"]))
     alpha = get_squirt_angle(ball.params.m, specs.end_mass, offset, 1.0)
     _, after = InstantaneousPoint().resolve(cue, ball)
-    answers.append((alpha, after.state.rvw[1].tolist(), specs.length))
+    answers.append((alpha, after.state.rvw[1].tolist(), after.state.rvw[2][2], specs.length))
 print(json.dumps([pt.__version__, answers]))
 """
 
@@ -111,7 +133,9 @@ def test_pooltool_with_exported_cue_computes_same_squirt(scene: Path) -> None:
     assert done.returncode == 0, done.stderr
     version, results = json.loads(done.stdout)
     assert version == VERSION
-    for offset, (alpha, (x, y, _), length) in zip(offsets, results, strict=True):
+    for (offset, record), (alpha, (x, y, _), spin, length) in zip(json.loads(sent), results, strict=True):
+        assert math.hypot(x, y) == pytest.approx(record["pooltool_ball_speed"], rel=1e-12)
+        assert -spin == pytest.approx(record["pooltool_spin"], rel=1e-12)  # about the vertical, to the left
         ours = cf.strike(replace(SCENE, stroke=replace(SCENE.stroke, offset=offset))).squirt
         assert -alpha == pytest.approx(ours, rel=1e-12)
         assert math.atan2(x, y) == pytest.approx(ours, rel=1e-9)  # aimed along y, struck on the left
