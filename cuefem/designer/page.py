@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+import weakref
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import replace
@@ -122,11 +123,12 @@ class Page:
                 self.undo = _tool("Undo", "undo", lambda: self.undo_redo(-1))
                 self.redo = _tool("Redo", "redo", lambda: self.undo_redo(1))
                 ui.link("Guide", "/guide", new_tab=True).classes("guide")
+            page = weakref.proxy(self)  # the server caches the route of an upload, also after the page is closed
             self.upload = ui.upload(
                 auto_upload=True,
                 max_file_size=MAX_FILE,
-                on_upload=self._uploaded,
-                on_rejected=lambda: self.show_message(f"not opened: at most {MAX_FILE // 10**6} MB"),
+                on_upload=lambda event: page._uploaded(event),
+                on_rejected=lambda: page.show_message(f"not opened: at most {MAX_FILE // 10**6} MB"),
             ).props(f'accept="{",".join(KINDS)}"')
             self.upload.classes("unseen")
             self.purpose = "design"

@@ -41,6 +41,13 @@ def open_browser() -> Iterator[Any]:
 @contextmanager
 def run_designer(folder: Path) -> Iterator[str]:
     """The address of a designer that runs in a folder; it must print nothing on stderr and write no file there."""
+    with designer_process(folder) as (address, _):
+        yield address
+
+
+@contextmanager
+def designer_process(folder: Path) -> Iterator[tuple[str, int]]:
+    """The address of a designer as `run_designer`, and the number of its process."""
     command = [sys.executable, "-W", "error", "-c", COMMAND, "designer", "--no-open", "--port", "0"]
     errors = folder / "stderr"
     with errors.open("w") as err:
@@ -57,7 +64,7 @@ def run_designer(folder: Path) -> Iterator[str]:
             address = process.stdout.readline().strip()
             assert address.startswith("http://127.0.0.1:"), errors.read_text()
             wait_for_port(int(address.rstrip("/").rsplit(":", 1)[1]))
-            yield address
+            yield address, process.pid
         finally:
             process.terminate()
             process.wait(timeout=30)
@@ -108,6 +115,15 @@ def wait_until_idle(page: Any) -> None:
     """Wait until the designer has computed every change."""
     page.wait_for_timeout(150)  # the message that marks the page as busy is in transit
     page.wait_for_function("() => document.querySelector('[data-busy]')?.dataset.busy === 'false'")
+
+
+def resident_memory(process: int) -> int:
+    """The resident memory of a process, kB; Linux alone has it."""
+    status = Path(f"/proc/{process}/status")
+    if not status.exists():
+        pytest.skip("needs /proc")
+    line = next(line for line in status.read_text().splitlines() if line.startswith("VmRSS"))
+    return int(line.split()[1])
 
 
 def displayed_number(page: Any, name: str, whose: str = "own") -> float:
