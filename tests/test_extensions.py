@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.analysis.effect_sensitivity import variants
 from cuefem.designs import Levels, Response, Study, Vary, evaluate
-from cuefem.designs.effect_sensitivity import variants
 from cuefem.effects.effect import effect_kinds
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.measurements.uncertain_parameters import parameters_of

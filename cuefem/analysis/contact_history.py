@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from cuefem.analysis.base import Analysis
 from cuefem.results.quantities import format_value
 from cuefem.results.records import Record, Table
 from cuefem.scene import Outcome
+from cuefem.show.analysis import Analysis
 
 if TYPE_CHECKING:
     from cuefem.show.charts import Chart

@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cuefem.analysis.base import Analysis
 from cuefem.analysis.strike_models import regime_warning
 from cuefem.cue import Cue
 from cuefem.cue.materials import MATERIALS, WOODS, table_name
@@ -24,6 +23,7 @@ from cuefem.results.uncertainty import model_share, ratio_error, squirt_changes
 from cuefem.results.verdict import reject_no_verdict
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
+from cuefem.show.analysis import Analysis
 
 MM = 1e-3
 WIDER, DEEPER, SHORTER, LOWER, THINNER = 1 * MM, 25 * MM, 5 * MM, 1 * MM, 0.5 * MM

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from cuefem.analysis.base import Analysis
 from cuefem.analysis.reduction import Reduction, reduction
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.results.closed_forms import cue_end_mass
@@ -13,6 +12,7 @@ from cuefem.results.records import Record, Table, tabulate
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
+from cuefem.show.analysis import Analysis
 from cuefem.show.charts import Chart
 from cuefem.show.scene_summary import assumptions, listed, scene_record, tip_effect_notes
 

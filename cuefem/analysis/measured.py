@@ -10,7 +10,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from cuefem.analysis.base import Analysis
 from cuefem.measurements import estimate as estimation
 from cuefem.measurements import measured_cue
 from cuefem.measurements.estimate import STEP_TOLERANCE, Estimate, InformationGain, predicted_squirt
@@ -20,6 +19,7 @@ from cuefem.measurements.uncertain_parameters import SQUIRT_MODEL
 from cuefem.results.quantities import DASH, with_unit
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.results.uncertainty import model_error
+from cuefem.show.analysis import Analysis
 
 LARGE_RESIDUAL = 3.0  # a larger one is a contradiction
 MIN_OUTLIER_PROBABILITY = 0.2  # of a measurement with a note
@@ -268,7 +268,7 @@ def estimate(cue: MeasuredCue | str | Path, *, progress: Progress = iter) -> Mea
     >>> found = cf.estimate(MeasuredCue("a cue", scene, (Weight(value=0.115, error=0.5e-3),)))
     >>> density = next(each for each in found.parameters if each["name"] == "rho")
     >>> round(density["value"]), round(density["high"] - density["low"])  # kg/m3
-    (710, 6)
+    (716, 7)
     """
     measured = cue if isinstance(cue, MeasuredCue) else load_measured(Path(cue))[0]
     found, target = estimation.estimate(measured, progress=progress), predicted_squirt(measured)

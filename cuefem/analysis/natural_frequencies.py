@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from cuefem.analysis.base import Analysis
 from cuefem.beam.modes import modes
 from cuefem.results.records import ColumnEntry, Table, tabulate
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.scene import Scene
+from cuefem.show.analysis import Analysis
 from cuefem.show.scene_summary import effect_name
 
 if TYPE_CHECKING:

@@ -10,7 +10,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from cuefem.analysis.base import Analysis
 from cuefem.beam.mode_count import modes_below
 from cuefem.beam.modes import modes
 from cuefem.contact.impulse_solver import impact, impulse_inputs
@@ -26,6 +25,7 @@ from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.scene import Scene, Stroke
 from cuefem.scene.scene import DEFAULT_CONTACT_TIME
+from cuefem.show.analysis import Analysis
 from cuefem.show.charts import Axis, Chart, Curve, Tick, chart
 from cuefem.show.scene_summary import assumptions, scene_record, tip_effect_notes
 

@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from cuefem.analysis.base import Analysis
 from cuefem.analysis.contact_history import ContactHistory
 from cuefem.analysis.design_changes import design_changes
 from cuefem.analysis.end_mass import SQUIRT_END_MASS, end_masses
@@ -27,6 +26,7 @@ from cuefem.results.records import Record, Table, tabulate_values, value_rows
 from cuefem.results.solved_design import SolvedDesign, listed_results
 from cuefem.results.verdict import NoVerdict
 from cuefem.scene import Scene
+from cuefem.show.analysis import Analysis
 from cuefem.show.scene_summary import assumptions, scene_record
 
 

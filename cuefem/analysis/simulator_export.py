@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cuefem.analysis.base import Analysis
 from cuefem.analysis.strike_models import UNCERTAINTY_NOTE
 from cuefem.contact.strike import strike_modes
 from cuefem.results.closed_forms import alciatore_a30, alciatore_a31, alciatore_a31_mass_ratio
@@ -22,6 +21,7 @@ from cuefem.results.quantities import RESULTS, units_of, with_unit
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
+from cuefem.show.analysis import Analysis
 
 VERSION = "0.6.0"  # the release whose CueSpecs these are; .ci/pooltool installs it
 INERTIA = 0.4  # its 5/2

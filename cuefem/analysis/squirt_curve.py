@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from cuefem.analysis.base import Analysis
 from cuefem.analysis.strike_models import PIVOT_NOTE, a31_squirt, lumped_cues, lumped_strike
 from cuefem.cue import LumpedCue
 from cuefem.results.closed_forms import pivot_length
@@ -16,6 +15,7 @@ from cuefem.results.quantities import format_value
 from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import OFFSETS, SolvedDesign, at_offset, coupled_curve
 from cuefem.scene import Scene
+from cuefem.show.analysis import Analysis
 from cuefem.show.scene_summary import assumptions, scene_record
 
 if TYPE_CHECKING:

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from cuefem.analysis.base import Analysis
 from cuefem.beam.tip_modes import TipModes
 from cuefem.cue import LumpedCue
 from cuefem.endmass.definitions import stick_at_offsets
@@ -17,6 +16,7 @@ from cuefem.results.quantities import MISCUE_DEFINITION, REGIMES, RESULTS, forma
 from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import SolvedDesign, at_offset
 from cuefem.scene import Outcome, Scene
+from cuefem.show.analysis import Analysis
 from cuefem.show.scene_summary import assumptions, scene_record, tip_effect_notes
 
 # Rows of the table: quantity, component of a vector (0 tangential, 1 normal), and the end of the label.

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.analysis.base import Analysis
 from cuefem.results.quantities import DASH, format_value, significant
 from cuefem.results.records import Record, Table, by_label, tabulate
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.scene import Scene
+from cuefem.show.analysis import Analysis
 
 SPEEDS = (0.5, 1.0, 2.0, 3.0, 5.0, 8.0)  # m/s
 

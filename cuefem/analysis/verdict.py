@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from cuefem.analysis.base import Analysis
 from cuefem.cue import Cue
 from cuefem.files.reference_cues import reference_cues
 from cuefem.results.quantities import format_change, to_display, with_unit
@@ -29,6 +28,7 @@ from cuefem.results.uncertainty import (
 from cuefem.results.verdict import reject_no_verdict
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import without_leather
+from cuefem.show.analysis import Analysis
 
 BAR = 32  # characters of the scale in a terminal
 

@@ -19,8 +19,8 @@ from cuefem.parameters.parameter import with_parameters
 from cuefem.parameters.parts import main_material
 
 if TYPE_CHECKING:
-    from cuefem.analysis.base import Analysis
     from cuefem.analysis.design_changes import DesignChanges
+    from cuefem.show.analysis import Analysis
 
 
 class WithDefinitions(Command):

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import click
 
-from cuefem.cli.output import assumption_lines, command, json_option, page_option, print_json, print_result
-from cuefem.cli.scene_command import check_overwrite, force_option, load_with_options, shape_options
+import cuefem as cf
+from cuefem.cli.output import assumption_lines, command, json_option, page_option, print_json
+from cuefem.cli.scene_command import check_overwrite, force_option, load_with_options, shape_options, show
 from cuefem.cli.scene_options import with_body_option, with_shaft_mass_option
 from cuefem.cue import Cue
 from cuefem.files import load, save
 from cuefem.files.defaults_report import assumption_texts, drawing_assumptions
-from cuefem.show.parts_table import parts_record, tabulate_parts
 
 
 @command()
@@ -45,5 +45,4 @@ def convert(file: Path, output: Path, force: bool, as_json: bool, **options: str
 @json_option
 def parts(as_json: bool, output: Path | None) -> None:
     """List the shafts, materials (wood, ferrule) and tips that a file can name, with their sources."""
-    record = parts_record()
-    print_result(as_json, record, tabulate_parts(record), output)
+    show(cf.parts(), {}, "", output=output, as_json=as_json)

@@ -12,7 +12,6 @@ from typing import Any
 
 import click
 
-from cuefem.analysis.base import Analysis, write
 from cuefem.cli.output import (
     command,
     json_option,
@@ -40,6 +39,7 @@ from cuefem.files.shaft_additions import SHAFT_ADDITIONS
 from cuefem.results.quantities import UNITS
 from cuefem.results.records import Record, Table
 from cuefem.scene import Scene
+from cuefem.show.analysis import Analysis, Answer, write
 from cuefem.show.plausibility import plausibility_warnings
 from cuefem.show.scene_summary import scene_record
 from cuefem.solid.tip_cache import computing_message
@@ -226,12 +226,12 @@ def _show(request: Request, analysis: Analysis, output: Path | None) -> None:
 
 
 def show(
-    analysis: Analysis,
+    analysis: Answer,
     about: Record,
     name: str,
     *,
-    notes: Sequence[str],
-    warnings: Sequence[str],
+    notes: Sequence[str] = (),
+    warnings: Sequence[str] = (),
     hints: Sequence[Table | str] = (),
     output: Path | None,
     as_json: bool,

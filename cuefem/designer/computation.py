@@ -10,12 +10,12 @@ import asyncio
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from nicegui import run
 
-import cuefem.show
+import cuefem as cf
 from cuefem.analysis.comparison import compare_cues
 from cuefem.analysis.design_changes import DesignChanges, design_changes
 from cuefem.analysis.verdict import Verdict
@@ -31,6 +31,9 @@ from cuefem.results.records import Record
 from cuefem.results.solved_design import MIN_SOLVED_MODES, SolvedDesign, coupled_curve, listed_results
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import SolvedScene, default_mode_count
+
+if TYPE_CHECKING:
+    from cuefem.analysis.model_error import ModelError
 
 TIME_LIMIT = 60.0  # s, time limit of a result; playing cues need less than a tenth
 CACHED_DESIGNS = 12  # designs whose results are cached, for undo and comparison
@@ -123,9 +126,9 @@ def changes(scene: Scene) -> DesignChanges:
     return design_changes(SolvedDesign(strike.solved, strike.outcome))
 
 
-def solid(scene: Scene) -> Record:
+def solid(scene: Scene) -> ModelError:
     """The scene by the beam and by the solid model."""
-    return cuefem.show.model_error_record(scene)  # loads scikit-fem, which the page's start need not
+    return cf.model_error(scene)  # loads scikit-fem, which the page's start need not
 
 
 async def run_in_thread(work: Callable[..., Any], *arguments: Any) -> Any:

@@ -9,7 +9,6 @@ from typing import Any
 
 from nicegui import ui
 
-import cuefem.show
 from cuefem.analysis.strike_models import regime_warning
 from cuefem.analysis.verdict import difference_text
 from cuefem.designer.computation import CURVE_OFFSETS
@@ -180,7 +179,7 @@ def tabulate_check(step: Step, results: Results) -> list[Table]:
     rows += [("warning", line) for line in plausibility_warnings(step.design.scene)] or [("warnings", "none")]
     first = Table(f"Check of {step.design.name}", ("check", "result"), tuple(rows), texts=(0, 1))
     solid = results.own.get("solid")
-    return [first] if solid is None else [first, cuefem.show.tabulate_model_error(solid)]
+    return [first] if solid is None else [first, solid.table()]
 
 
 def tables_markup(sheets: Sequence[Table | None]) -> str:

@@ -101,7 +101,7 @@ def effect_lines(effect: type) -> dict[str, str]:
 
 def _every_effect() -> str:
     """The effects as markdown: a heading, the summary and the five lines of each."""
-    from cuefem.designs.effect_sensitivity import effect_kinds  # loaded when used: the list of chapters needs no numpy
+    from cuefem.effects.effect import effect_kinds  # loaded when used: the list of chapters needs no numpy
 
     parts = []
     for name, kind in effect_kinds().items():

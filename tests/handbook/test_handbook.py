@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from cuefem.designs.effect_sensitivity import effect_kinds
+from cuefem.effects.effect import effect_kinds
 from cuefem.handbook import CHAPTERS, LINES, chapters, effect_lines
 from cuefem.handbook.page import page
 from tests.helpers.command_line import stdout_of

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.show.model_error_table import model_error_record, tabulate_model_error
 from cuefem.solid.shaft import SolidBody
 
 WOOD = cf.Material(E=12.6e9, G=1.1e9, rho=700.0, nu=0.45, transverse_ratio=0.0985, nu_transverse=0.52)
@@ -63,8 +62,8 @@ def test_model_error_short_cone_lists_quantities_and_exclusions() -> None:
     """Rows, summary, and effects that a solid excludes; a short cone is fast."""
     short = cf.Cue((cf.Segment(0.12, 0.012, 0.014, WOOD),), body_mass=0.42)
     scene = replace(SCENE, cue=short, effects=(cf.AxialWaves(), cf.PointMass(position=0.0, mass=1e-3)))
-    record = model_error_record(scene, list)
-    rows = {row["quantity"]: row for row in record["rows"]}
+    found = cf.model_error(scene)
+    rows = {row["quantity"]: row for row in found.rows}
     assert list(rows)[:6] == [f"natural frequency {k}" for k in range(1, 7)]
     for row in rows.values():
         assert row["discretisation_error"] < 1e-2
@@ -72,10 +71,10 @@ def test_model_error_short_cone_lists_quantities_and_exclusions() -> None:
     frequency = cf.modes(short, 1, effects=scene.effects).frequencies[0]
     assert rows["natural frequency 1"]["beam"] == pytest.approx(frequency, rel=1e-6)
     assert 0 < abs(rows["natural frequency 1"]["solid"] / frequency - 1) < 0.1
-    assert record["summary"].startswith("Error of the beam model for this shaft: ")
-    assert record["excluded_effects"] == ["AxialWaves"]
-    table = tabulate_model_error(record)
+    assert found.summary.startswith("Error of the beam model for this shaft: ")
+    assert found.excluded_effects == ["AxialWaves"]
+    table = found.table()
     assert [row[0].removesuffix(" *") for row in table.rows[:-1]] == list(rows)
-    assert abs(record["scikit_fem"]["difference"]) < 1e-9
+    assert abs(found.scikit_fem["difference"]) < 1e-9
     assert table.rows[-1][0] == "natural frequency 1, same beam by scikit-fem"
     assert "axial waves" in table.notes[-1]

@@ -1,9 +1,9 @@
-"""What all analyses share: the record of numbers, and the text, page and notebook views of tables and charts."""
+"""What all answers share: the record of numbers, and the text, page and notebook views of tables and charts."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass
 from html import escape
 from pathlib import Path
 from types import MappingProxyType
@@ -21,19 +21,13 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Analysis:
-    """The answer to one question about a scene.
+class Answer:
+    """The answer to one question, which prints, draws and saves itself.
 
-    A subclass adds its numbers as fields, in SI units, and defines `items`. A field with ``repr=False`` is not part of
+    A subclass adds its numbers as fields, in SI units, and defines `tables`. A field with ``repr=False`` is not part of
     the record: intermediate results, and options of the tables.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene that was analysed.
     """
 
-    scene: Scene
     has_stroke: ClassVar[bool] = True  # whether ball, tip and stroke matter to the answer
     about: ClassVar[str] = ""  # definitions, for pages
     own_units: ClassVar[Mapping[str, str]] = MappingProxyType({})  # of numbers that are no quantities of the registry
@@ -47,12 +41,12 @@ class Analysis:
         return []
 
     def heading(self) -> str:
-        """The first line: the analysed cue."""
-        return cue_line(json_value(scene_record(self.scene)["cue"]))
+        """The first line: what was analysed."""
+        return ""
 
-    def effects(self) -> str:
+    def effects_line(self) -> str:
         """The effects of the scene as one line, or an empty line."""
-        return ", ".join(map(effect_text, self.scene.effects))
+        return ""
 
     def headline(self) -> str:
         """The answer in one line, or an empty line."""
@@ -64,27 +58,23 @@ class Analysis:
 
     def values(self) -> Record:
         """The numbers alone, in SI units."""
-        return {field.name: _plain(getattr(self, field.name)) for field in fields(self)[1:] if field.repr}
+        return {each.name: _plain(getattr(self, each.name)) for each in fields(self) if each.repr}
 
     def to_dict(self) -> Record:
-        """The record: scene, numbers in SI units, and the unit of each."""
-        about = scene_record(self.scene)
-        if not self.has_stroke:
-            about = {name: about[name] for name in ("cue", "effects")}
-        return {"scene": about, **self.values(), "units": {**UNITS, **self.own_units}}
+        """The record: numbers in SI units, and the unit of each."""
+        return {**self.values(), "units": {**UNITS, **self.own_units}}
 
     def page_title(self, name: str, question: str) -> str:
         """The title of a page on a file."""
-        return f"{name}: {question}"
+        return f"{name}: {question}" if name else question
 
     def lines(
         self, name: str = "", assumptions: Sequence[str] = (), hints: Sequence[Table | str] = ()
     ) -> list[Table | str]:
         """What a terminal and a plain page show: heading, tables, hints, effects and assumptions."""
-        heading, effects = self.heading(), self.effects()
+        heading, effects = ": ".join(filter(None, (name, self.heading()))), self.effects_line()
         return [
-            f"{name}: {heading}" if name else heading,
-            "",
+            *([heading, ""] if heading else []),
             *self.tables(),
             *(["", *hints] if hints else []),
             "",
@@ -96,8 +86,10 @@ class Analysis:
         """A self-contained page with tables and charts."""
         from cuefem.show.templates import plain_page  # templates take 0.1 s to load
 
-        heading, *others = self.lines(name.partition(":")[0], assumptions)
-        return plain_page(name or type(self).__name__, [heading, *warnings, *self.charts(), *others])
+        lines = self.lines(name.partition(":")[0] if self.heading() else "", assumptions)
+        heading = lines[:1] if self.heading() else []
+        others = lines[len(heading) :]
+        return plain_page(name or type(self).__name__, [*heading, *warnings, *self.charts(), *others])
 
     def save(self, path: str | Path) -> None:
         """Write the record (.json) or a page (.html); the extension sets the format."""
@@ -111,6 +103,34 @@ class Analysis:
     def _repr_html_(self) -> str:
         """The page in a frame, so that its style does not change the notebook's."""
         return f'<iframe srcdoc="{escape(self.to_html())}" style="width: 100%; height: 480px; border: 0"></iframe>'
+
+
+@dataclass(frozen=True)
+class Analysis(Answer):
+    """The answer to one question about a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene that was analysed.
+    """
+
+    scene: Scene = field(repr=False)
+
+    def heading(self) -> str:
+        """The first line: the analysed cue."""
+        return cue_line(json_value(scene_record(self.scene)["cue"]))
+
+    def effects_line(self) -> str:
+        """The effects of the scene as one line, or an empty line."""
+        return ", ".join(map(effect_text, self.scene.effects))
+
+    def to_dict(self) -> Record:
+        """The record: scene, numbers in SI units, and the unit of each."""
+        about = scene_record(self.scene)
+        if not self.has_stroke:
+            about = {name: about[name] for name in ("cue", "effects")}
+        return {"scene": about, **super().to_dict()}
 
 
 def write(path: Path, record: Callable[[], Record], html: Callable[[], str]) -> None:

@@ -6,11 +6,9 @@ from typing import Any
 import pytest
 
 import cuefem as cf
-from cuefem.designs.effect_sensitivity import variants
+from cuefem.analysis.effect_sensitivity import MARGIN, EffectSensitivity, variants
 from cuefem.effects.effect import effect_kinds
 from cuefem.results.convergence import resolve
-from cuefem.show import effects_record
-from cuefem.show.effects_table import MARGIN
 from tests.helpers.strike_scenes import KIM
 
 DOME, CLAY, HAND = cf.TipDome(9.5e-3), cf.PointMass(position=0.05, mass=0.011), cf.Support(0.2032, 5e3)
@@ -18,12 +16,12 @@ SCENE = cf.Scene(KIM, tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(offset=0.3
 
 
 @pytest.fixture(scope="module")
-def record() -> Any:
-    return effects_record(SCENE)
+def found() -> EffectSensitivity:
+    return cf.effect_sensitivity(SCENE)
 
 
-def rows(record: Any) -> dict[str, Any]:
-    return {row["name"]: row for row in record["effects"]}
+def rows(found: EffectSensitivity) -> dict[str, Any]:
+    return {row["name"]: row for row in found.effects}
 
 
 def test_variants_remove_or_add_each_effect_once() -> None:
@@ -47,24 +45,24 @@ def test_variants_of_repeated_effect_remove_one_and_invalid_has_reason() -> None
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("name", ["TipDome", "PointMass", "Support", "TipShear", "AxialWaves"])
-def test_effect_change_equals_difference_of_strikes(record: Any, name: str) -> None:
-    row = rows(record)[name]
+def test_effect_change_equals_difference_of_strikes(found: EffectSensitivity, name: str) -> None:
+    row = rows(found)[name]
     (variant,) = (v for v in variants(SCENE) if v.name == name)
     assert variant.scene is not None
     exact, base = resolve(variant.scene, 1e-3), resolve(SCENE, 1e-3)
-    tolerance = 2 * record["rtol"] / MARGIN  # the error of either strike
+    tolerance = 2 * found.rtol / MARGIN  # the error of either strike
     for quantity in ("squirt", "ball_speed", "spin"):
         expected = getattr(exact, quantity) / getattr(base, quantity) - 1
         assert row["change"][quantity]["relative"] == pytest.approx(expected, abs=tolerance)
-        gap = row["change"][quantity]["relative"] * abs(record["base"][quantity])
+        gap = row["change"][quantity]["relative"] * abs(found.base[quantity])
         assert row["change"][quantity]["absolute"] == pytest.approx(gap, rel=1e-9)
 
 
 @pytest.mark.heavy
-def test_recommendation_depends_on_tolerance(record: Any) -> None:
-    worth = record["recommendation"]
+def test_recommendation_depends_on_tolerance(found: EffectSensitivity) -> None:
+    worth = found.recommendation
     assert worth["effects_to_remove"] == ["Support (position 203.2 mm, stiffness 5000 N/m)"]
     assert "TipDome (radius 9.5 mm)" in worth["effects_to_keep"]
     assert "TipShear (ratio 0.75)" in worth["effects_to_add"]
-    loose = effects_record(cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=cf.Stroke(offset=0.3)), rtol=0.9)
-    assert loose["recommendation"] == {"effects_to_keep": [], "effects_to_remove": [], "effects_to_add": []}
+    loose = cf.effect_sensitivity(cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=cf.Stroke(offset=0.3)), rtol=0.9)
+    assert loose.recommendation == {"effects_to_keep": [], "effects_to_remove": [], "effects_to_add": []}

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from cuefem import resolve
-from cuefem.show.convergence_table import RECOMMENDED_RTOLS, convergence_record
+import cuefem as cf
+from cuefem.analysis.convergence_study import RECOMMENDED_RTOLS, ConvergenceStudy
 from studies.strokes import MESHES
 from tests.helpers.accuracy_scenes import scene
 from tests.helpers.command_line import stdout_of
@@ -14,19 +14,19 @@ KIM = MESHES / "kim.toml"
 
 
 @pytest.fixture(scope="module")
-def record() -> dict:
-    return convergence_record(scene("kim", 1e-3, 0.3), max_modes=60)
+def found() -> ConvergenceStudy:
+    return cf.convergence_study(scene("kim", 1e-3, 0.3), max_modes=60)
 
 
-def test_recommended_resolution_equals_resolve(record: dict) -> None:
-    assert [row["rtol"] for row in record["recommended_resolutions"]] == list(RECOMMENDED_RTOLS)
-    for row in record["recommended_resolutions"]:
+def test_recommended_resolution_equals_resolve(found: ConvergenceStudy) -> None:
+    assert [row["rtol"] for row in found.recommended_resolutions] == list(RECOMMENDED_RTOLS)
+    for row in found.recommended_resolutions:
         if row["is_reached"]:
-            result = resolve(scene("kim", 1e-3, 0.3), row["rtol"])
+            result = cf.resolve(scene("kim", 1e-3, 0.3), row["rtol"])
             assert (result.unknowns, result.error) == (row["unknowns"], row["estimate"])
-    assert [row["is_reached"] for row in record["recommended_resolutions"]] == [True, False, False, False]
-    best = min(level["estimate"] for level in record["levels"] if level["estimate"] is not None)
-    assert record["recommended_resolutions"][-1]["estimate"] == best
+    assert [row["is_reached"] for row in found.recommended_resolutions] == [True, False, False, False]
+    best = min(level["estimate"] for level in found.levels if level["estimate"] is not None)
+    assert found.recommended_resolutions[-1]["estimate"] == best
 
 
 def test_cost_command_prints_table_and_draws_chart(tmp_path: Path) -> None:

@@ -1,10 +1,10 @@
-"""Error of the beam model against the elastic solid, for one shaft: record and table of `cuefem check`."""
+"""Error of the beam model of a shaft against the elastic solid."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -21,6 +21,7 @@ from cuefem.results.quantities import DISPLAY_UNITS
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import mass_on_face
+from cuefem.show.analysis import Analysis
 from cuefem.show.scene_summary import effect_name
 from cuefem.solid.meridian_mesh import Fineness, blocks, check_mesh_size
 from cuefem.solid.shaft import AXIAL, SolidBody
@@ -49,19 +50,105 @@ def checked_scene(scene: Scene) -> tuple[Scene, list[str]]:
     return (replace(scene, effects=rest) if excluded else scene), [type(effect).__name__ for effect in excluded]
 
 
-def model_error_record(scene: Scene, progress: Progress = iter) -> Record:
-    """Frequencies, stiffness, end masses and squirt by beam and solid, with the discretisation error.
+@dataclass(frozen=True)
+class ModelError(Analysis):
+    """Beam model of a shaft beside a 3-D elastic solid: frequencies, stiffness, end masses and squirt.
 
-    "excluded_effects": effects that the solid does not include, removed from both models. "scikit_fem": the first
-    natural frequency of the same beam, assembled by scikit-fem. progress: iterates over the work with a progress bar.
+    Parameters
+    ----------
+    scene : Scene
+        The analysed stroke.
+    rows : list of dict
+        For each quantity its name, "quantity", and "unit"; its value in SI by "beam" and by "solid"; "difference", beam
+        over solid less 1; and "discretisation_error", the relative change of the solid's value by elements of the next
+        lower order.
+    scikit_fem : dict
+        First natural frequency, Hz, of the "beam", and of the same beam as "scikit_fem" assembles it, and the relative
+        "difference".
+    modes : int
+        Number of bending modes of either model.
+    order : int
+        Order of the solid's elements.
+    excluded_effects : list of str
+        Effects that the solid does not include, removed from both models.
+    summary : str
+        The error of the beam model in squirt, as a sentence.
     """
-    scene, excluded = checked_scene(scene)
-    bending = modes(scene.shaft, MODES, effects=scene.cue_effects)
-    mesh = fineness(scene.shaft)
-    check_mesh_size(scene.shaft, mesh)
-    work = (lambda: _by_beam(scene, bending), lambda: _by_solid(scene, mesh))
+
+    rows: list[Record]
+    scikit_fem: Record
+    modes: int
+    order: int
+    excluded_effects: list[str]
+    summary: str
+
+    def tables(self) -> list[Table | str]:
+        """Beam and solid side by side, and the summary."""
+        return [self.table(), self.summary]
+
+    def table(self) -> Table:
+        """Beam and solid side by side."""
+        star = " *" if self.excluded_effects else ""
+        of_strike = ("end mass", "squirt")
+        columns: Any = {
+            "": lambda row: row["quantity"] + (star if row["quantity"].startswith(of_strike) else ""),
+            "unit": lambda row: _display_unit(row)[1],
+            "beam": lambda row: f"{_display_unit(row)[0] * row['beam']:.6g}",
+            "solid": lambda row: f"{_display_unit(row)[0] * row['solid']:.6g}",
+            "error of the beam": lambda row: _percent(row["difference"], 2, "+"),
+            "discretisation error": lambda row: _percent(row["discretisation_error"], 1),
+        }
+        notes = [
+            f"beam and solid with {self.modes} bending modes each, without the truncation correction of `cuefem "
+            f"end-mass` and `cuefem strike`; discretisation error: change from elements of order {self.order - 1} to "
+            f"{self.order}"
+        ]
+        if self.excluded_effects:
+            without = ", ".join(map(effect_name, self.excluded_effects))
+            notes.append(f"* without {without}, which the solid model does not include; `cuefem end-mass` does")
+        made = tabulate("Beam and solid models", columns, self.rows, *notes, texts=(0, 1))
+        same = self.scikit_fem
+        error = _percent(same["difference"], 2, "+")
+        row = ("natural frequency 1, same beam by scikit-fem", "Hz", f"{same['beam']:.6g}", "", error, "")
+        return replace(made, rows=(*made.rows, row))
+
+
+def model_error(scene: Scene, *, progress: Progress = iter) -> ModelError:
+    """Error of the beam model of a shaft against a 3-D elastic solid, with the discretisation error of the solid.
+
+    Parameters
+    ----------
+    scene : Scene
+        A stroke with a cue of segments. Effects that the solid lacks are removed from both models.
+    progress : callable, optional
+        Wraps the list of the computations, to show progress.
+
+    Returns
+    -------
+    ModelError
+        Show it with ``print``, in a notebook, or by ``.save("check.html")``.
+
+    Raises
+    ------
+    ValueError
+        If the cue is lumped, or the mesh of the solid too large.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> scene = cf.Scene(cf.Cue((cf.Segment(0.3, 0.02, 0.02, wood),)), stroke=cf.Stroke(offset=0.3))
+    >>> first = cf.model_error(scene).rows[0]
+    >>> first["quantity"], abs(first["difference"]) < 2e-3
+    ('natural frequency 1', True)
+    """
+    compared, excluded = checked_scene(scene)
+    bending = modes(compared.shaft, MODES, effects=compared.cue_effects)
+    mesh = fineness(compared.shaft)
+    check_mesh_size(compared.shaft, mesh)
+    work = (lambda: _by_beam(compared, bending), lambda: _by_solid(compared, mesh))
     coarser = mesh._replace(order=mesh.order - 1)
-    beam, solid, coarse = (compute() for compute in progress([*work, lambda: _by_solid(scene, coarser)]))
+    beam, solid, coarse = (compute() for compute in progress([*work, lambda: _by_solid(compared, coarser)]))
     rows = [
         {
             "quantity": name,
@@ -74,14 +161,15 @@ def model_error_record(scene: Scene, progress: Progress = iter) -> Record:
         for (name, unit), value in solid.items()
         if value
     ]
-    return {
-        "rows": rows,
-        "scikit_fem": _by_scikit_fem(scene, bending),
-        "modes": MODES,
-        "order": mesh.order,
-        "excluded_effects": excluded,
-        "summary": _summary(rows),
-    }
+    return ModelError(
+        scene,
+        rows=rows,
+        scikit_fem=_by_scikit_fem(compared, bending),
+        modes=MODES,
+        order=mesh.order,
+        excluded_effects=excluded,
+        summary=_summary(rows),
+    )
 
 
 Numbers = dict[tuple[str, str], float]
@@ -157,30 +245,3 @@ def _summary(rows: Sequence[Record]) -> str:
         f"Error of the beam model for this shaft: {error} in {row['quantity']} (a part of the numerical error only; "
         "total uncertainty: cuefem report)."
     )
-
-
-def tabulate_model_error(record: Record) -> Table:
-    """Beam and solid side by side."""
-    star = " *" if record["excluded_effects"] else ""
-    of_strike = ("end mass", "squirt")
-    columns: Any = {
-        "": lambda row: row["quantity"] + (star if row["quantity"].startswith(of_strike) else ""),
-        "unit": lambda row: _display_unit(row)[1],
-        "beam": lambda row: f"{_display_unit(row)[0] * row['beam']:.6g}",
-        "solid": lambda row: f"{_display_unit(row)[0] * row['solid']:.6g}",
-        "error of the beam": lambda row: _percent(row["difference"], 2, "+"),
-        "discretisation error": lambda row: _percent(row["discretisation_error"], 1),
-    }
-    notes = [
-        f"beam and solid with {record['modes']} bending modes each, without the truncation correction of `cuefem "
-        f"end-mass` and `cuefem strike`; discretisation error: change from elements of order {record['order'] - 1} to "
-        f"{record['order']}"
-    ]
-    if excluded := record["excluded_effects"]:
-        without = ", ".join(map(effect_name, excluded))
-        notes.append(f"* without {without}, which the solid model does not include; `cuefem end-mass` does")
-    made = tabulate("Beam and solid models", columns, record["rows"], *notes, texts=(0, 1))
-    same = record["scikit_fem"]
-    error = _percent(same["difference"], 2, "+")
-    row = ("natural frequency 1, same beam by scikit-fem", "Hz", f"{same['beam']:.6g}", "", error, "")
-    return replace(made, rows=(*made.rows, row))
