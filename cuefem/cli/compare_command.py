@@ -12,7 +12,7 @@ import cuefem as cf
 from cuefem.analysis.comparison import MAX_CUES
 from cuefem.cli.output import Command, command, page_option
 from cuefem.cli.progress import with_progress_bar
-from cuefem.cli.scene_command import completed_scene, cue_options, errors_name_file, print_warnings, show
+from cuefem.cli.scene_command import Presentation, completed_scene, cue_options, errors_name_file, print_warnings
 from cuefem.cli.scene_options import impact_options, offset_option, option
 from cuefem.files import InputError, load_stroke
 from cuefem.files.defaults_report import STROKE, Assumption, given_keys
@@ -101,15 +101,10 @@ def _side_by_side(files: Sequence[Path], options: dict[str, Any], output: Path |
             for name, file in zip(names, files, strict=True)
             for line in (*drawing_warnings(file), *plausibility_warnings(scenes[name]))
         ]
-        show(
-            analysis,
-            {"files": [str(file) for file in files]},
-            "",
-            notes=_assumption_texts(names, [listed for _, listed, _ in loaded], [offered for *_, offered in loaded]),
-            warnings=warnings,
-            output=output,
-            as_json=options["as_json"],
-        )
+        notes = _assumption_texts(names, [listed for _, listed, _ in loaded], [offered for *_, offered in loaded])
+        about = {"files": [str(file) for file in files]}
+        shown = Presentation(analysis, files=about, assumptions=notes, warnings=warnings)
+        shown.show(output, as_json=options["as_json"])
 
 
 def _reject_given(file: Path, options: dict[str, Any]) -> None:
@@ -149,5 +144,5 @@ def _with_measurements(folder: Path, output: Path | None, *, as_json: bool, esti
         question = cf.estimate if estimate else cf.compare
         analysis = question(cue, progress=with_progress_bar)
         warnings = plausibility_warnings(cue.scene)
-        about = {"file": str(folder)}
-        show(analysis, about, folder.name, notes=notes, warnings=warnings, output=output, as_json=as_json)
+        shown = Presentation(analysis, folder.name, {"file": str(folder)}, notes, warnings)
+        shown.show(output, as_json=as_json)

@@ -8,7 +8,13 @@ import click
 
 import cuefem as cf
 from cuefem.cli.output import assumption_lines, command, json_option, page_option, print_json
-from cuefem.cli.scene_command import check_overwrite, force_option, load_with_options, shape_options, show
+from cuefem.cli.scene_command import (
+    Presentation,
+    check_overwrite,
+    force_option,
+    load_with_options,
+    shape_options,
+)
 from cuefem.cli.scene_options import with_body_option, with_shaft_mass_option
 from cuefem.cue import Cue
 from cuefem.files import load, save
@@ -45,4 +51,4 @@ def convert(file: Path, output: Path, force: bool, as_json: bool, **options: str
 @json_option
 def parts(as_json: bool, output: Path | None) -> None:
     """List the shafts, materials (wood, ferrule) and tips that a file can name, with their sources."""
-    show(cf.parts(), {}, "", output=output, as_json=as_json)
+    Presentation(cf.parts()).show(output, as_json=as_json)

@@ -11,10 +11,11 @@ import click
 from rich.console import Console
 from rich.markdown import Markdown
 
-from cuefem.cli.output import command, json_option, page_option, print_json, write_result
-from cuefem.files import InputError, save_page
+from cuefem.cli.output import command, json_option, page_option, print_json
+from cuefem.files import InputError
 from cuefem.handbook import CHAPTERS, chapters, sections_with
 from cuefem.handbook.page import page
+from cuefem.show.analysis import write
 
 
 @command()
@@ -37,10 +38,8 @@ def guide(subject: str | None, output: Path | None, in_terminal: bool, as_json: 
         return
     requested = [chapter for chapter in chapters() if subject in (None, chapter.name)]
     record = {chapter.name: chapter.text for chapter in requested}
-    if output is not None and output.suffix == ".json":
-        write_result(output, record, [])
-    elif output is not None:
-        save_page(page(opens_with=subject or CHAPTERS[0]), output)
+    if output is not None:
+        write(output, lambda: record, lambda: page(opens_with=subject or CHAPTERS[0]))
     if as_json:
         print_json(record)
     elif output is not None:

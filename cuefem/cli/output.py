@@ -11,9 +11,9 @@ from typing import Any
 
 import click
 
-from cuefem.files import InputError, check_writable, save_page, write_atomically
+from cuefem.files import InputError, check_writable
 from cuefem.quantity.encoding import is_unicode
-from cuefem.show.renderers import json_text, print_tables
+from cuefem.show.renderers import json_text
 
 # The heading of an option that many commands share, in the order of a command's help.
 HEADINGS = ("Cue", "Tip", "Stroke", "Output")
@@ -110,26 +110,3 @@ def assumption_lines(notes: Sequence[str]) -> list[str]:
 def print_json(record: Any) -> None:
     """Print a record as JSON, escaped where stdout lacks characters."""
     click.echo(json_text(record, escaped=not is_unicode(sys.stdout.encoding)))
-
-
-def print_result(as_json: bool, record: Any, things: Sequence[Any], page: Path | None = None, title: str = "") -> None:
-    """Print a record as JSON, or as text and tables.
-
-    page: a file to write instead; title: of a page, by default the file's name.
-    """
-    if page is not None:
-        write_result(page, record, things, title)
-    if as_json:
-        print_json(record)
-    else:
-        print_tables(things if page is None else [f"wrote {page}"])
-
-
-def write_result(path: Path, record: Any, things: Sequence[Any], title: str = "") -> None:
-    """Write a record as .json, or text and tables as a page."""
-    if path.suffix == ".json":
-        write_atomically(path, lambda temporary: temporary.write_text(json_text(record) + "\n", encoding="utf-8"))
-    else:
-        from cuefem.show.templates import plain_page  # templates take 0.1 s to load
-
-        save_page(plain_page(title or path.stem, things), path)

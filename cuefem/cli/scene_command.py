@@ -17,7 +17,6 @@ from cuefem.cli.output import (
     json_option,
     output_option,
     print_json,
-    print_tables,
     shared_option,
 )
 from cuefem.cli.scene_options import (
@@ -36,12 +35,11 @@ from cuefem.files import InputError, check_writable, load_stroke
 from cuefem.files.defaults_report import Assumption, assumption_texts, assumptions
 from cuefem.files.drawing_warnings import drawing_warnings
 from cuefem.files.shaft_additions import SHAFT_ADDITIONS
-from cuefem.results.quantities import UNITS
 from cuefem.results.records import Record, Table
 from cuefem.scene import Scene
 from cuefem.show.analysis import Analysis, Answer, write
 from cuefem.show.plausibility import plausibility_warnings
-from cuefem.show.scene_summary import scene_record
+from cuefem.show.renderers import print_tables
 from cuefem.solid.tip_cache import computing_message
 
 
@@ -210,55 +208,46 @@ def analysis_command(
 def _show(request: Request, analysis: Analysis, output: Path | None) -> None:
     """Print the analysis of a file, or write it."""
     file = request.file
+    warnings = [*drawing_warnings(file), *plausibility_warnings(analysis.scene, with_impact=analysis.has_stroke)]
+    shown = Presentation(analysis, file.name, {"file": str(file)}, request.assumptions, warnings, request.hints)
     with errors_name_file(file, request.options):
-        show(
-            analysis,
-            {"file": str(file)},
-            file.name,
-            notes=request.assumptions,
-            warnings=[*drawing_warnings(file), *plausibility_warnings(analysis.scene, with_impact=analysis.has_stroke)],
-            hints=request.hints,
-            output=output,
-            as_json=request.options["as_json"],
-        )
+        shown.show(output, as_json=request.options["as_json"])
     if analysis.problem() and output is None:
         raise InputError(file, "", analysis.problem())
 
 
-def show(
-    analysis: Answer,
-    about: Record,
-    name: str,
-    *,
-    notes: Sequence[str] = (),
-    warnings: Sequence[str] = (),
-    hints: Sequence[Table | str] = (),
-    output: Path | None,
-    as_json: bool,
-) -> None:
-    """Print an analysis as tables or JSON, or write it into a file.
+@dataclass(frozen=True)
+class Presentation:
+    """An answer with what a command adds to it.
 
-    about: its files, for JSON. name: of what was analysed. notes: the assumptions. hints: lines after the tables.
+    name: of what was analysed. files: for JSON. assumptions: their texts. hints: lines after the tables.
     """
 
-    def record() -> Record:
-        return about | {"assumptions": [*notes], "warnings": [*warnings]} | analysis.to_dict()
+    answer: Answer
+    name: str = ""
+    files: Record = field(default_factory=dict)
+    assumptions: Sequence[str] = ()
+    warnings: Sequence[str] = ()
+    hints: Sequence[Table | str] = ()
 
-    if output is not None:
-        title = analysis.page_title(name, click.get_current_context().info_name or "")
-        write(output, record, lambda: analysis.to_html(title, notes, [f"warning: {line}" for line in warnings]))
-    if as_json:
-        print_json(record())
-    elif output is not None:
-        print_tables([*filter(None, [analysis.headline()]), f"wrote {output}", *hints])
-    else:
-        print_tables(analysis.lines(name, notes, hints))
+    def record(self) -> Record:
+        """The JSON record."""
+        notes = {"assumptions": [*self.assumptions], "warnings": [*self.warnings]}
+        return (self.files | notes if self.files else {}) | self.answer.to_dict()
 
+    def write(self, path: Path) -> None:
+        """Write the record (.json) or a page (.html)."""
+        title = self.answer.page_title(self.name, click.get_current_context().info_name or "")
+        warnings = [f"warning: {line}" for line in self.warnings]
+        write(path, self.record, lambda: self.answer.to_html(title, self.assumptions, warnings))
 
-def full_record(
-    file: Path, notes: Sequence[str], solved: Scene, record: Record, *, with_impact: bool = True, **more: Any
-) -> Record:
-    """The JSON record: the file, assumptions, warnings, the scene, the result, the units."""
-    warnings = [*drawing_warnings(file), *plausibility_warnings(solved, with_impact=with_impact)]
-    about = {"file": str(file), "assumptions": notes, "warnings": warnings, "scene": scene_record(solved)}
-    return about | more | record | {"units": UNITS | record.get("units", {})}
+    def show(self, output: Path | None, *, as_json: bool) -> None:
+        """Write a file, or print tables; print JSON if asked for."""
+        if output is not None:
+            self.write(output)
+        if as_json:
+            print_json(self.record())
+        elif output is not None:
+            print_tables([*filter(None, [self.answer.headline()]), f"wrote {output}", *self.hints])
+        else:
+            print_tables(self.answer.lines(self.name, self.assumptions, self.hints))

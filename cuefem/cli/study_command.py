@@ -12,23 +12,24 @@ from typing import Any, TypeVar
 
 import click
 
+import cuefem as cf
 from cuefem.cli.cluster import dask_executor
-from cuefem.cli.output import assumption_lines, command, json_option, output_option, print_result, write_result
+from cuefem.cli.output import command, json_option, output_option, print_json
 from cuefem.cli.progress import ProgressLines, progress_bar
-from cuefem.cli.scene_command import check_overwrite, errors_name_file, force_option, print_warnings
+from cuefem.cli.scene_command import Presentation, check_overwrite, errors_name_file, force_option, print_warnings
 from cuefem.designs import Study
 from cuefem.designs.optimum import Problem, Round
 from cuefem.designs.scatter import Scatter
 from cuefem.designs.store import SqliteStore, check_parquet, write_parquet, write_table
 from cuefem.designs.study_file import base_assumptions, load_study
-from cuefem.designs.study_result import StudyResult, compute_study
+from cuefem.designs.study_result import StudyResult
 from cuefem.designs.sweep import sweep
 from cuefem.files import InputError, save, write_atomically
 from cuefem.parameters.parameter import value_at, with_values_at
 from cuefem.quantity.fields import quote
 from cuefem.results.quantities import with_unit
 from cuefem.scene import Scene
-from cuefem.show.study_table import study_record, tabulate_study, varied_segments
+from cuefem.show.plausibility import plausibility_warnings
 
 Computed = TypeVar("Computed")
 
@@ -121,7 +122,7 @@ def study(
             def show_round(reached: Round) -> None:
                 bar.update(task, completed=reached.number, description=round_text(plan, reached, iterations))
 
-            result = compute_study(plan, rounds=iterations, progress=show_round)
+            result = cf.study(plan, rounds=iterations, progress=show_round)
     else:
         name = f".{part.start + 1}_of_{part.step}.sqlite" if part else ".sqlite"
         first, *others = stores or [file.with_suffix(name)]
@@ -130,25 +131,26 @@ def study(
             if part:
                 compute_part = partial(sweep, designs, database, workers=where, part=part)
                 _run_stored(file, database, len(range(designs.size)[part]), compute_part)
-                record = {"file": str(file), "store": str(first), "designs": database.done}
-                print_result(as_json, record, [f"{database.done} of {designs.size} designs in {first}"])
+                if as_json:
+                    print_json({"file": str(file), "store": str(first), "designs": database.done})
+                else:
+                    click.echo(f"{database.done} of {designs.size} designs in {first}")
                 return
-            run = partial(compute_study, plan, store=database, workers=where)
+            run = partial(cf.study, plan, store=database, workers=where)
             result = _run_stored(file, database, designs.size, run)
-    record = {"file": str(file), "assumptions": notes, "resolution": designs.at and vars(designs.at)}
-    record |= {"kind": result.kind, "varied_fields": varied_segments(designs.vary, designs.base), "units": result.units}
+    files: dict[str, Any] = {"file": str(file)}
     stored = []
     if database:
-        record |= {"store": str(database.path), "evaluated": database.computed}
+        files |= {"store": str(database.path), "evaluated": database.computed}
         before = database.done - database.computed
-        stored.append(
-            f"{database.done} designs in {database.path}" + (f", {before} of them from before" if before else "")
-        )
-    record |= study_record(result)
-    title, tables = f"{file.name}: {result.kind}", [*tabulate_study(result), "", *assumption_lines(notes)]
+        more = f", {before} of them from before" if before else ""
+        stored.append(f"{database.done} designs in {database.path}{more}")
+    warnings = plausibility_warnings(designs.base)
+    hints = [*stored, *(f"wrote {path}" for path in output)]
+    shown = Presentation(result, file.name, files, notes, warnings, hints)
     for path in output:
-        _write(path, result, record, tables, title)
-    print_result(as_json, record, [title, *stored, *tables, *(f"wrote {path}" for path in output)])
+        _write(path, result, shown)
+    shown.show(None, as_json=as_json)
 
 
 def _run_stored(file: Path, designs: SqliteStore, count: int, run: Callable[..., Computed]) -> Computed:
@@ -172,14 +174,14 @@ def _run_stored(file: Path, designs: SqliteStore, count: int, run: Callable[...,
             raise click.exceptions.Exit(130) from None
 
 
-def _write(path: Path, result: StudyResult, record: Any, tables: list[Any], title: str) -> None:
+def _write(path: Path, result: StudyResult, shown: Presentation) -> None:
     """Write the tables as a page, the record, the designs as a table, or the best design."""
     tables_of_designs = {".csv": write_table, ".parquet": write_parquet}
     if path.suffix in tables_of_designs:
         write = tables_of_designs[path.suffix]
         write_atomically(path, lambda temporary: write(result.study, result.rows, temporary))
     elif path.suffix != ".toml":
-        write_result(path, record, tables, title)
+        shown.write(path)
     elif not result.best:
         raise InputError(path, "--output", "has no design to write: every design failed")
     else:

@@ -6,6 +6,7 @@ The handbook's chapter on studies lists every key.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from dataclasses import dataclass, field
@@ -151,8 +152,10 @@ def load_study(path: str | PathLike[str]) -> Study | Scatter | Problem:
 def study(
     what: str | PathLike[str] | Study | Scatter | Problem,
     *,
-    store: str | PathLike[str] | None = None,
+    store: str | PathLike[str] | SqliteStore | None = None,
     workers: int | Executor | None = None,
+    progress: Callable[[Any], object] = lambda step: None,
+    rounds: int = 60,
 ) -> StudyResult:
     """Compute a study: a sweep over designs, a scatter with tolerances, or an optimum within limits.
 
@@ -160,18 +163,23 @@ def study(
     ----------
     what : str, path, Study, Scatter or Problem
         A study's file (.toml; see `cuefem guide study`), or the object that `load_study` makes of it.
-    store : str or path, optional
+    store : str, path or SqliteStore, optional
         A file (.sqlite) for the designs, with which an interrupted or edited study resumes. Not for an optimum.
     workers : int or Executor, optional
         Number of worker processes, by default none; or any `concurrent.futures.Executor`, such as a cluster's, which
         the caller closes.
+    progress : callable, optional
+        Called with the number of designs that were computed since its last call; of an optimum with each round.
+    rounds : int, optional
+        Largest number of rounds of an optimum.
 
     Returns
     -------
-    StudyResult
+    SweepResult, ScatterResult or OptimumResult
         ``designs`` and ``responses`` are arrays by name, in the SI ``units``; ``best`` has the best design by response,
-        ``spread`` mean, standard deviation and quantiles; ``optimum`` and ``sobol_indices`` are for such studies only.
-        ``to_frame()`` converts it to a pandas frame.
+        ``spread`` mean, standard deviation and quantiles; a scatter has ``sobol_indices``, an optimum ``optimum``.
+        ``to_frame()`` converts it to a pandas frame. Show it with ``print``, in a notebook, or by
+        ``.save("study.html")``.
 
     Raises
     ------
@@ -189,7 +197,7 @@ def study(
     >>> tip = Vary(("cue.segments[0].tip_diameter",), Span(0.011, 0.013, count=3), name="tip")
     >>> result = cf.study(Study(cf.Scene(cue), (tip,), (Response("tip_stiffness"), Response("shaft_mass"))))
     >>> result
-    StudyResult(sweep of 3 designs)
+    SweepResult(3 designs)
       tip_stiffness: 649.4 N/m, tip 13 mm
       shaft_mass: 107.5 ± 5.8 g, mean ± sd
     >>> result.designs["tip"], result.units["tip"]
@@ -199,10 +207,10 @@ def study(
     if isinstance(problem, Problem):
         if store or workers:
             raise ValueError("an optimum takes no store or workers: it computes one design after the other")
-        return compute_study(problem)
+        return compute_study(problem, progress=progress, rounds=rounds)
     designs = problem.sobol_study if isinstance(problem, Scatter) else problem
-    with SqliteStore(store, designs) if store else nullcontext() as stored:
-        return compute_study(problem, store=stored, workers=workers)
+    with SqliteStore(store, designs) if isinstance(store, str | PathLike) else nullcontext(store) as stored:
+        return compute_study(problem, store=stored, workers=workers, progress=progress)
 
 
 def _problem(tables: StudyTable, objective: ObjectiveTable, base: Scene, vary: tuple[Vary, ...], path: Path) -> Problem:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import importlib
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -16,8 +16,23 @@ from cuefem.designs.optimum import Optimum, Problem, optimum
 from cuefem.designs.sampling import Value
 from cuefem.designs.scatter import Scatter, SobolIndices, sobol_indices_of
 from cuefem.designs.study import Study, StudyDesign
+from cuefem.designs.study_statistics import SweepStatistics, sweep_statistics
+from cuefem.designs.study_table import (
+    optimum_record,
+    scatter_record,
+    sweep_record,
+    tabulate_failures,
+    tabulate_optimum,
+    tabulate_parameters,
+    tabulate_scatter,
+    tabulate_sweep,
+    varied_segments,
+)
 from cuefem.designs.sweep import Columns, Row, Store, sweep
 from cuefem.results.quantities import with_unit
+from cuefem.results.records import Record, Table
+from cuefem.show.analysis import Analysis
+from cuefem.show.scene_summary import scene_record
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,19 +41,17 @@ SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of the designs below a quantile
 
 
 @dataclass(frozen=True, repr=False)
-class StudyResult:
-    """The result of a study.
+class StudyResult(Analysis):
+    """The result of a study: a `SweepResult`, a `ScatterResult` or an `OptimumResult`.
 
     Parameters
     ----------
+    scene : Scene
+        The scene that the designs vary.
     definition : Study, Scatter or Problem
         The study.
     columns : Columns
         The responses of the designs, in order; of an optimization only the best design.
-    optimum : Optimum, optional
-        Of a study with an objective: the best design and its active limits.
-    sobol_indices : SobolIndices, optional
-        Of a study with tolerances: Sobol indices of each response.
 
     Attributes
     ----------
@@ -63,15 +76,29 @@ class StudyResult:
         its two independent samples.
     """
 
-    definition: Study | Scatter | Problem
-    columns: Columns
-    optimum: Optimum | None = None
-    sobol_indices: SobolIndices | None = None
+    definition: Study | Scatter | Problem = field(repr=False)
+    columns: Columns = field(repr=False)
+    kind: ClassVar[str] = ""
 
-    @property
-    def kind(self) -> str:
-        """ "sweep", "scatter" or "optimum"."""
-        return "optimum" if self.optimum else "scatter" if self.sobol_indices else "sweep"
+    def heading(self) -> str:
+        """The kind of the study."""
+        return self.kind
+
+    def to_dict(self) -> Record:
+        """The record: scene, resolution, varied parameters, numbers in SI units, and the unit of each."""
+        study = designs_of(self.definition)
+        return {
+            "scene": scene_record(self.scene),
+            "resolution": study.at and vars(study.at),
+            "kind": self.kind,
+            "varied_fields": varied_segments(study.vary, study.base),
+            **self.values(),
+            "units": self.units,
+        }
+
+    def tables(self) -> list[Table | str]:
+        """The varied parameters; then, by kind, the results."""
+        return [tabulate_parameters(self.study)]
 
     @property
     def study(self) -> Study:
@@ -90,8 +117,6 @@ class StudyResult:
 
     def _values(self) -> Iterator[tuple[Value, ...]]:
         """The parameter values of the designs, which the definition determines."""
-        if self.optimum is not None:
-            return iter([tuple(self.optimum.values.values())])
         return designs_of(self.definition).designs()
 
     @property
@@ -121,23 +146,10 @@ class StudyResult:
         """Reasons for missing responses."""
         return dict(sorted(self.columns.failures.items()))
 
-    @cached_property
+    @property
     def best(self) -> dict[str, StudyDesign]:
-        """The best design for each response with a preferred direction; if none has one, the lowest of each."""
-        if self.optimum or self.sobol_indices:
-            return {self.study.responses[0].name: self.optimum} if self.optimum else {}
-        ranked = [response for response in self.study.responses if response.result.better] or self.study.responses
-        best = dict[str, StudyDesign]()
-        for response in ranked:
-            column = self.responses[response.name]
-            if np.isfinite(column).any():
-                best[response.name] = self._design(int(np.nanargmin(response.loss(column))))
-        return best
-
-    def _design(self, i: int) -> StudyDesign:
-        values = {name: column[i].item() for name, column in self.designs.items()}
-        numbers = {name: float(column[i]) for name, column in self.responses.items()}
-        return StudyDesign(self.study.scene(tuple(values.values())), values, numbers)
+        """The best design for each response."""
+        return {}
 
     def to_frame(self) -> pd.DataFrame:
         """The designs as a pandas frame, a row each, by number.
@@ -166,8 +178,7 @@ class StudyResult:
     @cached_property
     def spread(self) -> dict[str, dict[str, float]]:
         """Mean, standard deviation and quantiles of the responses."""
-        independent = slice(2 * self.definition.count if isinstance(self.definition, Scatter) else None)
-        columns = {name: column[independent] for name, column in self.responses.items()}
+        columns = {name: column[: self._independent()] for name, column in self.responses.items()}
         columns = {name: column[np.isfinite(column)] for name, column in columns.items()}
         return {
             name: {"mean": float(column.mean()), "sd": float(column.std(ddof=1))}
@@ -176,11 +187,15 @@ class StudyResult:
             if len(column) > 1
         }
 
+    def _independent(self) -> int | None:
+        """How many of the first designs are an independent sample; None for all."""
+        return None
+
     def _lines(self) -> list[tuple[str, ...]]:
         """A line per response: its name, its best value or mean, and the best design."""
         lines = list[tuple[str, ...]]()
         for response in self.study.responses:
-            best = self.best.get(response.name) or self.optimum
+            best = self.best.get(response.name)
             spread = self.spread.get(response.name)
             if best is not None:
                 at = ", ".join(
@@ -194,9 +209,113 @@ class StudyResult:
 
     def __repr__(self) -> str:
         failed = f", {len(self.failures)} failed" if self.failures else ""
-        count = self.optimum.evaluations if self.optimum else self.count
-        title = f"StudyResult({self.kind} of {count} designs{failed})"
+        title = f"{type(self).__name__}({self._computed()} designs{failed})"
         return "\n  ".join([title, *(f"{name}: {value}, {at}" for name, value, at in self._lines())])
+
+    def _computed(self) -> int:
+        """Number of computed designs."""
+        return self.count
+
+
+@dataclass(frozen=True, repr=False)
+class SweepResult(StudyResult):
+    """The result of a sweep: the best designs, the main parameter of each response, and a trade-off."""
+
+    kind: ClassVar[str] = "sweep"
+
+    @cached_property
+    def best(self) -> dict[str, StudyDesign]:
+        """The best design for each response with a preferred direction; if none has one, the lowest of each."""
+        ranked = [response for response in self.study.responses if response.result.better] or self.study.responses
+        best = dict[str, StudyDesign]()
+        for response in ranked:
+            column = self.responses[response.name]
+            if np.isfinite(column).any():
+                best[response.name] = self._design(int(np.nanargmin(response.loss(column))))
+        return best
+
+    def _design(self, i: int) -> StudyDesign:
+        values = {name: column[i].item() for name, column in self.designs.items()}
+        numbers = {name: float(column[i]) for name, column in self.responses.items()}
+        return StudyDesign(self.study.scene(tuple(values.values())), values, numbers)
+
+    @cached_property
+    def statistics(self) -> SweepStatistics | None:
+        """Its statistics; None if fewer than two designs have all responses."""
+        return sweep_statistics(self)
+
+    def values(self) -> Record:
+        """Counts of designs, and the summary: best designs, sensitivities, Pareto front."""
+        first_failure = next(iter(self.failures.values()), None)
+        counts = {"designs": self.count, "failed": len(self.failures), "first_failure": first_failure}
+        return counts | {"summary": self.statistics and sweep_record(self.statistics)}
+
+    def tables(self) -> list[Table | str]:
+        """Failures, varied parameters, best designs, sensitivities, and the Pareto front."""
+        found = [] if self.statistics is None else tabulate_sweep(self.statistics)
+        return [*tabulate_failures(self), *super().tables(), *found]
+
+
+@dataclass(frozen=True, repr=False)
+class ScatterResult(StudyResult):
+    """The result of a tolerance analysis: the spread of each response, and the share of each factor in it.
+
+    Parameters
+    ----------
+    sobol_indices : SobolIndices
+        Sobol indices of each response.
+    """
+
+    sobol_indices: SobolIndices = field(repr=False)
+    definition: Scatter
+    kind: ClassVar[str] = "scatter"
+
+    def _independent(self) -> int:
+        """The two independent samples; the other designs mix them."""
+        return 2 * self.definition.count
+
+    def values(self) -> Record:
+        """The distribution of each response, and the shares of its factors."""
+        about = {"count": self.definition.count, "seed": self.definition.seed}
+        return about | {"responses": scatter_record(self, self.sobol_indices)}
+
+    def tables(self) -> list[Table | str]:
+        """Varied parameters, spreads, and the shares of the factors."""
+        return [*super().tables(), *tabulate_scatter(self, self.definition, self.sobol_indices)]
+
+
+@dataclass(frozen=True, repr=False)
+class OptimumResult(StudyResult):
+    """The result of an optimization: the best design and its active limits.
+
+    Parameters
+    ----------
+    optimum : Optimum
+        The best design: ``scene``, ``values``, ``responses``, ``active`` limits and ``evaluations``.
+    """
+
+    optimum: Optimum = field(repr=False)
+    definition: Problem
+    kind: ClassVar[str] = "optimum"
+
+    @property
+    def best(self) -> dict[str, StudyDesign]:
+        """The best design, by the name of every response."""
+        return {response.name: self.optimum for response in self.study.responses}
+
+    def _values(self) -> Iterator[tuple[Value, ...]]:
+        return iter([tuple(self.optimum.values.values())])
+
+    def _computed(self) -> int:
+        return self.optimum.evaluations
+
+    def values(self) -> Record:
+        """The best design, its responses and active constraints, and the evaluations."""
+        return optimum_record(self.definition, self.optimum)
+
+    def tables(self) -> list[Table | str]:
+        """Varied parameters, the best design, its active constraints, and the best design for each choice."""
+        return [*super().tables(), *tabulate_optimum(self.definition, self.optimum)]
 
 
 def compute_study(
@@ -214,10 +333,13 @@ def compute_study(
     """
     if isinstance(definition, Problem):
         best = optimum(definition, rounds=rounds, progress=progress)
-        return StudyResult(definition, Columns(np.array([[*best.responses.values()]]), {}), best)
-    columns = sweep(designs_of(definition), store, workers=workers, progress=progress)
-    indices = sobol_indices_of(definition, columns) if isinstance(definition, Scatter) else None
-    return StudyResult(definition, columns, None, indices)
+        columns = Columns(np.array([[*best.responses.values()]]), {})
+        return OptimumResult(definition.study.base, definition, columns, best)
+    designs = designs_of(definition)
+    columns = sweep(designs, store, workers=workers, progress=progress)
+    if isinstance(definition, Scatter):
+        return ScatterResult(designs.base, definition, columns, sobol_indices_of(definition, columns))
+    return SweepResult(designs.base, definition, columns)
 
 
 def designs_of(definition: Study | Scatter | Problem) -> Study:

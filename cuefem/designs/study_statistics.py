@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cuefem.cue import Array
 from cuefem.designs.evaluation import Response
-from cuefem.designs.study_result import StudyResult
 from cuefem.quantity.equality import equal_fields
+
+if TYPE_CHECKING:
+    from cuefem.designs.study_result import StudyResult
 
 MAX_LEVELS = 24  # maximum number of values of a parameter that are separate groups
 MAX_GROUPS = 12  # maximum number of groups, each a range, of a parameter with more values

@@ -14,7 +14,7 @@ from cuefem.analysis.report_page import PAGE_OFFSETS, page
 from cuefem.analysis.squirt_curve import squirt_curve
 from cuefem.designs import Response
 from cuefem.designs.study_statistics import SweepStatistics
-from cuefem.show.study_table import tabulate_sweep
+from cuefem.designs.study_table import tabulate_sweep
 from cuefem.show.templates import plain_page
 from tests.helpers.designer_browser import BROWSER, empty_page, open_browser
 

@@ -13,7 +13,7 @@ from hypothesis.extra.numpy import arrays
 import cuefem as cf
 from cuefem.designs import Response
 from cuefem.designs.study_statistics import SweepStatistics
-from cuefem.show.study_table import column_label
+from cuefem.designs.study_table import column_label
 from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.invalid_input import assert_rejects
 from tests.helpers.sweeps import STUDY, write_study
@@ -93,7 +93,7 @@ def test_study_result_has_designs_responses_units_best_and_spread(tmp_path: Path
     assert best.scene.cue.segments[0].tip_bore == best.values["bore"]
     assert set(result.best) == {"end_mass", "tip_stiffness"}
     assert result.spread["end_mass"]["5 %"] < result.spread["end_mass"]["mean"] < result.spread["end_mass"]["95 %"]
-    assert repr(result).splitlines()[0] == "StudyResult(sweep of 64 designs, 16 failed)"
+    assert repr(result).splitlines()[0] == "SweepResult(64 designs, 16 failed)"
     again = cf.study(tmp_path / "study.toml", store=tmp_path / "some.sqlite", workers=1)  # all designs are stored
     assert again.columns == result.columns
 

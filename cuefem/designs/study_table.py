@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import fields, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,14 +18,16 @@ from cuefem.cue.materials import material_name
 from cuefem.designs import Levels, Normal, Span, Study, Vary
 from cuefem.designs.optimum import Optimum, Problem
 from cuefem.designs.scatter import Scatter, SobolIndices
-from cuefem.designs.study_result import StudyResult
-from cuefem.designs.study_statistics import SweepStatistics, sweep_statistics
+from cuefem.designs.study_statistics import SweepStatistics
 from cuefem.parameters.parameter import Path
 from cuefem.parameters.parts import Layout
 from cuefem.results.quantities import DASH, DISPLAY_UNITS, significant, with_heading, with_unit
 from cuefem.results.records import Record, Table
 from cuefem.scene import Scene
 from cuefem.show.scene_summary import assumptions, scene_record
+
+if TYPE_CHECKING:
+    from cuefem.designs.study_result import StudyResult
 
 _FIELD = re.compile(rf"({'|'.join(field.name for field in fields(Scene))})(\[[\d*]+\])?(\.\w+(\[[\d*]+\])?)+")
 _ITEM = re.compile(r"(\w+)s\[(\d+|\*)\]")
@@ -117,34 +119,17 @@ def shown(value: Any, unit: str) -> str:
     return significant(DISPLAY_UNITS.get(unit, (1.0, unit))[0] * float(value))
 
 
-def study_record(result: StudyResult) -> Record:
-    """The results of a study, SI."""
-    if isinstance(result.definition, Problem) and result.optimum:
-        return optimum_record(result.definition, result.optimum)
-    if isinstance(result.definition, Scatter) and result.sobol_indices:
-        about = {"count": result.definition.count, "seed": result.definition.seed}
-        return about | {"responses": scatter_record(result, result.sobol_indices)}
-    sweep, failed = sweep_statistics(result), [*result.failures.values()]
-    counts = {"designs": result.count, "failed": len(failed), "first_failure": failed[0] if failed else None}
-    return counts | {"summary": sweep and sweep_record(sweep)}
-
-
-def tabulate_study(result: StudyResult) -> list[Table | str]:
-    """The tables of a study: its varied parameters, and its results by kind."""
-    varies = tabulate_parameters(result.study)
-    if isinstance(result.definition, Problem) and result.optimum:
-        return [varies, *tabulate_optimum(result.definition, result.optimum)]
-    if isinstance(result.definition, Scatter) and result.sobol_indices:
-        return [varies, *tabulate_scatter(result, result.definition, result.sobol_indices)]
-    sweep, failures = sweep_statistics(result), result.failures
-    lines = list[str]()
-    for number, failure in [*failures.items()][:1]:
-        values = [column[number].item() for column in result.designs.values()]
-        levels = [replace(vary, range=Levels((x,))) for vary, x in zip(result.study.vary, values, strict=True)]
-        texts = map(range_text, levels, result.study.units)
-        design = ", ".join(f"{column_label(vary.name)} {x}" for vary, x in zip(levels, texts, strict=True))
-        lines = [f"{len(failures)} failed, the first of them design {number} ({design}): {failure}"]
-    return [*lines, varies, *([] if sweep is None else tabulate_sweep(sweep))]
+def tabulate_failures(result: StudyResult) -> list[str]:
+    """How many designs failed, with the first of them and its reason; empty without failures."""
+    failures = result.failures
+    if not failures:
+        return []
+    number, failure = next(iter(failures.items()))
+    values = [column[number].item() for column in result.designs.values()]
+    levels = [replace(vary, range=Levels((x,))) for vary, x in zip(result.study.vary, values, strict=True)]
+    texts = map(range_text, levels, result.study.units)
+    design = ", ".join(f"{column_label(vary.name)} {x}" for vary, x in zip(levels, texts, strict=True))
+    return [f"{len(failures)} failed, the first of them design {number} ({design}): {failure}"]
 
 
 def sweep_record(sweep: SweepStatistics) -> Record:
