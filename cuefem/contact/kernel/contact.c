@@ -49,8 +49,8 @@ EXPORTED void contact_free(Contact *c)
     free(c);
 }
 
-/* Of a cue in contact: one in free flight turns without being bent. The last slope of each plane is that of the
-   cue's end. */
+/* Of a cue in contact: one in free flight turns without being bent. The last slope of each plane is that of
+   the cue's end. */
 static void update_max_slope(Contact *c)
 {
     State *s = c->s;
@@ -110,8 +110,8 @@ static int advance(Contact *c, Step *row)
 }
 
 /* Take up to max_steps steps of the tables' length and return their number; call again, with tables of the
-   length State.next_step, while the status is RUNNING. rows: (max_steps,), a record of each step. modes: NULL, or
-   (max_steps, 2, modes), the state of the modes after each step. */
+   length State.next_step, while the status is RUNNING. rows: (max_steps,), a record of each step. modes:
+   NULL, or (max_steps, 2, modes), the state of the modes after each step. */
 EXPORTED int contact_steps(Contact *c, const StepTables *tables, int max_steps, Step *rows, double *modes)
 {
     const State *s = c->s;

@@ -11,11 +11,11 @@
    A mode of angular frequency omega is its velocity v and a = omega q, its displacement in the same unit. The
    cue has ports (axial and lateral velocity of its tip, rotation rate) and the slopes of the bent shaft; the
    ball has its velocities. With y all these velocities, the contact's velocities are v = C y and its forces F
-   load them by C' F, so that energy is conserved. A dashpot is one more port of the cue, whose force opposes
-   its mean velocity over the step.
+   load them by C' F, so that energy is conserved. v stands for velocities at the end of a step, u for their
+   means over it. A dashpot is one more port of the cue, whose force opposes its mean velocity over the step.
 
-   Python fills an Input and a State and calls contact_steps, with StepTables of the length State.next_step, until
-   the status is no longer RUNNING. Each step leaves a record, a Step.
+   Python fills an Input and a State and calls contact_steps, with StepTables of the length State.next_step,
+   until the status is no longer RUNNING. Each step leaves a record, a Step.
  */
 #ifndef CUEFEM_CONTACT_H
 #define CUEFEM_CONTACT_H
@@ -66,7 +66,7 @@ typedef struct {
     double time, length;           /* at the end of the step; of the step, s */
     double friction_state, phase;  /* of the step */
     double angle;                  /* rolled by the end of the step, rad */
-    double damping_loss, radiated; /* by dashpots and loss factors, and by waves, up to the end of the step, J */
+    double damping_loss, radiated; /* up to the end of the step, J; as in State */
     double F[FORCES];              /* over the step, N */
     double v[FORCES];              /* of the contact at the end of the step, m/s */
     double ball[BALL_VELOCITIES];  /* velocities of the ball at the end of the step, m/s */
@@ -78,17 +78,17 @@ typedef struct {
     int planes;                               /* planes in which the cue bends, 1 or 2 */
     int rolling;                              /* whether the contact rolls over ball and dome */
     int law, terms, patch, annuli;            /* terms: of the leather law's series */
-    int dashpots, radiating;         /* numbers of dashpots, and of modes that radiate */
-    int structural_loss;             /* whether modes have loss factors */
-    int begins_with_impact;          /* whether an impulse stops the tangential motion at the first touch */
-    const int *radiating_modes;      /* indices of the modes that radiate, (radiating,) */
-    const double *omega;             /* (modes,), rad/s */
-    const double *rows;              /* (ports + slopes + dashpots, modes), 1/sqrt(kg): velocities are rows v */
-    const double *mobility;          /* of ports and slopes, 1/kg */
-    const double *kinematics;        /* C at the first touch, (forces, ports + speeds) */
-    const double *inverse_masses;    /* of the ball's velocities, (speeds,), 1/kg */
-    const double *slope_weights;     /* of each slope in the tip's axial shortening, (slopes,) */
-    const double *force_terms;       /* leather: F = d^(3/2) times a series in the root of the indentation d */
+    int dashpots, radiating;                  /* numbers of dashpots, and of modes that radiate */
+    int structural_loss;                      /* whether modes have loss factors */
+    int begins_with_impact;       /* whether an impulse stops the tangential motion at the first touch */
+    const int *radiating_modes;   /* indices of the modes that radiate, (radiating,) */
+    const double *omega;          /* (modes,), rad/s */
+    const double *rows;           /* (ports + slopes + dashpots, modes), 1/sqrt(kg): velocities are rows v */
+    const double *mobility;       /* of ports and slopes, 1/kg */
+    const double *kinematics;     /* C at the first touch, (forces, ports + speeds) */
+    const double *inverse_masses; /* of the ball's velocities, (speeds,), 1/kg */
+    const double *slope_weights;  /* of each slope in the tip's axial shortening, (slopes,) */
+    const double *force_terms;    /* leather: F = d^(3/2) times a series in the root of the indentation d */
     const double *compliance_terms;  /* tangential compliance: such a series over the root of d */
     const double *annulus_edges;     /* indentations at which the annuli begin, (annuli + 1,), m */
     const double *annulus_forces;    /* F at the edges, N */
@@ -113,36 +113,37 @@ typedef struct {
     double ball[BALL_VELOCITIES]; /* velocities, m/s */
     int status, steps, steps_to_last_separation;
     int phase, friction_state;
-    double time, next_step;               /* s; length of the next step, s */
-    double deadline, window_end;          /* of this contact; of the window after separation, s */
-    int ends_at_event;                    /* whether the next step was shortened to end at separation or touch */
-    double indentation, max_indentation;  /* m */
-    double angle, rolling_rate;           /* rolled, rad; rad/s */
-    double height;                        /* of the ball above the table, m */
+    double time, next_step;      /* s; length of the next step, s */
+    double deadline, window_end; /* of this contact; of the window after separation, s */
+    int ends_at_event;           /* whether the next step was shortened to end at separation or touch */
+    double indentation, max_indentation;    /* m */
+    double angle, rolling_rate;             /* rolled, rad; rad/s */
+    double height;                          /* of the ball above the table, m */
     double port_velocities[CUE_VELOCITIES]; /* of ports and slopes */
     double slopes[SLOPES];
     double max_slope, axial_force; /* largest slope of the cue's end, rad; the force on the cue then, N */
-    int tip_stuck, on_table, table_stuck; /* in the last step: tip sticks; table presses the ball; it sticks */
-    double shift, shift_mid; /* of the tip along t against the ball, m; at the middle of the last step */
-    double origin;           /* shift at which a spring patch is unstrained, m */
-    double virtual_mid;      /* virtual indentation at the middle of the last step, m; see laws.c */
-    double annulus_force[ANNULI];  /* at the middle of the last step, N */
-    double work[FORCES];           /* dissipated by each force so far, J */
-    double shear_loss;             /* dissipated strain energy of the patch so far, J */
+    int tip_stuck;                 /* in the last step */
+    int on_table, table_stuck;     /* in the last step: the table presses the ball; its lowest point sticks */
+    double shift, shift_mid;      /* of the tip along t against the ball, m; at the middle of the last step */
+    double origin;                /* shift at which a spring patch is unstrained, m */
+    double virtual_mid;           /* virtual indentation at the middle of the last step, m; see laws.c */
+    double annulus_force[ANNULI]; /* at the middle of the last step, N */
+    double work[FORCES];          /* dissipated by each force so far, J */
+    double shear_loss;            /* dissipated strain energy of the patch so far, J */
     double damping_loss, radiated; /* by dashpots and loss factors, and by waves, so far, J */
 } State;
 
-/* What the modes do in a step of one length (modal_response.py, where the shapes are). */
+/* What the modes do in a step of one length (shapes: declarations.py). */
 typedef struct {
-    double h;                                     /* s */
-    const double *own;                            /* of each mode by itself: v per v, a per v, a per a */
-    const double *ends, *means;                   /* from the state to the velocities of ports and slopes */
-    const double *end_per_load, *mean_per_load;   /* velocities per load on ports and slopes */
-    const double *response;                       /* change of the state per load */
-    const double *dashpots;                       /* forces of the dashpots from the state and the loads */
-    const double *loss;                           /* energy lost by each mode */
-    const double *radiating;                      /* modes that radiate, from their state and loads */
-    const double *radiated, *dissipated;          /* their losses, quadratic forms in state and loads */
+    double h;                                   /* s */
+    const double *own;                          /* of each mode by itself: v per v, a per v, a per a */
+    const double *ends, *means;                 /* from the state to the velocities of ports and slopes */
+    const double *end_per_load, *mean_per_load; /* velocities per load on ports and slopes */
+    const double *response;                     /* change of the state per load */
+    const double *dashpots;                     /* forces of the dashpots from the state and the loads */
+    const double *loss;                         /* energy lost by each mode */
+    const double *radiating;                    /* modes that radiate, from their state and loads */
+    const double *radiated, *dissipated;        /* their losses, quadratic forms in state and loads */
 } StepTables;
 
 typedef struct Contact Contact;
@@ -150,8 +151,8 @@ typedef struct Contact Contact;
 /* Normal force of a loading tip, N, and its slope, N/m, at an indentation > 0, m. */
 typedef double Law(const Input *in, double indentation, double *slope);
 
-/* Normal force of the tip at an indentation: force, N, and slope, N/m. virtual: where the loading curve has this
-   force, m; scale: indentation per virtual indentation. */
+/* Normal force of the tip at an indentation: force, N, and slope, N/m. virtual: where the loading curve has
+   this force, m; scale: indentation per virtual indentation. */
 typedef struct {
     double force, slope, virtual, scale;
 } NormalForce;
@@ -164,14 +165,14 @@ typedef struct {
 /* A tip by its tangential compliance (patch_*.c). */
 typedef struct {
     int slips_in_parts; /* the patch itself limits its force to mu F_n */
-    void (*stick)(Contact *c, const double *u, Equations *e); /* row T of the equations, where the tip sticks */
-    void (*keep)(Contact *c, double middle);   /* state after a step in contact; middle: shift in its middle, m */
+    void (*stick)(Contact *c, const double *u, Equations *e); /* row T of the equations of a sticking tip */
+    void (*keep)(Contact *c, double middle); /* state after a step in contact; middle: shift at mid-step, m */
     void (*release)(Contact *c, double shift); /* loss of strain energy at separation */
     int (*friction_state)(const Contact *c);   /* of the step */
 } Patch;
 
-/* A cue in the plane of t and n (level.c), or one raised over a table (raised.c). Both solvers return whether they
-   converged. */
+/* A cue in the plane of t and n (level.c), or one raised over a table (raised.c). Both solvers return whether
+   they converged. */
 typedef struct {
     int (*forces)(Contact *c);                         /* of a step */
     int (*impulses)(Contact *c);                       /* of an impact, without a normal one */
@@ -181,12 +182,12 @@ typedef struct {
 /* The contact while the tip loads, unloads, or is free (phases.c). */
 typedef struct {
     NormalForce (*curve)(const Contact *c, double indentation);
-    int (*forces)(Contact *c);                         /* of a step; returns whether they converged */
+    int (*forces)(Contact *c);                             /* of a step; returns whether they converged */
     int (*has_event)(double excess, double excess_at_end); /* separation or touch within a step */
     void (*keep)(Contact *c, double u); /* the tip's state after a step with the mean tangential velocity u */
     void (*next)(Contact *c, double v_n); /* phase and length of the next step; v_n: at the end of this one */
     int (*status)(const State *s);
-    int touches;
+    int touches; /* whether tip and ball are in contact */
 } Phase;
 
 extern const Patch rigid_patch, spring_patch, partial_slip;
@@ -202,16 +203,18 @@ struct Contact {
     const Cue *cue;
     StepTables t;
     double end_free[CUE_VELOCITIES], mean_free[CUE_VELOCITIES]; /* of ports and slopes without loads */
-    double C[FORCES][VELOCITIES], v[FORCES], u[FORCES], u_stick[FORCES]; /* contact_matrices */
-    double V[FORCES][FORCES], W[FORCES][FORCES];
-    double F[FORCES]; /* the next step's iteration begins with it, N */
-    int slip;         /* its direction, or STICK; a patch that slips in parts keeps STICK */
-    NormalForce normal;
-    double annulus_force[ANNULI], annuli_loss; /* N; dissipated in the step, J */
-    int on_table, table_sticks;
-    double axial_force; /* on the cue, N */
-    double *loads;      /* on ports, slopes and dashpots */
-    double *group;      /* state and loads of the modes that radiate */
+    double C[FORCES][VELOCITIES];                               /* v = C y, at mid-step */
+    double v_free[FORCES], u_free[FORCES];                      /* v and u without forces */
+    double u_stick[FORCES];                                     /* u of a point that sticks */
+    double V[FORCES][FORCES], W[FORCES][FORCES];                /* v = v_free + V F, u = u_free + W F */
+    double F[FORCES];   /* the next step's iteration begins with it, N */
+    int slip;           /* its direction, or STICK; a patch that slips in parts keeps STICK */
+    NormalForce normal; /* of a level cue, at mid-step */
+    double annulus_force[ANNULI], annuli_loss; /* at mid-step, N; dissipated in the step, J */
+    int on_table, table_sticks;                /* as in State, of this step */
+    double axial_force;                        /* on the cue, N */
+    double *loads;                             /* on ports, slopes and dashpots */
+    double *group;                             /* state and loads of the modes that radiate */
 };
 
 enum { MAX_ITERATIONS = 40 };

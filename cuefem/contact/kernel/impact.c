@@ -15,7 +15,7 @@ static double inverse_mass(const Contact *c, int f, int g)
     return sum;
 }
 
-/* The equations of contact_matrices for impulses: V = W, 1/kg, u = v, before the impact. */
+/* The equations of contact_matrices for impulses: V = W, 1/kg; v_free = u_free, before the impact. */
 static void impact_matrices(Contact *c)
 {
     const Input *in = c->in;
@@ -23,11 +23,11 @@ static void impact_matrices(Contact *c)
     const int n_cue = in->ports + in->slopes;
     contact_kinematics(c, s->angle, s->slopes, c->C);
     for (int f = 0; f < in->forces; f++) {
-        c->v[f] = 0;
+        c->v_free[f] = 0;
         c->u_stick[f] = 0;
-        for (int p = 0; p < n_cue; p++) c->v[f] += c->C[f][p] * s->port_velocities[p];
-        for (int b = 0; b < in->speeds; b++) c->v[f] += c->C[f][n_cue + b] * s->ball[b];
-        c->u[f] = c->v[f];
+        for (int p = 0; p < n_cue; p++) c->v_free[f] += c->C[f][p] * s->port_velocities[p];
+        for (int b = 0; b < in->speeds; b++) c->v_free[f] += c->C[f][n_cue + b] * s->ball[b];
+        c->u_free[f] = c->v_free[f];
         for (int g = 0; g < in->forces; g++) {
             c->V[f][g] = inverse_mass(c, f, g);
             c->W[f][g] = c->V[f][g];
@@ -42,8 +42,8 @@ static int separates(Contact *c)
     const Input *in = c->in;
     double gain = 0; /* of the normal velocity, m/s */
     for (int f = 0; f < in->forces; f++) gain += c->V[N][f] * c->F[f];
-    if (c->v[N] + gain <= 0) return 0;
-    double scale = fmin(1, (1 + in->restitution) * fabs(c->v[N] / gain));
+    if (c->v_free[N] + gain <= 0) return 0;
+    double scale = fmin(1, (1 + in->restitution) * fabs(c->v_free[N] / gain));
     for (int f = 0; f < in->forces; f++) c->F[f] *= scale;
     return 1;
 }
@@ -56,7 +56,7 @@ static void apply(Contact *c, const double *v)
     const int n_cue = in->ports + in->slopes;
     double loads[VELOCITIES] = {0};
     for (int f = 0; f < in->forces; f++) {
-        s->work[f] -= c->F[f] * (c->v[f] + v[f]) / 2;
+        s->work[f] -= c->F[f] * (c->v_free[f] + v[f]) / 2;
         for (int p = 0; p < n_cue + in->speeds; p++) loads[p] += c->C[f][p] * c->F[f];
     }
     apply_impulses(c, loads);

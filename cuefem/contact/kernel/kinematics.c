@@ -37,7 +37,8 @@ void contact_kinematics(const Contact *c, double angle, const double *slopes, do
     }
     if (in->rolling) rolled_kinematics(in, angle, C);
     for (int f = 0; f < in->forces; f++)
-        for (int a = 0; a < in->slopes; a++) C[f][ports + a] = -C[f][U_PORT] * in->slope_weights[a] * slopes[a];
+        for (int a = 0; a < in->slopes; a++)
+            C[f][ports + a] = -C[f][U_PORT] * in->slope_weights[a] * slopes[a];
 }
 
 /* C at mid-step. */
@@ -46,7 +47,8 @@ static void kinematics_at_middle(Contact *c)
     const State *s = c->s;
     const double half = c->t.h / 2;
     double bent[SLOPES];
-    for (int a = 0; a < c->in->slopes; a++) bent[a] = s->slopes[a] + half * s->port_velocities[c->in->ports + a];
+    for (int a = 0; a < c->in->slopes; a++)
+        bent[a] = s->slopes[a] + half * s->port_velocities[c->in->ports + a];
     contact_kinematics(c, s->angle + half * s->rolling_rate, bent, c->C);
 }
 
@@ -58,9 +60,8 @@ static int stuck(const Contact *c, int f)
     return c->s->tip_stuck;
 }
 
-/* Velocities of the contact without forces, m/s: v at the end of the step, u on average over it. u_stick:
-   mean velocity of a sticking point: 0, or half of the initial velocity where it slipped before and comes to
-   rest. */
+/* v_free, u_free and u_stick, m/s. A point that stuck before keeps the mean velocity 0; one that slipped and
+   comes to rest has half of its initial velocity. */
 static void free_velocities(Contact *c)
 {
     const Input *in = c->in;
@@ -70,12 +71,12 @@ static void free_velocities(Contact *c)
         const double *C = c->C[f];
         double ball = 0;
         for (int b = 0; b < in->speeds; b++) ball += C[n_cue + b] * s->ball[b];
-        c->v[f] = ball;
-        c->u[f] = ball;
+        c->v_free[f] = ball;
+        c->u_free[f] = ball;
         c->u_stick[f] = ball / 2;
         for (int q = 0; q < n_cue; q++) {
-            c->v[f] += C[q] * c->end_free[q];
-            c->u[f] += C[q] * c->mean_free[q];
+            c->v_free[f] += C[q] * c->end_free[q];
+            c->u_free[f] += C[q] * c->mean_free[q];
             c->u_stick[f] += C[q] * s->port_velocities[q] / 2;
         }
         if (stuck(c, f)) c->u_stick[f] = 0;
@@ -116,7 +117,7 @@ static void velocities_per_force(Contact *c)
     }
 }
 
-/* The linear equations of a step: C, v, u, u_stick, V and W. */
+/* The linear equations of a step: v = v_free + V F and u = u_free + W F. */
 void contact_matrices(Contact *c)
 {
     kinematics_at_middle(c);
@@ -128,8 +129,8 @@ void contact_matrices(Contact *c)
 void velocities(const Contact *c, double *end, double *mean)
 {
     for (int f = 0; f < c->in->forces; f++) {
-        end[f] = c->v[f];
-        mean[f] = c->u[f];
+        end[f] = c->v_free[f];
+        mean[f] = c->u_free[f];
         for (int g = 0; g < c->in->forces; g++) {
             end[f] += c->V[f][g] * c->F[g];
             mean[f] += c->W[f][g] * c->F[g];

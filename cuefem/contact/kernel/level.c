@@ -66,7 +66,7 @@ static int forces(Contact *c)
 /* The impulse that stops the tangential motion. */
 static int impulses(Contact *c)
 {
-    c->F[T] = -c->v[T] / c->V[T][T];
+    c->F[T] = -c->v_free[T] / c->V[T][T];
     return 1;
 }
 

@@ -1,4 +1,4 @@
-/* Propagation of the modes over a step, under loads that are constant over it, by the tables of its length. */
+/* Propagation of the modes over a step under constant loads, by the tables of its length. */
 #include "contact.h"
 
 FAST static double product(const double *a, const double *b, int count)
@@ -150,7 +150,8 @@ void apply_impulses(Contact *c, const double *impulses)
 }
 
 /* Impulse on the tip's lateral port, N s, that imposes mean velocities on it over equal steps, m/s, after a
-   first impulse. The velocities are relative to a ball of an inverse mass, 1/kg, that the impulse moves, too. */
+   first impulse. The velocities are relative to a ball of an inverse mass, 1/kg, that the impulse moves,
+   too. */
 EXPORTED double imposed_velocity_impulse(Contact *c, const StepTables *tables, int steps, const double *means,
                                          double ball_inverse_mass, double first_impulse)
 {

@@ -13,10 +13,11 @@
    restitution e: of the work f d(delta) it stores the part e^2, in all f^2 e^2/2k. */
 #include "contact.h"
 
-/* Mean stiffness, N/m, of the annulus between the edges `inner` and `outer` over the indentations of a step: it
-   grows between the edges and is constant beyond. The mean of the step's ends is inaccurate if the step
+/* Mean stiffness, N/m, of the annulus between the edges `inner` and `outer` over the indentations of a step:
+   it grows between the edges and is constant beyond. The mean of the step's ends is inaccurate if the step
    crosses many annuli, as the first one does. */
-static inline double mean_stiffness(double inner, double outer, double from, double to, double k_from, double k_to)
+static inline double mean_stiffness(double inner, double outer, double from, double to, double k_from,
+                                    double k_to)
 {
     if (k_from == k_to || from == to) return k_to;
     double low = fmin(from, to), high = larger(from, to), top = from > to ? k_from : k_to;
@@ -82,7 +83,8 @@ static inline double strain_loss(double old, double f, double k, double e2)
 
 /* Forces of the annuli, N, at a virtual indentation, m, after a shift, m, since the middle of the last step.
    Returns their sum; by_shift, by_virtual: its derivatives by the two, N/m. */
-FAST static double shift_annuli(Contact *c, double virtual, double shift, double *by_shift, double *by_virtual)
+FAST static double shift_annuli(Contact *c, double virtual, double shift, double *by_shift,
+                                double *by_virtual)
 {
     const Input *in = c->in;
     const double e2 = in->surface_restitution * in->surface_restitution, mu = in->friction;

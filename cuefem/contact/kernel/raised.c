@@ -8,7 +8,7 @@ static const double REL_TOL_SWEEPS = 1e-11; /* sweeps converge slowly */
 /* Mean velocity of the contact along a force's direction, under all forces, m/s. */
 static double mean_velocity(const Contact *c, int a)
 {
-    double u = c->u[a];
+    double u = c->u_free[a];
     for (int f = 0; f < c->in->forces; f++) u += c->W[a][f] * c->F[f];
     return u;
 }
@@ -74,7 +74,7 @@ static void normal_force(Contact *c)
 static void table_force(Contact *c)
 {
     const double height = c->s->height;
-    double u = c->u[UP] - c->W[UP][UP] * c->F[UP]; /* without the table */
+    double u = c->u_free[UP] - c->W[UP][UP] * c->F[UP]; /* without the table */
     for (int f = 0; f < c->in->forces; f++) u += c->W[UP][f] * c->F[f];
     int leaves = height > 0 && height + c->t.h * u > 0;
     c->F[UP] = leaves ? 0 : larger(0, (c->u_stick[UP] - u) / c->W[UP][UP]);

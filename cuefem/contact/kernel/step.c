@@ -1,4 +1,4 @@
-/* One time step: its forces, and the motion of cue, ball and contact under them. */
+/* One time step: its forces, and the motion of cue, ball and contact under them (handbook: One step). */
 #include "contact.h"
 
 static const double MIN_FRACTION = 1e-6; /* of a step, to its event */
@@ -49,7 +49,8 @@ static void advance_cue(Contact *c, Motion *m)
             end += c->t.end_per_load[p * n_cue + q] * m->loads[q];
             mean += c->t.mean_per_load[p * n_cue + q] * m->loads[q];
         }
-        if (p == THIRD_PORT && in->ports > THIRD_PORT) m->section_rotation_rate = mean; /* used in rolling alone */
+        if (p == THIRD_PORT && in->ports > THIRD_PORT)
+            m->section_rotation_rate = mean; /* used in rolling alone */
         if (p >= in->ports) s->slopes[p - in->ports] += c->t.h * mean;
         s->port_velocities[p] = end;
     }
@@ -98,7 +99,8 @@ static void record(const Contact *c, const Motion *m, Step *row)
     memcpy(row->ball, s->ball, sizeof row->ball);
 }
 
-/* Take one step and return 1; return 0 if it must be shorter. */
+/* Take one step and return 1; return 0 if it must be repeated with a shorter length. The forces are those of
+   the law (laws.c) and of friction (patch_*.c), solved together by level.c or raised.c. */
 int take_step(Contact *c, Step *row)
 {
     Motion m = {0};
