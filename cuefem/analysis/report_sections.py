@@ -213,7 +213,8 @@ class CueReport(Analysis):
     def tables(self) -> list[Table | str]:
         """The tables of every section, the warnings first."""
         first = self.no_contact and f"no end mass and no squirt: {self.no_contact}"
-        first = first or self.no_squirt or regime_warning(self.regime)
+        as_entered = self.no_squirt and f"{self.no_squirt}\nBelow: the numbers of the cue as entered."
+        first = first or as_entered or regime_warning(self.regime)
         shown = (section.key for section in SECTIONS if section.key in self.sections and not section.page_only)
         return [*([first, ""] if first else []), *(table for key in shown for table in self.sections[key].tables())]
 

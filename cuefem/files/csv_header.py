@@ -35,8 +35,7 @@ _TOKENS = re.compile(r"[^\W\d_]+")
 _WALL = re.compile(r"wall|wand")  # first letters of the words for a wall thickness
 _BUTT = {"butt", "joint"}  # after the word "from": x is measured from the butt
 _NEAR = 0.82  # least similarity (`difflib`) of a misspelt word: bor, materail and ferule reach 0.86 to 0.92
-_SHORTEST = 4  # letters of a word that may be misspelt
-_NEVER_MISSPELT = {"along", "from", "inside", "station"}  # a column may well be called long, form, side or state
+_SHORTEST = 6  # letters of another word than a kind's name that may be misspelt: foo is no foro, ratio no raio
 
 
 @dataclass(frozen=True)
@@ -146,13 +145,16 @@ def _is_text(cells: Sequence[str]) -> bool:
 
 
 def _misspelt(name: str) -> str:
-    """The known word that a heading misspells; "" if it has a known word, or none is near."""
+    """The known word that a heading misspells after its first letter; "" if it has a known word, or none is near."""
     words = _TOKENS.findall(name.casefold())
     if _kind(words):
         return ""
-    known = [word for kind in WORDS.values() for word in kind if len(word) >= _SHORTEST and word not in _NEVER_MISSPELT]
-    near = (difflib.get_close_matches(word, known, n=1, cutoff=_NEAR) for word in words)
-    return next((match for matches in near for match in matches), "")
+    others = {word for kind in WORDS.values() for word in kind if len(word) >= _SHORTEST}
+    for word in words:
+        same_start = [known for known in sorted({*WORDS} | others) if known[0] == word[0]]  # core is no score
+        if near := difflib.get_close_matches(word, same_start, n=1, cutoff=_NEAR):
+            return near[0]
+    return ""
 
 
 def _with_unit(column: ProfileColumn, units: Sequence[str]) -> ProfileColumn:

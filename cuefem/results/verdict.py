@@ -25,8 +25,8 @@ def mass_problem(scene: Scene) -> str:
     whole = float(scene.cue.mass)
     if whole < MIN_CUE_MASS:
         return (
-            f"the whole cue weighs {1e3 * whole:.4g} g, expected 400 to 700 g: squirt is too low to compare; add the "
-            'butt, such as --body-mass "15 oz" (body_mass in a file)'
+            f"the whole cue weighs {1e3 * whole:.4g} g, less than {1e3 * MIN_CUE_MASS:g} g: squirt is too low to "
+            'compare; add the butt, such as --body-mass "15 oz" (body_mass in a file)'
         )
     if scene.lumped is not None or not scene.shaft.shaft_mass_measured:
         return ""
@@ -42,7 +42,10 @@ def density_problem(cue: Cue, margin: float) -> str:
     low, high = MATERIALS[name].ranges["rho"]
     if (1 - margin) * low <= wood.rho <= (1 + margin) * high:
         return ""
-    reason = "the mass is too large: does it include a joint or the butt, or is the drawing too thin?"
+    reason = (
+        "the mass is too large: is its decimal point right, does it include a joint or the butt, or is the drawing too "
+        "thin?"
+    )
     if wood.rho < low:
         reason = "the mass is too small: is a digit missing, or is the drawing too large?"
     return (

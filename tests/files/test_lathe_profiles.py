@@ -225,6 +225,13 @@ def test_profile_ferrule_heading_in_another_language_is_read(word: str, tmp_path
     assert cue.segments[0].material == material("melamine")
 
 
+@pytest.mark.parametrize("name", ["foo", "ratio", "instance", "form", "long side", "state", "score", "code", "tol"])
+def test_profile_column_of_another_word_is_read_with_a_warning(name: str, tmp_path: Path) -> None:
+    (path := tmp_path / "shaft.csv").write_text(f"x [mm],diameter [mm],{name}\n0,12.4,1\n736,21,2\n")
+    with pytest.warns(cf.PlausibilityWarning, match=f"column '{name}' is not used"):
+        cf.load(path)
+
+
 def test_profile_unused_column_is_the_first_warning(tmp_path: Path) -> None:
     """In Python a PlausibilityWarning, in a command the first line, in JSON the first of the warnings."""
     path = write_profile(tmp_path, PROFILES["extra columns"])
