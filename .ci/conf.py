@@ -104,7 +104,7 @@ def contents(caption: str, *documents: str) -> str:
 def side_bar() -> str:
     """The tables of contents, in the order of the side bar."""
     engineers = [chapter.name for chapter in chapters() if chapter.name not in MAKERS]
-    notebooks = sorted(path.stem for path in (ROOT / "studies/notebooks").glob("*.ipynb"))
+    notebooks = re.findall(r"studies/notebooks/(\w+)\.ipynb", (ROOT / "README.md").read_text(encoding="utf-8"))
     # pages that the gallery opens; the side bar would have forty lines
     pages = sorted(
         str(path.relative_to(ROOT).with_suffix(""))

@@ -190,8 +190,10 @@ EXAMPLE = """\
 from math import degrees
 import cuefem as cf
 
-record = cf.verdict(cf.usual_scene(cf.load("meshes/pool_maple.toml")))
-print(f"{degrees(record['squirt']):.2f} ± {degrees(record['squirt_error']):.2f} degrees")
+verdict = cf.verdict(cf.usual_scene(cf.load("meshes/pool_maple.toml")))
+print(f"{degrees(verdict.squirt):.2f} ± {degrees(verdict.squirt_error):.2f} degrees")
+for name, part in verdict.uncertainty.items():
+    print(f"{name:12}{100 * part:4.1f} %")
 """
 STUDY = pages.Study(__file__, text, example=EXAMPLE)
 

@@ -1,4 +1,4 @@
-"""Notebooks run, and print their stored output (regression)."""
+"""Notebooks run, and print their stored output (regression). `.ci/nightly` executes them in a kernel of Jupyter."""
 
 import contextlib
 import io
@@ -12,6 +12,7 @@ FOLDER = Path(__file__).parents[2] / "studies" / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_notebook_prints_stored_output(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     plt.switch_backend("agg")
@@ -28,3 +29,8 @@ def test_notebook_prints_stored_output(path: Path, monkeypatch: pytest.MonkeyPat
         figures = [out for out in cell["outputs"] if out["output_type"] == "display_data"]
         assert len(plt.get_fignums()) == len(figures)
     plt.close("all")
+
+
+def test_readme_links_every_notebook() -> None:
+    readme = (FOLDER.parents[1] / "README.md").read_text(encoding="utf-8")
+    assert [path.name for path in NOTEBOOKS if f"(studies/notebooks/{path.name})" not in readme] == []
