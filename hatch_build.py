@@ -27,7 +27,9 @@ if sys.version_info < (3, 11):  # noqa: UP036, as requires-python
 ROOT = Path(__file__).parent
 # cuefem.contact.kernel, without what the package needs: where the library lies, and the digest of its sources.
 KERNEL = runpy.run_path(str(ROOT / "cuefem" / "contact" / "kernel" / "__init__.py"))
-BINARY: Path = KERNEL["BINARY"]
+# The platform of the wheel: this one, or another that _PYTHON_HOST_PLATFORM names (.ci/wheels).
+PLATFORM = sysconfig.get_platform().replace("-", "_").replace(".", "_")
+BINARY: Path = KERNEL["binary"](PLATFORM)
 ZIG = "ziglang>=0.13.0"
 # Sums may be taken in any order, as vector instructions do; nothing else of -ffast-math, which at the link would switch
 # the whole process to flush denormal numbers to zero.
@@ -78,11 +80,6 @@ def build() -> Path:
     return BINARY
 
 
-def platform_tag() -> str:
-    """Of a wheel that holds the binary: any Python, this platform."""
-    return "py3-none-" + sysconfig.get_platform().replace("-", "_").replace(".", "_")
-
-
 if __name__ == "__main__":
     print(build())
 else:
@@ -101,4 +98,4 @@ else:
                 return
             build_data["artifacts"].append(str(build().relative_to(ROOT)))
             build_data["pure_python"] = False
-            build_data["tag"] = platform_tag()
+            build_data["tag"] = f"py3-none-{PLATFORM}"  # any Python

@@ -108,6 +108,15 @@ def test_kernel_build_without_compiler_uses_zig_or_names_both(folder: Path, envi
     assert errors[-1].endswith("a zig that does not compile")
 
 
+@pytest.mark.heavy
+@pytest.mark.skipif(sys.platform == "win32", reason="Python for Windows builds for Windows alone")
+@pytest.mark.parametrize(("target", "name"), [("win-amd64", "_kernel.dll"), ("macosx-11.0-arm64", "_kernel.so")])
+def test_kernel_build_for_other_system_takes_its_name(folder: Path, target: str, name: str) -> None:
+    """`.ci/wheels` compiles for these systems; here any compiler shows the name."""
+    status, printed, errors = run(folder, "hatch_build.py", CFLAGS="-O0", _PYTHON_HOST_PLATFORM=target)
+    assert (status, Path(printed).name, errors) == (0, name, [])
+
+
 def test_kernel_build_on_older_python_is_rejected_in_one_line() -> None:
     """pip asks the build first, and would list the versions of scipy that are missing."""
     script = "import runpy, sys; sys.version_info = (3, 10); runpy.run_path('hatch_build.py')"

@@ -11,12 +11,19 @@ from hashlib import sha256
 from pathlib import Path
 
 HERE = Path(__file__).parent
-BINARY = HERE / ("_kernel.dll" if sys.platform == "win32" else "_kernel.so")
 BUILD = "build it with `python hatch_build.py` in a clone, or install cuefem again"
 
 
 class KernelError(ImportError):
     """The compiled kernel cannot be used; the message says why, and how to build it."""
+
+
+def binary(platform: str) -> Path:
+    """Of the system that it is for, by `sys.platform` or by the platform of a wheel's tag."""
+    return HERE / ("_kernel.dll" if platform.startswith("win") else "_kernel.so")
+
+
+BINARY = binary(sys.platform)
 
 
 def sources_digest() -> str:
