@@ -28,6 +28,7 @@ from .analysis.report_sections import report as report
 from .analysis.simulator_export import pooltool_export as pooltool_export
 from .analysis.squirt_curve import squirt_curve as squirt_curve
 from .analysis.strike_models import strike_models as strike_models
+from .analysis.strike_table import strike_table as strike_table
 from .analysis.tip_impacts import tip_impacts as tip_impacts
 from .analysis.verdict import verdict as verdict
 from .effects.cue_effects import (

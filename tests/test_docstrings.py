@@ -12,10 +12,10 @@ FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
 ROOT = Path(cf.__file__).parent
 FILES = [file for file in ROOT.rglob("*.py") if ">>>" in file.read_text(encoding="utf-8")]
 MODULES = sorted(".".join(file.relative_to(ROOT.parent).with_suffix("").parts) for file in FILES)
-SLOW = "cuefem.analysis.design_changes"  # strikes a cue for every change
+SLOW = ("cuefem.analysis.design_changes", "cuefem.analysis.strike_table")  # strikes for every change, every node
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.heavy if n == SLOW else ()) for n in MODULES])
+@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.heavy if n in SLOW else ()) for n in MODULES])
 def test_docstring_examples_of_module_run(name: str) -> None:
     failures: list[str] = []
     for example in doctest.DocTestFinder().find(importlib.import_module(name), extraglobs={"cf": cf}):

@@ -30,7 +30,11 @@ COMMANDS = {
     "improve": ("cuefem.cli.cue_commands:improve", CUE, "Design changes, each with its squirt, stiffness and mass."),
     "modes": ("cuefem.cli.cue_commands:modes", CUE, "Natural frequencies of bending, and tip amplitudes."),
     "end-mass": ("cuefem.cli.cue_commands:end_mass", CUE, "Effective end mass, by five definitions."),
-    "strike": ("cuefem.cli.cue_commands:strike", CUE, "Squirt, ball speed, spin and pivot length of one stroke."),
+    "strike": (
+        "cuefem.cli.cue_commands:strike",
+        CUE,
+        "Squirt, ball speed, spin and pivot length of one stroke; tables for games.",
+    ),
     "compare": ("cuefem.cli.compare_command:compare", CUE, "Compare cues, or computed and measured values."),
     "effects": (
         "cuefem.cli.accuracy_commands:effects",

@@ -12,14 +12,16 @@ import cuefem as cf
 from cuefem.cli.output import Command
 from cuefem.cli.progress import with_progress_bar
 from cuefem.cli.scene_command import Request, analysis_command, check_overwrite, file_options, force_option
-from cuefem.cli.scene_options import tip_options
+from cuefem.cli.scene_options import option_value, tip_options
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.files import InputError, load_accuracy, save
 from cuefem.parameters.parameter import with_parameters
 from cuefem.parameters.parts import main_material
+from cuefem.quantity.fields import Quantity
 
 if TYPE_CHECKING:
     from cuefem.analysis.design_changes import DesignChanges
+    from cuefem.analysis.strike_table import StrikeTable
     from cuefem.show.analysis import Analysis
 
 
@@ -111,19 +113,44 @@ def end_mass(request: Request) -> Analysis:
 @analysis_command()
 @click.option(
     "--format",
-    "simulator",
-    type=click.Choice(["pooltool"]),
-    help="Export the end mass for this simulator; -o FILE.json writes its input file.",
+    "target",
+    type=click.Choice(["pooltool", "table"]),
+    help="Export for games: the end mass for pooltool, or a table over cue speed and offset; -o FILE.json writes it.",
 )
-def strike(request: Request, simulator: str | None, output: Path | None) -> Analysis:
+@click.option(
+    "--speeds",
+    nargs=2,
+    metavar="LOW HIGH",
+    help="Lowest and highest cue speed of the table (default: 0.2 and 10 m/s).",
+)
+def strike(request: Request, target: str | None, speeds: tuple[str, str] | None, output: Path | None) -> Analysis:
     """Compute squirt, ball speed, spin and pivot length of one stroke, by the coupled strike and by lumped models.
 
     The numerical error target is the rtol of the file's [accuracy] table, if it has one.
     """
-    if simulator is None:
-        return cf.strike_models(request.scene, load_accuracy(request.file))
     written = str(output) if output is not None and output.suffix == ".json" else ""
+    if speeds is not None and target != "table":
+        raise InputError(request.file, "--speeds", "applies to --format table")
+    if target is None:
+        return cf.strike_models(request.scene, load_accuracy(request.file))
+    if target == "table":
+        return _strike_table(request, speeds, written)
     answer = cf.pooltool_export(request.scene, request.file.stem, written)
     if written:
         request.hints.extend(answer.tables())
+    return answer
+
+
+def _strike_table(request: Request, speeds: tuple[str, str] | None, written: str) -> StrikeTable:
+    """The table for games, over the speeds of the option."""
+    for name in ("speed", "offset"):
+        if request.options[name] is not None:
+            raise InputError(request.file, f"--{name}", "does not apply to --format table, which has all; use --speeds")
+    limits = {}
+    if speeds is not None:
+        low, high = (option_value(request.file, "--speeds", text, Quantity("m/s", "(0, inf)")) for text in speeds)
+        limits["speeds"] = (low, high)
+    answer = cf.strike_table(request.scene, **limits, progress=with_progress_bar)
+    if not written:
+        request.hints.append("-o table.json writes the whole table, with units, signs and an example")
     return answer

@@ -1,15 +1,8 @@
-"""Export for pooltool: its formula with the exported end mass has the same squirt (verification).
-
-pooltool 0.6.0 requires a development build of its graphics that is not on PyPI, so that pip installs 0.3.3, which has
-no end mass, and `cuefem[pooltool]` cannot exist. .ci/pooltool makes an environment, and POOLTOOL_PYTHON names it.
-"""
+"""Export for pooltool: its formula with the exported end mass has the same squirt (verification)."""
 
 import json
 import math
-import os
 import re
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,6 +13,7 @@ import cuefem as cf
 from cuefem.analysis.simulator_export import DEFAULT, VERSION, pooltool_record
 from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.cues import kim
+from tests.helpers.pooltool import in_pooltool
 
 KIM = kim()
 SCENE = cf.Scene(KIM, cf.Ball(0.17, 0.028575), cf.Tip(0.75, 0.7, 1e-3), cf.Stroke(2.0, 0.3), (cf.TipDome(0.0095),))
@@ -115,25 +109,13 @@ print(json.dumps([pt.__version__, answers]))
 """
 
 
-def pooltool_python() -> str:
-    """A Python with pooltool: this one, or POOLTOOL_PYTHON."""
-    has_it = "from importlib.util import find_spec; raise SystemExit(find_spec('pooltool') is None)"
-    for python in (sys.executable, os.environ.get("POOLTOOL_PYTHON", "")):
-        if python and subprocess.run([python, "-c", has_it], capture_output=True).returncode == 0:
-            return python
-    pytest.skip("no pooltool here: POOLTOOL_PYTHON names the Python of an environment that has it")
-
-
 def test_pooltool_with_exported_cue_computes_same_squirt(scene: Path) -> None:
     """pooltool reads the exported file; its own stroke has the same squirt, away from the struck side."""
-    python = pooltool_python()
     offsets = (-0.4, 0.1, 0.3, 0.5)
-    sent = json.dumps([(offset, exported(scene, f"--offset={offset}")) for offset in offsets])
-    done = subprocess.run([python, "-c", IN_POOLTOOL], input=sent, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    version, results = json.loads(done.stdout)
+    sent = [(offset, exported(scene, f"--offset={offset}")) for offset in offsets]
+    version, results = in_pooltool(IN_POOLTOOL, sent)
     assert version == VERSION
-    for (offset, record), (alpha, (x, y, _), spin, length) in zip(json.loads(sent), results, strict=True):
+    for (offset, record), (alpha, (x, y, _), spin, length) in zip(sent, results, strict=True):
         assert math.hypot(x, y) == pytest.approx(record["pooltool_ball_speed"], rel=1e-12)
         assert -spin == pytest.approx(record["pooltool_spin"], rel=1e-12)  # about the vertical, to the left
         ours = cf.strike(replace(SCENE, stroke=replace(SCENE.stroke, offset=offset))).squirt
