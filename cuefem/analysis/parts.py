@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from cuefem.cue.materials import LEATHER_CONSTANTS, LEATHERS, MATERIALS, TIPS, WOODS
+from cuefem.files.cue_names import CUES
 from cuefem.files.parts_catalogue import CATALOGUE_SHAFTS
 from cuefem.parameters.parameter import FERRULES
 from cuefem.results.quantities import RESULTS, units_of, with_heading
@@ -16,10 +17,12 @@ from cuefem.show.analysis import Answer
 
 @dataclass(frozen=True)
 class Parts(Answer):
-    """Shafts, materials and tips that a file can name.
+    """Cues, shafts, materials and tips that a file can name.
 
     Parameters
     ----------
+    cues : dict of str to dict
+        "file" and "source" of each cue that has a name.
     shafts : dict of str to dict
         "source" of each shaft.
     materials : dict of str to dict
@@ -29,6 +32,7 @@ class Parts(Answer):
         The constants of each leather in SI, and their "source".
     """
 
+    cues: dict[str, Record]
     shafts: dict[str, Record]
     materials: dict[str, Record]
     tips: dict[str, Record]
@@ -44,6 +48,13 @@ class Parts(Answer):
             with_heading(name, RESULTS[name].unit): _with_range(name) for name in ("E", "G", "rho")
         }
         return [
+            tabulate(
+                "Cues",
+                {"name": "{name}", **source},
+                _rows(self.cues),
+                'instead of a file: cuefem report "plain maple", cuefem compare my.csv "predator z2", cue = "carbon"',
+                texts=(0, 1),
+            ),
             tabulate(
                 "Shafts",
                 {"name": "{name}", **source},
@@ -72,7 +83,7 @@ class Parts(Answer):
 
 
 def parts() -> Parts:
-    """The shafts, materials (wood, ferrule) and tips that a file can name, with their sources.
+    """The cues, shafts, materials (wood, ferrule) and tips that a file can name, with their sources.
 
     Returns
     -------
@@ -99,6 +110,7 @@ def parts() -> Parts:
         for name, known in MATERIALS.items()
     }
     return Parts(
+        cues={name: {"file": cue.file, "source": cue.assumed} for name, cue in CUES.items()},
         shafts={name: {"source": known.source} for name, known in CATALOGUE_SHAFTS.items()},
         materials=materials,
         tips={name: {**LEATHER_CONSTANTS[name], "source": source} for name, source in sources.items()},

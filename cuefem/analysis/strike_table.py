@@ -347,8 +347,8 @@ def strike_table(scene: Scene, speeds: tuple[float, float] = SPEEDS, *, progress
     Notes
     -----
     The grid starts with `COARSE` cells in each direction. A line of nodes is added midway between two others where
-    interpolation between them is wrong by more than half of `TOLERANCE`, until such cells cover less than a part of the range;
-    that part is halved until the tolerance holds for `WITHIN` of `STROKES` random strokes.
+    interpolation between them is wrong by more than half of `TOLERANCE`, until such cells cover less than a part of the
+    range; that part is halved until the tolerance holds for `WITHIN` of `STROKES` random strokes.
 
     Examples
     --------

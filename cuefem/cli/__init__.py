@@ -172,5 +172,6 @@ def _forget_output() -> None:
 def main() -> None:
     """Compute natural frequencies, effective end mass and squirt of a billiard cue from its drawing.
 
-    FILE is a cue or a scene (.toml), a lathe profile (.csv) or a CAD surface (.stl, .ply, .obj).
+    FILE is a cue or a scene (.toml), a lathe profile (.csv), a CAD surface (.stl, .ply, .obj), or a cue's name, such as
+    "plain maple" (`cuefem parts` lists the names).
     """

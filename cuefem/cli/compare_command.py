@@ -15,9 +15,10 @@ from cuefem.cli.progress import with_progress_bar
 from cuefem.cli.scene_command import Presentation, completed_scene, cue_options, errors_name_file, print_warnings
 from cuefem.cli.scene_options import impact_options, offset_option, option
 from cuefem.files import InputError, load_stroke
+from cuefem.files.cue_names import cue_name, named_path
 from cuefem.files.defaults_report import STROKE, Assumption, given_keys
 from cuefem.files.drawing_warnings import drawing_warnings
-from cuefem.measurements.measured_folder import load_measured, write_template
+from cuefem.measurements.measured_folder import load_measured, named_folder, write_template
 from cuefem.show.plausibility import plausibility_warnings
 
 
@@ -53,7 +54,8 @@ def compare(
 ) -> None:
     """Compare cues side by side, or the computed and measured values of one cue, with uncertainties.
 
-    FILE FILE ...: two to five cues or scenes, struck with the ball and stroke of the first.
+    FILE FILE ...: two to five cues or scenes, struck with the ball and stroke of the first; each a file or the name of
+    a cue, such as "predator z2".
 
     FOLDER: a measured cue, with the shaft's drawing (cue.toml or cue.csv, required), measured.toml with single
     measurements, and one CSV for each long series, such as squirt.csv. The options of cue, tip and stroke stand in
@@ -61,6 +63,7 @@ def compare(
     """
     as_json = options["as_json"]
     if len(files) > 1:
+        files = tuple(map(named_path, files))
         for name, flag in (("--estimate", estimate), ("--template", template)):
             if flag:
                 raise InputError(files[0], name, f"takes one FOLDER; got {len(files)} files")
@@ -72,7 +75,7 @@ def compare(
     if template:
         write_template(folder)
         click.echo(f"wrote {folder}: replace the example numbers by yours, then run: cuefem compare {folder}")
-    elif folder.is_file():
+    elif folder.is_file() or cue_name(folder := named_folder(folder)):
         raise InputError(folder, "", "needs another FILE to compare with, or a FOLDER with measurements")
     else:
         _with_measurements(folder, output, as_json=as_json, estimate=estimate)
@@ -102,7 +105,7 @@ def _side_by_side(files: Sequence[Path], options: dict[str, Any], output: Path |
             for line in (*drawing_warnings(file), *plausibility_warnings(scenes[name]))
         ]
         notes = _assumption_texts(names, [listed for _, listed, _ in loaded], [offered for *_, offered in loaded])
-        about = {"files": [str(file) for file in files]}
+        about = {"files": [cue_name(file) or str(file) for file in files]}
         shown = Presentation(analysis, files=about, assumptions=notes, warnings=warnings)
         shown.show(output, as_json=options["as_json"])
 
@@ -132,7 +135,7 @@ def _names(files: Sequence[Path]) -> list[str]:
     for i, file in enumerate(files):
         if file.resolve() in [other.resolve() for other in files[:i]]:
             raise InputError(file, "", "is given twice; compare different files")
-    forms = [(file.stem, file.name, str(file)) for file in files]
+    forms = [(cue_name(file) or file.stem, file.name, str(file)) for file in files]
     return [next(own for k, own in enumerate(form) if [each[k] for each in forms].count(own) == 1) for form in forms]
 
 

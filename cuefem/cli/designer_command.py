@@ -12,12 +12,13 @@ import click
 
 from cuefem.cli.output import command, print_json
 from cuefem.cli.scene_command import cue_options, errors_name_file, print_warnings, scene_of
-from cuefem.cli.scene_options import option
+from cuefem.cli.scene_options import CueFile, option
+from cuefem.files.cue_names import cue_name
 from cuefem.files.reference_cues import PRESETS
 
 
 @command()
-@click.argument("scene", type=click.Path(path_type=Path), required=False)
+@click.argument("scene", type=CueFile(), required=False)
 @click.option(
     "--port",
     type=click.IntRange(0, 65535),
@@ -30,8 +31,8 @@ from cuefem.files.reference_cues import PRESETS
 def designer(scene: Path | None, port: int, show: bool, as_json: bool, **options: Any) -> None:
     """Open a browser page with sliders: squirt, end mass, stiffness and natural frequencies update as they move.
 
-    SCENE is a cue or scene file (default: a maple pool shaft). A cue alone gets the default stroke of the game. The
-    page is served on this computer only.
+    SCENE is a cue or scene file, or a cue's name (default: a maple pool shaft). A cue alone gets the default stroke of
+    the game. The page is served on this computer only.
     """
     try:
         from cuefem.designer.server import serve
@@ -49,7 +50,7 @@ def designer(scene: Path | None, port: int, show: bool, as_json: bool, **options
     else:
         read, _ = scene_of(scene, options, warn=False)
         with errors_name_file(scene):
-            first = design_from_file(scene, scene.stem, read, given)
+            first = design_from_file(scene, cue_name(scene) or scene.stem, read, given)
         print_warnings(first.scene)
     announce: Callable[[str], None] = (lambda address: print_json({"address": address})) if as_json else click.echo
     with suppress(KeyboardInterrupt):  # Ctrl-C is how one ends it

@@ -15,14 +15,14 @@ from cuefem.cli.scene_command import (
     load_with_options,
     shape_options,
 )
-from cuefem.cli.scene_options import with_body_option, with_shaft_mass_option
+from cuefem.cli.scene_options import CueFile, with_body_option, with_shaft_mass_option
 from cuefem.cue import Cue
 from cuefem.files import load, save
 from cuefem.files.defaults_report import assumption_texts, drawing_assumptions
 
 
 @command()
-@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("file", type=CueFile())
 @click.argument("output", type=click.Path(path_type=Path))
 @shape_options
 @json_option

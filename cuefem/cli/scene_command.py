@@ -20,6 +20,8 @@ from cuefem.cli.output import (
     shared_option,
 )
 from cuefem.cli.scene_options import (
+    CueFile,
+    file_label,
     impact_options,
     offset_option,
     option,
@@ -32,6 +34,7 @@ from cuefem.cli.scene_options import (
 )
 from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.files import InputError, check_writable, load_stroke
+from cuefem.files.cue_names import cue_name
 from cuefem.files.defaults_report import Assumption, assumption_texts, assumptions
 from cuefem.files.drawing_warnings import drawing_warnings
 from cuefem.files.shaft_additions import SHAFT_ADDITIONS
@@ -45,7 +48,7 @@ from cuefem.solid.tip_cache import computing_message
 
 def file_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The file argument, and the options of every command on a file."""
-    return click.argument("file", type=click.Path(path_type=Path))(cue_options(command))
+    return click.argument("file", type=CueFile())(cue_options(command))
 
 
 def stroke_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -209,7 +212,9 @@ def _show(request: Request, analysis: Analysis, output: Path | None) -> None:
     """Print the analysis of a file, or write it."""
     file = request.file
     warnings = [*drawing_warnings(file), *plausibility_warnings(analysis.scene, with_impact=analysis.has_stroke)]
-    shown = Presentation(analysis, file.name, {"file": str(file)}, request.assumptions, warnings, request.hints)
+    shown = Presentation(
+        analysis, file_label(file), {"file": cue_name(file) or str(file)}, request.assumptions, warnings, request.hints
+    )
     with errors_name_file(file, request.options):
         shown.show(output, as_json=request.options["as_json"])
     if analysis.problem() and output is None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import replace
@@ -16,6 +17,7 @@ from cuefem.cli.output import shared_option
 from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue, LumpedCue
 from cuefem.files import InputError, with_body_mass
+from cuefem.files.cue_names import cue_name, named_path
 from cuefem.files.errors import as_input_error
 from cuefem.parameters.parameter import PARAMETERS, Parameter, with_fields, with_parameters, with_values_at
 from cuefem.parameters.parameter import Path as Steps
@@ -31,6 +33,22 @@ Command = Callable[..., Any]
 IMPACT_KEYS = ("restitution", "friction", "speed")  # and, for commands with one stroke, the offset
 CUE_KEYS = ("body_mass", "shaft_mass")
 NO_SHAFT = "does not apply to a lumped cue, which has no shaft geometry"
+
+
+class CueFile(click.Path):
+    """A cue's or scene's file, or the name of a cue."""
+
+    def __init__(self) -> None:
+        super().__init__(path_type=Path)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        """The path; of a cue's name that of its drawing."""
+        return named_path(Path(os.fsdecode(super().convert(value, param, ctx))))
+
+
+def file_label(file: Path) -> str:
+    """What a table's heading and a column call a file: the name of a cue, or of the file."""
+    return cue_name(file) or file.name
 
 
 def option(name: str) -> str:

@@ -12,6 +12,7 @@ from typing import Any
 
 from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue, LumpedCue
+from cuefem.files.cue_names import named_path
 from cuefem.files.drawing_warnings import drawing_warnings
 from cuefem.files.errors import InputError, as_input_error, check_path, os_error_text, quote
 from cuefem.files.lathe_profile import DEFAULT_MATERIAL, SHAPE_EXTENSIONS, SPREADSHEET_EXTENSIONS, read_profile
@@ -57,7 +58,8 @@ def load(
     Parameters
     ----------
     path : str or path
-        A drawing or a scene (.toml), a lathe profile (.csv), or a closed CAD surface (.stl, .ply, .obj).
+        A drawing or a scene (.toml), a lathe profile (.csv), or a closed CAD surface (.stl, .ply, .obj); or the name of
+        a cue, such as "plain maple", "carbon" or "predator z2" (`cuefem parts` lists them).
     material : str, optional
         Name of the material of the shaft; for a lathe profile or a surface "hard maple" by default.
     length_unit : str, optional
@@ -93,7 +95,7 @@ def load(
     ...     cf.load(path) == cue, cf.load(path, body_mass="15 oz").body_mass
     (True, 0.425242...)
     """
-    path = Path(path)
+    path = named_path(Path(path))
     shape = path.suffix.lower() in SHAPE_EXTENSIONS
     for name, value, whose in (("length_unit", length_unit, "units of length"), ("front", front, "leather")):
         if value is not None and not shape:
@@ -130,6 +132,7 @@ def with_body_mass(thing: Any, path: Path, key: str, mass: str | float) -> Any:
 
 
 def _load_cue(path: Path, material: str | None = None, length_unit: str | None = None) -> Cue:
+    path = named_path(path)
     ending = path.suffix.lower()
     if ending == ".toml":
         return load_cue(path)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from cuefem.cue import Cue, Material
+from cuefem.files.cue_names import CUES, cue_name, named_path
 from cuefem.files.lathe_profile import (
     DEFAULT_MATERIAL,
     DEFAULT_UNIT,
@@ -79,7 +80,7 @@ def assumptions_of_tables(
 ) -> list[Assumption]:
     """Assumptions for a scene of a file's tables."""
     cue, game = tables["cue"], str(tables.get("game", DEFAULT_GAME))
-    file = folder / cue if isinstance(cue, str) else None
+    file = named_path(folder / cue) if isinstance(cue, str) else None
     drawing = [] if scene.lumped else _of_cue(file, scene.shaft, options)
     stroke = _stroke(tables, game, scene, options)
     if stroke and "game" not in tables:
@@ -90,6 +91,8 @@ def assumptions_of_tables(
 def _of_cue(path: Path | None, cue: Cue, options: Mapping[str, Any]) -> list[Assumption]:
     """Assumptions for the drawing of a stroke's cue, and for the rest of the cue. path: None of a scene's own table."""
     drawing = [] if path is None else drawing_assumptions(path, cue, options)
+    if path is not None and (name := cue_name(path)):
+        drawing = [Assumption("", CUES[name].assumed), *drawing]
     if not cue.is_body_mass_assumed:
         return drawing
     rest = Assumption.on("body_mass", f"usual rest of the cue, {1e3 * cue.body_mass:.4g} g")

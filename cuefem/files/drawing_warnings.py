@@ -6,6 +6,7 @@ from pathlib import Path
 
 from cuefem.files.csv_header import read_header
 from cuefem.files.csv_reader import read_rows
+from cuefem.files.cue_names import named_path
 from cuefem.files.errors import quote
 from cuefem.files.heading_words import WORDS
 from cuefem.files.lathe_profile import SURFACE_EXTENSIONS
@@ -22,7 +23,7 @@ def drawing_warnings(path: Path) -> list[str]:
     if ending in SURFACE_EXTENSIONS:
         return _of_facets(path)
     cue = read_tables(path).get("cue") if ending == ".toml" else None
-    return drawing_warnings(path.parent / cue) if isinstance(cue, str) else []
+    return drawing_warnings(named_path(path.parent / cue)) if isinstance(cue, str) else []
 
 
 def _of_columns(path: Path) -> list[str]:

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from cuefem.cue import Cue
 from cuefem.files import load
+from cuefem.files.cue_names import CUES
 from cuefem.files.parts_catalogue import data_folder
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import usual_scene
@@ -36,11 +37,7 @@ PRESETS = (
 )
 
 # By their names in sentences; other cues are compared with the first.
-REFERENCE_FILES = {
-    "plain maple": "meshes/pool_maple.toml",
-    "low deflection": "meshes/pool_hollow.toml",
-    "carbon": "meshes/carbon.toml",
-}
+REFERENCE_FILES = {name: CUES[name].file for name in ("plain maple", "low deflection", "carbon")}
 
 
 def preset_scene(preset: Preset) -> Scene:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import os
 import re
 import struct
 import warnings
@@ -17,8 +18,9 @@ from scipy.io import wavfile
 
 from cuefem.files import InputError, load, write_folder_atomically
 from cuefem.files.csv_reader import read_lines, read_text
+from cuefem.files.cue_names import named_path
 from cuefem.files.defaults_report import assumption_texts, assumptions_of_tables
-from cuefem.files.errors import as_input_error, quote, read_bytes, suggestion
+from cuefem.files.errors import as_input_error, check_path, quote, read_bytes, suggestion
 from cuefem.files.schema import build, field_types, key_path, member_types, quantity_of, unknown_key
 from cuefem.files.toml_reader import GAME_KEYS, game_of, missing_keys, read_tables, scene_from_tables
 from cuefem.measurements.measured_cue import MeasuredCue
@@ -43,6 +45,7 @@ _COLUMN = re.compile(r"\s*([a-z_]+)\s*(?:\[([^\]]+)\])?\s*")
 
 def load_measured(folder: Path) -> tuple[MeasuredCue, list[str]]:
     """Load the measured cue of a folder, and the assumptions for its drawing; InputError for invalid files."""
+    folder = named_folder(folder)
     if not folder.is_dir():
         raise InputError(
             folder, "", "must be the folder of a measured cue (create one with `--template`); got no folder"
@@ -60,6 +63,15 @@ def load_measured(folder: Path) -> tuple[MeasuredCue, list[str]]:
     with as_input_error(path, ""):
         made = MeasuredCue(name or folder.resolve().name, scene, measurements, priors, source)
     return made, [*notes, *_examples(folder)]
+
+
+def named_folder(folder: Path) -> Path:
+    """The folder, or that of the measured cue which it names; the drawing of a named cue that nobody measured."""
+    check_path(folder)
+    if os.path.exists(folder):
+        return folder
+    drawing = named_path(folder)
+    return drawing.parent if (drawing.parent / MEASURED).is_file() else drawing
 
 
 def write_template(folder: Path) -> None:

@@ -1,0 +1,63 @@
+"""Cues by name: the reference cues and the published measured cues, in every place that takes a cue's file."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import NamedTuple
+
+from cuefem.files.errors import InputError, check_path
+from cuefem.files.parts_catalogue import data_folder
+from cuefem.quantity.fields import suggestion
+
+
+class NamedCue(NamedTuple):
+    """A drawing that has a name: its path from the data folder, and what is assumed in it."""
+
+    file: str
+    assumed: str
+
+
+_USUAL = "usual dimensions (meshes/README.md)"
+_SOLD = "a size that is sold, its inside assumed (meshes/README.md)"
+_INSIDE = "inside and taper assumed (studies/measured)"
+_WIDTH = "all but the width of the tip assumed (studies/measured)"
+CUES = {
+    "plain maple": NamedCue("meshes/pool_maple.toml", _USUAL),
+    "low deflection": NamedCue("meshes/pool_hollow.toml", _SOLD),
+    "carbon": NamedCue("meshes/carbon.toml", _SOLD),
+    "whole cue": NamedCue("meshes/whole_cue.toml", _USUAL),
+    "kim": NamedCue("meshes/kim.toml", "the shaft of Kim's paper (meshes/README.md)"),
+    "predator z": NamedCue("studies/measured/predator_z/cue.toml", _INSIDE),
+    "predator z2": NamedCue("studies/measured/predator_z2/cue.toml", _INSIDE),
+    "players maple": NamedCue("studies/measured/players_maple/cue.toml", _WIDTH),
+    "stinger": NamedCue("studies/measured/stinger/cue.toml", _WIDTH),
+}
+
+
+def named_path(path: Path) -> Path:
+    """The drawing of the cue that a path names: a text without extension where there is no file.
+
+    Any words of a name are enough, if they are those of no other; InputError otherwise.
+    """
+    check_path(path)
+    if path.suffix or os.path.exists(path):
+        return path
+    words = _words(path.name)
+    exact = [name for name in CUES if _words(name) == words]
+    found = exact or [name for name in CUES if words and {*words} <= {*_words(name)}]
+    if len(found) > 1:
+        raise InputError(path, "", f"names {len(found)} cues: write {' or '.join(map(repr, found))}")
+    if not found:
+        problem = f"must be a file, or a cue's name: {', '.join(CUES)}; got neither{suggestion(path.name, CUES)}"
+        raise InputError(path, "", problem)
+    return data_folder() / CUES[found[0]].file
+
+
+def cue_name(path: Path) -> str:
+    """The name of the cue whose drawing this is; "" for another file."""
+    return next((name for name, cue in CUES.items() if path == data_folder() / cue.file), "")
+
+
+def _words(name: str) -> list[str]:
+    return name.casefold().replace("_", " ").replace("-", " ").split()

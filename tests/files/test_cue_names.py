@@ -1,0 +1,73 @@
+"""Cues by name, in calls, commands and files (regression)."""
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from cuefem.files.cue_names import CUES, cue_name, named_path
+from cuefem.files.parts_catalogue import data_folder
+from tests.helpers.command_line import as_json, call, stdout_of
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.mark.parametrize("name", CUES)
+def test_every_name_loads_its_drawing_and_comes_with_the_wheel(name: str) -> None:
+    path = data_folder() / CUES[name].file
+    assert cf.load(name) == cf.load(name.upper().replace(" ", "_")) == cf.load(path)
+    assert cue_name(named_path(Path(name))) == name
+    build = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["hatch"]["build"]
+    folder = Path(CUES[name].file).parent.as_posix()
+    assert build["targets"]["wheel"]["force-include"][folder] == f"cuefem/ready/{folder}"
+
+
+def test_words_of_one_name_are_enough_and_files_come_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert cue_name(named_path(Path("z2"))) == "predator z2"
+    assert cue_name(named_path(Path("predator z"))) == "predator z"
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "carbon").mkdir()
+    assert named_path(Path("carbon")) == Path("carbon")
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("predator", "predator: names 2 cues: write 'predator z' or 'predator z2'"),
+        ("predator z-3", "predator z-3: must be a file, or a cue's name: plain maple, low deflection, carbon"),
+        ("predatr z2", "got neither; did you mean 'predator z2'?"),
+        ("carbon.csv", "carbon.csv: cannot be read: No such file or directory"),
+    ],
+)
+def test_names_that_are_unknown_or_ambiguous_are_rejected(name: str, message: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(message)):
+        cf.load(name)
+    status, out, err = call("report", name)
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert message.split(",")[0] in err
+
+
+@pytest.mark.heavy
+def test_compared_columns_carry_the_name() -> None:
+    record = as_json("compare", "plain maple", "predator z2")
+    assert [*record["cues"]] == record["files"] == ["plain maple", "predator z2"]
+    assert "predator z2: inside and taper assumed (studies/measured)" in record["assumptions"]
+
+
+def test_command_carries_the_name_and_what_is_assumed(tmp_path: Path) -> None:
+    shown = stdout_of("strike", "low deflection")
+    assert shown.startswith("low deflection: 730.6 mm")
+    assert "a size that is sold, its inside assumed" in shown
+    (tmp_path / "scene.toml").write_text('cue = "carbon"\ngame = "pool"\n', encoding="utf-8")
+    assert "a size that is sold" in stdout_of("modes", tmp_path / "scene.toml")
+    assert "predator z2" in stdout_of("parts")
+
+
+@pytest.mark.heavy
+def test_name_of_measured_cue_stands_for_its_folder() -> None:
+    assert "Predator Z-2" in stdout_of("compare", "predator z2")
+    assert cf.compare("predator z2").rows
+    status, _, err = call("compare", "carbon")
+    assert (status, "needs another FILE" in err) == (2, True)
