@@ -43,15 +43,20 @@ def named_path(path: Path) -> Path:
     check_path(path)
     if path.suffix or os.path.exists(path):
         return path
-    words = _words(path.name)
-    exact = [name for name in CUES if _words(name) == words]
-    found = exact or [name for name in CUES if words and {*words} <= {*_words(name)}]
+    found = matching_names(path)
     if len(found) > 1:
         raise InputError(path, "", f"names {len(found)} cues: write {' or '.join(map(repr, found))}")
     if not found:
         problem = f"must be a file, or a cue's name: {', '.join(CUES)}; got neither{suggestion(path.name, CUES)}"
         raise InputError(path, "", problem)
     return data_folder() / CUES[found[0]].file
+
+
+def matching_names(path: Path) -> list[str]:
+    """The names that have all words of a path; the one that equals it comes alone."""
+    words = _words(path.name)
+    exact = [name for name in CUES if _words(name) == words]
+    return exact or [name for name in CUES if words and {*words} <= {*_words(name)}]
 
 
 def cue_name(path: Path) -> str:

@@ -18,7 +18,7 @@ from scipy.io import wavfile
 
 from cuefem.files import InputError, load, write_folder_atomically
 from cuefem.files.csv_reader import read_lines, read_text
-from cuefem.files.cue_names import named_path
+from cuefem.files.cue_names import matching_names, named_path
 from cuefem.files.defaults_report import assumption_texts, assumptions_of_tables
 from cuefem.files.errors import as_input_error, check_path, quote, read_bytes, suggestion
 from cuefem.files.schema import build, field_types, key_path, member_types, quantity_of, unknown_key
@@ -48,7 +48,7 @@ def load_measured(folder: Path) -> tuple[MeasuredCue, list[str]]:
     folder = named_folder(folder)
     if not folder.is_dir():
         raise InputError(
-            folder, "", "must be the folder of a measured cue (create one with `--template`); got no folder"
+            folder, "", "must be a measured cue: its folder (`--template` creates one) or its name; got no folder"
         )
     path = folder / MEASURED
     tables = read_tables(path) if path.exists() else {}
@@ -68,7 +68,7 @@ def load_measured(folder: Path) -> tuple[MeasuredCue, list[str]]:
 def named_folder(folder: Path) -> Path:
     """The folder, or that of the measured cue which it names; the drawing of a named cue that nobody measured."""
     check_path(folder)
-    if os.path.exists(folder):
+    if os.path.exists(folder) or not matching_names(folder):
         return folder
     drawing = named_path(folder)
     return drawing.parent if (drawing.parent / MEASURED).is_file() else drawing
