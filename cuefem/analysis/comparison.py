@@ -17,9 +17,10 @@ from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measured_folder import load_measured
 from cuefem.parameters.parameter import PARAMETERS
 from cuefem.parameters.parts import main_material
+from cuefem.results.computable_results import computable_results
 from cuefem.results.quantities import DASH, RESULTS, UNITS, format_value, with_unit
 from cuefem.results.records import Record, Table
-from cuefem.results.solved_design import SolvedDesign, computable_results, coupled_curve, off_centre
+from cuefem.results.solved_design import SolvedDesign, coupled_curve, off_centre
 from cuefem.results.uncertainty import RATIO_FLOOR, changes_by_input, difference_record, model_share
 from cuefem.results.verdict import verdict_problem
 from cuefem.scene import Scene

@@ -21,9 +21,10 @@ from cuefem.cue.materials import material_name
 from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.results.closed_forms import alciatore_a31_mass_ratio
+from cuefem.results.computable_results import listed_results
 from cuefem.results.quantities import DASH, RESULTS, format_value
 from cuefem.results.records import Record, Table, tabulate_values, value_rows
-from cuefem.results.solved_design import SolvedDesign, listed_results
+from cuefem.results.solved_design import SolvedDesign
 from cuefem.results.verdict import NoVerdict
 from cuefem.scene import Scene
 from cuefem.show.analysis import Analysis

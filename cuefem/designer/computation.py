@@ -27,8 +27,9 @@ from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.parameters.parts import main_material
 from cuefem.quantity.unit_checks import FLOAT_ERRORS
 from cuefem.results.closed_forms import pivot_length
+from cuefem.results.computable_results import listed_results
 from cuefem.results.records import Record
-from cuefem.results.solved_design import MIN_SOLVED_MODES, SolvedDesign, coupled_curve, listed_results
+from cuefem.results.solved_design import MIN_SOLVED_MODES, SolvedDesign, coupled_curve
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import SolvedScene, default_mode_count
 

@@ -15,8 +15,9 @@ from cuefem.quantity.display import one_line
 from cuefem.quantity.equality import equal_fields
 from cuefem.quantity.fields import suggestion
 from cuefem.quantity.unit_checks import FLOAT_ERRORS
+from cuefem.results.computable_results import computable_results
 from cuefem.results.quantities import Result, with_heading
-from cuefem.results.solved_design import SolvedDesign, computable_results
+from cuefem.results.solved_design import SolvedDesign
 from cuefem.scene import Resolution, Scene
 from cuefem.scene.solved_scene import SolvedScene
 

@@ -114,8 +114,8 @@ def _every_effect() -> str:
 def _every_response() -> str:
     """The responses of studies as a table: name, display unit, definition, and which direction is better."""
     from cuefem.parameters.parameter import PARAMETERS
+    from cuefem.results.computable_results import computable_results
     from cuefem.results.quantities import DISPLAY_UNITS
-    from cuefem.results.solved_design import computable_results
 
     rows = [
         f"| `{name}{ARGUMENTS[result.argument]}` | {DISPLAY_UNITS.get(result.unit, (1, result.unit))[1]} "

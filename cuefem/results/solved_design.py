@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -16,10 +15,9 @@ from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.strike import steps_of, strike_modes
 from cuefem.cue import Array
 from cuefem.effects.cue_effects import Support
-from cuefem.endmass.definitions import DEFINITIONS, Definition, small_offset_slope
+from cuefem.endmass.definitions import DEFINITIONS, small_offset_slope
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.convergence import resolve
-from cuefem.results.quantities import RESULTS, Result
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.default_scene import GAMES
 from cuefem.scene.solved_scene import SolvedScene
@@ -113,41 +111,3 @@ class SolvedDesign:
 
     def _at(self, offset: float | None) -> Scene:
         return self.scene if offset is None else at_offset(self.scene, offset)
-
-
-def computable_results() -> dict[str, Result]:
-    """All results of a design, by name: also "end_mass_NAME" for every definition of the end mass."""
-    results = {name: result for name, result in RESULTS.items() if result.of is not None}
-    return results | {f"end_mass_{name}": _defined(definition) for name, definition in DEFINITIONS.items()}
-
-
-def _defined(definition: Definition) -> Result:
-    return Result(
-        f"end mass, {definition.label}",
-        "kg",
-        about=definition.meaning,
-        of=lambda design, offset: design.end_mass(definition.name, offset),
-        argument="offset" if definition.at_offset else "",
-        better="lower",
-        is_listed=False,
-    )
-
-
-def listed_results(design: SolvedDesign) -> dict[str, float | None]:
-    """Every listed result of a design, None where it has none: what a report and the designer show by its name."""
-    return {
-        name: _value(result, design)
-        for name, result in RESULTS.items()
-        if result.of is not None and result.is_listed and (design.scene.cue.segments or not result.segments)
-    }
-
-
-def _value(result: Result, design: SolvedDesign) -> float | None:
-    assert result.of is not None
-    try:
-        value = result.of(design, None)
-        if result is RESULTS["squirt"] and design.strike().regime == "miscue":
-            return None
-    except (ValueError, RuntimeError):  # such as the stiffness of a cue whose effects clamp its tip
-        return None
-    return value if math.isfinite(value) else None

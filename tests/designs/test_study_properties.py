@@ -15,8 +15,8 @@ from cuefem.cue.materials import material
 from cuefem.designs import Levels, Normal, Response, Sample, Span, Study, Vary, evaluate
 from cuefem.designs.study_statistics import sweep_statistics
 from cuefem.endmass.definitions import DEFINITIONS
+from cuefem.results.computable_results import computable_results
 from cuefem.results.quantities import RESULTS
-from cuefem.results.solved_design import computable_results
 from studies.paper.closed_forms import natural_pivot_length
 from tests.helpers.cues import MAPLE, kim, low_deflection, pool
 

@@ -10,7 +10,7 @@ from cuefem.designs import study_file
 from cuefem.designs.study_file import load_study
 from cuefem.files.schema import keys_of
 from cuefem.handbook import chapters
-from cuefem.results.solved_design import computable_results
+from cuefem.results.computable_results import computable_results
 
 (TEXT,) = (chapter.text for chapter in chapters() if chapter.name == "study")
 EXAMPLES = {
