@@ -24,7 +24,7 @@ from .analysis.measured import estimate as estimate
 from .analysis.model_error import model_error as model_error
 from .analysis.natural_frequencies import natural_frequencies as natural_frequencies
 from .analysis.parts import parts as parts
-from .analysis.report_sections import report as report
+from .analysis.cue_report import report as report
 from .analysis.simulator_export import pooltool_export as pooltool_export
 from .analysis.squirt_curve import squirt_curve as squirt_curve
 from .analysis.strike_models import strike_models as strike_models

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
+from cuefem.analysis.base import Analysis
 from cuefem.analysis.comparison import Comparison, compare_cues
 from cuefem.analysis.first_screen import (
     HeadlineCue,
@@ -14,7 +15,7 @@ from cuefem.analysis.first_screen import (
     scale_markup,
     tiles_markup,
 )
-from cuefem.analysis.report_sections import SECTIONS, CueReport, report
+from cuefem.analysis.report_sections import SECTIONS
 from cuefem.analysis.squirt_curve import FINE_OFFSETS
 from cuefem.analysis.strike_models import regime_warning
 from cuefem.results.closed_forms import pivot_length
@@ -28,51 +29,48 @@ from cuefem.show.offset_charts import offset_charts
 from cuefem.show.scene_summary import assumptions, plain_cue_line, plain_effect_line, scene_record
 from cuefem.show.templates import environment
 
-PAGE_OFFSETS = FINE_OFFSETS
 Named = tuple[str, Scene]
-
-
-def page(
-    name: str,
-    scene: Scene,
-    *,
-    rtol: float | None = None,
-    notes: Sequence[str] = (),
-    warnings: Sequence[str] = (),
-    other: Named | None = None,
-) -> str:
-    """The report of a scene as HTML; other: name and scene of a cue to compare with, with the same ball and stroke."""
-    return report(scene, rtol, details=True).to_html(name, notes, warnings, other=other)
+Answers = Mapping[str, Analysis]
 
 
 def page_of(
-    own: CueReport, name: str, notes: Sequence[str], warnings: Sequence[str], other: Named | None = None
+    scene: Scene,
+    answers: Answers,
+    regime: str,
+    name: str,
+    notes: Sequence[str],
+    warnings: Sequence[str],
+    other: Named | None = None,
 ) -> str:
-    """A computed report as HTML."""
-    about, scene = scene_record(own.scene), own.scene
-    verdict: Any = own.sections["verdict"]
+    """The computed answers of a report as HTML.
+
+    answers: by the keys of `SECTIONS`, a verdict among them. regime: of the contact. other: name and scene of a cue to
+    compare with, with the same ball and stroke.
+    """
+    about = scene_record(scene)
+    verdict: Any = answers["verdict"]
     compared = None if other is None else compare_cues({other[0]: other[1], name: scene})
-    parts = {section.key: section for section in SECTIONS if section.key in own.sections and section.key != "verdict"}
+    parts = {section.key: section for section in SECTIONS if section.key in answers and section.key != "verdict"}
     sections = [
         {
             "key": key,
             "title": part.title,
             "folded": part.folded,
-            "about": own.sections[key].about,
-            "charts": own.sections[key].charts(),
-            "tables": own.sections[key].tables(),
+            "about": answers[key].about,
+            "charts": answers[key].charts(),
+            "tables": answers[key].tables(),
         }
         for key, part in parts.items()
     ]
     if other is not None and compared is not None:
-        sections.insert(0, _comparison(own, name, other, compared))
+        sections.insert(0, _comparison(scene, answers, name, other, compared))
     text = (
         environment()
         .get_template("page.html.j2")
         .render(
             name=name,
             notes=list(notes),
-            warnings=[*warnings, *filter(None, [regime_warning(own.regime)])],
+            warnings=[*warnings, *filter(None, [regime_warning(regime)])],
             facts=[
                 plain_cue_line(scene.cue),
                 f"{assumptions(about)}, offset b/R {scene.stroke.offset:.4g}",
@@ -80,38 +78,40 @@ def page_of(
             ],
             squirt=format_value("squirt", verdict.squirt),
             uncertainty=verdict.uncertainty_line(),
-            screen=_screen(own, name, other, compared),
+            screen=_screen(scene, answers, name, other, compared),
             sections=sections,
         )
     )
     return with_glossary(text) + "\n"
 
 
-def _comparison(own: CueReport, name: str, other: Named, compared: Comparison) -> Record:
+def _comparison(scene: Scene, answers: Answers, name: str, other: Named, compared: Comparison) -> Record:
     """The section that compares with another cue."""
-    beside = coupled_curve(other[1], PAGE_OFFSETS, SolvedScene(other[1]).tip)
-    curves = [(name, "c1", own.sections["squirt"].values()["models"]["coupled, this cue"]), (other[0], "c2", beside)]
+    beside = coupled_curve(other[1], FINE_OFFSETS, SolvedScene(other[1]).tip)
+    curves = [(name, "c1", answers["squirt"].values()["models"]["coupled, this cue"]), (other[0], "c2", beside)]
     table = compared.table()
-    charts = offset_charts(curves, PAGE_OFFSETS, own.scene.stroke.offset, height=300)
+    charts = offset_charts(curves, FINE_OFFSETS, scene.stroke.offset, height=300)
     return {"key": "other", "title": table.title, "folded": False, "about": "", "charts": charts, "tables": [table]}
 
 
-def _screen(own: CueReport, name: str, other: Named | None, compared: Comparison | None) -> dict[str, str]:
+def _screen(
+    scene: Scene, answers: Answers, name: str, other: Named | None, compared: Comparison | None
+) -> dict[str, str]:
     """The parts of the first screen as markup."""
-    numbers = own.sections["numbers"]
+    numbers = answers["numbers"]
     shown: dict[str, Any] = dict(numbers.values())
-    shown["pivot_length"] = pivot_length(own.scene, shown["squirt"])
+    shown["pivot_length"] = pivot_length(scene, shown["squirt"])
     shown["end_mass_squirt"] = numbers.squirt_end_mass  # type: ignore[attr-defined]
-    verdict: Any = own.sections["verdict"]
-    mine, beside, difference = HeadlineCue(name, own.scene, shown, verdict), None, None
+    verdict: Any = answers["verdict"]
+    mine, beside, difference = HeadlineCue(name, scene, shown, verdict), None, None
     if other is not None and compared is not None:
         beside = HeadlineCue(*other, compared.cues[other[0]])
         difference = compared.differences[name].get("squirt")
-    scenes = {name: own.scene} | ({} if other is None else {other[0]: other[1]})
+    scenes = {name: scene} | ({} if other is None else {other[0]: other[1]})
     return {
         "headline": headline_markup(mine, beside, difference),
         "scale": scale_markup(mine, beside),
         "tiles": tiles_markup(mine, beside),
-        "drawings": drawings_markup(scenes) if own.scene.cue.segments else "",
+        "drawings": drawings_markup(scenes) if scene.cue.segments else "",
         "parts": parts_line(verdict),
     }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -12,20 +12,17 @@ from cuefem.analysis.design_changes import design_changes
 from cuefem.analysis.end_mass import SQUIRT_END_MASS, end_masses
 from cuefem.analysis.natural_frequencies import natural_frequencies
 from cuefem.analysis.reduction import reduction
-from cuefem.analysis.squirt_curve import FINE_OFFSETS, squirt_curve
-from cuefem.analysis.strike_models import regime_warning, strike_models
+from cuefem.analysis.squirt_curve import squirt_curve
+from cuefem.analysis.strike_models import strike_models
 from cuefem.analysis.tip_impacts import tip_impacts
 from cuefem.analysis.verdict import verdict
-from cuefem.contact.geometric_stiffness import SlopeOutOfRange
 from cuefem.cue.materials import material_name
-from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.results.closed_forms import alciatore_a31_mass_ratio
 from cuefem.results.computable_results import listed_results
 from cuefem.results.quantities import DASH, RESULTS, format_value
 from cuefem.results.records import Record, Table, tabulate_values, value_rows
 from cuefem.results.solved_design import SolvedDesign
-from cuefem.results.verdict import NoVerdict
 from cuefem.scene import Scene
 from cuefem.show.analysis import Analysis
 from cuefem.show.scene_summary import assumptions, scene_record
@@ -151,7 +148,8 @@ class Section(NamedTuple):
     needs: Callable[[Scene], Any] = lambda scene: True
 
 
-def _has_segments(scene: Scene) -> bool:
+def has_segments(scene: Scene) -> bool:
+    """Whether the cue is drawn, not lumped."""
     return bool(scene.cue.segments)
 
 
@@ -162,126 +160,15 @@ def _has_leather(scene: Scene) -> bool:
 SECTIONS = (
     Section("verdict", "Squirt", verdict),
     Section("reduction", "From the drawing to squirt", reduction),
-    Section("advice", "Design changes", design_changes, page_only=True, needs=_has_segments),
+    Section("advice", "Design changes", design_changes, page_only=True, needs=has_segments),
     Section("squirt", "Squirt and tip offset", squirt_curve),
-    Section("modes", "Natural frequencies", natural_frequencies, needs=_has_segments),
+    Section("modes", "Natural frequencies", natural_frequencies, needs=has_segments),
     Section("numbers", "Cue and stroke", cue_numbers),
     Section("end_masses", "Effective end mass", end_masses),
     Section("tip", "Leather tip, head-on impact", tip_impacts, needs=_has_leather),
     Section("strike", "Stroke by model", strike_models, page_only=True, folded=True),
     Section("contact", "The contact", contact_history, page_only=True, folded=True),
-    Section("segments", "Segments", segments, page_only=True, folded=True, needs=_has_segments),
+    Section("segments", "Segments", segments, page_only=True, folded=True, needs=has_segments),
     Section("meanings", "Definitions of the end mass", definitions, page_only=True, folded=True),
     Section("accuracy", "Accuracy of the model", accuracy, page_only=True, folded=True),
 )
-
-
-@dataclass(frozen=True)
-class CueReport(Analysis):
-    """All analyses of one stroke, by the keys of `SECTIONS`.
-
-    Parameters
-    ----------
-    scene : Scene
-        The analysed stroke.
-    sections : dict of str to Analysis
-        The answers, in their order.
-    regime : str
-        State of the contact, as `Outcome.regime`; "" without a contact.
-    no_contact, no_squirt : str
-        Why only the natural frequencies are known; why there is no verdict.
-    """
-
-    sections: dict[str, Analysis]
-    regime: str = ""
-    no_contact: str = ""
-    no_squirt: str = ""
-
-    def headline(self) -> str:
-        """Squirt with its uncertainty."""
-        return self.sections["verdict"].headline() if "verdict" in self.sections else ""
-
-    def problem(self) -> str:
-        """Why there is no squirt."""
-        return self.no_contact and f"{self.no_contact} (--tip-height, --leather, --speed)"
-
-    def values(self) -> Record:
-        """The numbers of every section."""
-        shown = (section.key for section in SECTIONS if section.key in self.sections and not section.page_only)
-        others = {name: getattr(self, name) for name in ("regime", "no_contact", "no_squirt")}
-        return {key: self.sections[key].values() for key in shown} | {k: text for k, text in others.items() if text}
-
-    def tables(self) -> list[Table | str]:
-        """The tables of every section, the warnings first."""
-        first = self.no_contact and f"no end mass and no squirt: {self.no_contact}"
-        as_entered = self.no_squirt and f"{self.no_squirt}\nBelow: the numbers of the cue as entered."
-        first = first or as_entered or regime_warning(self.regime)
-        shown = (section.key for section in SECTIONS if section.key in self.sections and not section.page_only)
-        return [*([first, ""] if first else []), *(table for key in shown for table in self.sections[key].tables())]
-
-    def page_title(self, name: str, question: str) -> str:
-        """The name of the file alone: the page says that it is a report."""
-        return name
-
-    def to_html(
-        self, name: str = "", assumptions: Sequence[str] = (), warnings: Sequence[str] = (), **more: Any
-    ) -> str:
-        """The page with the first screen; ValueError for a miscue."""
-        from cuefem.analysis.report_page import page_of
-
-        if self.no_squirt or self.no_contact:
-            raise ValueError(self.no_squirt or self.no_contact)
-        return page_of(self, name or "cue", assumptions, warnings, **more)
-
-
-def report(
-    scene: Scene,
-    rtol: float | None = None,
-    *,
-    details: bool = False,
-    progress: Callable[[Sequence[Any]], Any] = list,
-) -> CueReport:
-    """All analyses of one stroke of a cue.
-
-    Parameters
-    ----------
-    scene : Scene
-        A stroke.
-    rtol : float, optional
-        Relative numerical error target of the coupled strike; by default that of a default strike.
-    details : bool
-        Whether the sections are computed too that only a page has, and the finer curves.
-    progress : callable
-        Wraps the list of sections, to show progress.
-
-    Returns
-    -------
-    CueReport
-        Beyond the valid range of the force law or of the geometric stiffness it has the natural frequencies only, and
-        the reason as ``no_contact``; of a miscue no verdict, and the reason as ``no_squirt``.
-
-    Examples
-    --------
-    >>> import cuefem as cf
-    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
-    >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43))
-    >>> list(cf.report(scene).sections)
-    ['verdict', 'reduction', 'squirt', 'modes', 'numbers', 'end_masses', 'tip']
-    """
-    found: dict[str, Analysis] = {}
-    lacking = ""
-    try:
-        scene.contact_time  # noqa: B018
-        design = SolvedDesign.of(scene, rtol)
-        regime = design.strike().regime
-    except (IndentationOutOfRange, SlopeOutOfRange) as error:
-        modes: dict[str, Analysis] = {"modes": natural_frequencies(scene)} if _has_segments(scene) else {}
-        return CueReport(scene, modes, no_contact=str(error))
-    wanted = [section for section in SECTIONS if section.needs(scene) and (details or not section.page_only)]
-    for section in progress(wanted):
-        try:
-            offsets = [FINE_OFFSETS] if details and section.analyse is squirt_curve else []
-            found[section.key] = section.analyse(design, *offsets)
-        except NoVerdict as error:
-            lacking = str(error)
-    return CueReport(scene, found, regime, no_squirt=lacking)

@@ -14,6 +14,7 @@ from typing import Any
 
 from nicegui import Client, app, background_tasks, events, ui
 
+from cuefem.analysis.cue_report import report
 from cuefem.analysis.first_screen import (
     HeadlineCue,
     drawings_markup,
@@ -22,7 +23,6 @@ from cuefem.analysis.first_screen import (
     scale_markup,
     tiles_markup,
 )
-from cuefem.analysis.report_page import page as report_page
 from cuefem.analysis.strike_models import regime_warning
 from cuefem.analysis.verdict import with_cue
 from cuefem.designer import computation, panels
@@ -318,7 +318,7 @@ class Page:
 
     @staticmethod
     def _page(design: Design, notes: list[str], beside: tuple[str, Scene] | None) -> str:
-        return report_page(design.name, design.scene, notes=notes, other=beside)
+        return report(design.scene, details=True).to_html(design.name, notes, other=beside)
 
     def _table(self) -> None:
         made = panels.tabulate_numbers(self.step, self.results)

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.analysis.report_page import PAGE_OFFSETS, page
-from cuefem.analysis.squirt_curve import squirt_curve
+from cuefem.analysis.squirt_curve import FINE_OFFSETS, squirt_curve
 from cuefem.designs import Response
 from cuefem.designs.study_statistics import SweepStatistics
 from cuefem.designs.study_table import tabulate_sweep
@@ -30,6 +29,10 @@ OUTSIDE = """[...document.querySelectorAll("section, figure, header, svg text")]
   .filter(r => r.right > innerWidth + 1 || r.left < 0).length"""
 
 
+def report_page() -> str:
+    return cf.report(SCENE, details=True).to_html("pool_maple.toml")
+
+
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
     with open_browser() as instance:
@@ -43,8 +46,8 @@ def opened(browser: Any) -> Iterator[Any]:
 
 
 def test_report_by_keyboard_shows_values_and_definitions_and_prints(opened: Any) -> None:
-    opened.set_content(page("pool_maple.toml", SCENE))
-    chart, known = opened.locator("svg.read[aria-label^='Squirt:']").nth(1), squirt_curve(SCENE, PAGE_OFFSETS).models
+    opened.set_content(report_page())
+    chart, known = opened.locator("svg.read[aria-label^='Squirt:']").nth(1), squirt_curve(SCENE, FINE_OFFSETS).models
     chart.focus()
     opened.keyboard.press("Home")
     for _ in range(3):
@@ -52,7 +55,7 @@ def test_report_by_keyboard_shows_values_and_definitions_and_prints(opened: Any)
     at, *values = opened.locator("p.spoken").inner_text().replace("\u00a0", " ").split("; ")
     assert at == "tip offset b/R: 0.300"
     read = {name: float(value) for name, value in (line.rsplit(" ", 1) for line in values)}
-    i = PAGE_OFFSETS.index(0.3)
+    i = FINE_OFFSETS.index(0.3)
     assert read == {name: pytest.approx(math.degrees(one["squirt"][i]), abs=0.01) for name, one in known.items()}
     opened.locator("button[popovertarget=w-squirt]").first.press("Enter")
     assert opened.locator("#w-squirt").is_visible()
@@ -78,7 +81,7 @@ def study_of_ten_columns() -> str:
 def test_page_is_accessible_and_not_cropped(opened: Any, what: str, width: int) -> None:
     opened.set_viewport_size({"width": width, "height": 900})
     opened.emulate_media(color_scheme="dark" if width == 390 else "light")
-    opened.set_content(page("pool_maple.toml", SCENE) if what == "report" else study_of_ten_columns())
+    opened.set_content(report_page() if what == "report" else study_of_ten_columns())
     assert opened.evaluate("document.documentElement.scrollWidth") <= width
     if what == "report":
         assert opened.evaluate(OUTSIDE) == 0

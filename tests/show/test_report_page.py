@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.analysis.report_page import page
 from cuefem.show.charts import WIDTH, Axis, round_step
 from cuefem.show.drawings import DIAMETER_SCALE, cue_drawing
 from tests.helpers.page_reader import PageReader
@@ -55,13 +54,15 @@ def assert_valid(text: str) -> PageReader:
     ids=["lumped", "left", "head on", "coupled", "no slip"],
 )
 def test_page_of_lumped_cue_is_valid_html(stroke: cf.Scene) -> None:
-    texts = " ".join(assert_valid(page("lumped.toml", stroke)).text)
+    texts = " ".join(assert_valid(cf.report(stroke, details=True).to_html("lumped.toml")).text)
     assert "Mode shapes" not in texts
     assert f"{math.degrees(cf.strike(stroke).squirt):.2f}°" in texts
 
 
 def test_page_with_markup_in_name_is_escaped() -> None:
-    text = page("<script>alert(1)</script> & co.toml", LUMPED, notes=["a < b", "ash (take --material)"])
+    text = cf.report(LUMPED, details=True).to_html(
+        "<script>alert(1)</script> & co.toml", ["a < b", "ash (take --material)"]
+    )
     assert "<script>alert" not in text
     assert "&lt;script&gt;alert(1)&lt;/script&gt; &amp; co.toml" in text
     assert "a &lt; b</li>" in text
