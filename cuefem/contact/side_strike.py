@@ -21,8 +21,14 @@ from cuefem.contact.ports import FirstTouch, Straight
 from cuefem.contact.step_records import SolvedContact, solve_contact
 from cuefem.contact.tips import PowerTip, check_restitution
 from cuefem.cue import Cue
-from cuefem.effects.contact_terms import ContactTerms
-from cuefem.effects.effect import POSITION_TOLERANCE, CueEffect, Effect, acting_on_cue, check_effects
+from cuefem.effects.effect import (
+    POSITION_TOLERANCE,
+    CueEffect,
+    Effect,
+    acting_on_cue,
+    check_effects,
+    terms_at_contact,
+)
 from cuefem.effects.force_law import TipLaw, loading_time
 from cuefem.quantity.equality import equal_fields
 from cuefem.quantity.fields import CONTACT_TIME, Quantity, check_fields, check_kind
@@ -166,7 +172,7 @@ class SideStrike:
             raise ValueError(f"SideStrike.position must be in {bounds}; got {self.position}")
         object.__setattr__(self, "effects", check_effects(self.cue, self.effects, "SideStrike"))
         for i, effect in enumerate(self.effects):
-            if effect.at_tip and ContactTerms.of((effect,), self.cue.segments[0].tip_diameter).window is None:
+            if effect.at_tip and terms_at_contact((effect,), self.cue.segments[0].tip_diameter).window is None:
                 raise ValueError(
                     f"SideStrike.effects[{i}] must be an effect on the cue or SecondHit: the striker does not touch "
                     f"the cue's tip; got {type(effect).__name__}"
@@ -180,7 +186,7 @@ class SideStrike:
     @property
     def window(self) -> float | None:
         """Time simulated after separation, s; None without `SecondHit`."""
-        return ContactTerms.of(self.effects, self.cue.segments[0].tip_diameter).window
+        return terms_at_contact(self.effects, self.cue.segments[0].tip_diameter).window
 
     @property
     def rigid_mass(self) -> float:

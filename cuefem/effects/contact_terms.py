@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from cuefem.effects.force_law import LeatherLaw
-
-if TYPE_CHECKING:
-    from cuefem.effects.effect import Effect
 
 
 @dataclass(frozen=True)
@@ -63,14 +60,6 @@ class ContactTerms:
         self.turns: bool | None = None
         self.table: BilliardTable | None = None
         self.window: float | None = None
-
-    @classmethod
-    def of(cls, effects: Iterable[Effect], tip_diameter: float | None = None) -> ContactTerms:
-        """The terms of all these effects together."""
-        terms = cls(tip_diameter)
-        for effect in effects:
-            effect.add_to_contact(terms)
-        return terms
 
     def add_dome(self, radius: float) -> None:
         """Add a rigid dome of ``radius``, m, on the end section; radii add, and so do their moment arms."""

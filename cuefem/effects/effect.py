@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from cuefem.cue import Array, Cue, LumpedCue
+from cuefem.effects.contact_terms import ContactTerms
 from cuefem.quantity.fields import OutOfBounds, Quantity, check_fields, check_kind
 
 if TYPE_CHECKING:
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from cuefem.beam.modes import Modes
     from cuefem.beam.point_terms import PointTerms
     from cuefem.beam.tip_modes import TipModes
-    from cuefem.effects.contact_terms import ContactTerms
 
 # Tolerance of positions on the cue, relative to its length: round-off of summed lengths.
 POSITION_TOLERANCE = 1e-9
@@ -127,6 +127,14 @@ class TipEffect(Effect):
 def acting_on_cue(effects: Iterable[Effect]) -> tuple[CueEffect, ...]:
     """The effects that act on the cue, sorted, so that sums over them do not depend on the order of the list."""
     return tuple(sorted((effect for effect in effects if isinstance(effect, CueEffect)), key=repr))
+
+
+def terms_at_contact(effects: Iterable[Effect], tip_diameter: float | None = None) -> ContactTerms:
+    """The terms of all these effects together at the contact; tip_diameter: see `ContactTerms`."""
+    terms = ContactTerms(tip_diameter)
+    for effect in effects:
+        effect.add_to_contact(terms)
+    return terms
 
 
 def effect_kinds() -> dict[str, type[Effect]]:

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 
 from cuefem.cue import Array, Cue, LumpedCue
 from cuefem.effects.contact_terms import ContactTerms
-from cuefem.effects.effect import CueEffect, Effect, acting_on_cue, check_effects
+from cuefem.effects.effect import CueEffect, Effect, acting_on_cue, check_effects, terms_at_contact
 from cuefem.effects.force_law import IndentationOutOfRange, LeatherLaw
 from cuefem.effects.leather_tip import LeatherTip
 from cuefem.quantity.display import brief_repr
@@ -185,7 +185,7 @@ class Scene:
         object.__setattr__(self, "effects", check_effects(self.cue, self.effects))
         if isinstance(self.cue, Cue) and self.cue.segments and self.cue.body_mass == 0:
             warn_light_cue(self.cue.mass, self.cue.length)
-        has_tip_model = self.contact_terms.tip is not None  # `ContactTerms.of` rejects effects that may act only once
+        has_tip_model = self.contact_terms.tip is not None  # `terms_at_contact` rejects effects that may act only once
         for name, unit in (("contact_time", "s"), ("stiffness", "N/m")):
             value = getattr(self.tip, name)
             if has_tip_model and value is not None:
@@ -332,7 +332,7 @@ def as_scenes(name: str, scenes: Any) -> tuple[Scene, ...]:
 @lru_cache(maxsize=256)
 def _contact_terms(effects: tuple[Effect, ...], end_diameter: float | None) -> ContactTerms:
     """Terms of effects at the contact, shared by all scenes that have them."""
-    return ContactTerms.of(effects, end_diameter)
+    return terms_at_contact(effects, end_diameter)
 
 
 @lru_cache(maxsize=256)
