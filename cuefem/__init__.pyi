@@ -14,6 +14,7 @@ from .contact.side_strike import (
 from .contact.strike import batch_strike as batch_strike, strike as strike
 from .contact.tip_identification import identify_tip as identify_tip
 from .contact.tip_identification import rebound as rebound
+from .cue.materials import material as material
 from .cue.geometry import Cue as Cue, LumpedCue as LumpedCue, Material as Material, Segment as Segment
 from .analysis.comparison import compare as compare
 from .analysis.convergence_study import convergence_study as convergence_study
@@ -53,7 +54,14 @@ from .endmass.lumped import impulse as impulse, lump as lump
 from .scene.default_scene import usual_scene as usual_scene
 from .files import load as load, save as save
 from .files.paraview import save_motion as save_motion
+from .designs.evaluation import Response as Response
+from .designs.optimum import Limit as Limit, Problem as Problem
+from .designs.sampling import Levels as Levels, Normal as Normal, Sample as Sample, Span as Span
+from .designs.scatter import Scatter as Scatter
+from .designs.study import Study as Study, Vary as Vary
 from .designs.study_file import study as study
+from .files.errors import InputError as InputError
+from .parameters.parameter import with_parameters as with_parameters
 from .quantity.unit_checks import PlausibilityWarning as PlausibilityWarning
 from .solid.solid_resolution import Solid as Solid
 from .solid.shaft import SolidModes as SolidModes, solid_modes as solid_modes

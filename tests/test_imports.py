@@ -101,6 +101,32 @@ def test_public_names_are_importable() -> None:
         _ = cuefem.stirke  # type: ignore[attr-defined]
 
 
+def hidden_names(package: Path) -> set[str]:
+    """Names that a package's face or stub takes from a module, and that a room or module of the package would hide."""
+    taken = set[str]()
+    for face in (package / "__init__.py", package / "__init__.pyi"):
+        for one in ast.parse(face.read_bytes()).body if face.exists() else []:
+            itself = isinstance(one, ast.ImportFrom) and one.module in (None, f"cuefem.{package.name}")
+            if isinstance(one, ast.ImportFrom) and not itself:
+                taken |= {alias.name for alias in one.names}
+    inside = {path.stem for path in package.iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()}
+    return taken & inside
+
+
+def test_no_room_or_module_hides_a_public_name() -> None:
+    """A package `study` would stand in `cuefem.study` once imported, instead of the function."""
+    faces = {path.parent for path in PACKAGE.rglob("__init__.py*")}
+    assert {face.name: hidden_names(face) for face in faces if hidden_names(face)} == {}
+
+
+def test_room_of_every_public_name_has_title_on_reference_page() -> None:
+    tree = ast.parse((PACKAGE.parent / ".ci" / "conf.py").read_bytes())
+    titles = next(ast.literal_eval(one.value) for one in tree.body if ast.unparse(one).startswith("TITLES ="))  # type: ignore[attr-defined]
+    values = {name: getattr(cuefem, name) for name in cuefem.__all__}
+    rooms = {name: getattr(value, "__module__", value.__name__).split(".")[1] for name, value in values.items()}
+    assert {name: room for name, room in rooms.items() if not any(room in listed for listed in titles.values())} == {}
+
+
 HEAVY = ["skfem", "scipy", "pint", "pydantic", "matplotlib", "meshio", "tomlkit", "rich", "click"]
 # A command on a valid file in common units needs none of these, whose import takes several times as long as its work.
 WORKED_ON = ["skfem", "scipy.sparse", "pint", "pydantic", "tomlkit", "jinja2", "matplotlib"]

@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from cuefem.analysis.base import Analysis
 from cuefem.analysis.natural_frequencies import natural_frequencies
 from cuefem.analysis.report_sections import SECTIONS, has_segments
 from cuefem.analysis.squirt_curve import FINE_OFFSETS, squirt_curve
@@ -17,6 +16,7 @@ from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.results.verdict import NoVerdict
 from cuefem.scene import Scene
+from cuefem.show.analysis import Analysis
 
 
 @dataclass(frozen=True)

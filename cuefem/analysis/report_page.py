@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from cuefem.analysis.base import Analysis
 from cuefem.analysis.comparison import Comparison, compare_cues
 from cuefem.analysis.first_screen import (
     HeadlineCue,
@@ -24,6 +23,7 @@ from cuefem.results.records import Record
 from cuefem.results.solved_design import coupled_curve
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
+from cuefem.show.analysis import Analysis
 from cuefem.show.glossary import with_glossary
 from cuefem.show.offset_charts import offset_charts
 from cuefem.show.scene_summary import assumptions, plain_cue_line, plain_effect_line, scene_record

@@ -14,7 +14,7 @@ from cuefem.beam.eigensolver import EigenSolution, solve_eigenproblem
 from cuefem.beam.mesh import BeamEffect
 from cuefem.beam.mode_count import modes_below
 from cuefem.cue import Array, Cue, Section
-from cuefem.quantity.display import brief
+from cuefem.quantity.display import brief, html_table
 from cuefem.quantity.fields import Quantity, check_count, check_kind
 
 
@@ -39,6 +39,12 @@ class Modes(EigenSolution):
         first = self.frequencies[:6]
         more = f" and {len(self.frequencies) - len(first)} more" if len(first) < len(self.frequencies) else ""
         return f"Modes({brief(first)} Hz{more}, {self.rigid} rigid)"
+
+    def _repr_html_(self) -> str:
+        """A row a mode: its frequency, and its deflection of the tip."""
+        tip = self.participation[0]
+        rows = [(f"{i}", f"{f:.2f}", f"{w:.3f}") for i, (f, w) in enumerate(zip(self.frequencies, tip, strict=True), 1)]
+        return html_table("Bending modes", ("mode", "frequency, Hz", "tip amplitude, 1/√kg"), rows)
 
     @property
     def frequencies(self) -> Array:

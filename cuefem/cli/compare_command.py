@@ -17,7 +17,7 @@ from cuefem.cli.scene_options import impact_options, offset_option, option
 from cuefem.files import InputError, load_stroke
 from cuefem.files.cue_names import cue_name, named_path
 from cuefem.files.defaults_report import STROKE, Assumption, given_keys
-from cuefem.files.drawing_warnings import drawing_warnings
+from cuefem.files.warnings_of_drawings import drawing_warnings
 from cuefem.measurements.measured_folder import load_measured, named_folder, write_template
 from cuefem.show.plausibility import plausibility_warnings
 

@@ -36,8 +36,8 @@ from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.files import InputError, check_writable, load_stroke
 from cuefem.files.cue_names import cue_name
 from cuefem.files.defaults_report import Assumption, assumption_texts, assumptions
-from cuefem.files.drawing_warnings import drawing_warnings
 from cuefem.files.shaft_additions import SHAFT_ADDITIONS
+from cuefem.files.warnings_of_drawings import drawing_warnings
 from cuefem.results.records import Record, Table
 from cuefem.scene import Scene
 from cuefem.show.analysis import Analysis, Answer, write

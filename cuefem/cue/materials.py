@@ -73,7 +73,30 @@ _ALIASES = {alias: name for name, row in _ROWS.items() for alias in row.get("ali
 
 
 def material(name: str) -> Material:
-    """The material of this name in `MATERIALS`, in any case. An unknown name raises a ValueError with near names."""
+    """The material of a name in the table of materials (`cuefem parts`).
+
+    Parameters
+    ----------
+    name : str
+        Such as "hard maple", in any case, with blanks, hyphens or underscores.
+
+    Returns
+    -------
+    Material
+        Its E and G, Pa, rho, kg/m³, loss factor and Poisson's ratio.
+
+    Raises
+    ------
+    ValueError
+        If the table has no such name; the message has similar ones.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> maple = cf.material("Hard maple")
+    >>> maple.E, maple.rho, cf.Segment(0.7, 0.012, 0.021, maple).mass
+    (13860000000.0, 705.6, 0.108230...)
+    """
     key = " ".join(name.replace("_", " ").replace("-", " ").casefold().split())
     key = _ALIASES.get(key, key)
     if key not in MATERIALS:

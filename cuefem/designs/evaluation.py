@@ -28,9 +28,26 @@ _NAME = re.compile(r"(\w+)(?:\(\s*([^()\s]+)\s*\))?")
 
 @dataclass(frozen=True)
 class Response:
-    """One number computed for every design: the name of a result, and the number of the mode or the offset b/R.
+    """One number computed for every design of a study.
 
-    Without an offset, a strike has the scene's own; "pivot_length" and "end_mass" are then the limits of small offsets.
+    Parameters
+    ----------
+    kind : str
+        The name of a result, such as "squirt" (`cuefem guide study` lists them).
+    argument : float or int, optional
+        Of a strike the offset b/R, by default the scene's own; of a frequency the number of the mode. "pivot_length"
+        and "end_mass" without one are the limits of small offsets.
+
+    Raises
+    ------
+    ValueError
+        By `of`, and by a `Study`, if there is no such result.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> cf.Response.of("squirt(0.3)") == cf.Response("squirt", 0.3), cf.Response("frequency", 2).label
+    (True, 'natural frequency 2')
     """
 
     kind: str

@@ -30,7 +30,26 @@ POPULATION = 15  # designs per variable in differential evolution
 
 @dataclass(frozen=True)
 class Limit:
-    """A response that must be in [low, high], in SI units; of squirt, which has the sign of the offset, its size."""
+    """A response that must be in [low, high] in an optimization.
+
+    Parameters
+    ----------
+    response : Response
+        Of squirt, which has the sign of the offset, its size counts.
+    low, high : float
+        SI, one of them finite.
+
+    Raises
+    ------
+    ValueError
+        If ``low`` exceeds ``high``, neither is finite, or a bound of squirt is negative.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> cf.Limit(cf.Response("tip_stiffness"), low=1500.0).sides
+    [(1, 1500.0)]
+    """
 
     response: Response
     low: float = -np.inf
@@ -85,10 +104,40 @@ class Optimum(StudyDesign):
 
 @dataclass(frozen=True)
 class Problem:
-    """An optimization: objective to minimize (maximize, if ``maximize``), variables and limits.
+    """An optimization: the best design within limits, by `cuefem.study`.
 
-    at: as of a `Study`. choice: values of the variables over a list, by index; by default those of the base. Points are
-    values of the other variables, those with low and high.
+    Points are values of the variables with low and high.
+
+    Parameters
+    ----------
+    base : Scene
+        The design to start from.
+    vary : tuple of Vary
+        The variables: spans, and lists of values, of which every combination is tried.
+    objective : Response
+        What is minimized.
+    limits : tuple of Limit
+        Which the best design keeps.
+    at : Resolution, optional
+        As of a `Study`.
+    maximize : bool
+        Maximize the objective instead.
+    choice : mapping
+        Values of the variables over a list, by index; by default those of the base.
+
+    Raises
+    ------
+    ValueError
+        If a range is a distribution; as of a `Study`.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.material("hard maple")),), body_mass=0.42)
+    >>> width = cf.Vary("tip diameter", cf.Span(0.011, 0.013))
+    >>> limit = cf.Limit(cf.Response("tip_stiffness"), low=665.0)
+    >>> cf.study(cf.Problem(cf.Scene(cue), (width,), cf.Response("end_mass"), (limit,))).optimum.active
+    ('tip_stiffness >= 665',)
     """
 
     base: Scene

@@ -22,7 +22,24 @@ Value = float | str
 
 @dataclass(frozen=True)
 class Levels:
-    """A list of values: numbers in SI, or names of materials."""
+    """A list of values of a parameter.
+
+    Parameters
+    ----------
+    values : tuple of float or str
+        At least one: numbers in SI, or names of materials.
+
+    Raises
+    ------
+    ValueError
+        If there is none.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> cf.Vary("shaft material", cf.Levels(("hard maple", "ash"))).range.levels
+    ('hard maple', 'ash')
+    """
 
     values: tuple[Value, ...]
 
@@ -47,7 +64,28 @@ class Levels:
 
 @dataclass(frozen=True)
 class Span:
-    """An interval of numbers in SI, both ends included; a grid has ``count`` values, in equal ratios if logarithmic."""
+    """An interval of a parameter, both ends included; a random sample is uniform in it.
+
+    Parameters
+    ----------
+    low, high : float
+        Its ends, SI.
+    count : int
+        Number of values in a grid, from `low` to `high`; of one, the middle.
+    logarithmic : bool
+        Equal ratios instead of equal differences.
+
+    Raises
+    ------
+    ValueError
+        If ``low`` is not below ``high``, or not above 0 where it is logarithmic; if ``count`` is out of bounds.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> cf.Span(0.011, 0.013, count=3).levels, cf.Span(1.0, 4.0, count=3, logarithmic=True).levels
+    ((0.011, 0.012, 0.013), (1.0, 2.0, 4.0))
+    """
 
     low: float
     high: float
@@ -88,10 +126,27 @@ class Span:
 
 @dataclass(frozen=True)
 class Normal:
-    """A normal distribution of numbers in SI, truncated at `CUT_DEVIATIONS` standard deviations; a grid has its median.
+    """A normal distribution of a parameter, truncated at four standard deviations; a grid has its median alone.
 
-    logarithmic: the number's natural logarithm is normal. Then ``median`` is its own, and ``sd`` a pure number, that
-    of the logarithm: nearly the coefficient of variation.
+    Parameters
+    ----------
+    median : float
+        SI.
+    sd : float
+        Standard deviation, SI, above 0; of the natural logarithm where that is normal.
+    logarithmic : bool
+        The natural logarithm is normal: ``sd`` is then nearly the coefficient of variation.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite, ``sd`` is not above 0, or the median of a logarithmic one is not.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> round(cf.Normal(700.0, 35.0).quantile(0.975)), round(cf.Normal(700.0, 0.05, logarithmic=True).quantile(0.975))
+    (769, 772)
     """
 
     median: float
@@ -128,7 +183,21 @@ class Normal:
 
 @dataclass(frozen=True)
 class Sample:
-    """A quasi-random sample of ``count`` designs instead of the grid: a scrambled Sobol sequence."""
+    """A quasi-random sample of designs instead of the grid: a scrambled Sobol sequence.
+
+    Parameters
+    ----------
+    count : int
+        Number of designs, at least 1.
+    seed : int
+        At least 0.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> [[round(number, 2) for number in point] for point in cf.Sample(2, seed=1).points(2)]
+    [[0.29, 0.16], [0.58, 0.94]]
+    """
 
     count: int
     seed: int

@@ -57,6 +57,15 @@ class Scatter:
         If count or seed is out of bounds; a name is unknown; a correlation is out of bounds, listed twice, or of a list
         of values; the correlation matrix is not positive definite; a parameter is in two groups; a group separates
         correlated parameters; or two factors have one name.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.material("hard maple")),), body_mass=0.42)
+    >>> E, rho = (cf.Vary(f"wood.{name}", cf.Normal(1.0, 0.1), factor=True) for name in ("E", "rho"))
+    >>> study = cf.Study(cf.Scene(cue), (E, rho), (cf.Response("end_mass"),))
+    >>> cf.Scatter(study, correlations={("wood.E", "wood.rho"): 0.6}, count=64).factors
+    ('wood.E + wood.rho',)
     """
 
     study: Study

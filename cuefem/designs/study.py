@@ -44,8 +44,8 @@ class Vary:
 
     Parameters
     ----------
-    paths : tuple of str
-        The fields, as in "cue.segments[0].tip_bore"; "[*]" means every item of a list.
+    paths : str or tuple of str
+        The fields: a name ("bore width") or a path ("cue.segments[0].tip_bore"); "[*]" means every item of a list.
     range : Levels, Span or Normal
         The values: SI numbers (pure numbers for a factor) or names of materials.
     name : str
@@ -57,9 +57,22 @@ class Vary:
     compensating_path : tuple of str
         Fields that decrease by the increase of the first path: a length that is compensated by the next segment's
         leaves the length of the cue unchanged.
+
+    Raises
+    ------
+    ValueError
+        If no field is named, ``factor`` and ``shift`` are both set, or the name is not printable.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> cf.Vary("tip diameter", cf.Span(0.011, 0.013, count=3)).name
+    'tip diameter'
+    >>> cf.Vary("cue.segments[*].material.E", cf.Normal(1.0, 0.1), name="modulus", factor=True).operation
+    'factor'
     """
 
-    paths: tuple[str, ...]
+    paths: tuple[str, ...] | str
     range: Levels | Span | Normal
     name: str = ""
     factor: bool = False
@@ -67,6 +80,9 @@ class Vary:
     compensating_path: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        for name in ("paths", "compensating_path"):
+            if isinstance(text := getattr(self, name), str):
+                object.__setattr__(self, name, (text,))
         if not self.paths:
             raise ValueError("path must name a field; got none")
         if self.factor and self.shift:
@@ -150,6 +166,15 @@ class Study:
     ------
     ValueError
         If a path names no field, two columns have one name, or a response needs segments and the cue is lumped.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.material("hard maple")),), body_mass=0.42)
+    >>> width = cf.Vary("tip diameter", cf.Span(0.011, 0.013, count=3))
+    >>> wood = cf.Vary("wood", cf.Levels(("ash", "hard maple")))
+    >>> cf.Study(cf.Scene(cue), (width, wood), (cf.Response("end_mass"),)).size
+    6
     """
 
     base: Scene

@@ -192,14 +192,14 @@ def study(
     Examples
     --------
     >>> import cuefem as cf
-    >>> from cuefem.designs import Response, Span, Study, Vary
-    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 700.0)),), 0.42)
-    >>> tip = Vary(("cue.segments[0].tip_diameter",), Span(0.011, 0.013, count=3), name="tip")
-    >>> result = cf.study(Study(cf.Scene(cue), (tip,), (Response("tip_stiffness"), Response("shaft_mass"))))
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.material("hard maple")),), 0.42)
+    >>> tip = cf.Vary("tip diameter", cf.Span(0.011, 0.013, count=3), name="tip")
+    >>> responses = (cf.Response("tip_stiffness"), cf.Response("shaft_mass"))
+    >>> result = cf.study(cf.Study(cf.Scene(cue), (tip,), responses))
     >>> result
     SweepResult(3 designs)
-      tip_stiffness: 649.4 N/m, tip 13 mm
-      shaft_mass: 107.5 ± 5.8 g, mean ± sd
+      tip_stiffness: 671.6 N/m, tip 13 mm
+      shaft_mass: 108.3 ± 2.5 g, mean ± sd
     >>> result.designs["tip"], result.units["tip"]
     (array([0.011, 0.012, 0.013]), 'm')
     """

@@ -13,12 +13,12 @@ from typing import Any
 from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue, LumpedCue
 from cuefem.files.cue_names import named_path
-from cuefem.files.drawing_warnings import drawing_warnings
 from cuefem.files.errors import InputError, as_input_error, check_path, os_error_text, quote
 from cuefem.files.lathe_profile import DEFAULT_MATERIAL, SHAPE_EXTENSIONS, SPREADSHEET_EXTENSIONS, read_profile
 from cuefem.files.schema import named_material
 from cuefem.files.shaft_additions import with_additions, with_shaft_material
 from cuefem.files.toml_reader import cue_as_drawn, load_accuracy, load_cue, load_toml
+from cuefem.files.warnings_of_drawings import drawing_warnings
 from cuefem.parameters.parameter import with_fields
 from cuefem.parameters.parts import with_shaft_mass
 from cuefem.quantity.fields import Quantity

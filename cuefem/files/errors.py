@@ -31,8 +31,25 @@ LARGEST_TEXT = 1_000_000  # bytes: five times a file of the largest number of se
 class InputError(ValueError):
     """Invalid input, in one line: ``FILE: KEY.PATH: must be in BOUND UNIT; got VALUE``.
 
-    file: as the user typed it. key: path of the key in the file, such as ``segments[0].length``; "" for the whole file.
-    problem: limit and value.
+    Parameters
+    ----------
+    file : str or path
+        The file, as the user typed it.
+    key : str
+        Path of the key in the file, such as ``segments[0].length``; "" for the whole file.
+    problem : str
+        Limit and value.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> try:
+    ...     cf.load("cue.docx")
+    ... except cf.InputError as error:
+    ...     print(error)
+    ...     print(error.file, "|", error.problem)
+    cue.docx: must end in .toml, .csv, .stl, .ply or .obj; got '.docx'
+    cue.docx | must end in .toml, .csv, .stl, .ply or .obj; got '.docx'
     """
 
     def __init__(self, file: str | PathLike[str], key: str, problem: str) -> None:

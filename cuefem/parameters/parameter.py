@@ -280,7 +280,8 @@ def with_parameters(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     scene : Scene
         The original scene.
     changes : mapping
-        SI numbers, materials, or names of materials and leathers, by parameter name or path.
+        SI numbers, materials, or names of materials and leathers, by parameter name ("bore width"; `cuefem guide study`
+        lists them) or path ("cue.segments[0].tip_bore").
 
     Returns
     -------
@@ -295,10 +296,8 @@ def with_parameters(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     Examples
     --------
     >>> import cuefem as cf
-    >>> from cuefem.parameters.parameter import with_parameters
-    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
-    >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),)))
-    >>> changed = with_parameters(scene, {"shaft material": "ash", "bore depth": 0.1, "speed": 3.0})
+    >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.material("hard maple")),)))
+    >>> changed = cf.with_parameters(scene, {"shaft material": "ash", "bore depth": 0.1, "speed": 3.0})
     >>> [segment.length for segment in changed.cue.segments], changed.cue.segments[0].tip_bore, changed.stroke.speed
     ([0.1, 0.6], 0.006, 3.0)
     """

@@ -7,6 +7,7 @@ import re
 import unicodedata
 from collections.abc import Iterable
 from functools import cache
+from html import escape
 from typing import Any
 
 MAX_VALUE_CHARACTERS = 60  # characters of an echoed value
@@ -51,6 +52,13 @@ def full_repr(value: Any) -> str:
     if type(value) is tuple:
         return f"({', '.join(map(full_repr, value))}{',' if len(value) == 1 else ''})"
     return repr(value)
+
+
+def html_table(caption: str, head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """A table for a notebook, of plain texts."""
+    lines = [("th", head), *(("td", row) for row in rows)]
+    cells = ["".join(f"<{kind}>{escape(text)}</{kind}>" for text in line) for kind, line in lines]
+    return f"<table><caption>{escape(caption)}</caption>{''.join(f'<tr>{line}</tr>' for line in cells)}</table>"
 
 
 def one_line(text: str) -> str:

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cuefem import Ball, Cue, Material, Resolution, Scene, Segment, Tip, end_mass, modes
-from tests.helpers.cues import scaled
+from tests.helpers.cues import kim, scaled
 
 WOOD, SOFT, STIFF = Material(12e9, 0.8e9, 700.0), Material(0.1e9, 0.036e9, 1000.0), Material(200e9, 77e9, 7850.0)
 AT = Resolution(2, 8, 10)
@@ -72,3 +72,10 @@ def test_frequencies_rise_with_stiffness_and_fall_with_mass(cue: Cue, factor: fl
     assert np.all(stiff >= original * (1 - 1e-12))
     assert np.all(stiff <= original * factor**0.5 * (1 + 1e-12))
     np.testing.assert_allclose(heavy, original / factor**0.5, rtol=1e-11)
+
+
+def test_modes_show_a_table_in_a_notebook() -> None:
+    found = modes(kim(), 3)
+    text = found._repr_html_()
+    assert text.count("<tr>") == 4
+    assert [f"{frequency:.2f}" in text for frequency in found.frequencies] == [True] * 3

@@ -9,9 +9,9 @@ import pytest
 import cuefem as cf
 from cuefem.cue.materials import material
 from cuefem.files.defaults_report import assumption_texts, drawing_assumptions
-from cuefem.files.drawing_warnings import drawing_warnings
 from cuefem.files.errors import InputError
 from cuefem.files.surface_sections import TOLERANCE, aligned_surface, section_shaft
+from cuefem.files.warnings_of_drawings import drawing_warnings
 from tests.helpers.surfaces import outline_of, revolve, write_surface
 
 MAPLE = material("hard maple")
