@@ -1,4 +1,4 @@
-"""The results on the page, computed by the functions of the commands, outside the event loop, each once.
+"""The results on the page, computed by the functions of the commands, each once.
 
 The strike and the end mass are computed first, then the verdict and the comparison; results of a tab when it is
 open. Moving a control again ends the sequence after the current part.
@@ -6,17 +6,14 @@ open. Moving a control again ends the sequence after the current part.
 
 from __future__ import annotations
 
-import asyncio
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from nicegui import run
-
 import cuefem as cf
 from cuefem.analysis.comparison import compare_cues
+from cuefem.analysis.cue_report import CueReport, report
 from cuefem.analysis.design_changes import DesignChanges, design_changes
 from cuefem.analysis.verdict import Verdict
 from cuefem.analysis.verdict import verdict as verdict_of
@@ -25,7 +22,6 @@ from cuefem.cue import Array
 from cuefem.designs.sensitivity import sensitivity
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.parameters.parts import main_material
-from cuefem.quantity.unit_checks import FLOAT_ERRORS
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.computable_results import listed_results
 from cuefem.results.records import Record
@@ -36,7 +32,6 @@ from cuefem.scene.solved_scene import SolvedScene, default_mode_count
 if TYPE_CHECKING:
     from cuefem.analysis.model_error import ModelError
 
-TIME_LIMIT = 60.0  # s, time limit of a result; playing cues need less than a tenth
 CACHED_DESIGNS = 12  # designs whose results are cached, for undo and comparison
 CURVE_OFFSETS = tuple(round(0.04 * i, 2) for i in range(1, 18))  # b/R
 MAX_MASS_MODES = 45  # the end-mass distribution needs all modes of the mesh: cubic cost
@@ -127,19 +122,12 @@ def changes(scene: Scene) -> DesignChanges:
     return design_changes(SolvedDesign(strike.solved, strike.outcome))
 
 
+@lru_cache(CACHED_DESIGNS)
+def answers(scene: Scene) -> CueReport:
+    """Every section of the report."""
+    return report(scene, details=True)
+
+
 def solid(scene: Scene) -> ModelError:
     """The scene by the beam and by the solid model."""
     return cf.model_error(scene)  # loads scikit-fem, which the page's start need not
-
-
-async def run_in_thread(work: Callable[..., Any], *arguments: Any) -> Any:
-    """Run the work in a thread, with overflows as errors; RuntimeError at the time limit."""
-
-    def guarded() -> Any:
-        with np.errstate(**FLOAT_ERRORS):
-            return work(*arguments)
-
-    try:
-        return await asyncio.wait_for(run.io_bound(guarded), TIME_LIMIT)
-    except TimeoutError:
-        raise RuntimeError(f"this takes more than {TIME_LIMIT:g} s: draw fewer segments, or check sizes") from None

@@ -1,66 +1,44 @@
-"""The tabs below the result: curves, changes, numbers, check. Each shows the results so far, and what is pending."""
+"""The content of the tabs as markup and tables: the results of a session so far, or what is pending."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Any
 
-from nicegui import ui
-
+from cuefem.analysis.report_sections import SECTIONS
 from cuefem.analysis.strike_models import regime_warning
 from cuefem.analysis.verdict import difference_text
 from cuefem.designer.computation import CURVE_OFFSETS
-from cuefem.designer.knobs import KNOBS, label, value, value_text
-from cuefem.designer.state import Design, Step
+from cuefem.designer.controls import KNOBS, label, value, value_text
+from cuefem.designer.session import Session
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.results.quantities import DASH, RESULTS, format_change, unbroken
+from cuefem.results.quantities import DASH, RESULTS, format_change
 from cuefem.results.records import Record, Table
 from cuefem.results.uncertainty import SHAFT_ERROR
-from cuefem.results.verdict import verdict_problem
 from cuefem.scene import Scene
 from cuefem.show.charts import Axis, Curve, chart
 from cuefem.show.offset_charts import offset_charts
 from cuefem.show.plausibility import plausibility_warnings
-from cuefem.show.templates import chart_markup, shading_markup, table_markup
+from cuefem.show.templates import answer_markup, chart_markup, shading_markup, table_markup
 
 HALF = 0.5 * (CURVE_OFFSETS[1] - CURVE_OFFSETS[0])
 STYLES = ("c1", "c2")
 COMPUTING = '<p class="soft">computing …</p>'
 
 
-@dataclass
-class Results:
-    """Results of the current design ("own") and of the other one, by the names of the computation."""
-
-    own: dict[str, Any] = field(default_factory=dict)
-    other: dict[str, Any] = field(default_factory=dict)
-    difference: Record | None = None
-
-
-def named_designs(step: Step) -> list[tuple[str, Design]]:
-    """The displayed designs, by distinct names."""
-    mine, other = step.design, step.other
-    if other is None:
-        return [(mine.name, mine)]
-    return [
-        (mine.name, mine),
-        (other.design.name if other.design.name != mine.name else f"{mine.name} before", other.design),
-    ]
-
-
-def curves_markup(step: Step, results: Results) -> str:
+def curves_markup(session: Session) -> str:
     """Squirt and pivot length against the offset, and the end-mass distribution, of one or two designs."""
+    results = session.results
     sides = [
         (name, style, side)
-        for (name, _), style, side in zip(named_designs(step), STYLES, (results.own, results.other), strict=False)
+        for name, style, side in zip(session.designs(), STYLES, (results.own, results.other), strict=False)
     ]
     drawn = [(name, style, side["curve"]) for name, style, side in sides if "curve" in side]
     if not drawn or "curve" not in results.own:
         return COMPUTING
     regimes = results.own["curve"]["regime"]
-    offset = float(step.design.scene.stroke.offset)
+    offset = float(session.scene.stroke.offset)
     charts = [*offset_charts(drawn, CURVE_OFFSETS, offset, height=280, regimes=regimes)]
     curves = [
         Curve(name, 1e3 * side["end_mass_distribution"][0], side["end_mass_distribution"][1], style)
@@ -79,65 +57,32 @@ def curves_markup(step: Step, results: Results) -> str:
         )
     figures = "".join(chart_markup(each, f"curve{i}") for i, each in enumerate(charts))
     missed = [b for b, regime in zip(CURVE_OFFSETS, regimes, strict=True) if regime == "miscue"]
-    note = f"{step.design.name}: miscue from b/R {missed[0] - HALF:.2f} on." if missed else ""
-    of = f"({step.design.name})" if len(drawn) > 1 else ""
+    note = f"{session.step.design.name}: miscue from b/R {missed[0] - HALF:.2f} on." if missed else ""
+    of = f"({session.step.design.name})" if len(drawn) > 1 else ""
     return f'<div class="charts">{figures}</div>{shading_markup(charts[0], of)}<p class="soft">{escape(note)}</p>'
 
 
-def changes_panel(step: Step, results: Results, attempt: Callable[[Mapping[str, Any]], None]) -> None:
-    """The design changes, each with a button that applies it."""
-    record = results.own.get("changes")
-    if record is None:
-        solved = results.own.get("solved_strike")
-        problem = solved and verdict_problem(step.design.scene, solved.outcome)
-        ui.html(f'<p class="soft">{escape(problem)}</p>' if problem else COMPUTING, sanitize=False)
-        return
-    made = record.table()
-    ui.label(f"Changes to {step.design.name}, each alone").classes("h2")
-    around = ui.element("div").classes("scroll").props('tabindex=0 role=region aria-label="Design changes"')
-    with around, ui.element("table").classes("changes"):
-        with ui.element("thead"), ui.element("tr"):
-            for i, head in enumerate(made.head):
-                _cell("th", head, text=i in made.texts)
-            _cell("td", "")
-        with ui.element("tbody"):
-            for i, (cells, row) in enumerate(zip(made.rows, record.changes, strict=True)):
-                with ui.element("tr").classes((made.styles or {}).get(i, "")):
-                    for j, cell in enumerate(cells):
-                        _cell("td", cell, text=j in made.texts)
-                    with ui.element("td"):
-                        button = ui.button("Try", on_click=lambda places=row.values: attempt(places))
-                        button.props(f'outline dense no-caps aria-label="Try {row.change}"')
-    for note in made.notes:
-        ui.label(note).classes("soft")
-
-
-def _cell(kind: str, content: str, *, text: bool = False) -> None:
-    with ui.element(kind).classes("text" if text else "") as cell:
-        ui.label(unbroken(content).replace(" →", "\u00a0→"))
-    if kind == "th":
-        cell.props("scope=col")
-
-
-def tabulate_numbers(step: Step, results: Results) -> Table | None:
+def tabulate_numbers(session: Session) -> Table | None:
     """Every number of the design and of the other one, and their differences."""
+    results = session.results
     if "numbers" not in results.own:
         return None
-    shown, sides = named_designs(step), [side["numbers"] for side in (results.own, results.other) if "numbers" in side]
+    sides = [side["numbers"] for side in (results.own, results.other) if "numbers" in side]
+    shown = [*session.designs().items()][: len(sides)]
     rows = [
         _number_row(name, [side.get(name) for side in sides], words, results.difference)
-        for name, words in _names(results.own["numbers"], float(step.design.scene.stroke.offset))
+        for name, words in _names(results.own["numbers"], float(session.scene.stroke.offset))
     ]
     for k, _ in enumerate(results.own["numbers"]["frequencies"]):
         rows.append(_number_row("frequency", [side["frequencies"][k] for side in sides], f"natural frequency {k + 1}"))
-    scenes = [design.scene for _, design in shown[: len(sides)]]
+    scenes = [design.scene for _, design in shown]
     for key, knob in KNOBS.items():
         cells = [_knob_text(key, scene) for scene in scenes]
         if knob.group and any(cell != DASH for cell in cells):
             alike = ["same" if cells[0] == cells[-1] else ""] if len(cells) > 1 else []
             rows.append((label(key, scenes[0]), *cells, *alike))
-    head = ("", *(name for name, _ in shown[: len(sides)]), *(["difference"] if len(sides) > 1 else []))
-    return Table(f"Numbers of {step.design.name}", head, tuple(rows))
+    head = ("", *(name for name, _ in shown), *(["difference"] if len(sides) > 1 else []))
+    return Table(f"Numbers of {session.step.design.name}", head, tuple(rows))
 
 
 def _names(numbers: Mapping[str, Any], offset: float) -> list[tuple[str, str]]:
@@ -163,8 +108,9 @@ def _knob_text(key: str, scene: Scene) -> str:
     return DASH if own is None else own if KNOBS[key].range is None else value_text(key, own)
 
 
-def tabulate_check(step: Step, results: Results) -> list[Table]:
+def tabulate_check(session: Session) -> list[Table]:
     """Checks of the design, and beam against solid once that is computed."""
+    results = session.results
     rows = []
     if "verdict" in results.own:
         uncertainty = results.own["verdict"].uncertainty
@@ -176,8 +122,8 @@ def tabulate_check(step: Step, results: Results) -> list[Table]:
         ]
     if "solved_strike" in results.own:
         rows.append(("tip contact", regime_warning(results.own["solved_strike"].outcome.regime) or "no miscue"))
-    rows += [("warning", line) for line in plausibility_warnings(step.design.scene)] or [("warnings", "none")]
-    first = Table(f"Check of {step.design.name}", ("check", "result"), tuple(rows), texts=(0, 1))
+    rows += [("warning", line) for line in plausibility_warnings(session.scene)] or [("warnings", "none")]
+    first = Table(f"Check of {session.step.design.name}", ("check", "result"), tuple(rows), texts=(0, 1))
     solid = results.own.get("solid")
     return [first] if solid is None else [first, solid.table()]
 
@@ -185,3 +131,16 @@ def tabulate_check(step: Step, results: Results) -> list[Table]:
 def tables_markup(sheets: Sequence[Table | None]) -> str:
     """Tables in the report's format."""
     return "".join(COMPUTING if each is None else table_markup(each) for each in sheets)
+
+
+def sections_markup(session: Session) -> str:
+    """Every section of the report in its order, closed, as the report's page shows it."""
+    answers = session.results.own.get("answers")
+    if answers is None:
+        return COMPUTING
+    shown = [section for section in SECTIONS if section.key in answers.sections]
+    return "".join(
+        f"<details><summary><h2>{escape(section.title)}</h2></summary>"
+        f"{answer_markup(f'report-{section.key}', answers.sections[section.key])}</details>"
+        for section in shown
+    )

@@ -12,7 +12,8 @@ from starlette.middleware.trustedhost import TrustedHostMiddleware
 from starlette.responses import HTMLResponse, PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from cuefem.designer.page import KINDS, MAX_FILE, Page, is_open
+from cuefem.designer.header import KINDS, MAX_FILE
+from cuefem.designer.page import Page, is_open
 from cuefem.designer.state import Design
 from cuefem.handbook.page import page as handbook
 from cuefem.quantity.unit_checks import PlausibilityWarning

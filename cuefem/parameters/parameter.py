@@ -13,7 +13,7 @@ import re
 from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cache
-from typing import Any, get_args, get_type_hints
+from typing import Any, NamedTuple, get_args, get_type_hints
 
 from cuefem.cue import Cue, LumpedCue, Material
 from cuefem.cue.materials import LEATHER_BY_NAME, LEATHERS, MATERIALS, WOODS, leather_restitution, table_name
@@ -48,6 +48,26 @@ _TAPER = re.compile(r"taper at (.+)")
 _SCENE_FIELDS = tuple(field.name for field in fields(Scene))
 
 
+class Slider(NamedTuple):
+    """The range of a slider, ``low`` to ``high`` in steps, and of typed values, ``least`` to ``most``.
+
+    All in the display unit; ``scale`` is the factor from the SI unit. A range from 0 to 0 has no slider.
+    """
+
+    unit: str
+    scale: float
+    low: float
+    high: float
+    step: float
+    least: float
+    most: float
+
+
+def millimetres(low: float, high: float, step: float, least: float, most: float) -> Slider:
+    """A slider in mm."""
+    return Slider("mm", 1e3, low, high, step, least, most)
+
+
 @dataclass(frozen=True)
 class Parameter:
     """A named parameter of scenes.
@@ -73,6 +93,8 @@ class Parameter:
         The metavariable and the text of a command's help; "" if it is no option.
     sets
         For each name of its value ("medium"): the values, by path, that the name sets, of this and other parameters.
+    slider
+        Range of its slider in the designer; None without one.
     dependent_values
         Function of scene and value: values of other parameters, by path, that change with it where it is uncertain.
     """
@@ -87,12 +109,18 @@ class Parameter:
     option: str = ""
     help: str = ""
     sets: Mapping[str, Mapping[str, float]] | None = None
+    slider: Slider | None = None
     dependent_values: Callable[[Scene, float], dict[Path, float]] | None = None
 
     @property
     def key(self) -> str:
         """Its name as an identifier."""
         return self.name.replace(" ", "_")
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """The names that a list offers: materials, or kinds of leather."""
+        return self.materials or tuple(name for name in self.sets or () if name in LEATHERS)
 
     def steps(self) -> Path:
         """Its path, in steps."""
@@ -429,14 +457,43 @@ PARAMETERS: dict[str, Parameter] = {
             part=WEIGHT,
             option="MASS",
             help='Measured mass of the shaft as drawn, with its tip, e.g. "112 g"; sets the density of its wood.',
+            slider=Slider("g", 1e3, 0, 0, 0.1, 0.1, 100_000),
         ),
-        Parameter("ferrule length", "length of the ferrule", part=FERRULE_LENGTH),
-        Parameter("tip diameter", "diameter at the tip", part=diameter_at(lambda cue: 0.0)),
-        Parameter("taper diameter", "diameter where the taper begins", part=diameter_at(taper_position)),
-        Parameter("butt diameter", "diameter at the end", part=diameter_at(lambda cue: cue.length)),
+        Parameter(
+            "ferrule length", "length of the ferrule", part=FERRULE_LENGTH, slider=millimetres(2, 40, 0.5, 0.5, 60)
+        ),
+        Parameter(
+            name="tip diameter",
+            label="diameter at the tip",
+            part=diameter_at(lambda cue: 0.0),
+            slider=millimetres(8, 15, 0.05, 4, 30),
+        ),
+        Parameter(
+            name="taper diameter",
+            label="diameter where the taper begins",
+            part=diameter_at(taper_position),
+            slider=millimetres(8, 20, 0.05, 4, 60),
+        ),
+        Parameter(
+            name="butt diameter",
+            label="diameter at the end",
+            part=diameter_at(lambda cue: cue.length),
+            slider=millimetres(12, 34, 0.1, 4, 60),
+        ),
         Parameter("taper", "diameter gained to the joint", part=GROWTH),
-        Parameter("bore depth", "depth of the bore", part=BORE_DEPTH),
-        Parameter("bore width", "width of the bore", part=BORE_WIDTH, spread=_bore_spread),
+        Parameter(
+            name="bore depth",
+            label="depth of the bore",
+            part=BORE_DEPTH,
+            slider=millimetres(0, 300, 1, 0, 3000),
+        ),
+        Parameter(
+            name="bore width",
+            label="width of the bore",
+            part=BORE_WIDTH,
+            spread=_bore_spread,
+            slider=millimetres(1, 11, 0.1, 0.1, 30),
+        ),
         Parameter(
             name="leather",
             label="E of the leather",
@@ -454,6 +511,7 @@ PARAMETERS: dict[str, Parameter] = {
             spread=0.1,
             option="LENGTH",
             help='Height of the leather tip, e.g. "6 mm".',
+            slider=millimetres(2, 12, 0.1, 0.5, 40),
         ),
         Parameter(
             name="dome",
@@ -462,6 +520,7 @@ PARAMETERS: dict[str, Parameter] = {
             spread=0.1,  # a dime's 8.95 to a nickel's 10.6 mm
             option="RADIUS",
             help='Tip radius (dome): nickel, dime, flat or a length, e.g. "9.5 mm".',
+            slider=millimetres(6, 20, 0.1, 3, 500),
         ),
         Parameter(
             name="surface restitution",
@@ -470,7 +529,13 @@ PARAMETERS: dict[str, Parameter] = {
             below=0.05,  # not measured: 0.9 changes squirt by 7 %, and a robot's strokes suggest a value near 1
         ),
         # leather 1.0 to 1.2 ms
-        Parameter("contact time", "contact time", part=CONTACT_TIME_OF_SPRING, spread=0.1),
+        Parameter(
+            name="contact time",
+            label="contact time",
+            part=CONTACT_TIME_OF_SPRING,
+            spread=0.1,
+            slider=Slider("ms", 1e3, 0.6, 3, 0.01, 0.2, 20),
+        ),
         Parameter(
             name="restitution",
             label="restitution of the tip",
@@ -478,6 +543,7 @@ PARAMETERS: dict[str, Parameter] = {
             spread=_restitution_spread,
             option="E",
             help="Restitution of the tip alone, 0 to 1; with axial waves a tip of 0.6 gives a whole cue 0.73.",
+            slider=Slider("", 1.0, 0.5, 0.95, 0.01, 0, 1),
         ),
         Parameter(
             name="friction",
@@ -485,6 +551,7 @@ PARAMETERS: dict[str, Parameter] = {
             path="tip.friction",
             option="MU",
             help="Coefficient of friction between tip and ball.",
+            slider=Slider("", 1.0, 0.2, 1.2, 0.01, 0.01, 10),
         ),
         Parameter(
             name="speed",
@@ -492,6 +559,7 @@ PARAMETERS: dict[str, Parameter] = {
             path="stroke.speed",
             option="SPEED",
             help='Cue speed at impact, e.g. "3 m/s".',
+            slider=Slider("m/s", 1.0, 0.3, 12, 0.1, 0.01, 40),
         ),
         Parameter(
             name="offset",
@@ -499,6 +567,7 @@ PARAMETERS: dict[str, Parameter] = {
             path="stroke.offset",
             option="B/R",
             help='Tip offset from the ball centre: b/R in (-1, 1), or a length, e.g. "8 mm".',
+            slider=Slider("", 1.0, 0, 0.9, 0.01, -0.95, 0.95),
         ),
         Parameter(
             name="body mass",
@@ -507,6 +576,7 @@ PARAMETERS: dict[str, Parameter] = {
             spread=_body_spread,
             option="MASS",
             help='Mass of the butt, the rest of the cue behind what FILE draws, e.g. "420 g".',
+            slider=Slider("g", 1e3, 0, 0, 1, 0, 5000),
         ),
         Parameter("ferrule material", "material of the ferrule", part=FERRULE_MATERIAL, materials=FERRULES),
         Parameter("shaft material", "material of the shaft", part=SHAFT_MATERIAL, materials=SHAFTS),

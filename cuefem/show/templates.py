@@ -63,6 +63,11 @@ def table_markup(sheet: Table) -> str:
     return f"<h2>{escape(sheet.title)}</h2>{_macros().table(sheet)}"
 
 
+def answer_markup(key: str, answer: Any) -> str:
+    """Charts, tables and description of an analysis. key: the first part of the charts' ids on the page."""
+    return str(_macros().answer(key, answer.charts(), answer.tables(), answer.about))
+
+
 def plain_page(name: str, things: Sequence[str | Table | Chart | CueDrawing]) -> str:
     """Lines, tables, charts and drawings as a self-contained page."""
     groups = [[*group] for _, group in groupby(filter(None, things), type)]

@@ -10,7 +10,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.designer.computation import solved_strike, verdict
-from cuefem.designer.knobs import with_value
+from cuefem.designer.controls import with_value
 from cuefem.designer.state import read_design
 from cuefem.designs.study_file import load_study
 from cuefem.results.verdict import verdict_problem

@@ -30,7 +30,7 @@ axe = pytest.importorskip(
 )
 pytestmark = browser_marks()
 DRAWING = "position (mm);diameter (mm)\n0;12,4\n330;13,1\n737;21,5\n"
-TABS = ("Curves", "Changes", "Numbers", "Check", "File")
+TABS = ("Curves", "Changes", "Numbers", "Report", "Check", "File")
 
 
 @pytest.fixture(scope="module")

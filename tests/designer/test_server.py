@@ -17,7 +17,7 @@ import pytest
 
 pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
 import cuefem as cf
-from cuefem.designer.page import MAX_FILE, file_name
+from cuefem.designer.header import MAX_FILE, file_name
 from cuefem.designer.server import REJECTED, RequestValidation
 from tests.helpers.designer_browser import wait_for_port
 from tests.helpers.invalid_input import assert_rejects

@@ -11,8 +11,9 @@ import numpy as np
 
 import cuefem as cf
 from cuefem.designer.computation import numbers
-from cuefem.designer.panels import Results, tables_markup, tabulate_numbers
-from cuefem.designer.state import Design, Step
+from cuefem.designer.panels import tables_markup, tabulate_numbers
+from cuefem.designer.session import Session
+from cuefem.designer.state import Design
 from cuefem.effects.contact_terms import ContactTerms
 from cuefem.effects.effect import CueEffect, TipEffect, TrialValues
 from cuefem.endmass.definitions import Definition
@@ -32,8 +33,9 @@ def outputs(scene: cf.Scene, folder: Path, *names: str) -> dict[str, str]:
         if name == "json":
             return call("report", file, "--json")[1]
         if name == "designer":
-            results = Results({"numbers": numbers.__wrapped__(scene)})
-            return tables_markup([tabulate_numbers(Step(Design("this", scene)), results)])
+            session = Session(Design("this", scene))
+            session.results.own["numbers"] = numbers.__wrapped__(scene)
+            return tables_markup([tabulate_numbers(session)])
         return call(name, file)[1]
 
     return {name: " ".join(re.sub("<[^>]*>", "", text_of(name)).split()) for name in names}

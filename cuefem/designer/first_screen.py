@@ -1,0 +1,110 @@
+"""The first screen of the page: headline, comparison, four numbers, drawings and assumptions."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from nicegui import ui
+
+from cuefem.analysis.first_screen import drawings_markup, headline_markup, parts_line, scale_markup, tiles_markup
+from cuefem.designer.header import Upload
+from cuefem.designer.host import Host
+from cuefem.designer.knob_row import KnobRow
+from cuefem.designer.session import FILE, NOTHING
+from cuefem.show.glossary import with_term_buttons
+
+
+class FirstScreen:
+    """The card with the result.
+
+    upload: takes the file of a design to compare with. The card is dimmed until its numbers belong to the design.
+    """
+
+    def __init__(self, page: Host, card: Any, upload: Upload) -> None:
+        self.page, self.session, self.card, self.upload = page, page.session, card, upload
+        self.rows: list[KnobRow] = []
+        self.listed = self._assumptions()  # that are on the page
+        self.had_verdict = False
+        ui.element("div").classes("progress").props("aria-hidden=true")
+        with ui.element("div").classes("top"):
+            self.headline = ui.html(sanitize=False).classes("num")
+            with ui.element("div"):
+                with ui.element("div").classes("compare"):
+                    ui.label("Compare with").classes("soft")
+                    self.compare = ui.select([NOTHING], value=NOTHING, on_change=self._on_compare)
+                    self.compare.props('outlined dense options-dense aria-label="Compare with"')
+                    self.swap = ui.button("Swap", on_click=lambda: page.attempt(self.session.swap))
+                    self.swap.props("outline dense no-caps")
+                self.scale = ui.html(sanitize=False).classes("num")
+        self.tiles = ui.html(sanitize=False).classes("num")
+        self.drawing = ui.html(sanitize=False)
+        with ui.expansion(on_value_change=lambda: self.assumptions.refresh()).classes("assumptions") as self.fold:
+            self.assumptions()
+        self.printed = ui.label().classes("printed soft")
+
+    @ui.refreshable_method
+    def assumptions(self) -> None:
+        """The assumptions, one line each, with the control that changes it."""
+        self.rows = []
+        if not self.fold.value:
+            return
+        parts = self.session.uncertainty_parts()
+        for key in sorted(self.session.assumed(), key=lambda key: -parts.get(key, 0.0)):
+            with ui.element("div").classes("assumption"):
+                self.rows.append(KnobRow(key, self.page, short=True))
+                self.rows[-1].show()
+                ui.label(f"part of ±: {100 * parts[key]:.0f} %" if key in parts else "not in ±").classes("soft")
+        for note in self.session.notes():
+            ui.label(note).classes("soft")
+
+    def show(self) -> None:
+        """Show the designs at once: drawings, assumptions, and the choice of the other one."""
+        if self.listed != (listed := self._assumptions()):
+            self.listed = listed
+            self.assumptions.refresh()
+        for row in self.rows:
+            row.show()
+        shown = (self.session.compare_choices(), self.session.compared)
+        if (self.compare.options, self.compare.value) != shown:
+            self.compare.set_options(shown[0], value=shown[1])
+        self.swap.set_visibility(self.session.step.other is not None)
+        self.drawing.set_content(
+            drawings_markup({name: design.scene for name, design in self.session.designs().items()})
+        )
+
+    def set_stale(self) -> None:
+        """Mark the numbers as those of another design."""
+        self.card.classes(add="stale")
+
+    def show_results(self) -> None:
+        """Show the results computed so far."""
+        results = self.session.results
+        own, other = self.session.headline_cue(0), self.session.headline_cue(1)
+        if own is None:
+            return
+        if "numbers" in results.own:
+            self.card.classes(remove="stale")
+        headline = headline_markup(own, other, results.difference, self.session.warning())
+        self.headline.set_content(with_term_buttons(headline))
+        self.scale.set_content(scale_markup(own, other))
+        self.tiles.set_content(with_term_buttons(tiles_markup(own, other)))
+        lines = self.session.assumption_lines()
+        self.printed.set_text("; ".join(lines))
+        words = f"{len(lines)} assumption{'s' if len(lines) != 1 else ''}"
+        self.fold.props(f'label="{words}" caption="{parts_line(own.verdict) if own.verdict else ""}"')
+        has_verdict = "verdict" in results.own
+        if has_verdict and not self.had_verdict:
+            self.assumptions.refresh()
+        self.had_verdict = has_verdict
+
+    def _assumptions(self) -> tuple[list[str], list[str]]:
+        return self.session.assumed(), self.session.notes()
+
+    def _on_compare(self, event: Any) -> None:
+        if event.value == self.session.compared:
+            return
+        if event.value == FILE:
+            self.upload.pick(self.session.compare_with_file)
+            self.show()
+        else:
+            self.page.attempt(self.session.compare_with, event.value)

@@ -1,0 +1,140 @@
+"""A session of the designer without a browser: changes, comparison, what is computed of them (properties)."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from cuefem.analysis.report_sections import SECTIONS
+from cuefem.designer.controls import KNOBS, value
+from cuefem.designer.panels import COMPUTING, curves_markup, sections_markup, tabulate_numbers
+from cuefem.designer.session import FILE, NOTHING, NOW, OF_TAB, OPENED, Results, Session
+from cuefem.designer.state import read_design, reference_design
+from cuefem.files.reference_cues import PRESETS
+from cuefem.parameters.parameter import PARAMETERS
+
+DESIGNER = Path(cf.__file__).parent / "designer"
+FIRST = reference_design(next(preset for preset in PRESETS if preset.file == "meshes/pool_maple.toml"))
+
+
+def imported(module: str) -> set[str]:
+    """What a module of the designer imports, and the modules of the designer that it imports."""
+    text = (DESIGNER / f"{module}.py").read_text(encoding="utf-8")
+    names = {*re.findall(r"^(?:from|import) (\S+)", text, re.M)}
+    names |= {f"cuefem.designer.{name}" for name in re.findall(r"^from cuefem.designer import (\w+)", text, re.M)}
+    inner = {name.rpartition(".")[2] for name in names if name.startswith("cuefem.designer.")}
+    return names.union(*map(imported, inner))
+
+
+def test_session_and_content_of_tabs_need_no_nicegui() -> None:
+    assert {"session", "panels"} == {name for name in ("session", "panels") if "nicegui" not in imported(name)}
+    assert "nicegui" in imported("page")
+
+
+@pytest.mark.heavy
+def test_session_has_the_numbers_of_the_functions() -> None:
+    session = Session(FIRST)
+    session.set_knob("tip_diameter", 0.0118, "11,8")
+    assert session.compute() == []
+    scene = cf.with_parameters(FIRST.scene, {"tip diameter": 0.0118})
+    headline = session.headline_cue(0)
+    assert headline is not None
+    assert headline.numbers["squirt"] == pytest.approx(cf.strike(scene).squirt, rel=1e-12)
+    assert headline.verdict == cf.verdict(scene)
+    assert "curve" in session.results.own
+    assert COMPUTING not in curves_markup(session)
+
+
+@pytest.mark.heavy
+def test_report_tab_shows_every_section_of_the_report() -> None:
+    session = Session(FIRST)
+    assert sections_markup(session) == COMPUTING
+    assert session.compute("Report") == []
+    text = sections_markup(session)
+    titles = [f"<h2>{section.title}</h2>" for section in SECTIONS if section.needs(FIRST.scene)]
+    places = [text.index(title) for title in titles]
+    assert places == sorted(places)
+    assert session.report_call()().count("<h1>") == 1
+
+
+@pytest.mark.heavy
+def test_comparison_is_of_both_designs_at_one_stroke() -> None:
+    session = Session(FIRST)
+    session.compare_with("low deflection")
+    session.set_knob("speed", 3.0)
+    assert session.compute("Numbers") == []
+    mine, other = session.headline_cue(0), session.headline_cue(1)
+    assert mine is not None
+    assert other is not None
+    assert other.numbers["squirt"] == cf.strike(session.compared_scene()).squirt  # type: ignore[arg-type]
+    assert session.results.difference is not None
+    table = tabulate_numbers(session)
+    assert table is not None
+    assert table.head == ("", "pool_maple", "low deflection", "difference")
+    session.swap()
+    assert (session.step.design.name, session.compared) == ("low deflection", "pool_maple")
+    session.compare_with(NOTHING)
+    assert session.compute("Numbers") == []
+    assert session.headline_cue(1) is None
+
+
+def test_choice_of_other_design_is_offered() -> None:
+    session = Session(FIRST)
+    assert (session.compared, {NOTHING, OPENED, NOW, FILE} < {*session.compare_choices()}) == (NOTHING, True)
+    session.set_knob("offset", 0.2)
+    session.compare_with(OPENED)
+    assert (session.compared, session.step.other and session.step.other.design) == (OPENED, FIRST)
+    mine = read_design("mine.csv", b"position (mm);diameter (mm)\n0;12,4\n330;13,1\n737;21,5\n")
+    session.compare_with_file(mine)
+    assert session.compared == session.compare_choices()[0] == "mine"
+    assert session.rename(" my cue ")
+    assert not session.rename("my cue")
+    assert [*session.designs()] == ["my cue", "mine"]
+    assert session.file_name("toml") == "my cue.toml"
+    session.apply(read_design("x.toml", session.file().replace("0.2", "0.25").encode()))
+    assert float(session.scene.stroke.offset) == 0.25
+    assert session.undo_redo(-1)
+    assert float(session.scene.stroke.offset) == 0.2
+
+
+def test_plan_ends_at_a_failed_strike() -> None:
+    """Its first stage is the strike, whose result nobody stores here; then nothing follows."""
+    session = Session(FIRST)
+    stages = [[work.name for work in stage] for stage in session.plan("Curves", Results())]
+    assert stages == [["solved_strike"]]
+    session.compare_with(OPENED)
+    stages = [[work.name for work in stage] for stage in session.plan("Curves", Results())]
+    assert stages == [["solved_strike", "solved_strike"]]
+
+
+def test_miscue_has_numbers_and_no_verdict() -> None:
+    session = Session(FIRST)
+    session.set_knob("offset", 0.66)
+    assert session.compute("Changes") == []
+    assert "miscue" in session.warning()
+    assert not {"verdict", "changes"} & session.results.own.keys()
+    assert {*OF_TAB} == {"Curves", "Changes", "Report"}
+
+
+def test_invalid_change_leaves_the_session() -> None:
+    session = Session(FIRST)
+    with pytest.raises(ValueError, match="bore"):
+        session.set_knob("bore_width", 0.05)
+    assert session.step.design == FIRST
+    assert len(session.history.steps) == 1
+
+
+@pytest.mark.parametrize("key", [key for key, known in PARAMETERS.items() if known.slider])
+def test_slider_of_parameter_is_in_its_limits(key: str) -> None:
+    slider = PARAMETERS[key].slider
+    assert slider is not None
+    assert slider.least <= slider.most
+    assert slider.low <= slider.high
+    if slider.high:
+        assert slider.least <= max(slider.low, slider.least) < min(slider.high, slider.most)
+    if (own := value(key, FIRST.scene)) is not None:
+        assert slider.least <= slider.scale * own <= slider.most
+    assert KNOBS[key].range is slider
