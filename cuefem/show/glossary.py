@@ -9,7 +9,7 @@ from importlib.resources import files
 from typing import NamedTuple
 
 SKIPPED = ("head", "style", "script", "svg", "button", "h1", "h2", "h3", "summary", "a", "code", "label")
-PARTS = ("section", "header", "figure", "table")  # a term has one button in each of them
+PARTS = ("section", "header")  # a term has one button in each of them
 _TAG = re.compile(r"(<[^>]*>)")
 _NAME = re.compile(r"</?([a-zA-Z0-9]+)")
 _USED = re.compile(r'popovertarget="(w-[^"]*)"')

@@ -42,3 +42,9 @@ def test_terms_in_headings_and_controls_have_no_button(tag: str) -> None:
 def test_term_buttons_preserve_text(parts: list[str]) -> None:
     markup = "".join(parts)
     assert TAGS.sub("", with_term_buttons(markup)) == TAGS.sub("", markup)
+
+
+def test_term_has_one_button_in_a_section() -> None:
+    """A section's tables and figures repeat its words: each was a stop of the Tab key, 125 on a report's page."""
+    section = "<section><p>squirt</p><figure>Squirt</figure><table><td>squirt</td></table></section>"
+    assert buttons(with_term_buttons(2 * section)) == 2 * [("w-squirt", "squirt")]
