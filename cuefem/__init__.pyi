@@ -1,6 +1,5 @@
 from . import plot as plot
 from .analysis.reduction import reduction as reduction
-from .results.convergence import resolve as resolve, resolve_end_mass as resolve_end_mass
 from .beam.mesh import Resolution as Resolution
 from .beam.modes import modes as modes
 from .contact.motion_history import motion as motion

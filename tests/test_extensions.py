@@ -83,7 +83,7 @@ def test_added_end_mass_definition_is_displayed_and_evaluated(monkeypatch: pytes
     monkeypatch.setitem(DEFINITIONS, DEFINITION.name, DEFINITION)
     scene = kim_scene(0.3)
     expected = cf.end_mass(scene, "rigid", AT)
-    assert cf.resolve_end_mass(scene, "rigid", 1e-3)[0] == pytest.approx(expected, rel=1e-6)
+    assert cf.end_mass(scene, "rigid", rtol=1e-3) == pytest.approx(expected, rel=1e-6)
     assert cf.end_mass(cf.Scene(cf.LumpedCue(0.5, 0.006)), "rigid") == 0.006
     assert outputs_without("rigid (rigid body, b/R 0.3)", outputs(scene, tmp_path, "end-mass")) == []
     assert outputs_without("rigid body, b/R 0.3", outputs(scene, tmp_path, "designer")) == []

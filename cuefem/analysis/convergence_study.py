@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.results.convergence import Level, refinement_levels, relative_error
+from cuefem.contact.refinement import Level, refinement_levels, relative_error
 from cuefem.results.quantities import significant, to_display
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.scene import Scene
@@ -33,8 +33,8 @@ class ConvergenceStudy(Analysis):
         The analysed stroke.
     levels : list of dict
         For each refinement level "modes", "steps"; "unknowns", the number of degrees of freedom; "estimate", its
-        estimated relative error (None on the first two); "difference", relative, from the last level; "seconds", the
-        run time of all levels up to it, which `cuefem.resolve` takes.
+        estimated relative error; "difference", relative, from the last level; "seconds", the run time of all levels up
+        to it, which `cuefem.strike` takes with rtol.
     recommended_resolutions : list of dict
         For each of some accuracies, "rtol", the first level within it, or the last, with "is_reached" False.
     """
@@ -57,13 +57,13 @@ class ConvergenceStudy(Analysis):
                 self.levels,
                 "Relative error, the largest of squirt, ball speed and spin: estimate, and difference from the last "
                 "row.",
-                "ms, sequence: time of all rows down to this one, which `resolve` runs.",
+                "ms, sequence: time of all rows down to this one, which `strike(scene, rtol=...)` runs.",
             ),
             tabulate(
                 "Recommended resolution",
                 {"accuracy": _accuracy} | sizes | last,
                 self.recommended_resolutions,
-                "With the truncation correction, as `resolve(scene, rtol)` and the rtol of a file's [accuracy] table.",
+                "With the truncation correction, as `strike(scene, rtol=...)` and [accuracy] of a file take it.",
             ),
         ]
 
@@ -87,7 +87,7 @@ def convergence_study(
     scene : Scene
         A stroke with a cue of segments, or with a lumped cue, of which only the steps are refined.
     max_modes : int
-        Refinement ends at so many modes, after at least three levels.
+        Refinement ends at so many modes, or the default number if that is larger.
     progress : callable, optional
         Wraps the list of levels, to show progress.
 
@@ -102,11 +102,11 @@ def convergence_study(
     >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
     >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),), body_mass=0.43)
     >>> scene = cf.Scene(cue, tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(offset=0.3))
-    >>> [level["modes"] for level in cf.convergence_study(scene, max_modes=24).levels]
-    [12, 24, 48]
+    >>> [level["steps"] for level in cf.convergence_study(scene, max_modes=24).levels][:2]
+    [400, 800]
     """
     refined = _timed_levels(scene, max_modes, progress)
-    best = refined[-1][0].result
+    best = refined[-1][0].outcome
     rows = [_level_record(scene, level, seconds, best) for level, seconds in refined]
     return ConvergenceStudy(scene, rows, [_recommended(rtol, rows) for rtol in RECOMMENDED_RTOLS])
 
@@ -116,12 +116,9 @@ def _timed_levels(scene: Scene, max_modes: int, progress: Progress) -> list[tupl
 
     A second run of the sequence is timed, so that the time includes nothing that a process does only once.
     """
-    refined: list[Level] = []
-    for level in refinement_levels(scene, min(RECOMMENDED_RTOLS)):
-        if len(refined) > 2 and level.modes > max_modes:
-            break
-        refined.append(level)
-    again, start = refinement_levels(scene, min(RECOMMENDED_RTOLS)), perf_counter()
+    finest = min(RECOMMENDED_RTOLS)
+    refined = list(refinement_levels(scene, finest, max_modes=max_modes))
+    again, start = refinement_levels(scene, finest, max_modes=max_modes), perf_counter()
     return [(next(again), perf_counter() - start) for _ in progress(refined)]
 
 
@@ -129,20 +126,18 @@ def _level_record(scene: Scene, level: Level, seconds: float, best: Any) -> Reco
     return {
         "modes": level.modes,
         "steps": level.steps,
-        "unknowns": level.result.unknowns,
+        "unknowns": level.outcome.unknowns,
         "estimate": level.error,
-        "difference": None if level.result is best else relative_error(level.result, best, scene),
+        "difference": None if level.outcome is best else relative_error(level.outcome, best, scene),
         "seconds": seconds,
     }
 
 
 def _recommended(rtol: float, rows: Sequence[Record]) -> Record:
     """The first level with an estimated error of at most ``rtol``; otherwise the last, with "is_reached" False."""
-    estimated = [row for row in rows if row["estimate"] is not None]
-    first = next((row for row in estimated if row["estimate"] <= rtol), None)
+    first = next((row for row in rows if row["estimate"] <= rtol), None)
     names = ("modes", "steps", "unknowns", "estimate", "seconds")
-    last = estimated[-1] if estimated else rows[-1]
-    return {"rtol": rtol, "is_reached": first is not None, **{name: (first or last)[name] for name in names}}
+    return {"rtol": rtol, "is_reached": first is not None, **{name: (first or rows[-1])[name] for name in names}}
 
 
 def _accuracy(row: Mapping[str, Any]) -> str:

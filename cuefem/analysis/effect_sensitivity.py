@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import MISSING, asdict, dataclass, fields, replace
 from typing import Any
 
+from cuefem.contact.refinement import refinement_levels
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.effects.effect import Effect, effect_kinds
 from cuefem.endmass.definitions import equivalent_end_mass
-from cuefem.results.convergence import refinement_levels
 from cuefem.results.quantities import DASH, format_value
 from cuefem.results.records import Record, Table
 from cuefem.scene import Outcome, Scene
@@ -142,7 +142,7 @@ def effect_sensitivity(
 
 def _strike_at(scene: Scene, modes: int | None) -> Outcome:
     """Strike with a number of modes and a truncation correction. modes: None for a lumped cue."""
-    return strike(scene) if modes is None else strike_modes(scene, corrected_tip_modes(scene, modes))
+    return strike(scene) if modes is None else strike_modes(scene, *corrected_tip_modes(scene, modes))
 
 
 def _results(outcome: Outcome, scene: Scene) -> Record:

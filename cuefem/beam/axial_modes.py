@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +32,10 @@ class RodModes(EigenSolution):
         """Displacement of the tip, 1/sqrt(kg), (n,)."""
         return self.participation[0]
 
+    def below(self, cutoff: float) -> RodModes:
+        """Those of the modes up to an angular frequency, rad/s, without another eigenproblem."""
+        return self if cutoff >= self.cutoff else self.lowest(len(self.spectrum.mu), cutoff)
+
     def loss_factors(self, loss: Section) -> Array:
         """Loss factor of every mode, (n,), from the loss factor of EA at the Gauss points, (points,)."""
         loss_sum, stiffness = np.zeros(len(self.omega)), loss.EA * self.points.section.EA * self.points.weights
@@ -41,15 +45,16 @@ class RodModes(EigenSolution):
         return loss_sum / self.omega**2
 
 
+@lru_cache(maxsize=4)
 def rod_modes(
-    cue: Cue, masses: Sequence[tuple[float, float]], *, cutoff: float, max_count: float = np.inf, n_corrected: int = 0
+    cue: Cue, masses: tuple[tuple[float, float], ...], *, cutoff: float, max_count: float = np.inf, n_corrected: int = 0
 ) -> RodModes:
     """Rod modes up to the angular frequency ``cutoff``, rad/s, of a cue that is free at both ends.
 
     max_count: about the largest number of modes; where waves are slow it lowers the cutoff.
     masses: (position m, mass kg) of each lump. Leather drawn at the tip (`Cue.leather_height`) moves rigidly with it.
     n_corrected: number of loads with a truncation correction, 1 or 0. The cost is one symmetric eigenproblem with as
-    many degrees of freedom as the elements' orders add up to.
+    many degrees of freedom as the elements' orders add up to; the last four are kept, for fewer modes of the same rod.
     """
     lengths, pieces = np.diff(cue.nodes), np.arange(len(cue.segments))
     middle = cue.section_in(pieces, lengths / 2)
@@ -75,9 +80,10 @@ def rod_modes(
     count = min(int(2 * cutoff * phases.sum() / np.pi) + 3 + len(masses), len(lumps) - 1)
     dense = is_dense_faster(len(lumps), count)
     K, M = assemble_blocks(stiffness, np.zeros(len(lumps)), dense), assemble_blocks(inertia, lumps, dense)
-    solution = solve_eigenproblem(
-        K, M, np.eye(len(lumps), 1), shift=shift, rigid=1, count=count, cutoff=cutoff, n_corrected=n_corrected
+    spectrum = solve_eigenproblem(
+        K, M, np.eye(len(lumps), 1), shift=shift, rigid=1, count=count, n_corrected=n_corrected
     )
+    solution = spectrum.lowest(count, cutoff)
     return RodModes(**vars(solution), cue=cue, points=points, front=front, element_dofs=element_dofs)
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 import numpy as np
 import scipy.linalg as la
@@ -27,31 +27,37 @@ from cuefem.cue import Array
 # the whole matrix is solved. The truncated modes have the same first moments in mu as those of the whole.
 LEADING, SPARE, ROUNDING = 2.2, 12, 1e-7
 
+# mu, work and combine of a `Spectrum`.
+RawSpectrum = tuple[Array, Array, Callable[[Array], Array]]
+
 
 @dataclass(frozen=True, eq=False)
 class EigenSolution:
     """Mass-normalised modes of ascending frequency, those of the truncation correction last.
 
-    omega: (n,) rad/s. loads: (free, loads). participation: (loads, n), the work of each load on each mode, 1/sqrt(kg).
-    cutoff: rad/s, of the retained modes. radiation: (k, k) of the k correction modes, 1/s; None without a correction.
-    shapes: computes the vectors.
+    omega: (n,) rad/s. participation: (loads, n), the work of each load on each mode, 1/sqrt(kg). cutoff: rad/s, of the
+    retained modes. radiation: (k, k) of the k correction modes, 1/s; None without a correction. mix: (m, n), from the
+    modes of the ``spectrum``, which has more of them, and is None in a copy from another process. resolved: rad/s, the
+    highest frequency that the spectrum determines. loads: (free, loads).
     """
 
     omega: Array
-    loads: Array
     participation: Array
     cutoff: float
     radiation: Array | None
-    shapes: Callable[[], Array]
+    mix: Array
+    spectrum: Spectrum
+    resolved: float
+    loads: Array
 
     @cached_property
     def vectors(self) -> Array:
         """Mode shapes, (free, n)."""
-        return self.shapes()
+        return self.spectrum.combine(self.mix)
 
     def __getstate__(self) -> dict[str, Any]:
         """For copies and other processes: the computed vectors in place of the work that computes them."""
-        return {**self.__dict__, "vectors": self.vectors, "shapes": None}
+        return {**self.__dict__, "vectors": self.vectors, "spectrum": None}
 
     def subset(self, index: NDArray[np.intp]) -> Self:
         """The modes of these indices, without a truncation correction."""
@@ -62,47 +68,81 @@ class EigenSolution:
             participation=self.participation[:, index],
             cutoff=omega[-1],
             radiation=None,
-            shapes=lambda: self.vectors[:, index],
+            mix=self.mix[:, index],
         )
 
+    def lowest(self, count: int, cutoff: float = np.inf) -> Self:
+        """As `Spectrum.lowest`: without another eigenproblem."""
+        return replace(self, **vars(self.spectrum.lowest(count, cutoff)))
 
-class Spectrum(NamedTuple):
+
+@dataclass(frozen=True, eq=False)
+class Spectrum:
     """Modes of M q = mu (K + shift M) q, q' (K + shift M) q = 1, of descending mu.
 
-    mu: (m,), 1/(omega^2 + shift); the first of them are exact, the others stand for all truncated modes. work: (loads,
-    m), of each load on each mode. combine: the vectors (free, k) of a combination (m, k) of the modes.
+    mu: (m,), 1/(omega^2 + shift); the first ``exact`` of them are exact, the others stand for all truncated modes.
+    work: (loads, m), of each load on each mode. combine: the vectors (free, k) of a combination (m, k) of the modes.
+    rigid: number of modes of zero frequency, which come first. corrected: (loads, free), which of them have a
+    truncation correction.
     """
 
     mu: Array
     work: Array
     combine: Callable[[Array], Array]
+    loads: Array
+    corrected: NDArray[np.intp]
+    shift: float
+    rigid: int
+    exact: int
+
+    def lowest(self, count: int, cutoff: float = np.inf) -> EigenSolution:
+        """The ``count`` lowest flexible modes, at most ``exact`` - ``rigid``, or those of them up to ``cutoff`` rad/s.
+
+        All others are in the truncation correction.
+        """
+        rigid, shift = self.rigid, self.shift
+        # on a nearly vanishing support, the squared frequency is round-off error
+        squares = np.maximum(1 / self.mu[rigid : self.exact] - shift, np.finfo(float).eps * shift)
+        frequencies = np.sqrt(squares)
+        omega = frequencies[:count][frequencies[:count] <= cutoff]
+        if np.isinf(cutoff):
+            if not len(omega):
+                raise np.linalg.LinAlgError("the frequencies of all modes are NaN: check sizes and materials")
+            cutoff = float(omega[-1])
+        stop = rigid + len(omega)
+        signs = np.where(self.work[0, rigid:stop] < 0, -1.0, 1.0)
+        mix, radiation = np.eye(len(self.mu), stop)[:, rigid:] / np.sqrt(self.mu[rigid:stop]) * signs, None
+        if len(self.corrected):
+            truncated = self.work[self.corrected, stop:].T
+            correction = truncation_correction(self.mu[stop:], truncated, shift=shift, cutoff=cutoff)
+            omega, radiation = np.append(omega, correction.omega), correction.radiation
+            mix = np.concatenate([mix, np.pad(correction.mix, ((stop, 0), (0, 0)))], axis=1)
+        return EigenSolution(
+            omega=omega,
+            participation=self.work @ mix,
+            cutoff=cutoff,
+            radiation=radiation,
+            mix=mix,
+            spectrum=self,
+            resolved=float(frequencies[-1]),
+            loads=self.loads,
+        )
 
 
 def solve_eigenproblem(
-    K: Any, M: Any, loads: Array, *, shift: float, rigid: int, count: int, cutoff: float = np.inf, n_corrected: int = 0
-) -> EigenSolution:
-    """The ``count`` lowest flexible modes, or those of them up to ``cutoff`` rad/s.
+    K: Any, M: Any, loads: Array, *, shift: float, rigid: int, count: int, n_corrected: int = 0
+) -> Spectrum:
+    """The spectrum whose ``count`` lowest flexible modes are exact.
 
-    loads: (free, loads). rigid: number of modes of zero frequency, which come first and are not returned.
-    n_corrected: number of loads with a truncation correction; 0 for none.
+    loads: (free, loads). rigid: number of modes of zero frequency. n_corrected: number of loads with a truncation
+    correction; 0 for none.
     """
     if not isinstance(K, np.ndarray) and is_dense_faster(K.shape[0], count):
         K, M = K.toarray(), M.toarray()
     problem = Dense(K, M, shift) if isinstance(K, np.ndarray) else Sparse(K, M, shift)
     corrected = np.flatnonzero(loads[:, :n_corrected].any(axis=0))  # loads on clamped degrees of freedom are zero
     mu, work, combine = problem.spectrum(rigid + count, loads, corrected)
-    stop = rigid + int(np.sum(1 / mu[rigid : rigid + count] - shift <= cutoff**2))
-    if stop == rigid and np.isinf(cutoff):
-        raise np.linalg.LinAlgError("the frequencies of all modes are NaN: check sizes and materials")
-    # on a nearly vanishing support, the squared frequency is round-off error
-    omega = np.sqrt(np.maximum(1 / mu[rigid:stop] - shift, np.finfo(float).eps * shift))
-    cutoff, radiation = float(omega[-1]) if np.isinf(cutoff) else cutoff, None
-    mix = np.eye(len(mu), stop)[:, rigid:] / np.sqrt(mu[rigid:stop]) * np.where(work[0, rigid:stop] < 0, -1.0, 1.0)
-    if len(corrected):
-        correction = truncation_correction(mu[stop:], work[corrected, stop:].T, shift=shift, cutoff=cutoff)
-        omega, radiation = np.append(omega, correction.omega), correction.radiation
-        mix = np.concatenate([mix, np.pad(correction.mix, ((stop, 0), (0, 0)))], axis=1)
-    return EigenSolution(omega, loads, work @ mix, cutoff, radiation, lambda: combine(mix))
+    return Spectrum(mu, work, combine, loads=loads, corrected=corrected, shift=shift, rigid=rigid, exact=rigid + count)
 
 
 class Sparse:
@@ -111,7 +151,7 @@ class Sparse:
     def __init__(self, K: Any, M: Any, shift: float) -> None:
         self.K, self.M, self.shift = K, M, shift
 
-    def spectrum(self, count: int, loads: Array, corrected: NDArray[np.intp]) -> Spectrum:
+    def spectrum(self, count: int, loads: Array, corrected: NDArray[np.intp]) -> RawSpectrum:
         """The ``count`` lowest modes, then the Ritz vectors of the ``corrected`` columns of the loads (free, k)."""
         from scipy.sparse.linalg import eigsh
 
@@ -123,7 +163,7 @@ class Sparse:
         if len(corrected):
             ritz_mu, ritz = self._ritz_vectors(vectors, loads[:, corrected])
             mu, basis = np.append(mu, ritz_mu), np.concatenate([basis, ritz], axis=1)
-        return Spectrum(mu, loads.T @ basis, lambda mix: basis @ mix)
+        return mu, loads.T @ basis, lambda mix: basis @ mix
 
     def _ritz_vectors(self, vectors: Array, forces: Array) -> tuple[Array, Array]:
         """(mu, q) of a few vectors that replace all modes but ``vectors`` in a truncation correction.
@@ -168,11 +208,11 @@ class Dense:
             matrix.T.ravel()[1 : 1 + size * (size - 1)].reshape(size - 1, size).T
         )  # matrix[1:], not copied
 
-    def spectrum(self, count: int, loads: Array, corrected: NDArray[np.intp]) -> Spectrum:
+    def spectrum(self, count: int, loads: Array, corrected: NDArray[np.intp]) -> RawSpectrum:
         """The modes of the matrix, or those of its leading part if the only ``corrected`` load begins there."""
         starts_at_load = len(corrected) == 1 and not loads[1:, corrected].any()
         mu, y = self._eigen(count, leading=starts_at_load)
-        return Spectrum(mu, self._reduced(loads)[: len(y)].T @ y, lambda mix: self._vectors(y @ mix))
+        return mu, self._reduced(loads)[: len(y)].T @ y, lambda mix: self._vectors(y @ mix)
 
     def _eigen(self, count: int, *, leading: bool) -> tuple[Array, Array]:
         """(mu, y), (m,) and (m, m), mu descending, of the matrix or its leading part; the first ``count`` are exact."""

@@ -177,10 +177,10 @@ def solve(system: System, count: int, *, n_corrected: int = 0, position: float =
         raise ValueError(f"modes count must be at most {limit} on this mesh; got {count}: use more elements")
     rigid = rigid_body_modes(system)
     loads = system.unit_loads_at(position)
-    solution = solve_eigenproblem(
+    spectrum = solve_eigenproblem(
         system.K, system.M, loads, shift=system.shift, rigid=rigid.shape[1], count=count, n_corrected=n_corrected
     )
-    return Modes(**vars(solution), system=system, rigid_vectors=rigid)
+    return Modes(**vars(spectrum.lowest(count)), system=system, rigid_vectors=rigid)
 
 
 def rigid_body_modes(system: System) -> Array:

@@ -344,8 +344,9 @@ class AxialWaves(CueEffect):
 
         rod, n_corrected = self.with_butt(cue), int(bending.radiation is not None)
         max_count = max(MAX_ROD_MODES, len(bending.omega))
-        masses = point_masses_on(rod, effects)
-        return (rod_modes(rod, masses, cutoff=bending.cutoff, max_count=max_count, n_corrected=n_corrected),)
+        masses = tuple(point_masses_on(rod, effects))
+        resolved = rod_modes(rod, masses, cutoff=bending.resolved, max_count=max_count, n_corrected=n_corrected)
+        return (resolved.below(bending.cutoff),)
 
 
 @dataclass(frozen=True)

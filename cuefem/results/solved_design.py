@@ -12,12 +12,11 @@ import numpy as np
 from cuefem.beam.assembly import assemble
 from cuefem.beam.modes import modes
 from cuefem.beam.tip_modes import TipModes
-from cuefem.contact.strike import steps_of, strike_modes
+from cuefem.contact.strike import steps_of, strike, strike_modes
 from cuefem.cue import Array
 from cuefem.effects.cue_effects import Support
 from cuefem.endmass.definitions import DEFINITIONS, small_offset_slope
 from cuefem.results.closed_forms import pivot_length
-from cuefem.results.convergence import resolve
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.default_scene import GAMES
 from cuefem.scene.solved_scene import SolvedScene
@@ -77,7 +76,7 @@ class SolvedDesign:
         """
         if isinstance(scene, SolvedDesign):
             return scene
-        return cls(SolvedScene(scene), None if rtol is None else resolve(scene, rtol))
+        return cls(SolvedScene(scene), None if rtol is None else strike(scene, rtol=rtol))
 
     @property
     def tip_stiffness(self) -> float:

@@ -42,7 +42,7 @@ PULSE_PERIODS, MIN_PULSE_MODES = 60, 80
 # Accuracy with these numbers: studies/accuracy/accuracy.md.
 MIN_STICK_MODES, MESHED_MODES = 160, 120
 # Limit of the default number, which contacts of a fraction of a millisecond reach: the truncation correction replaces
-# the others, and more would take over a second. MAX_MODES: the last level of `resolve`.
+# the others, and more would take over a second. MAX_MODES: the last level of a refinement.
 MAX_DEFAULT_MODES, MAX_MODES = 160, 400
 
 
@@ -145,9 +145,14 @@ def tip_modes_of(scene: Scene, at: Resolution | Solid | None = None) -> TipModes
     return SolvedScene(scene, at).tip
 
 
-def corrected_tip_modes(scene: Scene, count: int) -> TipModes:
-    """Tip modes of a finite-element cue from ``count`` bending modes with a truncation correction."""
-    return tip_modes_from(SolvedScene(scene)._bending(count, with_correction=True), scene)
+def corrected_tip_modes(scene: Scene, *counts: int) -> list[TipModes]:
+    """Tip modes of a finite-element cue from each number of bending modes with a truncation correction.
+
+    One eigenproblem, on the mesh for the largest number.
+    """
+    finest = SolvedScene(scene)._bending(max(counts), with_correction=True)
+    extra = 2 - finest.rigid
+    return [tip_modes_from(finest.lowest(count + extra), scene) for count in counts]
 
 
 def has_moment_arm(scene: Scene) -> bool:

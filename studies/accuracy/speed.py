@@ -129,7 +129,7 @@ def seconds(calls: dict[str, Callable[[], Any]]) -> dict[str, float]:
 def peer_rows() -> list[list[str]]:
     """Error and time of every contestant, then the recorded ones."""
     fine = cf.modes(CUE, 5, at=cf.Resolution(11, 9, 5)).frequencies[2:]
-    masses = np.array([cf.resolve_end_mass(strokes.scene(CUE, T), "force", 2e-5)[0] for T in TIMES])
+    masses = np.array([cf.end_mass(strokes.scene(CUE, T), "force", rtol=2e-5) for T in TIMES])
     rows = []
     for task, calls in contestants().items():
         modes = task.startswith("modes")
@@ -158,7 +158,7 @@ def text() -> str:
         "strike(scene), full model": lambda: cf.strike(full),
         f"batch_strike of {n}, bare tip": lambda: cf.batch_strike(batches["bare tip"]),
         f"batch_strike of {n}, full model": lambda: cf.batch_strike(batches["full model"]),
-        "resolve(scene, 1e-3)": lambda: cf.resolve(scene(1e-3), 1e-3),
+        "strike(scene, rtol=1e-3)": lambda: cf.strike(scene(1e-3), rtol=1e-3),
     }
     spent, peers = seconds(calls), peer_rows()
     return pages.page(

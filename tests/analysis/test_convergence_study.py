@@ -18,14 +18,14 @@ def found() -> ConvergenceStudy:
     return cf.convergence_study(scene("kim", 1e-3, 0.3), max_modes=60)
 
 
-def test_recommended_resolution_equals_resolve(found: ConvergenceStudy) -> None:
+def test_recommended_resolution_equals_strike_to_that_rtol(found: ConvergenceStudy) -> None:
     assert [row["rtol"] for row in found.recommended_resolutions] == list(RECOMMENDED_RTOLS)
     for row in found.recommended_resolutions:
         if row["is_reached"]:
-            result = cf.resolve(scene("kim", 1e-3, 0.3), row["rtol"])
+            result = cf.strike(scene("kim", 1e-3, 0.3), rtol=row["rtol"])
             assert (result.unknowns, result.error) == (row["unknowns"], row["estimate"])
-    assert [row["is_reached"] for row in found.recommended_resolutions] == [True, False, False, False]
-    best = min(level["estimate"] for level in found.levels if level["estimate"] is not None)
+    assert [row["is_reached"] for row in found.recommended_resolutions] == [True, True, False, False]
+    best = min(level["estimate"] for level in found.levels)
     assert found.recommended_resolutions[-1]["estimate"] == best
 
 

@@ -1,4 +1,4 @@
-"""Forty scenes on which the error estimates of `resolve` are tested; no tests."""
+"""Forty scenes on which the error estimates of `strike(scene, rtol=...)` are tested; no tests."""
 
 from __future__ import annotations
 

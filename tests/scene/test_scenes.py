@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.results.convergence import resolve
 
 SCENES = Path(__file__).parents[2] / "studies" / "scenes"
 NAMES = ("break_cue", "carom", "clay_on_shaft", "kim", "pool_low_deflection", "snooker")
@@ -43,7 +42,7 @@ def test_readme_of_meshes_states_computed_squirts() -> None:
 @pytest.mark.heavy
 @pytest.mark.parametrize("name", NAMES)
 def test_ready_scene_equals_its_readme(name: str) -> None:
-    reference, outcome = scene(name), resolve(scene(name), 1e-3)
+    reference, outcome = scene(name), cf.strike(scene(name), rtol=1e-3)
     _, ball, offset, squirt, effects = rows()[name]
     assert ball == f"{2e3 * reference.ball.radius:g} mm, {1e3 * reference.ball.mass:g} g"
     assert float(offset) == reference.stroke.offset

@@ -1,4 +1,4 @@
-"""Truncation correction against all modes, and error estimates of `resolve` against references (verification)."""
+"""Truncation correction against all modes, and error estimates of a refinement against references (verification)."""
 
 import numpy as np
 import pytest
@@ -6,9 +6,9 @@ import pytest
 import cuefem as cf
 from cuefem.beam.assembly import assemble
 from cuefem.beam.modes import Modes, solve
+from cuefem.contact.refinement import refinement_levels
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.definitions import definition_of
-from cuefem.results.convergence import refinement_levels
 from cuefem.scene.solved_scene import has_moment_arm, tip_modes_from
 from studies.strokes import NAMES
 from tests.helpers.accuracy_scenes import family, scene
@@ -58,13 +58,11 @@ def test_truncation_correction_conserves_moments_of_truncated_modes(name: str, e
             np.testing.assert_allclose(computed / scale, expected / scale, rtol=0, atol=1e-7)
 
 
-def test_resolve_end_mass_error_is_within_rtol() -> None:
+def test_end_mass_to_rtol_equals_many_modes() -> None:
     here = scene("kim", 1e-3, 0.3)
     tip = tip_modes_from(solve(assemble(here.shaft, 140), 130, n_corrected=1), here)
     for drive in ("stick", "velocity", "force"):
-        value, error = cf.resolve_end_mass(here, drive, 1e-3)
-        assert error <= 1e-3
-        assert abs(value / definition_of(drive).of(tip, here) - 1) <= 3 * error
+        assert cf.end_mass(here, drive, rtol=1e-3) == pytest.approx(definition_of(drive).of(tip, here), rel=1e-3)
 
 
 @pytest.mark.heavy
@@ -74,9 +72,7 @@ def test_refinement_levels_error_estimate_bounds_true_error(number: int) -> None
     here = family()[number]
     best, rougher = reference(here, 300), reference(here, 230)
     known = float((np.abs(rougher - best) / np.abs(best)).max())
-    for level in refinement_levels(here, 0.0):
-        error = level.error
-        if error is not None:
-            assert true_error(level.result, best, here) <= 2 * error + known
-            if error < 1e-4 or level.modes > 200:
-                break
+    for level in refinement_levels(here, 1e-4):
+        assert true_error(level.outcome, best, here) <= 2 * level.error + known
+        if level.modes > 200:
+            break
