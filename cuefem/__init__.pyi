@@ -48,6 +48,7 @@ from .effects.tip_effects import (
     TipDome as TipDome,
     TipShear as TipShear,
 )
+from .measurements.calibration import Calibration as Calibration, load_calibration as load_calibration
 from .endmass.definitions import end_mass as end_mass
 from .endmass.lumped import impulse as impulse, lump as lump
 from .scene.default_scene import usual_scene as usual_scene

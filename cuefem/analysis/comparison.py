@@ -13,6 +13,7 @@ from cuefem.analysis.end_mass import SQUIRT_END_MASS
 from cuefem.analysis.measured import MeasuredComparison, compare_measured
 from cuefem.analysis.strike_models import regime_warning
 from cuefem.analysis.verdict import difference_text, squirt_difference
+from cuefem.measurements.calibration import CalibratedSquirt, Calibration
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measured_folder import load_measured
 from cuefem.parameters.parameter import PARAMETERS
@@ -71,6 +72,8 @@ class Comparison(Analysis):
         (1 sigma); and "distinct", whether the difference exceeds the error, whichever of two cues is the first.
     scenes : dict of str to Scene
         The compared scenes, all with the ball and the stroke of the first.
+    calibrated : dict of str to CalibratedSquirt
+        Squirt of each cue by a calibrated model; empty without a calibration.
     """
 
     offset: float
@@ -82,6 +85,7 @@ class Comparison(Analysis):
     cues: dict[str, dict[str, float]]
     differences: dict[str, dict[str, Record]]
     scenes: dict[str, Scene] = field(repr=False)
+    calibrated: dict[str, CalibratedSquirt] = field(default_factory=dict)
 
     def heading(self) -> str:
         """The names of the cues."""
@@ -115,7 +119,8 @@ class Comparison(Analysis):
 
     def tables(self) -> list[Table | str]:
         """A sentence on each difference of squirt, and the table."""
-        return [*self.sentences(), "", self.table()]
+        calibrated = [line for name, each in self.calibrated.items() for line in each.lines(name)]
+        return [*self.sentences(), *calibrated, "", self.table()]
 
     def table(self) -> Table:
         """A row for each result: its value for each cue, and the differences of the others from the first."""
@@ -176,13 +181,20 @@ def _lateral(squirt: float) -> str:
 
 
 @overload
-def compare(cues: Mapping[str, Scene], *, same_shaft: bool = False, progress: Progress | None = None) -> Comparison: ...
+def compare(
+    cues: Mapping[str, Scene],
+    *,
+    same_shaft: bool = False,
+    calibration: Calibration | None = None,
+    progress: Progress | None = None,
+) -> Comparison: ...
 @overload
 def compare(cues: MeasuredCue | str | Path, *, progress: Progress | None = None) -> MeasuredComparison: ...
 def compare(
     cues: Mapping[str, Scene] | MeasuredCue | str | Path,
     *,
     same_shaft: bool = False,
+    calibration: Calibration | None = None,
     progress: Progress | None = None,
 ) -> Comparison | MeasuredComparison:
     """Compare cues side by side, or the measured values of one cue with computed ones, with uncertainties.
@@ -194,6 +206,9 @@ def compare(
         cue (`cuefem guide measuring` has the format), or what it holds.
     same_shaft : bool
         Whether the cues are one shaft before and after a change: the uncertainty of its wood cancels.
+    calibration : Calibration, optional
+        Squirt that was measured on another shaft with the same tip: the squirt of each cue is given with its smaller
+        uncertainty too.
     progress : callable, optional
         Wraps the list of cues or of uncertain parameters, to show progress.
 
@@ -219,9 +234,23 @@ def compare(
     ('-17% ± 6%', True)
     """
     if isinstance(cues, Mapping):
-        return compare_cues(cues, same_shaft=same_shaft, progress=progress or list)
+        compared = compare_cues(cues, same_shaft=same_shaft, progress=progress or list)
+        if calibration is None:
+            return compared
+        return replace(compared, calibrated=_calibrated(compared.scenes, calibration))
     measured = cues if isinstance(cues, MeasuredCue) else load_measured(Path(cues))[0]
     return compare_measured(measured, progress=progress or iter)
+
+
+def _calibrated(scenes: Mapping[str, Scene], calibration: Calibration) -> dict[str, CalibratedSquirt]:
+    """The calibrated squirt of each cue; ValueError with the cue's name if it has another tip."""
+    squirts = {}
+    for name, scene in scenes.items():
+        try:
+            squirts[name] = calibration.squirt(scene)
+        except ValueError as error:
+            raise ValueError(f"{name}: {error}") from None
+    return squirts
 
 
 def compare_cues(

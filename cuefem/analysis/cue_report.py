@@ -8,10 +8,11 @@ from typing import Any
 
 from cuefem.analysis.natural_frequencies import natural_frequencies
 from cuefem.analysis.report_sections import SECTIONS, has_segments
-from cuefem.analysis.squirt_curve import FINE_OFFSETS, squirt_curve
+from cuefem.analysis.squirt_curve import FINE_OFFSETS
 from cuefem.analysis.strike_models import regime_warning
 from cuefem.contact.geometric_stiffness import SlopeOutOfRange
 from cuefem.effects.force_law import IndentationOutOfRange
+from cuefem.measurements.calibration import Calibration
 from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.results.verdict import NoVerdict
@@ -81,6 +82,7 @@ def report(
     scene: Scene,
     rtol: float | None = None,
     *,
+    calibration: Calibration | None = None,
     details: bool = False,
     progress: Callable[[Sequence[Any]], Any] = list,
 ) -> CueReport:
@@ -92,6 +94,8 @@ def report(
         A stroke.
     rtol : float, optional
         Relative numerical error target of the coupled strike; by default that of a default strike.
+    calibration : Calibration, optional
+        Squirt that was measured on another shaft with the same tip: squirt is given with its smaller uncertainty too.
     details : bool
         Whether the sections are computed too that only a page has, and the finer curves.
     progress : callable
@@ -121,10 +125,11 @@ def report(
         modes: dict[str, Analysis] = {"modes": natural_frequencies(scene)} if has_segments(scene) else {}
         return CueReport(scene, modes, no_contact=str(error))
     wanted = [section for section in SECTIONS if section.needs(scene) and (details or not section.page_only)]
+    calibrated: Record = {} if calibration is None else {"calibration": calibration}
+    arguments = {"verdict": calibrated, "advice": calibrated, "squirt": {"offsets": FINE_OFFSETS} if details else {}}
     for section in progress(wanted):
         try:
-            offsets = [FINE_OFFSETS] if details and section.analyse is squirt_curve else []
-            found[section.key] = section.analyse(design, *offsets)
+            found[section.key] = section.analyse(design, **arguments.get(section.key, {}))
         except NoVerdict as error:
             lacking = str(error)
     return CueReport(scene, found, regime, no_squirt=lacking)

@@ -14,6 +14,7 @@ from cuefem.cue import Cue
 from cuefem.cue.materials import MATERIALS, WOODS, table_name
 from cuefem.designs.evaluation import Response
 from cuefem.effects.leather_tip import DOMES
+from cuefem.measurements.calibration import CalibratedSquirt, Calibration
 from cuefem.parameters.parameter import PARAMETERS, with_parameters
 from cuefem.parameters.parts import Layout, taper_position
 from cuefem.results.quantities import format_change, to_display, with_unit
@@ -194,16 +195,19 @@ class DesignChanges(Analysis):
         Squirt (rad), tip stiffness (N/m), shaft mass (kg) and first natural frequency (Hz) of the cue itself.
     changes : list of ChangedDesign
         The changes, lowest squirt first.
+    calibrated : CalibratedSquirt or None
+        Squirt of the cue itself by a calibrated model.
     """
 
     offset: float
     regime: str
     unmodified: dict[str, float]
     changes: list[ChangedDesign]
+    calibrated: CalibratedSquirt | None = None
 
     def tables(self) -> list[Table | str]:
-        """A table with a row for each change."""
-        return [self.table()]
+        """A table with a row for each change, after the calibrated squirt of the cue itself."""
+        return [*([*self.calibrated.lines(), ""] if self.calibrated else []), self.table()]
 
     def table(self) -> Table:
         """A row for each change, the lowest squirt first."""
@@ -240,7 +244,9 @@ class DesignChanges(Analysis):
         ]
 
 
-def design_changes(scene: Scene | SolvedDesign, *, progress: Progress = list) -> DesignChanges:
+def design_changes(
+    scene: Scene | SolvedDesign, *, calibration: Calibration | None = None, progress: Progress = list
+) -> DesignChanges:
     """Changes that a maker can make to a cue, and the effect of each on its own.
 
     Parameters
@@ -248,6 +254,9 @@ def design_changes(scene: Scene | SolvedDesign, *, progress: Progress = list) ->
     scene : Scene
         A stroke with a cue of segments, such as that of `usual_scene`. A head-on stroke is computed at the game's
         default offset.
+    calibration : Calibration, optional
+        Squirt that was measured on another shaft with the same tip: squirt of this cue is given with its smaller
+        uncertainty. A change alters squirt by the same share.
     progress : callable
         Wraps the list of changes, to show progress.
 
@@ -292,7 +301,8 @@ def design_changes(scene: Scene | SolvedDesign, *, progress: Progress = list) ->
         except (ValueError, RuntimeError):
             continue
     rows.sort(key=lambda row: row.squirt_change)
-    return DesignChanges(design.scene, float(struck.stroke.offset), outcome.regime, base, rows)
+    calibrated = calibration.squirt(struck) if calibration else None
+    return DesignChanges(design.scene, float(struck.stroke.offset), outcome.regime, base, rows, calibrated)
 
 
 def _numbers(solved: SolvedScene) -> Record:

@@ -69,6 +69,8 @@ def headline_markup(
     else:
         text, error = DASH if squirt is None else with_unit(abs(squirt), "rad", decimals=2), ""
     lines = []
+    if verdict and verdict.calibrated:
+        lines.append((verdict.calibrated.headline(), ""))
     if other is not None and squirt is not None and (not verdict or verdict.references):
         lines.append(("compared with" if difference is None else squirt_difference(**difference), other.name))
     for first, among in [*(verdict.references.items() if verdict else ())][:1]:

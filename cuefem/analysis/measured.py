@@ -12,18 +12,17 @@ import numpy as np
 
 from cuefem.measurements import estimate as estimation
 from cuefem.measurements import measured_cue
+from cuefem.measurements.calibration import Calibration
 from cuefem.measurements.estimate import STEP_TOLERANCE, Estimate, InformationGain, predicted_squirt
 from cuefem.measurements.measured_cue import MeasuredCue, OffsetZero, Progress, Residual, offset_zeros
 from cuefem.measurements.measured_folder import load_measured
-from cuefem.measurements.uncertain_parameters import SQUIRT_MODEL
 from cuefem.results.quantities import DASH, with_unit
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
-from cuefem.results.uncertainty import model_error
 from cuefem.show.analysis import Analysis
 
 LARGE_RESIDUAL = 3.0  # a larger one is a contradiction
 MIN_OUTLIER_PROBABILITY = 0.2  # of a measurement with a note
-UNITS = {"model_error": "", "residual": "", "normalized_residual": "", "zero_error": "m", "squirt_error": "rad"}
+UNITS = {"residual": "", "normalized_residual": "", "zero_error": "m", "squirt_error": "rad"}
 
 
 @dataclass(frozen=True)
@@ -124,9 +123,7 @@ class MeasuredEstimate(Analysis):
     converged : bool
         Whether the search converged.
     squirt, squirt_error : float
-        Squirt with the estimated parameters and its uncertainty (1 sigma), rad.
-    model_error : float or None
-        Relative error of the model in squirt, which that uncertainty excludes; None if squirt was measured.
+        Squirt with the estimated parameters and its uncertainty (1 sigma) with the model error, rad.
     offset : float
         Offset b/R of that squirt.
     recommended_measurements : list of dict
@@ -148,7 +145,6 @@ class MeasuredEstimate(Analysis):
     converged: bool
     squirt: float
     squirt_error: float
-    model_error: float | None
     offset: float
     recommended_measurements: list[Record]
     found: Estimate = field(repr=False, compare=False)
@@ -182,17 +178,21 @@ class MeasuredEstimate(Analysis):
                     "σ of squirt after": "{relative_squirt_error:.1 %}",
                 },
                 self.recommended_measurements,
-                "Sorted by the relative uncertainty (1σ) of squirt after the measurement.",
+                "Sorted by the relative uncertainty (1σ) of squirt after the measurement, with the model error.",
             ),
         ]
 
     def squirt_line(self) -> str:
         """Squirt with the estimated parameters."""
         squirt = with_unit(self.squirt, "rad", error=self.squirt_error)
-        excluded = "with model error"
-        if self.model_error:
-            excluded = f"parameters only; the model error of {100 * self.model_error:.0f} % comes on top"
-        return f"squirt at b/R {self.offset:.4g} by the model with these parameters: {squirt} ({excluded})"
+        return f"squirt at b/R {self.offset:.4g} with these parameters and the model error: {squirt}"
+
+    def calibration(self) -> Calibration:
+        """What it says about the squirt of the next shaft with the same tip: ``calibration().save("c.toml")``.
+
+        ValueError if no squirt was measured, or it is beyond a factor of 1.6 of the computed one.
+        """
+        return Calibration.of(self.found)
 
     def notes(self) -> list[str]:
         """The misfit, contradictory and unchecked measurements, and whether the search converged."""
@@ -274,7 +274,6 @@ def estimate(cue: MeasuredCue | str | Path, *, progress: Progress = iter) -> Mea
     found, target = estimation.estimate(measured, progress=progress), predicted_squirt(measured)
     squirt, squirt_error = found.predict(target)
     sd = np.sqrt(np.diag(found.covariance))
-    measured_squirt = any(value.name == SQUIRT_MODEL for value in found.values)
     return MeasuredEstimate(
         measured.scene,
         name=measured.name,
@@ -291,7 +290,6 @@ def estimate(cue: MeasuredCue | str | Path, *, progress: Progress = iter) -> Mea
         converged=found.converged,
         squirt=squirt,
         squirt_error=squirt_error,
-        model_error=None if measured_squirt else model_error(measured.scene),
         offset=target.offset,
         recommended_measurements=[_gain_record(gain) for gain in found.next_measurements()],
         found=found,

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from cuefem.cue import Cue
 from cuefem.files.reference_cues import reference_cues
+from cuefem.measurements.calibration import CalibratedSquirt, Calibration
 from cuefem.results.quantities import format_change, to_display, with_unit
 from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import SolvedDesign, off_centre
@@ -71,6 +72,8 @@ class Verdict(Analysis):
         By the name of each reference cue "squirt", rad; "difference", squirt of the scene over it less 1, both at the
         default resolution; "error" of the difference (1 sigma); "distinct", whether the difference exceeds it. A cue
         whose strike fails, or whose squirt is zero or of the opposite sign, is left out.
+    calibrated : CalibratedSquirt or None
+        Squirt with the smaller uncertainty of a model that was calibrated on another shaft.
     """
 
     offset: float
@@ -80,6 +83,7 @@ class Verdict(Analysis):
     inputs: dict[str, float]
     squirt_error: float
     references: dict[str, Record]
+    calibrated: CalibratedSquirt | None = None
 
     def headline(self) -> str:
         """Squirt with its uncertainty as one line."""
@@ -140,7 +144,9 @@ class Verdict(Analysis):
 
     def tables(self) -> list[Table | str]:
         """Headline, comparison, and the table of reference cues."""
-        text, uncertainty = [self.headline(), *self.reference_comparison(), ""], self.uncertainty_line()
+        calibrated = self.calibrated.lines() if self.calibrated else []
+        text = [self.headline(), *self.reference_comparison(), *calibrated, ""]
+        uncertainty = self.uncertainty_line()
         if not self.references:
             return [*text, uncertainty, ""]
         rows = self.scale()
@@ -151,7 +157,11 @@ class Verdict(Analysis):
         return [*text, Table(title, head, cells, (uncertainty,), (0, 2, 3), own)]
 
 
-def verdict(scene: Scene | SolvedDesign, references: Mapping[str, Cue] | None = None) -> Verdict:
+def verdict(
+    scene: Scene | SolvedDesign,
+    references: Mapping[str, Cue] | None = None,
+    calibration: Calibration | None = None,
+) -> Verdict:
     """Squirt of a stroke with its uncertainty, compared with reference cues by the same stroke.
 
     Parameters
@@ -161,6 +171,8 @@ def verdict(scene: Scene | SolvedDesign, references: Mapping[str, Cue] | None = 
         computed at the game's default offset.
     references : mapping of str to Cue, optional
         The cues to compare with, the one of sentences first; by default the reference cues of pool.
+    calibration : Calibration, optional
+        Squirt that was measured on another shaft with the same tip.
 
     Returns
     -------
@@ -170,8 +182,8 @@ def verdict(scene: Scene | SolvedDesign, references: Mapping[str, Cue] | None = 
     Raises
     ------
     ValueError
-        If the stroke is a miscue, the mass of the cue impossible, or the stroke beyond the valid range of a law, such
-        as an indentation too large for a leather tip.
+        If the stroke is a miscue, the mass of the cue impossible, the calibration of another game or tip, or the stroke
+        beyond the valid range of a law, such as an indentation too large for a leather tip.
 
     Examples
     --------
@@ -206,6 +218,7 @@ def verdict(scene: Scene | SolvedDesign, references: Mapping[str, Cue] | None = 
         inputs=inputs,
         squirt_error=uncertainty.total * abs(squirt),
         references={name: row for name, row in rows.items() if row},
+        calibrated=calibration.squirt(struck) if calibration else None,
     )
 
 

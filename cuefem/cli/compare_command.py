@@ -10,14 +10,24 @@ import click
 
 import cuefem as cf
 from cuefem.analysis.comparison import MAX_CUES
-from cuefem.cli.output import Command, command, page_option
+from cuefem.cli.output import Command, command, output_option
 from cuefem.cli.progress import with_progress_bar
-from cuefem.cli.scene_command import Presentation, completed_scene, cue_options, errors_name_file, print_warnings
+from cuefem.cli.scene_command import (
+    Presentation,
+    calibration_option,
+    check_overwrite,
+    completed_scene,
+    cue_options,
+    errors_name_file,
+    force_option,
+    print_warnings,
+)
 from cuefem.cli.scene_options import impact_options, offset_option, option
 from cuefem.files import InputError, load_stroke
 from cuefem.files.cue_names import cue_name, named_path
 from cuefem.files.defaults_report import STROKE, Assumption, given_keys
 from cuefem.files.warnings_of_drawings import drawing_warnings
+from cuefem.measurements.calibration import Calibration
 from cuefem.measurements.measured_folder import load_measured, named_folder, write_template
 from cuefem.show.plausibility import plausibility_warnings
 
@@ -45,12 +55,21 @@ class TwoForms(Command):
     help="Estimate wood, bore and tip from all measurements in FOLDER (maximum a posteriori), with uncertainties.",
 )
 @click.option("--template", is_flag=True, help="Create FOLDER with example files to fill in.")
-@page_option
+@output_option(".html", ".json", ".toml")
+@calibration_option
+@force_option
 @cue_options
 @impact_options
 @offset_option
 def compare(
-    files: tuple[Path, ...], same_shaft: bool, estimate: bool, template: bool, output: Path | None, **options: Any
+    files: tuple[Path, ...],
+    same_shaft: bool,
+    estimate: bool,
+    template: bool,
+    output: Path | None,
+    calibration: Calibration | None,
+    force: bool,
+    **options: Any,
 ) -> None:
     """Compare cues side by side, or the computed and measured values of one cue, with uncertainties.
 
@@ -64,12 +83,16 @@ def compare(
     as_json = options["as_json"]
     if len(files) > 1:
         files = tuple(map(named_path, files))
+        if output is not None and output.suffix == ".toml":
+            raise InputError(output, "--output", "a calibration (.toml) needs one FOLDER and --estimate")
         for name, flag in (("--estimate", estimate), ("--template", template)):
             if flag:
                 raise InputError(files[0], name, f"takes one FOLDER; got {len(files)} files")
-        _side_by_side(files, options, output, same_shaft=same_shaft)
+        _side_by_side(files, options, output, same_shaft=same_shaft, calibration=calibration)
         return
     (folder,) = files
+    if calibration is not None:
+        raise InputError(folder, "--calibration", "needs two or more FILEs, whose squirt it improves")
     if same_shaft or any(value is not None for name, value in options.items() if name != "as_json"):
         raise InputError(folder, "", "options of cue and stroke need two or more FILEs; a FOLDER has them in its files")
     if template:
@@ -77,11 +100,35 @@ def compare(
         click.echo(f"wrote {folder}: replace the example numbers by yours, then run: cuefem compare {folder}")
     elif folder.is_file() or cue_name(folder := named_folder(folder)):
         raise InputError(folder, "", "needs another FILE to compare with, or a FOLDER with measurements")
+    elif output is not None and output.suffix == ".toml":
+        if not estimate:
+            raise InputError(output, "--output", "a calibration (.toml) needs --estimate")
+        check_overwrite(output, force=force)
+        _write_calibration(folder, output)
     else:
         _with_measurements(folder, output, as_json=as_json, estimate=estimate)
 
 
-def _side_by_side(files: Sequence[Path], options: dict[str, Any], output: Path | None, *, same_shaft: bool) -> None:
+def _write_calibration(folder: Path, output: Path) -> None:
+    """Write the calibration by a measured cue."""
+    cue, _ = load_measured(folder)
+    print_warnings(cue.scene)
+    with errors_name_file(folder):
+        made = cf.estimate(cue, progress=with_progress_bar).calibration()
+    made.save(output)
+    for line in made.warnings:
+        click.echo(f"warning: {line}", err=True)
+    click.echo(f"wrote {output}; for the next shaft with this tip: cuefem report NEW.toml --calibration {output}")
+
+
+def _side_by_side(
+    files: Sequence[Path],
+    options: dict[str, Any],
+    output: Path | None,
+    *,
+    same_shaft: bool,
+    calibration: Calibration | None,
+) -> None:
     """Print or write the comparison of cues."""
     if len(files) > MAX_CUES:
         raise InputError(files[MAX_CUES], "", f"must be one of at most {MAX_CUES} cues; got {len(files)}")
@@ -98,7 +145,7 @@ def _side_by_side(files: Sequence[Path], options: dict[str, Any], output: Path |
     for scene in scenes.values():
         print_warnings(scene)
     with errors_name_file(files[0], options):
-        analysis = cf.compare(scenes, same_shaft=same_shaft, progress=with_progress_bar)
+        analysis = cf.compare(scenes, same_shaft=same_shaft, calibration=calibration, progress=with_progress_bar)
         warnings = [
             f"{name}: {line}"
             for name, file in zip(names, files, strict=True)

@@ -11,7 +11,14 @@ import click
 import cuefem as cf
 from cuefem.cli.output import Command
 from cuefem.cli.progress import with_progress_bar
-from cuefem.cli.scene_command import Request, analysis_command, check_overwrite, file_options, force_option
+from cuefem.cli.scene_command import (
+    Request,
+    analysis_command,
+    calibration_option,
+    check_overwrite,
+    file_options,
+    force_option,
+)
 from cuefem.cli.scene_options import option_value, tip_options
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.files import InputError, load_accuracy, save
@@ -22,6 +29,7 @@ from cuefem.quantity.fields import Quantity
 if TYPE_CHECKING:
     from cuefem.analysis.design_changes import DesignChanges
     from cuefem.analysis.strike_table import StrikeTable
+    from cuefem.measurements.calibration import Calibration
     from cuefem.show.analysis import Analysis
 
 
@@ -35,14 +43,15 @@ class WithDefinitions(Command):
 
 
 @analysis_command()
-def report(request: Request, output: Path | None) -> Analysis:
+@calibration_option
+def report(request: Request, output: Path | None, calibration: Calibration | None) -> Analysis:
     """Report the squirt of a cue with its uncertainty, then natural frequencies, end mass, pivot length and masses.
 
     Prints tables; -o FILE.html writes a page with figures. Assumptions are listed last, each with its option.
     """
     details = output is not None and output.suffix == ".html"
     rtol = load_accuracy(request.file) if details else None
-    answer = cf.report(request.scene, rtol, details=details, progress=with_progress_bar)
+    answer = cf.report(request.scene, rtol, calibration=calibration, details=details, progress=with_progress_bar)
     if output is None and {"verdict", "modes"} <= {*answer.sections}:  # nothing of a lumped cue can be changed
         request.hints.append(f"Design changes: cuefem improve {request.file}, with the same options")
     return answer
@@ -55,8 +64,11 @@ def report(request: Request, output: Path | None) -> Analysis:
     metavar="ROW",
     help="Save the cue of table row ROW (1 is the first) as the .toml of -o.",
 )
+@calibration_option
 @force_option
-def improve(request: Request, take: int | None, output: Path | None, force: bool) -> Analysis | None:
+def improve(
+    request: Request, take: int | None, output: Path | None, calibration: Calibration | None, force: bool
+) -> Analysis | None:
     """List design changes a maker can make, with squirt, stiffness, mass and first natural frequency of each.
 
     Each change is applied on its own and computed by the coupled strike. Rows are sorted by squirt, lowest first.
@@ -66,7 +78,7 @@ def improve(request: Request, take: int | None, output: Path | None, force: bool
         raise InputError(request.file, "--take", "requires -o FILE.toml, which requires --take ROW")
     if drawing is not None:
         check_overwrite(drawing, force=force)
-    answer = cf.design_changes(request.scene, progress=with_progress_bar)
+    answer = cf.design_changes(request.scene, calibration=calibration, progress=with_progress_bar)
     if take is None or drawing is None:
         return answer
     _save_change(request, answer, take, drawing)

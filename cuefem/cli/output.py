@@ -58,7 +58,7 @@ FORMATS = {
     ".csv": ".csv (table)",
     ".parquet": ".parquet (table, needs pyarrow)",
     ".json": ".json",
-    ".toml": ".toml (drawing or scene)",
+    ".toml": ".toml (drawing, scene or calibration)",
 }
 
 

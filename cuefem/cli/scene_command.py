@@ -38,6 +38,7 @@ from cuefem.files.cue_names import cue_name
 from cuefem.files.defaults_report import Assumption, assumption_texts, assumptions
 from cuefem.files.shaft_additions import SHAFT_ADDITIONS
 from cuefem.files.warnings_of_drawings import drawing_warnings
+from cuefem.measurements.calibration import load_calibration
 from cuefem.results.records import Record, Table
 from cuefem.scene import Scene
 from cuefem.show.analysis import Analysis, Answer, write
@@ -77,6 +78,17 @@ def load_with_options(load: Callable[..., Any], file: Path, options: Mapping[str
         if options.get(name) is None:
             raise
         raise InputError(file, option(name), problem) from None
+
+
+def calibration_option(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The option for squirt that was measured on another shaft."""
+    return click.option(
+        "--calibration",
+        type=click.Path(path_type=Path),
+        metavar="FILE",
+        callback=lambda context, parameter, path: None if path is None else load_calibration(path),
+        help="Squirt measured on another shaft with the same tip: the .toml of `compare FOLDER --estimate -o`.",
+    )(command)
 
 
 def force_option(command: Callable[..., Any]) -> Callable[..., Any]:

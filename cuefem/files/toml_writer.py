@@ -13,13 +13,15 @@ from cuefem.files.schema import table
 from cuefem.scene import Scene
 
 
-def toml_text(thing: Cue | Scene | SideStrike) -> str:
-    """A cue or scene as TOML text that `load_toml` converts back exactly."""
+def toml_text(thing: Cue | Scene | SideStrike, **tables: dict[str, Any]) -> str:
+    """A cue or scene as TOML text that `load_toml` converts back exactly, and other tables behind it."""
     document = tomlkit.document()
     if isinstance(thing, Scene) and not thing.effects:  # without the key they would be those of pool
         document.add("effects", tomlkit.array())
     for name, value in table(thing).items():
         document.add(name, _item(value))
+    for name, content in tables.items():
+        document.add(name, tomlkit.item(content))
     return re.sub(r"(?<!\n)\n\[", "\n\n[", tomlkit.dumps(document)).rstrip("\n") + "\n"  # a blank line before a table
 
 

@@ -26,6 +26,7 @@ STIFFNESS_ERROR = 0.02  # relative, of a static stiffness: a kitchen scale and a
 BALANCE_ERROR = 1e-3  # m, of a balance point
 SQUIRT_ERROR = 8.7e-4  # rad, 0.05 degrees: the mean of some shots on either side
 END_MASS_ERROR = 0.03  # relative, of a pendulum test: ten swings on either side
+PIVOT_ERROR = 0.05  # relative, of a pivot length: both sides, the bridge to half an inch
 CONTACT_TIME_ERROR = 0.05  # relative, of a contact time
 
 
@@ -343,6 +344,16 @@ class PivotLength(Measurement):
                 f"pivot_length must be of a stroke with squirt above 0 rad; got {squirt:.3g} rad at b/R {self.offset:g}"
             )
         return float(pivot_length(setup.scene, squirt, self.offset))
+
+    @classmethod
+    def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
+        """Left and right, by several bridges, at a medium offset; none of a stroke without squirt."""
+        blank = cls(offset=0.3, value=1.0, error=1.0)
+        try:
+            value = blank.compute(Setup(scene))
+        except ValueError:
+            return ()
+        return (replace(blank, value=value, error=PIVOT_ERROR * value),)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 from cuefem.cue import Material
-from cuefem.measurements.measurement_types import EndMass, Measurement, PivotLength, Setup, Squirt
+from cuefem.measurements.measurement_types import EndMass, Measurement, Setup, Squirt
 from cuefem.parameters.parameter import PARAMETERS, Path, parameter, with_values_at
 from cuefem.quantity.fields import Quantity, check_fields
 from cuefem.results.uncertainty import model_error
@@ -107,9 +107,8 @@ def parameters_of(
         parameters.append(UncertainParameter(entry.name, entry.label, unit, median, spread, _on_scene(entry.steps())))
     squirts = [measurement for measurement in measurements if isinstance(measurement, Squirt)]
     _, spread = _prior(by_key.get(SQUIRT_MODEL), 1.0, model_error(scene))
-    if any(isinstance(measurement, Squirt | PivotLength) for measurement in measurements):
-        factor: Any = lambda setup, value: setup._replace(squirt_factor=value)  # noqa: E731
-        parameters.append(UncertainParameter(SQUIRT_MODEL, "true squirt over the model's", "", 1.0, spread, factor))
+    factor: Any = lambda setup, value: setup._replace(squirt_factor=value)  # noqa: E731
+    parameters.append(UncertainParameter(SQUIRT_MODEL, "true squirt over the model's", "", 1.0, spread, factor))
     pendulums = [test for test in measurements if isinstance(test, EndMass) and test.contact_time_error]
     if pendulums:
         spread = max((test.contact_time_error or 0.0) / test.contact_time for test in pendulums)

@@ -1,0 +1,289 @@
+"""Calibration: what the measurements of one shaft say about the squirt of the next with the same kind of tip.
+
+The squirt factor of a shaft is its true squirt over the model's. Its logarithm has the standard deviation s, the model
+error. The logarithms of two shafts differ with the standard deviation d = `SHAFT_ERROR` |ln ratio of their computed
+squirt|, at least `RATIO_FLOOR`; hence their correlation is r = 1 - d^2/(2 s^2), at least 0. With m and v, mean and
+variance of the measured shaft's logarithm, that of the next has the mean r m and the variance r^2 v + (1 - r^2) s^2.
+Values of the tip, which both shafts share, have the mean and the covariance of the estimate.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from cuefem.cue import Array
+from cuefem.files import InputError, write_atomically
+from cuefem.files.errors import as_input_error
+from cuefem.files.toml_reader import load_cue, read_tables, scene_from_tables
+from cuefem.files.toml_writer import toml_text
+from cuefem.measurements.estimate import Estimate
+from cuefem.measurements.uncertain_parameters import SQUIRT_MODEL
+from cuefem.parameters.parameter import PARAMETERS, with_values_at
+from cuefem.quantity.fields import check_kind
+from cuefem.results.quantities import DASH, with_unit
+from cuefem.results.solved_design import off_centre
+from cuefem.results.uncertainty import (
+    NUMERICAL_ERROR,
+    RATIO_FLOOR,
+    model_error,
+    model_share,
+    squirt_changes,
+    squirt_of,
+)
+from cuefem.scene import Scene
+from cuefem.scene.solved_scene import SolvedScene
+
+# A squirt factor beyond PLAUSIBLE, or its inverse, causes a warning: 14 % of makers have one at a model error of 18 %.
+# One beyond MAX_FACTOR is rejected; 1 % of makers have one.
+PLAUSIBLE, MAX_FACTOR = 1.3, 1.6
+MIN_INFORMATION = 0.01  # part of the prior variance of the squirt factor that measurements must remove
+SAME = 1e-6  # relative difference of equal values of two files
+TABLE = "calibration"
+CLAIM = (
+    "about 12 % for the next shaft with the same tip if its squirt is within 30 % of the measured one's, provided that "
+    "shafts differ as the published pairs do"
+)
+
+
+@dataclass(frozen=True)
+class CalibratedSquirt:
+    """Squirt of a stroke by a calibrated model, and what it rests on.
+
+    Parameters
+    ----------
+    name : str
+        The measured cue.
+    offset : float
+        Offset b/R.
+    squirt, squirt_error : float
+        Squirt and its uncertainty (1 sigma), rad.
+    error, uncalibrated_error : float
+        Relative uncertainty, and that of the model alone.
+    measured_factor : float
+        Measured over computed squirt of the measured cue.
+    factor : float
+        The part of it that is carried over: this squirt over the computed one.
+    correlation : float
+        Of the squirt factors of the two shafts.
+    warnings : tuple of str
+        An implausible factor, and measurements that no other checks.
+    """
+
+    name: str
+    offset: float
+    squirt: float
+    squirt_error: float
+    error: float
+    uncalibrated_error: float
+    measured_factor: float
+    factor: float
+    correlation: float
+    warnings: tuple[str, ...]
+
+    def headline(self) -> str:
+        """The calibrated squirt as one line."""
+        squirt = with_unit(abs(self.squirt), "rad", error=self.squirt_error)
+        return f"calibrated on {self.name}: squirt {squirt}, {100 * self.error:.0f} % (1σ)"
+
+    def lines(self, cue: str = "") -> list[str]:
+        """The calibrated squirt, what it rests on, and warnings. cue: whose it is, of several."""
+        return [
+            f"{f'{cue}, ' if cue else ''}{self.headline()} instead of {100 * self.uncalibrated_error:.0f} %",
+            f"It rests on the squirt measured there, {self.measured_factor:.2f} times the computed one, of which "
+            f"{self.factor:.3f} is carried over (correlation of the two shafts {self.correlation:.2f}), and on the "
+            f"same tip. What it can claim: {CLAIM}.",
+            *(f"warning: {line}" for line in self.warnings),
+        ]
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """Squirt factor and tip of a measured cue, for the next shaft with the same tip.
+
+    Parameters
+    ----------
+    name : str
+        The measured cue.
+    scene : Scene
+        Its drawing with the estimated parameters.
+    drawn : mapping of str to float
+        Values of the tip in the drawing before the estimate, SI, by parameter.
+    log_factor : float
+        Mean of the logarithm of true over computed squirt.
+    covariance : tuple of tuple of float
+        Of the logarithms of the values of ``drawn``, in their order, and of the squirt factor.
+    unchecked : tuple of str
+        Measurements that no other checks.
+
+    Raises
+    ------
+    ValueError
+        If the covariance is none, no squirt was measured, or the squirt factor is beyond `MAX_FACTOR`.
+    """
+
+    name: str
+    scene: Scene
+    drawn: Mapping[str, float]
+    log_factor: float
+    covariance: tuple[tuple[float, ...], ...]
+    unchecked: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        C, count = self._matrix, len(self.drawn) + 1
+        if C.shape != (count, count) or not np.isfinite(C).all() or np.linalg.eigvalsh(C).min() < -1e-9:
+            raise ValueError(
+                f"Calibration.covariance must be a covariance of {count} values, those of drawn and log_factor"
+            )
+        if not self._information > MIN_INFORMATION:
+            raise ValueError(
+                "Calibration needs [[squirt]] or [[pivot_length]] among the measurements of the cue; got neither"
+            )
+        if not 1 / MAX_FACTOR <= self.measured_factor <= MAX_FACTOR:
+            raise ValueError(
+                f"Calibration: measured squirt must be 1/{MAX_FACTOR:g} to {MAX_FACTOR:g} times the computed one; got "
+                f"{self.measured_factor:.2f}: a measurement or the drawing is wrong"
+            )
+
+    @classmethod
+    def of(cls, found: Estimate) -> Calibration:
+        """That of an estimate."""
+        cue = found.cue
+        rows = {parameter.name: i for i, parameter in enumerate(cue.parameters)}
+        shared = {
+            key: rows[known.name] for key, known in PARAMETERS.items() if known.is_shareable and known.name in rows
+        }
+        if SQUIRT_MODEL not in rows:
+            raise ValueError("Calibration needs an uncertain squirt of the model; a prior of spread 0 fixes it")
+        chosen = [*shared.values(), rows[SQUIRT_MODEL]]
+        spreads = np.array([cue.parameters[i].spread for i in chosen])
+        covariance = found.covariance[np.ix_(chosen, chosen)] * np.outer(spreads, spreads)
+        return cls(
+            cue.name,
+            cue.setup(found.z).scene,
+            {key: cue.parameters[i].median for key, i in shared.items()},
+            float(found.z[chosen[-1]] * spreads[-1]),
+            tuple(map(tuple, covariance.tolist())),
+            tuple(each.measurement.label for each in found.unchecked_measurements),
+        )
+
+    @property
+    def _matrix(self) -> Array:
+        return np.atleast_2d(np.array(self.covariance, float))
+
+    @property
+    def _information(self) -> float:
+        """The part of the prior variance of the squirt factor that measurements removed."""
+        return float(1 - self._matrix[-1, -1] / model_error(self.scene) ** 2)
+
+    @property
+    def measured_factor(self) -> float:
+        """Measured over computed squirt, without the prior."""
+        return math.exp(self.log_factor / self._information)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """An implausible factor, and measurements that no other checks."""
+        lines = []
+        if not 1 / PLAUSIBLE <= self.measured_factor <= PLAUSIBLE:
+            lines.append(
+                f"the squirt measured on {self.name} is {self.measured_factor:.2f} times the computed one, beyond "
+                f"1/{PLAUSIBLE:g} to {PLAUSIBLE:g}: measure on both sides and at other bridges before you rely on it"
+            )
+        lines += [f"no other measurement of {self.name} checks {label}" for label in self.unchecked]
+        return tuple(lines)
+
+    def squirt(self, scene: Scene) -> CalibratedSquirt:
+        """Squirt of another shaft with the same tip and ball; at the game's default offset if the stroke is head-on.
+
+        ValueError for another ball, another tip, or squirt of the other sign.
+        """
+        self._check(scene)
+        scene = off_centre(scene)
+        keys, s = (*self.drawn,), model_error(scene)
+        values = {PARAMETERS[key].steps(): PARAMETERS[key].value(self.scene) for key in keys}
+        new = with_values_at(scene, values) if values else scene
+        old = replace(self.scene, stroke=scene.stroke)
+        computed, before = squirt_of(new), squirt_of(old)
+        if not computed * before > 0:
+            raise ValueError(f"a calibration needs squirt of one sign; got {computed:.3g} and {before:.3g} rad")
+        d = max(model_share(old, new) * abs(math.log(computed / before)), RATIO_FLOOR)
+        r = max(1 - d**2 / (2 * s**2), 0.0)
+        changes = squirt_changes(SolvedScene(new), computed)
+        shared = [changes.get(key, 0.0) / (PARAMETERS[key].spread_in(new) or 1.0) for key in keys]
+        slopes = np.array([*shared, r])
+        others = (change for key, change in changes.items() if key not in keys)
+        variance = float(slopes @ self._matrix @ slopes) + (1 - r**2) * s**2
+        error = math.hypot(math.sqrt(variance), *others, NUMERICAL_ERROR)
+        alone = squirt_changes(SolvedScene(scene), squirt_of(scene)).values()
+        factor = math.exp(r * self.log_factor)
+        return CalibratedSquirt(
+            self.name,
+            offset=float(scene.stroke.offset),
+            squirt=factor * computed,
+            squirt_error=error * abs(factor * computed),
+            error=error,
+            uncalibrated_error=math.hypot(s, *alone, NUMERICAL_ERROR),
+            measured_factor=self.measured_factor,
+            factor=factor,
+            correlation=r,
+            warnings=self.warnings,
+        )
+
+    def _check(self, scene: Scene) -> None:
+        """ValueError for a scene of another game or another tip."""
+        first, second = ((each.ball.mass, each.ball.radius) for each in (self.scene, scene))
+        if not np.allclose(first, second, rtol=SAME, atol=0.0):
+            there, here = (f"{with_unit(m, 'kg')}, {with_unit(2 * radius, 'm')}" for m, radius in (first, second))
+            raise ValueError(f"the calibration is of another game: ball {there} there, {here} here")
+        if (self.scene.contact_terms.tip is None) != (scene.contact_terms.tip is None):
+            raise ValueError("the calibration is of another kind of tip: one is a LeatherTip, the other a spring")
+        for key, drawn in self.drawn.items():
+            known, own = PARAMETERS[key], PARAMETERS[key].value(scene)
+            if own is None or not math.isclose(own, drawn, rel_tol=SAME):
+                unit = known.quantity(self.scene).unit
+                there, here = (DASH if value is None else with_unit(value, unit) for value in (drawn, own))
+                raise ValueError(f"the calibration is of another tip: {known.label} {there} there, {here} here")
+
+    def save(self, path: str | Path) -> None:
+        """Write it as .toml: the scene with the estimated parameters, and a table [calibration]."""
+        own = {
+            "name": self.name,
+            "log_factor": self.log_factor,
+            "covariance": [list(row) for row in self.covariance],
+            "unchecked": list(self.unchecked),
+            "drawn": dict(self.drawn),
+        }
+        text = toml_text(self.scene, **{TABLE: own})
+        write_atomically(Path(path), lambda temporary: temporary.write_text(text, encoding="utf-8"))
+
+
+KEYS = ("name", "drawn", "log_factor", "covariance", "unchecked")
+
+
+def load_calibration(path: str | Path) -> Calibration:
+    """Load the calibration that `cuefem compare FOLDER --estimate -o FILE.toml` wrote; InputError for another file."""
+    path = Path(path)
+    tables = read_tables(path)
+    own = tables.pop(TABLE, None)
+    if not isinstance(own, dict) or {*own} != {*KEYS}:
+        written = "`cuefem compare FOLDER --estimate -o FILE.toml` writes it"
+        raise InputError(path, TABLE, f"must be a table of {', '.join(KEYS)}: {written}")
+    scene = scene_from_tables(tables, path, load_cue)
+    with as_input_error(path, TABLE):
+        check_kind("log_factor", own["log_factor"], float)
+        unknown = [key for key in own["drawn"] if key not in PARAMETERS]
+        if unknown:
+            raise ValueError(f"drawn must hold parameters of the tip; got {unknown[0]!r}")
+        return Calibration(
+            str(own["name"]),
+            scene,
+            {key: float(value) for key, value in own["drawn"].items()},
+            own["log_factor"],
+            tuple(tuple(map(float, row)) for row in own["covariance"]),
+            tuple(map(str, own["unchecked"])),
+        )

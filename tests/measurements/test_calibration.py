@@ -1,0 +1,165 @@
+"""A calibration on one shaft: its statistics, its file, and what is rejected (verification)."""
+
+import json
+import math
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem.measurements.calibration import MAX_FACTOR, Calibration
+from cuefem.results.uncertainty import MODEL_ERROR, RATIO_FLOOR, SHAFT_ERROR, squirt_of
+from tests.helpers.command_line import as_json, call, stdout_of
+
+OLD = cf.usual_scene(cf.load("plain maple"))
+NEW = cf.usual_scene(cf.load("low deflection"))
+TIP = {"leather": OLD.leather_tip.E, "restitution": float(OLD.tip.restitution)}
+
+
+def calibration(factor: float = 1.2, error: float = 0.06, scene: cf.Scene = OLD) -> Calibration:
+    """A shaft whose squirt was measured with a relative error; the tip stays as it was drawn."""
+    s2 = MODEL_ERROR**2
+    gain = s2 / (s2 + error**2)
+    covariance = np.diag([0.1**2, 0.03**2, s2 * (1 - gain)])
+    return Calibration("old", scene, TIP, gain * math.log(factor), tuple(map(tuple, covariance.tolist())), ("pivot",))
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A file of a calibration."""
+    path = tmp_path_factory.mktemp("calibration") / "old.toml"
+    calibration().save(path)
+    return path
+
+
+def test_next_shaft_has_mean_and_variance_of_the_correlated_factor() -> None:
+    made = calibration()
+    found = made.squirt(NEW)
+    ratio = math.log(squirt_of(NEW) / squirt_of(OLD))
+    r = 1 - (SHAFT_ERROR * ratio) ** 2 / (2 * MODEL_ERROR**2)
+    assert found.correlation == pytest.approx(r, rel=1e-9)
+    assert found.factor == pytest.approx(math.exp(r * made.log_factor), rel=1e-9)
+    assert found.squirt == pytest.approx(found.factor * squirt_of(NEW), rel=1e-9)
+    assert made.measured_factor == pytest.approx(1.2, rel=1e-9)
+    v = made.covariance[-1][-1]
+    assert found.error > math.sqrt(r**2 * v + (1 - r**2) * MODEL_ERROR**2)
+    assert found.error < found.uncalibrated_error - 0.05
+
+
+def test_same_shaft_keeps_its_measured_squirt() -> None:
+    found = calibration(error=0.01).squirt(OLD)
+    assert found.correlation == pytest.approx(1 - RATIO_FLOOR**2 / (2 * MODEL_ERROR**2))
+    assert found.squirt == pytest.approx(1.2 * squirt_of(OLD), rel=2e-3)
+
+
+def test_calibration_without_information_equals_the_model() -> None:
+    made = calibration(error=1.7)  # removes 1.1 % of the prior's variance
+    unshared = replace(made, drawn={}, covariance=((made.covariance[-1][-1],),))
+    found = unshared.squirt(NEW)
+    assert found.error == pytest.approx(found.uncalibrated_error, rel=0.01)
+
+
+def test_file_round_trips(file: Path) -> None:
+    read = cf.load_calibration(file)
+    assert read.squirt(NEW).squirt == pytest.approx(calibration().squirt(NEW).squirt, rel=1e-9)
+    assert (read.name, read.unchecked) == ("old", ("pivot",))
+
+
+def test_warning_beyond_plausible_factor() -> None:
+    assert calibration(1.29).warnings == ("no other measurement of old checks pivot",)
+    assert "1.31 times the computed one, beyond 1/1.3 to 1.3" in calibration(1.31).warnings[0]
+    assert "0.76 times the computed one" in calibration(0.76).warnings[0]
+
+
+CAROM = cf.usual_scene(cf.load("kim"), "carom")
+OTHER_TIP = replace(OLD, effects=tuple(replace(e, E=1e8) if isinstance(e, cf.LeatherTip) else e for e in OLD.effects))
+SPRING = replace(OLD, tip=cf.Tip(0.73, 0.7, 1e-3), effects=())
+
+
+@pytest.mark.parametrize(
+    ("scene", "message"),
+    [
+        (CAROM, "the calibration is of another game: ball 170 g, 57.15 mm there, 210 g, 61.5 mm here"),
+        (OTHER_TIP, "the calibration is of another tip: E of the leather 0.229 GPa there, 0.1 GPa here"),
+        (SPRING, "the calibration is of another kind of tip"),
+    ],
+)
+def test_other_game_or_tip_is_rejected(scene: cf.Scene, message: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(message)):
+        calibration().squirt(scene)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"covariance": ((MODEL_ERROR**2,),), "drawn": {}}, "Calibration needs [[squirt]] or [[pivot_length]]"),
+        ({"covariance": ((1.0, 2.0), (2.0, 1.0))}, "Calibration.covariance must be a covariance of 3 values"),
+        ({"log_factor": math.log(2)}, f"Calibration: measured squirt must be 1/{MAX_FACTOR} to {MAX_FACTOR} times"),
+        ({"log_factor": -math.log(2)}, f"Calibration: measured squirt must be 1/{MAX_FACTOR} to {MAX_FACTOR} times"),
+    ],
+)
+def test_impossible_calibrations_are_rejected(change: dict[str, object], message: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(message)):
+        replace(calibration(), **change)  # type: ignore[arg-type]
+
+
+def test_files_of_no_calibration_are_rejected_in_one_line(file: Path, tmp_path: Path) -> None:
+    text = file.read_text("utf-8")
+    for name, content, message in (
+        ("empty", "", "got an empty file"),
+        ("scene", text.partition("[calibration]")[0], "calibration: must be a table of"),
+        ("factor", re.sub(r"log_factor = .*", "log_factor = 0.6", text), "measured squirt must be 1/1.6 to 1.6 times"),
+        ("drawn", text.replace("leather =", "feather ="), "drawn must hold parameters of the tip; got 'feather'"),
+    ):
+        path = tmp_path / f"{name}.toml"
+        path.write_text(content, encoding="utf-8")
+        status, out, err = call("report", "plain maple", "--calibration", path)
+        assert (status, out, err.count("\n")) == (2, "", 1)
+        assert message in err
+
+
+def test_commands_reject_what_a_calibration_cannot_do(file: Path, tmp_path: Path) -> None:
+    for arguments, message in (
+        (("compare", "predator z2", "--calibration", file), "--calibration: needs two or more FILEs"),
+        (("compare", "predator z2", "-o", tmp_path / "c.toml"), "a calibration (.toml) needs --estimate"),
+        (("compare", "kim", "carbon", "-o", tmp_path / "c.toml"), "a calibration (.toml) needs one FOLDER"),
+        (("compare", "predator z", "--estimate", "-o", file), "already exists; --force overwrites it"),
+    ):
+        status, out, err = call(*arguments)
+        assert (status, out) == (2, "")
+        assert message in err
+    assert not (tmp_path / "c.toml").exists()
+
+
+@pytest.mark.heavy
+def test_estimate_writes_a_calibration_that_every_command_takes(tmp_path: Path) -> None:
+    """Predator Z: pivot length measured in 2007; 12 % for a bored shaft instead of 20 %."""
+    path, page = tmp_path / "z.toml", tmp_path / "page.html"
+    status, out, err = call("compare", "predator z", "--estimate", "-o", path)
+    assert (status, err) == (
+        0,
+        "warning: no other measurement of Predator Z checks natural pivot length at b/R 0.375\n",
+    )
+    assert f"cuefem report NEW.toml --calibration {path}" in out
+    found = cf.load_calibration(path).squirt(NEW)
+    assert (round(found.error, 2), round(found.uncalibrated_error, 2)) == (0.12, 0.20)
+    line = found.headline()
+    assert line in stdout_of("report", "low deflection", "--calibration", path)
+    assert line in stdout_of("improve", "low deflection", "--calibration", path)
+    assert line in stdout_of("compare", "plain maple", "low deflection", "--calibration", path)
+    record = as_json("report", "low deflection", "--calibration", path)
+    assert record["verdict"]["calibrated"]["squirt"] == pytest.approx(found.squirt, rel=1e-9)
+    assert stdout_of("report", "low deflection", "--calibration", path, "-o", page)
+    assert page.read_text("utf-8").count("calibrated on Predator Z") >= 1
+    assert json.dumps(record)
+
+
+@pytest.mark.heavy
+def test_unmeasured_squirt_makes_no_calibration(tmp_path: Path) -> None:
+    status, out, err = call("compare", "predator z2", "--estimate", "-o", tmp_path / "z2.toml")
+    assert (status, out) == (2, "")
+    assert "Calibration needs [[squirt]] or [[pivot_length]] among the measurements" in err
+    assert not (tmp_path / "z2.toml").exists()
