@@ -1,4 +1,4 @@
-"""Settings of every test: hypothesis draws the same examples on every machine and in every run."""
+"""Settings of every test: hypothesis draws the same examples in every run, except in the profile "nightly"."""
 
 import os
 import pkgutil
@@ -19,7 +19,7 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 
 import pytest  # noqa: E402
-from hypothesis import settings  # noqa: E402
+from hypothesis import HealthCheck, settings  # noqa: E402
 
 import cuefem  # noqa: E402
 
@@ -29,6 +29,14 @@ for module in pkgutil.walk_packages(cuefem.__path__, "cuefem."):
         import_module(module.name)
 
 settings.register_profile("cuefem", derandomize=True, deadline=None, database=None, print_blob=True)
+# `pytest --hypothesis-profile=nightly`: other examples in each run, ten times as many; a failing one prints its blob
+settings.register_profile(
+    "nightly",
+    settings.get_profile("cuefem"),
+    derandomize=False,
+    max_examples=1000,
+    suppress_health_check=[HealthCheck.too_slow],  # of a machine that does other work
+)
 settings.load_profile("cuefem")
 
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from cuefem import Ball, Cue, Material, Resolution, Scene, Segment, Tip, end_mass, modes
 from tests.helpers.cues import kim, scaled
+from tests.helpers.examples import examples
 
 WOOD, SOFT, STIFF = Material(12e9, 0.8e9, 700.0), Material(0.1e9, 0.036e9, 1000.0), Material(200e9, 77e9, 7850.0)
 AT = Resolution(2, 8, 10)
@@ -35,7 +36,7 @@ drives = st.sampled_from(["force", "velocity", "stick"])
 
 
 @given(cues(), factors, factors, factors)
-@settings(max_examples=20)
+@examples(20)
 def test_modes_scaled_units_scale(cue: Cue, length: float, time: float, mass: float) -> None:
     """Units of length, time, mass a, b, c times smaller: E and G c/(a b^2), rho c/a^3, frequency 1/b, w 1/sqrt(c)."""
     stiff, heavy = mass / (length * time**2), mass / length**3
@@ -50,7 +51,7 @@ def test_modes_scaled_units_scale(cue: Cue, length: float, time: float, mass: fl
 
 
 @given(cues(), drives, factors, factors, factors)
-@settings(max_examples=20)
+@examples(20)
 def test_end_mass_scaled_units_scales(cue: Cue, drive: str, length: float, time: float, mass: float) -> None:
     stiff, heavy = mass / (length * time**2), mass / length**3
     other = replace(scaled(cue, E=stiff, G=stiff, rho=heavy, length=length), body_mass=cue.body_mass * mass)
@@ -61,7 +62,7 @@ def test_end_mass_scaled_units_scales(cue: Cue, drive: str, length: float, time:
 
 
 @given(cues(), st.floats(1.01, 4.0))
-@settings(max_examples=20)
+@examples(20)
 def test_frequencies_rise_with_stiffness_and_fall_with_mass(cue: Cue, factor: float) -> None:
     """Rayleigh: a larger E lowers no frequency; a larger density divides all by its root."""
     original = modes(cue, 6, at=AT).frequencies

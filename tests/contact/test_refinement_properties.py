@@ -3,18 +3,19 @@
 from dataclasses import replace
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 import cuefem as cf
 from cuefem.contact.refinement import MAX_STEPS, StrikeGrid, refinement_levels
 from cuefem.scene.solved_scene import MAX_MODES
 from tests.helpers.accuracy_scenes import scene
+from tests.helpers.examples import examples
 from tests.helpers.strike_scenes import lumped_scenes
 
 KIM = scene("kim", 1e-3, 0.3)
 
 
-@settings(max_examples=8, deadline=None)
+@examples(8)
 @given(lumped_scenes())
 def test_lumped_cue_to_rtol_agrees_with_impulse(lumped: cf.Scene) -> None:
     result, exact = cf.strike(lumped, rtol=1e-3), cf.impulse(lumped)

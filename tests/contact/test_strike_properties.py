@@ -10,12 +10,13 @@ from math import inf, isinf
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.contact.strike import strike_modes
 from cuefem.effects.effect import Effect
+from tests.helpers.examples import examples
 from tests.helpers.leather_scenes import LEATHER, leather_scene
 from tests.helpers.orders import assert_order
 from tests.helpers.strike_scenes import (
@@ -104,9 +105,10 @@ def strike(scene: cf.Scene, at: cf.Resolution = AT) -> cf.Outcome | None:
         return None
 
 
-@pytest.mark.parametrize("examples", [5, pytest.param(250, marks=pytest.mark.heavy)])
-def test_strike_conserves_energy_mirrors_and_ignores_effect_order(examples: int) -> None:
-    @settings(max_examples=examples)
+@pytest.mark.hypothesis
+@pytest.mark.parametrize("count", [5, pytest.param(250, marks=pytest.mark.heavy)])
+def test_strike_conserves_energy_mirrors_and_ignores_effect_order(count: int) -> None:
+    @examples(count)
     @given(strikes(), st.integers(0, 5))
     @example(replace(kim_scene(0.3, restitution=0.05), effects=(cf.Support(0.25, dashpot=5.0),)), 0)
     @example(replace(kim_scene(0.3, restitution=0.05), effects=(cf.AxialWaves(),)), 0)

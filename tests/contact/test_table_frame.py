@@ -4,13 +4,14 @@ from math import cos, pi, sin
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.contact.table_frame import offset_of
+from tests.helpers.examples import examples
 
-MANY = settings(max_examples=60, deadline=None)
+MANY = examples(60)
 BALL = cf.Ball(0.17, 0.0286)
 R = BALL.radius
 NORTH = (0.0, 1.0, 0.0)

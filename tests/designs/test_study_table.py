@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -15,6 +15,7 @@ from cuefem.designs import Response
 from cuefem.designs.study_statistics import SweepStatistics
 from cuefem.designs.study_table import column_label
 from tests.helpers.command_line import as_json, stdout_of
+from tests.helpers.examples import examples
 from tests.helpers.invalid_input import assert_rejects
 from tests.helpers.sweeps import STUDY, write_study
 
@@ -50,7 +51,7 @@ def test_shares_of_sample_and_of_choices_equal_exact_variances() -> None:
     assert (named.shares[0, 0], named.trends) == (pytest.approx(1.0, rel=1e-12), [["", ""]])
 
 
-@settings(max_examples=30)
+@examples(30)
 @given(arrays(int, (60, 2), elements=st.integers(0, 11)))  # with ties
 def test_pareto_front_has_undominated_designs(numbers: np.ndarray) -> None:
     results = numbers.astype(float)

@@ -6,11 +6,12 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from cuefem import LeatherTip
 from cuefem.effects.leather_tip import tip_model
+from tests.helpers.examples import examples
 
 DIAMETERS = st.floats(8e-3, 15e-3)
 TIPS = st.builds(
@@ -31,7 +32,7 @@ def possible(tip: LeatherTip, diameter: float) -> LeatherTip:
     return tip
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(TIPS, DIAMETERS, OFFSETS, st.floats(0.005, 0.5))
 def test_leather_compliance_is_positive_definite(tip: LeatherTip, diameter: float, offset: float, patch: float) -> None:
     """Symmetric and positive definite, mirrored with the offset, in proportion to 1/E."""
@@ -47,7 +48,7 @@ def test_leather_compliance_is_positive_definite(tip: LeatherTip, diameter: floa
     )
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(TIPS, DIAMETERS, st.floats(-0.6, 0.6))
 def test_leather_moment_arm_lies_on_dome_or_rim(tip: LeatherTip, diameter: float, phi: float) -> None:
     """The contact lies on the dome or its rim; the mass is between 1/3 of the cylinder's and the cylinder's."""
@@ -64,7 +65,7 @@ def test_leather_moment_arm_lies_on_dome_or_rim(tip: LeatherTip, diameter: float
     assert cylinder / 3 < tip.mass(diameter) <= cylinder * (1 + 1e-12)
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(TIPS, DIAMETERS, OFFSETS)
 def test_leather_law_stiffness_of_every_annulus_is_positive(tip: LeatherTip, diameter: float, offset: float) -> None:
     """The slope of the force rises, so that the share of each annulus is positive, up to contact of the whole tip.

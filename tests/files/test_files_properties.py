@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy import constants
 
@@ -18,6 +18,7 @@ from cuefem.effects.effect import Effect
 from cuefem.files import InputError
 from cuefem.quantity.fields import Quantity, check_fields
 from cuefem.quantity.units import EXAMPLES, UNITS, format_number, parse_number
+from tests.helpers.examples import examples
 
 
 @dataclass(frozen=True)
@@ -90,7 +91,7 @@ def saved_and_loaded(item: cf.Cue | cf.Scene, name: str) -> cf.Cue | cf.Scene:
 
 
 @given(CUES | SCENES)
-@settings(max_examples=40)
+@examples(40)
 def test_save_and_load_preserve_twelve_digits(item: cf.Cue | cf.Scene) -> None:
     assert_close(saved_and_loaded(item, "thing.toml"), item)
 
@@ -109,7 +110,7 @@ def assert_close(result: Any, expected: Any) -> None:
 
 
 @given(FINITE, st.sampled_from(sorted(EXAMPLES)))
-@settings(max_examples=200)
+@examples(200)
 def test_formatted_number_reads_back(value: float, unit: str) -> None:
     assert parse_number(format_number(value, unit), unit) == pytest.approx(value, rel=2e-12, abs=0)
 
@@ -176,7 +177,7 @@ def test_ambiguous_unit_is_rejected(text: str, unit: str) -> None:
 
 @pytest.mark.heavy
 @given(st.text(max_size=30) | st.from_regex(r"[0-9.]{1,4} ?[a-zA-Z*/^0-9()]{0,12}", fullmatch=True))
-@settings(max_examples=400, deadline=None)
+@examples(400)
 def test_load_any_text_loads_or_is_rejected(given_text: str) -> None:
     quantity = Quantity("m", "(0, inf)")
     value, error = outcome(lambda: quantity.read(given_text))
@@ -185,7 +186,7 @@ def test_load_any_text_loads_or_is_rejected(given_text: str) -> None:
 
 
 @given(st.binary(max_size=80), st.sampled_from([".toml", ".csv", ".ply"]))
-@settings(max_examples=80)
+@examples(80)
 def test_load_any_bytes_loads_or_is_rejected(content: bytes, suffix: str) -> None:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"file{suffix}"
@@ -196,7 +197,7 @@ def test_load_any_bytes_loads_or_is_rejected(content: bytes, suffix: str) -> Non
 
 
 @given(data=st.data())
-@settings(max_examples=50)
+@examples(50)
 def test_load_damaged_file_loads_or_is_rejected(data: st.DataObject) -> None:
     maple = cf.Material(12.6e9, 0.84e9, 782.0)
     cue = cf.Cue((cf.Segment(0.3, 0.012, 0.014, maple), cf.Segment(0.4, 0.014, 0.021, maple, core=maple)), 0.42)

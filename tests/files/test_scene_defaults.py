@@ -5,11 +5,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.scene.default_scene import GAMES
+from tests.helpers.examples import examples
 
 CUE = """
 body_mass = "430 g"
@@ -46,7 +47,7 @@ def loaded(folder: Path, text: str) -> cf.Scene:
     return result
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(present=st.sets(st.sampled_from(KEYS)), effects=st.booleans(), game=st.sampled_from([*GAMES]))
 def test_scene_missing_keys_default_to_the_game(folder: Path, present, effects, game) -> None:
     rows = [f'game = "{game}"', 'cue = "cue.toml"', *(["effects = []"] if effects else [])]

@@ -5,13 +5,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 import cuefem as cf
 from cuefem.analysis.design_changes import changes_of
 from cuefem.parameters.parameter import PARAMETERS, with_parameters
 from cuefem.parameters.parts import bore_mouth
 from tests.helpers.bored_cues import bored_cues
+from tests.helpers.examples import examples
 
 HEAD = "x [mm];diameter [mm];bore [mm]\n"
 # Rows, and where the bore begins, its depth and its width, mm.
@@ -77,7 +78,7 @@ def bore_at(cue: cf.Cue, x: float) -> float:
     return 0.0 if segment.core else segment.tip_bore + (segment.butt_bore - segment.tip_bore) * share
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(bored_cues())
 def test_design_changes_of_bores_and_tapers_remove_wood(cue: cf.Cue) -> None:
     """No change whose name says that wood goes adds any, wherever the bores are."""

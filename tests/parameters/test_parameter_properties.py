@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import cuefem as cf
@@ -15,6 +15,7 @@ from cuefem.designs.study import Study, Vary
 from cuefem.files.reference_cues import PRESETS, preset_scene
 from cuefem.parameters.parameter import PARAMETERS, paths, with_parameters
 from cuefem.parameters.parts import outer_diameter
+from tests.helpers.examples import examples
 
 SCENES = {preset.name: preset_scene(preset) for preset in PRESETS}
 FIRST = SCENES[PRESETS[0].name]
@@ -32,7 +33,7 @@ def changed(key: str, value: float, part: float) -> float:
 
 
 @pytest.mark.parametrize("name", SCENES)
-@settings(max_examples=5)
+@examples(5)
 @given(permille=st.integers(-10, 10))
 def test_parameter_set_reads_back(name: str, permille: int) -> None:
     scene = SCENES[name]
@@ -44,7 +45,7 @@ def test_parameter_set_reads_back(name: str, permille: int) -> None:
         assert result.cue.length == pytest.approx(scene.cue.length, rel=1e-12), key
 
 
-@settings(max_examples=20)
+@examples(20)
 @given(name=st.sampled_from(sorted(SCENES)), data=st.data())
 def test_parameters_changed_in_any_order_agree(name: str, data: Any) -> None:
     scene = SCENES[name]
@@ -61,7 +62,7 @@ def test_parameter_name_variants_agree(name: str) -> None:
     assert paths(scene, "segments[0].length") == paths(scene, "cue.segments[0].length")
 
 
-@settings(max_examples=30)
+@examples(30)
 @given(x=st.floats(0.05, 0.7), more=st.floats(1e-8, 5e-4).flatmap(lambda size: st.sampled_from((size, -size))))
 def test_taper_at_position_changes_diameters_linearly(x: float, more: float) -> None:
     name = f"taper at {1e3 * x!r} mm"

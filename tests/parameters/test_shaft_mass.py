@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import cuefem as cf
@@ -15,11 +15,12 @@ from cuefem.results.uncertainty import squirt_changes
 from cuefem.scene.solved_scene import SolvedScene
 from tests.helpers.command_line import as_json, call
 from tests.helpers.cues import pool
+from tests.helpers.examples import examples
 
 CSV = "x [mm],diameter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n"
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(st.floats(0.03, 0.4))
 def test_shaft_mass_sets_the_main_density_alone(mass: float) -> None:
     cue = with_shaft_mass(pool(), mass)
