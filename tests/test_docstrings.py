@@ -1,7 +1,10 @@
-"""Examples in the docstrings of the package run and print the stated output (regression)."""
+"""Docstrings: examples run and print the stated output, numbers in prose are listed (regression)."""
 
+import ast
 import doctest
 import importlib
+import re
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -12,6 +15,10 @@ FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
 ROOT = Path(cf.__file__).parent
 FILES = [file for file in ROOT.rglob("*.py") if ">>>" in file.read_text(encoding="utf-8")]
 MODULES = sorted(".".join(file.relative_to(ROOT.parent).with_suffix("").parts) for file in FILES)
+DOCUMENTED = ast.Module | ast.ClassDef | ast.FunctionDef
+UNITS = r"%|°|rad|[mcµ]?m|in|k?g|oz|[mµ]?s|k?Hz|k?N|[MG]?Pa|m?J|[kMG]?B|times|modes|designs|elements"
+NUMBER = re.compile(rf"(?<![\w.(=^/*+-])\d[\d.]*(?:e-?\d+)?(?: to \d[\d.]*)? ?(?:{UNITS})(?:/\w+)?(?!\w)")
+LISTED = Path(__file__).with_name("docstring_numbers.toml")
 SLOW = ("cuefem.analysis.design_changes", "cuefem.analysis.strike_table")  # strikes for every change, every node
 
 
@@ -21,3 +28,25 @@ def test_docstring_examples_of_module_run(name: str) -> None:
     for example in doctest.DocTestFinder().find(importlib.import_module(name), extraglobs={"cf": cf}):
         doctest.DocTestRunner(optionflags=FLAGS).run(example, out=failures.append)
     assert "".join(failures) == ""
+
+
+def prose(docstring: str) -> str:
+    """A docstring without its examples, quoted texts, code and shapes of arrays."""
+    parts = doctest.DocTestParser().parse(docstring)
+    text = "".join(part for part in parts if isinstance(part, str))
+    return re.sub(r"\"[^\"]*\"|'[^'\n]*'|`[^`]*`|\(\d* ?\w+(?:, \d* ?\w+)+\)", "", text)
+
+
+def test_numbers_of_docstrings_are_examples_or_listed() -> None:
+    """A number with a unit in prose: nothing computes it again, unless the list says what does."""
+    found: dict[str, list[str]] = {}
+    for path in sorted(ROOT.rglob("*.py")):
+        nodes = [node for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, DOCUMENTED)]
+        numbers = {number for node in nodes for number in NUMBER.findall(prose(ast.get_docstring(node) or ""))}
+        if numbers:
+            found[str(path.relative_to(ROOT))] = sorted(numbers)
+    listed: dict[str, list[str]] = {}
+    for kind in tomllib.loads(LISTED.read_text(encoding="utf-8")).values():
+        for name, numbers in kind.items():
+            listed[name] = sorted([*listed.get(name, []), *numbers])
+    assert found == listed

@@ -2,9 +2,9 @@
 
 pooltool computes squirt by [A.31] with nu = 2/5 for every ball: alpha = -atan((5/2) a sqrt(1 - a^2)/(1 + m/end_mass
 + (5/2)(1 - a^2))) in `pooltool.physics.resolve.stick_ball.squirt`; a is b/R of the contact, positive on the ball's
-left, alpha positive to the left. [A.31] has neither restitution nor dome: with the stick end mass it gives 13 to 36 %
-less squirt than the coupled strikes of studies/scenes and meshes. The exported end mass is the one with which [A.31]
-gives the squirt of the coupled strike at the scene's offset and speed.
+left, alpha positive to the left. [A.31] has neither restitution nor dome, and gives less squirt with the stick end
+mass. The exported end mass is the one with which [A.31] gives the squirt of the coupled strike at the scene's offset
+and speed.
 
 Its ball speed and spin are those of [A.30], without any loss, in `pooltool.physics.resolve.stick_ball`: no CueSpecs
 changes them but the cue's mass, so they stay above those of a strike whose tip loses energy.

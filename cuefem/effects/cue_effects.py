@@ -230,8 +230,8 @@ class StructuralDamping(CueEffect):
     half-power width. The mode's loss factor is the mean of the materials' loss factors, weighted by the strain energy
     that each material stores in this mode. Springs and joints store energy without loss.
 
-    Matters when: The decay of the free vibration is computed. Within one contact it has little effect: with maple's
-    0.012 an oscillation loses 4 % of its amplitude in a period.
+    Matters when: The decay of the free vibration is computed. Within one contact it has little effect: an oscillation
+    loses pi times the loss factor of its amplitude in a period.
 
     Wrong when: The loss factors of E and G differ or vary with frequency, or the damping couples the modes.
     Stiffness-proportional damping is not used because its damping of high modes is too large.
@@ -288,9 +288,9 @@ class AxialWaves(CueEffect):
     because the rod returns all of its energy. A rigid mass at the joint reflects waves earlier than a butt, which
     changes squirt too.
 
-    Wrong when: The butt's mass is uneven, as with a heavy pin or bolt. A support or a joint acts
-    along the axis; here neither does. The compliance of a hard tip drawn into the cue (phenolic, above 1 GPa) counts
-    in the force-indentation law and again, by about 1 % of that, in the rod.
+    Wrong when: The butt's mass is uneven, as with a heavy pin or bolt. A support or a joint acts along the axis; here
+    neither does. The compliance of a hard tip drawn into the cue (phenolic) counts in the force-indentation law and, a
+    little, again in the rod.
 
     Limit: The effect vanishes as the axial stiffness EA goes to infinity; the longer contact and the changed squirt
     fall as 1/EA.

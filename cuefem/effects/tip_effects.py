@@ -25,9 +25,8 @@ class TipDome(TipEffect):
     angle phi it lies r sin(phi) off the axis and r (1 - cos(phi)) behind the apex, so the inverse mass B gains terms
     that couple the motion along the cue with the motion across it.
 
-    Matters when: Always. In a contact of 1 ms a dome of 9 mm raises squirt by 10 % (carbon) to 63 % (Kim's shaft) at
-    b/R 0.02, by 28 to 75 % at 0.3.
-    A truncated modal sum then converges very slowly.
+    Matters when: Always: no other effect changes squirt as much (studies/contact/effects.md). A truncated modal sum
+    then converges very slowly.
 
     Wrong when: The leather shears or flattens so much that its surface does not follow the end section.
 
@@ -163,8 +162,7 @@ class RollingContact(TipEffect):
     to the velocity of the dome's centre less that of the ball's centre, along the tangent, over R + r. Here r is the
     radius of the `TipDome`; without one the tip is a sharp point.
 
-    Matters when: The stroke is fast. The effect is small: squirt and spin change in proportion to U T/R, by about 1 %
-    at 1 m/s and 1 ms.
+    Matters when: The stroke is fast: squirt and spin change in proportion to U T/R.
 
     Wrong when: The contact patch is not small. The indentation is neglected beside R + r, a relative error of the
     effect of the order U T/R, and so is the rotation of the cue.

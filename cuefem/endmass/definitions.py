@@ -148,10 +148,10 @@ def stick(tip: TipModes, scene: Scene) -> float:
 def stick_at_offset(tip: TipModes, scene: Scene) -> float:
     """End mass of a tip that sticks from the first touch, at the scene's own offset, kg (handbook: Effective end mass).
 
-    For a bare cue it is that of `stick` with the contact at this offset (`limit_at`), exact to first order in the
-    mass ratio of the cue's end. With effects at the tip or axial waves it is the lumped end mass with the squirt of a
-    coupled strike without slip. The two differ in second order, by about 1 % at b/R 0.3. It is even in the offset, and
-    equals `stick` at the centre. ValueError if no end mass has that squirt.
+    For a bare cue it is that of `stick` with the contact at this offset (`limit_at`), exact to first order in the mass
+    ratio of the cue's end. With effects at the tip or axial waves it is the lumped end mass with the squirt of a
+    coupled strike without slip. The two differ in second order of the offset. It is even in the offset, and equals
+    `stick` at the centre. ValueError if no end mass has that squirt.
     """
     b = abs(scene.stroke.offset)
     if _needs_strike(tip, scene):

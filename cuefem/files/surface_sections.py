@@ -1,9 +1,9 @@
 """Round sections of a shaft from slices of a closed surface of triangles, normal to its long axis.
 
 A slice of a polyhedron is a polygon. Where all corners of an outline lie on one circle, as of a turned shape with
-facets inscribed, that circle is the section: N facets of equal area would be too narrow by sqrt(N sin(2 pi/N)/(2 pi)),
-9 % for 6. Else its area and second moments (Green's theorem) are those of a round section with diameters D and d:
-A = pi/4 (D^2 - d^2), I = pi/64 (D^4 - d^4). Lengths are in the unit of the points.
+facets inscribed, that circle is the section: N facets of equal area would be too narrow by sqrt(N sin(2 pi/N)/(2 pi)).
+Else its area and second moments (Green's theorem) are those of a round section with diameters D and d: A = pi/4 (D^2 -
+d^2), I = pi/64 (D^4 - d^4). Lengths are in the unit of the points.
 """
 
 from __future__ import annotations

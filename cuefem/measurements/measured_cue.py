@@ -173,7 +173,7 @@ class OffsetZero(NamedTuple):
 def offset_zeros(cue: MeasuredCue, rows: Sequence[Residual]) -> tuple[OffsetZero, ...]:
     """The zero of the offset by each squirt that was measured on both sides.
 
-    It assumes that squirt is proportional to the offset, which is accurate to 20 %.
+    It assumes that squirt is proportional to the offset.
     """
     radius = float(cue.scene.ball.radius)
     zeros = []

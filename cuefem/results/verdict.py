@@ -19,8 +19,7 @@ class NoVerdict(ValueError):
 def mass_problem(scene: Scene) -> str:
     """Why the masses of a cue are impossible; an empty text for others.
 
-    A cue without its butt has too little squirt (maple about 20 %). The measured mass of a shaft sets the density of
-    its wood.
+    A cue without its butt has too little squirt. The measured mass of a shaft sets the density of its wood.
     """
     whole = float(scene.cue.mass)
     if whole < MIN_CUE_MASS:

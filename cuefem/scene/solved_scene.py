@@ -2,8 +2,8 @@
 
 Tip modes determine the impact of a cue. A lumped cue has two of them, of zero frequency. With a Resolution, a
 finite-element cue has the truncated sum over the requested modes. By default modes are retained by frequency and a
-truncation correction replaces the others (`cuefem.beam.truncation`); without it no frequency bound would give every cue
-an error below 0.5 %. The beam's solver is loaded when a finite-element cue is solved.
+truncation correction replaces the others (`cuefem.beam.truncation`); without it no frequency bound would serve every
+cue. The beam's solver is loaded when a finite-element cue is solved.
 """
 
 from __future__ import annotations

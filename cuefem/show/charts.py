@@ -3,8 +3,7 @@
 A drawing is WIDE units wide. The page sets the size of texts, which remain readable on a phone.
 
 Charts are drawn here, and not by a script, since print, mail without scripts and screen readers need them. A charting
-library would draw each a second time (uPlot adds 50 kB to every report, ECharts 600 kB) only to show values at the
-pointer, which `charts.js` reads off the drawing.
+library would draw each a second time only to show values at the pointer, which `charts.js` reads off the drawing.
 """
 
 from __future__ import annotations

@@ -63,7 +63,7 @@ def matrices(
 ) -> tuple[sp.csc_matrix, sp.csc_matrix]:
     """K and M of the fields U, S, W from a basis of one field; `stiffness` and density of each cell.
 
-    scikit-fem's own assembly calls a form for each pair of functions, which takes 100 times as long at these orders.
+    scikit-fem's own assembly calls a form for each pair of functions, which takes far longer at these orders.
     """
     value = np.array([np.broadcast_to(np.asarray(f[0]), basis.dx.shape) for f in basis.basis])
     slopes = np.moveaxis(np.array([f[0].grad for f in basis.basis]), 1, 0)

@@ -7,9 +7,8 @@ D/r (0: flat) and Poisson's ratio nu; a patch has a position, the distance of it
 radius. The table is a grid of Chebyshev nodes in `CURVATURE_PANELS`, height, nu, position and radius, with the
 logarithms of the compliance over that of a half-space, which have no singularity.
 
-Error of a compliance against the solid on a finer mesh (36 random tips, 5,062 patches up to the rim, radii of 0.06 D
-and more): median 0.06 %, 95th percentile 0.32 %, maximum 1.1 %; over 1,200 patches of 20 others
-(studies/beam/leather.md) the maximum is 2.0 %. Smaller patches over the rim: up to 8 %.
+studies/beam/leather.md has the error of a compliance against the solid on a finer mesh. It is largest for patches over
+the rim that are smaller than the table's.
 """
 
 from __future__ import annotations
@@ -207,9 +206,9 @@ def rigid_patch_gain(nu: float, curvature: float, height: float, radius: Array) 
     """E D times the difference in compliance along t between a Hertz-weighted patch and a rigid sticking one.
 
     On a half-space it is 1/6 of the compliance. It is less for a patch that is wide relative to the tip or to the
-    leather's ``height`` there, and more on a dome, where the patch's edge moves less than its middle as the tip
-    bends. Fitted to the solid on the axis (studies/beam/leather.md): error of the rigid patch's compliance at most
-    0.4 % for pool tips (dome flat to dime, heights 0.3 to 0.7, nu 0.3 to 0.45, radii 0.08 to 0.25).
+    leather's ``height`` there, and more on a dome, where the patch's edge moves less than its middle as the tip bends.
+    Fitted to the solid on the axis (studies/beam/leather.md) for pool tips: dome flat to dime, heights 0.3 to 0.7, nu
+    0.3 to 0.45, radii 0.08 to 0.25.
     """
     wide, thin = (2 * radius) ** 3, (radius / height) ** 2
     flat = (1 - (1.09 - 0.57 * nu) * wide) * (1 - 0.11 * thin / (1 + 0.26 * thin))
