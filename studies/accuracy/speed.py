@@ -167,7 +167,7 @@ def text() -> str:
         f"A strike with a spring tip takes {1e3 * spent['strike(scene), bare tip']:.0f} ms, the default stroke of pool "
         f"{1e3 * spent[list(spent)[5]]:.0f} ms. For f3 to f5 of one cone to 1e-6 "
         f"scikit-fem takes {peers[1][4]} times cuefem's processor time, NGSolve 1.5 times, OpenSeesPy 114 times.",
-        f"{pages.machine()}, one thread.",
+        f"{pages.machine()}, one thread. Studies on processes and clusters: [many_designs](many_designs.md).",
         table(["call", "ms"], [[name, f"{1e3 * t:.2f}"] for name, t in spent.items()]),
         "## The same result by other programs",
         "Rows of NGSolve, OpenSeesPy, ROSS and CalculiX: version 0.1, another machine; relative to cuefem's run time "
