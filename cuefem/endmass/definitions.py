@@ -30,9 +30,9 @@ from cuefem.scene import Outcome, Resolution, Scene, Stroke
 from cuefem.scene.solved_scene import SolvedScene
 
 # The squirts of this many lumped cues are computed in one call, which costs as much as two single ones. The root is
-# then bracketed by two neighbours and refined in the same way.
+# then bracketed by two neighbours and refined in the same way; between the last two, 1e-7 apart, squirt is linear.
 SEARCH_POINTS = 500
-SEARCH_ROUNDS = 6  # rounds of refinement
+SEARCH_ROUNDS = 2  # rounds of refinement
 SMALL_OFFSET = 1e-5  # b/R in the limit of small offsets
 SQUIRT_TOLERANCE = 1e-12  # rad: squirts that differ by less are equal
 
@@ -265,13 +265,16 @@ def lumped_number(name: str, values: Array, squirt: float, *, scene: Scene, cue:
     def excess(values: Array) -> Array:
         return np.asarray(side * impact(inputs | {name: values}).squirt - squirt)
 
-    low, *_, high = excess(values)
-    if not low < -SQUIRT_TOLERANCE < SQUIRT_TOLERANCE < high:
+    excesses = excess(values)
+    if not excesses[0] < -SQUIRT_TOLERANCE < SQUIRT_TOLERANCE < excesses[-1]:
         return None
     for _ in range(SEARCH_ROUNDS):
-        index = int(np.argmax(excess(values) >= 0))
+        index = int(np.argmax(excesses >= 0))
         values = np.linspace(values[index - 1], values[index], len(values))
-    return float(values[-1])
+        excesses = excess(values)
+    index = int(np.argmax(excesses >= 0))
+    below, above = excesses[index - 1], excesses[index]
+    return float(values[index - 1] + (values[index] - values[index - 1]) * below / (below - above))
 
 
 class Definition(NamedTuple):
