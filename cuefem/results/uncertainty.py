@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
+from dataclasses import replace
 from functools import lru_cache
 from itertools import chain
 from types import MappingProxyType
@@ -93,15 +94,22 @@ def changes_by_input(
 
 
 def variant_squirt(solved: SolvedScene, variant: Scene) -> float:
-    """Squirt of a changed scene, rad; it reuses the solved modes if the vibrating cue is unchanged."""
+    """Squirt of a changed scene, rad; it reuses the solved modes as far as the vibrating cue is unchanged."""
     if _cue_and_effects(variant) == _cue_and_effects(solved.scene):
         return float(strike_modes(variant, solved.tip).squirt)
+    if _bending_cue(variant) == _bending_cue(solved.scene):
+        return float(strike_modes(variant, replace(solved, scene=variant).tip).squirt)
     return squirt_of(variant)
 
 
 def _cue_and_effects(scene: Scene) -> tuple[object, ...]:
     """The cue and the effects on it: of a tip only its mass."""
     return scene.cue, *chain.from_iterable(effect.without_tip(scene.shaft) for effect in scene.cue_effects)
+
+
+def _bending_cue(scene: Scene) -> tuple[object, ...]:
+    """The cue and the effects on it that change its bending modes."""
+    return scene.cue, *(effect for effect in scene.cue_effects if effect.changes_bending)
 
 
 @lru_cache(maxsize=256)
