@@ -13,7 +13,7 @@ from cuefem.files import InputError, save_page, write_atomically
 from cuefem.results.quantities import UNITS
 from cuefem.results.records import Record, Table, json_value
 from cuefem.scene import Scene
-from cuefem.show.scene_summary import cue_line, effect_text, scene_record
+from cuefem.show.scene_summary import cue_line, effect_name, effect_text, scene_record
 
 if TYPE_CHECKING:
     from cuefem.show.charts import Chart
@@ -89,7 +89,8 @@ class Answer:
         lines = self.lines(name.partition(":")[0] if self.heading() else "", assumptions)
         heading = lines[:1] if self.heading() else []
         others = lines[len(heading) :]
-        return plain_page(name or type(self).__name__, [*heading, *warnings, *self.charts(), *others])
+        title = name or effect_name(type(self).__name__).capitalize()
+        return plain_page(title, [*heading, *warnings, *self.charts(), *others])
 
     def save(self, path: str | Path) -> None:
         """Write the record (.json) or a page (.html); the extension sets the format."""
@@ -99,6 +100,10 @@ class Answer:
         from cuefem.show.renderers import plain_text
 
         return plain_text(self.lines())
+
+    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
+        """The tables, in IPython."""
+        printer.text(str(self))
 
     def _repr_html_(self) -> str:
         """The page in a frame, so that its style does not change the notebook's."""
