@@ -108,6 +108,11 @@ def test_python_blocks_run(
     for name in ("meshes", "studies"):
         (tmp_path / name).symlink_to(ROOT / name)
     monkeypatch.chdir(tmp_path)  # a writable folder
+    if "(CueEffect)" in code:  # a class of effects stays known to its process
+        environment = os.environ | {"PYTHONPATH": str(ROOT)}
+        ran = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
+        assert float(ran.stdout) > 1
+        return
     namespace: dict[str, object] = {}
     exec(compile(code, "README.md", "exec"), namespace)
     printed = capsys.readouterr().out

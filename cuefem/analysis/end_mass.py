@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from cuefem.analysis.reduction import Reduction, reduction
+from cuefem.analysis.reduction import PAPER_TONE, Reduction, reduction
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.results.closed_forms import cue_end_mass
 from cuefem.results.quantities import with_unit
@@ -112,7 +113,13 @@ def _tip_effects_note() -> str:
     )
 
 
-def end_masses(scene: Scene | SolvedDesign, *, with_reduction: bool = False) -> EndMasses:
+def end_masses(
+    scene: Scene | SolvedDesign,
+    *,
+    with_reduction: bool = False,
+    near: float = PAPER_TONE,
+    cue_ends: Mapping[str, float] | None = None,
+) -> EndMasses:
     """Effective end mass of a scene's cue, by each definition.
 
     Parameters
@@ -121,6 +128,8 @@ def end_masses(scene: Scene | SolvedDesign, *, with_reduction: bool = False) -> 
         A stroke, or a solved one. Definitions of an off-centre stroke use its offset.
     with_reduction : bool
         Whether the result also has the `cuefem.reduction` to the two-part cue of Kim's paper.
+    near, cue_ends
+        Of that reduction.
 
     Returns
     -------
@@ -144,7 +153,7 @@ def end_masses(scene: Scene | SolvedDesign, *, with_reduction: bool = False) -> 
     design = SolvedDesign.of(scene)
     scene = design.scene
     masses = {name: _end_mass(design.solved, name) for name in DEFINITIONS}
-    reduced = reduction(design) if with_reduction else None
+    reduced = reduction(design, near=near, cue_ends=cue_ends) if with_reduction else None
     return EndMasses(scene, scene.contact_time, scene.stroke.offset, masses, reduced)
 
 

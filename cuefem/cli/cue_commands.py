@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 import cuefem as cf
+from cuefem.analysis.reduction import PAPER_CUE_ENDS, PAPER_TONE
 from cuefem.cli.output import Command
 from cuefem.cli.progress import with_progress_bar
 from cuefem.cli.scene_command import (
@@ -21,7 +22,7 @@ from cuefem.cli.scene_command import (
 )
 from cuefem.cli.scene_options import option_value, tip_options
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.files import InputError, load_accuracy, save
+from cuefem.files import InputError, as_input_error, load_accuracy, save
 from cuefem.parameters.parameter import with_parameters
 from cuefem.parameters.parts import main_material
 from cuefem.quantity.fields import Quantity
@@ -114,12 +115,32 @@ def modes(request: Request, near: float | None, count: int) -> Analysis:
 
 
 @analysis_command("end-mass", cls=WithDefinitions)
-def end_mass(request: Request) -> Analysis:
+@click.option(
+    "--near",
+    metavar="HERTZ",
+    type=float,
+    default=PAPER_TONE,
+    show_default=True,
+    help="Show the modes nearest this frequency.",
+)
+@click.option(
+    "--cue-end",
+    "cue_ends",
+    metavar="MASS",
+    multiple=True,
+    help="Compare with a two-part cue of this m_c too, such as 15 g; may be repeated.",
+)
+def end_mass(request: Request, near: float, cue_ends: tuple[str, ...]) -> Analysis:
     """Compute the effective end mass: the transverse inertia of the cue at its tip, by five definitions.
 
     Below them: modes near 250 Hz, m_c and ε of Kim's two-part cue beside his guess of 12 g, and the squirt of each.
     """
-    return cf.end_masses(request.scene, with_reduction=True)
+    with as_input_error(request.file, "--near"):
+        Quantity("Hz", "(0, inf)").read(f"{near!r} Hz")
+    with as_input_error(request.file, "--cue-end"):
+        typed = {f"two-part, m_c {text}": Quantity("kg", "(0, inf)").read(text) for text in cue_ends}
+    compared = {**PAPER_CUE_ENDS, **typed} if typed else None
+    return cf.end_masses(request.scene, with_reduction=True, near=near, cue_ends=compared)
 
 
 @analysis_command()

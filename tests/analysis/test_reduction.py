@@ -165,6 +165,13 @@ def test_commands_state_the_numbers_of_the_call() -> None:
         assert row[-3:] == ["0.59°", "1.62°", "2.42°"]
 
 
+def test_end_mass_command_compares_typed_guesses() -> None:
+    _, out, _ = call("end-mass", "--json", "--near", 300, "--cue-end", "15 g", STUDIES / "scenes" / "kim.toml")
+    shown = json.loads(out)["reduction"]
+    expected = cf.reduction(KIM, near=300.0, cue_ends={"Kim's guess": 0.012, "two-part, m_c 15 g": 0.015})
+    assert shown == json.loads(json_text(expected.values()))
+
+
 def test_analysis_prints_and_saves_itself(tmp_path: Path) -> None:
     own = cf.reduction(KIM)
     assert "this shaft, vibrating" in str(own)
