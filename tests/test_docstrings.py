@@ -19,7 +19,16 @@ DOCUMENTED = ast.Module | ast.ClassDef | ast.FunctionDef
 UNITS = r"%|°|rad|[mcµ]?m|in|k?g|oz|[mµ]?s|k?Hz|k?N|[MG]?Pa|m?J|[kMG]?B|times|modes|designs|elements"
 NUMBER = re.compile(rf"(?<![\w.(=^/*+-])\d[\d.]*(?:e-?\d+)?(?: to \d[\d.]*)? ?(?:{UNITS})(?:/\w+)?(?!\w)")
 LISTED = Path(__file__).with_name("docstring_numbers.toml")
-SLOW = ("cuefem.analysis.design_changes", "cuefem.analysis.strike_table")  # strikes for every change, every node
+SLOW = {  # more than half a second: strikes of every change, node or uncertain parameter, or a search
+    "cuefem.analysis.comparison",
+    "cuefem.analysis.cue_report",
+    "cuefem.analysis.design_changes",
+    "cuefem.analysis.measured",
+    "cuefem.analysis.model_error",
+    "cuefem.analysis.strike_table",
+    "cuefem.designs.optimum",
+    "cuefem.solid.solid_resolution",
+}
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.heavy if n in SLOW else ()) for n in MODULES])

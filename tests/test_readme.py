@@ -10,6 +10,7 @@ import sys
 import tomllib
 from collections import Counter
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -74,6 +75,7 @@ def test_code_blocks_are_of_tested_languages() -> None:
     assert TEXT.count("```") == 2 * len(BLOCKS)
 
 
+@pytest.mark.heavy
 def test_own_shaft_example_writes_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The block after the installation, which `.ci/run` tests."""
     monkeypatch.chdir(tmp_path)
@@ -83,7 +85,12 @@ def test_own_shaft_example_writes_report(tmp_path: Path, monkeypatch: pytest.Mon
     assert (status, err, out.splitlines()[-1]) == (0, "", "wrote my_shaft.html")
 
 
-@pytest.mark.parametrize("block", COMMANDS, ids=lambda block: " ".join(block.split()[:3]))
+def weighed(block: str) -> Any:
+    """The block as a case; heavy where it computes a table of strikes."""
+    return pytest.param(block, id=" ".join(block.split()[:3]), marks=pytest.mark.heavy if "table.json" in block else ())
+
+
+@pytest.mark.parametrize("block", [weighed(block) for block in COMMANDS])
 def test_command_blocks_run(block: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("meshes", "studies"):
         shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("*.svg", "*.png", "*.py", "data"))

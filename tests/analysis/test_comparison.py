@@ -77,6 +77,7 @@ def test_comparison_with_point_mass_has_larger_error() -> None:
     assert squirt["error"] >= MASS_ERROR * squirt["difference"] > SHAFT_ERROR * squirt["difference"]
 
 
+@pytest.mark.heavy
 def test_compare_files_of_one_name_takes_first_ball_and_stroke(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The page draws both cues."""
     (tmp_path / "old").mkdir()

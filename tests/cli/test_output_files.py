@@ -23,7 +23,7 @@ count = 2
 """
 ARGUMENTS = {"compare": (KIM, Path("meshes/kim.toml").resolve()), "parts": (), "guide": ("beam",)}
 MORE = {("improve", ".toml"): ("--take", 1)}
-HEAVY = {"improve", "effects", "cost", "check", "compare"}
+HEAVY = {"report", "improve", "effects", "cost", "check", "compare"}
 
 
 def formats() -> list[object]:

@@ -140,6 +140,7 @@ def test_study_of_other_version_computes_again(tmp_path: Path, monkeypatch: pyte
 
 
 # --- damage ----------------------------------------------------------------------------------------------------------
+@pytest.mark.heavy
 def test_store_flipped_byte_raises_or_is_harmless(tmp_path: Path) -> None:
     store, rng = tmp_path / "study.sqlite", random.Random(1)
     study = write_study(tmp_path, GRID)

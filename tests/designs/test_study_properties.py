@@ -123,7 +123,10 @@ EFFECTS = {
 }
 
 
-@pytest.mark.parametrize(("at", "effects"), EFFECTS.values(), ids=EFFECTS.keys())
+@pytest.mark.parametrize(
+    ("at", "effects"),
+    [pytest.param(*pair, id=name, marks=pytest.mark.heavy if name == "none" else ()) for name, pair in EFFECTS.items()],
+)
 def test_responses_equal_single_calls(at: cf.Resolution | None, effects: tuple[Any, ...]) -> None:
     """Two cues, and one of them at another offset, which shares its modes."""
     scenes = [replace(BASE, effects=effects), replace(BASE, cue=pool(), effects=effects)]
