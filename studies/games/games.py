@@ -127,7 +127,15 @@ def draw(axes: Any) -> None:
     axes[0].legend()
 
 
-STUDY = Study(__file__, text, {"games.svg": Figure(draw, (1, 2), (8.4, 3.8))})
+EXAMPLE = """\
+import cuefem as cf
+
+table = cf.strike_table(cf.usual_scene(cf.load("plain maple")), (1.0, 4.0))
+read = table.at(speed=2.0, offset=0.5)
+print(f"{read.squirt:.3f} rad, {read.ball_speed:.2f} m/s, {read.spin:.0f} rad/s")
+print(f"{100 * table.error['within']:.0f} % of strokes within 1 %")
+"""
+STUDY = Study(__file__, text, {"games.svg": Figure(draw, (1, 2), (8.4, 3.8))}, example=EXAMPLE)
 
 if __name__ == "__main__":
     STUDY.write()

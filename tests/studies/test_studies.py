@@ -8,7 +8,7 @@ import pytest
 from studies.pages import IN_PYTHON, STUDIES, Study, disagreements
 
 # Studies whose page takes more than 20 s of processor time; `.ci/nightly` computes them again.
-NIGHTLY = ("accuracy", "games", "leather", "solid")
+NIGHTLY = ("accuracy", "calibration", "games", "leather", "solid")
 PROGRAMS = sorted(path for path in STUDIES.rglob("*.py") if re.search(r"^STUDY = ", path.read_text("utf-8"), re.M))
 STUDY: dict[str, Study] = {
     path.stem: import_module(".".join(path.relative_to(STUDIES.parent).with_suffix("").parts)).STUDY
