@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import wraps
 from inspect import signature
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -38,13 +38,15 @@ from cuefem.files.cue_names import cue_name
 from cuefem.files.defaults_report import Assumption, assumption_texts, assumptions
 from cuefem.files.shaft_additions import SHAFT_ADDITIONS
 from cuefem.files.warnings_of_drawings import drawing_warnings
-from cuefem.measurements.calibration import load_calibration
 from cuefem.results.records import Record, Table
 from cuefem.scene import Scene
 from cuefem.show.analysis import Analysis, Answer, write
 from cuefem.show.plausibility import plausibility_warnings
 from cuefem.show.renderers import print_tables
 from cuefem.solid.tip_cache import computing_message
+
+if TYPE_CHECKING:
+    from cuefem.measurements.calibration import Calibration
 
 
 def file_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -80,13 +82,21 @@ def load_with_options(load: Callable[..., Any], file: Path, options: Mapping[str
         raise InputError(file, option(name), problem) from None
 
 
+def _calibration(context: click.Context, parameter: click.Parameter, path: Path | None) -> Calibration | None:
+    if path is None:
+        return None
+    from cuefem.measurements.calibration import load_calibration  # loaded when used: the room of measurements
+
+    return load_calibration(path)
+
+
 def calibration_option(command: Callable[..., Any]) -> Callable[..., Any]:
     """The option for squirt that was measured on another shaft."""
     return click.option(
         "--calibration",
         type=click.Path(path_type=Path),
         metavar="FILE",
-        callback=lambda context, parameter, path: None if path is None else load_calibration(path),
+        callback=_calibration,
         help="Squirt measured on another shaft with the same tip: the .toml of `compare FOLDER --estimate -o`.",
     )(command)
 

@@ -20,7 +20,6 @@ from cuefem.cue import Array
 from cuefem.files import InputError, write_atomically
 from cuefem.files.errors import as_input_error
 from cuefem.files.toml_reader import load_cue, read_tables, scene_from_tables
-from cuefem.files.toml_writer import toml_text
 from cuefem.measurements.estimate import Estimate
 from cuefem.measurements.uncertain_parameters import SQUIRT_MODEL
 from cuefem.parameters.parameter import PARAMETERS, with_values_at
@@ -258,6 +257,8 @@ class Calibration:
             "unchecked": list(self.unchecked),
             "drawn": dict(self.drawn),
         }
+        from cuefem.files.toml_writer import toml_text  # loaded when used: it loads tomlkit
+
         text = toml_text(self.scene, **{TABLE: own})
         write_atomically(Path(path), lambda temporary: temporary.write_text(text, encoding="utf-8"))
 

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from cuefem.cue import Array
 from cuefem.measurements.measured_cue import MeasuredCue, Progress, Residual, residuals_of
@@ -206,6 +205,8 @@ def estimate(cue: MeasuredCue, *, progress: Progress = iter) -> Estimate:
     def slopes(z: Array) -> Array:
         next(steps, None)
         return np.vstack([cue.jacobian(z) / sd[:, None], np.eye(len(z))])
+
+    from scipy.optimize import least_squares  # loaded when used: half a second for every command
 
     best = least_squares(
         residuals,
