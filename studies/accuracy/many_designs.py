@@ -192,7 +192,15 @@ def text() -> str:
     )
 
 
-STUDY = pages.Study(__file__, text, seconds=True)
+EXAMPLE = """\
+from time import perf_counter
+import cuefem as cf
+
+start = perf_counter()
+result = cf.study("studies/sweeps/bore.toml", workers=2)
+print(f"{result.count / (perf_counter() - start):.0f} designs a second")
+"""
+STUDY = pages.Study(__file__, text, seconds=True, example=EXAMPLE)
 
 if __name__ == "__main__":
     if len(sys.argv) > 1:
