@@ -23,6 +23,7 @@ count = 2
 """
 ARGUMENTS = {"compare": (KIM, Path("meshes/kim.toml").resolve()), "parts": (), "guide": ("beam",)}
 MORE = {("improve", ".toml"): ("--take", 1)}
+ELSEWHERE = {("compare", ".toml")}  # a calibration: tests/measurements/test_calibration.py
 HEAVY = {"report", "improve", "effects", "cost", "check", "compare"}
 
 
@@ -34,7 +35,8 @@ def formats() -> list[object]:
         for option in getattr(import_module(module), function).params:
             extensions = getattr(option.type, "extensions", ())
             marks = [pytest.mark.heavy] if name in HEAVY else []
-            found += [pytest.param(name, extension, marks=marks) for extension in extensions]
+            shown = [each for each in extensions if (name, each) not in ELSEWHERE]
+            found += [pytest.param(name, extension, marks=marks) for extension in shown]
     return found
 
 
