@@ -163,26 +163,22 @@ def _on_executor(work: Work, blocks: Iterable[Block], executor: Executor, lost: 
 def _ended(
     submitted: _Submitted, executor: Executor, ahead: int, killed: Errors
 ) -> Iterator[tuple[Block, BlockResult | None]]:
-    """Blocks with their results as they end, None if one ended its workers; cancelled ones are submitted again."""
-    n_cancelled = 0
+    """Blocks with their results as they end, None if one ended its workers."""
     for future in submitted.ended(executor, ahead):
         try:
             result = future.result()
-        except CancelledError:  # its worker or its scheduler was lost
-            n_cancelled += 1
-            if n_cancelled > ATTEMPTS * AHEAD:
-                raise
-            submitted.submit(executor, [submitted.take(future)])
         except killed:
             yield submitted.take(future), None
         else:
             _check_version(result.version)
-            n_cancelled = 0
             yield submitted.take(future), result
 
 
 def _lost_errors() -> tuple[Errors, Errors]:
-    """The exceptions for a task that ended several workers, and for lost workers; also Dask's if it is loaded."""
+    """The exceptions for a task that ended several workers, and for lost workers; also Dask's if it is loaded.
+
+    Dask cancels all tasks when its scheduler is lost; those that were submitted while it reconnects would never end.
+    """
     broken: Errors = (BrokenExecutor, CancelledError)
     if "distributed" not in sys.modules:
         return (), broken
