@@ -51,7 +51,7 @@ def in_parallel(
 
 
 class _Submitted:
-    """Blocks in order, those that were submitted, and their futures."""
+    """A queue of blocks, the submitted blocks that have not ended, and their futures."""
 
     def __init__(self, work: Work, blocks: Iterable[Block]) -> None:
         self.work, self.queue, self.numbers = work, iter(blocks), count()
@@ -177,7 +177,8 @@ def _ended(
 def _lost_errors() -> tuple[Errors, Errors]:
     """The exceptions for a task that ended several workers, and for lost workers; also Dask's if it is loaded.
 
-    Dask cancels all tasks when its scheduler is lost; those that were submitted while it reconnects would never end.
+    Dask cancels all tasks when its scheduler is lost. They are not submitted again: a task that is submitted while the
+    client tries to reconnect never ends.
     """
     broken: Errors = (BrokenExecutor, CancelledError)
     if "distributed" not in sys.modules:

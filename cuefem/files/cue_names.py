@@ -53,7 +53,7 @@ def named_path(path: Path) -> Path:
 
 
 def matching_names(path: Path) -> list[str]:
-    """The names that have all words of a path; the one that equals it comes alone."""
+    """The names that contain all words of a path, or only the name that equals it."""
     words = _words(path.name)
     exact = [name for name in CUES if _words(name) == words]
     return exact or [name for name in CUES if words and {*words} <= {*_words(name)}]

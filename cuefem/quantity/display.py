@@ -80,7 +80,7 @@ def _shorten(item: str) -> str:
 
 def printable(text: str) -> str:
     """The text in one line, with control characters as escapes such as \\x1b."""
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in " ".join(text.split()))
+    return "".join(c if c.isprintable() else _escape(c) for c in " ".join(text.split()))
 
 
 def visible(text: str) -> str:
