@@ -23,8 +23,8 @@ from cuefem.beam.modes import modes as solved_modes
 from cuefem.contact.strike import strike
 from cuefem.cue import Cue, Material
 from cuefem.designs.sensitivity import sensitivity
+from cuefem.quantity.display_units import END_MASS, to_display, with_heading, with_unit
 from cuefem.quantity.fields import check_count, check_kind
-from cuefem.results.quantities import to_display, with_heading, with_unit
 from cuefem.results.solved_design import coupled_curve, time_history
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.scene.solved_scene import SolvedScene
@@ -43,7 +43,7 @@ def __dir__() -> list[str]:
 
 
 PLOT_OFFSETS = tuple(np.round(np.arange(0.0, 0.525, 0.025), 3).tolist())
-FROM_TIP, TIME = with_heading("from the front of the drawing", "m"), with_heading("time", "s")
+FROM_TIP, TIME = "from the front of the drawing", "time"
 _SOFT, _WOODY, _METAL = 1e9, (300.0, 1250.0), 2500.0  # Pa: leather and foam; kg/m3: woods, metals
 _RESOLVED = 0.3  # m from the tip: modes resolve the end-mass distribution up to here
 _ABOVE: dict[str, Any] = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "ncols": 4}  # a legend off the curves
@@ -99,7 +99,9 @@ def shaft(cue: Cue | Scene, ax: Axes | None = None) -> Axes:
         if bore.any():
             inside = "white" if segment.core is None else _colour(segment.core)
             axes.fill_between(ends, -bore, bore, facecolor=inside, edgecolor="#555", linewidth=0.4)
-    axes.set(xlabel=FROM_TIP, ylabel=with_heading("radius", "m"), xlim=(0, to_display(drawn.length, "m")))
+    axes.set(
+        xlabel=with_heading(FROM_TIP, "m"), ylabel=with_heading("radius", "m"), xlim=(0, to_display(drawn.length, "m"))
+    )
     return axes
 
 
@@ -129,7 +131,11 @@ def modes(cue: Cue | Scene, count: int = 4, ax: Axes | None = None, *, at: Resol
     for frequency, deflection in zip(solved.frequencies, solved.shape(x)[0], strict=True):
         axes.plot(to_display(x, "m"), deflection / np.abs(deflection).max(), label=f"{frequency:.0f} Hz")
     axes.axhline(0, color="#888", linewidth=0.6)
-    axes.set(xlabel=FROM_TIP, ylabel="deflection over its maximum", xlim=(0, to_display(drawn.length, "m")))
+    axes.set(
+        xlabel=with_heading(FROM_TIP, "m"),
+        ylabel="deflection over its maximum",
+        xlim=(0, to_display(drawn.length, "m")),
+    )
     axes.legend(**_ABOVE)
     return axes
 
@@ -205,7 +211,11 @@ def forces(stroke: Scene | Outcome, ax: Axes | None = None, *, at: Resolution | 
     for label, force in time_history(outcome, "force", times).items():
         axes.plot(to_display(times, "s"), force, label=label)
     axes.axhline(0, color="#888", linewidth=0.6)
-    axes.set(xlabel=TIME, ylabel=with_heading("force on the ball", "N"), xlim=(0, to_display(outcome.duration, "s")))
+    axes.set(
+        xlabel=with_heading(TIME, "s"),
+        ylabel=with_heading("force on the ball", "N"),
+        xlim=(0, to_display(outcome.duration, "s")),
+    )
     axes.legend(**_ABOVE)
     return axes
 
@@ -242,17 +252,17 @@ def end_mass(scene: Scene, ax: Axes | None = None, *, at: Resolution | None = No
     bare, excluded = scene, ""
     if scene.effects:
         bare = replace(scene.without_tip_effects, effects=())
-        excluded = f", without the {with_unit(scene.axial_mass - bare.axial_mass, 'kg', 2)} of its leather"
+        excluded = f", without the {with_unit(scene.axial_mass - bare.axial_mass, END_MASS, 2)} of its leather"
     drivers, axes = sensitivity(bare, at=at), _axes(ax)
     behind = drivers.x > scene.shaft.leather_height + _LOCAL
     axes.plot(to_display(drivers.x[behind], "m"), (drivers.rhoA + drivers.axial_mass)[behind])
     axes.axhline(0, color="#888", linewidth=0.6)
     axes.set(
-        xlabel=FROM_TIP,
-        ylabel=with_heading("end mass added by 1 g", "kg"),
+        xlabel=with_heading(FROM_TIP, "m"),
+        ylabel=with_heading("end mass added by 1 g", END_MASS),
         xlim=(0, to_display(min(scene.shaft.length, _RESOLVED), "m")),
     )
-    axes.set_title(f"end mass {with_unit(drivers.end_mass, 'kg', 3)}{excluded}", fontsize="medium")
+    axes.set_title(f"end mass {with_unit(drivers.end_mass, END_MASS, 3)}{excluded}", fontsize="medium")
     return axes
 
 
@@ -277,13 +287,15 @@ def reduction(own: Reduction, axes: Sequence[Axes] | None = None) -> tuple[Axes,
     for name, angles in own.squirt_curves().items():
         left.plot(own.chart_offsets, to_display(angles, "rad"), color=colours[name], label=name)
     for name, masses in own.end_mass_curves().items():
-        right.plot(to_display(own.chart_times, "s"), to_display(masses, "kg"), color=colours[name])
+        right.plot(to_display(own.chart_times, "s"), to_display(masses, END_MASS), color=colours[name])
     for time in own.marked_times:
         at = float(to_display(time, "s"))
         right.axvline(at, color="#888", linewidth=0.8, linestyle="--")
         right.annotate(with_unit(time, "s"), (at, 0), xytext=(3, 4), textcoords="offset points")
     left.set(xlabel="tip offset b/R", ylabel="squirt, degrees", xlim=(0, None), ylim=(0, None))
-    right.set(xlabel=with_heading("contact time", "s"), ylabel=with_heading("effective end mass", "kg"), ylim=(0, None))
+    right.set(
+        xlabel=with_heading("contact time", "s"), ylabel=with_heading("effective end mass", END_MASS), ylim=(0, None)
+    )
     left.legend(fontsize="small")
     return left, right
 

@@ -18,6 +18,8 @@ if os.environ.pop("PYTHONDONTWRITEBYTECODE", ""):
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 
+os.environ.pop("CUEFEM_UNITS", None)  # tests read metric texts
+
 import pytest  # noqa: E402
 from hypothesis import HealthCheck, settings  # noqa: E402
 

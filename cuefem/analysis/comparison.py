@@ -18,8 +18,9 @@ from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measured_folder import load_measured
 from cuefem.parameters.parameter import PARAMETERS
 from cuefem.parameters.parts import main_material
+from cuefem.quantity.display_units import off_line, with_unit
 from cuefem.results.computable_results import computable_results
-from cuefem.results.quantities import DASH, RESULTS, UNITS, format_value, with_unit
+from cuefem.results.quantities import DASH, RESULTS, UNITS, format_value
 from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import SolvedDesign, coupled_curve, off_centre
 from cuefem.results.uncertainty import RATIO_FLOOR, changes_by_input, difference_record, model_share
@@ -137,11 +138,18 @@ class Comparison(Analysis):
             rows.append(tuple(cells))
             if name == "squirt":
                 lateral = [_lateral(self.cues[cue][name]) for cue in (first, *others)]
-                rows.append(("off line after 1 m", lateral[0], *(cell for each in lateral[1:] for cell in (each, ""))))
+                rows.append(
+                    (
+                        f"off line after 1 {off_line(0.0)[1]}",
+                        lateral[0],
+                        *(cell for each in lateral[1:] for cell in (each, "")),
+                    )
+                )
         head = ("", first, *(cell for other in others for cell in (other, "difference")))
         shaft = "one shaft, before and after a change" if self.same_shaft else "shafts of different pieces of wood"
+        speed = with_unit(self.speed, "m/s", 6)
         notes = (
-            f"Same stroke, with the ball of {first}, b/R {self.offset:.3g} at {self.speed:g} m/s. ±: 1σ of the "
+            f"Same stroke, with the ball of {first}, b/R {self.offset:.3g} at {speed}. ±: 1σ of the "
             f"difference, for {shaft}; shared errors cancel.",
             *(f"{name}: {warning}" for name, regime in self.regimes.items() if (warning := regime_warning(regime))),
             "* smaller than its uncertainty: the cues are not distinct in this quantity.",
@@ -177,7 +185,7 @@ def _value(name: str, value: float) -> str:
 
 
 def _lateral(squirt: float) -> str:
-    return DASH if math.isnan(squirt) else with_unit(math.tan(squirt), "m", decimals=0)
+    return DASH if math.isnan(squirt) else off_line(squirt)[0]
 
 
 @overload

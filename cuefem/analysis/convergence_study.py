@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from cuefem.contact.refinement import Level, refinement_levels, relative_error
-from cuefem.results.quantities import significant, to_display
+from cuefem.quantity.display_units import significant, to_display
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.scene import Scene
 from cuefem.show.analysis import Analysis

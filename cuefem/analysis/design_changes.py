@@ -17,7 +17,7 @@ from cuefem.effects.leather_tip import DOMES
 from cuefem.measurements.calibration import CalibratedSquirt, Calibration
 from cuefem.parameters.parameter import PARAMETERS, with_parameters
 from cuefem.parameters.parts import Layout, taper_position
-from cuefem.results.quantities import format_change, to_display, with_unit
+from cuefem.quantity.display_units import change_with_unit, format_change, short_number, with_unit
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.results.solved_design import SolvedDesign, off_centre
 from cuefem.results.uncertainty import model_share, ratio_error, squirt_changes
@@ -140,7 +140,7 @@ def _woods(cue: Cue) -> Iterator[DesignChange]:
 
 
 def _from_to(old: float, new: float) -> str:
-    return f"{to_display(old, 'm'):.4g} → {with_unit(new, 'm')}"
+    return f"{short_number(old, 'm')} → {with_unit(new, 'm')}"
 
 
 @dataclass(frozen=True)
@@ -219,7 +219,7 @@ class DesignChanges(Analysis):
                     100 * row["squirt_change"], 1, f"± {100 * row['squirt_change_error']:.1f} %"
                 ),
                 "stiffness change": lambda row: _percent(row["tip_stiffness_change"]),
-                "mass change": lambda row: format_change(1e3 * row["shaft_mass_change"], 1, "g"),
+                "mass change": lambda row: change_with_unit(row["shaft_mass_change"], "kg", 1),
                 "natural frequency change": lambda row: format_change(row["frequency_change"], 1, "Hz"),
                 "recommendation": "{verdict}",
             },

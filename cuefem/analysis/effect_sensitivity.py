@@ -10,6 +10,7 @@ from cuefem.contact.refinement import refinement_levels
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.effects.effect import Effect, effect_kinds
 from cuefem.endmass.definitions import equivalent_end_mass
+from cuefem.quantity.display_units import number_text, with_heading
 from cuefem.results.quantities import DASH, format_value
 from cuefem.results.records import Record, Table
 from cuefem.scene import Outcome, Scene
@@ -56,8 +57,8 @@ class EffectSensitivity(Analysis):
         percent = f"{100 * self.rtol:.3g} %"
         base, tried = self.base, [row for row in self.effects if not row["failure"]]
         small = [row for row in tried if not row["significant"]]
-        squirt, mass = format_value("squirt", base["squirt"]), format_value("mass", base["end_mass"])
-        first = ("unmodified scene", squirt, mass, f"{base['ball_speed']:.4f}")
+        squirt, mass = format_value("squirt", base["squirt"]), format_value("end_mass", base["end_mass"])
+        first = ("unmodified scene", squirt, mass, number_text(base["ball_speed"], "m/s", decimals=4))
         rows: list[tuple[str, ...]] = [(*first, f"{base['spin']:.2f}")]
         rows += [_cells(row) for row in tried if row["significant"]]
         dim = range(len(rows), len(rows) + len(small) + 1)
@@ -65,7 +66,7 @@ class EffectSensitivity(Analysis):
             rows += [(f"changes less than {percent}:", *[""] * 4), *map(_cells, small)]
         table = Table(
             f"Sensitivity to each effect at offset b/R = {self.scene.stroke.offset:.4g}",
-            ("", "squirt", "end mass", "ball speed, m/s", "spin, rad/s"),
+            ("", "squirt", "end mass", with_heading("ball speed", "m/s"), "spin, rad/s"),
             tuple(rows),
             (
                 "without: this effect removed; with: an effect that is not listed added, at a default value; %: change "
@@ -220,7 +221,7 @@ def _not_tried(rows: Sequence[Record]) -> list[str]:
 def _cells(row: Record) -> tuple[str, ...]:
     word = "without" if row["is_listed"] else "with"
     squirt, speed, spin = (_percent(row["change"][name]["relative"]) for name in ("squirt", "ball_speed", "spin"))
-    return (f"{word} {row['label']}", squirt, format_value("mass", row["end_mass"]), speed, spin)
+    return (f"{word} {row['label']}", squirt, format_value("end_mass", row["end_mass"]), speed, spin)
 
 
 def _percent(part: float | None) -> str:

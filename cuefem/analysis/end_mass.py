@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 from cuefem.analysis.reduction import PAPER_TONE, Reduction, reduction
 from cuefem.endmass.definitions import DEFINITIONS
+from cuefem.quantity.display_units import END_MASS, with_unit
 from cuefem.results.closed_forms import cue_end_mass
-from cuefem.results.quantities import with_unit
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.scene import Scene
@@ -166,7 +166,7 @@ def _end_mass(solved: SolvedScene, name: str) -> EndMass:
     if not end_mass > 0:
         time = with_unit(float(scene.contact_time), "s")
         raise ValueError(
-            f"an end mass of {with_unit(end_mass, 'kg')} ({name}) is not plausible; the tip is too soft for a "
+            f"an end mass of {with_unit(end_mass, END_MASS)} ({name}) is not plausible; the tip is too soft for a "
             f"contact of {time}: check dimensions, E and contact time"
         )
     cue_end = float(cue_end_mass(end_mass))

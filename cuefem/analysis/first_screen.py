@@ -12,24 +12,24 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from cuefem.analysis.verdict import Verdict, squirt_difference
-from cuefem.results.quantities import DASH, DISPLAY_UNITS, with_unit
+from cuefem.quantity.display_units import END_MASS, OFF_LINE, short_number, with_unit
+from cuefem.results.quantities import DASH
 from cuefem.results.records import Record
 from cuefem.scene import Scene
 from cuefem.show.drawings import DIAMETER_SCALE, FRONT_LENGTH, cue_drawing, legend
 from cuefem.show.templates import environment
 
-# The four numbers: label, SI unit, decimals, suffix, tooltip.
+# The four numbers: label, key of the display unit, decimals, tooltip.
 TILES = {
-    "off_line": ("Off line", "m", 0, "/m", "Distance of the ball from the line of aim after 1 m"),
-    "end_mass_squirt": ("End mass", "kg", 2, "", "Squirt-equivalent: mass at the tip of a lumped cue with this squirt"),
+    "off_line": ("Off line", OFF_LINE, 0, "Distance of the ball from the line of aim over its path"),
+    "end_mass_squirt": ("End mass", END_MASS, 2, "Squirt-equivalent: mass at the tip of a lumped cue with this squirt"),
     "pivot_length": (
         "Pivot length",
         "m",
         0,
-        "",
         "Distance from the end of the tip to the point about which pivoting the cue cancels squirt",
     ),
-    "tip_stiffness": ("Stiffness", "N/m", 0, "", "Static, transverse, at the tip; joint end clamped"),
+    "tip_stiffness": ("Stiffness", "N/m", 0, "Static, transverse, at the tip; joint end clamped"),
 }
 
 
@@ -83,13 +83,20 @@ def headline_markup(
 def tiles(own: HeadlineCue, other: HeadlineCue | None = None) -> list[Tile]:
     """The four numbers, each with its difference from the other design's."""
     made = []
-    for key, (label, unit, decimals, per, hint) in TILES.items():
-        factor, name = DISPLAY_UNITS.get(unit, (1.0, unit))
+    for key, (label, unit, decimals, hint) in TILES.items():
         value, beside = _value(own, key), None if other is None else _value(other, key)
-        text = DASH if value is None else f"{factor * value:.{decimals}f} {name}{per}"
-        more = "" if value is None or beside is None else f"{factor * (value - beside):+.{decimals}f}".replace("-", "−")
-        made.append(Tile(key, label, hint, text, value, "±0" if more and not float(more.replace("−", "-")) else more))
+        text = DASH if value is None else with_unit(value, unit, decimals=decimals)
+        more = "" if value is None or beside is None else _difference(value - beside, unit, decimals)
+        made.append(Tile(key, label, hint, text, value, more))
     return made
+
+
+def _difference(difference: float, unit: str, decimals: int) -> str:
+    """A difference with its sign, without its unit."""
+    text = short_number(difference, unit, decimals=decimals)
+    if not float(text):
+        return "±0"
+    return text.replace("-", "−") if difference < 0 else f"+{text}"
 
 
 def _value(design: HeadlineCue, key: str) -> float | None:
@@ -113,7 +120,7 @@ def drawings_markup(designs: Mapping[str, Scene]) -> str:
     """The tip ends of one or two designs, true to scale, and the whole first one with enlarged diameters."""
     first = next(iter(designs.values()))
     length = min([FRONT_LENGTH, *(scene.shaft.length for scene in designs.values())])
-    title = f"first {1e3 * length:.0f} mm, true to scale"
+    title = f"first {with_unit(length, 'm', decimals=0)}, true to scale"
     fronts = [
         (name, cue_drawing(scene, f"Tip end of {name}, {title}", length, diameter_scale=1.0))
         for name, scene in designs.items()

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -16,7 +16,9 @@ from cuefem.measurements.calibration import Calibration
 from cuefem.measurements.estimate import STEP_TOLERANCE, Estimate, InformationGain, predicted_squirt
 from cuefem.measurements.measured_cue import MeasuredCue, OffsetZero, Progress, Residual, offset_zeros
 from cuefem.measurements.measured_folder import load_measured
-from cuefem.results.quantities import DASH, with_unit
+from cuefem.measurements.measurement_types import EndMass
+from cuefem.quantity.display_units import END_MASS, with_unit
+from cuefem.results.quantities import DASH
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.show.analysis import Analysis
 
@@ -172,7 +174,7 @@ class MeasuredEstimate(Analysis):
                 "Recommended measurements",
                 {
                     "measurement": "{label}",
-                    "1σ": lambda gain: with_unit(gain["error"], gain["unit"]) if gain["unit"] else DASH,
+                    "1σ": lambda gain: with_unit(gain["error"], _display_key(gain)) if gain["unit"] else DASH,
                     "parameter improved most": "{parameter}",
                     "its σ, after/before": "{error_ratio:.0 %}",
                     "σ of squirt after": "{relative_squirt_error:.1 %}",
@@ -333,8 +335,13 @@ def _tabulate_fit(title: str, rows: Sequence[Record], optional: Sequence[str], n
     return tabulate(title, columns, rows, *notes, texts=(0, 5))
 
 
-def _with_error(value: str, error: str) -> ColumnEntry:
-    return lambda row: with_unit(row[value], row["unit"], error=row[error])
+def _display_key(row: Mapping[str, Any]) -> str:
+    """The key of a measurement's display unit: a pendulum measures an end mass, scales a weight."""
+    return END_MASS if row["kind"] == EndMass.key else str(row["unit"])
+
+
+def _with_error(value: str, error: str) -> Callable[[Mapping[str, Any]], str]:
+    return lambda row: with_unit(row[value], _display_key(row), error=row[error])
 
 
 OPTIONAL_COLUMNS = {"normalized residual": "{normalized_residual:+.1f}", "source": "{source}"}
@@ -348,7 +355,8 @@ def contradictions(rows: Sequence[Record]) -> list[str]:
         sigmas = abs(row["normalized_residual"])
         if sigmas > LARGE_RESIDUAL:
             measured, computed = (
-                with_unit(row[value], row["unit"], error=row[error]) for value, error in VALUES_WITH_ERRORS.values()
+                with_unit(row[value], _display_key(row), error=row[error])
+                for value, error in VALUES_WITH_ERRORS.values()
             )
             difference = f"measured {measured}, computed {computed}, a difference of {sigmas:.1f} combined σ"
             lines.append(f"{row['label']} contradicts the drawing: {difference}")

@@ -17,7 +17,7 @@ from cuefem.contact.strike import strike_modes
 from cuefem.cue import Cue
 from cuefem.effects.effect import CueEffect
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.results.quantities import DISPLAY_UNITS
+from cuefem.quantity.display_units import END_MASS, display_unit
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import mass_on_face
@@ -223,8 +223,8 @@ def _numbers(scene: Scene, tip: TipModes, transverse: float, axial: float) -> Nu
 
 def _display_unit(row: Record) -> tuple[float, str]:
     """The factor from the SI unit, and the unit, that a quantity is displayed in."""
-    unit = row["unit"]
-    return LARGE_UNITS.get((unit, abs(row["solid"]) >= 1e5)) or DISPLAY_UNITS.get(unit, (1.0, unit))
+    unit = END_MASS if row["unit"] == "kg" else row["unit"]
+    return LARGE_UNITS.get((unit, abs(row["solid"]) >= 1e5)) or display_unit(unit)[:2]
 
 
 def _percent(part: float, digits: int, sign: str = "-") -> str:

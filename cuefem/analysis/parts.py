@@ -10,7 +10,8 @@ from cuefem.cue.materials import LEATHER_CONSTANTS, LEATHERS, MATERIALS, TIPS, W
 from cuefem.files.cue_names import CUES
 from cuefem.files.parts_catalogue import CATALOGUE_SHAFTS
 from cuefem.parameters.parameter import FERRULES
-from cuefem.results.quantities import RESULTS, units_of, with_heading
+from cuefem.quantity.display_units import short_number, with_heading
+from cuefem.results.quantities import RESULTS, units_of
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.show.analysis import Answer
 
@@ -123,7 +124,8 @@ def _rows(parts: Record) -> list[Record]:
 
 def _with_range(name: str) -> ColumnEntry:
     def text(row: Mapping[str, Any]) -> str:
-        middle, low, high = (RESULTS[name].scale * value for value in (row[name], *row["ranges"][name]))
-        return f"{middle:.4g} ({low:.4g}–{high:.4g})"
+        unit = RESULTS[name].unit
+        middle, low, high = (short_number(value, unit) for value in (row[name], *row["ranges"][name]))
+        return f"{middle} ({low}–{high})"
 
     return text

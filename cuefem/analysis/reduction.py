@@ -18,9 +18,10 @@ from cuefem.cue.materials import LEATHERS
 from cuefem.effects.cue_effects import Support
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.endmass.rigid_front import RigidFront
+from cuefem.quantity.display_units import END_MASS, to_display, with_heading, with_unit
 from cuefem.quantity.fields import Quantity
 from cuefem.results.closed_forms import cue_end_mass
-from cuefem.results.quantities import DISPLAY_UNITS, format_value, with_heading, with_unit
+from cuefem.results.quantities import format_value
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.scene import Scene, Stroke
@@ -368,13 +369,15 @@ def _squirt_chart(own: Reduction) -> Chart:
 
 
 def _end_mass_chart(own: Reduction) -> Chart:
-    (per_second, _), (per_kg, _) = DISPLAY_UNITS["s"], DISPLAY_UNITS["kg"]
-    times = per_second * np.array(CHART_TIMES)
-    curves = [Curve(name, times, per_kg * mass, _style(own, name)) for name, mass in own.end_mass_curves().items()]
+    times = to_display(CHART_TIMES, "s")
+    curves = [
+        Curve(name, times, to_display(mass, END_MASS), _style(own, name))
+        for name, mass in own.end_mass_curves().items()
+    ]
     return chart(
         "Effective end mass",
         curves,
         x=Axis(with_heading("contact time", "s"), 0.0, float(times[-1])),
-        y=Axis(with_heading("effective end mass", "kg")),
-        marks=[Tick(per_second * time, with_unit(time, "s")) for time in own.marked_times],
+        y=Axis(with_heading("effective end mass", END_MASS)),
+        marks=[Tick(float(to_display(time, "s")), with_unit(time, "s")) for time in own.marked_times],
     )

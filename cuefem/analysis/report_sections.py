@@ -18,6 +18,7 @@ from cuefem.analysis.tip_impacts import tip_impacts
 from cuefem.analysis.verdict import verdict
 from cuefem.cue.materials import material_name
 from cuefem.endmass.definitions import DEFINITIONS
+from cuefem.quantity.display_units import with_heading
 from cuefem.results.closed_forms import alciatore_a31_mass_ratio
 from cuefem.results.computable_results import listed_results
 from cuefem.results.quantities import DASH, RESULTS, format_value
@@ -43,7 +44,7 @@ class CueNumbers(Analysis):
         """A row for each result."""
         about = scene_record(self.scene)
         title = f"Cue, and stroke at offset b/R {self.scene.stroke.offset:.4g}"
-        end_mass = (SQUIRT_END_MASS, format_value("mass", self.squirt_end_mass))
+        end_mass = (SQUIRT_END_MASS, format_value("end_mass", self.squirt_end_mass))
         return [tabulate_values(title, [end_mass, *value_rows(self.numbers)], assumptions(about))]
 
 
@@ -73,7 +74,7 @@ def segments(design: SolvedDesign) -> Remarks:
         )
         for x, s in zip(cue.nodes[:-1], cue.segments, strict=True)
     )
-    head = ("at, mm", "length, mm", "diameter, mm", "bore, mm", "mass", "material")
+    head = (*(with_heading(name, "m") for name in ("at", "length", "diameter", "bore")), "mass", "material")
     return Remarks(design.scene, [Table("Segments, from tip to butt", head, tuple(rows), texts=(5,))])
 
 
@@ -88,7 +89,7 @@ def definitions(design: SolvedDesign) -> Remarks:
     mass = float(scene.ball.mass / ratio)
     if 0 < mass < math.inf:
         lines.append(
-            f"[A.31]: with {format_value('mass', mass)} Alciatore's formula (technical proof A.31, "
+            f"[A.31]: with {format_value('end_mass', mass)} Alciatore's formula (technical proof A.31, "
             "billiards.colostate.edu) gives this squirt. By this definition alone measured cues have 5.8 to 14 g "
             "(handbook: Effective end mass)."
         )

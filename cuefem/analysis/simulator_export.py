@@ -16,8 +16,9 @@ from dataclasses import dataclass
 
 from cuefem.analysis.strike_models import UNCERTAINTY_NOTE
 from cuefem.contact.strike import strike_modes
+from cuefem.quantity.display_units import END_MASS, with_unit
 from cuefem.results.closed_forms import alciatore_a30, alciatore_a31, alciatore_a31_mass_ratio
-from cuefem.results.quantities import RESULTS, units_of, with_unit
+from cuefem.results.quantities import units_of
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
@@ -151,12 +152,12 @@ def _drawn(scene: Scene) -> Record:
 
 
 def _notes(scene: Scene) -> list[str]:
-    ball_share = RESULTS["mass"].scale * scene.ball.mass / 30
+    share = with_unit(scene.ball.mass / 30, END_MASS, decimals=3)
     notes = [
         "pooltool uses [A.31] at every offset and speed and has no miscue: at other offsets its squirt differs "
         "(`cuefem guide working` has a table)",
         f"pooltool computes ball speed and spin by [A.30], without loss in the tip, whatever the end mass; its default "
-        f"cue is one for all games, with 1/30 of a pool ball of 170.1 g; 1/30 of this ball is {ball_share:.3f} g",
+        f"cue is one for all games, with 1/30 of a pool ball of 170.1 g; 1/30 of this ball is {share}",
     ]
     drawn = _drawn(scene)
     if missing := [key for key in DEFAULT if key not in (*drawn, "brand", "M", "end_mass")]:
@@ -174,7 +175,9 @@ def _notes(scene: Scene) -> list[str]:
 def tabulate_pooltool(record: Record, written: bool) -> list[Table | str]:
     """The end mass beside pooltool's default, and the line that reads the file. written: whether there is a file."""
     time = with_unit(record["contact_time"], "s", 3)
-    stroke = f"b/R {record['offset']:.4g}, {record['speed']:g} m/s, contact time {time} (rigid cue head-on)"
+    stroke = (
+        f"b/R {record['offset']:.4g}, {with_unit(record['speed'], 'm/s', 6)}, contact time {time} (rigid cue head-on)"
+    )
     release = f"pooltool {record['version']}"
     masses = (None, record["CueSpecs"]["end_mass"], record["default_end_mass"])
     squirts = (record["squirt"], record["squirt"], record["default_squirt"])
@@ -182,7 +185,7 @@ def tabulate_pooltool(record: Record, written: bool) -> list[Table | str]:
     rows = [
         {
             "name": name,
-            "mass": "" if mass is None else f"{RESULTS['mass'].scale * mass:.3f} g",
+            "mass": "" if mass is None else with_unit(mass, END_MASS, decimals=3),
             "squirt": squirt,
             "ball_speed": record[f"{whose}ball_speed"],
             "spin": record[f"{whose}spin"],

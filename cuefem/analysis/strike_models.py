@@ -11,8 +11,9 @@ from cuefem.beam.tip_modes import TipModes
 from cuefem.cue import LumpedCue
 from cuefem.endmass.definitions import stick_at_offsets
 from cuefem.endmass.lumped import impulse, lump_modes
+from cuefem.quantity.display_units import END_MASS, with_unit
 from cuefem.results.closed_forms import alciatore_a31, pivot_length
-from cuefem.results.quantities import MISCUE_DEFINITION, REGIMES, RESULTS, format_value, with_unit
+from cuefem.results.quantities import MISCUE_DEFINITION, REGIMES, RESULTS, format_value
 from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import SolvedDesign, at_offset
 from cuefem.scene import Outcome, Scene
@@ -102,7 +103,7 @@ class StrikeModels(Analysis):
         is_default = self.models["coupled"]["error"] is None
         accuracy = ", numerical error of squirt at most 0.1 % for 95 % of default strikes" if is_default else ""
         beam = f"coupled: vibrating shaft in time{accuracy}"
-        end_mass = f"an end mass of {with_unit(self.end_mass, 'kg')}, " if self.end_mass else "an end mass, "
+        end_mass = f"an end mass of {with_unit(self.end_mass, END_MASS)}, " if self.end_mass else "an end mass, "
         where = f"stick at b/R {self.scene.stroke.offset:.4g} without tip effects"
         masses = f"one axial mass and {end_mass}{where}"
         if not self.coupling:

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.results.quantities import DASH, format_value, significant
+from cuefem.quantity.display_units import significant, with_unit
+from cuefem.results.quantities import DASH, format_value
 from cuefem.results.records import Record, Table, by_label, tabulate
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.scene import Scene
@@ -48,12 +49,12 @@ class TipImpacts(Analysis):
         outside = any(impact["force"] is None for impact in self.impacts)
         return tabulate(
             "Leather tip, head-on impact",
-            {"speed": "{speed:g} m/s", **columns, "stiffness": _stiffness},
+            {"speed": "{speed:m/s}", **columns, "stiffness": _stiffness},
             self.impacts,
-            f"leather of {format_value('mass', self.tip_mass)}, E {significant(self.E / 1e6)} MPa; force, "
+            f"leather of {format_value('tip_mass', self.tip_mass)}, E {significant(self.E / 1e6)} MPa; force, "
             "indentation, contact diameter and stiffness at maximum indentation",
-            "contact time: of a rigid cue, without axial waves; a measured one is longer (medium leather, 2 m/s: "
-            "1.135 ms)",
+            f"contact time: of a rigid cue, without axial waves; a measured one is longer (medium leather, "
+            f"{with_unit(2.0, 'm/s')}: 1.135 ms)",
             *([f"{DASH}: indentation beyond the valid range of the force law"] if outside else []),
             texts=(),
         )

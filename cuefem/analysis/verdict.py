@@ -10,7 +10,7 @@ from typing import NamedTuple
 from cuefem.cue import Cue
 from cuefem.files.reference_cues import reference_cues
 from cuefem.measurements.calibration import CalibratedSquirt, Calibration
-from cuefem.results.quantities import format_change, to_display, with_unit
+from cuefem.quantity.display_units import format_change, off_line, to_display, with_unit
 from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import SolvedDesign, off_centre
 from cuefem.results.uncertainty import (
@@ -88,11 +88,11 @@ class Verdict(Analysis):
     def headline(self) -> str:
         """Squirt with its uncertainty as one line."""
         squirt, error = self.squirt_text()
-        off_line = with_unit(math.tan(abs(self.squirt)), "m", decimals=0)
+        distance, per = off_line(abs(self.squirt))
         where = f"at b/R {self.offset:.4g}, {offset_text(self.offset)}"
         if self.head_on:
             where += "; the stroke itself is head-on"
-        return f"squirt {squirt.rstrip('°')} ± {error} ({where}): the ball is {off_line} off line after 1 m"
+        return f"squirt {squirt.rstrip('°')} ± {error} ({where}): the ball is {distance} off line after 1 {per}"
 
     def squirt_text(self) -> tuple[str, str]:
         """Squirt and its uncertainty as text: "1.82°" and "0.31°"."""

@@ -12,12 +12,14 @@ from typing import Any
 import click
 
 from cuefem.files import InputError, check_writable
+from cuefem.quantity.display_units import SYSTEMS, displayed_in
 from cuefem.quantity.encoding import is_unicode
 from cuefem.show.renderers import json_text
 
 # The heading of an option that many commands share, in the order of a command's help.
 HEADINGS = ("Cue", "Tip", "Stroke", "Output")
-LAST = ("output", "as_json", "force")  # under their heading, in every command's help
+UNITS_VARIABLE = "CUEFEM_UNITS"  # of the environment
+LAST = ("output", "as_json", "units", "force")  # under their heading, in every command's help
 
 
 class SharedOption(click.Option):
@@ -28,8 +30,33 @@ class SharedOption(click.Option):
         self.heading = heading
 
 
+def _units_option() -> SharedOption:
+    """The option of every command for the units of display."""
+    return SharedOption(
+        ["--units"],
+        heading="Output",
+        type=click.Choice([*SYSTEMS]),
+        default="metric",
+        envvar=UNITS_VARIABLE,
+        show_envvar=True,
+        is_eager=True,
+        help="Units in the terminal and on pages; us: in, oz and mph.",
+    )
+
+
 class Command(click.Command):
     """A command whose help shows its own options first and shared ones under their headings."""
+
+    def __init__(self, *names: Any, **about: Any) -> None:
+        super().__init__(*names, **about)
+        self.params.append(_units_option())
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run it in the chosen units of display; JSON, also in a file, is metric in every text."""
+        system, output = ctx.params.pop("units"), ctx.params.get("output")
+        is_json = ctx.params.get("as_json") or (isinstance(output, Path) and output.suffix == ".json")
+        with displayed_in("metric" if is_json else system):
+            return super().invoke(ctx)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options, a group under each heading."""

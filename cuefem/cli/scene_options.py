@@ -22,6 +22,7 @@ from cuefem.files.errors import as_input_error
 from cuefem.parameters.parameter import PARAMETERS, Parameter, with_fields, with_parameters, with_values_at
 from cuefem.parameters.parameter import Path as Steps
 from cuefem.parameters.parts import main_material, with_material
+from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.fields import OutOfBounds, Quantity, comma_hint
 from cuefem.quantity.units import parse_number
 from cuefem.scene import Scene
@@ -108,7 +109,8 @@ def offset_value(file: Path, text: str, radius: float) -> float:
     with suppress(ValueError):
         offset = float(text)
     if not abs(offset) < 1:
-        within = f'b/R between -1 and 1, or a length below {1e3 * radius:g} mm with its unit, such as "8 mm"'
+        below = with_unit(radius, "m", 6)
+        within = f'b/R between -1 and 1, or a length below {below} with its unit, such as "8 mm"'
         raise InputError(file, "--offset", f"must be {within}; got {text!r}{comma_hint(text)}")
     return offset
 

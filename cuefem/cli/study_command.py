@@ -26,8 +26,8 @@ from cuefem.designs.study_result import StudyResult
 from cuefem.designs.sweep import sweep
 from cuefem.files import InputError, save, write_atomically
 from cuefem.parameters.parameter import value_at, with_values_at
+from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.fields import quote
-from cuefem.results.quantities import with_unit
 from cuefem.scene import Scene
 from cuefem.show.plausibility import plausibility_warnings
 
@@ -198,6 +198,6 @@ def _rounded(scene: Scene, study: Study) -> Scene:
 def round_text(problem: Problem, reached: Round, most: int) -> str:
     """A round of a search: "round 3 of at most 60, 45 designs, squirt slope 0.0412346 so far"."""
     choice = "".join(f"{value if isinstance(value, str) else f'{value:g}'}: " for value in reached.choice.values())
-    best = f"{problem.objective.label} {with_unit(reached.best, problem.objective.unit, 6)} so far"
+    best = f"{problem.objective.label} {with_unit(reached.best, problem.objective.display_key, 6)} so far"
     best = best if isfinite(reached.best) else "no design within the limits yet"
     return f"{choice}round {reached.number} of at most {most}, {reached.evaluations} designs, {best}"

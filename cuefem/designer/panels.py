@@ -13,7 +13,8 @@ from cuefem.designer.computation import CURVE_OFFSETS
 from cuefem.designer.controls import KNOBS, label, value, value_text
 from cuefem.designer.session import Session
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.results.quantities import DASH, RESULTS, format_change
+from cuefem.quantity.display_units import format_change, to_display, with_heading
+from cuefem.results.quantities import DASH, RESULTS
 from cuefem.results.records import Record, Table
 from cuefem.results.uncertainty import SHAFT_ERROR
 from cuefem.scene import Scene
@@ -41,7 +42,7 @@ def curves_markup(session: Session) -> str:
     offset = float(session.scene.stroke.offset)
     charts = [*offset_charts(drawn, CURVE_OFFSETS, offset, height=280, regimes=regimes)]
     curves = [
-        Curve(name, 1e3 * side["end_mass_distribution"][0], side["end_mass_distribution"][1], style)
+        Curve(name, to_display(side["end_mass_distribution"][0], "m"), side["end_mass_distribution"][1], style)
         for name, style, side in sides
         if "end_mass_distribution" in side
     ]
@@ -50,7 +51,7 @@ def curves_markup(session: Session) -> str:
             chart(
                 "End mass added by 1 g (stick, without tip effects)",
                 curves,
-                x=Axis("distance from the front of the drawing, mm", 0.0),
+                x=Axis(with_heading("distance from the front of the drawing", "m"), 0.0),
                 y=Axis("end mass, g"),
                 height=280,
             )

@@ -32,6 +32,7 @@ from cuefem.files.defaults_report import assumption_texts, tenon_assumption
 from cuefem.files.reference_cues import PRESETS, REFERENCE_FILES, Preset
 from cuefem.files.toml_writer import toml_text
 from cuefem.parameters.parameter import parameter, with_parameters
+from cuefem.quantity.display_units import with_unit
 from cuefem.results.quantities import REGIMES
 from cuefem.results.records import Record
 from cuefem.results.verdict import verdict_problem
@@ -187,7 +188,7 @@ class Session:
         """A summary of each group of controls, as HTML."""
         scene = self.scene
         return {
-            "Shaft": f"length {1e3 * scene.shaft.length:.1f} mm",
+            "Shaft": f"length {with_unit(scene.shaft.length, 'm', decimals=1)}",
             "Tip": f"{value('leather', scene) or 'a spring'}, {_texts(scene, 'tip_height', 'dome')}",
             "Stroke": f"{value('game', scene)}, {_texts(scene, 'speed', 'offset')}",
         }

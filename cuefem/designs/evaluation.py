@@ -12,11 +12,12 @@ import numpy as np
 from cuefem.beam.modes import Modes
 from cuefem.cue import Array
 from cuefem.quantity.display import one_line
+from cuefem.quantity.display_units import with_heading
 from cuefem.quantity.equality import equal_fields
 from cuefem.quantity.fields import suggestion
 from cuefem.quantity.unit_checks import FLOAT_ERRORS
 from cuefem.results.computable_results import computable_results
-from cuefem.results.quantities import Result, with_heading
+from cuefem.results.quantities import Result
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.scene import Resolution, Scene
 from cuefem.scene.solved_scene import SolvedScene
@@ -88,9 +89,14 @@ class Response:
         return self.result.unit
 
     @property
+    def display_key(self) -> str:
+        """The key of its display unit."""
+        return self.result.display_key
+
+    @property
     def heading(self) -> str:
         """The label with its display unit."""
-        return with_heading(self.label, self.unit)
+        return with_heading(self.label, self.display_key)
 
     def size(self, values: Any) -> Any:
         """Values (numbers or arrays) as designs are compared: squirt, negative at a left-hand offset, by its size."""

@@ -29,7 +29,7 @@ from cuefem.designs.study_table import (
     varied_segments,
 )
 from cuefem.designs.sweep import Columns, Row, Store, sweep
-from cuefem.results.quantities import with_unit
+from cuefem.quantity.display_units import with_unit
 from cuefem.results.records import Record, Table
 from cuefem.show.analysis import Analysis
 from cuefem.show.scene_summary import scene_record
@@ -202,9 +202,11 @@ class StudyResult(Analysis):
                     f"{name} {value if isinstance(value, str) else with_unit(value, self.units[name])}"
                     for name, value in best.values.items()
                 )
-                lines.append((response.name, with_unit(best.responses[response.name], response.unit), at))
+                lines.append((response.name, with_unit(best.responses[response.name], response.display_key), at))
             elif spread is not None:
-                lines.append((response.name, with_unit(spread["mean"], response.unit, error=spread["sd"]), "mean ± sd"))
+                lines.append(
+                    (response.name, with_unit(spread["mean"], response.display_key, error=spread["sd"]), "mean ± sd")
+                )
         return lines
 
     def __repr__(self) -> str:

@@ -21,7 +21,15 @@ from cuefem.designs.scatter import Scatter, SobolIndices
 from cuefem.designs.study_statistics import SweepStatistics
 from cuefem.parameters.parameter import Path
 from cuefem.parameters.parts import Layout
-from cuefem.results.quantities import DASH, DISPLAY_UNITS, significant, with_heading, with_unit
+from cuefem.quantity.display_units import (
+    display_unit,
+    number_text,
+    short_number,
+    span_text,
+    with_heading,
+    with_unit,
+)
+from cuefem.results.quantities import DASH
 from cuefem.results.records import Record, Table
 from cuefem.scene import Scene
 from cuefem.show.scene_summary import assumptions, scene_record
@@ -58,7 +66,7 @@ def _segments(cue: Cue, paths: Sequence[Path]) -> list[str]:
         part = "ferrule" if i in layout.ferrule else "shaft" if i in layout.shaft else f"segment {i}"
         name = f"{hollow}{part} of {material_name(cue.segments[i].material)}"
         pieces[name] = (pieces.get(name, (cue.nodes[i],))[0], cue.nodes[i + 1])
-    return [f"{name}, {1e3 * first:.5g} to {1e3 * last:.5g} mm" for name, (first, last) in pieces.items()]
+    return [f"{name}, {span_text(first, last, 'm', 5)}" for name, (first, last) in pieces.items()]
 
 
 def tabulate_parameters(study: Study) -> Table:
@@ -86,14 +94,15 @@ def tabulate_parameters(study: Study) -> Table:
 
 def range_text(vary: Vary, unit: str) -> str:
     """The values of a varied parameter, with their unit."""
-    scale, name = DISPLAY_UNITS.get(unit, (1.0, unit))
+    name = display_unit(unit).name
     match vary.range:
         case Levels(values):
-            text = ", ".join(v if isinstance(v, str) else f"{scale * v:.4g}" for v in values)
+            text = ", ".join(v if isinstance(v, str) else short_number(v, unit) for v in values)
         case Span(low, high):
-            text = f"{scale * low:.4g} to {scale * high:.4g}"
+            text = f"{short_number(low, unit)} to {short_number(high, unit)}"
         case Normal(middle, sd, logarithmic):
-            text = f"{scale * middle:.4g} ± {f'{100 * sd:.3g} %,' if logarithmic else f'{scale * sd:.3g}'}"
+            spread = f"{100 * sd:.3g} %," if logarithmic else short_number(sd, unit, 3)
+            text = f"{short_number(middle, unit)} ± {spread}"
     how = "times the drawn value" if vary.factor else "added to the drawn value" if vary.shift else ""
     return " ".join(part for part in (text, name, how) if part)
 
@@ -116,7 +125,7 @@ def shown(value: Any, unit: str) -> str:
     """A value in the display unit of an SI unit, without the unit; a name as it is."""
     if isinstance(value, str):
         return str(value)
-    return significant(DISPLAY_UNITS.get(unit, (1.0, unit))[0] * float(value))
+    return number_text(float(value), unit)
 
 
 def tabulate_failures(result: StudyResult) -> list[str]:
@@ -162,13 +171,13 @@ def tabulate_sweep(sweep: SweepStatistics) -> list[Table | str]:
     heads = [*map(with_heading, labels, sweep.units)]
 
     def cells(i: int, responses: Iterable[int]) -> list[str]:
-        results = [shown(sweep.results[i, k], sweep.responses[k].unit) for k in responses]
+        results = [shown(sweep.results[i, k], sweep.responses[k].display_key) for k in responses]
         return [*results, *(shown(column[i], unit) for column, unit in zip(sweep.values, sweep.units, strict=True))]
 
     best, sensitivities = list[tuple[str, ...]](), list[tuple[str, ...]]()
     for k in sweep.ranked:
         response, i = sweep.responses[k], sweep.best(k)
-        ends = " to ".join(shown(end(sweep.results[:, k]), response.unit) for end in (np.min, np.max))
+        ends = " to ".join(shown(end(sweep.results[:, k]), response.display_key) for end in (np.min, np.max))
         which = f"{response.result.better} is better" if response.result.better else "the lowest"
         which += ", by size" if response.result.odd else ""
         value, *rest = cells(i, [k])
@@ -223,7 +232,7 @@ def tabulate_scatter(result: StudyResult, scatter: Scatter, drivers: SobolIndice
     """The spread of each response, the shares of its factors, and a sentence on both."""
     spreads, rows, bold, lines = list[tuple[str, ...]](), list[tuple[str, ...]](), dict[int, str](), list[str]()
     for k, response in enumerate(scatter.study.responses):
-        numbers = {name: shown(value, response.unit) for name, value in result.spread[response.name].items()}
+        numbers = {name: shown(value, response.display_key) for name, value in result.spread[response.name].items()}
         spreads.append((response.heading, *numbers.values()))
         bold[len(rows)] = "bold"
         rows.append((response.label, "", ""))
@@ -233,7 +242,7 @@ def tabulate_scatter(result: StudyResult, scatter: Scatter, drivers: SobolIndice
             rows.append((f"  {drivers.factors[i]}", *(_share(value[i, k], ends[:, i, k]) for value, ends in both)))
         total = np.clip(drivers.total[:, k], 0.0, 1.0)  # an estimate may be outside
         most = [f"{drivers.factors[i]} ({100 * total[i]:.0f} %)" for i in strongest[:2] if total[i] >= MIN_SHARE]
-        unit = DISPLAY_UNITS.get(response.unit, (1, response.unit))[1]
+        unit = display_unit(response.display_key).name
         ends = f"{response.label}: 90 % of the designs from {numbers['5 %']} to {numbers['95 %']} {unit}".rstrip()
         named = f"the strongest factor{'s are' if len(most) > 1 else ' is'} {' and '.join(most)}"
         lines.append(f"{ends}; {named if most else 'no factor stands out'}")
@@ -285,6 +294,7 @@ def optimum_record(problem: Problem, best: Optimum) -> Record:
 def tabulate_optimum(problem: Problem, best: Optimum) -> list[Table | str]:
     """The best design, its active constraints, and the best design for each choice."""
     units = dict(zip(problem.study.columns, problem.study.units, strict=True))
+    units |= {response.name: response.display_key for response in problem.study.responses}
     labels = {response.name: response.label for response in problem.study.responses}
 
     def text(name: str, value: Any) -> str:

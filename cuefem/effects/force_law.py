@@ -17,6 +17,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from cuefem.cue import Array
+from cuefem.quantity.display_units import with_unit
 
 
 @dataclass(frozen=True)
@@ -134,8 +135,8 @@ class LeatherLaw:
     def out_of_range(self, depth: float) -> IndentationOutOfRange:
         """The error of an indentation beyond the law's range."""
         return IndentationOutOfRange(
-            f"tip too soft or stroke too fast: indentation {1e3 * depth:.3g} mm exceeds the valid range "
-            f"({1e3 * self.indentation_limit:.3g} mm); raise height or E of the leather, or lower the speed"
+            f"tip too soft or stroke too fast: indentation {with_unit(depth, 'm', 3)} exceeds the valid range "
+            f"({with_unit(self.indentation_limit, 'm', 3)}); raise height or E of the leather, or lower the speed"
         )
 
 

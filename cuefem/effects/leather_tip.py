@@ -17,6 +17,7 @@ from cuefem.effects.contact_terms import ContactTerms, TipModel
 from cuefem.effects.cue_effects import PointMass
 from cuefem.effects.effect import CueEffect, Effect
 from cuefem.effects.force_law import LeatherLaw
+from cuefem.quantity.display_units import span_text, with_unit
 from cuefem.quantity.fields import DIAMETER, OutOfBounds, Quantity, check_fields, check_kind
 from cuefem.solid.tip_cache import cached_table, read_table
 from cuefem.solid.tip_table import (
@@ -194,8 +195,9 @@ class LeatherTip(CueEffect):
         """ValueError if the cue is drawn with its leather, or the tip does not fit it."""
         if cue.leather_height:
             raise ValueError(
-                f"{name} must be the only leather: draw the cue without its first {1e3 * cue.leather_height:.4g} mm, "
-                f"which have an E below {MAX_LEATHER_MODULUS / 1e9:g} GPa; got a {type(self).__name__} before them"
+                f"{name} must be the only leather: draw the cue without its first "
+                f"{with_unit(cue.leather_height, 'm')}, which have "
+                f"an E below {MAX_LEATHER_MODULUS / 1e9:g} GPa; got a {type(self).__name__} before them"
             )
         end = cue.segments[0].tip_diameter
         if self.diameter is not None and self.diameter > end * (1 + 1e-9):
@@ -267,26 +269,26 @@ class LeatherTip(CueEffect):
         DIAMETER.check("diameter", diameter)
         if self.dome_radius < diameter / 2:
             raise ValueError(
-                f"dome radius {1e3 * self.dome_radius:.4g} mm is too small: a {1e3 * diameter:.4g} mm tip "
-                f"needs at least {500 * diameter:.4g} mm"
+                f"dome radius {with_unit(self.dome_radius, 'm')} is too small: a {with_unit(diameter, 'm')} tip "
+                f"needs at least {with_unit(diameter / 2, 'm')}"
             )
         dome = self._dome_depth(diameter / 2)
         if self.height <= dome:
             raise ValueError(
-                f"a leather tip on {1e3 * diameter:.4g} mm must be higher than {1e3 * dome:.4g} mm, the depth of its "
-                f"dome; got {1e3 * self.height:.4g} mm"
+                f"a leather tip on {with_unit(diameter, 'm')} must be higher than {with_unit(dome, 'm')}, the depth of "
+                f"its dome; got {with_unit(self.height, 'm')}"
             )
         layers = math.fsum(layer.height for layer in self.layers)
         if self.layers and layers > self.height - dome - MIN_SIDE * diameter:
             raise ValueError(
-                f"layers of a leather tip must be at most {1e3 * (self.height - dome - MIN_SIDE * diameter):.4g} mm "
-                f"high together, to end below its dome; got {1e3 * layers:.4g} mm"
+                f"layers of a leather tip must be at most {with_unit(self.height - dome - MIN_SIDE * diameter, 'm')} "
+                f"high together, to end below its dome; got {with_unit(layers, 'm')}"
             )
         low, high = (bound * diameter for bound in HEIGHTS)
         if not low * (1 - 1e-9) <= self.height <= high * (1 + 1e-9):
             raise ValueError(
-                f"a leather tip on {1e3 * diameter:.4g} mm must be {1e3 * low:.3g} to {1e3 * high:.3g} mm high; "
-                f"got {1e3 * self.height:.4g} mm"
+                f"a leather tip on {with_unit(diameter, 'm')} must be {span_text(low, high, 'm', 3)} high; "
+                f"got {with_unit(self.height, 'm')}"
             )
 
     def mass(self, diameter: float) -> float:

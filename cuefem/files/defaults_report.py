@@ -21,6 +21,7 @@ from cuefem.files.shaft_additions import BORE, FERRULE, LEATHER, TENON_RATIO
 from cuefem.files.surface_sections import TOLERANCE
 from cuefem.files.toml_reader import missing_keys, read_tables
 from cuefem.parameters.parts import Layout
+from cuefem.quantity.display_units import with_unit
 from cuefem.scene import DEFAULT_CONTACT_TIME, Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, GAMES
 
@@ -69,7 +70,8 @@ def assumptions(path: Path, scene: Scene, options: Mapping[str, Any]) -> list[As
     game = options.get("game") or DEFAULT_GAME
     known, butt = GAMES.get(game), ""
     if known and scene.shaft.body_mass:
-        butt = f", butt to {1e3 * known.cue_length:g} mm, {1e3 * known.butt_diameter:g} mm wide, for axial waves"
+        length, diameter = (with_unit(size, "m", 6) for size in (known.cue_length, known.butt_diameter))
+        butt = f", butt to {length}, {diameter} wide, for axial waves"
     stroke = Assumption.on("game", f"default stroke of {game}{butt}")
     missing = [] if "game" in options else [stroke]
     return [*_of_cue(path, scene.shaft, options), *missing, *_stroke({}, game, scene, options)]
@@ -95,7 +97,7 @@ def _of_cue(path: Path | None, cue: Cue, options: Mapping[str, Any]) -> list[Ass
         drawing = [Assumption("", CUES[name].assumed), *drawing]
     if not cue.is_body_mass_assumed:
         return drawing
-    rest = Assumption.on("body_mass", f"usual rest of the cue, {1e3 * cue.body_mass:.4g} g")
+    rest = Assumption.on("body_mass", f"usual rest of the cue, {with_unit(cue.body_mass, 'kg')}")
     return [rest, *(each for each in drawing if each.key != "body_mass")]
 
 
@@ -202,12 +204,15 @@ def _stroke(tables: dict[str, Any], game: str, scene: Scene, options: Mapping[st
     whole_cue = ""
     if known and tip.restitution != known.restitution:
         whole_cue = f" of the tip (with axial waves, {known.restitution:g} of the whole cue head-on)"
-    words = {"ball_mass": f"ball {1e3 * ball.mass:g} g", "ball_diameter": f"ball {2e3 * ball.radius:g} mm"}
+    words = {
+        "ball_mass": f"ball {with_unit(ball.mass, 'kg', 6)}",
+        "ball_diameter": f"ball {with_unit(2 * ball.radius, 'm', 6)}",
+    }
     if any(effect.defines_tip for effect in scene.effects):
         leather = scene.leather_tip
         words |= {
-            "tip_height": f"leather tip {1e3 * leather.height:.4g} mm high, replacing any drawn leather",
-            "dome": f"tip radius (dome) {1e3 * leather.dome_radius:g} mm",
+            "tip_height": f"leather tip {with_unit(leather.height, 'm')} high, replacing any drawn leather",
+            "dome": f"tip radius (dome) {with_unit(leather.dome_radius, 'm', 6)}",
             "leather": f"tip hardness {known.leather if known else ''}, E {1e-6 * leather.E:g} MPa",
         }
     elif tip.contact_time is None and tip.stiffness is None:
@@ -218,7 +223,7 @@ def _stroke(tables: dict[str, Any], game: str, scene: Scene, options: Mapping[st
     words |= {
         "restitution": f"restitution {tip.restitution:.3g}{whole_cue}",
         "friction": f"friction {tip.friction:g}",
-        "speed": f"cue speed {scene.stroke.speed:g} m/s",
+        "speed": f"cue speed {with_unit(scene.stroke.speed, 'm/s', 6)}",
         "offset": f"offset b/R {scene.stroke.offset:.4g}",
     }
     return [Assumption.on(key, text) for key, text in words.items() if key in missing]

@@ -35,6 +35,7 @@ from cuefem.files.schema import named_material
 from cuefem.files.shaft_additions import ferrule_on_tenon, has_length, with_additions
 from cuefem.files.surface_sections import polyline_corners
 from cuefem.quantity.display import MAX_LISTED
+from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.fields import DIAMETER, Quantity
 from cuefem.quantity.units import parse_number
 
@@ -138,7 +139,7 @@ def _sides(
         before, behind = sides.get(at, (interior, interior))
         if before != behind != interior:
             problem = "must have at most two rows, in front of and behind a step of the bore or of a material"
-            raise InputError(path, f"line {line}, x", f"{problem}; got a third row at {1e3 * at:.6g} mm")
+            raise InputError(path, f"line {line}, x", f"{problem}; got a third row at {with_unit(at, 'm', 6)}")
         sides[at] = before, interior
     return sides
 
@@ -193,7 +194,9 @@ def _inside(
         material = found.get(MATERIAL_COLUMN, material)
         width = 0.0 if bore is None or not _entry(cells, bore) else _number(path, row, bore, mark)
         if width >= outer:
-            problem = f"must be less than {1e3 * outer:.6g} mm, the diameter there; got {1e3 * width:.6g} mm"
+            problem = (
+                f"must be less than {with_unit(outer, 'm', 6)}, the diameter there; got {with_unit(width, 'm', 6)}"
+            )
             raise InputError(path, f"line {line}, bore", problem)
         if CORE_COLUMN in found and not width and row is not header.rows[-1]:
             problem = f"needs a bore in its row, which it fills; got {quote(_entry(cells, named[CORE_COLUMN]))}"

@@ -15,6 +15,7 @@ from cuefem.cue import MAX_LEATHER_MODULUS, Cue, Material, Segment
 from cuefem.cue.materials import material as material_of
 from cuefem.parameters.parameter import with_parameters
 from cuefem.parameters.parts import MAX_FERRULE, SAME_POSITION, Layout, split_at
+from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.units import parse_number
 from cuefem.scene import Scene
 
@@ -92,7 +93,7 @@ def _with_leather(cue: Cue, text: str) -> Cue:
         raise ValueError("must be omitted: the drawing already has leather")
     end = _length(height)
     if end > MAX_LEATHER:
-        raise ValueError(f"must have at most {1e3 * MAX_LEATHER:g} mm of leather; got {text!r}")
+        raise ValueError(f"must have at most {with_unit(MAX_LEATHER, 'm', 6)} of leather; got {text!r}")
     cue = split_at(cue, end)
     stop = next(i for i, x in enumerate(cue.nodes) if x >= end * (1 - SAME_POSITION))
     front = (
@@ -113,7 +114,7 @@ def _with_ferrule(cue: Cue, text: str) -> Cue:
     start = float(cue.nodes[first])
     longest = min(MAX_FERRULE, 0.9 * (cue.length - start))
     if not 0 < length <= longest:
-        raise ValueError(f"must be at most {1e3 * longest:.3g} mm long; got {text!r}")
+        raise ValueError(f"must be at most {with_unit(longest, 'm', 3)} long; got {text!r}")
     cue = split_at(replace(cue, segments=tuple(stripped)), start + length)
     stop = next(i for i, x in enumerate(cue.nodes) if x >= (start + length) * (1 - SAME_POSITION))
     front = (ferrule_on_tenon(s, ferrule_material, wood, tenon) for s in cue.segments[first:stop])

@@ -114,11 +114,11 @@ def _every_effect() -> str:
 def _every_response() -> str:
     """The responses of studies as a table: name, display unit, definition, and which direction is better."""
     from cuefem.parameters.parameter import PARAMETERS
+    from cuefem.quantity.display_units import display_unit
     from cuefem.results.computable_results import computable_results
-    from cuefem.results.quantities import DISPLAY_UNITS
 
     rows = [
-        f"| `{name}{ARGUMENTS[result.argument]}` | {DISPLAY_UNITS.get(result.unit, (1, result.unit))[1]} "
+        f"| `{name}{ARGUMENTS[result.argument]}` | {display_unit(result.display_key).name} "
         f"| {result.about or result.label} | {result.better} |"
         for name, result in computable_results().items()
     ]

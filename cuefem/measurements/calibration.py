@@ -23,8 +23,9 @@ from cuefem.files.toml_reader import load_cue, read_tables, scene_from_tables
 from cuefem.measurements.estimate import Estimate
 from cuefem.measurements.uncertain_parameters import SQUIRT_MODEL
 from cuefem.parameters.parameter import PARAMETERS, with_values_at
+from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.fields import check_kind
-from cuefem.results.quantities import DASH, with_unit
+from cuefem.results.quantities import DASH
 from cuefem.results.solved_design import off_centre
 from cuefem.results.uncertainty import (
     NUMERICAL_ERROR,

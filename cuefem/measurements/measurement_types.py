@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar, NamedTuple
 
 from cuefem.contact.side_strike import Striker
 from cuefem.measurements.predictions import N_FREQUENCIES, Predictions, predictions_of
+from cuefem.quantity.display_units import END_MASS, with_unit
 from cuefem.quantity.fields import CONTACT_TIME, LENGTH, Quantity, check_fields
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.quantities import balance_point, drawn_mass, tip_height
@@ -206,7 +207,7 @@ class Stiffness(Measurement):
     @property
     def label(self) -> str:
         """Over which length."""
-        return "stiffness, whole" if self.free_length is None else f"stiffness, {1e3 * self.free_length:.4g} mm free"
+        return "stiffness, whole" if self.free_length is None else f"stiffness, {with_unit(self.free_length, 'm')} free"
 
     def compute(self, setup: Setup) -> float:
         """One linear solution of the beam."""
@@ -389,7 +390,7 @@ class AddedMass(Measurement):
     @property
     def label(self) -> str:
         """Which mass, where."""
-        return f"squirt ratio, {1e3 * self.mass:.3g} g at {1e3 * self.position:.4g} mm"
+        return f"squirt ratio, {with_unit(self.mass, END_MASS, 3)} at {with_unit(self.position, 'm')}"
 
     def compute(self, setup: Setup) -> float:
         """Two coupled strikes."""
@@ -413,7 +414,7 @@ class ContactTime(Measurement):
     @property
     def label(self) -> str:
         """At which speed."""
-        return self.title if self.speed is None else f"contact time at {self.speed:.3g} m/s"
+        return self.title if self.speed is None else f"contact time at {with_unit(self.speed, 'm/s', 3)}"
 
     def compute(self, setup: Setup) -> float:
         """Of the coupled strike."""

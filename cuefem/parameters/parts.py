@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.cue import MAX_LEATHER_MODULUS, Cue, Material, Segment
+from cuefem.quantity.display_units import short_number, span_text, with_unit
 from cuefem.quantity.fields import CONTACT_TIME, DIAMETER, LENGTH, Quantity
 
 MAX_FERRULE = 0.06  # m
@@ -158,10 +159,10 @@ def with_shaft_mass(cue: Cue, mass: float) -> Cue:
     others = cue.shaft_mass - volume * wood.rho
     rho = (mass - others) / volume
     if not MIN_DENSITY <= rho <= MAX_DENSITY:
-        least, most = (1e3 * (others + volume * end) for end in (MIN_DENSITY, MAX_DENSITY))
+        least, most = (others + volume * end for end in (MIN_DENSITY, MAX_DENSITY))
         raise ValueError(
-            f"must be {least:.4g} to {most:.4g} g (density of its main material {MIN_DENSITY:g} to "
-            f"{MAX_DENSITY:g} kg/m3); got {1e3 * mass:.4g} g"
+            f"must be {span_text(least, most, 'kg')} (density of its main material {MIN_DENSITY:g} to "
+            f"{MAX_DENSITY:g} kg/m3); got {with_unit(mass, 'kg')}"
         )
     return replace(with_material(cue, wood, replace(wood, rho=rho)), shaft_mass_measured=True)
 
@@ -200,10 +201,10 @@ def _with_ferrule_length(scene: Any, length: float) -> Any:
     ferrule, wood = segments[at - 1], segments[at]
     gain = length - old
     if not -ferrule.length < gain < wood.length:
-        least, most = (1e3 * (old + by) for by in (-ferrule.length, wood.length))
+        least, most = short_number(old - ferrule.length, "m", 6), with_unit(old + wood.length, "m", 6)
         raise ValueError(
-            f"the ferrule must be more than {least:.6g} and less than {most:.6g} mm long, as its neighbours allow; "
-            f"got {1e3 * length:.6g} mm"
+            f"the ferrule must be more than {least} and less than {most} long, as its neighbours allow; "
+            f"got {with_unit(length, 'm', 6)}"
         )
     shift = -gain / wood.length  # along the unchanged cone behind the ferrule
     outer = wood.tip_diameter + (wood.tip_diameter - wood.butt_diameter) * shift
@@ -260,7 +261,9 @@ def _with_gains(scene: Any, positions: Sequence[float], gains: Sequence[float]) 
         first, last = np.interp([start, start + segment.length], positions, gains)
         ends = segment.tip_diameter + float(first), segment.butt_diameter + float(last)
         if min(ends) <= 0:
-            raise ValueError(f"the cue's diameter must be more than 0 mm; got {1e3 * min(ends):.4g} mm")
+            raise ValueError(
+                f"the cue's diameter must be more than {with_unit(0.0, 'm')}; got {with_unit(min(ends), 'm')}"
+            )
         return replace(segment, tip_diameter=ends[0], butt_diameter=ends[1])
 
     return with_segments(scene, [widen(segment, float(x)) for segment, x in zip(cue.segments, cue.nodes, strict=False)])
@@ -320,7 +323,7 @@ def _with_bore(scene: Any, depth: float | None = None, width: float | None = Non
     mouth = bore_mouth(cue)
     old_end = mouth + old[0]
     if depth > deepest + tolerance:
-        raise ValueError(f"the bore must be at most {1e3 * deepest:g} mm deep; got {1e3 * depth:g} mm")
+        raise ValueError(f"the bore must be at most {with_unit(deepest, 'm', 6)} deep; got {with_unit(depth, 'm', 6)}")
     wider = new_width / old[1]
     new_bore = wider * cue.segments[bore.stop - 1].butt_bore if bore else new_width
     end = mouth + min(depth, deepest)
@@ -335,8 +338,8 @@ def _with_bore(scene: Any, depth: float | None = None, width: float | None = Non
         outside = ((segment.tip_diameter, start), (segment.butt_diameter, start + segment.length))
         for inner, (outer, x) in zip(ends, outside, strict=True):
             if inner >= outer:
-                where = f"the cue, {1e3 * outer:.4g} mm wide at {1e3 * x:.4g} mm from the tip"
-                raise ValueError(f"the bore must be narrower than {where}; got {1e3 * inner:.4g} mm")
+                where = f"the cue, {with_unit(outer, 'm')} wide at {with_unit(x, 'm')} from the tip"
+                raise ValueError(f"the bore must be narrower than {where}; got {with_unit(inner, 'm')}")
         return replace(segment, tip_bore=ends[0], butt_bore=ends[1])
 
     cue = split_at(cue, end)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from cuefem.endmass.definitions import DEFINITIONS, Definition
+from cuefem.quantity.display_units import END_MASS
 from cuefem.results.quantities import RESULTS, Result
 from cuefem.results.solved_design import SolvedDesign
 
@@ -24,6 +25,7 @@ def _defined(definition: Definition) -> Result:
         argument="offset" if definition.at_offset else "",
         better="lower",
         is_listed=False,
+        displayed=END_MASS,
     )
 
 

@@ -12,9 +12,7 @@ from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from cuefem.cue import Array
+from cuefem.quantity.display_units import END_MASS, number_text, unit_suffix
 from cuefem.results.closed_forms import pivot_length
 from cuefem.scene import Outcome, Scene
 
@@ -22,18 +20,6 @@ if TYPE_CHECKING:  # at work every command that writes a number would pay for it
     from cuefem.results.solved_design import SolvedDesign
 
 DASH = "–"
-# Display units of SI quantities: the factor from the SI unit, and their name.
-DISPLAY_UNITS = {
-    "kg": (1e3, "g"),
-    "m": (1e3, "mm"),
-    "s": (1e3, "ms"),
-    "rad": (math.degrees(1), "°"),
-    "J": (1e3, "mJ"),
-    "Pa": (1e-9, "GPa"),
-    "kg/m^3": (1.0, "kg/m³"),
-    "1/sqrt(kg)": (1.0, "/√kg"),
-}
-
 _NUMBER_UNIT = re.compile(r'(?<=\d) (?=(?:[cmµ]?m|in|k?g|oz|%|m?s|k?Hz|k?N(?:/m?m)?|[MG]Pa|m/s|mph|m?J)(?![\w/"`]))')
 
 
@@ -47,7 +33,8 @@ class Result:
     compute it. argument: its argument in brackets, "", "mode" or "offset". segments: whether it needs cue segments.
     limit: whether without an offset it is the limit of small offsets. better: "lower" or "higher", the direction in
     which a summary ranks designs. odd: whether it changes its sign with the offset b/R, so that designs are compared by
-    its size. is_listed: whether a report and the designer list it (not if it has its own table).
+    its size. is_listed: whether a report and the designer list it (not if it has its own table). displayed: the key of
+    its display unit, by default ``unit``.
     """
 
     label: str
@@ -64,6 +51,7 @@ class Result:
     better: str = ""
     odd: bool = False
     is_listed: bool = True
+    displayed: str = ""
 
     @property
     def column_heading(self) -> str:
@@ -71,15 +59,13 @@ class Result:
         return self.heading or self.label
 
     @property
-    def scale(self) -> float:
-        """Factor from the SI unit to the display unit."""
-        return DISPLAY_UNITS.get(self.unit, (1.0, self.unit))[0]
+    def display_key(self) -> str:
+        """The key of its display unit (`cuefem.quantity.display_units.display_unit`)."""
+        return self.displayed or self.unit
 
     def number(self, value: float) -> str:
         """A value in the display unit, without the unit."""
-        if self.decimals is None:
-            return significant(self.scale * value, self.digits)
-        return f"{self.scale * value:.{self.decimals}f}"
+        return number_text(value, self.display_key, self.digits, decimals=self.decimals)
 
     def format(self, value: Any) -> str:
         """A value with its unit; a dash if there is no value; text unchanged."""
@@ -87,29 +73,12 @@ class Result:
             return value
         if value is None or not math.isfinite(value):
             return DASH
-        unit = DISPLAY_UNITS.get(self.unit, (1.0, self.unit))[1]
-        space = "" if unit in ("°", "") else " "
-        return f"{self.number(float(value))}{space}{unit}"
+        return self.number(float(value)) + unit_suffix(self.display_key)
 
 
 def unbroken(text: str) -> str:
     """A text for a page with no line break between a number and its unit; values in quotes, to be copied, unchanged."""
     return _NUMBER_UNIT.sub("\u00a0", text)
-
-
-def format_change(change: float, decimals: int, unit: str) -> str:
-    """A change with its sign and unit; nothing that rounds to zero has a sign."""
-    text = f"{change:+.{decimals}f}"
-    return f"{text if float(text) else text[1:]}\u00a0{unit}".replace("-", "−")
-
-
-def significant(value: float, digits: int = 4) -> str:
-    """A number to so many digits where they are decimals."""
-    if value == 0 or not math.isfinite(value):
-        return f"{value:.0f}"
-    rounded = float(f"{abs(value):.{digits - 1}e}")  # 0.99999 has the digits of 1
-    decimals = max(0, digits - 1 - math.floor(math.log10(rounded)))
-    return f"{value:.{decimals}f}"
 
 
 # Represents the limit b -> 0 in formulas; the error is of its square.
@@ -180,8 +149,9 @@ RESULTS = {
         limit=True,
         better="lower",
         is_listed=False,
+        displayed=END_MASS,
     ),
-    "cue_end_mass": Result("mass of the cue's end", "kg"),
+    "cue_end_mass": Result("mass of the cue's end", "kg", displayed=END_MASS),
     "length": Result("length", "m", 0),
     "rigid_length": Result("rigid length", "m", 0),
     "balance_point": Result(
@@ -297,7 +267,7 @@ RESULTS = {
     "indentation": Result("indentation", "m", 2),
     "stiffness": Result("stiffness of the tip", "N/m"),
     "patch": Result("contact diameter", "m", 1),
-    "tip_mass": Result("mass of the tip", "kg"),
+    "tip_mass": Result("mass of the tip", "kg", displayed=END_MASS),
     "E": Result("E", "Pa"),
     "G": Result("G", "Pa"),
     "rho": Result("rho", "kg/m^3"),
@@ -315,31 +285,6 @@ REGIMES = {
     "gross slip": "gross slip: for more than a quarter of the normal impulse; close to a miscue",
     "miscue": f"miscue: {MISCUE_DEFINITION}",
 }
-
-
-def with_unit(
-    value: float, unit: str, digits: int = 4, *, error: float | None = None, decimals: int | None = None
-) -> str:
-    """An SI number in its display unit, to some digits or decimals; with an error, to the error's second digit."""
-    scale, name = DISPLAY_UNITS.get(unit, (1.0, unit))
-    suffix = f" {name}" if name not in ("", "°") else name
-    if decimals is not None:
-        return f"{scale * value:.{decimals}f}{suffix}"
-    if error is None or not math.isfinite(error) or error <= 0:
-        return f"{scale * value:.{digits}g}{suffix}"
-    decimals = max(0, 1 - math.floor(math.log10(scale * error)))
-    return f"{scale * value:.{decimals}f} ± {scale * error:.{decimals}f}{suffix}"
-
-
-def to_display(values: Any, unit: str) -> Array:
-    """SI numbers in their display unit."""
-    return np.asarray(values) * DISPLAY_UNITS.get(unit, (1.0, unit))[0]
-
-
-def with_heading(label: str, unit: str) -> str:
-    """The name of a column with its display unit."""
-    name = DISPLAY_UNITS.get(unit, (1.0, unit))[1]
-    return f"{label}, {name}" if name else label
 
 
 def units_of(*names: str) -> dict[str, str]:

@@ -15,7 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.results.quantities import DASH, DISPLAY_UNITS, RESULTS, format_value, with_unit
+from cuefem.quantity.display_units import METRIC, with_unit
+from cuefem.results.quantities import DASH, RESULTS, format_value
 
 Record = dict[str, Any]
 # The content of a column of a row: the quantity of that name, a template such as "{swing:m}", or a text of the row.
@@ -80,7 +81,7 @@ class _Templates(Formatter):
             return DASH
         if spec in RESULTS:
             return format_value(spec, value)
-        if spec in DISPLAY_UNITS:
+        if spec in METRIC:
             return with_unit(value, spec)
         if spec.endswith(" %"):
             return f"{100 * value:{spec[:-2]}f} %"

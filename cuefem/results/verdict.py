@@ -5,6 +5,7 @@ from __future__ import annotations
 from cuefem.cue import Cue
 from cuefem.cue.materials import MATERIALS, table_name
 from cuefem.parameters.parts import main_material
+from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.unit_checks import MIN_CUE_MASS
 from cuefem.results.quantities import MISCUE_DEFINITION
 from cuefem.scene import Outcome, Scene
@@ -24,8 +25,8 @@ def mass_problem(scene: Scene) -> str:
     whole = float(scene.cue.mass)
     if whole < MIN_CUE_MASS:
         return (
-            f"the whole cue weighs {1e3 * whole:.4g} g, less than {1e3 * MIN_CUE_MASS:g} g: squirt is too low to "
-            'compare; add the butt, such as --body-mass "15 oz" (body_mass in a file)'
+            f"the whole cue weighs {with_unit(whole, 'kg')}, less than {with_unit(MIN_CUE_MASS, 'kg')}: squirt is too "
+            'low to compare; add the butt, such as --body-mass "15 oz" (body_mass in a file)'
         )
     if scene.lumped is not None or not scene.shaft.shaft_mass_measured:
         return ""

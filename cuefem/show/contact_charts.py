@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from cuefem.contact.outcome import Phase
-from cuefem.results.quantities import to_display, with_heading
+from cuefem.quantity.display_units import to_display, with_heading
 from cuefem.results.records import Record
 from cuefem.results.solved_design import time_history
 from cuefem.scene import Outcome

@@ -13,7 +13,7 @@ import numpy as np
 from cuefem.beam.modes import modes
 from cuefem.cue import Material, Segment
 from cuefem.cue.materials import MATERIALS, material_name, table_name
-from cuefem.results.quantities import significant, to_display, with_heading
+from cuefem.quantity.display_units import display_unit, significant, to_display, with_heading
 from cuefem.scene import Scene
 from cuefem.show.charts import WIDTH, Axis, Chart, Curve, Tick, chart, path
 
@@ -34,13 +34,14 @@ class Piece(NamedTuple):
 
 @dataclass(frozen=True)
 class CueDrawing:
-    """A cue from the side, tip on the left; ticks in mm from the front of its segments."""
+    """A cue from the side, tip on the left; ticks in the display unit of lengths from the front of its segments."""
 
     title: str
     height: float
     axis: float
     pieces: tuple[Piece, ...]
     ticks: tuple[Tick, ...]
+    unit: str
 
 
 def drawn_segments(scene: Scene) -> tuple[Segment, ...]:
@@ -93,8 +94,9 @@ def cue_drawing(
         _piece(segment, x, scale, axis, dome=0.0 if x else scene.dome_radius, diameter_scale=diameter_scale)
         for x, segment in zip(ends, drawn, strict=False)
     )
-    ticks = Axis("mm", 0.0, 1e3 * length).scale_for([np.zeros(1)]).ticks(scale * ahead, WIDTH)
-    return CueDrawing(title, 2 * axis, axis, pieces, ticks)
+    per_metre, unit, _ = display_unit("m")
+    ticks = Axis(unit, 0.0, per_metre * length).scale_for([np.zeros(1)]).ticks(scale * ahead, WIDTH)
+    return CueDrawing(title, 2 * axis, axis, pieces, ticks, unit)
 
 
 def _cut(segments: Sequence[Segment], length: float) -> list[Segment]:

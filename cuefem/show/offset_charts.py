@@ -7,7 +7,7 @@ from itertools import groupby
 
 import numpy as np
 
-from cuefem.results.quantities import DISPLAY_UNITS
+from cuefem.quantity.display_units import display_unit
 from cuefem.results.records import Record
 from cuefem.show.charts import Axis, Chart, Curve, Shade, Tick, chart
 
@@ -29,7 +29,7 @@ def offset_charts(
     of the scene's stroke, which is marked. regimes: contact state at each offset; long slip and miscue are shaded.
     """
     x = np.array(offsets)
-    per_metre, unit = DISPLAY_UNITS["m"]
+    per_metre, unit, _ = display_unit("m")
     squirt, pivot = [], []
     for name, style, curve in lines:
         beyond = np.cumsum([regime == "miscue" for regime in curve.get("regime", [""] * len(x))]) > 0

@@ -11,9 +11,9 @@ import numpy as np
 
 from cuefem.cue import Cue, Segment
 from cuefem.effects.tip_effects import TipDome
+from cuefem.quantity.display_units import short_number, span_text, unit_suffix, with_unit
 from cuefem.quantity.fields import quantity_fields
 from cuefem.quantity.unit_checks import CUE_DIAMETER, CUE_LENGTH, MIN_CUE_MASS
-from cuefem.results.quantities import to_display
 from cuefem.results.verdict import density_problem, mass_problem
 from cuefem.scene import Ball, Scene, Stroke, Tip
 
@@ -35,21 +35,21 @@ def _usual(kind: type, name: str) -> tuple[float, float]:
 
 
 def _of_stroke(scene: Scene) -> Iterator[Check]:
-    leather, ball = "expected 0.001 to 0.002 s for leather", scene.ball
+    leather, ball = f"expected {span_text(1e-3, 2e-3, 's')} for leather", scene.ball
     yield "contact time, rigid cue head-on,", scene.valid_contact_time, _usual(Tip, "contact_time"), "s", leather
-    diameter = "expected 26 to 31 mm; is this the diameter?"
-    yield "ball radius", ball.radius, _usual(Ball, "radius"), "mm", diameter
-    yield "ball mass", ball.mass, _usual(Ball, "mass"), "g", "expected 140 to 210 g"
-    yield "stroke speed", scene.stroke.speed, _usual(Stroke, "speed"), "m/s", "expected 0.5 to 12 m/s"
+    diameter = f"expected {span_text(0.026, 0.031, 'm')}; is this the diameter?"
+    yield "ball radius", ball.radius, _usual(Ball, "radius"), "m", diameter
+    yield "ball mass", ball.mass, _usual(Ball, "mass"), "kg", f"expected {span_text(0.14, 0.21, 'kg')}"
+    yield "stroke speed", scene.stroke.speed, _usual(Stroke, "speed"), "m/s", f"expected {span_text(0.5, 12.0, 'm/s')}"
     yield "friction", scene.tip.friction, (0.2, 1.2), "", "expected 0.5 to 0.8 for chalked leather"
     tips = "expected 0.5 to 0.9, of the tip alone"
     yield "restitution", scene.tip.restitution, (0.0, 0.95), "", tips
-    dome = "expected 9 to 10.6 mm, dime to nickel"
-    yield "dome radius", scene.dome_radius or None, _usual(TipDome, "radius"), "mm", dome
+    dome = f"expected {span_text(0.009, 0.0106, 'm')}, dime to nickel"
+    yield "dome radius", scene.dome_radius or None, _usual(TipDome, "radius"), "m", dome
 
 
 def _of_drawing(cue: Cue) -> Iterator[Check]:
-    yield "drawn length", cue.length, CUE_LENGTH, "mm", "check the unit of the lengths"
+    yield "drawn length", cue.length, CUE_LENGTH, "m", "check the unit of the lengths"
     ends = (
         (f"segments[{i}].{end}", getattr(segment, end), i == 0 and end == "tip_diameter")
         for i, segment in enumerate(_without_rounded_butt(cue.segments))
@@ -57,16 +57,18 @@ def _of_drawing(cue: Cue) -> Iterator[Check]:
     )
     for name, diameter, is_tip in [end for end in ends if not CUE_DIAMETER[0] <= end[1] <= CUE_DIAMETER[1]][:1]:
         check = "are these radii?" if diameter < CUE_DIAMETER[0] else "check the decimal point and the unit"
-        usual = "8.5 to 14 mm at the tip" if is_tip else "8.5 to 35 mm along a cue"
-        yield name, diameter, CUE_DIAMETER, "mm", f"expected {usual}; {check}"
-    yield "drawn mass", cue.shaft_mass, (MIN_DRAWN_MASS, inf), "g", "check the sizes and the densities"
+        usual = (
+            f"{span_text(0.0085, 0.014, 'm')} at the tip" if is_tip else f"{span_text(0.0085, 0.035, 'm')} along a cue"
+        )
+        yield name, diameter, CUE_DIAMETER, "m", f"expected {usual}; {check}"
+    yield "drawn mass", cue.shaft_mass, (MIN_DRAWN_MASS, inf), "kg", "check the sizes and the densities"
     if any(
         segment.length > LONG and segment.material.E > STIFF and segment.material.rho < LIGHT
         for segment in cue.segments
         if not max(segment.tip_bore, segment.butt_bore)
     ):
         tubes = "carbon shafts are tubes; add the bore (--bore, or `cuefem guide files`)"
-        yield "a solid rod as stiff as carbon fibre, drawn mass", cue.shaft_mass, (0.0, 0.0), "g", tubes
+        yield "a solid rod as stiff as carbon fibre, drawn mass", cue.shaft_mass, (0.0, 0.0), "kg", tubes
 
 
 def _without_rounded_butt(segments: tuple[Segment, ...]) -> tuple[Segment, ...]:
@@ -87,11 +89,9 @@ def _thickest(segments: tuple[Segment, ...], first: float, last: float) -> float
 
 def _of_mass(scene: Scene) -> Iterator[Check]:
     mass = float(scene.cue.mass)
-    whole = "expected 0.4 to 0.7 kg: check the unit of --body-mass (body_mass), or omit it if FILE draws the whole cue"
+    expected = f"expected {span_text(0.4, 0.7, 'kg')}"
+    whole = f"{expected}: check the unit of --body-mass (body_mass), or omit it if FILE draws the whole cue"
     yield "mass of the whole cue", mass, (0.0, 1.0), "kg", whole
-
-
-SCALES = {"mm": 1e3, "g": 1e3}  # of the SI unit; others: 1
 
 
 def plausibility_warnings(scene: Scene, *, with_impact: bool = True) -> list[str]:
@@ -106,7 +106,7 @@ def plausibility_warnings(scene: Scene, *, with_impact: bool = True) -> list[str
         *(_of_mass(scene) if with_impact else ()),
     ]
     outside = [
-        f"{name} {SCALES.get(unit, 1) * value:.6g} {unit}".rstrip() + f"; {hint}"
+        f"{name} {with_unit(value, unit, 6)}; {hint}"
         for name, value, (low, high), unit, hint in checks
         if value is not None and not low <= value <= high
     ]
@@ -129,13 +129,15 @@ def _of_outline(segments: tuple[Segment, ...]) -> list[str]:
     for i, (near, other) in enumerate(pairwise(_without_rounded_butt(segments))):
         ends = near.butt_diameter, other.tip_diameter
         if max(ends) > MAX_STEP * min(ends):
-            sizes = " to ".join(f"{to_display(end, 'm'):.4g}" for end in ends)
-            lines.append(f"the diameter jumps from {sizes} mm between segments[{i}] and segments[{i + 1}]")
+            sizes = " to ".join(short_number(end, "m") for end in ends)
+            lines.append(
+                f"the diameter jumps from {sizes}{unit_suffix('m')} between segments[{i}] and segments[{i + 1}]"
+            )
     ends = (_thickest(segments, 0, 1 / 3), _thickest(segments, 2 / 3, 1)) if segments else (0.0, 0.0)
     if ends[0] > ends[1]:
-        sizes = " and ".join(f"{to_display(end, 'm'):.4g}" for end in ends)
+        sizes = " and ".join(short_number(end, "m") for end in ends)
         order = "list the rows from tip to butt, or head their column `from butt [mm]`"
-        lines.append(f"the tip end is thicker than the butt end, {sizes} mm: {order}")
+        lines.append(f"the tip end is thicker than the butt end, {sizes}{unit_suffix('m')}: {order}")
     for i, segment in enumerate(segments):
         bores = {"tip": segment.tip_bore, "butt": segment.butt_bore}
         missing = [end for end, bore in bores.items() if bore == 0 < max(bores.values())]

@@ -10,7 +10,9 @@ from typing import Any
 from cuefem.cue import Cue, LumpedCue
 from cuefem.effects.effect import Effect
 from cuefem.files.schema import table as file_table
-from cuefem.results.quantities import format_value, with_unit
+from cuefem.quantity.display_units import END_MASS, with_unit
+from cuefem.quantity.units import parse_number
+from cuefem.results.quantities import format_value
 from cuefem.results.records import Record
 from cuefem.scene import Scene
 
@@ -45,7 +47,7 @@ def assumptions(scene: Record) -> str:
             f"contact time {_milliseconds(tip['contact_time'])} (rigid cue head-on)",
             f"tip restitution {tip['restitution']:g}",
             f"friction {tip['friction']:g}".replace("inf", "∞"),
-            f"speed {stroke['speed']:g} m/s",
+            f"speed {with_unit(stroke['speed'], 'm/s', 6)}",
         ]
     )
 
@@ -57,7 +59,7 @@ def _milliseconds(time: float | None) -> str:
 def cue_line(cue: Record) -> str:
     """The record of a cue as one line of text."""
     if "length" not in cue:
-        return f"lumped cue, {format_value('mass', cue['mass'])}, end mass {format_value('mass', cue['end_mass'])}"
+        return f"lumped cue, {format_value('mass', cue['mass'])}, end mass {format_value('end_mass', cue['end_mass'])}"
     pieces = f"{cue['segments']} segment" + ("s" if cue["segments"] > 1 else "")
     masses = f"as drawn {format_value('mass', cue['shaft_mass'])}, butt {format_value('mass', cue['body_mass'])}"
     return f"{with_unit(cue['length'], 'm')} in {pieces}, cue {format_value('mass', cue['mass'])} ({masses})"
@@ -87,6 +89,10 @@ def effect_name(kind: str) -> str:
     return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", kind).lower()
 
 
+# Units of files whose numbers have a display unit: its key and the SI unit. Masses of effects are those of tips.
+_DISPLAYED = {"mm": ("m", "m"), "g": (END_MASS, "kg"), "m/s": ("m/s", "m/s")}
+
+
 def _short(value: Any) -> str:
     """A number with its unit to six digits, a Boolean, or a table or list of them, as text."""
     if isinstance(value, bool):
@@ -96,6 +102,9 @@ def _short(value: Any) -> str:
     if isinstance(value, dict):
         return "of " + ", ".join(f"{name} {_short(number)}" for name, number in value.items())
     number_text, _, unit = str(value).partition(" ")
+    if unit in _DISPLAYED:
+        key, si = _DISPLAYED[unit]
+        return with_unit(parse_number(str(value), si), key, 6)
     number = float(number_text)
     if unit == "GPa" and abs(number) < 1:  # the usual unit of leather
         number, unit = 1e3 * number, "MPa"

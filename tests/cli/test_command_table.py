@@ -12,7 +12,7 @@ from click.shell_completion import ShellComplete
 
 from cuefem.cli import COMMANDS, main
 from cuefem.cli.output import Output
-from cuefem.results.quantities import significant
+from cuefem.quantity.display_units import significant
 from tests.helpers.command_line import call
 
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.results.quantities import format_change
+from cuefem.quantity.display_units import format_change
 from tests.helpers.command_line import call
 
 ROOT = Path(__file__).parents[2]

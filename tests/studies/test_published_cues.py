@@ -6,7 +6,7 @@ import math
 from cuefem.handbook import chapters
 from cuefem.measurements.measured_folder import load_measured
 from cuefem.measurements.measurement_types import AddedMass, PivotLength, Squirt
-from cuefem.results.quantities import with_unit
+from cuefem.quantity.display_units import with_unit
 from studies.pages import STUDIES
 
 HOME = STUDIES / "measured"

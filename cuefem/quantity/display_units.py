@@ -1,0 +1,169 @@
+"""The units in which quantities are displayed, and every quantity as text: the one place where SI numbers get units.
+
+A process displays metric units or those of the United States; files (TOML, CSV, JSON) are metric or SI in both.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cuefem.quantity.units import conversion_factor
+
+
+class DisplayUnit(NamedTuple):
+    """A display unit: its numbers per SI unit, its name, and its decimals, or None for those of the quantity."""
+
+    factor: float
+    name: str
+    decimals: int | None = None
+
+
+# Keys beside the SI units. Makers weigh cues in ounces, and state end masses and tips in grams everywhere; a distance
+# off the line of aim grows with the distance to the ball aimed at.
+END_MASS, OFF_LINE = "kg of end mass", "m/m"
+METRIC = MappingProxyType(
+    {
+        "kg": DisplayUnit(1e3, "g"),
+        END_MASS: DisplayUnit(1e3, "g"),
+        "m": DisplayUnit(1e3, "mm"),
+        OFF_LINE: DisplayUnit(1e3, "mm/m"),
+        "m/s": DisplayUnit(1.0, "m/s"),
+        "s": DisplayUnit(1e3, "ms"),
+        "rad": DisplayUnit(math.degrees(1), "°"),
+        "J": DisplayUnit(1e3, "mJ"),
+        "Pa": DisplayUnit(1e-9, "GPa"),
+        "kg/m^3": DisplayUnit(1.0, "kg/m³"),
+        "1/sqrt(kg)": DisplayUnit(1.0, "/√kg"),
+    }
+)
+US = METRIC | {
+    "kg": DisplayUnit(1 / float(conversion_factor("oz", "kg")), "oz", 3),
+    "m": DisplayUnit(1 / float(conversion_factor("in", "m")), "in", 3),
+    OFF_LINE: DisplayUnit(float(conversion_factor("ft", "in")), "in/ft", 3),
+    "m/s": DisplayUnit(1 / float(conversion_factor("mph", "m/s")), "mph", 2),
+}
+SYSTEMS = MappingProxyType({"metric": METRIC, "us": US})
+_displayed = "metric"  # of this process: threads that compute a page's results write its texts too
+
+
+def displayed_system() -> str:
+    """The name of the units displayed: "metric" or "us"."""
+    return _displayed
+
+
+def display(system: str) -> None:
+    """Display these units, "metric" or "us", from now on."""
+    global _displayed
+    SYSTEMS[system]
+    _displayed = system
+
+
+@contextmanager
+def displayed_in(system: str) -> Iterator[None]:
+    """Display these units, "metric" or "us", within a block."""
+    before = _displayed
+    display(system)
+    try:
+        yield
+    finally:
+        display(before)
+
+
+def display_unit(unit: str) -> DisplayUnit:
+    """The display unit of an SI unit; the SI unit itself if it has none."""
+    return SYSTEMS[_displayed].get(unit) or DisplayUnit(1.0, unit)
+
+
+def to_display(values: Any, unit: str) -> NDArray[np.float64]:
+    """SI numbers in their display unit."""
+    return np.asarray(values) * display_unit(unit).factor
+
+
+def with_heading(label: str, unit: str) -> str:
+    """The name of a column or an axis with its display unit."""
+    name = display_unit(unit).name
+    return f"{label}, {name}" if name else label
+
+
+def off_line(squirt: float) -> tuple[str, str]:
+    """How far off the line of aim squirt, rad, carries a ball, and after which distance: ("35 mm", "m").
+
+    >>> import math
+    >>> off_line(math.radians(2.0))
+    ('35 mm', 'm')
+    """
+    size, _, per = with_unit(math.tan(squirt), OFF_LINE, decimals=0).partition("/")
+    return size, per
+
+
+def number_text(value: float, unit: str, digits: int = 4, *, decimals: int | None = None) -> str:
+    """An SI number in its display unit, without the unit: to decimals, or to digits where they are decimals."""
+    shown = display_unit(unit)
+    decimals = decimals if shown.decimals is None else shown.decimals
+    if decimals is None:
+        return significant(shown.factor * value, digits)
+    return f"{shown.factor * value:.{decimals}f}"
+
+
+def with_unit(
+    value: float, unit: str, digits: int = 4, *, error: float | None = None, decimals: int | None = None
+) -> str:
+    """An SI number in its display unit, to some digits or decimals; with an error, to the error's second digit.
+
+    >>> with_unit(0.0125, "m"), with_unit(0.0125, "m", error=3e-5)
+    ('12.5 mm', '12.500 ± 0.030 mm')
+    >>> with displayed_in("us"):
+    ...     with_unit(0.0125, "m"), with_unit(0.538, "kg"), with_unit(0.012, END_MASS)
+    ('0.492 in', '18.977 oz', '12 g')
+    """
+    if error is not None and math.isfinite(error) and error > 0:
+        factor = display_unit(unit).factor
+        decimals = max(0, 1 - math.floor(math.log10(factor * error)))
+        return f"{factor * value:.{decimals}f} ± {factor * error:.{decimals}f}{unit_suffix(unit)}"
+    return short_number(value, unit, digits, decimals=decimals) + unit_suffix(unit)
+
+
+def span_text(low: float, high: float, unit: str, digits: int = 4) -> str:
+    """Two SI numbers and their display unit: "26 to 31 mm"."""
+    return f"{short_number(low, unit, digits)} to {with_unit(high, unit, digits)}"
+
+
+def short_number(value: float, unit: str, digits: int = 4, *, decimals: int | None = None) -> str:
+    """An SI number in its display unit, without the unit: to decimals, or to at most so many digits."""
+    shown = display_unit(unit)
+    decimals = decimals if shown.decimals is None else shown.decimals
+    return f"{shown.factor * value:{f'.{digits}g' if decimals is None else f'.{decimals}f'}}"
+
+
+def change_with_unit(change: float, unit: str, decimals: int) -> str:
+    """A change of an SI number with its sign and display unit; nothing that rounds to zero has a sign."""
+    shown = display_unit(unit)
+    return format_change(shown.factor * change, decimals if shown.decimals is None else shown.decimals, shown.name)
+
+
+def format_change(change: float, decimals: int, unit: str) -> str:
+    """A change with its sign and unit; nothing that rounds to zero has a sign."""
+    text = f"{change:+.{decimals}f}"
+    return f"{text if float(text) else text[1:]}\u00a0{unit}".replace("-", "−")
+
+
+def significant(value: float, digits: int = 4) -> str:
+    """A number to so many digits where they are decimals."""
+    if value == 0 or not math.isfinite(value):
+        return f"{value:.0f}"
+    rounded = float(f"{abs(value):.{digits - 1}e}")  # 0.99999 has the digits of 1
+    decimals = max(0, digits - 1 - math.floor(math.log10(rounded)))
+    return f"{value:.{decimals}f}"
+
+
+def unit_suffix(unit: str) -> str:
+    """What follows a number of an SI unit: its display unit behind a blank, a degree sign without."""
+    name = display_unit(unit).name
+    return f" {name}" if name not in ("", "°") else name
