@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from cuefem.cli.output import command, print_json
 from cuefem.cli.scene_command import cue_options, errors_name_file, print_warnings, scene_of
@@ -54,7 +55,9 @@ def designer(scene: Path | None, port: int, show: bool, as_json: bool, **options
         print_warnings(first.scene)
     announce: Callable[[str], None] = (lambda address: print_json({"address": address})) if as_json else click.echo
     with suppress(KeyboardInterrupt):  # Ctrl-C is how one ends it
-        serve(first, port=_free(port), show=show, announce=announce)
+        units = click.get_current_context().get_parameter_source("units")
+        is_default = units is ParameterSource.DEFAULT
+        serve(first, port=_free(port), show=show, announce=announce, with_kept_units=is_default)
 
 
 def _free(port: int) -> int:

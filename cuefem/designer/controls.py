@@ -13,6 +13,8 @@ from cuefem.cue.materials import LEATHERS, material_name, table_name
 from cuefem.files.shaft_additions import with_additions
 from cuefem.parameters.parameter import PARAMETERS, Slider, millimetres, with_parameters
 from cuefem.parameters.parts import Layout, bore_mouth, max_bore_depth, split_segment, taper_position
+from cuefem.quantity.display_units import display_unit
+from cuefem.quantity.display_units import with_unit as quantity_text
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.units import plain_fractions, split_quantity, unit_of
 from cuefem.scene import Scene
@@ -20,7 +22,7 @@ from cuefem.scene.default_scene import GAMES, usual_scene, without_leather
 
 MIN_WALL = 0.0005  # m, the thinnest wall around a typed bore
 NEW_FERRULE, NEW_BORE, NEW_DEPTH = "25 mm", 0.006, 0.127
-DECIMALS = {"mm": 2, "g": 1}  # the most that are shown; of other units 3
+DECIMALS = {"mm": 2, "g": 1, "mph": 2}  # the most that are shown; of other units 3
 NONE, DRILLED = "none", "drilled"
 MAX_TEXT = 40
 UNITLESS = re.compile(r"[-+]?[\d./\s¼-¾⅐-⅞-]+")
@@ -69,21 +71,27 @@ KNOBS = dict(
     ]
 )
 GROUPS = ("Shaft", "Tip", "Stroke")
-SI = {"mm": "m", "g": "kg", "ms": "s"}
+SI = {"mm": "m", "g": "kg", "ms": "s", "in": "m", "oz": "kg", "mph": "m/s"}
 # Controls whose uncertain parameters have other names in a verdict.
 INPUTS = {"shaft_material": ("E", "G"), "shaft_mass": ("rho",), "bore": ("bore_width",)}
 
 
 def label(key: str, scene: Scene) -> str:
     """A control's label."""
-    return KNOBS[key].label.format(at=f"{1e3 * taper_position(scene.shaft):.0f}\u00a0mm")
+    position = quantity_text(taper_position(scene.shaft), "m", decimals=0)
+    return KNOBS[key].label.format(at=position.replace(" ", "\u00a0"))
 
 
 def range_of(key: str) -> Slider:
-    """The ranges of a number's slider and of its typed values."""
+    """The ranges of a number's slider and of its typed values, in the unit displayed."""
     known = KNOBS[key].range
     assert known is not None
-    return known
+    shown = display_unit(SI.get(known.unit, known.unit))
+    if not known.unit or shown.name == known.unit:
+        return known
+    ratio = shown.factor / known.scale
+    low, high, least, most = (ratio * end for end in (known.low, known.high, known.least, known.most))
+    return Slider(shown.name, shown.factor, low, high, float(f"{ratio * known.step:.1g}"), least, most)
 
 
 def value(key: str, scene: Scene) -> Any:
@@ -248,11 +256,14 @@ def limits(key: str, scene: Scene) -> tuple[float, float, str]:
     least, most, why = known.least / known.scale, known.most / known.scale, ""
     if key == "bore_width" and (bore := Layout.of(cue).bore):
         narrow = min(min(cue.segments[i].tip_diameter, cue.segments[i].butt_diameter) for i in bore)
-        most, why = narrow - 2 * MIN_WALL, f"a wall of {1e3 * MIN_WALL:g} mm in {1e3 * narrow:.2f} mm"
+        wall, around = quantity_text(MIN_WALL, "m"), quantity_text(narrow, "m", decimals=2)
+        most, why = narrow - 2 * MIN_WALL, f"a wall of {wall} in {around}"
     elif key == "bore_depth":
-        most, why = max_bore_depth(cue), f"to the end, from {1e3 * bore_mouth(cue):.0f} mm behind the tip"
+        mouth = quantity_text(bore_mouth(cue), "m", decimals=0)
+        most, why = max_bore_depth(cue), f"to the end, from {mouth} behind the tip"
     elif key == "dome":
-        least, why = max(least, scene.tip_diameter / 2), f"half of the tip's {1e3 * scene.tip_diameter:.2f} mm"
+        tip = quantity_text(scene.tip_diameter, "m", decimals=2)
+        least, why = max(least, scene.tip_diameter / 2), f"half of the tip's {tip}"
     return least, most, why
 
 

@@ -7,14 +7,18 @@ from collections.abc import Callable
 from pathlib import PurePosixPath
 from typing import Any
 
-from nicegui import events, ui
+from nicegui import Client, events, ui
 
 from cuefem.designer.host import Host
 from cuefem.designer.in_thread import run_in_thread
 from cuefem.designer.state import FAILURES, MAX_NAME, Design, one_line, read_design
 from cuefem.files.reference_cues import PRESETS
+from cuefem.quantity.display_units import display, displayed_system
 
 MAX_FILE = 5_000_000  # bytes
+UNITS_KEPT = "cuefem.units"  # of the browser's storage
+# By the system displayed: words and icon of the button that displays the other one, and its name.
+OTHER_UNITS = {"metric": ("Inches", "square_foot", "us"), "us": ("Metric", "straighten", "metric")}
 KINDS = (".toml", ".csv", ".stl", ".ply", ".obj")
 
 
@@ -75,6 +79,7 @@ class Header:
                 self.report = _tool("Report", "description", self._report)
                 self.undo = _tool("Undo", "undo", lambda: self.undo_redo(-1))
                 self.redo = _tool("Redo", "redo", lambda: self.undo_redo(1))
+                _tool(*OTHER_UNITS[displayed_system()][:2], self._switch_units)
                 ui.link("Guide", "/guide", new_tab=True).classes("guide")
             self.upload = Upload(page)
 
@@ -90,6 +95,16 @@ class Header:
         """Undo (-1) or redo (1)."""
         if self.session.undo_redo(steps):
             self.page.refresh()
+
+    @staticmethod
+    def _switch_units() -> None:
+        """Display the other units on every open page, and keep them in this browser."""
+        *_, system = OTHER_UNITS[displayed_system()]
+        display(system)
+        ui.run_javascript(f"localStorage.setItem('{UNITS_KEPT}', '{system}')")
+        for client in [*Client.instances.values()]:
+            if client.has_socket_connection:
+                client.run_javascript("location.reload()")
 
     def _on_rename(self, event: Any) -> None:
         if self.session.rename(str(event.value or "")):

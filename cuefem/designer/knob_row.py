@@ -183,7 +183,9 @@ class ControlsCard:
         for i, group in enumerate(GROUPS):
             with ui.expansion(group, value=i == 0, group="knobs").classes("group") as self.folds[group]:
                 self.rows += [KnobRow(key, page) for key, knob in KNOBS.items() if knob.group == group]
-        ui.html('<p class="mark-key soft"><i></i>assumed. Fields take any unit: 1/4 in, 15 oz.</p>', sanitize=False)
+        ui.html(
+            '<p class="mark-key soft"><i></i>assumed. Fields take any unit: 6 mm, 1/4 in, 15 oz.</p>', sanitize=False
+        )
 
     def show(self) -> None:
         """Show the values of the design, and a summary of each group."""

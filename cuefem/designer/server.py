@@ -12,10 +12,11 @@ from starlette.middleware.trustedhost import TrustedHostMiddleware
 from starlette.responses import HTMLResponse, PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from cuefem.designer.header import KINDS, MAX_FILE
+from cuefem.designer.header import KINDS, MAX_FILE, UNITS_KEPT
 from cuefem.designer.page import Page, is_open
 from cuefem.designer.state import Design
 from cuefem.handbook.page import page as handbook
+from cuefem.quantity.display_units import SYSTEMS, display, displayed_system
 from cuefem.quantity.unit_checks import PlausibilityWarning
 
 HOST = "127.0.0.1"
@@ -23,14 +24,23 @@ FORM_SIZE = 10_000  # bytes of a form beside its file
 REJECTED = f"a file must be a {', '.join(KINDS[:-1])} or {KINDS[-1]} of at most {MAX_FILE // 10**6} MB"
 
 
-def serve(first: Design, *, port: int, show: bool, announce: Callable[[str], None]) -> None:
-    """Serve the page on this computer only until stopped. show: open it in the browser."""
+def serve(
+    first: Design, *, port: int, show: bool, announce: Callable[[str], None], with_kept_units: bool = False
+) -> None:
+    """Serve the page on this computer only until stopped.
+
+    show: open it in the browser. with_kept_units: display the units that the browser keeps, those of its last switch.
+    """
     warnings.filterwarnings("ignore", category=PlausibilityWarning)  # the page's Check lists these warnings
 
     @ui.page("/")
     async def index() -> None:
-        if await is_open(ui.context.client):
-            Page(first)
+        if not await is_open(ui.context.client):
+            return
+        if with_kept_units:
+            kept = await ui.run_javascript(f"localStorage.getItem('{UNITS_KEPT}')")
+            display(kept if kept in SYSTEMS else displayed_system())
+        Page(first)
 
     app.add_api_route("/guide", handbook, response_class=HTMLResponse)
     app.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])

@@ -14,6 +14,7 @@ from cuefem.designer.host import Host
 from cuefem.designer.in_thread import run_in_thread
 from cuefem.designer.session import Session
 from cuefem.designer.state import FAILURES, Design, one_line
+from cuefem.quantity.display_units import displayed_in
 from cuefem.results.quantities import unbroken
 from cuefem.results.verdict import verdict_problem
 from cuefem.show.renderers import csv_text
@@ -85,7 +86,8 @@ class TabsCard:
         self.page.attempt(self.session.apply, read)
 
     def _table(self) -> None:
-        made = panels.tabulate_numbers(self.session)
+        with displayed_in("metric"):  # as all files
+            made = panels.tabulate_numbers(self.session)
         if made is not None:
             ui.download.content("\ufeff" + csv_text(made.head, made.rows), self.session.file_name("csv"))
 

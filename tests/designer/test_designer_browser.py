@@ -106,6 +106,23 @@ def test_saved_design_strikes_as_displayed(browser: Any, address: str, tmp_path:
         )  # the report has another numerical error
 
 
+def test_switch_of_units_is_kept_with_the_design(browser: Any, tmp_path: Path) -> None:
+    """A typed bare number is in the unit displayed; a new page of the browser has the units of the last switch."""
+    with run_designer(tmp_path) as own, designer_page(browser, own) as page:
+        type_value(page, "Tip diameter", "12")
+        squirt = displayed_number(page, "squirt")
+        page.get_by_role("button", name="Inches").click()
+        page.get_by_role("button", name="Metric").wait_for()
+        wait_until_idle(page)
+        assert displayed_number(page, "squirt") == squirt
+        assert "in/ft" in page.locator(".tiles").inner_text()
+        type_value(page, "Tip diameter", "0.5")
+        assert displayed_number(page, "squirt") > squirt
+        another = page.context.new_page()
+        another.goto(own)
+        another.get_by_role("button", name="Metric").wait_for(timeout=60_000)
+
+
 LAYOUT = """() => {
   const box = e => e.getBoundingClientRect(), all = what => [...document.querySelectorAll(what)];
   const texts = all("svg.chart text, svg.cue text").map(box).filter(r => r.height);

@@ -8,13 +8,17 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
+from cuefem.analysis.first_screen import tiles
 from cuefem.analysis.report_sections import SECTIONS
-from cuefem.designer.controls import KNOBS, value
+from cuefem.designer.controls import KNOBS, label, parse, range_of, value, value_text
 from cuefem.designer.panels import COMPUTING, curves_markup, sections_markup, tabulate_numbers
 from cuefem.designer.session import FILE, NOTHING, NOW, OF_TAB, OPENED, Results, Session
 from cuefem.designer.state import read_design, reference_design
 from cuefem.files.reference_cues import PRESETS
 from cuefem.parameters.parameter import PARAMETERS
+from cuefem.quantity.display_units import displayed_in
+from tests.cli.test_units import METRIC_LEFT, assert_same_quantities, cells
+from tests.test_golden_files import last_place
 
 DESIGNER = Path(cf.__file__).parent / "designer"
 FIRST = reference_design(next(preset for preset in PRESETS if preset.file == "meshes/pool_maple.toml"))
@@ -138,3 +142,39 @@ def test_slider_of_parameter_is_in_its_limits(key: str) -> None:
     if (own := value(key, FIRST.scene)) is not None:
         assert slider.least <= slider.scale * own <= slider.most
     assert KNOBS[key].range is slider
+
+
+@pytest.mark.parametrize("key", [key for key, knob in KNOBS.items() if knob.range])
+def test_controls_read_what_they_show_in_us_units(key: str) -> None:
+    """With the unit and without, to the digits shown; the slider's range is the metric one."""
+    scene = FIRST.scene
+    if (own := value(key, scene)) is None:
+        own = range_of(key).least / range_of(key).scale
+    metric = range_of(key)
+    with displayed_in("us"):
+        known, text = range_of(key), value_text(key, own)
+        bare, _, unit = text.partition(" ")
+        assert unit == known.unit == {"mm": "in", "g": "oz", "m/s": "mph"}.get(metric.unit, metric.unit)
+        for name in ("low", "high", "least", "most"):
+            assert getattr(known, name) / known.scale == pytest.approx(getattr(metric, name) / metric.scale)
+        for typed in (text, bare):
+            assert parse(key, typed, scene) == pytest.approx(own, abs=0.51 * last_place(bare) / known.scale)
+        assert not METRIC_LEFT.search(label(key, scene))
+
+
+@pytest.mark.heavy
+def test_numbers_and_headline_follow_units() -> None:
+    """The table of numbers and the tiles; the design and its file do not change."""
+    session = Session(FIRST)
+    session.compare_with("low deflection")
+    assert session.compute("Numbers") == []
+    metric, file, headline = tabulate_numbers(session), session.file(), session.headline_cue(0)
+    assert metric is not None
+    assert headline is not None
+    with displayed_in("us"):
+        us = tabulate_numbers(session)
+        assert us is not None
+        assert assert_same_quantities(cells([metric]), cells([us])) > 5
+        assert [text for text, _ in cells([us]) if METRIC_LEFT.search(text)] == []
+        assert [tile.text.partition(" ")[2] for tile in tiles(headline)] == ["in/ft", "g", "in", "N/m"]
+        assert session.file() == file
