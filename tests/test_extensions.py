@@ -1,6 +1,7 @@
-"""Extensions by one table entry or class appear in all outputs: parameter, result, definition, effects (properties)."""
+"""Extensions by one table entry or class appear in all outputs: question, parameter, result, effects (properties)."""
 
 import gc
+import html
 import json
 import sys
 from collections.abc import Iterator
@@ -12,13 +13,18 @@ import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.analysis import QUESTIONS, Question
 from cuefem.analysis.effect_sensitivity import variants
+from cuefem.designer.panels import sections_markup
+from cuefem.designer.session import Session
+from cuefem.designer.state import Design
 from cuefem.designs import Levels, Response, Study, Vary, evaluate
 from cuefem.effects.effect import effect_kinds
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.measurements.uncertain_parameters import parameters_of
 from cuefem.parameters.parameter import PARAMETERS, paths, with_parameters
 from cuefem.results.quantities import RESULTS
+from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.extensions import (
     DEFINITION,
     DRAWING_RESULT,
@@ -63,6 +69,28 @@ def test_added_parameter_is_varied_and_uncertain(monkeypatch: pytest.MonkeyPatch
     plain = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.0125, 0.021, WOOD),), 0.42))
     with pytest.raises(ValueError, match="got 'collar length', which this scene does not have"):
         paths(plain, "collar length")
+
+
+def test_added_question_is_command_section_and_call(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A file and its line in `QUESTIONS`: help, command, report in terminal, JSON, page and designer, and notebook."""
+    weigh = Question("Weight", "tests.helpers.made_up_question:weight", help="Weight of a cue.")
+    monkeypatch.setitem(QUESTIONS, "weight", weigh)
+    scene = kim_scene(0.3)
+    cf.save(scene, tmp_path / "scene.toml")
+    newtons = 9.81 * scene.cue.mass
+    assert "  weight    Weight of a cue.\n" in stdout_of("--help")
+    assert "\n  Weigh a cue.\n\n" in stdout_of("weight", "--help")
+    assert as_json("weight", tmp_path / "scene.toml")["weight"] == pytest.approx(newtons, rel=1e-12)
+    answer: Any = cf.weight  # type: ignore[attr-defined]
+    assert f"<td>{newtons:.3f}</td>" in html.unescape(answer(scene)._repr_html_())
+    report = cf.report(scene, details=True)
+    assert report.to_dict()["weight"] == {"weight": newtons}
+    assert "Weight of the cue" in str(report)
+    session = Session(Design("this", scene))
+    session.results.own["answers"] = report
+    for page in (report.to_html(), sections_markup(session)):
+        assert "<h2>Weight</h2>" in page
+        assert f"<td>{newtons:.3f}</td>" in page
 
 
 def test_added_result_is_displayed_and_evaluated(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from cuefem.results.quantities import format_value
 from cuefem.results.records import Record, Table
-from cuefem.scene import Outcome
+from cuefem.results.solved_design import SolvedDesign
+from cuefem.scene import Outcome, Scene
 from cuefem.show.analysis import Analysis
 
 if TYPE_CHECKING:
@@ -56,3 +57,9 @@ class ContactHistory(Analysis):
             if name != "initial"
         )
         return Table("Energy balance", ("", "share", "energy"), tuple(rows))
+
+
+def contact_history(scene: Scene | SolvedDesign) -> ContactHistory:
+    """The contact over time."""
+    design = SolvedDesign.of(scene)
+    return ContactHistory(design.scene, design.strike().energy, design.strike())

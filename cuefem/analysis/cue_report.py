@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from cuefem.analysis import has_segments, report_sections
 from cuefem.analysis.natural_frequencies import natural_frequencies
-from cuefem.analysis.report_sections import SECTIONS, has_segments
 from cuefem.analysis.squirt_curve import FINE_OFFSETS
 from cuefem.analysis.strike_models import regime_warning
 from cuefem.contact.geometric_stiffness import SlopeOutOfRange
@@ -22,7 +22,7 @@ from cuefem.show.analysis import Analysis
 
 @dataclass(frozen=True)
 class CueReport(Analysis):
-    """All analyses of one stroke, by the keys of `SECTIONS`.
+    """All analyses of one stroke, by the keys of `QUESTIONS`.
 
     Parameters
     ----------
@@ -51,17 +51,19 @@ class CueReport(Analysis):
 
     def values(self) -> Record:
         """The numbers of every section."""
-        shown = (section.key for section in SECTIONS if section.key in self.sections and not section.page_only)
         others = {name: getattr(self, name) for name in ("regime", "no_contact", "no_squirt")}
-        return {key: self.sections[key].values() for key in shown} | {k: text for k, text in others.items() if text}
+        return {key: answer.values() for key, answer in self._brief()} | {k: text for k, text in others.items() if text}
 
     def tables(self) -> list[Table | str]:
         """The tables of every section, the warnings first."""
         first = self.no_contact and f"no end mass and no squirt: {self.no_contact}"
         as_entered = self.no_squirt and f"{self.no_squirt}\nBelow: the numbers of the cue as entered."
         first = first or as_entered or regime_warning(self.regime)
-        shown = (section.key for section in SECTIONS if section.key in self.sections and not section.page_only)
-        return [*([first, ""] if first else []), *(table for key in shown for table in self.sections[key].tables())]
+        return [*([first, ""] if first else []), *(table for _, answer in self._brief() for table in answer.tables())]
+
+    def _brief(self) -> list[tuple[str, Analysis]]:
+        """The sections that terminal and JSON show too."""
+        return [(key, self.sections[key]) for key in report_sections(details=False) if key in self.sections]
 
     def page_title(self, name: str, question: str) -> str:
         """The name of the file alone: the page says that it is a report."""
@@ -124,12 +126,13 @@ def report(
     except (IndentationOutOfRange, SlopeOutOfRange) as error:
         modes: dict[str, Analysis] = {"modes": natural_frequencies(scene)} if has_segments(scene) else {}
         return CueReport(scene, modes, no_contact=str(error))
-    wanted = [section for section in SECTIONS if section.needs(scene) and (details or not section.page_only)]
+    wanted = [*report_sections(scene, details=details).items()]
     calibrated: Record = {} if calibration is None else {"calibration": calibration}
     arguments = {"verdict": calibrated, "advice": calibrated, "squirt": {"offsets": FINE_OFFSETS} if details else {}}
-    for section in progress(wanted):
+    for key, question in progress(wanted):
+        answer = question.function()
         try:
-            found[section.key] = section.analyse(design, **arguments.get(section.key, {}))
+            found[key] = answer(design, **arguments.get(key, {}))
         except NoVerdict as error:
             lacking = str(error)
     return CueReport(scene, found, regime, no_squirt=lacking)

@@ -99,7 +99,9 @@ def effect_sensitivity(
 ) -> EffectSensitivity:
     """Sensitivity of a strike to the physical effects: each of the scene removed, each other one added.
 
-    All strikes have the resolution that the unmodified scene needs, so that discretisation errors cancel.
+    All strikes have the resolution that the unmodified scene needs, so that discretisation errors cancel. An effect is
+    significant if squirt, ball speed or spin changes by at least rtol, relative ([accuracy] of a scene's file, default
+    1e-2).
 
     Parameters
     ----------

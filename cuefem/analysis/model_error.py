@@ -114,7 +114,11 @@ class ModelError(Analysis):
 
 
 def model_error(scene: Scene, *, progress: Progress = iter) -> ModelError:
-    """Error of the beam model of a shaft against a 3-D elastic solid, with the discretisation error of the solid.
+    """Error of the beam model of a shaft against a 3-D elastic solid: frequencies, stiffness, end mass and squirt.
+
+    The solid is computed with elements of two orders; their difference is the discretisation error. Effects that the
+    solid lacks (AxialWaves, GeometricStiffness ...) are removed from both models and listed. Run time: some seconds,
+    longer for a shaft of many segments.
 
     Parameters
     ----------

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from cuefem.analysis import report_sections
 from cuefem.analysis.comparison import Comparison, compare_cues
 from cuefem.analysis.first_screen import (
     HeadlineCue,
@@ -14,7 +15,6 @@ from cuefem.analysis.first_screen import (
     scale_markup,
     tiles_markup,
 )
-from cuefem.analysis.report_sections import SECTIONS
 from cuefem.analysis.squirt_curve import FINE_OFFSETS
 from cuefem.analysis.strike_models import regime_warning
 from cuefem.results.closed_forms import pivot_length
@@ -44,13 +44,13 @@ def page_of(
 ) -> str:
     """The computed answers of a report as HTML.
 
-    answers: by the keys of `SECTIONS`, a verdict among them. regime: of the contact. other: name and scene of a cue to
+    answers: by the keys of `QUESTIONS`, a verdict among them. regime: of the contact. other: name and scene of a cue to
     compare with, with the same ball and stroke.
     """
     about = scene_record(scene)
     verdict: Any = answers["verdict"]
     compared = None if other is None else compare_cues({other[0]: other[1], name: scene})
-    parts = {section.key: section for section in SECTIONS if section.key in answers and section.key != "verdict"}
+    parts = {key: part for key, part in report_sections().items() if key in answers and key != "verdict"}
     sections = [
         {
             "key": key,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import warnings
+from collections.abc import Callable
 from contextlib import suppress
 from difflib import get_close_matches
 from importlib import import_module
@@ -13,6 +14,7 @@ from typing import Any, NoReturn
 import click
 from click.shell_completion import CompletionItem
 
+from cuefem.analysis import asked_questions
 from cuefem.contact.kernel import KernelError
 from cuefem.quantity.display import one_line
 from cuefem.quantity.encoding import spell_lacking_characters
@@ -23,7 +25,7 @@ from cuefem.quantity.unit_checks import FLOAT_ERRORS, DrawingWarning, Plausibili
 for _threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(_threads, "1")
 
-# Every command by its name: its file and function, its group, and its line in `cuefem --help`.
+# Every command with options of its own, by its name: its file and function, its group, and its line in `cuefem --help`.
 CUE, VERIFICATION, STUDIES, FILES, PAGE = "Cue", "Verification", "Studies", "Files and parts", "Designer"
 COMMANDS = {
     "report": ("cuefem.cli.cue_commands:report", CUE, "Squirt with its uncertainty, and all other numbers of a cue."),
@@ -36,17 +38,7 @@ COMMANDS = {
         "Squirt, ball speed, spin and pivot length of one stroke; tables for games.",
     ),
     "compare": ("cuefem.cli.compare_command:compare", CUE, "Compare cues, or computed and measured values."),
-    "effects": (
-        "cuefem.cli.accuracy_commands:effects",
-        VERIFICATION,
-        "Sensitivity to each physical effect, removed or added.",
-    ),
-    "cost": ("cuefem.cli.accuracy_commands:cost", VERIFICATION, "Convergence study, and the resolution it recommends."),
-    "check": (
-        "cuefem.cli.accuracy_commands:check",
-        VERIFICATION,
-        "Error of the beam model against a 3-D elastic solid, a part of all errors.",
-    ),
+    "cost": ("cuefem.cli.cue_commands:cost", VERIFICATION, "Convergence study, and the resolution it recommends."),
     "study": (
         "cuefem.cli.study_command:study",
         STUDIES,
@@ -63,15 +55,28 @@ COMMANDS = {
 }
 
 
+def listed_commands() -> dict[str, tuple[str, str]]:
+    """Group and line in `cuefem --help` of every command: those of `COMMANDS` and of registered questions."""
+    own = {name: (group, words) for name, (_, group, words) in COMMANDS.items()}
+    asked = {name: (question.group, question.help) for name, question in asked_questions().items()}
+    together = own | asked
+    groups = [group for group, _ in together.values()]
+    return dict(sorted(together.items(), key=lambda item: groups.index(item[1][0])))
+
+
 class _Commands(click.Group):
-    """The commands of `COMMANDS`: a command's file is loaded when the command is called, not for a list of them."""
+    """The listed commands: a command's file is loaded when the command is called, not for a list of them."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """All names, in the order of their groups."""
-        return list(COMMANDS)
+        return list(listed_commands())
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         """Load the command of that name, or None."""
+        asked = asked_questions()
+        if name in asked:
+            make: Callable[..., click.Command] = import_module("cuefem.cli.scene_command").question_command
+            return make(name, asked[name])
         if name not in COMMANDS:
             return None
         module, _, attribute = COMMANDS[name][0].partition(":")
@@ -80,23 +85,26 @@ class _Commands(click.Group):
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
         """The called command; for an unknown one an error with the nearest name."""
-        near = get_close_matches(args[0], COMMANDS, 1) if args[0] not in COMMANDS and args[0][0] != "-" else []
+        listed = listed_commands()
+        near = get_close_matches(args[0], listed, 1) if args[0] not in listed and args[0][0] != "-" else []
         if near:
             ctx.fail(f"No such command {args[0]!r}; did you mean {near[0]!r}?")
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the table, a group under each heading."""
-        width = max(map(len, COMMANDS))
-        for group in dict.fromkeys(group for _, group, _ in COMMANDS.values()):
+        listed = listed_commands()
+        width = max(map(len, listed))
+        for group in dict.fromkeys(group for group, _ in listed.values()):
             with formatter.section(group):
-                formatter.write_dl([(f"{n:{width}}", words) for n, (_, g, words) in COMMANDS.items() if g == group])
+                formatter.write_dl([(f"{n:{width}}", words) for n, (g, words) in listed.items() if g == group])
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
         """The commands with that prefix, then click's completion."""
-        names = [name for name in COMMANDS if name.startswith(incomplete)]
+        listed = listed_commands()
+        names = [name for name in listed if name.startswith(incomplete)]
         options = click.Command.shell_complete(self, ctx, incomplete)
-        return [*(CompletionItem(name, help=COMMANDS[name][2]) for name in names), *options]
+        return [*(CompletionItem(name, help=listed[name][1]) for name in names), *options]
 
 
 class _OneLine(_Commands):

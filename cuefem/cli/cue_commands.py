@@ -1,4 +1,4 @@
-"""Commands on a cue: report, improve, modes, end-mass, strike."""
+"""Commands on a cue: report, improve, modes, end-mass, strike, cost."""
 
 from __future__ import annotations
 
@@ -187,3 +187,16 @@ def _strike_table(request: Request, speeds: tuple[str, str] | None, written: str
     if not written:
         request.hints.append("-o table.json writes the whole table, with units, signs and an example")
     return answer
+
+
+@analysis_command()
+@click.option(
+    "--max-modes",
+    type=click.IntRange(min=24),
+    default=150,
+    show_default=True,
+    help="Refine up to this many modes; at least three levels (12, 24 and 48 modes or more) run.",
+)
+def cost(request: Request, max_modes: int) -> Analysis:
+    """Run a convergence study and recommend a resolution: error against run time and degrees of freedom."""
+    return cf.convergence_study(request.scene, max_modes, progress=with_progress_bar)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import wraps
-from inspect import signature
+from inspect import cleandoc, signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +19,7 @@ from cuefem.cli.output import (
     print_json,
     shared_option,
 )
+from cuefem.cli.progress import with_progress_bar
 from cuefem.cli.scene_options import (
     CueFile,
     file_label,
@@ -33,7 +34,7 @@ from cuefem.cli.scene_options import (
     with_options,
 )
 from cuefem.effects.force_law import IndentationOutOfRange
-from cuefem.files import InputError, check_writable, load_stroke
+from cuefem.files import InputError, check_writable, load_accuracy, load_stroke
 from cuefem.files.cue_names import cue_name
 from cuefem.files.defaults_report import Assumption, assumption_texts, assumptions
 from cuefem.files.shaft_additions import SHAFT_ADDITIONS
@@ -46,6 +47,7 @@ from cuefem.show.renderers import print_tables
 from cuefem.solid.tip_cache import computing_message
 
 if TYPE_CHECKING:
+    from cuefem.analysis import Question
     from cuefem.measurements.calibration import Calibration
 
 
@@ -228,6 +230,23 @@ def analysis_command(
         return command(name, **about)(shared(output_option(*formats)(run)))
 
     return decorated
+
+
+def question_command(name: str, question: Question) -> click.Command:
+    """The command of a registered question; its help is the text of the function above the parameters."""
+    function = question.function()
+    taken = signature(function).parameters
+    text = cleandoc(function.__doc__ or question.help).partition("\n\nParameters\n")[0]
+
+    def ask(request: Request) -> Analysis:
+        arguments: dict[str, Any] = {}
+        if "rtol" in taken:
+            arguments["rtol"] = load_accuracy(request.file)
+        if "progress" in taken:
+            arguments["progress"] = with_progress_bar
+        return function(request.scene, **arguments)
+
+    return analysis_command(name, help=text)(ask)
 
 
 def _show(request: Request, analysis: Analysis, output: Path | None) -> None:

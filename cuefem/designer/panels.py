@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Any
 
-from cuefem.analysis.report_sections import SECTIONS
+from cuefem.analysis import report_sections
 from cuefem.analysis.strike_models import regime_warning
 from cuefem.analysis.verdict import difference_text
 from cuefem.designer.computation import CURVE_OFFSETS
@@ -139,9 +139,9 @@ def sections_markup(session: Session) -> str:
     answers = session.results.own.get("answers")
     if answers is None:
         return COMPUTING
-    shown = [section for section in SECTIONS if section.key in answers.sections]
     return "".join(
-        f"<details><summary><h2>{escape(section.title)}</h2></summary>"
-        f"{answer_markup(f'report-{section.key}', answers.sections[section.key])}</details>"
-        for section in shown
+        f"<details><summary><h2>{escape(question.title)}</h2></summary>"
+        f"{answer_markup(f'report-{key}', answers.sections[key])}</details>"
+        for key, question in report_sections().items()
+        if key in answers.sections
     )

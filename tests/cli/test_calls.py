@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.cli import COMMANDS
+from cuefem.cli import listed_commands
 from cuefem.show.analysis import Answer
 
 ROOT = Path(__file__).parents[2]
@@ -35,7 +35,7 @@ def returned(name: str) -> set[str]:
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_table_lists_every_command_every_call_and_its_result(page: Path) -> None:
     rows = table(page)
-    assert {command.split()[0] for row in rows for command in row[0]} == set(COMMANDS)
+    assert {command.split()[0] for row in rows for command in row[0]} == set(listed_commands())
     called = {match[1] for row in rows for call in row[1] if (match := re.match(r"cf\.(\w+)\(", call))}
     functions = {name for name in dir(cf) if inspect.isfunction(getattr(cf, name))}
     assert called == {name for name in functions if returned(name)} | {"load", "save"}

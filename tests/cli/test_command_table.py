@@ -10,7 +10,7 @@ import click
 import pytest
 from click.shell_completion import ShellComplete
 
-from cuefem.cli import COMMANDS, main
+from cuefem.cli import COMMANDS, listed_commands, main
 from cuefem.cli.output import Output
 from cuefem.quantity.display_units import significant
 from tests.helpers.command_line import call
@@ -38,7 +38,7 @@ def test_unknown_command_suggests_nearest_name(name: str, nearest: str | None) -
     assert err.startswith(f"cuefem: No such command {name!r}{hint} (`")
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", listed_commands())
 def test_every_command_has_common_options(name: str) -> None:
     """Every command has --json, and all but `convert` and `designer` have -o."""
     status, out, err = call(name, "--help")

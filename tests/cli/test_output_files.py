@@ -5,10 +5,11 @@ import pkgutil
 from importlib import import_module
 from pathlib import Path
 
+import click
 import pytest
 
 import cuefem as cf
-from cuefem.cli import COMMANDS
+from cuefem.cli import listed_commands, main
 from tests.helpers.command_line import as_json, call, stdout_of
 
 KIM = Path("studies/scenes/kim.toml").resolve()
@@ -30,9 +31,10 @@ HEAVY = {"report", "improve", "effects", "cost", "check", "compare"}
 def formats() -> list[object]:
     """Commands and the extensions of their -o."""
     found = []
-    for name, (where, *_) in COMMANDS.items():
-        module, _, function = where.partition(":")
-        for option in getattr(import_module(module), function).params:
+    for name in listed_commands():
+        command = main.get_command(click.Context(main), name)
+        assert command is not None
+        for option in command.params:
             extensions = getattr(option.type, "extensions", ())
             marks = [pytest.mark.heavy] if name in HEAVY else []
             shown = [each for each in extensions if (name, each) not in ELSEWHERE]

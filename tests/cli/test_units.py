@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import pytest
 
-from cuefem.cli import COMMANDS, scene_command
+from cuefem.cli import listed_commands, scene_command
 from cuefem.quantity.display_units import displayed_system
 from cuefem.results.records import Table
 from tests.helpers.command_line import call, stdout_of
@@ -111,7 +111,7 @@ def test_environment_chooses_units_and_option_overrides_it(monkeypatch: pytest.M
     assert stdout_of("modes", KIM) == us != metric == stdout_of("modes", KIM, "--units", "metric")
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", listed_commands())
 def test_unknown_units_are_one_line(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of every command, by its option and by the environment, which the line names."""
     problem = "'imperial' is not one of 'metric', 'us'"

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
+from cuefem.analysis import report_sections
 from cuefem.analysis.first_screen import tiles
-from cuefem.analysis.report_sections import SECTIONS
 from cuefem.designer.controls import KNOBS, label, parse, range_of, value, value_text
 from cuefem.designer.panels import COMPUTING, curves_markup, sections_markup, tabulate_numbers
 from cuefem.designer.session import FILE, NOTHING, NOW, OF_TAB, OPENED, Results, Session
@@ -58,7 +58,7 @@ def test_report_tab_shows_every_section_of_the_report() -> None:
     assert sections_markup(session) == COMPUTING
     assert session.compute("Report") == []
     text = sections_markup(session)
-    titles = [f"<h2>{section.title}</h2>" for section in SECTIONS if section.needs(FIRST.scene)]
+    titles = [f"<h2>{section.title}</h2>" for section in report_sections(FIRST.scene).values()]
     places = [text.index(title) for title in titles]
     assert places == sorted(places)
     assert session.report_call()().count("<h1>") == 1

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import cuefem as cf
-from cuefem.analysis.report_sections import LAW
+from cuefem.analysis.page_notes import LAW
 from cuefem.handbook import MAKERS, chapters
 from cuefem.parameters.parameter import with_parameters
 from cuefem.results.quantities import drawn_mass

@@ -1,0 +1,53 @@
+"""Every listed result of one stroke of a cue."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cuefem.analysis.end_mass import SQUIRT_END_MASS
+from cuefem.results.computable_results import listed_results
+from cuefem.results.quantities import format_value
+from cuefem.results.records import Record, Table, tabulate_values, value_rows
+from cuefem.results.solved_design import SolvedDesign
+from cuefem.scene import Scene
+from cuefem.show.analysis import Analysis
+from cuefem.show.scene_summary import assumptions, scene_record
+
+
+@dataclass(frozen=True)
+class CueNumbers(Analysis):
+    """Every listed result of the registry.
+
+    Parameters
+    ----------
+    scene : Scene
+        The analysed stroke.
+    numbers : dict of str to float or None
+        The results by their names in `RESULTS`, in SI units; None where the scene has none.
+    squirt_end_mass : float or None
+        The end mass that has the squirt of the stroke, kg; None where no end mass has it.
+    """
+
+    numbers: dict[str, float | None]
+    squirt_end_mass: float | None
+
+    def values(self) -> Record:
+        """The results by name."""
+        return self.numbers
+
+    def tables(self) -> list[Table | str]:
+        """A row for each result."""
+        about = scene_record(self.scene)
+        title = f"Cue, and stroke at offset b/R {self.scene.stroke.offset:.4g}"
+        end_mass = (SQUIRT_END_MASS, format_value("end_mass", self.squirt_end_mass))
+        return [tabulate_values(title, [end_mass, *value_rows(self.numbers)], assumptions(about))]
+
+
+def cue_numbers(scene: Scene | SolvedDesign) -> CueNumbers:
+    """All listed results, and the end mass that has the squirt."""
+    design = SolvedDesign.of(scene)
+    try:
+        mass = design.end_mass("squirt", None)
+    except ValueError:
+        mass = None
+    return CueNumbers(design.scene, listed_results(design), mass)
