@@ -12,6 +12,7 @@ from cuefem.analysis.squirt_curve import FINE_OFFSETS
 from cuefem.analysis.strike_models import regime_warning
 from cuefem.contact.geometric_stiffness import SlopeOutOfRange
 from cuefem.effects.force_law import IndentationOutOfRange
+from cuefem.files.defaults_report import Assumption
 from cuefem.measurements.calibration import Calibration
 from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import SolvedDesign
@@ -70,7 +71,7 @@ class CueReport(Analysis):
         return name
 
     def to_html(
-        self, name: str = "", assumptions: Sequence[str] = (), warnings: Sequence[str] = (), **more: Any
+        self, name: str = "", assumptions: Sequence[Assumption] = (), warnings: Sequence[str] = (), **more: Any
     ) -> str:
         """The page with the first screen; ValueError for a miscue."""
         from cuefem.analysis.report_page import page_of

@@ -17,6 +17,7 @@ from cuefem.analysis.first_screen import (
 )
 from cuefem.analysis.squirt_curve import FINE_OFFSETS
 from cuefem.analysis.strike_models import regime_warning
+from cuefem.files.defaults_report import Assumption
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.quantities import format_value
 from cuefem.results.records import Record
@@ -38,7 +39,7 @@ def page_of(
     answers: Answers,
     regime: str,
     name: str,
-    notes: Sequence[str],
+    notes: Sequence[Assumption],
     warnings: Sequence[str],
     other: Named | None = None,
 ) -> str:
@@ -69,7 +70,7 @@ def page_of(
         .get_template("page.html.j2")
         .render(
             name=name,
-            notes=list(notes),
+            notes=[*map(str, notes)],
             warnings=[*warnings, *filter(None, [regime_warning(regime)])],
             facts=[
                 plain_cue_line(scene.cue),

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -12,15 +12,13 @@ import cuefem as cf
 from cuefem.analysis.comparison import MAX_CUES
 from cuefem.cli.output import Command, command, output_option
 from cuefem.cli.progress import with_progress_bar
+from cuefem.cli.request import Request, errors_name_file, print_warnings
 from cuefem.cli.scene_command import (
     Presentation,
     calibration_option,
     check_overwrite,
-    completed_scene,
     cue_options,
-    errors_name_file,
     force_option,
-    print_warnings,
 )
 from cuefem.cli.scene_options import impact_options, offset_option, option
 from cuefem.files import InputError, load_stroke
@@ -69,7 +67,8 @@ def compare(
     output: Path | None,
     calibration: Calibration | None,
     force: bool,
-    **options: Any,
+    as_json: bool,
+    **options: str | None,
 ) -> None:
     """Compare cues side by side, or the computed and measured values of one cue, with uncertainties.
 
@@ -80,20 +79,19 @@ def compare(
     measurements, and one CSV for each long series, such as squirt.csv. The options of cue, tip and stroke stand in
     these files.
     """
-    as_json = options["as_json"]
     if len(files) > 1:
-        files = tuple(map(named_path, files))
+        requests = [Request.of(named_path(file), options) for file in files]
         if output is not None and output.suffix == ".toml":
             raise InputError(output, "--output", "a calibration (.toml) needs one FOLDER and --estimate")
         for name, flag in (("--estimate", estimate), ("--template", template)):
             if flag:
-                raise InputError(files[0], name, f"takes one FOLDER; got {len(files)} files")
-        _side_by_side(files, options, output, same_shaft=same_shaft, calibration=calibration)
+                raise InputError(requests[0].file, name, f"takes one FOLDER; got {len(files)} files")
+        _side_by_side(requests, output, as_json=as_json, same_shaft=same_shaft, calibration=calibration)
         return
     (folder,) = files
     if calibration is not None:
         raise InputError(folder, "--calibration", "needs two or more FILEs, whose squirt it improves")
-    if same_shaft or any(value is not None for name, value in options.items() if name != "as_json"):
+    if same_shaft or Request.of(folder, options).given:
         raise InputError(folder, "", "options of cue and stroke need two or more FILEs; a FOLDER has them in its files")
     if template:
         write_template(folder)
@@ -122,59 +120,61 @@ def _write_calibration(folder: Path, output: Path) -> None:
 
 
 def _side_by_side(
-    files: Sequence[Path],
-    options: dict[str, Any],
+    requests: Sequence[Request],
     output: Path | None,
     *,
+    as_json: bool,
     same_shaft: bool,
     calibration: Calibration | None,
 ) -> None:
     """Print or write the comparison of cues."""
+    first, files = requests[0], [request.file for request in requests]
     if len(files) > MAX_CUES:
         raise InputError(files[MAX_CUES], "", f"must be one of at most {MAX_CUES} cues; got {len(files)}")
-    if options["shaft_mass"] is not None:
+    if "shaft_mass" in first.given:
         problem = (
             "must be set in each cue's file (shaft_mass) when cues are compared; `cuefem convert` writes such a .toml"
         )
         raise InputError(files[0], option("shaft_mass"), problem)
-    for file in files:
-        _reject_given(file, options)
-    loaded = [completed_scene(file, options) for file in files]
-    names = _names(files)
-    scenes = {name: scene for name, (scene, *_) in zip(names, loaded, strict=True)}
-    for scene in scenes.values():
-        print_warnings(scene)
-    with errors_name_file(files[0], options):
+    for request in requests:
+        _reject_given(request)
+    asked = dict(zip(_names(files), requests, strict=True))
+    scenes = {name: request.scene for name, request in asked.items()}
+    for request in requests:
+        request.print_warnings()
+    with first.errors():
         analysis = cf.compare(scenes, same_shaft=same_shaft, calibration=calibration, progress=with_progress_bar)
         warnings = [
             f"{name}: {line}"
-            for name, file in zip(names, files, strict=True)
-            for line in (*drawing_warnings(file), *plausibility_warnings(scenes[name]))
+            for name, request in asked.items()
+            for line in (*drawing_warnings(request.file), *plausibility_warnings(request.scene))
         ]
-        notes = _assumption_texts(names, [listed for _, listed, _ in loaded], [offered for *_, offered in loaded])
         about = {"files": [cue_name(file) or str(file) for file in files]}
-        shown = Presentation(analysis, files=about, assumptions=notes, warnings=warnings)
-        shown.show(output, as_json=options["as_json"])
+        shown = Presentation(analysis, files=about, assumptions=_assumptions(asked), warnings=warnings)
+        shown.show(output, as_json=as_json)
 
 
-def _reject_given(file: Path, options: dict[str, Any]) -> None:
+def _reject_given(request: Request) -> None:
     """InputError for an option of cue or tip whose value the file has itself, other than that of compared cues."""
-    opened = load_stroke(file, length_unit=options["length_unit"])
-    for name in sorted(given_keys(file, opened, options["length_unit"])):
-        if options.get(name) is not None:
-            problem = "would replace this file's own value: options of compare set what a file leaves open"
-            raise InputError(file, option(name), f"{problem}; got {options[name]!r}")
+    unit = request.given.get("length_unit")
+    opened = load_stroke(request.file, length_unit=unit)
+    for name in sorted(given_keys(request.file, opened, unit) & request.given.keys()):
+        problem = "would replace this file's own value: options of compare set what a file leaves open"
+        raise InputError(request.file, option(name), f"{problem}; got {request.given[name]!r}")
 
 
-def _assumption_texts(
-    names: Sequence[str], listed: Sequence[list[Assumption]], offered: Sequence[set[str]]
-) -> list[str]:
+def _assumptions(asked: Mapping[str, Request]) -> list[Assumption]:
     """Assumptions on all cues, and on the stroke, which is that of the first; then those on each cue, with its name."""
-    shared = [each for each in listed[0] if each.of == STROKE or all(each in own for own in listed)]
-    texts = [each.line(offered[0]) for each in shared]
-    for name, own, options in zip(names, listed, offered, strict=True):
-        texts += [f"{name}: {each.line(options)}" for each in own if each.of != STROKE and each not in shared]
-    return texts
+    listed = {name: request.assumptions for name, request in asked.items()}
+    first, *_ = listed.values()
+    shared = [each for each in first if each.of == STROKE or all(each in own for own in listed.values())]
+    others = [
+        replace(each, text=f"{name}: {each.text}")
+        for name, own in listed.items()
+        for each in own
+        if each.of != STROKE and each not in shared
+    ]
+    return [*shared, *others]
 
 
 def _names(files: Sequence[Path]) -> list[str]:

@@ -12,8 +12,8 @@ import cuefem as cf
 from cuefem.analysis.reduction import PAPER_CUE_ENDS, PAPER_TONE
 from cuefem.cli.output import Command
 from cuefem.cli.progress import with_progress_bar
+from cuefem.cli.request import Request
 from cuefem.cli.scene_command import (
-    Request,
     analysis_command,
     calibration_option,
     check_overwrite,
@@ -94,7 +94,7 @@ def _save_change(request: Request, answer: DesignChanges, take: int, output: Pat
     changed = with_parameters(request.scene, rows[take - 1].values)
     save(changed, output)
     lines = [f"wrote {output}: {rows[take - 1].change}"]
-    if not any(value for name, value in request.options.items() if name != "as_json"):  # they would apply to both files
+    if not request.given:  # they would apply to both files
         one_wood = main_material(request.scene.shaft).E == main_material(changed.shaft).E
         same = ["--same-shaft"] if one_wood else []
         lines.append(f"before and after: {shlex.join(['cuefem', 'compare', str(file), str(output), *same])}")
@@ -177,7 +177,7 @@ def strike(request: Request, target: str | None, speeds: tuple[str, str] | None,
 def _strike_table(request: Request, speeds: tuple[str, str] | None, written: str) -> StrikeTable:
     """The table for games, over the speeds of the option."""
     for name in ("speed", "offset"):
-        if request.options[name] is not None:
+        if name in request.given:
             raise InputError(request.file, f"--{name}", "does not apply to --format table, which has all; use --speeds")
     limits = {}
     if speeds is not None:

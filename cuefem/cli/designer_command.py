@@ -12,7 +12,8 @@ import click
 from click.core import ParameterSource
 
 from cuefem.cli.output import command, print_json
-from cuefem.cli.scene_command import cue_options, errors_name_file, print_warnings, scene_of
+from cuefem.cli.request import Request
+from cuefem.cli.scene_command import cue_options
 from cuefem.cli.scene_options import CueFile, option
 from cuefem.files.cue_names import cue_name
 from cuefem.files.reference_cues import PRESETS
@@ -37,22 +38,21 @@ def designer(scene: Path | None, port: int, show: bool, as_json: bool, **options
     """
     try:
         from cuefem.designer.server import serve
-        from cuefem.designer.state import design_from_file, reference_design
+        from cuefem.designer.state import design_of, reference_design
     except ModuleNotFoundError as error:
         if error.name is None or error.name.startswith("cuefem"):
             raise
         raise ValueError(f"the designer needs {error.name}: pip install '.[designer]' in the clone") from None
 
-    given = {name: value for name, value in options.items() if value is not None}
     if scene is None:
-        for name in given:
+        for name in [name for name, text in options.items() if text is not None]:
             raise ValueError(f"{option(name)} needs a SCENE, whose cue or stroke it changes; got none")
         first = reference_design(PRESETS[0])
     else:
-        read, _ = scene_of(scene, options, warn=False)
-        with errors_name_file(scene):
-            first = design_from_file(scene, cue_name(scene) or scene.stem, read, given)
-        print_warnings(first.scene)
+        request = Request.of(scene, options)
+        with request.errors():
+            first = design_of(cue_name(scene) or scene.stem, request.scene, request.assumed)
+        request.print_warnings()
     announce: Callable[[str], None] = (lambda address: print_json({"address": address})) if as_json else click.echo
     with suppress(KeyboardInterrupt):  # Ctrl-C is how one ends it
         units = click.get_current_context().get_parameter_source("units")

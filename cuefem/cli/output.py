@@ -12,6 +12,7 @@ from typing import Any
 import click
 
 from cuefem.files import InputError, check_writable
+from cuefem.files.defaults_report import Assumption
 from cuefem.quantity.display_units import SYSTEMS, displayed_in
 from cuefem.quantity.encoding import is_unicode
 from cuefem.show.renderers import json_text
@@ -129,7 +130,7 @@ def output_option(*extensions: str, required: bool = False, many: bool = False) 
 page_option = output_option(".html", ".json")
 
 
-def assumption_lines(notes: Sequence[str]) -> list[str]:
+def assumption_lines(notes: Sequence[Assumption]) -> list[str]:
     """The assumptions, one per line, each with its option; empty without assumptions."""
     return ["assumed:", *(f"  {note}" for note in notes)] if notes else []
 

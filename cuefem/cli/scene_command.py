@@ -1,9 +1,8 @@
-"""Shared parts of commands: options, the scene of a file and its options, and output."""
+"""Shared parts of commands: options, the command of an analysis, and output."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import wraps
 from inspect import cleandoc, signature
@@ -20,6 +19,7 @@ from cuefem.cli.output import (
     shared_option,
 )
 from cuefem.cli.progress import with_progress_bar
+from cuefem.cli.request import Request
 from cuefem.cli.scene_options import (
     CueFile,
     file_label,
@@ -27,24 +27,16 @@ from cuefem.cli.scene_options import (
     offset_option,
     option,
     parameter_options,
-    reject_game,
-    scene_as_drawn,
-    scene_from_cue,
-    sets_tip,
-    with_options,
 )
-from cuefem.effects.force_law import IndentationOutOfRange
-from cuefem.files import InputError, check_writable, load_accuracy, load_stroke
+from cuefem.files import InputError, check_writable, load_accuracy
 from cuefem.files.cue_names import cue_name
-from cuefem.files.defaults_report import Assumption, assumption_texts, assumptions
+from cuefem.files.defaults_report import Assumption
 from cuefem.files.shaft_additions import SHAFT_ADDITIONS
 from cuefem.files.warnings_of_drawings import drawing_warnings
 from cuefem.results.records import Record, Table
-from cuefem.scene import Scene
 from cuefem.show.analysis import Analysis, Answer, write
 from cuefem.show.plausibility import plausibility_warnings
 from cuefem.show.renderers import print_tables
-from cuefem.solid.tip_cache import computing_message
 
 if TYPE_CHECKING:
     from cuefem.analysis import Question
@@ -71,17 +63,6 @@ def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
     for name, known in reversed(SHAFT_ADDITIONS.items()):
         command = shared_option("Cue", option(name), metavar=known.metavar, help=known.help)(command)
     return parameter_options("Cue", "body_mass", "shaft_mass")(command)
-
-
-def load_with_options(load: Callable[..., Any], file: Path, options: Mapping[str, Any]) -> Any:
-    """The contents of a file, with the options that supplement its drawing; errors name the option."""
-    try:
-        return load(file, **{name: options.get(name) for name in SHAFT_ADDITIONS})
-    except InputError as error:
-        name, _, problem = f"{error.key}: {error.problem}".removeprefix(": ").partition(": ")
-        if options.get(name) is None:
-            raise
-        raise InputError(file, option(name), problem) from None
 
 
 def _calibration(context: click.Context, parameter: click.Parameter, path: Path | None) -> Calibration | None:
@@ -115,91 +96,6 @@ def check_overwrite(drawing: Path, *, force: bool) -> None:
     check_writable(drawing)
 
 
-@contextmanager
-def errors_name_file(file: Path, options: Collection[str] = ()) -> Iterator[None]:
-    """Prefix errors of the computation with the file name, such as an effect beyond the cue.
-
-    options: those of the command, which the error names where they help.
-    """
-    try:
-        yield
-    except InputError:  # which names a file already
-        raise
-    except ValueError as error:
-        help_words = (
-            " (--tip-height, --leather, --speed)"
-            if isinstance(error, IndentationOutOfRange) and "leather" in options
-            else ""
-        )
-        raise InputError(file, "", f"{error}{help_words}") from None
-
-
-def scene_of(
-    file: Path, options: dict[str, Any], *, with_impact: bool = True, warn: bool = True
-) -> tuple[Scene, list[str]]:
-    """The scene of a command, and the texts of its assumptions.
-
-    with_impact: whether ball, tip and stroke matter to the command: assumptions on them are listed too, and a cue alone
-    gets the default stroke of a game. warn: whether to warn of implausible numbers.
-    """
-    scene, listed, offered = completed_scene(file, options, as_drawn=not with_impact)
-    if warn:
-        print_warnings(scene, with_impact=with_impact)
-    return scene, assumption_texts(listed, offered, with_impact=with_impact)
-
-
-def completed_scene(
-    file: Path, options: dict[str, Any], *, as_drawn: bool = False
-) -> tuple[Scene, list[Assumption], set[str]]:
-    """The scene of a file, the assumptions: values set neither in the file nor by options, and the options that apply.
-
-    A cue alone gets a game's default stroke (`cuefem.scene.default_scene`); as_drawn: only if an option sets its game
-    or tip.
-    """
-    opened = load_with_options(load_stroke, file, options)
-    if isinstance(opened, Scene):
-        reject_game(file, options)
-        scene = with_options(opened, file, options)
-    elif as_drawn and not sets_tip(options):
-        scene = scene_as_drawn(opened, file, options)
-    else:
-        scene = scene_from_cue(opened, file, options)
-        as_drawn = False
-    given = {name: value for name, value in options.items() if value is not None}
-    offered = {*options} - ({"game"} if isinstance(opened, Scene) else set())
-    with errors_name_file(file):
-        compute_tip(scene)
-    listed = [each for each in assumptions(file, scene, given) if not (as_drawn and each.key == "game")]
-    return scene, listed, offered
-
-
-def compute_tip(scene: Scene) -> None:
-    """Compute the scene's leather tip unless it is tabulated or cached, and announce the waiting time."""
-    if not scene.tip_is_cached:
-        click.echo(computing_message(), err=True)
-        scene.tip_law()
-
-
-def print_warnings(scene: Scene, *, with_impact: bool = True) -> None:
-    """Warn on stderr of implausible numbers; a wrong unit is the most common reason."""
-    for line in plausibility_warnings(scene, with_impact=with_impact):
-        click.echo(f"warning: {line}", err=True)
-
-
-@dataclass(frozen=True)
-class Request:
-    """What a command asks: its file, the scene with the options, and the assumptions.
-
-    hints: lines that the function adds, printed after the tables.
-    """
-
-    file: Path
-    scene: Scene
-    assumptions: list[str]
-    options: dict[str, Any]
-    hints: list[Table | str] = field(default_factory=list)
-
-
 def analysis_command(
     name: str | None = None,
     *,
@@ -210,22 +106,22 @@ def analysis_command(
 ) -> Callable[[Callable[..., Analysis | None]], click.Command]:
     """A command whose function gets the `Request` and its own options, and returns the analysis, or None if it is done.
 
-    The command prints the analysis, as tables or JSON, or writes it into the file of -o. has_stroke: see `scene_of`.
+    The command prints the analysis, as tables or JSON, or writes it into the file of -o. has_stroke:
+    whether ball, tip and stroke matter to the command.
     """
 
     def decorated(analyse: Callable[..., Analysis | None]) -> click.Command:
         _, *own = signature(analyse).parameters
 
         @wraps(analyse)
-        def run(file: Path, **options: Any) -> None:
-            mine = {key: options[key] if key == "output" else options.pop(key) for key in own}
-            output = options.pop("output")
-            scene, assumptions = scene_of(file, options, with_impact=has_stroke)
-            request = Request(file, scene, assumptions, options)
-            with errors_name_file(file, options):
+        def run(file: Path, output: Path | None, as_json: bool, **options: Any) -> None:
+            mine = {key: output if key == "output" else options.pop(key) for key in own}
+            request = Request.of(file, options, with_impact=has_stroke)
+            request.print_warnings()
+            with request.errors():
                 analysis = analyse(request, **mine)
             if analysis is not None:
-                _show(request, analysis, output)
+                _show(request, analysis, output, as_json=as_json)
 
         return command(name, **about)(shared(output_option(*formats)(run)))
 
@@ -249,15 +145,15 @@ def question_command(name: str, question: Question) -> click.Command:
     return analysis_command(name, help=text)(ask)
 
 
-def _show(request: Request, analysis: Analysis, output: Path | None) -> None:
+def _show(request: Request, analysis: Analysis, output: Path | None, *, as_json: bool) -> None:
     """Print the analysis of a file, or write it."""
     file = request.file
     warnings = [*drawing_warnings(file), *plausibility_warnings(analysis.scene, with_impact=analysis.has_stroke)]
     shown = Presentation(
         analysis, file_label(file), {"file": cue_name(file) or str(file)}, request.assumptions, warnings, request.hints
     )
-    with errors_name_file(file, request.options):
-        shown.show(output, as_json=request.options["as_json"])
+    with request.errors():
+        shown.show(output, as_json=as_json)
     if analysis.problem() and output is None:
         raise InputError(file, "", analysis.problem())
 
@@ -266,19 +162,19 @@ def _show(request: Request, analysis: Analysis, output: Path | None) -> None:
 class Presentation:
     """An answer with what a command adds to it.
 
-    name: of what was analysed. files: for JSON. assumptions: their texts. hints: lines after the tables.
+    name: of what was analysed. files: for JSON. hints: lines after the tables.
     """
 
     answer: Answer
     name: str = ""
     files: Record = field(default_factory=dict)
-    assumptions: Sequence[str] = ()
+    assumptions: Sequence[Assumption] = ()
     warnings: Sequence[str] = ()
     hints: Sequence[Table | str] = ()
 
     def record(self) -> Record:
         """The JSON record."""
-        notes = {"assumptions": [*self.assumptions], "warnings": [*self.warnings]}
+        notes = {"assumptions": [*map(str, self.assumptions)], "warnings": [*self.warnings]}
         return (self.files | notes if self.files else {}) | self.answer.to_dict()
 
     def write(self, path: Path) -> None:

@@ -1,14 +1,13 @@
-"""The parameters of a scene as options, and the scene of a file with these options."""
+"""The parameters of a scene as options of commands, and the parsers of their texts."""
 
 from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import click
@@ -19,15 +18,13 @@ from cuefem.cue import Cue, LumpedCue
 from cuefem.files import InputError, with_body_mass
 from cuefem.files.cue_names import cue_name, named_path
 from cuefem.files.errors import as_input_error
-from cuefem.parameters.parameter import PARAMETERS, Parameter, with_fields, with_parameters, with_values_at
-from cuefem.parameters.parameter import Path as Steps
+from cuefem.parameters.parameter import PARAMETERS, with_parameters
 from cuefem.parameters.parts import main_material, with_material
 from cuefem.quantity.display_units import with_unit
-from cuefem.quantity.fields import OutOfBounds, Quantity, comma_hint
+from cuefem.quantity.fields import Quantity, comma_hint
 from cuefem.quantity.units import parse_number
 from cuefem.scene import Scene
-from cuefem.scene.default_scene import DEFAULT_GAME, GAMES, default_tip, usual_scene
-from cuefem.show.plausibility import plausibility_warnings
+from cuefem.scene.default_scene import GAMES, usual_scene
 
 Command = Callable[..., Any]
 
@@ -134,91 +131,3 @@ def with_shaft_mass_option(thing: Cue | Scene | SideStrike, file: Path, text: st
             usual_scene(thing), {"shaft mass": mass}
         )  # whose weight counts the tip, as a scale does
         return replace(with_material(thing, *map(main_material, (thing, weighed.shaft))), shaft_mass_measured=True)
-
-
-def scene_from_cue(cue: Cue, file: Path, options: dict[str, Any]) -> Scene:
-    """The scene of a cue alone: the game's default stroke."""
-    game = options.get("game") or DEFAULT_GAME
-    leather = default_tip(cue, game)
-    changes = _changes(SimpleNamespace(effects=(leather,)), file, options, _is_leather)
-    try:
-        own = {path[1:]: value for path, value in changes.items() if path[0] == "leather"}
-        leather = with_fields(leather, own)
-        scene = usual_scene(cue, game, tip=leather)
-    except ValueError as error:
-        implausible = plausibility_warnings(Scene(cue), with_impact=False)
-        hint = f"; {implausible[0]}" if implausible else " (options: --tip-height, --dome)"
-        text = str(error) if options.get("dome") is None else str(error).replace("dome radius", "--dome")
-        raise InputError(file, "", f"{text}{hint}") from None
-    return with_options(scene, file, options)
-
-
-def scene_as_drawn(cue: Cue, file: Path, options: dict[str, Any]) -> Scene:
-    """The scene of a cue without a tip; --shaft-mass weighs it with its usual tip, as in `cuefem convert`."""
-    weight = options.get("shaft_mass")
-    drawn = cue if weight is None else with_shaft_mass_option(cue, file, weight)
-    return with_options(Scene(drawn), file, {**options, "shaft_mass": None})
-
-
-def sets_tip(options: dict[str, Any]) -> bool:
-    """Whether options set the game or the leather tip."""
-    has_leather_option = next(_options(options, _is_leather), None) is not None
-    return options.get("game") is not None or has_leather_option
-
-
-def with_options(scene: Scene, file: Path, options: dict[str, Any]) -> Scene:
-    """The scene with the values of the command's options."""
-    changes = _changes(scene, file, options)
-    try:
-        return with_values_at(scene, changes) if changes else scene
-    except OutOfBounds as error:
-        if not error.name.endswith("cue.body_mass") or options.get("body_mass") is None:
-            raise InputError(file, "", str(error)) from None
-        bounds = error.bounds.bounds_in(error.bounds.unit)
-        raise InputError(file, "--body-mass", f"must be {bounds}{error.reason}; got {options['body_mass']}") from None
-    except ValueError as error:
-        raise InputError(file, "", str(error)) from None
-
-
-def _is_leather(known: Parameter) -> bool:
-    return known.path.startswith("leather.")
-
-
-def _options(options: dict[str, Any], which: Callable[[Parameter], bool] = lambda known: True) -> Iterator[Parameter]:
-    """The parameters that options set."""
-    return (
-        known for known in PARAMETERS.values() if known.option and options.get(known.key) is not None and which(known)
-    )
-
-
-def _changes(
-    scene: Any, file: Path, options: dict[str, Any], which: Callable[[Parameter], bool] = lambda known: True
-) -> dict[Steps, Any]:
-    """The values of options, by their paths."""
-    changes = dict[Steps, Any]()
-    for known in _options(options, which):
-        text, path = options[known.key], known.steps()
-        try:
-            wanted = known.quantity(scene)
-        except ValueError:
-            raise InputError(file, option(known.key), _absent(scene, known)) from None
-        changes |= known.named_value(text)
-        changes[path] = (
-            offset_value(file, text, float(scene.ball.radius))
-            if known.key == "offset"
-            else option_value(file, option(known.key), text, wanted)
-        )
-    return changes
-
-
-def _absent(scene: Scene, known: Parameter) -> str:
-    """Why a scene has no such parameter, for an error."""
-    if _is_leather(known):
-        return "does not apply: the scene has no LeatherTip among its effects"
-    return NO_SHAFT if scene.lumped else f"does not apply: the scene has no {known.label}"
-
-
-def reject_game(file: Path, options: dict[str, Any]) -> None:
-    """Reject a game for a scene, which has its own ball, tip and stroke."""
-    if options.get("game") is not None:
-        raise InputError(file, "--game", "does not apply: FILE is a scene, which has its own ball, tip and stroke")

@@ -16,7 +16,8 @@ import cuefem as cf
 from cuefem.cli.cluster import dask_executor
 from cuefem.cli.output import command, json_option, output_option, print_json
 from cuefem.cli.progress import ProgressLines, progress_bar
-from cuefem.cli.scene_command import Presentation, check_overwrite, errors_name_file, force_option, print_warnings
+from cuefem.cli.request import errors_name_file, print_warnings
+from cuefem.cli.scene_command import Presentation, check_overwrite, force_option
 from cuefem.designs import Study
 from cuefem.designs.optimum import Problem, Round
 from cuefem.designs.scatter import Scatter

@@ -11,6 +11,7 @@ from cuefem.designer.header import Upload
 from cuefem.designer.host import Host
 from cuefem.designer.knob_row import KnobRow
 from cuefem.designer.session import FILE, NOTHING
+from cuefem.files.defaults_report import Assumption
 from cuefem.show.glossary import with_term_buttons
 
 
@@ -55,7 +56,7 @@ class FirstScreen:
                 self.rows[-1].show()
                 ui.label(f"part of ±: {100 * parts[key]:.0f} %" if key in parts else "not in ±").classes("soft")
         for note in self.session.notes():
-            ui.label(note).classes("soft")
+            ui.label(str(note)).classes("soft")
 
     def show(self) -> None:
         """Show the designs at once: drawings, assumptions, and the choice of the other one."""
@@ -88,8 +89,8 @@ class FirstScreen:
         self.headline.set_content(with_term_buttons(headline))
         self.scale.set_content(scale_markup(own, other))
         self.tiles.set_content(with_term_buttons(tiles_markup(own, other)))
-        lines = self.session.assumption_lines()
-        self.printed.set_text("; ".join(lines))
+        lines = self.session.assumptions()
+        self.printed.set_text("; ".join(map(str, lines)))
         words = f"{len(lines)} assumption{'s' if len(lines) != 1 else ''}"
         self.fold.props(f'label="{words}" caption="{parts_line(own.verdict) if own.verdict else ""}"')
         has_verdict = "verdict" in results.own
@@ -97,7 +98,7 @@ class FirstScreen:
             self.assumptions.refresh()
         self.had_verdict = has_verdict
 
-    def _assumptions(self) -> tuple[list[str], list[str]]:
+    def _assumptions(self) -> tuple[list[str], list[Assumption]]:
         return self.session.assumed(), self.session.notes()
 
     def _on_compare(self, event: Any) -> None:

@@ -28,7 +28,7 @@ from cuefem.designer.state import (
     one_line,
     reference_design,
 )
-from cuefem.files.defaults_report import assumption_texts, tenon_assumption
+from cuefem.files.defaults_report import Assumption, tenon_assumption
 from cuefem.files.reference_cues import PRESETS, REFERENCE_FILES, Preset
 from cuefem.files.toml_writer import toml_text
 from cuefem.parameters.parameter import parameter, with_parameters
@@ -169,14 +169,15 @@ class Session:
         """The controls whose values are assumed."""
         return [key for key in KNOBS if key in self.step.design.assumed and value(key, self.scene) is not None]
 
-    def notes(self) -> list[str]:
+    def notes(self) -> list[Assumption]:
         """Assumptions without a control."""
-        tenon = assumption_texts(tenon_assumption(self.scene.shaft))
-        return [*self.step.design.notes, *(f"{text} (change it in File)" for text in tenon)]
+        tenon = tenon_assumption(self.scene.shaft)
+        return [*self.step.design.notes, *(Assumption("", f"{each.text} (change it in File)") for each in tenon)]
 
-    def assumption_lines(self) -> list[str]:
-        """All assumptions, a line each."""
-        return [*(f"{label(key, self.scene)} {_text(key, self.scene)}" for key in self.assumed()), *self.notes()]
+    def assumptions(self) -> list[Assumption]:
+        """All assumptions: the values of controls, and those without a control."""
+        texts = {key: f"{label(key, self.scene)} {_text(key, self.scene)}" for key in self.assumed()}
+        return [*(Assumption(key, text) for key, text in texts.items()), *self.notes()]
 
     def uncertainty_parts(self) -> dict[str, float]:
         """Relative uncertainty of squirt by each control's parameters."""
@@ -225,7 +226,7 @@ class Session:
 
     def report_call(self) -> Callable[[], str]:
         """The report of the design as a page, compared with the other one; the call reads the session no more."""
-        design, notes, other = self.step.design, self.assumption_lines(), self.compared_scene()
+        design, notes, other = self.step.design, self.assumptions(), self.compared_scene()
         beside = None if other is None else ([*self.designs()][1], other)
         return lambda: computation.answers(design.scene).to_html(design.name, notes, other=beside)
 

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from cuefem.cue import Cue
 from cuefem.files import load_stroke
-from cuefem.files.defaults_report import assumptions
+from cuefem.files.defaults_report import Assumption, assumptions, offered_assumptions
 from cuefem.files.parts_catalogue import data_folder
 from cuefem.files.reference_cues import Preset, preset_scene, reference_cue_file
 from cuefem.scene import Scene
@@ -43,7 +42,7 @@ class Design:
     scene: Scene
     assumed: frozenset[str] = frozenset()
     typed: Mapping[str, str] = field(default_factory=dict, hash=False)
-    notes: tuple[str, ...] = ()
+    notes: tuple[Assumption, ...] = ()
 
     def __post_init__(self) -> None:
         count = len(self.scene.shaft.segments)  # ValueError for a lumped cue
@@ -119,20 +118,18 @@ class UndoHistory:
         return True
 
 
-def design_from_file(path: Path, name: str, scene: Scene, options: Mapping[str, Any] = MappingProxyType({})) -> Design:
-    """A scene read from a file, and its assumptions.
-
-    options: the values of options that supplement the file, by name.
-    """
-    found = assumptions(path, scene, options)
-    keys = {{"material": "shaft_material"}.get(each.key, each.key) for each in found if each.key}
-    return Design(name[:MAX_NAME], scene, frozenset(keys), {}, tuple(each.text for each in found if not each.key))
+def design_of(name: str, scene: Scene, assumed: Sequence[Assumption]) -> Design:
+    """The design of a scene, with the assumptions for the file it was read from."""
+    keys = {{"material": "shaft_material"}.get(each.key, each.key) for each in assumed if each.key}
+    notes = offered_assumptions(each for each in assumed if not each.key)
+    return Design(name[:MAX_NAME], scene, frozenset(keys), {}, tuple(notes))
 
 
 def reference_design(preset: Preset) -> Design:
     """A reference cue."""
     path = data_folder() / preset.file
-    return design_from_file(path, path.stem, preset_scene(preset))
+    scene = preset_scene(preset)
+    return design_of(path.stem, scene, assumptions(path, scene, {}))
 
 
 def read_design(name: str, content: bytes, game: str = DEFAULT_GAME) -> Design:
@@ -146,7 +143,7 @@ def read_design(name: str, content: bytes, game: str = DEFAULT_GAME) -> Design:
             path.write_bytes(_with_reference_cue(name, content, Path(place)))
             thing = load_stroke(path)
             scene = usual_scene(thing, game) if isinstance(thing, Cue) else thing
-            return design_from_file(path, path.stem, scene)
+            return design_of(path.stem, scene, assumptions(path, scene, {}))
         except (*FAILURES, RecursionError) as error:
             raise ValueError(one_line(error).replace(f"{place}/", "")) from None
 

@@ -20,7 +20,7 @@ from cuefem.designs.scatter import Scatter
 from cuefem.designs.store import SqliteStore
 from cuefem.designs.study_result import StudyResult, compute_study
 from cuefem.files import load_stroke, replaced_segments
-from cuefem.files.defaults_report import assumption_texts, assumptions
+from cuefem.files.defaults_report import Assumption, assumptions, offered_assumptions
 from cuefem.files.errors import InputError, as_input_error, errors_name_key, file_state, quote
 from cuefem.files.lathe_profile import SHAPE_EXTENSIONS
 from cuefem.files.schema import build, key_path, named_material
@@ -285,11 +285,11 @@ def _game(tables: StudyTable, path: Path) -> str:
     return game_of({} if tables.game is None else {"game": tables.game}, path)
 
 
-def base_assumptions(path: Path, base: Scene) -> list[str]:
-    """Texts of the assumptions for the base file of a study."""
+def base_assumptions(path: Path, base: Scene) -> list[Assumption]:
+    """The assumptions for the base file of a study."""
     tables = read_tables(path)
     options = {key: tables[key] for key in ("game", "body_mass", "shaft_mass", *SHAFT_ADDITIONS) if key in tables}
-    return assumption_texts(assumptions(path.parent / tables["scene"], base, options))
+    return offered_assumptions(assumptions(path.parent / tables["scene"], base, options))
 
 
 def _response(text: str, path: Path, key: str) -> Response:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -56,10 +56,10 @@ class Assumption:
         """The assumption on a parameter or an addition to a drawing."""
         return cls(key, text, _OPTIONS.get(key, key), _OF.get(key, CUE))
 
-    def line(self, offered: Collection[str] = ()) -> str:
-        """The text, with the option if it is among ``offered``."""
+    def __str__(self) -> str:
+        """The text, with the option."""
         example = f' "{_EXAMPLES[self.key]}"' if self.key in _EXAMPLES else ""
-        return f"{self.text} (--{self.option.replace('_', '-')}{example})" if self.option in offered else self.text
+        return f"{self.text} (--{self.option.replace('_', '-')}{example})" if self.option else self.text
 
 
 def assumptions(path: Path, scene: Scene, options: Mapping[str, Any]) -> list[Assumption]:
@@ -115,15 +115,17 @@ def drawing_assumptions(path: Path, cue: Cue, options: Mapping[str, Any]) -> lis
     }
     given = {*options}
     if ending in SURFACE_EXTENSIONS:
-        notes = [*([] if "length_unit" in options else [f"lengths in {DEFAULT_UNIT} (--length-unit)"]), *_surface(path)]
+        unit = Assumption("", f"lengths in {DEFAULT_UNIT}", "length_unit")
+        notes = [*([] if "length_unit" in options else [unit]), *(Assumption("", note) for note in _surface(path))]
     else:
-        drawn, notes = read_profile(path, _UNNAMED, options.get("length_unit"))
+        drawn, read = read_profile(path, _UNNAMED, options.get("length_unit"))
+        notes = [Assumption("", note) for note in read]
         given |= _given_in_profile(drawn)
     if any(cue.segments[i].tip_bore and cue.segments[i].core is None for i in Layout.of(cue).ferrule):
-        notes = [*notes, "the ferrule has the bore of the shaft, without a tenon"]
+        notes = [*notes, Assumption("", "the ferrule has the bore of the shaft, without a tenon")]
     lacking = parts if "material" in given else wood | parts
     return [
-        *(Assumption("", note) for note in notes),
+        *notes,
         *(Assumption.on(key, text) for key, text in lacking.items() if key not in given),
         *tenon_assumption(cue),
     ]
@@ -234,11 +236,15 @@ def _missing(tables: dict[str, Any]) -> set[str]:
     return {key for left in missing_keys(tables) for key in _KEYS.get(left, (left.rpartition(".")[2],))}
 
 
-def assumption_texts(
+def offered_assumptions(
     listed: Iterable[Assumption], offered: Collection[str] = (), *, with_impact: bool = True
-) -> list[str]:
-    """Texts of assumptions, each with the option that changes it if it is among ``offered``.
+) -> list[Assumption]:
+    """Assumptions with the options that are among ``offered``; those that are not are left out of them.
 
     with_impact: whether to include ball, tip and stroke.
     """
-    return [each.line(offered) for each in listed if with_impact or each.of not in (IMPACT, STROKE)]
+    return [
+        each if each.option in offered else replace(each, option="")
+        for each in listed
+        if with_impact or each.of not in (IMPACT, STROKE)
+    ]

@@ -19,7 +19,7 @@ from scipy.io import wavfile
 from cuefem.files import InputError, load, write_folder_atomically
 from cuefem.files.csv_reader import read_lines, read_text
 from cuefem.files.cue_names import matching_names, named_path
-from cuefem.files.defaults_report import assumption_texts, assumptions_of_tables
+from cuefem.files.defaults_report import Assumption, assumptions_of_tables, offered_assumptions
 from cuefem.files.errors import as_input_error, check_path, quote, read_bytes, suggestion
 from cuefem.files.schema import build, field_types, key_path, member_types, quantity_of, unknown_key
 from cuefem.files.toml_reader import GAME_KEYS, game_of, missing_keys, read_tables, scene_from_tables
@@ -43,7 +43,7 @@ TEMPLATE = ("README.md", "added_mass.csv", "cue.toml", MEASURED, "squirt.csv")
 _COLUMN = re.compile(r"\s*([a-z_]+)\s*(?:\[([^\]]+)\])?\s*")
 
 
-def load_measured(folder: Path) -> tuple[MeasuredCue, list[str]]:
+def load_measured(folder: Path) -> tuple[MeasuredCue, list[Assumption]]:
     """Load the measured cue of a folder, and the assumptions for its drawing; InputError for invalid files."""
     folder = named_folder(folder)
     if not folder.is_dir():
@@ -89,11 +89,12 @@ def _example(name: str) -> str:
     return files(__package__).joinpath("measured_template", name).read_text(encoding="utf-8")
 
 
-def _examples(folder: Path) -> list[str]:
+def _examples(folder: Path) -> list[Assumption]:
     """A note on files that are unchanged from the template."""
     there = [name for name in TEMPLATE[1:] if (folder / name).is_file()]
     left = [name for name in there if read_text(folder / name) == _example(name)]
-    return [f"{', '.join(left)} as in the template, whose numbers are examples: replace them"] if left else []
+    text = f"{', '.join(left)} as in the template, whose numbers are examples: replace them"
+    return [Assumption("", text)] if left else []
 
 
 def _text(path: Path, tables: dict[str, Any], key: str) -> str:
@@ -103,7 +104,7 @@ def _text(path: Path, tables: dict[str, Any], key: str) -> str:
     return value
 
 
-def _scene(folder: Path, path: Path, tables: dict[str, Any]) -> tuple[Scene, list[str]]:
+def _scene(folder: Path, path: Path, tables: dict[str, Any]) -> tuple[Scene, list[Assumption]]:
     """The scene, and the assumptions for it: ball, tip, stroke and effects default to those of the game, or of pool."""
     parts = {key: tables[key] for key in SCENE_KEYS if key in tables}
     if "cue" not in parts:
@@ -117,7 +118,7 @@ def _scene(folder: Path, path: Path, tables: dict[str, Any]) -> tuple[Scene, lis
     scene = scene_from_tables(parts, path, _drawing)
     if scene.lumped is not None:
         raise InputError(path, "cue", "must be a cue of segments; got a lumped cue")
-    return scene, assumption_texts(assumptions_of_tables(parts, folder, scene, {"offset": None}))
+    return scene, offered_assumptions(assumptions_of_tables(parts, folder, scene, {"offset": None}))
 
 
 def _drawing(path: Path) -> Any:

@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from cuefem.files import InputError, save_page, write_atomically
+from cuefem.files.defaults_report import Assumption
 from cuefem.results.quantities import UNITS
 from cuefem.results.records import Record, Table, json_value
 from cuefem.scene import Scene
@@ -69,7 +70,7 @@ class Answer:
         return f"{name}: {question}" if name else question
 
     def lines(
-        self, name: str = "", assumptions: Sequence[str] = (), hints: Sequence[Table | str] = ()
+        self, name: str = "", assumptions: Sequence[Assumption] = (), hints: Sequence[Table | str] = ()
     ) -> list[Table | str]:
         """What a terminal and a plain page show: heading, tables, hints, effects and assumptions."""
         heading, effects = ": ".join(filter(None, (name, self.heading()))), self.effects_line()
@@ -79,10 +80,10 @@ class Answer:
             *(["", *hints] if hints else []),
             "",
             *([f"effects: {effects}"] if effects else []),
-            *(["assumed:", *(f"  {text}" for text in assumptions)] if assumptions else []),
+            *(["assumed:", *(f"  {each}" for each in assumptions)] if assumptions else []),
         ]
 
-    def to_html(self, name: str = "", assumptions: Sequence[str] = (), warnings: Sequence[str] = ()) -> str:
+    def to_html(self, name: str = "", assumptions: Sequence[Assumption] = (), warnings: Sequence[str] = ()) -> str:
         """A self-contained page with tables and charts."""
         from cuefem.show.templates import plain_page  # templates take 0.1 s to load
 

@@ -58,10 +58,10 @@ def test_compare_template_has_every_measurement_type(tmp_path: Path) -> None:
     cue, notes = load_measured(folder)
     assert {type(one) for one in cue.measurements} == set(MEASUREMENT_TYPES.values())
     assert cue.missing == []
-    assert notes[0].startswith(", ".join(name for name in sorted(TEMPLATE) if name != "README.md"))
+    assert notes[0].text.startswith(", ".join(name for name in sorted(TEMPLATE) if name != "README.md"))
     (folder / "squirt.csv").unlink()
     (folder / "cue.toml").write_text((folder / "cue.toml").read_text().replace("467 g", "450 g"), encoding="utf-8")
-    assert load_measured(folder)[1][0].startswith("added_mass.csv, measured.toml as in the template")
+    assert load_measured(folder)[1][0].text.startswith("added_mass.csv, measured.toml as in the template")
 
 
 def test_load_measured_without_scene_has_default_stroke_of_game(tmp_path: Path) -> None:

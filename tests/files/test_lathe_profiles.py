@@ -9,7 +9,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.cue.materials import material
-from cuefem.files.defaults_report import Assumption, assumption_texts, drawing_assumptions
+from cuefem.files.defaults_report import Assumption, drawing_assumptions
 from tests.helpers.command_line import call
 
 MAPLE = material("hard maple")
@@ -129,7 +129,7 @@ def test_profile_columns_bore_material_core_make_segments(tmp_path: Path) -> Non
         expected = [value / 1e3 for value in (x1 - x0, d0, d1, b0, b1)]
         assert numbers == pytest.approx(expected, rel=1e-12, abs=1e-15)
         assert (segment.material, segment.core) == (wood, core)
-    texts = assumption_texts(drawing_assumptions(path, result, {"body_mass": 0.4}))
+    texts = [each.text for each in drawing_assumptions(path, result, {"body_mass": 0.4})]
     assert texts == [
         "bored 8 mm from 6 to 31 mm and filled with hard maple",
         "bored 6 to 5 mm from 31 to 150 mm and filled with foam",

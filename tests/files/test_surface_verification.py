@@ -8,7 +8,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.cue.materials import material
-from cuefem.files.defaults_report import assumption_texts, drawing_assumptions
+from cuefem.files.defaults_report import drawing_assumptions
 from cuefem.files.errors import InputError
 from cuefem.files.surface_sections import TOLERANCE, aligned_surface, section_shaft
 from cuefem.files.warnings_of_drawings import drawing_warnings
@@ -121,7 +121,7 @@ def test_surface_length_unit_and_uppercase_extension_are_read(tmp_path: Path) ->
     assert cf.load(path, material="ash").segments[0].material == material("ash")
     (tmp_path / "SCENE.TOML").write_text(f"game = 'kim'\ncue = '{path.name}'\n")
     assert cf.load(tmp_path / "SCENE.TOML").cue == loaded
-    texts = assumption_texts(drawing_assumptions(path, loaded, {"body_mass": 0.4}))
+    texts = [each.text for each in drawing_assumptions(path, loaded, {"body_mass": 0.4})]
     assert [text.split(" ")[0] for text in texts[:5]] == ["lengths", "1", "facets", "the", "material"]
 
 

@@ -1,0 +1,241 @@
+"""What a command asks: a file, and the options given beside it; the scene and the assumptions that follow."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import click
+
+from cuefem.cli.scene_options import (
+    NO_SHAFT,
+    offset_value,
+    option,
+    option_value,
+    with_body_option,
+    with_shaft_mass_option,
+)
+from cuefem.cue import Cue
+from cuefem.effects.force_law import IndentationOutOfRange
+from cuefem.files import InputError, load, load_stroke
+from cuefem.files.defaults_report import Assumption, assumptions, drawing_assumptions, offered_assumptions
+from cuefem.files.shaft_additions import SHAFT_ADDITIONS
+from cuefem.parameters.parameter import PARAMETERS, Parameter, with_fields, with_values_at
+from cuefem.parameters.parameter import Path as Steps
+from cuefem.quantity.fields import OutOfBounds
+from cuefem.results.records import Table
+from cuefem.scene import Scene
+from cuefem.scene.default_scene import DEFAULT_GAME, default_tip, usual_scene
+from cuefem.show.plausibility import plausibility_warnings
+from cuefem.solid.tip_cache import computing_message
+
+
+@contextmanager
+def errors_name_file(file: Path, helping: str = "") -> Iterator[None]:
+    """Prefix errors of the computation with the file name, such as an effect beyond the cue.
+
+    helping: the options that help against an indentation beyond the force law.
+    """
+    try:
+        yield
+    except InputError:  # which names a file already
+        raise
+    except ValueError as error:
+        words = f" ({helping})" if helping and isinstance(error, IndentationOutOfRange) else ""
+        raise InputError(file, "", f"{error}{words}") from None
+
+
+@dataclass(frozen=True)
+class Request:
+    """What a command asks.
+
+    Parameters
+    ----------
+    file : Path
+        A cue's or a scene's file.
+    given : dict of str to str
+        The texts of the given options that supplement or replace values of the file, by name.
+    offered : frozenset of str
+        The names of all such options of the command.
+    with_impact : bool
+        Whether ball, tip and stroke matter to the command. If not, a cue alone stays as drawn unless an option sets its
+        game or tip.
+    hints : list
+        Lines that the command adds, printed after the tables.
+    """
+
+    file: Path
+    given: Mapping[str, str]
+    offered: frozenset[str] = frozenset()
+    with_impact: bool = True
+    hints: list[Table | str] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, file: Path, options: Mapping[str, str | None], *, with_impact: bool = True) -> Request:
+        """The request of a command's options; None: not given."""
+        given = {name: text for name, text in options.items() if text is not None}
+        return cls(file, given, frozenset(options), with_impact)
+
+    def errors(self) -> Any:
+        """A context in which errors of the computation name the file, and the options that help."""
+        return errors_name_file(self.file, "--tip-height, --leather, --speed" if "leather" in self.offered else "")
+
+    @cached_property
+    def opened(self) -> Any:
+        """The cue or the scene of the file, with the additions to its drawing."""
+        return self._load(load_stroke)
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The scene of the file with the options; a cue alone gets a game's default stroke."""
+        if isinstance(self.opened, Scene):
+            self._reject_game()
+            scene = self._with_given(self.opened)
+        elif self._is_as_drawn:
+            scene = self._as_drawn(self.opened)
+        else:
+            scene = self._struck(self.opened)
+        with errors_name_file(self.file):
+            compute_tip(scene)
+        return scene
+
+    @cached_property
+    def drawing(self) -> Any:
+        """What the file holds, as drawn, with the options."""
+        drawing = self._load(load)
+        if "body_mass" in self.given:
+            drawing = with_body_option(drawing, self.file, self.given["body_mass"])
+        if "shaft_mass" in self.given:
+            drawing = with_shaft_mass_option(drawing, self.file, self.given["shaft_mass"])
+        return drawing
+
+    @cached_property
+    def assumed(self) -> list[Assumption]:
+        """The values that neither the file nor an option sets."""
+        found = assumptions(self.file, self.scene, self.given)
+        return [each for each in found if not (self._is_as_drawn and each.key == "game")]
+
+    @property
+    def assumptions(self) -> list[Assumption]:
+        """Those that matter to the command, each with its option if the command has it."""
+        offered = self.offered - ({"game"} if isinstance(self.opened, Scene) else set())
+        return offered_assumptions(self.assumed, offered, with_impact=self.with_impact)
+
+    @property
+    def assumptions_of_drawing(self) -> list[Assumption]:
+        """Those of the drawing alone."""
+        if not isinstance(self.drawing, Cue):
+            return []
+        return offered_assumptions(drawing_assumptions(self.file, self.drawing, self.given), self.offered)
+
+    def print_warnings(self) -> None:
+        """Warn on stderr of implausible numbers of the scene."""
+        print_warnings(self.scene, with_impact=self.with_impact)
+
+    @property
+    def _is_as_drawn(self) -> bool:
+        sets_tip = "game" in self.given or any(map(_is_leather, self._parameters()))
+        return not (self.with_impact or sets_tip or isinstance(self.opened, Scene))
+
+    def _load(self, loaded: Callable[..., Any]) -> Any:
+        """The contents of the file, with the options that supplement its drawing; errors name the option."""
+        try:
+            return loaded(self.file, **{name: self.given.get(name) for name in SHAFT_ADDITIONS})
+        except InputError as error:
+            name, _, problem = f"{error.key}: {error.problem}".removeprefix(": ").partition(": ")
+            if name not in self.given:
+                raise
+            raise InputError(self.file, option(name), problem) from None
+
+    def _struck(self, cue: Cue) -> Scene:
+        """The scene of a cue alone: the game's default stroke."""
+        game = self.given.get("game", DEFAULT_GAME)
+        leather = default_tip(cue, game)
+        changes = self._values(SimpleNamespace(effects=(leather,)), _is_leather)
+        try:
+            own = {path[1:]: value for path, value in changes.items() if path[0] == "leather"}
+            leather = with_fields(leather, own)
+            scene = usual_scene(cue, game, tip=leather)
+        except ValueError as error:
+            implausible = plausibility_warnings(Scene(cue), with_impact=False)
+            hint = f"; {implausible[0]}" if implausible else " (options: --tip-height, --dome)"
+            text = str(error).replace("dome radius", "--dome") if "dome" in self.given else str(error)
+            raise InputError(self.file, "", f"{text}{hint}") from None
+        return self._with_given(scene)
+
+    def _as_drawn(self, cue: Cue) -> Scene:
+        """The scene of a cue without a tip; --shaft-mass weighs it with its usual tip, as in `cuefem convert`."""
+        if "shaft_mass" not in self.given:
+            return self._with_given(Scene(cue))
+        weighed = with_shaft_mass_option(cue, self.file, self.given["shaft_mass"])
+        return self._with_given(Scene(weighed), lambda known: known.key != "shaft_mass")
+
+    def _with_given(self, scene: Scene, which: Callable[[Parameter], bool] = lambda known: True) -> Scene:
+        """The scene with the values of the given options."""
+        changes = self._values(scene, which)
+        try:
+            return with_values_at(scene, changes) if changes else scene
+        except OutOfBounds as error:
+            if not error.name.endswith("cue.body_mass") or "body_mass" not in self.given:
+                raise InputError(self.file, "", str(error)) from None
+            bounds = error.bounds.bounds_in(error.bounds.unit)
+            problem = f"must be {bounds}{error.reason}; got {self.given['body_mass']}"
+            raise InputError(self.file, "--body-mass", problem) from None
+        except ValueError as error:
+            raise InputError(self.file, "", str(error)) from None
+
+    def _parameters(self) -> list[Parameter]:
+        """The parameters that options set."""
+        return [known for known in PARAMETERS.values() if known.option and known.key in self.given]
+
+    def _values(self, scene: Any, which: Callable[[Parameter], bool]) -> dict[Steps, Any]:
+        """The values of the given options, by their paths."""
+        changes = dict[Steps, Any]()
+        for known in filter(which, self._parameters()):
+            text, name = self.given[known.key], option(known.key)
+            try:
+                wanted = known.quantity(scene)
+            except ValueError:
+                raise InputError(self.file, name, _absent(scene, known)) from None
+            changes |= known.named_value(text)
+            changes[known.steps()] = (
+                offset_value(self.file, text, float(scene.ball.radius))
+                if known.key == "offset"
+                else option_value(self.file, name, text, wanted)
+            )
+        return changes
+
+    def _reject_game(self) -> None:
+        """Reject a game for a scene, which has its own ball, tip and stroke."""
+        if "game" in self.given:
+            problem = "does not apply: FILE is a scene, which has its own ball, tip and stroke"
+            raise InputError(self.file, "--game", problem)
+
+
+def compute_tip(scene: Scene) -> None:
+    """Compute the scene's leather tip unless it is tabulated or cached, and announce the waiting time."""
+    if not scene.tip_is_cached:
+        click.echo(computing_message(), err=True)
+        scene.tip_law()
+
+
+def print_warnings(scene: Scene, *, with_impact: bool = True) -> None:
+    """Warn on stderr of implausible numbers; a wrong unit is the most common reason."""
+    for line in plausibility_warnings(scene, with_impact=with_impact):
+        click.echo(f"warning: {line}", err=True)
+
+
+def _is_leather(known: Parameter) -> bool:
+    return known.path.startswith("leather.")
+
+
+def _absent(scene: Any, known: Parameter) -> str:
+    """Why a scene has no such parameter, for an error."""
+    if _is_leather(known):
+        return "does not apply: the scene has no LeatherTip among its effects"
+    return NO_SHAFT if scene.lumped else f"does not apply: the scene has no {known.label}"
