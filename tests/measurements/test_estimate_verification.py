@@ -99,7 +99,7 @@ def test_estimate_of_32_beams_has_bounded_memory() -> None:
     assert usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024) < 2e8
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 def test_intervals_of_drawn_cues_have_stated_coverage() -> None:
     """A hundred cues of four parameters drawn from the priors: 68 and 95 % intervals to three standard deviations."""
     pulls = []
