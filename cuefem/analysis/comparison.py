@@ -23,7 +23,7 @@ from cuefem.results.computable_results import computable_results
 from cuefem.results.quantities import DASH, RESULTS, UNITS, format_value
 from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import SolvedDesign, coupled_curve, off_centre
-from cuefem.results.uncertainty import RATIO_FLOOR, changes_by_input, difference_record, model_share
+from cuefem.results.uncertainty import RATIO_FLOOR, changes_by_input, difference_record, miscue_note, model_share
 from cuefem.results.verdict import verdict_problem
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
@@ -71,6 +71,9 @@ class Comparison(Analysis):
     differences : dict of str to dict
         For each other cue, by result, "difference", its value over that of the first less 1; "error", its uncertainty
         (1 sigma); and "distinct", whether the difference exceeds the error, whichever of two cues is the first.
+    miscues : dict of str to tuple of str
+        Inputs, by cue, that make its stroke a miscue one standard deviation up or down: their uncertainty is that of
+        the other side.
     scenes : dict of str to Scene
         The compared scenes, all with the ball and the stroke of the first.
     calibrated : dict of str to CalibratedSquirt
@@ -85,6 +88,7 @@ class Comparison(Analysis):
     problems: dict[str, str]
     cues: dict[str, dict[str, float]]
     differences: dict[str, dict[str, Record]]
+    miscues: dict[str, tuple[str, ...]]
     scenes: dict[str, Scene] = field(repr=False)
     calibrated: dict[str, CalibratedSquirt] = field(default_factory=dict)
 
@@ -152,6 +156,7 @@ class Comparison(Analysis):
             f"Same stroke, with the ball of {first}, b/R {self.offset:.3g} at {speed}. ±: 1σ of the "
             f"difference, for {shaft}; shared errors cancel.",
             *(f"{name}: {warning}" for name, regime in self.regimes.items() if (warning := regime_warning(regime))),
+            *(f"{name}: {miscue_note(inputs)}" for name, inputs in self.miscues.items()),
             "* smaller than its uncertainty: the cues are not distinct in this quantity.",
         )
         return Table("Side by side", head, tuple(rows), notes)
@@ -297,6 +302,7 @@ def compare_cues(
         problems={name: each.problem for name, each in results.items() if each.problem},
         cues={name: each.numbers for name, each in results.items()},
         differences={name: _differences(results[reference], results[name], same_shaft=same_shaft) for name in others},
+        miscues={name: each.miscues for name, each in results.items() if each.miscues},
         scenes=struck,
     )
 
@@ -308,14 +314,15 @@ def with_same_stroke(scenes: Mapping[str, Scene]) -> dict[str, Scene]:
 
 
 class _CueResults(NamedTuple):
-    """A scene, its results, the contact state of its strike ("" if it fails), why it has no verdict ("" if it has), and
-    the relative changes of the results with each uncertain input."""
+    """A scene, its results, the contact state of its strike ("" if it fails), why it has no verdict ("" if it has), the
+    relative changes of the results with each uncertain input, and the inputs whose uncertainty includes a miscue."""
 
     scene: Scene
     numbers: dict[str, float]
     regime: str
     problem: str
     inputs: dict[str, dict[str, float]]
+    miscues: tuple[str, ...]
 
 
 @lru_cache(maxsize=16)  # the reference usually remains while the other cue changes
@@ -328,7 +335,7 @@ def _cue_results(scene: Scene, names: tuple[str, ...]) -> _CueResults:
     except (ValueError, RuntimeError) as error:
         regime, problem = "", str(error)
     changes = changes_by_input(scene, numbers, lambda other: _numbers(SolvedDesign.of(other), names))
-    return _CueResults(scene, numbers, regime, problem, changes)
+    return _CueResults(scene, numbers, regime, problem, *changes)
 
 
 def _numbers(design: SolvedDesign, names: Sequence[str]) -> dict[str, float]:

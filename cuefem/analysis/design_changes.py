@@ -20,7 +20,7 @@ from cuefem.parameters.parts import Layout, taper_position
 from cuefem.quantity.display_units import change_with_unit, format_change, short_number, with_unit
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.results.solved_design import SolvedDesign, off_centre
-from cuefem.results.uncertainty import model_share, ratio_error, squirt_changes
+from cuefem.results.uncertainty import miscue_note, model_share, ratio_error, squirt_changes
 from cuefem.results.verdict import reject_no_verdict
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
@@ -195,6 +195,9 @@ class DesignChanges(Analysis):
         Squirt (rad), tip stiffness (N/m), shaft mass (kg) and first natural frequency (Hz) of the cue itself.
     changes : list of ChangedDesign
         The changes, lowest squirt first.
+    miscues : tuple of str
+        Inputs that make the stroke of the cue itself a miscue one standard deviation up or down: their part of the
+        uncertainties is that of the other side.
     calibrated : CalibratedSquirt or None
         Squirt of the cue itself by a calibrated model.
     """
@@ -203,6 +206,7 @@ class DesignChanges(Analysis):
     regime: str
     unmodified: dict[str, float]
     changes: list[ChangedDesign]
+    miscues: tuple[str, ...] = ()
     calibrated: CalibratedSquirt | None = None
 
     def tables(self) -> list[Table | str]:
@@ -239,6 +243,7 @@ class DesignChanges(Analysis):
             f"Each change on its own, by the coupled strike at b/R {self.offset:.4g}; this cue: {own}. "
             "±: uncertainty of the change (1σ): model, unmeasured wood and tip, and 1 %. Worthwhile: squirt falls by "
             "more than its uncertainty; within uncertainty: the change is smaller than its uncertainty.",
+            *([note] if (note := miscue_note(self.miscues)) else []),
             "Stiffness: static, at the tip, joint end clamped. Costs stiffness: by 5 % or more. Natural frequency: of "
             "the first mode.",
         ]
@@ -285,7 +290,8 @@ def design_changes(
     outcome = design.strike()
     reject_no_verdict(struck, outcome)
     base = _numbers(design.solved)
-    before = {key: x for key, x in squirt_changes(design.solved, base["squirt"]).items() if abs(x) > MIN_CONTRIBUTION}
+    changes = squirt_changes(design.solved, base["squirt"])
+    before = {key: x for key, x in changes.of("squirt").items() if abs(x) > MIN_CONTRIBUTION}
     rows = []
     for change in progress(changes_of(struck)):
         try:
@@ -294,7 +300,7 @@ def design_changes(
                 continue
             new = SolvedScene(variant)
             numbers = _numbers(new)
-            after = squirt_changes(new, numbers["squirt"], before)
+            after = squirt_changes(new, numbers["squirt"], before).of("squirt")
             residual = (_residual(before.get(key, 0.0), after.get(key, 0.0), key in change.resets) for key in before)
             error = ratio_error(numbers["squirt"] / base["squirt"], model_share(struck, variant), *residual)
             rows.append(_changed_design(change, base, numbers, error))
@@ -302,7 +308,9 @@ def design_changes(
             continue
     rows.sort(key=lambda row: row.squirt_change)
     calibrated = calibration.squirt(struck) if calibration else None
-    return DesignChanges(design.scene, float(struck.stroke.offset), outcome.regime, base, rows, calibrated)
+    return DesignChanges(
+        design.scene, float(struck.stroke.offset), outcome.regime, base, rows, changes.miscues, calibrated
+    )
 
 
 def _numbers(solved: SolvedScene) -> Record:

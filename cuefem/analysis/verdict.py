@@ -19,6 +19,7 @@ from cuefem.results.uncertainty import (
     SPRING_ERROR,
     Uncertainty,
     difference_record,
+    miscue_note,
     model_error,
     model_share,
     shaft_uncertainty,
@@ -72,6 +73,8 @@ class Verdict(Analysis):
         By the name of each reference cue "squirt", rad; "difference", squirt of the scene over it less 1, both at the
         default resolution; "error" of the difference (1 sigma); "distinct", whether the difference exceeds it. A cue
         whose strike fails, or whose squirt is zero or of the opposite sign, is left out.
+    miscues : tuple of str
+        Inputs that make the stroke a miscue one standard deviation up or down: their part is that of the other side.
     calibrated : CalibratedSquirt or None
         Squirt with the smaller uncertainty of a model that was calibrated on another shaft.
     """
@@ -83,6 +86,7 @@ class Verdict(Analysis):
     inputs: dict[str, float]
     squirt_error: float
     references: dict[str, Record]
+    miscues: tuple[str, ...] = ()
     calibrated: CalibratedSquirt | None = None
 
     def headline(self) -> str:
@@ -111,10 +115,12 @@ class Verdict(Analysis):
         """The parts of the uncertainty as one line."""
         parts = {name: _percent(share) for name, share in self.uncertainty.items()}
         tip = "spring tip; " if self.uncertainty["model"] == SPRING_ERROR else ""
+        note = miscue_note(self.miscues)
         return (
             f"±: uncertainty (1σ): model {parts['model']} ({tip}from published squirt), unmeasured wood and tip "
             f"{parts['inputs']}, numerical {parts['computation']}; combined {parts['total']}. Of a difference between "
             f"two shafts: {_percent(SHAFT_ERROR)} of it (model) or that of their wood if larger, and 1 % of squirt."
+            f"{f' {note}' if note else ''}"
         )
 
     def scale(self, name: str = "yours", other: tuple[str, float | None] | None = None) -> list[ScaleRow]:
@@ -203,7 +209,8 @@ def verdict(
     squirt = float(outcome.squirt)
     # at the resolution of the reference cues, since the outcome may be finer
     base = squirt if outcome.error is None else variant_squirt(design.solved, struck)
-    inputs = {key: abs(change) for key, change in squirt_changes(design.solved, base).items()}
+    changes = squirt_changes(design.solved, base)
+    inputs = {key: abs(change) for key, change in changes.of("squirt").items()}
     computation = NUMERICAL_ERROR if outcome.error is None else outcome.error
     uncertainty = Uncertainty(model_error(struck), math.hypot(*inputs.values()), computation)
     shaft = shaft_uncertainty(inputs)
@@ -218,6 +225,7 @@ def verdict(
         inputs=inputs,
         squirt_error=uncertainty.total * abs(squirt),
         references={name: row for name, row in rows.items() if row},
+        miscues=changes.miscues,
         calibrated=calibration.squirt(struck) if calibration else None,
     )
 

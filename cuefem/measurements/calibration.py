@@ -213,13 +213,13 @@ class Calibration:
             raise ValueError(f"a calibration needs squirt of one sign; got {computed:.3g} and {before:.3g} rad")
         d = max(model_share(old, new) * abs(math.log(computed / before)), RATIO_FLOOR)
         r = max(1 - d**2 / (2 * s**2), 0.0)
-        changes = squirt_changes(SolvedScene(new), computed)
+        changes = squirt_changes(SolvedScene(new), computed).of("squirt")
         shared = [changes.get(key, 0.0) / (PARAMETERS[key].spread_in(new) or 1.0) for key in keys]
         slopes = np.array([*shared, r])
         others = (change for key, change in changes.items() if key not in keys)
         variance = float(slopes @ self._matrix @ slopes) + (1 - r**2) * s**2
         error = math.hypot(math.sqrt(variance), *others, NUMERICAL_ERROR)
-        alone = squirt_changes(SolvedScene(scene), squirt_of(scene)).values()
+        alone = squirt_changes(SolvedScene(scene), squirt_of(scene)).of("squirt").values()
         factor = math.exp(r * self.log_factor)
         return CalibratedSquirt(
             self.name,

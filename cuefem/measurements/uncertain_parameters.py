@@ -88,7 +88,8 @@ def parameters_of(
     by_key = {_key(prior.name): prior for prior in priors}
     parameters = []
     for key, entry in PARAMETERS.items():
-        if entry.spread is None and key not in by_key:
+        default_spread = entry.spread_in(scene)
+        if default_spread is None and key not in by_key:
             continue
         value, prior = entry.value(scene), by_key.get(key)
         if value is None or isinstance(value, Material):
@@ -101,8 +102,7 @@ def parameters_of(
             raise ValueError(
                 f"uncertain parameters must be above 0, since their logarithm is estimated; got {key}, {value:g}"
             )
-        spread = entry.spread_in(scene) or 0.0
-        median, spread = _prior(prior, value, spread)
+        median, spread = _prior(prior, value, default_spread or 0.0)
         unit = entry.quantity(scene).unit
         parameters.append(UncertainParameter(entry.name, entry.label, unit, median, spread, _on_scene(entry.steps())))
     squirts = [measurement for measurement in measurements if isinstance(measurement, Squirt)]

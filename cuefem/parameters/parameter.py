@@ -423,6 +423,16 @@ def _restitution_spread(scene: Scene) -> float | None:
     return None if scene.contact_terms.tip is None else 0.05
 
 
+def _friction_spread(scene: Scene) -> float | None:
+    """Root mean square distance of three published values from 0.7, in logarithms; None without friction.
+
+    A tip slips first at offsets of 0.5 to 0.55 R, tan φ 0.577 and 0.659 ([TP 2.1]); [Kim] takes 0.7.
+    """
+    published = (math.tan(math.asin(0.5)), math.tan(math.asin(0.55)), 0.7)
+    squares = [math.log(friction / 0.7) ** 2 for friction in published]
+    return math.sqrt(sum(squares) / len(squares)) if scene.tip.friction else None
+
+
 def _body_spread(scene: Scene) -> float | None:
     """Half the range of usual cues, in logarithms, of an assumed mass; None for another."""
     return math.log(BODY_MASS_RANGE[1] / BODY_MASS_RANGE[0]) / 2 if scene.shaft.is_body_mass_assumed else None
@@ -549,6 +559,7 @@ PARAMETERS: dict[str, Parameter] = {
             name="friction",
             label="friction of tip and ball",
             path="tip.friction",
+            spread=_friction_spread,
             option="MU",
             help="Coefficient of friction between tip and ball.",
             slider=Slider("", 1.0, 0.2, 1.2, 0.01, 0.01, 10),

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
 from itertools import chain
 from types import MappingProxyType
 from typing import NamedTuple
 
+from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.strike import strike_modes
 from cuefem.parameters.parameter import PARAMETERS, with_values_at
 from cuefem.results.records import Record
+from cuefem.results.verdict import NoVerdict, reject_miscue
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
 
@@ -28,6 +29,20 @@ SHAFT_ERROR = 0.31
 MASS_ERROR = 0.54
 RATIO_FLOOR = 0.01  # relative, of any ratio of squirt: calipers and numerical error
 NUMERICAL_ERROR = 0.002  # of squirt at the default resolution: 0.19 % at most (studies/accuracy/accuracy.md)
+
+
+class InputChanges(NamedTuple):
+    """Relative changes of the results of a scene with its uncertain inputs.
+
+    relative: by input and result. miscues: inputs that make the stroke a miscue one standard deviation up or down.
+    """
+
+    relative: dict[str, dict[str, float]]
+    miscues: tuple[str, ...]
+
+    def of(self, result: str) -> dict[str, float]:
+        """Relative changes of one result, by input."""
+        return {key: change[result] for key, change in self.relative.items()}
 
 
 class Uncertainty(NamedTuple):
@@ -57,12 +72,11 @@ def shaft_uncertainty(inputs: Mapping[str, float]) -> float:
     return math.hypot(*(share for key, share in inputs.items() if not PARAMETERS[key].is_shareable))
 
 
-def squirt_changes(solved: SolvedScene, base: float, of: Iterable[str] = PARAMETERS) -> dict[str, float]:
-    """`changes_by_input` of squirt alone; base: that of the scene, rad."""
+def squirt_changes(solved: SolvedScene, base: float, of: Iterable[str] = PARAMETERS) -> InputChanges:
+    """`changes_by_input` of squirt alone; base: that of the scene, rad; none without squirt."""
     if not base:
-        return {}
-    changes = changes_by_input(solved.scene, {"squirt": base}, lambda new: {"squirt": variant_squirt(solved, new)}, of)
-    return {key: change["squirt"] for key, change in changes.items()}
+        return InputChanges({}, ())
+    return changes_by_input(solved.scene, {"squirt": base}, lambda new: {"squirt": variant_squirt(solved, new)}, of)
 
 
 def changes_by_input(
@@ -71,35 +85,79 @@ def changes_by_input(
     of: Callable[[Scene], Mapping[str, float]],
     inputs: Iterable[str] = PARAMETERS,
     spreads: Mapping[str, float] = MappingProxyType({}),
-) -> dict[str, dict[str, float]]:
+) -> InputChanges:
     """Relative changes of results of a scene with each uncertain input, by its standard deviation.
 
-    Half the difference between one standard deviation up and one down; of one side where the other gives no valid cue.
-    base: results of the scene. of: computes those of a changed scene. inputs: the requested inputs. spreads: standard
-    deviations of logarithms that replace the usual ones, by input. Signs are those of a larger value of the input.
+    Half the difference between one standard deviation up and one down; of one side where the other is no valid cue or
+    a miscue. base: results of the scene. of: computes those of a changed scene, nan for a result that it does not have;
+    `NoVerdict` for a miscue. inputs: the requested inputs. spreads: standard deviations of logarithms that replace the
+    usual ones, by input. Signs are those of a larger value of the input.
     """
     changes: dict[str, dict[str, float]] = {}
+    miscues: list[str] = []
     for key in inputs if scene.cue.segments else ():
-        parameter = PARAMETERS[key]
-        spread = spreads.get(key, parameter.spread_in(scene))
-        steps = (spread, -spread) if spread is not None else (math.log1p(-parameter.below),) if parameter.below else ()
-        sides = []
-        for step in steps if parameter.value(scene) else ():
-            with suppress(ValueError, RuntimeError):  # no valid cue there
-                variant = of(with_values_at(scene, parameter.scaled(scene, math.exp(step))))
-                sides.append({name: math.copysign(1.0, step) * (variant[name] / base[name] - 1) for name in base})
+        sides, is_miscue = _sides(scene, key, of, spreads)
+        own = [name for name, value in base.items() if not math.isnan(value)]
+        lacks_result = any(math.isnan(side[name]) for side in sides.values() for name in own)
+        if is_miscue or lacks_result:
+            miscues.append(key)
         if sides:
-            changes[key] = {name: sum(each[name] for each in sides) / len(sides) for name in base}
-    return changes
+            changes[key] = {name: _mean_change(sides, name, base[name]) for name in base}
+    return InputChanges(changes, tuple(miscues))
+
+
+def _sides(
+    scene: Scene, key: str, of: Callable[[Scene], Mapping[str, float]], spreads: Mapping[str, float]
+) -> tuple[dict[float, Mapping[str, float]], bool]:
+    """Results one standard deviation of an input up and down, by the step of its logarithm, as far as there is a valid
+    cue; and whether one of them is a miscue."""
+    parameter = PARAMETERS[key]
+    spread = spreads.get(key, parameter.spread_in(scene))
+    steps = (spread, -spread) if spread is not None else (math.log1p(-parameter.below),) if parameter.below else ()
+    sides: dict[float, Mapping[str, float]] = {}
+    is_miscue = False
+    for step in steps if parameter.value(scene) else ():
+        try:
+            sides[step] = of(with_values_at(scene, parameter.scaled(scene, math.exp(step))))
+        except NoVerdict:
+            is_miscue = True
+        except (ValueError, RuntimeError):  # no valid cue there
+            continue
+    return sides, is_miscue
+
+
+def _mean_change(sides: Mapping[float, Mapping[str, float]], name: str, base: float) -> float:
+    """The mean relative change of a result over the sides that have it; nan if none has."""
+    changes = [math.copysign(1.0, step) * (values[name] / base - 1) for step, values in sides.items()]
+    valid = [change for change in changes if not math.isnan(change)]
+    return sum(valid) / len(valid) if valid else math.nan
+
+
+def miscue_note(inputs: Iterable[str]) -> str:
+    """A sentence on the inputs whose uncertainty includes a miscue; "" without any."""
+    labels = [PARAMETERS[key].label for key in inputs]
+    if not labels:
+        return ""
+    return f"Uncertain to one side only, since the other is a miscue: {', '.join(labels)}."
 
 
 def variant_squirt(solved: SolvedScene, variant: Scene) -> float:
-    """Squirt of a changed scene, rad; it reuses the solved modes as far as the vibrating cue is unchanged."""
+    """Squirt of a changed scene, rad; it reuses the solved modes as far as the vibrating cue is unchanged.
+
+    `NoVerdict` for a miscue.
+    """
     if _cue_and_effects(variant) == _cue_and_effects(solved.scene):
-        return float(strike_modes(variant, solved.tip).squirt)
+        return _valid_squirt(variant, solved.tip)
     if _bending_cue(variant) == _bending_cue(solved.scene):
-        return float(strike_modes(variant, replace(solved, scene=variant).tip).squirt)
+        return _valid_squirt(variant, replace(solved, scene=variant).tip)
     return squirt_of(variant)
+
+
+def _valid_squirt(scene: Scene, tip: TipModes) -> float:
+    """Squirt of a strike by solved modes, rad; `NoVerdict` for a miscue."""
+    outcome = strike_modes(scene, tip)
+    reject_miscue(scene, outcome)
+    return float(outcome.squirt)
 
 
 def _cue_and_effects(scene: Scene) -> tuple[object, ...]:
@@ -114,8 +172,11 @@ def _bending_cue(scene: Scene) -> tuple[object, ...]:
 
 @lru_cache(maxsize=256)
 def squirt_of(scene: Scene) -> float:
-    """Squirt of a scene's coupled strike, rad, cached for repeated scenes, such as reference cues."""
-    return float(strike_modes(scene, SolvedScene(scene).tip).squirt)
+    """Squirt of a scene's coupled strike, rad, cached for repeated scenes, such as reference cues.
+
+    `NoVerdict` for a miscue.
+    """
+    return _valid_squirt(scene, SolvedScene(scene).tip)
 
 
 def model_share(first: Scene, other: Scene) -> float:

@@ -54,13 +54,28 @@ def density_problem(cue: Cue, margin: float) -> str:
     )
 
 
+def miscue_problem(scene: Scene, outcome: Outcome) -> str:
+    """Why the squirt of a miscue is not reported; an empty text for other strokes."""
+    if outcome.regime != "miscue":
+        return ""
+    return (  # its squirt hardly depends on the cue
+        f"miscue at b/R {scene.stroke.offset:.4g}: no squirt is reported. Use a smaller offset "
+        f"(miscue: {MISCUE_DEFINITION})"
+    )
+
+
+def reject_miscue(scene: Scene, outcome: Outcome) -> None:
+    """NoVerdict for a miscue, whatever the mass of the cue."""
+    problem = miscue_problem(scene, outcome)
+    if problem:
+        raise NoVerdict(problem)
+
+
 def verdict_problem(scene: Scene, outcome: Outcome) -> str:
     """Why the squirt of a stroke is neither reported nor compared, or "": a miscue, or an impossible mass."""
-    if outcome.regime == "miscue":  # whose squirt hardly depends on the cue
-        return (
-            f"miscue at b/R {scene.stroke.offset:.4g}: no squirt is reported. Use a smaller offset "
-            f"(miscue: {MISCUE_DEFINITION})"
-        )
+    miscue = miscue_problem(scene, outcome)
+    if miscue:
+        return miscue
     mass = mass_problem(scene)
     return mass and f"no verdict: {mass}"
 

@@ -94,7 +94,7 @@ def rows(model: str) -> tuple[Row, ...]:
         spreads = {entry.key: each.spread for each in cue.parameters if (entry := parameter(each.name))}
         at = cue.compute().tolist()
         base = {str(i): as_squirt(m, value) for i, (m, value) in enumerate(zip(cue.measurements, at, strict=True))}
-        changes = changes_by_input(cue.scene, base, partial(squirts, cue), spreads=spreads)
+        changes = changes_by_input(cue.scene, base, partial(squirts, cue), spreads=spreads).relative
         for i, (m, value) in enumerate(zip(cue.measurements, at, strict=True)):
             assert isinstance(m, Squirt | PivotLength)
             pivot = isinstance(m, PivotLength)

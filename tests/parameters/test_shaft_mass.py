@@ -45,7 +45,7 @@ def test_shaft_mass_includes_tip_and_precedes_other_changes() -> None:
 def test_weighed_density_is_not_uncertain() -> None:
     scene = cf.usual_scene(pool())
     inputs = [
-        squirt_changes(SolvedScene(each), cf.strike(each).squirt)
+        squirt_changes(SolvedScene(each), cf.strike(each).squirt).of("squirt")
         for each in (scene, with_parameters(scene, {"shaft mass": 0.112}))
     ]
     assert inputs[0]["rho"] > 0.02

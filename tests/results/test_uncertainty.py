@@ -26,13 +26,13 @@ def test_squirt_changes_surface_restitution_is_one_sided() -> None:
     scene = cf.usual_scene(cf.load(MESHES / "pool_maple.toml"))
     own = float(cf.strike(scene).squirt)
     lossy = with_parameters(scene, {"leather.surface_restitution": 0.95})
-    inputs = {key: abs(change) for key, change in squirt_changes(SolvedScene(scene), own).items()}
+    inputs = {key: abs(change) for key, change in squirt_changes(SolvedScene(scene), own).of("squirt").items()}
     assert inputs["surface_restitution"] == pytest.approx(cf.strike(lossy).squirt / own - 1, rel=1e-6)
     assert 0.03 < inputs["surface_restitution"] < 0.05
     others = {key: share for key, share in inputs.items() if key != "surface_restitution"}
     assert shaft_uncertainty(inputs) == shaft_uncertainty(others)
     spring = replace(scene, effects=())
-    assert "surface_restitution" not in squirt_changes(SolvedScene(spring), own)
+    assert "surface_restitution" not in squirt_changes(SolvedScene(spring), own).relative
 
 
 @pytest.mark.heavy
