@@ -171,7 +171,8 @@ def text() -> str:
         "subtracted. Interval: chi-square with as many degrees of freedom as series. Inputs, by half the difference "
         "between plus and minus one standard deviation: E, G and density of the wood, waves in the butt, taper, bore, "
         "leather (a contact time known to 10 %, with the restitution that follows), restitution (0.71 to 0.75 of the "
-        "whole cue), tangential loss, height and dome of the tip; of the bare-tip model its contact time.",
+        "whole cue), friction, tangential loss, height and dome of the tip; of the bare-tip model its contact time and "
+        "friction.",
         "## Ratios of two shafts",
         pair_table(),
         f"Two shafts: RMS {pair_share().total:.2f} of the logarithm, upper end {shafts:.2f} (chi-square, three pairs "

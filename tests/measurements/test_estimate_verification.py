@@ -50,7 +50,7 @@ def random_cue(
 def test_estimate_exact_data_recovers_the_parameters() -> None:
     """With small errors the priors have no effect."""
     small = tuple(replace(one, error=1e-3 * one.error) for one in cheap_measurements() if not isinstance(one, Tone))  # type: ignore[call-arg,attr-defined]
-    cue = measured_cue(*small, priors=(CLOSED, Prior("G", 0.0), Prior("squirt model", 0.0)))
+    cue = measured_cue(*small, priors=(CLOSED, Prior("G", 0.0), Prior("friction", 0.0), Prior("squirt model", 0.0)))
     z = np.array([0.7, -0.4, 0.5])
     result = estimate(measured_as(cue, cue.compute(z)))
     assert [parameter.name for parameter in cue.parameters] == ["E", "rho", "bore width"]

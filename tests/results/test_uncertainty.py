@@ -1,12 +1,14 @@
 """Uncertain inputs, and model errors against published series (validation)."""
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 import cuefem as cf
-from cuefem.parameters.parameter import with_parameters
+from cuefem.measurements.uncertain_parameters import parameters_of
+from cuefem.parameters.parameter import PARAMETERS, with_parameters
 from cuefem.results.uncertainty import (
     MASS_ERROR,
     MODEL_ERROR,
@@ -14,7 +16,9 @@ from cuefem.results.uncertainty import (
     SPRING_ERROR,
     shaft_uncertainty,
     squirt_changes,
+    squirt_of,
 )
+from cuefem.results.verdict import NoVerdict
 from cuefem.scene.solved_scene import SolvedScene
 from studies.measured import uncertainty
 
@@ -33,6 +37,41 @@ def test_squirt_changes_surface_restitution_is_one_sided() -> None:
     assert shaft_uncertainty(inputs) == shaft_uncertainty(others)
     spring = replace(scene, effects=())
     assert "surface_restitution" not in squirt_changes(SolvedScene(spring), own).relative
+
+
+def test_friction_is_an_input_of_late_slip_alone() -> None:
+    """At 5 m/s and b/R 0.45 friction changes squirt by about 10 %, at 2 m/s and b/R 0.3 by less than 0.1 %."""
+    scene = cf.usual_scene(cf.load(MESHES / "pool_maple.toml"))
+    shares = [
+        cf.verdict(with_parameters(scene, {"speed": speed, "offset": offset})).inputs["friction"]
+        for speed, offset in ((2.0, 0.3), (5.0, 0.45))
+    ]
+    assert shares[0] < 1e-3
+    assert 0.05 < shares[1] < 0.15
+
+
+def test_squirt_changes_miscue_on_one_side_takes_the_other() -> None:
+    """At b/R 0.57 a tip with less friction slips off: its squirt, which hardly depends on the cue, does not count."""
+    scene = with_parameters(cf.usual_scene(cf.load(MESHES / "pool_maple.toml")), {"offset": 0.57})
+    own = float(cf.strike(scene).squirt)
+    spread = PARAMETERS["friction"].spread_in(scene)
+    assert isinstance(spread, float)
+    slippery, rough = (with_parameters(scene, {"friction": 0.7 * math.exp(sign * spread)}) for sign in (-1, 1))
+    assert cf.strike(slippery).regime == "miscue"
+    changes = squirt_changes(SolvedScene(scene), own)
+    assert changes.miscues == ("friction",)
+    assert changes.of("squirt")["friction"] == pytest.approx(float(cf.strike(rough).squirt) / own - 1, rel=1e-6)
+    note = "Uncertain to one side only, since the other is a miscue: friction of tip and ball."
+    assert note in cf.verdict(scene).uncertainty_line()
+    with pytest.raises(NoVerdict, match=r"miscue at b/R 0\.57"):
+        squirt_of(slippery)
+
+
+@pytest.mark.parametrize("friction", [0.0, math.inf])
+def test_scene_without_finite_friction_has_no_uncertain_friction(friction: float) -> None:
+    scene = cf.usual_scene(cf.load(MESHES / "pool_maple.toml"))
+    scene = replace(scene, tip=replace(scene.tip, friction=friction))
+    assert "friction" not in {parameter.name for parameter in parameters_of(scene, ())}
 
 
 @pytest.mark.heavy
