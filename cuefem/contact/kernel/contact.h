@@ -204,10 +204,13 @@ struct Contact {
     StepTables t;
     double end_free[CUE_VELOCITIES], mean_free[CUE_VELOCITIES]; /* of ports and slopes without loads */
     double C[FORCES][VELOCITIES];                               /* v = C y, at mid-step */
-    double v_free[FORCES], u_free[FORCES];                      /* v and u without forces */
-    double u_stick[FORCES];                                     /* u of a point that sticks */
-    double V[FORCES][FORCES], W[FORCES][FORCES];                /* v = v_free + V F, u = u_free + W F */
-    double F[FORCES];   /* the next step's iteration begins with it, N */
+    double shortening[SLOPES];                    /* of the cue per slope, m: columns of C over -C_u */
+    double end_per_force[FORCES][CUE_VELOCITIES]; /* of ports and slopes, per force of the contact */
+    double mean_per_force[FORCES][CUE_VELOCITIES];
+    double v_free[FORCES], u_free[FORCES];       /* v and u without forces */
+    double u_stick[FORCES];                      /* u of a point that sticks */
+    double V[FORCES][FORCES], W[FORCES][FORCES]; /* v = v_free + V F, u = u_free + W F */
+    double F[FORCES], last_F[FORCES];            /* of this step and of the last one, N */
     int slip;           /* its direction, or STICK; a patch that slips in parts keeps STICK */
     NormalForce normal; /* of a level cue, at mid-step */
     double annulus_force[ANNULI], annuli_loss; /* at mid-step, N; dissipated in the step, J */
@@ -242,7 +245,7 @@ double residual(const Contact *c);
 double tangential_stiffness(const Input *in, double virtual);
 
 /* kinematics.c */
-void contact_kinematics(const Contact *c, double angle, const double *slopes, double C[FORCES][VELOCITIES]);
+void contact_kinematics(Contact *c, double angle, const double *slopes);
 void contact_matrices(Contact *c);
 void velocities(const Contact *c, double *end, double *mean);
 

@@ -21,7 +21,7 @@ static void impact_matrices(Contact *c)
     const Input *in = c->in;
     const State *s = c->s;
     const int n_cue = in->ports + in->slopes;
-    contact_kinematics(c, s->angle, s->slopes, c->C);
+    contact_kinematics(c, s->angle, s->slopes);
     for (int f = 0; f < in->forces; f++) {
         c->v_free[f] = 0;
         c->u_stick[f] = 0;

@@ -27,18 +27,18 @@ static void rolled_kinematics(const Input *in, double angle, double C[FORCES][VE
 /* C after the contact has rolled by an angle, rad, on a shaft bent by slopes. Bending shortens the cue by the
    sum of weight slope^2/2 (second-order theory), so that the tip's axial velocity is reduced by the sum of
    weight slope slope'. */
-void contact_kinematics(const Contact *c, double angle, const double *slopes, double C[FORCES][VELOCITIES])
+void contact_kinematics(Contact *c, double angle, const double *slopes)
 {
     const Input *in = c->in;
     const int ports = in->ports, n_cue = ports + in->slopes, n_velocities = ports + in->speeds;
+    for (int a = 0; a < in->slopes; a++) c->shortening[a] = in->slope_weights[a] * slopes[a];
     for (int f = 0; f < in->forces; f++) {
-        memcpy(C[f], in->kinematics + f * n_velocities, ports * sizeof(double));
-        memcpy(C[f] + n_cue, in->kinematics + f * n_velocities + ports, in->speeds * sizeof(double));
+        memcpy(c->C[f], in->kinematics + f * n_velocities, ports * sizeof(double));
+        memcpy(c->C[f] + n_cue, in->kinematics + f * n_velocities + ports, in->speeds * sizeof(double));
     }
-    if (in->rolling) rolled_kinematics(in, angle, C);
+    if (in->rolling) rolled_kinematics(in, angle, c->C);
     for (int f = 0; f < in->forces; f++)
-        for (int a = 0; a < in->slopes; a++)
-            C[f][ports + a] = -C[f][U_PORT] * in->slope_weights[a] * slopes[a];
+        for (int a = 0; a < in->slopes; a++) c->C[f][ports + a] = -c->C[f][U_PORT] * c->shortening[a];
 }
 
 /* C at mid-step. */
@@ -49,7 +49,7 @@ static void kinematics_at_middle(Contact *c)
     double bent[SLOPES];
     for (int a = 0; a < c->in->slopes; a++)
         bent[a] = s->slopes[a] + half * s->port_velocities[c->in->ports + a];
-    contact_kinematics(c, s->angle + half * s->rolling_rate, bent, c->C);
+    contact_kinematics(c, s->angle + half * s->rolling_rate, bent);
 }
 
 /* Whether the point of a force stuck in the last step. */
@@ -83,13 +83,20 @@ static void free_velocities(Contact *c)
     }
 }
 
-/* Velocities of the cue's ports and slopes per force f of the contact: a row of C times a table. */
-static void per_force(const Contact *c, int f, const double *table, double *row)
+/* Velocities of ports and slopes per force f of the contact, by a table of them per load. All slopes have the
+   same share of the loads of every force: bending shortens the cue along its axis alone. */
+FAST static void per_force(const Contact *c, const double *table, double result[FORCES][CUE_VELOCITIES])
 {
-    const int n_cue = c->in->ports + c->in->slopes;
-    for (int q = 0; q < n_cue; q++) {
-        row[q] = 0;
-        for (int p = 0; p < n_cue; p++) row[q] += c->C[f][p] * table[p * n_cue + q];
+    const int ports = c->in->ports, n_cue = ports + c->in->slopes;
+    for (int p = 0; p < n_cue; p++) {
+        const double *per_load = table + p * n_cue;
+        double per_shortening = 0;
+        for (int q = ports; q < n_cue; q++) per_shortening += per_load[q] * c->shortening[q - ports];
+        for (int f = 0; f < c->in->forces; f++) {
+            double sum = -c->C[f][U_PORT] * per_shortening;
+            for (int q = 0; q < ports; q++) sum += per_load[q] * c->C[f][q];
+            result[f][p] = sum;
+        }
     }
 }
 
@@ -99,22 +106,20 @@ static void velocities_per_force(Contact *c)
 {
     const Input *in = c->in;
     const int n_cue = in->ports + in->slopes;
-    for (int f = 0; f < in->forces; f++) {
-        double end[CUE_VELOCITIES], mean[CUE_VELOCITIES];
-        per_force(c, f, c->t.end_per_load, end);
-        per_force(c, f, c->t.mean_per_load, mean);
+    per_force(c, c->t.end_per_load, c->end_per_force);
+    per_force(c, c->t.mean_per_load, c->mean_per_force);
+    for (int f = 0; f < in->forces; f++)
         for (int g = 0; g < in->forces; g++) {
             double ball = 0, ends = 0, means = 0;
             for (int b = 0; b < in->speeds; b++)
                 ball += c->t.h * c->C[f][n_cue + b] * in->inverse_masses[b] * c->C[g][n_cue + b];
-            for (int q = 0; q < n_cue; q++) {
-                ends += end[q] * c->C[g][q];
-                means += mean[q] * c->C[g][q];
+            for (int p = 0; p < n_cue; p++) {
+                ends += c->C[f][p] * c->end_per_force[g][p];
+                means += c->C[f][p] * c->mean_per_force[g][p];
             }
             c->V[f][g] = ends + ball;
             c->W[f][g] = means + ball / 2;
         }
-    }
 }
 
 /* The linear equations of a step: v = v_free + V F and u = u_free + W F. */

@@ -1,6 +1,9 @@
 /* The forces of a level cue: the force-indentation law at mid-step, friction as a return mapping. */
 #include "contact.h"
 
+/* Relative change of the forces in Newton's last iteration, which leaves an error of its square. */
+static const double NEWTON_REL_TOL = 1e-9;
+
 /* Row N: F_n = law(indentation at mid-step). Handbook: The contact. */
 static void normal_equation(Contact *c, const double *u, Equations *e)
 {
@@ -45,9 +48,19 @@ static int newton(Contact *c)
             c->patch->stick(c, u, &e);
         change = correct(c, &e);
         scale = fabs(c->F[T]) + fabs(c->F[N]) + MIN_FORCE;
-        if (change <= REL_TOL * scale) return 1;
+        if (change <= NEWTON_REL_TOL * scale) return 1;
     }
     return change <= REL_TOL_ACCEPTED * scale;
+}
+
+/* Begin the iteration where the forces of the last two steps lead. */
+static void extrapolate(Contact *c)
+{
+    for (int f = 0; f < c->in->forces; f++) {
+        double last = c->F[f];
+        c->F[f] += last - c->last_F[f];
+        c->last_F[f] = last;
+    }
 }
 
 /* Trial stick, and slip if |F_t| of the trial exceeds mu F_n. */
@@ -56,6 +69,7 @@ static int forces(Contact *c)
     const double mu = c->in->friction;
     const int in_parts = c->patch->slips_in_parts;
     c->slip = mu == 0 && !in_parts ? SLIP : STICK;
+    extrapolate(c);
     if (!newton(c)) return 0;
     if (in_parts || c->slip) return 1;
     if (fabs(c->F[T]) <= mu * larger(c->F[N], 0) * (1 + REL_TOL)) return 1;

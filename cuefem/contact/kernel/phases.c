@@ -146,6 +146,7 @@ void separate(Contact *c)
     s->shift_mid = s->shift;
     memset(s->annulus_force, 0, sizeof s->annulus_force);
     memset(c->F, 0, sizeof c->F);
+    memset(c->last_F, 0, sizeof c->last_F);
     memcpy(s->separated_modes, s->modes, 2 * c->in->modes * sizeof(double));
     if (!isfinite(s->window_end)) s->window_end = s->time + c->in->window;
 }

@@ -45,9 +45,9 @@ static void advance_cue(Contact *c, Motion *m)
     advance_modes(c);
     for (int p = 0; p < n_cue; p++) {
         double end = c->end_free[p], mean = c->mean_free[p];
-        for (int q = 0; q < n_cue; q++) {
-            end += c->t.end_per_load[p * n_cue + q] * m->loads[q];
-            mean += c->t.mean_per_load[p * n_cue + q] * m->loads[q];
+        for (int f = 0; f < in->forces; f++) {
+            end += c->end_per_force[f][p] * c->F[f];
+            mean += c->mean_per_force[f][p] * c->F[f];
         }
         if (p == THIRD_PORT && in->ports > THIRD_PORT)
             m->section_rotation_rate = mean; /* used in rolling alone */
