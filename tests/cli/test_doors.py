@@ -50,6 +50,13 @@ def of_designer(shaft: RandomShaft, file: Path) -> cf.Scene:
     return with_value(with_value(scene, "dome", shaft.dome), "offset", shaft.offset)
 
 
+def of_python(shaft: RandomShaft, file: Path) -> cf.Scene:
+    """The scene by public functions."""
+    drawing = cf.load(file)
+    assert isinstance(drawing, cf.Cue)
+    return cf.with_parameters(cf.usual_scene(drawing, shaft.game), {"dome": shaft.dome, "offset": shaft.offset})
+
+
 @pytest.mark.parametrize("seed", SEEDS)
 def test_every_door_has_the_same_squirt_and_verdict(seed: int, tmp_path: Path) -> None:
     shaft = random_shaft(seed)
@@ -63,17 +70,23 @@ def test_every_door_has_the_same_squirt_and_verdict(seed: int, tmp_path: Path) -
     struck = record_of("strike", file, *shaft.options)
     squirt = struck["models"]["coupled"]["squirt"]
     scene = of_designer(shaft, file)
-    assert of_study(shaft, file) == scene
+    assert of_study(shaft, file) == scene == of_python(shaft, file)
     own = solved_strike(scene)
     assert float(own.outcome.squirt) == pytest.approx(squirt, rel=1e-12)
+    assert cf.strike(scene).squirt == pytest.approx(squirt, rel=1e-12)
     report = record_of("report", file, *shaft.options)
     compared = record_of("compare", file, twin, *shaft.options)
+    in_python = cf.compare({"shaft": scene, "twin": cf.with_parameters(scene, {})}).values()
+    assert in_python == approximately({key: compared[key] for key in in_python})
     problem = verdict_problem(scene, own.outcome)
     if problem:
+        with pytest.raises(ValueError, match=re.escape(problem)):
+            cf.verdict(scene)
         assert report["no_squirt"] == problem == compared["problems"]["shaft"]
         assert call("improve", file, *shaft.options)[::2] == (2, f"cuefem: {file}: {problem}\n")
         return
-    assert_verdicts_agree(report["verdict"], verdict(scene).values())
+    for answer in (verdict(scene), cf.verdict(scene)):
+        assert_verdicts_agree(report["verdict"], answer.values())
     assert report["verdict"]["squirt"] == pytest.approx(squirt, rel=1e-12)
     assert [*report["verdict"]["references"]] == ["plain maple", "low deflection", "carbon"]
     assert compared["cues"]["shaft"]["squirt"] == pytest.approx(squirt, rel=1e-12)
@@ -92,9 +105,21 @@ def assert_doors_refuse(shaft: RandomShaft, file: Path, twin: Path, refusal: str
         assert call(command, file, *shaft.options)[::2] == (2, refusal)
     status, out, err = call("compare", file, twin, *shaft.options, "--json")
     assert err == refusal if status else reason in json.loads(out)["problems"]["shaft"]
-    for door in (of_study, of_designer):
+    for door in (of_study, of_designer, of_python):
         with pytest.raises(ValueError, match=re.escape(reason)):
             solved_strike(door(shaft, file))
+    for question in (cf.strike, cf.verdict, cf.design_changes):
+        with pytest.raises(ValueError, match=re.escape(reason)):
+            question(of_python(shaft, file))
+
+
+def approximately(values: Any) -> Any:
+    """The same numbers of a nested record to 1e-12."""
+    if isinstance(values, dict):
+        return {key: approximately(value) for key, value in values.items()}
+    if isinstance(values, list):
+        return [approximately(value) for value in values]
+    return pytest.approx(values, rel=1e-12) if isinstance(values, float) else values
 
 
 def assert_verdicts_agree(first: Any, other: Any) -> None:
