@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from cuefem.beam.basis import EXTRA_POINTS, element_basis, gauss_rule, line_basis, tabulated_line_basis
 from cuefem.beam.blas_threads import one_blas_thread
-from cuefem.beam.mesh import POSITION_TOLERANCE, BeamEffect, Mesh, Resolution, mesh_cue
-from cuefem.beam.point_terms import PointTerms
+from cuefem.beam.mesh import Mesh, Resolution
+from cuefem.beam.meshing import POSITION_TOLERANCE, mesh_cue
+from cuefem.beam.point_terms import BeamEffect, PointTerms
 from cuefem.cue import Array, Cue, Section
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from cuefem.beam.assembly import Points, assemble_blocks, gauss_points, is_dense_faster
 from cuefem.beam.eigensolver import EigenSolution, solve_eigenproblem
-from cuefem.beam.mesh import mesh_for_phases
+from cuefem.beam.meshing import mesh_for_phases
 from cuefem.cue import Array, Cue, Section
 
 

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 from cuefem.beam.assembly import Points, System, assemble
 from cuefem.beam.blas_threads import one_blas_thread
 from cuefem.beam.eigensolver import EigenSolution, solve_eigenproblem
-from cuefem.beam.mesh import BeamEffect
 from cuefem.beam.mode_count import modes_below
+from cuefem.beam.point_terms import BeamEffect
 from cuefem.cue import Array, Cue, Section
 from cuefem.quantity.display import brief, html_table
 from cuefem.quantity.fields import Quantity, check_count, check_kind

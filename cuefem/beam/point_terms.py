@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 
 from cuefem.beam.mesh import Mesh
@@ -49,3 +51,21 @@ class PointTerms:
         for pair, value, stiffness in zip(pairs, (w, theta), (section.kGA, section.EI), strict=True):
             compliant = value * stiffness > MIN_COMPLIANCE * self.cue.length
             self.compliance[pair] = self.compliance.get(pair, 0.0) + (value if compliant else 0.0)
+
+
+class BeamEffect(Protocol):
+    """Interface of an effect that acts on the cue."""
+
+    @property
+    def positions(self) -> tuple[float, ...]:
+        """Positions that must be mesh nodes, m from the tip."""
+
+    @property
+    def joint_positions(self) -> tuple[float, ...]:
+        """Positions where deflection and rotation may jump, m from the tip."""
+
+    def check_on(self, cue: Cue, name: str) -> None:
+        """ValueError, naming the effect ``name``, unless all its positions lie on the cue."""
+
+    def add_to(self, terms: PointTerms) -> None:
+        """Add the effect's point terms."""

@@ -244,7 +244,7 @@ class SweepResult(StudyResult):
     @cached_property
     def statistics(self) -> SweepStatistics | None:
         """Its statistics; None if fewer than two designs have all responses."""
-        return sweep_statistics(self)
+        return sweep_statistics(self.study, self.designs, self.columns.values)
 
     def values(self) -> Record:
         """Counts of designs, and the summary: best designs, sensitivities, Pareto front."""
@@ -255,7 +255,7 @@ class SweepResult(StudyResult):
     def tables(self) -> list[Table | str]:
         """Failures, varied parameters, best designs, sensitivities, and the Pareto front."""
         found = [] if self.statistics is None else tabulate_sweep(self.statistics)
-        return [*tabulate_failures(self), *super().tables(), *found]
+        return [*tabulate_failures(self.study, self.designs, self.failures), *super().tables(), *found]
 
 
 @dataclass(frozen=True, repr=False)
@@ -279,11 +279,11 @@ class ScatterResult(StudyResult):
     def values(self) -> Record:
         """The distribution of each response, and the shares of its factors."""
         about = {"count": self.definition.count, "seed": self.definition.seed}
-        return about | {"responses": scatter_record(self, self.sobol_indices)}
+        return about | {"responses": scatter_record(self.study, self.spread, self.sobol_indices)}
 
     def tables(self) -> list[Table | str]:
         """Varied parameters, spreads, and the shares of the factors."""
-        return [*super().tables(), *tabulate_scatter(self, self.definition, self.sobol_indices)]
+        return [*super().tables(), *tabulate_scatter(self.definition, self.spread, self.sobol_indices)]
 
 
 @dataclass(frozen=True, repr=False)

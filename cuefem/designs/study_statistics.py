@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cuefem.cue import Array
 from cuefem.designs.evaluation import Response
+from cuefem.designs.study import Study
 from cuefem.quantity.equality import equal_fields
-
-if TYPE_CHECKING:
-    from cuefem.designs.study_result import StudyResult
 
 MAX_LEVELS = 24  # maximum number of values of a parameter that are separate groups
 MAX_GROUPS = 12  # maximum number of groups, each a range, of a parameter with more values
@@ -82,14 +80,17 @@ class SweepStatistics:
         return order[np.r_[True, least[1:] < least[:-1]]].tolist()
 
 
-def sweep_statistics(result: StudyResult) -> SweepStatistics | None:
-    """The statistics of a sweep; None if fewer than two designs have all responses."""
-    complete = np.flatnonzero(~np.isnan(result.columns.values).any(axis=1))
+def sweep_statistics(study: Study, designs: Mapping[str, np.ndarray], results: Array) -> SweepStatistics | None:
+    """The statistics of a sweep; None if fewer than two designs have all responses.
+
+    designs: values of each parameter by its name. results: (designs, responses), nan where one is missing.
+    """
+    complete = np.flatnonzero(~np.isnan(results).any(axis=1))
     if len(complete) < 2:
         return None
-    columns = tuple(column[complete] for column in result.designs.values())
-    names, units = (texts[: len(columns)] for texts in (result.study.columns, result.study.units))
-    return SweepStatistics(names, units, result.study.responses, complete, columns, result.columns.values[complete])
+    columns = tuple(column[complete] for column in designs.values())
+    names, units = (texts[: len(columns)] for texts in (study.columns, study.units))
+    return SweepStatistics(names, units, study.responses, complete, columns, results[complete])
 
 
 def explained_variance(column: np.ndarray, results: Array) -> Array:

@@ -7,9 +7,9 @@ its factors; of an optimum the best design and its active constraints.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -34,8 +34,8 @@ from cuefem.results.records import Record, Table
 from cuefem.scene import Scene
 from cuefem.show.scene_summary import assumptions, scene_record
 
-if TYPE_CHECKING:
-    from cuefem.designs.study_result import StudyResult
+Designs = Mapping[str, np.ndarray]  # values of each parameter by its name, (designs,)
+Spread = Mapping[str, Mapping[str, float]]  # of each response: mean, sd and quantiles
 
 _FIELD = re.compile(rf"({'|'.join(field.name for field in fields(Scene))})(\[[\d*]+\])?(\.\w+(\[[\d*]+\])?)+")
 _ITEM = re.compile(r"(\w+)s\[(\d+|\*)\]")
@@ -128,15 +128,14 @@ def shown(value: Any, unit: str) -> str:
     return number_text(float(value), unit)
 
 
-def tabulate_failures(result: StudyResult) -> list[str]:
+def tabulate_failures(study: Study, designs: Designs, failures: Mapping[int, str]) -> list[str]:
     """How many designs failed, with the first of them and its reason; empty without failures."""
-    failures = result.failures
     if not failures:
         return []
     number, failure = next(iter(failures.items()))
-    values = [column[number].item() for column in result.designs.values()]
-    levels = [replace(vary, range=Levels((x,))) for vary, x in zip(result.study.vary, values, strict=True)]
-    texts = map(range_text, levels, result.study.units)
+    values = [column[number].item() for column in designs.values()]
+    levels = [replace(vary, range=Levels((x,))) for vary, x in zip(study.vary, values, strict=True)]
+    texts = map(range_text, levels, study.units)
     design = ", ".join(f"{column_label(vary.name)} {x}" for vary, x in zip(levels, texts, strict=True))
     return [f"{len(failures)} failed, the first of them design {number} ({design}): {failure}"]
 
@@ -212,27 +211,27 @@ def tabulate_sweep(sweep: SweepStatistics) -> list[Table | str]:
     return [*sheets, Table(f"Trade-off, {title}", head, rows)]
 
 
-def scatter_record(result: StudyResult, drivers: SobolIndices) -> Record:
+def scatter_record(study: Study, spread: Spread, drivers: SobolIndices) -> Record:
     """The distribution of each response, and the shares of its factors in the variance."""
     parts = ("first", "first_interval", "total", "total_interval")
     return {
         response.name: {
             "unit": response.unit,
-            **result.spread[response.name],
+            **spread[response.name],
             "factors": {
                 factor: {part: getattr(drivers, part)[..., i, k] for part in parts}
                 for i, factor in enumerate(drivers.factors)
             },
         }
-        for k, response in enumerate(result.study.responses)
+        for k, response in enumerate(study.responses)
     }
 
 
-def tabulate_scatter(result: StudyResult, scatter: Scatter, drivers: SobolIndices) -> list[Table | str]:
+def tabulate_scatter(scatter: Scatter, spread: Spread, drivers: SobolIndices) -> list[Table | str]:
     """The spread of each response, the shares of its factors, and a sentence on both."""
     spreads, rows, bold, lines = list[tuple[str, ...]](), list[tuple[str, ...]](), dict[int, str](), list[str]()
     for k, response in enumerate(scatter.study.responses):
-        numbers = {name: shown(value, response.display_key) for name, value in result.spread[response.name].items()}
+        numbers = {name: shown(value, response.display_key) for name, value in spread[response.name].items()}
         spreads.append((response.heading, *numbers.values()))
         bold[len(rows)] = "bold"
         rows.append((response.label, "", ""))

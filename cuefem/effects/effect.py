@@ -88,7 +88,7 @@ class Effect:
 
 @dataclass(frozen=True)
 class CueEffect(Effect):
-    """An effect that acts on the cue: it adds terms to the beam (see `cuefem.beam.mesh.BeamEffect`) or to its modes."""
+    """An effect that acts on the cue: it adds terms to the beam (see `cuefem.beam.point_terms`) or to its modes."""
 
     needs_beam: ClassVar[bool] = True
 

@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 
 from cuefem import Cue, Joint, Material, PointMass, Resolution, Segment, Support, modes
 from cuefem.beam import assembly
-from cuefem.beam.mesh import mesh_cue
+from cuefem.beam.meshing import mesh_cue
 from cuefem.beam.modes import solve
 from tests.helpers.cues import CARBON, FOAM, MAPLE, isotropic_kim, kim, rod, soft_tip, stiff_ferrule
 from tests.helpers.orders import assert_order

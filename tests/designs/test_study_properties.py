@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 import cuefem as cf
 from cuefem.cue.materials import material
 from cuefem.designs import Levels, Normal, Response, Sample, Span, Study, Vary, evaluate
-from cuefem.designs.study_statistics import sweep_statistics
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.results.computable_results import computable_results
 from cuefem.results.quantities import RESULTS
@@ -199,10 +198,10 @@ def test_best_design_of_left_hand_offset_is_that_of_right_hand() -> None:
     stiffness = Response("tip_stiffness")
     result = cf.study(replace(study(BORES), responses=(right, left, stiffness)))
     assert result.best[left.name].values == result.best[right.name].values == {"bore": 8e-3}
-    statistics = sweep_statistics(result)
+    statistics = result.statistics
     assert statistics is not None
     assert statistics.best(0) == statistics.best(1) == 2
-    sides = [sweep_statistics(cf.study(replace(study(BORES), responses=(each, stiffness)))) for each in (right, left)]
+    sides = [cf.study(replace(study(BORES), responses=(each, stiffness))).statistics for each in (right, left)]
     assert sides[0].front == sides[1].front == [2, 1, 0]  # type: ignore[union-attr]
     mirrored = cf.study(replace(study(BORES, responses=("squirt",)), base=at_offset(BASE, -0.3)))
     assert mirrored.best["squirt"].values == {"bore": 8e-3}
