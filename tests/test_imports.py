@@ -152,6 +152,11 @@ def test_import_inside_function_loads_what_its_file_does_not() -> None:
     assert [(module, name) for module, name in inner if name in loaded_with(module)] == []
 
 
+def test_no_two_classes_of_package_have_one_name() -> None:
+    names = [one.name for tree in TREES.values() for one in tree.body if isinstance(one, ast.ClassDef)]
+    assert sorted(name for name in {*names} if names.count(name) > 1) == []
+
+
 def test_public_names_are_importable() -> None:
     """`dir` lists every public name, and each can be imported."""
     assert {"load", "strike", "design_changes"} <= set(dir(cuefem))

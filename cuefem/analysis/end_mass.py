@@ -21,7 +21,7 @@ SQUIRT_END_MASS = "squirt-equivalent end mass"  # the one that pages and tables 
 
 
 @dataclass(frozen=True)
-class EndMass:
+class DefinedEndMass:
     """End mass by one definition.
 
     Parameters
@@ -54,7 +54,7 @@ class EndMasses(Analysis):
         Contact time of a rigid cue head-on, s.
     offset : float
         Offset b/R of the stroke.
-    definitions : dict of str to EndMass
+    definitions : dict of str to DefinedEndMass
         The end mass by the name of its definition.
     reduction : Reduction or None
         The reduction to Kim's two-part cue, if it was asked for.
@@ -62,7 +62,7 @@ class EndMasses(Analysis):
 
     contact_time: float
     offset: float
-    definitions: dict[str, EndMass]
+    definitions: dict[str, DefinedEndMass]
     reduction: Reduction | None = field(default=None, repr=False)
 
     def values(self) -> Record:
@@ -157,12 +157,12 @@ def end_masses(
     return EndMasses(scene, scene.contact_time, scene.stroke.offset, masses, reduced)
 
 
-def _end_mass(solved: SolvedScene, name: str) -> EndMass:
+def _end_mass(solved: SolvedScene, name: str) -> DefinedEndMass:
     scene = solved.scene
     try:
         end_mass = float(DEFINITIONS[name].of_design(solved))
     except ValueError as error:
-        return EndMass(None, None, None, str(error))
+        return DefinedEndMass(None, None, None, str(error))
     if not end_mass > 0:
         time = with_unit(float(scene.contact_time), "s")
         raise ValueError(
@@ -170,4 +170,4 @@ def _end_mass(solved: SolvedScene, name: str) -> EndMass:
             f"contact of {time}: check dimensions, E and contact time"
         )
     cue_end = float(cue_end_mass(end_mass))
-    return EndMass(end_mass, cue_end, cue_end / scene.ball.mass)
+    return DefinedEndMass(end_mass, cue_end, cue_end / scene.ball.mass)

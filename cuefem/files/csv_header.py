@@ -52,7 +52,7 @@ class ProfileColumn:
 
 
 @dataclass(frozen=True)
-class Header:
+class CsvHeader:
     """The header of a table, and the rows below it that have data.
 
     line: of the header, from 1. n_columns: cells in that line. skipped_lines: of titles above the header and of rows
@@ -78,7 +78,7 @@ def length_unit_of(text: str) -> str:
     return preferred_name(word)
 
 
-def read_header(path: Path, rows: Sequence[Row]) -> Header:
+def read_header(path: Path, rows: Sequence[Row]) -> CsvHeader:
     """Find the header in the first `MAX_HEADER_ROWS` rows of a profile.
 
     Raises
@@ -111,7 +111,7 @@ def read_header(path: Path, rows: Sequence[Row]) -> Header:
             data = tuple(row for row in below if _has_data(row[1], lengths, materials))
             data = _without_closing_text(data, lengths)
             skipped = tuple(number for number, _ in (*rows[:i], *(row for row in below if row not in data)))
-            return Header(line, lengths, materials, unused, len(cells), data, skipped)
+            return CsvHeader(line, lengths, materials, unused, len(cells), data, skipped)
         if len(cells) > 1 and kinds and candidate == rows[0]:
             candidate = line, cells
         if len(cells) > 1 and all(map(is_number, cells)):

@@ -14,7 +14,7 @@ from cuefem.cue import MAX_LEATHER_MODULUS, Cue, Material, Segment
 from cuefem.cue.materials import material_name
 from cuefem.files.csv_header import (
     EXAMPLE,
-    Header,
+    CsvHeader,
     ProfileColumn,
     length_unit_of,
     measured_from_butt,
@@ -113,7 +113,7 @@ def read_profile(path: Path, material: Material, length_unit: str | None = None)
 
 
 def _check_decimal_points(
-    path: Path, header: Header, column: ProfileColumn, x: Sequence[float], diameters: Sequence[float]
+    path: Path, header: CsvHeader, column: ProfileColumn, x: Sequence[float], diameters: Sequence[float]
 ) -> None:
     """InputError for a diameter that fits its neighbours ten times smaller or larger, and not as it is."""
     unit_size = parse_number(f"1 {column.unit}", "m") * (2 if column.kind == RADIUS_COLUMN else 1)
@@ -131,7 +131,7 @@ def _check_decimal_points(
 
 
 def _sides(
-    path: Path, header: Header, x: Sequence[float], inside: Sequence[Interior]
+    path: Path, header: CsvHeader, x: Sequence[float], inside: Sequence[Interior]
 ) -> dict[float, tuple[Interior, Interior]]:
     """The interior in front of each position and the one behind it: two rows of one position make a step."""
     sides = dict[float, tuple[Interior, Interior]]()
@@ -178,7 +178,7 @@ def _drawn(
 
 
 def _inside(
-    path: Path, header: Header, columns: Sequence[ProfileColumn], mark: str, diameters: Sequence[float]
+    path: Path, header: CsvHeader, columns: Sequence[ProfileColumn], mark: str, diameters: Sequence[float]
 ) -> list[Interior]:
     """The bore and the materials of every row: an empty cell repeats the material above only."""
     bore = next((column for column in columns if column.kind == BORE_COLUMN), None)
@@ -205,7 +205,7 @@ def _inside(
     return rows
 
 
-def _ferrule_with_length(path: Path, header: Header, inside: Sequence[Interior]) -> str:
+def _ferrule_with_length(path: Path, header: CsvHeader, inside: Sequence[Interior]) -> str:
     """The ferrule of a cell such as "25 mm melamine", which begins at its row; "" if no cell has a length."""
     column = next((column for column in header.material_columns if column.kind == FERRULE_COLUMN), None)
     entries = [_entry(cells, column) if column else "" for _, cells in header.rows]
@@ -226,7 +226,7 @@ def _entry(cells: Sequence[str], column: ProfileColumn) -> str:
     return "" if text.casefold() in _EMPTY else text
 
 
-def _notes(header: Header, position: ProfileColumn, diameter: ProfileColumn, points: Sequence[Point]) -> list[str]:
+def _notes(header: CsvHeader, position: ProfileColumn, diameter: ProfileColumn, points: Sequence[Point]) -> list[str]:
     """Notes on how the columns and lines were read."""
     names = header.unused_names
     butt, first = measured_from_butt(position), points[0][0] if points else 0.0
@@ -248,7 +248,7 @@ def _cells(rows: Sequence[Row], column: ProfileColumn) -> list[str]:
     return [cells[column.index] if column.index < len(cells) else "" for _, cells in rows]
 
 
-def _with_units(path: Path, header: Header, length_unit: str | None) -> list[ProfileColumn]:
+def _with_units(path: Path, header: CsvHeader, length_unit: str | None) -> list[ProfileColumn]:
     """The columns with their units from header, cells or ``length_unit``; InputError without a unit."""
     columns = []
     for column in header.length_columns:
@@ -270,7 +270,7 @@ def _with_units(path: Path, header: Header, length_unit: str | None) -> list[Pro
     return [ProfileColumn(c.kind, c.index, c.name, c.unit or unit) for c in columns]
 
 
-def _chosen(path: Path, header: Header, columns: Sequence[ProfileColumn], kinds: Sequence[str]) -> ProfileColumn:
+def _chosen(path: Path, header: CsvHeader, columns: Sequence[ProfileColumn], kinds: Sequence[str]) -> ProfileColumn:
     """The only column of these kinds; InputError for two."""
     first, *others = [column for column in columns if column.kind in kinds]
     if others:
@@ -294,7 +294,7 @@ def _number(path: Path, row: Row, column: ProfileColumn, mark: str) -> float:
     return 2 * value if kind == RADIUS_COLUMN else value
 
 
-def _ordered(path: Path, header: Header, position: ProfileColumn, points: list[Point]) -> tuple[Point, ...]:
+def _ordered(path: Path, header: CsvHeader, position: ProfileColumn, points: list[Point]) -> tuple[Point, ...]:
     """The points from tip to butt; InputError if x is not monotonic."""
     if measured_from_butt(position):
         butt_end = max((x for x, _ in points), default=0.0)

@@ -7,7 +7,7 @@ import re
 from importlib.resources import files
 from typing import NamedTuple
 
-__all__ = ["CHAPTERS", "LINES", "MAKERS", "Chapter", "Section", "chapters", "effect_lines", "sections_with"]
+__all__ = ["CHAPTERS", "LINES", "MAKERS", "Chapter", "FoundSection", "chapters", "effect_lines", "sections_with"]
 
 # The chapters' files in the order of reading, first those for makers (tests/helpers/maker_pictures.py draws for them).
 MAKERS = (
@@ -62,7 +62,7 @@ def chapters() -> tuple[Chapter, ...]:
     return tuple(_chapter(name) for name in CHAPTERS)
 
 
-class Section(NamedTuple):
+class FoundSection(NamedTuple):
     """A section that contains a word: its chapter's name, its heading, and the count of the word."""
 
     chapter: str
@@ -70,7 +70,7 @@ class Section(NamedTuple):
     matches: int
 
 
-def sections_with(word: str) -> tuple[Section, ...]:
+def sections_with(word: str) -> tuple[FoundSection, ...]:
     """The sections with words that begin with ``word``, in upper or lower case, in the order of reading."""
     pattern = re.compile(rf"\b{re.escape(word)}", re.IGNORECASE)
     sections = []
@@ -78,7 +78,7 @@ def sections_with(word: str) -> tuple[Section, ...]:
         for text in re.split(r"\n(?=## )", chapter.text):
             title = text.partition("\n")[0].lstrip("# ")
             if matches := len(pattern.findall(text)):
-                sections.append(Section(chapter.name, title, matches))
+                sections.append(FoundSection(chapter.name, title, matches))
     return tuple(sections)
 
 

@@ -86,7 +86,7 @@ def element_ends(length: float, radii: tuple[float, float], fineness: Fineness) 
     return np.concatenate([first, np.linspace(first[-1], last[0], count + 1)[1:-1], last]) / length
 
 
-class Block(NamedTuple):
+class MeridianBlock(NamedTuple):
     """One layer of one segment, between two lines of the mesh; ends: the ends of its elements in [0, 1]."""
 
     piece: int
@@ -95,7 +95,7 @@ class Block(NamedTuple):
     ends: Array
 
 
-def blocks(cue: Cue, fineness: Fineness) -> Iterator[Block]:
+def blocks(cue: Cue, fineness: Fineness) -> Iterator[MeridianBlock]:
     """Every layer of material of every segment."""
     radii, bore, outer = mesh_lines(cue)
     for i, piece in enumerate(cue.segments):
@@ -103,7 +103,7 @@ def blocks(cue: Cue, fineness: Fineness) -> Iterator[Block]:
         for layer in range(outer[i]):
             material = piece.core if layer < bore[i] else piece.material
             if material is not None:
-                yield Block(i, layer, material, ends)
+                yield MeridianBlock(i, layer, material, ends)
 
 
 def check_mesh_size(cue: Cue, fineness: Fineness) -> None:
