@@ -6,10 +6,11 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from cuefem.cue import Array
 from cuefem.measurements import estimate as estimation
 from cuefem.measurements import measured_cue
 from cuefem.measurements.calibration import Calibration
@@ -22,7 +23,11 @@ from cuefem.results.quantities import DASH
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.show.analysis import Analysis
 
+if TYPE_CHECKING:
+    from cuefem.show.charts import Chart
+
 LARGE_RESIDUAL = 3.0  # a larger one is a contradiction
+MIN_CHART_ROWS, MIN_AXIS = 3, 6.0  # fewer residuals are read in the table; a shorter axis has ticks between the rows
 MIN_OUTLIER_PROBABILITY = 0.2  # of a measurement with a note
 UNITS = {"residual": "", "normalized_residual": "", "zero_error": "m", "squirt_error": "rad"}
 
@@ -76,6 +81,10 @@ class MeasuredComparison(Analysis):
         if self.missing:
             blocks += ["Missing measurements and their consequences:", *(f"  {line}" for line in self.missing)]
         return blocks
+
+    def charts(self) -> list[Chart]:
+        """The normalized residual of each measurement."""
+        return residual_chart(self.rows, "normalized_residual", "over both 1σ combined, σ")
 
     def captions(self) -> list[str]:
         """Definitions of the table's columns."""
@@ -183,6 +192,10 @@ class MeasuredEstimate(Analysis):
                 "Sorted by the relative uncertainty (1σ) of squirt after the measurement, with the model error.",
             ),
         ]
+
+    def charts(self) -> list[Chart]:
+        """The residual of each measurement with the estimate."""
+        return residual_chart(self.rows, "residual", "over the measurement's 1σ, σ")
 
     def squirt_line(self) -> str:
         """Squirt with the estimated parameters."""
@@ -296,6 +309,36 @@ def estimate(cue: MeasuredCue | str | Path, *, progress: Progress = iter) -> Mea
         recommended_measurements=[_gain_record(gain) for gain in found.next_measurements()],
         found=found,
     )
+
+
+def residual_chart(rows: Sequence[Record], residual: str, label: str) -> list[Chart]:
+    """A line from zero to the residual of each measurement, by its row of the table; none of few measurements.
+
+    residual: its name in a row. label: of the axis.
+    """
+    from cuefem.show.charts import Axis, Curve, chart  # for pages
+
+    if len(rows) < MIN_CHART_ROWS:
+        return []
+    numbers = np.arange(1.0, len(rows) + 1)
+    values = [row[residual] for row in rows]
+    stems = np.repeat(numbers, 3), np.column_stack([np.zeros(len(rows)), values, np.full(len(rows), np.nan)]).ravel()
+    reach = max(LARGE_RESIDUAL, float(np.ceil(np.abs(values).max())))
+    ends = np.array([0.0, max(len(rows) + 1.0, MIN_AXIS)])
+    limit = Curve(f"limit of a contradiction, ±{LARGE_RESIDUAL:g}σ", *_both_sides(ends, LARGE_RESIDUAL), "c2")
+    return [
+        chart(
+            "Measured minus computed",
+            [Curve("measured minus computed", *stems, "c1 stem"), limit],
+            x=Axis("row of the table", 0.0, ends[1]),
+            y=Axis(label, -reach, reach),
+        )
+    ]
+
+
+def _both_sides(ends: Array, height: float) -> tuple[Array, Array]:
+    """Two level lines, at plus and minus a height."""
+    return np.concatenate([ends, [np.nan], ends]), np.array([height, height, np.nan, -height, -height])
 
 
 def _row_record(row: Residual) -> Record:

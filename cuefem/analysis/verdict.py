@@ -11,7 +11,7 @@ from cuefem.cue import Cue
 from cuefem.files.reference_cues import reference_cues
 from cuefem.measurements.calibration import CalibratedSquirt, Calibration
 from cuefem.quantity.display_units import format_change, off_line, to_display, with_unit
-from cuefem.results.records import Record, Table
+from cuefem.results.records import Record, ScaleCell, Table
 from cuefem.results.solved_design import SolvedDesign, off_centre
 from cuefem.results.uncertainty import (
     NUMERICAL_ERROR,
@@ -286,10 +286,10 @@ def _percent(share: float) -> str:
     return "under 0.1 %" if percent < 0.1 else f"{percent:.1f} %" if percent < 1 else f"{percent:.0f} %"
 
 
-def _bar(row: ScaleRow) -> str:
+def _bar(row: ScaleRow) -> ScaleCell:
     at, low, high = (round(BAR * each / 100) for each in (row.at, row.low, row.high))
     line = ["·"] * (BAR + 1)
     if row.kind == "own":
         line[low : high + 1] = ["━"] * len(line[low : high + 1])
     line[min(at, BAR)] = "●"
-    return "".join(line)
+    return ScaleCell.of("".join(line), row.at, row.low, row.high)

@@ -23,6 +23,24 @@ Record = dict[str, Any]
 ColumnEntry = str | Callable[[Mapping[str, Any]], str]
 
 
+class ScaleCell(str):
+    """A cell with a place on a scale: a page draws it, a terminal prints the text.
+
+    at, low, high: the dot and the ends of the span around it, % of the scale.
+    """
+
+    at: float
+    low: float
+    high: float
+
+    @classmethod
+    def of(cls, text: str, at: float, low: float, high: float) -> ScaleCell:
+        """The cell of a text and its numbers."""
+        cell = cls(text)
+        cell.at, cell.low, cell.high = at, low, high
+        return cell
+
+
 @dataclass(frozen=True)
 class Table:
     """A table: its title, the head of its columns, rows of texts, and lines that state its assumptions.

@@ -32,6 +32,13 @@ def test_verdict_reference_cues_agree_with_strikes(name: str) -> None:
     assert reference["difference"] == pytest.approx(cf.strike(SCENE).squirt / outcome.squirt - 1, abs=1e-12)
 
 
+def test_page_of_verdict_draws_cues_at_their_squirt() -> None:
+    """From the least to the most; a text of characters of unlike width would not."""
+    places = [float(left) for left in re.findall(r'class="spot" style="left:([\d.]+)%', VERDICT.to_html())]
+    squirts = sorted([VERDICT.squirt, *(cue["squirt"] for cue in VERDICT.references.values())])
+    assert places == pytest.approx([places[-1] * squirt / squirts[-1] for squirt in squirts], abs=0.01)
+
+
 def test_verdict_uncertainty_is_quadrature_sum_of_parts() -> None:
     uncertainty = VERDICT.uncertainty
     parts = [uncertainty[name] for name in ("model", "inputs", "computation")]
