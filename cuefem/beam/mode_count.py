@@ -8,7 +8,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cuefem.cue import Array, Cue
+from cuefem.cue import Array, Cue, Section
 
 # Interpolation error of the shape of the highest mode. The error of its frequency is the square of it, and lower modes
 # are far more accurate.
@@ -19,20 +19,25 @@ MAX_ORDER = 110
 _FREQUENCIES = np.geomspace(1e0, 1e9, 100)  # angular frequencies between which `mode_phases` interpolates, rad/s
 
 
+@functools.lru_cache(maxsize=32)
+def _sections_at_gauss_points(cue: Cue) -> Section:
+    """Section properties at three Gauss points of each segment, (segments, 3)."""
+    lengths = np.diff(cue.nodes)[:, None]
+    points = lengths * np.array([0.5 - 0.15**0.5, 0.5, 0.5 + 0.15**0.5])
+    return cue.section_in(np.arange(len(lengths))[:, None], points)
+
+
 def wave_phase(cue: Cue, omega: ArrayLike) -> Array:
     """Phase of bending waves of angular frequency ``omega`` over each segment, rad: (2, segments, *omega.shape).
 
     The integral of the local wave numbers of Timoshenko's beam (the two branches, the second above its cut-off), at
     three points a segment: the sum over branches and segments, over pi, is nearly the number of modes below omega.
     """
-    omega = np.asarray(omega, float)[..., None, None]
-    lengths = np.diff(cue.nodes)
-    piece = np.arange(len(lengths))[:, None]
-    s = cue.section_in(piece, lengths[:, None] * np.array([0.5 - 0.15**0.5, 0.5, 0.5 + 0.15**0.5]))
+    omega, s = np.asarray(omega, float)[..., None, None], _sections_at_gauss_points(cue)
     shear, rotary = s.rhoA / s.kGA, s.rhoI / s.EI
     root = np.sqrt((shear - rotary) ** 2 + 4 * s.rhoA / (s.EI * np.maximum(omega, 1e-9) ** 2))
     branches = np.array([shear + rotary + root, np.maximum(shear + rotary - root, 0)])
-    phase = omega * np.sqrt(branches / 2) @ (np.array([5, 8, 5]) / 18) * lengths
+    phase = omega * np.sqrt(branches / 2) @ (np.array([5, 8, 5]) / 18) * np.diff(cue.nodes)
     return np.moveaxis(phase, -1, 1)
 
 

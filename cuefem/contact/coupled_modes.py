@@ -31,17 +31,31 @@ class CoupledModes(NamedTuple):
         return matrix
 
     def after(self, t: float) -> tuple[Array, Array]:
-        """The state (v, a) after a time t, s, (2 m, 3 m), and the mean of v over it, (m, 3 m), from x."""
+        """The state (v, a) after a time t, s, (2 m, 3 m), and the mean of v over it, (m, 3 m), from x.
+
+        omega must not be 0: the mean of v is the increase of a, over omega t.
+        """
         m = len(self.omega)
-        propagated = expm(self.system * t)
-        return propagated[: 2 * m, : 3 * m], propagated[3 * m :, : 3 * m] / t
+        state = self.state_after(t)
+        increase = state[m:] - np.eye(m, 3 * m, m)
+        return state, increase / (self.omega * t)[:, None]
 
     def state_after(self, t: float) -> Array:
         """The state (v, a) after a time t, s, (2 m, 3 m), from x."""
         n = 3 * len(self.omega)
         return np.asarray(expm(self.system[:n, :n] * t)[: 2 * len(self.omega)])
 
-    def energy_lost(self, t: float, part: Array) -> Array:
+    def energy_lost(self, t: float, state: Array, mean: Array) -> Array:
+        """The energy that the damping takes in a time t, s: a quadratic form in x, (3 m, 3 m).
+
+        state, mean: of `after`. It is the work of the loads, minus the increase of the modes' energy (v^2 + a^2)/2.
+        """
+        m = len(self.omega)
+        energy = np.diag(np.repeat([0.5, 0.5, 0.0], m)) - state.T @ state / 2
+        energy[2 * m :] += t * mean
+        return np.asarray(energy)
+
+    def energy_lost_to(self, part: Array, t: float) -> Array:
         """The energy that a part of the damping, (m, m), takes in a time t, s: a quadratic form in x, (3 m, 3 m).
 
         C. F. Van Loan, Computing integrals involving the matrix exponential, IEEE Trans. Automat. Control 23 (1978)

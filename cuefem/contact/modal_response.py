@@ -160,13 +160,14 @@ class ModalPropagator:
         end = _RowVelocities(np.hstack([rows * after.v_v, -rows * after.sine]), h * (rows * after.mean) @ rows.T)
         mean = _RowVelocities(np.hstack([rows * after.mean, -rows * rise]), h * (rows * after.versine) @ rows.T)
         radiating, radiated, dissipated = self._add_radiating(h, end, mean)
-        # A dashpot's force is minus its mean velocity, which the state and all forces determine.
-        c = len(self.ports) + len(self.slopes)
-        own_response = np.eye(len(self.dashpots)) + mean.of_loads[c:, c:]
-        dashpots = np.asarray(
-            -np.linalg.solve(own_response, np.hstack([mean.of_state[c:], mean.of_loads[c:, :c]])), float
-        )
-        end, mean = end.with_dashpots(dashpots), mean.with_dashpots(dashpots)
+        dashpots: Array = NOTHING
+        if len(self.dashpots):
+            # A dashpot's force is minus its mean velocity, which the state and all forces determine.
+            c = len(self.ports) + len(self.slopes)
+            own_response = np.eye(len(self.dashpots)) + mean.of_loads[c:, c:]
+            without_dashpots = np.hstack([mean.of_state[c:], mean.of_loads[c:, :c]])
+            dashpots = np.asarray(-np.linalg.solve(own_response, without_dashpots), float)
+            end, mean = end.with_dashpots(dashpots), mean.with_dashpots(dashpots)
         return StepTables(
             h=h,
             own=np.array([after.v_v, after.sine, after.a_a]),
@@ -192,8 +193,11 @@ class ModalPropagator:
         for velocities, of_group in ((end, state[:m]), (mean, mean_velocity)):
             velocities.of_state[:, columns] += rows @ of_group[:, : 2 * m]
             velocities.of_loads[:] += rows @ of_group[:, 2 * m :] @ rows.T
-        dissipated = self._group.energy_lost(h, self._group_loss) if self.loss.any() else NOTHING
-        return state, self._group.energy_lost(h, self._radiation), dissipated
+        lost = self._group.energy_lost(h, state, mean_velocity)
+        if not self.loss.any():
+            return state, lost, NOTHING
+        dissipated = self._group.energy_lost_to(self._group_loss, h)
+        return state, lost - dissipated, dissipated
 
     def advanced(self, states: Array, loads: Array, times: Array) -> Array:
         """States after k times, s, (k, 2, n), from states, (k, 2, n), under modal loads, (k, n), dashpots' included."""

@@ -267,7 +267,8 @@ def _shear_coefficients(c: SegmentRows, bore_ratio: Array) -> tuple[Array, Array
     default = np.isnan(c.kappa)
     if not default.any():
         return c.kappa, c.kappa
-    shell, core = shear_coefficient(c.nu, bore_ratio), shear_coefficient(c.core_nu)
+    shell = shear_coefficient(c.nu, bore_ratio)
+    core = shear_coefficient(c.core_nu) if np.any(c.core_G) else c.core_G
     return np.where(default, shell, c.kappa), np.where(default, core, c.kappa)
 
 

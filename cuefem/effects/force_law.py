@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial import Polynomial
+from numpy.polynomial.polynomial import polyder, polyval
 
 from cuefem.cue import Array
 from cuefem.quantity.display_units import with_unit
@@ -98,11 +99,11 @@ class LeatherLaw:
     def at(self, depth: Any) -> tuple[Any, Any]:
         """(F, k_t), N and N/m, at virtual indentations, m; zero where negative."""
         y = np.sqrt(np.maximum(depth, 0.0))
-        return self._force(y), y / Polynomial(self.compliance_terms)(y)
+        return self._force(y), y / polyval(y, self.compliance_terms)
 
     def slope(self, depth: Any) -> Any:
         """Slope of F over the virtual indentation, N/m: dF/dy over 2 y."""
-        return Polynomial(self._force.deriv().coef[1:])(np.sqrt(np.maximum(depth, 0.0))) / 2
+        return polyval(np.sqrt(np.maximum(depth, 0.0)), polyder(self._force.coef)[1:]) / 2
 
     @cached_property
     def _work(self) -> Polynomial:
