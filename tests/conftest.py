@@ -1,5 +1,6 @@
 """Settings of every test: hypothesis draws the same examples in every run, except in the profile "nightly"."""
 
+import gc
 import os
 import pkgutil
 import sys
@@ -24,6 +25,8 @@ import pytest  # noqa: E402
 from hypothesis import HealthCheck, settings  # noqa: E402
 
 import cuefem  # noqa: E402
+from cuefem.beam import blas_threads  # noqa: E402
+from cuefem.contact.kernel.library import library  # noqa: E402
 
 # hypothesis draws from the constants of imported modules: with all of them the order of a worker has no effect
 for module in pkgutil.walk_packages(cuefem.__path__, "cuefem."):
@@ -45,3 +48,14 @@ settings.load_profile("cuefem")
 def pytest_addoption(parser: pytest.Parser) -> None:
     """`--update` writes golden files anew (tests/test_golden_files.py)."""
     parser.addoption("--update", action="store_true", help="write the golden files of tests/golden anew")
+
+
+SOLVED_AT_COLLECTION = pytest.StashKey[list[str]]()  # what test_imports.py asserts to be empty
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Note what tests have solved at their collection, and keep the collected objects out of the garbage collector."""
+    uses = {"an eigenproblem": blas_threads._libraries, "a strike": library}
+    session.config.stash[SOLVED_AT_COLLECTION] = [name for name, used in uses.items() if used.cache_info().currsize]
+    gc.collect()
+    gc.freeze()  # a million objects, which each later collection would walk

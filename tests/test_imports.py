@@ -5,12 +5,14 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
 
 import cuefem
+from tests.conftest import SOLVED_AT_COLLECTION
 
 PACKAGE = Path(cuefem.__file__).parent
 
@@ -84,13 +86,16 @@ def out_of_order(part: str, tree: ast.Module) -> list[str]:
     return wrong
 
 
-SOURCES = sorted(path for path in PACKAGE.rglob("*.py") if path != PACKAGE / "__init__.py")
-TREES = {path: ast.parse(path.read_bytes()) for path in SOURCES}
+@cache
+def trees() -> dict[Path, ast.Module]:
+    """The files of the package."""
+    sources = sorted(path for path in PACKAGE.rglob("*.py") if path != PACKAGE / "__init__.py")
+    return {path: ast.parse(path.read_bytes()) for path in sources}
 
 
 def test_imports_follow_package_order() -> None:
     """Each library in its rooms."""
-    wrong = {path.name: out_of_order(part_of(path), tree) for path, tree in TREES.items()}
+    wrong = {path.name: out_of_order(part_of(path), tree) for path, tree in trees().items()}
     assert {name: names for name, names in wrong.items() if names} == {}
     assert out_of_order("cue", ast.parse("from cuefem.beam import assemble")) == ["cuefem.beam"]
     assert out_of_order("scene", ast.parse("def f():\n    import pint")) == ["pint"]
@@ -102,7 +107,10 @@ def module_of(path: Path) -> str:
     return ".".join(steps[:-1] if steps[-1] == "__init__" else steps)
 
 
-MODULES = {module_of(path): tree for path, tree in TREES.items()}
+@cache
+def modules() -> dict[str, ast.Module]:
+    """The modules of the package by their names."""
+    return {module_of(path): tree for path, tree in trees().items()}
 
 
 def loads(statement: ast.AST) -> set[str]:
@@ -111,7 +119,7 @@ def loads(statement: ast.AST) -> set[str]:
         return {alias.name for alias in statement.names}
     if not isinstance(statement, ast.ImportFrom):
         return set()
-    parts = {f"{statement.module}.{alias.name}" for alias in statement.names} & MODULES.keys()
+    parts = {f"{statement.module}.{alias.name}" for alias in statement.names} & modules().keys()
     return parts or {statement.module or ""}
 
 
@@ -121,7 +129,7 @@ def loaded_with(module: str) -> set[str]:
     while left:
         name = left.pop()
         found.add(name)
-        tree = MODULES.get(name)
+        tree = modules().get(name)
         at_top = () if tree is None else (one for one in walk(tree) if one.col_offset == 0)
         left |= {each for one in at_top for each in loads(one)} - found
     return found
@@ -132,10 +140,10 @@ def test_modules_of_package_have_no_circle() -> None:
     needed = {
         module: {each for one in ast.walk(tree) if one.__dict__.get("col_offset") == 0 for each in loads(one)}
         | {each for one in for_types(tree) for each in loads(one)}
-        for module, tree in MODULES.items()
+        for module, tree in modules().items()
     }
-    assert len(needed["cuefem.cli.request"] & MODULES.keys()) > 5
-    graph = {module: (names & MODULES.keys()) - {module} for module, names in needed.items()}
+    assert len(needed["cuefem.cli.request"] & modules().keys()) > 5
+    graph = {module: (names & modules().keys()) - {module} for module, names in needed.items()}
     assert [*TopologicalSorter(graph).static_order()]  # CycleError names a circle
 
 
@@ -143,7 +151,7 @@ def test_import_inside_function_loads_what_its_file_does_not() -> None:
     """An import inside a function has one reason: a command that does not call it does without that library or file."""
     inner = [
         (module, name)
-        for module, tree in MODULES.items()
+        for module, tree in modules().items()
         for one in walk(tree)
         if one.col_offset > 0
         for name in loads(one)
@@ -153,8 +161,13 @@ def test_import_inside_function_loads_what_its_file_does_not() -> None:
 
 
 def test_no_two_classes_of_package_have_one_name() -> None:
-    names = [one.name for tree in TREES.values() for one in tree.body if isinstance(one, ast.ClassDef)]
+    names = [one.name for tree in trees().values() for one in tree.body if isinstance(one, ast.ClassDef)]
     assert sorted(name for name in {*names} if names.count(name) > 1) == []
+
+
+def test_collection_solves_nothing(request: pytest.FixtureRequest) -> None:
+    """A broken core fails tests, and not their collection: what solves or strikes stands in a test or a fixture."""
+    assert request.config.stash[SOLVED_AT_COLLECTION] == []
 
 
 def test_public_names_are_importable() -> None:

@@ -21,32 +21,37 @@ from cuefem.scene.solved_scene import SolvedScene
 
 ROOT = Path(__file__).parents[2]
 SCENE = cf.usual_scene(cf.load(ROOT / "meshes" / "pool_hollow.toml"))
-VERDICT = cf.verdict(SCENE)
+
+
+@pytest.fixture(scope="module")
+def own() -> Verdict:
+    """The verdict on the scene."""
+    return cf.verdict(SCENE)
 
 
 @pytest.mark.parametrize("name", REFERENCE_FILES)
-def test_verdict_reference_cues_agree_with_strikes(name: str) -> None:
+def test_verdict_reference_cues_agree_with_strikes(own: Verdict, name: str) -> None:
     outcome = cf.strike(replace(SCENE, cue=without_leather(cf.load(ROOT / REFERENCE_FILES[name]))))
-    reference = VERDICT.references[name]
+    reference = own.references[name]
     assert reference["squirt"] == pytest.approx(outcome.squirt, rel=1e-12)
     assert reference["difference"] == pytest.approx(cf.strike(SCENE).squirt / outcome.squirt - 1, abs=1e-12)
 
 
-def test_page_of_verdict_draws_cues_at_their_squirt() -> None:
+def test_page_of_verdict_draws_cues_at_their_squirt(own: Verdict) -> None:
     """From the least to the most; a text of characters of unlike width would not."""
-    places = [float(left) for left in re.findall(r'class="spot" style="left:([\d.]+)%', VERDICT.to_html())]
-    squirts = sorted([VERDICT.squirt, *(cue["squirt"] for cue in VERDICT.references.values())])
+    places = [float(left) for left in re.findall(r'class="spot" style="left:([\d.]+)%', own.to_html())]
+    squirts = sorted([own.squirt, *(cue["squirt"] for cue in own.references.values())])
     assert places == pytest.approx([places[-1] * squirt / squirts[-1] for squirt in squirts], abs=0.01)
 
 
-def test_verdict_uncertainty_is_quadrature_sum_of_parts() -> None:
-    uncertainty = VERDICT.uncertainty
+def test_verdict_uncertainty_is_quadrature_sum_of_parts(own: Verdict) -> None:
+    uncertainty = own.uncertainty
     parts = [uncertainty[name] for name in ("model", "inputs", "computation")]
     assert all(part > 0 for part in parts)
     assert uncertainty["total"] == pytest.approx(math.sqrt(sum(part**2 for part in parts)), rel=1e-12)
-    assert VERDICT.squirt_error == pytest.approx(uncertainty["total"] * VERDICT.squirt, rel=1e-12)
-    assert uncertainty["inputs"] == pytest.approx(math.hypot(*VERDICT.inputs.values()), rel=1e-12)
-    assert {"E", "rho", "tip_height"} <= set(VERDICT.inputs)
+    assert own.squirt_error == pytest.approx(uncertainty["total"] * own.squirt, rel=1e-12)
+    assert uncertainty["inputs"] == pytest.approx(math.hypot(*own.inputs.values()), rel=1e-12)
+    assert {"E", "rho", "tip_height"} <= set(own.inputs)
 
 
 @pytest.mark.parametrize(
@@ -54,11 +59,11 @@ def test_verdict_uncertainty_is_quadrature_sum_of_parts() -> None:
     [{"shaft mass": 1.0001 * SCENE.shaft.shaft_mass}, {"leather": 1.0001 * SCENE.leather_tip.E}],
     ids=["shaft", "tip"],
 )
-def test_verdict_known_input_has_smaller_uncertainty(known: dict[str, float]) -> None:
+def test_verdict_known_input_has_smaller_uncertainty(own: Verdict, known: dict[str, float]) -> None:
     scene = with_parameters(SCENE, known)
     known_verdict = cf.verdict(scene, {})
-    assert known_verdict.uncertainty["model"] == VERDICT.uncertainty["model"]
-    assert known_verdict.uncertainty["total"] < VERDICT.uncertainty["total"]
+    assert known_verdict.uncertainty["model"] == own.uncertainty["model"]
+    assert known_verdict.uncertainty["total"] < own.uncertainty["total"]
 
 
 @pytest.mark.parametrize(("depth", "distinct"), [(0.01, False), (0.1, True)])
@@ -154,8 +159,8 @@ def test_default_tip_fits_every_usual_front(game: str, front: float) -> None:
     assert front > GAMES[game].face_diameter or scene.leather_tip == GAMES[game].tip
 
 
-def test_reference_scale_is_ascending_and_relative_to_maple() -> None:
-    rows, reference = VERDICT.scale(), VERDICT.references
+def test_reference_scale_is_ascending_and_relative_to_maple(own: Verdict) -> None:
+    rows, reference = own.scale(), own.references
     assert [row.at for row in rows] == sorted(row.at for row in rows)
     assert all(0 <= row.low <= row.at <= row.high <= 100 for row in rows)
     assert [row.name for row in rows if row.kind == "own"] == ["yours"]
@@ -169,6 +174,6 @@ def test_reference_scale_is_ascending_and_relative_to_maple() -> None:
 @pytest.mark.parametrize(
     ("squirt", "error", "text"), [(1.847, 0.31, "1.85°"), (0.4, 0.042, "0.40°"), (0.04, 0.0042, "0.040°")]
 )
-def test_squirt_text_has_digits_of_tables(squirt: float, error: float, text: str) -> None:
-    verdict: Verdict = replace(VERDICT, squirt=math.radians(squirt), squirt_error=math.radians(error))
+def test_squirt_text_has_digits_of_tables(own: Verdict, squirt: float, error: float, text: str) -> None:
+    verdict: Verdict = replace(own, squirt=math.radians(squirt), squirt_error=math.radians(error))
     assert verdict.squirt_text()[0] == text

@@ -24,14 +24,14 @@ def identify_call(contact_time: float, rebound: float) -> Callable[[], object]:
 BALL, NORTH = cf.Ball(0.17, 0.0286), (0.0, 1.0, 0.0)
 R = BALL.radius
 GOOD = (0.3 * R, R)
-STRUCK = cf.impulse(cf.Scene(cf.LumpedCue(0.54, 0.004), BALL, cf.Tip(0.75, 0.7), cf.Stroke(2.0, 0.3)))
-RAISED = cf.strike(cf.Scene(cf.LumpedCue(0.54, 0.004), BALL, stroke=cf.Stroke(2.0, 0.3), effects=(cf.Elevation(0.1),)))
+PLANAR = cf.Scene(cf.LumpedCue(0.54, 0.004), BALL, cf.Tip(0.75, 0.7), cf.Stroke(2.0, 0.3))
+RAISED = replace(PLANAR, effects=(cf.Elevation(0.1),))
 LUMPED = cf.Scene(cf.LumpedCue(0.54, 0.006, 3.0), stroke=cf.Stroke(offset=0.3))
 DEAD = "Tip.restitution must be in [0.05, 1] for a contact computed in time; got "
 
 
 def place_call(point: Any = GOOD, direction: Any = NORTH, ball: cf.Ball = BALL) -> Callable[[], object]:
-    return lambda: cf.place(STRUCK, point, direction, ball=ball)
+    return lambda: cf.place(cf.impulse(PLANAR), point, direction, ball=ball)
 
 
 def strike_call(scene: cf.Scene, at: cf.Resolution | None = None, **changes: Any) -> Callable[[], object]:
@@ -82,7 +82,7 @@ CALLS: list[Any] = [
     (place_call((0.0, 0.0)), "point must be on the side of the ball that the direction meets, less than 90 degrees"),
     (place_call((0.31 * R, R)), "0.31 or -0.31; got one at 0.3"),
     (
-        lambda: cf.place(RAISED, GOOD, NORTH),
+        lambda: cf.place(cf.strike(RAISED), GOOD, NORTH),
         "place takes planar outcomes; after Elevation use outcome.history.velocity and .spin",
     ),
 ]
