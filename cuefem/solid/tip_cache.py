@@ -70,5 +70,8 @@ def write_table(tip: UntabulatedTip, result: TipTable) -> None:
         with suppress(OSError):
             folder.mkdir(parents=True, exist_ok=True)
             temporary = cache_file(tip, folder).with_suffix(f".{os.getpid()}.npz")
-            np.savez_compressed(temporary, patches=result.patches, head_on=result.head_on)
-            temporary.replace(cache_file(tip, folder))
+            try:
+                np.savez_compressed(temporary, patches=result.patches, head_on=result.head_on)
+                temporary.replace(cache_file(tip, folder))
+            finally:
+                temporary.unlink(missing_ok=True)

@@ -81,6 +81,26 @@ def test_tip_cache_invalid_file_is_computed_again(cache: Path, computed_tips: li
     assert len(computed_tips) == 7
 
 
+@pytest.mark.parametrize("home", ["/proc/none", "file", "full disk"])
+def test_tip_cache_that_cannot_be_written_stays_empty(
+    home: str, cache: Path, computed_tips: list[UntabulatedTip], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A home that is read-only, no folder, or on a disk that is full in the middle of the file."""
+    (tmp_path / "file").touch()
+
+    def begin_and_fail(file: Path, **_: object) -> None:
+        file.write_bytes(b"half")
+        raise OSError(28, "No space left on device")
+
+    if home == "full disk":
+        monkeypatch.setattr("numpy.savez_compressed", begin_and_fail)
+    else:
+        monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / home))  # an absolute path replaces the folder
+    contact_inputs(FLAT)
+    assert len(computed_tips) == 1
+    assert [path for path in tmp_path.rglob("*") if path.is_file()] == [tmp_path / "file"]
+
+
 def test_tip_cache_without_home_folder_stores_nothing(
     cache: Path, computed_tips: list[UntabulatedTip], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
