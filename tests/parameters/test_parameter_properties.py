@@ -73,6 +73,15 @@ def test_taper_at_position_changes_diameters_linearly(x: float, more: float) -> 
         assert outer_diameter(cue, at) == pytest.approx(outer_diameter(FIRST.cue, at) + hat, rel=1e-9)
 
 
+@examples(10)
+@given(gain=st.floats(1e-4, 0.012))
+def test_taper_scales_the_gain_of_every_diameter(gain: float) -> None:
+    new = with_parameters(FIRST, {"taper": gain}).cue
+    first, ends = FIRST.cue.segments[0].tip_diameter, np.linspace(0, new.length, 9)
+    gains = np.array([[outer_diameter(cue, at) - first for at in ends] for cue in (FIRST.cue, new)])
+    np.testing.assert_allclose(gains[1], gains[0] * gain / gains[0, -1], rtol=1e-9, atol=1e-15)
+
+
 def test_parameter_material_and_leather_names_set_values() -> None:
     result = with_parameters(FIRST, {"wood": "ash", "wood.E": 13e9, "leather": "soft", "ferrule material": "nylon"})
     assert {s.material.rho for s in result.cue.segments} >= {material("ash").rho, material("nylon").rho}

@@ -1,5 +1,6 @@
 """Default scenes of a cue: tip, ball, stroke and effects of the game (properties)."""
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -79,3 +80,14 @@ def test_restitution_of_stated_modulus_lies_between_named_leathers() -> None:
         assert restitution(leather.E) == leather.restitution
     assert GAMES["pool"].tip_with((GAMES["pool"].tip,)) == cf.Tip(0.73, 0.7)
     assert LEATHERS["medium"].restitution < restitution(100e6) < LEATHERS["soft"].restitution == restitution(10e6)
+
+
+@pytest.mark.parametrize("restitution", [0.3, 1.0])
+def test_stiffness_and_contact_time_declare_one_tip(restitution: float) -> None:
+    """A spring k between masses M and m_a loads for a quarter of its period; restitution scales the unloading."""
+    timed = cf.Scene(cf.LumpedCue(0.5, 0.006), tip=cf.Tip(restitution, contact_time=1.2e-3))
+    quarter = 1.2e-3 / (1 + restitution)
+    assert timed.stiffness == pytest.approx((math.pi / 2 / quarter) ** 2 / (1 / timed.ball.mass + 1 / 0.5), rel=1e-12)
+    stiff = replace(timed, tip=cf.Tip(restitution, stiffness=timed.stiffness))
+    assert (stiff.contact_time, stiff.stiffness) == pytest.approx((1.2e-3, timed.stiffness), rel=1e-12)
+    assert cf.strike(stiff).squirt == pytest.approx(cf.strike(timed).squirt, rel=1e-9)

@@ -7,6 +7,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.analysis.strike_models import regime_warning
+from cuefem.contact.outcome import Phase, contact_state
 
 MAPLE = cf.load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml")
 assert isinstance(MAPLE, cf.Cue)
@@ -39,3 +40,33 @@ def test_end_mass_of_miscue_raises() -> None:
 @pytest.mark.parametrize(("scene", "offset", "regime"), REGIMES)
 def test_regime_beyond_friction_cone_is_miscue(scene: cf.Scene, offset: float, regime: str) -> None:
     assert cf.strike(replace(scene, stroke=cf.Stroke(2.0, offset))).regime == regime
+
+
+# Phases with their shares of the normal impulse in %; friction loss in % of the ball's energy; state.
+STATES = """
+stick load 50, stick unload 50                                       | 4.9 | stick
+stick load 50, stick unload 50                                       | 5.1 | partial slip
+slip load 24, stick load 26, stick unload 50                         | 4.9 | stick
+slip load 26, stick load 24, stick unload 50                         | 4.9 | gross slip
+slip load 49, stick load 1, stick unload 50                          | 5.1 | gross slip
+slip load 51, stick load 1, stick unload 48                          | 0   | miscue
+slip load 10, slip unload 10, stick unload 80                        | 5.1 | late stick
+slip load 9, slip back load 1, stick unload 90                       | 5.1 | slip reversal
+stick load 50, stick unload 18, slip unload 32                       | 0   | gross slip
+stick load 50, stick unload 16, slip unload 34                       | 0   | miscue
+stick load 50, stick unload 16, slip unload 20, slip back unload 14  | 0   | miscue
+stick load 30, slip unload 20, stick unload 36, slip back unload 14  | 0   | gross slip
+slip load 50, slip unload 50                                         | 0   | miscue
+"""
+
+
+@pytest.mark.parametrize("scale", [0.1, 30.0])
+@pytest.mark.parametrize("row", STATES.strip().splitlines())
+def test_contact_state_follows_from_shares_of_impulse_and_loss(row: str, scale: float) -> None:
+    pieces, loss, state = (part.strip() for part in row.split("|"))
+    words = [piece.rsplit(maxsplit=2) for piece in pieces.split(", ")]
+    phases = [
+        Phase(name, normal, i, i + 1, (0.0, scale * float(share))) for i, (name, normal, share) in enumerate(words)
+    ]
+    energy = {"friction loss": float(loss), "ball translation": 90.0, "ball rotation": 10.0}
+    assert contact_state(phases, energy) == state

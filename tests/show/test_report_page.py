@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.show.charts import WIDTH, Axis, round_step
+from cuefem.show.charts import WIDTH, Axis, round_step, spread_labels
 from cuefem.show.drawings import DIAMETER_SCALE, cue_drawing
 from tests.helpers.page_reader import PageReader
 
@@ -111,3 +111,16 @@ def test_cue_drawing_has_segments_at_their_positions(stroke: cf.Scene, front: tu
             assert not outline or box(outline) == pytest.approx([*along, *across], abs=0.02)
     at = scale * (0.2 + sum(front))  # positions are from behind the leather
     assert {tick.label: tick.at for tick in drawing.ticks}["200"] == pytest.approx(at, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("positions", "moved"),
+    [
+        ([0, 50, 100], [0, 50, 100]),
+        ([40, 41, 42], [40, 54, 68]),
+        ([98, 99, 100], [72, 86, 100]),
+        ([-5, 0, 99, 100], [0, 14, 86, 100]),
+    ],
+)
+def test_labels_of_lines_keep_their_gap(positions: list[float], moved: list[float]) -> None:
+    assert spread_labels(positions, 0, 100) == moved
