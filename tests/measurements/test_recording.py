@@ -16,7 +16,12 @@ from tests.helpers.recordings import other_wood, recording, save_wav, tap_sound
 
 POOL = Path(__file__).parents[2] / "meshes" / "pool_maple.toml"
 RECORDING = '[[recording]]\nfile = "tap.wav"\n'
-DRAWN = cf.modes(SHAFT, 8).frequencies
+
+
+@pytest.fixture(scope="module")
+def drawn() -> np.ndarray:
+    """Natural frequencies of the shaft as drawn."""
+    return cf.modes(SHAFT, 8).frequencies
 
 
 @pytest.mark.heavy
@@ -42,32 +47,34 @@ def test_recording_of_known_wood_gives_its_constants(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("snr", "missing"), [(10.0, ()), (10.0, (1, 2)), (20.0, (1,)), (60.0, (3,))])
-def test_tones_with_missing_modes_have_right_mode_numbers(snr: float, missing: tuple[int, ...]) -> None:
+def test_tones_with_missing_modes_have_right_mode_numbers(
+    drawn: np.ndarray, snr: float, missing: tuple[int, ...]
+) -> None:
     """The wood is 15 % stiffer than drawn; a missing mode does not shift the numbers of the others."""
     shaft = other_wood(SHAFT)
     true = cf.modes(shaft, 8).frequencies
-    tones = tones_in(recording(tap_sound(shaft, missing=missing), snr, 1), 44100.0, DRAWN)
+    tones = tones_in(recording(tap_sound(shaft, missing=missing), snr, 1), 44100.0, drawn)
     assert [tone.mode for tone in tones][: 6 - len(missing)] == [k for k in range(1, 7) if k not in missing]
     for tone in tones:
         assert abs(tone.value - true[tone.mode - 1]) < 3 * tone.sd
         assert tone.error < 2e-3 * tone.value
 
 
-def test_mode_numbers_of_any_subset_and_wood_are_right() -> None:
+def test_mode_numbers_of_any_subset_and_wood_are_right(drawn: np.ndarray) -> None:
     """Woods within the spread of the table; three modes may be ambiguous, five are not."""
     generator, wrong, sets = np.random.default_rng(0), 0, 0
     for E, G, rho in np.exp(generator.normal(0, (0.2, 0.25, 0.1), (6, 3))):
         true = cf.modes(other_wood(SHAFT, E=E, G=G, rho=rho), 8).frequencies
         for count in (3, 5, 7):
             for chosen in itertools.combinations(range(8), count):
-                result = assign_modes([Peak(float(true[i]), 0.1) for i in chosen], DRAWN)
+                result = assign_modes([Peak(float(true[i]), 0.1) for i in chosen], drawn)
                 off = any(abs(peak.frequency / true[mode - 1] - 1) > 1e-9 for mode, peak in result.items())
                 assert not off or count == 3
                 wrong, sets = wrong + off, sets + 1
     assert wrong < 0.02 * sets
 
 
-def test_two_recordings_give_one_tone_per_mode(tmp_path: Path) -> None:
+def test_two_recordings_give_one_tone_per_mode(drawn: np.ndarray, tmp_path: Path) -> None:
     """A difference of 1 Hz is an error of 0.5 Hz; the tones have both files as source."""
     time = np.arange(44100) / 44100
 
@@ -75,10 +82,10 @@ def test_two_recordings_give_one_tone_per_mode(tmp_path: Path) -> None:
         return 0.4 * sum(np.exp(-15 * time) * np.sin(2 * np.pi * f * time) for f in tones)[:, None]
 
     directory = measured_folder(tmp_path / "cue", RECORDING + RECORDING.replace("tap", "two"))
-    save_wav(directory / "tap.wav", sound(*DRAWN[:3]))
-    save_wav(directory / "two.wav", sound(DRAWN[0], DRAWN[1] + 1.0, DRAWN[3]))
+    save_wav(directory / "tap.wav", sound(*drawn[:3]))
+    save_wav(directory / "two.wav", sound(drawn[0], drawn[1] + 1.0, drawn[3]))
     first, second, third, fourth = load_measured(directory)[0].measurements
     assert isinstance(second, Tone)
     assert (first.source, third.source, fourth.source) == ("tap.wav, two.wav", "tap.wav", "two.wav")
-    assert DRAWN[1] < second.value < DRAWN[1] + 1
+    assert drawn[1] < second.value < drawn[1] + 1
     assert second.error == pytest.approx(0.5, rel=0.2)
