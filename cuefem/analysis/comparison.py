@@ -17,7 +17,7 @@ from cuefem.measurements.calibration import CalibratedSquirt, Calibration
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measured_folder import load_measured
 from cuefem.parameters.parameter import PARAMETERS
-from cuefem.parameters.parts import main_material
+from cuefem.parameters.parts import main_material, shaft_word
 from cuefem.quantity.display_units import off_line, with_unit
 from cuefem.results.computable_results import computable_results
 from cuefem.results.quantities import DASH, RESULTS, UNITS, format_value
@@ -41,6 +41,7 @@ N_FREQUENCIES = 3
 RESULT_NAMES = (*SQUIRT_RESULTS, *SHAPE_RESULTS, *(f"frequency_{k}" for k in range(1, N_FREQUENCIES + 1)))
 SHAPE_FLOOR = 2e-3  # relative, of shape, weights, frequencies: 0.2 g of 100 g, 0.01 mm of 13 mm to the fourth power
 
+UNKNOWN_STIFFNESS = 0.5  # relative uncertainty by E from which it should be measured: a wood has 0.22, a tube 0.83
 CURVE_OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 13))  # b/R
 STYLES = ("c1", "c2", "c3", "c4", "c5")
 MAX_CUES = len(STYLES)
@@ -74,6 +75,9 @@ class Comparison(Analysis):
     miscues : dict of str to tuple of str
         Inputs, by cue, that make its stroke a miscue one standard deviation up or down: their uncertainty is that of
         the other side.
+    unmeasured_moduli : dict of str to tuple
+        For each other cue whose difference in stiffness is hardly known, since E of a shaft is not measured: the cue of
+        that shaft, and the uncertainty of the difference (1 sigma) that remains with its E known.
     scenes : dict of str to Scene
         The compared scenes, all with the ball and the stroke of the first.
     calibrated : dict of str to CalibratedSquirt
@@ -89,6 +93,7 @@ class Comparison(Analysis):
     cues: dict[str, dict[str, float]]
     differences: dict[str, dict[str, Record]]
     miscues: dict[str, tuple[str, ...]]
+    unmeasured_moduli: dict[str, tuple[str, float]]
     scenes: dict[str, Scene] = field(repr=False)
     calibrated: dict[str, CalibratedSquirt] = field(default_factory=dict)
 
@@ -150,16 +155,33 @@ class Comparison(Analysis):
                     )
                 )
         head = ("", first, *(cell for other in others for cell in (other, "difference")))
-        shaft = "one shaft, before and after a change" if self.same_shaft else "shafts of different pieces of wood"
+        shaft = "one shaft, before and after a change" if self.same_shaft else self._pieces()
         speed = with_unit(self.speed, "m/s", 6)
         notes = (
             f"Same stroke, with the ball of {first}, b/R {self.offset:.3g} at {speed}. ±: 1σ of the "
             f"difference, for {shaft}; shared errors cancel.",
             *(f"{name}: {warning}" for name, regime in self.regimes.items() if (warning := regime_warning(regime))),
+            *(self._modulus_note(name) for name in self.unmeasured_moduli),
             *(f"{name}: {miscue_note(inputs)}" for name, inputs in self.miscues.items()),
             "* smaller than its uncertainty: the cues are not distinct in this quantity.",
         )
         return Table("Side by side", head, tuple(rows), notes)
+
+    def _pieces(self) -> str:
+        """The shafts in words."""
+        is_wood = all(shaft_word(scene) == "wood" for scene in self.scenes.values())
+        return f"shafts of different pieces{' of wood' if is_wood else ''}"
+
+    def _modulus_note(self, other: str) -> str:
+        """What to measure where the difference of stiffness from the first cue is hardly known."""
+        uncertain, remains = self.unmeasured_moduli[other]
+        error = self.differences[other]["tip_stiffness"]["error"]
+        shaft = shaft_word(self.scenes[uncertain])
+        return (
+            f"Stiffness, {other}: of ± {100 * error:.0f} % most is the unmeasured E of the {shaft} of {uncertain}. "
+            "Measure a natural frequency and the weight of that shaft (cuefem compare FOLDER --estimate), or draw it "
+            f"with its E: ± {100 * remains:.0f} % remain."
+        )
 
     def charts(self) -> list[Chart | CueDrawing]:
         """Squirt and natural pivot length against the offset, and a drawing of each cue."""
@@ -303,6 +325,11 @@ def compare_cues(
         cues={name: each.numbers for name, each in results.items()},
         differences={name: _differences(results[reference], results[name], same_shaft=same_shaft) for name in others},
         miscues={name: each.miscues for name, each in results.items() if each.miscues},
+        unmeasured_moduli={
+            name: modulus
+            for name in others
+            if (modulus := _unmeasured_modulus(results, reference, name, same_shaft=same_shaft))
+        },
         scenes=struck,
     )
 
@@ -374,6 +401,22 @@ def _differences(first: _CueResults, other: _CueResults, *, same_shaft: bool) ->
         if not math.isnan(difference["error"]):  # a strike at a limit of an input's range is a miscue
             records[name] = difference
     return records
+
+
+def _unmeasured_modulus(
+    results: Mapping[str, _CueResults], reference: str, other: str, *, same_shaft: bool
+) -> tuple[str, float] | None:
+    """Of two cues the one whose E makes most of an uncertain difference in stiffness, and the uncertainty that remains
+    with its E known; None where stiffness is known well enough."""
+    shares = {name: abs(results[name].inputs.get("E", {}).get("tip_stiffness", 0.0)) for name in (reference, other)}
+    uncertain = max(shares, key=lambda name: shares[name])
+    if same_shaft or not shares[uncertain] > UNKNOWN_STIFFNESS:
+        return None
+    own = results[uncertain]
+    measured = own._replace(inputs={key: change for key, change in own.inputs.items() if key != "E"})
+    pair = [measured if name == uncertain else results[name] for name in (reference, other)]
+    remains = _differences(*pair, same_shaft=same_shaft)["tip_stiffness"]["error"]
+    return uncertain, float(remains)
 
 
 def _input_error(first: _CueResults, other: _CueResults, key: str, name: str, *, same_shaft: bool) -> float:

@@ -16,7 +16,7 @@ from cuefem.designs.evaluation import Response
 from cuefem.effects.leather_tip import DOMES
 from cuefem.measurements.calibration import CalibratedSquirt, Calibration
 from cuefem.parameters.parameter import PARAMETERS, with_parameters
-from cuefem.parameters.parts import Layout, taper_position
+from cuefem.parameters.parts import TUBE_FRONT, Layout, is_tube, shaft_word, taper_position
 from cuefem.quantity.display_units import change_with_unit, format_change, short_number, with_unit
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.results.solved_design import SolvedDesign, off_centre
@@ -32,6 +32,8 @@ NEW_BORE, NEW_DEPTH = 6 * MM, 127 * MM  # of meshes/pool_hollow.toml, 5 in deep
 MIN_WALL = 0.8 * MM  # the thinnest of carbon tubes (meshes/README.md); a thinner wall splits
 MIN_FERRULE = 5 * MM  # length after the change
 MIN_TIP = 2 * MM  # height after the change
+WALL_STEP = 0.2 * MM  # two plies of prepreg, 0.1 mm each
+EMPTY_FRONT, NEW_INSERT = 150 * MM, 25 * MM
 CARBON_WALL = 1.5 * MM  # the middle of meshes/carbon.toml
 PRO_GAIN = 0.5 * MM  # from the tip to the taper's position, as in meshes/pool_maple.toml
 FERRULES = ("abs", "melamine", "phenolic")  # sold for cues; brass and steel are not suggested
@@ -57,12 +59,37 @@ class DesignChange(NamedTuple):
 def changes_of(scene: Scene) -> list[DesignChange]:
     """Candidate changes of this cue; `design_changes` drops those that its geometry does not allow."""
     values = {key: parameter.value(scene) for key, parameter in PARAMETERS.items()}
+    if is_tube(scene.shaft):
+        return [*_walls(values), *_fillings(values), *_ferrules(values), *_tips(values)]
     return [
         *_bores(scene.shaft, values),
         *_ferrules(values),
         *_tips(values),
-        *_woods_and_tapers(scene.shaft, values),
+        *_tapers(scene.shaft, values),
+        *_woods(scene.shaft),
     ]
+
+
+def _walls(values: Record) -> Iterator[DesignChange]:
+    """Another wall in front: a tube is made on a mandrel, and is neither turned nor replaced by solid wood."""
+    wall = values["front_wall"]
+    if wall is None:
+        return
+    where = f"over the first {with_unit(TUBE_FRONT, 'm')}"
+    for name, new in (("thinner", wall - WALL_STEP), ("thicker", wall + WALL_STEP)):
+        yield DesignChange(f"wall {name}, {_from_to(wall, new)} {where}", {"front wall": new})
+
+
+def _fillings(values: Record) -> Iterator[DesignChange]:
+    """Nothing inside the front of the tube, or a maple insert."""
+    empty, insert = values["empty_depth"], values["insert_depth"]
+    if empty == insert == 0:
+        label = f"no filling in the first {with_unit(EMPTY_FRONT, 'm')} of the tube"
+        yield DesignChange(label, {"empty depth": EMPTY_FRONT})
+    if insert == 0:
+        yield DesignChange(f"maple insert, {with_unit(NEW_INSERT, 'm')} long, in front", {"insert depth": NEW_INSERT})
+    elif insert is not None:
+        yield DesignChange("no insert in front", {"insert depth": 0.0})
 
 
 def _bores(cue: Cue, values: Record) -> Iterator[DesignChange]:
@@ -100,13 +127,6 @@ def _tips(values: Record) -> Iterator[DesignChange]:
     for name in ("dime", "nickel"):
         if dome is not None and abs(DOMES[name] - dome) > 0.1 * MM:
             yield DesignChange(f"tip radius of a {name}", {"dome": DOMES[name]}, ("dome",))
-
-
-def _woods_and_tapers(cue: Cue, values: Record) -> Iterator[DesignChange]:
-    """Changes of a wooden shaft; a tube is made on a mandrel, and is neither turned nor replaced by solid wood."""
-    if table_name(values["shaft_material"]) != "carbon fibre":
-        yield from _tapers(cue, values)
-        yield from _woods(cue)
 
 
 def _tapers(cue: Cue, values: Record) -> Iterator[DesignChange]:
@@ -241,8 +261,9 @@ class DesignChanges(Analysis):
         return [
             *([warning] if warning else []),
             f"Each change on its own, by the coupled strike at b/R {self.offset:.4g}; this cue: {own}. "
-            "±: uncertainty of the change (1σ): model, unmeasured wood and tip, and 1 %. Worthwhile: squirt falls by "
-            "more than its uncertainty; within uncertainty: the change is smaller than its uncertainty.",
+            f"±: uncertainty of the change (1σ): model, unmeasured {shaft_word(self.scene)} and tip, and 1 %. "
+            "Worthwhile: squirt falls by more than its uncertainty; within uncertainty: the change is smaller than its "
+            "uncertainty.",
             *([note] if (note := miscue_note(self.miscues)) else []),
             "Stiffness: static, at the tip, joint end clamped. Costs stiffness: by 5 % or more. Natural frequency: of "
             "the first mode.",
@@ -296,7 +317,7 @@ def design_changes(
     for change in progress(changes_of(struck)):
         try:
             variant = with_parameters(struck, change.values)
-            if _wall(variant) < min(MIN_WALL, _wall(struck)):
+            if _wall(variant) < (1 - 1e-9) * min(MIN_WALL, _wall(struck)):
                 continue
             new = SolvedScene(variant)
             numbers = _numbers(new)
@@ -319,8 +340,9 @@ def _numbers(solved: SolvedScene) -> Record:
 
 
 def _wall(scene: Scene) -> float:
-    """The thinnest wall of an empty bore, m; inf without one."""
-    empty = [s for s in scene.shaft.segments if s.core is None and max(s.tip_bore, s.butt_bore) > 0]
+    """The thinnest wall of an empty bore, or of a tube, m; inf without one."""
+    tube = is_tube(scene.shaft)
+    empty = [s for s in scene.shaft.segments if (tube or s.core is None) and max(s.tip_bore, s.butt_bore) > 0]
     return min((min(s.tip_diameter - s.tip_bore, s.butt_diameter - s.butt_bore) / 2 for s in empty), default=np.inf)
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from cuefem.analysis.verdict import Verdict, squirt_difference
+from cuefem.parameters.parts import shaft_word
 from cuefem.quantity.display_units import END_MASS, OFF_LINE, short_number, with_unit
 from cuefem.results.quantities import DASH
 from cuefem.results.records import Record
@@ -134,7 +135,9 @@ def parts_line(verdict: Verdict) -> str:
     _, error = verdict.squirt_text()
     parts = verdict.uncertainty
     model, inputs = f"{100 * parts['model']:.0f} %", f"{100 * parts['inputs']:.0f} %"
-    return f"± {error} (1σ) is {100 * parts['total']:.0f} %: model {model}, wood and tip {inputs}"
+    return (
+        f"± {error} (1σ) is {100 * parts['total']:.0f} %: model {model}, {shaft_word(verdict.scene)} and tip {inputs}"
+    )
 
 
 def _macro(name: str, *values: object) -> str:

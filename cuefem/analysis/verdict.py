@@ -10,6 +10,7 @@ from typing import NamedTuple
 from cuefem.cue import Cue
 from cuefem.files.reference_cues import reference_cues
 from cuefem.measurements.calibration import CalibratedSquirt, Calibration
+from cuefem.parameters.parts import shaft_word
 from cuefem.quantity.display_units import format_change, off_line, to_display, with_unit
 from cuefem.results.records import Record, ScaleCell, Table
 from cuefem.results.solved_design import SolvedDesign, off_centre
@@ -115,11 +116,11 @@ class Verdict(Analysis):
         """The parts of the uncertainty as one line."""
         parts = {name: _percent(share) for name, share in self.uncertainty.items()}
         tip = "spring tip; " if self.uncertainty["model"] == SPRING_ERROR else ""
-        note = miscue_note(self.miscues)
+        note, shaft = miscue_note(self.miscues), shaft_word(self.scene)
         return (
-            f"±: uncertainty (1σ): model {parts['model']} ({tip}from published squirt), unmeasured wood and tip "
+            f"±: uncertainty (1σ): model {parts['model']} ({tip}from published squirt), unmeasured {shaft} and tip "
             f"{parts['inputs']}, numerical {parts['computation']}; combined {parts['total']}. Of a difference between "
-            f"two shafts: {_percent(SHAFT_ERROR)} of it (model) or that of their wood if larger, and 1 % of squirt."
+            f"two shafts: {_percent(SHAFT_ERROR)} of it (model) or that of their {shaft} if larger, and 1 % of squirt."
             f"{f' {note}' if note else ''}"
         )
 

@@ -13,6 +13,7 @@ from cuefem.designer.computation import CURVE_OFFSETS
 from cuefem.designer.controls import KNOBS, label, value, value_text
 from cuefem.designer.session import Session
 from cuefem.endmass.definitions import DEFINITIONS
+from cuefem.parameters.parts import shaft_word
 from cuefem.quantity.display_units import format_change, to_display, with_heading
 from cuefem.results.quantities import DASH, RESULTS
 from cuefem.results.records import Record, Table
@@ -118,7 +119,7 @@ def tabulate_check(session: Session) -> list[Table]:
         rows += [
             ("calculation error of squirt", f"{100 * uncertainty['computation']:.1g} %"),
             ("model error, RMS of published strokes", f"{100 * uncertainty['model']:.0f} %"),
-            ("wood and tip, not measured", f"{100 * uncertainty['inputs']:.0f} %"),
+            (f"{shaft_word(session.scene)} and tip, not measured", f"{100 * uncertainty['inputs']:.0f} %"),
             ("a change of squirt, relative uncertainty", f"{100 * SHAFT_ERROR:.0f} %"),
         ]
     if "solved_strike" in results.own:

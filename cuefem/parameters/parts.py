@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.cue import MAX_LEATHER_MODULUS, Cue, Material, Segment
+from cuefem.cue.materials import MATERIALS
 from cuefem.quantity.display_units import short_number, span_text, with_unit
 from cuefem.quantity.fields import CONTACT_TIME, DIAMETER, LENGTH, Quantity
 
@@ -373,6 +374,120 @@ def _of_bore(which: int) -> Callable[[Any], float | None]:
 
 BORE_DEPTH = Part(_of_bore(0), lambda scene, depth: _with_bore(scene, depth=depth), Quantity("m", "[0, 1000]"))
 BORE_WIDTH = Part(_of_bore(1), lambda scene, width: _with_bore(scene, width=width), DIAMETER)
+
+# --- the tube -------------------------------------------------------------------------------------
+
+TUBE_FRONT = 0.15  # m from the front: the part of a tube whose mass squirt senses most
+
+
+def is_tube(cue: Cue) -> bool:
+    """Whether the shaft is hollow along most of its length, empty or filled."""
+    hollow = sum(cue.segments[i].length for i in _hollow(cue))
+    return hollow > sum(cue.segments[i].length for i in Layout.of(cue).shaft) / 2
+
+
+def shaft_word(scene: Any) -> str:
+    """What the shaft of a scene is called in a sentence on its material: "tube" or "wood"."""
+    return "tube" if scene.lumped is None and is_tube(scene.shaft) else "wood"
+
+
+def _hollow(cue: Cue) -> list[int]:
+    """Indices of the hollow segments of the shaft, empty or filled."""
+    return [i for i in Layout.of(cue).shaft if _width(cue.segments[i]) > 0]
+
+
+def _tube_front(cue: Cue) -> list[int]:
+    """Indices of the hollow segments of a tube that begin within `TUBE_FRONT`; none of another shaft."""
+    if not is_tube(cue):
+        return []
+    return [i for i in _hollow(cue) if cue.nodes[i] < TUBE_FRONT - SAME_POSITION * cue.length]
+
+
+def _wall(scene: Any) -> float | None:
+    """Wall of a tube at its front end, m."""
+    front = _tube_front(scene.shaft)
+    if not front:
+        return None
+    segment = scene.shaft.segments[front[0]]
+    return (segment.tip_diameter - segment.tip_bore) / 2
+
+
+def _with_wall(scene: Any, wall: float) -> Any:
+    """The scene with a wall that is thicker or thinner by the same amount along the front of its tube."""
+    old = _wall(scene)
+    if old is None or wall == old:
+        return scene
+    cue = split_at(scene.shaft, TUBE_FRONT)
+    front, narrower = _tube_front(cue), 2 * (wall - old)
+    segments = list(cue.segments)
+    for i in front:
+        bores = segments[i].tip_bore - narrower, segments[i].butt_bore - narrower
+        most = min((segments[i].tip_diameter, segments[i].butt_diameter)[k] - bores[k] for k in (0, 1))
+        if min(bores) <= 0 or most <= 0:
+            radius = 1e3 * segments[front[0]].tip_diameter / 2
+            raise ValueError(
+                f"the wall must be above 0 and leave a hollow in a tube of radius {radius:.4g} mm; got "
+                f"{1e3 * wall:.4g} mm"
+            )
+        segments[i] = replace(segments[i], tip_bore=bores[0], butt_bore=bores[1])
+    return replace(scene, cue=replace(cue, segments=tuple(segments)))
+
+
+FRONT_WALL = Part(_wall, _with_wall, DIAMETER)
+
+
+def _front_core(core: Material | None) -> Callable[[Any], float | None]:
+    """A function that reads the length of the leading part of a tube with a core, m; None for another shaft."""
+
+    def read(scene: Any) -> float | None:
+        cue = scene.shaft
+        if not is_tube(cue):
+            return None
+        hollow = _hollow(cue)
+        end = next((i for i in hollow if cue.segments[i].core != core), hollow[-1] + 1)
+        return float(cue.nodes[end] - cue.nodes[hollow[0]])
+
+    return read
+
+
+def _with_front_core(read: Callable[[Any], float | None], core: Material | None) -> Callable[[Any, float], Any]:
+    """A function that writes the length of that part; a shorter one is filled as the tube behind it."""
+
+    def write(scene: Any, length: float) -> Any:
+        old = read(scene)
+        if old is None or length == old:
+            return scene
+        cue = scene.shaft
+        tube = _hollow(cue)
+        begin, end = (float(cue.nodes[i]) for i in (tube[0], tube[-1] + 1))
+        whole = end - begin
+        if length > whole:
+            raise ValueError(f"the tube is {1e3 * whole:.6g} mm long; got {1e3 * length:.6g} mm")
+        behind = next((i for i in tube if cue.nodes[i] >= begin + old - SAME_POSITION * cue.length), tube[-1])
+        filling = cue.segments[behind].core
+        cue = split_at(split_at(cue, begin + length), begin + old)
+        tolerance = SAME_POSITION * cue.length
+        segments = [
+            replace(piece, core=core if x < begin + length - tolerance else filling)
+            if begin - tolerance <= x < begin + max(length, old) - tolerance
+            else piece
+            for piece, x in zip(cue.segments, cue.nodes, strict=False)
+        ]
+        return with_segments(replace(scene, cue=cue), segments)
+
+    return write
+
+
+INSERT = MATERIALS["hard maple"].material
+
+
+def _length_with_core(core: Material | None) -> Part:
+    """The part whose value is the length of the leading part of a tube with a core, or without any."""
+    read = _front_core(core)
+    return Part(read, _with_front_core(read, core), Quantity("m", "[0, 1000]"))
+
+
+EMPTY_DEPTH, INSERT_DEPTH = _length_with_core(None), _length_with_core(INSERT)
 
 # --- the tip, and whole materials ------------------------------------------------------------
 

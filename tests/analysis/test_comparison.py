@@ -58,6 +58,21 @@ def test_comparison_of_two_woods_adds_input_errors() -> None:
 
 
 @pytest.mark.heavy
+def test_comparison_with_tube_names_the_measurement_of_its_stiffness() -> None:
+    """E of a tube is known to a factor of 2; with its E measured the rest is that of the wood, as computed."""
+    scenes = {name: cf.usual_scene(cf.load(f"meshes/{name}.toml")) for name in ("pool_maple", "carbon")}
+    compared = cf.compare(scenes)
+    uncertain, remains = compared.unmeasured_moduli["carbon"]
+    assert uncertain == "carbon"
+    error = compared.differences["carbon"]["tip_stiffness"]["error"]
+    assert remains < error / 3
+    (note,) = (note for note in compared.table().notes if note.startswith("Stiffness"))
+    assert f"± {100 * error:.0f} %" in note
+    assert note.endswith(f"± {100 * remains:.0f} % remain.")
+    assert cf.compare(TWIN).unmeasured_moduli == {}
+
+
+@pytest.mark.heavy
 def test_comparison_near_miscue_is_uncertain_to_one_side() -> None:
     """One standard deviation less friction is a miscue of both cues: their difference has an error nevertheless."""
     plain, bored = (with_parameters(scene, {"offset": 0.56}) for scene in (SCENE, BORED))
