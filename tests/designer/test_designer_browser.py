@@ -116,8 +116,9 @@ def test_switch_of_units_is_kept_with_the_design(browser: Any, tmp_path: Path) -
         wait_until_idle(page)
         assert displayed_number(page, "squirt") == squirt
         assert "in/ft" in page.locator(".tiles").inner_text()
-        type_value(page, "Tip diameter", "0.5")
-        assert displayed_number(page, "squirt") > squirt
+        type_value(page, "Taper, end", "0.9")
+        assert page.get_by_label("Taper, end", exact=True).first.input_value() == "0.9 in"
+        assert page.get_by_label("Tip diameter", exact=True).first.input_value() == "12 mm"  # as it was typed
         another = page.context.new_page()
         another.goto(own)
         another.get_by_role("button", name="Metric").wait_for(timeout=60_000)
