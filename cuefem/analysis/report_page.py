@@ -50,6 +50,7 @@ def page_of(
     """
     about = scene_record(scene)
     verdict: Any = answers["verdict"]
+    calibrated = verdict.calibrated
     compared = None if other is None else compare_cues({other[0]: other[1], name: scene})
     parts = {key: part for key, part in report_sections().items() if key in answers and key != "verdict"}
     sections = [
@@ -71,14 +72,18 @@ def page_of(
         .render(
             name=name,
             notes=[*map(str, notes)],
-            warnings=[*warnings, *filter(None, [regime_warning(regime)])],
+            warnings=[
+                *warnings,
+                *filter(None, [regime_warning(regime)]),
+                *(f"warning: {line}" for line in (calibrated.warnings if calibrated else ())),
+            ],
             facts=[
                 plain_cue_line(scene.cue),
                 f"{assumptions(about)}, offset b/R {scene.stroke.offset:.4g}",
                 *map(plain_effect_line, scene.effects),
             ],
             squirt=format_value("squirt", verdict.squirt),
-            uncertainty=verdict.uncertainty_line(),
+            uncertainty=[verdict.uncertainty_line(), *([calibrated.basis()] if calibrated else [])],
             screen=_screen(scene, answers, name, other, compared),
             sections=sections,
         )

@@ -6,17 +6,20 @@ import socket
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 from click.core import ParameterSource
 
 from cuefem.cli.output import command, print_json
-from cuefem.cli.request import Request
-from cuefem.cli.scene_command import cue_options
+from cuefem.cli.request import Request, errors_name_file
+from cuefem.cli.scene_command import calibration_option, cue_options
 from cuefem.cli.scene_options import CueFile, option
 from cuefem.files.cue_names import cue_name
 from cuefem.files.reference_cues import PRESETS
+
+if TYPE_CHECKING:
+    from cuefem.measurements.calibration import Calibration
 
 
 @command()
@@ -29,8 +32,11 @@ from cuefem.files.reference_cues import PRESETS
     help="Port of the page; 0: any free port.",
 )
 @click.option("--open/--no-open", "show", default=True, help="Open the page in the browser.", show_default=True)
+@calibration_option
 @cue_options
-def designer(scene: Path | None, port: int, show: bool, as_json: bool, **options: Any) -> None:
+def designer(
+    scene: Path | None, port: int, show: bool, calibration: Calibration | None, as_json: bool, **options: Any
+) -> None:
     """Open a browser page with sliders: squirt, end mass, stiffness and natural frequencies update as they move.
 
     SCENE is a cue or scene file, or a cue's name (default: a maple pool shaft). A cue alone gets the default stroke of
@@ -53,11 +59,21 @@ def designer(scene: Path | None, port: int, show: bool, as_json: bool, **options
         with request.errors():
             first = design_of(cue_name(scene) or scene.stem, request.scene, request.assumed)
         request.print_warnings()
+    if calibration is not None:
+        with errors_name_file(scene or Path(PRESETS[0].file)):
+            calibration.check(first.scene)
     announce: Callable[[str], None] = (lambda address: print_json({"address": address})) if as_json else click.echo
     with suppress(KeyboardInterrupt):  # Ctrl-C is how one ends it
         units = click.get_current_context().get_parameter_source("units")
         is_default = units is ParameterSource.DEFAULT
-        serve(first, port=_free(port), show=show, announce=announce, with_kept_units=is_default)
+        serve(
+            first,
+            port=_free(port),
+            show=show,
+            announce=announce,
+            calibration=calibration,
+            with_kept_units=is_default,
+        )
 
 
 def _free(port: int) -> int:

@@ -6,7 +6,8 @@ open. Moving a control again ends the sequence after the current part.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -21,7 +22,9 @@ from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
 from cuefem.designs.sensitivity import sensitivity
 from cuefem.endmass.definitions import DEFINITIONS
+from cuefem.measurements.calibration import Calibration
 from cuefem.parameters.parts import main_material
+from cuefem.quantity.display_units import displayed_system
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.computable_results import listed_results
 from cuefem.results.records import Record
@@ -36,6 +39,9 @@ CACHED_DESIGNS = 12  # designs whose results are cached, for undo and comparison
 CURVE_OFFSETS = tuple(round(0.04 * i, 2) for i in range(1, 18))  # b/R
 MAX_MASS_MODES = 45  # the end-mass distribution needs all modes of the mesh: cubic cost
 MASS_RANGE = 0.3  # m from the tip
+
+Count = Callable[[int, int], None]
+_count: ContextVar[Count] = ContextVar("count", default=lambda done, of: None)  # of the thread that computes
 
 
 @dataclass(frozen=True)
@@ -80,10 +86,10 @@ def _end_mass(name: str, solved: SolvedScene) -> float | None:
 
 
 @lru_cache(CACHED_DESIGNS)
-def verdict(scene: Scene) -> Verdict:
+def verdict(scene: Scene, calibration: Calibration | None = None) -> Verdict:
     """Squirt with its uncertainty, compared with the reference cues."""
     strike = solved_strike(scene)
-    return verdict_of(SolvedDesign(strike.solved, strike.outcome))
+    return verdict_of(SolvedDesign(strike.solved, strike.outcome), calibration=calibration)
 
 
 def with_stroke_of(scene: Scene, other: Scene) -> Scene:
@@ -115,17 +121,45 @@ def end_mass_distribution(scene: Scene) -> tuple[Array, Array]:
     return effect.x[near], (effect.rhoA + effect.axial_mass)[near]
 
 
-@lru_cache(CACHED_DESIGNS)
-def changes(scene: Scene) -> DesignChanges:
+def changes(scene: Scene, calibration: Calibration | None = None) -> DesignChanges:
     """The design changes a maker can make, with their results."""
-    strike = solved_strike(scene)
-    return design_changes(SolvedDesign(strike.solved, strike.outcome))
+    return _changes(scene, calibration, displayed_system())
 
 
 @lru_cache(CACHED_DESIGNS)
-def answers(scene: Scene) -> CueReport:
+def _changes(scene: Scene, calibration: Calibration | None, system: str) -> DesignChanges:
+    """The changes, with texts in the units of a system."""
+    strike = solved_strike(scene)
+    return design_changes(SolvedDesign(strike.solved, strike.outcome), calibration=calibration, progress=_counted)
+
+
+def answers(scene: Scene, calibration: Calibration | None = None) -> CueReport:
     """Every section of the report."""
-    return report(scene, details=True)
+    return _answers(scene, calibration, displayed_system())
+
+
+@lru_cache(CACHED_DESIGNS)
+def _answers(scene: Scene, calibration: Calibration | None, system: str) -> CueReport:
+    """The sections, with texts in the units of a system."""
+    return report(scene, calibration=calibration, details=True)
+
+
+def with_count(count: Count, call: Callable[[], Any]) -> Any:
+    """The result of a call that counts its items to ``count``: how many are done, of how many."""
+    before = _count.set(count)
+    try:
+        return call()
+    finally:
+        _count.reset(before)
+
+
+def _counted(items: Sequence[Any]) -> Iterator[Any]:
+    """The items, counted to the page that waits for them; a count is no part of a cached result."""
+    count = _count.get()
+    for done, item in enumerate(items):
+        count(done, len(items))
+        yield item
+    count(len(items), len(items))
 
 
 def solid(scene: Scene) -> ModelError:

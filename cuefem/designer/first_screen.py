@@ -38,6 +38,10 @@ class FirstScreen:
                     self.swap.props("outline dense no-caps")
                 self.scale = ui.html(sanitize=False).classes("num")
         self.tiles = ui.html(sanitize=False).classes("num")
+        with ui.element("div").classes("calibration") as self.calibration:
+            self.basis = ui.label().classes("soft")
+            remove = ui.button("Remove calibration", on_click=lambda: page.attempt(self.session.calibrate, None))
+            remove.props("outline dense no-caps")
         self.drawing = ui.html(sanitize=False)
         with ui.expansion(on_value_change=lambda: self.assumptions.refresh()).classes("assumptions") as self.fold:
             self.assumptions()
@@ -68,6 +72,7 @@ class FirstScreen:
         shown = (self.session.compare_choices(), self.session.compared)
         if (self.compare.options, self.compare.value) != shown:
             self.compare.set_options(shown[0], value=shown[1])
+        self.calibration.set_visibility(self.session.history.calibration is not None)
         self.swap.set_visibility(self.session.step.other is not None)
         self.drawing.set_content(
             drawings_markup({name: design.scene for name, design in self.session.designs().items()})
@@ -89,6 +94,7 @@ class FirstScreen:
         self.headline.set_content(with_term_buttons(headline))
         self.scale.set_content(scale_markup(own, other))
         self.tiles.set_content(with_term_buttons(tiles_markup(own, other)))
+        self.basis.set_text(" ".join(self.session.calibration_lines()))
         lines = self.session.assumptions()
         self.printed.set_text("; ".join(map(str, lines)))
         words = f"{len(lines)} assumption{'s' if len(lines) != 1 else ''}"

@@ -11,7 +11,7 @@ from nicegui import Client, events, ui
 
 from cuefem.designer.host import Host
 from cuefem.designer.in_thread import run_in_thread
-from cuefem.designer.state import FAILURES, MAX_NAME, Design, one_line, read_design
+from cuefem.designer.state import FAILURES, MAX_NAME, one_line, read_file
 from cuefem.files.reference_cues import PRESETS
 from cuefem.quantity.display_units import display, displayed_system
 
@@ -27,7 +27,7 @@ class Upload:
 
     def __init__(self, page: Host) -> None:
         self.page = page
-        self.take: Callable[[Design], None] = page.session.open
+        self.take: Callable[[Any], None] = page.session.open_file
         held = weakref.proxy(self)  # the server caches the route of an upload, also after the page is closed
         self.field = ui.upload(
             auto_upload=True,
@@ -37,24 +37,24 @@ class Upload:
         ).props(f'accept="{",".join(KINDS)}"')
         self.field.classes("unseen")
 
-    def pick(self, take: Callable[[Design], None]) -> None:
-        """Let the user pick a file, and take its design."""
+    def pick(self, take: Callable[[Any], None]) -> None:
+        """Let the user pick a file, and take its design or calibration."""
         self.take = take
         self.field.run_method("pickFiles")
 
     async def take_file(self, event: events.UploadEventArguments) -> None:
-        """Read the design of an uploaded file."""
+        """Read an uploaded file."""
         content, name = await event.file.read(), file_name(event.file.name)
         self.field.reset()
-        take, self.take = self.take, self.page.session.open
+        take, self.take = self.take, self.page.session.open_file
         try:
             if len(content) > MAX_FILE:
                 raise ValueError(f"a file must be of at most {MAX_FILE // 10**6} MB")
-            design = await run_in_thread(read_design, name, content)
+            read = await run_in_thread(read_file, name, content)
         except FAILURES as error:
             self.page.show_message(one_line(error))
             return
-        self.page.attempt(take, design)
+        self.page.attempt(take, read)
 
 
 class Header:
@@ -69,7 +69,7 @@ class Header:
             )
             self.changed = ui.label().classes("soft setup")
             with ui.element("div").classes("tools").props('role=toolbar aria-label="File and history"'):
-                _tool("Open", "folder_open", lambda: self.upload.pick(self.session.open))
+                _tool("Open", "folder_open", lambda: self.upload.pick(self.session.open_file))
                 with _tool("Reference cues", "list", lambda: None), ui.menu().props('aria-label="Reference cues"'):
                     for preset in PRESETS:
                         ui.menu_item(

@@ -16,6 +16,7 @@ from cuefem.designer.knob_row import ControlsCard
 from cuefem.designer.session import OLD_NUMBERS, Results, Session, Work
 from cuefem.designer.state import FAILURES, Design, UndoHistory, one_line
 from cuefem.designer.tabs import TabsCard
+from cuefem.measurements.calibration import Calibration
 from cuefem.show.glossary import definitions
 from cuefem.show.templates import chart_script, page_style
 from cuefem.solid.tip_cache import computing_message
@@ -31,8 +32,8 @@ async def is_open(client: Client, timeout: float = 60.0) -> bool:
 class Page:
     """The content of a tab: header, controls, first screen and tabs, each of which shows the session."""
 
-    def __init__(self, first: Design) -> None:
-        self.session = Session(first)
+    def __init__(self, first: Design, calibration: Calibration | None = None) -> None:
+        self.session = Session(first, calibration)
         self.run = 0  # of the computation in work: an older one stops
         self.client = ui.context.client
         ui.add_css(page_style() + files("cuefem.designer").joinpath("page.css").read_text(encoding="utf-8"))
@@ -103,6 +104,7 @@ class Page:
         self.run += 1
         self.set_busy(True)
         self.screen.set_stale()
+        self.tabs.begin()
         background_tasks.create(self._compute(self.run), name="computation")
 
     async def _compute(self, run: int) -> None:
@@ -123,6 +125,7 @@ class Page:
                 else:
                     failures = [f"{failures[0]}. {OLD_NUMBERS}"]
             self.show_message("; ".join(dict.fromkeys(failures)))
+            self.tabs.end()
             self.set_busy(False)
 
     @staticmethod

@@ -16,6 +16,7 @@ from cuefem.designer.header import KINDS, MAX_FILE, UNITS_KEPT
 from cuefem.designer.page import Page, is_open
 from cuefem.designer.state import Design
 from cuefem.handbook.page import page as handbook
+from cuefem.measurements.calibration import Calibration
 from cuefem.quantity.display_units import SYSTEMS, display, displayed_system
 from cuefem.quantity.unit_checks import PlausibilityWarning
 
@@ -25,11 +26,18 @@ REJECTED = f"a file must be a {', '.join(KINDS[:-1])} or {KINDS[-1]} of at most 
 
 
 def serve(
-    first: Design, *, port: int, show: bool, announce: Callable[[str], None], with_kept_units: bool = False
+    first: Design,
+    *,
+    port: int,
+    show: bool,
+    announce: Callable[[str], None],
+    calibration: Calibration | None = None,
+    with_kept_units: bool = False,
 ) -> None:
     """Serve the page on this computer only until stopped.
 
-    show: open it in the browser. with_kept_units: display the units that the browser keeps, those of its last switch.
+    show: open it in the browser. calibration: squirt measured on another shaft. with_kept_units: display the units that
+    the browser keeps, those of its last switch.
     """
     warnings.filterwarnings("ignore", category=PlausibilityWarning)  # the page's Check lists these warnings
 
@@ -40,7 +48,7 @@ def serve(
         if with_kept_units:
             kept = await ui.run_javascript(f"localStorage.getItem('{UNITS_KEPT}')")
             display(kept if kept in SYSTEMS else displayed_system())
-        Page(first)
+        Page(first, calibration)
 
     app.add_api_route("/guide", handbook, response_class=HTMLResponse)
     app.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from html import escape
@@ -31,6 +32,7 @@ from cuefem.designer.state import (
 from cuefem.files.defaults_report import Assumption, tenon_assumption
 from cuefem.files.reference_cues import PRESETS, REFERENCE_FILES, Preset
 from cuefem.files.toml_writer import toml_text
+from cuefem.measurements.calibration import Calibration
 from cuefem.parameters.parameter import parameter, with_parameters
 from cuefem.quantity.display_units import with_unit
 from cuefem.results.quantities import REGIMES
@@ -47,6 +49,7 @@ OPTIONS = {"opened": OPENED, "now": NOW}
 FIRST = ("solved_strike", "numbers", "verdict")
 OF_TAB = {"Curves": ("curve", "end_mass_distribution"), "Changes": ("changes",), "Report": ("answers",)}
 OF_VERDICT = ("verdict", "changes")  # which need a squirt that can be reported
+OF_CALIBRATION = ("verdict", "changes", "answers")  # which take a calibration
 SHARED = ("solved_strike", "numbers", "curve", "end_mass_distribution")  # also computed of the other design
 OLD_NUMBERS = "The numbers are those of the previous design."
 
@@ -80,10 +83,11 @@ class Work(NamedTuple):
 class Session:
     """The designs of a tab with their results, and every change of them."""
 
-    def __init__(self, first: Design) -> None:
-        self.history = UndoHistory(first)
+    def __init__(self, first: Design, calibration: Calibration | None = None) -> None:
+        self.history = UndoHistory(first, calibration)
         self.results = Results()
         self.solid_of: Scene | None = None  # that was computed as a solid
+        self.count: tuple[int, int] | None = None  # changes that are computed, of all
 
     @property
     def step(self) -> Step:
@@ -130,6 +134,19 @@ class Session:
         self.history.opened = design
         self._push(Step(design, self.step.other))
 
+    def calibrate(self, calibration: Calibration | None) -> None:
+        """Calibrate squirt by another shaft, or no longer; ValueError if it has another ball or tip."""
+        if calibration is not None:
+            calibration.check(self.scene)
+        self.history.calibration = calibration
+
+    def open_file(self, read: Design | Calibration) -> None:
+        """Begin with a design from a file, or calibrate by one."""
+        if isinstance(read, Calibration):
+            self.calibrate(read)
+        else:
+            self.open(read)
+
     def open_reference(self, preset: Preset) -> None:
         """Begin with a reference cue."""
         self.open(reference_design(preset))
@@ -146,8 +163,10 @@ class Session:
             kind = next(kind for kind, words in OPTIONS.items() if words == choice)
             self._push(Step(design, ComparedDesign(kind, self.history.opened if kind == "opened" else design)))
 
-    def compare_with_file(self, design: Design) -> None:
-        """Compare with a design from a file."""
+    def compare_with_file(self, design: Design | Calibration) -> None:
+        """Compare with a design from a file; ValueError for a calibration."""
+        if isinstance(design, Calibration):
+            raise ValueError("a calibration is no design to compare with: Open it")
         self._push(Step(self.step.design, ComparedDesign("file", design)))
 
     def swap(self) -> None:
@@ -228,7 +247,8 @@ class Session:
         """The report of the design as a page, compared with the other one; the call reads the session no more."""
         design, notes, other = self.step.design, self.assumptions(), self.compared_scene()
         beside = None if other is None else ([*self.designs()][1], other)
-        return lambda: computation.answers(design.scene).to_html(design.name, notes, other=beside)
+        calibration = self.calibration_of_tip()
+        return lambda: computation.answers(design.scene, calibration).to_html(design.name, notes, other=beside)
 
     # --- results -----------------------------------------------------------------------------------
 
@@ -240,6 +260,28 @@ class Session:
         if other.kind == "reference":
             return with_cue(self.scene, other.design.scene.shaft)
         return computation.with_stroke_of(self.scene, other.design.scene)
+
+    def calibration_of_tip(self) -> Calibration | None:
+        """The calibration, unless it is of another ball or tip than the design's."""
+        calibration = self.history.calibration
+        with suppress(ValueError):
+            if calibration is not None:
+                calibration.check(self.scene)
+                return calibration
+        return None
+
+    def calibration_lines(self) -> list[str]:
+        """What the calibrated squirt rests on, and warnings; or why the calibration does not apply."""
+        if self.history.calibration is None:
+            return []
+        calibrated = self.results.own["verdict"].calibrated if "verdict" in self.results.own else None
+        if calibrated is not None:
+            return [calibrated.basis(), *(f"warning: {line}" for line in calibrated.warnings)]
+        try:
+            self.history.calibration.check(self.scene)
+        except ValueError as error:
+            return [f"not calibrated: {one_line(error)}"]
+        return []
 
     def waits_for_tip(self) -> bool:
         """Whether the table of a tip must be computed first, which takes a while."""
@@ -253,12 +295,17 @@ class Session:
         strike that failed.
         """
         scene, other = self.scene, self.compared_scene()
+        self.count = None
         same_shaft = self.step.other is not None and self.step.other.kind in OPTIONS
         for name in (*FIRST, *OF_TAB.get(tab, ())):
             if name in OF_VERDICT and verdict_problem(scene, results.own["solved_strike"].outcome):
                 continue
             call = getattr(computation, name)
-            stage = [Work(name, results.own, partial(call, scene))]
+            arguments = [scene, self.calibration_of_tip()] if name in OF_CALIBRATION else [scene]
+            work: Callable[[], Any] = partial(call, *arguments)
+            if name == "changes":
+                work = partial(computation.with_count, self._count, work)
+            stage = [Work(name, results.own, work)]
             if other is not None and name in SHARED:
                 stage.append(Work(name, results.other, partial(call, other)))
             if name == "verdict" and other is not None and "solved_strike" in results.other:
@@ -266,6 +313,9 @@ class Session:
             yield tuple(stage)
             if "solved_strike" not in results.own:
                 return
+
+    def _count(self, done: int, of: int) -> None:
+        self.count = done, of
 
     def compute(self, tab: str = "Curves") -> list[str]:
         """Compute and take what a tab shows; the messages of what failed."""

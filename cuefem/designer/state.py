@@ -9,11 +9,13 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
+from cuefem.contact.kernel import KernelError
 from cuefem.cue import Cue
 from cuefem.files import load_stroke
 from cuefem.files.defaults_report import Assumption, assumptions, offered_assumptions
 from cuefem.files.parts_catalogue import data_folder
 from cuefem.files.reference_cues import Preset, preset_scene, reference_cue_file
+from cuefem.measurements.calibration import Calibration, load_calibration
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, usual_scene
 
@@ -21,7 +23,8 @@ SLIDE_PAUSE = 1.5  # s: moves of one slider that follow each other within it are
 MAX_STEPS = 60
 MAX_SEGMENTS = 300  # the natural frequencies and the stiffness of as many take 15 s and 0.6 GB
 MAX_NAME = 80
-FAILURES = (ValueError, RuntimeError, ArithmeticError, MemoryError, OSError)
+FAILURES = (ValueError, RuntimeError, ArithmeticError, MemoryError, OSError, KernelError)
+_CALIBRATION = re.compile(rb"^\[calibration\]", re.MULTILINE)
 _CUE = re.compile(r"""^\s*cue\s*=\s*["']([^"'\n]+)["']""", re.MULTILINE)
 
 
@@ -76,10 +79,13 @@ class Step(NamedTuple):
 
 
 class UndoHistory:
-    """All steps of a tab, and the displayed one; the server retains them while the tab is open or reloaded."""
+    """All steps of a tab, and the displayed one; the server retains them while the tab is open or reloaded.
 
-    def __init__(self, first: Design) -> None:
-        self.opened = first
+    calibration: squirt measured on another shaft with the same tip; it is no step.
+    """
+
+    def __init__(self, first: Design, calibration: Calibration | None = None) -> None:
+        self.opened, self.calibration = first, calibration
         self.steps = [Step(first)]
         self.at = 0
         self.label, self.when = "", 0.0
@@ -145,6 +151,19 @@ def read_design(name: str, content: bytes, game: str = DEFAULT_GAME) -> Design:
             scene = usual_scene(thing, game) if isinstance(thing, Cue) else thing
             return design_of(path.stem, scene, assumptions(path, scene, {}))
         except (*FAILURES, RecursionError) as error:
+            raise ValueError(one_line(error).replace(f"{place}/", "")) from None
+
+
+def read_file(name: str, content: bytes) -> Design | Calibration:
+    """The design or the calibration of an uploaded file; ValueError in one line."""
+    if not _CALIBRATION.search(content):
+        return read_design(name, content)
+    with TemporaryDirectory() as place:
+        path = Path(place) / name
+        path.write_bytes(content)
+        try:
+            return load_calibration(path)
+        except FAILURES as error:
             raise ValueError(one_line(error).replace(f"{place}/", "")) from None
 
 

@@ -28,6 +28,7 @@ class TabsCard:
     def __init__(self, page: Host) -> None:
         self.page, self.session = page, page.session
         self.open = TABS[0]
+        self.counting = ui.timer(0.3, self._show_count, active=False)
         with ui.tabs(on_change=self._on_open).props("no-caps align=left") as tabs:
             for name in TABS:
                 ui.tab(name)
@@ -35,6 +36,7 @@ class TabsCard:
             with ui.tab_panel("Curves"):
                 self.curves = ui.html(sanitize=False).classes("num")
             with ui.tab_panel("Changes"):
+                self.count = ui.label().classes("soft").props("role=status")
                 self.changes()
             with ui.tab_panel("Numbers"):
                 ui.button("Save as .csv", on_click=self._table).props("outline dense no-caps").classes("right")
@@ -57,6 +59,20 @@ class TabsCard:
         """Show the file, if it is open."""
         if self.open == "File" and self.file is not None:
             self.file.show(self.session.step.design)
+
+    def begin(self) -> None:
+        """Show how many changes are computed, while they are."""
+        self.counting.active = self.open == "Changes"
+
+    def end(self) -> None:
+        """Show no count any longer."""
+        self.counting.active = False
+        self.count.set_text("")
+
+    def _show_count(self) -> None:
+        if self.session.count is not None:
+            done, of = self.session.count
+            self.count.set_text(f"{done} of {of} changes computed")
 
     def show_results(self) -> None:
         """Show the results of the open tab."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -94,11 +94,17 @@ class CalibratedSquirt:
         """The calibrated squirt, what it rests on, and warnings. cue: whose it is, of several."""
         return [
             f"{f'{cue}, ' if cue else ''}{self.headline()} instead of {100 * self.uncalibrated_error:.0f} %",
-            f"It rests on the squirt measured there, {self.measured_factor:.2f} times the computed one, of which "
-            f"{self.factor:.3f} is carried over (correlation of the two shafts {self.correlation:.2f}), and on the "
-            f"same tip. What it can claim: {CLAIM}.",
+            self.basis(),
             *(f"warning: {line}" for line in self.warnings),
         ]
+
+    def basis(self) -> str:
+        """What it rests on, and what it can claim."""
+        return (
+            f"It rests on the squirt measured there, {self.measured_factor:.2f} times the computed one, of which "
+            f"{self.factor:.3f} is carried over (correlation of the two shafts {self.correlation:.2f}), and on the "
+            f"same tip. What it can claim: {CLAIM}."
+        )
 
 
 @dataclass(frozen=True)
@@ -128,7 +134,7 @@ class Calibration:
 
     name: str
     scene: Scene
-    drawn: Mapping[str, float]
+    drawn: Mapping[str, float] = field(hash=False)
     log_factor: float
     covariance: tuple[tuple[float, ...], ...]
     unchecked: tuple[str, ...] = ()
@@ -202,7 +208,7 @@ class Calibration:
 
         ValueError for another ball, another tip, or squirt of the other sign.
         """
-        self._check(scene)
+        self.check(scene)
         scene = off_centre(scene)
         keys, s = (*self.drawn,), model_error(scene)
         values = {PARAMETERS[key].steps(): PARAMETERS[key].value(self.scene) for key in keys}
@@ -234,7 +240,7 @@ class Calibration:
             warnings=self.warnings,
         )
 
-    def _check(self, scene: Scene) -> None:
+    def check(self, scene: Scene) -> None:
         """ValueError for a scene of another game or another tip."""
         first, second = ((each.ball.mass, each.ball.radius) for each in (self.scene, scene))
         if not np.allclose(first, second, rtol=SAME, atol=0.0):

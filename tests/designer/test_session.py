@@ -9,19 +9,25 @@ import pytest
 
 import cuefem as cf
 from cuefem.analysis import report_sections
-from cuefem.analysis.first_screen import tiles
+from cuefem.analysis.design_changes import changes_of
+from cuefem.analysis.first_screen import headline_markup, tiles
 from cuefem.designer.controls import KNOBS, label, parse, range_of, value, value_text
 from cuefem.designer.panels import COMPUTING, curves_markup, sections_markup, tabulate_numbers
 from cuefem.designer.session import FILE, NOTHING, NOW, OF_TAB, OPENED, Results, Session
-from cuefem.designer.state import read_design, reference_design
+from cuefem.designer.state import read_design, read_file, reference_design
 from cuefem.files.reference_cues import PRESETS
 from cuefem.parameters.parameter import PARAMETERS
 from cuefem.quantity.display_units import displayed_in
 from tests.cli.test_units import METRIC_LEFT, assert_same_quantities, cells
+from tests.helpers.command_line import call
+from tests.measurements.test_calibration import calibration
 from tests.test_golden_files import last_place
 
 DESIGNER = Path(cf.__file__).parent / "designer"
 FIRST = reference_design(next(preset for preset in PRESETS if preset.file == "meshes/pool_maple.toml"))
+
+
+SNOOKER = Path(__file__).parents[2] / "studies/scenes/snooker.toml"
 
 
 def imported(module: str) -> set[str]:
@@ -178,3 +184,85 @@ def test_numbers_and_headline_follow_units() -> None:
         assert [text for text, _ in cells([us]) if METRIC_LEFT.search(text)] == []
         assert [tile.text.partition(" ")[2] for tile in tiles(headline)] == ["in/ft", "g", "in", "N/m"]
         assert session.file() == file
+
+
+@pytest.mark.heavy
+def test_changes_count_while_they_are_computed_and_have_the_units_displayed() -> None:
+    """The count ends at all changes; the same design in other units is not taken from memory."""
+    session = Session(FIRST)
+    seen = list[tuple[int, int]]()
+    results = Results()
+    for stage in session.plan("Changes", results):
+        for work in stage:
+            work.store(work.call())
+            seen += [session.count] if session.count else []
+    assert seen == [(len(changes_of(FIRST.scene)),) * 2]
+    with displayed_in("us"):
+        assert session.compute("Changes") == []
+    labels = [row.change for row in session.results.own["changes"].changes]
+    assert [label for label in labels if METRIC_LEFT.search(label)] == []
+    assert any(label.endswith(" in") for label in labels)
+
+
+@pytest.mark.heavy
+def test_calibration_shows_as_in_the_commands() -> None:
+    """First screen, Changes and report have the calibrated squirt of the functions, and what it rests on."""
+    made, session = calibration(scene=FIRST.scene), Session(FIRST)
+    assert session.calibration_lines() == []
+    session.calibrate(made)
+    assert session.compute("Changes") == []
+    verdict = cf.verdict(FIRST.scene, calibration=made)
+    headline = session.headline_cue(0)
+    assert headline is not None
+    assert headline.verdict == verdict
+    assert verdict.calibrated is not None
+    assert verdict.calibrated.squirt_error < verdict.squirt_error
+    warning = "warning: no other measurement of old checks pivot"
+    assert verdict.calibrated.headline() in headline_markup(headline).replace("\u00a0", " ")
+    assert session.calibration_lines() == [verdict.calibrated.basis(), warning]
+    assert session.results.own["changes"].calibrated == verdict.calibrated
+    page = session.report_call()()
+    assert "calibrated on old" in page
+    assert "It rests on the squirt measured there" in page
+    assert warning in page
+
+
+@pytest.mark.heavy
+def test_calibration_of_another_tip_waits_for_its_tip() -> None:
+    """A design with another tip has its own squirt and the reason; undo brings the calibrated one back."""
+    session = Session(FIRST, calibration(scene=FIRST.scene))
+    session.set_knob("leather", "hard")
+    assert session.compute() == []
+    assert session.results.own["verdict"].calibrated is None
+    (line,) = session.calibration_lines()
+    assert line.startswith("not calibrated: the calibration is of another tip: ")
+    session.undo_redo(-1)
+    assert session.compute() == []
+    assert session.results.own["verdict"].calibrated is not None
+    session.calibrate(None)
+    assert session.compute() == []
+    assert (session.results.own["verdict"].calibrated, session.calibration_lines()) == (None, [])
+
+
+def test_opened_calibration_calibrates_and_another_is_rejected(tmp_path: Path) -> None:
+    path, session = tmp_path / "old.toml", Session(FIRST)
+    made = calibration(scene=FIRST.scene)
+    made.save(path)
+    read = read_file(path.name, path.read_bytes())
+    session.open_file(read)
+    assert session.history.calibration == read == made
+    assert session.step.design == FIRST
+    with pytest.raises(ValueError, match="another game: ball 142 g"):
+        session.calibrate(calibration(scene=cf.usual_scene(cf.load("plain maple"), "snooker")))
+    with pytest.raises(ValueError, match="no design to compare with"):
+        session.compare_with_file(read)
+    with pytest.raises(ValueError, match=r"^broken.toml: calibration: must be a table of name, "):
+        read_file("broken.toml", b"[calibration]\nname = 'x'\n")
+
+
+def test_designer_rejects_calibration_of_another_game_in_one_line(tmp_path: Path) -> None:
+    path = tmp_path / "old.toml"
+    calibration().save(path)
+    status, out, err = call("designer", SNOOKER, "--no-open", "--calibration", path)
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert err.startswith(f"cuefem: {SNOOKER}: the calibration is of another game: ")
