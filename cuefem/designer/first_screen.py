@@ -44,6 +44,7 @@ class FirstScreen:
             remove.props("outline dense no-caps")
         self.drawing = ui.html(sanitize=False)
         with ui.expansion(on_value_change=lambda: self.assumptions.refresh()).classes("assumptions") as self.fold:
+            self.fold.props["toggle-aria-label"] = ""  # its name is its text
             self.assumptions()
         self.printed = ui.label().classes("printed soft")
 
@@ -98,7 +99,8 @@ class FirstScreen:
         lines = self.session.assumptions()
         self.printed.set_text("; ".join(map(str, lines)))
         words = f"{len(lines)} assumption{'s' if len(lines) != 1 else ''}"
-        self.fold.props(f'label="{words}" caption="{parts_line(own.verdict) if own.verdict else ""}"')
+        parts = parts_line(own.verdict) if own.verdict else ""
+        self.fold.props(f'label="{words}" caption="{parts}"')
         has_verdict = "verdict" in results.own
         if has_verdict and not self.had_verdict:
             self.assumptions.refresh()

@@ -181,7 +181,9 @@ class ControlsCard:
         self.rows: list[KnobRow] = []
         self.folds: dict[str, Any] = {}
         for i, group in enumerate(GROUPS):
-            with ui.expansion(group, value=i == 0, group="knobs").classes("group") as self.folds[group]:
+            with ui.expansion(group, value=i == 0, group="knobs").classes("group") as fold:
+                fold.props["toggle-aria-label"] = ""  # its name is its text
+                self.folds[group] = fold
                 self.rows += [KnobRow(key, page) for key, knob in KNOBS.items() if knob.group == group]
         ui.html(
             '<p class="mark-key soft"><i></i>assumed. Fields take any unit: 6 mm, 1/4 in, 15 oz.</p>', sanitize=False

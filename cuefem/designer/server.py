@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import warnings
 from collections.abc import Callable
 from typing import Any
@@ -41,6 +42,8 @@ def serve(
     """
     warnings.filterwarnings("ignore", category=PlausibilityWarning)  # the page's Check lists these warnings
 
+    logging.getLogger("uvicorn.error").addFilter(_is_of_open_page)
+
     @ui.page("/")
     async def index() -> None:
         if not await is_open(ui.context.client):
@@ -67,6 +70,12 @@ def serve(
         tailwind=False,
         show_welcome_message=False,
     )
+
+
+def _is_of_open_page(record: logging.LogRecord) -> bool:
+    """Whether a record is not of a page that was closed before its response began: NiceGUI then has none to send."""
+    error = record.exc_info[1] if record.exc_info else None
+    return not (isinstance(error, RuntimeError) and str(error) == "No response returned.")
 
 
 class TooBig(Exception):

@@ -29,7 +29,7 @@ class TabsCard:
         self.page, self.session = page, page.session
         self.open = TABS[0]
         self.counting = ui.timer(0.3, self._show_count, active=False)
-        with ui.tabs(on_change=self._on_open).props("no-caps align=left") as tabs:
+        with ui.tabs().props("no-caps align=left") as tabs:
             for name in TABS:
                 ui.tab(name)
         with ui.tab_panels(tabs, value=TABS[0], animated=False):
@@ -49,6 +49,7 @@ class TabsCard:
                 self.check = ui.html(sanitize=False).classes("num")
             with ui.tab_panel("File") as self.file_panel:
                 self.file: FileEditor | None = None  # made when it is opened: the browser loads its code then
+        tabs.on_value_change(self._on_open)
 
     @ui.refreshable_method
     def changes(self) -> None:

@@ -46,7 +46,7 @@ METRIC = MappingProxyType(
 US = METRIC | {
     "kg": DisplayUnit(1 / float(conversion_factor("oz", "kg")), "oz", 3),
     "m": DisplayUnit(1 / float(conversion_factor("in", "m")), "in", 3),
-    OFF_LINE: DisplayUnit(float(conversion_factor("ft", "in")), "in/ft", 3),
+    OFF_LINE: DisplayUnit(float(conversion_factor("ft", "in")), "in/ft", 2),
     "m/s": DisplayUnit(1 / float(conversion_factor("mph", "m/s")), "mph", 2),
 }
 SYSTEMS = MappingProxyType({"metric": METRIC, "us": US})
