@@ -40,6 +40,7 @@ ROOT = Path(__file__).parents[1]
 INTERFACE = ("analysis", "cli", "designs", "designer", "files", "handbook", "measurements", "show")
 EQUIVALENT = Path(__file__).with_name("equivalent_mutants.txt")
 SECONDS = 60.0  # of tests a mutant, as the first run measured them
+START = 90.0  # s that a process may take beside its tests: imports, collection, a busy machine
 FIRST = 12  # tests of the first fork: most mutants are detected by them, and few test files are imported
 # Tests that start the package in a process of its own, or read the tree's files: they say little of a mutant.
 EXCLUDED = (
@@ -281,8 +282,8 @@ def first_run(tree: Path, workers: int) -> Reach:
     return Reach({name: s for name, s in seconds.items() if not name.startswith(excluded)}, functions)
 
 
-def failure(tree: Path, tests: Sequence[str], file: Path) -> str:
-    """The first failure of tests in a process forked from this one, or an empty text."""
+def failure(tree: Path, tests: Sequence[str], file: Path, seconds: float) -> str:
+    """The first failure of tests in a process forked from this one, ended after ``seconds``; or an empty text."""
     file.unlink(missing_ok=True)
     pid = os.fork()
     if pid == 0:
@@ -290,7 +291,7 @@ def failure(tree: Path, tests: Sequence[str], file: Path) -> str:
         sys.path.insert(0, str(tree))
         status = run_pytest(["-x", *tests], FirstFailure(file))
         os._exit(status)
-    deadline = time.monotonic() + 5 * SECONDS
+    deadline = time.monotonic() + seconds
     while time.monotonic() < deadline:
         ended, status = os.waitpid(pid, os.WNOHANG)
         if ended:
@@ -303,7 +304,7 @@ def failure(tree: Path, tests: Sequence[str], file: Path) -> str:
     return "does not end"
 
 
-def detection(tree: Path, mutant: Mutant, tests: Sequence[str]) -> str:
+def detection(tree: Path, mutant: Mutant, tests: Sequence[str], reach: Reach) -> str:
     """The first failure that the mutant causes, or an empty text."""
     file = tree / mutant.path.relative_to(ROOT)
     whole = file.read_bytes()
@@ -312,7 +313,8 @@ def detection(tree: Path, mutant: Mutant, tests: Sequence[str]) -> str:
         if file.suffix == ".c" and not built(tree):
             return "does not compile"
         for stage in (tests[:FIRST], tests[FIRST:]):
-            by = failure(tree, stage, tree / "failure.txt") if stage else ""
+            usual = sum(reach.seconds[name] for name in stage)
+            by = failure(tree, stage, tree / "failure.txt", START + 5 * usual) if stage else ""
             if by:
                 return by
         return ""
@@ -344,7 +346,7 @@ def work(tree: Path, reach: Reach, tasks: Any, results: Any) -> None:
         file = tree / mutant.path.relative_to(ROOT)
         for stale in file.parent.glob(f"__pycache__/{file.stem}.*.pyc"):
             stale.unlink()
-        results.put((mutant, detection(tree, mutant, reach.tests(mutant))))
+        results.put((mutant, detection(tree, mutant, reach.tests(mutant), reach)))
 
 
 def interval(detected: int, count: int) -> str:
@@ -377,7 +379,7 @@ def main() -> None:
         reach = first_run(trees[0], options.workers)
         print(f"{len(reach.seconds)} test functions, first run {time.monotonic() - start:.0f} s", flush=True)
         unchanged = Mutant(ROOT / "cuefem/contact/strike.py", 0, (0, 0), "", "", "core")
-        if by := detection(trees[0], unchanged, reach.tests(unchanged)):
+        if by := detection(trees[0], unchanged, reach.tests(unchanged), reach):
             raise SystemExit(f"the tree fails without a mutant: {by}")
         context = multiprocessing.get_context("fork")
         tasks, results = context.SimpleQueue(), context.SimpleQueue()

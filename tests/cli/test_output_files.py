@@ -98,7 +98,7 @@ def test_full_disk_at_any_write_prints_one_line_and_leaves_no_part(tmp_path: Pat
         assert set(left) <= WRITING[command], (command, n)
 
 
-@pytest.mark.parametrize("command", ["report", "strike", "modes", "end-mass"])
+@pytest.mark.parametrize("command", [pytest.param("report", marks=pytest.mark.heavy), "strike", "modes", "end-mass"])
 def test_json_with_page_prints_json_alone(command: str, tmp_path: Path) -> None:
     record = as_json(command, KIM, "-o", tmp_path / "page.html")
     assert record["file"] == str(KIM)
