@@ -354,6 +354,9 @@ def with_values_at(scene: Scene, changes: Mapping[Path, Any]) -> Scene:
     draft = with_fields(draft, {path: value for path, value in changes.items() if path[0] in _SCENE_FIELDS})
     heads = (*(entry.name for entry in PARAMETERS.values()), *PARTS, *below)
     parts = {head: part for head in heads if (part := _part(head))}  # in writing order
+    for head, inner in below.items():
+        if head in parts and () in inner:
+            _check_part(head, parts[head], inner[()])
     values = {
         head: with_fields(None if () in inner else parts[head].read(draft), inner)
         for head, inner in below.items()
@@ -366,6 +369,12 @@ def with_values_at(scene: Scene, changes: Mapping[Path, Any]) -> Scene:
         if values.get(head) is not None:
             draft = part.write(draft, values[head])
     return Scene(**{name: getattr(draft, name) for name in _SCENE_FIELDS})
+
+
+def _check_part(name: str, part: Part, value: Any) -> None:
+    """TypeError or ValueError for a number of a part that is none, or out of its bounds."""
+    if part.quantity is not None:
+        part.quantity.check(name, value)
 
 
 def check_bore(scene: Any, names: Container[Step]) -> None:

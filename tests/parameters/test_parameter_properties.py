@@ -115,6 +115,17 @@ def test_unknown_parameter_raises(case: str) -> None:
     assert message in str(error.value)
 
 
+@pytest.mark.parametrize(("name", "value"), [("bore depth", -1.0), ("bore depth", np.nan), ("taper diameter", np.nan)])
+def test_number_of_drawing_out_of_bounds_raises(name: str, value: float) -> None:
+    with pytest.raises(ValueError, match=f"^{name} must be in .* m; got {value}$"):
+        with_parameters(FIRST, {name: value})
+
+
+def test_text_for_number_of_drawing_raises() -> None:
+    with pytest.raises(TypeError, match=r"^tip diameter must be a number in"):
+        with_parameters(FIRST, {"tip diameter": "12 mm"})
+
+
 def test_bore_width_without_bore_raises() -> None:
     maple = cf.usual_scene(cf.load("meshes/pool_maple.toml"))
     with pytest.raises(ValueError, match=r"^bore width has no effect: the cue has no bore"):
