@@ -184,7 +184,7 @@ def _write(path: Path, result: StudyResult, shown: Presentation) -> None:
     elif path.suffix != ".toml":
         shown.write(path)
     elif not result.best:
-        raise InputError(path, "--output", "has no design to write: every design failed")
+        raise InputError(path, "--output", "has no design to write: none has all responses")
     else:
         save(_rounded(next(iter(result.best.values())).scene, result.study), path)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -42,7 +43,7 @@ class Response:
     Raises
     ------
     ValueError
-        By `of`, and by a `Study`, if there is no such result.
+        If there is no such result, or the argument is none of its own.
 
     Examples
     --------
@@ -54,14 +55,17 @@ class Response:
     kind: str
     argument: float | int | None = None
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "argument", _checked(self.kind, self.argument, self.name))
+
     @classmethod
     def of(cls, text: str) -> Response:
         """Read text such as "squirt(0.3)"; ValueError, suggesting similar names, if no response matches."""
         match = _NAME.fullmatch(text.strip())
-        if not match or match[1] not in computable_results():
-            hint = suggestion(text.partition("(")[0], computable_results())
-            raise ValueError(f"must be one of {', '.join(map(_usage, computable_results()))}; got {text!r}{hint}")
-        return cls(match[1], _argument(match[1], match[2], text))
+        if not match:
+            raise _unknown(text)
+        kind, argument = match.groups()
+        return cls(kind, _checked(kind, None if argument is None else _number(argument), text))
 
     @property
     def result(self) -> Result:
@@ -122,16 +126,30 @@ def _usage(kind: str) -> str:
     return f"{kind}({argument})" if argument == "mode" else f"{kind}[({argument})]" if argument else kind
 
 
-def _argument(kind: str, argument: str | None, text: str) -> float | int | None:
+def _unknown(text: str) -> ValueError:
+    """The error for a text that is no response, with a similar name."""
+    hint = suggestion(text.partition("(")[0], computable_results())
+    return ValueError(f"must be one of {', '.join(map(_usage, computable_results()))}; got {text!r}{hint}")
+
+
+def _number(text: str) -> float:
+    """The number of a text, nan if it is none."""
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
+
+
+def _checked(kind: str, argument: float | None, text: str) -> float | int | None:
+    """The argument of a response, the number of a mode as an integer; ValueError, with the text, for another one."""
+    if kind not in computable_results():
+        raise _unknown(text)
     expected = computable_results()[kind].argument
     if argument is None and expected != "mode":
         return None
     if expected == "":
         raise ValueError(f"must be {kind}, without brackets; got {text!r}")
-    try:
-        number = float(argument or "nan")
-    except ValueError:
-        number = float("nan")
+    number = math.nan if argument is None else float(argument)
     if expected == "mode":
         if not (number >= 1 and number.is_integer()):
             raise ValueError(f"must be {kind}(n), n a whole number >= 1; got {text!r}")

@@ -19,6 +19,7 @@ from cuefem.designs.evaluation import Response
 from cuefem.designs.sampling import Levels, Normal, Span, Value
 from cuefem.designs.study import Study, StudyDesign, Vary
 from cuefem.parameters.parameter import value_at
+from cuefem.quantity.fields import check_count
 from cuefem.scene import Resolution, Scene
 
 TOLERANCE = 1e-6  # relative to a limit's own size (1 if it is 0): a closer value makes the limit active
@@ -257,7 +258,7 @@ def optimum(
     Raises
     ------
     ValueError
-        If no design is within the limits; the message names the violated limits.
+        If no design is within the limits, the message names the violated ones; if ``rounds`` is below 1.
 
     Notes
     -----
@@ -265,6 +266,7 @@ def optimum(
     logarithmic); its gradients are forward differences of `STEP`, all of a step in one batch. Differential evolution
     (`scipy.optimize.differential_evolution`) prefers, among designs that violate a limit, the smallest violation.
     """
+    check_count("rounds", rounds, 1)
     optima, choices, reasons = list[Optimum](), list[ChoiceResult](), list[str]()
     sign, count = -1 if problem.maximize else 1, 0
     for case in problem.choices():

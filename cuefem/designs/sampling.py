@@ -78,7 +78,8 @@ class Span:
     Raises
     ------
     ValueError
-        If ``low`` is not below ``high``, or not above 0 where it is logarithmic; if ``count`` is out of bounds.
+        If an end is not finite; ``low`` is not below ``high``, or not above 0 where it is logarithmic; or ``count`` is
+        out of bounds.
 
     Examples
     --------
@@ -96,6 +97,8 @@ class Span:
         check_count("count", self.count, 1, MAX_LEVELS)
         if not self.low < self.high:
             raise ValueError(f"low must be below high; got the empty range {self.low} to {self.high}")
+        if not (math.isfinite(self.low) and math.isfinite(self.high)):
+            raise ValueError(f"low and high must be finite; got {self.low} and {self.high}")
         if self.logarithmic and self.low <= 0:
             raise ValueError(f"low must be above 0 where the spacing is logarithmic; got {self.low}")
 

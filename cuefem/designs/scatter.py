@@ -238,13 +238,16 @@ def bootstrap_sobol_indices(values: Array, *, seed: int) -> tuple[Array, Array, 
     from scipy.stats import bootstrap, sobol_indices
 
     count = values.shape[-1]
+    # scipy fails for one factor and one response: with the first response once more there are at least two
+    twice = np.concatenate([values, values[:, :1]], axis=1)
 
     def estimate(rows: Any) -> Array:
         """(2, factors, responses): first-order and total indices from some designs of each sample."""
-        A, B, *mixed = values[:, :, rows]
+        A, B, *mixed = twice[:, :, rows]
         shares = sobol_indices(func={"f_A": A, "f_B": B, "f_AB": np.array(mixed)}, n=count)
         # scipy drops axes of length 1
-        return np.stack([part.reshape(len(A), len(mixed)).T for part in (shares.first_order, shares.total_order)])
+        parts = (part.reshape(len(A), len(mixed)).T for part in (shares.first_order, shares.total_order))
+        return np.stack([part[:, :-1] for part in parts])
 
     # scipy's own bootstrap of the indices takes no seed
     resampled = bootstrap(

@@ -26,7 +26,7 @@ from cuefem.designs import Row, Study
 from cuefem.designs.blocks import BlockResult
 from cuefem.designs.design_key import KEY_BYTES, digest
 from cuefem.designs.sweep import Stored
-from cuefem.files.errors import InputError, check_path
+from cuefem.files.errors import InputError, check_path, file_state
 from cuefem.quantity.display import full_repr
 
 APPLICATION_ID = 0x43754666  # SQLite's application_id in the header of the file
@@ -78,6 +78,8 @@ class SqliteStore:
         self._open = ExitStack()
 
     def __enter__(self) -> Self:
+        for path in self._others:
+            file_state(path)
         with ExitStack() as opening:
             files = {path: opening.enter_context(_opened(path, mode="ro")) for path in self._others}
             self._file = files[self.path] = opening.enter_context(_opened(self.path))

@@ -227,14 +227,14 @@ class SweepResult(StudyResult):
 
     @cached_property
     def best(self) -> dict[str, StudyDesign]:
-        """The best design for each response with a preferred direction; if none has one, the lowest of each."""
-        ranked = [response for response in self.study.responses if response.result.better] or self.study.responses
-        best = dict[str, StudyDesign]()
-        for response in ranked:
-            column = self.responses[response.name]
-            if np.isfinite(column).any():
-                best[response.name] = self._design(int(np.nanargmin(response.loss(column))))
-        return best
+        """Of the designs with all responses the best for each with a preferred direction; without one, the lowest."""
+        statistics = self.statistics
+        if statistics is None:
+            return {}
+        return {
+            statistics.responses[k].name: self._design(int(statistics.numbers[statistics.best(k)]))
+            for k in statistics.ranked
+        }
 
     def _design(self, i: int) -> StudyDesign:
         values = {name: column[i].item() for name, column in self.designs.items()}
@@ -243,7 +243,7 @@ class SweepResult(StudyResult):
 
     @cached_property
     def statistics(self) -> SweepStatistics | None:
-        """Its statistics; None if fewer than two designs have all responses."""
+        """Its statistics; None if no design has all responses."""
         return sweep_statistics(self.study, self.designs, self.columns.values)
 
     def values(self) -> Record:

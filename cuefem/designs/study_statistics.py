@@ -43,8 +43,10 @@ class SweepStatistics:
 
     @cached_property
     def trends(self) -> list[list[str]]:
-        """ "rises", "falls" or nothing, by parameter and response."""
-        return [[_trend(column, result) for result in self.results.T] for column in self.values]
+        """ "rises", "falls" or nothing, by parameter and response; squirt by its size."""
+        columns = zip(self.responses, self.results.T, strict=True)
+        sizes = [response.size(column) for response, column in columns]
+        return [[_trend(column, size) for size in sizes] for column in self.values]
 
     @cached_property
     def ranked(self) -> list[int]:
@@ -81,12 +83,12 @@ class SweepStatistics:
 
 
 def sweep_statistics(study: Study, designs: Mapping[str, np.ndarray], results: Array) -> SweepStatistics | None:
-    """The statistics of a sweep; None if fewer than two designs have all responses.
+    """The statistics of a sweep; None if no design has all responses.
 
     designs: values of each parameter by its name. results: (designs, responses), nan where one is missing.
     """
     complete = np.flatnonzero(~np.isnan(results).any(axis=1))
-    if len(complete) < 2:
+    if len(complete) == 0:
         return None
     columns = tuple(column[complete] for column in designs.values())
     names, units = (texts[: len(columns)] for texts in (study.columns, study.units))

@@ -165,7 +165,10 @@ def sweep_record(sweep: SweepStatistics) -> Record:
 
 
 def tabulate_sweep(sweep: SweepStatistics) -> list[Table | str]:
-    """The best design for each response, the sensitivities, and evenly spaced designs of the Pareto front."""
+    """The best design for each response, the sensitivities, and evenly spaced designs of the Pareto front.
+
+    Of a single design its responses alone.
+    """
     labels = [*map(column_label, sweep.names)]
     heads = [*map(with_heading, labels, sweep.units)]
 
@@ -173,6 +176,9 @@ def tabulate_sweep(sweep: SweepStatistics) -> list[Table | str]:
         results = [shown(sweep.results[i, k], sweep.responses[k].display_key) for k in responses]
         return [*results, *(shown(column[i], unit) for column, unit in zip(sweep.values, sweep.units, strict=True))]
 
+    if len(sweep.numbers) == 1:
+        only = tuple((response.heading, *cells(0, [k])) for k, response in enumerate(sweep.responses))
+        return [Table(f"Responses of design {sweep.numbers[0]}", ("response", "value", *heads), only)]
     best, sensitivities = list[tuple[str, ...]](), list[tuple[str, ...]]()
     for k in sweep.ranked:
         response, i = sweep.responses[k], sweep.best(k)

@@ -17,6 +17,7 @@ from cuefem.designs.executors import in_parallel
 from cuefem.designs.sampling import Value
 from cuefem.designs.study import Study
 from cuefem.quantity.equality import equal_fields
+from cuefem.quantity.fields import check_count
 
 ALONE = 2048  # designs whose keys this process makes faster than worker processes start
 
@@ -110,14 +111,18 @@ def sweep(
     ------
     RuntimeError
         If worker processes die repeatedly, or an executor is lost. Stored designs remain.
+    TypeError
+        If ``workers`` is neither a number nor an executor.
     ValueError
-        If a worker of an executor has no cuefem, or another version.
+        If ``workers`` is below 1, or a worker of an executor has no cuefem, or another version.
 
     Notes
     -----
     If the store holds designs, the keys of all designs are made first, by the workers, and only designs that are not
     stored are computed. Into an empty store the keys come with the responses.
     """
+    if workers is not None and not isinstance(workers, Executor):
+        check_count("workers", workers, 1)
     columns, missing = Columns.of(study), np.zeros(study.size, bool)
     missing[part] = True
     if store is not None and not store.is_empty:

@@ -41,6 +41,7 @@ PAIR = {("E", "rho"): 0.5}
 CONTRADICTING = {("E", "rho"): 0.9, ("rho", "time"): 0.9, ("E", "time"): -0.9}
 CALLS: dict[str, Callable[[], object]] = {
     "low must be below high; got the empty range 2.0 to 2.0": lambda: Span(2.0, 2.0, 3),
+    "low and high must be finite; got 2.0 and inf": lambda: Span(2.0, float("inf"), 3),
     "low must be above 0 where the spacing is logarithmic": lambda: Span(0.0, 1.0, 3, logarithmic=True),
     "values must hold at least one": lambda: Levels(()),
     "path must name a field": lambda: Vary((), Levels((1.0,))),
@@ -54,6 +55,9 @@ CALLS: dict[str, Callable[[], object]] = {
     ),
     "frequency(1) needs a cue": lambda: varying("ball.mass", 0.2, response="frequency(1)", base=LUMPED),
     "must be one of ": lambda: Response.of("squrit(0.3)"),
+    "got 'squrit'": lambda: Response("squrit"),
+    "must be squirt(b), b an offset b/R in (-1, 1); got 'squirt(2.0)'": lambda: Response("squirt", 2.0),
+    "must be frequency(n), n a whole number >= 1; got 'frequency(1.5)'": lambda: Response("frequency", 1.5),
     "must be mass, without brackets": lambda: Response.of("mass(3)"),
     "must be frequency(n), n a whole number": lambda: Response.of("frequency(inf)"),
     "must be ball_speed(b), b an": lambda: Response.of("ball_speed(fast)"),
@@ -80,6 +84,9 @@ CALLS: dict[str, Callable[[], object]] = {
     "E must have low and high, or values": lambda: replace(PROBLEM, vary=(E,)),
     "no design within tip_stiffness >= 1000 was found": lambda: optimum(STIFF, rounds=2),
     "an optimum takes no store or workers": lambda: cf.study(PROBLEM, workers=2),
+    "rounds must be a whole number >= 1; got 0": lambda: cf.study(PROBLEM, rounds=0),
+    "workers must be a whole number >= 1; got 0": lambda: cf.study(varying("ball.mass", 0.2), workers=0),
+    "TypeError: workers must be a whole number": lambda: cf.study(varying("ball.mass", 0.2), workers="two"),
     "Scene.cue must be a Cue of segments": lambda: sensitivity(LUMPED),
     "sensitivity scene must have no effects": lambda: sensitivity(
         replace(MAPLE, effects=(cf.PointMass(position=0.1, mass=1e-3),))
@@ -162,7 +169,7 @@ def test_study_of_drawing_or_scene_raises(tmp_path: Path, name: str, text: str, 
 FOLDERS: list[tuple[bytes, list[str], str]] = [
     (b"design,end_mass\n" * 100, [], "cannot be read or written as a database: file is not a database"),
     (b"", ["--store", "none/out.sqlite"], "unable to open database file"),
-    (b"", ["--store", "a.sqlite", "--store", "none.sqlite"], "none.sqlite: cannot be read or written as a database"),
+    (b"", ["--store", "a.sqlite", "--store", "none.sqlite"], "none.sqlite: cannot be read: No such file"),
     (b"", ["--store", "a.sqlite", "--store", "scene.toml"], "scene.toml: cannot be read or written as a database"),
     *(
         (b"", ["--part", text], f"must be K/N with 1 <= K <= N, such as 3/10; got '{text}'")

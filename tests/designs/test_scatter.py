@@ -125,6 +125,12 @@ def test_correlated_parameters_are_one_cause() -> None:
     assert Scatter(STUDY, {("G", "E"): 0.5}, {"wood": ("E", "rho", "G")}).factors == ("wood", "time")
 
 
+def test_single_factor_explains_single_response() -> None:
+    result = cf.study(Scatter(replace(STUDY, vary=VARY[1:2], responses=STUDY.responses[:1]), count=16, seed=1))
+    assert result.sobol_indices.total == pytest.approx(np.ones((1, 1)), abs=0.1)
+    assert result.sobol_indices.first_interval.shape == (2, 1, 1)
+
+
 def test_scatter_command_equals_function(tmp_path: Path) -> None:
     study = write_study(tmp_path, SCATTER)
     assert load_study(study).correlations == {("E", "density"): 0.4}

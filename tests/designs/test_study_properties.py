@@ -16,6 +16,7 @@ from cuefem.designs import Levels, Normal, Response, Sample, Span, Study, Vary, 
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.results.computable_results import computable_results
 from cuefem.results.quantities import RESULTS
+from cuefem.results.records import Table
 from studies.paper.closed_forms import natural_pivot_length
 from tests.helpers.cues import MAPLE, kim, low_deflection, pool
 
@@ -201,10 +202,35 @@ def test_best_design_of_left_hand_offset_is_that_of_right_hand() -> None:
     statistics = result.statistics
     assert statistics is not None
     assert statistics.best(0) == statistics.best(1) == 2
+    assert statistics.trends == [["falls"] * 3]
     sides = [cf.study(replace(study(BORES), responses=(each, stiffness))).statistics for each in (right, left)]
     assert sides[0].front == sides[1].front == [2, 1, 0]  # type: ignore[union-attr]
     mirrored = cf.study(replace(study(BORES, responses=("squirt",)), base=at_offset(BASE, -0.3)))
     assert mirrored.best["squirt"].values == {"bore": 8e-3}
+
+
+def test_study_of_one_design_shows_its_responses() -> None:
+    one = Vary(("cue.segments[1].tip_bore",), Levels((4e-3,)), "bore")
+    result = cf.study(study(one, responses=("squirt(0.3)", "shaft_mass")))
+    rows = [row for table in result.tables() if isinstance(table, Table) for row in table.rows]
+    values = {row[0].partition(",")[0]: float(row[1]) for row in rows if len(row) == 3 and row[0] != "bore"}
+    squirt, mass = (result.responses[name][0] for name in ("squirt(0.3)", "shaft_mass"))
+    assert [*values.values()] == pytest.approx([np.degrees(squirt), 1e3 * mass], rel=1e-3)
+
+
+def test_best_design_has_all_responses_in_result_and_table() -> None:
+    """Without friction a stroke miscues: it has no end mass of its squirt, and is the best in neither."""
+    friction = Vary(("tip.friction",), Levels((0.0, 0.6, 0.7)), "friction")
+    result = cf.study(study(friction, responses=("end_mass_squirt(0.3)", "squirt(0.3)")))
+    statistics = result.statistics
+    assert statistics is not None
+    assert [*result.failures] == [0]
+    numbers = {
+        response.name: int(statistics.numbers[statistics.best(k)]) for k, response in enumerate(result.study.responses)
+    }
+    assert {name: result.designs["friction"][i] for name, i in numbers.items()} == {
+        name: best.values["friction"] for name, best in result.best.items()
+    }
 
 
 def test_best_offset_through_zero_has_least_squirt() -> None:
