@@ -82,6 +82,7 @@ def test_output_equals_golden_file(
 ) -> None:
     monkeypatch.chdir(ROOT)
     monkeypatch.setenv("COLUMNS", "110")
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
     for clock in ("perf_counter", "process_time"):
         ticks = itertools.count()
         monkeypatch.setattr(f"time.{clock}", ticks.__next__)  # every reading is one second later

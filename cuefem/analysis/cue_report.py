@@ -71,14 +71,19 @@ class CueReport(Analysis):
         return name
 
     def to_html(
-        self, name: str = "", assumptions: Sequence[Assumption] = (), warnings: Sequence[str] = (), **more: Any
+        self,
+        name: str = "",
+        assumptions: Sequence[Assumption] = (),
+        warnings: Sequence[str] = (),
+        made: str = "",
+        other: tuple[str, Scene] | None = None,
     ) -> str:
-        """The page with the first screen; ValueError for a miscue."""
+        """The page with the first screen, beside that of another cue; ValueError for a miscue."""
         from cuefem.analysis.report_page import page_of
 
         if self.no_squirt or self.no_contact:
             raise ValueError(self.no_squirt or self.no_contact)
-        return page_of(self.scene, self.sections, self.regime, name or "cue", assumptions, warnings, **more)
+        return page_of(self.scene, self.sections, self.regime, name or "cue", assumptions, warnings, made, other)
 
 
 def report(

@@ -252,7 +252,7 @@ class DesignChanges(Analysis):
             texts=(0, 5),
         )
         styles = {i: STYLES[row.verdict] for i, row in enumerate(self.changes) if row.verdict in STYLES}
-        return replace(table, styles=styles)
+        return replace(table, styles=styles, more=(2, 3, 4))
 
     def _notes(self) -> list[str]:
         """Definitions of the table's columns."""

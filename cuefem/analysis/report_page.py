@@ -41,12 +41,13 @@ def page_of(
     name: str,
     notes: Sequence[Assumption],
     warnings: Sequence[str],
+    made: str = "",
     other: Named | None = None,
 ) -> str:
     """The computed answers of a report as HTML.
 
-    answers: by the keys of `QUESTIONS`, a verdict among them. regime: of the contact. other: name and scene of a cue to
-    compare with, with the same ball and stroke.
+    answers: by the keys of `QUESTIONS`, a verdict among them. regime: of the contact. made: the date at the page's end.
+    other: name and scene of a cue to compare with, with the same ball and stroke.
     """
     about = scene_record(scene)
     verdict: Any = answers["verdict"]
@@ -60,6 +61,7 @@ def page_of(
             "folded": part.folded,
             "about": answers[key].about,
             "charts": answers[key].charts(),
+            "more": answers[key].more_charts(),
             "tables": answers[key].tables(),
         }
         for key, part in parts.items()
@@ -71,6 +73,7 @@ def page_of(
         .get_template("page.html.j2")
         .render(
             name=name,
+            made=made,
             notes=[*map(str, notes)],
             warnings=[
                 *warnings,
@@ -97,7 +100,8 @@ def _comparison(scene: Scene, answers: Answers, name: str, other: Named, compare
     curves = [(name, "c1", answers["squirt"].values()["models"]["coupled, this cue"]), (other[0], "c2", beside)]
     table = compared.table()
     charts = offset_charts(curves, FINE_OFFSETS, scene.stroke.offset, height=300)
-    return {"key": "other", "title": table.title, "folded": False, "about": "", "charts": charts, "tables": [table]}
+    made: Record = {"key": "other", "title": table.title, "folded": False, "about": "", "more": []}
+    return made | {"charts": charts, "tables": [table]}
 
 
 def _screen(

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from cuefem.analysis.strike_models import PIVOT_NOTE, a31_squirt, lumped_cues, lumped_strike
+from cuefem.analysis.verdict import with_cue
 from cuefem.cue import LumpedCue
+from cuefem.files.reference_cues import reference_cues
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.quantities import format_value
 from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import OFFSETS, SolvedDesign, at_offset, coupled_curve
 from cuefem.scene import Scene
-from cuefem.show.analysis import Analysis
+from cuefem.scene.solved_scene import SolvedScene
+from cuefem.show.analysis import Analysis, MoreCharts
 from cuefem.show.scene_summary import assumptions, scene_record
 
 if TYPE_CHECKING:
@@ -33,6 +37,13 @@ STYLES = {
     "two-part, 12 g": "c5",
     "A.31, this cue": "c4",
 }
+
+MODELS = (
+    "Coupled: the vibrating cue, integrated in time. Two-part and A.31 replace the cue by two masses, with the end "
+    "mass of a tip that sticks at each offset and without effects at the tip; lumped adds these effects as a coupling "
+    "between the cue’s axial and transverse motions, computed at the offset of this stroke. 12 g: the two-part cue "
+    "with the paper’s cue end, of which the effective end mass is a quarter."
+)
 
 
 @dataclass(frozen=True)
@@ -57,11 +68,7 @@ class SquirtCurve(Analysis):
     models: dict[str, dict[str, Any]]
     about: ClassVar[str] = (
         "The tip offset b/R is the distance of the contact from the ball’s centre line, in ball radii. Pivoting the "
-        "cue about the point at the natural pivot length from the tip cancels squirt. Coupled: the vibrating cue, "
-        "integrated in time. Two-part and A.31 replace the cue by two masses, with the end mass of a tip that sticks "
-        "at each offset and without effects at the tip; lumped adds these effects as a coupling between the cue’s "
-        "axial and transverse motions, computed at the offset of this stroke. 12 g: the two-part cue with the paper’s "
-        "cue end, of which the effective end mass is a quarter."
+        "cue about the point at the natural pivot length from the tip cancels squirt. Curves end at the miscue limit."
     )
 
     def tables(self) -> list[Table | str]:
@@ -83,12 +90,34 @@ class SquirtCurve(Analysis):
         return Table("Squirt and tip offset", head, tuple(rows), notes, texts=(3,))
 
     def charts(self) -> list[Chart]:
-        """Squirt and natural pivot length against the offset."""
+        """Squirt and natural pivot length against the offset, of this cue and of the first reference cue."""
+        name, reference = next(iter(reference_cues().items()))
+        lines = [("this cue", "c1", self.models[OWN])]
+        other = with_cue(self.scene, reference)
+        beside = None if other.cue == self.scene.cue else _other_curve(other, tuple(self.offsets))
+        if beside is not None:
+            lines.append((name, "c2", beside))
+        return self._charts(lines, "{}", 260.0)
+
+    def more_charts(self) -> list[MoreCharts]:
+        """The same of published models."""
+        lines = [(name, STYLES[name], curve) for name, curve in self.models.items()]
+        return [MoreCharts("Other models", self._charts(lines, "{} by model", 220.0), MODELS)]
+
+    def _charts(self, lines: Sequence[tuple[str, str, Record]], title: str, height: float) -> list[Chart]:
         from cuefem.show.offset_charts import offset_charts
 
-        lines = [(name, STYLES[name], curve) for name, curve in self.models.items()]
-        regimes = self.models[OWN]["regime"]
-        return [*offset_charts(lines, self.offsets, self.scene.stroke.offset, height=300, regimes=regimes)]
+        regimes, own = self.models[OWN]["regime"], self.scene.stroke.offset
+        return [*offset_charts(lines, self.offsets, own, height=height, regimes=regimes, title=title)]
+
+
+@lru_cache(maxsize=16)  # the designer draws the same reference for every change of the cue
+def _other_curve(scene: Scene, offsets: tuple[float, ...]) -> Record | None:
+    """The coupled curve of another cue; None if its strike fails."""
+    try:
+        return coupled_curve(scene, offsets, SolvedScene(scene).tip)
+    except (ValueError, RuntimeError):
+        return None
 
 
 def squirt_curve(scene: Scene | SolvedDesign, offsets: Sequence[float] = OFFSETS) -> SquirtCurve:

@@ -28,7 +28,7 @@ from cuefem.cli.scene_options import (
     option,
     parameter_options,
 )
-from cuefem.files import InputError, check_writable, load_accuracy
+from cuefem.files import InputError, check_writable, load_accuracy, today
 from cuefem.files.cue_names import cue_name
 from cuefem.files.defaults_report import Assumption
 from cuefem.files.shaft_additions import SHAFT_ADDITIONS
@@ -181,7 +181,7 @@ class Presentation:
         """Write the record (.json) or a page (.html)."""
         title = self.answer.page_title(self.name, click.get_current_context().info_name or "")
         warnings = [f"warning: {line}" for line in self.warnings]
-        write(path, self.record, lambda: self.answer.to_html(title, self.assumptions, warnings))
+        write(path, self.record, lambda: self.answer.to_html(title, self.assumptions, warnings, today()))
 
     def show(self, output: Path | None, *, as_json: bool) -> None:
         """Write a file, or print tables; print JSON if asked for."""

@@ -29,6 +29,7 @@ from cuefem.designer.state import (
     one_line,
     reference_design,
 )
+from cuefem.files import today
 from cuefem.files.defaults_report import Assumption, tenon_assumption
 from cuefem.files.reference_cues import PRESETS, REFERENCE_FILES, Preset
 from cuefem.files.toml_writer import toml_text
@@ -248,7 +249,8 @@ class Session:
         design, notes, other = self.step.design, self.assumptions(), self.compared_scene()
         beside = None if other is None else ([*self.designs()][1], other)
         calibration = self.calibration_of_tip()
-        return lambda: computation.answers(design.scene, calibration).to_html(design.name, notes, other=beside)
+        answers = partial(computation.answers, design.scene, calibration)
+        return lambda: answers().to_html(design.name, notes, made=today(), other=beside)
 
     # --- results -----------------------------------------------------------------------------------
 

@@ -7,6 +7,7 @@ import os
 import shutil
 from collections.abc import Callable
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +37,7 @@ __all__ = [
     "load_stroke",
     "save",
     "save_page",
+    "today",
     "write_atomically",
     "write_folder_atomically",
 ]
@@ -214,6 +216,13 @@ def save(obj: Cue | Scene | SideStrike, path: str | os.PathLike[str]) -> None:
     else:
         allowed = ".toml or .vtu" if isinstance(obj, Cue) else ".toml, for a scene"
         raise InputError(path, "", f"must end in {allowed}; got {path.suffix!r}")
+
+
+def today() -> str:
+    """The date of a page, as "2026-11-27"; that of SOURCE_DATE_EPOCH, if it is set, so that pages can be made again."""
+    fixed = os.environ.get("SOURCE_DATE_EPOCH", "")
+    now = datetime.fromtimestamp(int(fixed), UTC) if fixed.isdecimal() else datetime.now().astimezone()
+    return now.date().isoformat()
 
 
 def save_page(text: str, path: str | os.PathLike[str]) -> None:

@@ -46,7 +46,7 @@ class Table:
     """A table: its title, the head of its columns, rows of texts, and lines that state its assumptions.
 
     texts: indices of the columns with text; the others have numbers. styles: of highlighted rows, "bold" or
-    "dim", by the row's number.
+    "dim", by the row's number. more: indices of the columns that a narrow page shows on demand.
     """
 
     title: str
@@ -55,6 +55,7 @@ class Table:
     notes: tuple[str, ...] = ()
     texts: tuple[int, ...] = (0,)
     styles: Mapping[int, str] | None = None
+    more: tuple[int, ...] = ()
 
 
 def tabulate(

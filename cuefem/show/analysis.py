@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields, is_dataclass
 from html import escape
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from cuefem.files import InputError, save_page, write_atomically
 from cuefem.files.defaults_report import Assumption
@@ -19,6 +19,14 @@ from cuefem.show.scene_summary import cue_line, effect_name, effect_text, scene_
 if TYPE_CHECKING:
     from cuefem.show.charts import Chart
     from cuefem.show.drawings import CueDrawing
+
+
+class MoreCharts(NamedTuple):
+    """Charts that a page folds below an answer: title, charts, and the definitions of their curves."""
+
+    title: str
+    charts: Sequence[Chart]
+    about: str = ""
 
 
 @dataclass(frozen=True)
@@ -39,6 +47,10 @@ class Answer:
 
     def charts(self) -> Sequence[Chart | CueDrawing]:
         """Charts and drawings, for pages and notebooks."""
+        return []
+
+    def more_charts(self) -> Sequence[MoreCharts]:
+        """Charts for few readers, which a report folds."""
         return []
 
     def heading(self) -> str:
@@ -83,15 +95,18 @@ class Answer:
             *(["assumed:", *(f"  {each}" for each in assumptions)] if assumptions else []),
         ]
 
-    def to_html(self, name: str = "", assumptions: Sequence[Assumption] = (), warnings: Sequence[str] = ()) -> str:
-        """A self-contained page with tables and charts."""
+    def to_html(
+        self, name: str = "", assumptions: Sequence[Assumption] = (), warnings: Sequence[str] = (), made: str = ""
+    ) -> str:
+        """A self-contained page with tables and charts. made: the date at its end."""
         from cuefem.show.templates import plain_page  # templates take 0.1 s to load
 
         lines = self.lines(name.partition(":")[0] if self.heading() else "", assumptions)
         heading = lines[:1] if self.heading() else []
         others = lines[len(heading) :]
         title = name or effect_name(type(self).__name__).capitalize()
-        return plain_page(title, [*heading, *warnings, *self.charts(), *others])
+        more = (chart for folded in self.more_charts() for chart in folded.charts)
+        return plain_page(title, [*heading, *warnings, *self.charts(), *more, *others], made)
 
     def save(self, path: str | Path) -> None:
         """Write the record (.json) or a page (.html); the extension sets the format."""

@@ -22,17 +22,20 @@ def offset_charts(
     *,
     height: float,
     regimes: Sequence[str] = (),
+    title: str = "{}",
 ) -> tuple[Chart, Chart]:
     """Charts of squirt and natural pivot length against the offset, to the last one before a miscue.
 
-    lines: name, CSS class and `coupled_curve` (or a record with the same keys) of every cue or model. own: offset b/R
-    of the scene's stroke, which is marked. regimes: contact state at each offset; long slip and miscue are shaded.
+    lines: name, CSS class and `coupled_curve` (or a record with the same keys) of every cue or model; one without
+    regimes has those of the scene. own: offset b/R of the scene's stroke, which is marked. regimes: contact state of
+    the scene at each offset; long slip and miscue are shaded. title: of a chart, with a place for its quantity.
     """
     x = np.array(offsets)
     per_metre, unit, _ = display_unit("m")
     squirt, pivot = [], []
     for name, style, curve in lines:
-        beyond = np.cumsum([regime == "miscue" for regime in curve.get("regime", [""] * len(x))]) > 0
+        states = curve.get("regime", regimes or [""] * len(x))
+        beyond = np.cumsum([state == "miscue" for state in states]) > 0
         angle = np.where(beyond, np.nan, curve["squirt"])
         squirt.append(Curve(name, np.r_[0.0, x], np.degrees(np.r_[0.0, angle]), style))
         pivot.append(Curve(name, x, per_metre * np.where(angle > 0, curve["pivot_length"], np.nan), style))
@@ -51,6 +54,6 @@ def offset_charts(
         return chart(title, curves, x=at, y=y, marks=here, spans=spans, height=height)
 
     return (
-        draw("Squirt", squirt, Axis("squirt, degrees")),
-        draw("Natural pivot length", pivot, Axis(f"pivot length, {unit}", 0.0, highest)),
+        draw(title.format("Squirt"), squirt, Axis("squirt, degrees")),
+        draw(title.format("Natural pivot length"), pivot, Axis(f"pivot length, {unit}", 0.0, highest)),
     )

@@ -17,6 +17,8 @@ from cuefem.results.records import Table
 from cuefem.show.charts import Chart
 from cuefem.show.drawings import CueDrawing
 
+OPTIONS = re.compile(r"(\s*\([^()]*--[^()]*\)|\S*--\S+)")  # in parentheses, or alone
+
 
 @cache
 def environment() -> Environment:
@@ -30,12 +32,24 @@ def environment() -> Environment:
         finalize=lambda value: unbroken(value) if type(value) is str else value,
     )
     made.filters["code"] = code_markup
+    made.filters["css_string"] = css_string
+    made.filters["options"] = option_pieces
     return made
 
 
 def code_markup(text: str) -> Markup:
     """A text with `code` between backticks as HTML."""
     return Markup(re.sub(r"`([^`]*)`", r"<code>\1</code>", escape(unbroken(text), quote=False)))
+
+
+def option_pieces(text: str) -> list[tuple[str, bool]]:
+    """A line in pieces, each with whether it names options of a command, which are of no use on paper."""
+    return [(piece, i % 2 == 1) for i, piece in enumerate(OPTIONS.split(text)) if piece]
+
+
+def css_string(text: str) -> Markup:
+    """A text as a string of a style sheet."""
+    return Markup('"' + "".join(c if c.isalnum() else f"\\{ord(c):06x}" for c in text) + '"')
 
 
 def page_style() -> str:
@@ -65,13 +79,13 @@ def table_markup(sheet: Table) -> str:
 
 def answer_markup(key: str, answer: Any) -> str:
     """Charts, tables and description of an analysis. key: the first part of the charts' ids on the page."""
-    return str(_macros().answer(key, answer.charts(), answer.tables(), answer.about))
+    return str(_macros().answer(key, answer.charts(), answer.tables(), answer.about, answer.more_charts()))
 
 
-def plain_page(name: str, things: Sequence[str | Table | Chart | CueDrawing]) -> str:
-    """Lines, tables, charts and drawings as a self-contained page."""
+def plain_page(name: str, things: Sequence[str | Table | Chart | CueDrawing], made: str = "") -> str:
+    """Lines, tables, charts and drawings as a self-contained page. made: the date at its end."""
     groups = [[*group] for _, group in groupby(filter(None, things), type)]
-    return environment().get_template("plain.html.j2").render(name=name, groups=groups)
+    return environment().get_template("plain.html.j2").render(name=name, groups=groups, made=made)
 
 
 @cache

@@ -47,7 +47,8 @@ def opened(browser: Any) -> Iterator[Any]:
 
 def test_report_by_keyboard_shows_values_and_definitions_and_prints(opened: Any) -> None:
     opened.set_content(report_page())
-    chart, known = opened.locator("svg.read[aria-label^='Squirt:']").nth(1), squirt_curve(SCENE, FINE_OFFSETS).models
+    opened.get_by_text("Other models").click()
+    chart, known = opened.locator("svg.read[aria-label^='Squirt by model']"), squirt_curve(SCENE, FINE_OFFSETS).models
     chart.focus()
     opened.keyboard.press("Home")
     for _ in range(3):
@@ -63,6 +64,28 @@ def test_report_by_keyboard_shows_values_and_definitions_and_prints(opened: Any)
     assert 2 <= len(re.findall(rb"/Type /Page\b(?!s)", opened.pdf(format="A4", print_background=True))) <= 5
     opened.emulate_media(media="print")
     assert opened.evaluate(CUT) == 0
+
+
+def test_design_changes_on_a_phone_show_three_columns_and_all_on_demand(opened: Any) -> None:
+    opened.set_viewport_size({"width": 390, "height": 900})
+    opened.set_content(report_page())
+    heads = opened.locator(".advice thead th")
+    assert [heads.nth(i).inner_text() for i in range(heads.count()) if heads.nth(i).is_visible()] == [
+        "change",
+        "squirt change",
+        "recommendation",
+    ]
+    opened.get_by_label("all columns").check()
+    assert all(heads.nth(i).is_visible() for i in range(6))
+
+
+def test_report_on_paper_names_no_options(opened: Any) -> None:
+    note = "ferrule of melamine (--ferrule)"
+    opened.set_content(cf.report(SCENE, details=True).to_html("pool_maple.toml", [note]))
+    opened.emulate_media(media="print")
+    text = opened.locator("body").inner_text()
+    assert "ferrule of melamine" in text
+    assert "--" not in text
 
 
 def study_of_ten_columns() -> str:

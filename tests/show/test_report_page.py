@@ -2,6 +2,7 @@
 
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,8 +10,10 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.show.charts import WIDTH, Axis, round_step, spread_labels
+from cuefem.files import today
+from cuefem.show.charts import WIDTH, Axis, Chart, round_step, spread_labels
 from cuefem.show.drawings import DIAMETER_SCALE, cue_drawing
+from cuefem.show.templates import option_pieces
 from tests.helpers.page_reader import PageReader
 
 MESHES = Path(__file__).parents[2] / "meshes"
@@ -124,3 +127,51 @@ def test_cue_drawing_has_segments_at_their_positions(stroke: cf.Scene, front: tu
 )
 def test_labels_of_lines_keep_their_gap(positions: list[float], moved: list[float]) -> None:
     assert spread_labels(positions, 0, 100) == moved
+
+
+def test_page_before_the_answer_has_its_name_only() -> None:
+    text = cf.report(LUMPED, details=True).to_html("lumped.toml", made="2026-11-27")
+    header, rest = text.partition("</header>")[::2]
+    assert "(rigid cue head-on)" not in header
+    facts = rest.partition('<details class="assume">')[2].partition("</details>")[0]
+    assert "(rigid cue head-on)" in facts
+    assert "lumped.toml, 2026-11-27</footer>" in text
+
+
+def names(charts: Sequence[Chart]) -> list[list[str]]:
+    return [[name for name, *_ in drawn.curves] for drawn in charts]
+
+
+def test_squirt_curves_of_makers_and_of_models_are_apart() -> None:
+    curves = cf.squirt_curve(scene("pool_low_deflection"), (0.1, 0.3))
+    assert names(curves.charts()) == [["this cue", "plain maple"]] * 2
+    (folded,) = curves.more_charts()
+    assert names(folded.charts) == [[*curves.models]] * 2
+    assert names(cf.squirt_curve(cf.usual_scene(cf.load("plain maple")), (0.1, 0.3)).charts()) == [["this cue"]] * 2
+
+
+def test_squirt_curves_end_at_the_miscue_limit() -> None:
+    """Friction 0.2: offsets from 0.2 to 0.3 on are miscues of the coupled strike."""
+    slippery = replace(LUMPED, tip=cf.Tip(friction=0.2))
+    curves = cf.squirt_curve(slippery, (0.1, 0.2, 0.3, 0.4, 0.5))
+    regimes = curves.models["coupled, this cue"]["regime"]
+    last = curves.offsets[regimes.index("miscue") - 1]
+    drawn = [*curves.charts(), *curves.more_charts()[0].charts]
+    for each in drawn:
+        for name, _, outline in each.curves:
+            limit = each.x_scale.position(last, each.box[0], each.box[2])
+            assert name == "plain maple" or box(outline)[1] <= limit + 0.01, (each.title, name)
+
+
+def test_options_are_pieces_that_paper_leaves_out() -> None:
+    assert option_pieces('no ferrule (--ferrule "abs 1 in"), hard maple') == [
+        ("no ferrule", False),
+        (' (--ferrule "abs 1 in")', True),
+        (", hard maple", False),
+    ]
+    assert option_pieces("use --leather soft") == [("use ", False), ("--leather", True), (" soft", False)]
+
+
+def test_date_of_a_page_is_that_of_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1795737600")
+    assert today() == "2026-11-27"
