@@ -137,6 +137,12 @@ def text() -> str:
         "contact time of a central impact. The unloading law of the package has no published source. The hand grips "
         "the whole cue of meshes/ 10 in before its end. From 4 m/s on the indentation of a 6 mm tip is 25 % of its "
         "height, beyond small strains.",
+        "In the whole stroke, with axial waves, axial force and rolling, viscoelastic loss is not computed: the "
+        "annuli have none of these. The law of loss of the package stays as it is, on purpose: contact time and "
+        "rebound of a central impact fix one stiffness and one loss, and do not distinguish two laws. Three "
+        "measurements would: the force of a central impact over time; the dent of the tip at separation, 1 - e² of "
+        "the maximum indentation in the law of the package; and a ball dropped at 30° on a clamped tip, whose "
+        "rebound along the surface has the tangential loss without a cue.",
     )
 
 

@@ -15,6 +15,7 @@ from cuefem.parameters.parameter import with_parameters
 from cuefem.results.quantities import drawn_mass
 from cuefem.results.uncertainty import MODEL_ERROR, SHAFT_ERROR
 from cuefem.scene.default_scene import without_leather
+from studies.measured.published import mass_ratios
 from tests.helpers.command_line import call
 from tests.helpers.maker_pictures import FOLDER, PICTURES, command_json, reference_squirts
 
@@ -132,6 +133,50 @@ def test_speed_and_tip_hardness_change_squirt_as_stated() -> None:
     stated = f"soft {soft[0]:.0f} % and hard {hard[0]:.0f} % below medium at b/R 0.3, {soft[1]:.0f} and {hard[1]:.0f} %"
     assert stated in limits
     assert f"soft leather is {soft[0]:.0f} % below medium, of hard {hard[0]:.0f} % below (b/R 0.3)" in LAW
+
+
+@pytest.mark.heavy
+def test_limits_of_speed_and_tip_height_are_computed() -> None:
+    limits = TEXTS["limits"]
+
+    def squirt(name: str, **values: Any) -> float:
+        scene = cf.usual_scene(cf.load(f"meshes/{name}.toml"))  # type: ignore[arg-type]
+        return float(cf.strike(with_parameters(scene, {key.replace("_", " "): v for key, v in values.items()})).squirt)
+
+    trends = [
+        round(100 * (squirt(name, offset=0.3, speed=7.0) / squirt(name, offset=0.3, speed=2.0) - 1))
+        for name in ("pool_maple", "whole_cue", "pool_hollow")
+    ]
+    stated = "plain maple {:+d} %, whole cue {:+d} %, low deflection {:+d} %".format(*trends).replace("-", "−")
+    assert stated in limits
+    ranges = []
+    for friction in (0.6, 0.7, 1.0):
+        speeds = (0.8, 1.5, 2.4, 4.2, 7.0)
+        by_speed = [squirt("pool_maple", offset=0.45, speed=speed, friction=friction) for speed in speeds]
+        ranges.append(round(100 * (max(by_speed) / min(by_speed) - 1)))
+    assert "{}, {}, {} % with μ 0.6, 0.7, 1".format(*ranges) in limits
+    slow, fast = (
+        100
+        * (
+            squirt("pool_maple", offset=0.375, speed=v, tip_height=3e-3) / squirt("pool_maple", offset=0.375, speed=v)
+            - 1
+        )
+        for v in (2.0, 5.0)
+    )
+    assert f"has {slow:.0f} % more squirt at b/R 0.375 and 2 m/s, {fast:.0f} % at 5 m/s" in limits
+
+
+@pytest.mark.heavy
+def test_limits_of_masses_are_computed() -> None:
+    """Least squares of computed over measured changes, through zero."""
+    parts = []
+    for grams in (3, 11):
+        pairs = [(a - 1, b - 1) for (mass, _), (a, b) in mass_ratios().items() if mass == grams]
+        share = sum(a * b for a, b in pairs) / sum(a * a for a, _ in pairs)
+        parts.append((f"{share:.2f}", len(pairs)))
+    (small, count), (large, other) = parts
+    stated = f"by 3 g is {small} of the measured one ({count} positions), by 11 g {large} ({other})."
+    assert stated in TEXTS["limits"]
 
 
 def test_profiles_in_chapters_load_as_bored_shaft(tmp_path: Path) -> None:
