@@ -143,8 +143,8 @@ def reduction(
     near : float
         A frequency, Hz, such as that of a tap: the mode nearest to it is listed.
     cue_ends : dict of str to float, optional
-        End masses m_c of a two-part cue by name, kg, to compare with. By default the 12 g of Kim's paper, and none
-        beside a lumped cue.
+        End masses m_c of a two-part cue by name, kg, at most the mass of the cue, to compare with. By default the 12 g
+        of Kim's paper, and none beside a lumped cue.
     offsets : sequence of float
         Tip offsets b/R, in (-1, 1), of the squirts.
 
@@ -180,10 +180,10 @@ def reduction(
     scene = design.scene
     front = RigidFront.of(scene.cue) if isinstance(scene.cue, Cue) else None
     if cue_ends is None:
-        cue_ends = PAPER_CUE_ENDS if front else {}
-    masses = {
-        name: Quantity("kg", "(0, inf)").check(f"reduction cue_ends[{name!r}]", m) for name, m in cue_ends.items()
-    }
+        masses = dict(PAPER_CUE_ENDS) if front else {}
+    else:
+        wanted = cue_end_quantity(scene)
+        masses = {name: wanted.check(f"reduction cue_ends[{name!r}]", mass) for name, mass in cue_ends.items()}
     own, missing = _own_cues(design)
     cues = {name: LumpedCue.two_part(scene.axial_mass, mass, NU_C) for name, mass in masses.items()} | own
     return Reduction(
@@ -203,6 +203,11 @@ def reduction(
         design=design,
         cues=cues,
     )
+
+
+def cue_end_quantity(scene: Scene) -> Quantity:
+    """The m_c of a two-part cue, which is a part of the cue's mass."""
+    return Quantity("kg", f"(0, {scene.axial_mass!r}]")
 
 
 def _at_offset_name(scene: Scene) -> str:

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from difflib import get_close_matches
 from importlib import import_module
+from pathlib import Path
 from typing import Any, NoReturn
 
 import click
@@ -147,9 +148,19 @@ class _OneLine(_Commands):
         except (ValueError, RuntimeError, KernelError) as error:
             if isinstance(error, click.exceptions.Exit | click.exceptions.Abort):
                 raise
-            text = str(error) if hasattr(error, "problem") else one_line(str(error))  # an InputError is brief already
-            click.echo(f"cuefem: {text}", err=True)
+            click.echo(f"cuefem: {_error_text(error)}", err=True)
             raise click.exceptions.Exit(2 if isinstance(error, ValueError | KernelError) else 1) from None
+
+
+def _error_text(error: Exception) -> str:
+    """An error in one line; a cue that was given by its name keeps it."""
+    file = getattr(error, "file", None)
+    if file is None:
+        return one_line(str(error))
+    from cuefem.files.cue_names import cue_name  # not for --help
+
+    name = cue_name(Path(file))
+    return str(error).replace(file, name, 1) if name else str(error)  # an InputError is one line already
 
 
 def _print_warning(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:

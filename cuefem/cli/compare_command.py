@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +11,7 @@ import click
 
 import cuefem as cf
 from cuefem.analysis.comparison import MAX_CUES
-from cuefem.cli.output import Command, command, output_option
+from cuefem.cli.output import Command, command, output_option, print_json
 from cuefem.cli.progress import with_progress_bar
 from cuefem.cli.request import Request, errors_name_file, print_warnings
 from cuefem.cli.scene_command import (
@@ -20,7 +21,7 @@ from cuefem.cli.scene_command import (
     cue_options,
     force_option,
 )
-from cuefem.cli.scene_options import impact_options, offset_option, option
+from cuefem.cli.scene_options import impact_options, offset_option, option, typed_name
 from cuefem.files import InputError, load_stroke
 from cuefem.files.cue_names import cue_name, named_path
 from cuefem.files.defaults_report import STROKE, Assumption, given_keys
@@ -95,25 +96,32 @@ def compare(
         raise InputError(folder, "", "options of cue and stroke need two or more FILEs; a FOLDER has them in its files")
     if template:
         write_template(folder)
-        click.echo(f"wrote {folder}: replace the example numbers by yours, then run: cuefem compare {folder}")
+        if as_json:
+            print_json({"output_folder": str(folder)})
+            return
+        asked = shlex.join(["cuefem", "compare", str(folder)])
+        click.echo(f"wrote {folder}: replace the example numbers by yours, then run: {asked}")
     elif folder.is_file() or cue_name(folder := named_folder(folder)):
         raise InputError(folder, "", "needs another FILE to compare with, or a FOLDER with measurements")
     elif output is not None and output.suffix == ".toml":
         if not estimate:
             raise InputError(output, "--output", "a calibration (.toml) needs --estimate")
         check_overwrite(output, force=force)
-        _write_calibration(folder, output)
+        _write_calibration(folder, output, as_json=as_json)
     else:
         _with_measurements(folder, output, as_json=as_json, estimate=estimate)
 
 
-def _write_calibration(folder: Path, output: Path) -> None:
+def _write_calibration(folder: Path, output: Path, *, as_json: bool) -> None:
     """Write the calibration by a measured cue."""
     cue, _ = load_measured(folder)
     print_warnings(cue.scene)
     with errors_name_file(folder):
         made = cf.estimate(cue, progress=with_progress_bar).calibration()
     made.save(output)
+    if as_json:
+        print_json({"file": str(folder), "output_file": str(output), "warnings": [*made.warnings]})
+        return
     for line in made.warnings:
         click.echo(f"warning: {line}", err=True)
     click.echo(f"wrote {output}; for the next shaft with this tip: cuefem report NEW.toml --calibration {output}")
@@ -149,7 +157,7 @@ def _side_by_side(
             for name, request in asked.items()
             for line in (*drawing_warnings(request.file), *plausibility_warnings(request.scene))
         ]
-        about = {"files": [cue_name(file) or str(file) for file in files]}
+        about = {"files": [typed_name(file) for file in files]}
         shown = Presentation(analysis, files=about, assumptions=_assumptions(asked), warnings=warnings)
         shown.show(output, as_json=as_json)
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 import cuefem as cf
-from cuefem.analysis.reduction import PAPER_CUE_ENDS, PAPER_TONE
-from cuefem.cli.output import Command
+from cuefem.analysis.reduction import PAPER_CUE_ENDS, PAPER_TONE, cue_end_quantity
+from cuefem.cli.output import Command, print_json
 from cuefem.cli.progress import with_progress_bar
 from cuefem.cli.request import Request
 from cuefem.cli.scene_command import (
@@ -20,7 +20,7 @@ from cuefem.cli.scene_command import (
     file_options,
     force_option,
 )
-from cuefem.cli.scene_options import option_value, tip_options
+from cuefem.cli.scene_options import option_value, tip_options, typed_name
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.files import InputError, as_input_error, load_accuracy, save
 from cuefem.parameters.parameter import with_parameters
@@ -54,7 +54,8 @@ def report(request: Request, output: Path | None, calibration: Calibration | Non
     rtol = load_accuracy(request.file) if details else None
     answer = cf.report(request.scene, rtol, calibration=calibration, details=details, progress=with_progress_bar)
     if output is None and {"verdict", "modes"} <= {*answer.sections}:  # nothing of a lumped cue can be changed
-        request.hints.append(f"Design changes: cuefem improve {request.file}, with the same options")
+        asked = shlex.join(["cuefem", "improve", typed_name(request.file)])
+        request.hints.append(f"Design changes: {asked}, with the same options")
     return answer
 
 
@@ -68,7 +69,12 @@ def report(request: Request, output: Path | None, calibration: Calibration | Non
 @calibration_option
 @force_option
 def improve(
-    request: Request, take: int | None, output: Path | None, calibration: Calibration | None, force: bool
+    request: Request,
+    take: int | None,
+    output: Path | None,
+    calibration: Calibration | None,
+    force: bool,
+    as_json: bool,
 ) -> Analysis | None:
     """List design changes a maker can make, with squirt, stiffness, mass and first natural frequency of each.
 
@@ -82,22 +88,27 @@ def improve(
     answer = cf.design_changes(request.scene, calibration=calibration, progress=with_progress_bar)
     if take is None or drawing is None:
         return answer
-    _save_change(request, answer, take, drawing)
+    _save_change(request, answer, take, drawing, as_json=as_json)
     return None
 
 
-def _save_change(request: Request, answer: DesignChanges, take: int, output: Path) -> None:
+def _save_change(request: Request, answer: DesignChanges, take: int, output: Path, *, as_json: bool) -> None:
     """Save the cue of a row, and name the command that compares it."""
     file, rows = request.file, answer.changes
     if take > len(rows):
         raise InputError(file, "--take", f"must be a row of the table, 1 to {len(rows)}; got {take}")
-    changed = with_parameters(request.scene, rows[take - 1].values)
+    row = rows[take - 1]
+    changed = with_parameters(request.scene, row.values)
     save(changed, output)
-    lines = [f"wrote {output}: {rows[take - 1].change}"]
+    if as_json:
+        print_json({"file": typed_name(file), "output_file": str(output), "change": row.change})
+        return
+    lines = [f"wrote {output}: {row.change}"]
     if not request.given:  # they would apply to both files
         one_wood = main_material(request.scene.shaft).E == main_material(changed.shaft).E
         same = ["--same-shaft"] if one_wood else []
-        lines.append(f"before and after: {shlex.join(['cuefem', 'compare', str(file), str(output), *same])}")
+        asked = shlex.join(["cuefem", "compare", typed_name(file), str(output), *same])
+        lines.append(f"before and after: {asked}")
     click.echo("\n".join(lines))
 
 
@@ -111,7 +122,15 @@ def modes(request: Request, near: float | None, count: int) -> Analysis:
 
     Of a drawing as drawn, like `cf.modes`; --game, or an option of the tip, adds the game's leather tip and effects.
     """
+    if near is not None:
+        _check_near(request, near, "[0, inf)")
     return cf.natural_frequencies(request.scene, count, near=near)
+
+
+def _check_near(request: Request, near: float, bounds: str) -> None:
+    """InputError for a frequency out of bounds, in the option's name."""
+    with as_input_error(request.file, "--near"):
+        Quantity("Hz", bounds).read(f"{near!r} Hz")
 
 
 @analysis_command("end-mass", cls=WithDefinitions)
@@ -135,10 +154,10 @@ def end_mass(request: Request, near: float, cue_ends: tuple[str, ...]) -> Analys
 
     Below them: modes near 250 Hz, m_c and ε of Kim's two-part cue beside his guess of 12 g, and the squirt of each.
     """
-    with as_input_error(request.file, "--near"):
-        Quantity("Hz", "(0, inf)").read(f"{near!r} Hz")
+    _check_near(request, near, "(0, inf)")
+    wanted = cue_end_quantity(request.scene)
     with as_input_error(request.file, "--cue-end"):
-        typed = {f"two-part, m_c {text}": Quantity("kg", "(0, inf)").read(text) for text in cue_ends}
+        typed = {f"two-part, m_c {text}": wanted.read(text) for text in cue_ends}
     compared = {**PAPER_CUE_ENDS, **typed} if typed else None
     return cf.end_masses(request.scene, with_reduction=True, near=near, cue_ends=compared)
 

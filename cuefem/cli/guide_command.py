@@ -34,6 +34,8 @@ def guide(subject: str | None, output: Path | None, in_terminal: bool, as_json: 
     if in_terminal and output is not None:
         raise InputError(output, "--output", "cannot be combined with --print, which writes no page")
     if subject is not None and subject not in CHAPTERS:
+        if output is not None:
+            raise InputError(output, "--output", f"needs a CHAPTER or none; got {subject!r}: use --json")
         _list_sections(subject, as_json)
         return
     requested = [chapter for chapter in chapters() if subject in (None, chapter.name)]

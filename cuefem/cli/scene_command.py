@@ -27,9 +27,9 @@ from cuefem.cli.scene_options import (
     offset_option,
     option,
     parameter_options,
+    typed_name,
 )
 from cuefem.files import InputError, check_writable, load_accuracy, today
-from cuefem.files.cue_names import cue_name
 from cuefem.files.defaults_report import Assumption
 from cuefem.files.shaft_additions import SHAFT_ADDITIONS
 from cuefem.files.warnings_of_drawings import drawing_warnings
@@ -115,7 +115,8 @@ def analysis_command(
 
         @wraps(analyse)
         def run(file: Path, output: Path | None, as_json: bool, **options: Any) -> None:
-            mine = {key: output if key == "output" else options.pop(key) for key in own}
+            shared_values = {"output": output, "as_json": as_json}
+            mine = {key: shared_values[key] if key in shared_values else options.pop(key) for key in own}
             request = Request.of(file, options, with_impact=has_stroke)
             request.print_warnings()
             with request.errors():
@@ -150,7 +151,7 @@ def _show(request: Request, analysis: Analysis, output: Path | None, *, as_json:
     file = request.file
     warnings = [*drawing_warnings(file), *plausibility_warnings(analysis.scene, with_impact=analysis.has_stroke)]
     shown = Presentation(
-        analysis, file_label(file), {"file": cue_name(file) or str(file)}, request.assumptions, warnings, request.hints
+        analysis, file_label(file), {"file": typed_name(file)}, request.assumptions, warnings, request.hints
     )
     with request.errors():
         shown.show(output, as_json=as_json)

@@ -49,6 +49,11 @@ def file_label(file: Path) -> str:
     return cue_name(file) or file.name
 
 
+def typed_name(file: Path) -> str:
+    """What a user types for a file: the name of a cue, or the path."""
+    return cue_name(file) or str(file)
+
+
 def option(name: str) -> str:
     """The name of an option on the command line."""
     return f"--{name.replace('_', '-')}"

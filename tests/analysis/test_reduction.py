@@ -145,7 +145,8 @@ def test_leather_states_that_its_end_mass_is_for_the_impulse_solver() -> None:
     ("options", "message"),
     [
         ({"near": 0.0}, "reduction near must be in (0, inf) Hz; got 0.0"),
-        ({"cue_ends": {"mine": -0.01}}, "reduction cue_ends['mine'] must be in (0, inf) kg; got -0.01"),
+        ({"cue_ends": {"mine": -0.01}}, "reduction cue_ends['mine'] must be in (0, 0.54] kg; got -0.01"),
+        ({"cue_ends": {"mine": 0.6}}, "reduction cue_ends['mine'] must be in (0, 0.54] kg; got 0.6"),
         ({"offsets": (0.1, 1.0)}, "Stroke.offset must be in (-1, 1); got 1.0"),
     ],
 )

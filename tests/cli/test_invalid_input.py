@@ -47,7 +47,10 @@ strike shaft.toml --restitution 2 | shaft.toml: --restitution: must be 0 to 1
 strike shaft.toml --speed fast | cuefem: shaft.toml: --speed: must be a speed with its unit
 end-mass good.toml --speed 2 | --speed: needs a unit
 end-mass good.toml --near 0 | --near: must be more than 0 Hz; got 0.0 Hz
-end-mass good.toml --cue-end '-3 g' | --cue-end: must be more than 0 g; got -3 g
+end-mass good.toml --cue-end '-3 g' | --cue-end: must be
+end-mass shaft.toml --cue-end '600 g' | shaft.toml: --cue-end: must be
+modes good.toml --near -5 | --near: must be 0 Hz or more; got -5.0 Hz
+guide bore -o bore.json | bore.json: --output: needs a CHAPTER or none; got 'bore'
 report good.toml --body-mass '-1 oz' | good.toml: --body-mass: must be 0 oz or more
 report shaft.toml --game chess | 'chess' is not one of 'pool', 'carom', 'snooker'
 strike spring.toml --game pool | --game: does not apply: FILE is a scene

@@ -158,3 +158,15 @@ def test_unknown_extension_names_those_that_can_be_written() -> None:
     assert "must end in .html or .json or .toml" in err
     with pytest.raises(ValueError, match=r"\.html or \.json"):
         cf.natural_frequencies(cf.Scene(cf.load("meshes/kim.toml"))).save("x.pdf")  # type: ignore[arg-type]
+
+
+@pytest.mark.heavy
+def test_saved_design_change_prints_json(tmp_path: Path) -> None:
+    output = tmp_path / "changed.toml"
+    printed = as_json("improve", KIM, "--take", 1, "-o", output)
+    assert (printed["file"], printed["output_file"]) == (str(KIM), str(output))
+    assert printed["change"] == as_json("improve", KIM)["changes"][0]["change"]
+
+
+def test_template_prints_json(tmp_path: Path) -> None:
+    assert as_json("compare", tmp_path / "cue", "--template") == {"output_folder": str(tmp_path / "cue")}

@@ -71,3 +71,15 @@ def test_name_of_measured_cue_stands_for_its_folder() -> None:
     assert cf.compare("predator z2").rows
     status, _, err = call("compare", "carbon")
     assert (status, "needs another FILE" in err) == (2, True)
+
+
+def test_errors_and_hints_carry_the_name_instead_of_the_path() -> None:
+    _, _, err = call("compare", "plain maple", "carbon", "--body-mass", "15 oz")
+    assert err.startswith("cuefem: plain maple: --body-mass: would replace")
+    _, _, err = call("strike", "carbon", "--offset", "2")
+    assert err.startswith("cuefem: carbon: --offset: must be b/R")
+
+
+@pytest.mark.heavy
+def test_hint_quotes_a_name_of_two_words() -> None:
+    assert "Design changes: cuefem improve 'plain maple'," in stdout_of("report", "plain maple")
