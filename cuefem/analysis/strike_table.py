@@ -77,7 +77,7 @@ UNITS = {
     "spin": "rad/s",
 }
 Progress = Callable[[Sequence[Any]], Iterable[Any]]
-SHOWN_SPEEDS = (0.2, 0.5, 1.0, 2.0, 4.0, 7.0, 10.0)  # m/s, of the table in a terminal
+SHOWN_SPEEDS = (0.2, 0.5, 1.0, 2.0, 4.0, 7.0, 10.0)  # m/s, of the table in a terminal, beside its lowest and highest
 CHART_STYLES = ("c1", "c2", "c4", "c3")  # CSS classes
 
 
@@ -169,7 +169,9 @@ class StrikeTable(Analysis):
 
     def tables(self) -> list[Table | str]:
         """Strokes read off the table, and the error of interpolation."""
-        rows = [self._row(speed) for speed in SHOWN_SPEEDS if self.speed[0] <= speed <= self.speed[-1]]
+        low, high = self.speed[0], self.speed[-1]
+        between = (speed for speed in SHOWN_SPEEDS if low < speed < high)
+        rows = [self._row(speed) for speed in (low, *between, high)]
         head = ("cue speed", "miscue limit b/R", *(f"{RESULTS[name].label}, b/R {self._shown:g}" for name in _SHOWN))
         notes = (
             f"{len(self.share)} shares of the miscue limit by {len(self.speed)} cue speeds",

@@ -38,6 +38,12 @@ def struck(speed: float, offset: float) -> cf.Outcome:
     return cf.strike(replace(SCENE, stroke=cf.Stroke(speed, offset)))
 
 
+def test_printed_strike_table_begins_and_ends_at_its_own_speeds(table: StrikeTable) -> None:
+    inner = replace(table, speed=tuple(1.1 * speed for speed in table.speed))
+    shown, *_ = inner.tables()
+    assert [row[0] for row in shown.rows] == ["1.10 m/s", "2.00 m/s", "4.00 m/s", "4.40 m/s"]
+
+
 def test_table_equals_strikes_at_its_nodes_and_their_mirror_images(table: StrikeTable) -> None:
     for row in (0, len(table.speed) - 1):
         speed, offset = table.speed[row], table.share[-2] * table.limit[row]
