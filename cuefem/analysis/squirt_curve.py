@@ -128,14 +128,21 @@ def squirt_curve(scene: Scene | SolvedDesign, offsets: Sequence[float] = OFFSETS
     scene : Scene
         A stroke; its own offset is only marked.
     offsets : sequence of float
-        Offsets b/R.
+        Offsets b/R, one at least.
 
     Returns
     -------
     SquirtCurve
         Models: the coupled strike; lumped, if effects at the tip or a lumped cue's own constant couple transverse and
         axial motion; two-part, with this cue's end mass and with Kim's 12 g; Alciatore's formula [A.31].
+
+    Raises
+    ------
+    ValueError
+        If there is no offset, or one is not between -1 and 1.
     """
+    if not len(offsets):
+        raise ValueError("squirt_curve offsets must be at least one b/R between -1 and 1; got none")
     design = SolvedDesign.of(scene)
     scene, solved = design.scene, design.solved
     own = lumped_cues(scene, offsets, solved.stick_tip)

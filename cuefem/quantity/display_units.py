@@ -104,12 +104,18 @@ def off_line(squirt: float) -> tuple[str, str]:
 
 
 def number_text(value: float, unit: str, digits: int = 4, *, decimals: int | None = None) -> str:
-    """An SI number in its display unit, without the unit: to decimals, or to digits where they are decimals."""
+    """An SI number in its display unit, without the unit: to decimals, or to digits where they are decimals.
+
+    What rounds to zero has no sign, as everywhere here:
+
+    >>> number_text(-1e-20, "rad", decimals=2), number_text(-0.01, "rad", decimals=2)
+    ('0.00', '-0.57')
+    """
     shown = display_unit(unit)
     decimals = decimals if shown.decimals is None else shown.decimals
     if decimals is None:
         return significant(shown.factor * value, digits)
-    return f"{shown.factor * value:.{decimals}f}"
+    return f"{shown.factor * value:z.{decimals}f}"
 
 
 def with_unit(
@@ -126,7 +132,7 @@ def with_unit(
     if error is not None and math.isfinite(error) and error > 0:
         factor = display_unit(unit).factor
         decimals = max(0, 1 - math.floor(math.log10(factor * error)))
-        return f"{factor * value:.{decimals}f} ± {factor * error:.{decimals}f}{unit_suffix(unit)}"
+        return f"{factor * value:z.{decimals}f} ± {factor * error:.{decimals}f}{unit_suffix(unit)}"
     return short_number(value, unit, digits, decimals=decimals) + unit_suffix(unit)
 
 
@@ -139,7 +145,7 @@ def short_number(value: float, unit: str, digits: int = 4, *, decimals: int | No
     """An SI number in its display unit, without the unit: to decimals, or to at most so many digits."""
     shown = display_unit(unit)
     decimals = decimals if shown.decimals is None else shown.decimals
-    return f"{shown.factor * value:{f'.{digits}g' if decimals is None else f'.{decimals}f'}}"
+    return f"{shown.factor * value:{f'z.{digits}g' if decimals is None else f'z.{decimals}f'}}"
 
 
 def change_with_unit(change: float, unit: str, decimals: int) -> str:

@@ -67,8 +67,12 @@ def natural_pivot_length(offset: Any, squirt: Any, *, radius: Any, dome_radius: 
 
 
 def pivot_length(scene: Scene, squirt: Any, offset: Any = None) -> Any:
-    """The natural pivot length of a squirt, m, at an offset b/R or at the scene's own; None if any offset is 0."""
+    """The natural pivot length of a squirt, m, at an offset b/R or at the scene's own.
+
+    A head-on stroke has none: None at one offset, nan in an array of them.
+    """
     offset = scene.stroke.offset if offset is None else offset
-    if not np.all(offset):
+    if np.ndim(offset) == 0 and offset == 0:
         return None
-    return natural_pivot_length(offset, squirt, radius=scene.ball.radius, dome_radius=scene.dome_radius)
+    length = natural_pivot_length(offset, squirt, radius=scene.ball.radius, dome_radius=scene.dome_radius)
+    return np.where(np.equal(offset, 0.0), np.nan, length)[()]

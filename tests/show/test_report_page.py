@@ -11,6 +11,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.files import today
+from cuefem.results.quantities import DASH
 from cuefem.show.charts import WIDTH, Axis, Chart, round_step, spread_labels
 from cuefem.show.drawings import DIAMETER_SCALE, cue_drawing
 from cuefem.show.templates import option_pieces
@@ -161,6 +162,18 @@ def test_squirt_curves_end_at_the_miscue_limit() -> None:
         for name, _, outline in each.curves:
             limit = each.x_scale.position(last, each.box[0], each.box[2])
             assert name == "plain maple" or box(outline)[1] <= limit + 0.01, (each.title, name)
+
+
+def test_squirt_curve_head_on_has_no_pivot_length() -> None:
+    shown = cf.squirt_curve(LUMPED, (-0.3, 0.0, 0.3))
+    left, head_on, right = shown.models["coupled, this cue"]["pivot_length"]
+    assert (
+        left == pytest.approx(right) == pytest.approx(shown.models["two-part, this cue"]["pivot_length"][2], rel=1e-3)
+    )
+    assert math.isnan(head_on)
+    assert shown.table().rows[1][1:3] == ("0.00°", DASH)
+    with pytest.raises(ValueError, match="squirt_curve offsets must be at least one b/R between -1 and 1; got none"):
+        cf.squirt_curve(LUMPED, ())
 
 
 def test_options_are_pieces_that_paper_leaves_out() -> None:
