@@ -21,7 +21,9 @@ async def run_in_thread(work: Callable[..., Any], *arguments: Any) -> Any:
         with np.errstate(**FLOAT_ERRORS):
             return work(*arguments)
 
+    # not run.io_bound, whose result at the time limit is None: it takes the cancellation as its own end
+    result = asyncio.get_running_loop().run_in_executor(run.thread_pool, guarded)
     try:
-        return await asyncio.wait_for(run.io_bound(guarded), TIME_LIMIT)
+        return await asyncio.wait_for(result, TIME_LIMIT)
     except TimeoutError:
         raise RuntimeError(f"this takes more than {TIME_LIMIT:g} s: draw fewer segments, or check sizes") from None

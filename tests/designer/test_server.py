@@ -8,6 +8,7 @@ import signal
 import socket
 import subprocess
 import sys
+import time
 import urllib.request
 from collections.abc import Callable
 from pathlib import Path
@@ -17,6 +18,7 @@ import pytest
 
 pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
 import cuefem as cf
+from cuefem.designer import in_thread
 from cuefem.designer.header import MAX_FILE, file_name
 from cuefem.designer.server import REJECTED, RequestValidation
 from tests.helpers.designer_browser import wait_for_port
@@ -24,6 +26,13 @@ from tests.helpers.invalid_input import assert_rejects
 
 OWN = "http://127.0.0.1:8470"
 PIECE = 1_000_000  # bytes of a chunk of a body
+
+
+def test_work_beyond_its_time_limit_raises(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert asyncio.run(in_thread.run_in_thread(abs, -2)) == 2
+    monkeypatch.setattr(in_thread, "TIME_LIMIT", 0.02)
+    with pytest.raises(RuntimeError, match=r"this takes more than 0\.02 s: draw fewer segments, or check sizes"):
+        asyncio.run(in_thread.run_in_thread(time.sleep, 0.1))
 
 
 def response_to(kind: str, headers: dict[str, str], pieces: int = 0) -> tuple[list[dict[str, Any]], int]:
