@@ -16,7 +16,7 @@ from cuefem.designs.evaluation import Response
 from cuefem.effects.leather_tip import DOMES
 from cuefem.measurements.calibration import CalibratedSquirt, Calibration
 from cuefem.parameters.parameter import PARAMETERS, with_parameters
-from cuefem.parameters.parts import TUBE_FRONT, Layout, is_tube, shaft_word, taper_position
+from cuefem.parameters.parts import TUBE_FRONT, Layout, is_tube, is_wooden, shaft_word, taper_position
 from cuefem.quantity.display_units import change_with_unit, format_change, short_number, with_unit
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.results.solved_design import SolvedDesign, off_centre
@@ -61,13 +61,10 @@ def changes_of(scene: Scene) -> list[DesignChange]:
     values = {key: parameter.value(scene) for key, parameter in PARAMETERS.items()}
     if is_tube(scene.shaft):
         return [*_walls(values), *_fillings(values), *_ferrules(values), *_tips(values)]
-    return [
-        *_bores(scene.shaft, values),
-        *_ferrules(values),
-        *_tips(values),
-        *_tapers(scene.shaft, values),
-        *_woods(scene.shaft),
-    ]
+    changes = [*_bores(scene.shaft, values), *_ferrules(values), *_tips(values)]
+    if is_wooden(scene.shaft):
+        changes += [*_tapers(scene.shaft, values), *_woods(scene.shaft)]
+    return changes
 
 
 def _walls(values: Record) -> Iterator[DesignChange]:

@@ -378,12 +378,18 @@ BORE_WIDTH = Part(_of_bore(1), lambda scene, width: _with_bore(scene, width=widt
 # --- the tube -------------------------------------------------------------------------------------
 
 TUBE_FRONT = 0.15  # m from the front: the part of a tube whose mass squirt senses most
+MAX_WOOD_MODULUS = 25e9  # Pa: woods of the table of materials reach 22.3 GPa, carbon fibre begins at 29.6 GPa
+
+
+def is_wooden(cue: Cue) -> bool:
+    """Whether the shaft behind its ferrule is no stiffer than wood."""
+    return cue.segments[Layout.of(cue).shaft.start].material.E <= MAX_WOOD_MODULUS
 
 
 def is_tube(cue: Cue) -> bool:
-    """Whether the shaft is hollow along most of its length, empty or filled."""
+    """Whether the shaft is hollow along most of its length, empty or filled, and no bored wood."""
     hollow = sum(cue.segments[i].length for i in _hollow(cue))
-    return hollow > sum(cue.segments[i].length for i in Layout.of(cue).shaft) / 2
+    return not is_wooden(cue) and hollow > sum(cue.segments[i].length for i in Layout.of(cue).shaft) / 2
 
 
 def shaft_word(scene: Any) -> str:
@@ -424,10 +430,9 @@ def _with_wall(scene: Any, wall: float) -> Any:
         bores = segments[i].tip_bore - narrower, segments[i].butt_bore - narrower
         most = min((segments[i].tip_diameter, segments[i].butt_diameter)[k] - bores[k] for k in (0, 1))
         if min(bores) <= 0 or most <= 0:
-            radius = 1e3 * segments[front[0]].tip_diameter / 2
+            radius = with_unit(segments[i].tip_diameter / 2, "m")
             raise ValueError(
-                f"the wall must be above 0 and leave a hollow in a tube of radius {radius:.4g} mm; got "
-                f"{1e3 * wall:.4g} mm"
+                f"the wall must be above 0 and leave a hollow in a tube of radius {radius}; got {with_unit(wall, 'm')}"
             )
         segments[i] = replace(segments[i], tip_bore=bores[0], butt_bore=bores[1])
     return replace(scene, cue=replace(cue, segments=tuple(segments)))
@@ -461,8 +466,15 @@ def _with_front_core(read: Callable[[Any], float | None], core: Material | None)
         tube = _hollow(cue)
         begin, end = (float(cue.nodes[i]) for i in (tube[0], tube[-1] + 1))
         whole = end - begin
+        longest = with_unit(whole, "m", 6)
         if length > whole:
-            raise ValueError(f"the tube is {1e3 * whole:.6g} mm long; got {1e3 * length:.6g} mm")
+            raise ValueError(f"the tube is {longest} long; got {with_unit(length, 'm', 6)}")
+        if old > whole - SAME_POSITION * cue.length:
+            inside = "empty" if core is None else "filled like that"
+            raise ValueError(
+                f"the tube is {inside} along all its {longest}, so that nothing is known to fill the rest with; got "
+                f"{with_unit(length, 'm', 6)}: state the core of its segments"
+            )
         behind = next((i for i in tube if cue.nodes[i] >= begin + old - SAME_POSITION * cue.length), tube[-1])
         filling = cue.segments[behind].core
         cue = split_at(split_at(cue, begin + length), begin + old)

@@ -1,6 +1,7 @@
 """Design changes: rows equal strikes of changed cues, verdicts, saving of a row (properties)."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import cuefem as cf
 from cuefem.analysis.design_changes import MIN_STIFFNESS_LOSS, MIN_WALL, DesignChanges, changes_of, design_changes
 from cuefem.cue.materials import material
 from cuefem.parameters.parameter import PARAMETERS, with_parameters
+from cuefem.parameters.parts import shaft_word
 from cuefem.results.uncertainty import RATIO_FLOOR, SHAFT_ERROR
 from tests.helpers.command_line import as_json, call
 from tests.helpers.invalid_input import assert_rejects
@@ -112,6 +114,35 @@ def test_tube_with_less_mass_in_front_has_less_squirt() -> None:
         -0.2 * ring * 0.144 * (front.material.rho - material("foam").rho), rel=0.02
     )
     assert "unmeasured tube and tip" in " ".join(record.table().notes)
+
+
+def test_bored_maple_is_no_tube_and_solid_carbon_no_wood() -> None:
+    bored = with_parameters(scene_of("pool_maple"), {"bore width": 6e-3, "bore depth": 0.5})
+    labels = " ".join(change.label for change in changes_of(bored))
+    assert "ash shaft" in labels
+    assert "bore wider" in labels
+    assert "taper" in labels
+    assert "wall thinner" not in labels
+    assert shaft_word(bored) == "wood"
+    rod = with_parameters(scene_of("pool_maple"), {"shaft material": "carbon fibre"})
+    labels = " ".join(change.label for change in changes_of(rod))
+    assert "ferrule" in labels
+    assert "taper" not in labels
+    assert "ash" not in labels
+
+
+@pytest.mark.parametrize(
+    ("name", "core", "inside"), [("empty depth", None, "empty"), ("insert depth", "hard maple", "filled like that")]
+)
+def test_tube_of_one_filling_names_what_its_shorter_part_lacks(name: str, core: str | None, inside: str) -> None:
+    scene = scene_of("carbon")
+    filling = material(core) if core else None
+    whole = [replace(segment, core=filling) if segment.tip_bore else segment for segment in scene.cue.segments]
+    scene = replace(scene, cue=replace(scene.cue, segments=tuple(whole)))
+    with pytest.raises(
+        ValueError, match=rf"the tube is {inside} along all its [\d.]+ mm.*; got 100 mm: state the core"
+    ):
+        with_parameters(scene, {name: 0.1})
 
 
 @pytest.mark.parametrize("name", ["front wall", "empty depth", "insert depth"])
