@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.strike import strike_modes
+from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.parameters.parameter import PARAMETERS, with_values_at
 from cuefem.results.records import Record
 from cuefem.results.verdict import NoVerdict, reject_miscue
@@ -110,7 +111,7 @@ def _sides(
     scene: Scene, key: str, of: Callable[[Scene], Mapping[str, float]], spreads: Mapping[str, float]
 ) -> tuple[dict[float, Mapping[str, float]], bool]:
     """Results one standard deviation of an input up and down, by the step of its logarithm, as far as there is a valid
-    cue; and whether one of them is a miscue."""
+    cue; and whether one of them is a miscue or beyond the range of the tip."""
     parameter = PARAMETERS[key]
     spread = spreads.get(key, parameter.spread_in(scene))
     steps = (spread, -spread) if spread is not None else (math.log1p(-parameter.below),) if parameter.below else ()
@@ -119,7 +120,7 @@ def _sides(
     for step in steps if parameter.value(scene) else ():
         try:
             sides[step] = of(with_values_at(scene, parameter.scaled(scene, math.exp(step))))
-        except NoVerdict:
+        except (NoVerdict, IndentationOutOfRange):
             is_miscue = True
         except (ValueError, RuntimeError):  # no valid cue there
             continue
@@ -134,11 +135,12 @@ def _mean_change(sides: Mapping[float, Mapping[str, float]], name: str, base: fl
 
 
 def miscue_note(inputs: Iterable[str]) -> str:
-    """A sentence on the inputs whose uncertainty includes a miscue; "" without any."""
+    """A sentence on the inputs whose uncertainty includes a stroke without squirt; "" without any."""
     labels = [PARAMETERS[key].label for key in inputs]
     if not labels:
         return ""
-    return f"Uncertain to one side only, since the other is a miscue: {', '.join(labels)}."
+    reason = "since the other is a miscue or beyond the valid range of the tip"
+    return f"Uncertain to one side only, {reason}: {', '.join(labels)}."
 
 
 def variant_squirt(solved: SolvedScene, variant: Scene) -> float:

@@ -79,7 +79,10 @@ def test_comparison_near_miscue_is_uncertain_to_one_side() -> None:
     compared = cf.compare({"plain": plain, "bored": bored})
     assert compared.miscues == {"plain": ("friction",), "bored": ("friction",)}
     assert compared.differences["bored"]["squirt"]["error"] > 0
-    note = "Uncertain to one side only, since the other is a miscue: friction of tip and ball."
+    note = (
+        "Uncertain to one side only, since the other is a miscue or beyond the valid range of the tip: friction of tip "
+        "and ball."
+    )
     assert f"plain: {note}" in compared.table().notes
 
 

@@ -61,10 +61,22 @@ def test_squirt_changes_miscue_on_one_side_takes_the_other() -> None:
     changes = squirt_changes(SolvedScene(scene), own)
     assert changes.miscues == ("friction",)
     assert changes.of("squirt")["friction"] == pytest.approx(float(cf.strike(rough).squirt) / own - 1, rel=1e-6)
-    note = "Uncertain to one side only, since the other is a miscue: friction of tip and ball."
+    note = (
+        "Uncertain to one side only, since the other is a miscue or beyond the valid range of the tip: friction of tip "
+        "and ball."
+    )
     assert note in cf.verdict(scene).uncertainty_line()
     with pytest.raises(NoVerdict, match=r"miscue at b/R 0\.57"):
         squirt_of(slippery)
+
+
+def test_input_beyond_the_range_of_the_tip_is_named_by_report_and_comparison() -> None:
+    """At 19 m/s softer leather is indented beyond its range: both say so of it, by one rule."""
+    scene = with_parameters(cf.usual_scene(cf.load(MESHES / "pool_maple.toml")), {"offset": 0.2, "speed": 19.0})
+    verdict = cf.verdict(scene)
+    assert "leather" in verdict.miscues
+    beside = cf.compare({"own": scene, "other": with_parameters(scene, {"tip diameter": 12e-3})})
+    assert beside.miscues["own"] == verdict.miscues
 
 
 @pytest.mark.parametrize("friction", [0.0, math.inf])
