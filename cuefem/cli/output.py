@@ -54,8 +54,9 @@ class Command(click.Command):
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run it in the chosen units of display; JSON, also in a file, is metric in every text."""
-        system, output = ctx.params.pop("units"), ctx.params.get("output")
-        is_json = ctx.params.get("as_json") or (isinstance(output, Path) and output.suffix == ".json")
+        system, output = ctx.params.pop("units"), ctx.params.get("output") or ()
+        outputs = output if isinstance(output, tuple) else (output,)  # `study` writes several
+        is_json = ctx.params.get("as_json") or any(Path(each).suffix == ".json" for each in outputs)
         with displayed_in("metric" if is_json else system):
             return super().invoke(ctx)
 

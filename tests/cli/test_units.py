@@ -101,6 +101,13 @@ def test_json_is_metric(tmp_path: Path) -> None:
     for path in written:
         assert call("strike", KIM, "-o", path, "--units", path.stem)[0] == 0
     assert written[0].read_text() == written[1].read_text()
+    study = tmp_path / "study.toml"
+    vary = '[[vary]]\npath = "stroke.speed"\nvalues = ["1 m/s", "2 m/s"]\n'
+    study.write_text(f'scene = "{HOLLOW.as_posix()}"\nresponses = ["squirt"]\n{vary}')
+    assert call("study", study, "-o", written[1], "--units", "us")[0] == 0
+    shown = written[1].read_text()
+    assert re.search(r"\d mm\b", shown)
+    assert re.search(r"\d (oz|in)\b", shown) is None
     assert stdout_of("modes", KIM, "--json", "--units", "us") == stdout_of("modes", KIM, "--json")
     assert displayed_system() == "metric"
 
