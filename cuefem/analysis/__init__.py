@@ -104,7 +104,7 @@ QUESTIONS: dict[str, Question] = {
 def report_sections(scene: Scene | None = None, *, details: bool = True) -> dict[str, Question]:
     """The questions of the report by key, in its order.
 
-    scene: only those that it can answer. details: whether to include those of the page alone.
+    scene: leaves out the questions whose `needs` it lacks. details: whether to include those of the page alone.
     """
     return {
         key: question

@@ -122,7 +122,7 @@ class Request:
 
     @property
     def assumptions(self) -> list[Assumption]:
-        """Those that matter to the command, each with its option if the command has it."""
+        """The assumptions that matter to the command; each names its option if the command has that option."""
         offered = self.offered - ({"game"} if isinstance(self.opened, Scene) else set())
         return offered_assumptions(self.assumed, offered, with_impact=self.with_impact)
 

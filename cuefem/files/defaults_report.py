@@ -239,7 +239,7 @@ def _missing(tables: dict[str, Any]) -> set[str]:
 def offered_assumptions(
     listed: Iterable[Assumption], offered: Collection[str] = (), *, with_impact: bool = True
 ) -> list[Assumption]:
-    """Assumptions with the options that are among ``offered``; those that are not are left out of them.
+    """The assumptions; one whose option is not among ``offered`` names no option.
 
     with_impact: whether to include ball, tip and stroke.
     """

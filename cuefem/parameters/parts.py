@@ -428,8 +428,8 @@ def _with_wall(scene: Any, wall: float) -> Any:
     segments = list(cue.segments)
     for i in front:
         bores = segments[i].tip_bore - narrower, segments[i].butt_bore - narrower
-        most = min((segments[i].tip_diameter, segments[i].butt_diameter)[k] - bores[k] for k in (0, 1))
-        if min(bores) <= 0 or most <= 0:
+        outer = segments[i].tip_diameter, segments[i].butt_diameter
+        if min(bores) <= 0 or outer[0] <= bores[0] or outer[1] <= bores[1]:
             radius = with_unit(segments[i].tip_diameter / 2, "m")
             raise ValueError(
                 f"the wall must be above 0 and leave a hollow in a tube of radius {radius}; got {with_unit(wall, 'm')}"
