@@ -61,7 +61,7 @@ from .designs.scatter import Scatter as Scatter
 from .designs.study import Study as Study, Vary as Vary
 from .designs.study_file import study as study
 from .files.errors import InputError as InputError
-from .parameters.parameter import with_parameters as with_parameters
+from .parameters.scene_changes import with_parameters as with_parameters
 from .quantity.unit_checks import PlausibilityWarning as PlausibilityWarning
 from .solid.solid_resolution import Solid as Solid
 from .solid.shaft import SolidModes as SolidModes, solid_modes as solid_modes

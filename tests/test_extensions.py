@@ -22,7 +22,9 @@ from cuefem.designs import Levels, Response, Study, Vary, evaluate
 from cuefem.effects.effect import effect_kinds
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.measurements.uncertain_parameters import parameters_of
-from cuefem.parameters.parameter import PARAMETERS, paths, with_parameters
+from cuefem.parameters.scene_changes import with_parameters
+from cuefem.parameters.scene_paths import paths
+from cuefem.parameters.table import PARAMETERS
 from cuefem.results.quantities import RESULTS
 from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.extensions import (

@@ -16,8 +16,8 @@ from cuefem.analysis.verdict import difference_text, squirt_difference
 from cuefem.measurements.calibration import CalibratedSquirt, Calibration
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measured_folder import load_measured
-from cuefem.parameters.parameter import PARAMETERS
 from cuefem.parameters.parts import main_material, shaft_word
+from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.display_units import off_line, with_unit
 from cuefem.results.computable_results import computable_results
 from cuefem.results.quantities import DASH, RESULTS, UNITS, format_value

@@ -15,8 +15,9 @@ from cuefem.cue.materials import MATERIALS, WOODS, table_name
 from cuefem.designs.evaluation import Response
 from cuefem.effects.leather_tip import DOMES
 from cuefem.measurements.calibration import CalibratedSquirt, Calibration
-from cuefem.parameters.parameter import PARAMETERS, with_parameters
 from cuefem.parameters.parts import TUBE_FRONT, Layout, is_tube, is_wooden, shaft_word, taper_position
+from cuefem.parameters.scene_changes import with_parameters
+from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.display_units import change_with_unit, format_change, short_number, with_unit
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.results.solved_design import SolvedDesign, off_centre

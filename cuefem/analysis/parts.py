@@ -9,7 +9,7 @@ from typing import Any
 from cuefem.cue.materials import LEATHER_CONSTANTS, LEATHERS, MATERIALS, TIPS, WOODS
 from cuefem.files.cue_names import CUES
 from cuefem.files.parts_catalogue import CATALOGUE_SHAFTS
-from cuefem.parameters.parameter import FERRULES
+from cuefem.parameters.table import FERRULES
 from cuefem.quantity.display_units import short_number, with_heading
 from cuefem.results.quantities import RESULTS, units_of
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate

@@ -25,8 +25,11 @@ from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.files import InputError, load, load_stroke
 from cuefem.files.defaults_report import Assumption, assumptions, drawing_assumptions, offered_assumptions
 from cuefem.files.shaft_additions import SHAFT_ADDITIONS
-from cuefem.parameters.parameter import PARAMETERS, Parameter, with_fields, with_values_at
-from cuefem.parameters.parameter import Path as Steps
+from cuefem.parameters.field_paths import Path as Steps
+from cuefem.parameters.field_paths import with_fields
+from cuefem.parameters.parameter import Parameter
+from cuefem.parameters.scene_changes import with_values_at
+from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.fields import OutOfBounds
 from cuefem.results.records import Table
 from cuefem.scene import Scene

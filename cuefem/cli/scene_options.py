@@ -18,8 +18,9 @@ from cuefem.cue import Cue, LumpedCue
 from cuefem.files import InputError, with_body_mass
 from cuefem.files.cue_names import cue_name, named_path
 from cuefem.files.errors import as_input_error
-from cuefem.parameters.parameter import PARAMETERS, with_parameters
 from cuefem.parameters.parts import main_material, with_material
+from cuefem.parameters.scene_changes import with_parameters
+from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.fields import Quantity, comma_hint
 from cuefem.quantity.units import parse_number

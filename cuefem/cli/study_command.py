@@ -26,7 +26,8 @@ from cuefem.designs.study_file import base_assumptions, load_study
 from cuefem.designs.study_result import StudyResult
 from cuefem.designs.sweep import sweep
 from cuefem.files import InputError, save, write_atomically
-from cuefem.parameters.parameter import value_at, with_values_at
+from cuefem.parameters.scene_changes import with_values_at
+from cuefem.parameters.scene_paths import value_at
 from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.fields import quote
 from cuefem.scene import Scene

@@ -11,8 +11,10 @@ from typing import Any, NamedTuple
 from cuefem.cue import Cue, Segment
 from cuefem.cue.materials import LEATHERS, material_name, table_name
 from cuefem.files.shaft_additions import with_additions
-from cuefem.parameters.parameter import PARAMETERS, Slider, millimetres, with_parameters
+from cuefem.parameters.parameter import Slider, millimetres
 from cuefem.parameters.parts import Layout, bore_mouth, max_bore_depth, split_segment, taper_position
+from cuefem.parameters.scene_changes import with_parameters
+from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.display_units import display_unit
 from cuefem.quantity.display_units import with_unit as quantity_text
 from cuefem.quantity.fields import Quantity

@@ -34,7 +34,8 @@ from cuefem.files.defaults_report import Assumption, tenon_assumption
 from cuefem.files.reference_cues import PRESETS, REFERENCE_FILES, Preset
 from cuefem.files.toml_writer import toml_text
 from cuefem.measurements.calibration import Calibration
-from cuefem.parameters.parameter import parameter, with_parameters
+from cuefem.parameters.scene_changes import with_parameters
+from cuefem.parameters.scene_paths import parameter
 from cuefem.quantity.display_units import with_unit
 from cuefem.results.quantities import REGIMES
 from cuefem.results.records import Record

@@ -18,7 +18,7 @@ from cuefem.cue import Array
 from cuefem.designs.evaluation import Response
 from cuefem.designs.sampling import Levels, Normal, Span, Value
 from cuefem.designs.study import Study, StudyDesign, Vary
-from cuefem.parameters.parameter import value_at
+from cuefem.parameters.scene_paths import value_at
 from cuefem.quantity.fields import check_count
 from cuefem.scene import Resolution, Scene
 

@@ -14,7 +14,9 @@ import numpy as np
 from cuefem.cue.materials import material
 from cuefem.designs.evaluation import Evaluation, Failed, Response, evaluate
 from cuefem.designs.sampling import Levels, Normal, Span, Value
-from cuefem.parameters.parameter import Path, check_bore, path_text, paths, quantity_at, value_at, with_values_at
+from cuefem.parameters.field_paths import Path, path_text
+from cuefem.parameters.scene_changes import check_bore, with_values_at
+from cuefem.parameters.scene_paths import paths, quantity_at, value_at
 from cuefem.quantity.display import one_line
 from cuefem.quantity.fields import quote
 from cuefem.quantity.unit_checks import FLOAT_ERRORS

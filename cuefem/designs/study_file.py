@@ -26,7 +26,9 @@ from cuefem.files.lathe_profile import SHAPE_EXTENSIONS
 from cuefem.files.schema import build, key_path, named_material
 from cuefem.files.shaft_additions import SHAFT_ADDITIONS
 from cuefem.files.toml_reader import game_of, read_tables
-from cuefem.parameters.parameter import PARAMETERS, paths, quantity_at, with_parameters
+from cuefem.parameters.scene_changes import with_parameters
+from cuefem.parameters.scene_paths import paths, quantity_at
+from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.fields import Quantity
 from cuefem.scene import Resolution, Scene, Stroke
 from cuefem.scene.default_scene import KIM, usual_scene

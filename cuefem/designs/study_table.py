@@ -19,7 +19,7 @@ from cuefem.designs import Levels, Normal, Span, Study, Vary
 from cuefem.designs.optimum import Optimum, Problem
 from cuefem.designs.scatter import Scatter, SobolIndices
 from cuefem.designs.study_statistics import SweepStatistics
-from cuefem.parameters.parameter import Path
+from cuefem.parameters.field_paths import Path
 from cuefem.parameters.parts import Layout
 from cuefem.quantity.display_units import (
     display_unit,

@@ -20,7 +20,7 @@ from cuefem.files.schema import named_material
 from cuefem.files.shaft_additions import with_additions, with_shaft_material
 from cuefem.files.toml_reader import cue_as_drawn, load_accuracy, load_cue, load_toml
 from cuefem.files.warnings_of_drawings import drawing_warnings
-from cuefem.parameters.parameter import with_fields
+from cuefem.parameters.field_paths import with_fields
 from cuefem.parameters.parts import with_shaft_mass
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.unit_checks import DrawingWarning, warn

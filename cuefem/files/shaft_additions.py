@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 
 from cuefem.cue import MAX_LEATHER_MODULUS, Cue, Material, Segment
 from cuefem.cue.materials import material as material_of
-from cuefem.parameters.parameter import with_parameters
 from cuefem.parameters.parts import MAX_FERRULE, SAME_POSITION, Layout, split_at
+from cuefem.parameters.scene_changes import with_parameters
 from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.units import parse_number
 from cuefem.scene import Scene

@@ -113,7 +113,7 @@ def _every_effect() -> str:
 
 def _every_response() -> str:
     """The responses of studies as a table: name, display unit, definition, and which direction is better."""
-    from cuefem.parameters.parameter import PARAMETERS
+    from cuefem.parameters.table import PARAMETERS
     from cuefem.quantity.display_units import display_unit
     from cuefem.results.computable_results import computable_results
 

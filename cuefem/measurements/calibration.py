@@ -22,7 +22,8 @@ from cuefem.files.errors import as_input_error
 from cuefem.files.toml_reader import load_cue, read_tables, scene_from_tables
 from cuefem.measurements.estimate import Estimate
 from cuefem.measurements.uncertain_parameters import SQUIRT_MODEL
-from cuefem.parameters.parameter import PARAMETERS, with_values_at
+from cuefem.parameters.scene_changes import with_values_at
+from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.fields import check_kind
 from cuefem.results.quantities import DASH

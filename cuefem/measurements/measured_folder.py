@@ -28,7 +28,7 @@ from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement
 from cuefem.measurements.pendulum import Pendulum
 from cuefem.measurements.recording import Recording, combine_tones, tones_in
 from cuefem.measurements.uncertain_parameters import Prior
-from cuefem.parameters.parameter import parameter
+from cuefem.parameters.scene_paths import parameter
 from cuefem.quantity.fields import Quantity
 from cuefem.scene import Scene
 

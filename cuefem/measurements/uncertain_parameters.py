@@ -14,7 +14,10 @@ from typing import Annotated, Any
 
 from cuefem.cue import Material
 from cuefem.measurements.measurement_types import EndMass, Measurement, Setup, Squirt
-from cuefem.parameters.parameter import PARAMETERS, Path, parameter, with_values_at
+from cuefem.parameters.field_paths import Path
+from cuefem.parameters.scene_changes import with_values_at
+from cuefem.parameters.scene_paths import parameter
+from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.fields import Quantity, check_fields
 from cuefem.results.uncertainty import model_error
 from cuefem.scene import Scene

@@ -43,6 +43,10 @@ class Part(NamedTuple):
     quantity: Quantity | None = None
     unchanged: tuple[str, ...] = ()
 
+    def number(self, scene: Any) -> Quantity | None:
+        """Unit and bounds of its number; None if it is no number or the scene has none."""
+        return self.quantity if self.quantity and self.read(scene) is not None else None
+
 
 class Layout(NamedTuple):
     """Segment indices of a cue's parts, and the material that fills its bore.

@@ -13,7 +13,8 @@ from typing import NamedTuple
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.strike import strike_modes
 from cuefem.effects.force_law import IndentationOutOfRange
-from cuefem.parameters.parameter import PARAMETERS, with_values_at
+from cuefem.parameters.scene_changes import with_values_at
+from cuefem.parameters.table import PARAMETERS
 from cuefem.results.records import Record
 from cuefem.results.verdict import NoVerdict, reject_miscue
 from cuefem.scene import Scene

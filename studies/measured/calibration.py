@@ -19,7 +19,7 @@ from cuefem.measurements.estimate import Estimate
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measurement_types import Measurement, PivotLength, Tone, Weight
 from cuefem.measurements.uncertain_parameters import SQUIRT_MODEL
-from cuefem.parameters.parameter import PARAMETERS
+from cuefem.parameters.table import PARAMETERS
 from cuefem.results.uncertainty import MODEL_ERROR, RATIO_FLOOR, SHAFT_ERROR, squirt_of
 from studies.pages import Study, page, rms, table
 from studies.strokes import cue, full_model

@@ -15,7 +15,7 @@ import cuefem as cf
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measured_folder import load_measured
 from cuefem.measurements.measurement_types import AddedMass, Measurement, PivotLength, Setup, Squirt
-from cuefem.parameters.parameter import parameter
+from cuefem.parameters.scene_paths import parameter
 from cuefem.results.uncertainty import changes_by_input
 from studies import pages, strokes
 from studies.strokes import INCH

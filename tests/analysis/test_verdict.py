@@ -12,7 +12,7 @@ from cuefem.analysis.comparison import compare_cues
 from cuefem.analysis.verdict import Verdict, with_cue
 from cuefem.cue.materials import MATERIALS
 from cuefem.files.reference_cues import REFERENCE_FILES, reference_cues
-from cuefem.parameters.parameter import with_parameters
+from cuefem.parameters.scene_changes import with_parameters
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.results.uncertainty import NUMERICAL_ERROR, RATIO_FLOOR
 from cuefem.results.verdict import mass_problem

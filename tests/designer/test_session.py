@@ -16,7 +16,7 @@ from cuefem.designer.panels import COMPUTING, curves_markup, sections_markup, ta
 from cuefem.designer.session import FILE, NOTHING, NOW, OF_TAB, OPENED, Results, Session
 from cuefem.designer.state import read_design, read_file, reference_design
 from cuefem.files.reference_cues import PRESETS
-from cuefem.parameters.parameter import PARAMETERS
+from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.display_units import displayed_in
 from tests.cli.test_units import METRIC_LEFT, assert_same_quantities, cells
 from tests.helpers.command_line import call

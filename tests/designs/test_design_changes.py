@@ -10,8 +10,9 @@ import pytest
 import cuefem as cf
 from cuefem.analysis.design_changes import MIN_STIFFNESS_LOSS, MIN_WALL, DesignChanges, changes_of, design_changes
 from cuefem.cue.materials import material
-from cuefem.parameters.parameter import PARAMETERS, with_parameters
 from cuefem.parameters.parts import shaft_word
+from cuefem.parameters.scene_changes import with_parameters
+from cuefem.parameters.table import PARAMETERS
 from cuefem.results.uncertainty import RATIO_FLOOR, SHAFT_ERROR
 from tests.helpers.command_line import as_json, call
 from tests.helpers.invalid_input import assert_rejects

@@ -11,7 +11,7 @@ import pytest
 import cuefem as cf
 from cuefem.analysis.page_notes import LAW
 from cuefem.handbook import MAKERS, chapters
-from cuefem.parameters.parameter import with_parameters
+from cuefem.parameters.scene_changes import with_parameters
 from cuefem.results.quantities import drawn_mass
 from cuefem.results.uncertainty import MODEL_ERROR, SHAFT_ERROR
 from cuefem.scene.default_scene import without_leather

@@ -9,8 +9,9 @@ from hypothesis import given
 
 import cuefem as cf
 from cuefem.analysis.design_changes import changes_of
-from cuefem.parameters.parameter import PARAMETERS, with_parameters
 from cuefem.parameters.parts import bore_mouth
+from cuefem.parameters.scene_changes import with_parameters
+from cuefem.parameters.table import PARAMETERS
 from tests.helpers.bored_cues import bored_cues
 from tests.helpers.examples import examples
 

@@ -5,7 +5,9 @@ from dataclasses import replace
 import pytest
 
 from cuefem import Scene, Stroke, Tip
-from cuefem.parameters.parameter import path_text, paths, value_at, with_values_at
+from cuefem.parameters.field_paths import path_text
+from cuefem.parameters.scene_changes import with_values_at
+from cuefem.parameters.scene_paths import paths, value_at
 from tests.helpers.cues import MAPLE, low_deflection
 
 BASE = Scene(low_deflection(), tip=Tip(contact_time=1.2e-3), stroke=Stroke(2.0, 0.3))

@@ -13,8 +13,10 @@ from cuefem.designs.evaluation import Response
 from cuefem.designs.sampling import Span
 from cuefem.designs.study import Study, Vary
 from cuefem.files.reference_cues import PRESETS, preset_scene
-from cuefem.parameters.parameter import PARAMETERS, paths, with_parameters
 from cuefem.parameters.parts import outer_diameter
+from cuefem.parameters.scene_changes import with_parameters
+from cuefem.parameters.scene_paths import paths
+from cuefem.parameters.table import PARAMETERS
 from tests.helpers.examples import examples
 
 SCENES = {preset.name: preset_scene(preset) for preset in PRESETS}

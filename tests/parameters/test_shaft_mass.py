@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.files import InputError
-from cuefem.parameters.parameter import with_parameters
 from cuefem.parameters.parts import main_material, with_shaft_mass
+from cuefem.parameters.scene_changes import with_parameters
 from cuefem.results.uncertainty import squirt_changes
 from cuefem.scene.solved_scene import SolvedScene
 from tests.helpers.command_line import as_json, call

@@ -8,7 +8,8 @@ import pytest
 
 import cuefem as cf
 from cuefem.measurements.uncertain_parameters import parameters_of
-from cuefem.parameters.parameter import PARAMETERS, with_parameters
+from cuefem.parameters.scene_changes import with_parameters
+from cuefem.parameters.table import PARAMETERS
 from cuefem.results.uncertainty import (
     MASS_ERROR,
     MODEL_ERROR,
