@@ -67,6 +67,7 @@ def for_types(tree: ast.AST) -> set[ast.AST]:
     return {inner for one in hints for inner in ast.walk(one)}
 
 
+@cache
 def walk(tree: ast.AST) -> list[ast.stmt]:
     """The statements of a file, except those for type checking."""
     skipped = for_types(tree)
@@ -123,15 +124,20 @@ def loads(statement: ast.AST) -> set[str]:
     return parts or {statement.module or ""}
 
 
+@cache
+def loaded_at_top(module: str) -> set[str]:
+    """The modules that the top of a module's file imports; of a library's module none is read."""
+    tree = modules().get(module)
+    return set() if tree is None else {name for one in walk(tree) if one.col_offset == 0 for name in loads(one)}
+
+
 def loaded_with(module: str) -> set[str]:
     """The modules that an import of a module loads, by the imports at the top of files."""
     found, left = set[str](), {module}
     while left:
         name = left.pop()
         found.add(name)
-        tree = modules().get(name)
-        at_top = () if tree is None else (one for one in walk(tree) if one.col_offset == 0)
-        left |= {each for one in at_top for each in loads(one)} - found
+        left |= loaded_at_top(name) - found
     return found
 
 
