@@ -6,13 +6,11 @@ import pkgutil
 import sys
 from contextlib import suppress
 from importlib import import_module
-from pathlib import Path
 
 # With PYTHONDONTWRITEBYTECODE every worker and every process that a test starts would compile tests and package anew,
-# half a second or more each: bytecode goes to a folder beside tests/ instead, which git ignores.
-if os.environ.pop("PYTHONDONTWRITEBYTECODE", ""):
-    os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix = str(Path(__file__).parents[1] / "__pycache__")
-    sys.dont_write_bytecode = False
+# half a second or more each. What pip has compiled is read as it stands.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 # Set before NumPy is imported: BLAS threads do not accelerate the package's small dense matrices, and two of them on a
 # busy machine can be a hundred times slower than one.
@@ -28,11 +26,6 @@ import cuefem  # noqa: E402
 from cuefem.beam import blas_threads  # noqa: E402
 from cuefem.contact.kernel.library import library  # noqa: E402
 
-# hypothesis draws from the constants of imported modules: with all of them the order of a worker has no effect
-for module in pkgutil.walk_packages(cuefem.__path__, "cuefem."):
-    with suppress(ImportError):  # an extra that is not installed
-        import_module(module.name)
-
 settings.register_profile("cuefem", derandomize=True, deadline=None, database=None, print_blob=True)
 # `pytest --hypothesis-profile=nightly`: other examples in each run, ten times as many; a failing one prints its blob
 settings.register_profile(
@@ -43,6 +36,14 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],  # of a machine that does other work
 )
 settings.load_profile("cuefem")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _every_module() -> None:
+    """hypothesis draws from the constants of imported modules: with all of them the order of a worker has no effect."""
+    for module in pkgutil.walk_packages(cuefem.__path__, "cuefem."):
+        with suppress(ImportError):  # an extra that is not installed
+            import_module(module.name)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -59,19 +59,31 @@ def imported(tree: ast.Module) -> Iterator[str]:
             yield ast.literal_eval(node.value.args[0])  # type: ignore[attr-defined]
 
 
-def for_types(tree: ast.AST) -> set[ast.AST]:
-    """What a file does for type checking alone."""
-    hints = (
-        one for one in ast.walk(tree) if isinstance(one, ast.If) and getattr(one.test, "id", "") == "TYPE_CHECKING"
-    )
-    return {inner for one in hints for inner in ast.walk(one)}
+def is_for_types(statement: ast.AST) -> bool:
+    """Whether a statement does something for type checking alone."""
+    return isinstance(statement, ast.If) and getattr(statement.test, "id", "") == "TYPE_CHECKING"
+
+
+def statements(block: ast.AST) -> Iterator[ast.stmt]:
+    """The statements of a file, also those inside others: neither handlers nor cases of a match are statements."""
+    for one in ast.iter_child_nodes(block):
+        if isinstance(one, ast.stmt):
+            yield one
+        if isinstance(one, ast.stmt | ast.excepthandler | ast.match_case):
+            yield from statements(one)
 
 
 @cache
-def walk(tree: ast.AST) -> list[ast.stmt]:
+def for_types(tree: ast.Module) -> list[ast.stmt]:
+    """What a file does for type checking alone."""
+    return [inner for one in statements(tree) if is_for_types(one) for inner in statements(one)]
+
+
+@cache
+def walk(tree: ast.Module) -> list[ast.stmt]:
     """The statements of a file, except those for type checking."""
-    skipped = for_types(tree)
-    return [one for one in ast.walk(tree) if isinstance(one, ast.stmt) and one not in skipped]
+    skipped = {*for_types(tree)}
+    return [one for one in statements(tree) if one not in skipped and not is_for_types(one)]
 
 
 def out_of_order(part: str, tree: ast.Module) -> list[str]:
@@ -128,7 +140,7 @@ def loads(statement: ast.AST) -> set[str]:
 def loaded_at_top(module: str) -> set[str]:
     """The modules that the top of a module's file imports; of a library's module none is read."""
     tree = modules().get(module)
-    return set() if tree is None else {name for one in walk(tree) if one.col_offset == 0 for name in loads(one)}
+    return set() if tree is None else {name for one in tree.body for name in loads(one)}
 
 
 def loaded_with(module: str) -> set[str]:
@@ -144,7 +156,7 @@ def loaded_with(module: str) -> set[str]:
 def test_modules_of_package_have_no_circle() -> None:
     """Neither by imports at the top nor by those for types."""
     needed = {
-        module: {each for one in ast.walk(tree) if one.__dict__.get("col_offset") == 0 for each in loads(one)}
+        module: {each for one in tree.body for each in loads(one)}
         | {each for one in for_types(tree) for each in loads(one)}
         for module, tree in modules().items()
     }
