@@ -22,9 +22,9 @@ from cuefem.beam.assembly import is_dense_faster
 from cuefem.beam.truncation import LANCZOS_STEPS, truncation_correction
 from cuefem.cue import Array
 
-# If the tridiagonal matrix begins at the only load, its leading part determines the lowest modes. With LEADING times
-# as many rows as modes, and SPARE more, the rest changes none of them by more than the square of ROUNDING; otherwise
-# the whole matrix is solved. The truncated modes have the same first moments in mu as those of the whole.
+# If the tridiagonal matrix begins at the first load that is corrected, its leading part determines the lowest modes.
+# With LEADING times as many rows as modes, and SPARE more, the rest changes none of them by more than the square of
+# ROUNDING; otherwise the whole matrix is solved.
 LEADING, SPARE, ROUNDING = 2.2, 12, 1e-7
 
 # mu, work and combine of a `Spectrum`.
@@ -116,7 +116,9 @@ class Spectrum:
             truncated = self.work[self.corrected, stop:].T
             correction = truncation_correction(self.mu[stop:], truncated, shift=shift, cutoff=cutoff)
             omega, radiation = np.append(omega, correction.omega), correction.radiation
-            mix = np.concatenate([mix, np.pad(correction.mix, ((stop, 0), (0, 0)))], axis=1)
+            of_truncated = np.zeros((len(self.mu), len(correction.omega)))
+            of_truncated[stop:] = correction.mix
+            mix = np.concatenate([mix, of_truncated], axis=1)
         return EigenSolution(
             omega=omega,
             participation=self.work @ mix,
@@ -145,6 +147,27 @@ def solve_eigenproblem(
     return Spectrum(mu, work, combine, loads=loads, corrected=corrected, shift=shift, rigid=rigid, exact=rigid + count)
 
 
+def ritz_modes(
+    modes: Array, deflections: Array, *, inverse: Callable[[Array], Array], stiffness: Callable[[Array], Array]
+) -> tuple[Array, Array]:
+    """(mu, q) of a few vectors that replace all modes but ``modes`` (free, m) in a truncation correction.
+
+    They span the static ``deflections`` under the loads (free, k), and those under the inertia of these, orthogonal to
+    the modes. A truncation correction is the same with them as with all other modes. inverse, stiffness: the products
+    S^-1 M q and S q, S = K + shift M.
+    """
+    basis = []
+    for _ in range(LANCZOS_STEPS):
+        for _ in range(2):  # the second pass removes round-off error
+            deflections = deflections - modes @ (modes.T @ stiffness(deflections))
+        basis.append(deflections / np.sqrt(np.sum(deflections * stiffness(deflections), axis=0)))
+        deflections = inverse(basis[-1])
+    ritz = np.concatenate(basis, axis=1)[:, : len(modes) - modes.shape[1]]  # no more than there are other modes
+    weighted = stiffness(ritz)
+    mu, mix = la.eigh(weighted.T @ inverse(ritz), weighted.T @ ritz)
+    return mu[::-1], ritz @ mix[:, ::-1]
+
+
 class Sparse:
     """The eigenproblem by shift-invert Lanczos of ARPACK, in proportion to the number of modes."""
 
@@ -158,36 +181,23 @@ class Sparse:
         start = np.ones(self.K.shape[0])  # a fixed start, so that results are reproducible
         squares, vectors = eigsh(self.K, count, self.M, sigma=-self.shift, v0=start)
         order = np.argsort(squares)
-        mu, vectors = 1 / (squares[order] + self.shift), vectors[:, order]
-        basis = vectors * np.sqrt(mu)
+        mu = 1 / (squares[order] + self.shift)
+        basis = vectors[:, order] * np.sqrt(mu)
         if len(corrected):
-            ritz_mu, ritz = self._ritz_vectors(vectors, loads[:, corrected])
+            ritz_mu, ritz = self._ritz_modes(basis, loads[:, corrected])
             mu, basis = np.append(mu, ritz_mu), np.concatenate([basis, ritz], axis=1)
         return mu, loads.T @ basis, lambda mix: basis @ mix
 
-    def _ritz_vectors(self, vectors: Array, forces: Array) -> tuple[Array, Array]:
-        """(mu, q) of a few vectors that replace all modes but ``vectors`` in a truncation correction.
-
-        They span the static deflections under the forces, and under the inertia of those, orthogonal to the modes. A
-        truncation correction is the same with them as with all other modes.
-        """
+    def _ritz_modes(self, modes: Array, loads: Array) -> tuple[Array, Array]:
         from scipy.sparse.linalg import splu
 
-        S, ritz = self.K + self.shift * self.M, []
+        S = self.K + self.shift * self.M
         solve = splu(S.tocsc()).solve
-        for _ in range(LANCZOS_STEPS):
-            vector = solve(forces)
-            for _ in range(2):  # the second pass removes round-off error
-                vector -= vectors @ ((self.M @ vectors).T @ vector)
-            ritz.append(vector / np.sqrt(np.sum(vector * (self.M @ vector), axis=0)))
-            forces = self.M @ ritz[-1]
-        basis = np.concatenate(ritz, axis=1)
-        mu, mix = la.eigh(basis.T @ (self.M @ basis), basis.T @ (S @ basis))
-        return mu[::-1], basis @ mix[:, ::-1]
+        return ritz_modes(modes, solve(loads), inverse=lambda q: solve(self.M @ q), stiffness=lambda q: S @ q)
 
 
 class Dense:
-    """The eigenproblem, S = K + shift M, as a tridiagonal one, T y = mu shift y: y = Q' U q, U' U = S, y' y = q' S q.
+    """The eigenproblem, S = K + shift M, as a tridiagonal one, T y = mu y: y = Q' U q, U' U = S, y' y = q' S q.
 
     U factors S in reverse order, so that y begins with the first degree of freedom's load, which Q does not change.
     """
@@ -195,9 +205,8 @@ class Dense:
     def __init__(self, K: Array, M: Array, shift: float) -> None:
         # a symmetric array copied by rows has LAPACK's order when transposed; each step overwrites its input, because
         # fresh memory costs a quarter of the time
-        self.shift, self.upper, inertia = shift, K[::-1, ::-1].copy().T, M[::-1, ::-1].copy().T
-        inertia *= shift
-        self.upper += inertia
+        self.upper, inertia = K[::-1, ::-1].copy().T, M[::-1, ::-1].copy().T
+        self.upper += shift * inertia
         _outputs(lapack.dpotrf(self.upper, lower=0, clean=0, overwrite_a=1))
         _outputs(lapack.dsygst(inertia, self.upper, lower=0, overwrite_a=1))
         size, matrix = len(M), inertia.T[::-1, ::-1].copy().T
@@ -209,30 +218,39 @@ class Dense:
         )  # matrix[1:], not copied
 
     def spectrum(self, count: int, loads: Array, corrected: NDArray[np.intp]) -> RawSpectrum:
-        """The modes of the matrix, or those of its leading part if the only ``corrected`` load begins there."""
-        starts_at_load = len(corrected) == 1 and not loads[1:, corrected].any()
-        mu, y = self._eigen(count, leading=starts_at_load)
-        return mu, self._reduced(loads)[: len(y)].T @ y, lambda mix: self._vectors(y @ mix)
+        """The ``count`` lowest modes, then the Ritz vectors of the ``corrected`` columns of the loads (free, k)."""
+        starts_at_load = len(corrected) > 0 and not loads[1:, corrected[0]].any()
+        reduced, (mu, y) = self._reduced(loads), self._eigen(count, leading=starts_at_load)
+        if len(corrected):
+            ritz_mu, ritz = ritz_modes(y, reduced[:, corrected], inverse=self._tridiagonal, stiffness=lambda y: y)
+            mu, y = np.append(mu, ritz_mu), np.concatenate([y, ritz], axis=1)
+        return mu, reduced.T @ y, lambda mix: self._vectors(y @ mix)
 
     def _eigen(self, count: int, *, leading: bool) -> tuple[Array, Array]:
-        """(mu, y), (m,) and (m, m), mu descending, of the matrix or its leading part; the first ``count`` are exact."""
+        """(mu, y), (count,) and (free, count), mu descending, of the matrix or its leading part."""
         size = len(self.diagonal)
         rows = min(int(LEADING * count) + SPARE, size) if leading else size
-        mu, y = (a[..., ::-1] for a in _outputs(lapack.dstevd(self.diagonal[:rows], self.off[: rows - 1])))
-        if rows < size and np.any(abs(self.off[rows - 1] * y[-1, :count]) > ROUNDING * mu[:count]):
+        mu, y = _outputs(lapack.dstevd(self.diagonal[:rows], self.off[: rows - 1]))
+        mu, y = mu[: -count - 1 : -1], y[:, : -count - 1 : -1]
+        if rows < size and np.any(abs(self.off[rows - 1] * y[-1]) > ROUNDING * mu):
             return self._eigen(count, leading=False)
-        return mu / self.shift, y
+        return mu, np.concatenate([y, np.zeros((size - rows, count))])
+
+    def _tridiagonal(self, y: Array) -> Array:
+        """T y, (free, k)."""
+        product = self.diagonal[:, None] * y
+        product[1:] += self.off[:, None] * y[:-1]
+        product[:-1] += self.off[:, None] * y[1:]
+        return np.asarray(product)
 
     def _reduced(self, loads: Array) -> Array:
-        """y of loads (free, k): Q' U'^-1 loads."""
+        """y of the static deflections under loads (free, k): Q' U'^-1 loads."""
         y = _outputs(lapack.dtrtrs(self.upper, loads[::-1], trans=1))[::-1].copy()
         return self._apply_reflectors(y, "T")
 
     def _vectors(self, y: Array) -> Array:
-        """q (free, k) of y (rows of the leading part, k): U^-1 Q y."""
-        padded = np.zeros((len(self.upper), y.shape[1]))
-        padded[: len(y)] = y
-        return np.asarray(_outputs(lapack.dtrtrs(self.upper, self._apply_reflectors(padded, "N")[::-1]))[::-1])
+        """q of y, (free, k): U^-1 Q y."""
+        return np.asarray(_outputs(lapack.dtrtrs(self.upper, self._apply_reflectors(y, "N")[::-1]))[::-1])
 
     def _apply_reflectors(self, y: Array, trans: str) -> Array:
         """Q y, or Q' y if ``trans`` is "T"; y is overwritten."""
