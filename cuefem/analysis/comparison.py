@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
@@ -20,6 +20,7 @@ from cuefem.parameters.parts import main_material, shaft_word
 from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.display_units import off_line, with_unit
 from cuefem.results.computable_results import computable_results
+from cuefem.results.progress import Progress
 from cuefem.results.quantities import DASH, RESULTS, UNITS, format_value
 from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import SolvedDesign, coupled_curve, off_centre
@@ -46,7 +47,6 @@ CURVE_OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 13))  # b/R
 STYLES = ("c1", "c2", "c3", "c4", "c5")
 MAX_CUES = len(STYLES)
 _LABELS = {"end_mass_squirt": SQUIRT_END_MASS}
-Progress = Callable[[Sequence[Any]], Iterable[Any]]
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
@@ -12,6 +12,7 @@ import numpy as np
 
 from cuefem.contact.refinement import Level, refinement_levels, relative_error
 from cuefem.quantity.display_units import significant, to_display
+from cuefem.results.progress import Progress
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.scene import Scene
 from cuefem.show.analysis import Analysis
@@ -19,8 +20,6 @@ from cuefem.show.charts import Axis, Chart, Curve, chart
 
 RECOMMENDED_RTOLS = (1e-2, 1e-3, 1e-4, 1e-6)
 DEFAULT_MAX_MODES = 150
-
-Progress = Callable[[Sequence[Any]], Iterable[Any]]
 
 
 @dataclass(frozen=True)

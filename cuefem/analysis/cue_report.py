@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from cuefem.analysis import has_segments, report_sections
 from cuefem.analysis.natural_frequencies import natural_frequencies
@@ -14,6 +13,7 @@ from cuefem.contact.geometric_stiffness import SlopeOutOfRange
 from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.files.defaults_report import Assumption
 from cuefem.measurements.calibration import Calibration
+from cuefem.results.progress import Progress
 from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.results.verdict import NoVerdict
@@ -92,7 +92,7 @@ def report(
     *,
     calibration: Calibration | None = None,
     details: bool = False,
-    progress: Callable[[Sequence[Any]], Any] = list,
+    progress: Progress = list,
 ) -> CueReport:
     """All analyses of one stroke of a cue.
 

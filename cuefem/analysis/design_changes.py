@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -19,6 +19,7 @@ from cuefem.parameters.parts import TUBE_FRONT, Layout, is_tube, is_wooden, shaf
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.display_units import change_with_unit, format_change, short_number, with_unit
+from cuefem.results.progress import Progress
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.results.solved_design import SolvedDesign, off_centre
 from cuefem.results.uncertainty import miscue_note, model_share, ratio_error, squirt_changes
@@ -43,7 +44,6 @@ MIN_CONTRIBUTION = 0.002  # of squirt: smaller contributions to its uncertainty 
 NUMBERS = tuple(map(Response.of, ("squirt", "tip_stiffness", "shaft_mass", "frequency(1)")))
 WOOD = ("E", "G", "rho")
 STYLES = {"worthwhile": "bold", "more squirt": "dim", "within uncertainty": "dim"}
-Progress = Callable[[Sequence[Any]], Iterable[Any]]
 
 
 class DesignChange(NamedTuple):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import MISSING, asdict, dataclass, fields, replace
 from typing import Any
 
@@ -11,6 +11,7 @@ from cuefem.contact.strike import strike, strike_modes
 from cuefem.effects.effect import Effect, effect_kinds
 from cuefem.endmass.definitions import equivalent_end_mass
 from cuefem.quantity.display_units import number_text, with_heading
+from cuefem.results.progress import Progress
 from cuefem.results.quantities import DASH, format_value
 from cuefem.results.records import Record, Table
 from cuefem.scene import Outcome, Scene
@@ -94,9 +95,7 @@ class EffectSensitivity(Analysis):
         return lines or [f"At a tolerance of {percent} no listed effect is negligible and no unlisted effect matters."]
 
 
-def effect_sensitivity(
-    scene: Scene, rtol: float | None = None, *, progress: Callable[[Sequence[Any]], Iterable[Any]] = iter
-) -> EffectSensitivity:
+def effect_sensitivity(scene: Scene, rtol: float | None = None, *, progress: Progress = iter) -> EffectSensitivity:
     """Sensitivity of a strike to the physical effects: each of the scene removed, each other one added.
 
     All strikes have the resolution that the unmodified scene needs, so that discretisation errors cancel. An effect is

@@ -15,10 +15,11 @@ from cuefem.measurements import estimate as estimation
 from cuefem.measurements import measured_cue
 from cuefem.measurements.calibration import Calibration
 from cuefem.measurements.estimate import STEP_TOLERANCE, Estimate, InformationGain, predicted_squirt
-from cuefem.measurements.measured_cue import MeasuredCue, OffsetZero, Progress, Residual, offset_zeros
+from cuefem.measurements.measured_cue import MeasuredCue, OffsetZero, Residual, offset_zeros
 from cuefem.measurements.measured_folder import load_measured
 from cuefem.measurements.measurement_types import EndMass
 from cuefem.quantity.display_units import END_MASS, with_unit
+from cuefem.results.progress import Progress
 from cuefem.results.quantities import DASH
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.show.analysis import Analysis

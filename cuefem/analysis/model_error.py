@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -18,6 +18,7 @@ from cuefem.cue import Cue
 from cuefem.effects.effect import CueEffect
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.quantity.display_units import END_MASS, display_unit
+from cuefem.results.progress import Progress
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import mass_on_face
@@ -33,7 +34,6 @@ MAX_ELEMENT, SCIKIT_FEM_ORDER = 0.03, 6
 MIN_PRINTED = 1e-5  # relative difference: smaller ones are printed as below it
 # Factors and units of large stiffnesses and of compliances, by the SI unit and whether the number is large.
 LARGE_UNITS = {("N/m", True): (1e-6, "kN/mm"), ("m/N", False): (1e3, "mm/N")}
-Progress = Callable[[Sequence[Any]], Iterable[Any]]
 
 
 def fineness(cue: Cue) -> Fineness:

@@ -14,9 +14,10 @@ from typing import NamedTuple
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.measurements.measured_cue import MeasuredCue, Progress, Residual, residuals_of
+from cuefem.measurements.measured_cue import MeasuredCue, Residual, residuals_of
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Squirt
 from cuefem.measurements.outliers import DETECTABLE, OUTLIER_FACTOR, posterior
+from cuefem.results.progress import Progress
 
 MAX_EVALUATIONS = 25  # of the search at full weights
 MIN_FALL = 0.02  # of the cost over a step, relative: below it the search at full weights ends

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,12 +13,11 @@ from cuefem.cue import Array
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Setup, Squirt
 from cuefem.measurements.uncertain_parameters import Prior, UncertainParameter, parameters_of
 from cuefem.quantity.fields import check_kind
+from cuefem.results.progress import Progress
 from cuefem.scene import Scene
 
 STEP = 0.1  # of differences, in standard deviations of a prior
 MAX_HALVINGS = 8  # of that step, where the cue would be invalid
-
-Progress = Callable[[Sequence[Any]], Iterable[Any]]
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,8 @@ import numpy as np
 
 import cuefem as cf
 from cuefem.analysis.simulator_export import DEFAULT_END_MASS
-from cuefem.analysis.strike_table import FIELDS, Strikes, StrikeTable, within_tolerance
+from cuefem.analysis.strike_grid import FIELDS, Strikes, within_tolerance
+from cuefem.analysis.strike_table import StrikeTable
 from cuefem.results.closed_forms import alciatore_a31
 from studies.pages import Figure, Study, page, table
 from studies.strokes import at_offset, cue, full_model

@@ -15,8 +15,9 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.analysis import strike_table
-from cuefem.analysis.strike_table import FIELDS, StrikeTable
+from cuefem.analysis import strike_grid
+from cuefem.analysis.strike_grid import FIELDS
+from cuefem.analysis.strike_table import StrikeTable
 from studies.games.games import RANDOM, SEED, pooltool_strike
 from studies.pages import STUDIES
 from tests.helpers.command_line import call, stdout_of
@@ -29,7 +30,7 @@ STROKES = ((1.0, 0.1), (1.5, -0.3), (2.7, 0.42), (4.0, 0.54))
 @pytest.fixture(scope="module")
 def table() -> Iterator[StrikeTable]:
     """A quick one: a lumped cue, a coarse grid."""
-    with patch.multiple(strike_table, COARSE=3, STROKES=12):
+    with patch.multiple(strike_grid, COARSE=3, STROKES=12):
         yield cf.strike_table(SCENE, (1.0, 4.0))
 
 
@@ -111,7 +112,7 @@ def test_strike_table_invalid_input(scene: cf.Scene, speeds: Any, message: str) 
 def test_command_writes_the_table_of_the_call(tmp_path: Path, table: StrikeTable) -> None:
     cf.save(SCENE, tmp_path / "cue.toml")
     arguments = ("strike", tmp_path / "cue.toml", "--format", "table", "--speeds", "1 m/s", "4 m/s")
-    with patch.multiple(strike_table, COARSE=3, STROKES=12):
+    with patch.multiple(strike_grid, COARSE=3, STROKES=12):
         assert "wrote" in stdout_of(*arguments, "-o", tmp_path / "table.json")
     record = json.loads((tmp_path / "table.json").read_text("utf-8"))
     assert record["squirt_over_offset"] == pytest.approx(np.array(table.squirt_over_offset), rel=1e-9)
@@ -146,8 +147,8 @@ def test_javascript_reads_the_table_as_python_does(table: StrikeTable, tmp_path:
 @pytest.mark.heavy
 def test_table_of_leather_tip_is_within_one_percent_of_other_random_strokes() -> None:
     table = cf.strike_table(cf.usual_scene(cf.load(STUDIES.parent / "meshes" / "pool_maple.toml")))  # type: ignore[arg-type]
-    errors = strike_table.Strikes(table.scene, table.speed).random_errors(table.grid(), RANDOM // 4, SEED)
-    assert strike_table.within_tolerance(errors) >= 0.99
+    errors = strike_grid.Strikes(table.scene, table.speed).random_errors(table.grid(), RANDOM // 4, SEED)
+    assert strike_grid.within_tolerance(errors) >= 0.99
     assert errors.max() < 0.025
 
 
