@@ -406,6 +406,12 @@ def _hollow(cue: Cue) -> list[int]:
     return [i for i in Layout.of(cue).shaft if _width(cue.segments[i]) > 0]
 
 
+def _front_hollow(cue: Cue) -> list[int]:
+    """Indices of the hollow segments that follow one another from the front of the shaft, up to a solid one."""
+    hollow = _hollow(cue)
+    return [i for place, i in enumerate(hollow) if i == hollow[0] + place]
+
+
 def _tube_front(cue: Cue) -> list[int]:
     """Indices of the hollow segments of a tube that begin within `TUBE_FRONT`; none of another shaft."""
     if not is_tube(cue):
@@ -452,7 +458,7 @@ def _front_core(core: Material | None) -> Callable[[Any], float | None]:
         cue = scene.shaft
         if not is_tube(cue):
             return None
-        hollow = _hollow(cue)
+        hollow = _front_hollow(cue)
         end = next((i for i in hollow if cue.segments[i].core != core), hollow[-1] + 1)
         return float(cue.nodes[end] - cue.nodes[hollow[0]])
 
@@ -467,7 +473,7 @@ def _with_front_core(read: Callable[[Any], float | None], core: Material | None)
         if old is None or length == old:
             return scene
         cue = scene.shaft
-        tube = _hollow(cue)
+        tube = _front_hollow(cue)
         begin, end = (float(cue.nodes[i]) for i in (tube[0], tube[-1] + 1))
         whole = end - begin
         longest = with_unit(whole, "m", 6)

@@ -166,6 +166,18 @@ def test_tube_front_parameters_read_back_and_undo() -> None:
     assert [segment.core for segment in both.cue.segments[1:3]] == [material("hard maple"), None]
 
 
+def test_front_of_a_tube_ends_at_a_solid_part() -> None:
+    scene = scene_of("carbon")
+    tip, front, *behind = scene.cue.segments
+    hollow = replace(front, length=0.1)
+    solid = replace(front, length=front.length - 0.1, tip_bore=0.0, butt_bore=0.0, core=None)
+    scene = replace(scene, cue=replace(scene.cue, segments=(tip, hollow, solid, *behind)))
+    filled = with_parameters(scene, {"insert depth": 0.1})
+    assert [segment.core for segment in filled.cue.segments[1:4]] == [material("hard maple"), None, behind[0].core]
+    with pytest.raises(ValueError, match="the tube is 100 mm long; got 120 mm"):
+        with_parameters(scene, {"insert depth": 0.12})
+
+
 @pytest.mark.parametrize(
     ("name", "value", "problem"),
     [
