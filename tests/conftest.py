@@ -12,6 +12,8 @@ from importlib import import_module
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
+gc.disable()  # until the tests are collected
+
 # Set before NumPy is imported: BLAS threads do not accelerate the package's small dense matrices, and two of them on a
 # busy machine can be a hundred times slower than one.
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
@@ -59,4 +61,5 @@ def pytest_collection_finish(session: pytest.Session) -> None:
     uses = {"an eigenproblem": blas_threads._libraries, "a strike": library}
     session.config.stash[SOLVED_AT_COLLECTION] = [name for name, used in uses.items() if used.cache_info().currsize]
     gc.collect()
+    gc.enable()
     gc.freeze()  # a million objects, which each later collection would walk

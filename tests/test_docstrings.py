@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
+from tests.helpers.sources import PACKAGE, statements, trees
 
 FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
-ROOT = Path(cf.__file__).parent
-FILES = [file for file in ROOT.rglob("*.py") if ">>>" in file.read_text(encoding="utf-8")]
-MODULES = sorted(".".join(file.relative_to(ROOT.parent).with_suffix("").parts) for file in FILES)
-DOCUMENTED = ast.Module | ast.ClassDef | ast.FunctionDef
+FILES = [file for file in PACKAGE.rglob("*.py") if ">>>" in file.read_text(encoding="utf-8")]
+MODULES = sorted(".".join(file.relative_to(PACKAGE.parent).with_suffix("").parts) for file in FILES)
+DOCUMENTED = ast.ClassDef | ast.FunctionDef
 UNITS = r"%|°|rad|[mcµ]?m|in|k?g|oz|[mµ]?s|k?Hz|k?N|[MG]?Pa|m?J|[kMG]?B|times|modes|designs|elements"
 NUMBER = re.compile(rf"(?<![\w.(=^/*+-])\d[\d.]*(?:e-?\d+)?(?: to \d[\d.]*)? ?(?:{UNITS})(?:/\w+)?(?!\w)")
 LISTED = Path(__file__).with_name("docstring_numbers.toml")
@@ -49,11 +49,11 @@ def prose(docstring: str) -> str:
 def test_numbers_of_docstrings_are_examples_or_listed() -> None:
     """A number with a unit in prose: nothing computes it again, unless the list says what does."""
     found: dict[str, list[str]] = {}
-    for path in sorted(ROOT.rglob("*.py")):
-        nodes = [node for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, DOCUMENTED)]
+    for path, tree in trees().items():
+        nodes = [tree, *(each for each in statements(tree) if isinstance(each, DOCUMENTED))]
         numbers = {number for node in nodes for number in NUMBER.findall(prose(ast.get_docstring(node) or ""))}
         if numbers:
-            found[str(path.relative_to(ROOT))] = sorted(numbers)
+            found[str(path.relative_to(PACKAGE))] = sorted(numbers)
     listed: dict[str, list[str]] = {}
     for kind in tomllib.loads(LISTED.read_text(encoding="utf-8")).values():
         for name, numbers in kind.items():

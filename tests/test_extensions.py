@@ -77,7 +77,7 @@ def test_added_question_is_command_section_and_call(monkeypatch: pytest.MonkeyPa
     """A file and its line in `QUESTIONS`: help, command, report in terminal, JSON, page and designer, and notebook."""
     weigh = Question("Weight", "tests.helpers.made_up_question:weight", help="Weight of a cue.")
     monkeypatch.setitem(QUESTIONS, "weight", weigh)
-    scene = kim_scene(0.3)
+    scene = cf.Scene(cf.LumpedCue(0.54, 0.006))
     cf.save(scene, tmp_path / "scene.toml")
     newtons = 9.81 * scene.cue.mass
     assert "  weight    Weight of a cue.\n" in stdout_of("--help")
@@ -88,7 +88,7 @@ def test_added_question_is_command_section_and_call(monkeypatch: pytest.MonkeyPa
     report = cf.report(scene, details=True)
     assert report.to_dict()["weight"] == {"weight": newtons}
     assert "Weight of the cue" in str(report)
-    session = Session(Design("this", scene))
+    session = Session(Design("this", kim_scene(0.3)))
     session.results.own["answers"] = report
     for page in (report.to_html(), sections_markup(session)):
         assert "<h2>Weight</h2>" in page

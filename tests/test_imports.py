@@ -13,8 +13,7 @@ import pytest
 
 import cuefem
 from tests.conftest import SOLVED_AT_COLLECTION
-
-PACKAGE = Path(cuefem.__file__).parent
+from tests.helpers.sources import PACKAGE, statements, trees
 
 # The rooms in the order of CONTRIBUTING.md's table; a room imports only those before it.
 TABLE = (PACKAGE.parent / "CONTRIBUTING.md").read_text(encoding="utf-8").partition("## Map")[2].partition("## How")[0]
@@ -64,15 +63,6 @@ def is_for_types(statement: ast.AST) -> bool:
     return isinstance(statement, ast.If) and getattr(statement.test, "id", "") == "TYPE_CHECKING"
 
 
-def statements(block: ast.AST) -> Iterator[ast.stmt]:
-    """The statements of a file, also those inside others: neither handlers nor cases of a match are statements."""
-    for one in ast.iter_child_nodes(block):
-        if isinstance(one, ast.stmt):
-            yield one
-        if isinstance(one, ast.stmt | ast.excepthandler | ast.match_case):
-            yield from statements(one)
-
-
 @cache
 def for_types(tree: ast.Module) -> list[ast.stmt]:
     """What a file does for type checking alone."""
@@ -99,16 +89,10 @@ def out_of_order(part: str, tree: ast.Module) -> list[str]:
     return wrong
 
 
-@cache
-def trees() -> dict[Path, ast.Module]:
-    """The files of the package."""
-    sources = sorted(path for path in PACKAGE.rglob("*.py") if path != PACKAGE / "__init__.py")
-    return {path: ast.parse(path.read_bytes()) for path in sources}
-
-
 def test_imports_follow_package_order() -> None:
     """Each library in its rooms."""
-    wrong = {path.name: out_of_order(part_of(path), tree) for path, tree in trees().items()}
+    rooms = {path: tree for path, tree in trees().items() if path != PACKAGE / "__init__.py"}
+    wrong = {path.name: out_of_order(part_of(path), tree) for path, tree in rooms.items()}
     assert {name: names for name, names in wrong.items() if names} == {}
     assert out_of_order("cue", ast.parse("from cuefem.beam import assemble")) == ["cuefem.beam"]
     assert out_of_order("scene", ast.parse("def f():\n    import pint")) == ["pint"]

@@ -8,7 +8,6 @@ import pytest
 
 import cuefem as cf
 from cuefem.analysis.measured import residual_chart
-from cuefem.measurements.measured_cue import compare
 from cuefem.measurements.measured_folder import TEMPLATE, load_measured
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES
 from tests.helpers.command_line import as_json, call, stdout_of
@@ -21,13 +20,9 @@ def test_compare_json_equals_library_and_page_lists_measurements(tmp_path: Path)
     (folder / "squirt.csv").write_text("offset,value [deg],error [deg]\n0.3,1.5,0.1\n", encoding="utf-8")
     result, compared, (cue, _) = as_json("compare", folder), cf.compare(folder), load_measured(folder)
     assert result | compared.values() == result
-    for reported, row in zip(result["rows"], compare(cue), strict=True):
-        assert reported["label"] == row.measurement.label
-        for name in ("computed_value", "spread", "normalized_residual"):
-            assert reported[name] == getattr(row, name)
+    assert [row["label"] for row in result["rows"]] == [one.label for one in cue.measurements]
     assert (result["name"], result["missing"]) == ("a cue", cue.missing)
-    out = stdout_of("compare", folder)
-    assert all(phrase in out for phrase in ("weight of the shaft", "100.00 ± 0.50 g", "Missing measurements"))
+    assert all(phrase in str(compared) for phrase in ("weight of the shaft", "100.00 ± 0.50 g", "Missing measurements"))
     assert call("compare", folder, "-o", page) == (0, f"wrote {page}\n", "")
     text = page.read_text(encoding="utf-8").replace("\u00a0", " ")
     assert all(f">{one.label}<" in text for one in cue.measurements)

@@ -29,7 +29,7 @@ def printed(encoding: str, *arguments: str) -> str:
 
 
 @pytest.mark.parametrize("encoding", ENCODINGS)
-@pytest.mark.parametrize("arguments", [("parts",), ("end-mass", SCENE), ("guide", "measured", "--print")])
+@pytest.mark.parametrize("arguments", [("parts",), ("guide", "measured", "--print")])
 def test_command_prints_all_lines_in_every_encoding(encoding: str, arguments: tuple[str, ...]) -> None:
     lines = printed(encoding, *arguments).splitlines()
     assert len(lines) == len(stdout_of(*arguments).splitlines())

@@ -38,9 +38,7 @@ def numbers(outcome: cf.Outcome) -> dict[str, object]:
     return {name: value for name, value in named.items() if name not in EXCLUDED}
 
 
-@pytest.mark.parametrize(
-    ("scenes", "at"), [(SCENES, AT), (SCENES[::-1], AT), (SCENES[:22:6], None)], ids=["forward", "reverse", "default"]
-)
+@pytest.mark.parametrize(("scenes", "at"), [(SCENES[::-1], AT), (SCENES[:22:6], None)], ids=["reverse", "default"])
 def test_batch_strike_equals_single_strikes(scenes: list[cf.Scene], at: cf.Resolution | None) -> None:
     """Also for scenes that share a cue, in any order."""
     together = cf.batch_strike(scenes, at)

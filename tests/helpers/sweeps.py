@@ -49,7 +49,7 @@ def vary(path: str, *rest: str) -> str:
 
 STUDY = 'scene = "scene.toml"\nresponses = ["end_mass", "tip_stiffness", "frequency(1)"]\n' + resolution(12, 6)
 BOTH = '["cue.segments[0].tip_bore", "cue.segments[0].butt_bore"]'
-STUDY += vary(BOTH, 'name = "bore"', 'low = "0 mm"', 'high = "15 mm"', "count = 16")
+STUDY += vary(BOTH, 'name = "bore"', 'low = "0 mm"', 'high = "15 mm"', "count = 8")
 STUDY += vary('"tip.contact_time"', 'values = ["0.8 ms", "1.2 ms"]')
 STUDY += vary('"cue.segments[0].material"', 'values = ["hard maple", "ash"]')
 

@@ -11,7 +11,6 @@ import cuefem as cf
 from cuefem.measurements.measured_folder import load_measured
 from cuefem.measurements.measurement_types import EndMass, Setup
 from cuefem.measurements.pendulum import GRAVITY, Pendulum
-from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.measured_cues import SCENE, measured_folder
 
 TEXT = """[[pendulum]]
@@ -94,8 +93,9 @@ def test_compare_contradiction_with_drawing_is_reported(tmp_path: Path) -> None:
     """8.95 g measured, 6.06 g computed: beyond the errors of readings, drawing and contact time."""
     drawing = (Path(__file__).parents[2] / "meshes" / "pool_maple.toml").read_text(encoding="utf-8")
     directory = measured_folder(tmp_path / "cue", TEXT.replace("-34 mm", "-9 mm"), drawing)
-    (row,) = as_json("compare", directory)["rows"]
+    compared = cf.compare(directory)
+    (row,) = compared.values()["rows"]
     assert (1e3 * row["measured_value"], 1e3 * row["computed_value"]) == pytest.approx((8.95, 6.06), abs=0.02)
     assert row["residual"] > 15
     assert row["normalized_residual"] > 5
-    assert "contradicts the drawing" in stdout_of("compare", directory)
+    assert "contradicts the drawing" in str(compared)

@@ -46,7 +46,7 @@ def test_recording_of_known_wood_gives_its_constants(tmp_path: Path) -> None:
         assert error < 0.04 * known[0]
 
 
-@pytest.mark.parametrize(("snr", "missing"), [(10.0, ()), (10.0, (1, 2)), (20.0, (1,)), (60.0, (3,))])
+@pytest.mark.parametrize(("snr", "missing"), [(10.0, (1, 2)), (60.0, (3,))])
 def test_tones_with_missing_modes_have_right_mode_numbers(
     drawn: np.ndarray, snr: float, missing: tuple[int, ...]
 ) -> None:
