@@ -14,7 +14,7 @@ import cuefem as cf
 from cuefem import Outcome
 from cuefem.contact.outcome import end_of_first_slip
 from cuefem.contact.strike import strike_modes
-from tests.data.stored import cue_of, cues, scene_of, stored_law, strikes, tip_of
+from tests.data.stored import DATA, cue_of, cues, scene_of, stored_law, strikes, tip_of
 from tests.helpers.strike_scenes import energy_residual
 
 KINDS = tuple(dict.fromkeys(row["kind"] for row in strikes()))
@@ -75,3 +75,10 @@ def test_frequencies_equal_stored_answers() -> None:
     assert len(rows) == 30
     for row in rows[::3]:
         np.testing.assert_allclose(cf.modes(cue_of(row), 12).frequencies[:12], row["frequencies"], rtol=1e-6)
+
+
+def test_every_stored_file_says_who_made_it_how_and_to_which_tolerance() -> None:
+    table = [line.split("|")[1:-1] for line in (DATA / "README.md").read_text().splitlines() if line.startswith("| `")]
+    stored = {path.name for path in DATA.iterdir() if path.suffix not in ("", ".py", ".md")}
+    assert {row[0].strip(" `") for row in table} == stored
+    assert all(len(row) == 4 and all(cell.strip() for cell in row) for row in table)

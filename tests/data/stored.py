@@ -1,7 +1,5 @@
-"""Reads the stored results of the former engine: strikes with their inputs, end masses and frequencies.
+"""Reads the stored results of the former engine (README.md): strikes with their inputs, end masses and frequencies.
 
-They were computed once, by tests/data/make.py of commit e00ebcc with the engine of commit 1e8a581: collocation of order
-14, rings solved to 1e-9, scenes drawn at random over every law and effect, 20 of a kind. They are never recomputed.
 A strike is stored with the inputs of its contact: the tip modes, and the terms of a leather tip's law. A test therefore
 compares the contact alone, independently of the mesh and of the tip's elasticity.
 """
