@@ -37,6 +37,8 @@ from cuefem.show.scene_summary import scene_record
 if TYPE_CHECKING:
     import pandas as pd
 
+    from cuefem.show.charts import Chart
+
 SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of the designs below a quantile
 
 
@@ -175,11 +177,16 @@ class StudyResult(Analysis):
         frame.attrs = {"units": self.units, "varied_fields": [*self.designs], "responses": [*self.responses]}
         return frame
 
+    @property
+    def finite_samples(self) -> dict[str, Array]:
+        """The responses that exist, of a scatter those of its two independent samples."""
+        columns = {name: column[: self._independent()] for name, column in self.responses.items()}
+        return {name: column[np.isfinite(column)] for name, column in columns.items()}
+
     @cached_property
     def spread(self) -> dict[str, dict[str, float]]:
         """Mean, standard deviation and quantiles of the responses."""
-        columns = {name: column[: self._independent()] for name, column in self.responses.items()}
-        columns = {name: column[np.isfinite(column)] for name, column in columns.items()}
+        columns = self.finite_samples
         return {
             name: {"mean": float(column.mean()), "sd": float(column.std(ddof=1))}
             | {f"{100 * s:g} %": float(q) for s, q in zip(SHARES, np.quantile(column, SHARES), strict=True)}
@@ -252,6 +259,12 @@ class SweepResult(StudyResult):
         counts = {"designs": self.count, "failed": len(self.failures), "first_failure": first_failure}
         return counts | {"summary": self.statistics and sweep_record(self.statistics)}
 
+    def charts(self) -> list[Chart]:
+        """The trade-off with its Pareto front, and the first response against each parameter."""
+        from cuefem.designs.study_charts import sweep_charts  # charts are not for terminals
+
+        return [] if self.statistics is None else sweep_charts(self.statistics)
+
     def tables(self) -> list[Table | str]:
         """Failures, varied parameters, best designs, sensitivities, and the Pareto front."""
         found = [] if self.statistics is None else tabulate_sweep(self.statistics)
@@ -280,6 +293,12 @@ class ScatterResult(StudyResult):
         """The distribution of each response, and the shares of its factors."""
         about = {"count": self.definition.count, "seed": self.definition.seed}
         return about | {"responses": scatter_record(self.study, self.spread, self.sobol_indices)}
+
+    def charts(self) -> list[Chart]:
+        """The distribution of each response, and the share of each factor in its variance."""
+        from cuefem.designs.study_charts import scatter_charts
+
+        return scatter_charts(self.study.responses, self.finite_samples, self.spread, self.sobol_indices)
 
     def tables(self) -> list[Table | str]:
         """Varied parameters, spreads, and the shares of the factors."""

@@ -100,18 +100,23 @@ def explained_variance(column: np.ndarray, results: Array) -> Array:
 
     For ranges it is corrected for the share expected by chance.
     """
-    levels, group = np.unique(column, return_inverse=True)
-    chance = len(levels) > MAX_LEVELS and column.dtype.kind in "fi"
-    if chance:
-        count = max(2, min(MAX_GROUPS, len(column) // 8))
-        edges = np.quantile(column, np.arange(1, count) / count)
-        group = np.unique(np.searchsorted(edges, column, side="right"), return_inverse=True)[1]
+    group, chance = groups_of(column)
     member = np.eye(group.max() + 1)[group]
     between = np.var(member @ ((member.T @ results) / member.sum(axis=0)[:, None]), axis=0)
     total = results.var(axis=0)
     share = np.divide(between, total, out=np.zeros_like(total), where=total > 0)
     count, groups = member.shape
     return np.clip(1 - (1 - share) * (count - 1) / (count - groups), 0, 1) if chance and count > groups else share
+
+
+def groups_of(column: np.ndarray) -> tuple[NDArray[np.int_], bool]:
+    """The number of the group of each value, and whether groups are ranges of values: else of equal ones."""
+    levels, group = np.unique(column, return_inverse=True)
+    if len(levels) <= MAX_LEVELS or column.dtype.kind not in "fi":
+        return group, False
+    count = max(2, min(MAX_GROUPS, len(column) // 8))
+    edges = np.quantile(column, np.arange(1, count) / count)
+    return np.unique(np.searchsorted(edges, column, side="right"), return_inverse=True)[1], True
 
 
 def _rank_correlation(first: Array, other: Array) -> float:

@@ -17,6 +17,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 WIDTH = 440.0
+LEFT, SHORT_LABEL, LETTER = (
+    44.0,
+    5,
+    7.5,
+)  # room for the y axis: of labels of so many letters; for a letter of longer ones
+MAX_LETTERS = 20  # of a label
+LEAST_SPAN = 1e-6  # relative: values closer than that are equal
 
 
 class Tick(NamedTuple):
@@ -35,6 +42,15 @@ class Curve(NamedTuple):
     style: str
 
 
+class Dots(NamedTuple):
+    """Named dots of a chart, in the axes' units; without a name they belong to a curve. style: their CSS class."""
+
+    name: str
+    x: ArrayLike
+    y: ArrayLike
+    style: str
+
+
 class Shade(NamedTuple):
     """A shaded span of the x axis, from ``start`` to ``end`` in its units. style: its CSS class."""
 
@@ -45,24 +61,40 @@ class Shade(NamedTuple):
 
 @dataclass(frozen=True)
 class Axis:
-    """An axis: its label and its ends; an end of None is fitted to the data."""
+    """An axis: its label and its ends; an end of None is fitted to the data.
+
+    from_zero: a fitted axis includes 0. names: what its whole numbers 0, 1, ... stand for.
+    """
 
     label: str
     low: float | None = None
     high: float | None = None
+    from_zero: bool = True
+    names: tuple[str, ...] = ()
 
     def scale_for(self, values: Sequence[ArrayLike]) -> Scale:
         """The scale for these values; ends of None become round numbers."""
+        if self.names:
+            return Scale(-0.5, len(self.names) - 0.5, 1.0)
         all_values = np.concatenate([np.ravel(np.asarray(v, float)) for v in values])
         finite = all_values[np.isfinite(all_values)]
-        low = float(finite.min(initial=0.0)) if self.low is None else self.low
-        high = float(finite.max(initial=0.0)) if self.high is None else self.high
+        anchor = {"initial": 0.0} if self.from_zero else {}
+        low = float(finite.min(**anchor)) if self.low is None else self.low
+        high = float(finite.max(**anchor)) if self.high is None else self.high
+        if not self.from_zero and high - low < LEAST_SPAN * abs(high):
+            low, high = low - 0.1 * abs(low), high + 0.1 * abs(high)
         if high <= low:
             high = low + 1.0
         step = round_step(high - low)
         low = step * math.floor(low / step + 1e-9) if self.low is None else low
         high = step * math.ceil(high / step - 1e-9) if self.high is None else high
         return Scale(low, high, step)
+
+    def ticks(self, scale: Scale, first: float, last: float) -> tuple[Tick, ...]:
+        """The ticks of its scale on an axis drawn from ``first`` to ``last``: at round numbers, or at each name."""
+        if not self.names:
+            return scale.ticks(first, last)
+        return tuple(Tick(float(scale.position(i, first, last)), shortened(name)) for i, name in enumerate(self.names))
 
 
 class Scale(NamedTuple):
@@ -86,10 +118,21 @@ class Scale(NamedTuple):
         )
 
 
+def shortened(name: str) -> str:
+    """A label of at most `MAX_LETTERS`."""
+    return name if len(name) <= MAX_LETTERS else f"{name[: MAX_LETTERS - 1]}…"
+
+
 def round_step(length: float, most: int = 6) -> float:
     """The smallest step of 1, 2 or 5 times a power of ten that divides a length into at most ``most`` parts."""
     power = 10.0 ** math.floor(math.log10(length / most))
     return next(power * factor for factor in (1, 2, 5, 10) if length / (power * factor) <= most + 1e-9)
+
+
+def dots(x: ArrayLike, y: ArrayLike) -> str:
+    """Points as one SVG path of dots: pieces without length, which round line caps show."""
+    pairs = np.stack([np.ravel(np.asarray(values, float)) for values in (x, y)], axis=1)
+    return "".join(f"M{a:.2f} {b:.2f}h0" for a, b in pairs[np.isfinite(pairs).all(axis=1)].tolist())
 
 
 def path(x: ArrayLike, y: ArrayLike) -> str:
@@ -114,11 +157,13 @@ class Chart:
     x_ticks: tuple[Tick, ...]
     y_ticks: tuple[Tick, ...]
     curves: tuple[tuple[str, str, str], ...]  # name, style, path
+    points: tuple[tuple[str, str, str], ...]  # the same
     spans: tuple[tuple[float, float, str], ...]  # left, right, style
     marks: tuple[Tick, ...]
     labels: tuple[Tick, ...]  # of the marks, without overlap
     x_scale: Scale
     y_scale: Scale
+    is_read: bool  # whether its curves have values at the pointer
 
 
 def chart(
@@ -127,33 +172,42 @@ def chart(
     *,
     x: Axis,
     y: Axis,
+    points: Sequence[Dots] = (),
     spans: Sequence[Shade] = (),
     marks: Sequence[Tick] = (),
     height: float = 260.0,
 ) -> Chart:
-    """A chart of curves, clipped at the ends of the axes."""
-    left, top, right, bottom = 44.0, 22.0 if marks else 10.0, WIDTH - 8, height - 40
-    x_scale = x.scale_for([curve.x for curve in curves])
-    y_scale = y.scale_for([curve.y for curve in curves])
+    """A chart of curves, clipped at the ends of the axes, over points."""
+    top, right, bottom = 22.0 if marks else 10.0, WIDTH - 8, height - 40
+    x_scale = x.scale_for([*(curve.x for curve in curves), *(each.x for each in points)])
+    y_scale = y.scale_for([*(curve.y for curve in curves), *(each.y for each in points)])
+    y_ticks = y.ticks(y_scale, bottom, top)
+    left = max([LEFT, *(LETTER * len(tick.label) + 6 for tick in y_ticks if len(tick.label) > SHORT_LABEL)])
     lines = tuple(Tick(float(x_scale.position(mark.at, left, right)), mark.label) for mark in marks)
-    positions = spread_labels([line.at for line in lines], left, right)
+    widest = max([0, *(len(line.label) for line in lines)])
+    positions = spread_labels([line.at for line in lines], left, right, gap=max(14.0, LETTER * widest))
     return Chart(
         title,
         x.label,
         y.label,
         height,
         (left, top, right, bottom),
-        x_scale.ticks(left, right),
-        y_scale.ticks(bottom, top),
+        x.ticks(x_scale, left, right),
+        y_ticks,
         tuple(
             (c.name, c.style, path(x_scale.position(c.x, left, right), _within(y_scale, c.y, bottom=bottom, top=top)))
             for c in curves
+        ),
+        tuple(
+            (p.name, p.style, dots(x_scale.position(p.x, left, right), y_scale.position(p.y, bottom, top)))
+            for p in points
         ),
         tuple((*x_scale.position((span.start, span.end), left, right).tolist(), span.style) for span in spans),
         lines,
         tuple(Tick(at, line.label) for at, line in zip(positions, lines, strict=True)),
         x_scale,
         y_scale,
+        is_read=bool(curves) and not y.names,
     )
 
 

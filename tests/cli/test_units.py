@@ -7,10 +7,12 @@ from typing import NamedTuple
 
 import pytest
 
+import cuefem as cf
 from cuefem.cli import listed_commands, scene_command
-from cuefem.quantity.display_units import displayed_system
+from cuefem.quantity.display_units import displayed_in, displayed_system
 from cuefem.results.records import Table
 from tests.helpers.command_line import call, stdout_of
+from tests.helpers.sweeps import SCATTER, STUDY, write_study
 from tests.test_golden_files import NUMBER, last_place
 
 ROOT = Path(__file__).parents[2]
@@ -30,7 +32,12 @@ SLOW = [
     ["check", HOLLOW],
     ["strike", HOLLOW, "--format", "pooltool"],
 ]
-PAGES = [["report", "plain maple"], ["compare", HOLLOW, "plain maple"], ["improve", HOLLOW]]
+PAGES = [
+    ["report", "plain maple"],
+    ["compare", HOLLOW, "plain maple"],
+    ["improve", HOLLOW],
+    ["study", ROOT / "studies/design/optimum.toml"],
+]
 
 
 class Shown(NamedTuple):
@@ -135,9 +142,20 @@ def test_unknown_units_are_one_line(name: str, monkeypatch: pytest.MonkeyPatch) 
 @pytest.mark.heavy
 @pytest.mark.parametrize("command", PAGES, ids=str)
 def test_page_in_us_units_has_no_metric_one(command: list[object], tmp_path: Path) -> None:
-    """Neither in texts nor on axes; the glossary is the handbook's."""
     page = tmp_path / "page.html"
     assert call(*command, "-o", page, "--units", "us")[0] == 0
-    text = re.sub(r"<(style|script|aside).*?</\1>", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    assert_in_us_units(page.read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("text", [STUDY, SCATTER], ids=["sweep", "scatter"])
+def test_study_page_in_us_units_has_no_metric_one(text: str, tmp_path: Path) -> None:
+    result = cf.study(write_study(tmp_path, text))
+    with displayed_in("us"):
+        assert_in_us_units(result.to_html())
+
+
+def assert_in_us_units(page: str) -> None:
+    """Neither texts nor axes are metric; the glossary is the handbook's."""
+    text = re.sub(r"<(style|script|aside).*?</\1>", "", page, flags=re.DOTALL)
     assert METRIC_LEFT.findall(re.sub(r"<[^>]*>", "\n", text)) == []
-    assert re.search(r"\d\u00a0in\b", text)
+    assert re.search(r"\d\u00a0in\b|, in<", text)
