@@ -48,7 +48,8 @@ class CoupledModes(NamedTuple):
     def energy_lost(self, t: float, state: Array, mean: Array) -> Array:
         """The energy that the damping takes in a time t, s: a quadratic form in x, (3 m, 3 m).
 
-        state, mean: of `after`. It is the work of the loads, minus the increase of the modes' energy (v^2 + a^2)/2.
+        state, mean: of `after`. It is the work of the loads, minus the increase of the modes' energy (v^2 + a^2)/2: a
+        strike's energy balance therefore does not check it (tests/contact/test_modal_response.py integrates the power).
         """
         m = len(self.omega)
         energy = np.diag(np.repeat([0.5, 0.5, 0.0], m)) - state.T @ state / 2

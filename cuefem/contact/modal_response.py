@@ -122,6 +122,13 @@ class ModalPropagator:
 
         return CoupledModes(self.tip.omega[self.radiating], self._radiation + self._group_loss)
 
+    @cached_property
+    def _by_itself(self) -> Array:
+        """1 of each mode that does not radiate, else 0, (n,)."""
+        by_itself = np.ones(len(self.tip.omega))
+        by_itself[self.radiating] = 0
+        return by_itself
+
     @property
     def dissipates(self) -> bool:
         """Whether dashpots or loss factors take energy from the modes."""
@@ -138,6 +145,10 @@ class ModalPropagator:
         rows = np.concatenate([self.ports, self.slopes])
         return np.asarray(rows @ rows.T)
 
+    def port_velocities(self, velocities: Array) -> Array:
+        """Velocities of ports and slopes, (ports + slopes,), from those of the modes."""
+        return np.asarray(self.rows[: len(self.ports) + len(self.slopes)] @ velocities)
+
     def write_to(self, fields: KernelInput) -> None:
         """Write the modes to the kernel's input."""
         fields.modes = len(self.tip.omega)
@@ -149,13 +160,37 @@ class ModalPropagator:
         fields.radiating_modes = self.radiating
         fields.omega = self.tip.omega
         fields.rows = self.rows
-        fields.mobility = self.mobility
 
     def _tables(self, h: float) -> StepTables:
+        """Tables of a step of the length h, s; of 0 those of an impact."""
+        return self._step_tables(h) if h else self._impact_tables()
+
+    def _impact_tables(self) -> StepTables:
+        """Impulses change the modes' velocities at once; neither oscillation nor damping acts meanwhile."""
+        n, m, rows = len(self.tip.omega), len(self.radiating), self.rows
+        ports = rows[: len(self.mobility)]
+        velocities = np.hstack([ports, np.zeros_like(ports)])
+        v, a, impulse = np.eye(3 * m).reshape(3, m, 3 * m)
+        no_loss = np.zeros((3 * m, 3 * m))
+        return StepTables(
+            h=0.0,
+            load_time=1.0,
+            own=np.array([self._by_itself, np.zeros(n), self._by_itself]),
+            ends=velocities,
+            means=velocities,
+            end_per_load=self.mobility,
+            mean_per_load=self.mobility / 2,
+            response=np.hstack([rows * self._by_itself, np.zeros_like(rows)]),
+            dashpots=np.zeros((len(self.dashpots), 2 * n + len(ports))),
+            loss=np.zeros((3, n)),
+            radiating=np.vstack([v + impulse, a]),
+            radiated=no_loss,
+            dissipated=no_loss,
+        )
+
+    def _step_tables(self, h: float) -> StepTables:
         omega, rows = self.tip.omega, self.rows
-        by_itself = np.ones(len(omega))
-        by_itself[self.radiating] = 0
-        after = Oscillators(*(by_itself * array for array in Oscillators.after(h, omega, self.loss)))
+        after = Oscillators(*(self._by_itself * array for array in Oscillators.after(h, omega, self.loss)))
         rise = omega * h * after.versine
         end = _RowVelocities(np.hstack([rows * after.v_v, -rows * after.sine]), h * (rows * after.mean) @ rows.T)
         mean = _RowVelocities(np.hstack([rows * after.mean, -rows * rise]), h * (rows * after.versine) @ rows.T)
@@ -170,6 +205,7 @@ class ModalPropagator:
             end, mean = end.with_dashpots(dashpots), mean.with_dashpots(dashpots)
         return StepTables(
             h=h,
+            load_time=h,
             own=np.array([after.v_v, after.sine, after.a_a]),
             ends=end.of_state,
             means=mean.of_state,
@@ -177,7 +213,7 @@ class ModalPropagator:
             mean_per_load=mean.of_loads,
             response=h * np.hstack([rows * after.mean, rows * rise]),
             dashpots=dashpots,
-            loss=structural_loss(h, omega, by_itself * self.loss) if self.loss.any() else NOTHING,
+            loss=structural_loss(h, omega, self._by_itself * self.loss) if self.loss.any() else NOTHING,
             radiating=radiating,
             radiated=radiated,
             dissipated=dissipated,

@@ -72,7 +72,8 @@ def imposed_velocity_impulse(tip: TipModes, T: float, velocity: Array, ball_inve
     propagator, kernel = straight_propagator(tip), library()
     tables, means = propagator.tables(T / STEPS), (velocity[1:] + velocity[:-1]) / 2
     first_impulse = velocity[0] / (float(propagator.mobility[1, 1]) + ball_inverse_mass)
-    fields, state = KernelInput(), KernelState(modes=np.zeros((2, len(tip.omega))))
+    velocities = first_impulse * propagator.ports[1]
+    fields, state = KernelInput(), KernelState(modes=np.array([velocities, np.zeros_like(velocities)]))
     propagator.write_to(fields)
     contact = kernel.contact_new(fields, state)
     if not contact:

@@ -53,6 +53,20 @@ def test_step_of_modes_equals_exponential_of_whole_system(loss: float, radiation
     )
 
 
+def test_impact_is_the_limit_of_short_steps_under_the_same_impulse() -> None:
+    tip = replace(damped_modes(loss=0.5, radiation=1e5), dashpots=np.linspace(-1.0, 2.0, len(OMEGA) + 2)[None])
+    propagator, h = straight_propagator(tip), 1e-9
+    impact, short = propagator.tables(0.0), propagator.tables(h)
+    assert (impact.h, impact.load_time, impact.dashpots.any()) == (0.0, 1.0, False)
+    radiating, per_impulse = short.radiating.copy(), 1 / h
+    radiating[:, 2 * len(propagator.radiating) :] *= per_impulse
+    limits = [(getattr(impact, name), getattr(short, name)) for name in ("own", "ends", "means", "loss")]
+    for name in ("end_per_load", "mean_per_load", "response"):
+        limits.append((getattr(impact, name), getattr(short, name) * per_impulse))
+    for limit, table in [*limits, (impact.radiating, radiating)]:
+        np.testing.assert_allclose(table, limit, atol=0.01 * np.abs(limit).max() + 1e-4)
+
+
 @pytest.mark.parametrize("loss", [0.01, 0.99])
 def test_losses_of_a_step_equal_integrals_of_power(loss: float) -> None:
     """Gauss points of the power over the step, with an exponential of the whole system at each."""

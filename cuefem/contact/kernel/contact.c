@@ -23,31 +23,20 @@ static void choose_variants(Contact *c)
 /* A contact at its first touch; NULL if memory runs out. Input and state must outlive it. */
 EXPORTED Contact *contact_new(const Input *in, State *s)
 {
-    const size_t n_loads = in->ports + in->slopes + in->dashpots;
-    Contact *c = calloc(1, sizeof *c);
+    const size_t n_loads = in->ports + in->slopes + in->dashpots, n_radiating = 3 * in->radiating;
+    Contact *c = calloc(1, sizeof *c + (n_loads + n_radiating) * sizeof(double));
     if (!c) return NULL;
-    c->loads = malloc((n_loads + 3 * in->radiating) * sizeof(double));
-    if (!c->loads) {
-        free(c);
-        return NULL;
-    }
-    c->group = c->loads + n_loads;
+    c->radiating = c->loads + n_loads;
     c->in = in;
     c->s = s;
-    s->next_step = in->step;
+    s->next_step = in->begins_with_impact ? 0 : in->step;
     s->window_end = HUGE_VAL;
     s->deadline = in->max_time;
     choose_variants(c);
-    update_port_velocities(c);
     return c;
 }
 
-EXPORTED void contact_free(Contact *c)
-{
-    if (!c) return;
-    free(c->loads);
-    free(c);
-}
+EXPORTED void contact_free(Contact *c) { free(c); }
 
 /* Of a cue in contact: one in free flight turns without being bent. The last slope of each plane is that of
    the cue's end. */
@@ -82,11 +71,12 @@ static int status_of(const Contact *c)
     return phase_of(c)->status(s);
 }
 
-static void take_impact(Contact *c, Step *row)
+static void begin_with_impact(Contact *c, Step *row)
 {
     State *s = c->s;
-    int stays = impact(c, row);
+    int stays = take_impact(c, row);
     s->steps++;
+    s->next_step = c->in->step;
     if (stays || s->status != RUNNING) return;
     separate(c);
     s->status = ENDED;
@@ -96,14 +86,14 @@ static void take_impact(Contact *c, Step *row)
 static int advance(Contact *c, Step *row)
 {
     State *s = c->s;
-    if (s->steps == 0 && c->in->begins_with_impact) {
-        take_impact(c, row);
+    if (c->tables.h == 0) {
+        begin_with_impact(c, row);
         return 1;
     }
     if (!take_step(c, row)) return 0;
     s->steps++;
-    s->next_step = c->t.h;
-    phase_of(c)->next(c, row->v[N]);
+    s->next_step = c->tables.h;
+    phase_of(c)->next(c);
     update_max_slope(c);
     if (s->status == RUNNING) s->status = status_of(c);
     return 1;
@@ -117,8 +107,8 @@ EXPORTED int contact_steps(Contact *c, const StepTables *tables, int max_steps, 
     const State *s = c->s;
     const size_t n_state = 2 * (size_t)c->in->modes;
     int count = 0;
-    c->t = *tables;
-    while (count < max_steps && s->status == RUNNING && s->next_step == c->t.h) {
+    c->tables = *tables;
+    while (count < max_steps && s->status == RUNNING && s->next_step == c->tables.h) {
         if (!advance(c, rows + count)) continue;
         if (modes) memcpy(modes + n_state * count, s->modes, n_state * sizeof(double));
         count++;

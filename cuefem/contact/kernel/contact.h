@@ -12,7 +12,10 @@
    cue has ports (axial and lateral velocity of its tip, rotation rate) and the slopes of the bent shaft; the
    ball has its velocities. With y all these velocities, the contact's velocities are v = C y and its forces F
    load them by C' F, so that energy is conserved. v stands for velocities at the end of a step, u for their
-   means over it. A dashpot is one more port of the cue, whose force opposes its mean velocity over the step.
+   means over it; they are those of the ball against the tip, so that v_n > 0 while the two part. A dashpot is
+   one more port of the cue, whose force opposes its mean velocity over the step.
+
+   An impact of infinite friction is a step of zero length, whose forces and loads are impulses, N s.
 
    Python fills an Input and a State and calls contact_steps, with StepTables of the length State.next_step,
    until the status is no longer RUNNING. Each step leaves a record, a Step.
@@ -51,6 +54,8 @@ enum {
 /* Ports of the cue: axial and lateral velocity of the tip; the third is the rotation rate of its section or,
    of a raised cue, the velocity out of the plane of the first two. */
 enum { U_PORT, W_PORT, THIRD_PORT };
+/* Velocities of the ball: (t, n) of its centre, and of a level cue R times its spin. */
+enum { BALL_T, BALL_N, BALL_SPIN };
 /* Components of the contact's forces F and velocities v. At the tip: tangential, normal, out of the plane; at
    the ball's point on the table: upwards, lateral, forwards. A level cue has the first two, a raised one (the
    effect Elevation) all six. */
@@ -61,13 +66,13 @@ enum { RIGID_PATCH, SPRING_PATCH, PARTIAL_SLIP }; /* tangential compliance of th
 enum { POWER_LAW, LEATHER_LAW };
 enum { RUNNING, ENDED, TIME_LIMIT, INDENTATION_OUT_OF_RANGE, SLOPE_OUT_OF_RANGE, UNSOLVED };
 
-/* Record of a step, or of an impact: a step of zero length whose F is an impulse, N s. */
+/* Record of a step. */
 typedef struct {
     double time, length;           /* at the end of the step; of the step, s */
     double friction_state, phase;  /* of the step */
     double angle;                  /* rolled by the end of the step, rad */
     double damping_loss, radiated; /* up to the end of the step, J; as in State */
-    double F[FORCES];              /* over the step, N */
+    double F[FORCES];              /* over the step, N; of an impact N s */
     double v[FORCES];              /* of the contact at the end of the step, m/s */
     double ball[BALL_VELOCITIES];  /* velocities of the ball at the end of the step, m/s */
 } Step;
@@ -84,7 +89,6 @@ typedef struct {
     const int *radiating_modes;   /* indices of the modes that radiate, (radiating,) */
     const double *omega;          /* (modes,), rad/s */
     const double *rows;           /* (ports + slopes + dashpots, modes), 1/sqrt(kg): velocities are rows v */
-    const double *mobility;       /* of ports and slopes, 1/kg */
     const double *kinematics;     /* C at the first touch, (forces, ports + speeds) */
     const double *inverse_masses; /* of the ball's velocities, (speeds,), 1/kg */
     const double *slope_weights;  /* of each slope in the tip's axial shortening, (slopes,) */
@@ -106,20 +110,20 @@ typedef struct {
     double step, max_time, window; /* step; longest contact; time followed after the first separation, s */
 } Input;
 
-/* What one step leaves to the next. Python fills the first three; the rest begins as zero. */
+/* What one step leaves to the next. Python fills the first four; the rest begins as zero. */
 typedef struct {
-    double *modes;                /* v and a, (2, modes) */
-    double *separated_modes;      /* the same after the last separation */
-    double ball[BALL_VELOCITIES]; /* velocities, m/s */
+    double *modes;                          /* v and a, (2, modes) */
+    double *separated_modes;                /* the same after the last separation */
+    double ball[BALL_VELOCITIES];           /* velocities, m/s */
+    double port_velocities[CUE_VELOCITIES]; /* of ports and slopes */
     int status, steps, steps_to_last_separation;
     int phase, friction_state;
     double time, next_step;      /* s; length of the next step, s */
     double deadline, window_end; /* of this contact; of the window after separation, s */
     int ends_at_event;           /* whether the next step was shortened to end at separation or touch */
-    double indentation, max_indentation;    /* m */
-    double angle, rolling_rate;             /* rolled, rad; rad/s */
-    double height;                          /* of the ball above the table, m */
-    double port_velocities[CUE_VELOCITIES]; /* of ports and slopes */
+    double indentation, max_indentation; /* m */
+    double angle, rolling_rate;          /* rolled, rad; rad/s */
+    double height;                       /* of the ball above the table, m */
     double slopes[SLOPES];
     double max_slope, axial_force; /* largest slope of the cue's end, rad; the force on the cue then, N */
     int tip_stuck;                 /* in the last step */
@@ -135,9 +139,10 @@ typedef struct {
 
 /* What the modes do in a step of one length (shapes: declarations.py). */
 typedef struct {
-    double h;                                   /* s */
-    const double *own;                          /* of each mode by itself: v per v, a per v, a per a */
-    const double *ends, *means;                 /* from the state to the velocities of ports and slopes */
+    double h;                   /* s */
+    double load_time;           /* impulse per load, s: h; 1 in an impact, whose loads are impulses */
+    const double *own;          /* of each mode by itself: v per v, a per v, a per a */
+    const double *ends, *means; /* from the state to the velocities of ports and slopes */
     const double *end_per_load, *mean_per_load; /* velocities per load on ports and slopes */
     const double *response;                     /* change of the state per load */
     const double *dashpots;                     /* forces of the dashpots from the state and the loads */
@@ -164,44 +169,43 @@ typedef struct {
 
 /* A tip by its tangential compliance (patch_*.c). */
 typedef struct {
-    int slips_in_parts; /* the patch itself limits its force to mu F_n */
-    void (*stick)(Contact *c, const double *u, Equations *e); /* row T of the equations of a sticking tip */
-    void (*keep)(Contact *c, double middle); /* state after a step in contact; middle: shift at mid-step, m */
-    void (*release)(Contact *c, double shift); /* loss of strain energy at separation */
-    int (*friction_state)(const Contact *c);   /* of the step */
+    int slips_in_parts;                      /* the patch itself limits its force to mu F_n */
+    void (*stick)(Contact *c, Equations *e); /* row T of the equations of a sticking tip */
+    void (*update)(Contact *c);              /* the patch's state after a step in contact */
+    void (*release)(Contact *c);             /* loss of strain energy at separation */
+    int (*friction_state)(const Contact *c); /* of the step */
 } Patch;
 
 /* A cue in the plane of t and n (level.c), or one raised over a table (raised.c). Both solvers return whether
    they converged. */
 typedef struct {
-    int (*forces)(Contact *c);                         /* of a step */
-    int (*impulses)(Contact *c);                       /* of an impact, without a normal one */
-    int (*friction_state)(const Contact *c, double u); /* of a step with the mean tangential velocity u */
+    int (*forces)(Contact *c);               /* of a step */
+    int (*impulses)(Contact *c);             /* of an impact, without a normal one */
+    int (*friction_state)(const Contact *c); /* of the step */
 } Cue;
 
 /* The contact while the tip loads, unloads, or is free (phases.c). */
 typedef struct {
-    NormalForce (*curve)(const Contact *c, double indentation);
-    int (*forces)(Contact *c);                             /* of a step; returns whether they converged */
-    int (*has_event)(double excess, double excess_at_end); /* separation or touch within a step */
-    void (*keep)(Contact *c, double u); /* the tip's state after a step with the mean tangential velocity u */
-    void (*next)(Contact *c, double v_n); /* phase and length of the next step; v_n: at the end of this one */
-    int (*status)(const State *s);
     int touches; /* whether tip and ball are in contact */
+    int event;   /* sign of the indentation's change at which a step ends: touch 1, separation -1; none 0 */
+    NormalForce (*curve)(const Contact *c, double indentation); /* in contact alone */
+    void (*update)(Contact *c);                                 /* the tip's state after a step */
+    void (*next)(Contact *c);                                   /* phase and length of the next step */
+    int (*status)(const State *s);
 } Phase;
 
 extern const Patch rigid_patch, spring_patch, partial_slip;
 extern const Cue level_cue, raised_cue;
 extern const Phase phases[];
 
-/* A contact: its input and state, the variants that serve it, and the equations of the step under way. */
+/* A contact: its input and state, the variants that serve it, and the step under way. */
 struct Contact {
     const Input *in;
     State *s;
     Law *law;
     const Patch *patch;
     const Cue *cue;
-    StepTables t;
+    StepTables tables;
     double end_free[CUE_VELOCITIES], mean_free[CUE_VELOCITIES]; /* of ports and slopes without loads */
     double C[FORCES][VELOCITIES];                               /* v = C y, at mid-step */
     double shortening[SLOPES];                    /* of the cue per slope, m: columns of C over -C_u */
@@ -210,14 +214,17 @@ struct Contact {
     double v_free[FORCES], u_free[FORCES];       /* v and u without forces */
     double u_stick[FORCES];                      /* u of a point that sticks */
     double V[FORCES][FORCES], W[FORCES][FORCES]; /* v = v_free + V F, u = u_free + W F */
-    double F[FORCES], last_F[FORCES];            /* of this step and of the last one, N */
+    double F[FORCES], v[FORCES], u[FORCES];      /* the step's forces, N, and velocities */
+    double last_F[2][FORCES];                    /* of the last step in contact and the one before it, N */
     int slip;           /* its direction, or STICK; a patch that slips in parts keeps STICK */
     NormalForce normal; /* of a level cue, at mid-step */
     double annulus_force[ANNULI], annuli_loss; /* at mid-step, N; dissipated in the step, J */
-    int on_table, table_sticks;                /* as in State, of this step */
     double axial_force;                        /* on the cue, N */
-    double *loads;                             /* on ports, slopes and dashpots */
-    double *group;                             /* state and loads of the modes that radiate */
+    double mean_velocities[CUE_VELOCITIES];    /* of ports and slopes */
+    double mean_spin;                          /* of the ball, times its radius, m/s */
+    double ball_loads[BALL_VELOCITIES];
+    double *radiating; /* state and loads of the modes that radiate */
+    double loads[];    /* on ports, slopes and dashpots */
 };
 
 enum { MAX_ITERATIONS = 40 };
@@ -227,31 +234,31 @@ static const double MIN_FORCE = 1e-9; /* N, least scale of the relative change *
 
 static inline double larger(double a, double b) { return a > b ? a : b; }
 static inline const Phase *phase_of(const Contact *c) { return &phases[c->s->phase]; }
+static inline void nothing(Contact *c) { (void)c; }
 
 /* modes.c */
-void update_port_velocities(Contact *c);
 void free_motion(Contact *c);
-void load_modes(Contact *c, const double *cue_loads);
+void load_modes(Contact *c);
 void add_losses(Contact *c);
 void advance_modes(Contact *c);
-void apply_impulses(Contact *c, const double *impulses);
 
 /* laws.c */
 double power_law(const Input *in, double indentation, double *slope);
 double leather_law(const Input *in, double indentation, double *slope);
 NormalForce loading_curve(const Contact *c, double indentation);
 NormalForce unloading_curve(const Contact *c, double indentation);
-double residual(const Contact *c);
+double residual_indentation(const Contact *c);
 double tangential_stiffness(const Input *in, double virtual);
 
 /* kinematics.c */
-void contact_kinematics(Contact *c, double angle, const double *slopes);
 void contact_matrices(Contact *c);
-void velocities(const Contact *c, double *end, double *mean);
+void velocities(Contact *c);
 
-/* phases.c, step.c, impact.c */
+/* phases.c */
 void separate(Contact *c);
+
+/* step.c */
 int take_step(Contact *c, Step *row);
-int impact(Contact *c, Step *row);
+int take_impact(Contact *c, Step *row);
 
 #endif

@@ -24,32 +24,24 @@ static void rolled_kinematics(const Input *in, double angle, double C[FORCES][VE
     C[N][n_cue + 1] = ca;
 }
 
-/* C after the contact has rolled by an angle, rad, on a shaft bent by slopes. Bending shortens the cue by the
+/* C at mid-step, where the contact has rolled on by half of the step's angle. Bending shortens the cue by the
    sum of weight slope^2/2 (second-order theory), so that the tip's axial velocity is reduced by the sum of
    weight slope slope'. */
-void contact_kinematics(Contact *c, double angle, const double *slopes)
+static void kinematics_at_middle(Contact *c)
 {
     const Input *in = c->in;
+    const State *s = c->s;
     const int ports = in->ports, n_cue = ports + in->slopes, n_velocities = ports + in->speeds;
-    for (int a = 0; a < in->slopes; a++) c->shortening[a] = in->slope_weights[a] * slopes[a];
+    const double half = c->tables.h / 2;
+    for (int a = 0; a < in->slopes; a++)
+        c->shortening[a] = in->slope_weights[a] * (s->slopes[a] + half * s->port_velocities[ports + a]);
     for (int f = 0; f < in->forces; f++) {
         memcpy(c->C[f], in->kinematics + f * n_velocities, ports * sizeof(double));
         memcpy(c->C[f] + n_cue, in->kinematics + f * n_velocities + ports, in->speeds * sizeof(double));
     }
-    if (in->rolling) rolled_kinematics(in, angle, c->C);
+    if (in->rolling) rolled_kinematics(in, s->angle + half * s->rolling_rate, c->C);
     for (int f = 0; f < in->forces; f++)
         for (int a = 0; a < in->slopes; a++) c->C[f][ports + a] = -c->C[f][U_PORT] * c->shortening[a];
-}
-
-/* C at mid-step. */
-static void kinematics_at_middle(Contact *c)
-{
-    const State *s = c->s;
-    const double half = c->t.h / 2;
-    double bent[SLOPES];
-    for (int a = 0; a < c->in->slopes; a++)
-        bent[a] = s->slopes[a] + half * s->port_velocities[c->in->ports + a];
-    contact_kinematics(c, s->angle + half * s->rolling_rate, bent);
 }
 
 /* Whether the point of a force stuck in the last step. */
@@ -106,13 +98,13 @@ static void velocities_per_force(Contact *c)
 {
     const Input *in = c->in;
     const int n_cue = in->ports + in->slopes;
-    per_force(c, c->t.end_per_load, c->end_per_force);
-    per_force(c, c->t.mean_per_load, c->mean_per_force);
+    per_force(c, c->tables.end_per_load, c->end_per_force);
+    per_force(c, c->tables.mean_per_load, c->mean_per_force);
     for (int f = 0; f < in->forces; f++)
         for (int g = 0; g < in->forces; g++) {
             double ball = 0, ends = 0, means = 0;
             for (int b = 0; b < in->speeds; b++)
-                ball += c->t.h * c->C[f][n_cue + b] * in->inverse_masses[b] * c->C[g][n_cue + b];
+                ball += c->tables.load_time * c->C[f][n_cue + b] * in->inverse_masses[b] * c->C[g][n_cue + b];
             for (int p = 0; p < n_cue; p++) {
                 ends += c->C[f][p] * c->end_per_force[g][p];
                 means += c->C[f][p] * c->mean_per_force[g][p];
@@ -130,15 +122,15 @@ void contact_matrices(Contact *c)
     velocities_per_force(c);
 }
 
-/* Velocities of the contact at the end of the step and on average over it, under the forces F. */
-void velocities(const Contact *c, double *end, double *mean)
+/* The contact's velocities v and u under the forces F. */
+void velocities(Contact *c)
 {
     for (int f = 0; f < c->in->forces; f++) {
-        end[f] = c->v_free[f];
-        mean[f] = c->u_free[f];
+        c->v[f] = c->v_free[f];
+        c->u[f] = c->u_free[f];
         for (int g = 0; g < c->in->forces; g++) {
-            end[f] += c->V[f][g] * c->F[g];
-            mean[f] += c->W[f][g] * c->F[g];
+            c->v[f] += c->V[f][g] * c->F[g];
+            c->u[f] += c->W[f][g] * c->F[g];
         }
     }
 }

@@ -36,14 +36,14 @@ NormalForce unloading_curve(const Contact *c, double indentation)
 {
     if (indentation > c->s->max_indentation) return loading_curve(c, indentation);
     const double scale = c->in->restitution * c->in->restitution;
-    NormalForce normal = loading_curve(c, (indentation - residual(c)) / scale);
+    NormalForce normal = loading_curve(c, (indentation - residual_indentation(c)) / scale);
     normal.slope /= scale;
     normal.scale = scale;
     return normal;
 }
 
 /* Residual indentation d0, m, where the unloading force vanishes. */
-double residual(const Contact *c)
+double residual_indentation(const Contact *c)
 {
     return (1 - c->in->restitution * c->in->restitution) * c->s->max_indentation;
 }

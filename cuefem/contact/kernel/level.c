@@ -1,14 +1,15 @@
 /* The forces of a level cue: the force-indentation law at mid-step, friction as a return mapping. */
 #include "contact.h"
 
-/* Relative change of the forces in Newton's last iteration, which leaves an error of its square. */
+/* Relative change of the forces in Newton's last iteration. It leaves an error of its square where the
+   equations are smooth; where an annulus begins to slip in this iteration, one of its own size. */
 static const double NEWTON_REL_TOL = 1e-9;
 
 /* Row N: F_n = law(indentation at mid-step). Handbook: The contact. */
-static void normal_equation(Contact *c, const double *u, Equations *e)
+static void normal_equation(Contact *c, Equations *e)
 {
-    const double half = c->t.h / 2;
-    c->normal = phase_of(c)->curve(c, c->s->indentation - half * u[N]);
+    const double half = c->tables.h / 2;
+    c->normal = phase_of(c)->curve(c, c->s->indentation - half * c->u[N]);
     e->g[N] = c->F[N] - c->normal.force;
     e->J[N][T] = c->normal.slope * half * c->W[N][T];
     e->J[N][N] = 1 + c->normal.slope * half * c->W[N][N];
@@ -37,15 +38,15 @@ static double correct(Contact *c, const Equations *e)
 /* Newton's method for (F_t, F_n) in the state c->slip. Returns whether it converged. */
 static int newton(Contact *c)
 {
-    double v[FORCES], u[FORCES], change = 0, scale = 0;
+    double change = 0, scale = 0;
     for (int i = 0; i < MAX_ITERATIONS; i++) {
         Equations e;
-        velocities(c, v, u);
-        normal_equation(c, u, &e);
+        velocities(c);
+        normal_equation(c, &e);
         if (c->slip)
             slip_equation(c, &e);
         else
-            c->patch->stick(c, u, &e);
+            c->patch->stick(c, &e);
         change = correct(c, &e);
         scale = fabs(c->F[T]) + fabs(c->F[N]) + MIN_FORCE;
         if (change <= NEWTON_REL_TOL * scale) return 1;
@@ -56,11 +57,7 @@ static int newton(Contact *c)
 /* Begin the iteration where the forces of the last two steps lead. */
 static void extrapolate(Contact *c)
 {
-    for (int f = 0; f < c->in->forces; f++) {
-        double last = c->F[f];
-        c->F[f] += last - c->last_F[f];
-        c->last_F[f] = last;
-    }
+    for (int f = 0; f < c->in->forces; f++) c->F[f] = 2 * c->last_F[0][f] - c->last_F[1][f];
 }
 
 /* Trial stick, and slip if |F_t| of the trial exceeds mu F_n. */
@@ -80,16 +77,16 @@ static int forces(Contact *c)
 /* The impulse that stops the tangential motion. */
 static int impulses(Contact *c)
 {
-    c->F[T] = -c->v_free[T] / c->V[T][T];
-    return 1;
+    c->slip = STICK;
+    return newton(c);
 }
 
 /* Without friction there is no force to tell: by the velocity. */
-static int friction_state(const Contact *c, double u)
+static int friction_state(const Contact *c)
 {
     if (c->in->friction > 0) return c->patch->friction_state(c);
-    if (u == 0) return STICK;
-    return u < 0 ? SLIP : SLIP_BACK;
+    if (c->u[T] == 0) return STICK;
+    return c->u[T] < 0 ? SLIP : SLIP_BACK;
 }
 
 const Cue level_cue = {.forces = forces, .impulses = impulses, .friction_state = friction_state};

@@ -8,21 +8,13 @@ FAST static double product(const double *a, const double *b, int count)
     return sum;
 }
 
-/* Velocities of ports and slopes at the present state of the modes. */
-void update_port_velocities(Contact *c)
-{
-    const int n_modes = c->in->modes, n_cue = c->in->ports + c->in->slopes;
-    for (int q = 0; q < n_cue; q++)
-        c->s->port_velocities[q] = product(c->in->rows + q * n_modes, c->s->modes, n_modes);
-}
-
 /* Velocities of ports and slopes without loads, m/s, at the end of the step and on average over it. */
 FAST void free_motion(Contact *c)
 {
     const int n_cue = c->in->ports + c->in->slopes, n_state = 2 * c->in->modes;
     const double *state = c->s->modes;
     for (int q = 0; q < n_cue; q++) {
-        const double *ends = c->t.ends + q * n_state, *means = c->t.means + q * n_state;
+        const double *ends = c->tables.ends + q * n_state, *means = c->tables.means + q * n_state;
         double end = 0, mean = 0;
         for (int i = 0; i < n_state; i++) {
             end += ends[i] * state[i];
@@ -33,13 +25,12 @@ FAST void free_motion(Contact *c)
     }
 }
 
-/* Loads on ports and slopes, and behind them the forces of the dashpots, which follow from them. */
-static void load_rows(Contact *c, const double *cue_loads)
+/* The forces of the dashpots, which follow from the loads on ports and slopes. */
+static void load_dashpots(Contact *c)
 {
     const int n_cue = c->in->ports + c->in->slopes, n_state = 2 * c->in->modes;
-    memcpy(c->loads, cue_loads, n_cue * sizeof(double));
     for (int d = 0; d < c->in->dashpots; d++) {
-        const double *row = c->t.dashpots + d * (n_state + n_cue);
+        const double *row = c->tables.dashpots + d * (n_state + n_cue);
         c->loads[n_cue + d] = product(row, c->s->modes, n_state) + product(row + n_state, c->loads, n_cue);
     }
 }
@@ -59,16 +50,16 @@ static void gather_radiating(Contact *c)
     const int n_modes = c->in->modes, m = c->in->radiating;
     for (int i = 0; i < m; i++) {
         int k = c->in->radiating_modes[i];
-        c->group[i] = c->s->modes[k];
-        c->group[m + i] = c->s->modes[n_modes + k];
-        c->group[2 * m + i] = modal_load(c, k);
+        c->radiating[i] = c->s->modes[k];
+        c->radiating[m + i] = c->s->modes[n_modes + k];
+        c->radiating[2 * m + i] = modal_load(c, k);
     }
 }
 
-/* Load the modes for the step: loads on ports and slopes, and the dashpots' forces. */
-void load_modes(Contact *c, const double *cue_loads)
+/* Load the modes for the step, by the loads on ports and slopes. */
+void load_modes(Contact *c)
 {
-    load_rows(c, cue_loads);
+    load_dashpots(c);
     gather_radiating(c);
 }
 
@@ -84,7 +75,7 @@ static double structural_loss(const Contact *c)
 {
     const int n_modes = c->in->modes;
     const double *v = c->s->modes, *a = v + n_modes;
-    const double *per_vv = c->t.loss, *per_vg = per_vv + n_modes, *per_gg = per_vg + n_modes;
+    const double *per_vv = c->tables.loss, *per_vg = per_vv + n_modes, *per_gg = per_vg + n_modes;
     double sum = 0;
     for (int k = 0; k < n_modes; k++) {
         double g = modal_load(c, k) - c->in->omega[k] * a[k];
@@ -97,12 +88,13 @@ static double structural_loss(const Contact *c)
    dashpot includes the root of its constant. */
 void add_losses(Contact *c)
 {
-    const int n_cue = c->in->ports + c->in->slopes, n_group = 3 * c->in->radiating;
+    const int n_cue = c->in->ports + c->in->slopes, n_radiating = 3 * c->in->radiating;
     for (int d = 0; d < c->in->dashpots; d++)
-        c->s->damping_loss += c->t.h * c->loads[n_cue + d] * c->loads[n_cue + d];
-    c->s->radiated += quadratic_form(c->t.radiated, c->group, n_group);
+        c->s->damping_loss += c->tables.h * c->loads[n_cue + d] * c->loads[n_cue + d];
+    c->s->radiated += quadratic_form(c->tables.radiated, c->radiating, n_radiating);
     if (!c->in->structural_loss) return;
-    c->s->damping_loss += structural_loss(c) + quadratic_form(c->t.dissipated, c->group, n_group);
+    c->s->damping_loss += structural_loss(c);
+    c->s->damping_loss += quadratic_form(c->tables.dissipated, c->radiating, n_radiating);
 }
 
 static void advance_radiating(Contact *c)
@@ -110,8 +102,8 @@ static void advance_radiating(Contact *c)
     const int n_modes = c->in->modes, m = c->in->radiating;
     for (int i = 0; i < m; i++) {
         int k = c->in->radiating_modes[i];
-        c->s->modes[k] = product(c->t.radiating + 3 * m * i, c->group, 3 * m);
-        c->s->modes[n_modes + k] = product(c->t.radiating + 3 * m * (m + i), c->group, 3 * m);
+        c->s->modes[k] = product(c->tables.radiating + 3 * m * i, c->radiating, 3 * m);
+        c->s->modes[n_modes + k] = product(c->tables.radiating + 3 * m * (m + i), c->radiating, 3 * m);
     }
 }
 
@@ -135,23 +127,15 @@ FAST static void add_scaled(double *restrict sum, double load, const double *res
 void advance_modes(Contact *c)
 {
     const int n_state = 2 * c->in->modes, n_rows = c->in->ports + c->in->slopes + c->in->dashpots;
-    advance_own(c->in->modes, c->t.own, c->s->modes);
+    advance_own(c->in->modes, c->tables.own, c->s->modes);
     for (int q = 0; q < n_rows; q++)
-        if (c->loads[q] != 0) add_scaled(c->s->modes, c->loads[q], c->t.response + q * n_state, n_state);
+        if (c->loads[q] != 0) add_scaled(c->s->modes, c->loads[q], c->tables.response + q * n_state, n_state);
     advance_radiating(c);
 }
 
-/* Apply impulses on ports and slopes, N s. */
-void apply_impulses(Contact *c, const double *impulses)
-{
-    const int n_modes = c->in->modes, n_cue = c->in->ports + c->in->slopes;
-    for (int q = 0; q < n_cue; q++)
-        for (int k = 0; k < n_modes; k++) c->s->modes[k] += impulses[q] * c->in->rows[q * n_modes + k];
-}
-
 /* Impulse on the tip's lateral port, N s, that imposes mean velocities on it over equal steps, m/s, after a
-   first impulse. The velocities are relative to a ball of an inverse mass, 1/kg, that the impulse moves,
-   too. */
+   first impulse, which the modes have taken. The velocities are relative to a ball of an inverse mass, 1/kg,
+   that the impulse moves, too. */
 EXPORTED double imposed_velocity_impulse(Contact *c, const StepTables *tables, int steps, const double *means,
                                          double ball_inverse_mass, double first_impulse)
 {
@@ -159,16 +143,14 @@ EXPORTED double imposed_velocity_impulse(Contact *c, const StepTables *tables, i
     const double *mean_velocity = tables->means + W_PORT * n_state;
     const double per_force =
         tables->mean_per_load[W_PORT * n_cue + W_PORT] + ball_inverse_mass * tables->h / 2;
-    double loads[CUE_VELOCITIES] = {[W_PORT] = first_impulse};
     double impulse = first_impulse;
-    c->t = *tables;
-    apply_impulses(c, loads);
+    c->tables = *tables;
     for (int n = 0; n < steps; n++) {
         double without_force = product(mean_velocity, c->s->modes, n_state) + ball_inverse_mass * impulse;
-        loads[W_PORT] = (means[n] - without_force) / per_force;
-        load_modes(c, loads);
+        c->loads[W_PORT] = (means[n] - without_force) / per_force;
+        load_modes(c);
         advance_modes(c);
-        impulse += tables->h * loads[W_PORT];
+        impulse += tables->h * c->loads[W_PORT];
     }
     return impulse;
 }

@@ -116,28 +116,21 @@ FAST static double shift_annuli(Contact *c, double virtual, double shift, double
     return sum;
 }
 
-static void stick(Contact *c, const double *u, Equations *e)
+static void stick(Contact *c, Equations *e)
 {
-    const double half = c->t.h / 2;
+    const double half = c->tables.h / 2;
     double by_shift, by_virtual;
-    double shift = c->s->shift - half * u[T];
+    double shift = c->s->shift - half * c->u[T];
     e->g[T] = c->F[T] - shift_annuli(c, c->normal.virtual, shift - c->s->shift_mid, &by_shift, &by_virtual);
     by_virtual /= c->normal.scale;
     e->J[T][T] = 1 + half * (by_shift * c->W[T][T] + by_virtual * c->W[N][T]);
     e->J[T][N] = half * (by_shift * c->W[T][N] + by_virtual * c->W[N][N]);
 }
 
-static void keep(Contact *c, double middle)
+static void update(Contact *c)
 {
-    (void)middle;
     memcpy(c->s->annulus_force, c->annulus_force, sizeof c->s->annulus_force);
     c->s->shear_loss += c->annuli_loss;
-}
-
-static void release(Contact *c, double shift)
-{
-    (void)c;
-    (void)shift;
 }
 
 static int friction_state(const Contact *c)
@@ -147,5 +140,8 @@ static int friction_state(const Contact *c)
     return c->F[T] > 0 ? SLIP : SLIP_BACK;
 }
 
-const Patch partial_slip = {
-    .slips_in_parts = 1, .stick = stick, .keep = keep, .release = release, .friction_state = friction_state};
+const Patch partial_slip = {.slips_in_parts = 1,
+                            .stick = stick,
+                            .update = update,
+                            .release = nothing,
+                            .friction_state = friction_state};

@@ -2,23 +2,11 @@
 #include "contact.h"
 
 /* The tip has the mean velocity of a sticking point. */
-static void stick(Contact *c, const double *u, Equations *e)
+static void stick(Contact *c, Equations *e)
 {
-    e->g[T] = u[T] - c->u_stick[T];
+    e->g[T] = c->u[T] - c->u_stick[T];
     e->J[T][T] = c->W[T][T];
     e->J[T][N] = c->W[T][N];
-}
-
-static void keep(Contact *c, double middle)
-{
-    (void)c;
-    (void)middle;
-}
-
-static void release(Contact *c, double shift)
-{
-    (void)c;
-    (void)shift;
 }
 
 /* A tip that comes to rest within the step has slipped in a part of it: counted as slip. */
@@ -29,5 +17,8 @@ static int friction_state(const Contact *c)
     return c->u_stick[T] < 0 ? SLIP : SLIP_BACK;
 }
 
-const Patch rigid_patch = {
-    .slips_in_parts = 0, .stick = stick, .keep = keep, .release = release, .friction_state = friction_state};
+const Patch rigid_patch = {.slips_in_parts = 0,
+                           .stick = stick,
+                           .update = nothing,
+                           .release = nothing,
+                           .friction_state = friction_state};

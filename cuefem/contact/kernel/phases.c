@@ -7,62 +7,46 @@
    shortened by the factor e / MIN_STEP_RESTITUTION. */
 static const double MIN_STEP_RESTITUTION = 0.5;
 
-static double unloading_step(const Input *in)
-{
-    if (in->restitution >= MIN_STEP_RESTITUTION) return in->step;
-    return in->step * in->restitution / MIN_STEP_RESTITUTION;
-}
-
 static void begin(Contact *c, int phase, double step)
 {
     c->s->phase = phase;
     c->s->next_step = step;
 }
 
-static int is_indented(const Contact *c) { return c->s->indentation > residual(c); }
+static void begin_unloading(Contact *c)
+{
+    const Input *in = c->in;
+    begin(c, UNLOADING, in->step * fmin(1, in->restitution / MIN_STEP_RESTITUTION));
+}
+
+static int is_indented(const Contact *c) { return c->s->indentation > residual_indentation(c); }
 
 /* In contact: */
 
-static int contact_forces(Contact *c) { return c->cue->forces(c); }
-
-static void keep_contact(Contact *c, double u)
+static void update_contact(Contact *c)
 {
     State *s = c->s;
-    s->shift_mid = s->shift - c->t.h / 2 * u;
-    c->patch->keep(c, s->shift_mid);
+    s->shift_mid = s->shift - c->tables.h / 2 * c->u[T];
+    c->patch->update(c);
     s->virtual_mid = c->normal.virtual;
-    s->friction_state = c->cue->friction_state(c, u);
+    s->friction_state = c->cue->friction_state(c);
     s->tip_stuck = !c->slip;
 }
 
 static int contact_status(const State *s) { return s->time > s->deadline ? TIME_LIMIT : RUNNING; }
 
-static int no_event(double excess, double excess_at_end)
-{
-    (void)excess;
-    (void)excess_at_end;
-    return 0;
-}
-
-static int separates(double excess, double excess_at_end)
-{
-    (void)excess;
-    return excess_at_end < 0;
-}
-
-static void after_loading(Contact *c, double v_n)
+static void after_loading(Contact *c)
 {
     State *s = c->s;
-    if (v_n > 0) {
+    if (c->v[N] > 0) {
         s->max_indentation = larger(s->max_indentation, s->indentation);
-        begin(c, UNLOADING, unloading_step(c->in));
+        begin_unloading(c);
     }
 }
 
-static void after_unloading(Contact *c, double v_n)
+static void after_unloading(Contact *c)
 {
     const State *s = c->s;
-    (void)v_n;
     if (s->ends_at_event || !is_indented(c)) {
         separate(c);
         begin(c, FREE, c->in->step);
@@ -73,70 +57,52 @@ static void after_unloading(Contact *c, double v_n)
 
 /* In free flight: */
 
-static NormalForce no_force(const Contact *c, double indentation)
-{
-    (void)c;
-    return (NormalForce){.virtual = indentation, .scale = 1};
-}
-
-static int no_forces(Contact *c)
-{
-    (void)c;
-    return 1;
-}
-
-static int touches(double excess, double excess_at_end) { return excess < 0 && excess_at_end > 0; }
-
 /* A spring patch will be unstrained at touch. */
-static void keep_flight(Contact *c, double u)
+static void update_flight(Contact *c)
 {
     State *s = c->s;
     s->friction_state = SEPARATED;
-    s->shift_mid = s->shift - c->t.h * u;
+    s->shift_mid = s->shift - c->tables.h * c->u[T];
     s->origin = s->shift_mid;
 }
 
 /* Below the maximum indentation a second contact follows the unloading curve, beyond it the loading curve. */
-static void after_flight(Contact *c, double v_n)
+static void after_flight(Contact *c)
 {
-    (void)v_n;
     if (c->s->ends_at_event || is_indented(c)) {
         c->s->ends_at_event = 0;
-        begin(c, UNLOADING, unloading_step(c->in));
+        begin_unloading(c);
     }
 }
 
 static int flight_status(const State *s) { return s->time >= s->window_end ? ENDED : RUNNING; }
 
 const Phase phases[] = {
-    [LOADING] = {.curve = loading_curve,
-                 .forces = contact_forces,
-                 .has_event = no_event,
-                 .keep = keep_contact,
+    [LOADING] = {.touches = 1,
+                 .event = 0,
+                 .curve = loading_curve,
+                 .update = update_contact,
                  .next = after_loading,
-                 .status = contact_status,
-                 .touches = 1},
-    [UNLOADING] = {.curve = unloading_curve,
-                   .forces = contact_forces,
-                   .has_event = separates,
-                   .keep = keep_contact,
+                 .status = contact_status},
+    [UNLOADING] = {.touches = 1,
+                   .event = -1,
+                   .curve = unloading_curve,
+                   .update = update_contact,
                    .next = after_unloading,
-                   .status = contact_status,
-                   .touches = 1},
-    [FREE] = {.curve = no_force,
-              .forces = no_forces,
-              .has_event = touches,
-              .keep = keep_flight,
+                   .status = contact_status},
+    [FREE] = {.touches = 0,
+              .event = 1,
+              .curve = NULL,
+              .update = update_flight,
               .next = after_flight,
-              .status = flight_status,
-              .touches = 0},
+              .status = flight_status},
 };
 
 /* Separation: the tip forgets its strain, and the modes are kept for Python. */
 void separate(Contact *c)
 {
     State *s = c->s;
-    if (s->steps > s->steps_to_last_separation) c->patch->release(c, s->shift);
+    c->patch->release(c);
     s->steps_to_last_separation = s->steps;
     s->deadline = c->in->max_time + s->time;
     s->ends_at_event = 0;

@@ -61,7 +61,7 @@ static int plane_friction(Contact *c, int a, int b, double bound)
 /* Newton's method for F_n, the other forces held. */
 static void normal_force(Contact *c)
 {
-    const double half = c->t.h / 2;
+    const double half = c->tables.h / 2;
     for (int i = 0; i < MAX_ITERATIONS; i++) {
         NormalForce normal = phase_of(c)->curve(c, c->s->indentation - half * mean_velocity(c, N));
         double correction = (c->F[N] - normal.force) / (1 + normal.slope * half * c->W[N][N]);
@@ -76,45 +76,29 @@ static void table_force(Contact *c)
     const double height = c->s->height;
     double u = c->u_free[UP] - c->W[UP][UP] * c->F[UP]; /* without the table */
     for (int f = 0; f < c->in->forces; f++) u += c->W[UP][f] * c->F[f];
-    int leaves = height > 0 && height + c->t.h * u > 0;
+    int leaves = height > 0 && height + c->tables.h * u > 0;
     c->F[UP] = leaves ? 0 : larger(0, (c->u_stick[UP] - u) / c->W[UP][UP]);
 }
 
-/* Friction of the tip up to a bound, N, and the table's forces. */
-static void friction_and_table(Contact *c, double bound)
+/* One sweep over all forces; friction of the tip is at most mu F_n, N, and a constant, N, more. */
+static void sweep(Contact *c, double mu, double more)
 {
-    c->slip = plane_friction(c, T, P, bound) ? STICK : SLIP;
+    normal_force(c);
+    c->slip = plane_friction(c, T, P, mu * larger(c->F[N], 0) + more) ? STICK : SLIP;
     table_force(c);
     int sticks = plane_friction(c, LATERAL, FORWARD, c->in->table_friction * c->F[UP]);
-    c->on_table = c->F[UP] > 0;
-    c->table_sticks = sticks && c->on_table;
-}
-
-/* One sweep over all forces. */
-typedef void Sweep(Contact *c, double bound);
-
-static void sweep(Contact *c, double bound)
-{
-    normal_force(c);
-    friction_and_table(c, bound);
-}
-
-/* The bound follows the normal force. */
-static void coulomb_sweep(Contact *c, double unused)
-{
-    (void)unused;
-    normal_force(c);
-    friction_and_table(c, c->in->friction * larger(c->F[N], 0));
+    c->s->on_table = c->F[UP] > 0;
+    c->s->table_stuck = sticks && c->s->on_table;
 }
 
 /* Sweeps until the forces stay. Returns whether they converged. */
-static int solve_gauss_seidel(Contact *c, Sweep *take_sweep, double bound)
+static int solve(Contact *c, double mu, double more)
 {
     double change = 1, scale = 1;
     for (int n = 0; n < MAX_SWEEPS && change > REL_TOL_SWEEPS * scale; n++) {
         double before[FORCES];
         memcpy(before, c->F, sizeof before);
-        take_sweep(c, bound);
+        sweep(c, mu, more);
         change = 0;
         scale = MIN_FORCE;
         for (int f = 0; f < FORCES; f++) {
@@ -122,8 +106,6 @@ static int solve_gauss_seidel(Contact *c, Sweep *take_sweep, double bound)
             scale = larger(scale, fabs(c->F[f]));
         }
     }
-    c->s->on_table = c->on_table;
-    c->s->table_stuck = c->table_sticks;
     return change <= REL_TOL_ACCEPTED * scale;
 }
 
@@ -131,12 +113,12 @@ static int solve_gauss_seidel(Contact *c, Sweep *take_sweep, double bound)
    The bound mu F_n lies between 0 and the friction force of stick, and is found by bisection. */
 static int forces(Contact *c)
 {
-    if (solve_gauss_seidel(c, coulomb_sweep, 0)) return 1;
-    int solved = solve_gauss_seidel(c, sweep, HUGE_VAL);
+    if (solve(c, c->in->friction, 0)) return 1;
+    int solved = solve(c, 0, HUGE_VAL);
     double low = 0, high = hypot(c->F[T], c->F[P]);
     for (int i = 0; i < MAX_BISECTIONS && solved; i++) {
         double bound = (low + high) / 2;
-        solved = solve_gauss_seidel(c, sweep, bound);
+        solved = solve(c, 0, bound);
         if (c->in->friction * c->F[N] > bound)
             low = bound;
         else
@@ -145,12 +127,8 @@ static int forces(Contact *c)
     return solved;
 }
 
-static int impulses(Contact *c) { return solve_gauss_seidel(c, friction_and_table, HUGE_VAL); }
+static int impulses(Contact *c) { return solve(c, 0, HUGE_VAL); }
 
-static int friction_state(const Contact *c, double u)
-{
-    (void)u;
-    return c->patch->friction_state(c);
-}
+static int friction_state(const Contact *c) { return c->patch->friction_state(c); }
 
 const Cue raised_cue = {.forces = forces, .impulses = impulses, .friction_state = friction_state};

@@ -1,121 +1,174 @@
-/* One time step: its forces, and the motion of cue, ball and contact under them (handbook: One step). */
+/* One time step: its forces, and the motion of cue, ball and contact under them (handbook: One step).
+
+   Begin with take_step, below; contact.h explains F, u, v and C. The forces come from level.c, or raised.c
+   for a cue raised over a table: the law of the tip (laws.c) and friction (patch_*.c), solved together. */
 #include "contact.h"
 
 static const double MIN_FRACTION = 1e-6; /* of a step, to its event */
 
-/* A step under way. */
-typedef struct {
-    double v[FORCES], u[FORCES];  /* velocities of the contact at its end, and on average */
-    double loads[VELOCITIES];     /* on ports, slopes and ball, N */
-    double section_rotation_rate; /* mean, of the cue's end section, rad/s */
-    double spin;                  /* R times the ball's mean spin, m/s */
-} Motion;
+/* The forces of the step; in free flight they are 0. A step without a solution is recorded, and is the last.
+ */
+static void solve_forces(Contact *c)
+{
+    if (!phase_of(c)->touches) return;
+    int solved = c->cue->forces(c);
+    if (!solved) c->s->status = UNSOLVED;
+}
 
-/* If ball and tip separate or touch within the step, prepare a shorter step that ends there and return 1. */
-static int ends_early(Contact *c, double u_n)
+/* Ball and tip separate or touch where the indentation passes the residual one. If that happens within the
+   step, set the length of a step that ends there, which replaces this one, and return 1. */
+static int shorten_to_event(Contact *c)
 {
     State *s = c->s;
-    const double h = c->t.h;
-    double excess = s->indentation - residual(c), excess_at_end = excess - h * u_n;
-    if (s->ends_at_event || !phase_of(c)->has_event(excess, excess_at_end)) return 0;
+    const double h = c->tables.h;
+    const int event = phase_of(c)->event;
+    double excess = s->indentation - residual_indentation(c);
+    double excess_at_end = excess - h * c->u[N];
+    int passes = event * excess < 0 && event * excess_at_end > 0;
+    if (s->ends_at_event || !passes) return 0;
     s->ends_at_event = 1;
-    s->next_step = h * larger(excess / (h * u_n), MIN_FRACTION);
+    s->next_step = h * larger(excess / (h * c->u[N]), MIN_FRACTION);
     return 1;
 }
 
-/* The work that the forces lose, and the loads on cue and ball. */
-static void load(Contact *c, Motion *m)
+/* The work that each force dissipates: its impulse by the mean velocity, with the opposite sign. */
+static void add_work(Contact *c)
 {
-    const Input *in = c->in;
-    const int n_velocities = in->ports + in->slopes + in->speeds;
-    for (int f = 0; f < in->forces; f++) {
-        c->s->work[f] -= c->t.h * c->F[f] * m->u[f];
-        for (int p = 0; p < n_velocities; p++) m->loads[p] += c->C[f][p] * c->F[f];
-    }
-    c->axial_force = -m->loads[U_PORT];
+    for (int f = 0; f < c->in->forces; f++) c->s->work[f] -= c->tables.load_time * c->F[f] * c->u[f];
 }
 
-static void advance_cue(Contact *c, Motion *m)
+/* The loads C' F on ports, slopes and ball. */
+static void find_loads(Contact *c)
+{
+    const Input *in = c->in;
+    const int n_cue = in->ports + in->slopes;
+    memset(c->loads, 0, n_cue * sizeof(double));
+    memset(c->ball_loads, 0, sizeof c->ball_loads);
+    for (int f = 0; f < in->forces; f++) {
+        for (int p = 0; p < n_cue; p++) c->loads[p] += c->C[f][p] * c->F[f];
+        for (int b = 0; b < in->speeds; b++) c->ball_loads[b] += c->C[f][n_cue + b] * c->F[f];
+    }
+    c->axial_force = -c->loads[U_PORT];
+}
+
+static void advance_cue(Contact *c)
 {
     const Input *in = c->in;
     State *s = c->s;
-    const int n_cue = in->ports + in->slopes;
-    load_modes(c, m->loads);
+    load_modes(c);
     add_losses(c);
     advance_modes(c);
-    for (int p = 0; p < n_cue; p++) {
-        double end = c->end_free[p], mean = c->mean_free[p];
+    for (int p = 0; p < in->ports + in->slopes; p++) {
+        s->port_velocities[p] = c->end_free[p];
+        c->mean_velocities[p] = c->mean_free[p];
         for (int f = 0; f < in->forces; f++) {
-            end += c->end_per_force[f][p] * c->F[f];
-            mean += c->mean_per_force[f][p] * c->F[f];
+            s->port_velocities[p] += c->end_per_force[f][p] * c->F[f];
+            c->mean_velocities[p] += c->mean_per_force[f][p] * c->F[f];
         }
-        if (p == THIRD_PORT && in->ports > THIRD_PORT)
-            m->section_rotation_rate = mean; /* used in rolling alone */
-        if (p >= in->ports) s->slopes[p - in->ports] += c->t.h * mean;
-        s->port_velocities[p] = end;
     }
+    for (int a = 0; a < in->slopes; a++) s->slopes[a] += c->tables.h * c->mean_velocities[in->ports + a];
 }
 
-static void advance_ball(Contact *c, Motion *m)
+static void advance_ball(Contact *c)
 {
     const Input *in = c->in;
-    const double *loads = m->loads + in->ports + in->slopes;
-    double *ball = c->s->ball;
-    double spin = ball[2];
-    for (int b = 0; b < in->speeds; b++) ball[b] += c->t.h * in->inverse_masses[b] * loads[b];
-    m->spin = (spin + ball[2]) / 2;
-    c->s->height = larger(0, c->s->height + c->t.h * m->u[UP]);
+    State *s = c->s;
+    const double spin = s->ball[BALL_SPIN];
+    for (int b = 0; b < in->speeds; b++)
+        s->ball[b] += c->tables.load_time * in->inverse_masses[b] * c->ball_loads[b];
+    c->mean_spin = (spin + s->ball[BALL_SPIN]) / 2;
+    s->height = larger(0, s->height + c->tables.h * c->u[UP]);
 }
 
-/* Rolling and slip move the contact over ball and dome; beyond the dome's rim over the ball alone. */
-static void roll(Contact *c, const Motion *m)
+/* Rolling and slip move the contact over ball and dome; beyond the dome's rim over the ball alone. The third
+   port of a cue that rolls on a dome is the rotation of its end section. */
+static void roll(Contact *c)
 {
     const Input *in = c->in;
     State *s = c->s;
     double dome = fabs(in->phi + s->angle) < in->rim ? in->dome : 0;
-    s->rolling_rate = (m->spin - m->u[T] + dome * m->section_rotation_rate) / (in->radius + dome);
-    s->angle += c->t.h * s->rolling_rate;
+    double section_rotation = in->ports > THIRD_PORT ? c->mean_velocities[THIRD_PORT] : 0;
+    s->rolling_rate = (c->mean_spin - c->u[T] + dome * section_rotation) / (in->radius + dome);
+    s->angle += c->tables.h * s->rolling_rate;
 }
 
-static void advance_tip(Contact *c, const Motion *m)
+/* The tip's state at the middle of the step, from its shift at the beginning; then shift and indentation at
+   the end. */
+static void advance_tip(Contact *c)
 {
-    phase_of(c)->keep(c, m->u[T]);
-    c->s->shift -= c->t.h * m->u[T];
-    c->s->indentation -= c->t.h * m->u[N];
+    phase_of(c)->update(c);
+    c->s->shift -= c->tables.h * c->u[T];
+    c->s->indentation -= c->tables.h * c->u[N];
 }
 
-static void record(const Contact *c, const Motion *m, Step *row)
+static void record(const Contact *c, Step *row)
 {
     const State *s = c->s;
     *row = (Step){.time = s->time,
-                  .length = c->t.h,
+                  .length = c->tables.h,
                   .friction_state = s->friction_state,
                   .phase = s->phase,
                   .angle = s->angle,
                   .damping_loss = s->damping_loss,
                   .radiated = s->radiated};
     memcpy(row->F, c->F, sizeof row->F);
-    memcpy(row->v, m->v, c->in->forces * sizeof(double));
+    memcpy(row->v, c->v, sizeof row->v);
     memcpy(row->ball, s->ball, sizeof row->ball);
 }
 
-/* Take one step and return 1; return 0 if it must be repeated with a shorter length. The forces are those of
-   the law (laws.c) and of friction (patch_*.c), solved together by level.c or raised.c. */
+/* Take one step and return 1; return 0 if it must be repeated with the length s->next_step. The phase of the
+   next step follows in contact.c, from phases.c. */
 int take_step(Contact *c, Step *row)
 {
-    Motion m = {0};
     free_motion(c);
     contact_matrices(c);
-    int solved = phase_of(c)->forces(c);
-    if (!solved) c->s->status = UNSOLVED;
-    velocities(c, m.v, m.u);
-    if (ends_early(c, m.u[N])) return 0;
-    load(c, &m);
-    advance_cue(c, &m);
-    advance_ball(c, &m);
-    if (c->in->rolling) roll(c, &m);
-    advance_tip(c, &m);
-    c->s->time += c->t.h;
-    record(c, &m, row);
+    solve_forces(c);
+    velocities(c);
+    if (shorten_to_event(c)) return 0;
+    add_work(c);
+    find_loads(c);
+    advance_cue(c);
+    advance_ball(c);
+    if (c->in->rolling) roll(c);
+    advance_tip(c);
+    memcpy(c->last_F[1], c->last_F[0], sizeof c->F);
+    memcpy(c->last_F[0], c->F, sizeof c->F);
+    c->s->time += c->tables.h;
+    record(c, row);
     return 1;
+}
+
+/* Whether ball and tip separate; the impulses are then scaled so that they do so at e times the approach
+   speed. */
+static int bounces(Contact *c)
+{
+    double gain = 0; /* of the normal velocity, m/s */
+    for (int f = 0; f < c->in->forces; f++) gain += c->V[N][f] * c->F[f];
+    if (c->v_free[N] + gain <= 0) return 0;
+    double scale = fmin(1, (1 + c->in->restitution) * fabs(c->v_free[N] / gain));
+    for (int f = 0; f < c->in->forces; f++) c->F[f] *= scale;
+    return 1;
+}
+
+/* Impact of infinite friction at the first touch: an impulse stops the tip's tangential velocity and the
+   ball's velocity into the table, with friction there. Return 1 if tip and ball stay in contact. */
+int take_impact(Contact *c, Step *row)
+{
+    State *s = c->s;
+    free_motion(c);
+    contact_matrices(c);
+    int solved = c->cue->impulses(c);
+    if (!solved) s->status = UNSOLVED;
+    int parts = bounces(c);
+    velocities(c);
+    add_work(c);
+    find_loads(c);
+    advance_cue(c);
+    advance_ball(c);
+    s->friction_state = IMPACT;
+    s->tip_stuck = 1;
+    s->on_table = 1;
+    record(c, row);
+    memset(c->F, 0, sizeof c->F);
+    return !parts;
 }
