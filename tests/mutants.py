@@ -2,15 +2,19 @@
 
 A mutant is the package with one operator, comparison, condition or number changed: in a function, at the level of a
 module or class (tables, limits, defaults), or in the kernel's C. A first run of the everyday tests under `coverage`
-records which test executes which line. Then each mutant is written into a copy of the tree, and a process forked from
-one that has imported the libraries, but not the package, runs the tests that execute the line, the shortest first,
-until one fails. `equivalent_mutants.txt` lists mutants that no test can detect, each with its reason.
+records which test executes which line. Then each mutant is written into a copy of the tree, and a forked process runs
+the tests that execute the line, the shortest first, until one fails: forked from one that has collected the tests and
+with the changed functions' code exchanged, or, for the level of a module, from one that has not imported the package.
+A process has a limit of processor time, not of time: a busy machine has no effect. `equivalent_mutants.txt` lists
+mutants that no test can detect, each with its reason.
 Printed: one line a mutant, then detected fractions by group and room with their 95 % intervals (Wilson).
 """
 
 import argparse
 import ast
 import contextlib
+import functools
+import gc
 import itertools
 import json
 import math
@@ -18,37 +22,46 @@ import multiprocessing
 import os
 import random
 import re
+import resource
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
 import time
-from collections import defaultdict
-from collections.abc import Iterator, Sequence
+import types
+from collections import Counter, defaultdict
+from collections.abc import Callable, Collection, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 # Imported before the forks, so that each mutant's process has them.
+import hypothesis
 import matplotlib.figure  # noqa: F401
 import numpy  # noqa: F401
+import psutil
 import pytest
 import scipy.linalg
 import scipy.optimize  # noqa: F401
 import skfem  # noqa: F401
+from _pytest.runner import runtestprotocol
 
 ROOT = Path(__file__).parents[1]
 INTERFACE = ("analysis", "cli", "designs", "designer", "files", "handbook", "measurements", "show")
 EQUIVALENT = Path(__file__).with_name("equivalent_mutants.txt")
 SECONDS = 60.0  # of tests a mutant, as the first run measured them
-START = 90.0  # s that a process may take beside its tests: imports, collection, a busy machine
+START = 10.0  # s of processor time that a process may take beside its tests
+IMPORTS = 40.0  # s more for imports and collection
+STILL = 600.0  # s without processor time after which a process is ended
 FIRST = 12  # tests of the first fork: most mutants are detected by them, and few test files are imported
 # Tests that start the package in a process of its own, or read the tree's files: they say little of a mutant.
 EXCLUDED = (
     "tests/contact/test_kernel_build.py",
     "tests/test_readme.py",
     "tests/studies",
-    "tests/designer/test_server.py",
 )
+NO_RESULT = ("repr", "maxsize")  # keywords: what a dataclass prints of itself, the size of a cache
 SWAPS: dict[type, type] = {
     **{ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult},
     **{ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq},
@@ -78,9 +91,18 @@ class Mutant(NamedTuple):
     group: str
 
     @property
+    def file(self) -> str:
+        """The file in a tree."""
+        return self.path.relative_to(ROOT).as_posix()
+
+    def applied(self, whole: bytes) -> bytes:
+        """The text of the file with the change."""
+        return whole[: self.ends[0]] + self.new.encode() + whole[self.ends[1] :]
+
+    @property
     def name(self) -> str:
         """File and change, without a line number, as `equivalent_mutants.txt` has them."""
-        return f"{self.path.relative_to(ROOT).as_posix()}: {self.old} -> {self.new}"
+        return f"{self.file}: {self.old} -> {self.new}"
 
     @property
     def room(self) -> str:
@@ -109,10 +131,13 @@ def changed(node: ast.AST) -> ast.expr | None:
 def expressions(node: ast.AST, in_function: bool = False) -> Iterator[tuple[ast.expr, bool]]:
     """Expressions below a node that are evaluated, each with whether it stands in a function's body.
 
-    Annotations, patterns and the parts of f-strings, whose positions Python 3.11 does not know, are left out.
+    Annotations, patterns and the parts of f-strings, whose positions Python 3.11 does not know, are left out, and what
+    no result depends on.
     """
     for name, value in ast.iter_fields(node):
         if name in ("annotation", "returns", "pattern") or isinstance(node, ast.JoinedStr):
+            continue
+        if isinstance(node, ast.keyword) and node.arg in NO_RESULT:
             continue
         inside = in_function or (isinstance(node, ast.FunctionDef | ast.Lambda) and name == "body")
         for child in value if isinstance(value, list) else [value]:
@@ -170,15 +195,105 @@ def drawn(seed: int, counts: dict[str, int]) -> list[Mutant]:
     ]
 
 
-class Durations:
-    """A plugin that adds up the seconds of every test function."""
+class Reach(NamedTuple):
+    """What the first run recorded: processor seconds of each test, tests by file and line, and lines run by imports."""
 
-    def __init__(self) -> None:
-        self.seconds: dict[str, float] = defaultdict(float)
+    seconds: dict[str, float]
+    tests: dict[str, dict[int, list[str]]]
+    at_import: set[tuple[str, int]]
+
+    def chosen(self, mutant: Mutant) -> list[str]:
+        """Tests for a mutant: those that execute its line, else those of its file; then the others of their files.
+
+        Of each kind the ``FIRST`` shortest come first, then the others file by file; up to ``SECONDS`` in all.
+        """
+        path = "cuefem/contact/kernel/library.py" if mutant.group == "C" else mutant.file
+        lines = self.tests.get(path, {})
+        reached = [] if mutant.group in ("C", "module level") else sorted(set(lines.get(mutant.line, [])))
+        reached = reached or sorted(set(itertools.chain(*lines.values())))
+        files = {test_file(name) for name in reached}
+        others = {name for name in self.seconds if test_file(name) in files} - set(reached)
+        ordered = [name for names in (reached, others) for name in self.ordered(names)]
+        total = itertools.accumulate(self.seconds[name] for name in ordered)
+        return [name for name, until in zip(ordered, total, strict=True) if until < SECONDS]
+
+    def ordered(self, names: Collection[str]) -> list[str]:
+        """The shortest tests first, then the others file by file, so that tests of a file share its fixtures."""
+        of_file: dict[str, float] = defaultdict(float)
+        for name in names:
+            of_file[test_file(name)] += self.seconds[name]
+        shortest = sorted(names, key=lambda name: (self.seconds[name], name))
+        return shortest[:FIRST] + sorted(shortest[FIRST:], key=lambda name: (of_file[test_file(name)], test_file(name)))
+
+
+def test_file(name: str) -> str:
+    """The file of a test."""
+    return name.partition("::")[0]
+
+
+def processor_time() -> float:
+    """Processor seconds of this process and of those that it has waited for."""
+    return sum(os.times()[:4])
+
+
+class Recorder:
+    """A plugin that records the processor time and the executed lines of each test.
+
+    Lines of a fixture that tests share count for each test that requests it.
+    """
+
+    def __init__(self, measured: Any) -> None:
+        self.measured = measured
+        self.seconds: dict[str, float] = {}
+        self.failed: set[str] = set()
+        self.users: dict[str, list[str]] = defaultdict(list)  # of each shared fixture
+        self.contexts = [""]
+
+    @contextlib.contextmanager
+    def context(self, name: str) -> Iterator[None]:
+        """Record executed lines under a name."""
+        self.contexts.append(name)
+        self.measured.switch_context(name)
+        try:
+            yield
+        finally:
+            self.contexts.pop()
+            self.measured.switch_context(self.contexts[-1])
+
+    def pytest_collection_finish(self, session: pytest.Session) -> None:
+        """Note which tests request a fixture."""
+        for item in session.items:
+            for name in getattr(item, "fixturenames", ()):
+                self.users[name].append(item.nodeid)
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
+        """Measure one test."""
+        start = processor_time()
+        with self.context(item.nodeid):
+            result = yield
+        self.seconds[item.nodeid] = processor_time() - start
+        return result
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_fixture_setup(self, fixturedef: Any) -> Iterator[None]:
+        """Record the lines of a fixture."""
+        if fixturedef.scope == "function":
+            return (yield)
+        with self.context(f"fixture {fixturedef.argname} {fixturedef.baseid}"):
+            return (yield)
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        """Add the seconds of one phase."""
-        self.seconds[report.nodeid.partition("[")[0]] += report.duration
+        """Note a failed test."""
+        if report.failed:
+            self.failed.add(report.nodeid)
+
+    def tests(self, context: str) -> list[str]:
+        """The tests of a context."""
+        if not context.startswith("fixture "):
+            return [context]
+        _, name, base = context.split(" ", 2)
+        return [test for test in self.users[name] if test.startswith(base)]
 
 
 class FirstFailure:
@@ -203,127 +318,231 @@ class FirstFailure:
             self.note(report.nodeid)
 
 
-def run_pytest(arguments: Sequence[str], plugin: Any) -> int:
-    """Run tests in this process without workers and without output."""
+def run_pytest(tree: Path, arguments: Sequence[str], plugin: Any) -> int:
+    """Run tests of a tree in this process, without workers and without output."""
+    os.chdir(tree)
+    sys.path.insert(0, str(tree))
+    # A failing example is not shrunk: that it fails is enough.
+    phases = (hypothesis.Phase.explicit, hypothesis.Phase.generate)
+    hypothesis.settings.register_profile("mutants", derandomize=True, deadline=None, database=None, phases=phases)
     options = ["-p", "no:xdist", "-p", "no:cacheprovider", "--tb=no", "--import-mode=importlib", "-q"]
-    options += ["-o", "addopts=", "-m", "not heavy and not nightly"]
+    options += [
+        "-W",
+        "ignore::pytest.PytestAssertRewriteWarning",
+        "-o",
+        "addopts=",
+        "-m",
+        "not heavy and not nightly",
+        "--hypothesis-profile=mutants",
+    ]
+    options += [f"--basetemp={tree / 'tmp'}"]
     with open(os.devnull, "w") as nowhere, contextlib.redirect_stdout(nowhere), contextlib.redirect_stderr(nowhere):
         return int(pytest.main([*options, *arguments], plugins=[plugin]))
 
 
-def record_coverage(tree: Path, folders: Sequence[str], file: Path) -> None:
-    """Run tests of a tree under coverage; write seconds of each test function and the functions of each line."""
-    import coverage  # no dependency of the tests
-
-    os.chdir(tree)
-    sys.path.insert(0, str(tree))
-    measured = coverage.Coverage(data_file=None, source=[str(tree / "cuefem")], config_file=False)
-    measured.set_option("run:dynamic_context", "test_function")
-    measured.start()
-    durations = Durations()
-    run_pytest(folders, durations)
-    measured.stop()
-    data = measured.get_data()
-    lines = {str(Path(path).relative_to(tree)): data.contexts_by_lineno(path) for path in sorted(data.measured_files())}
-    file.write_text(json.dumps([durations.seconds, lines]), encoding="utf-8")
-
-
-class Reach(NamedTuple):
-    """What the first run recorded: seconds of each test function, and functions by file and line."""
-
-    seconds: dict[str, float]
-    functions: dict[str, dict[int, list[str]]]
-
-    def tests(self, mutant: Mutant) -> list[str]:
-        """The test functions that execute the mutant's line, else those of its file, the shortest first."""
-        path = str(mutant.path.relative_to(ROOT))
-        if mutant.group == "C":
-            path = "cuefem/contact/kernel/library.py"
-        lines = self.functions.get(path, {})
-        reached = lines.get(mutant.line, []) if mutant.group in ("core", "interface") else []
-        if not reached:
-            reached = sorted(set(itertools.chain(*lines.values())))
-        known = [name for name in reached if name in self.seconds]
-        everything = sorted(known or self.seconds, key=lambda name: self.seconds[name])
-        total, chosen = 0.0, []
-        for name in everything:
-            total += self.seconds[name]
-            if total > SECONDS:
-                break
-            chosen.append(name)
-        return chosen
-
-
-def first_run(tree: Path, workers: int) -> Reach:
-    """The everyday tests under coverage, in as many processes as there are workers."""
+def test_folders(tree: Path) -> list[str]:
+    """Folders and files of tests, without those in ``EXCLUDED``."""
     folders = sorted(str(path.relative_to(tree)) for path in tree.glob("tests/*") if any(path.rglob("test_*.py")))
     folders += sorted(str(path.relative_to(tree)) for path in tree.glob("tests/test_*.py"))
-    folders = [folder for folder in folders if folder not in EXCLUDED]
-    files = [tree / f"coverage_{number}.json" for number in range(workers)]
-    context = multiprocessing.get_context("fork")
-    shares = [
-        context.Process(target=record_coverage, args=(tree, folders[number::workers], file))
-        for number, file in enumerate(files)
-    ]
-    for share in shares:
-        share.start()
-    for share in shares:
-        share.join()
+    return [folder for folder in folders if folder not in EXCLUDED] + [f"--ignore={path}" for path in EXCLUDED]
+
+
+def record_coverage(tree: Path, folders: Sequence[str], file: Path) -> None:
+    """Run tests of a tree under coverage; write what `first_run` reads."""
+    import coverage  # no dependency of the tests
+
+    measured = coverage.Coverage(data_file=None, source=[str(tree / "cuefem")], config_file=False)
+    measured.start()
+    recorder = Recorder(measured)
+    run_pytest(tree, folders, recorder)
+    measured.stop()
+    data = measured.get_data()
+    numbers = {name: number for number, name in enumerate(recorder.seconds)}
+    lines, at_import = [], []
+    for path in sorted(data.measured_files()):
+        short = str(Path(path).relative_to(tree))
+        for line, contexts in data.contexts_by_lineno(path).items():
+            named = {test for context in contexts if context for test in recorder.tests(context)}
+            lines.append((short, line, sorted(numbers[test] for test in named if test in numbers)))
+            if "" in contexts:
+                at_import.append((short, line))
+    file.write_text(json.dumps([recorder.seconds, sorted(recorder.failed), lines, at_import]), encoding="utf-8")
+
+
+def first_run(tree: Path, workers: int, folder: Path) -> Reach:
+    """The everyday tests under coverage, in as many processes as there are workers; or what ``folder`` has of them."""
+    if not any(folder.glob("coverage_*.json")):
+        folder.mkdir(parents=True, exist_ok=True)
+        folders = test_folders(tree)
+        context = multiprocessing.get_context("fork")
+        shares = [
+            context.Process(target=record_coverage, args=(tree, folders[n::workers], folder / f"coverage_{n}.json"))
+            for n in range(workers)
+        ]
+        for share in shares:
+            share.start()
+        for share in shares:
+            share.join()
     seconds: dict[str, float] = {}
-    functions: dict[str, dict[int, list[str]]] = defaultdict(lambda: defaultdict(list))
-    for file in files:
-        durations, lines = json.loads(file.read_text(encoding="utf-8"))
-        seconds |= durations
-        names = {name.replace("/", ".").removesuffix(".py").replace(".py::", "."): name for name in durations}
-        for path, by_line in lines.items():
-            for line, contexts in by_line.items():
-                functions[path][int(line)] += [names[test] for test in contexts if test in names]
-    excluded = tuple(EXCLUDED)
-    return Reach({name: s for name, s in seconds.items() if not name.startswith(excluded)}, functions)
+    tests: dict[str, dict[int, list[str]]] = defaultdict(lambda: defaultdict(list))
+    at_import: set[tuple[str, int]] = set()
+    for file in sorted(folder.glob("coverage_*.json")):
+        durations, failed, lines, imported = json.loads(file.read_text(encoding="utf-8"))
+        for name in failed:
+            print(f"left out, fails without a mutant: {name}")
+        names = list(durations)
+        passed = {name: s for name, s in durations.items() if name not in failed}
+        seconds |= passed
+        for path, line, numbers in lines:
+            tests[path][line] += [names[number] for number in numbers if names[number] in passed]
+        at_import |= {(path, line) for path, line in imported}
+    return Reach(seconds, tests, at_import)
 
 
-def failure(tree: Path, tests: Sequence[str], file: Path, seconds: float) -> str:
-    """The first failure of tests in a process forked from this one, ended after ``seconds``; or an empty text."""
+def forked(run: Callable[[], object], file: Path, seconds: float) -> str:
+    """What a forked process writes to ``file`` as the first failure, ended after ``seconds`` of its processor time.
+
+    A process that burns its time does not end, which a test detects; one that waits for `STILL` seconds tells nothing.
+    """
     file.unlink(missing_ok=True)
     pid = os.fork()
     if pid == 0:
-        os.chdir(tree)
-        sys.path.insert(0, str(tree))
-        status = run_pytest(["-x", *tests], FirstFailure(file))
-        os._exit(status)
-    deadline = time.monotonic() + seconds
-    while time.monotonic() < deadline:
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(seconds), math.ceil(seconds) + 1))
+        run()
+        os._exit(0)
+    used, since = 0.0, time.monotonic()
+    while True:
         ended, status = os.waitpid(pid, os.WNOHANG)
         if ended:
+            code = os.waitstatus_to_exitcode(status)
             if file.exists():
                 return file.read_text(encoding="utf-8")
-            return "" if status == 0 else f"ends with status {os.waitstatus_to_exitcode(status)}"
+            return {0: "", -signal.SIGXCPU: "does not end"}.get(code, f"ends with status {code}")
+        with contextlib.suppress(psutil.Error):
+            now = sum(psutil.Process(pid).cpu_times()[:4])
+            if now > used:
+                used, since = now, time.monotonic()
+        if time.monotonic() - since > STILL:
+            os.kill(pid, signal.SIGKILL)
+            os.waitpid(pid, 0)
+            return ""
         time.sleep(0.02)
-    os.kill(pid, 9)
-    os.waitpid(pid, 0)
-    return "does not end"
 
 
-def detection(tree: Path, mutant: Mutant, tests: Sequence[str], reach: Reach) -> str:
-    """The first failure that the mutant causes, or an empty text."""
-    file = tree / mutant.path.relative_to(ROOT)
+@contextlib.contextmanager
+def written(tree: Path, mutant: Mutant) -> Iterator[bool]:
+    """Write a mutant into a tree, compiled where it is C; whether it compiles."""
+    file = tree / mutant.file
     whole = file.read_bytes()
-    file.write_bytes(whole[: mutant.ends[0]] + mutant.new.encode() + whole[mutant.ends[1] :])
     try:
-        if file.suffix == ".c" and not built(tree):
-            return "does not compile"
-        for stage in (tests[:FIRST], tests[FIRST:]):
-            usual = sum(reach.seconds[name] for name in stage)
-            by = failure(tree, stage, tree / "failure.txt", START + 5 * usual) if stage else ""
-            if by:
-                return by
-        return ""
+        yield put(tree, file, mutant.applied(whole))
     finally:
-        file.write_bytes(whole)
-        for stale in file.parent.glob(f"__pycache__/{file.stem}.*.pyc"):
-            stale.unlink()
-        if file.suffix == ".c":
-            built(tree)
+        put(tree, file, whole)
+
+
+def put(tree: Path, file: Path, text: bytes) -> bool:
+    """Write a file of a tree, without its stale bytecode, and compile it where it is C; whether it compiles."""
+    file.write_bytes(text)
+    for stale in file.parent.glob(f"__pycache__/{file.stem}.*.pyc"):
+        stale.unlink()
+    return built(tree) if file.suffix == ".c" else True
+
+
+class Server:
+    """A plugin that, instead of running the collected tests, forks a process a mutant that runs those that reach it.
+
+    The forked process gets the mutant's code for the functions that it changes, so that nothing is imported anew.
+    """
+
+    def __init__(self, tree: Path, reach: Reach, mutants: Any, results: Any) -> None:
+        self.tree, self.reach, self.mutants, self.results = tree, reach, mutants, results
+
+    def pytest_runtestloop(self, session: pytest.Session) -> bool:
+        """Serve mutants until there are no more."""
+        gc.unfreeze()
+        objects = gc.get_objects()
+        caches = [found for found in objects if isinstance(found, functools._lru_cache_wrapper)]
+        caches = [cache for cache in caches if cache.__module__.startswith("cuefem")]
+        functions: dict[tuple[str, str, int], list[types.FunctionType]] = defaultdict(list)
+        for found in objects:
+            if isinstance(found, types.FunctionType):
+                functions[where(found.__code__)].append(found)
+        del objects
+        gc.freeze()
+        items = {item.nodeid: item for item in session.items}
+        while (mutant := self.mutants.get()) is not None:
+            names = [name for name in self.reach.chosen(mutant) if name in items]
+            changes = self.changes(mutant, functions)
+            if mutant.group != "C" and not changes:
+                self.results.put((mutant, None))
+                continue
+
+            def run(names: list[str] = names, changes: list[Any] = changes) -> None:
+                for cache in caches:
+                    cache.cache_clear()
+                for function, code in changes:
+                    function.__code__ = code
+                tests = [items[name] for name in names]
+                for test, following in zip(tests, [*tests[1:], None], strict=True):
+                    if any(report.failed for report in runtestprotocol(test, nextitem=following, log=False)):
+                        (self.tree / "failure.txt").write_text(test.nodeid, encoding="utf-8")
+                        break
+
+            seconds = START + 5 * sum(self.reach.seconds[name] for name in names)
+            with written(self.tree, mutant) as compiles:
+                by = forked(run, self.tree / "failure.txt", seconds) if compiles else "does not compile"
+            # A line that imports execute may have left its result in a table: the package is imported anew.
+            anew = not by and (mutant.file, mutant.line) in self.reach.at_import
+            self.results.put((mutant, None if anew else by))
+        return True
+
+    def changes(self, mutant: Mutant, functions: dict[Any, list[Any]]) -> list[tuple[types.FunctionType, Any]]:
+        """Functions whose code a mutant changes, each with its new code; none if it changes a module or a class."""
+        if mutant.group in ("C", "module level"):
+            return []
+        file = self.tree / mutant.file
+        whole = file.read_bytes()
+        old, new = (list(codes(compile(text, file, "exec"))) for text in (whole, mutant.applied(whole)))
+        if len(old) != len(new):
+            return []
+        pairs = [(one, other) for one, other in zip(old, new, strict=True) if one != other]
+        return [(function, other) for one, other in pairs for function in functions[where(one)]]
+
+
+def codes(code: types.CodeType) -> Iterator[types.CodeType]:
+    """A code and all those in it."""
+    yield code
+    for constant in code.co_consts:
+        if isinstance(constant, types.CodeType):
+            yield from codes(constant)
+
+
+def where(code: types.CodeType) -> tuple[str, str, int]:
+    """File, name and first line of a code."""
+    return code.co_filename, code.co_qualname, code.co_firstlineno
+
+
+def serve(tree: Path, reach: Reach, mutants: Any, results: Any) -> None:
+    """Collect the tests once and judge mutants of functions."""
+    run_pytest(tree, test_folders(tree), Server(tree, reach, mutants, results))
+    results.put(None)
+
+
+def judge_anew(tree: Path, reach: Reach, mutants: Any, results: Any) -> None:
+    """Judge mutants, each by processes that import the package anew."""
+    while (mutant := mutants.get()) is not None:
+        tests = reach.chosen(mutant)
+        with written(tree, mutant) as compiles:
+            by = "" if compiles else "does not compile"
+            for stage in (tests[:FIRST], tests[FIRST:]):
+                if by or not stage:
+                    break
+                failure = FirstFailure(tree / "failure.txt")
+                seconds = IMPORTS + START + 5 * sum(reach.seconds[name] for name in stage)
+                by = forked(partial(run_pytest, tree, ["-x", *stage], failure), failure.path, seconds)
+        results.put((mutant, by))
+    results.put(None)
 
 
 def built(tree: Path) -> bool:
@@ -334,19 +553,58 @@ def built(tree: Path) -> bool:
 
 def copied(folder: Path) -> Path:
     """A copy of the tree, with its kernel compiled."""
-    ignored = shutil.ignore_patterns(".git", ".venv*", "__pycache__", "dist", "site", "*.sqlite", ".hypothesis")
+    ignored = shutil.ignore_patterns(
+        ".git", ".venv*", "__pycache__", ".*_cache", "dist", "site", "*.sqlite", ".hypothesis"
+    )
     shutil.copytree(ROOT, folder, ignore=ignored)
     built(folder)
     return folder
 
 
-def work(tree: Path, reach: Reach, tasks: Any, results: Any) -> None:
-    """Take mutants until there are no more; put each with what detects it."""
-    while (mutant := tasks.get()) is not None:
-        file = tree / mutant.path.relative_to(ROOT)
-        for stale in file.parent.glob(f"__pycache__/{file.stem}.*.pyc"):
-            stale.unlink()
-        results.put((mutant, detection(tree, mutant, reach.tests(mutant), reach)))
+def judged(
+    judge: Callable[..., None], trees: Sequence[Path], reach: Reach, mutants: Sequence[Mutant]
+) -> Iterator[tuple[Mutant, str | None]]:
+    """Each mutant with the first failure that it causes, as processes find them, one a tree; None if not judged."""
+    context = multiprocessing.get_context("fork")
+    tasks, results = context.SimpleQueue(), context.SimpleQueue()
+    workers = [context.Process(target=judge, args=(tree, reach, tasks, results)) for tree in trees]
+    for worker in workers:
+        worker.start()
+    for mutant in [*mutants, *[None] * len(trees)]:
+        tasks.put(mutant)
+    working, left = len(trees), len(mutants)
+    while working:
+        if (row := results.get()) is None:
+            working -= 1
+            continue
+        left -= 1
+        yield row
+    if left:
+        raise SystemExit(f"{left} mutants were not judged: the tests cannot be collected")
+
+
+class Tally:
+    """Detected mutants of each group and room, printed one by one."""
+
+    def __init__(self) -> None:
+        self.counts: Counter[str] = Counter()
+        self.detected: Counter[str] = Counter()
+        self.at_collection = 0
+
+    def add(self, mutant: Mutant, by: str) -> None:
+        """Count and print a mutant with the failure that it causes."""
+        for name in (mutant.group, f"  {mutant.group}, {mutant.room}"):
+            self.counts[name] += 1
+            self.detected[name] += bool(by)
+        self.at_collection += by.startswith("collection")
+        row = f"{mutant.file}:{mutant.line} {mutant.old} -> {mutant.new}"
+        print(self.counts.total() // 2, " ".join(row.split()), "|", by or "SURVIVES", flush=True)
+
+    def print(self) -> None:
+        """Print the detected fractions."""
+        for name, count in sorted(self.counts.items()):
+            print(f"{name}: detected {interval(self.detected[name], count)}")
+        print(f"detected by errors of collection: {self.at_collection}")
 
 
 def interval(detected: int, count: int) -> str:
@@ -363,6 +621,7 @@ def main() -> None:
     for name, value in (("--seed", 1), ("--core", 80), ("--interface", 50), ("--module", 40), ("--c", 30)):
         parser.add_argument(name, type=int, default=value)
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--first-run", type=Path, help="a folder that keeps the first run for the next call")
     options = parser.parse_args()
     counts = {
         "core": options.core,
@@ -376,30 +635,23 @@ def main() -> None:
     start = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
         trees = [copied(Path(folder) / f"tree{number}") for number in range(options.workers)]
-        reach = first_run(trees[0], options.workers)
-        print(f"{len(reach.seconds)} test functions, first run {time.monotonic() - start:.0f} s", flush=True)
-        unchanged = Mutant(ROOT / "cuefem/contact/strike.py", 0, (0, 0), "", "", "core")
-        if by := detection(trees[0], unchanged, reach.tests(unchanged), reach):
-            raise SystemExit(f"the tree fails without a mutant: {by}")
-        context = multiprocessing.get_context("fork")
-        tasks, results = context.SimpleQueue(), context.SimpleQueue()
-        for mutant in [*sample, *[None] * options.workers]:
-            tasks.put(mutant)
-        workers = [context.Process(target=work, args=(tree, reach, tasks, results)) for tree in trees]
-        for worker in workers:
-            worker.start()
-        totals: dict[str, list[bool]] = defaultdict(list)
-        for number in range(len(sample)):
-            mutant, by = results.get()
-            totals[mutant.group].append(bool(by))
-            totals[f"  {mutant.group}, {mutant.room}"].append(bool(by))
-            totals["collection errors among the detected"] += [by.startswith("collection")] if by else []
-            row = f"{mutant.path.relative_to(ROOT)}:{mutant.line} {mutant.old} -> {mutant.new}"
-            print(number, " ".join(row.split()), "|", by or "SURVIVES", flush=True)
-        for worker in workers:
-            worker.join()
-    for name, hits in sorted(totals.items()):
-        print(f"{name}: detected {interval(sum(hits), len(hits))}" if "errors" not in name else f"{name}: {sum(hits)}")
+        reach = first_run(trees[0], options.workers, (options.first_run or Path(folder) / "first run").resolve())
+        print(f"{len(reach.seconds)} tests, first run {time.monotonic() - start:.0f} s", flush=True)
+        unchanged = Mutant(ROOT / "cuefem/contact/strike.py", 0, (0, 0), "", "", "module level")
+        shortest = sorted(reach.seconds, key=reach.seconds.__getitem__)[:FIRST]
+        few = reach._replace(tests={unchanged.file: {0: shortest}}, seconds={name: 0.1 for name in shortest})
+        if rows := [by for _, by in judged(judge_anew, trees[:1], few, [unchanged]) if by]:
+            raise SystemExit(f"the tree fails without a mutant: {rows}")
+        of_modules = [mutant for mutant in sample if mutant.group == "module level"]
+        found = Tally()
+        for mutant, by in judged(serve, trees, reach, [mutant for mutant in sample if mutant not in of_modules]):
+            if by is None:
+                of_modules.append(mutant)
+            else:
+                found.add(mutant, by)
+        for mutant, by in judged(judge_anew, trees, reach, of_modules):
+            found.add(mutant, by or "")
+    found.print()
     print(f"{len(sample)} mutants in {(time.monotonic() - start) / 60:.1f} minutes")
 
 
