@@ -74,7 +74,7 @@ class Fields(NamedTuple):
     dtheta: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class System:
     """The assembled beam: K q = omega^2 M q, in w (m) and theta times the cue's length (m).
 

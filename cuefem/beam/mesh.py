@@ -54,7 +54,7 @@ class Resolution:
             check_count(f"Resolution.{name}", getattr(self, name), 1)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Mesh:
     """Elements of a cue.
 

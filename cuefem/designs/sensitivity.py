@@ -50,7 +50,7 @@ class Sensitivity:
     __eq__ = equal_fields
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Gradient:
     """An end mass and its derivatives to lambda_k, phi_k of the retained modes, the rigid-body sum, M and m_a."""
 

@@ -31,7 +31,7 @@ class Row(NamedTuple):
     failure: str | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Columns:
     """The responses of all designs, (designs, responses) in SI, nan if missing, and reasons by the design's number."""
 

@@ -86,7 +86,7 @@ class Slice(NamedTuple):
         return float(np.sqrt((total + difference) / 2)), float(np.sqrt(max(total - difference, 0.0) / 2))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Surface:
     """A closed surface with its axis along x from 0 to ``length``. points: (n, 3). triangles: (m, 3), oriented
     outwards. flats: positions of the faces normal to the axis, both ends included."""
