@@ -227,7 +227,8 @@ def parse(key: str, text: str, scene: Scene, last: str = "") -> float:
         return _check_limits(key, Quantity("m").read(bare) / scene.ball.radius, text, scene)
     if not unit:
         return _check_limits(key, Quantity("").read(_float(bare)), text, scene)
-    return _check_limits(key, Quantity(SI.get(unit, unit)).read(with_unit(key, bare, last)), text, scene)
+    complete = with_unit(key, bare, last)
+    return _check_limits(key, Quantity(SI.get(unit, unit)).read(complete), complete, scene)
 
 
 def with_unit(key: str, text: str, last: str = "") -> str:
