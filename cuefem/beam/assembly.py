@@ -10,10 +10,18 @@ import lazy_loader
 import numpy as np
 from numpy.typing import NDArray
 
-from cuefem.beam.basis import EXTRA_POINTS, element_basis, gauss_rule, line_basis, tabulated_line_basis
+from cuefem.beam.basis import (
+    EXTRA_POINTS,
+    element_basis,
+    gauss_rule,
+    line_basis,
+    tabulated_element_basis,
+    tabulated_line_basis,
+)
 from cuefem.beam.blas_threads import one_blas_thread
 from cuefem.beam.mesh import Mesh, Resolution
 from cuefem.beam.meshing import POSITION_TOLERANCE, mesh_cue
+from cuefem.beam.mode_count import segment_sections
 from cuefem.beam.point_terms import BeamEffect, PointTerms
 from cuefem.cue import Array, Cue, Section
 
@@ -52,14 +60,28 @@ class Points(NamedTuple):
         """The points of an element."""
         return slice(self.first_point[e], self.first_point[e + 1])
 
+    def fractions(self, e: int) -> Array:
+        """Where the points of an element lie between its ends, from 0 to 1."""
+        start, end = self.mesh.nodes[e : e + 2]
+        return np.asarray((self.x[self.element(e)] - start) / (end - start))
+
     def line_basis(self, e: int) -> tuple[Array, Array]:
         """scikit-fem's hierarchical line basis in an element at its points, and its derivatives, 1/m: (degrees, q)."""
-        start, end = self.mesh.nodes[e : e + 2]
-        if self.is_tabulated[e]:
-            values, slopes = tabulated_line_basis(int(self.mesh.orders[e]))
-        else:
-            values, slopes = line_basis(int(self.mesh.orders[e]) + 1, (self.x[self.element(e)] - start) / (end - start))
+        order, (start, end) = int(self.mesh.orders[e]), self.mesh.nodes[e : e + 2]
+        tabulated = self.is_tabulated[e]
+        values, slopes = tabulated_line_basis(order) if tabulated else line_basis(order + 1, self.fractions(e))
         return values, slopes / (end - start)
+
+    def beam_basis(self, e: int) -> Array:
+        """w, w', theta, theta' per degree of freedom of an element at its points, (4, dof, q).
+
+        Rotational degrees of freedom are theta times the cue's length.
+        """
+        order, (start, end), length = int(self.mesh.orders[e]), self.mesh.nodes[e : e + 2], self.mesh.nodes[-1]
+        tabulated = self.is_tabulated[e]
+        basis = tabulated_element_basis(order) if tabulated else element_basis(order, self.fractions(e))
+        units = np.array([1.0, 1 / (end - start), 1 / length, 1 / ((end - start) * length)])
+        return np.asarray(units[:, None, None] * basis)
 
 
 class Fields(NamedTuple):
@@ -118,7 +140,7 @@ class System:
 
     def fields(self, vectors: Array) -> Fields:
         """The fields of the degrees of freedom ``vectors`` (free, k) at the Gauss points."""
-        return _fields(self.cue.length, self.points, self.all_dofs(vectors))
+        return _fields(self.points, self.all_dofs(vectors))
 
     def geometric_stiffness(self, vectors: Array, masses: Sequence[tuple[float, float]]) -> Array:
         """Geometric stiffness of ``vectors`` (free, k) per newton of axial force: integral p w_i' w_j' dx, (k, k).
@@ -134,12 +156,14 @@ class System:
 
     def share_behind(self, masses: Sequence[tuple[float, float]]) -> Array:
         """Share of the cue's mass behind each Gauss point, (points,)."""
-        points, cue = self.points, self.cue
-        x = points.from_segment_end
-        first, middle = (cue.section_in(points.segment, fraction * x).rhoA for fraction in (0.0, 0.5))
-        mass = np.bincount(points.segment, points.section.rhoA * points.weights, len(cue.segments))
-        # Simpson's rule is exact for the mass of a cone, whose rho A is a parabola
-        ahead = (np.cumsum(mass) - mass)[points.segment] + x / 6 * (first + 4 * middle + points.section.rhoA)
+        points, lengths = self.points, np.diff(self.cue.nodes)
+        # rho A of a cone is a parabola, a + b t + c t^2 at the fraction t of its length
+        first, _, middle, _, last = segment_sections(self.cue).rhoA.T
+        mass = lengths / 6 * (first + 4 * middle + last)
+        a, b, c = lengths * np.array([first, 4 * middle - 3 * first - last, 2 * (first + last) - 4 * middle])
+        segment = points.segment
+        t = points.from_segment_end / lengths[segment]
+        ahead = (np.cumsum(mass) - mass)[segment] + t * (a[segment] + t * (b[segment] / 2 + t * c[segment] / 3))
         for position, point_mass in masses:
             ahead = ahead + point_mass * (points.x > position)
         return np.asarray(1 - ahead / (mass.sum() + sum(point_mass for _, point_mass in masses)))
@@ -148,20 +172,19 @@ class System:
         """(w, theta) of the degrees of freedom ``vectors`` (free, k) at positions ``x``: two arrays (k, *x.shape)."""
         order = np.argsort(x, axis=None, kind="stable")
         points = _points(self.cue, self.mesh, x.ravel()[order], np.ones(x.size), [False] * len(self.mesh.orders))
-        fields = _fields(self.cue.length, points, self.all_dofs(vectors))
+        fields = _fields(points, self.all_dofs(vectors))
         w, theta = np.empty_like(fields.w), np.empty_like(fields.w)
         w[order], theta[order] = fields.w, fields.theta
         return w.T.reshape(-1, *x.shape), theta.T.reshape(-1, *x.shape)
 
 
-def _fields(length: float, points: Points, dof_values: Array) -> Fields:
+def _fields(points: Points, dof_values: Array) -> Fields:
     """The fields of all degrees of freedom of the mesh, (n_dof, k), at any points."""
     out, mesh = np.zeros((4, len(points.x), dof_values.shape[1])), points.mesh
     for e, (order, first) in enumerate(zip(mesh.orders.tolist(), mesh.first.tolist(), strict=True)):
         rows = points.element(e)
         if rows.start < rows.stop:
-            basis = element_basis(order, *points.line_basis(e), length)
-            out[:, rows] = basis.swapaxes(1, 2) @ dof_values[first : first + 2 * order + 3]
+            out[:, rows] = points.beam_basis(e).swapaxes(1, 2) @ dof_values[first : first + 2 * order + 3]
     return Fields(*out)
 
 
@@ -220,26 +243,32 @@ def assemble(
         index[index >= 0] = np.unique(index[index >= 0], return_inverse=True)[1]
     size = int(index.max()) + 1
 
-    stiffness, inertia = [], []  # (indices, block) of each element and joint
+    stiffness, inertia = [], []  # (first degree of freedom, block) of each element and joint
     section, weights = points.section, points.weights
     root_EI, root_kGA, root_rhoA, root_rhoI = np.sqrt([section.EI, section.kGA, section.rhoA, section.rhoI] * weights)
-    for e, (order, first) in enumerate(zip(mesh.orders.tolist(), mesh.first.tolist(), strict=True)):
-        rows, indices = points.element(e), index[first : first + 2 * order + 3]
-        w, dw, theta, dtheta = element_basis(order, *points.line_basis(e), cue.length)
+    for e, first in enumerate(mesh.first.tolist()):
+        rows, (w, dw, theta, dtheta) = points.element(e), points.beam_basis(e)
         strains = np.concatenate([root_EI[rows] * dtheta, root_kGA[rows] * (dw - theta)], axis=1)
         motions = np.concatenate([root_rhoA[rows] * w, root_rhoI[rows] * theta], axis=1)
-        stiffness.append((indices, strains @ strains.T))
-        inertia.append((indices, motions @ motions.T))
-    for (before, after), value in terms.compliance.items():
+        stiffness.append((first, strains @ strains.T))
+        inertia.append((first, motions @ motions.T))
+    for (before, _), value in terms.compliance.items():  # both sides have w and theta: those behind follow after two
         if value:
-            stiffness.append((index[[before, after]], scale[before] / value * np.array([[1.0, -1.0], [-1.0, 1.0]])))
+            jump = np.array([1.0, 0.0, -1.0])
+            stiffness.append((before, scale[before] / value * np.outer(jump, jump)))
+
+    dense = is_dense_faster(size, count or (at if isinstance(at, int) else 0))
+    K = assemble_blocks(stiffness, terms.stiffness * scale, dense)
+    M = assemble_blocks(inertia, terms.mass * scale, dense)
+    if size < mesh.n_dof:
+        free = np.flatnonzero(index >= 0)
+        expansion = scipy.sparse.csc_matrix((np.ones(len(free)), (free, index[free])), (mesh.n_dof, size))
+        K, M = expansion.T @ K @ expansion, expansion.T @ M @ expansion
 
     def free_diagonal(values: Array) -> Array:
         return np.bincount(index % (size + 1), values * scale, size + 1)[:-1].astype(float)
 
     springs = free_diagonal(terms.stiffness)
-    dense = is_dense_faster(size, count or (at if isinstance(at, int) else 0))
-    K, M = assemble_blocks(stiffness, springs, dense), assemble_blocks(inertia, free_diagonal(terms.mass), dense)
     dashpots = free_diagonal(terms.dashpot) if terms.dashpot.any() else None
     shift, mass = _shift(cue, points), float(points.weights @ points.section.rhoA)
     rigid_basis = _rigid_basis(mesh, cue.length, index, springs > MIN_STIFFNESS * shift * mass)
@@ -256,24 +285,17 @@ def is_dense_faster(n_dof: int, count: int) -> bool:
     return n_dof <= DENSE_LIMIT or count > n_dof**2 / BREAK_EVEN
 
 
-def assemble_blocks(
-    blocks: Iterable[tuple[NDArray[np.intp], Array]], diagonal: Array, dense: bool
-) -> Array | sp.csc_matrix:
-    """The sum of ``blocks``, each with its indices (-1: omitted), and a ``diagonal``, as a matrix."""
-    size = len(diagonal)
+def assemble_blocks(blocks: Iterable[tuple[int, Array]], diagonal: Array, dense: bool) -> Array | sp.csc_matrix:
+    """The sum of ``blocks``, each from its first degree of freedom on, and a ``diagonal``, as a matrix."""
     if dense:
         matrix = np.diag(diagonal)
-        for indices, block in blocks:
-            first, free = int(indices[0]), indices >= 0
-            if free.all() and np.array_equal(indices, np.arange(first, first + len(indices))):
-                matrix[first : first + len(indices), first : first + len(indices)] += block
-            else:
-                matrix[np.ix_(indices[free], indices[free])] += block[np.ix_(free, free)]
+        for first, block in blocks:
+            span = slice(first, first + len(block))
+            matrix[span, span] += block
         return matrix
-    pairs = [[np.repeat(indices, len(indices)), np.tile(indices, len(indices))] for indices, _ in blocks]
-    positions = np.concatenate(pairs, axis=1) % (size + 1)
+    positions = [first + np.indices(block.shape).reshape(2, -1) for first, block in blocks]
     values = np.concatenate([block.ravel() for _, block in blocks])
-    matrix = scipy.sparse.coo_matrix((values, positions), shape=(size + 1,) * 2).tocsc()[:size, :size]
+    matrix = scipy.sparse.coo_matrix((values, np.concatenate(positions, axis=1)), shape=(len(diagonal),) * 2)
     return scipy.sparse.csc_matrix(matrix + scipy.sparse.diags(diagonal))
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from cuefem.beam.assembly import Points, assemble_blocks, gauss_points, is_dense_faster
 from cuefem.beam.eigensolver import EigenSolution, solve_eigenproblem
 from cuefem.beam.meshing import mesh_for_phases
+from cuefem.beam.mode_count import segment_sections
 from cuefem.cue import Array, Cue, Section
 
 
@@ -47,22 +48,29 @@ class RodModes(EigenSolution):
 
 @lru_cache(maxsize=4)
 def rod_modes(
-    cue: Cue, masses: tuple[tuple[float, float], ...], *, cutoff: float, max_count: float = np.inf, n_corrected: int = 0
+    cue: Cue,
+    nodes: tuple[float, ...],
+    masses: tuple[tuple[float, float], ...] = (),
+    *,
+    cutoff: float,
+    max_count: float = np.inf,
+    n_corrected: int = 0,
 ) -> RodModes:
     """Rod modes up to the angular frequency ``cutoff``, rad/s, of a cue that is free at both ends.
 
     max_count: about the largest number of modes; where waves are slow it lowers the cutoff.
-    masses: (position m, mass kg) of each lump. Leather drawn at the tip (`Cue.leather_height`) moves rigidly with it.
+    nodes: m from the tip, those of the beam and the end of the rod. masses: (position m, mass kg) of each lump, at
+    nodes. Leather drawn at the tip (`Cue.leather_height`) moves rigidly with it.
     n_corrected: number of loads with a truncation correction, 1 or 0. The cost is one symmetric eigenproblem with as
     many degrees of freedom as the elements' orders add up to; the last four are kept, for fewer modes of the same rod.
     """
-    lengths, pieces = np.diff(cue.nodes), np.arange(len(cue.segments))
-    middle = cue.section_in(pieces, lengths / 2)
+    lengths, sections = np.diff(cue.nodes), segment_sections(cue)
+    EA, rhoA = sections.EA[:, 2], sections.rhoA[:, 2]  # in the middle of each segment
     # about pi^2 EA/(rhoA L^2), the lowest free mode of the uniform rod with the mean stiffness and mass
-    shift = float(10 * (lengths @ middle.EA) / (lengths @ middle.rhoA) / cue.length**2)
-    phases = lengths * np.sqrt(middle.rhoA / middle.EA)  # at 1 rad/s; the correction needs waves of twice the cutoff
+    shift = float(10 * (lengths @ EA) / (lengths @ rhoA) / cue.length**2)
+    phases = lengths * np.sqrt(rhoA / EA)  # at 1 rad/s; the correction needs waves of twice the cutoff
     cutoff = min(cutoff, np.pi * max_count / phases.sum())
-    mesh = mesh_for_phases(cue, phases * max(2 * cutoff, 4 * shift**0.5), [x for x, _ in masses])
+    mesh = mesh_for_phases(cue, phases * max(2 * cutoff, 4 * shift**0.5), np.array(nodes))
     points, front, orders = gauss_points(cue, mesh), mesh.node(cue.leather_height), mesh.orders
     EA, rhoA = points.section.EA * points.weights, points.section.rhoA * points.weights
     first = np.append(np.zeros(front, int), np.append(0, np.cumsum(orders[front:])))  # of each element, and the butt
@@ -70,8 +78,8 @@ def rod_modes(
     stiffness, inertia = [], []
     for e, dofs in enumerate(element_dofs, start=front):
         rows, (values, slopes) = points.element(e), _rod_basis(points, e)
-        stiffness.append((dofs, (slopes * EA[rows]) @ slopes.T))
-        inertia.append((dofs, (values * rhoA[rows]) @ values.T))
+        stiffness.append((int(dofs[0]), (slopes * EA[rows]) @ slopes.T))
+        inertia.append((int(dofs[0]), (values * rhoA[rows]) @ values.T))
     lumps = np.zeros(first[-1] + 1)
     lumps[0] = rhoA[: points.first_point[front]].sum()
     for x, mass in masses:

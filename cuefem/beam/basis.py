@@ -42,15 +42,13 @@ def _rows(order: int) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.in
     return w, np.r_[0, 2 : order + 2, 1], theta, np.r_[0, 2 : order + 1, 1]
 
 
-def element_basis(order: int, values: Array, slopes: Array, length: float = 1.0) -> Array:
-    """w, w', theta, theta' per degree of freedom of an element, (4, dof, q), from its line basis, (degrees, q).
-
-    Rotational degrees of freedom are theta times ``length``.
-    """
-    out = np.zeros((4, 2 * order + 3, values.shape[1]))
+def element_basis(order: int, points: Array) -> Array:
+    """w, w', theta, theta' per degree of freedom of an element of length 1 at ``points`` in [0, 1]: (4, dof, q)."""
+    values, slopes = line_basis(order + 1, points)
+    out = np.zeros((4, 2 * order + 3, len(points)))
     w, w_functions, theta, theta_functions = _rows(order)
     out[0, w], out[1, w] = values[w_functions], slopes[w_functions]
-    out[2, theta], out[3, theta] = values[theta_functions] / length, slopes[theta_functions] / length
+    out[2, theta], out[3, theta] = values[theta_functions], slopes[theta_functions]
     return out
 
 
@@ -65,3 +63,9 @@ def gauss_rule(count: int) -> tuple[Array, Array]:
 def tabulated_line_basis(order: int) -> tuple[Array, Array]:
     """The line basis of degree ``order`` + 1 and its derivatives at Gauss points of one segment."""
     return line_basis(order + 1, gauss_rule(order + EXTRA_POINTS)[0])
+
+
+@functools.cache
+def tabulated_element_basis(order: int) -> Array:
+    """The element basis at Gauss points of one segment."""
+    return element_basis(order, gauss_rule(order + EXTRA_POINTS)[0])

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cuefem.beam.mesh import Mesh, Resolution
-from cuefem.beam.mode_count import MAX_PHASE, mode_phases, orders_for
+from cuefem.beam.mode_count import MAX_PHASE, mode_phases, orders_for, segment_sections
 from cuefem.beam.point_terms import BeamEffect
 from cuefem.cue import Array, Cue
 from cuefem.quantity.fields import MAX_DOF
@@ -35,7 +35,8 @@ def mesh_cue(
         if not 0 <= x <= cue.length * (1 + POSITION_TOLERANCE):
             raise ValueError(f"an effect's position must be in [0, {cue.length}] m, on the cue; got {x}")
     if isinstance(at, int):
-        nodes, orders = _equal_phases(cue, mode_phases(cue, at), _snap(cue, required))
+        phases = mode_phases(cue, at)
+        nodes, orders = _equal_phases(cue, phases, _required_nodes(cue, phases, _snap(cue, required)))
     else:
         ends = np.unique(np.append(cue.nodes, _snap(cue, required)))
         pieces = len(ends) - 1
@@ -45,9 +46,9 @@ def mesh_cue(
     return _number_dofs(nodes, orders, [x for effect in effects for x in effect.joint_positions])
 
 
-def mesh_for_phases(cue: Cue, phases: Array, positions: Sequence[float]) -> Mesh:
-    """Mesh a cue for waves of ``phases`` rad over its segments, nodes at ``positions``, and no joint."""
-    return _number_dofs(*_equal_phases(cue, phases, _snap(cue, np.array([cue.leather_height, *positions]))), [])
+def mesh_for_phases(cue: Cue, phases: Array, nodes: Array) -> Mesh:
+    """Mesh a cue for waves of ``phases`` rad over its segments, ``nodes``, m from the tip, among others, no joint."""
+    return _number_dofs(*_equal_phases(cue, phases, nodes), [])
 
 
 def _snap(cue: Cue, positions: Array) -> Array:
@@ -67,13 +68,12 @@ def _number_dofs(nodes: Array, orders: NDArray[np.intp], joint_positions: Sequen
     return Mesh(nodes, orders, first, n_dof)
 
 
-def _equal_phases(cue: Cue, phases: Array, positions: Array) -> tuple[Array, NDArray[np.intp]]:
-    """Nodes and orders for waves of ``phases`` rad over the segments: elements of equal phase."""
-    check_mesh_size(2 * phases.sum(), f"waves of {phases.sum():.6g} rad")
-    sides = cue.section_in(np.arange(len(phases))[:, None], np.diff(cue.nodes)[:, None] * np.array([0.0, 1.0]))
-    logs = np.log([sides.EA, sides.EI, sides.kGA, sides.rhoA])
-    ends = _required_nodes(cue, positions, logs, np.diff(cue.nodes) / phases)
-    phase_at, log_taper = (np.append(0.0, np.cumsum(values)) for values in (phases, np.abs(np.diff(logs[0])[:, 0])))
+def _equal_phases(cue: Cue, phases: Array, ends: Array) -> tuple[Array, NDArray[np.intp]]:
+    """Nodes, ``ends`` among them, and orders for waves of ``phases`` rad over the segments: elements of equal phase."""
+    check_mesh_size(2 * phases.sum(), "the shortest waves")
+    tip_ends, butt_ends = segment_sections(cue).EA.T[[0, -1]]
+    phase_at, log_taper = np.zeros((2, len(cue.nodes)))
+    phase_at[1:], log_taper[1:] = np.cumsum(phases), np.cumsum(np.abs(np.log(butt_ends / tip_ends)))
     end_phases = np.interp(ends, cue.nodes, phase_at)
     counts = np.ceil(np.diff(end_phases) / MAX_PHASE).astype(int)
     nodes = np.interp(_subdivide(end_phases, counts), phase_at, cue.nodes)
@@ -82,14 +82,16 @@ def _equal_phases(cue: Cue, phases: Array, positions: Array) -> tuple[Array, NDA
     return nodes, orders_for(phase, np.exp(taper))
 
 
-def _required_nodes(cue: Cue, positions: Array, logs: Array, lengths: Array) -> Array:
+def _required_nodes(cue: Cue, phases: Array, positions: Array) -> Array:
     """Positions of nodes: the ends of the cue, ``positions``, and the ends of segments that an element cannot cross.
 
-    logs: (kinds, segments, 2) of the section at both ends of every segment. lengths: (segments,) the length that the
-    shortest waves resolve, m. The end of a segment is no node if the section does not jump there and is the mean of the
-    sections at equal distances before and behind, within reach and no further than the next nodes.
+    phases: (segments,) rad, of the shortest waves, which resolve the length of one radian. The end of a segment is no
+    node if the section does not jump there and is the mean of the sections at equal distances before and behind, within
+    that reach and no further than the next nodes.
     """
-    profile, logs = np.repeat(cue.nodes, 2)[1:-1], logs.reshape(len(logs), -1)
+    sections, lengths = segment_sections(cue), np.diff(cue.nodes) / phases
+    both_ends = np.array([sections.EA, sections.EI, sections.kGA, sections.rhoA])[..., [0, -1]]
+    profile, logs = np.repeat(cue.nodes, 2)[1:-1], np.log(both_ends).reshape(len(both_ends), -1)
     jumps = np.abs(np.diff(logs)[:, 1::2]).max(axis=0) > 2 * JUMP_TOLERANCE
     fixed = np.unique(np.concatenate([[0.0, cue.length], positions, cue.nodes[1:-1][jumps]]))
     ends, last = fixed.tolist(), 0.0

@@ -20,11 +20,10 @@ _FREQUENCIES = np.geomspace(1e0, 1e9, 100)  # angular frequencies between which 
 
 
 @functools.lru_cache(maxsize=32)
-def _sections_at_gauss_points(cue: Cue) -> Section:
-    """Section properties at three Gauss points of each segment, (segments, 3)."""
-    lengths = np.diff(cue.nodes)[:, None]
-    points = lengths * np.array([0.5 - 0.15**0.5, 0.5, 0.5 + 0.15**0.5])
-    return cue.section_in(np.arange(len(lengths))[:, None], points)
+def segment_sections(cue: Cue) -> Section:
+    """Section properties of each segment at its tip end, three Gauss points, and its butt end, (segments, 5)."""
+    fractions = np.array([0.0, 0.5 - 0.15**0.5, 0.5, 0.5 + 0.15**0.5, 1.0])
+    return cue.section_in(np.arange(len(cue.segments))[:, None], np.diff(cue.nodes)[:, None] * fractions)
 
 
 def wave_phase(cue: Cue, omega: ArrayLike) -> Array:
@@ -33,9 +32,10 @@ def wave_phase(cue: Cue, omega: ArrayLike) -> Array:
     The integral of the local wave numbers of Timoshenko's beam (the two branches, the second above its cut-off), at
     three points a segment: the sum over branches and segments, over pi, is nearly the number of modes below omega.
     """
-    omega, s = np.asarray(omega, float)[..., None, None], _sections_at_gauss_points(cue)
-    shear, rotary = s.rhoA / s.kGA, s.rhoI / s.EI
-    root = np.sqrt((shear - rotary) ** 2 + 4 * s.rhoA / (s.EI * np.maximum(omega, 1e-9) ** 2))
+    omega, sections = np.asarray(omega, float)[..., None, None], segment_sections(cue)
+    _, EI, kGA, rhoA, rhoI = (values[:, 1:4] for values in sections)
+    shear, rotary = rhoA / kGA, rhoI / EI
+    root = np.sqrt((shear - rotary) ** 2 + 4 * rhoA / (EI * np.maximum(omega, 1e-9) ** 2))
     branches = np.array([shear + rotary + root, np.maximum(shear + rotary - root, 0)])
     phase = omega * np.sqrt(branches / 2) @ (np.array([5, 8, 5]) / 18) * np.diff(cue.nodes)
     return np.moveaxis(phase, -1, 1)

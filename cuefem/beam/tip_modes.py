@@ -82,20 +82,23 @@ class TipModes:
 
         radiation: of the last of them, if they have a truncation correction.
         """
-        n, n_before = len(omega), len(self.omega)
-        both = None if self.radiation is None else np.pad(self.radiation, (0, n))
+        n_before, total, none = len(self.omega), len(self.omega) + len(omega), np.zeros(len(omega))
         if radiation is not None:
-            axial_radiation = np.pad(radiation, (n_before + n - len(radiation), 0))
-            both = axial_radiation if both is None else both + axial_radiation
+            radiation = embedded(radiation, total, total - len(radiation))
+        if self.radiation is not None:
+            of_bending = embedded(self.radiation, total)
+            radiation = of_bending if radiation is None else of_bending + radiation
+        amplitude = np.zeros((total, 2))
+        amplitude[:n_before], amplitude[n_before:, 0] = self.amplitude, axial
         return TipModes(
             omega=np.concatenate([self.omega, omega]),
-            amplitude=np.concatenate([self.amplitude, np.column_stack([axial, np.zeros(n)])]),
-            approach=np.pad(self.approach, (0, n)),
-            rotation=np.pad(self.rotation, (0, n)),
-            loss=None if self.loss is None else np.pad(self.loss, (0, n)),
-            dashpots=None if self.dashpots is None else np.pad(self.dashpots, ((0, 0), (0, n))),
-            radiation=both,
-            geometric=None if self.geometric is None else np.pad(self.geometric, (0, n)),
+            amplitude=amplitude,
+            approach=np.append(self.approach, none),
+            rotation=np.append(self.rotation, none),
+            loss=None if self.loss is None else np.append(self.loss, none),
+            dashpots=None if self.dashpots is None else np.pad(self.dashpots, ((0, 0), (0, len(omega)))),
+            radiation=radiation,
+            geometric=None if self.geometric is None else embedded(self.geometric, total),
         )
 
     def ascending(self) -> TipModes:
@@ -109,6 +112,13 @@ class TipModes:
             return self
         axial, lateral = np.sqrt(np.sum(self.amplitude**2, axis=0))
         return replace(self, amplitude=np.diag([axial, lateral]), approach=np.array([1 / axial, 0.0]))
+
+
+def embedded(block: Array, size: int, first: int = 0) -> Array:
+    """A square matrix of zeros, (size, size), with a square ``block`` from the index ``first`` on."""
+    matrix, span = np.zeros((size, size)), slice(first, first + len(block))
+    matrix[span, span] = block
+    return matrix
 
 
 def lumped_tip_modes(cue: LumpedCue) -> TipModes:
@@ -157,5 +167,5 @@ def _dampers(bending: Modes, count: int) -> tuple[Array | None, Array | None]:
         rows = np.sqrt(bending.system.dashpots[at])[:, None] * vectors[at]
         dashpots = np.pad(rows, ((0, 0), (count - rows.shape[1], 0)))
     if bending.radiation is not None:
-        radiation = np.pad(bending.radiation, (count - len(bending.radiation), 0))
+        radiation = embedded(bending.radiation, count, count - len(bending.radiation))
     return dashpots, radiation

@@ -344,8 +344,17 @@ class AxialWaves(CueEffect):
 
         rod, n_corrected = self.with_butt(cue), int(bending.radiation is not None)
         max_count = max(MAX_ROD_MODES, len(bending.omega))
-        masses = tuple(point_masses_on(rod, effects))
-        resolved = rod_modes(rod, masses, cutoff=bending.resolved, max_count=max_count, n_corrected=n_corrected)
+        nodes = bending.system.mesh.nodes
+        if rod is not cue:
+            nodes = np.append(nodes, rod.length)
+        resolved = rod_modes(
+            rod,
+            tuple(nodes.tolist()),
+            tuple(point_masses_on(rod, effects)),
+            cutoff=bending.resolved,
+            max_count=max_count,
+            n_corrected=n_corrected,
+        )
         return (resolved.below(bending.cutoff),)
 
 

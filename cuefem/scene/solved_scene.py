@@ -18,7 +18,7 @@ import numpy as np
 
 from cuefem.beam.blas_threads import one_blas_thread
 from cuefem.beam.mode_count import modes_below
-from cuefem.beam.tip_modes import TipModes, free_tip_modes, lumped_tip_modes, tip_modes
+from cuefem.beam.tip_modes import TipModes, embedded, free_tip_modes, lumped_tip_modes, tip_modes
 from cuefem.cue import Cue
 from cuefem.quantity.fields import CONTACT_TIME
 from cuefem.scene import Resolution, Scene
@@ -167,7 +167,7 @@ def tip_modes_from(bending: Modes, scene: Scene) -> TipModes:
     tip = tip_modes(bending, scene.axial_mass)
     matrices = [m for m in (effect.geometric_stiffness(bending, cue, effects) for effect in effects) if m is not None]
     if matrices:  # the first of the tip modes is the axial rigid-body mode
-        tip = replace(tip, geometric=np.pad(sum(matrices[1:], matrices[0]), (1, 0)))
+        tip = replace(tip, geometric=embedded(sum(matrices[1:], matrices[0]), len(tip.omega), first=1))
     families = tuple(chain.from_iterable(effect.axial_modes(bending, cue, effects) for effect in effects))
     for family in families:
         tip = tip.with_axial_modes(family.omega, family.tip_displacement, family.radiation)

@@ -93,10 +93,10 @@ def test_rod_truncation_correction_has_compliance_of_all_modes(cutoff):
     section = cue.section(0.0)
     s = 10 * section.EA / section.rhoA / cue.length**2
     exact = 1 / np.tanh(math.sqrt(10)) / np.sqrt(s * section.EA * section.rhoA) - 1 / (cue.mass * s)
-    result = rod_modes(cue, (), cutoff=cutoff, n_corrected=1)
+    result = rod_modes(cue, tuple(cue.nodes), cutoff=cutoff, n_corrected=1)
     assert len(result.omega) == 2 + np.sum(result.omega[:-2] <= cutoff)
     assert np.sum(result.tip_displacement**2 / (result.omega**2 + s)) == pytest.approx(exact, rel=1e-6)
-    truncated = rod_modes(cue, (), cutoff=cutoff)
+    truncated = rod_modes(cue, tuple(cue.nodes), cutoff=cutoff)
     assert truncated.radiation is None
     assert np.sum(truncated.tip_displacement**2 / (truncated.omega**2 + s)) < 0.95 * exact
 

@@ -63,7 +63,7 @@ def test_rod_modes_of_cone_equal_closed_form():
     """r u is a plane wave, with (r u)' = (r'/r) (r u) at both free ends."""
     cue = kim()
     material = cue.segments[0].material
-    k = rod_modes(cue, (), cutoff=2 * pi * 3e4).omega / (material.E / material.rho) ** 0.5
+    k = rod_modes(cue, tuple(cue.nodes), cutoff=2 * pi * 3e4).omega / (material.E / material.rho) ** 0.5
     tip, butt = 0.0045 / 0.7 / 0.006, 0.0045 / 0.7 / 0.0105  # r'/r
 
     def misfit(k: float) -> float:  # of A = 1, B = tip/k in A cos(kx) + B sin(kx)
