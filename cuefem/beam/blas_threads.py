@@ -7,19 +7,18 @@ processor time.
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
 from contextlib import ContextDecorator
 from functools import cache
 from threading import Lock
 from typing import Any
 
-from threadpoolctl import OpenBLASController, ThreadpoolController
+from threadpoolctl import LibController, OpenBLASController, ThreadpoolController
 
 
 @cache
-def _libraries(scipy_is_loaded: bool) -> ThreadpoolController:
+def _libraries(scipy_is_loaded: bool) -> list[LibController]:
     """The BLAS libraries of the process; SciPy has its own."""
-    return ThreadpoolController()
+    return ThreadpoolController().select(user_api="blas").lib_controllers
 
 
 class _OneThread(ContextDecorator):
@@ -28,14 +27,16 @@ class _OneThread(ContextDecorator):
     def __init__(self) -> None:
         self._lock = Lock()
         self._users = 0
-        self._restore: Callable[[], object] = int
+        self._threads: list[tuple[LibController, int]] = []  # of each library before
 
     def __enter__(self) -> None:
         with self._lock:
             if self._users == 0:
                 OpenBLASController.clear_controlling_thread(force=True)
-                limited = _libraries("scipy.linalg" in sys.modules).limit(limits=1, user_api="blas")
-                self._restore = limited.restore_original_limits
+                libraries = _libraries("scipy.linalg" in sys.modules)
+                self._threads = [(library, library.get_num_threads()) for library in libraries]
+                for library in libraries:
+                    library.set_num_threads(1)
             self._users += 1
 
     def __exit__(self, *error: Any) -> None:
@@ -43,7 +44,8 @@ class _OneThread(ContextDecorator):
             self._users -= 1
             if self._users == 0:  # perhaps in another thread than the first use, whose limit OpenBLAS would keep
                 OpenBLASController.clear_controlling_thread(force=True)
-                self._restore()
+                for library, threads in self._threads:
+                    library.set_num_threads(threads)
 
 
 one_blas_thread = _OneThread()

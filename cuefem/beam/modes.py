@@ -95,6 +95,7 @@ class Modes(EigenSolution):
         return np.asarray((bending + (weights * loss.kGA * section.kGA) @ shear**2) / self.omega**2)
 
 
+@one_blas_thread
 def modes(
     cue: Cue,
     count: int = 6,

@@ -140,6 +140,7 @@ class SolvedScene:
         return self.solved_modes[at, loads]
 
 
+@one_blas_thread
 def tip_modes_of(scene: Scene, at: Resolution | Solid | None = None) -> TipModes:
     """Tip modes of a strike of any scene's cue, with its effects."""
     return SolvedScene(scene, at).tip
