@@ -156,7 +156,7 @@ class System:
 
     def share_behind(self, masses: Sequence[tuple[float, float]]) -> Array:
         """Share of the cue's mass behind each Gauss point, (points,)."""
-        points, lengths = self.points, np.diff(self.cue.nodes)
+        points, lengths = self.points, self.cue.lengths
         # rho A of a cone is a parabola, a + b t + c t^2 at the fraction t of its length
         first, _, middle, _, last = segment_sections(self.cue).rhoA.T
         mass = lengths / 6 * (first + 4 * middle + last)

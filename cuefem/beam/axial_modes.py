@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cuefem.beam.assembly import Points, assemble_blocks, gauss_points, is_dense_faster
+from cuefem.beam.basis import element_rows
 from cuefem.beam.eigensolver import EigenSolution, solve_eigenproblem
 from cuefem.beam.meshing import mesh_for_phases
 from cuefem.beam.mode_count import segment_sections
@@ -64,7 +65,7 @@ def rod_modes(
     n_corrected: number of loads with a truncation correction, 1 or 0. The cost is one symmetric eigenproblem with as
     many degrees of freedom as the elements' orders add up to; the last four are kept, for fewer modes of the same rod.
     """
-    lengths, sections = np.diff(cue.nodes), segment_sections(cue)
+    lengths, sections = cue.lengths, segment_sections(cue)
     EA, rhoA = sections.EA[:, 2], sections.rhoA[:, 2]  # in the middle of each segment
     # about pi^2 EA/(rhoA L^2), the lowest free mode of the uniform rod with the mean stiffness and mass
     shift = float(10 * (lengths @ EA) / (lengths @ rhoA) / cue.length**2)
@@ -97,6 +98,6 @@ def rod_modes(
 
 def _rod_basis(points: Points, e: int) -> tuple[Array, Array]:
     """Displacement and strain of an element's degrees of freedom, tip end, bubbles, butt end: (order + 1, q) each."""
-    functions = np.r_[0, 2 : points.mesh.orders[e] + 1, 1]
+    *_, functions = element_rows(int(points.mesh.orders[e]))  # the same as of the rotation
     values, slopes = points.line_basis(e)
     return values[functions], slopes[functions]

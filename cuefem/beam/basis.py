@@ -35,7 +35,7 @@ def line_basis(degree: int, points: Array) -> tuple[Array, Array]:
 
 
 @functools.cache
-def _rows(order: int) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
+def element_rows(order: int) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
     """Indices of w and theta among an element's degrees of freedom, and the line-basis function of each."""
     last = 2 * order + 1
     w, theta = np.r_[0, 2 : 2 + order, last], np.r_[1, 2 + order : last, last + 1]
@@ -46,7 +46,7 @@ def element_basis(order: int, points: Array) -> Array:
     """w, w', theta, theta' per degree of freedom of an element of length 1 at ``points`` in [0, 1]: (4, dof, q)."""
     values, slopes = line_basis(order + 1, points)
     out = np.zeros((4, 2 * order + 3, len(points)))
-    w, w_functions, theta, theta_functions = _rows(order)
+    w, w_functions, theta, theta_functions = element_rows(order)
     out[0, w], out[1, w] = values[w_functions], slopes[w_functions]
     out[2, theta], out[3, theta] = values[theta_functions], slopes[theta_functions]
     return out

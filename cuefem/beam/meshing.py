@@ -89,7 +89,7 @@ def _required_nodes(cue: Cue, phases: Array, positions: Array) -> Array:
     node if the section does not jump there and is the mean of the sections at equal distances before and behind, within
     that reach and no further than the next nodes.
     """
-    sections, lengths = segment_sections(cue), np.diff(cue.nodes) / phases
+    sections, lengths = segment_sections(cue), cue.lengths / phases
     both_ends = np.array([sections.EA, sections.EI, sections.kGA, sections.rhoA])[..., [0, -1]]
     profile, logs = np.repeat(cue.nodes, 2)[1:-1], np.log(both_ends).reshape(len(both_ends), -1)
     jumps = np.abs(np.diff(logs)[:, 1::2]).max(axis=0) > 2 * JUMP_TOLERANCE

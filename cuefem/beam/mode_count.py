@@ -23,7 +23,7 @@ _FREQUENCIES = np.geomspace(1e0, 1e9, 100)  # angular frequencies between which 
 def segment_sections(cue: Cue) -> Section:
     """Section properties of each segment at its tip end, three Gauss points, and its butt end, (segments, 5)."""
     fractions = np.array([0.0, 0.5 - 0.15**0.5, 0.5, 0.5 + 0.15**0.5, 1.0])
-    return cue.section_in(np.arange(len(cue.segments))[:, None], np.diff(cue.nodes)[:, None] * fractions)
+    return cue.section_in(np.arange(len(cue.segments))[:, None], cue.lengths[:, None] * fractions)
 
 
 def wave_phase(cue: Cue, omega: ArrayLike) -> Array:
@@ -37,7 +37,7 @@ def wave_phase(cue: Cue, omega: ArrayLike) -> Array:
     shear, rotary = rhoA / kGA, rhoI / EI
     root = np.sqrt((shear - rotary) ** 2 + 4 * rhoA / (EI * np.maximum(omega, 1e-9) ** 2))
     branches = np.array([shear + rotary + root, np.maximum(shear + rotary - root, 0)])
-    phase = omega * np.sqrt(branches / 2) @ (np.array([5, 8, 5]) / 18) * np.diff(cue.nodes)
+    phase = omega * np.sqrt(branches / 2) @ (np.array([5, 8, 5]) / 18) * cue.lengths
     return np.moveaxis(phase, -1, 1)
 
 

@@ -333,12 +333,17 @@ class Cue:
         """Positions of the ends of the segments, m from the tip, shape (segments + 1,)."""
         return np.concatenate([[0.0], np.cumsum([s.length for s in self.segments])])
 
-    @property
+    @cached_property
+    def lengths(self) -> Array:
+        """Lengths of the segments, m, (segments,)."""
+        return np.diff(self.nodes)
+
+    @cached_property
     def length(self) -> float:
         """Length of the modelled cue, m."""
         return float(self.nodes[-1])
 
-    @property
+    @cached_property
     def leather_height(self) -> float:
         """Length of the leather tip, m: of the first segments with E below `MAX_LEATHER_MODULUS`; 0 if all are."""
         leathers = takewhile(lambda segment: segment.material.E < MAX_LEATHER_MODULUS, self.segments)

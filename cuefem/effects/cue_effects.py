@@ -403,5 +403,5 @@ class GeometricStiffness(CueEffect):
 
 def point_masses_on(cue: Cue, effects: Sequence[CueEffect]) -> list[tuple[float, float]]:
     """(position m, mass kg) of all point masses on a cue, with its body mass."""
-    masses = [(effect.positions[0], effect.mass_on(cue)) for effect in effects if effect.mass_on(cue)]
-    return [*masses, (cue.length, cue.body_mass)]
+    masses = [(effect, effect.mass_on(cue)) for effect in effects]
+    return [*((effect.positions[0], mass) for effect, mass in masses if mass), (cue.length, cue.body_mass)]

@@ -147,7 +147,7 @@ class Quantity:
     def check(self, name: str, value: Any) -> float:
         """``value`` as a float; the errors name field, bound, unit and value."""
         try:
-            if isinstance(value, bool | str) or np.ndim(value):
+            if not isinstance(value, float) and (isinstance(value, bool | str) or np.ndim(value)):
                 raise TypeError
             number = float(value)
         except (TypeError, ValueError):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from types import MappingProxyType
 
 from cuefem.cue import MAX_LEATHER_MODULUS, Cue
@@ -66,7 +67,7 @@ class Game:
     friction: float = 0.7
     offset: float = 0.3
 
-    @property
+    @cached_property
     def tip(self) -> LeatherTip:
         """The default tip."""
         leather = LEATHERS[self.leather]
@@ -78,7 +79,7 @@ class Game:
         waves = any(isinstance(effect, AxialWaves) for effect in effects)
         return Tip(leather_restitution(E) if waves else self.restitution, self.friction)
 
-    @property
+    @cached_property
     def effects(self) -> tuple[Effect, ...]:
         """Effects of a default stroke beside the tip: axial waves and geometric stiffness."""
         return AxialWaves(self.cue_length, self.butt_diameter, WAVE_SPEED), GeometricStiffness()
@@ -193,8 +194,10 @@ def default_tip(cue: Cue, game: str = DEFAULT_GAME) -> LeatherTip:
     tip = defaults.tip
     if cue.leather_height:
         tip = replace(tip, height=cue.leather_height)
+    if tip.fits(ferrule):
+        return tip
     wider = tip.with_scaled_dome(ferrule.segments[0].tip_diameter / defaults.face_diameter)
-    return wider if wider.fits(ferrule) and not tip.fits(ferrule) else tip
+    return wider if wider.fits(ferrule) else tip
 
 
 def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = None) -> Scene:

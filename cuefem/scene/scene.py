@@ -240,7 +240,7 @@ class Scene:
     def _end_diameter(self) -> float | None:
         return None if self.lumped is not None else self.shaft.segments[0].tip_diameter
 
-    @property
+    @cached_property
     def axial_mass(self) -> float:
         """Axial mass m_a, kg: the cue's mass and that of its effects."""
         added = (effect.axial_mass if self.lumped else effect.mass_on(self.shaft) for effect in self.effects)
