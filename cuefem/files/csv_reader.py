@@ -32,10 +32,30 @@ _NUMBER = re.compile(rf"(?:{FRACTION.pattern}|[+-]?[\d.,](?:[\d.,' ]*[\d.,])?(?:
 def read_rows(path: Path) -> list[Row]:
     """The lines of a table as cells, without empty lines and comments; InputError if the file is not text."""
     lines = read_lines(path)
-    if lines and (first := re.fullmatch(r"sep=(.)", lines[0][1].strip(), re.IGNORECASE)):
-        return _split(lines[1:], first[1])
+    if named := _named_separator(lines):
+        return _split(lines[1:], named)
     most = [mark for mark in _SEPARATORS if 2 * sum(mark in line for _, line in lines) >= len(lines)]
     return _split(lines, most[0] if most else None)
+
+
+def read_table(path: Path) -> list[Row]:
+    """The lines of a table that begins with its headings, as cells without blanks around them.
+
+    The separator is the one that a line "sep=;" names, or the first of tab, semicolon, | and comma in the headings.
+    """
+    lines = read_lines(path)
+    separator = _named_separator(lines)
+    if separator:
+        lines = lines[1:]
+    elif lines:
+        separator = next((mark for mark in _SEPARATORS if mark in lines[0][1]), None)
+    return [(i, [cell.strip() for cell in _cells(line, separator or ",")]) for i, line in lines]
+
+
+def _named_separator(lines: Sequence[tuple[int, str]]) -> str | None:
+    """The separator that the first line names, as spreadsheets write it: "sep=;"."""
+    named = re.fullmatch(r"sep=(.)", lines[0][1].strip(), re.IGNORECASE) if lines else None
+    return named[1] if named else None
 
 
 def read_lines(path: Path) -> list[tuple[int, str]]:
@@ -80,7 +100,7 @@ def read_text(path: Path) -> str:
     if any(ord(letter) < 32 and letter not in "\t\r\n\f\v" for letter in text):
         raise InputError(path, "", "must be text; got a file of another kind")
     if not text.strip():
-        raise InputError(path, "", "must hold a cue or a scene; got an empty file")
+        raise InputError(path, "", "must hold text or a table; got an empty file")
     return text
 
 

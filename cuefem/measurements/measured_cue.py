@@ -172,13 +172,15 @@ class OffsetZero(NamedTuple):
 def offset_zeros(cue: MeasuredCue, rows: Sequence[Residual]) -> tuple[OffsetZero, ...]:
     """The zero of the offset by each squirt that was measured on both sides.
 
-    It assumes that squirt is proportional to the offset.
+    It assumes that squirt is proportional to the offset; there is none where the mean of both sides is 0.
     """
     radius = float(cue.scene.ball.radius)
     zeros = []
     for row in rows:
         measurement = row.measurement
-        if isinstance(measurement, Squirt) and measurement.left is not None and measurement.right is not None:
+        if not isinstance(measurement, Squirt) or measurement.left is None or measurement.right is None:
+            continue
+        if row.measured_value:  # else squirt has no slope
             slope = row.measured_value / (measurement.offset * radius)
             zeros.append(
                 OffsetZero(measurement, (measurement.left - measurement.right) / 2 / slope, abs(measurement.sd / slope))

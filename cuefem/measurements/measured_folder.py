@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import io
 import os
 import re
@@ -17,7 +16,7 @@ from typing import Any
 from scipy.io import wavfile
 
 from cuefem.files import InputError, load, write_folder_atomically
-from cuefem.files.csv_reader import read_lines, read_text
+from cuefem.files.csv_reader import decimal_mark, is_number, python_number, read_table, read_text, split_unit
 from cuefem.files.cue_names import matching_names, named_path
 from cuefem.files.defaults_report import Assumption, assumptions_of_tables, offered_assumptions
 from cuefem.files.errors import as_input_error, check_path, quote, read_bytes, suggestion
@@ -134,10 +133,11 @@ def _measurements(folder: Path, path: Path, tables: dict[str, Any]) -> Iterator[
         series = folder / f"{key}.csv"
         if series.exists():
             yield from _series(series, kind)
-    for other in sorted(folder.glob("*.csv")):
-        if other.name not in DRAWINGS and other.stem not in MEASUREMENT_TYPES:
-            names = ", ".join(f"{key}.csv" for key in MEASUREMENT_TYPES)
-            raise InputError(other, "", f"must be one of {names}{suggestion(other.stem, MEASUREMENT_TYPES)}")
+    names = [f"{key}.csv" for key in MEASUREMENT_TYPES]
+    drawing = folder / str(tables.get("cue", ""))
+    for other in sorted(folder.iterdir()):
+        if other.suffix.lower() == ".csv" and other.name not in (*DRAWINGS, *names) and other != drawing:
+            raise InputError(other, "", f"must be one of {', '.join(names)}{suggestion(other.name, names)}")
 
 
 def _tables(path: Path, tables: dict[str, Any], key: str) -> list[dict[str, Any]]:
@@ -187,16 +187,26 @@ def _sound(path: Path) -> tuple[Any, float]:
 
 def _series(path: Path, kind: type) -> Iterator[Measurement]:
     """The measurements of a CSV: one column per key, its unit in the heading; empty cells are skipped."""
-    rows = [(i, next(csv.reader([line]))) for i, line in read_lines(path)]
+    rows = read_table(path)
     if not rows:
         raise InputError(path, "", "must begin with a line of headings; got comments alone")
     (first, headings), *others = rows
     columns = [_column(path, first, heading, kind) for heading in headings]
+    names = [name for name, _ in columns]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(path, f"line {first}, {name}", f"must be in one column; got {names.count(name)}")
+    hints = field_types(kind)
+    numeric = [i for i, name in enumerate(names) if quantity_of(hints[name])]
+    mark = decimal_mark([cells[i] for _, cells in others for i in numeric if i < len(cells) and is_number(cells[i])])
     for line, cells in others:
         if len(cells) != len(columns):
             raise InputError(path, f"line {line}", f"must have {len(columns)} cells, one per heading; got {len(cells)}")
-        filled = [(*column, cell.strip()) for column, cell in zip(columns, cells, strict=True) if cell.strip()]
-        table = {name: _cell(cell, unit, field_types(kind)[name]) for name, unit, cell in filled}
+        table = {}
+        for (name, unit), cell in zip(columns, cells, strict=True):
+            with as_input_error(path, key_path(f"line {line}", name)):
+                if cell:
+                    table[name] = _cell(cell, unit, hints[name], mark)
         yield build(kind, table, file=str(path), key=f"line {line}")
 
 
@@ -214,8 +224,10 @@ def _column(path: Path, line: int, heading: str, kind: type) -> tuple[str, str]:
     return name, unit
 
 
-def _cell(cell: str, unit: str, hint: Any) -> Any:
-    """The value of a cell as in a TOML file: a text with its unit, a number, or text."""
+def _cell(cell: str, unit: str, hint: Any, mark: str) -> Any:
+    """The value of a cell as in a TOML file: a text with its unit, a number, or text. mark: of the decimals."""
+    if quantity_of(hint) and is_number(cell):
+        cell = python_number(split_unit(cell)[0], mark)
     if unit:
         return f"{cell} {unit}"
     with suppress(ValueError):

@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, NamedTuple
 from cuefem.contact.side_strike import Striker
 from cuefem.measurements.predictions import N_FREQUENCIES, Predictions, predictions_of
 from cuefem.quantity.display_units import END_MASS, with_unit
-from cuefem.quantity.fields import CONTACT_TIME, LENGTH, Quantity, check_fields
+from cuefem.quantity.fields import CONTACT_TIME, LENGTH, Quantity, check_count, check_fields
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.quantities import balance_point, drawn_mass, tip_height
 from cuefem.scene import Scene
@@ -164,8 +164,7 @@ class Tone(Measurement):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if isinstance(self.mode, bool) or not 1 <= self.mode <= N_FREQUENCIES:
-            raise ValueError(f"Tone.mode must be in [1, {N_FREQUENCIES}], 1 the lowest; got {self.mode!r}")
+        check_count("Tone.mode", self.mode, 1, N_FREQUENCIES)
 
     @property
     def sd(self) -> float:
@@ -376,6 +375,11 @@ class AddedMass(Measurement):
     error: Annotated[float, Quantity("rad", POSITIVE)]
     offset: Annotated[float, Quantity("", "(0, 1)")]
     speed: Annotated[float | None, Quantity("m/s", "(0, inf)")] = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.baseline:
+            raise ValueError("AddedMass.baseline must be a squirt other than 0 rad, over which the other is; got 0")
 
     @property
     def measured_value(self) -> float:

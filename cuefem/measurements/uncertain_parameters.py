@@ -56,17 +56,17 @@ class Prior:
 
     name: str
     spread: Annotated[float | None, Quantity("", "[0, 3]")] = None
-    low: float | None = None
-    high: float | None = None
+    low: Annotated[float | None, Quantity("", "(0, inf)")] = None
+    high: Annotated[float | None, Quantity("", "(0, inf)")] = None
 
     def __post_init__(self) -> None:
         check_fields(self)
-        if _key(self.name) not in (*PARAMETERS, SQUIRT_MODEL):
+        if not isinstance(self.name, str) or _key(self.name) not in map(_key, names()):
             raise ValueError(f"Prior.name must be one of {', '.join(names())}; got {self.name!r}")
         ends = (self.low is None) + (self.high is None)
         if ends == 1 or (ends == 0) == (self.spread is not None):
             raise ValueError("Prior.spread must be given, a relative one, or low and high without it")
-        if self.low is not None and self.high is not None and not 0 < self.low < self.high:
+        if self.low is not None and self.high is not None and not self.low < self.high:
             raise ValueError(f"Prior.low must be in (0, high); got low {self.low:g} and high {self.high:g}")
 
 
@@ -88,7 +88,11 @@ def parameters_of(
 
     ValueError if a prior is of something that the scene does not have.
     """
-    by_key = {_key(prior.name): prior for prior in priors}
+    by_key: dict[str, Prior] = {}
+    for each in priors:
+        if _key(each.name) in by_key:
+            raise ValueError(f"uncertain parameters must have one prior for each parameter; got two of {each.name!r}")
+        by_key[_key(each.name)] = each
     parameters = []
     for key, entry in PARAMETERS.items():
         default_spread = entry.spread_in(scene)

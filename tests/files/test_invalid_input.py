@@ -30,10 +30,10 @@ def rejection(path: Path, **options: str) -> str:
 POINTS, FACES = revolve([(0, 0), (0, 0.006), (0.7, 0.0105), (0.7, 0)], 16)
 # One error a line: file extension, content (H is the header of a profile), and the first words of the message.
 CONTENTS = r"""
-toml |                                      | must hold a cue or a scene; got an empty file
+toml |                                      | must hold text or a table; got an empty file
 toml | a = 1\na = 2\n                       | must be TOML; got a syntax error: Cannot overwrite a value (at line 2
 toml | [[segments]]\nlength = 700 mm        | must be TOML; got a syntax error: Expected newline or end of document
-toml | \xff\xfe                             | must hold a cue or a scene; got an empty file
+toml | \xff\xfe                             | must hold text or a table; got an empty file
 toml | # nothing                            | cue: must be given: [[segments]] make a cue, [cue] a scene; got nei
 toml | cue = 3                              | cue: must be a table or the path of a cue file; got 3
 toml | cue = 'x.toml'                       | cue: must be absent: the cue of a scene is a cue file
@@ -50,7 +50,7 @@ toml | [tip]\ncontact_time = '1 ms'\nstiffness = '1e5 N/m'\n[cue]\nmass = '1 kg'
 toml | shaft = 3                            | shaft: must be text; got 3
 toml | shaft = 'carbon'\nbody_mass = '15 oz'\nbore = 'wide' | shaft: bore: must be a width and a depth
 toml | shaft = 'carbon'\nbody_mass = '15 oz'\nsegments = [] | segments: must be omitted with shaft, which defines
-csv  |                                      | must hold a cue or a scene; got an empty file
+csv  |                                      | must hold text or a table; got an empty file
 csv  | # x                                  | must begin with the header "x [mm],diameter [mm]"; got only
 csv  | H0,12                                | must hold at least 2 points; got 1
 csv  | H0,12\n\n700,-21                     | line 4, diameter: must be more than 0 and at most 10000 mm; got -21

@@ -10,7 +10,7 @@ import pytest
 
 from cuefem.measurements.estimate import estimate
 from cuefem.measurements.measured_cue import MeasuredCue
-from cuefem.measurements.measurement_types import AddedMass, PivotLength, Setup, Squirt, Stiffness
+from cuefem.measurements.measurement_types import AddedMass, PivotLength, Setup, Squirt, Stiffness, Tone
 from cuefem.measurements.pendulum import Pendulum
 from cuefem.measurements.uncertain_parameters import Prior
 from tests.helpers.command_line import call
@@ -28,6 +28,12 @@ CALLS: dict[str, Callable[[], object]] = {
     "Squirt.zero_error must be absent": lambda: Squirt(offset=0.3, left=0.03, right=0.03, error=1e-3, zero_error=1e-3),
     "pivot_length must be of a stroke with squirt": lambda: PIVOT.compute(Setup(SCENE, squirt_factor=0.0)),
     "Prior.name must be one of E, G, rho, ": lambda: Prior("colour", 0.1),
+    "Prior.name must be one of E, G, rho": lambda: Prior("shaft material", 0.1),
+    "got 3": lambda: Prior(3, 0.1),  # type: ignore[arg-type]
+    "Prior.low must be in (0, inf); got nan": lambda: Prior("E", low=float("nan"), high=2e9),
+    "one prior for each parameter; got two of 'E'": lambda: measured_cue(priors=(Prior("E", 0.1), Prior("E", 0.2))),
+    "TypeError: Tone.mode must be a whole number in [1, 8]": lambda: Tone(mode=1.5, value=1.0, error=1.0),  # type: ignore[arg-type]
+    "AddedMass.baseline must be a squirt other than 0 rad": lambda: replace(FAR, baseline=0.0),
     "Prior.spread must be given": lambda: Prior("E", 0.1, 1e9, 2e9),
     "Prior.low must be in (0, high)": lambda: Prior("E", low=2e9, high=1e9),
     "got 'dome', which it does not have": lambda: measured_cue(priors=(Prior("dome", 0.1),)),
@@ -78,7 +84,9 @@ squirt.csv | offset,value,error [deg]\n0.3,2,1\n | line 1, value: must be the he
 squirt.csv | offset,value [deg],error [deg]\n0.3,2\n | line 2: must have 3 cells
 squirt.csv | offset,value [deg],error [deg]\na,2,1\n | line 2.offset: must be a bare number
 tone.csv | # nothing\n | must begin with a line of headings
+squirt.csv | offset,value [deg],value [deg]\n0.3,2,1\n | line 1, value: must be in one column; got 2
 squirts.csv | offset\n | squirts.csv: must be one of weight.csv
+squirt.CSV | offset\n | squirt.CSV: must be one of weight.csv
 """
 
 

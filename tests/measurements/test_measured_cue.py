@@ -1,6 +1,7 @@
 """Computed values of measurements, residuals, and offset zeros (verification)."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 import cuefem as cf
 from cuefem.cue.geometry import shear_coefficient
 from cuefem.measurements.measured_cue import compare, offset_zeros
+from cuefem.measurements.measured_folder import load_measured
 from cuefem.measurements.measurement_types import (
     AddedMass,
     Balance,
@@ -19,7 +21,7 @@ from cuefem.measurements.measurement_types import (
     Weight,
 )
 from tests.helpers.leather_scenes import leather_scene
-from tests.helpers.measured_cues import SCENE, WOOD, cheap_measurements, measured_cue
+from tests.helpers.measured_cues import SCENE, WOOD, cheap_measurements, measured_cue, measured_folder
 
 ROD = replace(SCENE, cue=cf.Cue((cf.Segment(0.7, 0.014, 0.014, WOOD),)))
 
@@ -89,6 +91,8 @@ def test_offset_zero_moves_one_side_and_not_the_mean() -> None:
     (result,) = offset_zeros(cue, compare(cue))
     assert result.zero_error == pytest.approx(shift, rel=0.2)
     assert result.error > 0
+    symmetric = measured_cue(Squirt(offset=0.3, left=0.01, right=-0.01, error=1e-3))
+    assert offset_zeros(symmetric, compare(symmetric)) == ()  # no slope of squirt over the offset
 
 
 def test_residuals_are_in_units_of_errors() -> None:
@@ -102,3 +106,31 @@ def test_residuals_are_in_units_of_errors() -> None:
     assert weight.spread / weight.computed_value == pytest.approx(np.log(780 / 630) / 2, rel=2e-2)
     E, rho = np.log(16.9 / 10.8) / 2, np.log(780 / 630) / 2
     assert tone.spread / tone.computed_value == pytest.approx(np.hypot(E, rho) / 2, rel=5e-2)
+
+
+PLAIN = "offset,value [deg],error [deg],source\n0.3,2.1,0.1,by hand; twice\n0.4,2.8,0.1,\n"
+SERIES = {
+    "semicolons and decimal commas": PLAIN.replace(";", ":").replace(",", ";").replace(".", ","),
+    "a line that names the separator": "sep=;\n" + PLAIN.replace(";", ":").replace(",", ";"),
+    "tabs": PLAIN.replace(",", "\t"),
+    "quoted decimal commas": 'offset,value [deg],error [deg],source\n"0,3","2,1","0,1",by hand\n"0,4","2,8","0,1",\n',
+    "a byte-order mark and CRLF": "\ufeff" + PLAIN.replace("\n", "\r\n"),
+}
+
+
+@pytest.mark.parametrize("name", SERIES)
+def test_series_of_a_spreadsheet_is_read_as_any_table(name: str, tmp_path: Path) -> None:
+    folder = measured_folder(tmp_path / "cue")
+    (folder / "squirt.csv").write_text(SERIES[name], encoding="utf-8", newline="")
+    squirts = [each for each in load_measured(folder)[0].measurements if isinstance(each, Squirt)]
+    assert [(each.offset, round(float(np.degrees(each.measured_value)), 9)) for each in squirts] == [
+        (0.3, 2.1),
+        (0.4, 2.8),
+    ]
+    assert squirts[0].source.startswith("by hand")
+
+
+def test_folder_may_name_its_drawing(tmp_path: Path) -> None:
+    folder = measured_folder(tmp_path / "cue", 'cue = "shaft.csv"\n')
+    (folder / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12.75\n700,21\n", encoding="utf-8")
+    assert load_measured(folder)[0].scene.shaft.length == pytest.approx(0.7)
