@@ -161,9 +161,9 @@ def test_commands_state_the_numbers_of_the_call() -> None:
         status, out, _ = call(command, "--json", STUDIES / "scenes" / "kim.toml")
         assert status == 0
         assert json.loads(out)["reduction"] == expected
-        shown = call(command, STUDIES / "scenes" / "kim.toml")[1].splitlines()
-        (row,) = (line.split() for line in shown if line.strip().startswith("this shaft, vibrating"))
-        assert row[-3:] == ["0.59°", "1.62°", "2.42°"]
+    shown = call("end-mass", STUDIES / "scenes" / "kim.toml")[1].splitlines()
+    (row,) = (line.split() for line in shown if line.strip().startswith("this shaft, vibrating"))
+    assert row[-3:] == ["0.59°", "1.62°", "2.42°"]
 
 
 def test_end_mass_command_compares_typed_guesses() -> None:

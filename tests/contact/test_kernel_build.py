@@ -139,7 +139,7 @@ def test_misspelt_field_of_kernel_raises() -> None:
         KernelInput().frction = 0.5
 
 
-@pytest.mark.parametrize("environment", [{"CC": "no-such-compiler"}, {"PATH": ""}, {"CC": "false"}])
+@pytest.mark.parametrize("environment", [{"PATH": ""}, {"CC": "false"}])
 def test_kernel_build_without_compiler_uses_zig_or_names_both(folder: Path, environment: dict[str, str]) -> None:
     without_zig = f"import sys; sys.modules['ziglang'] = None; {BUILDING}"
     assert run(folder, "-c", without_zig, **environment) == (1, "", [NAMES_BOTH])

@@ -104,7 +104,7 @@ def test_histogram_has_every_design_and_factors_are_ordered(tmp_path: Path) -> N
 
 
 def test_page_and_notebook_of_a_study_have_its_charts(tmp_path: Path) -> None:
-    result = cf.study(write_study(tmp_path, STUDY))
+    result = cf.study(write_study(tmp_path, STUDY), workers=1)
     charts = result.charts()
     assert [chart.title for chart in charts] == [
         "Trade-off: end mass",

@@ -84,7 +84,7 @@ def test_study_command_prints_summary_and_writes_page(tmp_path: Path) -> None:
 
 
 def test_study_result_has_designs_responses_units_best_and_spread(tmp_path: Path) -> None:
-    result = cf.study(write_study(tmp_path), store=tmp_path / "some.sqlite")
+    result = cf.study(write_study(tmp_path), store=tmp_path / "some.sqlite", workers=1)
     assert (result.kind, result.count, len(result.failures)) == ("sweep", 32, 8)
     units = ["m", "s", "", "kg", "N/m", "Hz"]
     assert result.units == dict(zip((*result.designs, *result.responses), units, strict=True))
@@ -95,7 +95,7 @@ def test_study_result_has_designs_responses_units_best_and_spread(tmp_path: Path
     assert set(result.best) == {"end_mass", "tip_stiffness"}
     assert result.spread["end_mass"]["5 %"] < result.spread["end_mass"]["mean"] < result.spread["end_mass"]["95 %"]
     assert repr(result).splitlines()[0] == "SweepResult(32 designs, 8 failed)"
-    again = cf.study(tmp_path / "study.toml", store=tmp_path / "some.sqlite", workers=1)  # all designs are stored
+    again = cf.study(tmp_path / "study.toml", store=tmp_path / "some.sqlite")  # all designs are stored
     assert again.columns == result.columns
 
 

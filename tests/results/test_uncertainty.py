@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
+from cuefem.analysis.comparison import compare_cues
 from cuefem.measurements.uncertain_parameters import parameters_of
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.parameters.table import PARAMETERS
@@ -44,7 +45,7 @@ def test_friction_is_an_input_of_late_slip_alone() -> None:
     """At 5 m/s and b/R 0.45 friction changes squirt by about 10 %, at 2 m/s and b/R 0.3 by less than 0.1 %."""
     scene = cf.usual_scene(cf.load(MESHES / "pool_maple.toml"))
     shares = [
-        cf.verdict(with_parameters(scene, {"speed": speed, "offset": offset})).inputs["friction"]
+        cf.verdict(with_parameters(scene, {"speed": speed, "offset": offset}), {}).inputs["friction"]
         for speed, offset in ((2.0, 0.3), (5.0, 0.45))
     ]
     assert shares[0] < 1e-3
@@ -66,7 +67,7 @@ def test_squirt_changes_miscue_on_one_side_takes_the_other() -> None:
         "Uncertain to one side only, since the other is a miscue or beyond the valid range of the tip: friction of tip "
         "and ball."
     )
-    assert note in cf.verdict(scene).uncertainty_line()
+    assert note in cf.verdict(scene, {}).uncertainty_line()
     with pytest.raises(NoVerdict, match=r"miscue at b/R 0\.57"):
         squirt_of(slippery)
 
@@ -74,9 +75,10 @@ def test_squirt_changes_miscue_on_one_side_takes_the_other() -> None:
 def test_input_beyond_the_range_of_the_tip_is_named_by_report_and_comparison() -> None:
     """At 19 m/s softer leather is indented beyond its range: both say so of it, by one rule."""
     scene = with_parameters(cf.usual_scene(cf.load(MESHES / "pool_maple.toml")), {"offset": 0.2, "speed": 19.0})
-    verdict = cf.verdict(scene)
+    verdict = cf.verdict(scene, {})
     assert "leather" in verdict.miscues
-    beside = cf.compare({"own": scene, "other": with_parameters(scene, {"tip diameter": 12e-3})})
+    other = with_parameters(scene, {"tip diameter": 12e-3})
+    beside = compare_cues({"own": scene, "other": other}, names=("squirt",))
     assert beside.miscues["own"] == verdict.miscues
 
 
