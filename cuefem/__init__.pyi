@@ -74,3 +74,5 @@ from .scene.scene import (
 )
 
 __version__: str
+
+__all__: list[str]

@@ -22,7 +22,8 @@ from cuefem.cli.scene_command import (
 )
 from cuefem.cli.scene_options import option_value, tip_options, typed_name
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.files import InputError, as_input_error, load_accuracy, save
+from cuefem.files import InputError, load_accuracy, save
+from cuefem.files.errors import as_input_error
 from cuefem.parameters.parts import main_material
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.quantity.fields import Quantity

@@ -42,7 +42,7 @@ def read(table: dict[str, Any], speed: float, offset: float) -> dict[str, float]
 
 
 @attrs.define
-class StrikeTableCollision(CoreStickBallCollision):  # type: ignore[misc]
+class StrikeTableCollision(CoreStickBallCollision):
     """The strike of a cue by its table.
 
     table: the contents of the JSON file. miscue: whether the last stroke was beyond the miscue limit; the ball then

@@ -90,7 +90,7 @@ def _estimate(
     for _ in range(STEPS):
         at = old.compute(z, kinds)
         z = covariance @ J.T @ ((true - at) / errors + J @ z)
-    values = [replace(kind, value=float(v), error=float(e)) for kind, v, e in zip(kinds, true, errors, strict=True)]  # type: ignore[call-arg]
+    values = [replace(kind, value=float(v), error=float(e)) for kind, v, e in zip(kinds, true, errors, strict=True)]
     measured = MeasuredCue(old.name, old.scene, tuple(values))
     return Estimate(measured, z, covariance, at, slopes, 0.0, True, np.zeros(len(kinds)))
 

@@ -169,7 +169,7 @@ def towards_nature() -> Iterator[tuple[str, str, str, str]]:
         reduced = [pages.NONE] * 2
         if not scene.effects:
             reduced = [grams(cf.end_mass(scene, "offset")), degrees(cf.impulse(scene).squirt)]
-        yield name, *reduced, degrees(cf.strike(scene).squirt)  # type: ignore[misc]
+        yield name, *reduced, degrees(cf.strike(scene).squirt)
 
 
 def text() -> str:

@@ -21,6 +21,7 @@ from typing import Any, NamedTuple
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 from scipy.optimize import brentq
 
 from cuefem import Ball, Effect, Outcome, Resolution, Scene, Stroke, Tip, TipDome, end_mass, strike
@@ -786,7 +787,7 @@ def text() -> str:
     )
 
 
-def draw_rigid(axes: plt.Axes) -> None:
+def draw_rigid(axes: Axes) -> None:
     """Squirt of a rigid cue over phi and Q0 (the paper's fig. squirt2)."""
     phi, ratios, psi = rigid_map()
     levels = np.arange(0, 27, 2)
@@ -803,7 +804,7 @@ def draw_rigid(axes: plt.Axes) -> None:
     axes.text(44.5, 0.25, "slip outlasts\ncompression", ha="right", fontsize=8)
 
 
-def draw_ends(axes: plt.Axes) -> None:
+def draw_ends(axes: Axes) -> None:
     """Squirt of the two-part cue for eight cue ends (left panel of fig. squirt)."""
     b = np.linspace(0, 0.7, 701)
     shades = iter(plt.colormaps["viridis"](np.linspace(0.05, 0.85, len(ENDS) - 2)))

@@ -132,13 +132,13 @@ def test_miscue_has_no_squirt() -> None:
     own = cf.reduction(replace(KIM, tip=replace(KIM.tip, friction=0.1)))
     model = own.models[VIBRATING]
     assert (model["regime"][-1], model["squirt"][-1]) == ("miscue", None)
-    assert "–" in own.tables()[1].rows[-1]  # type: ignore[union-attr]
+    assert "–" in own.tables()[1].rows[-1]
 
 
 def test_leather_states_that_its_end_mass_is_for_the_impulse_solver() -> None:
-    own = cf.reduction(cf.usual_scene(cf.load(STUDIES.parent / "meshes" / "pool_maple.toml")))  # type: ignore[arg-type]
+    own = cf.reduction(cf.usual_scene(cf.load(STUDIES.parent / "meshes" / "pool_maple.toml")))
     assert {model["rigid_length"] for model in own.models.values()} == {None}
-    assert any("for the impulse solver, and for programs" in note for note in own.tables()[1].notes)  # type: ignore[union-attr]
+    assert any("for the impulse solver, and for programs" in note for note in own.tables()[1].notes)
 
 
 @pytest.mark.parametrize(

@@ -146,7 +146,7 @@ def test_javascript_reads_the_table_as_python_does(table: StrikeTable, tmp_path:
 
 @pytest.mark.heavy
 def test_table_of_leather_tip_is_within_one_percent_of_other_random_strokes() -> None:
-    table = cf.strike_table(cf.usual_scene(cf.load(STUDIES.parent / "meshes" / "pool_maple.toml")))  # type: ignore[arg-type]
+    table = cf.strike_table(cf.usual_scene(cf.load(STUDIES.parent / "meshes" / "pool_maple.toml")))
     errors = strike_grid.Strikes(table.scene, table.speed).random_errors(table.grid(), RANDOM // 4, SEED)
     assert strike_grid.within_tolerance(errors) >= 0.99
     assert errors.max() < 0.025

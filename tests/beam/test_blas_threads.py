@@ -7,8 +7,8 @@ import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
 import cuefem as cf
-from cuefem.beam import modes
 from cuefem.beam.blas_threads import one_blas_thread
+from cuefem.beam.eigensolver import solve_eigenproblem
 from tests.helpers.cues import kim
 
 
@@ -18,13 +18,13 @@ def blas_threads() -> set[int]:
 
 
 def test_modes_are_solved_by_one_blas_thread(monkeypatch: pytest.MonkeyPatch) -> None:
-    during, solve = list[set[int]](), modes.solve_eigenproblem
+    during, solve = list[set[int]](), solve_eigenproblem
 
     def recorded(*arguments: object, **options: object) -> object:
         during.append(blas_threads())
-        return solve(*arguments, **options)  # type: ignore[arg-type]
+        return solve(*arguments, **options)
 
-    monkeypatch.setattr(modes, "solve_eigenproblem", recorded)
+    monkeypatch.setattr("cuefem.beam.modes.solve_eigenproblem", recorded)
     with threadpool_limits(2, user_api="blas"):
         cf.modes(kim(), 3)
         cf.strike(cf.Scene(kim()))

@@ -57,7 +57,7 @@ def test_end_mass_scaled_units_scales(cue: Cue, drive: str, length: float, time:
     other = replace(scaled(cue, E=stiff, G=stiff, rho=heavy, length=length), body_mass=cue.body_mass * mass)
     original = Scene(cue, tip=Tip(contact_time=1e-3))
     scaled_scene = Scene(other, Ball(mass=0.21 * mass), Tip(contact_time=1e-3 * time))
-    one, two = end_mass(original, drive, AT), end_mass(scaled_scene, drive, AT)  # type: ignore[arg-type]
+    one, two = end_mass(original, drive, AT), end_mass(scaled_scene, drive, AT)
     np.testing.assert_allclose(two, one * mass, rtol=1e-9)
 
 

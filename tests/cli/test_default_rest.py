@@ -30,7 +30,7 @@ def shaft(tmp_path: Path) -> Path:
 def study_scene(shaft: Path, scene: str, more: str = "") -> cf.Scene:
     path = shaft.parent / "study.toml"
     path.write_text(STUDY.format(scene=scene, more=more), encoding="utf-8")
-    return load_study(path).base  # type: ignore[no-any-return]
+    return load_study(path).base
 
 
 @pytest.mark.parametrize("game", GAMES)

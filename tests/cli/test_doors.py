@@ -41,7 +41,7 @@ def of_study(shaft: RandomShaft, file: Path) -> cf.Scene:
         f'[[vary]]\npath = "offset"\nvalues = [{shaft.offset!r}]\n',
         encoding="utf-8",
     )
-    return load_study(study).scene((shaft.dome, shaft.offset))  # type: ignore[no-any-return, union-attr]
+    return load_study(study).scene((shaft.dome, shaft.offset))
 
 
 def of_designer(shaft: RandomShaft, file: Path) -> cf.Scene:

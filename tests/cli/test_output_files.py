@@ -157,7 +157,7 @@ def test_unknown_extension_names_those_that_can_be_written() -> None:
     assert (status, out) == (2, "")
     assert "must end in .html or .json or .toml" in err
     with pytest.raises(ValueError, match=r"\.html or \.json"):
-        cf.natural_frequencies(cf.Scene(cf.load("meshes/kim.toml"))).save("x.pdf")  # type: ignore[arg-type]
+        cf.natural_frequencies(cf.Scene(cf.load("meshes/kim.toml"))).save("x.pdf")
 
 
 @pytest.mark.heavy

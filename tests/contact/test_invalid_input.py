@@ -44,8 +44,8 @@ def heavy(call: Callable[[], object], message: str) -> Any:
 
 CALLS: list[Any] = [
     (lambda: cf.LumpedCue(0.25, 0.25, 4.0), "LumpedCue.coupling must be in (-4.0, 4.0) 1/kg; got 4.0"),
-    (lambda: cf.strike(3), "TypeError: strike scene must be a Scene; got 3"),  # type: ignore[arg-type]
-    (lambda: cf.impulse(3), "TypeError: impulse scene must be a sequence of Scene; got 3"),  # type: ignore[arg-type]
+    (lambda: cf.strike(3), "TypeError: strike scene must be a Scene; got 3"),
+    (lambda: cf.impulse(3), "TypeError: impulse scene must be a sequence of Scene; got 3"),
     *((call, "must be a Cue of segments: ") for call in (lambda: LUMPED.shaft, lambda: default_mode_count(LUMPED))),
     (lambda: cf.Scene("cue"), "TypeError: Scene.cue must be a Cue or LumpedCue; got 'cue'"),
     (lambda: cf.Scene(cf.LumpedCue(0.5, 0.003), tip=0.7), "TypeError: Scene.tip must be a Tip"),

@@ -45,7 +45,7 @@ def test_batch_strike_equals_single_strikes(scenes: list[cf.Scene], at: cf.Resol
     for i, scene in enumerate(scenes):
         alone = numbers(cf.strike(scene, at))
         for name, values in numbers(together).items():
-            assert np.array_equal(values[i], alone.get(name, 0.0)), (i, name)  # type: ignore[index]
+            assert np.array_equal(values[i], alone.get(name, 0.0)), (i, name)
     assert together.unknowns > 20
 
 
@@ -117,7 +117,7 @@ def test_results_with_arrays_copy_pickle_and_compare() -> None:
 def test_point_mass_takes_numbers_by_keyword() -> None:
     """Mass and position swapped were accepted in silence."""
     with pytest.raises(TypeError, match="positional"):
-        cf.PointMass(1e-3, 0.01)  # type: ignore[misc]
+        cf.PointMass(1e-3, 0.01)
 
 
 @pytest.mark.nightly

@@ -175,15 +175,15 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: Striker(0.02, 0.8, modulus=1e9), "got modulus 1000000000.0 Pa"),
     (lambda: Striker(math.nan, 0.8, stiffness=1e5), "Striker.mass must be in (0, inf) kg; got nan"),
     (lambda: SideStrike(kim(), BALL, 0.71), "SideStrike.position must be in [0, 0.7] m, on the cue; got 0.71"),
-    (lambda: SideStrike(cf.LumpedCue(0.5, 0.006), BALL), "TypeError: SideStrike.cue must be a Cue"),  # type: ignore[arg-type]
+    (lambda: SideStrike(cf.LumpedCue(0.5, 0.006), BALL), "TypeError: SideStrike.cue must be a Cue"),
     (
         lambda: SideStrike(kim(), BALL, effects=PointMass(position=0.1, mass=1e-3)),
         "TypeError: SideStrike.effects must be a seq",
-    ),  # type: ignore[arg-type]
+    ),
     (lambda: SideStrike(kim(), BALL, effects=(cf.TipDome(0.01),)), "does not touch the cue's tip; got TipDome"),
-    (lambda: side_strike(kim()), "TypeError: side_strike scene must be a SideStrike; got a Cue"),  # type: ignore[arg-type]
+    (lambda: side_strike(kim()), "TypeError: side_strike scene must be a SideStrike; got a Cue"),
     (lambda: side_strike(SideStrike(kim(), Striker(0.02, 1.0, stiffness=1e15))), "contact time in [1e-6, 10] s"),
-    (lambda: cf.strike(SCENE), "TypeError: strike scene must be a Scene"),  # type: ignore[arg-type]
+    (lambda: cf.strike(SCENE), "TypeError: strike scene must be a Scene"),
 ]
 
 

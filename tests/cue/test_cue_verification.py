@@ -84,8 +84,8 @@ PIECE = Segment(0.7, 0.012, 0.021, MAPLE)
 CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: replace(PIECE, tip_bore=0.013), "Segment.tip_bore must be in [0, 0.012) m, its outer diameter; got 0.013"),
     (lambda: replace(PIECE, butt_bore=0.021), "Segment.butt_bore must be in [0, 0.021) m, its outer diameter"),
-    (lambda: replace(PIECE, material="maple"), "TypeError: Segment.material must be a Material; got 'maple'"),  # type: ignore[arg-type]
-    (lambda: replace(PIECE, core=3), "TypeError: Segment.core must be a Material or NoneType; got 3"),  # type: ignore[arg-type]
+    (lambda: replace(PIECE, material="maple"), "TypeError: Segment.material must be a Material; got 'maple'"),
+    (lambda: replace(PIECE, core=3), "TypeError: Segment.core must be a Material or NoneType; got 3"),
     (lambda: replace(MAPLE, E=6e9, G=10e9), "Material.G must be in (0, 10000000000.0) Pa, E/(2 nu) of E = 6000000000"),
     (lambda: Cue(PIECE), "TypeError: Cue.segments must be a sequence of Segment; got one Segment"),
     (lambda: Cue((PIECE, 7)), "TypeError: Cue.segments[1] must be a Segment; got 7"),

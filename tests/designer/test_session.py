@@ -79,7 +79,7 @@ def test_comparison_is_of_both_designs_at_one_stroke() -> None:
     mine, other = session.headline_cue(0), session.headline_cue(1)
     assert mine is not None
     assert other is not None
-    assert other.numbers["squirt"] == cf.strike(session.compared_scene()).squirt  # type: ignore[arg-type]
+    assert other.numbers["squirt"] == cf.strike(session.compared_scene()).squirt
     assert session.results.difference is not None
     table = tabulate_numbers(session)
     assert table is not None

@@ -157,7 +157,7 @@ def test_listed_values_are_searched_one_by_one(tmp_path: Path) -> None:
 
 def test_optimum_of_listed_values_alone(tmp_path: Path) -> None:
     head, *_, last = NAMES.split("[[vary]]")
-    result = cf.study(write_study(tmp_path, f"{head}[[vary]]{last}")).optimum
+    result = cf.study(write_study(tmp_path, f"{head}[[vary]]{last}")).optimum  # type: ignore[attr-defined]
     assert result.evaluations == len(result.choices) == 3
     best = min(result.choices, key=lambda choice: choice.objective)
     assert (result.values, result.responses["squirt_slope"]) == (best.values, best.objective)

@@ -72,7 +72,7 @@ def test_sobol_indices_of_correlated_sum_equal_closed_form() -> None:
     scatter = Scatter(study, r, {"wood": ("front", "middle", "rear")}, 128, 1)
     assert scatter.factors == ("ferrule", "wood")
     result = cf.study(scatter)
-    computed = result.sobol_indices
+    computed = result.sobol_indices  # type: ignore[attr-defined]
     per_rho = np.array([segment.mass / segment.material.rho for segment in MAPLE.segments[1:]])
     ferrule = MAPLE.segments[1]
     hole = math.pi / 4 * ferrule.length * ferrule.tip_bore**2
@@ -84,7 +84,7 @@ def test_sobol_indices_of_correlated_sum_equal_closed_form() -> None:
     assert computed.first[:, 0] == pytest.approx(parts / parts.sum(), abs=0.03)
     assert computed.total[:, 0] == pytest.approx(parts / parts.sum(), abs=0.03)
     assert result.spread["shaft_mass"]["sd"] == pytest.approx(math.sqrt(parts.sum()), rel=0.03)
-    ungrouped = cf.study(Scatter(study, count=128, seed=1)).sobol_indices
+    ungrouped = cf.study(Scatter(study, count=128, seed=1)).sobol_indices  # type: ignore[attr-defined]
     assert ungrouped.factors == ("ferrule", "front", "middle", "rear")
     assert ungrouped.first[:, 0] == pytest.approx(terms**2 / (terms**2).sum(), abs=0.03)
 
@@ -127,8 +127,8 @@ def test_correlated_parameters_are_one_cause() -> None:
 
 def test_single_factor_explains_single_response() -> None:
     result = cf.study(Scatter(replace(STUDY, vary=VARY[1:2], responses=STUDY.responses[:1]), count=16, seed=1))
-    assert result.sobol_indices.total == pytest.approx(np.ones((1, 1)), abs=0.1)
-    assert result.sobol_indices.first_interval.shape == (2, 1, 1)
+    assert result.sobol_indices.total == pytest.approx(np.ones((1, 1)), abs=0.1)  # type: ignore[attr-defined]
+    assert result.sobol_indices.first_interval.shape == (2, 1, 1)  # type: ignore[attr-defined]
 
 
 def test_scatter_command_equals_function(tmp_path: Path) -> None:
@@ -139,7 +139,7 @@ def test_scatter_command_equals_function(tmp_path: Path) -> None:
     stiffness, spread = record["responses"]["tip_stiffness"], result.spread["tip_stiffness"]
     assert (record["kind"], record["count"], record["seed"]) == ("scatter", 16, 5)
     assert {name: stiffness[name] for name in spread} == spread
-    assert stiffness["factors"]["wood"]["first"] == result.sobol_indices.first[0, 1]
+    assert stiffness["factors"]["wood"]["first"] == result.sobol_indices.first[0, 1]  # type: ignore[attr-defined]
     assert stiffness["factors"]["time"]["total_interval"] == [0, 0]
     assert len((tmp_path / "all.csv").read_text(encoding="utf-8").splitlines()) == 1 + 16 * 4
     out = " ".join(stdout_of("study", study).split())

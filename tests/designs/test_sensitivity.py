@@ -10,7 +10,8 @@ import pytest
 from cuefem import Cue, Material, PointMass, Resolution, Scene, Tip, load
 from cuefem.designs.sensitivity import Sensitivity, sensitivity
 from cuefem.endmass.definitions import end_mass
-from tests.helpers.cues import kim, low_deflection, reference_cue
+from studies.strokes import cue as reference_cue
+from tests.helpers.cues import kim, low_deflection
 
 MESHES = Path(__file__).parents[2] / "meshes"
 AT = Resolution(3, 8, 14)

@@ -99,8 +99,8 @@ def test_histogram_has_every_design_and_factors_are_ordered(tmp_path: Path) -> N
     )
     assert [mark.label for mark in histogram.marks] == ["5 %", "50 %", "95 %"]
     shown = numbers(factors, factors.points[0][2])[:, 0]
-    assert shown == pytest.approx(100 * np.sort(result.sobol_indices.total[:, 0]), abs=0.5)
-    assert len(factors.y_ticks) == len(result.sobol_indices.factors)
+    assert shown == pytest.approx(100 * np.sort(result.sobol_indices.total[:, 0]), abs=0.5)  # type: ignore[attr-defined]
+    assert len(factors.y_ticks) == len(result.sobol_indices.factors)  # type: ignore[attr-defined]
 
 
 def test_page_and_notebook_of_a_study_have_its_charts(tmp_path: Path) -> None:

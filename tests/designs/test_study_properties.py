@@ -32,7 +32,7 @@ ALL = tuple(map(Response.of, NAMES))
 
 
 def study(*vary: Vary, responses: tuple[str, ...] = ("end_mass",), **more: object) -> Study:
-    return Study(BASE, vary, tuple(map(Response.of, responses)), at=AT, **more)  # type: ignore[arg-type]
+    return Study(BASE, vary, tuple(map(Response.of, responses)), at=AT, **more)
 
 
 def varied(path: str, *values: float | str, factor: bool = False, name: str = "") -> Vary:
@@ -199,12 +199,12 @@ def test_best_design_of_left_hand_offset_is_that_of_right_hand() -> None:
     stiffness = Response("tip_stiffness")
     result = cf.study(replace(study(BORES), responses=(right, left, stiffness)))
     assert result.best[left.name].values == result.best[right.name].values == {"bore": 8e-3}
-    statistics = result.statistics
+    statistics = result.statistics  # type: ignore[attr-defined]
     assert statistics is not None
     assert statistics.best(0) == statistics.best(1) == 2
     assert statistics.trends == [["falls"] * 3]
-    sides = [cf.study(replace(study(BORES), responses=(each, stiffness))).statistics for each in (right, left)]
-    assert sides[0].front == sides[1].front == [2, 1, 0]  # type: ignore[union-attr]
+    sides = [cf.study(replace(study(BORES), responses=(each, stiffness))).statistics for each in (right, left)]  # type: ignore[attr-defined]
+    assert sides[0].front == sides[1].front == [2, 1, 0]
     mirrored = cf.study(replace(study(BORES, responses=("squirt",)), base=at_offset(BASE, -0.3)))
     assert mirrored.best["squirt"].values == {"bore": 8e-3}
 
@@ -222,7 +222,7 @@ def test_best_design_has_all_responses_in_result_and_table() -> None:
     """Without friction a stroke miscues: it has no end mass of its squirt, and is the best in neither."""
     friction = Vary(("tip.friction",), Levels((0.0, 0.6, 0.7)), "friction")
     result = cf.study(study(friction, responses=("end_mass_squirt(0.3)", "squirt(0.3)")))
-    statistics = result.statistics
+    statistics = result.statistics  # type: ignore[attr-defined]
     assert statistics is not None
     assert [*result.failures] == [0]
     numbers = {

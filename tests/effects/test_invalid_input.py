@@ -57,10 +57,10 @@ CALLS: list[tuple[Callable[[], object], str]] = [  # one line for each `raise`
     (with_tip(cf.Tip(), WAVES, LEATHER, cue=pool()), "Scene.effects[1] must be the only leather: draw the cue"),
     (lambda: cf.modes(pool(), effects=(LEATHER,)), "LeatherTip must be the only leather: draw the cue without its"),
     (with_tip(cf.Tip(), replace(LEATHER, dome_radius=5e-3)), "dome radius 5 mm is too small: a 12 mm tip"),
-    (lambda: cf.modes(KIM, 3, effects=(3,)), "TypeError: modes effects must be effects"),  # type: ignore[arg-type]
-    (lambda: replace(kim_scene(), effects=SHEAR), "TypeError: Scene.effects must be a sequence of effects"),  # type: ignore[arg-type]
+    (lambda: cf.modes(KIM, 3, effects=(3,)), "TypeError: modes effects must be effects"),
+    (lambda: replace(kim_scene(), effects=SHEAR), "TypeError: Scene.effects must be a sequence of effects"),
     (lambda: replace(LEATHER, rolling="no"), "TypeError: LeatherTip.rolling must be a bool; got 'no'"),
-    (with_effects(SHEAR, "TipDome"), "TypeError: Scene.effects[1] must be an Effect; got 'TipDome'"),  # type: ignore[arg-type]
+    (with_effects(SHEAR, "TipDome"), "TypeError: Scene.effects[1] must be an Effect; got 'TipDome'"),
 ]
 
 

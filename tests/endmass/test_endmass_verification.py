@@ -40,7 +40,7 @@ def ratio(cue: Cue, periods: float, drive: str) -> float:
     T = periods / modes(cue, 1).frequencies[0]
     if T > 1:
         cue, T = scaled(cue, E=T**2, G=T**2), 1.0
-    return cue.shaft_mass / end_mass(scene(cue, T), drive, at=Resolution(1, 20, 8))  # type: ignore[arg-type]
+    return cue.shaft_mass / end_mass(scene(cue, T), drive, at=Resolution(1, 20, 8))
 
 
 @pytest.mark.parametrize("drive", ["force", "velocity"])
@@ -99,11 +99,11 @@ def test_force_end_mass_equals_quadrature(T: float) -> None:
 def test_end_mass_kim_shaft_equals_reference(drive: str, T: float, grams: float) -> None:
     """At the reference's precision."""
     pulse_scene = scene(kim(), T)
-    value = end_mass(pulse_scene, drive)  # type: ignore[arg-type]
+    value = end_mass(pulse_scene, drive)
     np.testing.assert_allclose(1e3 * value, grams, rtol=3e-3)
 
 
 @pytest.mark.parametrize("drive", ["stick", "velocity", "force", "squirt"])
 def test_end_mass_lumped_cue_is_its_own(drive: str) -> None:
     lumped = Scene(LumpedCue(0.54, 0.0123))
-    assert end_mass(lumped, drive) == 0.0123  # type: ignore[arg-type]
+    assert end_mass(lumped, drive) == 0.0123

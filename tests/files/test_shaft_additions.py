@@ -60,7 +60,7 @@ def test_load_options_on_drawing_and_scene_agree(tmp_path: Path) -> None:
     assert [segment.material for segment in cue.segments[:3]] == [material("leather"), ABS, ASH]
     assert (cue.segments[1].core, cue.segments[2].tip_bore) == (ASH, 0.006)
     scene = tmp_path / "scene.toml"
-    cf.save(cf.Scene(cf.load(drawing)), scene)  # type: ignore[arg-type]
+    cf.save(cf.Scene(cf.load(drawing)), scene)
     changed = cf.load(scene, **options)
     assert isinstance(changed, cf.Scene)
     assert changed.cue == cue

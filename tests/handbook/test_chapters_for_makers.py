@@ -115,7 +115,7 @@ def test_deeper_bore_changes_squirt_by_shaft_not_ferrule(name: str, ferrule: str
 
 def test_speed_and_tip_hardness_change_squirt_as_stated() -> None:
     limits, cue = TEXTS["limits"], cf.load("meshes/pool_maple.toml")
-    scene = cf.usual_scene(cue)  # type: ignore[arg-type]
+    scene = cf.usual_scene(cue)
 
     def squirt(offset: float, **values: Any) -> float:
         return cf.strike(with_parameters(scene, {"offset": offset, **values})).squirt
@@ -140,7 +140,7 @@ def test_limits_of_speed_and_tip_height_are_computed() -> None:
     limits = TEXTS["limits"]
 
     def squirt(name: str, **values: Any) -> float:
-        scene = cf.usual_scene(cf.load(f"meshes/{name}.toml"))  # type: ignore[arg-type]
+        scene = cf.usual_scene(cf.load(f"meshes/{name}.toml"))
         return float(cf.strike(with_parameters(scene, {key.replace("_", " "): v for key, v in values.items()})).squirt)
 
     trends = [
@@ -193,7 +193,7 @@ def test_profiles_in_chapters_load_as_bored_shaft(tmp_path: Path) -> None:
         if text == plain:
             continue
         assert "bored 6 mm from 25 to 152 mm " in " ".join(out.split())
-        front, bored, *rest = cf.load(path).segments  # type: ignore[union-attr]
+        front, bored, *rest = cf.load(path).segments
         assert (front.length, front.tip_bore, bored.tip_bore) == pytest.approx((0.025, 0.008, 0.006), rel=0.02)
         assert (bored.core, bored.material) == (None, front.core)
         assert all(segment.tip_bore == 0 for segment in rest)
@@ -203,7 +203,7 @@ def test_profiles_in_chapters_load_as_bored_shaft(tmp_path: Path) -> None:
 
 def test_complete_scene_of_files_chapter_is_default_stroke(tmp_path: Path) -> None:
     text = next(chapter.text for chapter in chapters() if chapter.name == "files").partition("A complete scene")[2]
-    maple = without_leather(cf.load("meshes/pool_maple.toml"))  # type: ignore[arg-type]
+    maple = without_leather(cf.load("meshes/pool_maple.toml"))
     cf.save(maple, tmp_path / "my_shaft.toml")
     (tmp_path / "scene.toml").write_text(re.findall(r"```toml\n(.*?)```", text, re.DOTALL)[0], encoding="utf-8")
     squirts = [cf.strike(scene).squirt for scene in (cf.load(tmp_path / "scene.toml"), cf.usual_scene(maple))]

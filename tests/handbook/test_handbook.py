@@ -76,9 +76,14 @@ def test_handbook_page_is_self_contained_with_valid_links() -> None:
 @pytest.mark.parametrize("has_browser", [True, False])
 def test_guide_opens_prints_and_writes(has_browser: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     opened: list[str] = []
+
+    def opens(address: str) -> bool:
+        opened.append(address)
+        return has_browser
+
     monkeypatch.setattr(import_module("cuefem.cli.guide_command"), "page", lambda opens_with="": whole())
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
-    monkeypatch.setattr(webbrowser, "open", lambda address: opened.append(address) or has_browser)
+    monkeypatch.setattr(webbrowser, "open", opens)
     assert stdout_of("guide", "glossary").startswith("opened file:" if has_browser else "no browser found")
     (page_file,) = tmp_path.glob("cuefem-guide-*.html")
     assert opened == [f"{page_file.as_uri()}#glossary"]

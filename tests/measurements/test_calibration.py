@@ -103,7 +103,7 @@ def test_other_game_or_tip_is_rejected(scene: cf.Scene, message: str) -> None:
 )
 def test_impossible_calibrations_are_rejected(change: dict[str, object], message: str) -> None:
     with pytest.raises(ValueError, match=re.escape(message)):
-        replace(calibration(), **change)  # type: ignore[arg-type]
+        replace(calibration(), **change)
 
 
 def test_files_of_no_calibration_are_rejected_in_one_line(file: Path, tmp_path: Path) -> None:

@@ -25,7 +25,7 @@ CLOSED = Prior("contact time", 0.0)  # no measurement here depends on it
 
 def measured_as(cue: MeasuredCue, values: np.ndarray) -> MeasuredCue:
     """The cue with other values measured."""
-    result = tuple(replace(one, value=float(value)) for one, value in zip(cue.measurements, values, strict=True))  # type: ignore[call-arg]
+    result = tuple(replace(one, value=float(value)) for one, value in zip(cue.measurements, values, strict=True))
     return replace(cue, measurements=result)
 
 
@@ -39,7 +39,7 @@ def random_cue(
     exact = cue.compute(z)
     # errors follow the values, as a user would state them
     scaled = tuple(
-        replace(one, value=float(value), error=one.error * float(value) / one.measured_value)  # type: ignore[call-arg,attr-defined]
+        replace(one, value=float(value), error=one.error * float(value) / one.measured_value)  # type: ignore[attr-defined]
         for one, value in zip(cue.measurements, exact, strict=True)
     )
     cue = replace(cue, measurements=scaled)
@@ -49,7 +49,7 @@ def random_cue(
 
 def test_estimate_exact_data_recovers_the_parameters() -> None:
     """With small errors the priors have no effect."""
-    small = tuple(replace(one, error=1e-3 * one.error) for one in cheap_measurements() if not isinstance(one, Tone))  # type: ignore[call-arg,attr-defined]
+    small = tuple(replace(one, error=1e-3 * one.error) for one in cheap_measurements() if not isinstance(one, Tone))  # type: ignore[attr-defined]
     cue = measured_cue(*small, priors=(CLOSED, Prior("G", 0.0), Prior("friction", 0.0), Prior("squirt model", 0.0)))
     z = np.array([0.7, -0.4, 0.5])
     result = estimate(measured_as(cue, cue.compute(z)))
@@ -165,7 +165,7 @@ def test_next_measurement_added_gives_predicted_gain() -> None:
     assert {type(gain.measurement) for gain in gains} <= set(MEASUREMENT_TYPES.values())
     predicted = next(g for g in gains if isinstance(g.measurement, Stiffness) and g.measurement.free_length)
     value = before.predict(predicted.measurement)[0]
-    more = replace(predicted.measurement, value=value)  # type: ignore[call-arg]
+    more = replace(predicted.measurement, value=value)
     after = estimate(replace(cue, measurements=(*cue.measurements, more)))
     ratio = np.sqrt(np.diag(after.covariance) / np.diag(before.covariance))
     labels = [parameter.label for parameter in cue.parameters]

@@ -19,7 +19,7 @@ from tests.helpers.measured_cues import CUE_TOML, MEASURED_TOML, SCENE, measured
 from tests.helpers.recordings import save_wav
 
 SWING = {"release": (0.19,), "rebound": (-0.03,), "clamped_rebound": (0.15,)}
-GOOD = Pendulum(ball_mass=8e-3, thread_length=1.0, position=0.02, contact_time=1e-3, **SWING)  # type: ignore[arg-type]
+GOOD = Pendulum(ball_mass=8e-3, thread_length=1.0, position=0.02, contact_time=1e-3, **SWING)
 FAR = AddedMass(mass=0.01, position=0.8, value=0.1, baseline=0.1, error=0.01, offset=0.3)
 PIVOT = PivotLength(offset=0.3, value=0.3, error=0.01)
 CALLS: dict[str, Callable[[], object]] = {
@@ -37,8 +37,8 @@ CALLS: dict[str, Callable[[], object]] = {
     "Prior.spread must be given": lambda: Prior("E", 0.1, 1e9, 2e9),
     "Prior.low must be in (0, high)": lambda: Prior("E", low=2e9, high=1e9),
     "got 'dome', which it does not have": lambda: measured_cue(priors=(Prior("dome", 0.1),)),
-    "TypeError: MeasuredCue.scene must be a Scene": lambda: MeasuredCue("a", "cue", ()),  # type: ignore[arg-type]
-    "TypeError: MeasuredCue.measurements[0] must be a Measurement": lambda: measured_cue("a tone"),  # type: ignore[arg-type]
+    "TypeError: MeasuredCue.scene must be a Scene": lambda: MeasuredCue("a", "cue", ()),
+    "TypeError: MeasuredCue.measurements[0] must be a Measurement": lambda: measured_cue("a tone"),
     "stiffness free_length must be in (0, 0.73] m": lambda: Stiffness(free_length=0.8, value=1.0, error=1.0).compute(
         Setup(SCENE)
     ),

@@ -39,7 +39,7 @@ def swing(speed: float) -> float:
 
 def of_speeds(m: float, back: float, clamped: float, U: float = 0.6, **more: float) -> Pendulum:
     swings = {"release": (swing(U),), "rebound": (swing(back),), "clamped_rebound": (swing(clamped),)}
-    return Pendulum(ball_mass=m, thread_length=1.0, position=0.02, contact_time=1e-3, **swings, **more)  # type: ignore[arg-type]
+    return Pendulum(ball_mass=m, thread_length=1.0, position=0.02, contact_time=1e-3, **swings, **more)
 
 
 def test_pendulum_handbook_readings_give_its_numbers(tmp_path: Path) -> None:
