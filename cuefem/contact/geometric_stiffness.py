@@ -33,7 +33,10 @@ def slope_rows(tip: TipModes, planes: int = 1) -> Array:
         return np.zeros((0, len(tip.omega)))
     # rigid-body modes, one axial and two of bending, have the stiffness of the lowest flexible mode of a free cue
     roots = np.hypot(tip.omega, np.sort(tip.omega)[N_RIGID])
-    shares, directions = np.linalg.eigh(tip.geometric / np.outer(roots, roots))
-    retained = np.flatnonzero(shares > MIN_SHARE * shares[-1])[-(MAX_SLOPES // planes - 1) :]
-    rows = (roots[:, None] * directions[:, retained] * np.sqrt(shares[retained])).T
-    return np.concatenate([rows[::-1], tip.rotation[None]])
+    bending = np.flatnonzero(tip.geometric.any(axis=1))  # a head-on stroke bends nothing: axial modes have exact zeros
+    roots = roots[bending]
+    shares, directions = np.linalg.eigh(tip.geometric[np.ix_(bending, bending)] / np.outer(roots, roots))
+    retained = np.flatnonzero(shares > MIN_SHARE * shares[-1])[-(MAX_SLOPES // planes - 1) :][::-1]
+    rows = np.zeros((len(retained), len(tip.omega)))
+    rows[:, bending] = np.sqrt(shares[retained])[:, None] * directions[:, retained].T * roots
+    return np.concatenate([rows, tip.rotation[None]])

@@ -114,6 +114,7 @@ def test_strike_conserves_energy_mirrors_and_ignores_effect_order(count: int) ->
     @example(replace(kim_scene(0.3, restitution=0.05), effects=(cf.AxialWaves(),)), 0)
     @example(leather_scene(0.0, e=0.716796875, friction=inf, leather=replace(LEATHER, E=142981276.0, rolling=False)), 0)
     @example(leather_scene(0.2309, speed=3.8607, e=0.883, friction=0.17, leather=replace(LEATHER, E=3.9e8)), 0)
+    @example(leather_scene(0.3, cf.AxialWaves(), cf.GeometricStiffness()), 0)
     def everywhere(scene: cf.Scene, turn: int) -> None:
         if (outcome := strike(scene)) is None:
             return
@@ -128,6 +129,8 @@ def test_strike_conserves_energy_mirrors_and_ignores_effect_order(count: int) ->
         mirrored = strike(replace(scene, stroke=replace(scene.stroke, offset=-scene.stroke.offset)))
         assert mirrored is not None
         assert_mirrored(outcome, mirrored)
+        head_on = strike(replace(scene, stroke=replace(scene.stroke, offset=0.0)))
+        assert head_on is None or head_on.squirt == 0
         effects = scene.effects[turn:] + scene.effects[:turn]
         reordered = strike(replace(scene, effects=effects[::-1] if turn % 2 else effects))
         assert reordered is not None
