@@ -16,7 +16,7 @@ from cuefem.scene import Scene
 # A tip of small restitution e unloads 1/e times as fast as it loads, which needs 1/e times as many steps. Lower bounds
 # of spring tips and of leather, which vibrates on the ball below its bound.
 MIN_RESTITUTION, MIN_LEATHER_RESTITUTION = 0.05, 0.1
-ANNULI, TABLE_MARGIN = 120, 1.05  # annuli uniform in the root of the indentation, up to 1.05 times the largest
+ANNULI, ANNULI_MARGIN = 120, 1.05  # annuli up to 1.05 times the largest indentation
 # Steps in a head-on contact time, and those of a leather tip that does not slip as a whole: the error of squirt is
 # below 0.1 % (tests/contact/test_stored_answers.py).
 STEPS, LEATHER_STEPS = 400, 200
@@ -66,11 +66,8 @@ class Leather:
     is_rigid: ClassVar[bool] = False
 
     def write_to(self, fields: KernelInput) -> None:
-        """Write law and patch to the kernel's input; the last annulus has what lies beyond its edge, too."""
+        """Write law and patch to the kernel's input."""
         law = self.law
-        limit = min(law.indentation_limit, TABLE_MARGIN * self.largest_indentation)
-        edges = limit * np.linspace(0.0, 1.0, ANNULI + 1) ** 2
-        force, stiffness = law.at(edges)
         fields.law = CONSTANTS["LEATHER_LAW"]
         fields.terms = len(law.force_terms)
         fields.force_terms = np.array(law.force_terms)
@@ -79,10 +76,7 @@ class Leather:
         fields.patch = CONSTANTS["PARTIAL_SLIP"]
         fields.surface_restitution = self.surface_restitution
         fields.annuli = ANNULI
-        fields.annulus_edges = edges
-        fields.annulus_forces = force
-        fields.annulus_slopes = law.slope(edges)
-        fields.annulus_stiffness = stiffness
+        fields.annuli_end = min(law.indentation_limit, ANNULI_MARGIN * self.largest_indentation)
 
 
 def tip_of(scene: Scene) -> PowerTip | Leather:

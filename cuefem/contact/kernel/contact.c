@@ -33,6 +33,7 @@ EXPORTED Contact *contact_new(const Input *in, State *s)
     s->window_end = HUGE_VAL;
     s->deadline = in->max_time;
     choose_variants(c);
+    c->patch->begin(c);
     return c;
 }
 

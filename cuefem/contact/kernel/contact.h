@@ -93,16 +93,13 @@ typedef struct {
     const double *inverse_masses; /* of the ball's velocities, (speeds,), 1/kg */
     const double *slope_weights;  /* of each slope in the tip's axial shortening, (slopes,) */
     const double *force_terms;    /* leather: F = d^(3/2) times a series in the root of the indentation d */
-    const double *compliance_terms;  /* tangential compliance: such a series over the root of d */
-    const double *annulus_edges;     /* indentations at which the annuli begin, (annuli + 1,), m */
-    const double *annulus_forces;    /* F at the edges, N */
-    const double *annulus_slopes;    /* dF/dd at the edges, N/m */
-    const double *annulus_stiffness; /* tangential stiffness at the edges, N/m */
-    double restitution, friction;    /* of the tip */
+    const double *compliance_terms; /* tangential compliance: such a series over the root of d */
+    double restitution, friction;   /* of the tip */
     double table_friction;
     double stiffness, exponent;    /* power law F = stiffness d^exponent */
     double indentation_limit;      /* largest indentation of the law, m */
     double compliance;             /* of a spring patch, m/N */
+    double annuli_end;             /* indentation that the annuli divide, m */
     double surface_restitution;    /* its square: recovered part of an annulus's strain energy */
     double phi, dome, rim;         /* angle of the first touch, rad; radius of the dome, m; its end, rad */
     double radius;                 /* of the ball, m */
@@ -162,6 +159,12 @@ typedef struct {
     double force, slope, virtual, scale;
 } NormalForce;
 
+/* What leather has at a virtual indentation, m: normal force, N, its slope, N/m, and tangential stiffness,
+ * N/m. */
+typedef struct {
+    double indentation, force, slope, stiffness;
+} Edge;
+
 /* Two equations g = 0 for the forces (F_t, F_n) of a level contact, and their derivatives. */
 typedef struct {
     double g[2], J[2][2];
@@ -170,6 +173,7 @@ typedef struct {
 /* A tip by its tangential compliance (patch_*.c). */
 typedef struct {
     int slips_in_parts;                      /* the patch itself limits its force to mu F_n */
+    void (*begin)(Contact *c);               /* what it keeps during the contact */
     void (*stick)(Contact *c, Equations *e); /* row T of the equations of a sticking tip */
     void (*update)(Contact *c);              /* the patch's state after a step in contact */
     void (*release)(Contact *c);             /* loss of strain energy at separation */
@@ -216,8 +220,9 @@ struct Contact {
     double V[FORCES][FORCES], W[FORCES][FORCES]; /* v = v_free + V F, u = u_free + W F */
     double F[FORCES], v[FORCES], u[FORCES];      /* the step's forces, N, and velocities */
     double last_F[2][FORCES];                    /* of the last step in contact and the one before it, N */
-    int slip;           /* its direction, or STICK; a patch that slips in parts keeps STICK */
-    NormalForce normal; /* of a level cue, at mid-step */
+    int slip;               /* its direction, or STICK; a patch that slips in parts keeps STICK */
+    NormalForce normal;     /* of a level cue, at mid-step */
+    Edge edges[ANNULI + 1]; /* of the annuli */
     double annulus_force[ANNULI], annuli_loss; /* at mid-step, N; dissipated in the step, J */
     double axial_force;                        /* on the cue, N */
     double mean_velocities[CUE_VELOCITIES];    /* of ports and slopes */

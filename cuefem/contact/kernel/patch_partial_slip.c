@@ -25,41 +25,46 @@ static inline double mean_stiffness(double inner, double outer, double from, dou
     return ((k_from + k_to) / 2 * (ends - begins) + top * (high - ends)) / (high - low);
 }
 
-/* The patch at a virtual indentation, m, which was `before` at the middle of the last step. */
-typedef struct {
-    double before, virtual, stiffness_before, stiffness; /* of the whole patch, N/m */
-    NormalForce normal;                                  /* of the whole patch */
-} Growth;
-
 /* One annulus in this step. */
 typedef struct {
     double k_before, k_after, k; /* its stiffness, N/m: at both ends of the step, and on average */
     double normal, normal_slope; /* its normal force, N, and the slope of that by the indentation, N/m */
 } Annulus;
 
-static Growth growth_to(const Contact *c, double virtual)
+static Edge edge_at(const Contact *c, double virtual)
 {
-    const double before = c->s->virtual_mid;
-    return (Growth){.before = before,
-                    .virtual = virtual,
-                    .stiffness_before = tangential_stiffness(c->in, before),
-                    .stiffness = tangential_stiffness(c->in, virtual),
-                    .normal = loading_curve(c, virtual)};
+    NormalForce normal = loading_curve(c, virtual);
+    return (Edge){.indentation = virtual,
+                  .force = normal.force,
+                  .slope = normal.slope,
+                  .stiffness = tangential_stiffness(c->in, virtual)};
 }
 
-/* Annulus r, between two edges of the indentation; the last one grows on. */
-static inline Annulus annulus(const Input *in, int r, const Growth *g)
+/* Edges evenly spaced in the root of the indentation; the last annulus has what lies beyond its edge, too. */
+static void begin(Contact *c)
 {
-    const double *F = in->annulus_forces, *S = in->annulus_slopes, *K = in->annulus_stiffness;
-    double inner = in->annulus_edges[r], outer = r + 1 < in->annuli ? in->annulus_edges[r + 1] : HUGE_VAL;
-    int covered = g->virtual > outer;
-    double normal_to_outer = covered ? F[r + 1] + S[r + 1] * (g->virtual - outer) : g->normal.force;
+    const int annuli = c->in->annuli;
+    for (int r = 0; r < annuli; r++) {
+        double root = (double)r / annuli;
+        c->edges[r] = edge_at(c, c->in->annuli_end * root * root);
+    }
+    c->edges[annuli].indentation = HUGE_VAL;
+}
+
+/* The annulus between two edges, in a step from one indentation to another. */
+static inline Annulus annulus(const Edge *inner, const Edge *outer, const Edge *from, const Edge *to)
+{
+    const Edge *end_before = from->indentation > outer->indentation ? outer : from;
+    const Edge *end = to->indentation > outer->indentation ? outer : to;
+    double beyond_inner = to->indentation - inner->indentation;
+    double beyond_end = to->indentation - end->indentation;
     Annulus a;
-    a.k_after = (covered ? K[r + 1] : g->stiffness) - K[r];
-    a.k_before = g->before <= inner ? 0 : (g->before > outer ? K[r + 1] : g->stiffness_before) - K[r];
-    a.k = mean_stiffness(inner, outer, g->before, g->virtual, a.k_before, a.k_after);
-    a.normal = normal_to_outer - (F[r] + S[r] * (g->virtual - inner));
-    a.normal_slope = (covered ? S[r + 1] : g->normal.slope) - S[r];
+    a.k_before = from->indentation > inner->indentation ? end_before->stiffness - inner->stiffness : 0;
+    a.k_after = end->stiffness - inner->stiffness;
+    a.k = mean_stiffness(inner->indentation, outer->indentation, from->indentation, to->indentation,
+                         a.k_before, a.k_after);
+    a.normal = end->force + end->slope * beyond_end - (inner->force + inner->slope * beyond_inner);
+    a.normal_slope = end->slope - inner->slope;
     return a;
 }
 
@@ -88,17 +93,17 @@ FAST static double shift_annuli(Contact *c, double virtual, double shift, double
 {
     const Input *in = c->in;
     const double e2 = in->surface_restitution * in->surface_restitution, mu = in->friction;
-    const Growth g = growth_to(c, virtual);
+    const Edge from = edge_at(c, c->s->virtual_mid), to = edge_at(c, virtual);
     double sum = 0;
     *by_shift = 0;
     *by_virtual = 0;
     c->annuli_loss = 0;
     for (int r = 0; r < in->annuli; r++) {
-        if (virtual <= in->annulus_edges[r]) {
+        if (virtual <= c->edges[r].indentation) {
             c->annulus_force[r] = 0;
             continue;
         }
-        Annulus a = annulus(in, r, &g);
+        Annulus a = annulus(&c->edges[r], &c->edges[r + 1], &from, &to);
         double old = c->s->annulus_force[r] * (a.k_before > a.k_after ? a.k_after / a.k_before : 1);
         double bound = mu * larger(a.normal, 0);
         double tangent;
@@ -141,6 +146,7 @@ static int friction_state(const Contact *c)
 }
 
 const Patch partial_slip = {.slips_in_parts = 1,
+                            .begin = begin,
                             .stick = stick,
                             .update = update,
                             .release = nothing,

@@ -18,6 +18,7 @@ static int friction_state(const Contact *c)
 }
 
 const Patch rigid_patch = {.slips_in_parts = 0,
+                           .begin = nothing,
                            .stick = stick,
                            .update = nothing,
                            .release = nothing,
