@@ -12,19 +12,19 @@ from typing import TYPE_CHECKING, Any, NamedTuple, overload
 from cuefem.analysis.end_mass import SQUIRT_END_MASS
 from cuefem.analysis.measured import MeasuredComparison, compare_measured
 from cuefem.analysis.strike_models import regime_warning
-from cuefem.analysis.verdict import difference_text, squirt_difference
+from cuefem.analysis.verdict import squirt_difference
 from cuefem.measurements.calibration import CalibratedSquirt, Calibration
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measured_folder import load_measured
 from cuefem.parameters.parts import main_material, shaft_word
-from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.display_units import off_line, with_unit
 from cuefem.results.computable_results import computable_results
+from cuefem.results.differences import difference_text, relative_differences
 from cuefem.results.progress import Progress
 from cuefem.results.quantities import DASH, RESULTS, UNITS, format_value
 from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import SolvedDesign, coupled_curve, off_centre
-from cuefem.results.uncertainty import RATIO_FLOOR, changes_by_input, difference_record, miscue_note, model_share
+from cuefem.results.uncertainty import changes_by_input, miscue_note
 from cuefem.results.verdict import verdict_problem
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
@@ -40,7 +40,6 @@ SQUIRT_RESULTS = ("squirt", "end_mass_squirt", "pivot_length")  # derived from s
 SHAPE_RESULTS = ("tip_stiffness", "shaft_mass", "mass")
 N_FREQUENCIES = 3
 RESULT_NAMES = (*SQUIRT_RESULTS, *SHAPE_RESULTS, *(f"frequency_{k}" for k in range(1, N_FREQUENCIES + 1)))
-SHAPE_FLOOR = 2e-3  # relative, of shape, weights, frequencies: 0.2 g of 100 g, 0.01 mm of 13 mm to the fourth power
 
 UNKNOWN_STIFFNESS = 0.5  # relative uncertainty by E from which it should be measured: a wood has 0.22, a tube 0.83
 CURVE_OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 13))  # b/R
@@ -297,9 +296,7 @@ def compare_cues(
 ) -> Comparison:
     """Compare cues by the ball and the stroke of the first, with the uncertainty of each difference.
 
-    An error that two cues share cancels in their difference: that of a tip of the same value on both, and of the wood
-    if they are one shaft before and after a change (same_shaft). To squirt and what follows from it, the model adds
-    its part of the logarithm (`model_share`), and `RATIO_FLOOR`; other numbers have `SHAPE_FLOOR`.
+    same_shaft: whether they are one shaft before and after a change (`relative_differences`).
 
     names: the results that are compared. progress: wraps the list of cues, to show progress. ValueError for less than
     two cues or more than `MAX_CUES`, and for one shaft of two woods.
@@ -386,21 +383,7 @@ def _numbers(design: SolvedDesign, names: Sequence[str]) -> dict[str, float]:
 
 
 def _differences(first: _CueResults, other: _CueResults, *, same_shaft: bool) -> dict[str, Record]:
-    """Relative differences, their uncertainty, and whether they are distinct, by number, if both have a value."""
-    records: dict[str, Record] = {}
-    for name, value in first.numbers.items():
-        ratio = other.numbers[name] / value
-        if not ratio > 0:
-            continue
-        inputs = {**first.inputs, **other.inputs}
-        errors = [_input_error(first, other, key, name, same_shaft=same_shaft) for key in inputs]
-        share, floor = 0.0, SHAPE_FLOOR
-        if name in SQUIRT_RESULTS:
-            share, floor = model_share(first.scene, other.scene), RATIO_FLOOR
-        difference = difference_record(ratio, share, *errors, floor=floor)
-        if not math.isnan(difference["error"]):  # a strike at a limit of an input's range is a miscue
-            records[name] = difference
-    return records
+    return relative_differences(first, other, same_shaft=same_shaft, with_model_error=SQUIRT_RESULTS)
 
 
 def _unmeasured_modulus(
@@ -417,11 +400,3 @@ def _unmeasured_modulus(
     pair = [measured if name == uncertain else results[name] for name in (reference, other)]
     remains = _differences(*pair, same_shaft=same_shaft)["tip_stiffness"]["error"]
     return uncertain, float(remains)
-
-
-def _input_error(first: _CueResults, other: _CueResults, key: str, name: str, *, same_shaft: bool) -> float:
-    """Uncertainty of the logarithm of a ratio of two cues' results by one input."""
-    changes = [each.inputs.get(key, {}).get(name, 0.0) for each in (first, other)]
-    parameter = PARAMETERS[key]
-    shared = parameter.value(first.scene) == parameter.value(other.scene) if parameter.is_shareable else same_shaft
-    return abs(changes[1] - changes[0]) if shared else math.hypot(*changes)

@@ -11,7 +11,8 @@ from cuefem.cue import Cue
 from cuefem.files.reference_cues import reference_cues
 from cuefem.measurements.calibration import CalibratedSquirt, Calibration
 from cuefem.parameters.parts import shaft_word
-from cuefem.quantity.display_units import format_change, off_line, to_display, with_unit
+from cuefem.quantity.display_units import off_line, to_display, with_unit
+from cuefem.results.differences import difference_text
 from cuefem.results.records import Record, ScaleCell, Table
 from cuefem.results.solved_design import SolvedDesign, off_centre
 from cuefem.results.uncertainty import (
@@ -268,12 +269,6 @@ def offset_text(offset: float) -> str:
     tenths, percent = round(10 * abs(offset)), 100 * abs(offset)
     part = f"{tenths}/10" if abs(percent - 10 * tenths) < 0.5 else f"{percent:.0f} %"
     return f"{part} of the way to the edge"
-
-
-def difference_text(difference: float, error: float) -> str:
-    """A relative difference with its uncertainty: "−3.2 ± 8.1 %"."""
-    digits = 0 if error >= 0.1 else 1 if error >= 0.002 else 2
-    return format_change(100 * difference, digits, f"± {100 * error:.{digits}f} %")
 
 
 def squirt_difference(difference: float, error: float, distinct: bool) -> str:

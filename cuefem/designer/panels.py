@@ -8,13 +8,13 @@ from typing import Any
 
 from cuefem.analysis import report_sections
 from cuefem.analysis.strike_models import regime_warning
-from cuefem.analysis.verdict import difference_text
 from cuefem.designer.computation import CURVE_OFFSETS
 from cuefem.designer.controls import KNOBS, label, value, value_text
 from cuefem.designer.session import Session
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.parameters.parts import shaft_word
 from cuefem.quantity.display_units import format_change, to_display, with_heading
+from cuefem.results.differences import difference_text
 from cuefem.results.quantities import DASH, RESULTS
 from cuefem.results.records import Record, Table
 from cuefem.results.uncertainty import SHAFT_ERROR

@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.analysis.comparison import SHAPE_FLOOR, Comparison
+from cuefem.analysis.comparison import Comparison
 from cuefem.parameters.parts import main_material
 from cuefem.parameters.scene_changes import with_parameters
+from cuefem.results.differences import SHAPE_FLOOR
 from cuefem.results.uncertainty import MASS_ERROR, RATIO_FLOOR, SHAFT_ERROR
 from tests.helpers.command_line import as_json, call
 from tests.helpers.cues import kim
