@@ -28,6 +28,7 @@ from cuefem.designs.sweep import sweep
 from cuefem.files import InputError, save, write_atomically
 from cuefem.parameters.scene_changes import with_values_at
 from cuefem.parameters.scene_paths import value_at
+from cuefem.quantity.display import counted
 from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.fields import quote
 from cuefem.scene import Scene
@@ -136,7 +137,7 @@ def study(
                 if as_json:
                     print_json({"file": str(file), "store": str(first), "designs": database.done})
                 else:
-                    click.echo(f"{database.done} of {designs.size} designs in {first}")
+                    click.echo(f"{database.done} of {counted(designs.size, 'design')} in {first}")
                 return
             run = partial(cf.study, plan, store=database, workers=where)
             result = _run_stored(file, database, designs.size, run)
@@ -146,7 +147,7 @@ def study(
         files |= {"store": str(database.path), "evaluated": database.computed}
         before = database.done - database.computed
         more = f", {before} of them from before" if before else ""
-        stored.append(f"{database.done} designs in {database.path}{more}")
+        stored.append(f"{counted(database.done, 'design')} in {database.path}{more}")
     warnings = plausibility_warnings(designs.base)
     hints = [*stored, *(f"wrote {path}" for path in output)]
     shown = Presentation(result, file.name, files, notes, warnings, hints)
@@ -169,7 +170,7 @@ def _run_stored(file: Path, designs: SqliteStore, count: int, run: Callable[...,
                 return run(progress=show)
         except (KeyboardInterrupt, RuntimeError) as error:
             bar.stop()
-            message = f"{designs.done} of {count} designs are stored in {designs.path}"
+            message = f"{designs.done} of {counted(count, 'design')} are stored in {designs.path}"
             if isinstance(error, RuntimeError):
                 raise RuntimeError(f"{error}; {message}; run the same command to resume") from None
             click.echo(f"cuefem: interrupted; {message}; run the same command to resume", err=True)
@@ -202,4 +203,4 @@ def round_text(problem: Problem, reached: Round, most: int) -> str:
     choice = "".join(f"{value if isinstance(value, str) else f'{value:g}'}: " for value in reached.choice.values())
     best = f"{problem.objective.label} {with_unit(reached.best, problem.objective.display_key, 6)} so far"
     best = best if isfinite(reached.best) else "no design within the limits yet"
-    return f"{choice}round {reached.number} of at most {most}, {reached.evaluations} designs, {best}"
+    return f"{choice}round {reached.number} of at most {most}, {counted(reached.evaluations, 'design')}, {best}"

@@ -14,8 +14,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cuefem.cue import Array
-from cuefem.designs.evaluation import Response
+from cuefem.cue import Array, Material
+from cuefem.cue.materials import material_name
+from cuefem.designs.evaluation import Response, evaluate
 from cuefem.designs.sampling import Levels, Normal, Span, Value
 from cuefem.designs.study import Study, StudyDesign, Vary
 from cuefem.parameters.scene_paths import value_at
@@ -88,19 +89,31 @@ class ChoiceResult(NamedTuple):
     reason: str = ""
 
 
+class Constraint(NamedTuple):
+    """A bound of a response or of a variable. name: of either. sense: ">=" or "<=". bound: SI."""
+
+    name: str
+    sense: str
+    bound: float
+
+    def __str__(self) -> str:
+        return f"{self.name} {self.sense} {self.bound:g}"
+
+
 @dataclass(frozen=True)
 class Optimum(StudyDesign):
     """The best design of an optimization.
 
-    active: active limits and ends of ranges, such as "tip_stiffness >= 1500". evaluations: number of designs computed.
+    active: the constraints that it has reached: limits and ends of ranges. evaluations: number of designs computed.
     stop_reason: why the search stopped without convergence, "" if it converged. choices: one for each combination of
-    listed values, if there are any.
+    listed values, if there are any. start: the unmodified design, nan where it has no value or response.
     """
 
-    active: tuple[str, ...] = ()
+    active: tuple[Constraint, ...] = ()
     evaluations: int = 0
     stop_reason: str = ""
     choices: tuple[ChoiceResult, ...] = ()
+    start: StudyDesign | None = None
 
 
 @dataclass(frozen=True)
@@ -137,8 +150,9 @@ class Problem:
     >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.material("hard maple")),), body_mass=0.42)
     >>> width = cf.Vary("tip diameter", cf.Span(0.011, 0.013))
     >>> limit = cf.Limit(cf.Response("tip_stiffness"), low=665.0)
-    >>> cf.study(cf.Problem(cf.Scene(cue), (width,), cf.Response("end_mass"), (limit,))).optimum.active
-    ('tip_stiffness >= 665',)
+    >>> best = cf.study(cf.Problem(cf.Scene(cue), (width,), cf.Response("end_mass"), (limit,))).optimum
+    >>> best.active
+    (Constraint(name='tip_stiffness', sense='>=', bound=665.0),)
     """
 
     base: Scene
@@ -184,10 +198,25 @@ class Problem:
         """The base design as a point, (variables,), clipped to the ranges, or their middle if it has no value."""
         point = list[float]()
         for i, span in self.spans.items():
-            vary = self.vary[i]
-            value = 1.0 if vary.factor else 0.0 if vary.shift else value_at(self.base, vary.fields(self.base)[0])
+            value = self.base_value(self.vary[i])
             point.append(span.quantile(0.5) if value is None else min(max(value, span.low), span.high))
         return np.array(point)
+
+    def base_value(self, vary: Vary) -> Any:
+        """The value of a variable in the base design: a number, the name of a material, or None without one."""
+        if vary.factor or vary.shift:
+            return 1.0 if vary.factor else 0.0
+        value = value_at(self.base, vary.fields(self.base)[0])
+        return material_name(value) if isinstance(value, Material) else value
+
+    @property
+    def base_design(self) -> StudyDesign:
+        """The base with the values of its variables and its responses, nan where it has none."""
+        values = {vary.name: self.base_value(vary) for vary in self.vary}
+        values = {name: np.nan if value is None else value for name, value in values.items()}
+        responses = evaluate([self.base], self.study.responses, at=self.at).values[0].tolist()
+        names = (response.name for response in self.study.responses)
+        return StudyDesign(self.base, values, dict(zip(names, responses, strict=True)))
 
     def design(self, point: Array) -> tuple[Value, ...]:
         """The values of all variables at a point."""
@@ -282,7 +311,8 @@ def optimum(
     if not optima:
         raise ValueError(reasons[0])
     best = min(optima, key=lambda each: sign * problem.objective.size(each.responses[problem.objective.name]))
-    return replace(best, evaluations=count, choices=tuple(choices) if len(choices) > 1 else ())
+    listed = tuple(choices) if len(choices) > 1 else ()
+    return replace(best, evaluations=count, choices=listed, start=problem.base_design)
 
 
 class _NoDesign(Exception):
@@ -339,7 +369,7 @@ class _Search:
             self.problem.scene(point),
             dict(zip((vary.name for vary in self.problem.vary), self.problem.design(point), strict=True)),
             dict(zip((response.name for response in study.responses), self.at(u).tolist(), strict=True)),
-            tuple(text for text, margin in self.sides(u) if margin < TOLERANCE),
+            tuple(constraint for constraint, margin in self.margins(u) if margin < TOLERANCE),
             self.evaluations,
             stop_reason,
         )
@@ -428,16 +458,19 @@ class _Search:
         )
         return result.x, "" if result.success else result.message.rstrip(".")
 
-    def sides(self, u: Array) -> list[tuple[str, float]]:
-        """(text, relative margin) of every limit and every end of a range."""
-        bounds = [(limit.response.name, *side) for limit in self.problem.limits for side in limit.sides]
-        labels = [f"{name} {'>=' if sign > 0 else '<='} {bound:g}" for name, sign, bound in bounds]
-        margins = list(zip(labels, self.problem.margins(self.at(u)[None])[0].tolist(), strict=True))
+    def margins(self, u: Array) -> list[tuple[Constraint, float]]:
+        """Every limit and every end of a range, with its relative margin."""
+        limits = [
+            Constraint(limit.response.name, ">=" if sign > 0 else "<=", bound)
+            for limit in self.problem.limits
+            for sign, bound in limit.sides
+        ]
+        margins = list(zip(limits, self.problem.margins(self.at(u)[None])[0].tolist(), strict=True))
         for (i, span), share in zip(self.problem.spans.items(), u.tolist(), strict=True):
             name = self.problem.vary[i].name
-            margins += [(f"{name} >= {span.low:g}", share), (f"{name} <= {span.high:g}", 1 - share)]
+            margins += [(Constraint(name, ">=", span.low), share), (Constraint(name, "<=", span.high), 1 - share)]
         return margins
 
     def violated(self, u: Array) -> list[str]:
         """The limits that a point violates."""
-        return [text for text, margin in self.sides(u) if not margin >= -TOLERANCE]
+        return [str(constraint) for constraint, margin in self.margins(u) if not margin >= -TOLERANCE]

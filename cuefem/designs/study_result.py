@@ -5,13 +5,15 @@ from __future__ import annotations
 import importlib
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from cuefem.cue import Array
+from cuefem.designs.design_differences import design_differences
 from cuefem.designs.optimum import Optimum, Problem, optimum
 from cuefem.designs.sampling import Value
 from cuefem.designs.scatter import Scatter, SobolIndices, sobol_indices_of
@@ -29,6 +31,7 @@ from cuefem.designs.study_table import (
     varied_segments,
 )
 from cuefem.designs.sweep import Columns, Row, Store, sweep
+from cuefem.quantity.display import counted
 from cuefem.quantity.display_units import with_unit
 from cuefem.results.records import Record, Table
 from cuefem.show.analysis import Analysis
@@ -38,6 +41,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from cuefem.show.charts import Chart
+    from cuefem.show.drawings import CueDrawing
 
 SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of the designs below a quantile
 
@@ -218,7 +222,7 @@ class StudyResult(Analysis):
 
     def __repr__(self) -> str:
         failed = f", {len(self.failures)} failed" if self.failures else ""
-        title = f"{type(self).__name__}({self._computed()} designs{failed})"
+        title = f"{type(self).__name__}({counted(self._computed(), 'design')}{failed})"
         return "\n  ".join([title, *(f"{name}: {value}, {at}" for name, value, at in self._lines())])
 
     def _computed(self) -> int:
@@ -253,11 +257,25 @@ class SweepResult(StudyResult):
         """Its statistics; None if no design has all responses."""
         return sweep_statistics(self.study, self.designs, self.columns.values)
 
+    @cached_property
+    def front_steps(self) -> list[dict[str, Record]]:
+        """Differences of each design of the front in the table from the one above, as of `design_differences`.
+
+        Of the two responses that trade off; what remains of the errors that both designs share is left out.
+        """
+        statistics = self.statistics
+        if statistics is None or statistics.pair is None:
+            return []
+        two = replace(self.study, responses=tuple(statistics.responses[k] for k in statistics.pair))
+        designs = (self._design(int(statistics.numbers[i])) for i in statistics.shown_front)
+        pairs = pairwise(designs)
+        return [design_differences(two, first, other, with_shared=False) for first, other in pairs]
+
     def values(self) -> Record:
         """Counts of designs, and the summary: best designs, sensitivities, Pareto front."""
         first_failure = next(iter(self.failures.values()), None)
         counts = {"designs": self.count, "failed": len(self.failures), "first_failure": first_failure}
-        return counts | {"summary": self.statistics and sweep_record(self.statistics)}
+        return counts | {"summary": self.statistics and sweep_record(self.statistics, self.front_steps)}
 
     def charts(self) -> list[Chart]:
         """The trade-off with its Pareto front, and the first response against each parameter."""
@@ -267,7 +285,7 @@ class SweepResult(StudyResult):
 
     def tables(self) -> list[Table | str]:
         """Failures, varied parameters, best designs, sensitivities, and the Pareto front."""
-        found = [] if self.statistics is None else tabulate_sweep(self.statistics)
+        found = [] if self.statistics is None else tabulate_sweep(self.statistics, self.front_steps)
         return [*tabulate_failures(self.study, self.designs, self.failures), *super().tables(), *found]
 
 
@@ -332,11 +350,32 @@ class OptimumResult(StudyResult):
 
     def values(self) -> Record:
         """The best design, its responses and active constraints, and the evaluations."""
-        return optimum_record(self.definition, self.optimum)
+        return optimum_record(self.definition, self.optimum, self.changes)
 
     def tables(self) -> list[Table | str]:
         """Varied parameters, the best design, its active constraints, and the best design for each choice."""
-        return [*super().tables(), *tabulate_optimum(self.definition, self.optimum)]
+        return [*super().tables(), *tabulate_optimum(self.definition, self.optimum, self.changes)]
+
+    @cached_property
+    def changes(self) -> dict[str, Record]:
+        """Relative difference of each response of the best design from the unmodified one, as of `cuefem.compare`.
+
+        "difference", "error" (1 sigma) and "distinct"; without a response that one of them lacks.
+        """
+        assert self.optimum.start is not None
+        return design_differences(self.study, self.optimum.start, self.optimum)
+
+    def charts(self) -> list[CueDrawing]:
+        """Drawings of the unmodified and of the best design."""
+        from cuefem.show.drawings import DIAMETER_SCALE, cue_drawing  # drawings are not for terminals
+
+        assert self.optimum.start is not None
+        designs = {"start": self.optimum.start, "best design": self.optimum}
+        return [
+            cue_drawing(design.scene, f"{name}, diameters {DIAMETER_SCALE:g} times enlarged")
+            for name, design in designs.items()
+            if design.scene.cue.segments
+        ]
 
 
 def compute_study(

@@ -16,6 +16,7 @@ from cuefem.quantity.equality import equal_fields
 
 MAX_LEVELS = 24  # maximum number of values of a parameter that are separate groups
 MAX_GROUPS = 12  # maximum number of groups, each a range, of a parameter with more values
+MAX_FRONT_ROWS = 7  # designs of a Pareto front in a table
 MIN_TREND = 0.2  # minimum rank correlation of a trend
 
 
@@ -80,6 +81,13 @@ class SweepStatistics:
         order = np.lexsort((second, first))
         least = np.minimum.accumulate(second[order])
         return order[np.r_[True, least[1:] < least[:-1]]].tolist()
+
+    @cached_property
+    def shown_front(self) -> list[int]:
+        """At most `MAX_FRONT_ROWS` rows of the front, evenly spaced."""
+        count = len(self.front)
+        picked = np.unique(np.linspace(0, count - 1, min(MAX_FRONT_ROWS, count)).round().astype(int))
+        return [self.front[j] for j in picked]
 
 
 def sweep_statistics(study: Study, designs: Mapping[str, np.ndarray], results: Array) -> SweepStatistics | None:

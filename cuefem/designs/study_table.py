@@ -6,9 +6,11 @@ its factors; of an optimum the best design and its active constraints.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -18,17 +20,20 @@ from cuefem.cue.materials import material_name
 from cuefem.designs import Levels, Normal, Span, Study, Vary
 from cuefem.designs.optimum import Optimum, Problem
 from cuefem.designs.scatter import Scatter, SobolIndices
-from cuefem.designs.study_statistics import SweepStatistics
+from cuefem.designs.study_statistics import MAX_FRONT_ROWS, SweepStatistics
 from cuefem.parameters.field_paths import Path
 from cuefem.parameters.parts import Layout
+from cuefem.quantity.display import counted
 from cuefem.quantity.display_units import (
     display_unit,
+    format_change,
     number_text,
     short_number,
     span_text,
     with_heading,
     with_unit,
 )
+from cuefem.results.differences import difference_text
 from cuefem.results.quantities import DASH
 from cuefem.results.records import Record, Table
 from cuefem.scene import Scene
@@ -43,7 +48,10 @@ TREND_NOTE = (
     "falls: a larger value of the parameter gives a smaller result (a larger bore, less squirt); rises: a larger one; "
     "the shares exclude interactions of parameters"
 )
-MAX_FRONT_ROWS = 7  # designs of a Pareto front in the table
+NOT_DISTINCT_FROM_ROW_ABOVE = (
+    "* ±: 1σ of the difference from the row above, which is smaller: the two designs are not distinct in this result."
+)
+NOT_DISTINCT = "* smaller than its uncertainty: the two designs are not distinct in this result."
 MIN_SHARE = 0.01  # of the variance, of a factor that is named among the strongest
 
 
@@ -140,8 +148,11 @@ def tabulate_failures(study: Study, designs: Designs, failures: Mapping[int, str
     return [f"{len(failures)} failed, the first of them design {number} ({design}): {failure}"]
 
 
-def sweep_record(sweep: SweepStatistics) -> Record:
-    """Best designs, sensitivities and the Pareto front of a sweep."""
+def sweep_record(sweep: SweepStatistics, steps: Sequence[Mapping[str, Record]]) -> Record:
+    """Best designs, sensitivities and the Pareto front of a sweep.
+
+    steps: differences of each shown design of the front from the one before.
+    """
     names = [response.name for response in sweep.responses]
 
     def design(i: int) -> Record:
@@ -160,14 +171,19 @@ def sweep_record(sweep: SweepStatistics) -> Record:
         },
     }
     if sweep.pair is not None:
-        record["front"] = {"of": [names[k] for k in sweep.pair], "designs": [design(i) for i in sweep.front]}
+        ends = pairwise(sweep.numbers[sweep.shown_front].tolist())
+        record["front"] = {
+            "of": [names[k] for k in sweep.pair],
+            "designs": [design(i) for i in sweep.front],
+            "steps": [{"from": i, "to": j, "changes": step} for (i, j), step in zip(ends, steps, strict=True)],
+        }
     return record
 
 
-def tabulate_sweep(sweep: SweepStatistics) -> list[Table | str]:
+def tabulate_sweep(sweep: SweepStatistics, steps: Sequence[Mapping[str, Record]]) -> list[Table | str]:
     """The best design for each response, the sensitivities, and evenly spaced designs of the Pareto front.
 
-    Of a single design its responses alone.
+    Of a single design its responses alone. steps: as of `sweep_record`.
     """
     labels = [*map(column_label, sweep.names)]
     heads = [*map(with_heading, labels, sweep.units)]
@@ -205,8 +221,12 @@ def tabulate_sweep(sweep: SweepStatistics) -> list[Table | str]:
     if sweep.pair is None:
         return sheets
     count, two = len(sweep.front), [sweep.responses[k] for k in sweep.pair]
-    picked = np.unique(np.linspace(0, count - 1, min(MAX_FRONT_ROWS, count)).round().astype(int))
-    rows = tuple((str(sweep.numbers[i]), *cells(i, sweep.pair)) for i in (sweep.front[j] for j in picked))
+    rows = []
+    for i, step in zip(sweep.shown_front, [{}, *steps], strict=True):
+        results, values = cells(i, sweep.pair)[:2], cells(i, ())
+        marked = (_with_step(text, step.get(response.name)) for text, response in zip(results, two, strict=True))
+        rows.append((str(sweep.numbers[i]), *marked, *values))
+    is_marked = any(not change["distinct"] for step in steps for change in step.values())
     few = f"; {MAX_FRONT_ROWS} of them, evenly spaced" if count > MAX_FRONT_ROWS else ""
     title = (
         f"{two[0].label} against {two[1].label}: Pareto front of {count} designs{few}"
@@ -214,7 +234,15 @@ def tabulate_sweep(sweep: SweepStatistics) -> list[Table | str]:
         else f"{two[0].label} and {two[1].label}: one design is the best for both"
     )
     head = ("design", *(response.heading for response in two), *heads)
-    return [*sheets, Table(f"Trade-off, {title}", head, rows)]
+    notes = (NOT_DISTINCT_FROM_ROW_ABOVE,) if is_marked else ()
+    return [*sheets, Table(f"Trade-off, {title}", head, tuple(rows), notes)]
+
+
+def _with_step(text: str, change: Record | None) -> str:
+    """A result of the front, with the uncertainty of its difference from the row above if the two are not distinct."""
+    if change is None or change["distinct"]:
+        return text
+    return f"{text} ± {100 * change['error']:.2g} % *"
 
 
 def scatter_record(study: Study, spread: Spread, drivers: SobolIndices) -> Record:
@@ -276,45 +304,80 @@ def tabulate_scatter(scatter: Scatter, spread: Spread, drivers: SobolIndices) ->
     ]
 
 
+def _change_text(start: Any, value: Any, change: Record | None) -> str:
+    """A change in %, of a response with its uncertainty; a dash where there is none."""
+    if change is not None:
+        return difference_text(change["difference"], change["error"]) + ("" if change["distinct"] else " *")
+    numbers = not isinstance(start, str) and not isinstance(value, str)
+    if not numbers or not start * value > 0:
+        return DASH
+    return format_change(100 * (value / start - 1), 1, "%")
+
+
 def _share(value: float, ends: Any) -> str:
     low, high = (100 * float(end) for end in ends)
     return f"{100 * value:.1f} ({low:.1f} to {high:.1f})"
 
 
-def optimum_record(problem: Problem, best: Optimum) -> Record:
-    """The best design, its responses and active constraints, and the evaluations."""
+def optimum_record(problem: Problem, best: Optimum, changes: Mapping[str, Record]) -> Record:
+    """The best design, its responses and active constraints beside the unmodified design, and the evaluations."""
     aim = {"maximize" if problem.maximize else "minimize": problem.objective.name}
     return {
         "objective": aim,
         "value": best.responses[problem.objective.name],
         "values": best.values,
         "responses": best.responses,
-        "active": best.active,
+        "start": best.start and {"values": best.start.values, "responses": best.start.responses},
+        "changes": changes,
+        "active": [constraint._asdict() for constraint in best.active],
+        "is_set_by_constraints": is_set_by_constraints(problem, best),
         "evaluations": best.evaluations,
         "stop_reason": best.stop_reason,
         "choices": [choice._asdict() for choice in best.choices],
     }
 
 
-def tabulate_optimum(problem: Problem, best: Optimum) -> list[Table | str]:
-    """The best design, its active constraints, and the best design for each choice."""
+def is_set_by_constraints(problem: Problem, best: Optimum) -> bool:
+    """Whether as many constraints are active as there are numbers to choose."""
+    return len(best.active) >= len(problem.spans) > 0
+
+
+def tabulate_optimum(problem: Problem, best: Optimum, changes: Mapping[str, Record]) -> list[Table | str]:
+    """The best design beside the unmodified one, its active constraints, and the best design for each choice.
+
+    changes: differences of the responses, as of `design_differences`.
+    """
     units = dict(zip(problem.study.columns, problem.study.units, strict=True))
     units |= {response.name: response.display_key for response in problem.study.responses}
     labels = {response.name: response.label for response in problem.study.responses}
 
     def text(name: str, value: Any) -> str:
-        return value if isinstance(value, str) else with_unit(value, units[name])
+        if isinstance(value, str):
+            return value
+        return DASH if math.isnan(value) else with_unit(value, units[name])
 
+    assert best.start is not None
+    start = {**best.start.responses, **best.start.values}
     both = {**best.responses, **best.values}
     names = {name: labels.get(name) or column_label(name) for name in both}
     aim = f"{'maximize' if problem.maximize else 'minimize'} {problem.objective.label}"
-    limits = (limit.rsplit(" ", 2) for limit in best.active)
-    active = [f"{names[name]} {sign} {text(name, float(bound))}" for name, sign, bound in limits]
+    compared = tuple(
+        (names[name], text(name, start[name]), text(name, value), _change_text(start[name], value, changes.get(name)))
+        for name, value in both.items()
+    )
+    marked = any(not change["distinct"] for change in changes.values())
+    notes = ("±: 1σ of the difference; shared errors cancel.", *((NOT_DISTINCT,) if marked else ()))
+    active = [f"{names[name]} {sense} {text(name, bound)}" for name, sense, bound in best.active]
     tables: list[Table | str] = [
-        f"{aim}: {best.evaluations} designs computed",
-        Table("Best design", ("", "value"), tuple((names[name], text(name, value)) for name, value in both.items())),
+        f"{aim}: {counted(best.evaluations, 'design')} computed",
+        Table("Best design", ("", "start", "best", "change"), compared, notes if changes else ()),
         f"active constraints: {', '.join(active) or 'none'}",
     ]
+    if is_set_by_constraints(problem, best):
+        tables.append(
+            "The answer is your limits: as many constraints are active as there are numbers to choose. Only another "
+            "limit or a wider range gives a better design."
+        )
     if best.stop_reason:
         tables.append(f"not finished: {best.stop_reason}; more --iterations may find a better design")
     if best.choices:
@@ -322,7 +385,7 @@ def tabulate_optimum(problem: Problem, best: Optimum) -> list[Table | str]:
         rows = tuple(
             (
                 *(text(name, value) for name, value in choice.values.items()),
-                DASH if choice.reason else shown(choice.objective, problem.objective.unit),
+                DASH if choice.reason else shown(choice.objective, problem.objective.display_key),
                 choice.reason,
             )
             for choice in best.choices

@@ -61,6 +61,15 @@ def html_table(caption: str, head: Iterable[str], rows: Iterable[Iterable[str]])
     return f"<table><caption>{escape(caption)}</caption>{''.join(f'<tr>{line}</tr>' for line in cells)}</table>"
 
 
+def counted(count: int, noun: str) -> str:
+    """A number of things.
+
+    >>> counted(1, "design"), counted(12, "design")
+    ('1 design', '12 designs')
+    """
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
 def one_line(text: str) -> str:
     """The text in one line of printable characters, with long values and lists shortened, paths excepted."""
 

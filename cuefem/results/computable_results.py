@@ -24,6 +24,7 @@ def _defined(definition: Definition) -> Result:
         of=lambda design, offset: design.end_mass(definition.name, offset),
         argument="offset" if definition.at_offset else "",
         better="lower",
+        has_model_error=True,
         is_listed=False,
         displayed=END_MASS,
     )

@@ -33,8 +33,9 @@ class Result:
     compute it. argument: its argument in brackets, "", "mode" or "offset". segments: whether it needs cue segments.
     limit: whether without an offset it is the limit of small offsets. better: "lower" or "higher", the direction in
     which a summary ranks designs. odd: whether it changes its sign with the offset b/R, so that designs are compared by
-    its size. is_listed: whether a report and the designer list it (not if it has its own table). displayed: the key of
-    its display unit, by default ``unit``.
+    its size. has_model_error: whether it follows from the impact, with the error of that model. is_listed: whether a
+    report and the designer list it (not if it has its own table). displayed: the key of its display unit, by default
+    ``unit``.
     """
 
     label: str
@@ -50,6 +51,7 @@ class Result:
     limit: bool = False
     better: str = ""
     odd: bool = False
+    has_model_error: bool = False
     is_listed: bool = True
     displayed: str = ""
 
@@ -150,6 +152,7 @@ RESULTS = {
         better="lower",
         is_listed=False,
         displayed=END_MASS,
+        has_model_error=True,
     ),
     "cue_end_mass": Result("mass of the cue's end", "kg", displayed=END_MASS),
     "length": Result("length", "m", 0),
@@ -173,6 +176,7 @@ RESULTS = {
         argument="offset",
         better="lower",
         odd=True,
+        has_model_error=True,
     ),
     "squirt_slope": Result(
         "squirt slope",
@@ -180,6 +184,7 @@ RESULTS = {
         of=lambda design, _: design.squirt_slope,
         better="lower",
         is_listed=False,
+        has_model_error=True,
     ),
     "pivot_length": Result(
         label="natural pivot length",
@@ -191,6 +196,7 @@ RESULTS = {
         limit=True,
         better="higher",
         is_listed=False,
+        has_model_error=True,
     ),
     "speed": Result("speed", "m/s", 2),
     "ball_speed": Result(
@@ -201,6 +207,7 @@ RESULTS = {
         of=of_strike(lambda outcome: outcome.ball_speed),
         argument="offset",
         better="higher",
+        has_model_error=True,
     ),
     "ball_velocity": Result("ball velocity", "m/s", 2),
     "spin": Result("spin", "rad/s", 1),
@@ -218,6 +225,7 @@ RESULTS = {
         of=of_strike(lambda outcome: outcome.energy["cue vibration"]),
         argument="offset",
         better="lower",
+        has_model_error=True,
     ),
     "impulse": Result("impulse", "N s"),
     "coupling": Result("coupling", "1/kg"),

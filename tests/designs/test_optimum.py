@@ -12,11 +12,14 @@ import cuefem as cf
 from cuefem.cli.study_command import round_text
 from cuefem.cue.materials import material
 from cuefem.designs import Response, Span, Vary, evaluate
-from cuefem.designs.optimum import Limit, Optimum, Problem, Round, optimum
+from cuefem.designs.optimum import Constraint, Limit, Optimum, Problem, Round, optimum
 from cuefem.designs.study_file import load_study
+from cuefem.designs.study_result import OptimumResult
+from cuefem.designs.study_table import NOT_DISTINCT
+from cuefem.results.differences import difference_text
 from studies.pages import STUDIES
 from tests.helpers.command_line import stdout_of
-from tests.helpers.cues import low_deflection
+from tests.helpers.cues import kim, low_deflection
 from tests.helpers.invalid_input import assert_rejects
 from tests.helpers.sweeps import OPTIMUM, write_study
 
@@ -66,7 +69,11 @@ def test_committed_study_equals_optimum_of_exact_gradients(tmp_path: Path) -> No
     # a vertex: five limits are active and determine the five parameters
     assert record["value"] == pytest.approx(0.04242492565, rel=1e-6)
     assert record["values"] == pytest.approx(OPTIMAL, rel=1e-6)
-    assert record["active"][:2] == ["tip_stiffness >= 386.7", "wall >= 0.002"]
+    assert record["is_set_by_constraints"]
+    assert record["active"][:2] == [
+        {"name": "tip_stiffness", "sense": ">=", "bound": 386.7},
+        {"name": "wall", "sense": ">=", "bound": 0.002},
+    ]
     assert record["responses"] == pytest.approx(
         {"squirt_slope": record["value"], "tip_stiffness": 386.7, "wall": 0.002}
     )
@@ -96,7 +103,7 @@ def test_active_limits_constrain_the_optimum() -> None:
     for limit in LIMITS:
         rest = tuple(other for other in LIMITS if other != limit)
         freed = optimum(replace(PROBLEM, limits=rest), start=point).responses["squirt_slope"]
-        named = any(text.startswith(limit.response.name) for text in best().active)
+        named = any(constraint.name == limit.response.name for constraint in best().active)
         gained = freed / best().responses["squirt_slope"]
         assert (gained < 1 - 1e-5) == named or (named and gained == pytest.approx(1, abs=1e-6)), limit
 
@@ -124,7 +131,7 @@ def test_optimum_of_left_hand_offset_is_that_of_right_hand() -> None:
     ]
     assert limited[1].values == pytest.approx(limited[0].values, rel=1e-5)
     assert limited[0].values["bore"] < 0.0099
-    assert limited[1].active == (f"squirt(-0.3) <= {most:g}",)
+    assert limited[1].active == (Constraint("squirt(-0.3)", "<=", most),)
 
 
 @pytest.mark.heavy
@@ -163,14 +170,50 @@ def test_optimum_of_listed_values_alone(tmp_path: Path) -> None:
     assert (result.values, result.responses["squirt_slope"]) == (best.values, best.objective)
 
 
+def test_best_design_stands_beside_the_unmodified_one() -> None:
+    """Its responses are those of the base alone; changes are as those of `compare`, in every output."""
+    base, tip = cf.Scene(kim()), Vary("tip diameter", Span(0.011, 0.0125))
+    result = cf.study(Problem(base, (tip,), Response("end_mass"), (Limit(STIFFNESS, low=100.0),), PROBLEM.at))
+    assert isinstance(result, OptimumResult)
+    best, start = result.optimum, result.optimum.start
+    assert start is not None
+    alone = evaluate([base], result.study.responses, at=PROBLEM.at).values[0]
+    assert [*start.responses.values()] == alone.tolist()
+    assert start.values == {"tip diameter": base.cue.segments[0].tip_diameter}
+    compared = cf.compare({"start": start.scene, "best": best.scene}, same_shaft=True).differences["best"]
+    change = result.changes["tip_stiffness"]
+    assert change["difference"] == best.responses["tip_stiffness"] / start.responses["tip_stiffness"] - 1
+    assert change == pytest.approx(compared["tip_stiffness"], rel=1e-2)
+    record = result.to_dict()
+    assert record["start"]["responses"] == start.responses
+    assert record["changes"] == result.changes
+    shown = difference_text(change["difference"], change["error"]).split()
+    for text in (str(result), result.to_html()):
+        assert " ".join(shown) in " ".join(text.split())
+    assert result.to_html().count('class="cue"') == 2
+
+
+def test_designs_that_are_not_distinct_are_marked() -> None:
+    """The least end mass within 0.5 % of the base's bore: a change far below its uncertainty."""
+    bore = PROBLEM.base.cue.segments[1].tip_bore
+    tight = replace(BORE, range=Span(bore, 1.005 * bore))
+    result = cf.study(replace(PROBLEM, vary=(tight,), objective=Response("end_mass"), limits=()))
+    assert isinstance(result, OptimumResult)
+    assert not result.changes["end_mass"]["distinct"]
+    assert "% *" in str(result)
+    assert NOT_DISTINCT in " ".join(str(result).split())
+
+
 def of(cue: cf.Cue, name: str) -> cf.Segment:
     return replace(cue.segments[0], material=material(name))
 
 
 def test_optimum_output_has_units_limits_and_rounds(tmp_path: Path) -> None:
     out = stdout_of("study", write_study(tmp_path, OPTIMUM))
-    assert {"bore 9 mm", "tip 10 mm"} <= {" ".join(line.split()) for line in out.splitlines()}
+    lines = {" ".join(line.split()) for line in out.splitlines()}
+    assert {"bore 0 mm 9 mm –", "tip 12 mm 10 mm −16.7 %"} <= lines
     assert "active constraints: bore <= 9 mm, tip >= 10 mm" in out
+    assert "The answer is your limits" in out
     assert "not finished: " in stdout_of("study", tmp_path / "study.toml", "--iterations", 1)
     problem = load_study(tmp_path / "study.toml")
     texts = [round_text(problem, Round({"wood": "ash"}, 3, 30, best), 60) for best in (np.nan, 0.0412345678)]

@@ -1,6 +1,7 @@
 """Tables of a study: sensitivities, Pareto fronts, best designs (verification)."""
 
 import itertools
+import math
 import re
 from pathlib import Path
 
@@ -12,8 +13,10 @@ from hypothesis.extra.numpy import arrays
 
 import cuefem as cf
 from cuefem.designs import Response
+from cuefem.designs.study_result import SweepResult
 from cuefem.designs.study_statistics import SweepStatistics
 from cuefem.designs.study_table import column_label
+from cuefem.results.uncertainty import RATIO_FLOOR, SHAFT_ERROR
 from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.examples import examples
 from tests.helpers.invalid_input import assert_rejects
@@ -97,6 +100,30 @@ def test_study_result_has_designs_responses_units_best_and_spread(tmp_path: Path
     assert repr(result).splitlines()[0] == "SweepResult(32 designs, 8 failed)"
     again = cf.study(tmp_path / "study.toml", store=tmp_path / "some.sqlite")  # all designs are stored
     assert again.columns == result.columns
+
+
+def test_neighbours_on_the_front_that_are_not_distinct_are_marked(tmp_path: Path) -> None:
+    """By the rule of `compare`: a bore of 0 or 1 mm changes the end mass by less than its uncertainty."""
+    result = cf.study(write_study(tmp_path, STUDY.replace('values = ["hard maple", "ash"]', 'values = ["ash"]')))
+    assert isinstance(result, SweepResult)
+    assert result.statistics is not None
+    steps = result.to_dict()["summary"]["front"]["steps"]
+    shown = result.statistics.numbers[result.statistics.shown_front].tolist()
+    assert [(step["from"], step["to"]) for step in steps] == [*itertools.pairwise(shown)]
+    for step in steps:
+        ratio = result.responses["end_mass"][step["to"]] / result.responses["end_mass"][step["from"]]
+        change = step["changes"]["end_mass"]
+        assert change["difference"] == pytest.approx(ratio - 1, rel=1e-12)
+        # of one wood and one tip only the model's part and the floor remain
+        part = math.hypot(SHAFT_ERROR * math.log(ratio), RATIO_FLOOR) * (ratio - 1) / math.log(ratio)
+        assert change["error"] == pytest.approx(part, rel=1e-9)
+    marks = [step["changes"][name]["distinct"] for step in steps for name in ("end_mass", "tip_stiffness")]
+    assert {*marks} == {True, False}
+    text = str(result)
+    assert (text.count("% *"), "the two designs are not distinct" in " ".join(text.split())) == (
+        marks.count(False),
+        True,
+    )
 
 
 LABELS = {

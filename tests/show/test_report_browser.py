@@ -15,6 +15,7 @@ from cuefem.designs import Response
 from cuefem.designs.study_charts import sweep_charts
 from cuefem.designs.study_statistics import SweepStatistics
 from cuefem.designs.study_table import tabulate_sweep
+from cuefem.results.records import Record
 from cuefem.show.templates import plain_page
 from tests.helpers.designer_browser import BROWSER, empty_page, open_browser
 
@@ -97,7 +98,8 @@ def study_of_ten_columns() -> str:
     names, units = ("bore", "bore depth", "tip.contact_time"), ("m", "m", "s")
     values = (1e-3 * bore, 1e-3 * deep, 1e-3 * time)
     table = SweepStatistics(names, units, tuple(map(Response.of, kinds)), np.arange(12), values, results)
-    return plain_page("bore", ["12 designs", *sweep_charts(table), *tabulate_sweep(table)])
+    steps: list[dict[str, Record]] = [{} for _ in table.shown_front[1:]]
+    return plain_page("bore", ["12 designs", *sweep_charts(table), *tabulate_sweep(table, steps)])
 
 
 @pytest.mark.parametrize("width", [1280, 390])
