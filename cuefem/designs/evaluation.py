@@ -185,7 +185,7 @@ def evaluate(
     parsed = [Response.of(response) if isinstance(response, str) else response for response in responses]
     values, reasons = np.full((len(scenes), len(parsed)), np.nan), list[str | None]([None] * len(scenes))
     previous: tuple[Any, ...] | None = None
-    solved: dict[tuple[Resolution | int, int], Modes] = {}
+    solved: dict[tuple[Resolution | int, int | None, int], Modes] = {}
     for i, scene in enumerate(scenes):
         on_cue = scene.cue, scene.cue_effects
         previous, solved = on_cue, solved if on_cue == previous else {}

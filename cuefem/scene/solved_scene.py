@@ -33,9 +33,10 @@ PERIODS, TRUNCATED_SUM_PERIODS, MIN_MODES = 30, 60, 40
 # The same for a strike with a leather tip, whose tangential compliance leaves no velocity step at the shaft's end: over
 # 160 random cues the error of squirt, with 200 steps, is 8.5e-5 (95th percentile), 1.3e-4 (maximum).
 LEATHER_PERIODS, MIN_LEATHER_MODES = 8, 12
-# The end mass of a pulse that begins without a step: over 17 cues of 0.6 to 1.6 ms the error by force is 3.4e-4 (95th
-# percentile), with 30 periods and 40 modes 1.1e-3.
-PULSE_PERIODS, MIN_PULSE_MODES = 60, 80
+# The end mass of a pulse that begins without a step, on a mesh for PULSE_MESH of its modes: over 60 random cues and
+# whole scenes of 0.5 to 2 ms the error by force is 3.7e-4 (95th percentile), 4.5e-4 (maximum); on a mesh for all of
+# them 1.9e-4, 5.1e-4; with the modes of a strike, 30 periods and 40, 6.2e-4, 1.3e-3.
+PULSE_PERIODS, MIN_PULSE_MODES, PULSE_MESH = 60, 80, 0.75
 # The end mass of a tip that sticks needs more: its velocity begins with a step, whose front returns from the butt
 # after 2 L/c with frequencies of 10 to 80 kHz, at any contact time. The mesh resolves the first MESHED_MODES of
 # them; the others only add compliance: the end mass is as accurate as on a mesh for 160 (50 shafts, 50 whole cues).
@@ -79,7 +80,7 @@ class SolvedScene:
 
     scene: Scene
     at: Resolution | Solid | None = None
-    solved_modes: dict[tuple[Resolution | int, int], Modes] = field(default_factory=dict, repr=False)
+    solved_modes: dict[tuple[Resolution | int, int | None, int], Modes] = field(default_factory=dict, repr=False)
 
     @property
     def modes(self) -> Modes:
@@ -108,7 +109,7 @@ class SolvedScene:
         if self.at is not None or self.scene.lumped is not None:
             return self.tip
         count = default_mode_count(self.scene, periods=PULSE_PERIODS, min_modes=MIN_PULSE_MODES)
-        return tip_modes_from(self._default(count), self.scene)
+        return tip_modes_from(self._default(count, meshed=round(PULSE_MESH * count)), self.scene)
 
     @cached_property
     def stick_tip(self) -> TipModes:
@@ -117,8 +118,8 @@ class SolvedScene:
             return self.tip
         return tip_modes_from(self._default(default_mode_count(self.scene, min_modes=MIN_STICK_MODES)), self.scene)
 
-    def _default(self, count: int) -> Modes:
-        return self._bending(count, with_correction=True, mesh_modes=min(count, MESHED_MODES))
+    def _default(self, count: int, *, meshed: int = MESHED_MODES) -> Modes:
+        return self._bending(count, with_correction=True, mesh_modes=min(count, meshed))
 
     def _bending(self, at: Resolution | int, *, with_correction: bool, mesh_modes: int | None = None) -> Modes:
         """Bending modes at a resolution, or a number of them; each solved once.
@@ -128,7 +129,8 @@ class SolvedScene:
         """
         scene = self.scene
         loads = 0 if not with_correction else 2 if has_moment_arm(scene) else 1
-        if (at, loads) not in self.solved_modes:
+        key = (at, mesh_modes, loads)
+        if key not in self.solved_modes:
             from cuefem.beam import assembly, modes
 
             n_modes = at if isinstance(at, int) else at.modes
@@ -136,8 +138,8 @@ class SolvedScene:
             # a support makes rigid-body modes flexible; the total number of modes stays the same, so that results
             # are continuous as its stiffness vanishes
             n_modes += 2 - beam.rigid_basis.shape[1]
-            self.solved_modes[at, loads] = modes.solve(beam, n_modes, n_corrected=loads)
-        return self.solved_modes[at, loads]
+            self.solved_modes[key] = modes.solve(beam, n_modes, n_corrected=loads)
+        return self.solved_modes[key]
 
 
 @one_blas_thread
