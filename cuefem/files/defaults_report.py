@@ -35,6 +35,7 @@ _OPTIONS = {"ball_mass": "game", "ball_diameter": "game"}  # of other keys: that
 _EXAMPLES = {"ferrule": FERRULE, "bore": BORE, "front": LEATHER}
 # Options of missing keys of a scene file; for other keys the name of the field.
 _KEYS = {"ball.mass": ("ball_mass",), "ball.radius": ("ball_diameter",), "effects": ("tip_height", "dome", "leather")}
+_ROUND_OFF = 1e-9  # of the widest diameter
 _UNNAMED = Material(1e9, 1e9 / 15, 1000.0)  # placeholder for the material of a profile without one
 
 
@@ -191,10 +192,11 @@ def _surface(path: Path) -> list[str]:
 
     surface = read_surface(path)
     corners = 2 * surface.facets / surface.widest
+    beyond = f" (corners up to {corners:.0e} of the widest diameter further out)" if corners > _ROUND_OFF else ""
     count = len(surface.pieces)
     return [
         f"{count} conical segment{'s' if count > 1 else ''}, diameters within {TOLERANCE:.0e} of the widest",
-        f"facets replaced by circles (corners up to {corners:.0e} of the widest diameter further out)",
+        f"facets replaced by circles{beyond}",
         "the thinner end is the tip",
     ]
 

@@ -12,7 +12,7 @@ from cuefem.measurements.measured_folder import TEMPLATE, load_measured
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES
 from tests.helpers.command_line import as_json, call, stdout_of
 from tests.helpers.invalid_input import assert_rejects
-from tests.helpers.measured_cues import MEASURED_TOML, measured_folder
+from tests.helpers.measured_cues import measured_folder
 
 
 def test_compare_json_equals_library_and_page_lists_measurements(tmp_path: Path) -> None:
@@ -85,15 +85,3 @@ def test_load_measured_without_scene_has_default_stroke_of_game(tmp_path: Path) 
     assert load_measured(folder)[0].scene == replace(usual, tip=replace(usual.tip, friction=0.5))
     (folder / "measured.toml").write_text('game = "chess"\n', encoding="utf-8")
     assert_rejects("measured.toml: game: must be one of pool, carom, snooker, kim", "compare", folder)
-
-
-def test_compare_estimate_json_equals_library(tmp_path: Path) -> None:
-    known = "".join(f'[[prior]]\nname = "{name}"\nspread = 0.0\n' for name in ("G", "bore width", "contact time"))
-    folder = measured_folder(tmp_path / "cue", MEASURED_TOML + known)
-    reported = as_json("compare", folder, "--estimate")
-    expected = cf.estimate(folder)
-    assert reported | expected.values() == reported
-    assert [each["value"] for each in expected.parameters] == [each.value for each in expected.found.values]
-    assert expected.converged
-    assert {gain["kind"] for gain in reported["recommended_measurements"]} <= set(MEASUREMENT_TYPES)
-    assert all(0 < gain["error_ratio"] <= 1 and gain["bits"] >= 0 for gain in reported["recommended_measurements"])

@@ -1,0 +1,113 @@
+"""What commands write of made files, with their pages' charts, against golden files (regression)."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.helpers.command_line import call
+from tests.helpers.measured_cues import MEASURED_TOML, measured_folder
+from tests.helpers.surfaces import revolve, write_surface
+from tests.helpers.sweeps import OPTIMUM, SCATTER, STUDY, write_study
+from tests.test_golden_files import assert_golden, drawing_text, page_text
+
+# Millimetres: a ferrule on a bored front with a step, and a cone behind it.
+BORED = ((0, 0), (0, 2), (120, 2.5), (120, 0)), ((0, 6), (25, 6), (25, 6.2), (300, 6.5), (700, 10.5))
+PROFILES = {
+    "plain.csv": "position (mm);diameter (mm)\n0;12,4\n330;13,1\n737;21,5\n",
+    "inches.csv": "Station, Radius\n0 in, 0.25 in\n13 in, 0.26 in\n29 in, 0.42 in\n",
+    "measured.csv": "# of a caliper\nx/cm\tOD\tID\n0\t1.2\t0.6\n10\t1.21\t0.6\n12\t1.22\t0\n70\t2.1\t0\n",
+    "backwards.csv": "from butt [mm],d [mm]\n0,21\n400,14\n700,12\n",
+    "one.csv": "x,d\n0,12\n",
+    "swapped.csv": "x [mm],d [mm]\n0,12\n500,13\n300,14\n",
+    "words.csv": "x [mm],d [mm]\n0,twelve\n700,21\n",
+}
+
+
+def sweep(folder: Path) -> list[list[object]]:
+    """A grid of bores, contact times and woods."""
+    write_study(folder, STUDY.replace("count = 8", "count = 2"))
+    return [["study", "study.toml", "-o", "page.html"]]
+
+
+def scatter(folder: Path) -> list[list[object]]:
+    """A tolerance analysis with a correlation and a group."""
+    write_study(folder, SCATTER.replace("count = 16", "count = 4"))
+    return [["study", "study.toml", "-o", "page.html"]]
+
+
+def optimum(folder: Path) -> list[list[object]]:
+    """An optimum under a limit."""
+    write_study(folder, OPTIMUM)
+    return [["study", "study.toml", "--iterations", "1", "-o", "page.html"]]
+
+
+def comparison(folder: Path) -> list[list[object]]:
+    """A measured cue, compared."""
+    measured_folder(folder / "cue")
+    return [["compare", "cue", "-o", "compared.html"]]
+
+
+def estimate(folder: Path) -> list[list[object]]:
+    """E and density of the wood, estimated from a weight, a tone and a stiffness."""
+    known = "".join(f'[[prior]]\nname = "{name}"\nspread = 0.0\n' for name in ("G", "bore width", "contact time"))
+    measured_folder(folder / "cue", MEASURED_TOML + known)
+    return [["compare", "cue", "--estimate", "-o", "estimated.html"]]
+
+
+def surfaces(folder: Path) -> list[list[object]]:
+    """CAD surfaces: in three units, bored, oval, bent, with a hole, too short."""
+    inner, outer = BORED
+    outline = [(1e-3 * x, 1e-3 * r) for x, r in (*inner[::-1], *outer, (700, 0))]
+    points, faces = revolve(outline, 16)
+    rows = {
+        "bored.stl": (points, faces, 1e-3),
+        "inches.ply": (points, faces, 0.0254),
+        "turned.obj": (points[:, [2, 0, 1]] * [1, -1, 1], faces, 1e-3),
+        "oval.stl": (points * [1, 1.04, 1], faces, 1e-3),
+        "bent.stl": (points + np.outer(points[:, 0] ** 2, [0, 0.1, 0]), faces, 1e-3),
+        "open.stl": (points, faces[:-9], 1e-3),
+        "metres.stl": (points, faces, 1.0),
+    }
+    for name, (corners, triangles, unit) in rows.items():
+        write_surface(folder / name, corners, triangles, unit=unit)
+    units = {"inches.ply": "in", "metres.stl": "mm"}
+    return [
+        ["convert", name, f"{name}.toml", *(["--length-unit", units[name]] if name in units else [])] for name in rows
+    ]
+
+
+def profiles(folder: Path) -> list[list[object]]:
+    """Lathe profiles: headings, separators, units and mistakes."""
+    for name, text in PROFILES.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    more = {"plain.csv": ["--bore", "6 mm wide, 127 mm deep"], "inches.csv": ["--front", "leather 6 mm"]}
+    return [["convert", name, f"{name}.toml", *more.get(name, [])] for name in PROFILES]
+
+
+def written(path: Path) -> str:
+    """A written file: a page's text and charts, or the file itself."""
+    text = path.read_text(encoding="utf-8")
+    return page_text(text) + drawing_text(text) if path.suffix == ".html" else text
+
+
+@pytest.mark.parametrize("prepare", [sweep, scatter, optimum, comparison, estimate, surfaces, profiles])
+def test_written_files_equal_golden_file(
+    prepare: Callable[[Path], list[list[object]]],
+    tmp_path: Path,
+    request: pytest.FixtureRequest,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "110")
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+    lines = []
+    for arguments in prepare(tmp_path):
+        status, out, err = call(*arguments)
+        lines += [f"$ {' '.join(map(str, arguments))}: {status}", out, err]
+        output = tmp_path / str(arguments[-1] if "-o" in arguments else arguments[2])
+        lines += [written(output)] if output.exists() else []
+    now = re.sub(r"\d+\.\d{6,}", lambda number: f"{float(number[0]):.5f}", "\n".join(lines))
+    assert_golden(f"written_{prepare.__name__}.txt", now, request)
