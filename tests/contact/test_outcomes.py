@@ -102,6 +102,13 @@ def test_outcome_of_batch_copies_and_pickles_equal() -> None:
     assert deepcopy(side) == pickle.loads(pickle.dumps(side)) == side
 
 
+def test_outcome_without_any_of_its_fields_is_another() -> None:
+    outcome = cf.strike(kim_scene(), AT)
+    for part in fields(outcome):
+        if getattr(outcome, part.name) is not None:
+            assert replace(outcome, **{part.name: None}) != outcome != replace(outcome, **{part.name: (1.0,)})
+
+
 def test_results_with_arrays_copy_pickle_and_compare() -> None:
     """Modes of a dense and of a sparse problem, a motion, a ball's motion: equal after a way to another process."""
     cue = kim_scene().cue
