@@ -120,6 +120,12 @@ def value(key: str, scene: Scene) -> Any:
     return PARAMETERS[key].value(scene)
 
 
+def alike(mine: Any, other: Any) -> bool:
+    """Whether two values are the same but for rounding."""
+    numbers = isinstance(mine, float) and isinstance(other, float)
+    return math.isclose(mine, other, rel_tol=1e-9) if numbers else mine == other
+
+
 def _name(known: Any) -> str:
     return table_name(known) or material_name(known)
 

@@ -13,6 +13,7 @@ from cuefem.designer.controls import (
     KNOBS,
     NONE,
     UNITLESS,
+    alike,
     label,
     limits,
     options,
@@ -78,9 +79,9 @@ class KnobRow:
         _set_accessible_name(self.field, name)
         if self.slider is not None:
             self._place(name, mine, beside, design.scene)
-        alike = other is None or _alike(mine, beside)
-        self.note.set_text("" if self.short else self._note(design, mine, mine if alike else beside))
-        _classes(self.note, "other", not alike)
+        same = other is None or alike(mine, beside)
+        self.note.set_text("" if self.short else self._note(design, mine, mine if same else beside))
+        _classes(self.note, "other", not same)
 
     def _text(self, design: Design, mine: Any) -> str:
         if self.knob.range is None:
@@ -195,12 +196,6 @@ class ControlsCard:
             row.show()
         for group, words in self.session.captions().items():
             self.folds[group].props(f'caption="{words}"')
-
-
-def _alike(mine: Any, other: Any) -> bool:
-    """Whether two values are the same but for rounding."""
-    numbers = isinstance(mine, float) and isinstance(other, float)
-    return math.isclose(mine, other, rel_tol=1e-9) if numbers else mine == other
 
 
 def _classes(element: Any, name: str, on: bool) -> None:

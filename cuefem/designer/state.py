@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from cuefem.contact.kernel import KernelError
 from cuefem.cue import Cue
+from cuefem.designer.controls import alike, value
 from cuefem.files import load_stroke
 from cuefem.files.defaults_report import Assumption, assumptions, offered_assumptions
 from cuefem.files.parts_catalogue import data_folder
@@ -56,8 +57,15 @@ class Design:
             )
 
     def changed(self, scene: Scene, keys: Iterable[str], typed: Mapping[str, str]) -> Design:
-        """The design with another scene, in which the user set some controls."""
-        kept = {key: text for key, text in self.typed.items() if key not in keys}
+        """The design with another scene, in which the user set some controls.
+
+        A typed text goes with its value, which another control may change, as `game` changes the speed.
+        """
+        kept = {
+            key: text
+            for key, text in self.typed.items()
+            if key not in keys and alike(value(key, scene), value(key, self.scene))
+        }
         weight = frozenset(
             {"shaft_mass"} if self.scene.shaft.shaft_mass_measured and not scene.shaft.shaft_mass_measured else ()
         )

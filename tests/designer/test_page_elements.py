@@ -12,6 +12,8 @@ import pytest
 pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
 from nicegui import Client, core, ui
 
+from cuefem.designer.controls import DRILLED
+from cuefem.designer.knob_row import KnobRow
 from cuefem.designer.page import Page
 from cuefem.designer.session import OPENED
 from cuefem.designer.state import reference_design
@@ -33,7 +35,8 @@ TYPED = {
     "ball_mass": ("6 oz",),
     "ball_diameter": ("57.15", "1 m"),
 }
-CHOSEN = {"shaft_material": "ash", "ferrule": "brass", "game": "pool"}
+CHOSEN = {"shaft_material": "ash", "ferrule": "brass", "game": "pool", "leather": "hard"}
+RANGE = ("min", "max", "step", "value", "style")  # of a slider
 UNSTABLE = ("url", "for", "id")  # props with the number of a client or an element
 
 
@@ -71,6 +74,12 @@ async def of_results() -> str:
     return "\n".join(described(client)) + "\n"
 
 
+def line(row: KnobRow) -> str:
+    """What a row shows."""
+    slider = {name: row.slider.props.get(name) for name in RANGE} if row.slider else ""
+    return f"{row.key} | {row.label.text} | {row.note.text} | {row.field.value} | {row.error.text} | {slider}"
+
+
 async def of_typed_values() -> str:
     """Each row of the controls after each typed value."""
     client, lines = Client(ui.page("/"), request=None), []
@@ -89,9 +98,10 @@ async def of_typed_values() -> str:
                 )
                 parts = (key, text, row.label.text, row.note.text, str(row.field.value), row.error.text, str(props))
                 lines.append(" | ".join(parts))
+        page.session.set_knob("bore", DRILLED)
         page.session.compare_with(OPENED)
         page.show()
-        lines += [" | ".join((row.key, row.label.text, row.note.text)) for row in page.controls.rows]
+        lines += map(line, page.controls.rows)
     return "\n".join(lines) + "\n"
 
 

@@ -129,6 +129,14 @@ def test_miscue_has_numbers_and_no_verdict() -> None:
     assert {*OF_TAB} == {"Curves", "Changes", "Report"}
 
 
+def test_typed_text_goes_with_the_value_that_another_control_changes() -> None:
+    session = Session(FIRST)
+    session.set_knob("speed", 2.5, "2,5")
+    session.set_knob("tip_diameter", 0.0125, "12,5")
+    session.set_knob("game", "carom")
+    assert session.step.design.typed == {"tip_diameter": "12,5"}
+
+
 def test_invalid_change_leaves_the_session() -> None:
     session = Session(FIRST)
     with pytest.raises(ValueError, match="bore"):
