@@ -182,8 +182,8 @@ def test_front_of_a_tube_ends_at_a_solid_part() -> None:
     ("name", "value", "problem"),
     [
         ("front wall", 7e-3, "the wall must be"),
-        ("empty depth", 0.9, "the tube is"),
-        ("insert depth", 0.9, "the tube is"),
+        ("empty depth", 0.9, "the tube is 724.6 mm long; got 900 mm"),
+        ("insert depth", 0.9, "the tube is 724.6 mm long; got 900 mm"),
     ],
 )
 def test_parameters_of_tubes_have_bounds(name: str, value: float, problem: str) -> None:

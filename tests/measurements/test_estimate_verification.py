@@ -130,6 +130,18 @@ def linear_estimate(cue: MeasuredCue, slopes: np.ndarray, values: np.ndarray) ->
 
 
 @pytest.mark.heavy
+def test_outlier_probability_of_certain_parameters_is_that_of_each_error() -> None:
+    """Slopes of 0: one measurement in 1,000 has ten times its error, so that two normal densities compare."""
+    residuals = np.array([0.5, 3.0, 4.0])
+    odds = 1e-3 / (1 - 1e-3) / 10 * np.exp(residuals**2 / 2 * (1 - 1 / 10**2))
+    all_three = np.prod(odds)  # which at most two outliers exclude
+    total = np.prod(1 + odds) - all_three
+    each = odds * (np.prod(1 + odds) / (1 + odds)) - all_three
+    found = posterior(np.zeros((3, 1)), residuals)
+    assert found.outlier_probability == pytest.approx(each / total, rel=1e-12)
+    assert (found.mean, found.covariance) == (pytest.approx([0.0]), pytest.approx(np.eye(1)))
+
+
 @pytest.mark.parametrize("outlier", [None, *range(7)])
 def test_intervals_with_outlier_cover_or_name_it(outlier: int | None, linear: tuple[MeasuredCue, np.ndarray]) -> None:
     """One value 6 to 20 errors off: the intervals cover the true parameters, or the estimate lists it as unchecked."""

@@ -14,7 +14,7 @@ from cuefem.cue.materials import material
 from cuefem.solid.meridian_mesh import Fineness, element_ends
 from cuefem.solid.shaft import AXIAL, BENDING, SolidBody
 from cuefem.solid.tip_compliance import table_patches
-from cuefem.solid.tip_table import LOG_RADIUS, MIN_POSITION, max_position
+from cuefem.solid.tip_table import LOG_RADIUS, MIN_POSITION, distance_to_rim, max_position
 from tests.helpers.orders import assert_order
 
 STEEL = Material(200e9, 200e9 / 2.6, 7850.0)
@@ -117,3 +117,11 @@ def test_patches_of_a_computed_tip_span_its_table() -> None:
     positions, radii = table_patches(0.5)
     assert (positions[0], positions[-1]) == pytest.approx((MIN_POSITION, max_position(0.5)), rel=1e-12)
     assert (radii[0], radii[-1]) == pytest.approx(np.exp(LOG_RADIUS), rel=1e-12)
+
+
+@pytest.mark.parametrize("curvature", [0.2, 0.67, 1.1])
+@pytest.mark.parametrize("position", [0.0, 0.4, 0.9])
+def test_distance_to_rim_is_the_chord_between_two_angles(curvature: float, position: float) -> None:
+    """On a sphere of radius 1/curvature, projected on the tangent plane at the position."""
+    angle = math.asin(curvature / 2) - math.asin(curvature * position / 2)
+    assert distance_to_rim(curvature, position) == pytest.approx(math.sin(angle) / curvature, rel=1e-12)
