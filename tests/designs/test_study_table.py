@@ -2,7 +2,6 @@
 
 import itertools
 import math
-import re
 from pathlib import Path
 
 import numpy as np
@@ -17,9 +16,7 @@ from cuefem.designs.study_result import SweepResult
 from cuefem.designs.study_statistics import SweepStatistics
 from cuefem.designs.study_table import column_label
 from cuefem.results.uncertainty import RATIO_FLOOR, SHAFT_ERROR
-from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.examples import examples
-from tests.helpers.invalid_input import assert_rejects
 from tests.helpers.sweeps import STUDY, write_study
 
 PAIR = (Response.of("end_mass"), Response.of("tip_stiffness"))
@@ -65,25 +62,6 @@ def test_pareto_front_has_undominated_designs(numbers: np.ndarray) -> None:
     assert all(not dominated[i] for i in result.front)
     assert result.best(0) in np.flatnonzero(results[:, 0] == results[:, 0].min())
     assert result.best(1) in np.flatnonzero(results[:, 1] == results[:, 1].max())
-
-
-def test_study_command_prints_summary_and_writes_page(tmp_path: Path) -> None:
-    study, (page, best) = write_study(tmp_path), (tmp_path / name for name in ("page.html", "best.toml"))
-    out = " ".join(stdout_of("study", study, "-o", page, "-o", best).split())
-    assert re.search(r"8 failed, the first of them design 24 \(.*mm.*\): Segment.tip_bore must be in \[0, ", out)
-    assert "bore 0 to 15 mm" in out
-    record = as_json("study", study)
-    assert (record["designs"], record["evaluated"], record["failed"]) == (32, 0, 8)
-    summary = record["summary"]
-    widest = pytest.approx(5 / 7 * 0.015, rel=1e-8)  # of the valid designs
-    assert (summary["best"]["end_mass"]["values"]["bore"], cf.load(best).cue.segments[0].tip_bore) == (widest, widest)
-    assert summary["sensitivities"]["end_mass"]["bore"]["trend"] == "falls"
-    assert summary["front"]["of"] == ["end_mass", "tip_stiffness"]
-    assert summary["front"]["designs"][0]["design"] == summary["best"]["end_mass"]["design"]
-    text = page.read_text(encoding="utf-8")
-    assert (text.count("<table"), re.findall('(?:href|src)="([^"]*)"', text)) == (4, ["data:,"])
-    none = write_study(tmp_path, STUDY.replace('low = "0 mm"\nhigh = "15 mm"', 'low = "13 mm"\nhigh = "14 mm"'))
-    assert_rejects("has no design to write", "study", none, "-o", tmp_path / "none.toml")
 
 
 def test_study_result_has_designs_responses_units_best_and_spread(tmp_path: Path) -> None:
