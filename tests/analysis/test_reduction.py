@@ -4,6 +4,7 @@ import json
 import math
 import re
 from dataclasses import replace
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,7 @@ from typing import Any
 import pytest
 
 import cuefem as cf
-from cuefem.analysis.reduction import SMALL_OFFSETS, VIBRATING
+from cuefem.analysis.reduction import SMALL_OFFSETS, VIBRATING, Reduction
 from cuefem.endmass.rigid_front import RigidFront
 from cuefem.show.renderers import json_text
 from studies.pages import STUDIES
@@ -32,8 +33,13 @@ def scaled(factor: float, *names: str) -> cf.Scene:
     return replace(KIM, cue=cf.Cue((shaft,), KIM.cue.mass - shaft.mass))
 
 
+@cache
+def kim_reduction() -> Reduction:
+    return cf.reduction(KIM)
+
+
 def test_reduction_of_kims_cone_has_the_numbers_of_the_chain() -> None:
-    own = cf.reduction(KIM)
+    own = kim_reduction()
     assert [round(frequency) for frequency in own.frequencies] == [121, 325, 624, 1008]
     nearest = {name: (mode["mode"], round(mode["frequency"])) for name, mode in own.nearest.items()}
     assert nearest == {"free": (2, 325), "pinned": (2, 272), "clamped": (3, 338)}
@@ -79,7 +85,7 @@ def test_rigid_front_equals_closed_forms_of_kims_cue_end() -> None:
     mass = float(cone_end_mass(0.12, shaft_mass=KIM.cue.shaft_mass, **shaft))
     assert front.mass_ratio(0.12) == pytest.approx((1 + nu_c) / nu_c, rel=2e-5)
     assert front.length_of(mass * nu_c / (1 + nu_c)) == pytest.approx(0.12, rel=2e-5)
-    assert cf.reduction(KIM).front_ratio == pytest.approx(4.23, abs=5e-3)
+    assert kim_reduction().front_ratio == pytest.approx(4.23, abs=5e-3)
     thin = rod(1000.0)
     assert RigidFront.of(thin).length_of(thin.shaft_mass / 4) == pytest.approx(thin.length, rel=2e-5)
     assert front.length_of(1.0) is None
@@ -125,7 +131,7 @@ def test_lumped_cue_has_the_row_of_its_own_end_mass() -> None:
 def test_head_on_stroke_has_the_offsets_of_the_table() -> None:
     own = cf.reduction(replace(KIM, stroke=cf.Stroke(1.0, 0.0)))
     assert [*own.models] == ["Kim's guess", SMALL_OFFSETS, VIBRATING]
-    assert own.models[VIBRATING]["squirt"] == pytest.approx(cf.reduction(KIM).models[VIBRATING]["squirt"], rel=1e-9)
+    assert own.models[VIBRATING]["squirt"] == pytest.approx(kim_reduction().models[VIBRATING]["squirt"], rel=1e-9)
 
 
 def test_miscue_has_no_squirt() -> None:
@@ -156,7 +162,7 @@ def test_invalid_input_names_item_bound_and_value(options: Any, message: str) ->
 
 
 def test_commands_state_the_numbers_of_the_call() -> None:
-    expected = json.loads(json_text(cf.reduction(KIM).values()))
+    expected = json.loads(json_text(kim_reduction().values()))
     for command in ("end-mass", "report"):
         status, out, _ = call(command, "--json", STUDIES / "scenes" / "kim.toml")
         assert status == 0
@@ -174,7 +180,7 @@ def test_end_mass_command_compares_typed_guesses() -> None:
 
 
 def test_analysis_prints_and_saves_itself(tmp_path: Path) -> None:
-    own = cf.reduction(KIM)
+    own = kim_reduction()
     assert "this shaft, vibrating" in str(own)
     own.save(tmp_path / "own.json")
     own.save(tmp_path / "own.html")

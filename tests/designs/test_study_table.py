@@ -51,7 +51,7 @@ def test_shares_of_sample_and_of_choices_equal_exact_variances() -> None:
     assert (named.shares[0, 0], named.trends) == (pytest.approx(1.0, rel=1e-12), [["", ""]])
 
 
-@examples(30)
+@examples(12)
 @given(arrays(int, (60, 2), elements=st.integers(0, 11)))  # with ties
 def test_pareto_front_has_undominated_designs(numbers: np.ndarray) -> None:
     results = numbers.astype(float)

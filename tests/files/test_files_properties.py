@@ -91,7 +91,7 @@ def saved_and_loaded(item: cf.Cue | cf.Scene, name: str) -> cf.Cue | cf.Scene:
 
 
 @given(CUES | SCENES)
-@examples(40)
+@examples(25)
 def test_save_and_load_preserve_twelve_digits(item: cf.Cue | cf.Scene) -> None:
     assert_close(saved_and_loaded(item, "thing.toml"), item)
 

@@ -47,7 +47,7 @@ def loaded(folder: Path, text: str) -> cf.Scene:
     return result
 
 
-@examples(25)
+@examples(12)
 @given(present=st.sets(st.sampled_from(KEYS)), effects=st.booleans(), game=st.sampled_from([*GAMES]))
 def test_scene_missing_keys_default_to_the_game(folder: Path, present, effects, game) -> None:
     rows = [f'game = "{game}"', 'cue = "cue.toml"', *(["effects = []"] if effects else [])]

@@ -10,6 +10,7 @@ import cuefem as cf
 from cuefem.cue.materials import material
 from cuefem.files.shaft_additions import with_additions
 from tests.helpers.command_line import as_json, call
+from tests.helpers.examples import examples
 
 BARE = "x [mm],diameter [mm]\n0,12\n700,21\n"
 MAPLE, ASH, ABS = map(material, ("hard maple", "ash", "abs"))
@@ -22,6 +23,7 @@ def shaft(folder: Path, text: str = BARE) -> Path:
     return path
 
 
+@examples(30)
 @given(st.floats(2, 59), st.sampled_from(["abs", "Melamine", "carbon fibre", "brass"]), st.booleans())
 def test_ferrule_by_text_has_its_length_and_material(length: float, name: str, backwards: bool) -> None:
     text = f"{name} ferrule {length!r} mm" if backwards else f"{length!r} mm {name}"

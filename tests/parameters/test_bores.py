@@ -79,7 +79,7 @@ def bore_at(cue: cf.Cue, x: float) -> float:
     return 0.0 if segment.core else segment.tip_bore + (segment.butt_bore - segment.tip_bore) * share
 
 
-@examples(25)
+@examples(12)
 @given(bored_cues())
 def test_design_changes_of_bores_and_tapers_remove_wood(cue: cf.Cue) -> None:
     """No change whose name says that wood goes adds any, wherever the bores are."""

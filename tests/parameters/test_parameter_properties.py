@@ -35,7 +35,7 @@ def changed(key: str, value: float, part: float) -> float:
 
 
 @pytest.mark.parametrize("name", SCENES)
-@examples(5)
+@examples(3)
 @given(permille=st.integers(-10, 10))
 def test_parameter_set_reads_back(name: str, permille: int) -> None:
     scene = SCENES[name]

@@ -49,13 +49,12 @@ def assert_valid(text: str) -> PageReader:
 @pytest.mark.parametrize(
     "stroke",
     [
-        LUMPED,
         replace(LUMPED, stroke=cf.Stroke(offset=-0.3)),
         replace(LUMPED, stroke=cf.Stroke(offset=0.0)),
         replace(LUMPED, cue=cf.LumpedCue(0.54, 0.006, 0.5), effects=(cf.TipShear(0.75),)),
         replace(LUMPED, tip=cf.Tip(friction=math.inf)),
     ],
-    ids=["lumped", "left", "head on", "coupled", "no slip"],
+    ids=["left", "head on", "coupled", "no slip"],
 )
 def test_page_of_lumped_cue_is_valid_html(stroke: cf.Scene) -> None:
     texts = " ".join(assert_valid(cf.report(stroke, details=True).to_html("lumped.toml")).text)
