@@ -159,8 +159,8 @@ typedef struct {
     double force, slope, virtual, scale;
 } NormalForce;
 
-/* What leather has at a virtual indentation, m: normal force, N, its slope, N/m, and tangential stiffness,
- * N/m. */
+/* An edge between two annuli of leather: a virtual indentation, m, and there the normal force, N, its slope
+   and the tangential stiffness, N/m. */
 typedef struct {
     double indentation, force, slope, stiffness;
 } Edge;
@@ -220,13 +220,14 @@ struct Contact {
     double V[FORCES][FORCES], W[FORCES][FORCES]; /* v = v_free + V F, u = u_free + W F */
     double F[FORCES], v[FORCES], u[FORCES];      /* the step's forces, N, and velocities */
     double last_F[2][FORCES];                    /* of the last step in contact and the one before it, N */
-    int slip;               /* its direction, or STICK; a patch that slips in parts keeps STICK */
-    NormalForce normal;     /* of a level cue, at mid-step */
-    Edge edges[ANNULI + 1]; /* of the annuli */
-    double annulus_force[ANNULI], annuli_loss; /* at mid-step, N; dissipated in the step, J */
-    double axial_force;                        /* on the cue, N */
-    double mean_velocities[CUE_VELOCITIES];    /* of ports and slopes */
-    double mean_spin;                          /* of the ball, times its radius, m/s */
+    int slip;                     /* its direction, or STICK; a patch that slips in parts keeps STICK */
+    NormalForce normal;           /* of a level cue, at mid-step */
+    Edge edges[ANNULI + 1];       /* of the annuli */
+    double annulus_force[ANNULI]; /* at mid-step, N; State has that of the last step */
+    double annuli_loss;           /* dissipated in the step, J */
+    double axial_force;           /* on the cue, N */
+    double mean_velocities[CUE_VELOCITIES]; /* of ports and slopes */
+    double mean_spin;                       /* of the ball, times its radius, m/s */
     double ball_loads[BALL_VELOCITIES];
     double *radiating; /* state and loads of the modes that radiate */
     double loads[];    /* on ports, slopes and dashpots */
