@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, overload
 from cuefem.analysis.end_mass import SQUIRT_END_MASS
 from cuefem.analysis.measured import MeasuredComparison, compare_measured
 from cuefem.analysis.strike_models import regime_warning
-from cuefem.analysis.verdict import squirt_difference
+from cuefem.analysis.verdict import squirt_difference, verdict
+from cuefem.files.defaults_report import Assumption
 from cuefem.measurements.calibration import CalibratedSquirt, Calibration
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measured_folder import load_measured
@@ -113,23 +114,47 @@ class Comparison(Analysis):
         return {"scenes": scenes, **self.values(), "units": dict(UNITS)}
 
     def sentences(self) -> list[str]:
-        """A sentence on the squirt of each cue relative to the first."""
-        first = self.reference
-        sentences = []
-        for name, differences in self.differences.items():
-            squirt = differences.get("squirt")
-            if squirt is None:
-                problems = [f"{cue}: {self.problems[cue]}" for cue in (first, name) if cue in self.problems]
-                reason = "; ".join(problems) or "a stroke is nearly a miscue"
-                sentences.append(f"{name} and {first} cannot be compared in squirt: {reason}.")
-            else:
-                sentences.append(f"{name}: {squirt_difference(**squirt)} {first} (1σ).")
-        return sentences
+        """A sentence on the squirt of each cue relative to the first, and one on those without a difference."""
+        differences = [
+            f"{name}: {squirt_difference(**each['squirt'])} {self.reference} (1σ)."
+            for name, each in self.differences.items()
+            if "squirt" in each
+        ]
+        return [*differences, *filter(None, [self.without_difference()])]
+
+    def without_difference(self) -> str:
+        """A sentence on the cues whose squirt cannot be compared with that of the first, each reason once, or ""."""
+        apart = [name for name, each in self.differences.items() if "squirt" not in each]
+        if not apart:
+            return ""
+        cues = [self.reference, *apart]
+        having: dict[str, list[str]] = {}
+        for name in cues:
+            if name in self.problems:
+                having.setdefault(self.problems[name], []).append(name)
+        reasons = [problem if names == cues else f"{listed(names)}: {problem}" for problem, names in having.items()]
+        why = "; ".join(reasons) or "a stroke is nearly a miscue"
+        return f"{listed(apart)} and {self.reference} cannot be compared in squirt: {why}."
+
+    def calibration_warnings(self) -> list[str]:
+        """Warnings of the calibration, each once."""
+        return [*dict.fromkeys(line for each in self.calibrated.values() for line in each.warnings)]
 
     def tables(self) -> list[Table | str]:
         """A sentence on each difference of squirt, and the table."""
         calibrated = [line for name, each in self.calibrated.items() for line in each.lines(name)]
         return [*self.sentences(), *calibrated, "", self.table()]
+
+    def to_html(
+        self, name: str = "", assumptions: Sequence[Assumption] = (), warnings: Sequence[str] = (), made: str = ""
+    ) -> str:
+        """The page with the first screen of the first cue; a plain page if that has no verdict."""
+        from cuefem.analysis.report_page import page_of_comparison  # templates take 0.1 s to load
+
+        if self.reference in self.problems:
+            return super().to_html(name, assumptions, warnings, made)
+        own = replace(verdict(self.scene), calibrated=self.calibrated.get(self.reference))
+        return page_of_comparison(self, own, assumptions, warnings, made)
 
     def table(self) -> Table:
         """A row for each result: its value for each cue, and the differences of the others from the first."""
@@ -159,12 +184,17 @@ class Comparison(Analysis):
         notes = (
             f"Same stroke, with the ball of {first}, b/R {self.offset:.3g} at {speed}. ±: 1σ of the "
             f"difference, for {shaft}; shared errors cancel.",
-            *(f"{name}: {warning}" for name, regime in self.regimes.items() if (warning := regime_warning(regime))),
+            *(f"{name}: {warning}" for name, warning in self._regime_warnings().items()),
             *(self._modulus_note(name) for name in self.unmeasured_moduli),
             *(f"{name}: {miscue_note(inputs)}" for name, inputs in self.miscues.items()),
             "* smaller than its uncertainty: the cues are not distinct in this quantity.",
         )
         return Table("Side by side", head, tuple(rows), notes)
+
+    def _regime_warnings(self) -> dict[str, str]:
+        """Warnings about the contact of the cues whose squirt is given; of the others the sentences say why not."""
+        given = {name: regime_warning(regime) for name, regime in self.regimes.items() if name not in self.problems}
+        return {name: warning for name, warning in given.items() if warning}
 
     def _pieces(self) -> str:
         """The shafts in words."""
@@ -182,20 +212,25 @@ class Comparison(Analysis):
             f"with its E: ± {100 * remains:.0f} % remain."
         )
 
-    def charts(self) -> list[Chart | CueDrawing]:
-        """Squirt and natural pivot length against the offset, and a drawing of each cue."""
-        from cuefem.show.drawings import DIAMETER_SCALE, cue_drawing  # drawings and charts are not for terminals
-        from cuefem.show.offset_charts import offset_charts
+    def curves(self) -> tuple[Chart, Chart]:
+        """Squirt and natural pivot length against the offset."""
+        from cuefem.show.offset_charts import offset_charts  # drawings and charts are not for terminals
 
         lines = [
             (name, style, coupled_curve(scene, CURVE_OFFSETS, SolvedScene(scene).tip))
             for style, (name, scene) in zip(STYLES, self.scenes.items(), strict=False)
         ]
+        return offset_charts(lines, CURVE_OFFSETS, self.offset, height=300)
+
+    def charts(self) -> list[Chart | CueDrawing]:
+        """The curves, and a drawing of each cue."""
+        from cuefem.show.drawings import DIAMETER_SCALE, cue_drawing
+
         drawings = [
             cue_drawing(scene, f"{name}, diameters {DIAMETER_SCALE:g} times enlarged")
             for name, scene in self.scenes.items()
         ]
-        return [*offset_charts(lines, CURVE_OFFSETS, self.offset, height=300), *drawings]
+        return [*self.curves(), *drawings]
 
 
 def _label(name: str) -> str:

@@ -7,17 +7,18 @@ first_screen.html.j2.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from cuefem.analysis.comparison import STYLES
 from cuefem.analysis.verdict import Verdict, squirt_difference
 from cuefem.parameters.parts import shaft_word
 from cuefem.quantity.display_units import END_MASS, OFF_LINE, short_number, with_unit
 from cuefem.results.quantities import DASH
 from cuefem.results.records import Record
 from cuefem.scene import Scene
-from cuefem.show.drawings import DIAMETER_SCALE, FRONT_LENGTH, cue_drawing, legend
+from cuefem.show.drawings import DIAMETER_SCALE, FRONT_LENGTH, cue_drawing, leather_ahead, legend
 from cuefem.show.templates import environment
 
 # The four numbers: label, key of the display unit, decimals, tooltip.
@@ -45,23 +46,40 @@ class HeadlineCue:
 
 
 class Tile(NamedTuple):
-    """A number of the first screen, and its difference from the other design's."""
+    """A number of the first screen, and what the other designs have, each with the CSS class of the design."""
 
     key: str
     label: str
     hint: str
     text: str
     value: float | None
-    more: str
+    more: list[tuple[str, str]]
 
 
-def headline_markup(
-    own: HeadlineCue, other: HeadlineCue | None = None, difference: Record | None = None, warning: str = ""
-) -> str:
-    """Squirt with its uncertainty, and its difference from another design's and from a reference cue's.
+Line = Sequence[tuple[str, str]]  # pieces of a line, each with the CSS class of a design or ""
 
-    difference: of `cuefem.analysis.comparison`, from the other design. warning: about the contact state.
+
+def screen_markup(
+    own: HeadlineCue, others: Sequence[HeadlineCue], lines: Sequence[Line], *, with_values: bool = False
+) -> dict[str, str]:
+    """The parts of the first screen of a page, by their names in page.html.j2.
+
+    own: a design with a verdict. lines: below its squirt. with_values: whether the four numbers show those of the
+    others, or only the differences from them.
     """
+    assert own.verdict is not None
+    designs = {each.name: each.scene for each in (own, *others)}
+    return {
+        "headline": headline_markup(own, lines),
+        "scale": scale_markup(own, others),
+        "tiles": tiles_markup(own, others, with_values=with_values),
+        "drawings": drawings_markup(designs) if own.scene.cue.segments else "",
+        "parts": parts_line(own.verdict),
+    }
+
+
+def headline_markup(own: HeadlineCue, lines: Sequence[Line] = (), warning: str = "") -> str:
+    """Squirt with its uncertainty, and lines below it. warning: about the contact state."""
     verdict = own.verdict
     squirt, where = own.numbers["squirt"], f"{verdict.offset if verdict else own.scene.stroke.offset:.2f}"
     if verdict:
@@ -69,25 +87,46 @@ def headline_markup(
         where += " (default; this stroke is head-on)" if verdict.head_on else ""
     else:
         text, error = DASH if squirt is None else with_unit(abs(squirt), "rad", decimals=2), ""
-    lines = []
-    if verdict and verdict.calibrated:
-        lines.append((verdict.calibrated.headline(), ""))
-    if other is not None and squirt is not None and (not verdict or verdict.references):
-        lines.append(("compared with" if difference is None else squirt_difference(**difference), other.name))
-    for first, among in [*(verdict.references.items() if verdict else ())][:1]:
-        if other is None or other.name != first:
-            line = squirt_difference(among["difference"], among["error"], among["distinct"])
-            lines.append((line, first))
     return _macro("headline", squirt, text, error, where, lines, warning)
 
 
-def tiles(own: HeadlineCue, other: HeadlineCue | None = None) -> list[Tile]:
-    """The four numbers, each with its difference from the other design's."""
+def comparison_lines(
+    own: HeadlineCue, other: HeadlineCue | None = None, difference: Record | None = None
+) -> list[Line]:
+    """Calibrated squirt, and the difference of squirt from another design's and from a reference cue's.
+
+    difference: of `cuefem.analysis.comparison`, from the other design.
+    """
+    verdict = own.verdict
+    lines: list[Line] = []
+    if verdict and verdict.calibrated:
+        lines.append([(verdict.calibrated.headline(), "")])
+    if other is not None and own.numbers["squirt"] is not None and (not verdict or verdict.references):
+        text = "compared with" if difference is None else squirt_difference(**difference)
+        lines.append([(f"{text} ", ""), (other.name, STYLES[1])])
+    for first, among in [*(verdict.references.items() if verdict else ())][:1]:
+        if other is None or other.name != first:
+            text = squirt_difference(among["difference"], among["error"], among["distinct"])
+            lines.append([(f"{text} {first}", "")])
+    return lines
+
+
+def tiles(own: HeadlineCue, others: Sequence[HeadlineCue] = (), *, with_values: bool = False) -> list[Tile]:
+    """The four numbers with their differences from other designs', or with those of the others and their differences
+    from this design's."""
     made = []
     for key, (label, unit, decimals, hint) in TILES.items():
-        value, beside = _value(own, key), None if other is None else _value(other, key)
+        value = _value(own, key)
         text = DASH if value is None else with_unit(value, unit, decimals=decimals)
-        more = "" if value is None or beside is None else _difference(value - beside, unit, decimals)
+        more = []
+        for style, other in zip(STYLES[1:], others, strict=False):
+            beside = _value(other, key)
+            if value is None or beside is None:
+                continue
+            change = _difference(value - beside, unit, decimals)
+            if with_values:
+                change = f"{with_unit(beside, unit, decimals=decimals)} ({_difference(beside - value, unit, decimals)})"
+            more.append((change, style))
         made.append(Tile(key, label, hint, text, value, more))
     return made
 
@@ -106,28 +145,31 @@ def _value(design: HeadlineCue, key: str) -> float | None:
     return value if value is not None and math.isfinite(value) else None
 
 
-def scale_markup(own: HeadlineCue, other: HeadlineCue | None = None) -> str:
-    """The reference cues, this design with its uncertainty, and the other one, sorted by squirt."""
-    beside = None if other is None else (other.name, other.numbers["squirt"])
-    return _macro("scale", own.verdict.scale(own.name, beside) if own.verdict else [], other)
+def scale_markup(own: HeadlineCue, others: Sequence[HeadlineCue] = ()) -> str:
+    """The reference cues, this design with its uncertainty, and the other ones, sorted by squirt."""
+    squirts = {other.name: other.numbers["squirt"] for other in others}
+    styled = {other.name: (style, squirts[other.name]) for style, other in zip(STYLES[1:], others, strict=False)}
+    return _macro("scale", own.verdict.scale(own.name, squirts) if own.verdict else [], styled)
 
 
-def tiles_markup(own: HeadlineCue, other: HeadlineCue | None = None) -> str:
+def tiles_markup(own: HeadlineCue, others: Sequence[HeadlineCue] = (), *, with_values: bool = False) -> str:
     """The four numbers as markup."""
-    return _macro("tiles", tiles(own, other))
+    return _macro("tiles", tiles(own, others, with_values=with_values), with_values)
 
 
 def drawings_markup(designs: Mapping[str, Scene]) -> str:
-    """The tip ends of one or two designs, true to scale, and the whole first one with enlarged diameters."""
-    first = next(iter(designs.values()))
+    """The tip ends of designs, true to scale, and the whole ones with enlarged diameters, each at one scale."""
     length = min([FRONT_LENGTH, *(scene.shaft.length for scene in designs.values())])
     title = f"first {with_unit(length, 'm', decimals=0)}, true to scale"
-    fronts = [
-        (name, cue_drawing(scene, f"Tip end of {name}, {title}", length, diameter_scale=1.0))
-        for name, scene in designs.items()
-    ]
-    whole = cue_drawing(first, f"Whole drawing, diameters {DIAMETER_SCALE:g} times enlarged")
-    return _macro("drawings", fronts, whole, DIAMETER_SCALE, legend(designs.values()))
+    ahead = max(map(leather_ahead, designs.values()))
+    longest = max(scene.shaft.length for scene in designs.values())
+    fronts, wholes = [], []
+    for style, (name, scene) in zip(STYLES, designs.items(), strict=False):
+        front = cue_drawing(scene, f"Tip end of {name}, {title}", length, diameter_scale=1.0, ahead=ahead)
+        whole = cue_drawing(scene, f"{name}, diameters {DIAMETER_SCALE:g} times enlarged", longest, ahead=ahead)
+        fronts.append((name, style, front))
+        wholes.append((name, style, whole))
+    return _macro("drawings", fronts, wholes, DIAMETER_SCALE, legend(designs.values()))
 
 
 def parts_line(verdict: Verdict) -> str:

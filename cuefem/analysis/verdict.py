@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import NamedTuple
 
 from cuefem.cue import Cue
@@ -125,29 +126,32 @@ class Verdict(Analysis):
             f"{f' {note}' if note else ''}"
         )
 
-    def scale(self, name: str = "yours", other: tuple[str, float | None] | None = None) -> list[ScaleRow]:
+    def scale(self, name: str = "yours", others: Mapping[str, float | None] = MappingProxyType({})) -> list[ScaleRow]:
         """The cues by their squirt, the lowest first, the design with its uncertainty; none without reference cues.
 
-        other: name and squirt, rad, of one more cue.
+        others: squirt, rad, of more cues by their names; None or nan if it has none. One with the name of a reference
+        cue replaces it, as does a design of its name and squirt.
         """
         if not self.references:
             return []
         mine, error = abs(self.squirt), self.squirt_error
         squirts = {cue: abs(values["squirt"]) for cue, values in self.references.items()}
         first = next(iter(squirts))
-        compared, squirt = other or ("", None)
-        if squirt is not None and not self.head_on:
-            squirts.setdefault(compared, abs(squirt))
+        shown = {} if self.head_on else others
+        squirts |= {cue: abs(squirt) for cue, squirt in shown.items() if squirt is not None and math.isfinite(squirt)}
         text, error_text = self.squirt_text()
         decimals = len(text.rstrip("°").partition(".")[2])
         part = 100 / (1.05 * max([mine + error, *squirts.values()]) or 1.0)
         interval = (part * max(0.0, mine - error), part * (mine + error))
         rows = [ScaleRow(name, text, f"± {error_text}", "own", part * mine, *interval)]
         for cue, own in squirts.items():
+            if cue == name and with_unit(own, "rad", decimals=decimals) == text:
+                continue  # the design is this reference cue
             ratio = round(100 * (own / squirts[first] - 1))
             more = f"{abs(ratio)} % {'less' if ratio < 0 else 'more'} than {first}" if ratio else f"as much as {first}"
-            text, kind = with_unit(own, "rad", decimals=decimals), "other" if cue == compared else ""
-            rows.append(ScaleRow(cue, text, more if cue != first else "", kind, *3 * (part * own,)))
+            kind = "other" if cue in shown else ""
+            row_text = with_unit(own, "rad", decimals=decimals)
+            rows.append(ScaleRow(cue, row_text, more if cue != first else "", kind, *3 * (part * own,)))
         return sorted(rows, key=lambda row: row.at)
 
     def tables(self) -> list[Table | str]:

@@ -6,7 +6,14 @@ from typing import Any
 
 from nicegui import ui
 
-from cuefem.analysis.first_screen import drawings_markup, headline_markup, parts_line, scale_markup, tiles_markup
+from cuefem.analysis.first_screen import (
+    comparison_lines,
+    drawings_markup,
+    headline_markup,
+    parts_line,
+    scale_markup,
+    tiles_markup,
+)
 from cuefem.designer.header import Upload
 from cuefem.designer.host import Host
 from cuefem.designer.knob_row import KnobRow
@@ -91,10 +98,11 @@ class FirstScreen:
             return
         if "numbers" in results.own:
             self.card.classes(remove="stale")
-        headline = headline_markup(own, other, results.difference, self.session.warning())
+        headline = headline_markup(own, comparison_lines(own, other, results.difference), self.session.warning())
         self.headline.set_content(with_term_buttons(headline))
-        self.scale.set_content(scale_markup(own, other))
-        self.tiles.set_content(with_term_buttons(tiles_markup(own, other)))
+        others = [*filter(None, [other])]
+        self.scale.set_content(scale_markup(own, others))
+        self.tiles.set_content(with_term_buttons(tiles_markup(own, others)))
         self.basis.set_text(" ".join(self.session.calibration_lines()))
         lines = self.session.assumptions()
         self.printed.set_text("; ".join(map(str, lines)))

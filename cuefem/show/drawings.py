@@ -75,24 +75,38 @@ def css_class(name: str) -> str:
     return "m-" + name.replace(" ", "-") if name in MATERIALS else "m-other"
 
 
+def leather_ahead(scene: Scene) -> float:
+    """Length, m, that is drawn in front of the segments of a cue."""
+    segments = drawn_segments(scene)
+    return math.fsum(segment.length for segment in segments[: len(segments) - len(scene.shaft.segments)])
+
+
 def cue_drawing(
-    scene: Scene, title: str, length: float | None = None, *, diameter_scale: float = DIAMETER_SCALE
+    scene: Scene,
+    title: str,
+    length: float | None = None,
+    *,
+    diameter_scale: float = DIAMETER_SCALE,
+    ahead: float | None = None,
 ) -> CueDrawing:
     """A cue from the side.
 
     length: m from the front of its segments; None for the whole cue. diameter_scale: enlargement of the diameters.
+    ahead: m in front of the segments, at least `leather_ahead`; cues with the same length and ahead are drawn at one
+    scale, their segments one below the other.
     """
-    segments, own = drawn_segments(scene), scene.shaft
-    length = own.length if length is None else length
-    ahead = sum(segment.length for segment in segments[: len(segments) - len(own.segments)])
+    segments = drawn_segments(scene)
+    length = scene.shaft.length if length is None else length
+    own_ahead = leather_ahead(scene)
+    ahead = own_ahead if ahead is None else ahead
     scale = WIDTH / (length + ahead)
-    drawn = _cut(segments, length + ahead)
+    drawn = _cut(segments, length + own_ahead)
     widest = max(max(segment.tip_diameter, segment.butt_diameter) for segment in drawn)
     axis = 1 + scale * diameter_scale * widest / 2
-    ends = accumulate((segment.length for segment in drawn), initial=0.0)
+    ends = accumulate((segment.length for segment in drawn), initial=ahead - own_ahead)
     pieces = tuple(
-        _piece(segment, x, scale, axis, dome=0.0 if x else scene.dome_radius, diameter_scale=diameter_scale)
-        for x, segment in zip(ends, drawn, strict=False)
+        _piece(segment, x, scale, axis, dome=0.0 if i else scene.dome_radius, diameter_scale=diameter_scale)
+        for i, (x, segment) in enumerate(zip(ends, drawn, strict=False))
     )
     per_metre, unit, _ = display_unit("m")
     ticks = Axis(unit, 0.0, per_metre * length).scale_for([np.zeros(1)]).ticks(scale * ahead, WIDTH)
@@ -127,7 +141,7 @@ def _piece(segment: Segment, x: float, scale: float, axis: float, *, dome: float
         xs, ys = [first, last, last, first], [axis - high, axis - low, axis + low, axis + high]
         if dome > 0 and dome >= tip / 2:
             angle = np.linspace(1, -1, 25) * math.asin(tip / 2 / dome)
-            front = scale * dome * (1 - np.cos(angle))
+            front = first + scale * dome * (1 - np.cos(angle))
             xs, ys = [*xs[1:3], *front], [*ys[1:3], *(axis + scale * diameter_scale * dome * np.sin(angle))]
         return path(xs, ys) + "Z"
 

@@ -14,6 +14,7 @@ from cuefem.results.differences import SHAPE_FLOOR
 from cuefem.results.uncertainty import MASS_ERROR, RATIO_FLOOR, SHAFT_ERROR
 from tests.helpers.command_line import as_json, call
 from tests.helpers.cues import kim
+from tests.helpers.page_reader import assert_valid
 
 SCENE = cf.Scene(kim(), tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(2.0, 0.3))
 BORED = with_parameters(SCENE, {"bore depth": 0.1, "bore width": 0.006})
@@ -132,7 +133,9 @@ def test_comparison_miscue_has_no_squirt() -> None:
     compared = cf.compare(miscues)
     assert math.isnan(compared.cues["a"]["squirt"])
     assert not {"squirt", "pivot_length"} & {*compared.differences["b"]}
-    assert "a: miscue at b/R 0.8" in compared.sentences()[0]
+    (sentence,) = compared.sentences()
+    assert sentence.startswith("b and a cannot be compared in squirt: miscue at b/R 0.8")
+    assert str(compared).count("miscue at") == 1
 
 
 @pytest.mark.parametrize(
@@ -159,3 +162,29 @@ def test_compare_invalid_input_prints_one_line(
     status, out, err = call("compare", *arguments)
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert message.casefold() in err.casefold()
+
+
+def screen_of(page: str) -> str:
+    """The text of the first screen of a page."""
+    return " ".join("".join(assert_valid(page).text).partition("Side by side")[0].split())
+
+
+@pytest.mark.heavy
+def test_page_begins_with_squirt_of_first_cue_and_numbers_of_all(both: Comparison) -> None:
+    page, text = both.to_html(), screen_of(both.to_html())
+    plain, bored = (both.cues[name] for name in ("plain", "bored"))
+    squirts = {name: f"{math.degrees(own['squirt']):.2f}°" for name, own in both.cues.items()}
+    assert f"{squirts['plain']} ± " in text
+    assert both.sentences()[0].partition(" than")[0].replace("\u00a0", " ") in text
+    mass, change = (1e3 * x for x in (bored["end_mass_squirt"], bored["end_mass_squirt"] - plain["end_mass_squirt"]))
+    assert f"{mass:.2f} g (−{abs(change):.2f})" in text
+    assert all(f"{name} {squirt}" in text for name, squirt in squirts.items())
+    assert page.count('<svg class="cue"') == 2 * len(both.cues)
+
+
+@pytest.mark.heavy
+def test_page_whose_first_cue_has_no_verdict_is_plain(both: Comparison) -> None:
+    slippery = replace(SCENE, tip=replace(SCENE.tip, friction=0.2))
+    assert "± " not in screen_of(cf.compare({"slippery": slippery, "plain": SCENE}).to_html())
+    text = screen_of(cf.compare({"plain": SCENE, "slippery": slippery}).to_html())
+    assert "slippery and plain cannot be compared in squirt: slippery: miscue at b/R 0.3" in text

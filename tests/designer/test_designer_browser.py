@@ -65,6 +65,7 @@ def test_saved_design_strikes_as_displayed(browser: Any, address: str, tmp_path:
         )
         wait_until_idle(page)
         plain = displayed_number(page, "squirt")
+        assert not page.locator(".progress").is_visible()
 
         pick_option(page, "Ferrule", "melamine")
         type_value(page, "Shaft weight, with tip", "101 g")

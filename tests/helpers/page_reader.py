@@ -1,5 +1,6 @@
 """Parses a page as a browser does, and fails for tags that do not close in order; no tests."""
 
+import re
 from collections import Counter
 from html.parser import HTMLParser
 
@@ -37,3 +38,21 @@ class PageReader(HTMLParser):
     def values(self, *names: str) -> list[str]:
         """The values of these attributes, in their order on the page."""
         return [value for name, value in self.attributes if name in names]
+
+
+def assert_valid(text: str) -> PageReader:
+    """A page of valid HTML without external resources, nan and None."""
+    reader = PageReader(text)
+    assert reader.open == []
+    titles_of_curves = text.count("</title></path>")
+    assert reader.tags["html"] == reader.tags["h1"] == reader.tags["title"] - titles_of_curves == 1
+    assert (reader.tags["script"], reader.tags["img"], reader.tags["iframe"]) == (1, 0, 0)
+    assert reader.values("href", "src", "xlink:href") == ["data:,"]
+    assert re.findall(r"url\((?!#)|@import|https?:", text) == []
+    ids = reader.values("id")
+    assert len(ids) == len(set(ids))
+    assert {*re.findall(r"url\(#([^)]*)\)", text), *reader.values("popovertarget")} == set(ids)
+    texts = " ".join(reader.text)
+    assert not re.search(r"\b(nan|inf|None|Undefined)\b", texts)
+    assert not re.search(r"\bnan\b", text)
+    return reader

@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -27,12 +28,25 @@ pytestmark = [pytest.mark.heavy, pytest.mark.skipif(BROWSER is None, reason="nee
 SCENE = cf.usual_scene(cf.load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml"))
 # tables wider than their container, and elements outside the window
 CUT = "[...document.querySelectorAll('.scroll')].filter(e => e.scrollWidth > e.clientWidth + 1).length"
+# numbers of the first screen that run into the next one
+OVERLAID = """[...document.querySelectorAll('.tiles dd > *')].filter(e => {
+  const box = e.closest('div').getBoundingClientRect(), own = e.getBoundingClientRect();
+  return own.right > box.right + 1;}).map(e => e.innerText)"""
+SHEET = rb"/Type /Page\b(?!s)"
 OUTSIDE = """[...document.querySelectorAll("section, figure, header, svg text")].map(e => e.getBoundingClientRect())
   .filter(r => r.right > innerWidth + 1 || r.left < 0).length"""
 
 
 def report_page() -> str:
     return cf.report(SCENE, details=True).to_html("pool_maple.toml")
+
+
+@cache
+def compare_page() -> str:
+    """Five cues, one of a long name."""
+    names = ("predator z2", "carbon", "low deflection", "plain maple")
+    scenes = {name: cf.usual_scene(cf.load(name)) for name in names}
+    return cf.compare({"a_shaft_of_my_own_with_a_long_name": SCENE, **scenes}).to_html()
 
 
 @pytest.fixture(scope="module")
@@ -63,8 +77,16 @@ def test_report_by_keyboard_shows_values_and_definitions_and_prints(opened: Any)
     opened.locator("button[popovertarget=w-squirt]").first.press("Enter")
     assert opened.locator("#w-squirt").is_visible()
     opened.keyboard.press("Escape")
-    assert 2 <= len(re.findall(rb"/Type /Page\b(?!s)", opened.pdf(format="A4", print_background=True))) <= 5
+    assert 2 <= len(re.findall(SHEET, opened.pdf(format="A4", print_background=True))) <= 5
     opened.emulate_media(media="print")
+    assert opened.evaluate(CUT) == 0
+
+
+def test_five_compared_cues_print_on_three_sheets(opened: Any) -> None:
+    opened.set_content(compare_page())
+    assert len(re.findall(SHEET, opened.pdf(format="A4", print_background=True))) <= 3
+    opened.emulate_media(media="print")
+    opened.set_viewport_size({"width": 703, "height": 1000})
     assert opened.evaluate(CUT) == 0
 
 
@@ -103,14 +125,15 @@ def study_of_ten_columns() -> str:
 
 
 @pytest.mark.parametrize("width", [1280, 390])
-@pytest.mark.parametrize("what", ["report", "study"])
+@pytest.mark.parametrize("what", ["report", "compare", "study"])
 def test_page_is_accessible_and_not_cropped(opened: Any, what: str, width: int) -> None:
     opened.set_viewport_size({"width": width, "height": 900})
     opened.emulate_media(color_scheme="dark" if width == 390 else "light")
-    opened.set_content(report_page() if what == "report" else study_of_ten_columns())
+    opened.set_content({"report": report_page, "compare": compare_page, "study": study_of_ten_columns}[what]())
     assert opened.evaluate("document.documentElement.scrollWidth") <= width
     assert opened.evaluate(OUTSIDE) == 0
+    assert opened.evaluate(OVERLAID) == []
     opened.evaluate("document.querySelectorAll('details').forEach(fold => fold.open = true)")
-    assert width == 390 or opened.evaluate(CUT) == 0
+    assert width == 390 or what == "compare" or opened.evaluate(CUT) == 0
     violations = axe.Axe().run(opened).response["violations"]
     assert [one["id"] for one in violations if one["impact"] in ("serious", "critical")] == []

@@ -15,7 +15,7 @@ from cuefem.results.quantities import DASH
 from cuefem.show.charts import WIDTH, Axis, Chart, round_step, spread_labels
 from cuefem.show.drawings import DIAMETER_SCALE, cue_drawing
 from cuefem.show.templates import option_pieces
-from tests.helpers.page_reader import PageReader
+from tests.helpers.page_reader import assert_valid
 
 MESHES = Path(__file__).parents[2] / "meshes"
 SCENES = MESHES.parent / "studies" / "scenes"
@@ -26,24 +26,6 @@ def scene(name: str) -> cf.Scene:
     loaded = cf.load(SCENES / f"{name}.toml")
     assert isinstance(loaded, cf.Scene)
     return loaded
-
-
-def assert_valid(text: str) -> PageReader:
-    """A page of valid HTML without external resources, nan and None."""
-    reader = PageReader(text)
-    assert reader.open == []
-    titles_of_curves = text.count("</title></path>")
-    assert reader.tags["html"] == reader.tags["h1"] == reader.tags["title"] - titles_of_curves == 1
-    assert (reader.tags["script"], reader.tags["img"], reader.tags["iframe"]) == (1, 0, 0)
-    assert reader.values("href", "src", "xlink:href") == ["data:,"]
-    assert re.findall(r"url\((?!#)|@import|https?:", text) == []
-    ids = reader.values("id")
-    assert len(ids) == len(set(ids))
-    assert {*re.findall(r"url\(#([^)]*)\)", text), *reader.values("popovertarget")} == set(ids)
-    texts = " ".join(reader.text)
-    assert not re.search(r"\b(nan|inf|None|Undefined)\b", texts)
-    assert not re.search(r"\bnan\b", text)
-    return reader
 
 
 @pytest.mark.parametrize(
