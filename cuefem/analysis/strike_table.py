@@ -228,14 +228,12 @@ def strike_table(scene: Scene, speeds: tuple[float, float] = SPEEDS, *, progress
         raise ValueError("strike_table scene must have a level cue; got an elevated one, whose ball leaves the plane")
     low, high = (Stroke(float(speed)).speed for speed in speeds)
     if not low < high:
-        raise ValueError(
-            f"strike_table speeds must ascend, the lowest before the highest; got {low:g} and {high:g} m/s"
-        )
+        raise ValueError(f"speeds must ascend, the lowest before the highest; got {low:g} and {high:g} m/s")
     strikes = Strikes(scene, (low, high))
     try:
         strikes.strike(high, CENTRE)
     except IndentationOutOfRange as error:
-        raise ValueError(f"strike_table speeds must be lower than {high:g} m/s: {error}") from None
+        raise ValueError(f"speeds must be lower than {high:g} m/s: {error}") from None
     grid, errors = Refinement(strikes).run(progress)
     squirt, ball_speed, spin = (tuple(map(tuple, grid.ratios[:, :, k].tolist())) for k in range(len(FIELDS)))
     return StrikeTable(

@@ -82,7 +82,7 @@ def compare(
     """
     if len(files) > 1:
         requests = [Request.of(named_path(file), options) for file in files]
-        if output is not None and output.suffix == ".toml":
+        if output is not None and output.suffix.lower() == ".toml":
             raise InputError(output, "--output", "a calibration (.toml) needs one FOLDER and --estimate")
         for name, flag in (("--estimate", estimate), ("--template", template)):
             if flag:
@@ -103,7 +103,7 @@ def compare(
         click.echo(f"wrote {folder}: replace the example numbers by yours, then run: {asked}")
     elif folder.is_file() or cue_name(folder := named_folder(folder)):
         raise InputError(folder, "", "needs another FILE to compare with, or a FOLDER with measurements")
-    elif output is not None and output.suffix == ".toml":
+    elif output is not None and output.suffix.lower() == ".toml":
         if not estimate:
             raise InputError(output, "--output", "a calibration (.toml) needs --estimate")
         check_overwrite(output, force=force)

@@ -51,7 +51,7 @@ def report(request: Request, output: Path | None, calibration: Calibration | Non
 
     Prints tables; -o FILE.html writes a page with figures. Assumptions are listed last, each with its option.
     """
-    details = output is not None and output.suffix == ".html"
+    details = output is not None and output.suffix.lower() == ".html"
     rtol = load_accuracy(request.file) if details else None
     answer = cf.report(request.scene, rtol, calibration=calibration, details=details, progress=with_progress_bar)
     if output is None and {"verdict", "modes"} <= {*answer.sections}:  # nothing of a lumped cue can be changed
@@ -81,9 +81,11 @@ def improve(
 
     Each change is applied on its own and computed by the coupled strike. Rows are sorted by squirt, lowest first.
     """
-    drawing = output if output is not None and output.suffix == ".toml" else None
-    if (take is None) != (drawing is None):
-        raise InputError(request.file, "--take", "requires -o FILE.toml, which requires --take ROW")
+    drawing = output if output is not None and output.suffix.lower() == ".toml" else None
+    if take is None and drawing is not None:
+        raise InputError(drawing, "--output", "a drawing (.toml) needs the row to save, such as --take 1")
+    if take is not None and drawing is None:
+        raise InputError(request.file, "--take", "requires -o FILE.toml")
     if drawing is not None:
         check_overwrite(drawing, force=force)
     answer = cf.design_changes(request.scene, calibration=calibration, progress=with_progress_bar)
@@ -181,7 +183,7 @@ def strike(request: Request, target: str | None, speeds: tuple[str, str] | None,
 
     The numerical error target is the rtol of the file's [accuracy] table, if it has one.
     """
-    written = str(output) if output is not None and output.suffix == ".json" else ""
+    written = str(output) if output is not None and output.suffix.lower() == ".json" else ""
     if speeds is not None and target != "table":
         raise InputError(request.file, "--speeds", "applies to --format table")
     if target is None:

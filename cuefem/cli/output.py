@@ -56,7 +56,7 @@ class Command(click.Command):
         """Run it in the chosen units of display; JSON, also in a file, is metric in every text."""
         system, output = ctx.params.pop("units"), ctx.params.get("output") or ()
         outputs = output if isinstance(output, tuple) else (output,)  # `study` writes several
-        is_json = ctx.params.get("as_json") or any(Path(each).suffix == ".json" for each in outputs)
+        is_json = ctx.params.get("as_json") or any(Path(each).suffix.lower() == ".json" for each in outputs)
         with displayed_in("metric" if is_json else system):
             return super().invoke(ctx)
 
@@ -101,12 +101,12 @@ class Output(click.Path):
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The path, if the command writes its extension."""
         path = Path(os.fsdecode(super().convert(value, param, ctx)))
-        if path.suffix not in self.extensions:
+        if path.suffix.lower() not in self.extensions:
             wanted = " or ".join(self.extensions)
-            more = "; --store names the file of stored designs" if path.suffix == ".sqlite" else ""
-            more = "; a page (.html) has the figures" if path.suffix in (".png", ".svg", ".pdf") else more
+            more = "; --store names the file of stored designs" if path.suffix.lower() == ".sqlite" else ""
+            more = "; a page (.html) has the figures" if path.suffix.lower() in (".png", ".svg", ".pdf") else more
             raise InputError(path, "--output", f"must end in {wanted}; got {path.suffix!r}{more}")
-        if path.suffix != ".toml":  # a command that writes a drawing checks it itself
+        if path.suffix.lower() != ".toml":  # a command that writes a drawing checks it itself
             check_writable(path)
         return path
 

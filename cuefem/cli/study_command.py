@@ -106,7 +106,7 @@ def study(
     if workers and scheduler:
         raise click.UsageError("--workers (of this machine) and --scheduler (of a cluster) cannot be combined")
     for path in output:
-        if path.suffix == ".toml":
+        if path.suffix.lower() == ".toml":
             if isinstance(plan, Scatter):
                 raise InputError(
                     path,
@@ -114,7 +114,7 @@ def study(
                     "must end in .html, .csv, .parquet or .json: a tolerance analysis has no best design",
                 )
             check_overwrite(path, force=force)
-        if path.suffix == ".parquet":
+        if path.suffix.lower() == ".parquet":
             check_parquet()
     print_warnings(designs.base)
     database = None
@@ -180,10 +180,10 @@ def _run_stored(file: Path, designs: SqliteStore, count: int, run: Callable[...,
 def _write(path: Path, result: StudyResult, shown: Presentation) -> None:
     """Write the tables as a page, the record, the designs as a table, or the best design."""
     tables_of_designs = {".csv": write_table, ".parquet": write_parquet}
-    if path.suffix in tables_of_designs:
-        write = tables_of_designs[path.suffix]
+    if path.suffix.lower() in tables_of_designs:
+        write = tables_of_designs[path.suffix.lower()]
         write_atomically(path, lambda temporary: write(result.study, result.rows, temporary))
-    elif path.suffix != ".toml":
+    elif path.suffix.lower() != ".toml":
         shown.write(path)
     elif not result.best:
         raise InputError(path, "--output", "has no design to write: none has all responses")

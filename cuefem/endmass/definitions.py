@@ -236,9 +236,7 @@ def equivalent_end_mass(outcome: Outcome, scene: Scene) -> float:
     ValueError if the tip slips until separation: squirt then does not depend on the end mass.
     """
     if slips_at_end(outcome):
-        raise ValueError(
-            f"end_mass drive 'squirt': the stroke miscues at offset {scene.stroke.offset}; got no end mass"
-        )
+        raise ValueError(f"the stroke miscues at b/R {scene.stroke.offset:.4g}: its squirt has no end mass")
     return _with_squirt(float(np.sign(scene.stroke.offset) * outcome.squirt), scene, "squirt")
 
 

@@ -228,7 +228,7 @@ def today() -> str:
 def save_page(text: str, path: str | os.PathLike[str]) -> None:
     """Write a page as .html atomically; InputError on failure."""
     path = Path(path)
-    if path.suffix != ".html":
+    if path.suffix.lower() != ".html":
         raise InputError(path, "", f"must end in .html; got {path.suffix!r}")
     write_atomically(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
 

@@ -5,6 +5,15 @@ from __future__ import annotations
 # Kinds of columns: of lengths, and of material names.
 POSITION_COLUMN, DIAMETER_COLUMN, RADIUS_COLUMN, BORE_COLUMN = "x", "diameter", "radius", "bore"
 MATERIAL_COLUMN, CORE_COLUMN, FERRULE_COLUMN = "material", "core", "ferrule"
+COLUMNS = (
+    POSITION_COLUMN,
+    DIAMETER_COLUMN,
+    RADIUS_COLUMN,
+    BORE_COLUMN,
+    MATERIAL_COLUMN,
+    CORE_COLUMN,
+    FERRULE_COLUMN,
+)
 
 # In order of precedence: "bore diameter" is a bore, "diameter at x" a diameter.
 _TABLE = {

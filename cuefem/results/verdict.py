@@ -58,9 +58,9 @@ def miscue_problem(scene: Scene, outcome: Outcome) -> str:
     """Why the squirt of a miscue is not reported; an empty text for other strokes."""
     if outcome.regime != "miscue":
         return ""
+    advice = "Use a smaller offset" if scene.tip.friction else "Raise friction from 0, at which every offset miscues"
     return (  # its squirt hardly depends on the cue
-        f"miscue at b/R {scene.stroke.offset:.4g}: no squirt is reported. Use a smaller offset "
-        f"(miscue: {MISCUE_DEFINITION})"
+        f"miscue at b/R {scene.stroke.offset:.4g}: no squirt is reported. {advice} (miscue: {MISCUE_DEFINITION})"
     )
 
 

@@ -156,9 +156,9 @@ class Analysis(Answer):
 
 def write(path: Path, record: Callable[[], Record], html: Callable[[], str]) -> None:
     """Write a record as .json, or a page as .html; InputError for another extension."""
-    if path.suffix not in (".html", ".json"):
+    if path.suffix.lower() not in (".html", ".json"):
         raise InputError(path, "", f"must end in .html or .json; got {path.suffix!r}")
-    if path.suffix == ".html":
+    if path.suffix.lower() == ".html":
         return save_page(html(), path)
     from cuefem.show.renderers import json_text
 

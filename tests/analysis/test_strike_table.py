@@ -95,7 +95,7 @@ def test_table_rejects_strokes_beyond_its_range(table: StrikeTable, speed: float
 @pytest.mark.parametrize(
     ("scene", "speeds", "message"),
     [
-        (SCENE, (4.0, 1.0), "strike_table speeds must ascend, the lowest before the highest; got 4 and 1 m/s"),
+        (SCENE, (4.0, 1.0), "speeds must ascend, the lowest before the highest; got 4 and 1 m/s"),
         (SCENE, (0.0, 1.0), "Stroke.speed must be in (0, inf) m/s"),
         (
             replace(SCENE, tip=cf.Tip(0.75, 0.0, 1e-3)),
@@ -117,7 +117,7 @@ def test_command_writes_the_table_of_the_call(tmp_path: Path, table: StrikeTable
     record = json.loads((tmp_path / "table.json").read_text("utf-8"))
     assert record["squirt_over_offset"] == pytest.approx(np.array(table.squirt_over_offset), rel=1e-9)
     for wrong, message in (
-        (("--speeds", "4 m/s", "1 m/s"), "strike_table speeds must ascend"),
+        (("--speeds", "4 m/s", "1 m/s"), "speeds must ascend"),
         (("--offset", "0.3"), "--offset"),
     ):
         status, out, err = call(*arguments[:4], *wrong)

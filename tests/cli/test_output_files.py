@@ -47,6 +47,12 @@ def formats() -> list[object]:
     return found
 
 
+@pytest.mark.parametrize("extension", [".HTML", ".Json"])
+def test_extension_of_output_may_have_capitals(extension: str, tmp_path: Path) -> None:
+    stdout_of("modes", KIM, "-o", tmp_path / f"out{extension}")
+    assert (tmp_path / f"out{extension}").stat().st_size
+
+
 @pytest.mark.parametrize(("command", "extension"), formats())
 def test_command_writes_every_format_of_its_help(command: str, extension: str, tmp_path: Path) -> None:
     if command == "study":

@@ -200,4 +200,5 @@ def test_improve_take_saves_row_and_replaces_no_file(tmp_path: Path, computed: t
     assert cf.strike(cf.load(target)).squirt == pytest.approx(computed[1].changes[1].squirt, rel=1e-9)
     assert_rejects("--force", "improve", path, "--take", "2", "-o", target)
     assert_rejects("--take: requires -o FILE.toml", "improve", path, "--take", "1")
+    assert_rejects("--output: a drawing (.toml) needs the row to save", "improve", path, "-o", path.parent / "t.toml")
     assert_rejects("must be a row of the table, 1 to ", "improve", path, "--take", "99", "-o", tmp_path / "x.toml")

@@ -235,7 +235,7 @@ def test_profile_column_of_another_word_is_read_with_a_warning(name: str, tmp_pa
 def test_profile_unused_column_is_the_first_warning(tmp_path: Path) -> None:
     """In Python a PlausibilityWarning, in a command the first line, in JSON the first of the warnings."""
     path = write_profile(tmp_path, PROFILES["extra columns"])
-    line = "columns 'No', 'note' are not used; a profile may have columns core, material, bore, radius, diameter, x"
+    line = "columns 'No', 'note' are not used; a profile may have columns x, diameter, radius, bore, material, core"
     with pytest.warns(cf.PlausibilityWarning, match=re.escape(line)):
         cf.load(path)
     status, out, err = call("modes", path, "--json")
