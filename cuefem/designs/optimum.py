@@ -26,6 +26,7 @@ from cuefem.scene import Resolution, Scene
 TOLERANCE = 1e-6  # relative to a limit's own size (1 if it is 0): a closer value makes the limit active
 EXCLUDED = 1e9  # score of a design that violates a limit: worse than any within the limits
 INVALID_OBJECTIVE = 1e3  # scaled objective of an invalid design in SLSQP
+ZERO_SQUIRT = 1e-7  # rad
 STEP = 1e-4  # of differences, relative to a range: a hundred times the numerical error of a strike (1e-6)
 POPULATION = 15  # designs per variable in differential evolution
 
@@ -352,13 +353,14 @@ class _Search:
         size = abs(self.at(start)[0]) if self.problem.objective.unit else 1.0
         self.scale, self.best = self.scale / (size if np.isfinite(size) and size else 1.0), np.inf
         ends = [(start, "")]
-        if len(start):
+        if len(start) and not self.is_least(start):
             ends.append(self.by_slsqp(start, rounds))
-            if ends[-1][1] or self.violated(ends[-1][0]):
+            is_found = self.is_least(ends[-1][0]) or not (ends[-1][1] or self.violated(ends[-1][0]))
+            if not is_found:
                 ends.append(self.by_evolution(start, rounds, seed))
                 ends.append(self.by_slsqp(ends[-1][0], rounds))
         u = self.onto_ends(min((u for u, _ in ends), key=lambda u: self.scores(self.at(u)[None])[0]))
-        violated, stop_reason = self.violated(u), ends[-1][1]
+        violated, stop_reason = self.violated(u), "" if self.is_least(u) else ends[-1][1]
         if violated or not np.isfinite(self.at(u)).all():
             condition = f"within {', '.join(violated)}" if violated else f"that has {self.problem.objective.name}"
             nearest = zip(self.problem.study.responses, self.at(u), strict=True)
@@ -373,6 +375,15 @@ class _Search:
             self.evaluations,
             stop_reason,
         )
+
+    def is_least(self, u: Array) -> bool:
+        """Whether a size that is minimized, such as that of squirt, is 0 at a point within the limits.
+
+        No design is better. SLSQP does not converge there: the size has a kink.
+        """
+        objective = self.problem.objective
+        is_zero = float(objective.size(self.at(u)[0])) <= ZERO_SQUIRT
+        return objective.result.odd and not self.problem.maximize and is_zero and not self.violated(u)
 
     def at(self, u: Array) -> Array:
         """Responses at one point, (responses,)."""

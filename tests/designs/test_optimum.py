@@ -204,6 +204,16 @@ def test_designs_that_are_not_distinct_are_marked() -> None:
     assert NOT_DISTINCT in " ".join(str(result).split())
 
 
+@pytest.mark.parametrize("offset", [0.0, 0.3])
+def test_least_squirt_over_offsets_through_0_is_found(offset: float) -> None:
+    """From the centre and from beside it: the size of squirt has a kink at 0, where SLSQP does not converge."""
+    base = replace(SCENE, stroke=cf.Stroke(offset=offset))
+    across = Vary("stroke.offset", Span(-0.2, 0.4))
+    found = optimum(Problem(base, (across,), Response("squirt"), (), cf.Resolution(1, 6, 6)))
+    assert (found.stop_reason, found.evaluations < 100) == ("", True)
+    assert abs(found.values["stroke.offset"]) < 1e-4
+
+
 def of(cue: cf.Cue, name: str) -> cf.Segment:
     return replace(cue.segments[0], material=material(name))
 
