@@ -6,9 +6,9 @@ The handbook's chapter on studies lists every key.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
-from contextlib import nullcontext
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
@@ -261,16 +261,26 @@ def _study_tables(path: Path) -> dict[str, Any]:
 
 def _base(tables: StudyTable, path: Path) -> Scene:
     game = _game(tables, path)
-    with errors_name_key(path, "scene"):
+    with errors_name_key(path, "scene"), _errors_name_option(tables, path):
         base = load_stroke(path.parent / tables.scene, **tables.drawing_options)
     if not isinstance(base, Scene):
-        with as_input_error(path, "game"):
+        with as_input_error(path, "scene" if tables.game is None else "game"):
             scene = Scene(base, stroke=Stroke(offset=OFFSET)) if game == KIM else usual_scene(base, game)
         return _with_masses(scene, tables, path)
     if tables.game is not None:
         problem = f"must be omitted: {tables.scene} is a scene, which has its own ball, tip and stroke"
         raise InputError(path, "game", f"{problem}; got {quote(game)}")
     return _with_masses(base, tables, path)
+
+
+@contextmanager
+def _errors_name_option(tables: StudyTable, path: Path) -> Iterator[None]:
+    """Turn an error about an option of the drawing into one about the key of the study that sets it."""
+    try:
+        yield
+    except InputError as error:
+        name, _, problem = f"{error.key}: {error.problem}".removeprefix(": ").partition(": ")
+        raise InputError(path, name, problem) if name in tables.drawing_options else error from None
 
 
 def _with_masses(scene: Scene, tables: StudyTable, path: Path) -> Scene:

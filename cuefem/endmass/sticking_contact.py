@@ -59,6 +59,7 @@ class StickLimit(NamedTuple):
         moves faster than the ball.
         """
         if not 0 < J < (self.K - 1) / self.c:
-            got = f"got {J / self.normal:.4g} phi; see cuefem.lump"
-            raise ValueError(f"end_mass: no end mass has the squirt of a sticking tip; {got}")
+            most, got = (self.K - 1) / self.c / self.normal, J / self.normal
+            bounds = f"squirt of a sticking tip must be in (0, {most:.4g}) times the contact's angle; got {got:.4g}"
+            raise ValueError(f"end_mass: {bounds}: no end mass has it; see cuefem.lump")
         return 1 / ((self.K - 1) / J - self.c)

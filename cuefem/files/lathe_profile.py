@@ -264,7 +264,9 @@ def _with_units(path: Path, header: CsvHeader, length_unit: str | None) -> list[
             raise InputError(path, "length_unit", f"must be a unit of length, such as mm; got {quote(length_unit)}")
     if without_unit and length_unit is None:
         names, written = (",".join(f"{column.name}{unit}" for column in without_unit) for unit in ("", " [mm]"))
-        problem = f'{quote(names)} must name the unit: write "{written}" if these are mm, or use --length-unit'
+        problem = (
+            f'{quote(names)} must name the unit: write "{written}" if these are mm, or give length_unit (--length-unit)'
+        )
         raise InputError(path, f"line {header.line}", problem)
     unit = length_unit_of(length_unit) if length_unit is not None else ""
     return [ProfileColumn(c.kind, c.index, c.name, c.unit or unit) for c in columns]

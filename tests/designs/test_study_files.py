@@ -77,6 +77,57 @@ def test_study_of_cue_has_default_stroke_of_game(tmp_path: Path) -> None:
     assert_rejects("study.toml: game: must be omitted: scene.toml is a scene", "study", of_scene)
 
 
+PROFILE = "position [mm],diameter [mm]\n0,12.5\n330,13\n430,14\n740,21\n"
+VARIED = 'responses = ["shaft_mass"]\n[[vary]]\npath = "tip diameter"\nvalues = ["12 mm"]\n'
+OPTIONS = {
+    "material": "ash",
+    "front": "leather 6 mm",
+    "ferrule": "25 mm melamine",
+    "bore": "6 mm wide, 127 mm deep",
+}
+
+
+def of_profile(folder: Path, keys: str, profile: str = PROFILE) -> Path:
+    """A study of a profile with some keys at its top."""
+    (folder / "shaft.csv").write_text(profile, encoding="utf-8")
+    (folder / "s.toml").write_text(f'scene = "shaft.csv"\n{keys}\n{VARIED}', encoding="utf-8")
+    return folder / "s.toml"
+
+
+def test_options_of_the_cue_in_a_study_are_those_of_load(tmp_path: Path) -> None:
+    keys = "".join(f'{name} = "{text}"\n' for name, text in OPTIONS.items())
+    masses = 'body_mass = "15 oz"\nshaft_mass = "4 oz"\n'
+    study = load_study(of_profile(tmp_path, f'game = "snooker"\n{keys}'))
+    drawn = cf.load(tmp_path / "shaft.csv", **OPTIONS)
+    assert study.base == cf.usual_scene(drawn, "snooker")
+    weighed = load_study(of_profile(tmp_path, keys + masses)).base
+    ounce = 0.028349523125
+    assert weighed == cf.with_parameters(cf.usual_scene(drawn), {"body_mass": 15 * ounce, "shaft_mass": 4 * ounce})
+    unnamed = PROFILE.replace(" [mm]", "")
+    file = of_profile(tmp_path, 'length_unit = "mm"', unnamed)
+    assert load_study(file).base == cf.usual_scene(cf.load(tmp_path / "shaft.csv", length_unit="mm"))
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "problem"),
+    [
+        ("game", "chess", "must be one of pool"),
+        ("material", "cheese", "unknown material 'cheese'"),
+        ("length_unit", "kg", "must be a unit of length"),
+        ("front", "330 mm", 'must be "ferrule" or leather'),
+        ("ferrule", "abs", "must be a length and a material"),
+        ("bore", "none", "must be a width and a depth"),
+        ("body_mass", "15 mm", "must be a mass"),
+        ("shaft_mass", "4 kg", "must be 2.64 to 3036 g"),
+        ("weight", "15 oz", "unknown key"),
+    ],
+)
+def test_invalid_option_of_the_cue_is_one_line_on_its_key(name: str, text: str, problem: str, tmp_path: Path) -> None:
+    profile = PROFILE.replace(" [mm]", "") if name == "length_unit" else PROFILE
+    file = of_profile(tmp_path, f'{name} = "{text}"', profile)
+    assert_rejects(f"s.toml: {name}: {problem}", "study", file)
+
+
 def test_study_file_ranges_are_read(tmp_path: Path) -> None:
     text = STRIKES.replace('low = "0 mm"\nhigh = "13 mm"', 'median = "5 mm"\nsd = "1 mm"')
     text = text.replace("low = 0.7\nhigh = 1.3", 'median = 1\nsd = 0.2\nspacing = "logarithmic"')

@@ -158,7 +158,7 @@ def test_evaluate_failed_design_does_not_affect_others() -> None:
     assert np.isnan(result.values[1, 0])
     assert np.isnan(result.values[2]).tolist() == [True, False, False]
     assert result.values[2, 1] < 0
-    assert f"got {result.values[2, 1]:.4g} phi" in result.reasons[2]
+    assert f"times the contact's angle; got {result.values[2, 1]:.4g}" in result.reasons[2]
 
 
 WEIGHTED = replace(BASE, effects=(cf.PointMass(position=0.3, mass=1e-3),))
