@@ -13,7 +13,7 @@ import scipy.linalg as la
 from scipy.optimize import brentq
 
 from cuefem import Cue, Joint, Material, PointMass, Resolution, Segment, Support, modes
-from cuefem.beam import assembly
+from cuefem.beam import assembly, eigensolver
 from cuefem.beam.meshing import mesh_cue
 from cuefem.beam.modes import solve
 from tests.helpers.cues import CARBON, FOAM, MAPLE, isotropic_kim, kim, rod, soft_tip, stiff_ferrule
@@ -131,6 +131,27 @@ def test_modes_dense_and_sparse_solvers_agree(monkeypatch: pytest.MonkeyPatch) -
     x = np.linspace(0, cue.length, 50)
     for sparse, dense in zip(results[0].shape(x), results[10**6].shape(x), strict=True):
         np.testing.assert_allclose(sparse, dense, rtol=0, atol=1e-7 * np.abs(dense).max())
+
+
+def test_tip_responds_to_force_and_couple_alike_by_every_solver(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By the leading part of the matrix, the whole and a sparse one: free, heavy and stiff tips, which a force hardly
+    moves in the lowest modes."""
+    joint = Joint(0.01, rotational_compliance=1.0)
+    tips = (), (PointMass(position=0.0, mass=0.2),), (Support(0.0, 1e9),), (Support(0.0, 0.0, 1e6), joint)
+    for effects in tips:
+        results = []
+        for rounding, dense in ((eigensolver.ROUNDING, True), (0.0, True), (0.0, False)):
+            with monkeypatch.context() as patch:
+                patch.setattr(eigensolver, "ROUNDING", rounding)
+                patch.setattr(assembly, "is_dense_faster", lambda n_dof, count, dense=dense: dense)
+                patch.setattr(eigensolver, "is_dense_faster", lambda n_dof, count, dense=dense: dense)
+                system = assembly.assemble(kim(), 30, effects)
+                solved = solve(system, 12, n_corrected=2)
+            results.append(solved.participation / (solved.omega**2 + system.shift) @ solved.participation.T)
+        leading, whole, sparse = results
+        scale = np.sqrt(np.outer(np.diag(whole), np.diag(whole)))
+        assert np.max(np.abs(leading - whole) / scale) < 1e-10
+        assert np.max(np.abs(sparse - whole) / scale) < 1e-8
 
 
 def test_mesh_has_node_at_every_jump_and_position() -> None:
