@@ -26,7 +26,7 @@ from cuefem.designs.sensitivity import sensitivity
 from cuefem.quantity.display_units import END_MASS, to_display, with_heading, with_unit
 from cuefem.quantity.fields import check_count, check_kind
 from cuefem.results.solved_design import coupled_curve, time_history
-from cuefem.scene import Outcome, Resolution, Scene
+from cuefem.scene import Outcome, Resolution, Scene, check_scene
 from cuefem.scene.solved_scene import SolvedScene
 
 if TYPE_CHECKING:
@@ -168,7 +168,7 @@ def squirt(
     named = scenes if isinstance(scenes, Mapping) else {"": scenes}
     axes = _axes(ax)
     for name, scene in named.items():
-        check_kind(f"scenes[{name!r}]" if name else "scenes", scene, Scene)
+        check_scene(f"scenes[{name!r}]" if name else "scenes", scene)
         tip = SolvedScene(scene, at).tip
         curve = coupled_curve(scene, offsets, tip)
         miscue = np.array(curve["regime"]) == "miscue"
@@ -245,7 +245,7 @@ def end_mass(scene: Scene, ax: Axes | None = None, *, at: Resolution | None = No
     ValueError
         If the scene has other effects.
     """
-    check_kind("scene", scene, Scene)
+    check_scene("scene", scene)
     if others := [effect for effect in scene.effects if effect.changes_bending and not effect.defines_tip]:
         names = ", ".join(sorted({type(effect).__name__ for effect in others}))
         raise ValueError(f"plot.end_mass takes a scene without effects other than LeatherTip; got {names}")

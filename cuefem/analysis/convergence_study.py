@@ -12,9 +12,10 @@ import numpy as np
 
 from cuefem.contact.refinement import Level, refinement_levels, relative_error
 from cuefem.quantity.display_units import significant, to_display
+from cuefem.quantity.fields import check_count
 from cuefem.results.progress import Progress
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
-from cuefem.scene import Scene
+from cuefem.scene import Scene, check_scene
 from cuefem.show.analysis import Analysis
 from cuefem.show.charts import Axis, Chart, Curve, chart
 
@@ -104,6 +105,8 @@ def convergence_study(
     >>> [level["steps"] for level in cf.convergence_study(scene, max_modes=24).levels][:2]
     [400, 800]
     """
+    check_scene("convergence_study scene", scene)
+    check_count("convergence_study max_modes", max_modes, 1)
     refined = _timed_levels(scene, max_modes, progress)
     best = refined[-1][0].outcome
     rows = [_level_record(scene, level, seconds, best) for level, seconds in refined]

@@ -17,7 +17,7 @@ from cuefem.results.progress import Progress
 from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.results.verdict import NoVerdict
-from cuefem.scene import Scene
+from cuefem.scene import Scene, check_scene
 from cuefem.show.analysis import Analysis
 
 
@@ -125,6 +125,7 @@ def report(
     """
     found: dict[str, Analysis] = {}
     lacking = ""
+    check_scene("report scene", scene)
     try:
         scene.contact_time  # noqa: B018
         design = SolvedDesign.of(scene, rtol)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import MISSING, asdict, dataclass, fields, replace
 from typing import Any
 
-from cuefem.contact.refinement import refinement_levels
+from cuefem.contact.refinement import RTOL, refinement_levels
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.effects.effect import Effect, effect_kinds
 from cuefem.endmass.definitions import equivalent_end_mass
@@ -14,7 +14,7 @@ from cuefem.quantity.display_units import number_text, with_heading
 from cuefem.results.progress import Progress
 from cuefem.results.quantities import DASH, format_value
 from cuefem.results.records import Record, Table
-from cuefem.scene import Outcome, Scene
+from cuefem.scene import Outcome, Scene, check_scene
 from cuefem.scene.solved_scene import corrected_tip_modes
 from cuefem.show.analysis import Analysis
 from cuefem.show.scene_summary import assumptions, effect_text, scene_record
@@ -124,7 +124,8 @@ def effect_sensitivity(scene: Scene, rtol: float | None = None, *, progress: Pro
     >>> found.recommendation["effects_to_keep"], round(1e3 * found.base["end_mass"], 1)
     (['RollingContact'], 6.2)
     """
-    rtol = DEFAULT_RTOL if rtol is None else rtol
+    check_scene("effect_sensitivity scene", scene)
+    rtol = DEFAULT_RTOL if rtol is None else RTOL.check("effect_sensitivity rtol", rtol)
     modes = None
     if scene.lumped is None:
         *_, level = refinement_levels(scene, rtol / MARGIN)

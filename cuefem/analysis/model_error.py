@@ -20,7 +20,7 @@ from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.quantity.display_units import END_MASS, display_unit
 from cuefem.results.progress import Progress
 from cuefem.results.records import Record, Table, tabulate
-from cuefem.scene import Scene
+from cuefem.scene import Scene, check_scene
 from cuefem.scene.solved_scene import mass_on_face
 from cuefem.show.analysis import Analysis
 from cuefem.show.scene_summary import effect_name
@@ -146,6 +146,7 @@ def model_error(scene: Scene, *, progress: Progress = iter) -> ModelError:
     >>> first["quantity"], abs(first["difference"]) < 2e-3
     ('natural frequency 1', True)
     """
+    check_scene("model_error scene", scene)
     compared, excluded = checked_scene(scene)
     bending = modes(compared.shaft, MODES, effects=compared.cue_effects)
     mesh = fineness(compared.shaft)

@@ -20,7 +20,7 @@ from cuefem.quantity.display_units import END_MASS, with_unit
 from cuefem.results.closed_forms import alciatore_a30, alciatore_a31, alciatore_a31_mass_ratio
 from cuefem.results.quantities import units_of
 from cuefem.results.records import Record, Table, tabulate
-from cuefem.scene import Scene
+from cuefem.scene import Scene, check_scene
 from cuefem.scene.solved_scene import SolvedScene
 from cuefem.show.analysis import Analysis
 
@@ -138,6 +138,7 @@ class PooltoolExport(Analysis):
 
 def pooltool_export(scene: Scene, name: str, file: str = "") -> PooltoolExport:
     """pooltool's CueSpecs of a scene's cue. name: brand of the cue. file: the JSON file that will hold it."""
+    check_scene("pooltool_export scene", scene)
     return PooltoolExport(scene, pooltool_record(name, scene, file or "cue.json"), file)
 
 

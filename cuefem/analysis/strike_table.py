@@ -26,11 +26,10 @@ from cuefem.analysis.strike_grid import (
 )
 from cuefem.cue import Array
 from cuefem.effects.force_law import IndentationOutOfRange
-from cuefem.quantity.fields import check_kind
 from cuefem.results.progress import Progress
 from cuefem.results.quantities import MISCUE_DEFINITION, RESULTS, format_value
 from cuefem.results.records import Record, Table
-from cuefem.scene import Scene, Stroke
+from cuefem.scene import Scene, Stroke, check_scene
 from cuefem.show.analysis import Analysis
 from cuefem.show.scene_summary import assumptions, scene_record
 
@@ -223,7 +222,7 @@ def strike_table(scene: Scene, speeds: tuple[float, float] = SPEEDS, *, progress
     >>> abs(table.at(3.0, 0.4).squirt / direct.squirt - 1) < 0.01
     True
     """
-    check_kind("strike_table scene", scene, Scene)
+    check_scene("strike_table scene", scene)
     if scene.contact_terms.table is not None:
         raise ValueError("strike_table scene must have a level cue; got an elevated one, whose ball leaves the plane")
     low, high = (Stroke(float(speed)).speed for speed in speeds)

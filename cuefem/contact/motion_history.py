@@ -24,8 +24,7 @@ from cuefem.contact.step_records import SolvedContact, solve_contact
 from cuefem.contact.strike import steps_of
 from cuefem.cue import Array
 from cuefem.quantity.equality import equal_fields
-from cuefem.quantity.fields import check_kind
-from cuefem.scene import Resolution, Scene
+from cuefem.scene import Resolution, Scene, check_scene
 from cuefem.scene.solved_scene import SolvedScene
 
 
@@ -123,7 +122,7 @@ def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Moti
     >>> bool(moved.axial[1] > moved.axial[0])
     True
     """
-    check_kind("motion scene", scene, Scene)
+    check_scene("motion scene", scene)
     times = ascending(times)
     if scene.contact_terms.table is not None:
         raise ValueError("motion takes strokes in the plane of cue and ball; got Elevation")

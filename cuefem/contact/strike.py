@@ -12,9 +12,7 @@ from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.contact_model import model_of
 from cuefem.contact.refinement import check_one_resolution, refined_strike
 from cuefem.contact.step_records import solve_contact
-from cuefem.cue import Cue
-from cuefem.quantity.fields import check_kind
-from cuefem.scene import Outcome, Resolution, Scene, as_scenes
+from cuefem.scene import Outcome, Resolution, Scene, as_scenes, check_scene
 from cuefem.scene.solved_scene import has_moment_arm, strike_mode_count, tip_modes_of
 from cuefem.solid.solid_resolution import Solid
 
@@ -76,9 +74,7 @@ def strike(scene: Scene, at: Resolution | Solid | None = None, *, rtol: float | 
     >>> cf.strike(cf.Scene(cue, stroke=cf.Stroke(offset=0.3)), rtol=1e-2).error < 1e-2
     True
     """
-    if isinstance(scene, Cue):
-        raise TypeError("strike scene must be a Scene; got a Cue: cuefem.usual_scene(cue) makes its scene")
-    check_kind("strike scene", scene, Scene)
+    check_scene("strike scene", scene)
     if rtol is not None:
         check_one_resolution("strike", at)
         return refined_strike(scene, rtol)

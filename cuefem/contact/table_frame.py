@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from cuefem.cue import Array
 from cuefem.quantity.display import brief_repr
 from cuefem.quantity.equality import equal_fields
-from cuefem.quantity.fields import Quantity
+from cuefem.quantity.fields import Quantity, check_kind
 from cuefem.scene import Ball, Outcome
 
 # Largest difference of the offset of an outcome from that of point and direction.
@@ -88,6 +88,7 @@ def place(outcome: Outcome, point: ArrayLike, direction: ArrayLike, *, ball: Bal
     >>> bool(ball.velocity[0] < 0), bool(ball.spin[2] > 0)
     (True, True)
     """
+    check_kind("place outcome", outcome, Outcome)
     if getattr(outcome.history, "velocity", None) is not None:
         raise ValueError("place takes planar outcomes; after Elevation use outcome.history.velocity and .spin")
     ball = Ball() if ball is None else ball

@@ -12,7 +12,7 @@ from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.quantity.fields import CONTACT_TIME, Quantity
-from cuefem.scene import Outcome, Scene
+from cuefem.scene import Outcome, Scene, check_scene
 from cuefem.scene.solved_scene import tip_modes_of
 
 TOLERANCE = 1e-8  # of ln E and of the restitution
@@ -72,6 +72,7 @@ def identify_tip(scene: Scene, contact_time: float, rebound: float) -> Identifie
     """
     from scipy.optimize import root
 
+    check_scene("identify_tip scene", scene)
     contact_time = CONTACT_TIME.check("identify_tip contact_time", contact_time)
     rebound = REBOUND.check("identify_tip rebound", rebound)
     low, high = math.log(MIN_E), math.log(MAX_E)
@@ -140,6 +141,7 @@ def rebound(scene: Scene) -> float:
     >>> cf.rebound(cf.Scene(cue, tip=cf.Tip(0.73, contact_time=1e-3), effects=(waves,))) > 0.73
     True
     """
+    check_scene("rebound scene", scene)
     return rebound_of_outcome(strike(_centre_ball(scene)), scene)
 
 

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.cue.geometry import Material
-from cuefem.quantity.fields import suggestion
+from cuefem.quantity.fields import check_kind, suggestion
 
 
 class MaterialEntry(NamedTuple):
@@ -97,6 +97,7 @@ def material(name: str) -> Material:
     >>> maple.E, maple.rho, cf.Segment(0.7, 0.012, 0.021, maple).mass
     (13860000000.0, 705.6, 0.108230...)
     """
+    check_kind("material name", name, str)
     key = " ".join(name.replace("_", " ").replace("-", " ").casefold().split())
     key = _ALIASES.get(key, key)
     if key not in MATERIALS:

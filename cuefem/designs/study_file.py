@@ -29,7 +29,7 @@ from cuefem.files.toml_reader import game_of, read_tables
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.parameters.scene_paths import paths, quantity_at
 from cuefem.parameters.table import PARAMETERS
-from cuefem.quantity.fields import Quantity
+from cuefem.quantity.fields import Quantity, check_kind
 from cuefem.scene import Resolution, Scene, Stroke
 from cuefem.scene.default_scene import KIM, usual_scene
 
@@ -206,6 +206,7 @@ def study(
     (array([0.011, 0.012, 0.013]), 'm')
     """
     problem = load_study(what) if isinstance(what, str | PathLike) else what
+    check_kind("study what", problem, (Study, Scatter, Problem))
     if isinstance(problem, Problem):
         if store or workers:
             raise ValueError("an optimum takes no store or workers: it computes one design after the other")

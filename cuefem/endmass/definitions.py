@@ -25,8 +25,7 @@ from cuefem.cue import Array, LumpedCue
 from cuefem.effects.effect import Effect
 from cuefem.endmass.impulse_response import STEPS, half_sine_velocity, imposed_velocity_impulse
 from cuefem.endmass.sticking_contact import StickLimit
-from cuefem.quantity.fields import check_kind
-from cuefem.scene import Outcome, Resolution, Scene, Stroke
+from cuefem.scene import Outcome, Resolution, Scene, Stroke, check_scene
 from cuefem.scene.solved_scene import SolvedScene
 
 # The squirts of this many lumped cues are computed in one call, which costs as much as two single ones. The root is
@@ -93,7 +92,7 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None, *
     >>> abs(cf.end_mass(scene, rtol=1e-3) / cf.end_mass(scene) - 1) < 1e-3
     True
     """
-    check_kind("end_mass scene", scene, Scene)
+    check_scene("end_mass scene", scene)
     definition = definition_of(drive)
     if rtol is not None:
         check_one_resolution("end_mass", at)

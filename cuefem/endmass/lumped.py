@@ -19,8 +19,7 @@ from cuefem.endmass.definitions import (
     sticking_squirt,
     without_slip,
 )
-from cuefem.quantity.fields import check_kind
-from cuefem.scene import Outcome, Resolution, Scene, as_scenes
+from cuefem.scene import Outcome, Resolution, Scene, as_scenes, check_scene
 from cuefem.scene.solved_scene import SolvedScene
 
 
@@ -55,7 +54,7 @@ def lump(scene: Scene, at: Resolution | None = None) -> LumpedCue:
     >>> round(1e3 * lumped.end_mass, 1), lumped.coupling  # g, 1/kg
     (4.4, 0.0)
     """
-    check_kind("lump scene", scene, Scene)
+    check_scene("lump scene", scene)
     return scene.lumped or lump_modes(scene, SolvedScene(scene, at).stick_tip)
 
 

@@ -12,7 +12,7 @@ from cuefem.parameters.field_paths import Path, Step, with_fields
 from cuefem.parameters.parts import BORE_DEPTH, PARTS, Part
 from cuefem.parameters.scene_paths import SCENE_FIELDS, is_material, parameter, part_at, paths
 from cuefem.parameters.table import PARAMETERS
-from cuefem.scene import Scene
+from cuefem.scene import Scene, check_scene
 
 
 @dataclass(frozen=True)
@@ -60,6 +60,7 @@ def with_parameters(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     >>> [segment.length for segment in changed.cue.segments], changed.cue.segments[0].tip_bore, changed.stroke.speed
     ([0.1, 0.6], 0.006, 3.0)
     """
+    check_scene("with_parameters scene", scene)
     values = dict[Path, Any]()
     for text, value in changes.items():
         entry = parameter(text)

@@ -17,7 +17,7 @@ from cuefem.cue import Array
 from cuefem.effects.cue_effects import Support
 from cuefem.endmass.definitions import DEFINITIONS, small_offset_slope
 from cuefem.results.closed_forms import pivot_length
-from cuefem.scene import Outcome, Scene
+from cuefem.scene import Outcome, Scene, check_scene
 from cuefem.scene.default_scene import GAMES
 from cuefem.scene.solved_scene import SolvedScene
 
@@ -76,6 +76,7 @@ class SolvedDesign:
         """
         if isinstance(scene, SolvedDesign):
             return scene
+        check_scene("scene", scene)
         return cls(SolvedScene(scene), None if rtol is None else strike(scene, rtol=rtol))
 
     @property

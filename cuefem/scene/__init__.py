@@ -9,6 +9,7 @@ from cuefem.scene.scene import (
     Stroke,
     Tip,
     as_scenes,
+    check_scene,
 )
 
 __all__ = [
@@ -20,4 +21,5 @@ __all__ = [
     "Stroke",
     "Tip",
     "as_scenes",
+    "check_scene",
 ]

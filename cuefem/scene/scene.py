@@ -316,14 +316,23 @@ class Scene:
         return _loading_phase(self.tip_law(), self.reduced_mass, self.stroke.speed)
 
 
+def check_scene(name: str, scene: Any) -> None:
+    """TypeError unless ``scene`` is a `Scene`; of a cue, as `cuefem.load` gives it, the message names its scene."""
+    if isinstance(scene, Cue):
+        raise TypeError(f"{name} must be a Scene; got a Cue: cuefem.usual_scene(cue) makes its scene")
+    check_kind(name, scene, Scene)
+
+
 def as_scenes(name: str, scenes: Any) -> tuple[Scene, ...]:
     """A sequence of scenes, one or more, as a tuple."""
+    if isinstance(scenes, Cue):
+        check_scene(name, scenes)
     if isinstance(scenes, Scene) or not isinstance(scenes, Iterable):
         got = "one Scene: write [scene]" if isinstance(scenes, Scene) else quote(scenes)
         raise TypeError(f"{name} must be a sequence of Scene; got {got}")
     scenes = tuple(scenes)
     for scene in scenes:
-        check_kind(name, scene, Scene)
+        check_scene(name, scene)
     if not scenes:
         raise ValueError(f"{name} must be one scene or more; got none")
     return scenes
