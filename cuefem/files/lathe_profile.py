@@ -50,6 +50,15 @@ _STRAIGHTNESS = 1e-9
 # A diameter this many times that of both its neighbours, or as much smaller, which fits them within SLACK times when
 # its decimal point is moved, is misplaced: a cue's largest step, ferrule to collar, is 1.5.
 MAX_RATIO, SLACK = 3.0, 1.5
+# Kinds of columns of which a table has one at most.
+_COLUMNS = (
+    (POSITION_COLUMN,),
+    (DIAMETER_COLUMN, RADIUS_COLUMN),
+    (BORE_COLUMN,),
+    (MATERIAL_COLUMN,),
+    (CORE_COLUMN,),
+    (FERRULE_COLUMN,),
+)
 _EMPTY = ("none", "no", "-", "–", "—")  # cells for "no bore" or "no material"
 
 _POSITION, _BORE = Quantity("m"), Quantity("m", "[0, 10]")
@@ -87,9 +96,10 @@ def read_profile(path: Path, material: Material, length_unit: str | None = None)
     numbers = [split_unit(cell)[0] for column in header.length_columns for cell in _cells(header.rows, column)]
     mark = decimal_mark(numbers)
     columns = _with_units(path, header, length_unit)
-    position, diameter = (
-        _chosen(path, header, columns, kinds) for kinds in ((POSITION_COLUMN,), (DIAMETER_COLUMN, RADIUS_COLUMN))
-    )
+    for kinds in _COLUMNS:
+        _check_single(path, header, kinds)
+    position = next(column for column in columns if column.kind == POSITION_COLUMN)
+    diameter = next(column for column in columns if column.kind in (DIAMETER_COLUMN, RADIUS_COLUMN))
     x = [_number(path, row, position, mark) for row in header.rows]
     d = [_number(path, row, diameter, mark) for row in header.rows]
     is_lathe = max(x, default=0.0) <= 0 > min(x, default=0.0)  # Z of a lathe, 0 at the front and negative behind it
@@ -272,13 +282,13 @@ def _with_units(path: Path, header: CsvHeader, length_unit: str | None) -> list[
     return [ProfileColumn(c.kind, c.index, c.name, c.unit or unit) for c in columns]
 
 
-def _chosen(path: Path, header: CsvHeader, columns: Sequence[ProfileColumn], kinds: Sequence[str]) -> ProfileColumn:
-    """The only column of these kinds; InputError for two."""
-    first, *others = [column for column in columns if column.kind in kinds]
-    if others:
-        both = f"{quote(first.name)} and {quote(others[0].name)}"
+def _check_single(path: Path, header: CsvHeader, kinds: Sequence[str]) -> None:
+    """InputError for two columns of these kinds."""
+    columns = (*header.length_columns, *header.material_columns)
+    names = [quote(column.name) for column in columns if column.kind in kinds]
+    if len(names) > 1:
+        both = f"{names[0]} and {names[1]}"
         raise InputError(path, f"line {header.line}", f"two columns may be the {kinds[0]}, {both}: delete one")
-    return first
 
 
 def _number(path: Path, row: Row, column: ProfileColumn, mark: str) -> float:

@@ -14,10 +14,11 @@ import meshio
 import numpy as np
 
 from cuefem.cue import Array, Cue, Material, Segment
+from cuefem.files.csv_header import length_unit_of
 from cuefem.files.errors import InputError, as_input_error, check_size, file_state, quote
 from cuefem.files.lathe_profile import DEFAULT_UNIT
 from cuefem.files.surface_sections import Index, SectionedShaft, aligned_surface, section_shaft
-from cuefem.quantity.units import parse_number
+from cuefem.quantity.units import conversion_factor
 
 # Exceptions of meshio for damaged files, which it hardly checks.
 _DAMAGED = (
@@ -52,10 +53,9 @@ def load_surface(path: Path, material: Material, length_unit: str | None = None)
     the largest diameter. Where the corners of a slice lie on one circle, that circle is the section.
     """
     unit = DEFAULT_UNIT if length_unit is None else length_unit
-    try:
-        scale = parse_number(f"1 {unit}", "m")
-    except ValueError:
-        raise InputError(path, "length_unit", f"must be a unit of length, such as mm; got {quote(unit)}") from None
+    if not length_unit_of(unit):
+        raise InputError(path, "length_unit", f"must be a unit of length, such as mm; got {quote(unit)}")
+    scale = float(conversion_factor(length_unit_of(unit), "m"))
     rows = [(scale * length, *np.multiply(scale, [*outer, *bore])) for length, outer, bore in read_surface(path).pieces]
     with as_input_error(path, ""):
         return Cue(tuple(Segment(row[0], row[1], row[2], material, row[3], row[4]) for row in rows))

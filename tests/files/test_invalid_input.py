@@ -69,6 +69,8 @@ csv  | x [mm],diameter [mm],Wandstärke\n0,12,3 | line 1: column 'Wandstärke' i
 csv  | x [mm],diameter [mm],ferrule\n0,12,\n20,12,5 mm abs\n700,21, | line 3, ferrule: with a length must be the
 csv  | x [kg],diameter [mm]\n0,12           | line 1, x: must be in a unit of length, such as mm; got 'kg'
 csv  | x [mm],diameter 1 [mm],diameter 2 [mm]\n0,12.75,12.9\n700,21,22 | line 1: two columns may be the diameter,
+csv  | x [mm],diameter [mm],bore [mm],hole [mm]\n0,12,6,7\n700,21,6,7 | line 1: two columns may be the bore, 'bore
+csv  | x [mm],diameter [mm],material,wood\n0,12,ash,maple\n700,21, | line 1: two columns may be the material,
 csv  | x [mm],diameter [mm],bore [mm]\n700,21,\n0,12,6  | line 1, x: must increase from tip to butt: bores and
 csv  | x [mm],diameter [mm],bore [mm]\n0,12,12\n700,21, | line 2, bore: must be less than 12 mm, the diameter there;
 csv  | x [mm],diameter [mm],bore [mm]\n0,12,6\n7,12,6\n7,12,5\n7,12,4\n700,21, | line 5, x: must have at most two rows
@@ -155,7 +157,8 @@ def test_load_missing_file_or_foreign_option_is_rejected(tmp_path: Path) -> None
     assert rejection(tmp_path / "folder.toml") == rejection(tmp_path) == "must be a file; got a folder"
     assert rejection(tmp_path / "cue.vtu").startswith("must end in .toml, .csv, .stl")
     shaft = write_surface(tmp_path / "shaft.stl", POINTS, FACES)
-    assert rejection(shaft, length_unit="kg").startswith("length_unit: must be a unit of length")
+    for unit in ("kg", "1/2 in"):
+        assert rejection(shaft, length_unit=unit).startswith("length_unit: must be a unit of length")
     for name in ("shaft.xlsx", "shaft.txt"):
         (tmp_path / name).write_bytes(b"PK\x03\x04")
         assert rejection(tmp_path / name).endswith("save the table as .csv")
