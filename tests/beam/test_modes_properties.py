@@ -58,7 +58,7 @@ def test_end_mass_scaled_units_scales(cue: Cue, drive: str, length: float, time:
     original = Scene(cue, tip=Tip(contact_time=1e-3))
     scaled_scene = Scene(other, Ball(mass=0.21 * mass), Tip(contact_time=1e-3 * time))
     one, two = end_mass(original, drive, AT), end_mass(scaled_scene, drive, AT)
-    np.testing.assert_allclose(two, one * mass, rtol=1e-9)
+    np.testing.assert_allclose(two, one * mass, rtol=1e-8)  # as frequencies; soft ends have 1.1e-9 in 1,000 cues
 
 
 @given(cues(), st.floats(1.01, 4.0))
