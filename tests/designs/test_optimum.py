@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.analysis.comparison import compare_cues
 from cuefem.cli.study_command import round_text
 from cuefem.cue.materials import material
 from cuefem.designs import Response, Span, Vary, evaluate
@@ -180,7 +181,8 @@ def test_best_design_stands_beside_the_unmodified_one() -> None:
     alone = evaluate([base], result.study.responses, at=PROBLEM.at).values[0]
     assert [*start.responses.values()] == alone.tolist()
     assert start.values == {"tip diameter": base.cue.segments[0].tip_diameter}
-    compared = cf.compare({"start": start.scene, "best": best.scene}, same_shaft=True).differences["best"]
+    pair = {"start": start.scene, "best": best.scene}
+    compared = compare_cues(pair, same_shaft=True, names=("tip_stiffness",)).differences["best"]
     change = result.changes["tip_stiffness"]
     assert change["difference"] == best.responses["tip_stiffness"] / start.responses["tip_stiffness"] - 1
     assert change == pytest.approx(compared["tip_stiffness"], rel=1e-2)
