@@ -146,7 +146,7 @@ def reduction(
         End masses m_c of a two-part cue by name, kg, at most the mass of the cue, to compare with. By default the 12 g
         of Kim's paper, and none beside a lumped cue.
     offsets : sequence of float
-        Tip offsets b/R, in (-1, 1), of the squirts.
+        Tip offsets b/R, in (-1, 1), of the squirts, one at least.
 
     Returns
     -------
@@ -175,6 +175,8 @@ def reduction(
     {"Kim's guess": 12, 'this shaft, small offsets': 32, 'this shaft, b/R 0.3': 27}
     """
     near = Quantity("Hz", "(0, inf)").check("reduction near", near)
+    if not len(offsets):
+        raise ValueError("reduction offsets must be at least one b/R between -1 and 1; got none")
     offsets = [Stroke(offset=offset).offset for offset in offsets]
     design = SolvedDesign.of(scene)
     scene = design.scene

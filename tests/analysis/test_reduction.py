@@ -154,6 +154,7 @@ def test_leather_states_that_its_end_mass_is_for_the_impulse_solver() -> None:
         ({"cue_ends": {"mine": -0.01}}, "reduction cue_ends['mine'] must be in (0, 0.54] kg; got -0.01"),
         ({"cue_ends": {"mine": 0.6}}, "reduction cue_ends['mine'] must be in (0, 0.54] kg; got 0.6"),
         ({"offsets": (0.1, 1.0)}, "Stroke.offset must be in (-1, 1); got 1.0"),
+        ({"offsets": ()}, "reduction offsets must be at least one b/R between -1 and 1; got none"),
     ],
 )
 def test_invalid_input_names_item_bound_and_value(options: Any, message: str) -> None:
