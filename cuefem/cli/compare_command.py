@@ -168,7 +168,8 @@ def _reject_given(request: Request) -> None:
     opened = load_stroke(request.file, length_unit=unit)
     for name in sorted(given_keys(request.file, opened, unit) & request.given.keys()):
         problem = "would replace this file's own value: options of compare set what a file leaves open"
-        raise InputError(request.file, option(name), f"{problem}; got {request.given[name]!r}")
+        got, fix = repr(request.given[name]), "write it into a file that lacks it (`cuefem convert`)"
+        raise InputError(request.file, option(name), f"{problem}; got {got}; {fix}")
 
 
 def _assumptions(asked: Mapping[str, Request]) -> list[Assumption]:

@@ -120,7 +120,8 @@ def test_compare_option_of_a_value_in_a_file_is_refused(name: str, value: str, s
     status, out, err = call("compare", shaft, PREDATOR, name, value)
     assert (status, out) == (2, "")
     problem = "would replace this file's own value: options of compare set what a file leaves open"
-    assert err == f"cuefem: predator z2: {name}: {problem}; got {value!r}\n"
+    fix = "write it into a file that lacks it (`cuefem convert`)"
+    assert err == f"cuefem: predator z2: {name}: {problem}; got {value!r}; {fix}\n"
 
 
 @pytest.mark.heavy
