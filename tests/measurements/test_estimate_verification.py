@@ -142,7 +142,9 @@ def test_outlier_probability_of_certain_parameters_is_that_of_each_error() -> No
     assert (found.mean, found.covariance) == (pytest.approx([0.0]), pytest.approx(np.eye(1)))
 
 
-@pytest.mark.parametrize("outlier", [None, *range(7)])
+@pytest.mark.parametrize(
+    "outlier", [0, *(pytest.param(each, marks=pytest.mark.heavy) for each in (None, *range(1, 7)))]
+)
 def test_intervals_with_outlier_cover_or_name_it(outlier: int | None, linear: tuple[MeasuredCue, np.ndarray]) -> None:
     """One value 6 to 20 errors off: the intervals cover the true parameters, or the estimate lists it as unchecked."""
     cue, slopes = linear
