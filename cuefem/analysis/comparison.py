@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from cuefem.show.drawings import CueDrawing
 
 # The compared results, by their names in the registry.
-SQUIRT_RESULTS = ("squirt", "end_mass_squirt", "pivot_length")  # derived from squirt: they include the model error
+SQUIRT_RESULTS = ("squirt", "end_mass_squirt", "pivot_length")  # derived from squirt: a miscue has none
 SHAPE_RESULTS = ("tip_stiffness", "shaft_mass", "mass")
 N_FREQUENCIES = 3
 RESULT_NAMES = (*SQUIRT_RESULTS, *SHAPE_RESULTS, *(f"frequency_{k}" for k in range(1, N_FREQUENCIES + 1)))
@@ -418,7 +418,9 @@ def _numbers(design: SolvedDesign, names: Sequence[str]) -> dict[str, float]:
 
 
 def _differences(first: _CueResults, other: _CueResults, *, same_shaft: bool) -> dict[str, Record]:
-    return relative_differences(first, other, same_shaft=same_shaft, with_model_error=SQUIRT_RESULTS)
+    registry = computable_results()
+    modelled = {name for name in first.numbers if name in registry and registry[name].has_model_error}
+    return relative_differences(first, other, same_shaft=same_shaft, with_model_error=modelled)
 
 
 def _unmeasured_modulus(

@@ -59,9 +59,9 @@ def rod_modes(
 ) -> RodModes:
     """Rod modes up to the angular frequency ``cutoff``, rad/s, of a cue that is free at both ends.
 
-    max_count: about the largest number of modes; where waves are slow it lowers the cutoff.
-    nodes: m from the tip, those of the beam and the end of the rod. masses: (position m, mass kg) of each lump, at
-    nodes. Leather drawn at the tip (`Cue.leather_height`) moves rigidly with it.
+    max_count: about the largest number of modes; where waves are slow it lowers it. nodes: m from the tip, those
+    of the beam where its section jumps or a mass is, and the end of the rod. masses: (position m, mass kg) of each
+    lump, at nodes. Leather drawn at the tip (`Cue.leather_height`) moves rigidly with it.
     n_corrected: number of loads with a truncation correction, 1 or 0. The cost is one symmetric eigenproblem with as
     many degrees of freedom as the elements' orders add up to; the last four are kept, for fewer modes of the same rod.
     """

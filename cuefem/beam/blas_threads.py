@@ -27,15 +27,15 @@ class _OneThread(ContextDecorator):
     def __init__(self) -> None:
         self._lock = Lock()
         self._users = 0
-        self._threads: list[tuple[LibController, int]] = []  # of each library before
+        self._before: dict[str, tuple[LibController, int]] = {}  # the threads of each library, by its file
 
     def __enter__(self) -> None:
         with self._lock:
             if self._users == 0:
                 OpenBLASController.clear_controlling_thread(force=True)
-                libraries = _libraries("scipy.linalg" in sys.modules)
-                self._threads = [(library, library.get_num_threads()) for library in libraries]
-                for library in libraries:
+            for library in _libraries("scipy.linalg" in sys.modules):  # perhaps loaded since the first of nested uses
+                if library.filepath not in self._before:
+                    self._before[library.filepath] = library, library.get_num_threads()
                     library.set_num_threads(1)
             self._users += 1
 
@@ -44,8 +44,9 @@ class _OneThread(ContextDecorator):
             self._users -= 1
             if self._users == 0:  # perhaps in another thread than the first use, whose limit OpenBLAS would keep
                 OpenBLASController.clear_controlling_thread(force=True)
-                for library, threads in self._threads:
+                for library, threads in self._before.values():
                     library.set_num_threads(threads)
+                self._before.clear()
 
 
 one_blas_thread = _OneThread()

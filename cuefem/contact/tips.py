@@ -16,7 +16,7 @@ from cuefem.scene import Scene
 # A tip of small restitution e unloads 1/e times as fast as it loads, which needs 1/e times as many steps. Lower bounds
 # of spring tips and of leather, which vibrates on the ball below its bound.
 MIN_RESTITUTION, MIN_LEATHER_RESTITUTION = 0.05, 0.1
-ANNULI, ANNULI_MARGIN = 120, 1.05  # annuli up to 1.05 times the largest indentation
+ANNULI_MARGIN = 1.05  # annuli up to 1.05 times the largest indentation
 # Steps in a head-on contact time, and those of a leather tip that does not slip as a whole: the error of squirt is
 # below 0.1 % (tests/contact/test_stored_answers.py).
 STEPS, LEATHER_STEPS = 400, 200
@@ -75,7 +75,6 @@ class Leather:
         fields.indentation_limit = law.indentation_limit
         fields.patch = CONSTANTS["PARTIAL_SLIP"]
         fields.surface_restitution = self.surface_restitution
-        fields.annuli = ANNULI
         fields.annuli_end = min(law.indentation_limit, ANNULI_MARGIN * self.largest_indentation)
 
 

@@ -344,13 +344,15 @@ class AxialWaves(CueEffect):
 
         rod, n_corrected = self.with_butt(cue), int(bending.radiation is not None)
         max_count = max(MAX_ROD_MODES, len(bending.omega))
+        masses = tuple(point_masses_on(rod, effects))
         nodes = bending.system.mesh.nodes
+        nodes = nodes[np.isin(nodes, [*cue.nodes, *(x for x, _ in masses)])]  # without those that divide a segment
         if rod is not cue:
             nodes = np.append(nodes, rod.length)
         resolved = rod_modes(
             rod,
             tuple(nodes.tolist()),
-            tuple(point_masses_on(rod, effects)),
+            masses,
             cutoff=bending.resolved,
             max_count=max_count,
             n_corrected=n_corrected,

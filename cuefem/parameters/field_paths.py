@@ -45,7 +45,7 @@ def items(value: Any) -> dict[Step, Any]:
 
 
 def field_value(scene: Any, path: Path) -> Any:
-    """The value at a path; None if the scene has no such part."""
+    """The value at a path of fields or of a part of `PARTS`; None if the scene has no such part."""
     part = PARTS.get(str(path[0])) if path else None
     return value_inside(part.read(scene), path[1:]) if part else value_inside(scene, path)
 
@@ -55,11 +55,6 @@ def value_inside(value: Any, path: Path) -> Any:
     for step in path:
         value = None if value is None else value[step] if isinstance(step, int) else getattr(value, step)
     return value
-
-
-def field_quantity(scene: Any, path: Path) -> Quantity | None:
-    """Unit and bounds of the number at a path; None if it is no number."""
-    return quantity_of(field_value(scene, path[:-1]), path[-1])
 
 
 def quantity_of(owner: Any, name: Step) -> Quantity | None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 from cuefem.cue.materials import LEATHERS
-from cuefem.parameters.field_paths import Path, field_quantity, field_value, steps
+from cuefem.parameters.field_paths import Path, field_value, quantity_of, steps
 from cuefem.parameters.parts import CONTACT_TIME_OF_SPRING, Part
 from cuefem.quantity.fields import Quantity
 from cuefem.scene import Scene
@@ -113,7 +113,11 @@ class Parameter:
 
     def quantity(self, scene: Scene) -> Quantity:
         """Unit and bounds of its number, and the names of values; ValueError if the scene has no such number."""
-        number = self.part.number(scene) if self.part else field_quantity(scene, self.steps())
+        if self.part:
+            number = self.part.number(scene)
+        else:
+            *owner, name = self.steps()
+            number = quantity_of(field_value(scene, tuple(owner)), name)
         if number is None:
             raise ValueError(f"{self.name} must be a number of this scene; got none")
         return replace(number, names=tuple((n, v[self.path]) for n, v in self.sets.items())) if self.sets else number

@@ -79,7 +79,7 @@ def _below(path: Path, value: Any, step: Step, text: str) -> list[tuple[Path, An
 
 
 def value_at(scene: Any, path: Path) -> Any:
-    """The value at a path; None if the scene has no such part."""
+    """The value at a path, which may begin at the name of a parameter; None if the scene has no such part."""
     if not path:
         return scene
     part = part_at(path[0])

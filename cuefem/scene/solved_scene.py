@@ -75,7 +75,7 @@ class SolvedScene:
 
     Nothing here depends on the stroke: one solved scene serves strikes at every speed and offset. at: the resolution of
     all modes; by default the modes of `strike_mode_count`, with a truncation correction. solved_modes: solved modes by
-    resolution or number, which scenes of one cue with the same effects on it share.
+    resolution or number, number that the mesh resolves and loads, which scenes of one cue and effects share.
     """
 
     scene: Scene
@@ -105,7 +105,10 @@ class SolvedScene:
 
     @cached_property
     def pulse_tip(self) -> TipModes:
-        """Tip modes for an end mass whose drive begins without a step: at least `MIN_PULSE_MODES` by default."""
+        """Tip modes for an end mass whose drive begins without a step: at least `MIN_PULSE_MODES` by default.
+
+        The mesh resolves the share `PULSE_MESH` of them.
+        """
         if self.at is not None or self.scene.lumped is not None:
             return self.tip
         count = default_mode_count(self.scene, periods=PULSE_PERIODS, min_modes=MIN_PULSE_MODES)

@@ -32,6 +32,32 @@ def test_modes_are_solved_by_one_blas_thread(monkeypatch: pytest.MonkeyPatch) ->
     assert during == [{1}] * 2
 
 
+class Library:
+    """A BLAS library of another process."""
+
+    def __init__(self, filepath: str) -> None:
+        self.filepath, self.threads = filepath, 2
+
+    def get_num_threads(self) -> int:
+        return self.threads
+
+    def set_num_threads(self, threads: int) -> None:
+        self.threads = threads
+
+
+def test_library_loaded_between_nested_uses_is_limited_and_restored(monkeypatch: pytest.MonkeyPatch) -> None:
+    """SciPy's library is loaded when the first beam of a process is solved, within the limit around its strike."""
+    numpy, scipy = Library("numpy"), Library("scipy")
+    loaded = [numpy]
+    monkeypatch.setattr("cuefem.beam.blas_threads._libraries", lambda scipy_is_loaded: loaded)
+    with one_blas_thread:
+        loaded = [numpy, scipy]
+        with one_blas_thread:
+            assert (numpy.threads, scipy.threads) == (1, 1)
+        assert scipy.threads == 1
+    assert (numpy.threads, scipy.threads) == (2, 2)
+
+
 def test_blas_threads_are_restored_after_concurrent_uses() -> None:
     """The second thread begins before the first ends, and ends after it."""
     both, first_has_ended = Barrier(2), Barrier(2)

@@ -49,13 +49,13 @@ enum {
     BALL_VELOCITIES = 6,
     VELOCITIES = CUE_VELOCITIES + BALL_VELOCITIES,
     FORCES = 6,
-    ANNULI = 256
+    ANNULI = 120
 };
 /* Ports of the cue: axial and lateral velocity of the tip; the third is the rotation rate of its section or,
    of a raised cue, the velocity out of the plane of the first two. */
 enum { U_PORT, W_PORT, THIRD_PORT };
-/* Velocities of the ball: (t, n) of its centre, and of a level cue R times its spin. */
-enum { BALL_T, BALL_N, BALL_SPIN };
+/* Of the velocities of the ball, (t, n) of its centre come first; then, of a level cue, R times its spin. */
+enum { BALL_SPIN = 2 };
 /* Components of the contact's forces F and velocities v. At the tip: tangential, normal, out of the plane; at
    the ball's point on the table: upwards, lateral, forwards. A level cue has the first two, a raised one (the
    effect Elevation) all six. */
@@ -82,7 +82,7 @@ typedef struct {
     int modes, ports, slopes, forces, speeds; /* speeds: velocities of the ball */
     int planes;                               /* planes in which the cue bends, 1 or 2 */
     int rolling;                              /* whether the contact rolls over ball and dome */
-    int law, terms, patch, annuli;            /* terms: of the leather law's series */
+    int law, terms, patch;                    /* terms: of the leather law's series */
     int dashpots, radiating;                  /* numbers of dashpots, and of modes that radiate */
     int structural_loss;                      /* whether modes have loss factors */
     int begins_with_impact;       /* whether an impulse stops the tangential motion at the first touch */

@@ -43,12 +43,11 @@ static Edge edge_at(const Contact *c, double virtual)
 /* Edges evenly spaced in the root of the indentation; the last annulus has what lies beyond its edge, too. */
 static void begin(Contact *c)
 {
-    const int annuli = c->in->annuli;
-    for (int r = 0; r < annuli; r++) {
-        double root = (double)r / annuli;
+    for (int r = 0; r < ANNULI; r++) {
+        double root = (double)r / ANNULI;
         c->edges[r] = edge_at(c, c->in->annuli_end * root * root);
     }
-    c->edges[annuli].indentation = HUGE_VAL;
+    c->edges[ANNULI].indentation = HUGE_VAL;
 }
 
 /* The annulus between two edges, in a step from one indentation to another. */
@@ -98,7 +97,7 @@ FAST static double shift_annuli(Contact *c, double virtual, double shift, double
     *by_shift = 0;
     *by_virtual = 0;
     c->annuli_loss = 0;
-    for (int r = 0; r < in->annuli; r++) {
+    for (int r = 0; r < ANNULI; r++) {
         if (virtual <= c->edges[r].indentation) {
             c->annulus_force[r] = 0;
             continue;
