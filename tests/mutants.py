@@ -64,6 +64,7 @@ EXCLUDED = (
 # What calls the kernel, whose C has no coverage of its own, and the tests of contacts.
 KERNEL_CALLS = ("cuefem/contact/step_records.py", "cuefem/endmass/impulse_response.py")
 KERNEL_TESTS = ("tests/contact", "tests/effects", "tests/endmass", "tests/test_golden")
+DEFAULT_TESTS = "tests/test_defaults.py"  # of signatures against documents: they execute no line of the file
 NO_RESULT = ("repr", "maxsize")  # keywords: what a dataclass prints of itself, the size of a cache
 SWAPS: dict[type, type] = {
     **{ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult},
@@ -208,7 +209,8 @@ class Reach(NamedTuple):
     def chosen(self, mutant: Mutant) -> list[str]:
         """Tests for a mutant: those that execute its line, else those of its file; then the others of their files.
 
-        Of each kind the ``FIRST`` shortest come first, then the others file by file; up to ``SECONDS`` in all.
+        Of each kind the ``FIRST`` shortest come first, then the others file by file; up to ``SECONDS`` in all. For a
+        mutant at module level the tests of documented defaults come first.
         """
         files = KERNEL_CALLS if mutant.group == "C" else (mutant.file,)
         lines = [row for file in files for row in self.tests.get(file, {}).items()]
@@ -218,7 +220,8 @@ class Reach(NamedTuple):
             reached = [name for name in reached if name.startswith(KERNEL_TESTS)]
         of_reached = {test_file(name) for name in reached}
         others = {name for name in self.seconds if test_file(name) in of_reached} - set(reached)
-        ordered = [name for names in (reached, others) for name in self.ordered(names)]
+        first = [name for name in self.seconds if test_file(name) == DEFAULT_TESTS and mutant.group == "module level"]
+        ordered = [*first, *(name for names in (reached, others) for name in self.ordered(set(names) - set(first)))]
         total = itertools.accumulate(self.seconds[name] for name in ordered)
         return [name for name, until in zip(ordered, total, strict=True) if until < SECONDS]
 
