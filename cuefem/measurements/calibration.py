@@ -254,7 +254,10 @@ class Calibration:
             if own is None or not math.isclose(own, drawn, rel_tol=SAME):
                 unit = known.quantity(self.scene).unit
                 there, here = (DASH if value is None else with_unit(value, unit) for value in (drawn, own))
-                raise ValueError(f"the calibration is of another tip: {known.label} {there} there, {here} here")
+                differs = f"{known.label} {there} there, {here} here"
+                raise ValueError(
+                    f"the calibration is of another tip: {differs}; if it is that tip, set {known.name} to {there}"
+                )
 
     def save(self, path: str | Path) -> None:
         """Write it as .toml: the scene with the estimated parameters, and a table [calibration]."""

@@ -83,7 +83,11 @@ SPRING = replace(OLD, tip=cf.Tip(0.73, 0.7, 1e-3), effects=())
     ("scene", "message"),
     [
         (CAROM, "the calibration is of another game: ball 170 g, 57.15 mm there, 210 g, 61.5 mm here"),
-        (OTHER_TIP, "the calibration is of another tip: E of the leather 0.229 GPa there, 0.1 GPa here"),
+        (
+            OTHER_TIP,
+            "the calibration is of another tip: E of the leather 0.229 GPa there, 0.1 GPa here; if it is that tip, "
+            "set leather to 0.229 GPa",
+        ),
         (SPRING, "the calibration is of another kind of tip"),
     ],
 )
