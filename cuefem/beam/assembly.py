@@ -261,9 +261,7 @@ def assemble(
     K = assemble_blocks(stiffness, terms.stiffness * scale, dense)
     M = assemble_blocks(inertia, terms.mass * scale, dense)
     if size < mesh.n_dof:
-        free = np.flatnonzero(index >= 0)
-        expansion = scipy.sparse.csc_matrix((np.ones(len(free)), (free, index[free])), (mesh.n_dof, size))
-        K, M = expansion.T @ K @ expansion, expansion.T @ M @ expansion
+        K, M = (_free_part(matrix, index, size) for matrix in (K, M))
 
     def free_diagonal(values: Array) -> Array:
         return np.bincount(index % (size + 1), values * scale, size + 1)[:-1].astype(float)
@@ -273,6 +271,18 @@ def assemble(
     shift, mass = _shift(cue, points), float(points.weights @ points.section.rhoA)
     rigid_basis = _rigid_basis(mesh, cue.length, index, springs > MIN_STIFFNESS * shift * mass)
     return System(cue, mesh, points, K, M, index, rigid_basis, dashpots, shift)
+
+
+def _free_part(matrix: Array | sp.csc_matrix, index: NDArray[np.intp], size: int) -> Array | sp.csc_matrix:
+    """The matrix in the free degrees of freedom: rows and columns of the same ``index`` add up."""
+    free = np.flatnonzero(index >= 0)
+    to = index[free]
+    if isinstance(matrix, np.ndarray):
+        part = np.zeros((size, size))
+        np.add.at(part, np.ix_(to, to), matrix[np.ix_(free, free)])
+        return part
+    expansion = scipy.sparse.csc_matrix((np.ones(len(free)), (free, to)), (len(index), size))
+    return expansion.T @ matrix @ expansion
 
 
 def _shift(cue: Cue, points: Points) -> float:

@@ -10,7 +10,7 @@ import pytest
 import cuefem as cf
 from cuefem.analysis import report_sections
 from cuefem.analysis.design_changes import changes_of
-from cuefem.analysis.first_screen import headline_markup, tiles
+from cuefem.analysis.first_screen import comparison_lines, headline_markup, tiles
 from cuefem.designer.controls import KNOBS, label, parse, range_of, value, value_text
 from cuefem.designer.panels import COMPUTING, curves_markup, sections_markup, tabulate_numbers
 from cuefem.designer.session import FILE, NOTHING, NOW, OF_TAB, OPENED, Results, Session
@@ -226,7 +226,8 @@ def test_calibration_shows_as_in_the_commands() -> None:
     assert verdict.calibrated is not None
     assert verdict.calibrated.squirt_error < verdict.squirt_error
     warning = "warning: no other measurement of old checks pivot"
-    assert verdict.calibrated.headline() in headline_markup(headline).replace("\u00a0", " ")
+    lines = comparison_lines(headline)
+    assert verdict.calibrated.headline() in headline_markup(headline, lines).replace("\u00a0", " ")
     assert session.calibration_lines() == [verdict.calibrated.basis(), warning]
     assert session.results.own["changes"].calibrated == verdict.calibrated
     page = session.report_call()()
