@@ -29,7 +29,7 @@ from cuefem.results.uncertainty import changes_by_input, miscue_note
 from cuefem.results.verdict import verdict_problem
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
-from cuefem.show.analysis import Analysis
+from cuefem.show.analysis import DESIGN_STYLES, Analysis
 from cuefem.show.scene_summary import effect_text, listed, scene_record
 
 if TYPE_CHECKING:
@@ -44,8 +44,7 @@ RESULT_NAMES = (*SQUIRT_RESULTS, *SHAPE_RESULTS, *(f"frequency_{k}" for k in ran
 
 UNKNOWN_STIFFNESS = 0.5  # relative uncertainty by E from which it should be measured: a wood has 0.22, a tube 0.83
 CURVE_OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 13))  # b/R
-STYLES = ("c1", "c2", "c3", "c4", "c5")
-MAX_CUES = len(STYLES)
+MAX_CUES = len(DESIGN_STYLES)
 _LABELS = {"end_mass_squirt": SQUIRT_END_MASS}
 
 
@@ -218,7 +217,7 @@ class Comparison(Analysis):
 
         lines = [
             (name, style, coupled_curve(scene, CURVE_OFFSETS, SolvedScene(scene).tip))
-            for style, (name, scene) in zip(STYLES, self.scenes.items(), strict=False)
+            for style, (name, scene) in zip(DESIGN_STYLES, self.scenes.items(), strict=False)
         ]
         return offset_charts(lines, CURVE_OFFSETS, self.offset, height=300)
 

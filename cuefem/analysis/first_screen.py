@@ -11,13 +11,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from cuefem.analysis.comparison import STYLES
 from cuefem.analysis.verdict import Verdict, squirt_difference
 from cuefem.parameters.parts import shaft_word
 from cuefem.quantity.display_units import END_MASS, OFF_LINE, short_number, with_unit
 from cuefem.results.quantities import DASH
 from cuefem.results.records import Record
 from cuefem.scene import Scene
+from cuefem.show.analysis import DESIGN_STYLES
 from cuefem.show.drawings import DIAMETER_SCALE, FRONT_LENGTH, cue_drawing, leather_ahead, legend
 from cuefem.show.templates import environment
 
@@ -103,7 +103,7 @@ def comparison_lines(
         lines.append([(verdict.calibrated.headline(), "")])
     if other is not None and own.numbers["squirt"] is not None and (not verdict or verdict.references):
         text = "compared with" if difference is None else squirt_difference(**difference)
-        lines.append([(f"{text} ", ""), (other.name, STYLES[1])])
+        lines.append([(f"{text} ", ""), (other.name, DESIGN_STYLES[1])])
     for first, among in [*(verdict.references.items() if verdict else ())][:1]:
         if other is None or other.name != first:
             text = squirt_difference(among["difference"], among["error"], among["distinct"])
@@ -119,7 +119,7 @@ def tiles(own: HeadlineCue, others: Sequence[HeadlineCue] = (), *, with_values: 
         value = _value(own, key)
         text = DASH if value is None else with_unit(value, unit, decimals=decimals)
         more = []
-        for style, other in zip(STYLES[1:], others, strict=False):
+        for style, other in zip(DESIGN_STYLES[1:], others, strict=False):
             beside = _value(other, key)
             if value is None or beside is None:
                 continue
@@ -148,7 +148,7 @@ def _value(design: HeadlineCue, key: str) -> float | None:
 def scale_markup(own: HeadlineCue, others: Sequence[HeadlineCue] = ()) -> str:
     """The reference cues, this design with its uncertainty, and the other ones, sorted by squirt."""
     squirts = {other.name: other.numbers["squirt"] for other in others}
-    styled = {other.name: (style, squirts[other.name]) for style, other in zip(STYLES[1:], others, strict=False)}
+    styled = {other.name: (style, squirts[other.name]) for style, other in zip(DESIGN_STYLES[1:], others, strict=False)}
     return _macro("scale", own.verdict.scale(own.name, squirts) if own.verdict else [], styled)
 
 
@@ -164,7 +164,7 @@ def drawings_markup(designs: Mapping[str, Scene]) -> str:
     ahead = max(map(leather_ahead, designs.values()))
     longest = max(scene.shaft.length for scene in designs.values())
     fronts, wholes = [], []
-    for style, (name, scene) in zip(STYLES, designs.items(), strict=False):
+    for style, (name, scene) in zip(DESIGN_STYLES, designs.items(), strict=False):
         front = cue_drawing(scene, f"Tip end of {name}, {title}", length, diameter_scale=1.0, ahead=ahead)
         whole = cue_drawing(scene, f"{name}, diameters {DIAMETER_SCALE:g} times enlarged", longest, ahead=ahead)
         fronts.append((name, style, front))

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from cuefem.analysis import report_sections
-from cuefem.analysis.comparison import STYLES, Comparison, compare_cues
+from cuefem.analysis.comparison import Comparison, compare_cues
 from cuefem.analysis.first_screen import HeadlineCue, comparison_lines, screen_markup
 from cuefem.analysis.squirt_curve import FINE_OFFSETS
 from cuefem.analysis.strike_models import regime_warning
@@ -19,7 +19,7 @@ from cuefem.results.records import Record
 from cuefem.results.solved_design import coupled_curve
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
-from cuefem.show.analysis import Analysis
+from cuefem.show.analysis import DESIGN_STYLES, Analysis
 from cuefem.show.charts import Chart
 from cuefem.show.glossary import with_glossary
 from cuefem.show.offset_charts import offset_charts
@@ -91,7 +91,7 @@ def page_of_comparison(
     """Compared cues as HTML: the first screen of the first one, which has this verdict, with the others beside it."""
     own, *others = [HeadlineCue(name, scene, compared.cues[name]) for name, scene in compared.scenes.items()]
     calibrated = compared.calibrated
-    styles = dict(zip(compared.scenes, STYLES, strict=False))
+    styles = dict(zip(compared.scenes, DESIGN_STYLES, strict=False))
     squirts = {name: each["squirt"] for name, each in compared.differences.items() if "squirt" in each}
     lines = [
         [(name, styles[name]), (f": {squirt_difference(**each).removesuffix(' than')}", "")]

@@ -19,13 +19,13 @@ from cuefem.results.quantities import DASH, RESULTS
 from cuefem.results.records import Record, Table
 from cuefem.results.uncertainty import SHAFT_ERROR
 from cuefem.scene import Scene
+from cuefem.show.analysis import DESIGN_STYLES
 from cuefem.show.charts import Axis, Curve, chart
 from cuefem.show.offset_charts import offset_charts
 from cuefem.show.plausibility import plausibility_warnings
 from cuefem.show.templates import answer_markup, chart_markup, shading_markup, table_markup
 
 HALF = 0.5 * (CURVE_OFFSETS[1] - CURVE_OFFSETS[0])
-STYLES = ("c1", "c2")
 COMPUTING = '<p class="soft">computing …</p>'
 
 
@@ -34,7 +34,7 @@ def curves_markup(session: Session) -> str:
     results = session.results
     sides = [
         (name, style, side)
-        for name, style, side in zip(session.designs(), STYLES, (results.own, results.other), strict=False)
+        for name, style, side in zip(session.designs(), DESIGN_STYLES, (results.own, results.other), strict=False)
     ]
     drawn = [(name, style, side["curve"]) for name, style, side in sides if "curve" in side]
     if not drawn or "curve" not in results.own:

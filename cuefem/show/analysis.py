@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from cuefem.show.charts import Chart
     from cuefem.show.drawings import CueDrawing
 
+DESIGN_STYLES = ("c1", "c2", "c3", "c4", "c5")  # CSS classes of designs side by side
+
 
 class MoreCharts(NamedTuple):
     """Charts that a page folds below an answer: title, charts, and the definitions of their curves."""

@@ -142,6 +142,7 @@ def test_scatter_command_equals_function(tmp_path: Path) -> None:
     assert stiffness["factors"]["wood"]["first"] == result.sobol_indices.first[0, 1]  # type: ignore[attr-defined]
     assert stiffness["factors"]["time"]["total_interval"] == [0, 0]
     assert len((tmp_path / "all.csv").read_text(encoding="utf-8").splitlines()) == 1 + 16 * 4
+    assert as_json("study", study)["evaluated"] == 0  # designs are stored
     out = " ".join(stdout_of("study", study).split())
     assert f"end mass, g {1e3 * result.spread['end_mass']['mean']:.3f}" in out
     assert "the strongest factor is wood (" in out  # time changes no stiffness

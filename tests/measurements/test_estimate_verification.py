@@ -177,6 +177,7 @@ def test_next_measurement_added_gives_predicted_gain() -> None:
     before = estimate(cue)
     gains = before.next_measurements()
     assert {type(gain.measurement) for gain in gains} <= set(MEASUREMENT_TYPES.values())
+    assert all(0 < gain.error_ratio <= 1 and gain.bits >= 0 for gain in gains)
     predicted = next(g for g in gains if isinstance(g.measurement, Stiffness) and g.measurement.free_length)
     value = before.predict(predicted.measurement)[0]
     more = replace(predicted.measurement, value=value)
