@@ -10,7 +10,7 @@ from cuefem.contact.refinement import RTOL, refinement_levels
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.effects.effect import Effect, effect_kinds
 from cuefem.endmass.definitions import equivalent_end_mass
-from cuefem.quantity.display_units import number_text, with_heading
+from cuefem.quantity.display_units import format_change, number_text, with_heading
 from cuefem.results.progress import Progress
 from cuefem.results.quantities import DASH, format_value
 from cuefem.results.records import Record, Table
@@ -62,7 +62,7 @@ class EffectSensitivity(Analysis):
         first = ("unmodified scene", squirt, mass, number_text(base["ball_speed"], "m/s", decimals=4))
         rows: list[tuple[str, ...]] = [(*first, f"{base['spin']:.2f}")]
         rows += [_cells(row) for row in tried if row["significant"]]
-        dim = range(len(rows), len(rows) + len(small) + 1)
+        significant = len(rows)
         if small:  # a row of its own, since a terminal may have no styles
             rows += [(f"changes less than {percent}:", *[""] * 4), *map(_cells, small)]
         table = Table(
@@ -79,7 +79,7 @@ class EffectSensitivity(Analysis):
                 "",
                 *self.recommendation_text(),
             ),
-            styles={0: "bold"} | dict.fromkeys(dim, "dim"),
+            styles={0: "bold"} | dict.fromkeys(range(significant, len(rows)), "dim"),
         )
         return [table]
 
@@ -229,7 +229,7 @@ def _cells(row: Record) -> tuple[str, ...]:
 def _percent(part: float | None) -> str:
     if part is None:
         return DASH
-    return "0 %" if abs(part) < 5e-6 else f"{100 * part:+.3f} %" if abs(part) < 1e-3 else f"{100 * part:+.2f} %"
+    return format_change(100 * part, 2, "%")
 
 
 # Effects without a default describe an individual cue, such as a point mass.

@@ -244,7 +244,7 @@ def _summary(rows: Sequence[Record]) -> str:
     """The error of the beam model in squirt, as a sentence."""
     row = next((row for row in rows if row["quantity"] == "squirt"), None) or rows[-1]
     difference, mesh = abs(row["difference"]), row["discretisation_error"]
-    size = _percent(max(difference, mesh), 2 if mesh < 0.05 * difference else 1)
+    size = _percent(max(difference, mesh), 1)
     error = f"less than {size}" if difference < mesh else size
     return (
         f"Error of the beam model for this shaft: {error} in {row['quantity']} (a part of the numerical error only; "

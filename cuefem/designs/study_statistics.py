@@ -114,7 +114,7 @@ def explained_variance(column: np.ndarray, results: Array) -> Array:
     total = results.var(axis=0)
     share = np.divide(between, total, out=np.zeros_like(total), where=total > 0)
     count, groups = member.shape
-    return np.clip(1 - (1 - share) * (count - 1) / (count - groups), 0, 1) if chance and count > groups else share
+    return np.clip(1 - (1 - share) * (count - 1) / (count - groups), 0, 1) if chance else share
 
 
 def groups_of(column: np.ndarray) -> tuple[NDArray[np.int_], bool]:

@@ -109,16 +109,17 @@ def parameters_of(
             raise ValueError(
                 f"uncertain parameters must be above 0, since their logarithm is estimated; got {key}, {value:g}"
             )
-        median, spread = _prior(prior, value, default_spread or 0.0)
+        median, spread = _prior(prior, value, default_spread)
         unit = entry.quantity(scene).unit
         parameters.append(UncertainParameter(entry.name, entry.label, unit, median, spread, _on_scene(entry.steps())))
     squirts = [measurement for measurement in measurements if isinstance(measurement, Squirt)]
     _, spread = _prior(by_key.get(SQUIRT_MODEL), 1.0, model_error(scene))
     factor: Any = lambda setup, value: setup._replace(squirt_factor=value)  # noqa: E731
     parameters.append(UncertainParameter(SQUIRT_MODEL, "true squirt over the model's", "", 1.0, spread, factor))
-    pendulums = [test for test in measurements if isinstance(test, EndMass) and test.contact_time_error]
-    if pendulums:
-        spread = max((test.contact_time_error or 0.0) / test.contact_time for test in pendulums)
+    pendulums = [test for test in measurements if isinstance(test, EndMass)]
+    spreads = [test.contact_time_error / test.contact_time for test in pendulums if test.contact_time_error]
+    if spreads:
+        spread = max(spreads)
         time_factor: Any = lambda setup, value: setup._replace(time_factor=value)  # noqa: E731
         label = "true contact time of the pendulum over the stated"
         parameters.append(UncertainParameter(BALL_TIME, label, "", 1.0, spread, time_factor))
@@ -134,9 +135,10 @@ def parameters_of(
     return tuple(parameter for parameter in parameters if parameter.spread > 0)
 
 
-def _prior(prior: Prior | None, median: float, spread: float) -> tuple[float, float]:
-    """Middle and spread."""
+def _prior(prior: Prior | None, median: float, spread: float | None) -> tuple[float, float]:
+    """Middle and spread, of the prior if there is one."""
     if prior is None:
+        assert spread is not None
         return median, spread
     if prior.low is not None and prior.high is not None:
         return math.sqrt(prior.low * prior.high), math.log(prior.high / prior.low) / 2

@@ -213,12 +213,10 @@ def chart(
 
 def spread_labels(positions: Sequence[float], first: float, last: float, *, gap: float = 14.0) -> list[float]:
     """Ascending positions moved to be at least ``gap`` apart, from ``first`` to ``last``."""
-    moved: list[float] = []
-    for position in positions:
-        moved.append(max([position, first, *(m + gap for m in moved[-1:])]))
-    for i in range(len(moved) - 1, -1, -1):
-        moved[i] = min([moved[i], last, *(m - gap for m in moved[i + 1 : i + 2])])
-    return moved
+    steps = gap * np.arange(len(positions))
+    onwards = np.maximum.accumulate(np.maximum(positions, first) - steps) + steps
+    back = np.minimum.accumulate((np.minimum(onwards, last) - steps)[::-1])[::-1] + steps
+    return back.tolist()
 
 
 def _within(scale: Scale, values: ArrayLike, *, bottom: float, top: float) -> Any:
