@@ -7,6 +7,7 @@ import html
 import itertools
 import json
 import re
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -126,7 +127,10 @@ def assert_golden(name: str, now: str, request: pytest.FixtureRequest) -> None:
 
 
 def drawing_text(page: str) -> str:
-    """The elements of the charts of a page, one a line, with each eighth point of a path, to four decimals."""
+    """How often a page has each class, and the elements of its charts, one a line.
+
+    Of a path each eighth point, to four decimals.
+    """
 
     def thinned(path: re.Match[str]) -> str:
         pieces = re.findall(r"[A-Zz][^A-Zz]*", path[1])
@@ -135,7 +139,14 @@ def drawing_text(page: str) -> str:
     charts = re.findall(r"<svg.*?</svg>", page, re.DOTALL)
     charts = [re.sub(r"\d+\.\d{5,}", lambda number: f"{float(number[0]):.4f}", chart) for chart in charts]
     lines = [line.strip() for chart in charts for line in re.sub(r"(<(?!/))", r"\n\1", chart).splitlines()]
+    lines = [str(sorted(Counter(re.findall(r'class="([^"]*)"', page)).items())), *lines]
     return "\n".join(re.sub(r' d="([^"]*)"', thinned, line) for line in lines if line) + "\n"
+
+
+def rounded(text: str) -> str:
+    """A text without round-off: numbers to five decimals, tiny ones as 0."""
+    text = re.sub(r"\d+(\.\d+)?e-(1[3-9]|[2-9]\d)", "0", text)
+    return re.sub(r"\d+\.\d{6,}", lambda number: f"{float(number[0]):.5f}", text)
 
 
 @pytest.fixture(scope="module")

@@ -22,6 +22,7 @@ from studies.games.games import RANDOM, SEED, pooltool_strike
 from studies.pages import STUDIES
 from tests.helpers.command_line import call, stdout_of
 from tests.helpers.pooltool import in_pooltool
+from tests.test_golden_files import assert_golden, drawing_text, page_text, rounded
 
 SCENE = cf.Scene(cf.LumpedCue(0.54, 0.01), cf.Ball(0.17, 0.028575), cf.Tip(0.75, 0.6, 1e-3))
 STROKES = ((1.0, 0.1), (1.5, -0.3), (2.7, 0.42), (4.0, 0.54))
@@ -37,6 +38,15 @@ def table() -> Iterator[StrikeTable]:
 def struck(speed: float, offset: float) -> cf.Outcome:
     """The coupled strike of a stroke."""
     return cf.strike(replace(SCENE, stroke=cf.Stroke(speed, offset)))
+
+
+def test_strike_table_equals_golden_file(table: StrikeTable, request: pytest.FixtureRequest) -> None:
+    """Its lines, its numbers, its text, and the points of its charts."""
+    page = table.to_html()
+    lines = [json.dumps({key: value}, default=list) for key, value in table.to_dict().items()]
+    assert_golden(
+        "strike_table.txt", rounded("\n".join([*lines, str(table), page_text(page), drawing_text(page)])), request
+    )
 
 
 def test_printed_strike_table_begins_and_ends_at_its_own_speeds(table: StrikeTable) -> None:

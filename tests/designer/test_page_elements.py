@@ -88,6 +88,7 @@ async def of_results() -> str:
     """The elements of a page that compares two designs."""
     with Client(ui.page("/"), request=None) as client:
         page = compared("Numbers")
+        page.screen.set_stale()
         page.screen.show_results()
         page.tabs.show_results()
         return "\n".join(described(client)) + "\n"

@@ -98,6 +98,7 @@ def test_save_motion_strike_equals_the_library(tmp_path: Path) -> None:
         np.testing.assert_array_equal(read.points, shaft.points + exaggerated)
         ball = meshio.read(folder / sets[2 * i + 1]["file"])
         np.testing.assert_allclose(ball.points.reshape(-1, 3)[36:-36].mean(axis=0), [*result.centre[i], 0], atol=1e-15)
+        np.testing.assert_array_equal(ball.points[:, 2], ball_surface(SCENE.ball.radius).points[:, 2])
         assert set(map(tuple, ball.point_data["force"])) == {(*result.force[i], 0)}
     history = cf.strike(SCENE).history(times[1])  # within the contact
     s, c = 0.3, np.sqrt(1 - 0.09)

@@ -1,5 +1,6 @@
 """Sections of closed surfaces against exact polygons, and the loaded shafts (verification)."""
 
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -54,6 +55,9 @@ def test_slices_equal_exact_polygons(name: str, facets: int) -> None:
         assert cut.moments[:2] == pytest.approx([outer[1] - bore[1]] * 2, rel=1e-10)
         assert cut.moments[2] == pytest.approx(0, abs=1e-10 * outer[1])
         assert cut.outlines == (1, int(bore[0] > 0))
+        aside = replace(body, points=body.points + np.array([0, 1e-3, -2e-3])).cut(x)
+        assert aside.centre == pytest.approx([1e-3, -2e-3], rel=1e-9)
+        assert [aside.area, *aside.moments] == pytest.approx([cut.area, *cut.moments], abs=1e-9 * outer[1])
 
 
 def body_jumps(cue: cf.Cue) -> list[int]:

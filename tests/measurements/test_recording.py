@@ -1,6 +1,7 @@
 """Recordings: estimate of the wood, mode numbers with missing modes, noise (verification)."""
 
 import itertools
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +11,10 @@ import cuefem as cf
 from cuefem.measurements.estimate import estimate
 from cuefem.measurements.measured_folder import load_measured
 from cuefem.measurements.measurement_types import Tone
-from cuefem.measurements.recording import Peak, assign_modes, tones_in
+from cuefem.measurements.recording import Peak, assign_modes, spectral_peaks, tones_in
 from tests.helpers.measured_cues import SHAFT, measured_folder
 from tests.helpers.recordings import other_wood, recording, save_wav, tap_sound
+from tests.test_golden_files import assert_golden
 
 POOL = Path(__file__).parents[2] / "meshes" / "pool_maple.toml"
 RECORDING = '[[recording]]\nfile = "tap.wav"\n'
@@ -58,6 +60,47 @@ def test_tones_with_missing_modes_have_right_mode_numbers(
     for tone in tones:
         assert abs(tone.value - true[tone.mode - 1]) < 3 * tone.sd
         assert tone.error < 2e-3 * tone.value
+
+
+def heard(rows: Sequence[tuple[float, float, float]], rate: float = 11025.0, last: float = 0.5) -> np.ndarray:
+    """Sound of tones of a frequency, a level in dB and a decay in 1/s that begin after 0.1 s of noise at -70 dB."""
+    time = np.arange(int((0.1 + last) * rate)) / rate - 0.1
+    tones = [10 ** (level / 20) * np.exp(-rho * time) * np.cos(2 * np.pi * f * time) for f, level, rho in rows]
+    sound = np.sum([np.where(time >= 0, tone, 0) for tone in tones], axis=0)
+    return np.asarray((sound + 10**-3.5 * np.random.default_rng(3).standard_normal(len(time)))[:, None])
+
+
+SOUNDS = {
+    "one": heard([(300.0, 0.0, 20.0)]),
+    "two, 4.2 % apart": heard([(300.0, 0.0, 20.0), (313.0, -10.0, 20.0)]),
+    "two, 5.3 % apart": heard([(300.0, 0.0, 20.0), (316.5, -10.0, 20.0)]),
+    "some quiet": heard([(300.0, 0.0, 20.0), (900.0, -30.0, 20.0), (1500.0, -45.0, 20.0)]),
+    "at the ends": heard([(f, 0.0, 20.0) for f in (180.0, 220.0, 1950.0, 2050.0)]),
+    "in noise": heard([(300.0, -40.0, 5.0), (700.0, -50.0, 5.0), (900.0, -60.0, 5.0)]),
+    "two taps": np.concatenate([0.3 * heard([(500.0, 0.0, 30.0)]), heard([(700.0, 0.0, 30.0)])]),
+    "two channels": np.hstack([heard([(500.0, 0.0, 30.0)]), 1 + heard([(700.0, 0.0, 60.0)])]),
+    "short": heard([(300.0, 0.0, 20.0)], last=0.11),
+    "too short": heard([(300.0, 0.0, 20.0)], last=0.09),
+    "silent": np.ones((9999, 1)),
+    "infinite": np.full((9999, 1), np.inf),
+}
+WOODS = (0.75, 0.9, 1.0, 1.2, 1.4)
+
+
+def test_peaks_and_mode_numbers_equal_golden_file(drawn: np.ndarray, request: pytest.FixtureRequest) -> None:
+    """Peaks of made sounds, with their errors, and the modes of three peaks in softer and stiffer woods."""
+    lines = []
+    for name, sound in SOUNDS.items():
+        try:
+            peaks = spectral_peaks(sound, 11025.0, 200.0, 2000.0)
+        except ValueError as error:
+            lines.append(f"{name}: {error}")
+            continue
+        lines.append(f"{name}: {', '.join(f'{peak.frequency:.3f} ± {peak.error:.2e}' for peak in peaks)}")
+    for factor, chosen in itertools.product(WOODS, [(0, 1, 2), (0, 2, 3), (1, 3, 4), (2, 3, 4, 5)]):
+        numbers = assign_modes([Peak(factor * float(drawn[i]), 0.1) for i in chosen], drawn)
+        lines.append(f"modes {chosen} times {factor}: {sorted(numbers)}")
+    assert_golden("recordings.txt", "\n".join(lines) + "\n", request)
 
 
 def test_mode_numbers_of_any_subset_and_wood_are_right(drawn: np.ndarray) -> None:
