@@ -16,9 +16,11 @@ from scipy.integrate import quad
 import cuefem as cf
 from cuefem import strike
 from tests.helpers.orders import assert_error_falls_with_the_step
+from tests.helpers.strike_scenes import maple
 from tests.oracle.partial_slip import LEATHER, maple_scene, small_step_squirt
 
 WITHIN = 5e-3
+FEW_MODES = cf.Scene(cf.Cue((cf.Segment(0.7, 0.012, 0.021, maple()),), body_mass=0.43))
 # A jump: squirt changes from one offset to the next by more than this factor times the change at either neighbour plus
 # 1e-4 of itself; a curve whose slope changes by a smaller factor within 1e-3 of b/R has none.
 BEND = 1.5
@@ -67,6 +69,27 @@ def squirt_error(scene: cf.Scene, step: float = 1e-6) -> float:
 def test_leather_slip_and_losses_agree_with_small_steps(offset: float, friction: float, restitution: float) -> None:
     leather = replace(LEATHER, surface_restitution=restitution)
     assert abs(squirt_error(maple_scene(offset, leather=leather, tip=cf.Tip(0.73, friction)), 2e-6)) < WITHIN
+
+
+@pytest.mark.parametrize(
+    ("restitution", "offset", "speed", "steps", "within"),
+    [(0.947, 0.436, 0.587, 100, 2e-4), (0.971, 0.3545, 3.011, 30, 2e-2), (0.769, 0.2974, 0.93, 30, 1e-3)],
+)
+@pytest.mark.kernel
+def test_sticking_leather_that_hardly_touches_has_forces(
+    restitution: float, offset: float, speed: float, steps: int, within: float
+) -> None:
+    """Before separation the indentation vanishes in mid-step, and with it the stiffness of an annulus."""
+    leather = replace(LEATHER, height=4e-3, dome_radius=math.inf, E=230e6)
+    scene = replace(FEW_MODES, tip=cf.Tip(restitution, math.inf), stroke=cf.Stroke(speed, offset), effects=(leather,))
+    coarse, fine = (strike(scene, cf.Resolution(1, 8, 12, steps=count)).squirt for count in (steps, 1600))
+    assert coarse == pytest.approx(fine, rel=within)
+
+
+@pytest.mark.parametrize("offset", [0.3, 0.4, 0.55])
+def test_leather_that_shrinks_slips_once(offset: float) -> None:
+    names = [phase[:2] for phase in strike(maple_scene(offset)).phases]
+    assert names == [("stick", "load"), ("stick", "unload"), ("slip", "unload")]
 
 
 @pytest.mark.nightly

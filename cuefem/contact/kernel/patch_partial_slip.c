@@ -7,27 +7,29 @@
    edges of the indentation has the stiffness k and the normal force N of the law between them. Its force f is
    a return mapping onto |f| <= mu N:
 
-       f -> clip(f min(k after/k before, 1) + k d(delta), +-mu N).
+       f -> clip(f min(k after/k before, 1) + k d(delta), +-mu N),
 
+   k being its mean over the step while it grows, and k after while it shrinks.
    Leather that dissipates tangential strain energy has the slope k/e^2 while |f| decreases, with the surface
    restitution e: of the work f d(delta) it stores the part e^2, in all f^2 e^2/2k. */
 #include "contact.h"
 
-/* Mean stiffness, N/m, of the annulus between the edges `inner` and `outer` over the indentations of a step:
-   it grows between the edges and is constant beyond. The mean of the step's ends is inaccurate if the step
-   crosses many annuli, as the first one does. */
-static inline double mean_stiffness(double inner, double outer, double from, double to, double k_from,
+/* Stiffness, N/m, with which the annulus between the edges `inner` and `outer` answers the shift of a step.
+   What has left contact bears no force of its strain in this step either: an annulus that shrinks has the
+   stiffness of the step's end, so that its force vanishes with it. One that grows has its mean over the
+   indentations of the step: it grows between the edges and is constant beyond. The mean of the step's ends is
+   inaccurate if the step crosses many annuli, as the first one does. */
+static inline double step_stiffness(double inner, double outer, double from, double to, double k_from,
                                     double k_to)
 {
-    if (k_from == k_to || from == to) return k_to;
-    double low = fmin(from, to), high = larger(from, to), top = from > to ? k_from : k_to;
-    double begins = larger(low, inner), ends = larger(begins, fmin(high, outer));
-    return ((k_from + k_to) / 2 * (ends - begins) + top * (high - ends)) / (high - low);
+    if (k_from == k_to || from >= to) return k_to;
+    double begins = larger(from, inner), ends = larger(begins, fmin(to, outer));
+    return ((k_from + k_to) / 2 * (ends - begins) + k_to * (to - ends)) / (to - from);
 }
 
 /* One annulus in this step. */
 typedef struct {
-    double k_before, k_after, k; /* its stiffness, N/m: at both ends of the step, and on average */
+    double k_before, k_after, k; /* its stiffness, N/m: at both ends of the step, and for its shift */
     double normal, normal_slope; /* its normal force, N, and the slope of that by the indentation, N/m */
 } Annulus;
 
@@ -60,7 +62,7 @@ static inline Annulus annulus(const Edge *inner, const Edge *outer, const Edge *
     Annulus a;
     a.k_before = from->indentation > inner->indentation ? end_before->stiffness - inner->stiffness : 0;
     a.k_after = end->stiffness - inner->stiffness;
-    a.k = mean_stiffness(inner->indentation, outer->indentation, from->indentation, to->indentation,
+    a.k = step_stiffness(inner->indentation, outer->indentation, from->indentation, to->indentation,
                          a.k_before, a.k_after);
     a.normal = end->force + end->slope * beyond_end - (inner->force + inner->slope * beyond_inner);
     a.normal_slope = end->slope - inner->slope;
