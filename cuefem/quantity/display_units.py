@@ -24,31 +24,28 @@ class DisplayUnit(NamedTuple):
     name: str
     decimals: int | None = None
 
+    @classmethod
+    def of(cls, unit: str, name: str, decimals: int | None = None) -> DisplayUnit:
+        """The display unit of an SI unit, by the table of units."""
+        return cls(1 / float(conversion_factor(name, unit)), name, decimals)
+
 
 # Keys beside the SI units. Makers weigh cues in ounces, and state end masses and tips in grams everywhere; a distance
 # off the line of aim grows with the distance to the ball aimed at.
 END_MASS, OFF_LINE = "kg of end mass", "m/m"
+_METRIC_NAMES = {"kg": "g", "m": "mm", "m/s": "m/s", "s": "ms", "rad": "°", "Pa": "GPa", "kg/m^3": "kg/m³"}
+_US_NAMES = {"kg": ("oz", 3), "m": ("in", 3), "m/s": ("mph", 2)}
 METRIC = MappingProxyType(
-    {
-        "kg": DisplayUnit(1e3, "g"),
-        END_MASS: DisplayUnit(1e3, "g"),
-        "m": DisplayUnit(1e3, "mm"),
-        OFF_LINE: DisplayUnit(1e3, "mm/m"),
-        "m/s": DisplayUnit(1.0, "m/s"),
-        "s": DisplayUnit(1e3, "ms"),
-        "rad": DisplayUnit(math.degrees(1), "°"),
+    {unit: DisplayUnit.of(unit, name) for unit, name in _METRIC_NAMES.items()}
+    | {
+        END_MASS: DisplayUnit.of("kg", "g"),
+        OFF_LINE: DisplayUnit.of("m/m", "mm/m"),
         "J": DisplayUnit(1e3, "mJ"),
-        "Pa": DisplayUnit(1e-9, "GPa"),
-        "kg/m^3": DisplayUnit(1.0, "kg/m³"),
         "1/sqrt(kg)": DisplayUnit(1.0, "/√kg"),
     }
 )
-US = METRIC | {
-    "kg": DisplayUnit(1 / float(conversion_factor("oz", "kg")), "oz", 3),
-    "m": DisplayUnit(1 / float(conversion_factor("in", "m")), "in", 3),
-    OFF_LINE: DisplayUnit(float(conversion_factor("ft", "in")), "in/ft", 2),
-    "m/s": DisplayUnit(1 / float(conversion_factor("mph", "m/s")), "mph", 2),
-}
+US = METRIC | {unit: DisplayUnit.of(unit, *name) for unit, name in _US_NAMES.items()}
+US |= {OFF_LINE: DisplayUnit.of("m/m", "in/ft", 2)}
 SYSTEMS = MappingProxyType({"metric": METRIC, "us": US})
 _displayed = "metric"  # of this process: threads that compute a page's results write its texts too
 

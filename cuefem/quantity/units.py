@@ -28,52 +28,42 @@ EXAMPLES = {
     "Hz": ("a frequency", "250 Hz"),
 }
 
-Powers = tuple[int, int, int, int]  # of m, kg, s and rad
+Powers = tuple[int, ...]  # of the base units
 
 
 class Unit(NamedTuple):
-    """A unit: its scale, in SI units, and its dimension as powers of m, kg, s and rad."""
+    """A unit: its scale, in SI units, and its dimension as powers of the base units."""
 
     scale: Decimal
     powers: Powers
 
 
-# All units without powers or products, by dimension: scale in SI units, and names, first the preferred one.
-# Products, powers and quotients of them ("lb/in^3", "N mm/rad") need no entry.
-_TABLE: dict[Powers, str] = {
-    (
-        1,
-        0,
-        0,
-        0,
-    ): """0.001 mm millimetre millimetres millimeter millimeters мм 毫米 ミリ 밀리미터;
+# All units without powers or products, by SI unit: scale in it, and names, first the preferred one. An SI unit consists
+# of base units, which come first. Products, powers and quotients ("lb/in^3", "N mm/rad") need no entry.
+_BASE_UNITS = ("m", "kg", "s", "rad")
+_TABLE = {
+    "m": """0.001 mm millimetre millimetres millimeter millimeters мм 毫米 ミリ 밀리미터;
         1 m metre metres meter meters; 0.01 cm centimetre centimetres centimeter centimeters см 厘米 公分 センチ;
         0.0254 in inch inches zoll " ″ ” ''; 0.3048 ft foot feet;
         0.0000254 thou mil mils; 0.000001 um µm μm micron microns micrometre micrometres micrometer micrometers;
         0.9144 yd yard yards; 1000 km; 1609.344 mile miles mi""",
-    (0, 1, 0, 0): """0.001 g gram grams gramme grammes; 1 kg kilogram kilograms kilo kilos; 1000 t tonne tonnes;
+    "kg": """0.001 g gram grams gramme grammes; 1 kg kilogram kilograms kilo kilos; 1000 t tonne tonnes;
         0.028349523125 oz ounce ounces; 0.45359237 lb lbs pound pounds; 0.000001 mg milligram milligrams;
         0.00006479891 grain grains""",
-    (0, 0, 1, 0): """0.001 ms msec millisecond milliseconds; 1 s sec second seconds; 60 min minute minutes;
+    "s": """0.001 ms msec millisecond milliseconds; 1 s sec second seconds; 60 min minute minutes;
         0.000001 us µs μs usec microsecond microseconds; 3600 h hr hour hours""",
-    (0, 0, 0, 1): """0.01745329251994329576923690768 deg degree degrees °; 1 rad radian radians;
+    "rad": """0.01745329251994329576923690768 deg degree degrees °; 1 rad radian radians;
         0.001 mrad milliradian milliradians; 0.0002908882086657215961539484614 arcmin arcminute arcminutes;
         0.000004848136811095359935899141023 arcsec arcsecond arcseconds""",
-    (1, 0, -1, 0): """0.44704 mph; 0.2777777777777777777777777778 kph kmh; 0.3048 fps;
+    "m/s": """0.44704 mph; 0.2777777777777777777777777778 kph kmh; 0.3048 fps;
         0.5144444444444444444444444444 knot knots kt kts""",
-    (1, 1, -2, 0): """1 N newton newtons; 1000 kN; 4.4482216152605 lbf; 9.80665 kgf kp; 0.00980665 gf;
+    "kg m/s^2": """1 N newton newtons; 1000 kN; 4.4482216152605 lbf; 9.80665 kgf kp; 0.00980665 gf;
         0.27801385095378125 ozf""",
-    (-1, 1, -2, 0): """1E+9 GPa gigapascal gigapascals; 1E+6 MPa megapascal megapascals; 1 Pa pascal pascals;
+    "kg/(m s^2)": """1E+9 GPa gigapascal gigapascals; 1E+6 MPa megapascal megapascals; 1 Pa pascal pascals;
         1000 kPa kilopascal kilopascals; 6894.757293168361336722673445 psi; 6894757.293168361336722673445 ksi;
         6894757293.168361336722673445 Msi; 100000 bar""",
-    (0, 0, -1, 0): "1 Hz hz hertz; 1000 kHz kilohertz; 1E+6 MHz megahertz",
-    (3, 0, 0, 0): "0.000001 cc ml mL; 0.001 l L litre litres liter liters",
-}
-UNITS = {
-    name: Unit(Decimal(scale), powers)
-    for powers, units in _TABLE.items()
-    for scale, *names in map(str.split, units.split(";"))
-    for name in names
+    "1/s": "1 Hz hz hertz; 1000 kHz kilohertz; 1E+6 MHz megahertz",
+    "m^3": "0.000001 cc ml mL; 0.001 l L litre litres liter liters",
 }
 
 FRACTION = re.compile(r"(?:([0-9]+)(?:\s+|-))?([0-9]+)\s*/\s*([1-9][0-9]*)")  # 5/16, 1 1/4 and 1-1/4
@@ -87,7 +77,7 @@ MAX_QUANTITY_CHARACTERS = 200  # characters of a number and its unit: the cost o
 _OPERATORS = re.compile(r"\s*([*/·])\s*|\s+")
 _FACTOR = re.compile(r"([^\W\d_]+|[°\"″”']+)(?:\^(-?[0-9])|([23]))?")
 _FRACTION_BAR = re.compile(r"(.*?)(?:/\s*\(([^/()]*)\))?", re.DOTALL)  # numerator, denominator in brackets: rad/(N m)
-_NO_UNIT = Unit(Decimal(1), (0, 0, 0, 0))
+_NO_UNIT = Unit(Decimal("1"), (0,) * len(_BASE_UNITS))
 _POWERS = str.maketrans({"²": "^2", "³": "^3"})
 
 
@@ -110,7 +100,7 @@ def unit_of(text: str) -> Unit:
             factor = _factor(word)
             power = -sign if operator == "/" else sign
             scale = scale * factor.scale if power > 0 else scale / factor.scale
-            powers = tuple(p + power * q for p, q in zip(powers, factor.powers, strict=True))  # type: ignore[assignment]
+            powers = tuple(p + power * q for p, q in zip(powers, factor.powers, strict=True))
     return Unit(scale, powers)
 
 
@@ -123,7 +113,18 @@ def _factor(text: str) -> Unit:
     if not match or not entry:
         raise UnknownUnit(match[1] if match else text)
     power = int(match[2] or match[3] or 1)
-    return Unit(entry.scale**power, tuple(power * p for p in entry.powers))  # type: ignore[arg-type]
+    return Unit(entry.scale**power, tuple(power * p for p in entry.powers))
+
+
+def _dimension(si: str) -> Powers:
+    """The powers of an SI unit of the table."""
+    return tuple(int(si == base) for base in _BASE_UNITS) if si in _BASE_UNITS else unit_of(si).powers
+
+
+UNITS: dict[str, Unit] = {}
+for _si, _units in _TABLE.items():
+    for _scale, *_names in map(str.split, _units.split(";")):
+        UNITS |= dict.fromkeys(_names, Unit(Decimal(_scale), _dimension(_si)))
 
 
 def conversion_factor(unit: str, target: str) -> Decimal:
