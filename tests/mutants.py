@@ -7,6 +7,9 @@ the tests that execute the line, the shortest first, until one fails: forked fro
 with the changed functions' code exchanged, or, for the level of a module, from one that has not imported the package.
 A process has a limit of processor time, not of time: a busy machine has no effect. `equivalent_mutants.txt` lists
 mutants that no test can detect, each with its reason.
+A number becomes a tenth larger, an integer the next one. At the level of a module, a power of ten that is very small or
+large becomes a thousand times larger, and an integer from ten on half as large: such numbers are tolerances and
+resolutions, whose neighbours change no digit that anyone is promised.
 Printed: one line a mutant, then detected fractions by group and room with their 95 % intervals (Wilson).
 """
 
@@ -64,7 +67,8 @@ EXCLUDED = (
 # What calls the kernel, whose C has no coverage of its own, and the tests of contacts.
 KERNEL_CALLS = ("cuefem/contact/step_records.py", "cuefem/endmass/impulse_response.py")
 KERNEL_TESTS = ("tests/contact", "tests/effects", "tests/endmass", "tests/test_golden")
-DEFAULT_TESTS = "tests/test_defaults.py"  # of signatures against documents: they execute no line of the file
+# Of signatures and tables, whose lines imports execute: first for a mutant at module level.
+TABLE_TESTS = ("tests/test_defaults.py", "tests/test_golden_tables.py")
 NO_RESULT = ("repr", "maxsize")  # keywords: what a dataclass prints of itself, the size of a cache
 SWAPS: dict[type, type] = {
     **{ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult},
@@ -114,7 +118,7 @@ class Mutant(NamedTuple):
         return self.path.relative_to(ROOT / "cuefem").parts[0]
 
 
-def changed(node: ast.AST) -> ast.expr | None:
+def changed(node: ast.AST, in_function: bool = True) -> ast.expr | None:
     """A changed expression for an operator, comparison, condition or number, or None."""
     match node:
         case ast.BinOp(left, op, right) if type(op) in SWAPS and not isinstance(left, ast.Constant | ast.JoinedStr):
@@ -127,9 +131,18 @@ def changed(node: ast.AST) -> ast.expr | None:
             return operand
         case ast.Constant(bool(value)):
             return ast.Constant(not value)
+        case ast.Constant(int(value)) if value >= 10 and not in_function:
+            return ast.Constant(value // 2)
+        case ast.Constant(float(value)) if is_order_of_magnitude(value) and not in_function:
+            return ast.Constant(1e3 * value)
         case ast.Constant(int(value) | float(value)):
             return ast.Constant(value + 1 if isinstance(value, int) or value == 0 else 1.1 * value)
     return None
+
+
+def is_order_of_magnitude(value: float) -> bool:
+    """Whether a number is a power of ten beyond 1e-4 to 1e6: of a tolerance, or of something that is never reached."""
+    return value > 0 and math.log10(value).is_integer() and not 1e-4 < value < 1e6
 
 
 def expressions(node: ast.AST, in_function: bool = False) -> Iterator[tuple[ast.expr, bool]]:
@@ -158,7 +171,7 @@ def python_mutants(path: Path) -> Iterator[Mutant]:
     room = path.relative_to(ROOT / "cuefem").parts[0]
     kind = "interface" if room in INTERFACE else "core"
     for node, in_function in expressions(ast.parse(text)):
-        new = changed(node)
+        new = changed(node, in_function)
         if new is None or node.end_lineno is None or node.end_col_offset is None:
             continue
         ends = starts[node.lineno - 1] + node.col_offset, starts[node.end_lineno - 1] + node.end_col_offset
@@ -210,7 +223,7 @@ class Reach(NamedTuple):
         """Tests for a mutant: those that execute its line, else those of its file; then the others of their files.
 
         Of each kind the ``FIRST`` shortest come first, then the others file by file; up to ``SECONDS`` in all. For a
-        mutant at module level the tests of documented defaults come first.
+        mutant at module level the tests of defaults and tables come first.
         """
         files = KERNEL_CALLS if mutant.group == "C" else (mutant.file,)
         lines = [row for file in files for row in self.tests.get(file, {}).items()]
@@ -220,7 +233,7 @@ class Reach(NamedTuple):
             reached = [name for name in reached if name.startswith(KERNEL_TESTS)]
         of_reached = {test_file(name) for name in reached}
         others = {name for name in self.seconds if test_file(name) in of_reached} - set(reached)
-        first = [name for name in self.seconds if test_file(name) == DEFAULT_TESTS and mutant.group == "module level"]
+        first = [name for name in self.seconds if test_file(name) in TABLE_TESTS and mutant.group == "module level"]
         ordered = [*first, *(name for names in (reached, others) for name in self.ordered(set(names) - set(first)))]
         total = itertools.accumulate(self.seconds[name] for name in ordered)
         return [name for name, until in zip(ordered, total, strict=True) if until < SECONDS]

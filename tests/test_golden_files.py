@@ -53,12 +53,18 @@ def last_place(number: str) -> float:
     return 10.0 ** (int(power or 0) - len(digits.partition(".")[2]))
 
 
+def alike(one: str, other: str) -> bool:
+    """Whether two numbers differ by at most one unit in the last digit, with as many decimals if they are rounded."""
+    decimals = {len(number.partition(".")[2]) for number in (one, other)}
+    close = abs(float(one.replace("−", "-")) - float(other.replace("−", "-"))) < 1.01 * last_place(one)
+    return close and (len(decimals) == 1 or max(decimals) > 4)  # five and more: as Python writes a float
+
+
 def differences(stored: str, now: str) -> list[tuple[str, str]]:
-    """Lines that differ by more than one unit in the last digit of a number."""
+    """Lines that differ by more than one unit in the last digit of a number, or in its decimals."""
     off = []
     for one, other in zip(stored.splitlines(), now.splitlines(), strict=False):
-        pairs = list(zip(NUMBER.findall(one), NUMBER.findall(other), strict=False))
-        close = (abs(float(a.replace("−", "-")) - float(b.replace("−", "-"))) < 1.01 * last_place(a) for a, b in pairs)
+        close = map(alike, NUMBER.findall(one), NUMBER.findall(other))
         if " ".join(NUMBER.sub("#", one).split()) != " ".join(NUMBER.sub("#", other).split()) or not all(close):
             off.append((one, other))
     return off
