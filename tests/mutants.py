@@ -70,6 +70,7 @@ KERNEL_TESTS = ("tests/contact", "tests/effects", "tests/endmass", "tests/test_g
 # Of signatures and tables, whose lines imports execute: first for a mutant at module level.
 TABLE_TESTS = ("tests/test_defaults.py", "tests/test_golden_tables.py")
 NO_RESULT = ("repr", "maxsize")  # keywords: what a dataclass prints of itself, the size of a cache
+FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 SWAPS: dict[type, type] = {
     **{ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult},
     **{ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq},
@@ -156,7 +157,9 @@ def expressions(node: ast.AST, in_function: bool = False) -> Iterator[tuple[ast.
             continue
         if isinstance(node, ast.keyword) and node.arg in NO_RESULT:
             continue
-        inside = in_function or (isinstance(node, ast.FunctionDef | ast.Lambda) and name == "body")
+        inside = in_function or (
+            isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda) and name == "body"
+        )
         for child in value if isinstance(value, list) else [value]:
             if isinstance(child, ast.expr):
                 yield child, inside
@@ -586,6 +589,8 @@ def judged(
     judge: Callable[..., None], trees: Sequence[Path], reach: Reach, mutants: Sequence[Mutant]
 ) -> Iterator[tuple[Mutant, str | None]]:
     """Each mutant with the first failure that it causes, as processes find them, one a tree; None if not judged."""
+    if not mutants:
+        return
     context = multiprocessing.get_context("fork")
     tasks, results = context.SimpleQueue(), context.SimpleQueue()
     workers = [context.Process(target=judge, args=(tree, reach, tasks, results)) for tree in trees]

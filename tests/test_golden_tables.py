@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 import cuefem as cf
+from cuefem.analysis.design_changes import changes_of
 from cuefem.cli import listed_commands
 from cuefem.cue.materials import material
 from cuefem.designer.controls import KNOBS, range_of
@@ -22,6 +23,7 @@ from cuefem.results.quantities import RESULTS
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.scene.default_scene import GAMES
 from cuefem.scene.solved_scene import SolvedScene
+from cuefem.show.plausibility import plausibility_warnings
 from tests.helpers.command_line import call
 from tests.test_golden_files import assert_golden
 
@@ -96,15 +98,32 @@ def refusal(cue: Any, *effects: Any) -> str:
     return ""
 
 
+def changes(folder: Path) -> list[object]:
+    """Every change that `cuefem improve` tries on solid, bored and tubular shafts."""
+    scenes = [cf.usual_scene(cf.load(f"meshes/{name}.toml")) for name in ("pool_maple", "pool_hollow", "carbon")]
+    return [change for scene in scenes for change in changes_of(scene)]
+
+
+def warnings(folder: Path) -> list[object]:
+    """Warnings of a scene in which nothing is plausible: the values that are expected."""
+    tungsten = cf.Material(4e11, 1.6e11, 2000.0)
+    cones = ((0.2, 0.004, 0.05), (0.5, 0.08, 0.09), (1.0, 0.02, 0.03))
+    cue = cf.Cue(tuple(cf.Segment(*cone, tungsten) for cone in cones), 0.9)
+    ball, tip = cf.Ball(mass=0.6, radius=0.06), cf.Tip(restitution=0.99, friction=1.5, contact_time=0.02)
+    scenes = cf.Scene(cue, ball, tip, cf.Stroke(50.0, 0.3), (cf.TipDome(0.2),)), cf.Scene(cf.LumpedCue(0.1, 0.01))
+    return [warning for scene in scenes for warning in plausibility_warnings(scene)]
+
+
 def measurements(folder: Path) -> list[object]:
     """The measurements that an estimate may ask for next, with the errors of simple instruments."""
     scene = cf.load("studies/scenes/kim.toml")
     return [row for kind in MEASUREMENT_TYPES.values() for row in kind.candidates(scene)]
 
 
-@pytest.mark.parametrize("table", [options, results, units, games, ranges, effects, measurements])
+@pytest.mark.parametrize("table", [options, results, units, games, ranges, effects, changes, warnings, measurements])
 def test_table_equals_golden_file(
     table: Callable[[Path], list[object]], tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
-    rows = [row if isinstance(row, str) else str(row) for row in table(tmp_path)]
-    assert_golden(f"table_{table.__name__}.txt", "\n".join(rows) + "\n", request)
+    text = "".join(f"{row}\n" for row in table(tmp_path))
+    text = re.sub(r"\d+\.\d{9,}(?!\d|e)", lambda number: f"{float(number[0]):.8g}", text)
+    assert_golden(f"table_{table.__name__}.txt", text, request)

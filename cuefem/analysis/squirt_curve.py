@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from cuefem.analysis.reduction import PAPER_CUE_ENDS
 from cuefem.analysis.strike_models import PIVOT_NOTE, a31_squirt, lumped_cues, lumped_strike
 from cuefem.analysis.verdict import with_cue
 from cuefem.cue import LumpedCue
@@ -25,7 +26,6 @@ from cuefem.show.scene_summary import assumptions, scene_record
 if TYPE_CHECKING:
     from cuefem.show.charts import Chart
 
-PAPER_CUE_END_MASS = 0.012  # kg, [Kim]'s m_c of a real cue: four times the effective end mass
 FINE_OFFSETS = tuple(round(0.025 * i, 3) for i in range(1, 25))  # b/R of the curves of a page; a table has each 0.1
 MAX_ROWS = 12  # a table of more offsets has only each 0.1
 OWN = "coupled, this cue"
@@ -147,7 +147,7 @@ def squirt_curve(scene: Scene | SolvedDesign, offsets: Sequence[float] = OFFSETS
     scene, solved = design.scene, design.solved
     own = lumped_cues(scene, offsets, solved.stick_tip)
     cues = {f"{name}, this cue": each for name, each in own.items()}
-    cues["two-part, 12 g"] = [LumpedCue.two_part(scene.axial_mass, PAPER_CUE_END_MASS)] * len(offsets)
+    cues["two-part, 12 g"] = [LumpedCue.two_part(scene.axial_mass, PAPER_CUE_ENDS["Kim's guess"])] * len(offsets)
     cues["A.31, this cue"] = own["two-part"]
     struck = [at_offset(scene, offset) for offset in offsets]
     models: Record = {"coupled, this cue": coupled_curve(scene, offsets, solved.tip)}

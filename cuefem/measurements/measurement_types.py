@@ -11,6 +11,7 @@ from cuefem.contact.side_strike import Striker
 from cuefem.measurements.predictions import N_FREQUENCIES, Predictions, predictions_of
 from cuefem.quantity.display_units import END_MASS, with_unit
 from cuefem.quantity.fields import CONTACT_TIME, LENGTH, Quantity, check_count, check_fields
+from cuefem.quantity.units import parse_number
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.quantities import balance_point, drawn_mass, tip_height
 from cuefem.scene import Scene
@@ -19,7 +20,7 @@ MASS = Quantity("kg", "(0, inf)")
 ANGLE = Quantity("rad", "(-1.5, 1.5)")
 POSITIVE = "(0, inf)"
 PARTS = ("shaft", "cue")
-INCH = 0.0254
+NEAR_TIP = parse_number("8 in", "m")  # free length of a second stiffness
 FREQUENCY_MODEL_ERROR = 2e-3  # relative, of a natural frequency: diameters to 0.1 %, uneven grain, the beam
 # Errors (1 sigma) of simple instruments: of the candidates for the next measurement.
 SCALE_ERROR = 0.5e-3  # kg, of a kitchen scale
@@ -223,7 +224,7 @@ class Stiffness(Measurement):
     @classmethod
     def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
         """The whole shaft, and its last 8 in."""
-        lengths = (None, 8 * INCH)
+        lengths = (None, NEAR_TIP)
         results = []
         for length in lengths:
             if length is None or length < scene.shaft.length:

@@ -14,9 +14,10 @@ from cuefem.effects.effect import Effect
 from cuefem.effects.leather_tip import LeatherTip
 from cuefem.quantity.fields import check_kind
 from cuefem.quantity.unit_checks import MIN_CUE_MASS
+from cuefem.quantity.units import conversion_factor
 from cuefem.scene.scene import Ball, Scene, Stroke, Tip
 
-OUNCE = 0.45359237 / 16  # kg
+OUNCE = float(conversion_factor("oz", "kg"))
 BODY_MASS_RANGE = (13.5, 17.5)  # oz, of pool: cues of 18 to 21 oz less shafts of 3.5 to 4.5 oz
 WAVE_SPEED = 4430.0  # m/s in the butt: the root of E over the density of maple, and of ash
 
