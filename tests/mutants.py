@@ -5,8 +5,9 @@ module or class (tables, limits, defaults), or in the kernel's C. A first run of
 records which test executes which line. Then each mutant is written into a copy of the tree, and a forked process runs
 the tests that execute the line, the shortest first, until one fails: forked from one that has collected the tests and
 with the changed functions' code exchanged, or, for the level of a module, from one that has not imported the package.
-A process has a limit of processor time, not of time: a busy machine has no effect. `equivalent_mutants.txt` lists
-mutants that no test can detect, each with its reason.
+A process has a limit of processor time, not of time: a busy machine has no effect. A mutant that does not compile, or
+compiles to the same code, is not drawn. `equivalent_mutants.txt` lists mutants that no test can detect, each with its
+reason.
 A number becomes a tenth larger, an integer the next one. At the level of a module, a power of ten that is very small or
 large becomes a thousand times larger, and an integer from ten on half as large: such numbers are tolerances and
 resolutions, whose neighbours change no digit that anyone is promised.
@@ -16,6 +17,7 @@ Printed: one line a mutant, then detected fractions by group and room with their
 import argparse
 import ast
 import contextlib
+import dis
 import functools
 import gc
 import itertools
@@ -33,6 +35,7 @@ import sys
 import tempfile
 import time
 import types
+import warnings
 from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import partial
@@ -90,10 +93,11 @@ C_IGNORED = re.compile(
 
 
 class Mutant(NamedTuple):
-    """A file, the first changed line, the changed range in bytes of UTF-8, the old and the new text, and the group."""
+    """A file, the changed line and its text, the range in bytes of UTF-8, the old and the new text, and the group."""
 
     path: Path
     line: int
+    row: str
     ends: tuple[int, int]
     old: str
     new: str
@@ -110,8 +114,8 @@ class Mutant(NamedTuple):
 
     @property
     def name(self) -> str:
-        """File and change, without a line number, as `equivalent_mutants.txt` has them."""
-        return f"{self.file}: {self.old} -> {self.new}"
+        """File, line and change, without a line number, as `equivalent_mutants.txt` has them."""
+        return " ".join(f"{self.file}: {self.row}: {self.old} -> {self.new}".split())
 
     @property
     def room(self) -> str:
@@ -170,7 +174,8 @@ def expressions(node: ast.AST, in_function: bool = False) -> Iterator[tuple[ast.
 def python_mutants(path: Path) -> Iterator[Mutant]:
     """Every mutant of a Python file."""
     text = path.read_bytes()
-    starts = [0, *itertools.accumulate(len(row) for row in text.splitlines(keepends=True))]
+    rows = text.splitlines(keepends=True)
+    starts = [0, *itertools.accumulate(map(len, rows))]
     room = path.relative_to(ROOT / "cuefem").parts[0]
     kind = "interface" if room in INTERFACE else "core"
     for node, in_function in expressions(ast.parse(text)):
@@ -178,8 +183,9 @@ def python_mutants(path: Path) -> Iterator[Mutant]:
         if new is None or node.end_lineno is None or node.end_col_offset is None:
             continue
         ends = starts[node.lineno - 1] + node.col_offset, starts[node.end_lineno - 1] + node.end_col_offset
-        old = text[slice(*ends)].decode()
-        yield Mutant(path, node.lineno, ends, old, f"({ast.unparse(new)})", kind if in_function else "module level")
+        row, old = rows[node.lineno - 1].decode(), text[slice(*ends)].decode()
+        group = kind if in_function else "module level"
+        yield Mutant(path, node.lineno, row, ends, old, f"({ast.unparse(new)})", group)
 
 
 def c_mutants(path: Path) -> Iterator[Mutant]:
@@ -187,17 +193,47 @@ def c_mutants(path: Path) -> Iterator[Mutant]:
     text = path.read_text(encoding="utf-8")
     ignored = [match.span() for match in C_IGNORED.finditer(text)]
     for match in C_SITE.finditer(text):
-        row = text[text.rfind("\n", 0, match.start()) + 1 :]
+        row = text[text.rfind("\n", 0, match.start()) + 1 :].partition("\n")[0]
         if not row.startswith(" ") or any(start <= match.start() < end for start, end in ignored):
             continue
         old = match[0]
         new = C_SWAPS.get(old) or (repr(1.1 * float(old) or 1.0) if "." in old else str(int(old) + 1))
         ends = len(text[: match.start()].encode()), len(text[: match.end()].encode())
-        yield Mutant(path, text.count("\n", 0, match.start()) + 1, ends, old, new, "C")
+        yield Mutant(path, text.count("\n", 0, match.start()) + 1, row, ends, old, new, "C")
 
 
-def drawn(seed: int, counts: dict[str, int]) -> list[Mutant]:
-    """A random sample of each group, without those listed as equivalent."""
+def is_other(mutant: Mutant, tree: Path) -> bool:
+    """Whether a mutant compiles, to other code than what it changes: else no test can tell."""
+    whole = mutant.path.read_bytes()
+    if mutant.group == "C":
+        return library(tree, mutant.file, mutant.applied(whole)) not in (b"", library(tree, mutant.file, whole))
+    try:
+        with warnings.catch_warnings(action="ignore"):  # of a comparison that is always true
+            other = compile(mutant.applied(whole), mutant.file, "exec")
+    except SyntaxError:
+        return False
+    return instructions(other) != instructions(compile(whole, mutant.file, "exec"))
+
+
+def instructions(code: types.CodeType) -> list[Any]:
+    """The instructions of a code and of those in it, without positions."""
+    own = [(type(one.argval), one.opcode, repr(one.argval)) for one in dis.get_instructions(code)]
+    return [own, [instructions(constant) for constant in code.co_consts if isinstance(constant, types.CodeType)]]
+
+
+@functools.lru_cache(maxsize=32)
+def library(tree: Path, file: str, text: bytes) -> bytes:
+    """The kernel compiled from a tree with another text of one file, without the digest; b"" if it does not compile."""
+    path = tree / file
+    whole = path.read_bytes()
+    path.write_bytes(text)
+    compiles = built(tree, CFLAGS="-O1 -Wl,--build-id=none")
+    path.write_bytes(whole)
+    return re.sub(rb"[0-9a-f]{64}", b"", next(path.parent.glob("_kernel.*")).read_bytes()) if compiles else b""
+
+
+def drawn(seed: int, counts: dict[str, int], tree: Path) -> list[Mutant]:
+    """A random sample of each group, without those listed as equivalent and those that `is_other` excludes."""
     listed = EQUIVALENT.read_text(encoding="utf-8").splitlines() if EQUIVALENT.exists() else []
     equivalent = {row.partition(" | ")[0] for row in listed if row and not row.startswith("#")}
     python = sorted((ROOT / "cuefem").rglob("*.py"))
@@ -208,11 +244,13 @@ def drawn(seed: int, counts: dict[str, int]) -> list[Mutant]:
             population[mutant.group].append(mutant)
     for group, mutants in population.items():
         print(f"{group}: {len(mutants)} mutants, {counts[group]} drawn")
-    return [
-        mutant
-        for group, count in counts.items()
-        for mutant in random.Random(f"{seed} {group}").sample(population[group], min(count, len(population[group])))
-    ]
+    sample = []
+    for group, count in counts.items():
+        random.Random(f"{seed} {group}").shuffle(population[group])
+        others = (mutant for mutant in population[group] if is_other(mutant, tree))
+        sample += itertools.islice(others, count)
+    built(tree)
+    return sample
 
 
 class Reach(NamedTuple):
@@ -569,10 +607,11 @@ def judge_anew(tree: Path, reach: Reach, mutants: Any, results: Any) -> None:
     results.put(None)
 
 
-def built(tree: Path) -> bool:
+def built(tree: Path, **environment: str) -> bool:
     """Compile the kernel of a tree; whether it compiles."""
     command = [sys.executable, "hatch_build.py"]
-    return subprocess.run(command, cwd=tree, capture_output=True, check=False).returncode == 0
+    done = subprocess.run(command, cwd=tree, env=os.environ | environment, capture_output=True, check=False)
+    return done.returncode == 0
 
 
 def copied(folder: Path) -> Path:
@@ -657,13 +696,13 @@ def main() -> None:
     }
     os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
-    sample = drawn(options.seed, counts)
     start = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
         trees = [copied(Path(folder) / f"tree{number}") for number in range(options.workers)]
+        sample = drawn(options.seed, counts, trees[0])
         reach = first_run(trees[0], options.workers, (options.first_run or Path(folder) / "first run").resolve())
         print(f"{len(reach.seconds)} tests, first run {time.monotonic() - start:.0f} s", flush=True)
-        unchanged = Mutant(ROOT / "cuefem/contact/strike.py", 0, (0, 0), "", "", "module level")
+        unchanged = Mutant(ROOT / "cuefem/contact/strike.py", 0, "", (0, 0), "", "", "module level")
         shortest = sorted(reach.seconds, key=reach.seconds.__getitem__)[:FIRST]
         few = reach._replace(tests={unchanged.file: {0: shortest}}, seconds={name: 0.1 for name in shortest})
         if rows := [by for _, by in judged(judge_anew, trees[:1], few, [unchanged]) if by]:
