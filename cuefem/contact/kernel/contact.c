@@ -55,7 +55,7 @@ static void update_max_slope(Contact *c)
     }
 }
 
-static int is_finite(const Contact *c)
+static bool is_finite(const Contact *c)
 {
     double sum = c->s->indentation + c->s->time; /* NaN or infinite if any of its terms is */
     for (int f = 0; f < c->in->forces; f++) sum += c->F[f];
@@ -75,7 +75,7 @@ static int status_of(const Contact *c)
 static void begin_with_impact(Contact *c, Step *row)
 {
     State *s = c->s;
-    int stays = take_impact(c, row);
+    bool stays = take_impact(c, row);
     s->steps++;
     s->next_step = c->in->step;
     if (stays || s->status != RUNNING) return;
@@ -83,21 +83,21 @@ static void begin_with_impact(Contact *c, Step *row)
     s->status = ENDED;
 }
 
-/* Return whether a step was taken. */
-static int advance(Contact *c, Step *row)
+/* Whether a step was taken. */
+static bool advance(Contact *c, Step *row)
 {
     State *s = c->s;
     if (c->tables.h == 0) {
         begin_with_impact(c, row);
-        return 1;
+        return true;
     }
-    if (!take_step(c, row)) return 0;
+    if (!take_step(c, row)) return false;
     s->steps++;
     s->next_step = c->tables.h;
     phase_of(c)->next(c);
     update_max_slope(c);
     if (s->status == RUNNING) s->status = status_of(c);
-    return 1;
+    return true;
 }
 
 /* Take up to max_steps steps of the tables' length and return their number; call again, with tables of the

@@ -24,6 +24,7 @@
 #define CUEFEM_CONTACT_H
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -81,11 +82,11 @@ typedef struct {
 typedef struct {
     int modes, ports, slopes, forces, speeds; /* speeds: velocities of the ball */
     int planes;                               /* planes in which the cue bends, 1 or 2 */
-    int rolling;                              /* whether the contact rolls over ball and dome */
+    bool rolling;                             /* whether the contact rolls over ball and dome */
     int law, terms, patch;                    /* terms: of the leather law's series */
     int dashpots, radiating;                  /* numbers of dashpots, and of modes that radiate */
-    int structural_loss;                      /* whether modes have loss factors */
-    int begins_with_impact;       /* whether an impulse stops the tangential motion at the first touch */
+    bool structural_loss;                     /* whether modes have loss factors */
+    bool begins_with_impact;      /* whether an impulse stops the tangential motion at the first touch */
     const int *radiating_modes;   /* indices of the modes that radiate, (radiating,) */
     const double *omega;          /* (modes,), rad/s */
     const double *rows;           /* (ports + slopes + dashpots, modes), 1/sqrt(kg): velocities are rows v */
@@ -117,14 +118,14 @@ typedef struct {
     int phase, friction_state;
     double time, next_step;      /* s; length of the next step, s */
     double deadline, window_end; /* of this contact; of the window after separation, s */
-    int ends_at_event;           /* whether the next step was shortened to end at separation or touch */
+    bool ends_at_event;          /* whether the next step was shortened to end at separation or touch */
     double indentation, max_indentation; /* m */
     double angle, rolling_rate;          /* rolled, rad; rad/s */
     double height;                       /* of the ball above the table, m */
     double slopes[SLOPES];
     double max_slope, axial_force; /* largest slope of the cue's end, rad; the force on the cue then, N */
-    int tip_stuck;                 /* in the last step */
-    int on_table, table_stuck;     /* in the last step: the table presses the ball; its lowest point sticks */
+    bool tip_stuck;                /* in the last step */
+    bool on_table, table_stuck;    /* in the last step: the table presses the ball; its lowest point sticks */
     double shift, shift_mid;      /* of the tip along t against the ball, m; at the middle of the last step */
     double origin;                /* shift at which a spring patch is unstrained, m */
     double virtual_mid;           /* virtual indentation at the middle of the last step, m; see laws.c */
@@ -172,7 +173,7 @@ typedef struct {
 
 /* A tip by its tangential compliance (patch_*.c). */
 typedef struct {
-    int slips_in_parts;                      /* the patch itself limits its force to mu F_n */
+    bool slips_in_parts;                     /* the patch itself limits its force to mu F_n */
     void (*begin)(Contact *c);               /* what it keeps during the contact */
     void (*stick)(Contact *c, Equations *e); /* row T of the equations of a sticking tip */
     void (*update)(Contact *c);              /* the patch's state after a step in contact */
@@ -183,14 +184,14 @@ typedef struct {
 /* A cue in the plane of t and n (level.c), or one raised over a table (raised.c). Both solvers return whether
    they converged. */
 typedef struct {
-    int (*forces)(Contact *c);               /* of a step */
-    int (*impulses)(Contact *c);             /* of an impact, without a normal one */
+    bool (*forces)(Contact *c);              /* of a step */
+    bool (*impulses)(Contact *c);            /* of an impact, without a normal one */
     int (*friction_state)(const Contact *c); /* of the step */
 } Cue;
 
 /* The contact while the tip loads, unloads, or is free (phases.c). */
 typedef struct {
-    int touches; /* whether tip and ball are in contact */
+    bool touches; /* whether tip and ball are in contact */
     int event;   /* sign of the indentation's change at which a step ends: touch 1, separation -1; none 0 */
     NormalForce (*curve)(const Contact *c, double indentation); /* in contact alone */
     void (*update)(Contact *c);                                 /* the tip's state after a step */
@@ -264,7 +265,7 @@ void velocities(Contact *c);
 void separate(Contact *c);
 
 /* step.c */
-int take_step(Contact *c, Step *row);
-int take_impact(Contact *c, Step *row);
+bool take_step(Contact *c, Step *row);
+bool take_impact(Contact *c, Step *row);
 
 #endif

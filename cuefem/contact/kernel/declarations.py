@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from cuefem.contact.kernel import HERE
 
 HEADER = re.sub(r"/\*.*?\*/", "", (HERE / "contact.h").read_text(encoding="utf-8"), flags=re.DOTALL)
-C_TYPES: dict[str, Any] = {"int": ctypes.c_int, "double": ctypes.c_double}
+C_TYPES: dict[str, Any] = {"bool": ctypes.c_bool, "int": ctypes.c_int, "double": ctypes.c_double}
 DECLARATOR = re.compile(r"\s*(?P<pointer>\*?)(?P<name>\w+)(?:\[(?P<size>\w+)\])?\s*")
 
 

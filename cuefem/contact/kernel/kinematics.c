@@ -45,7 +45,7 @@ static void kinematics_at_middle(Contact *c)
 }
 
 /* Whether the point of a force stuck in the last step. */
-static int stuck(const Contact *c, int f)
+static bool stuck(const Contact *c, int f)
 {
     if (f == UP) return c->s->on_table;
     if (f > UP) return c->s->table_stuck;

@@ -38,9 +38,8 @@ static double correct(Contact *c, const Equations *e)
 }
 
 /* Newton's method for (F_t, F_n) in the state c->slip. Returns whether it converged. */
-static int newton(Contact *c)
+static bool newton(Contact *c)
 {
-    double change = 0, scale = 0;
     for (int i = 0; i < MAX_ITERATIONS; i++) {
         Equations e;
         velocities(c);
@@ -49,11 +48,11 @@ static int newton(Contact *c)
             slip_equation(c, &e);
         else
             c->patch->stick(c, &e);
-        change = correct(c, &e);
-        scale = fabs(c->F[T]) + fabs(c->F[N]) + MIN_FORCE;
-        if (change <= NEWTON_REL_TOL * scale) return 1;
+        double change = correct(c, &e);
+        double scale = fabs(c->F[T]) + fabs(c->F[N]) + MIN_FORCE;
+        if (change <= NEWTON_REL_TOL * scale) return true;
     }
-    return change <= REL_TOL_ACCEPTED * scale;
+    return false;
 }
 
 /* A quantity of a step that falls as x grows; it is 0 at the step's solution. */
@@ -61,11 +60,11 @@ typedef double Residual(Contact *c, double x);
 
 /* The root of a residual: from x = 0 on, twice as far until the sign changes, then bisection. Returns whether
    the sign changes. */
-static int find_root(Contact *c, Residual *residual, double *root)
+static bool find_root(Contact *c, Residual *residual, double *root)
 {
     const double first = residual(c, 0);
     double near = 0, far = first;
-    int changes = residual(c, far) * first <= 0;
+    bool changes = residual(c, far) * first <= 0;
     for (int i = 0; i < MAX_DOUBLINGS && !changes; i++) {
         near = far;
         far *= 2;
@@ -106,10 +105,10 @@ static double lack_of_indentation(Contact *c, double indentation)
 /* The forces in the state c->slip as a root of the indentation alone. Forces are 0 at no indentation and
    continuous, so the indentation that they lead to and their own one agree somewhere, unless the tip draws
    ball and cue together. Returns whether they agree. */
-static int bisect(Contact *c)
+static bool bisect(Contact *c)
 {
     double indentation;
-    int brackets = find_root(c, lack_of_indentation, &indentation);
+    bool brackets = find_root(c, lack_of_indentation, &indentation);
     double lack = lack_of_indentation(c, indentation);
     double scale = fabs(c->F[T]) + fabs(c->F[N]) + MIN_FORCE;
     return brackets && fabs(c->normal.slope * lack) <= REL_TOL_ACCEPTED * scale;
@@ -117,7 +116,7 @@ static int bisect(Contact *c)
 
 /* Newton's method alternates where a sticking tip hardly touches: there the tangential stiffness of leather
    is like a root of the indentation. */
-static int solve(Contact *c) { return newton(c) || bisect(c); }
+static bool solve(Contact *c) { return newton(c) || bisect(c); }
 
 /* Begin the iteration where the forces of the last two steps lead. */
 static void extrapolate(Contact *c)
@@ -126,21 +125,21 @@ static void extrapolate(Contact *c)
 }
 
 /* Trial stick, and slip if |F_t| of the trial exceeds mu F_n. */
-static int forces(Contact *c)
+static bool forces(Contact *c)
 {
     const double mu = c->in->friction;
-    const int in_parts = c->patch->slips_in_parts;
+    const bool in_parts = c->patch->slips_in_parts;
     c->slip = mu == 0 && !in_parts ? SLIP : STICK;
     extrapolate(c);
-    if (!solve(c)) return 0;
-    if (in_parts || c->slip) return 1;
-    if (fabs(c->F[T]) <= mu * larger(c->F[N], 0) * (1 + REL_TOL)) return 1;
+    if (!solve(c)) return false;
+    if (in_parts || c->slip) return true;
+    if (fabs(c->F[T]) <= mu * c->F[N] * (1 + REL_TOL)) return true;
     c->slip = c->F[T] > 0 ? SLIP : SLIP_BACK;
     return solve(c);
 }
 
 /* The impulse that stops the tangential motion. */
-static int impulses(Contact *c)
+static bool impulses(Contact *c)
 {
     c->slip = STICK;
     return newton(c);

@@ -146,7 +146,7 @@ static int friction_state(const Contact *c)
     return c->F[T] > 0 ? SLIP : SLIP_BACK;
 }
 
-const Patch partial_slip = {.slips_in_parts = 1,
+const Patch partial_slip = {.slips_in_parts = true,
                             .begin = begin,
                             .stick = stick,
                             .update = update,

@@ -12,12 +12,12 @@ static void stick(Contact *c, Equations *e)
 /* A tip that comes to rest within the step has slipped in a part of it: counted as slip. */
 static int friction_state(const Contact *c)
 {
-    int stops = !c->slip && !c->s->tip_stuck;
+    bool stops = !c->slip && !c->s->tip_stuck;
     if (!stops || c->u_stick[T] == 0) return c->slip;
     return c->u_stick[T] < 0 ? SLIP : SLIP_BACK;
 }
 
-const Patch rigid_patch = {.slips_in_parts = 0,
+const Patch rigid_patch = {.slips_in_parts = false,
                            .begin = nothing,
                            .stick = stick,
                            .update = nothing,

@@ -26,7 +26,7 @@ static void release(Contact *c)
 
 static int friction_state(const Contact *c) { return c->slip; }
 
-const Patch spring_patch = {.slips_in_parts = 0,
+const Patch spring_patch = {.slips_in_parts = false,
                             .begin = nothing,
                             .stick = stick,
                             .update = update,

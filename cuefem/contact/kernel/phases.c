@@ -19,7 +19,7 @@ static void begin_unloading(Contact *c)
     begin(c, UNLOADING, in->step * fmin(1, in->restitution / MIN_STEP_RESTITUTION));
 }
 
-static int is_indented(const Contact *c) { return c->s->indentation > residual_indentation(c); }
+static bool is_indented(const Contact *c) { return c->s->indentation > residual_indentation(c); }
 
 /* In contact: */
 
@@ -70,7 +70,7 @@ static void update_flight(Contact *c)
 static void after_flight(Contact *c)
 {
     if (c->s->ends_at_event || is_indented(c)) {
-        c->s->ends_at_event = 0;
+        c->s->ends_at_event = false;
         begin_unloading(c);
     }
 }
@@ -78,19 +78,19 @@ static void after_flight(Contact *c)
 static int flight_status(const State *s) { return s->time >= s->window_end ? ENDED : RUNNING; }
 
 const Phase phases[] = {
-    [LOADING] = {.touches = 1,
+    [LOADING] = {.touches = true,
                  .event = 0,
                  .curve = loading_curve,
                  .update = update_contact,
                  .next = after_loading,
                  .status = contact_status},
-    [UNLOADING] = {.touches = 1,
+    [UNLOADING] = {.touches = true,
                    .event = -1,
                    .curve = unloading_curve,
                    .update = update_contact,
                    .next = after_unloading,
                    .status = contact_status},
-    [FREE] = {.touches = 0,
+    [FREE] = {.touches = false,
               .event = 1,
               .curve = NULL,
               .update = update_flight,
@@ -105,8 +105,8 @@ void separate(Contact *c)
     c->patch->release(c);
     s->steps_to_last_separation = s->steps;
     s->deadline = c->in->max_time + s->time;
-    s->ends_at_event = 0;
-    s->tip_stuck = 0;
+    s->ends_at_event = false;
+    s->tip_stuck = false;
     s->virtual_mid = 0;
     s->origin = s->shift;
     s->shift_mid = s->shift;

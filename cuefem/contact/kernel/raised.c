@@ -39,8 +39,8 @@ static void slide(const Contact *c, int a, int b, double u_a, double u_b, double
     }
 }
 
-/* Solve F[a], F[b] in place, hypot(F[a], F[b]) <= bound; return 1 if the point sticks. */
-static int plane_friction(Contact *c, int a, int b, double bound)
+/* Solve F[a], F[b] in place, hypot(F[a], F[b]) <= bound; return whether the point sticks. */
+static bool plane_friction(Contact *c, int a, int b, double bound)
 {
     const double (*W)[FORCES] = c->W;
     double *F = c->F, det = W[a][a] * W[b][b] - W[a][b] * W[b][a];
@@ -48,7 +48,7 @@ static int plane_friction(Contact *c, int a, int b, double bound)
     double x = u_a - c->u_stick[a], y = u_b - c->u_stick[b];
     double p = F[a] - (W[b][b] * x - W[a][b] * y) / det;
     double q = F[b] - (W[a][a] * y - W[b][a] * x) / det;
-    int sticks = hypot(p, q) <= bound * (1 + REL_TOL);
+    bool sticks = hypot(p, q) <= bound * (1 + REL_TOL);
     if (!sticks) {
         scale_to(bound, &p, &q);
         slide(c, a, b, u_a, u_b, bound, &p, &q);
@@ -76,7 +76,7 @@ static void table_force(Contact *c)
     const double height = c->s->height;
     double u = c->u_free[UP] - c->W[UP][UP] * c->F[UP]; /* without the table */
     for (int f = 0; f < c->in->forces; f++) u += c->W[UP][f] * c->F[f];
-    int leaves = height > 0 && height + c->tables.h * u > 0;
+    bool leaves = height > 0 && height + c->tables.h * u > 0;
     c->F[UP] = leaves ? 0 : larger(0, (c->u_stick[UP] - u) / c->W[UP][UP]);
 }
 
@@ -86,13 +86,13 @@ static void sweep(Contact *c, double mu, double more)
     normal_force(c);
     c->slip = plane_friction(c, T, P, mu * larger(c->F[N], 0) + more) ? STICK : SLIP;
     table_force(c);
-    int sticks = plane_friction(c, LATERAL, FORWARD, c->in->table_friction * c->F[UP]);
+    bool sticks = plane_friction(c, LATERAL, FORWARD, c->in->table_friction * c->F[UP]);
     c->s->on_table = c->F[UP] > 0;
     c->s->table_stuck = sticks && c->s->on_table;
 }
 
 /* Sweeps until the forces stay. Returns whether they converged. */
-static int solve(Contact *c, double mu, double more)
+static bool solve(Contact *c, double mu, double more)
 {
     double change = 1, scale = 1;
     for (int n = 0; n < MAX_SWEEPS && change > REL_TOL_SWEEPS * scale; n++) {
@@ -111,10 +111,10 @@ static int solve(Contact *c, double mu, double more)
 
 /* Strong friction may support so much that F_n vanishes, and with it mu F_n: the iteration then alternates.
    The bound mu F_n lies between 0 and the friction force of stick, and is found by bisection. */
-static int forces(Contact *c)
+static bool forces(Contact *c)
 {
-    if (solve(c, c->in->friction, 0)) return 1;
-    int solved = solve(c, 0, HUGE_VAL);
+    if (solve(c, c->in->friction, 0)) return true;
+    bool solved = solve(c, 0, HUGE_VAL);
     double low = 0, high = hypot(c->F[T], c->F[P]);
     for (int i = 0; i < MAX_BISECTIONS && solved; i++) {
         double bound = (low + high) / 2;
@@ -127,7 +127,7 @@ static int forces(Contact *c)
     return solved;
 }
 
-static int impulses(Contact *c) { return solve(c, 0, HUGE_VAL); }
+static bool impulses(Contact *c) { return solve(c, 0, HUGE_VAL); }
 
 static int friction_state(const Contact *c) { return c->patch->friction_state(c); }
 

@@ -11,24 +11,24 @@ static const double MIN_FRACTION = 1e-6; /* of a step, to its event */
 static void solve_forces(Contact *c)
 {
     if (!phase_of(c)->touches) return;
-    int solved = c->cue->forces(c);
+    bool solved = c->cue->forces(c);
     if (!solved) c->s->status = UNSOLVED;
 }
 
 /* Ball and tip separate or touch where the indentation passes the residual one. If that happens within the
-   step, set the length of a step that ends there, which replaces this one, and return 1. */
-static int shorten_to_event(Contact *c)
+   step, set the length of a step that ends there, which replaces this one, and return true. */
+static bool shorten_to_event(Contact *c)
 {
     State *s = c->s;
     const double h = c->tables.h;
     const int event = phase_of(c)->event;
     double excess = s->indentation - residual_indentation(c);
     double excess_at_end = excess - h * c->u[N];
-    int passes = event * excess < 0 && event * excess_at_end > 0;
-    if (s->ends_at_event || !passes) return 0;
-    s->ends_at_event = 1;
+    bool passes = event * excess < 0 && event * excess_at_end > 0;
+    if (s->ends_at_event || !passes) return false;
+    s->ends_at_event = true;
     s->next_step = h * larger(excess / (h * c->u[N]), MIN_FRACTION);
-    return 1;
+    return true;
 }
 
 /* The work that each force dissipates: its impulse by the mean velocity, with the opposite sign. */
@@ -116,15 +116,15 @@ static void record(const Contact *c, Step *row)
     memcpy(row->ball, s->ball, sizeof row->ball);
 }
 
-/* Take one step and return 1; return 0 if it must be repeated with the length s->next_step. The phase of the
+/* Take one step and return true; false if it must be repeated with the length s->next_step. The phase of the
    next step follows in contact.c, from phases.c. */
-int take_step(Contact *c, Step *row)
+bool take_step(Contact *c, Step *row)
 {
     free_motion(c);
     contact_matrices(c);
     solve_forces(c);
     velocities(c);
-    if (shorten_to_event(c)) return 0;
+    if (shorten_to_event(c)) return false;
     add_work(c);
     find_loads(c);
     advance_cue(c);
@@ -135,39 +135,39 @@ int take_step(Contact *c, Step *row)
     memcpy(c->last_F[0], c->F, sizeof c->F);
     c->s->time += c->tables.h;
     record(c, row);
-    return 1;
+    return true;
 }
 
 /* Whether ball and tip separate; the impulses are then scaled so that they do so at e times the approach
    speed. */
-static int bounces(Contact *c)
+static bool bounces(Contact *c)
 {
     double gain = 0; /* of the normal velocity, m/s */
     for (int f = 0; f < c->in->forces; f++) gain += c->V[N][f] * c->F[f];
-    if (c->v_free[N] + gain <= 0) return 0;
+    if (c->v_free[N] + gain <= 0) return false;
     double scale = fmin(1, (1 + c->in->restitution) * fabs(c->v_free[N] / gain));
     for (int f = 0; f < c->in->forces; f++) c->F[f] *= scale;
-    return 1;
+    return true;
 }
 
 /* Impact of infinite friction at the first touch: an impulse stops the tip's tangential velocity and the
-   ball's velocity into the table, with friction there. Return 1 if tip and ball stay in contact. */
-int take_impact(Contact *c, Step *row)
+   ball's velocity into the table, with friction there. Return true if tip and ball stay in contact. */
+bool take_impact(Contact *c, Step *row)
 {
     State *s = c->s;
     free_motion(c);
     contact_matrices(c);
-    int solved = c->cue->impulses(c);
+    bool solved = c->cue->impulses(c);
     if (!solved) s->status = UNSOLVED;
-    int parts = bounces(c);
+    bool parts = bounces(c);
     velocities(c);
     add_work(c);
     find_loads(c);
     advance_cue(c);
     advance_ball(c);
     s->friction_state = IMPACT;
-    s->tip_stuck = 1;
-    s->on_table = 1;
+    s->tip_stuck = true;
+    s->on_table = true;
     record(c, row);
     memset(c->F, 0, sizeof c->F);
     return !parts;
