@@ -9,7 +9,6 @@ from cuefem.analysis.convergence_study import RECOMMENDED_RTOLS, ConvergenceStud
 from studies.strokes import MESHES
 from tests.helpers.accuracy_scenes import scene
 from tests.helpers.command_line import stdout_of
-from tests.helpers.invalid_input import assert_raises
 
 KIM = MESHES / "kim.toml"
 
@@ -35,9 +34,3 @@ def test_cost_command_prints_table_and_draws_chart(tmp_path: Path) -> None:
     stdout_of("cost", KIM, "--max-modes", 24, "--output", tmp_path / "cost.html")
     text = (tmp_path / "cost.html").read_text(encoding="utf-8")
     assert text.count('<path class="curve c3" d="M') == 2  # with its legend
-
-
-def test_number_of_modes_out_of_bounds_is_rejected() -> None:
-    assert_raises(
-        lambda: cf.convergence_study(scene("kim", 1e-3, 0.3), max_modes=0), "max_modes must be a whole number >= 1"
-    )

@@ -8,7 +8,6 @@ import subprocess
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 from unittest.mock import patch
 
 import numpy as np
@@ -100,23 +99,6 @@ def test_table_states_its_units_error_and_example(table: StrikeTable, tmp_path: 
 def test_table_rejects_strokes_beyond_its_range(table: StrikeTable, speed: float, offset: float, message: str) -> None:
     with pytest.raises(ValueError, match=re.escape(message)):
         table.at(speed, offset)
-
-
-@pytest.mark.parametrize(
-    ("scene", "speeds", "message"),
-    [
-        (SCENE, (4.0, 1.0), "speeds must ascend, the lowest before the highest; got 4 and 1 m/s"),
-        (SCENE, (0.0, 1.0), "Stroke.speed must be in (0, inf) m/s"),
-        (
-            replace(SCENE, tip=cf.Tip(0.75, 0.0, 1e-3)),
-            (1.0, 4.0),
-            "strike_table tip must hold the ball off its centre; got a friction of 0",
-        ),
-    ],
-)
-def test_strike_table_invalid_input(scene: cf.Scene, speeds: Any, message: str) -> None:
-    with pytest.raises(ValueError, match=re.escape(message)):
-        cf.strike_table(scene, speeds)
 
 
 def test_command_writes_the_table_of_the_call(tmp_path: Path, table: StrikeTable) -> None:

@@ -36,6 +36,7 @@ FILES = {
     "own.toml": "somebody's work",
 }
 SAVED = {"shaft.toml": SHAFT, "spring.toml": cf.Scene(SHAFT, stroke=cf.Stroke(offset=0.3))}
+SAVED["ash.toml"] = cf.Cue((cf.Segment(0.7, 0.0118, 0.021, material("ash")),), 0.42)
 # Commands on these files, each with a part of the error message.
 COMMANDS = r"""
 strike good.toml --offset nan | good.toml: --offset: must be b/R between -1 and 1
@@ -84,6 +85,29 @@ report lumped.toml -o page.pdf | page.pdf: --output: must end in .html or .json
 strike spring.toml --format pooltool --offset 0 | [A.31] has no squirt at offset 0
 strike spring.toml --format pooltool -o cue.json --offset 0.9 | the stroke is a miscue at offset 0.9
 report spring.toml -o page.html --offset 0.9 | miscue at b/R 0.9: no squirt is reported. Use a smaller offset
+compare shaft.toml | needs another FILE
+compare shaft.toml --speed '3 m/s' | need two or more FILEs
+compare shaft.toml shaft.toml --shaft-mass '112 g' | must be set in each cue's file
+compare shaft.toml shaft.toml --estimate | takes one FOLDER
+compare shaft.toml shaft.toml shaft.toml shaft.toml shaft.toml shaft.toml | at most 5 cues
+compare shaft.toml lumped.toml | LumpedCue
+compare shaft.toml ash.toml --same-shaft | must be of one wood
+compare shaft.toml lumped.toml ./shaft.toml | given twice
+compare nowhere | got no folder
+compare bare.csv 'predator z2' --material ash | predator z2: --material: would replace this file's own value: options of
+guide glosary | got 'glosary'; the nearest chapters are glossary,
+guide qqqq | CHAPTER must be a chapter, or a word of the handbook; got 'qqqq'
+guide --print -o guide.html | cannot be combined with --print
+guide -o guide.txt | must end in .html or .json; got '.txt'
+improve spring.toml -o x.pdf | must end in .html or .json or .toml
+modes good.toml --units imperial | 'imperial' is not one of 'metric', 'us'
+report predator | predator: names 2 cues: write 'predator z' or 'predator z2'
+report 'predator z-3' | predator z-3: must be a file, or a cue's name: plain maple, low deflection, carbon
+report 'predatr z2' | got neither; did you mean 'predator z2'?
+report carbon.csv | carbon.csv: cannot be read: No such file or directory
+strike bare.csv --shaft-mass 112 | --shaft-mass: needs a unit
+strike bare.csv --shaft-mass '0 g' | --shaft-mass: must be more than 0
+convert bare.csv made.toml --shaft-mass '9 kg' | --shaft-mass: must be 3.068 to 3528 g (density
 strike | --help` lists the options)
 strike shaft.toml --offset | Option '--offset' requires an argument
 """.strip().splitlines()

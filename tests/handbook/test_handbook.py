@@ -13,7 +13,6 @@ from cuefem.effects.effect import effect_kinds
 from cuefem.handbook import CHAPTERS, LINES, chapters, effect_lines
 from cuefem.handbook.page import page
 from tests.helpers.command_line import stdout_of
-from tests.helpers.invalid_input import assert_unchanged
 from tests.helpers.page_reader import PageReader
 
 ROOT = Path(__file__).parents[2]
@@ -104,19 +103,3 @@ def test_guide_writes_one_chapter_as_json_and_opens_page_with_it(tmp_path: Path)
     first = [text for text in page(opens_with="beam").split("<section") if text.startswith(' class="first"')]
     assert len(first) == 1
     assert 'id="beam"' in first[0]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ("glosary", "got 'glosary'; the nearest chapters are glossary,"),
-        ("qqqq", "CHAPTER must be a chapter, or a word of the handbook; got 'qqqq'"),
-        ("--print -o guide.html", "cannot be combined with --print"),
-        ("-o guide.txt", "must end in .html or .json; got '.txt'"),
-    ],
-)
-def test_guide_with_invalid_arguments_exits_with_message(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: str, message: str
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert_unchanged(tmp_path, message, "guide", *arguments.split())

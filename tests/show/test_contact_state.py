@@ -29,12 +29,6 @@ def test_regime_with_long_partial_slip_warns(speed: float, offset: float, regime
     assert bool(regime_warning(regime)) == (regime != "stick") == (outcome.squirt / offset > 1.2 * close.squirt / 0.2)
 
 
-def test_miscue_without_friction_advises_no_smaller_offset() -> None:
-    smooth = cf.Scene(cf.LumpedCue(0.54, 0.006), tip=cf.Tip(friction=0.0), stroke=cf.Stroke(offset=0.3))
-    with pytest.raises(ValueError, match=r"no squirt is reported\. Raise friction from 0"):
-        cf.verdict(smooth)
-
-
 def test_end_mass_of_miscue_raises() -> None:
     """Its squirt hardly depends on the cue: the end mass would be 18.7 g at b/R 0.63, and 7 g with stick."""
     miscue = replace(LEATHER, stroke=cf.Stroke(2.0, 0.63))
