@@ -1,17 +1,22 @@
 """What commands write of made files, with their pages' charts, against golden files (regression)."""
 
 from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import cuefem as cf
 from tests.helpers.command_line import call
+from tests.helpers.cues import kim, low_deflection
 from tests.helpers.measured_cues import MEASURED_TOML, measured_folder
 from tests.helpers.surfaces import revolve, write_surface
 from tests.helpers.sweeps import OPTIMUM, SCATTER, STUDY, write_study
 from tests.test_golden_files import assert_golden, drawing_text, page_text, rounded
 
+BESIDE = ("cue.toml", "old/cue.toml", "slippery.toml", "cue.toml")
 # Millimetres: a ferrule on a bored front with a step, and a cone behind it.
 BORED = ((0, 0), (0, 2), (120, 2.5), (120, 0)), ((0, 6), (25, 6), (25, 6.2), (300, 6.5), (700, 10.5))
 
@@ -29,7 +34,7 @@ def sweep(folder: Path) -> list[list[object]]:
 def scatter(folder: Path) -> list[list[object]]:
     """A tolerance analysis with a correlation and a group."""
     write_study(folder, SCATTER.replace("count = 16", "count = 4"))
-    return [["study", "study.toml", "-o", "page.html"]]
+    return [["study", "study.toml", "-o", "page.html"], ["study", "study.toml", "-o", "study.json"]]
 
 
 def optimum(folder: Path) -> list[list[object]]:
@@ -39,9 +44,20 @@ def optimum(folder: Path) -> list[list[object]]:
 
 
 def comparison(folder: Path) -> list[list[object]]:
-    """A measured cue, compared."""
+    """A measured cue, compared; and one whose weight contradicts its drawing."""
     measured_folder(folder / "cue")
-    return [["compare", "cue", "-o", "compared.html"]]
+    measured_folder(folder / "heavy", MEASURED_TOML.replace('"100 g"', '"160 g"'))
+    return [["compare", "cue", "-o", "compared.html"], ["compare", "heavy", "-o", "heavy.html"]]
+
+
+def beside(folder: Path) -> list[list[object]]:
+    """A cue beside another of its name, which takes its ball and stroke, and beside one that miscues."""
+    spring = cf.Scene(kim(), tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(2.0, 0.3))
+    (folder / "old").mkdir()
+    cf.save(spring, folder / "cue.toml")
+    cf.save(replace(spring, cue=low_deflection(), stroke=cf.Stroke(3.0, 0.4)), folder / "old" / "cue.toml")
+    cf.save(replace(spring, tip=replace(spring.tip, friction=0.2)), folder / "slippery.toml")
+    return [["compare", first, other, "-o", "page.html"] for first, other in pairwise(BESIDE)]
 
 
 def estimate(folder: Path) -> list[list[object]]:
@@ -84,7 +100,10 @@ def written(path: Path) -> str:
     return page_text(text) + drawing_text(text) if path.suffix == ".html" else text
 
 
-@pytest.mark.parametrize("prepare", [sweep, scatter, optimum, comparison, estimate, surfaces, parts])
+HEAVY = pytest.param(beside, marks=pytest.mark.heavy)
+
+
+@pytest.mark.parametrize("prepare", [sweep, scatter, optimum, comparison, HEAVY, estimate, surfaces, parts])
 def test_written_files_equal_golden_file(
     prepare: Callable[[Path], list[list[object]]],
     tmp_path: Path,

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -12,9 +11,7 @@ from cuefem.parameters.parts import main_material
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.results.differences import SHAPE_FLOOR
 from cuefem.results.uncertainty import MASS_ERROR, RATIO_FLOOR, SHAFT_ERROR
-from tests.helpers.command_line import as_json, call
 from tests.helpers.cues import kim
-from tests.helpers.page_reader import assert_valid
 
 SCENE = cf.Scene(kim(), tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(2.0, 0.3))
 BORED = with_parameters(SCENE, {"bore depth": 0.1, "bore width": 0.006})
@@ -108,26 +105,6 @@ def test_comparison_with_point_mass_has_larger_error() -> None:
     assert squirt["error"] >= MASS_ERROR * squirt["difference"] > SHAFT_ERROR * squirt["difference"]
 
 
-@pytest.mark.heavy
-def test_compare_files_of_one_name_takes_first_ball_and_stroke(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The page draws both cues."""
-    (tmp_path / "old").mkdir()
-    cf.save(SCENE, tmp_path / "cue.toml")
-    cf.save(replace(BORED, ball=cf.Ball(0.17, 0.028575), stroke=cf.Stroke(3.0, 0.4)), tmp_path / "old" / "cue.toml")
-    monkeypatch.chdir(tmp_path)
-    record = as_json("compare", "cue.toml", "old/cue.toml", "--same-shaft", "-o", "both.html")
-    assert [*record["cues"]] == ["cue.toml", "old/cue.toml"]
-    first, other = record["scenes"].values()
-    assert (other["ball"], other["stroke"]) == (first["ball"], first["stroke"])
-    assert record["differences"]["old/cue.toml"]["squirt"]["distinct"]
-    assert Path("both.html").read_text(encoding="utf-8").count("<svg") >= 4
-
-
-def test_compare_of_one_cue_names_the_bound() -> None:
-    with pytest.raises(ValueError, match="2 to 5 cues; got 1"):
-        cf.compare({"alone": SCENE})
-
-
 def test_comparison_miscue_has_no_squirt() -> None:
     miscues = {name: replace(scene, stroke=cf.Stroke(2.0, 0.8)) for name, scene in (("a", SCENE), ("b", BORED))}
     compared = cf.compare(miscues)
@@ -136,55 +113,3 @@ def test_comparison_miscue_has_no_squirt() -> None:
     (sentence,) = compared.sentences()
     assert sentence.startswith("b and a cannot be compared in squirt: miscue at b/R 0.8")
     assert str(compared).count("miscue at") == 1
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["cue.toml"], "needs another FILE"),
-        (["cue.toml", "--speed", "3 m/s"], "need two or more files"),
-        (["cue.toml", "cue.toml", "--shaft-mass", "112 g"], "must be set in each cue's file"),
-        (["cue.toml", "cue.toml", "--estimate"], "takes one FOLDER"),
-        (["cue.toml"] * 6, "at most 5 cues"),
-        (["cue.toml", "lumped.toml"], "LumpedCue"),
-        (["cue.toml", "ash.toml", "--same-shaft"], "must be of one wood"),
-        (["cue.toml", "lumped.toml", "./cue.toml"], "given twice"),
-        (["nowhere"], "got no folder"),
-    ],
-)
-def test_compare_invalid_input_prints_one_line(
-    arguments: list[str], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    cf.save(kim(), tmp_path / "cue.toml")
-    cf.save(cf.Scene(cf.LumpedCue(0.54, 0.006)), tmp_path / "lumped.toml")
-    cf.save(with_parameters(SCENE, {"wood": "ash"}).shaft, tmp_path / "ash.toml")
-    monkeypatch.chdir(tmp_path)
-    status, out, err = call("compare", *arguments)
-    assert (status, out, err.count("\n")) == (2, "", 1)
-    assert message.casefold() in err.casefold()
-
-
-def screen_of(page: str) -> str:
-    """The text of the first screen of a page."""
-    return " ".join("".join(assert_valid(page).text).partition("Side by side")[0].split())
-
-
-@pytest.mark.heavy
-def test_page_begins_with_squirt_of_first_cue_and_numbers_of_all(both: Comparison) -> None:
-    page, text = both.to_html(), screen_of(both.to_html())
-    plain, bored = (both.cues[name] for name in ("plain", "bored"))
-    squirts = {name: f"{math.degrees(own['squirt']):.2f}°" for name, own in both.cues.items()}
-    assert f"{squirts['plain']} ± " in text
-    assert both.sentences()[0].partition(" than")[0].replace("\u00a0", " ") in text
-    mass, change = (1e3 * x for x in (bored["end_mass_squirt"], bored["end_mass_squirt"] - plain["end_mass_squirt"]))
-    assert f"{mass:.2f} g (−{abs(change):.2f})" in text
-    assert all(f"{name} {squirt}" in text for name, squirt in squirts.items())
-    assert page.count('<svg class="cue"') == 2 * len(both.cues)
-
-
-@pytest.mark.heavy
-def test_page_whose_first_cue_has_no_verdict_is_plain(both: Comparison) -> None:
-    slippery = replace(SCENE, tip=replace(SCENE.tip, friction=0.2))
-    assert "± " not in screen_of(cf.compare({"slippery": slippery, "plain": SCENE}).to_html())
-    text = screen_of(cf.compare({"plain": SCENE, "slippery": slippery}).to_html())
-    assert "slippery and plain cannot be compared in squirt: slippery: miscue at b/R 0.3" in text

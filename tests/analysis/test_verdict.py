@@ -37,13 +37,6 @@ def test_verdict_reference_cues_agree_with_strikes(own: Verdict, name: str) -> N
     assert reference["difference"] == pytest.approx(cf.strike(SCENE).squirt / outcome.squirt - 1, abs=1e-12)
 
 
-def test_page_of_verdict_draws_cues_at_their_squirt(own: Verdict) -> None:
-    """From the least to the most; a text of characters of unlike width would not."""
-    places = [float(left) for left in re.findall(r'class="spot" style="left:([\d.]+)%', own.to_html())]
-    squirts = sorted([own.squirt, *(cue["squirt"] for cue in own.references.values())])
-    assert places == pytest.approx([places[-1] * squirt / squirts[-1] for squirt in squirts], abs=0.01)
-
-
 def test_verdict_uncertainty_is_quadrature_sum_of_parts(own: Verdict) -> None:
     uncertainty = own.uncertainty
     parts = [uncertainty[name] for name in ("model", "inputs", "computation")]
@@ -157,18 +150,6 @@ def test_default_tip_fits_every_usual_front(game: str, front: float) -> None:
     scene = cf.usual_scene(cf.Cue((cf.Segment(1.4, front, 0.03, wood),)), game)
     assert scene.leather_tip.height == GAMES[game].height
     assert front > GAMES[game].face_diameter or scene.leather_tip == GAMES[game].tip
-
-
-def test_reference_scale_is_ascending_and_relative_to_maple(own: Verdict) -> None:
-    rows, reference = own.scale(), own.references
-    assert [row.at for row in rows] == sorted(row.at for row in rows)
-    assert all(0 <= row.low <= row.at <= row.high <= 100 for row in rows)
-    assert [row.name for row in rows if row.kind == "own"] == ["yours"]
-    beside = {row.name: row.difference for row in rows}
-    for name in ("low deflection", "carbon"):
-        less = 1 - reference[name]["squirt"] / reference["plain maple"]["squirt"]
-        assert beside[name] == f"{100 * less:.0f} % less than plain maple"
-    assert beside["plain maple"] == ""
 
 
 @pytest.mark.parametrize(

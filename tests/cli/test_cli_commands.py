@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from studies.paper.closed_forms import alciatore_a31, natural_pivot_length
 from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.cues import kim as kims_shaft
 
@@ -27,20 +26,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "shaft.csv").write_text(CSV)
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-def test_strike_json_equals_library(folder: Path) -> None:
-    models = as_json("strike", "kim.toml")["models"]
-    for name, expected in (("two-part", cf.impulse(KIM_SCENE)), ("coupled", cf.strike(KIM_SCENE))):
-        model = models[name]
-        assert model["ball_velocity"] == pytest.approx(expected.ball_velocity.tolist(), rel=1e-12)
-        assert (model["squirt"], model["spin"]) == pytest.approx((expected.squirt, expected.spin), rel=1e-12)
-        pivot = natural_pivot_length(0.3, expected.squirt, radius=KIM_SCENE.ball.radius)
-        assert model["pivot_length"] == pytest.approx(pivot, rel=1e-12)
-    a31 = alciatore_a31(0.3, mass_ratio=KIM_SCENE.ball.mass / cf.end_mass(KIM_SCENE, "offset"))
-    assert models["A.31"]["squirt"] == pytest.approx(a31, rel=1e-12)
-    head_on = as_json("strike", "kim.toml", "--offset", "0")["models"]["two-part"]
-    assert (head_on["squirt"], head_on["pivot_length"]) == (0, None)
 
 
 def test_report_json_of_lumped_cue_equals_library(folder: Path) -> None:

@@ -1,9 +1,7 @@
 """The table of commands: completion, help, common options, loading on demand (properties)."""
 
-import json
 import subprocess
 import sys
-from pathlib import Path
 from types import ModuleType
 
 import click
@@ -12,7 +10,6 @@ from click.shell_completion import ShellComplete
 
 from cuefem.cli import COMMANDS, listed_commands, main
 from cuefem.cli.output import Output
-from cuefem.quantity.display_units import significant
 from tests.helpers.command_line import call
 
 
@@ -54,14 +51,6 @@ def test_every_command_has_common_options(name: str) -> None:
     assert (written is None) is (name in ("convert", "designer"))
     assert [one for one in command.params if isinstance(one.type, Output)] == ([] if written is None else [written])
     assert written is None or (written.opts == ["-o", "--output"] and ".html" in written.type.extensions)  # type: ignore[attr-defined]
-
-
-def test_command_without_own_page_writes_printed_tables(tmp_path: Path) -> None:
-    page, shaft = tmp_path / "modes.html", Path(__file__).parents[2] / "meshes/kim.toml"
-    assert call("modes", shaft, "-o", page) == (0, f"wrote {page}\n", "")
-    text = page.read_text(encoding="utf-8").replace("\u00a0", " ")
-    record = json.loads(call("modes", shaft, "--json")[1])
-    assert all(f"{significant(hertz)} Hz" in text for hertz in record["frequencies"])
 
 
 def test_help_loads_no_command_module() -> None:

@@ -1,13 +1,11 @@
 """`cuefem compare` of a measured cue: JSON, page, template, estimate (regression)."""
 
-import re
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 import cuefem as cf
-from cuefem.analysis.measured import residual_chart
 from cuefem.measurements.measured_folder import TEMPLATE, load_measured
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES
 from tests.helpers.command_line import as_json, call, stdout_of
@@ -41,17 +39,6 @@ def test_compare_folder_with_drawing_alone_lists_measurement_types(tmp_path: Pat
     status, out, err = call("compare", folder)
     assert (status, err) == (0, "")
     assert all(kind.title in out for kind in MEASUREMENT_TYPES.values())
-
-
-def test_residual_chart_has_a_line_for_each_measurement() -> None:
-    residuals = [0.5, -4.2, 2.0, 0.0]
-    (drawn,) = residual_chart([{"residual": each} for each in residuals], "residual", "σ")
-    _, top, _, bottom = drawn.box
-    ends = [float(y) for y in re.findall(r"L[\d.]+ ([\d.]+)", drawn.curves[0][2])]
-    zero, unit = (top + bottom) / 2, (bottom - top) / (drawn.y_scale.high - drawn.y_scale.low)
-    assert ends == pytest.approx([zero - unit * each for each in residuals], abs=0.01)
-    assert drawn.y_scale.high >= 4.2
-    assert residual_chart([{"residual": 1.0}], "residual", "σ") == []
 
 
 def test_compare_template_has_every_measurement_type(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from cuefem.cue import Cue
 from cuefem.designer.state import read_design
 from cuefem.designs.study_file import load_study
 from cuefem.scene.default_scene import GAMES, OUNCE
-from tests.helpers.command_line import as_json, call
+from tests.helpers.command_line import as_json
 
 PROFILE = "x [mm],diameter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n"
 PREDATOR = Path(__file__).parents[2] / "studies/measured/predator_z2/cue.toml"
@@ -90,14 +90,6 @@ def test_whole_cue_gets_no_rest(tmp_path: Path) -> None:
     assert read_design("whole.csv", whole.read_bytes()).scene == scene
 
 
-def test_study_file_sets_options_of_its_cue(shaft: Path) -> None:
-    more = 'body_mass = "14 oz"\nmaterial = "ash"\nferrule = "20 mm melamine"\nbore = "6 mm wide, 100 mm deep"\n'
-    drawn = cf.load(shaft, material="ash", ferrule="20 mm melamine", bore="6 mm wide, 100 mm deep", body_mass="14 oz")
-    assert study_scene(shaft, "shaft.csv", more) == cf.usual_scene(drawn)
-    weighed = study_scene(shaft, "shaft.csv", 'shaft_mass = "120 g"\n')
-    assert weighed.shaft.shaft_mass + weighed.leather_tip.mass_on(weighed.shaft) == pytest.approx(0.12, rel=1e-12)
-
-
 @pytest.mark.heavy
 def test_compare_fills_in_the_usual_rest(shaft: Path) -> None:
     record = as_json("compare", shaft, PREDATOR)
@@ -105,23 +97,6 @@ def test_compare_fills_in_the_usual_rest(shaft: Path) -> None:
     assert difference["difference"] == pytest.approx(-0.278, abs=5e-4)
     assert difference["error"] >= 0.086
     assert "shaft: usual rest of the cue, 425.2 g (--body-mass)" in record["assumptions"]
-
-
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [
-        ("--bore", "6 mm wide, 100 mm deep"),
-        ("--material", "ash"),
-        ("--ferrule", "25 mm melamine"),
-        ("--body-mass", "15 oz"),
-    ],
-)
-def test_compare_option_of_a_value_in_a_file_is_refused(name: str, value: str, shaft: Path) -> None:
-    status, out, err = call("compare", shaft, PREDATOR, name, value)
-    assert (status, out) == (2, "")
-    problem = "would replace this file's own value: options of compare set what a file leaves open"
-    fix = "write it into a file that lacks it (`cuefem convert`)"
-    assert err == f"cuefem: predator z2: {name}: {problem}; got {value!r}; {fix}\n"
 
 
 @pytest.mark.heavy

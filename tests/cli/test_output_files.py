@@ -14,7 +14,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.cli import listed_commands, main
-from tests.helpers.command_line import as_json, call, stdout_of
+from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.full_disk import SHIM
 
 KIM = Path("studies/scenes/kim.toml").resolve()
@@ -124,46 +124,6 @@ def test_modules_have_every_name_they_promise() -> None:
         if found.ispkg:
             missing = [name for name in missing if not (Path(module.__path__[0]) / f"{name}.py").exists()]
         assert missing == [], found.name
-
-
-def test_no_module_hides_a_public_name() -> None:
-    """An imported submodule overwrites the attribute of its name (`plot` is the module itself)."""
-    rooms = {found.name for found in pkgutil.iter_modules(cf.__path__)}
-    assert {name for name in cf.__all__ if name in rooms} <= {"plot", "frames"}
-
-
-def test_modes_of_a_drawing_are_those_as_drawn() -> None:
-    """`modes` and `cf.modes` agree; --game adds a tip, which the first line says."""
-    file = Path("meshes/kim.toml")
-    cue = cf.load(file)
-    assert isinstance(cue, cf.Cue)
-    assert as_json("modes", file)["frequencies"] == pytest.approx(cf.modes(cue).frequencies[:6], rel=1e-9)
-    assert stdout_of("modes", file).splitlines()[0].endswith("frequencies as drawn")
-    with_tip = " ".join(stdout_of("modes", file, "--game", "pool").split())
-    assert "frequencies with leather tip" in with_tip
-    tip = cf.usual_scene(cue, "pool")
-    expected = cf.modes(cue, effects=tip.cue_effects).frequencies[:6]
-    assert as_json("modes", file, "--game", "pool")["frequencies"] == pytest.approx(expected, rel=1e-9)
-
-
-def test_modes_of_a_weighed_shaft_are_those_of_its_converted_file(tmp_path: Path) -> None:
-    """A scale weighs a shaft with its tip: less wood, in the command as in the file."""
-    (csv := tmp_path / "my.csv").write_text("x [mm],diameter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n")
-    toml = tmp_path / "my.toml"
-    assert call("convert", csv, toml, "--shaft-mass", "112 g")[0] == 0
-    weighed = as_json("modes", csv, "--shaft-mass", "112 g")
-    assert weighed["frequencies"] == pytest.approx(as_json("modes", toml)["frequencies"], rel=1e-9)
-    assert weighed["scene"]["effects"] == []
-    with_tip = as_json("modes", csv, "--shaft-mass", "112 g", "--game", "pool")["scene"]
-    assert with_tip["cue"]["shaft_mass"] == pytest.approx(weighed["scene"]["cue"]["shaft_mass"], rel=1e-11)
-
-
-def test_unknown_extension_names_those_that_can_be_written() -> None:
-    status, out, err = call("improve", KIM, "-o", "x.pdf")
-    assert (status, out) == (2, "")
-    assert "must end in .html or .json or .toml" in err
-    with pytest.raises(ValueError, match=r"\.html or \.json"):
-        cf.natural_frequencies(cf.Scene(cf.load("meshes/kim.toml"))).save("x.pdf")
 
 
 @pytest.mark.heavy

@@ -30,7 +30,7 @@ Step = Callable[[Page], Any]
 KIM = reference_design(next(preset for preset in PRESETS if preset.file == "studies/scenes/kim.toml"))
 # Typed in the first page's fields, one after the other: with and without units, too small, too large, no numbers.
 TYPED = {
-    "tip_diameter": ("11,8", "1/2 in", "30", "x", ""),
+    "tip_diameter": ("11,8", "1/2 in", "30", "x", "", "12 g", "1/0 in", "nan mm", "9" * 50),
     "taper_diameter": ("13.5 mm", "2 mm"),
     "tip_height": ("6", "50"),
     "shaft_mass": ("4 oz", "1 g"),
@@ -42,7 +42,7 @@ TYPED = {
     "ball_mass": ("6 oz",),
     "ball_diameter": ("57.15", "1 m"),
 }
-CHOSEN = {"shaft_material": "ash", "ferrule": "brass", "game": "pool", "leather": "hard"}
+CHOSEN = {"shaft_material": "ash", "ferrule": "brass", "game": "pool", "leather": "hard", "dome": "2 mm"}
 RANGE = ("min", "max", "step", "value", "style")  # of a slider
 UNSTABLE = ("url", "for", "id")  # props with the number of a client or an element
 

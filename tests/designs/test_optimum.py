@@ -10,7 +10,6 @@ import pytest
 
 import cuefem as cf
 from cuefem.analysis.comparison import compare_cues
-from cuefem.cli.study_command import round_text
 from cuefem.cue.materials import material
 from cuefem.designs import Response, Span, Vary, evaluate
 from cuefem.designs.optimum import Constraint, Limit, Optimum, Problem, Round, optimum
@@ -218,16 +217,3 @@ def test_least_squirt_over_offsets_through_0_is_found(offset: float) -> None:
 
 def of(cue: cf.Cue, name: str) -> cf.Segment:
     return replace(cue.segments[0], material=material(name))
-
-
-def test_optimum_output_has_units_limits_and_rounds(tmp_path: Path) -> None:
-    out = stdout_of("study", write_study(tmp_path, OPTIMUM))
-    lines = {" ".join(line.split()) for line in out.splitlines()}
-    assert {"bore 0 mm 9 mm –", "tip 12 mm 10 mm −16.7 %"} <= lines
-    assert "active constraints: bore <= 9 mm, tip >= 10 mm" in out
-    assert "The answer is your limits" in out
-    assert "not finished: " in stdout_of("study", tmp_path / "study.toml", "--iterations", 1)
-    problem = load_study(tmp_path / "study.toml")
-    texts = [round_text(problem, Round({"wood": "ash"}, 3, 30, best), 60) for best in (np.nan, 0.0412345678)]
-    assert texts[0].endswith("no design within the limits yet")
-    assert texts[1].endswith("squirt slope 0.0412346 so far")

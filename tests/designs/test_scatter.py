@@ -12,9 +12,6 @@ from scipy.stats import qmc, spearmanr
 import cuefem as cf
 from cuefem.designs import Normal, Response, Span, Study, Vary, evaluate
 from cuefem.designs.scatter import Scatter, bootstrap_sobol_indices
-from cuefem.designs.study_file import load_study
-from tests.helpers.command_line import as_json, stdout_of
-from tests.helpers.sweeps import SCATTER, write_study
 
 MAPLE = cf.load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml")
 BASE = cf.Scene(MAPLE, tip=cf.Tip(contact_time=1e-3))
@@ -129,20 +126,3 @@ def test_single_factor_explains_single_response() -> None:
     result = cf.study(Scatter(replace(STUDY, vary=VARY[1:2], responses=STUDY.responses[:1]), count=16, seed=1))
     assert result.sobol_indices.total == pytest.approx(np.ones((1, 1)), abs=0.1)  # type: ignore[attr-defined]
     assert result.sobol_indices.first_interval.shape == (2, 1, 1)  # type: ignore[attr-defined]
-
-
-def test_scatter_command_equals_function(tmp_path: Path) -> None:
-    study = write_study(tmp_path, SCATTER)
-    assert load_study(study).correlations == {("E", "density"): 0.4}
-    result = cf.study(study)
-    record = as_json("study", study, "-o", tmp_path / "all.csv")
-    stiffness, spread = record["responses"]["tip_stiffness"], result.spread["tip_stiffness"]
-    assert (record["kind"], record["count"], record["seed"]) == ("scatter", 16, 5)
-    assert {name: stiffness[name] for name in spread} == spread
-    assert stiffness["factors"]["wood"]["first"] == result.sobol_indices.first[0, 1]  # type: ignore[attr-defined]
-    assert stiffness["factors"]["time"]["total_interval"] == [0, 0]
-    assert len((tmp_path / "all.csv").read_text(encoding="utf-8").splitlines()) == 1 + 16 * 4
-    assert as_json("study", study)["evaluated"] == 0  # designs are stored
-    out = " ".join(stdout_of("study", study).split())
-    assert f"end mass, g {1e3 * result.spread['end_mass']['mean']:.3f}" in out
-    assert "the strongest factor is wood (" in out  # time changes no stiffness

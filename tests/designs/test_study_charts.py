@@ -1,19 +1,16 @@
 """Charts of a study: each drawn position equals a number of its tables (verification)."""
 
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-import cuefem as cf
 from cuefem.cue import Array
 from cuefem.designs import Response
 from cuefem.designs.study_charts import MAX_POINTS, sweep_charts
 from cuefem.designs.study_statistics import SweepStatistics
 from cuefem.quantity.display_units import displayed_in
 from cuefem.show.charts import Chart
-from tests.helpers.sweeps import SCATTER, STUDY, write_study
 
 PAIR = (Response.of("squirt(0.3)"), Response.of("tip_stiffness"))
 
@@ -40,16 +37,6 @@ def sweep(columns: dict[str, np.ndarray], results: Array) -> SweepStatistics:
 def two_parameters(count: int) -> SweepStatistics:
     bore, wall = np.random.default_rng(1).random((2, count))
     return sweep({"bore": bore, "wall": wall, "same": np.ones(count)}, np.stack([1 - bore + wall, 900 - bore], axis=1))
-
-
-def test_trade_off_shows_designs_and_front() -> None:
-    found = two_parameters(50)
-    drawn = sweep_charts(found)[0]
-    assert (drawn.x_label, drawn.y_label) == ("stiffness at the tip, N/m", "squirt at b/R 0.3, °")
-    shown = np.stack([found.results[:, 1], np.degrees(found.results[:, 0])], axis=1)
-    assert numbers(drawn, drawn.points[0][2]) == pytest.approx(shown, abs=0.5)
-    assert numbers(drawn, drawn.curves[0][2]) == pytest.approx(shown[found.front], abs=0.5)
-    assert drawn.x_scale.low > 0  # the axis shows differences, not the distance from zero
 
 
 def test_chart_of_each_varied_parameter_has_medians() -> None:
@@ -86,31 +73,3 @@ def test_equal_results_and_one_design_are_drawn() -> None:
     assert drawn.y_scale.low < np.degrees(0.02) < drawn.y_scale.high
     assert len(drawn.y_ticks) > 2
     assert sweep_charts(sweep({"bore": np.arange(1.0)}, equal[:1])) == []
-
-
-def test_histogram_has_every_design_and_factors_are_ordered(tmp_path: Path) -> None:
-    result = cf.study(write_study(tmp_path, SCATTER))
-    histogram, factors, *_ = result.charts()
-    edges = numbers(histogram, histogram.curves[0][2])
-    shares = edges[1:-1:2, 1]
-    assert shares.sum() == pytest.approx(100, abs=1)
-    assert edges[[0, -1], 0] == pytest.approx(
-        [1e3 * f(result.responses["end_mass"][:32]) for f in (np.min, np.max)], abs=0.02
-    )
-    assert [mark.label for mark in histogram.marks] == ["5 %", "50 %", "95 %"]
-    shown = numbers(factors, factors.points[0][2])[:, 0]
-    assert shown == pytest.approx(100 * np.sort(result.sobol_indices.total[:, 0]), abs=0.5)  # type: ignore[attr-defined]
-    assert len(factors.y_ticks) == len(result.sobol_indices.factors)  # type: ignore[attr-defined]
-
-
-def test_page_and_notebook_of_a_study_have_its_charts(tmp_path: Path) -> None:
-    result = cf.study(write_study(tmp_path, STUDY), workers=1)
-    charts = result.charts()
-    assert [chart.title for chart in charts] == [
-        "Trade-off: end mass",
-        "end mass",
-        "end mass",
-        "end mass by segment 1 material",
-    ]
-    assert result.to_html().count('<svg class="chart') == len(charts)
-    assert result._repr_html_().count("svg class=&quot;chart") == len(charts)

@@ -167,7 +167,7 @@ OVERFLOWS = Study(
 )
 
 
-@pytest.mark.parametrize("workers", [None, pytest.param(2, marks=pytest.mark.heavy)])
+@pytest.mark.parametrize("workers", [None, 1])
 def test_study_overflow_fails_one_design(workers: int | None) -> None:
     """Under any NumPy setting of the caller, also in a worker process."""
     with np.errstate(all="ignore"):

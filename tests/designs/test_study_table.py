@@ -64,22 +64,6 @@ def test_pareto_front_has_undominated_designs(numbers: np.ndarray) -> None:
     assert result.best(1) in np.flatnonzero(results[:, 1] == results[:, 1].max())
 
 
-def test_study_result_has_designs_responses_units_best_and_spread(tmp_path: Path) -> None:
-    result = cf.study(write_study(tmp_path), store=tmp_path / "some.sqlite", workers=1)
-    assert (result.kind, result.count, len(result.failures)) == ("sweep", 32, 8)
-    units = ["m", "s", "", "kg", "N/m", "Hz"]
-    assert result.units == dict(zip((*result.designs, *result.responses), units, strict=True))
-    assert (result.designs["bore"].shape, result.responses["end_mass"].shape) == ((32,), (32,))
-    best = result.best["end_mass"]
-    assert best.responses["end_mass"] == np.nanmin(result.responses["end_mass"])
-    assert best.scene.cue.segments[0].tip_bore == best.values["bore"]
-    assert set(result.best) == {"end_mass", "tip_stiffness"}
-    assert result.spread["end_mass"]["5 %"] < result.spread["end_mass"]["mean"] < result.spread["end_mass"]["95 %"]
-    assert repr(result).splitlines()[0] == "SweepResult(32 designs, 8 failed)"
-    again = cf.study(tmp_path / "study.toml", store=tmp_path / "some.sqlite")  # all designs are stored
-    assert again.columns == result.columns
-
-
 def test_neighbours_on_the_front_that_are_not_distinct_are_marked(tmp_path: Path) -> None:
     """By the rule of `compare`: a bore of 0 or 1 mm changes the end mass by less than its uncertainty."""
     result = cf.study(write_study(tmp_path, STUDY.replace('values = ["hard maple", "ash"]', 'values = ["ash"]')))

@@ -8,7 +8,6 @@ import meshio
 import pytest
 
 import cuefem as cf
-from cuefem.cue.materials import material
 from cuefem.files import InputError, load_accuracy
 from tests.helpers.cues import kim
 
@@ -66,35 +65,6 @@ def test_save_vtu_contains_the_cue(tmp_path: Path) -> None:
     assert mesh.cell_data["core_E"][0].tolist() == [0, 12.6e9]
     assert mesh.cell_data["kappa"][0].tolist() == [0.9, 0]
     assert mesh.cell_data["body_mass"][0].tolist() == [0.42, 0.42]
-
-
-def test_save_toml_uses_readable_units_and_names(tmp_path: Path) -> None:
-    maple, made_up = material("hard maple"), cf.Material(13.5e9, 1.2e9, 700.0)
-    shaft = (cf.Segment(0.0762, 0.0127, 0.0128, made_up, 0.003, 0.003, maple), cf.Segment(0.66, 0.0128, 0.021, maple))
-    cf.save(cf.Scene(cf.Cue(shaft, 0.42), effects=(cf.Elevation(math.radians(3)),)), tmp_path / "scene.toml")
-    text = (tmp_path / "scene.toml").read_text()
-    assert text.startswith("""[cue]
-body_mass = "420 g"
-
-[[cue.segments]]
-length = "76.2 mm"
-tip_diameter = "12.7 mm"
-butt_diameter = "12.8 mm"
-material = {E = "13.5 GPa", G = "1.2 GPa", rho = "700 kg/m^3", loss = 0.0, nu = 0.3}
-tip_bore = "3 mm"
-butt_bore = "3 mm"
-core = "hard maple"
-
-[[cue.segments]]
-length = "660 mm"
-tip_diameter = "12.8 mm"
-butt_diameter = "21 mm"
-material = "hard maple"
-
-[ball]
-""")
-    assert 'angle = "3 deg"' in text
-    assert text.endswith('"\n') or not text.endswith("\n\n")
 
 
 def test_save_over_file_replaces_it(tmp_path: Path) -> None:

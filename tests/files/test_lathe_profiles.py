@@ -184,24 +184,6 @@ def test_profile_in_unusual_format_is_read(name: str, tmp_path: Path) -> None:
     assert [each.key for each in assumed[len(notes) :]] == ["ferrule", "bore", "front"]
 
 
-def test_profile_without_unit_takes_length_unit(tmp_path: Path) -> None:
-    path = write_profile(tmp_path, "x,diameter\n0,0.5\n13,0.52\n29,0.85\n")
-    result = cf.load(path, length_unit="in")
-    assert result == cf.load(write_profile(tmp_path, "x [in],diameter [in]\n0,0.5\n13,0.52\n29,0.85\n"))
-
-
-STEPPED = "x [mm],diameter [mm],bore [mm]\n0,12.4,\n25,12.4,8\n{},12.5,8\n75,12.5,6\n200,12.6,\n736,21,\n"
-
-
-def test_profile_repeated_position_steps_the_bore(tmp_path: Path) -> None:
-    cue = cf.load(write_profile(tmp_path, STEPPED.format(75)), body_mass="15 oz")
-    bores = [(s.tip_bore, s.butt_bore) for s in cue.segments]
-    assert bores == [(0, 0), (0.008, 0.008), (0.006, 0.006), (0, 0)]
-    apart = cf.load(write_profile(tmp_path, STEPPED.format(74.9)), body_mass="15 oz")
-    squirts = [cf.strike(cf.usual_scene(each)).squirt for each in (cue, apart)]
-    assert squirts[0] == pytest.approx(squirts[1], rel=1e-4)
-
-
 def test_profile_repeated_position_steps_core_and_material(tmp_path: Path) -> None:
     """The row in front holds up to the position, the row behind it from there on."""
     text = "x [mm],diameter [mm],bore [mm],material,core\n0,12.4,8,abs,hard maple\n25,12.4,8,abs,hard maple\n"

@@ -1,7 +1,6 @@
 """The reference cues of meshes/ against the numbers of meshes/README.md (regression)."""
 
 import math
-import warnings
 from pathlib import Path
 
 import pytest
@@ -58,15 +57,3 @@ def test_whole_cue_mesh_has_stated_mass_and_balance() -> None:
     assert (cue.length - cue.balance_point) / INCH == pytest.approx(18.2, abs=0.1)
     joint = next(i for i, x in enumerate(cue.nodes) if math.isclose(x, 29 * INCH))
     assert cue.segments[joint - 1].butt_diameter == cue.segments[joint].tip_diameter
-
-
-def test_ready_cues_and_scenes_give_no_warning() -> None:
-    studies = FOLDER.parent / "studies"
-    files = [*FOLDER.glob("*.toml"), *studies.glob("scenes/*.toml"), *studies.glob("measured/*/cue.toml")]
-    assert len(files) > 10
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        for path in files:
-            ready = cf.load(path)
-            if isinstance(ready, cf.Cue):
-                assert cf.usual_scene(ready)

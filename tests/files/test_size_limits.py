@@ -90,17 +90,6 @@ def stiff(stiffness: float) -> cf.Scene:
     return cf.Scene(cf.Cue((cf.Segment(0.7, 0.012, 0.021, ash),)), tip=cf.Tip(stiffness=stiffness))
 
 
-def test_load_profile_of_many_points_is_fast(tmp_path: Path) -> None:
-    path = tmp_path / "shaft.csv"
-    rows = "".join(f"{i * 0.01:.2f},{12 + i * 0.00015:.5f}\n" for i in range(2_001))
-    path.write_text("x [mm],diameter [mm]\n" + rows)
-    begun = time.process_time()
-    cue = cf.load(path)
-    assert time.process_time() - begun < SOON
-    assert len(cue.segments) == 1
-    assert cue.length == pytest.approx(0.02, rel=1e-12)
-
-
 KINDS = ["toml", "csv", "stl", "ply", "obj", "wav"]
 LIMITS = {"toml": 1, "csv": 1, "stl": 100, "ply": 100, "obj": 100, "wav": 100}  # MB
 

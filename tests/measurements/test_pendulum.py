@@ -87,15 +87,3 @@ def test_pendulum_error_covers_noise_of_readings() -> None:
     assert np.mean(inside) == pytest.approx(0.683, abs=0.08)
     wild = replace(of_speeds(m, back, e * U), rebound=(0.01, 0.02, 0.03)).end_mass
     assert wild.error > 3 * replace(of_speeds(m, back, e * U), rebound=(0.02, 0.02, 0.02)).end_mass.error
-
-
-def test_compare_contradiction_with_drawing_is_reported(tmp_path: Path) -> None:
-    """8.95 g measured, 6.06 g computed: beyond the errors of readings, drawing and contact time."""
-    drawing = (Path(__file__).parents[2] / "meshes" / "pool_maple.toml").read_text(encoding="utf-8")
-    directory = measured_folder(tmp_path / "cue", TEXT.replace("-34 mm", "-9 mm"), drawing)
-    compared = cf.compare(directory)
-    (row,) = compared.values()["rows"]
-    assert (1e3 * row["measured_value"], 1e3 * row["computed_value"]) == pytest.approx((8.95, 6.06), abs=0.02)
-    assert row["residual"] > 15
-    assert row["normalized_residual"] > 5
-    assert "contradicts the drawing" in str(compared)

@@ -2,7 +2,6 @@
 
 import math
 import re
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +11,7 @@ import pytest
 import cuefem as cf
 from cuefem.files import today
 from cuefem.results.quantities import DASH
-from cuefem.show.charts import WIDTH, Axis, Chart, round_step, spread_labels
+from cuefem.show.charts import WIDTH, Axis, round_step, spread_labels
 from cuefem.show.drawings import DIAMETER_SCALE, cue_drawing
 from cuefem.show.templates import option_pieces
 from tests.helpers.page_reader import assert_valid
@@ -111,27 +110,6 @@ def test_labels_of_lines_keep_their_gap(positions: list[float], moved: list[floa
     assert spread_labels(positions, 0, 100) == moved
 
 
-def test_page_before_the_answer_has_its_name_only() -> None:
-    text = cf.report(LUMPED, details=True).to_html("lumped.toml", made="2026-11-27")
-    header, rest = text.partition("</header>")[::2]
-    assert "(rigid cue head-on)" not in header
-    facts = rest.partition('<details class="assume">')[2].partition("</details>")[0]
-    assert "(rigid cue head-on)" in facts
-    assert "lumped.toml, 2026-11-27</footer>" in text
-
-
-def names(charts: Sequence[Chart]) -> list[list[str]]:
-    return [[name for name, *_ in drawn.curves] for drawn in charts]
-
-
-def test_squirt_curves_of_makers_and_of_models_are_apart() -> None:
-    curves = cf.squirt_curve(scene("pool_low_deflection"), (0.1, 0.3))
-    assert names(curves.charts()) == [["this cue", "plain maple"]] * 2
-    (folded,) = curves.more_charts()
-    assert names(folded.charts) == [[*curves.models]] * 2
-    assert names(cf.squirt_curve(cf.usual_scene(cf.load("plain maple")), (0.1, 0.3)).charts()) == [["this cue"]] * 2
-
-
 def test_squirt_curves_end_at_the_miscue_limit() -> None:
     """Friction 0.2: offsets from 0.2 to 0.3 on are miscues of the coupled strike."""
     slippery = replace(LUMPED, tip=cf.Tip(friction=0.2))
@@ -153,8 +131,6 @@ def test_squirt_curve_head_on_has_no_pivot_length() -> None:
     )
     assert math.isnan(head_on)
     assert shown.table().rows[1][1:3] == ("0.00°", DASH)
-    with pytest.raises(ValueError, match="squirt_curve offsets must be at least one b/R between -1 and 1; got none"):
-        cf.squirt_curve(LUMPED, ())
 
 
 def test_options_are_pieces_that_paper_leaves_out() -> None:
