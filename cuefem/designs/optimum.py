@@ -398,7 +398,7 @@ class _Search:
         u = np.clip(u, 0, 1)
         key = u.tobytes()
         if key not in self._slopes:
-            steps = STEP * np.where(u > 0.5, -1, 1)
+            steps = np.where(u > 0.5, -STEP, STEP)
             ahead, here = (self.problem.sizes(rows) for rows in (self.rows(u + np.diag(steps)), self.at(u)[None]))
             self._slopes[key] = ((ahead - here) / steps[:, None]).T
         if not np.isfinite(self._slopes[key]).all():
@@ -407,7 +407,8 @@ class _Search:
 
     def onto_ends(self, u: Array) -> Array:
         """The point with values closer than `TOLERANCE` to an end of a range on that end, if this violates no limit."""
-        ends = np.where(u < TOLERANCE, 0.0, np.where(u > 1 - TOLERANCE, 1.0, u))
+        end = np.round(u)
+        ends = np.where(np.abs(u - end) < TOLERANCE, end, u)
         return u if self.violated(ends) else ends
 
     def by_slsqp(self, start: Array, rounds: int) -> tuple[Array, str]:

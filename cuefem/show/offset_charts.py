@@ -45,8 +45,8 @@ def offset_charts(
         inside = [*run]
         if shade:
             spans.append(Shade(float(ends[inside[0]]), float(ends[inside[-1] + 1]), shade))
-    longest = max([0.1, *(float(np.nanmax(curve.y, initial=0.0)) / per_metre for curve in pivot)])
-    highest = Axis("", 0.0).scale_for([np.array([per_metre * min(MAX_PIVOT, longest)])]).high
+    longest = max(float(np.nanmax(curve.y, initial=0.0)) for curve in pivot)
+    highest = Axis("", 0.0).scale_for([min(per_metre * MAX_PIVOT, longest)]).high
     at = Axis("tip offset b/R", 0.0, float(x[-1]))
     here = [Tick(abs(own), f"b/R {abs(own):.2f}")] if 0 < abs(own) <= x[-1] else []
 

@@ -1,6 +1,7 @@
 """Studies on executors: the serial results, workers that die, another version (properties)."""
 
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from collections.abc import Collection
+from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
@@ -8,7 +9,9 @@ from typing import Any
 import pytest
 
 import cuefem as cf
-from cuefem.designs.blocks import BlockResult, Blocks
+from cuefem.designs.blocks import Block, BlockResult, Blocks
+from cuefem.designs.design_key import code_digest
+from cuefem.designs.executors import in_parallel
 from cuefem.designs.study import Study
 from cuefem.designs.study_file import load_study
 from tests.helpers.invalid_input import assert_rejects
@@ -62,6 +65,59 @@ def test_blocks_grow_while_they_are_short() -> None:
         sizes.append(len(block.numbers))
         blocks.adapt(BlockResult(block, "", b"", None, {}, seconds=0.01 if len(sizes) < 3 else 1.0))
     assert sizes == [16, 32, 64]
+
+
+class Killed(BrokenExecutor):
+    """What a cluster or a pool says of a task that ended its workers."""
+
+
+class Deadly(Executor):
+    """An executor whose workers end at some designs."""
+
+    def __init__(self, deadly: Collection[int]) -> None:
+        self.deadly = deadly
+
+    def submit(self, work: Any, /, *arguments: Any, **options: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        if any(self.deadly & {*block.numbers} for block in arguments):
+            future.set_exception(Killed())
+        else:
+            future.set_result(work(*arguments))
+        return future
+
+
+@pytest.mark.parametrize(
+    ("workers", "ended", "problem"),
+    [(2, "its worker process {} times", "worker processes ended"), (None, "several workers", "workers ended")],
+)
+def test_designs_that_end_their_workers_fail_alone_unless_they_are_many(
+    monkeypatch: pytest.MonkeyPatch, workers: int | None, ended: str, problem: str
+) -> None:
+    """Those that share a block with them do not; 16 in a row are no fault of theirs.
+
+    A design ends six workers where a block of 16 is halved to it, and three where it has a block of its own.
+    """
+    monkeypatch.setattr("cuefem.designs.executors._lost_errors", lambda: ((Killed,), (OSError,)))
+
+    def lost(deadly: set[int]) -> dict[int, str]:
+        pool = Deadly(deadly)
+        monkeypatch.setattr("cuefem.designs.executors.process_pool", lambda count: nullcontext(pool))
+        blocks = [*(Block([*range(i, i + 16)], []) for i in range(0, 48, 16)), Block([48], [])]
+        results = in_parallel(
+            lambda block=None: BlockResult(block, code_digest(), b"", None, {}),
+            blocks,
+            workers or pool,
+            lambda block, why: BlockResult(block, "", b"", None, dict.fromkeys(block.numbers, why), is_lost=True),
+        )
+        done = [*results]
+        assert sorted(number for result in done for number in result.block.numbers) == [*range(49)]
+        return {number: why for result in done for number, why in result.failures.items()}
+
+    for deadly in ({5}, {48}, {*range(48)} - {15, 31, 47}, set[int]()):
+        times = {number: ended.format(3 if number == 48 else 6) for number in deadly}
+        assert lost(deadly) == {number: f"ended {text}: out of memory, or killed" for number, text in times.items()}
+    with pytest.raises(RuntimeError, match=f"{problem} for 16 designs in a row"):
+        lost({*range(16)})
 
 
 @pytest.mark.heavy
