@@ -11,7 +11,7 @@ import pytest
 import cuefem as cf
 from tests.helpers.command_line import call
 from tests.helpers.cues import kim, low_deflection
-from tests.helpers.measured_cues import MEASURED_TOML, measured_folder
+from tests.helpers.measured_cues import MEASURED_TOML, OTHER_KINDS, measured_folder
 from tests.helpers.surfaces import revolve, write_surface
 from tests.helpers.sweeps import OPTIMUM, SCATTER, STUDY, vary, write_study
 from tests.test_golden_files import assert_golden, drawing_text, page_text, rounded
@@ -19,6 +19,7 @@ from tests.test_golden_files import assert_golden, drawing_text, page_text, roun
 BESIDE = ("cue.toml", "old/cue.toml", "slippery.toml", "cue.toml")
 # Millimetres: a ferrule on a bored front with a step, and a cone behind it.
 BORED = ((0, 0), (0, 2), (120, 2.5), (120, 0)), ((0, 6), (25, 6), (25, 6.2), (300, 6.5), (700, 10.5))
+KNOWN = "".join(f'[[prior]]\nname = "{name}"\nspread = 0.0\n' for name in ("G", "bore width", "contact time"))
 
 
 def sweep(folder: Path) -> list[list[object]]:
@@ -48,10 +49,11 @@ def optimum(folder: Path) -> list[list[object]]:
 
 
 def comparison(folder: Path) -> list[list[object]]:
-    """A measured cue, compared; and one whose weight contradicts its drawing."""
+    """A measured cue, compared; one whose weight contradicts its drawing; one with every kind of measurement."""
     measured_folder(folder / "cue")
     measured_folder(folder / "heavy", MEASURED_TOML.replace('"100 g"', '"160 g"'))
-    return [["compare", "cue", "-o", "compared.html"], ["compare", "heavy", "-o", "heavy.html"]]
+    measured_folder(folder / "all", MEASURED_TOML + OTHER_KINDS + KNOWN)
+    return [["compare", name, "-o", f"{name}.html"] for name in ("cue", "heavy", "all")]
 
 
 def beside(folder: Path) -> list[list[object]]:
@@ -66,8 +68,7 @@ def beside(folder: Path) -> list[list[object]]:
 
 def estimate(folder: Path) -> list[list[object]]:
     """E and density of the wood, estimated from a weight and a tone."""
-    known = "".join(f'[[prior]]\nname = "{name}"\nspread = 0.0\n' for name in ("G", "bore width", "contact time"))
-    measured_folder(folder / "cue", MEASURED_TOML.partition("[[stiffness]]")[0] + known)
+    measured_folder(folder / "cue", MEASURED_TOML.partition("[[stiffness]]")[0] + KNOWN)
     return [["compare", "cue", "--estimate", "-o", "estimated.html"]]
 
 

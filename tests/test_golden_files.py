@@ -8,6 +8,7 @@ import itertools
 import json
 import re
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -160,6 +161,13 @@ def tube() -> cf.Scene:
     scene = cf.load(ROOT / SCENES["tube"])
     assert isinstance(scene, cf.Scene)
     return scene
+
+
+def test_tip_section_equals_golden_file(request: pytest.FixtureRequest) -> None:
+    """Impacts of a leather tip, of which the fastest is beyond its law."""
+    scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.0125, 0.021, cf.Material(12e9, 0.8e9, 700.0)),), 0.42))
+    page = QUESTIONS["tip"].function()(replace(scene, stroke=cf.Stroke(speed=30.0))).to_html()
+    assert_golden("tip_section.txt", page_text(page) + drawing_text(page), request)
 
 
 @pytest.mark.parametrize("key", [key for key in QUESTIONS if key not in ("advice", "check", "end_masses", "tip")])

@@ -8,7 +8,14 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.analysis.design_changes import MIN_STIFFNESS_LOSS, MIN_WALL, DesignChanges, changes_of, design_changes
+from cuefem.analysis.design_changes import (
+    MIN_STIFFNESS_LOSS,
+    MIN_WALL,
+    ChangedDesign,
+    DesignChanges,
+    changes_of,
+    design_changes,
+)
 from cuefem.cue.materials import material
 from cuefem.parameters.parts import shaft_word
 from cuefem.parameters.scene_changes import with_parameters
@@ -16,6 +23,7 @@ from cuefem.parameters.table import PARAMETERS
 from cuefem.results.uncertainty import RATIO_FLOOR, SHAFT_ERROR
 from tests.helpers.command_line import call
 from tests.helpers.invalid_input import assert_rejects
+from tests.test_golden_files import assert_golden, drawing_text, page_text
 
 ROOT = Path(__file__).parents[2]
 REFERENCE = ("kim", "pool_hollow", "carbon")
@@ -60,6 +68,25 @@ def test_design_changes_are_sorted_with_verdicts(computed: tuple[cf.Scene, Desig
         assert ("costs stiffness" in row.verdict) == (worthwhile and row.tip_stiffness_change < -MIN_STIFFNESS_LOSS)
         assert (row.verdict == "within uncertainty") == (abs(row.squirt_change) <= row.squirt_change_error)
         assert row.squirt_change_error >= math.hypot(RATIO_FLOOR, SHAFT_ERROR * math.log1p(row.squirt_change)) / 1.15
+
+
+def test_table_of_changes_equals_golden_file(request: pytest.FixtureRequest) -> None:
+    """Made-up changes with each verdict, small and large."""
+    rows = [
+        ChangedDesign(f"change {i}", {}, 0.01, 300.0, 0.1, 90.0, squirt, stiffness, 1e-3 * i, -0.04 * i, 0.02, verdict)
+        for i, (squirt, stiffness, verdict) in enumerate(
+            [
+                (-0.2, -0.06, "worthwhile, costs stiffness"),
+                (-0.1, 0.0949, "worthwhile"),
+                (0.0, -0.095, "within uncertainty"),
+                (0.123, 0.0004, "more squirt"),
+            ]
+        )
+    ]
+    base = {"squirt": 0.02, "tip_stiffness": 300.0, "shaft_mass": 0.1, "frequency": 90.0}
+    made = DesignChanges(scene_of("kim"), 0.3, "slip", base, rows, ("friction",))
+    page = made.to_html()
+    assert_golden("design_changes.txt", f"{made}\n{page_text(page)}{drawing_text(page)}", request)
 
 
 @pytest.mark.heavy

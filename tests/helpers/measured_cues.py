@@ -46,6 +46,52 @@ free_length = "8 in"
 value = "4600 N/m"
 error = "90 N/m"
 """
+# The other kinds of measurements, with zero errors of two series.
+OTHER_KINDS = """
+[[balance]]
+value = "400 mm"
+error = "2 mm"
+
+[[squirt]]
+series = "a"
+offset = 0.3
+left = "1.5 deg"
+right = "1.7 deg"
+error = "0.1 deg"
+
+[[squirt]]
+series = "b"
+offset = 0.4
+value = "2.5 deg"
+error = "0.1 deg"
+zero_error = "0.3 mm"
+
+[[pivot_length]]
+offset = 0.3
+value = "300 mm"
+error = "10 mm"
+
+[[added_mass]]
+mass = "10 g"
+position = "50 mm"
+offset = 0.3
+value = "2.2 deg"
+baseline = "1.6 deg"
+error = "0.05 deg"
+
+[[contact_time]]
+value = "1.2 ms"
+error = "0.1 ms"
+
+[[end_mass]]
+value = "9 g"
+error = "0.5 g"
+ball_mass = "100 g"
+restitution = 0.7
+contact_time = "1 ms"
+contact_time_error = "0.1 ms"
+position = "2 mm"
+"""
 
 
 def measured_cue(*measurements: Measurement, priors: tuple[Prior, ...] = ()) -> MeasuredCue:
