@@ -73,14 +73,17 @@ def estimate(folder: Path) -> list[list[object]]:
 
 
 def surfaces(folder: Path) -> list[list[object]]:
-    """CAD surfaces: in three units, bored, oval, bent, with a hole, too short."""
+    """CAD surfaces: in three units, bored, mirrored, off circles, oval, bent, with a hole, too short."""
     inner, outer = BORED
     outline = [(1e-3 * x, 1e-3 * r) for x, r in (*inner[::-1], *outer, (700, 0))]
     points, faces = revolve(outline, 16)
+    trefoil = 1 + 0.01 * np.cos(3 * np.arctan2(points[:, 2], points[:, 1]))
     rows = {
         "bored.stl": (points, faces, 1e-3),
         "inches.ply": (points, faces, 0.0254),
         "turned.obj": (points[:, [2, 0, 1]] * [1, -1, 1], faces, 1e-3),
+        "mirrored.stl": (points * [-1, 1, 1], faces, 1e-3),
+        "trefoil.stl": (points * trefoil[:, None] ** [0, 1, 1], faces, 1e-3),
         "oval.stl": (points * [1, 1.04, 1], faces, 1e-3),
         "bent.stl": (points + np.outer(points[:, 0] ** 2, [0, 0.1, 0.06]), faces, 1e-3),
         "open.stl": (points, faces[:-9], 1e-3),

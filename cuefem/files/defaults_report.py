@@ -118,6 +118,7 @@ def drawing_assumptions(path: Path, cue: Cue, options: Mapping[str, Any]) -> lis
     if ending in SURFACE_EXTENSIONS:
         unit = Assumption("", f"lengths in {DEFAULT_UNIT}", "length_unit")
         notes = [*([] if "length_unit" in options else [unit]), *(Assumption("", note) for note in _surface(path))]
+        given |= _given_in_drawing(path, cue, None)
     else:
         drawn, read = read_profile(path, _UNNAMED, options.get("length_unit"))
         notes = [Assumption("", note) for note in read]
@@ -164,7 +165,7 @@ def given_keys(path: Path, opened: Cue | Scene, length_unit: str | None = None) 
 def _given_in_drawing(path: Path, cue: Cue, length_unit: str | None) -> set[str]:
     ending = path.suffix.lower()
     if ending in SURFACE_EXTENSIONS:
-        return set()
+        return {"bore"} if _is_bored(cue) else set()
     if ending in SHAPE_EXTENSIONS:
         return _given_in_profile(read_profile(path, _UNNAMED, length_unit)[0])
     given = {

@@ -276,6 +276,10 @@ def test_study_applies_factor_and_shift_after_value() -> None:
     assert combined.scene((1e-4, 1.5, 2e-3)).tip.contact_time == pytest.approx(3.1e-3, rel=1e-15)
 
 
+def test_quantiles_of_a_list_are_its_values_in_equal_shares() -> None:
+    assert [Levels((1.0, 2.0, 4.0)).quantile(u) for u in (0, 0.33, 0.34, 0.66, 0.67, 1)] == [1, 1, 2, 2, 4, 4]
+
+
 @given(st.floats(-5, 5), st.floats(0.01, 3), st.floats(0, 1))
 def test_normal_range_is_truncated_normal(middle: float, sd: float, u: float) -> None:
     distribution = Normal(middle, sd)
