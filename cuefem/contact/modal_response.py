@@ -113,7 +113,6 @@ class ModalPropagator:
         self.radiating = np.flatnonzero(radiation.any(axis=1))
         self._radiation = radiation[np.ix_(self.radiating, self.radiating)]
         self._group_loss = np.diag((self.loss * tip.omega)[self.radiating])
-        self.tables = lru_cache(maxsize=8)(self._tables)
 
     @cached_property
     def _group(self) -> CoupledModes:
@@ -161,7 +160,7 @@ class ModalPropagator:
         fields.omega = self.tip.omega
         fields.rows = self.rows
 
-    def _tables(self, h: float) -> StepTables:
+    def tables(self, h: float) -> StepTables:
         """Tables of a step of the length h, s; of 0 those of an impact."""
         return self._step_tables(h) if h else self._impact_tables()
 
@@ -268,22 +267,30 @@ class ModalPropagator:
         return loads
 
 
-# Strikes with the same tip modes share the propagator.
+# Strikes with the same tip modes share the propagator, and those with steps of one length its tables: 0.1 to 1 MB for
+# each length. The caches are those of one sweep, not of all cues of an estimate.
+CACHED_CUES, CACHED_TABLES = 8, 16
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=CACHED_TABLES)
+def repeated_tables(propagator: ModalPropagator, h: float) -> StepTables:
+    """The tables of a length of steps, s, that other strikes have, too."""
+    return propagator.tables(h)
+
+
+@lru_cache(maxsize=CACHED_CUES)
 def straight_propagator(tip: TipModes) -> ModalPropagator:
     """The propagator of tip modes at the ports (u, w)."""
     return ModalPropagator(tip, tip.amplitude.T, slope_rows(tip))
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=CACHED_CUES)
 def turning_propagator(tip: TipModes) -> ModalPropagator:
     """The propagator of tip modes at the ports (u, w, rotation of the end section)."""
     return ModalPropagator(tip, np.concatenate([tip.amplitude.T, tip.rotation[None]]), slope_rows(tip))
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=CACHED_CUES)
 def raised_propagator(tip: TipModes) -> ModalPropagator:
     """The propagator of tip modes, which bend in two planes, at the ports (u, w, p)."""
     return ModalPropagator(*_in_two_planes(tip, slope_rows(tip, planes=2)))

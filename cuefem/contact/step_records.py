@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from cuefem.contact.contact_model import ContactModel
 from cuefem.contact.geometric_stiffness import SlopeOutOfRange
-from cuefem.contact.kernel.declarations import CONSTANTS, STEP, KernelState
+from cuefem.contact.kernel.declarations import CONSTANTS, STEP, KernelState, StepTables
 from cuefem.contact.kernel.library import library
+from cuefem.contact.modal_response import ModalPropagator, repeated_tables
 from cuefem.contact.outcome import IMPACT, SEPARATION, History, Phase, contact_state
 from cuefem.contact.ports import Raised
 from cuefem.contact.tips import Leather
@@ -224,7 +225,7 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
                 )
             rows = np.empty(STEPS_PER_CALL, STEP)
             after = np.empty((STEPS_PER_CALL if store_states else 0, *start.shape))
-            tables = propagator.tables(state.next_step)
+            tables = _next_tables(propagator, state)
             after_steps = after.ctypes.data if store_states else None
             count = kernel.contact_steps(contact, tables, STEPS_PER_CALL, rows.ctypes.data, after_steps)
             records.append(rows[:count])
@@ -242,6 +243,13 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
         ball=taken["ball"][-1, : len(model.ball)],
         losses=_losses(model, state, taken[-1]),
     )
+
+
+def _next_tables(propagator: ModalPropagator, state: KernelState) -> StepTables:
+    """The tables of the next step; one that ends at separation or touch has a length of its own."""
+    if state.ends_at_event:
+        return propagator.tables(state.next_step)
+    return repeated_tables(propagator, state.next_step)
 
 
 def _losses(model: ContactModel, state: KernelState, last: np.void) -> Losses:

@@ -10,7 +10,7 @@ from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.coupled_modes import CoupledModes
 from cuefem.contact.kernel.declarations import KernelInput, KernelState
 from cuefem.contact.kernel.library import library
-from cuefem.contact.modal_response import straight_propagator
+from cuefem.contact.modal_response import repeated_tables, straight_propagator
 from cuefem.cue import Array
 
 # Steps of a contact. Against closed forms at the same 120 modes (100 random cues, 0.5 to 3 ms, free and damped, "stick"
@@ -70,7 +70,7 @@ def imposed_velocity_impulse(tip: TipModes, T: float, velocity: Array, ball_inve
     check_moves(tip)
     tip = tip.lateral
     propagator, kernel = straight_propagator(tip), library()
-    tables, means = propagator.tables(T / STEPS), (velocity[1:] + velocity[:-1]) / 2
+    tables, means = repeated_tables(propagator, T / STEPS), (velocity[1:] + velocity[:-1]) / 2
     first_impulse = velocity[0] / (float(propagator.mobility[1, 1]) + ball_inverse_mass)
     velocities = first_impulse * propagator.ports[1]
     fields, state = KernelInput(), KernelState(modes=np.array([velocities, np.zeros_like(velocities)]))
