@@ -128,7 +128,6 @@ typedef struct {
     bool on_table, table_stuck;    /* in the last step: the table presses the ball; its lowest point sticks */
     double shift, shift_mid;      /* of the tip along t against the ball, m; at the middle of the last step */
     double origin;                /* shift at which a spring patch is unstrained, m */
-    double virtual_mid;           /* virtual indentation at the middle of the last step, m; see laws.c */
     double annulus_force[ANNULI]; /* at the middle of the last step, N */
     double work[FORCES];          /* dissipated by each force so far, J */
     double shear_loss;            /* dissipated strain energy of the patch so far, J */
@@ -221,9 +220,11 @@ struct Contact {
     double V[FORCES][FORCES], W[FORCES][FORCES]; /* v = v_free + V F, u = u_free + W F */
     double F[FORCES], v[FORCES], u[FORCES];      /* the step's forces, N, and velocities */
     double last_F[2][FORCES];                    /* of the last step in contact and the one before it, N */
+    bool on_table, table_stuck;   /* in the step: of a raised cue, as in State */
     int slip;                     /* its direction, or STICK; a patch that slips in parts keeps STICK */
     NormalForce normal;           /* of a level cue, at mid-step */
     Edge edges[ANNULI + 1];       /* of the annuli */
+    Edge last_middle;             /* at the virtual indentation at the middle of the last step */
     double annulus_force[ANNULI]; /* at mid-step, N; State has that of the last step */
     double annuli_loss;           /* dissipated in the step, J */
     double axial_force;           /* on the cue, N */

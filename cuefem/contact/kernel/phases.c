@@ -28,9 +28,10 @@ static void update_contact(Contact *c)
     State *s = c->s;
     s->shift_mid = s->shift - c->tables.h / 2 * c->u[T];
     c->patch->update(c);
-    s->virtual_mid = c->normal.virtual;
     s->friction_state = c->cue->friction_state(c);
     s->tip_stuck = !c->slip;
+    s->on_table = c->on_table;
+    s->table_stuck = c->table_stuck;
 }
 
 static int contact_status(const State *s) { return s->time > s->deadline ? TIME_LIMIT : RUNNING; }
@@ -107,7 +108,6 @@ void separate(Contact *c)
     s->deadline = c->in->max_time + s->time;
     s->ends_at_event = false;
     s->tip_stuck = false;
-    s->virtual_mid = 0;
     s->origin = s->shift;
     s->shift_mid = s->shift;
     memset(s->annulus_force, 0, sizeof s->annulus_force);

@@ -87,8 +87,8 @@ static void sweep(Contact *c, double mu, double more)
     c->slip = plane_friction(c, T, P, mu * larger(c->F[N], 0) + more) ? STICK : SLIP;
     table_force(c);
     bool sticks = plane_friction(c, LATERAL, FORWARD, c->in->table_friction * c->F[UP]);
-    c->s->on_table = c->F[UP] > 0;
-    c->s->table_stuck = sticks && c->s->on_table;
+    c->on_table = c->F[UP] > 0;
+    c->table_stuck = sticks && c->on_table;
 }
 
 /* Sweeps until the forces stay. Returns whether they converged. */

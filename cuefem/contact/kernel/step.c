@@ -168,6 +168,7 @@ bool take_impact(Contact *c, Step *row)
     s->friction_state = IMPACT;
     s->tip_stuck = true;
     s->on_table = true;
+    s->table_stuck = c->table_stuck;
     record(c, row);
     memset(c->F, 0, sizeof c->F);
     return !parts;
