@@ -14,7 +14,6 @@ from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
-import scipy.linalg as la
 from numpy.typing import NDArray
 from scipy.linalg import lapack
 
@@ -26,6 +25,8 @@ from cuefem.cue import Array
 # With LEADING times as many rows as modes, and SPARE more, the rest changes none of them by more than the square of
 # ROUNDING; otherwise the whole matrix is solved.
 LEADING, SPARE, ROUNDING = 2.2, 12, 1e-7
+# Modes span a deflection, but for round-off error, if this part of it is left.
+SPANNED = 1e-10
 
 # mu, work and combine of a `Spectrum`.
 RawSpectrum = tuple[Array, Array, Callable[[Array], Array]]
@@ -156,16 +157,28 @@ def ritz_modes(
     the modes. A truncation correction is the same with them as with all other modes. inverse, stiffness: the products
     S^-1 M q and S q, S = K + shift M.
     """
-    basis = []
+    ritz = np.zeros((len(modes), 0))
     for _ in range(LANCZOS_STEPS):
-        for _ in range(2):  # the second pass removes round-off error
-            deflections = deflections - modes @ (modes.T @ stiffness(deflections))
-        basis.append(deflections / np.sqrt(np.sum(deflections * stiffness(deflections), axis=0)))
-        deflections = inverse(basis[-1])
-    ritz = np.concatenate(basis, axis=1)[:, : len(modes) - modes.shape[1]]  # no more than there are other modes
-    weighted = stiffness(ritz)
-    mu, mix = la.eigh(weighted.T @ inverse(ritz), weighted.T @ ritz)
+        known = ritz.shape[1]
+        for deflection in deflections.T:
+            new = _orthogonal_part(deflection, modes, ritz, stiffness)
+            ritz = np.concatenate([ritz, new], axis=1)
+        deflections = inverse(ritz[:, known:])
+    mu, mix = np.linalg.eigh(stiffness(ritz).T @ inverse(ritz))
     return mu[::-1], ritz @ mix[:, ::-1]
+
+
+def _orthogonal_part(deflection: Array, modes: Array, ritz: Array, stiffness: Callable[[Array], Array]) -> Array:
+    """The part of a deflection orthogonal to modes and Ritz vectors, of unit energy, (free, 1); (free, 0) for none."""
+    part = deflection[:, None]
+    whole = np.sum(part * stiffness(part))
+    for _ in range(2):  # the second pass removes round-off error
+        part = part - modes @ (modes.T @ stiffness(part))
+        part = part - ritz @ (ritz.T @ stiffness(part))
+    energy = np.sum(part * stiffness(part))
+    if energy <= SPANNED**2 * whole:
+        return part[:, :0]
+    return np.asarray(part / np.sqrt(energy))
 
 
 class Sparse:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from cuefem import Cue, modes
+from cuefem.beam.eigensolver import solve_eigenproblem
 from cuefem.beam.tip_modes import tip_modes
 from tests.helpers.cues import FAMILY, isotropic_kim, kim, scaled, stiff_ferrule
 
@@ -27,6 +28,22 @@ def stations(cue: Cue, nodes: np.ndarray | None = None) -> tuple[np.ndarray, np.
     ends = cue.nodes if nodes is None else nodes
     lengths = np.diff(ends)
     return (ends[:-1, None] + lengths[:, None] * (points + 1) / 2).ravel(), np.outer(lengths, weights / 2).ravel()
+
+
+@pytest.mark.parametrize("size", range(2, 9))
+def test_few_unknowns_have_a_truncation_correction(size: int) -> None:
+    """Modes and Ritz vectors have the static compliance of a chain of masses, and its first moment in mu."""
+    rng = np.random.default_rng(size)
+    springs, masses, shift = 10 ** rng.uniform(2, 6, size + 1), 10 ** rng.uniform(-3, 0, size), 1e3
+    K = np.diag(springs[:-1] + springs[1:]) - np.diag(springs[1:-1], 1) - np.diag(springs[1:-1], -1)
+    loads = np.eye(size, 2)
+    static = np.linalg.solve(K + shift * np.diag(masses), loads)
+    for count in range(1, size + 1):
+        spectrum = solve_eigenproblem(K, np.diag(masses), loads, shift=shift, rigid=0, count=count, n_corrected=2)
+        work = spectrum.work
+        np.testing.assert_allclose(work @ work.T, loads.T @ static, rtol=1e-9, atol=1e-20)
+        np.testing.assert_allclose((work * spectrum.mu) @ work.T, static.T @ (masses[:, None] * static), rtol=1e-9)
+        assert np.isfinite(spectrum.lowest(count).participation).all()
 
 
 @pytest.mark.parametrize("name", SHAFTS)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +13,7 @@ import scipy.linalg as la
 import cuefem as cf
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.modal_response import ModalPropagator, straight_propagator
+from cuefem.contact.strike import strike_modes
 from tests.helpers.strike_scenes import custom_tip_modes
 
 # A rigid axial and a rigid transverse mode, and modes of 1e-6 to 30 radians in a step of 1e-5 s.
@@ -51,6 +54,18 @@ def test_step_of_modes_equals_exponential_of_whole_system(loss: float, radiation
     np.testing.assert_allclose(
         propagator.modal_loads(states, np.array([H]))[0], load @ propagator.ports * 1e5, rtol=1e-5
     )
+
+
+def test_cues_struck_earlier_leave_no_tables_behind() -> None:
+    """Without the garbage collector: an estimate strikes hundreds of cues, whose tables have 1 MB each."""
+    scene = cf.Scene(cf.LumpedCue(0.54, 0.01), tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(offset=0.3))
+    gc.disable()
+    try:
+        tips = [custom_tip_modes(OMEGA, [5.0 + i, 6.0, -7.0, 8.0, -3.0, 2.0]) for i in range(20)]
+        propagators = [weakref.ref(straight_propagator(tip)) for tip in tips if strike_modes(scene, tip)]
+        assert propagators[0]() is propagators[3]() is None
+    finally:
+        gc.enable()
 
 
 def test_impact_is_the_limit_of_short_steps_under_the_same_impulse() -> None:
