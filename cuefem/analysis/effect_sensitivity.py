@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import MISSING, asdict, dataclass, fields, replace
 from typing import Any
 
+from cuefem.analysis.strike_models import regime_warning
 from cuefem.contact.refinement import RTOL, refinement_levels
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.effects.effect import Effect, effect_kinds
@@ -37,8 +38,8 @@ class EffectSensitivity(Analysis):
     modes : int or None
         Number of modes of all strikes; None for a lumped cue.
     base : dict
-        "squirt", rad; "end_mass", the squirt-equivalent one, kg, or None; "ball_speed", m/s; "spin", rad/s, of the
-        scene.
+        "squirt", rad; "end_mass", the squirt-equivalent one, kg, or None; "ball_speed", m/s; "spin", rad/s; "regime",
+        as `Outcome.regime`, of the scene.
     effects : list of dict
         For each effect, the largest change first: "name", "values", "label"; "is_listed", whether the scene has it and
         the strike is without it; "failure", why it was not tried, or None; the results as of ``base``; "change", by
@@ -74,6 +75,7 @@ class EffectSensitivity(Analysis):
                 "from the first row",
                 f"end mass: of the lumped cue with the same squirt; {percent}: the tolerance of squirt, ball speed and "
                 "spin",
+                *filter(None, [regime_warning(base["regime"])]),
                 *_not_tried(self.effects),
                 assumptions(scene_record(self.scene)),
                 "",
@@ -154,6 +156,7 @@ def _results(outcome: Outcome, scene: Scene) -> Record:
         "end_mass": _end_mass(outcome, scene),
         "ball_speed": outcome.ball_speed,
         "spin": outcome.spin,
+        "regime": outcome.regime,
     }
 
 
@@ -223,7 +226,8 @@ def _not_tried(rows: Sequence[Record]) -> list[str]:
 def _cells(row: Record) -> tuple[str, ...]:
     word = "without" if row["is_listed"] else "with"
     squirt, speed, spin = (_percent(row["change"][name]["relative"]) for name in ("squirt", "ball_speed", "spin"))
-    return (f"{word} {row['label']}", squirt, format_value("end_mass", row["end_mass"]), speed, spin)
+    miscue = ": miscue" if row["regime"] == "miscue" else ""
+    return (f"{word} {row['label']}{miscue}", squirt, format_value("end_mass", row["end_mass"]), speed, spin)
 
 
 def _percent(part: float | None) -> str:

@@ -13,9 +13,10 @@ from cuefem.endmass.definitions import stick_at_offsets
 from cuefem.endmass.lumped import impulse, lump_modes
 from cuefem.quantity.display_units import END_MASS, with_unit
 from cuefem.results.closed_forms import alciatore_a31, pivot_length
-from cuefem.results.quantities import MISCUE_DEFINITION, REGIMES, RESULTS, format_value
+from cuefem.results.quantities import REGIMES, RESULTS, format_value
 from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import SolvedDesign, at_offset
+from cuefem.results.verdict import MISCUE_DEFINITION
 from cuefem.scene import Outcome, Scene
 from cuefem.show.analysis import Analysis
 from cuefem.show.scene_summary import assumptions, scene_record, tip_effect_notes

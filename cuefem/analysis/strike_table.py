@@ -27,8 +27,9 @@ from cuefem.analysis.strike_grid import (
 from cuefem.cue import Array
 from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.results.progress import Progress
-from cuefem.results.quantities import MISCUE_DEFINITION, RESULTS, format_value
+from cuefem.results.quantities import RESULTS, format_value
 from cuefem.results.records import Record, Table
+from cuefem.results.verdict import MISCUE_DEFINITION
 from cuefem.scene import Scene, Stroke, check_scene
 from cuefem.show.analysis import Analysis
 from cuefem.show.scene_summary import assumptions, scene_record

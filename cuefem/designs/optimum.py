@@ -6,7 +6,7 @@ the ranges and SLSQP continues from there. Values in a list (names of materials)
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
@@ -215,9 +215,10 @@ class Problem:
         """The base with the values of its variables and its responses, nan where it has none."""
         values = {vary.name: self.base_value(vary) for vary in self.vary}
         values = {name: np.nan if value is None else value for name, value in values.items()}
-        responses = evaluate([self.base], self.study.responses, at=self.at).values[0].tolist()
+        found = evaluate([self.base], self.study.responses, at=self.at)
         names = (response.name for response in self.study.responses)
-        return StudyDesign(self.base, values, dict(zip(names, responses, strict=True)))
+        responses = dict(zip(names, found.values[0].tolist(), strict=True))
+        return StudyDesign(self.base, values, responses, failure=found.reasons[0])
 
     def design(self, point: Array) -> tuple[Value, ...]:
         """The values of all variables at a point."""
@@ -362,10 +363,7 @@ class _Search:
         u = self.onto_ends(min((u for u, _ in ends), key=lambda u: self.scores(self.at(u)[None])[0]))
         violated, stop_reason = self.violated(u), "" if self.is_least(u) else ends[-1][1]
         if violated or not np.isfinite(self.at(u)).all():
-            condition = f"within {', '.join(violated)}" if violated else f"that has {self.problem.objective.name}"
-            nearest = zip(self.problem.study.responses, self.at(u), strict=True)
-            has = ", ".join(f"{response.name} {value:.6g} {response.unit}".strip() for response, value in nearest)
-            raise ValueError(f"no design {condition} was found; the nearest has {has}: relax a limit or widen a range")
+            raise ValueError(f"no design {self.none_found(u, violated)}")
         point, study = self.problem.points(u), self.problem.study
         return Optimum(
             self.problem.scene(point),
@@ -375,6 +373,16 @@ class _Search:
             self.evaluations,
             stop_reason,
         )
+
+    def none_found(self, u: Array, violated: Sequence[str]) -> str:
+        """The rest of the error for a nearest point that violates limits, or lacks a response for a reason."""
+        failure = self.problem.study.evaluate([self.problem.design(self.problem.points(u))]).reasons[0]
+        if failure:
+            names = ", ".join(response.name for response in self.problem.study.responses)
+            return f"that has {names} was found; of the nearest: {failure}"
+        nearest = zip(self.problem.study.responses, self.at(u), strict=True)
+        has = ", ".join(f"{response.name} {value:.6g} {response.unit}".strip() for response, value in nearest)
+        return f"within {', '.join(violated)} was found; the nearest has {has}: relax a limit or widen a range"
 
     def is_least(self, u: Array) -> bool:
         """Whether a size that is minimized, such as that of squirt, is 0 at a point within the limits.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
 from typing import Any, Protocol
@@ -139,11 +139,15 @@ class Vary:
 
 @dataclass(frozen=True)
 class StudyDesign:
-    """A design of a study: its scene, and the values of its parameters and responses by name, in SI units."""
+    """A design of a study: its scene, and the values of its parameters and responses by name, in SI units.
+
+    failure: the reason for a missing response, such as the squirt of a miscue.
+    """
 
     scene: Scene
     values: dict[str, Value]
     responses: dict[str, float]
+    failure: str | None = field(default=None, kw_only=True)
 
 
 @dataclass(frozen=True)

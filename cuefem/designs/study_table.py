@@ -327,7 +327,8 @@ def optimum_record(problem: Problem, best: Optimum, changes: Mapping[str, Record
         "value": best.responses[problem.objective.name],
         "values": best.values,
         "responses": best.responses,
-        "start": best.start and {"values": best.start.values, "responses": best.start.responses},
+        "start": best.start
+        and {"values": best.start.values, "responses": best.start.responses, "failure": best.start.failure},
         "changes": changes,
         "active": [constraint._asdict() for constraint in best.active],
         "is_set_by_constraints": is_set_by_constraints(problem, best),
@@ -339,7 +340,8 @@ def optimum_record(problem: Problem, best: Optimum, changes: Mapping[str, Record
 
 def is_set_by_constraints(problem: Problem, best: Optimum) -> bool:
     """Whether as many constraints are active as there are numbers to choose."""
-    return len(best.active) >= len(problem.spans) > 0
+    reached = {constraint.name for constraint in best.active}  # a limit with one bound on both sides counts once
+    return len(reached) >= len(problem.spans) > 0
 
 
 def tabulate_optimum(problem: Problem, best: Optimum, changes: Mapping[str, Record]) -> list[Table | str]:
@@ -366,11 +368,13 @@ def tabulate_optimum(problem: Problem, best: Optimum, changes: Mapping[str, Reco
         for name, value in both.items()
     )
     marked = any(not change["distinct"] for change in changes.values())
-    notes = ("±: 1σ of the difference; shared errors cancel.", *((NOT_DISTINCT,) if marked else ()))
+    shared = ("±: 1σ of the difference; shared errors cancel.",) if changes else ()
+    missing = (f"start: {best.start.failure}",) if best.start.failure else ()
+    notes = (*shared, *((NOT_DISTINCT,) if marked else ()), *missing)
     active = [f"{names[name]} {sense} {text(name, bound)}" for name, sense, bound in best.active]
     tables: list[Table | str] = [
         f"{aim}: {counted(best.evaluations, 'design')} computed",
-        Table("Best design", ("", "start", "best", "change"), compared, notes if changes else ()),
+        Table("Best design", ("", "start", "best", "change"), compared, notes),
         f"active constraints: {', '.join(active) or 'none'}",
     ]
     if is_set_by_constraints(problem, best):

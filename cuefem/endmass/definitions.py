@@ -232,9 +232,9 @@ def squirt_equivalent(tip: TipModes, scene: Scene) -> float:
 def equivalent_end_mass(outcome: Outcome, scene: Scene) -> float:
     """The lumped end mass, kg, whose impulse-solver squirt is that of a scene's outcome, off centre.
 
-    ValueError if the tip slips until separation: squirt then does not depend on the end mass.
+    ValueError for a miscue and if the tip slips until separation: squirt then does not depend on the end mass.
     """
-    if slips_at_end(outcome):
+    if outcome.regime == "miscue" or slips_at_end(outcome):
         raise ValueError(f"the stroke miscues at b/R {scene.stroke.offset:.4g}: its squirt has no end mass")
     return _with_squirt(float(np.sign(scene.stroke.offset) * outcome.squirt), scene, "squirt")
 

@@ -43,8 +43,6 @@ def _value(result: Result, design: SolvedDesign) -> float | None:
     assert result.of is not None
     try:
         value = result.of(design, None)
-        if result is RESULTS["squirt"] and design.strike().regime == "miscue":
-            return None
-    except (ValueError, RuntimeError):  # such as the stiffness of a cue whose effects clamp its tip
+    except (ValueError, RuntimeError):  # such as squirt of a miscue, stiffness of a clamped tip
         return None
     return value if math.isfinite(value) else None

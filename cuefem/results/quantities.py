@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from cuefem.quantity.display_units import END_MASS, number_text, unit_suffix
 from cuefem.results.closed_forms import pivot_length
+from cuefem.results.verdict import MISCUE_DEFINITION
 from cuefem.scene import Outcome, Scene
 
 if TYPE_CHECKING:  # at work every command that writes a number would pay for it
@@ -90,7 +91,7 @@ SMALL_OFFSET = 1e-6
 def _pivot_length(design: SolvedDesign, offset: float | None) -> float:
     if offset is None:
         return float(pivot_length(design.scene, design.squirt_slope * math.asin(SMALL_OFFSET), SMALL_OFFSET))
-    return float(pivot_length(design.scene, design.strike(offset).squirt, offset))
+    return float(pivot_length(design.scene, design.squirt(offset), offset))
 
 
 def of_strike(value: Callable[[Outcome], float]) -> Callable[[SolvedDesign, Any], float]:
@@ -171,8 +172,8 @@ RESULTS = {
         label="squirt",
         unit="rad",
         decimals=2,
-        about="of the coupled strike",
-        of=of_strike(lambda outcome: outcome.squirt),
+        about="of the coupled strike; a miscue has none",
+        of=lambda design, offset: design.squirt(offset),
         argument="offset",
         better="lower",
         odd=True,
@@ -282,8 +283,6 @@ RESULTS = {
     "seconds": Result("seconds", "s"),
 }
 UNITS = {name: result.unit for name, result in RESULTS.items() if result.unit}
-# The one definition of a miscue (`cuefem.contact.outcome.contact_state`).
-MISCUE_DEFINITION = "the tip slips for more than half of the normal impulse, or through its last third"
 # The states of the contact (`Outcome.regime`) in full.
 REGIMES = {
     "stick": "the tip sticks to the ball; no miscue",

@@ -17,6 +17,7 @@ from cuefem.cue import Array
 from cuefem.effects.cue_effects import Support
 from cuefem.endmass.definitions import DEFINITIONS, small_offset_slope
 from cuefem.results.closed_forms import pivot_length
+from cuefem.results.verdict import reject_miscue
 from cuefem.scene import Outcome, Scene, check_scene
 from cuefem.scene.default_scene import GAMES
 from cuefem.scene.solved_scene import SolvedScene
@@ -108,6 +109,12 @@ class SolvedDesign:
             scene, steps = self._at(offset), steps_of(self.solved.at)
             self._outcomes[offset] = strike_modes(scene, self.solved.tip, steps=steps)
         return self._outcomes[offset]
+
+    def squirt(self, offset: float | None = None) -> float:
+        """Squirt of the coupled strike at an offset b/R, or at the scene's own, rad; `NoVerdict` for a miscue."""
+        outcome = self.strike(offset)
+        reject_miscue(self._at(offset), outcome)
+        return float(outcome.squirt)
 
     def _at(self, offset: float | None) -> Scene:
         return self.scene if offset is None else at_offset(self.scene, offset)

@@ -7,9 +7,10 @@ from cuefem.cue.materials import MATERIALS, table_name
 from cuefem.parameters.parts import main_material
 from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.unit_checks import MIN_CUE_MASS
-from cuefem.results.quantities import MISCUE_DEFINITION
 from cuefem.scene import Outcome, Scene
 
+# The one definition of a miscue (`cuefem.contact.outcome.contact_state`).
+MISCUE_DEFINITION = "the tip slips for more than half of the normal impulse, or through its last third"
 MAX_DENSITY_MARGIN = 0.25  # relative, beyond the range of a wood: no piece of it has such a density
 
 

@@ -25,6 +25,7 @@ WOOD = Vary(("cue.segments[2].material",), Levels(("hard maple", "ash")), "wood"
 BORE = Vary(("cue.segments[1].tip_bore", "cue.segments[1].butt_bore"), Span(0.002, 0.010), "bore")
 PROBLEM = Problem(scene(low_deflection(), 1e-3), (BORE,), Response("squirt_slope"), (), cf.Resolution(1, 6, 8))
 STIFF = replace(PROBLEM, limits=(Limit(Response("tip_stiffness"), low=1e3),))
+MISCUE = replace(PROBLEM, objective=Response("squirt", 0.8))
 
 
 def scattered(
@@ -83,6 +84,7 @@ CALLS: dict[str, Callable[[], object]] = {
     "a study must have parameters and responses": lambda: replace(PROBLEM, vary=()),
     "E must have low and high, or values": lambda: replace(PROBLEM, vary=(E,)),
     "no design within tip_stiffness >= 1000 was found": lambda: optimum(STIFF, rounds=2),
+    "no design that has squirt(0.8) was found; of the nearest: miscue at b/R 0.8": lambda: optimum(MISCUE, rounds=1),
     "an optimum takes no store or workers": lambda: cf.study(PROBLEM, workers=2),
     "rounds must be a whole number >= 1; got 0": lambda: cf.study(PROBLEM, rounds=0),
     "workers must be a whole number >= 1; got 0": lambda: cf.study(varying("ball.mass", 0.2), workers=0),

@@ -219,9 +219,12 @@ def test_study_of_one_design_shows_its_responses() -> None:
 
 
 def test_best_design_has_all_responses_in_result_and_table() -> None:
-    """Without friction a stroke miscues: it has no end mass of its squirt, and is the best in neither."""
+    """Without friction a stroke miscues: it has no squirt, for a reason that is given once, and is the best in none."""
     friction = Vary(("tip.friction",), Levels((0.0, 0.6, 0.7)), "friction")
-    result = cf.study(study(friction, responses=("end_mass_squirt(0.3)", "squirt(0.3)")))
+    of_squirt = ("squirt(0.3)", "pivot_length(0.3)", "end_mass_squirt(0.3)")
+    result = cf.study(study(friction, responses=(*of_squirt, "ball_speed(0.3)")))
+    assert [math.isnan(values[0]) for values in result.responses.values()] == [True, True, True, False]
+    assert str(result).count("miscue at") == 1
     statistics = result.statistics  # type: ignore[attr-defined]
     assert statistics is not None
     assert [*result.failures] == [0]
