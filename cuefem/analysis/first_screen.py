@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from typing import NamedTuple
 
 from cuefem.analysis.verdict import Verdict, squirt_difference
@@ -45,15 +46,23 @@ class HeadlineCue:
     verdict: Verdict | None = None
 
 
+class OtherValue(NamedTuple):
+    """What another design has: its name, a text, and its CSS class."""
+
+    name: str
+    text: str
+    style: str
+
+
 class Tile(NamedTuple):
-    """A number of the first screen, and what the other designs have, each with the CSS class of the design."""
+    """A number of the first screen, and what the other designs have."""
 
     key: str
     label: str
     hint: str
     text: str
     value: float | None
-    more: list[tuple[str, str]]
+    more: list[OtherValue]
 
 
 Line = Sequence[tuple[str, str]]  # pieces of a line, each with the CSS class of a design or ""
@@ -70,7 +79,7 @@ def screen_markup(
     assert own.verdict is not None
     designs = {each.name: each.scene for each in (own, *others)}
     return {
-        "headline": headline_markup(own, lines),
+        "headline": headline_markup(own, lines, whose=own.name if others else ""),
         "scale": scale_markup(own, others),
         "tiles": tiles_markup(own, others, with_values=with_values),
         "drawings": drawings_markup(designs) if own.scene.cue.segments else "",
@@ -78,8 +87,11 @@ def screen_markup(
     }
 
 
-def headline_markup(own: HeadlineCue, lines: Sequence[Line] = (), warning: str = "") -> str:
-    """Squirt with its uncertainty, and lines below it. warning: about the contact state."""
+def headline_markup(own: HeadlineCue, lines: Sequence[Line] = (), warning: str = "", whose: str = "") -> str:
+    """Squirt with its uncertainty, and lines below it.
+
+    warning: about the contact state. whose: the name of the design, where others are shown.
+    """
     verdict = own.verdict
     squirt, where = own.numbers["squirt"], f"{verdict.offset if verdict else own.scene.stroke.offset:.2f}"
     if verdict:
@@ -87,7 +99,7 @@ def headline_markup(own: HeadlineCue, lines: Sequence[Line] = (), warning: str =
         where += " (default; this stroke is head-on)" if verdict.head_on else ""
     else:
         text, error = DASH if squirt is None else with_unit(abs(squirt), "rad", decimals=2), ""
-    return _macro("headline", squirt, text, error, where, lines, warning)
+    return _macro("headline", whose, squirt, text, error, where, lines, warning)
 
 
 def comparison_lines(
@@ -113,7 +125,7 @@ def comparison_lines(
 
 def tiles(own: HeadlineCue, others: Sequence[HeadlineCue] = (), *, with_values: bool = False) -> list[Tile]:
     """The four numbers with their differences from other designs', or with those of the others and their differences
-    from this design's."""
+    from this design's. A difference is that of the shown values, so that it adds up."""
     made = []
     for key, (label, unit, decimals, hint) in TILES.items():
         value = _value(own, key)
@@ -123,20 +135,18 @@ def tiles(own: HeadlineCue, others: Sequence[HeadlineCue] = (), *, with_values: 
             beside = _value(other, key)
             if value is None or beside is None:
                 continue
-            change = _difference(value - beside, unit, decimals)
+            change = _difference(value, beside, unit, decimals)
             if with_values:
-                change = f"{with_unit(beside, unit, decimals=decimals)} ({_difference(beside - value, unit, decimals)})"
-            more.append((change, style))
+                change = f"{with_unit(beside, unit, decimals=decimals)} ({_difference(beside, value, unit, decimals)})"
+            more.append(OtherValue(other.name, change, style))
         made.append(Tile(key, label, hint, text, value, more))
     return made
 
 
-def _difference(difference: float, unit: str, decimals: int) -> str:
-    """A difference with its sign, without its unit."""
-    text = short_number(difference, unit, decimals=decimals)
-    if not float(text):
-        return "±0"
-    return text.replace("-", "−") if difference < 0 else f"+{text}"
+def _difference(value: float, other: float, unit: str, decimals: int) -> str:
+    """The difference of two values as shown, with its sign, without its unit."""
+    shown, beside = (Decimal(short_number(each, unit, decimals=decimals)) for each in (value, other))
+    return f"{shown - beside:+}".replace("-", "−") if shown != beside else "±0"
 
 
 def _value(design: HeadlineCue, key: str) -> float | None:

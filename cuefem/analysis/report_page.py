@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -68,6 +68,7 @@ def page_of(
         difference = compared.differences[name].get("squirt")
         sections.insert(0, _beside(scene, answers, name, other, compared))
     return _page(
+        [name, *filter(None, [other and other[0]]), *verdict.references],
         kind="report",
         name=name,
         title=f"{name}: squirt {format_value('squirt', verdict.squirt)}",
@@ -103,6 +104,7 @@ def page_of_comparison(
     shared = [fact for fact in facts[own.name] if all(fact in each for each in facts.values())]
     apart = [f"{name}: {fact}" for name, each in facts.items() for fact in each if fact not in shared]
     return _page(
+        [*compared.scenes, *verdict.references],
         kind="compare",
         name=compared.heading(),
         title=f"{compared.heading()}: compared",
@@ -119,9 +121,9 @@ def page_of_comparison(
     )
 
 
-def _page(**parts: Any) -> str:
-    """The page of these parts, which page.html.j2 names."""
-    return with_glossary(environment().get_template("page.html.j2").render(**parts)) + "\n"
+def _page(cues: Iterable[str], **parts: Any) -> str:
+    """The page of these parts, which page.html.j2 names. cues: names of the cues on it."""
+    return with_glossary(environment().get_template("page.html.j2").render(**parts), cues) + "\n"
 
 
 def _facts(scene: Scene) -> list[str]:

@@ -98,15 +98,17 @@ class FirstScreen:
             return
         if "numbers" in results.own:
             self.card.classes(remove="stale")
-        headline = headline_markup(own, comparison_lines(own, other, results.difference), self.session.warning())
-        self.headline.set_content(with_term_buttons(headline))
         others = [*filter(None, [other])]
+        names = [each.name for each in (own, *others)] + [*(own.verdict.references if own.verdict else ())]
+        lines = comparison_lines(own, other, results.difference)
+        headline = headline_markup(own, lines, self.session.warning(), whose=own.name if others else "")
+        self.headline.set_content(with_term_buttons(headline, names))
         self.scale.set_content(scale_markup(own, others))
-        self.tiles.set_content(with_term_buttons(tiles_markup(own, others)))
+        self.tiles.set_content(with_term_buttons(tiles_markup(own, others), names))
         self.basis.set_text(" ".join(self.session.calibration_lines()))
-        lines = self.session.assumptions()
-        self.printed.set_text("; ".join(map(str, lines)))
-        words = f"{len(lines)} assumption{'s' if len(lines) != 1 else ''}"
+        assumed = self.session.assumptions()
+        self.printed.set_text("; ".join(map(str, assumed)))
+        words = f"{len(assumed)} assumption{'s' if len(assumed) != 1 else ''}"
         parts = parts_line(own.verdict) if own.verdict else ""
         self.fold.props(f'label="{words}" caption="{parts}"')
         has_verdict = "verdict" in results.own

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from functools import cache
 from html import escape
 from importlib.resources import files
@@ -40,21 +41,27 @@ def _words() -> tuple[re.Pattern[str], dict[str, str]]:
     """A pattern of all terms and their plurals, the longest first; and the id of each term's entry."""
     known = {word.lower(): entry.id for entry in entries() for word in entry.words}
     longest = sorted(known, key=len, reverse=True)
-    return re.compile(rf"(?<![\w/-])({'|'.join(map(re.escape, longest))})s?(?![\w/-])", re.IGNORECASE), known
+    return re.compile(rf"(?<![\w/-])(?P<word>{'|'.join(map(re.escape, longest))})s?(?![\w/-])", re.IGNORECASE), known
 
 
-def with_term_buttons(markup: str) -> str:
-    """Markup in which the first occurrence of each term in a section is a button that opens its definition."""
-    pattern, known = _words()
+def with_term_buttons(markup: str, names: Iterable[str] = ()) -> str:
+    """Markup in which the first occurrence of each term in a section is a button that opens its definition.
+
+    names: of cues, in which no word is a term.
+    """
+    terms, known = _words()
+    whole = "|".join(re.escape(escape(name)) for name in sorted(names, key=len, reverse=True))
+    pattern = re.compile(rf"(?<![\w/-])(?P<name>{whole})(?![\w/-])|{terms.pattern}", terms.flags) if whole else terms
     seen: set[str] = set()
     inside: list[str] = []
 
     def button(match: re.Match[str]) -> str:
-        name = known[match[1].lower()]
-        if name in seen:
+        word = match["word"]
+        if word is None or known[word.lower()] in seen:
             return match[0]
-        seen.add(name)
-        return f'<button type="button" class="term" popovertarget="{name}">{match[0]}</button>'
+        entry = known[word.lower()]
+        seen.add(entry)
+        return f'<button type="button" class="term" popovertarget="{entry}">{match[0]}</button>'
 
     pieces = _TAG.split(markup)
     for i, piece in enumerate(pieces):
@@ -93,8 +100,8 @@ def subscripts(markup: str) -> str:
     return re.sub(r"(?<!\w)(\w)_(\w)(?!\w)", r"\1<sub>\2</sub>", markup)
 
 
-def with_glossary(page: str) -> str:
-    """A page with buttons for the terms of the glossary, and their definitions."""
-    text = with_term_buttons(page)
+def with_glossary(page: str, names: Iterable[str]) -> str:
+    """A page with buttons for the terms of the glossary, outside of names of cues, and their definitions."""
+    text = with_term_buttons(page, names)
     used = set(_USED.findall(text))
     return text.replace("<!-- words -->", definitions(used), 1) if used else text

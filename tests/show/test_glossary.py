@@ -38,6 +38,11 @@ def test_terms_in_headings_and_controls_have_no_button(tag: str) -> None:
     assert len(buttons(with_term_buttons(f"{inside}<p>squirt</p>"))) == 1
 
 
+def test_names_of_cues_have_no_button() -> None:
+    named = "<p>low deflection &amp; spin, squirt</p>"
+    assert buttons(with_term_buttons(named, ["low deflection & spin", "deflection"])) == [("w-squirt", "squirt")]
+
+
 @given(st.lists(st.sampled_from([*WORDS, "<p>", "</p>", "<b>", "</b>", " ", ", ", "the", "&amp;", "3 mm"])))
 def test_term_buttons_preserve_text(parts: list[str]) -> None:
     markup = "".join(parts)
