@@ -6,6 +6,7 @@ Tolerance: one unit in the last digit of a number, in JSON 1e-6 of its value, fo
 import html
 import itertools
 import json
+import math
 import re
 from collections import Counter
 from dataclasses import replace
@@ -54,19 +55,27 @@ def last_place(number: str) -> float:
     return 10.0 ** (int(power or 0) - len(digits.partition(".")[2]))
 
 
-def alike(one: str, other: str) -> bool:
-    """Whether two numbers differ by at most one unit in the last digit, with as many decimals if they are rounded."""
+def alike(one: str, other: str, exact: bool = False) -> bool:
+    """Whether two numbers differ by at most one unit in the last digit, or are the same whole number below 100.
+
+    Rounded numbers have as many decimals: five and more are those of a float as Python writes it. exact: to 1e-6.
+    """
     decimals = {len(number.partition(".")[2]) for number in (one, other)}
-    close = abs(float(one.replace("−", "-")) - float(other.replace("−", "-"))) < 1.01 * last_place(one)
-    return close and (len(decimals) == 1 or max(decimals) > 4)  # five and more: as Python writes a float
+    first, second = (float(number.replace("−", "-")) for number in (one, other))
+    if exact or (decimals == {0} and abs(first) < 100):
+        close = math.isclose(first, second, rel_tol=1e-6)
+    else:
+        close = abs(first - second) < 1.01 * last_place(one)
+    return close and (len(decimals) == 1 or max(decimals) > 4)
 
 
-def differences(stored: str, now: str) -> list[tuple[str, str]]:
-    """Lines that differ by more than one unit in the last digit of a number, or in its decimals."""
+def differences(stored: str, now: str, exact: bool = False) -> list[tuple[str, str]]:
+    """Lines that differ by more than one unit in the last digit of a number, or in its decimals; exact: see `alike`."""
     off = []
     for one, other in zip(stored.splitlines(), now.splitlines(), strict=False):
-        close = map(alike, NUMBER.findall(one), NUMBER.findall(other))
-        if " ".join(NUMBER.sub("#", one).split()) != " ".join(NUMBER.sub("#", other).split()) or not all(close):
+        pairs = zip(NUMBER.findall(one), NUMBER.findall(other), strict=False)
+        close = all(alike(a, b, exact) for a, b in pairs)
+        if " ".join(NUMBER.sub("#", one).split()) != " ".join(NUMBER.sub("#", other).split()) or not close:
             off.append((one, other))
     return off
 
@@ -120,8 +129,8 @@ def test_output_equals_golden_file(
     assert_golden(f"{scene}_{output}", now, request)
 
 
-def assert_golden(name: str, now: str, request: pytest.FixtureRequest) -> None:
-    """A text equals that of the golden file, which `--update` writes."""
+def assert_golden(name: str, now: str, request: pytest.FixtureRequest, *, exact: bool = False) -> None:
+    """A text equals that of the golden file, which `--update` writes; exact: see `alike`."""
     golden, now = GOLDEN / name, re.sub(r"\n *not tried: [^\n]*", "", now)  # tests define effects
     if request.config.getoption("--update"):
         golden.write_text(now, encoding="utf-8")
@@ -129,7 +138,7 @@ def assert_golden(name: str, now: str, request: pytest.FixtureRequest) -> None:
     if name.endswith(".json"):
         assert_same_json(json.loads(stored), json.loads(now))
     else:
-        assert differences(stored, now) == []
+        assert differences(stored, now, exact) == []
         assert len(stored.splitlines()) == len(now.splitlines())
 
 

@@ -43,7 +43,7 @@ N_FREQUENCIES = 3
 RESULT_NAMES = (*SQUIRT_RESULTS, *SHAPE_RESULTS, *(f"frequency_{k}" for k in range(1, N_FREQUENCIES + 1)))
 
 UNKNOWN_STIFFNESS = 0.5  # relative uncertainty by E from which it should be measured: a wood has 0.22, a tube 0.83
-CURVE_OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 13))  # b/R
+CURVE_OFFSETS = tuple(i / 20 for i in range(1, 13))  # b/R
 MAX_CUES = len(DESIGN_STYLES)
 _LABELS = {"end_mass_squirt": SQUIRT_END_MASS}
 

@@ -39,8 +39,8 @@ PAPER_TONE = 250.0  # Hz
 FILMED_CONTACT_TIME = LEATHERS["medium"].contact_time  # s
 CONTACT_TIMES = (5e-4, 1e-3, FILMED_CONTACT_TIME, DEFAULT_CONTACT_TIME, 3e-3)  # s
 OFFSETS = (0.1, 0.3, 0.5)  # b/R
-CHART_OFFSETS = tuple(round(0.05 * i, 2) for i in range(11))  # b/R
-CHART_TIMES = tuple(round(1e-4 * i, 4) for i in range(4, 31))  # s
+CHART_OFFSETS = tuple(i / 20 for i in range(11))  # b/R
+CHART_TIMES = tuple(i / 1e4 for i in range(4, 31))  # s
 LISTED_MODES = 4
 DRIVES = ("stick", "offset")  # the definitions of the end mass that a reduction compares
 

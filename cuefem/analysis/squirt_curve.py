@@ -26,7 +26,7 @@ from cuefem.show.scene_summary import assumptions, scene_record
 if TYPE_CHECKING:
     from cuefem.show.charts import Chart
 
-FINE_OFFSETS = tuple(round(0.025 * i, 3) for i in range(1, 25))  # b/R of the curves of a page; a table has each 0.1
+FINE_OFFSETS = tuple(i / 40 for i in range(1, 25))  # b/R of the curves of a page; a table has each 0.1
 MAX_ROWS = 12  # a table of more offsets has only each 0.1
 OWN = "coupled, this cue"
 # CSS classes of the models' curves.

@@ -36,7 +36,8 @@ if TYPE_CHECKING:
     from cuefem.analysis.model_error import ModelError
 
 CACHED_DESIGNS = 12  # designs whose results are cached, for undo and comparison
-CURVE_OFFSETS = tuple(round(0.04 * i, 2) for i in range(1, 18))  # b/R
+OFFSET_STEP = 0.04  # b/R, of the curves
+CURVE_OFFSETS = tuple(round(OFFSET_STEP * i, 2) for i in range(1, 18))
 MAX_MASS_MODES = 45  # the end-mass distribution needs all modes of the mesh: cubic cost
 MASS_RANGE = 0.3  # m from the tip
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from cuefem.analysis import report_sections
 from cuefem.analysis.strike_models import regime_warning
-from cuefem.designer.computation import CURVE_OFFSETS
+from cuefem.designer.computation import CURVE_OFFSETS, OFFSET_STEP
 from cuefem.designer.controls import KNOBS, label, value, value_text
 from cuefem.designer.session import Session
 from cuefem.endmass.definitions import DEFINITIONS
@@ -25,7 +25,6 @@ from cuefem.show.offset_charts import offset_charts
 from cuefem.show.plausibility import plausibility_warnings
 from cuefem.show.templates import answer_markup, chart_markup, shading_markup, table_markup
 
-HALF = 0.5 * (CURVE_OFFSETS[1] - CURVE_OFFSETS[0])
 COMPUTING = '<p class="soft">computing …</p>'
 
 
@@ -59,7 +58,7 @@ def curves_markup(session: Session) -> str:
         )
     figures = "".join(chart_markup(each, f"curve{i}") for i, each in enumerate(charts))
     missed = [b for b, regime in zip(CURVE_OFFSETS, regimes, strict=True) if regime == "miscue"]
-    note = f"{session.step.design.name}: miscue from b/R {missed[0] - HALF:.2f} on." if missed else ""
+    note = f"{session.step.design.name}: miscue from b/R {missed[0] - OFFSET_STEP / 2:.2f} on." if missed else ""
     of = f"({session.step.design.name})" if len(drawn) > 1 else ""
     return f'<div class="charts">{figures}</div>{shading_markup(charts[0], of)}<p class="soft">{escape(note)}</p>'
 
