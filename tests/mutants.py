@@ -72,6 +72,7 @@ KERNEL_CALLS = ("cuefem/contact/step_records.py", "cuefem/endmass/impulse_respon
 KERNEL_TESTS = ("tests/contact", "tests/effects", "tests/endmass", "tests/test_golden")
 # Of signatures and tables, whose lines imports execute: first for a mutant at module level.
 TABLE_TESTS = ("tests/test_defaults.py", "tests/test_golden_tables.py")
+GOLDEN_TESTS = ("tests/test_golden_files.py", "tests/test_golden_commands.py")
 NO_RESULT = ("repr", "maxsize")  # keywords: what a dataclass prints of itself, the size of a cache
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 SWAPS: dict[type, type] = {
@@ -264,7 +265,7 @@ class Reach(NamedTuple):
         """Tests for a mutant: those that execute its line, else those of its file; then the others of their files.
 
         Of each kind the ``FIRST`` shortest come first, then the others file by file; up to ``SECONDS`` in all. For a
-        mutant at module level the tests of defaults and tables come first.
+        mutant at module level the tests of defaults, tables and golden files come first.
         """
         files = KERNEL_CALLS if mutant.group == "C" else (mutant.file,)
         lines = [row for file in files for row in self.tests.get(file, {}).items()]
@@ -274,7 +275,10 @@ class Reach(NamedTuple):
             reached = [name for name in reached if name.startswith(KERNEL_TESTS)]
         of_reached = {test_file(name) for name in reached}
         others = {name for name in self.seconds if test_file(name) in of_reached} - set(reached)
-        first = [name for name in self.seconds if test_file(name) in TABLE_TESTS and mutant.group == "module level"]
+        first = [name for name in self.seconds if test_file(name) in TABLE_TESTS]
+        first += [name for name in self.ordered(reached) if test_file(name) in GOLDEN_TESTS]
+        if mutant.group != "module level":
+            first = []
         ordered = [*first, *(name for names in (reached, others) for name in self.ordered(set(names) - set(first)))]
         total = itertools.accumulate(self.seconds[name] for name in ordered)
         return [name for name, until in zip(ordered, total, strict=True) if until < SECONDS]

@@ -221,7 +221,7 @@ def compliance(surfaces: Sequence[Array], load: Array) -> Array:
     return np.asarray(sum(f @ S @ f.T for f, S in zip(load, surfaces, strict=True)))
 
 
-def central_contact(shape: Shape, surface: Array, radius: float, fineness: TipFineness, terms: int = 5) -> Array:
+def central_contact(shape: Shape, surface: Array, radius: float, fineness: TipFineness) -> Array:
     """Forces and depths, (2, 3), of a central contact of ``radius``, over D, with a rigid ball, for three unit gaps.
 
     The gaps between undeformed ball and tip at the distance p from the axis are the depth of the dome over its
@@ -235,7 +235,8 @@ def central_contact(shape: Shape, surface: Array, radius: float, fineness: TipFi
     x = np.sin(beta)
     p = radius * x
     area = np.pi / 4 * w * 2 * np.pi * p * radius * np.cos(beta)
-    shapes = np.polynomial.legendre.legvander(2 * x * x - 1, terms).T * np.cos(beta) * area
+    degree = 5
+    shapes = np.polynomial.legendre.legvander(2 * x * x - 1, degree).T * np.cos(beta) * area
     nodes = surface.shape[0] // 3
     axial = surface[2 * nodes :, 2 * nodes :]
     load = shapes @ lagrange(p, fineness)
