@@ -30,6 +30,7 @@ from cuefem.scene.default_scene import GAMES
 from cuefem.scene.solved_scene import SolvedScene
 from cuefem.show.plausibility import plausibility_warnings
 from tests.helpers.command_line import call
+from tests.helpers.cues import any_size
 from tests.test_golden_files import assert_golden
 
 MAGNITUDES = (1234.56789, 1.23456789, 0.00123456789)  # SI
@@ -101,13 +102,15 @@ def changes(folder: Path) -> list[object]:
     return [change for scene in scenes for change in changes_of(scene)]
 
 
+@any_size()
 def warnings(folder: Path) -> list[object]:
     """Warnings of a scene in which nothing is plausible: the values that are expected."""
     tungsten = cf.Material(4e11, 1.6e11, 2000.0)
     cones = ((0.2, 0.004, 0.05), (0.5, 0.08, 0.09), (1.0, 0.02, 0.03))
     cue = cf.Cue(tuple(cf.Segment(*cone, tungsten) for cone in cones), 0.9)
     ball, tip = cf.Ball(mass=0.6, radius=0.06), cf.Tip(restitution=0.99, friction=1.5, contact_time=0.02)
-    scenes = cf.Scene(cue, ball, tip, cf.Stroke(50.0, 0.3), (cf.TipDome(0.2),)), cf.Scene(cf.LumpedCue(0.1, 0.01))
+    scenes = [cf.Scene(cue, ball, tip, cf.Stroke(50.0, 0.3), (cf.TipDome(0.2),)), cf.Scene(cf.LumpedCue(0.1, 0.01))]
+    scenes.append(cf.Scene(cf.Cue((cf.Segment(0.7, 0.012, 0.021, MAPLE, 0.0, 0.003),), 0.4)))
     return [warning for scene in scenes for warning in plausibility_warnings(scene)]
 
 

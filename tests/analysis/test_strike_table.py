@@ -15,7 +15,6 @@ import pytest
 
 import cuefem as cf
 from cuefem.analysis import strike_grid
-from cuefem.analysis.strike_grid import FIELDS
 from cuefem.analysis.strike_table import StrikeTable
 from studies.games.games import RANDOM, SEED, pooltool_strike
 from studies.pages import STUDIES
@@ -48,12 +47,6 @@ def test_strike_table_equals_golden_file(table: StrikeTable, request: pytest.Fix
     )
 
 
-def test_printed_strike_table_begins_and_ends_at_its_own_speeds(table: StrikeTable) -> None:
-    inner = replace(table, speed=tuple(1.1 * speed for speed in table.speed))
-    shown, *_ = inner.tables()
-    assert [row[0] for row in shown.rows] == ["1.10 m/s", "2.00 m/s", "4.00 m/s", "4.40 m/s"]
-
-
 def test_table_equals_strikes_at_its_nodes_and_their_mirror_images(table: StrikeTable) -> None:
     for row in (0, len(table.speed) - 1):
         speed, offset = table.speed[row], table.share[-2] * table.limit[row]
@@ -68,20 +61,6 @@ def test_table_ends_below_the_miscue(table: StrikeTable) -> None:
     for speed, limit in zip(table.speed, table.limit, strict=True):
         assert struck(speed, limit).regime != "miscue"
         assert struck(speed, limit + 2e-4).regime == "miscue"
-
-
-def test_table_states_its_units_error_and_example(table: StrikeTable, tmp_path: Path) -> None:
-    table.save(tmp_path / "table.json")
-    record = json.loads((tmp_path / "table.json").read_text("utf-8"))
-    assert {"reading", "signs", "speed", "share", "limit", *FIELDS} <= {*record}
-    assert set(record["example"]["strike"]) | set(FIELDS) <= set(record["units"])
-    assert record["error"]["within"] >= 0.99
-    example = record["example"]
-    read = table.at(example["speed"], example["offset"])
-    assert example["table"] == pytest.approx(read._asdict(), rel=1e-12)
-    assert example["table"] == pytest.approx(example["strike"], rel=0.01)
-    assert "Error of interpolation" in str(table)
-    assert "Squirt up to the miscue limit" in table.to_html()
 
 
 @pytest.mark.parametrize(

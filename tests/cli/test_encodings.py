@@ -13,7 +13,6 @@ from tests.helpers.command_line import stdout_of
 ALWAYS = ("cp1252", "ascii")  # of Windows; and the one that lacks most characters
 OTHERS = ("utf-8", "cp850", "cp932", "gbk", "latin-1")
 ENCODINGS = (*ALWAYS, *(pytest.param(name, marks=pytest.mark.heavy) for name in OTHERS))
-SCENE = "studies/scenes/kim.toml"
 
 
 def printed(encoding: str, *arguments: str) -> str:
@@ -34,14 +33,6 @@ def test_command_prints_all_lines_in_every_encoding(encoding: str, arguments: tu
     lines = printed(encoding, *arguments).splitlines()
     assert len(lines) == len(stdout_of(*arguments).splitlines())
     assert encoding == "utf-8" or "?" not in "".join(lines).replace("?", "", stdout_of(*arguments).count("?"))
-
-
-@pytest.mark.heavy
-@pytest.mark.parametrize("encoding", ENCODINGS)
-@pytest.mark.parametrize("command", ["report", "modes", "strike", "improve"])
-def test_numbers_of_a_cue_print_all_lines_in_every_encoding(encoding: str, command: str) -> None:
-    arguments = (command, "meshes/pool_maple.toml")
-    assert len(printed(encoding, *arguments).splitlines()) == len(stdout_of(*arguments).splitlines())
 
 
 def test_json_in_ascii_equals_json_in_unicode() -> None:

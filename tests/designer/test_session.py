@@ -8,17 +8,14 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.analysis import report_sections
 from cuefem.analysis.design_changes import changes_of
-from cuefem.analysis.first_screen import comparison_lines, headline_markup, tiles
+from cuefem.analysis.first_screen import comparison_lines, headline_markup
 from cuefem.designer.controls import KNOBS, label, parse, range_of, value, value_text
-from cuefem.designer.panels import COMPUTING, curves_markup, sections_markup, tabulate_numbers
-from cuefem.designer.session import FILE, NOTHING, NOW, OF_TAB, OPENED, Results, Session
-from cuefem.designer.state import read_design, read_file, reference_design
+from cuefem.designer.session import OF_TAB, OPENED, Results, Session
+from cuefem.designer.state import read_file, reference_design
 from cuefem.files.reference_cues import PRESETS
-from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.display_units import displayed_in
-from tests.cli.test_units import METRIC_LEFT, assert_same_quantities, cells
+from tests.cli.test_units import METRIC_LEFT
 from tests.helpers.command_line import call
 from tests.measurements.test_calibration import calibration
 from tests.test_golden_files import last_place
@@ -44,72 +41,6 @@ def test_session_and_content_of_tabs_need_no_nicegui() -> None:
     assert "nicegui" in imported("page")
 
 
-@pytest.mark.heavy
-def test_session_has_the_numbers_of_the_functions() -> None:
-    session = Session(FIRST)
-    session.set_knob("tip_diameter", 0.0118, "11,8")
-    assert session.compute() == []
-    scene = cf.with_parameters(FIRST.scene, {"tip diameter": 0.0118})
-    headline = session.headline_cue(0)
-    assert headline is not None
-    assert headline.numbers["squirt"] == pytest.approx(cf.strike(scene).squirt, rel=1e-12)
-    assert headline.verdict == cf.verdict(scene)
-    assert "curve" in session.results.own
-    assert COMPUTING not in curves_markup(session)
-
-
-@pytest.mark.heavy
-def test_report_tab_shows_every_section_of_the_report() -> None:
-    session = Session(FIRST)
-    assert sections_markup(session) == COMPUTING
-    assert session.compute("Report") == []
-    text = sections_markup(session)
-    titles = [f"<h2>{section.title}</h2>" for section in report_sections(FIRST.scene).values()]
-    places = [text.index(title) for title in titles]
-    assert places == sorted(places)
-    assert session.report_call()().count("<h1>") == 1
-
-
-@pytest.mark.heavy
-def test_comparison_is_of_both_designs_at_one_stroke() -> None:
-    session = Session(FIRST)
-    session.compare_with("low deflection")
-    session.set_knob("speed", 3.0)
-    assert session.compute("Numbers") == []
-    mine, other = session.headline_cue(0), session.headline_cue(1)
-    assert mine is not None
-    assert other is not None
-    assert other.numbers["squirt"] == cf.strike(session.compared_scene()).squirt
-    assert session.results.difference is not None
-    table = tabulate_numbers(session)
-    assert table is not None
-    assert table.head == ("", "pool_maple", "low deflection", "difference")
-    session.swap()
-    assert (session.step.design.name, session.compared) == ("low deflection", "pool_maple")
-    session.compare_with(NOTHING)
-    assert session.compute("Numbers") == []
-    assert session.headline_cue(1) is None
-
-
-def test_choice_of_other_design_is_offered() -> None:
-    session = Session(FIRST)
-    assert (session.compared, {NOTHING, OPENED, NOW, FILE} < {*session.compare_choices()}) == (NOTHING, True)
-    session.set_knob("offset", 0.2)
-    session.compare_with(OPENED)
-    assert (session.compared, session.step.other and session.step.other.design) == (OPENED, FIRST)
-    mine = read_design("mine.csv", b"position (mm);diameter (mm)\n0;12,4\n330;13,1\n737;21,5\n")
-    session.compare_with_file(mine)
-    assert session.compared == session.compare_choices()[0] == "mine"
-    assert session.rename(" my cue ")
-    assert not session.rename("my cue")
-    assert [*session.designs()] == ["my cue", "mine"]
-    assert session.file_name("toml") == "my cue.toml"
-    session.apply(read_design("x.toml", session.file().replace("0.2", "0.25").encode()))
-    assert float(session.scene.stroke.offset) == 0.25
-    assert session.undo_redo(-1)
-    assert float(session.scene.stroke.offset) == 0.2
-
-
 def test_plan_ends_at_a_failed_strike() -> None:
     """Its first stage is the strike, whose result nobody stores here; then nothing follows."""
     session = Session(FIRST)
@@ -129,35 +60,6 @@ def test_miscue_has_numbers_and_no_verdict() -> None:
     assert {*OF_TAB} == {"Curves", "Changes", "Report"}
 
 
-def test_typed_text_goes_with_the_value_that_another_control_changes() -> None:
-    session = Session(FIRST)
-    session.set_knob("speed", 2.5, "2,5")
-    session.set_knob("tip_diameter", 0.0125, "12,5")
-    session.set_knob("game", "carom")
-    assert session.step.design.typed == {"tip_diameter": "12,5"}
-
-
-def test_invalid_change_leaves_the_session() -> None:
-    session = Session(FIRST)
-    with pytest.raises(ValueError, match="bore"):
-        session.set_knob("bore_width", 0.05)
-    assert session.step.design == FIRST
-    assert len(session.history.steps) == 1
-
-
-@pytest.mark.parametrize("key", [key for key, known in PARAMETERS.items() if known.slider])
-def test_slider_of_parameter_is_in_its_limits(key: str) -> None:
-    slider = PARAMETERS[key].slider
-    assert slider is not None
-    assert slider.least <= slider.most
-    assert slider.low <= slider.high
-    if slider.high:
-        assert slider.least <= max(slider.low, slider.least) < min(slider.high, slider.most)
-    if (own := value(key, FIRST.scene)) is not None:
-        assert slider.least <= slider.scale * own <= slider.most
-    assert KNOBS[key].range is slider
-
-
 @pytest.mark.parametrize("key", [key for key, knob in KNOBS.items() if knob.range])
 def test_controls_read_what_they_show_in_us_units(key: str) -> None:
     """With the unit and without, to the digits shown; the slider's range is the metric one."""
@@ -174,24 +76,6 @@ def test_controls_read_what_they_show_in_us_units(key: str) -> None:
         for typed in (text, bare):
             assert parse(key, typed, scene) == pytest.approx(own, abs=0.51 * last_place(bare) / known.scale)
         assert not METRIC_LEFT.search(label(key, scene))
-
-
-@pytest.mark.heavy
-def test_numbers_and_headline_follow_units() -> None:
-    """The table of numbers and the tiles; the design and its file do not change."""
-    session = Session(FIRST)
-    session.compare_with("low deflection")
-    assert session.compute("Numbers") == []
-    metric, file, headline = tabulate_numbers(session), session.file(), session.headline_cue(0)
-    assert metric is not None
-    assert headline is not None
-    with displayed_in("us"):
-        us = tabulate_numbers(session)
-        assert us is not None
-        assert assert_same_quantities(cells([metric]), cells([us])) > 5
-        assert [text for text, _ in cells([us]) if METRIC_LEFT.search(text)] == []
-        assert [tile.text.partition(" ")[2] for tile in tiles(headline)] == ["in/ft", "g", "in", "N/m"]
-        assert session.file() == file
 
 
 @pytest.mark.heavy

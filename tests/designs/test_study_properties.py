@@ -236,11 +236,6 @@ def test_best_design_has_all_responses_in_result_and_table() -> None:
     }
 
 
-def test_best_offset_through_zero_has_least_squirt() -> None:
-    offsets = Vary(("stroke.offset",), Levels((-0.4, -0.1, 0.2)), "offset")
-    assert cf.study(study(offsets, responses=("squirt",))).best["squirt"].values == {"offset": -0.1}
-
-
 @pytest.mark.parametrize(("name", "shown"), [("=cmd|' /C calc'!A0", "=cmd"), ("bore\nwidth", "bore"), (" @bore", "@")])
 def test_vary_name_is_text_of_a_spreadsheet(name: str, shown: str) -> None:
     with pytest.raises(

@@ -175,16 +175,6 @@ def test_ambiguous_unit_is_rejected(text: str, unit: str) -> None:
         parse_number(text, unit)
 
 
-@pytest.mark.heavy
-@given(st.text(max_size=30) | st.from_regex(r"[0-9.]{1,4} ?[a-zA-Z*/^0-9()]{0,12}", fullmatch=True))
-@examples(400)
-def test_load_any_text_loads_or_is_rejected(given_text: str) -> None:
-    quantity = Quantity("m", "(0, inf)")
-    value, error = outcome(lambda: quantity.read(given_text))
-    messages = ("must be a length", "must be more than 0", "needs a unit: ")
-    assert error.startswith(messages) if error else 0 < value < math.inf
-
-
 @given(st.binary(max_size=80), st.sampled_from([".toml", ".csv", ".ply"]))
 @examples(80)
 def test_load_any_bytes_loads_or_is_rejected(content: bytes, suffix: str) -> None:

@@ -1,8 +1,11 @@
 """Cues that tests of the beam, modes and end masses share; no tests."""
 
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 
-from cuefem import Cue, Material, Scene, Segment, Tip
+from cuefem import Cue, Material, PlausibilityWarning, Scene, Segment, Tip
 from studies.strokes import cue as reference_cue
 
 KIM_DENSITY = 782.3284453057836  # kg/m3: [Kim]'s cone, 120 g
@@ -25,11 +28,21 @@ def isotropic_kim() -> Cue:
     return Cue((Segment(0.7, 0.012, 0.021, Material(12.6e9, 12.6e9 / 2.6, KIM_DENSITY), kappa=39 / 44),))
 
 
+@contextmanager
+def any_size() -> Iterator[None]:
+    """Without warnings of sizes that no cue has: limits and scale models."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PlausibilityWarning)
+        yield
+
+
+@any_size()
 def rod(slenderness: float, *, diameter: float = 0.012, material: Material = MAPLE) -> Cue:
     """A uniform rod; slenderness: length over radius."""
     return Cue((Segment(slenderness * diameter / 2, diameter, diameter, material),))
 
 
+@any_size()
 def cone(slenderness: float, ratio: float, *, material: Material = MAPLE) -> Cue:
     """A cone; slenderness: length over butt radius; ratio: tip over butt diameter."""
     return Cue((Segment(slenderness * 0.01, 0.02 * ratio, 0.02, material),))
@@ -82,6 +95,7 @@ FAMILY = {
 }
 
 
+@any_size()
 def scaled(cue: Cue, *, E: float = 1.0, G: float = 1.0, rho: float = 1.0, length: float = 1.0) -> Cue:
     """The cue with the constants of every material, and every length, multiplied."""
 
@@ -96,6 +110,7 @@ def scaled(cue: Cue, *, E: float = 1.0, G: float = 1.0, rho: float = 1.0, length
     return replace(cue, segments=segments)
 
 
+@any_size()
 def scene(cue: Cue, contact_time: float, **tip: float) -> Scene:
     """A centre-ball impact of the cue on the default ball, with a contact of ``contact_time`` s."""
     return Scene(cue, tip=Tip(contact_time=contact_time, **tip))

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -11,26 +10,11 @@ from cuefem.cue.materials import LEATHERS, material
 from cuefem.scene.default_scene import GAMES, default_tip
 from tests.helpers.invalid_input import assert_raises
 
-ROOT = Path(__file__).parents[2]
 WOOD = cf.Segment(0.7, 0.0118, 0.021, material("hard maple"))
 
 
 def leather(length: float) -> cf.Segment:
     return cf.Segment(length, 0.0118, 0.0118, material("leather"))
-
-
-@pytest.mark.parametrize("game", GAMES)
-def test_default_scene_cue_without_leather_gets_tip_of_game(game: str) -> None:
-    cue = cf.Cue((WOOD,), 0.4)
-    scene, defaults = cf.usual_scene(cue, game), GAMES[game]
-    assert scene.cue == cue
-    waves = cf.AxialWaves(defaults.cue_length, defaults.butt_diameter, 4430.0)
-    assert set(scene.effects) == {defaults.tip, waves, cf.GeometricStiffness()}
-    assert (scene.ball, scene.stroke) == (defaults.ball, cf.Stroke(defaults.speed, defaults.offset))
-    assert scene.tip == cf.Tip(LEATHERS[defaults.leather].restitution, defaults.friction)
-    assert defaults.tip.E == LEATHERS["medium"].E
-    assert 2e-4 < scene.contact_time < 3e-3
-    assert len(defaults.source) > 40
 
 
 def test_default_tip_has_height_of_drawn_leather() -> None:
