@@ -48,8 +48,10 @@ UNSTABLE = ("url", "for", "id")  # props with the number of a client or an eleme
 
 
 def described(client: Client) -> Iterator[str]:
-    """One line an element: tag, classes, text and properties, then the text and charts of its markup."""
+    """One line an element but timers: tag, classes, text and properties, then the text and charts of its markup."""
     for element in client.elements.values():
+        if isinstance(element, ui.timer):
+            continue
         props: dict[str, Any] = {
             name: value for name, value in sorted(element.props.items()) if name not in UNSTABLE and name[0] != "_"
         }
@@ -67,30 +69,37 @@ def opened() -> Page:
     return page
 
 
+def failing(scene: Scene) -> None:
+    """A strike that fails."""
+    raise ValueError("the leather is squeezed\nflat")
+
+
 def along(scene: Scene) -> tuple[Array, Array]:
     """A mass's increase of the end mass along the cue, which takes longer to compute."""
     x = np.linspace(0, 0.3, 7)
     return x, np.exp(-x / float(scene.stroke.offset))
 
 
-def compared(tab: str) -> Page:
-    """A page that compares two designs, with the results of a tab."""
+async def compared(tab: str) -> Page:
+    """A page that compares two designs, with the results of a tab, which an older computation leaves."""
     page = opened()
     page.session.set_knob("offset", 0.54)
     page.session.set_knob("tip_diameter", 0.0125)
     page.session.compare_with(OPENED)
     page.show()
-    assert page.session.compute(tab) == []
+    page.tabs.open = tab
+    page.screen.set_stale()
+    page.set_busy(True)
+    await page._compute(page.run - 1)
+    assert (page.screen.tiles.content, page.main.props["data-busy"]) == ("", "true")
+    await page._compute(page.run)
     return page
 
 
 async def of_results() -> str:
     """The elements of a page that compares two designs."""
     with Client(ui.page("/"), request=None) as client:
-        page = compared("Numbers")
-        page.screen.set_stale()
-        page.screen.show_results()
-        page.tabs.show_results()
+        await compared("Numbers")
         return "\n".join(described(client)) + "\n"
 
 
@@ -98,12 +107,15 @@ async def of_tabs() -> str:
     """The content of tabs of that page, whose designs are computed."""
     with Client(ui.page("/"), request=None), pytest.MonkeyPatch.context() as patch:
         patch.setattr("cuefem.designer.computation.end_mass_distribution", along)
-        page = compared("Curves")
+        page = await compared("Curves")
         lines = list[str]()
         for page.tabs.open in ("Curves", "Numbers", "Check"):
             page.tabs.show_results()
             markup = str(getattr(page.tabs, page.tabs.open.lower()).content)
             lines += [page_text(markup), drawing_text(markup)]
+        patch.setattr("cuefem.designer.computation.solved_strike", failing)
+        await page._compute(page.run)
+        lines.append(f"{page.banner.text} {page.banner.visible} {page.main.props['data-busy']}\n")
         return "".join(lines)
 
 
