@@ -73,7 +73,8 @@ KERNEL_TESTS = ("tests/contact", "tests/effects", "tests/endmass", "tests/test_g
 # Of signatures and tables, whose lines imports execute: first for a mutant at module level.
 TABLE_TESTS = ("tests/test_defaults.py", "tests/test_golden_tables.py")
 GOLDEN_TESTS = ("tests/test_golden_files.py", "tests/test_golden_commands.py")
-NO_RESULT = ("repr", "maxsize")  # keywords: what a dataclass prints of itself, the size of a cache
+# Keywords: what a dataclass prints of itself, the size of a cache, the assertion of `zip` that lengths are equal.
+NO_RESULT = ("repr", "maxsize", "strict")
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 SWAPS: dict[type, type] = {
     **{ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult},
