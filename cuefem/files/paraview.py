@@ -169,7 +169,7 @@ def save_strike(folder: Path, scene: Scene, motion: Motion, *, scale: float = 1.
     """
     shaft, ball = shaft_surface(scene.shaft), ball_surface(scene.ball.radius)
     w, theta = motion.deflection(shaft.x)
-    centres, forces = (np.pad(plane, [(0, 0), (0, 1)]) for plane in (motion.centre, motion.force))
+    centres, forces = (np.column_stack([plane, np.zeros(len(plane))]) for plane in (motion.centre, motion.force))
     (folder / "strike").mkdir()
     series = []
     for i, time in enumerate(motion.times.tolist()):

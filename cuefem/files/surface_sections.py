@@ -300,7 +300,7 @@ def _cut_positions(body: Surface, start: float, stop: float) -> Array:
     scattered = len(levels) > LEVELS
     step = body.length / (LEVELS if scattered else SLICES)
     ends = np.array([start, *([] if scattered else levels[levels < stop - near]), stop])
-    parts = [np.linspace(a, b, int(np.ceil((b - a) / step)) + 1)[:-1] for a, b in itertools.pairwise(ends)]
+    parts = [np.linspace(a, b, int(np.ceil((b - a) / step)), endpoint=False) for a, b in itertools.pairwise(ends)]
     x = np.append(np.concatenate(parts), stop)
     return np.insert(x, np.arange(1, len(x)), (x[:-1] + x[1:]) / 2)
 
