@@ -183,7 +183,7 @@ Numbers = dict[tuple[str, str], float]
 def _by_scikit_fem(scene: Scene, bending: Modes) -> Record:
     """First natural frequency, Hz, of the beam, and of the same beam assembled by scikit-fem on another mesh."""
     ends, shift = scene.shaft.nodes, bending.system.shift
-    pieces = [np.linspace(a, b, int(np.ceil((b - a) / MAX_ELEMENT)) + 1)[:-1] for a, b in pairwise(ends)]
+    pieces = [np.linspace(a, b, int(np.ceil((b - a) / MAX_ELEMENT)), endpoint=False) for a, b in pairwise(ends)]
     nodes = np.concatenate([*pieces, ends[-1:]])
     K, M = weak_forms.assemble(scene.shaft, nodes, order=SCIKIT_FEM_ORDER, effects=scene.cue_effects)
     ours, theirs = bending.frequencies[0], weak_forms.frequencies(K, M, shift=shift)[bending.rigid]
