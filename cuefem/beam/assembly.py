@@ -120,7 +120,7 @@ class System:
     @property
     def size(self) -> int:
         """Number of free degrees of freedom."""
-        return int(self.K.shape[0])
+        return len(self.rigid_basis)
 
     def all_dofs(self, vectors: Array) -> Array:
         """All degrees of freedom of the mesh, (n_dof, k), from the free ones ``vectors`` (free, k)."""

@@ -96,7 +96,9 @@ class TipModes:
             approach=np.append(self.approach, none),
             rotation=np.append(self.rotation, none),
             loss=None if self.loss is None else np.append(self.loss, none),
-            dashpots=None if self.dashpots is None else np.pad(self.dashpots, ((0, 0), (0, len(omega)))),
+            dashpots=None
+            if self.dashpots is None
+            else np.hstack([self.dashpots, np.zeros((len(self.dashpots), len(omega)))]),
             radiation=radiation,
             geometric=None if self.geometric is None else embedded(self.geometric, total),
         )
