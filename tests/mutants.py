@@ -364,10 +364,19 @@ class Recorder:
 
 
 class FirstFailure:
-    """A plugin that writes the first failure, of a test or of the collection, to a file."""
+    """A plugin that runs the named tests of those collected, and writes the first failure to a file.
 
-    def __init__(self, path: Path) -> None:
+    A name that is not collected, since the mutant changes it or a kept first run is older, is left out.
+    """
+
+    def __init__(self, path: Path, names: Sequence[str]) -> None:
         self.path = path
+        self.order = {name: place for place, name in enumerate(names)}
+
+    def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
+        """Keep the named tests, in their order."""
+        named = [item for item in items if item.nodeid in self.order]
+        items[:] = sorted(named, key=lambda item: self.order[item.nodeid])
 
     def note(self, text: str) -> None:
         """Write the first failure."""
@@ -605,9 +614,10 @@ def judge_anew(tree: Path, reach: Reach, mutants: Any, results: Any) -> None:
             for stage in (tests[:FIRST], tests[FIRST:]):
                 if by or not stage:
                     break
-                failure = FirstFailure(tree / "failure.txt")
+                failure = FirstFailure(tree / "failure.txt", stage)
+                files = list(dict.fromkeys(map(test_file, stage)))
                 seconds = IMPORTS + START + 5 * sum(reach.seconds[name] for name in stage)
-                by = forked(partial(run_pytest, tree, ["-x", *stage], failure), failure.path, seconds)
+                by = forked(partial(run_pytest, tree, ["-x", *files], failure), failure.path, seconds)
         results.put((mutant, by))
     results.put(None)
 
