@@ -148,12 +148,45 @@ class Comparison(Analysis):
         self, name: str = "", assumptions: Sequence[Assumption] = (), warnings: Sequence[str] = (), made: str = ""
     ) -> str:
         """The page with the first screen of the first cue; a plain page if that has no verdict."""
-        from cuefem.analysis.report_page import page_of_comparison  # templates take 0.1 s to load
+        # templates take 0.1 s to load
+        from cuefem.analysis.first_screen import HeadlineCue, screen_markup
+        from cuefem.analysis.report_page import facts, page, section_of
 
         if self.reference in self.problems:
             return super().to_html(name, assumptions, warnings, made)
-        own = replace(verdict(self.scene), calibrated=self.calibrated.get(self.reference))
-        return page_of_comparison(self, own, assumptions, warnings, made)
+        own, *others = [HeadlineCue(name, scene, self.cues[name]) for name, scene in self.scenes.items()]
+        answer = replace(verdict(self.scene), calibrated=self.calibrated.get(self.reference))
+        facts_of = {name: facts(scene) for name, scene in self.scenes.items()}
+        shared = [fact for fact in facts_of[own.name] if all(fact in each for each in facts_of.values())]
+        apart = [f"{name}: {fact}" for name, each in facts_of.items() for fact in each if fact not in shared]
+        return page(
+            [*self.scenes, *answer.references],
+            kind="compare",
+            name=self.heading(),
+            title=f"{self.heading()}: compared",
+            made=made,
+            notes=[*map(str, assumptions)],
+            warnings=[*warnings, *(f"warning: {line}" for line in self.calibration_warnings())],
+            facts=[*apart, *shared],
+            uncertainty=[
+                f"{own.name}, {answer.uncertainty_line()}",
+                *(f"{name}: {each.basis()}" for name, each in self.calibrated.items()),
+            ],
+            screen=screen_markup(replace(own, verdict=answer), others, self._headlines(), with_values=True),
+            sections=[section_of(self.table(), self.curves())],
+        )
+
+    def _headlines(self) -> list[list[tuple[str, str]]]:
+        """What the first screen says of the other cues: texts, each with the style of its cue or ""."""
+        styles = dict(zip(self.scenes, DESIGN_STYLES, strict=False))
+        squirts = {name: each["squirt"] for name, each in self.differences.items() if "squirt" in each}
+        lines = [
+            [(name, styles[name]), (f": {squirt_difference(**each).removesuffix(' than')}", "")]
+            for name, each in squirts.items()
+        ]
+        lines += [[(text, "")] for text in filter(None, [self.without_difference()])]
+        lines += [[(name, styles[name]), (f", {each.headline()}", "")] for name, each in self.calibrated.items()]
+        return lines
 
     def table(self) -> Table:
         """A row for each result: its value for each cue, and the differences of the others from the first."""

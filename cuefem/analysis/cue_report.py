@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from cuefem.analysis import has_segments, report_sections
 from cuefem.analysis.natural_frequencies import natural_frequencies
@@ -19,6 +20,9 @@ from cuefem.results.solved_design import SolvedDesign
 from cuefem.results.verdict import NoVerdict
 from cuefem.scene import Scene, check_scene
 from cuefem.show.analysis import Analysis
+
+if TYPE_CHECKING:
+    from cuefem.analysis.report_page import Beside
 
 
 @dataclass(frozen=True)
@@ -83,7 +87,19 @@ class CueReport(Analysis):
 
         if self.no_squirt or self.no_contact:
             raise ValueError(self.no_squirt or self.no_contact)
-        return page_of(self.scene, self.sections, self.regime, name or "cue", assumptions, warnings, made, other)
+        name = name or "cue"
+        beside = None if other is None else self._beside(name, *other)
+        return page_of(self.scene, self.sections, self.regime, name, assumptions, warnings, made, beside)
+
+    def _beside(self, name: str, other: str, other_scene: Scene) -> Beside:
+        """Another cue beside this one, of this name."""
+        from cuefem.analysis.comparison import compare_cues
+        from cuefem.analysis.first_screen import HeadlineCue
+        from cuefem.analysis.report_page import Beside
+
+        compared = compare_cues({other: other_scene, name: self.scene})
+        cue = HeadlineCue(other, other_scene, compared.cues[other])
+        return Beside(cue, compared.differences[name].get("squirt"), compared.table())
 
 
 def report(

@@ -1,33 +1,37 @@
-"""Pages that begin with the first screen: that of a report, and that of compared cues."""
+"""Pages that begin with the first screen: that of a report, and the parts that a page of compared cues has, too."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from cuefem.analysis import report_sections
-from cuefem.analysis.comparison import Comparison, compare_cues
 from cuefem.analysis.first_screen import HeadlineCue, comparison_lines, screen_markup
 from cuefem.analysis.squirt_curve import FINE_OFFSETS
 from cuefem.analysis.strike_models import regime_warning
-from cuefem.analysis.verdict import Verdict, squirt_difference
 from cuefem.files.defaults_report import Assumption
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.quantities import format_value
-from cuefem.results.records import Record
+from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import coupled_curve
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
-from cuefem.show.analysis import DESIGN_STYLES, Analysis
+from cuefem.show.analysis import Analysis
 from cuefem.show.charts import Chart
 from cuefem.show.glossary import with_glossary
 from cuefem.show.offset_charts import offset_charts
 from cuefem.show.scene_summary import assumptions, plain_cue_line, plain_effect_line, scene_record
 from cuefem.show.templates import environment
 
-Named = tuple[str, Scene]
 Answers = Mapping[str, Analysis]
+
+
+class Beside(NamedTuple):
+    """A cue beside that of a report: its numbers, the difference of squirt from it, if any, and the table of both."""
+
+    cue: HeadlineCue
+    difference: Record | None
+    table: Table
 
 
 def page_of(
@@ -38,17 +42,16 @@ def page_of(
     notes: Sequence[Assumption],
     warnings: Sequence[str],
     made: str = "",
-    other: Named | None = None,
+    beside: Beside | None = None,
 ) -> str:
     """The computed answers of a report as HTML.
 
     answers: by the keys of `QUESTIONS`, a verdict among them. regime: of the contact. made: the date at the page's end.
-    other: name and scene of a cue to compare with, with the same ball and stroke.
+    beside: a cue to compare with, with the same ball and stroke.
     """
     verdict: Any = answers["verdict"]
     calibrated = verdict.calibrated
     own = HeadlineCue(name, scene, _numbers(scene, answers), verdict)
-    beside, difference = None, None
     parts = {key: part for key, part in report_sections().items() if key in answers and key != "verdict"}
     sections = [
         {
@@ -62,13 +65,12 @@ def page_of(
         }
         for key, part in parts.items()
     ]
-    if other is not None:
-        compared = compare_cues({other[0]: other[1], name: scene})
-        beside = HeadlineCue(*other, compared.cues[other[0]])
-        difference = compared.differences[name].get("squirt")
-        sections.insert(0, _beside(scene, answers, name, other, compared))
-    return _page(
-        [name, *filter(None, [other and other[0]]), *verdict.references],
+    other, difference = None, None
+    if beside is not None:
+        other, difference = beside.cue, beside.difference
+        sections.insert(0, _beside(scene, answers, name, beside))
+    return page(
+        [name, *([other.name] if other else []), *verdict.references],
         kind="report",
         name=name,
         title=f"{name}: squirt {format_value('squirt', verdict.squirt)}",
@@ -79,54 +81,19 @@ def page_of(
             *filter(None, [regime_warning(regime)]),
             *(f"warning: {line}" for line in (calibrated.warnings if calibrated else ())),
         ],
-        facts=_facts(scene),
+        facts=facts(scene),
         uncertainty=[verdict.uncertainty_line(), *([calibrated.basis()] if calibrated else [])],
-        screen=screen_markup(own, [*filter(None, [beside])], comparison_lines(own, beside, difference)),
+        screen=screen_markup(own, [*filter(None, [other])], comparison_lines(own, other, difference)),
         sections=sections,
     )
 
 
-def page_of_comparison(
-    compared: Comparison, verdict: Verdict, notes: Sequence[Assumption], warnings: Sequence[str], made: str = ""
-) -> str:
-    """Compared cues as HTML: the first screen of the first one, which has this verdict, with the others beside it."""
-    own, *others = [HeadlineCue(name, scene, compared.cues[name]) for name, scene in compared.scenes.items()]
-    calibrated = compared.calibrated
-    styles = dict(zip(compared.scenes, DESIGN_STYLES, strict=False))
-    squirts = {name: each["squirt"] for name, each in compared.differences.items() if "squirt" in each}
-    lines = [
-        [(name, styles[name]), (f": {squirt_difference(**each).removesuffix(' than')}", "")]
-        for name, each in squirts.items()
-    ]
-    lines += [[(text, "")] for text in filter(None, [compared.without_difference()])]
-    lines += [[(name, styles[name]), (f", {each.headline()}", "")] for name, each in calibrated.items()]
-    facts = {name: _facts(scene) for name, scene in compared.scenes.items()}
-    shared = [fact for fact in facts[own.name] if all(fact in each for each in facts.values())]
-    apart = [f"{name}: {fact}" for name, each in facts.items() for fact in each if fact not in shared]
-    return _page(
-        [*compared.scenes, *verdict.references],
-        kind="compare",
-        name=compared.heading(),
-        title=f"{compared.heading()}: compared",
-        made=made,
-        notes=[*map(str, notes)],
-        warnings=[*warnings, *(f"warning: {line}" for line in compared.calibration_warnings())],
-        facts=[*apart, *shared],
-        uncertainty=[
-            f"{own.name}, {verdict.uncertainty_line()}",
-            *(f"{name}: {each.basis()}" for name, each in calibrated.items()),
-        ],
-        screen=screen_markup(replace(own, verdict=verdict), others, lines, with_values=True),
-        sections=[_section(compared, compared.curves())],
-    )
-
-
-def _page(cues: Iterable[str], **parts: Any) -> str:
+def page(cues: Iterable[str], **parts: Any) -> str:
     """The page of these parts, which page.html.j2 names. cues: names of the cues on it."""
     return with_glossary(environment().get_template("page.html.j2").render(**parts), cues) + "\n"
 
 
-def _facts(scene: Scene) -> list[str]:
+def facts(scene: Scene) -> list[str]:
     """Cue, ball, tip, stroke and effects of a scene, each as a line."""
     return [
         plain_cue_line(scene.cue),
@@ -135,16 +102,16 @@ def _facts(scene: Scene) -> list[str]:
     ]
 
 
-def _beside(scene: Scene, answers: Answers, name: str, other: Named, compared: Comparison) -> Record:
+def _beside(scene: Scene, answers: Answers, name: str, beside: Beside) -> Record:
     """The section that compares with another cue."""
-    beside = coupled_curve(other[1], FINE_OFFSETS, SolvedScene(other[1]).tip)
-    curves = [(name, "c1", answers["squirt"].values()["models"]["coupled, this cue"]), (other[0], "c2", beside)]
-    return _section(compared, offset_charts(curves, FINE_OFFSETS, scene.stroke.offset, height=300))
+    other = beside.cue
+    curve = coupled_curve(other.scene, FINE_OFFSETS, SolvedScene(other.scene).tip)
+    curves = [(name, "c1", answers["squirt"].values()["models"]["coupled, this cue"]), (other.name, "c2", curve)]
+    return section_of(beside.table, offset_charts(curves, FINE_OFFSETS, scene.stroke.offset, height=300))
 
 
-def _section(compared: Comparison, charts: Sequence[Chart]) -> Record:
+def section_of(table: Table, charts: Sequence[Chart]) -> Record:
     """The section of compared cues."""
-    table = compared.table()
     made: Record = {"key": "other", "title": table.title, "folded": False, "about": "", "more": []}
     return made | {"charts": charts, "tables": [table]}
 

@@ -10,14 +10,7 @@ import lazy_loader
 import numpy as np
 from numpy.typing import NDArray
 
-from cuefem.beam.basis import (
-    EXTRA_POINTS,
-    element_basis,
-    gauss_rule,
-    line_basis,
-    tabulated_element_basis,
-    tabulated_line_basis,
-)
+from cuefem.beam.basis import EXTRA_POINTS, Basis, element_basis, gauss_rule, line_basis, tabulated
 from cuefem.beam.blas_threads import one_blas_thread
 from cuefem.beam.mesh import Mesh, Resolution
 from cuefem.beam.meshing import POSITION_TOLERANCE, mesh_cue
@@ -65,23 +58,27 @@ class Points(NamedTuple):
         start, end = self.mesh.nodes[e : e + 2]
         return np.asarray((self.x[self.element(e)] - start) / (end - start))
 
-    def line_basis(self, e: int) -> tuple[Array, Array]:
-        """scikit-fem's hierarchical line basis in an element at its points, and its derivatives, 1/m: (degrees, q)."""
-        order, (start, end) = int(self.mesh.orders[e]), self.mesh.nodes[e : e + 2]
-        tabulated = self.is_tabulated[e]
-        values, slopes = tabulated_line_basis(order) if tabulated else line_basis(order + 1, self.fractions(e))
-        return values, slopes / (end - start)
+    def line_basis(self, e: int) -> Array:
+        """The line basis in an element at its points, and its derivatives, 1/m: (2, degrees, q)."""
+        return self._basis(line_basis, e, units=[1.0, 1 / self._element_length(e)])
 
     def beam_basis(self, e: int) -> Array:
         """w, w', theta, theta' per degree of freedom of an element at its points, (4, dof, q).
 
         Rotational degrees of freedom are theta times the cue's length.
         """
-        order, (start, end), length = int(self.mesh.orders[e]), self.mesh.nodes[e : e + 2], self.mesh.nodes[-1]
-        tabulated = self.is_tabulated[e]
-        basis = tabulated_element_basis(order) if tabulated else element_basis(order, self.fractions(e))
-        units = np.array([1.0, 1 / (end - start), 1 / length, 1 / ((end - start) * length)])
-        return np.asarray(units[:, None, None] * basis)
+        size, length = self._element_length(e), self.mesh.nodes[-1]
+        return self._basis(element_basis, e, units=[1.0, 1 / size, 1 / length, 1 / (size * length)])
+
+    def _element_length(self, e: int) -> float:
+        start, end = self.mesh.nodes[e : e + 2]
+        return float(end - start)
+
+    def _basis(self, basis: Basis, e: int, *, units: list[float]) -> Array:
+        """A basis of an element of length 1, in these units."""
+        order = int(self.mesh.orders[e])
+        values = tabulated(basis, order) if self.is_tabulated[e] else basis(order, self.fractions(e))
+        return np.asarray(np.array(units)[:, None, None] * values)
 
 
 class Fields(NamedTuple):

@@ -6,6 +6,7 @@ Loading scikit-fem takes longer than solving a beam; a test compares this basis 
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
@@ -16,22 +17,27 @@ from cuefem.cue import Array
 # Gauss points beyond the order. order + 3 are exact for solid cones, whose integrands have degree 2 order + 4.
 EXTRA_POINTS = 4
 
+# A basis of an element of length 1, from its order and points in [0, 1].
+Basis = Callable[[int, Array], Array]
 
-def line_basis(degree: int, points: Array) -> tuple[Array, Array]:
-    """scikit-fem's hierarchical basis of ``degree`` and its derivative at ``points`` in [0, 1]: two (degree + 1, q).
+
+def line_basis(order: int, points: Array) -> Array:
+    """scikit-fem's hierarchical basis of degree ``order`` + 1 and its derivative at ``points`` in [0, 1].
+
+    (2, order + 2, q) at q points.
 
     1 - x and x, then the integrals of the Legendre polynomials, which vanish at both ends, each with a derivative of
     unit norm on [-1, 1].
     """
     x = 2 * points - 1
     legendre = [np.ones_like(x), x]
-    for n in range(1, degree):
+    for n in range(1, order + 1):
         legendre.append(((2 * n + 1) * x * legendre[n] - n * legendre[n - 1]) / (n + 1))
     values, slopes = [1 - points, points], [-np.ones_like(x), np.ones_like(x)]
-    for n in range(2, degree + 1):
+    for n in range(2, order + 2):
         values.append((legendre[n] - legendre[n - 2]) / (2 * (2 * n - 1)) ** 0.5)
         slopes.append(legendre[n - 1] * (2 * (2 * n - 1)) ** 0.5)
-    return np.array(values), np.array(slopes)
+    return np.array([values, slopes])
 
 
 @functools.cache
@@ -44,7 +50,7 @@ def element_rows(order: int) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArra
 
 def element_basis(order: int, points: Array) -> Array:
     """w, w', theta, theta' per degree of freedom of an element of length 1 at ``points`` in [0, 1]: (4, dof, q)."""
-    values, slopes = line_basis(order + 1, points)
+    values, slopes = line_basis(order, points)
     out = np.zeros((4, 2 * order + 3, len(points)))
     w, w_functions, theta, theta_functions = element_rows(order)
     out[0, w], out[1, w] = values[w_functions], slopes[w_functions]
@@ -60,12 +66,6 @@ def gauss_rule(count: int) -> tuple[Array, Array]:
 
 
 @functools.cache
-def tabulated_line_basis(order: int) -> tuple[Array, Array]:
-    """The line basis of degree ``order`` + 1 and its derivatives at Gauss points of one segment."""
-    return line_basis(order + 1, gauss_rule(order + EXTRA_POINTS)[0])
-
-
-@functools.cache
-def tabulated_element_basis(order: int) -> Array:
-    """The element basis at Gauss points of one segment."""
-    return element_basis(order, gauss_rule(order + EXTRA_POINTS)[0])
+def tabulated(basis: Basis, order: int) -> Array:
+    """A basis at Gauss points of one segment."""
+    return basis(order, gauss_rule(order + EXTRA_POINTS)[0])

@@ -14,7 +14,7 @@ from cuefem.cue import Material
 from cuefem.cue.materials import MATERIALS, material
 from cuefem.effects.effect import Effect
 from cuefem.files.errors import InputError, as_input_error, quote, suggestion
-from cuefem.quantity.fields import OutOfBounds, Quantity
+from cuefem.quantity.fields import OutOfBounds, quantity_of
 
 Kind = TypeVar("Kind")
 
@@ -88,11 +88,6 @@ def field_types(kind: type) -> dict[str, Any]:
 def required_keys(kind: type) -> list[str]:
     """The names of fields without a default."""
     return [f.name for f in fields(cast(Any, kind)) if f.default is MISSING and f.default_factory is MISSING]
-
-
-def quantity_of(hint: Any) -> Quantity | None:
-    """Unit and bounds of a numeric field; None for other fields."""
-    return next((quantity for quantity in getattr(hint, "__metadata__", ()) if isinstance(quantity, Quantity)), None)
 
 
 def member_types(hint: Any) -> tuple[Any, ...]:

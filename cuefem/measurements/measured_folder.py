@@ -20,7 +20,7 @@ from cuefem.files.csv_reader import decimal_mark, is_number, python_number, read
 from cuefem.files.cue_names import matching_names, named_path
 from cuefem.files.defaults_report import Assumption, assumptions_of_tables, offered_assumptions
 from cuefem.files.errors import as_input_error, check_path, quote, read_bytes, suggestion
-from cuefem.files.schema import build, field_types, key_path, member_types, quantity_of, unknown_key
+from cuefem.files.schema import build, field_types, key_path, member_types, unknown_key
 from cuefem.files.toml_reader import GAME_KEYS, game_of, missing_keys, read_tables, scene_from_tables
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Setup, Tone
@@ -28,7 +28,7 @@ from cuefem.measurements.pendulum import Pendulum
 from cuefem.measurements.recording import Recording, combine_tones, tones_in
 from cuefem.measurements.uncertain_parameters import Prior
 from cuefem.parameters.scene_paths import parameter
-from cuefem.quantity.fields import Quantity
+from cuefem.quantity.fields import Quantity, quantity_of
 from cuefem.scene import Scene
 
 MEASURED = "measured.toml"

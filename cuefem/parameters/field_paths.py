@@ -12,7 +12,6 @@ from functools import cache
 from typing import Any, get_args, get_type_hints
 
 from cuefem.parameters.parts import PARTS
-from cuefem.quantity.fields import Quantity, quantity_fields
 
 Step = str | int
 Path = tuple[Step, ...]
@@ -55,13 +54,6 @@ def value_inside(value: Any, path: Path) -> Any:
     for step in path:
         value = None if value is None else value[step] if isinstance(step, int) else getattr(value, step)
     return value
-
-
-def quantity_of(owner: Any, name: Step) -> Quantity | None:
-    """Unit and bounds of a field of a dataclass; None if it is no number."""
-    if not is_dataclass(owner):
-        return None
-    return next((quantity for field, quantity, *_ in quantity_fields(type(owner)) if field == name), None)  # type: ignore[arg-type]
 
 
 @cache

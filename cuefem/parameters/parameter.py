@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 from cuefem.cue.materials import LEATHERS
-from cuefem.parameters.field_paths import Path, field_value, quantity_of, steps
+from cuefem.parameters.field_paths import Path, field_value, steps
 from cuefem.parameters.parts import CONTACT_TIME_OF_SPRING, Part
-from cuefem.quantity.fields import Quantity
+from cuefem.quantity.fields import Quantity, field_quantity
 from cuefem.scene import Scene
 
 
@@ -117,7 +117,7 @@ class Parameter:
             number = self.part.number(scene)
         else:
             *owner, name = self.steps()
-            number = quantity_of(field_value(scene, tuple(owner)), name)
+            number = field_quantity(field_value(scene, tuple(owner)), name)
         if number is None:
             raise ValueError(f"{self.name} must be a number of this scene; got none")
         return replace(number, names=tuple((n, v[self.path]) for n, v in self.sets.items())) if self.sets else number

@@ -7,11 +7,11 @@ from dataclasses import fields, is_dataclass
 from typing import Any
 
 from cuefem.cue import Material
-from cuefem.parameters.field_paths import Path, Step, is_path, items, kinds, path_text, quantity_of, steps, value_inside
+from cuefem.parameters.field_paths import Path, Step, is_path, items, kinds, path_text, steps, value_inside
 from cuefem.parameters.parameter import Parameter
 from cuefem.parameters.parts import PARTS, Part, diameter_at
 from cuefem.parameters.table import PARAMETERS
-from cuefem.quantity.fields import Quantity, suggestion
+from cuefem.quantity.fields import Quantity, field_quantity, suggestion
 from cuefem.quantity.units import parse_number
 from cuefem.scene import Scene
 
@@ -89,7 +89,7 @@ def value_at(scene: Any, path: Path) -> Any:
 def quantity_at(scene: Scene, path: Path) -> Quantity | None:
     """Unit and bounds of the number at a path; None if it is no number."""
     part = part_at(path[0]) if len(path) == 1 else None
-    return part.number(scene) if part else quantity_of(value_at(scene, path[:-1]), path[-1])
+    return part.number(scene) if part else field_quantity(value_at(scene, path[:-1]), path[-1])
 
 
 def is_material(scene: Scene, path: Path) -> bool:

@@ -9,7 +9,7 @@ import math
 import re
 import typing
 from collections.abc import Iterable
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 
@@ -194,6 +194,11 @@ MAX_SEGMENTS = 2000  # of a drawing: one every 0.7 mm
 MAX_DOF = 50_000  # of a beam: a cue of 30 segments takes 10,000 for the modes of the shortest contact
 
 
+def quantity_of(hint: Any) -> Quantity | None:
+    """Unit and bounds of a numeric field, from its annotation; None for other fields."""
+    return next((quantity for quantity in getattr(hint, "__metadata__", ()) if isinstance(quantity, Quantity)), None)
+
+
 @functools.cache
 def quantity_fields(kind: type) -> tuple[tuple[str, Quantity, bool], ...]:
     """The dimensioned fields of a dataclass: (name, quantity, whether None is allowed)."""
@@ -201,11 +206,17 @@ def quantity_fields(kind: type) -> tuple[tuple[str, Quantity, bool], ...]:
     declared = []
     for field in dataclasses.fields(kind):
         hint = hints[field.name]
-        if typing.get_origin(hint) is Annotated:
-            for annotation in hint.__metadata__:
-                if isinstance(annotation, Quantity):
-                    declared.append((field.name, annotation, type(None) in typing.get_args(hint.__origin__)))
+        quantity = quantity_of(hint)
+        if quantity is not None:
+            declared.append((field.name, quantity, type(None) in typing.get_args(hint.__origin__)))
     return tuple(declared)
+
+
+def field_quantity(owner: Any, name: str | int) -> Quantity | None:
+    """Unit and bounds of a field of a dataclass's instance; None if it is no number."""
+    if not dataclasses.is_dataclass(owner):
+        return None
+    return next((quantity for field, quantity, *_ in quantity_fields(type(owner)) if field == name), None)  # type: ignore[arg-type]
 
 
 def check_fields(instance: Any) -> None:

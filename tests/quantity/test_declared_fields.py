@@ -17,8 +17,8 @@ import tomlkit
 import cuefem as cf
 from cuefem.effects.effect import effect_kinds
 from cuefem.files import InputError
-from cuefem.files.schema import field_types, quantity_of, required_keys
-from cuefem.quantity.fields import Quantity, quantity_fields
+from cuefem.files.schema import field_types, required_keys
+from cuefem.quantity.fields import Quantity, quantity_fields, quantity_of
 
 WOOD = cf.Material(12.6e9, 0.84e9, 700.0)
 LEATHER = cf.LeatherTip(6e-3, 9.5e-3, 140e6)
