@@ -47,21 +47,20 @@ MIN_STICK_MODES, MESHED_MODES = 160, 120
 MAX_DEFAULT_MODES, MAX_MODES = 160, 400
 
 
-def strike_mode_count(scene: Scene) -> int:
-    """Default number of modes of a strike."""
+def strike_mode_count(scene: Scene, *, part: float = 1.0) -> int:
+    """Number of modes that resolve a part of a strike's contact time; by default all of it."""
     has_tip_model = scene.contact_terms.tip is not None
-    return default_mode_count(
-        scene, **(dict(periods=LEATHER_PERIODS, min_modes=MIN_LEATHER_MODES) if has_tip_model else {})
-    )
+    numbers = dict(periods=LEATHER_PERIODS, min_modes=MIN_LEATHER_MODES) if has_tip_model else {}
+    return default_mode_count(scene, part=part, **numbers)
 
 
-def default_mode_count(scene: Scene, *, periods: float = PERIODS, min_modes: int = MIN_MODES) -> int:
-    """The number of modes up to the frequency ``periods`` / contact time, at least ``min_modes``."""
+def default_mode_count(scene: Scene, *, part: float = 1.0, periods: float = PERIODS, min_modes: int = MIN_MODES) -> int:
+    """The number of modes up to the frequency ``periods`` / (part of the contact time), at least ``min_modes``."""
     # a contact time in the input is within bounds; one computed from a stiffness or a leather tip may not be
     if not CONTACT_TIME.contains(scene.contact_time):
         got = f"{scene.stiffness:.6g} N/m, {scene.contact_time:.3g} s"
         raise ValueError(f"Tip.stiffness must make a head-on contact time in {CONTACT_TIME.bounds}; got {got}")
-    return mode_count_for(scene.shaft, scene.contact_time, periods=periods, min_modes=min_modes)
+    return mode_count_for(scene.shaft, part * scene.contact_time, periods=periods, min_modes=min_modes)
 
 
 def mode_count_for(cue: Cue, time: float, *, periods: float = PERIODS, min_modes: int = MIN_MODES) -> int:
