@@ -53,6 +53,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--update", action="store_true", help="write the golden files of tests/golden anew")
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Long verifications take limits and scale models, of which no warning is wanted; others say so by a mark."""
+    for item in items:
+        if item.get_closest_marker("heavy") or item.get_closest_marker("nightly"):
+            item.add_marker(pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning"))
+
+
 SOLVED_AT_COLLECTION = pytest.StashKey[list[str]]()  # what test_imports.py asserts to be empty
 
 

@@ -31,6 +31,7 @@ SLOW = {  # more than half a second: strikes of every change, node or uncertain 
 }
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.heavy if n in SLOW else ()) for n in MODULES])
 def test_docstring_examples_of_module_run(name: str) -> None:
     failures: list[str] = []

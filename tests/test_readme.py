@@ -127,6 +127,7 @@ def test_python_blocks_run(
         assert value in printed
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 def test_drawing_and_scene_blocks_load(tmp_path: Path) -> None:
     kinds = []
     for kind in ("toml", "csv"):

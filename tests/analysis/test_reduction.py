@@ -66,6 +66,7 @@ def test_rigid_front_equals_closed_forms_of_kims_cue_end() -> None:
     assert front.length_of(1.0) is None
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 def test_reduced_squirt_of_light_cue_converges_to_first_order_in_eps() -> None:
     """Order 1 in eps: [Kim] eq. psi squirt."""
     errors = []

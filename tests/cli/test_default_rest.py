@@ -46,6 +46,7 @@ def test_light_drawing_gets_usual_rest_of_its_game(game: str, shaft: Path) -> No
     assert f"usual rest of the cue, {1e3 * expected.cue.body_mass:.4g} g (--body-mass)" in reported["assumptions"]
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 def test_scene_file_of_light_drawing_gets_usual_rest(shaft: Path) -> None:
     scene = cf.load(shaft.parent / "scene.toml")
     assert scene == cf.usual_scene(cf.load(shaft))

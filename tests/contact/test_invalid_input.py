@@ -102,6 +102,7 @@ def test_strike_without_separation_raises_with_its_state(monkeypatch) -> None:
         cf.strike(cf.Scene(cf.LumpedCue(0.54, 0.003), stroke=cf.Stroke(offset=0.3)))
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 def test_strike_of_too_many_steps_raises(monkeypatch) -> None:
     monkeypatch.setattr("cuefem.contact.step_records.MAX_RECORDED_STEPS", 3000)
     once = cf.Scene(cf.LumpedCue(0.54, 0.003), stroke=cf.Stroke(offset=0.3))

@@ -90,6 +90,7 @@ def spring_exact(inelasticity: float) -> tuple[float, float]:
     return impulse - 1, last
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 @pytest.mark.parametrize("inelasticity", [0.05, 0.5, 2.0])
 @pytest.mark.parametrize(("where", "lengths"), [("middle", 16.0), ("end", 8.0)])
 def test_side_strike_long_thin_beam_equals_infinite_beam(where: str, lengths: float, inelasticity: float) -> None:

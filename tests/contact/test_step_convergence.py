@@ -39,6 +39,7 @@ from tests.helpers.strike_scenes import (
     weighted_cue,
 )
 
+pytestmark = pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 MESHES = sorted((Path(__file__).parents[2] / "meshes").glob("*.toml"))
 # The position of an event in its step is random: the RMS of many errors has the order.
 ORDER, WITHIN = 2.0, 0.4

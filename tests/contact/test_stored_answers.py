@@ -64,8 +64,7 @@ def separated_by_impact() -> Iterable[cf.Scene]:
 
 # Scenes that the stored ones have not.
 OTHER_KINDS: dict[str, Callable[[], Iterable[cf.Scene]]] = {
-    name: lambda make=kind.make: map(make, map(RandomScene, range(4)))  # type: ignore[misc]
-    for name, kind in RANDOM_KINDS.items()
+    name: lambda make=kind.make: map(make, map(RandomScene, range(4))) for name, kind in RANDOM_KINDS.items()
 } | {kind.__name__: kind for kind in (frictionless, bent_and_damped, coupled, separated_by_impact)}
 
 

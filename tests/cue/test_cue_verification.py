@@ -59,7 +59,7 @@ def test_section_at_jump_is_butt_side() -> None:
 
 # Hutchinson 2001, to three digits; quoted in handbook: The beam
 @pytest.mark.parametrize(
-    ("material", "kappa"), [(Material(2.6, 1.0, 1.0, nu=0.3), 0.925), (Material(15.0, 1.0, 1.0, nu=0.3), 0.867)]
+    ("material", "kappa"), [(Material(2.6e9, 1e9, 700.0, nu=0.3), 0.925), (Material(15e9, 1e9, 700.0, nu=0.3), 0.867)]
 )
 def test_shear_coefficient_solid_circle_equals_published(material: Material, kappa: float) -> None:
     np.testing.assert_allclose(shear_coefficient(material.effective_poisson_ratio), kappa, rtol=0.0005 / kappa)

@@ -65,7 +65,7 @@ def opened() -> Page:
     """A page whose computations in the background do not begin."""
     core.loop = asyncio.get_running_loop()
     page = Page(KIM)
-    page.compute = lambda: None  # type: ignore[method-assign]
+    page.compute = lambda: None
     return page
 
 

@@ -94,6 +94,7 @@ def of_profile(folder: Path, keys: str, profile: str = PROFILE) -> Path:
     return folder / "s.toml"
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 def test_options_of_the_cue_in_a_study_are_those_of_load(tmp_path: Path) -> None:
     keys = "".join(f'{name} = "{text}"\n' for name, text in OPTIONS.items())
     masses = 'body_mass = "15 oz"\nshaft_mass = "4 oz"\n'

@@ -144,6 +144,7 @@ def test_responses_equal_single_calls(at: cf.Resolution | None, effects: tuple[A
             assert by_name["squirt_slope"] == pytest.approx(slope, rel=1e-4)
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 def test_evaluate_failed_design_does_not_affect_others() -> None:
     """One design cannot be solved; one is so light that no end mass has its squirt."""
     feather = replace(kim().segments[0], material=replace(MAPLE, rho=1e-310))

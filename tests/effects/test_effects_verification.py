@@ -85,6 +85,7 @@ def lossy_cue(shell: float = 1.0, core: float = 1.0) -> cf.Cue:
     return cf.Cue((front, cf.Segment(0.4, 0.0125, 0.02, wood, kappa=0.9)))
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 @pytest.mark.parametrize("effects", [(), (cf.AxialWaves(),)])
 def test_structural_damping_equals_strain_energy_loss(effects: tuple[Effect, ...]) -> None:
     """A material's share of a mode's strain energy is what its moduli do to the frequency: d ln omega^2 / d ln E."""
@@ -103,6 +104,7 @@ def test_structural_damping_equals_strain_energy_loss(effects: tuple[Effect, ...
     assert np.count_nonzero(lossy.loss[~vibrating]) == 0
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 def test_joint_strain_energy_is_not_dissipated() -> None:
     scene = cf.Scene(lossy_cue(), effects=(cf.StructuralDamping(0.05), cf.Joint(0.3, 1e-3)))
     tip = tip_modes_of(scene, cf.Resolution(3, 16, 12))

@@ -171,6 +171,7 @@ def test_profile_core_applies_to_its_row(row: str, tmp_path: Path) -> None:
     assert ferrule.butt_bore == 0.008  # no taper into the empty bore
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 @pytest.mark.parametrize("name", PROFILES)
 def test_profile_in_unusual_format_is_read(name: str, tmp_path: Path) -> None:
     result = cf.load(write_profile(tmp_path, PROFILES[name]))

@@ -20,6 +20,7 @@ def written(tmp_path: Path, text: str) -> Path:
     return path
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 def test_cue_from_parts_equals_csv_with_options(tmp_path: Path) -> None:
     own = written(
         tmp_path, f'{CONE}material = "ash"\nferrule = "melamine ferrule 25 mm"\nbore = "6 mm wide, 127 mm deep"'

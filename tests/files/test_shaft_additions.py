@@ -37,6 +37,7 @@ def test_ferrule_by_text_has_its_length_and_material(length: float, name: str, b
     assert with_additions(CONE, ferrule=f"{text}, no tenon").segments[0].core is None
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 @pytest.mark.parametrize("text", ["6.35 mm wide, 127 mm deep", "1/4 in wide, 5 in deep"])
 def test_bore_by_text_in_any_unit_is_the_same(text: str) -> None:
     front, behind = with_additions(CONE, bore=text).segments
@@ -44,6 +45,7 @@ def test_bore_by_text_in_any_unit_is_the_same(text: str) -> None:
     assert behind.tip_bore == 0
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 def test_bore_with_ferrule_starts_behind_the_tenon() -> None:
     leather, ferrule, bored, rest = with_additions(
         CONE, front="leather 6 mm", ferrule="1 in melamine", bore="6 mm wide, 100 mm deep"

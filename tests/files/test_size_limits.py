@@ -54,6 +54,7 @@ def test_commands_on_unbounded_sizes_reject_them(folder: Path, name: str) -> Non
         assert_rejects(f"{name}: {line}", *command)
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 def test_constructors_beyond_bounds_raise() -> None:
     ash = cf.Material(12e9, 8e8, 680.0)
     for make, line in (

@@ -29,10 +29,10 @@ CALLS: dict[str, Callable[[], object]] = {
     "pivot_length must be of a stroke with squirt": lambda: PIVOT.compute(Setup(SCENE, squirt_factor=0.0)),
     "Prior.name must be one of E, G, rho, ": lambda: Prior("colour", 0.1),
     "Prior.name must be one of E, G, rho": lambda: Prior("shaft material", 0.1),
-    "got 3": lambda: Prior(3, 0.1),  # type: ignore[arg-type]
+    "got 3": lambda: Prior(3, 0.1),
     "Prior.low must be in (0, inf); got nan": lambda: Prior("E", low=float("nan"), high=2e9),
     "one prior for each parameter; got two of 'E'": lambda: measured_cue(priors=(Prior("E", 0.1), Prior("E", 0.2))),
-    "TypeError: Tone.mode must be a whole number in [1, 8]": lambda: Tone(mode=1.5, value=1.0, error=1.0),  # type: ignore[arg-type]
+    "TypeError: Tone.mode must be a whole number in [1, 8]": lambda: Tone(mode=1.5, value=1.0, error=1.0),
     "AddedMass.baseline must be a squirt other than 0 rad": lambda: replace(FAR, baseline=0.0),
     "Prior.spread must be given": lambda: Prior("E", 0.1, 1e9, 2e9),
     "Prior.low must be in (0, high)": lambda: Prior("E", low=2e9, high=1e9),

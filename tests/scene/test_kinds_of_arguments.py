@@ -32,6 +32,6 @@ def test_functions_of_a_scene_are_found() -> None:
 
 
 def test_other_functions_reject_other_kinds() -> None:
-    assert_raises(lambda: cf.material(None), "TypeError: material name must be a str")  # type: ignore[arg-type]
-    assert_raises(lambda: cf.study(CUE), "TypeError: study what must be a Study or Scatter or Problem")  # type: ignore[arg-type]
-    assert_raises(lambda: cf.place(CUE, (0, 0), (0, 1, 0)), "TypeError: place outcome must be an Outcome")  # type: ignore[arg-type]
+    assert_raises(lambda: cf.material(None), "TypeError: material name must be a str")
+    assert_raises(lambda: cf.study(CUE), "TypeError: study what must be a Study or Scatter or Problem")
+    assert_raises(lambda: cf.place(CUE, (0, 0), (0, 1, 0)), "TypeError: place outcome must be an Outcome")

@@ -30,6 +30,7 @@ def test_plausibility_of_shipped_cues_has_no_warning(path: Path) -> None:
 EXPECTED = "the whole cue weighs "
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 def test_strike_of_shaft_without_butt_warns(tmp_path: Path) -> None:
     shaft = tmp_path / "shaft.csv"
     shaft.write_text(PROFILE)

@@ -82,6 +82,7 @@ def test_pooltool_export_writes_cue_specs(scene: Path, tmp_path: Path) -> None:
     assert written["line"] == f'CueSpecs(**json.load(open("{goal}"))["CueSpecs"])'
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 def test_pooltool_export_without_dimension_has_its_default() -> None:
     whole = pooltool_record("drawn whole", replace(SCENE, cue=replace(KIM, body_mass=0.0)))["CueSpecs"]
     assert (whole["length"], whole["shaft_radius_at_butt"]) == (0.7, 0.0105)
