@@ -122,6 +122,7 @@ def warnings(folder: Path) -> list[object]:
     return [warning for scene in scenes for warning in plausibility_warnings(scene)]
 
 
+@any_size()
 def limits(folder: Path) -> list[object]:
     """What is refused for its size, with the bound; files and texts of commands are in the tests of their rooms."""
     tip, scene = cf.LeatherTip(6e-3, 1.0, 2e8), cf.Scene(CUE)
