@@ -1,4 +1,4 @@
-"""Reads the stored results of the former engine (README.md): strikes with their inputs, end masses and frequencies.
+"""Reads the stored results of the former engine (README.md): strikes with their inputs.
 
 A strike is stored with the inputs of its contact: the tip modes, and the terms of a leather tip's law. A test therefore
 compares the contact alone, independently of the mesh and of the tip's elasticity.
@@ -100,18 +100,3 @@ def stored_law(row: dict[str, Any]) -> Iterator[None]:
 
     with mock.patch.object(leather_tip, real.__name__, lambda tip, diameter: replace(real(tip, diameter), law=law)):
         yield
-
-
-@cache
-def cues() -> tuple[dict[str, Any], ...]:
-    """The stored cues: segments, contact time, frequencies, and end masses by definition, free and damped."""
-    return tuple(json.loads((DATA / "cues.json").read_text()))
-
-
-def cue_of(row: dict[str, Any]) -> cf.Cue:
-    """The cue of a row."""
-    segments = [
-        cf.Segment(length, tip, butt, cf.Material(E, G, rho, loss), *bores)
-        for length, tip, butt, E, G, rho, loss, *bores in row["segments"]
-    ]
-    return cf.Cue(tuple(segments), body_mass=row["body_mass"])

@@ -93,16 +93,6 @@ def test_force_end_mass_equals_quadrature(T: float) -> None:
 # --- known values ---
 
 
-@pytest.mark.parametrize(
-    ("drive", "T", "grams"), [("force", 2e-3, 17.3), ("stick", 1e-3, 5.27), ("stick", 2e-3, 8.1), ("force", 1e-3, 10.4)]
-)
-def test_end_mass_kim_shaft_equals_reference(drive: str, T: float, grams: float) -> None:
-    """At the reference's precision."""
-    pulse_scene = scene(kim(), T)
-    value = end_mass(pulse_scene, drive)
-    np.testing.assert_allclose(1e3 * value, grams, rtol=3e-3)
-
-
 @pytest.mark.parametrize("drive", ["stick", "velocity", "force", "squirt"])
 def test_end_mass_lumped_cue_is_its_own(drive: str) -> None:
     lumped = Scene(LumpedCue(0.54, 0.0123))

@@ -55,14 +55,6 @@ def test_offset_end_mass_equals_impulse_and_lump() -> None:
     assert squirts == pytest.approx(curve.models["two-part, this cue"]["squirt"], rel=1e-12)
 
 
-def test_offset_end_mass_of_kim_cue_has_smaller_error_than_stick() -> None:
-    scene = kim_scene(0.3)
-    squirt = cf.strike(scene).squirt
-    rigid = replace(scene, cue=cf.LumpedCue(scene.shaft.mass, cf.end_mass(scene, "stick")))
-    assert 0.005 < abs(cf.impulse(scene).squirt / squirt - 1) < 0.012
-    assert 0.08 < abs(cf.impulse(rigid).squirt / squirt - 1) < 0.11
-
-
 @pytest.mark.parametrize("offset", [-0.4, 0.1, 0.3])
 def test_lump_with_dome_squirt_equals_strike_without_slip(offset: float) -> None:
     scene = replace(kim_scene(offset), effects=EFFECTS["dome and shear"])
