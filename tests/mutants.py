@@ -185,7 +185,7 @@ def python_mutants(path: Path) -> Iterator[Mutant]:
         if new is None or node.end_lineno is None or node.end_col_offset is None:
             continue
         ends = starts[node.lineno - 1] + node.col_offset, starts[node.end_lineno - 1] + node.end_col_offset
-        row, old = rows[node.lineno - 1].decode(), text[slice(*ends)].decode()
+        row, old = rows[node.lineno - 1].decode().strip(), text[slice(*ends)].decode()
         group = kind if in_function else "module level"
         yield Mutant(path, node.lineno, row, ends, old, f"({ast.unparse(new)})", group)
 
@@ -240,10 +240,13 @@ def drawn(seed: int, counts: dict[str, int], tree: Path) -> list[Mutant]:
     equivalent = {row.partition(" | ")[0] for row in listed if row and not row.startswith("#")}
     python = sorted((ROOT / "cuefem").rglob("*.py"))
     sources = sorted((ROOT / "cuefem").rglob("*.c"))
-    population = defaultdict(list)
+    population, names = defaultdict(list), set()
     for mutant in itertools.chain(*map(python_mutants, python), *map(c_mutants, sources)):
+        names.add(mutant.name)
         if mutant.name not in equivalent:
             population[mutant.group].append(mutant)
+    for name in sorted(equivalent - names):
+        print(f"no such mutant, though listed as equivalent: {name}")
     for group, mutants in population.items():
         print(f"{group}: {len(mutants)} mutants, {counts[group]} drawn")
     sample = []
