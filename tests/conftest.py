@@ -53,10 +53,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--update", action="store_true", help="write the golden files of tests/golden anew")
 
 
+@pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Long verifications take limits and scale models, of which no warning is wanted; others say so by a mark."""
+    """Properties and long verifications take limits and scale models, whose warnings are not of interest there.
+
+    Of the other tests those that take them say so by the same mark.
+    """
     for item in items:
-        if item.get_closest_marker("heavy") or item.get_closest_marker("nightly"):
+        if any(item.get_closest_marker(name) for name in ("hypothesis", "heavy", "nightly")):
             item.add_marker(pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning"))
 
 

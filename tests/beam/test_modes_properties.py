@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -51,7 +50,6 @@ def test_modes_scaled_units_scale(cue: Cue, length: float, time: float, mass: fl
     )
 
 
-@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 @given(cues(), drives, factors, factors, factors)
 @examples(20)
 def test_end_mass_scaled_units_scales(cue: Cue, drive: str, length: float, time: float, mass: float) -> None:

@@ -15,7 +15,6 @@ from tests.helpers.strike_scenes import lumped_scenes
 KIM = scene("kim", 1e-3, 0.3)
 
 
-@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 @examples(8)
 @given(lumped_scenes())
 def test_lumped_cue_to_rtol_agrees_with_impulse(lumped: cf.Scene) -> None:

@@ -6,7 +6,6 @@ import math
 from dataclasses import replace
 
 import numpy as np
-import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -33,7 +32,6 @@ def possible(tip: LeatherTip, diameter: float) -> LeatherTip:
     return tip
 
 
-@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 @examples(40)
 @given(TIPS, DIAMETERS, OFFSETS, st.floats(0.005, 0.5))
 def test_leather_compliance_is_positive_definite(tip: LeatherTip, diameter: float, offset: float, patch: float) -> None:

@@ -90,7 +90,6 @@ def saved_and_loaded(item: cf.Cue | cf.Scene, name: str) -> cf.Cue | cf.Scene:
         return cf.load(path)
 
 
-@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 @given(CUES | SCENES)
 @examples(25)
 def test_save_and_load_preserve_twelve_digits(item: cf.Cue | cf.Scene) -> None:
