@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from cuefem.beam.blas_threads import one_blas_thread
 from cuefem.cue import Array, Material
 from cuefem.cue.materials import material_name
 from cuefem.designs.evaluation import Response, evaluate
@@ -419,6 +420,7 @@ class _Search:
         ends = np.where(np.abs(u - end) < TOLERANCE, end, u)
         return u if self.violated(ends) else ends
 
+    @one_blas_thread  # SLSQP's own equations, too: their round-off decides how many designs it takes
     def by_slsqp(self, start: Array, rounds: int) -> tuple[Array, str]:
         """(The last point of SLSQP; why it stopped without convergence, or "")."""
         from scipy.optimize import minimize  # loaded when used: a second
