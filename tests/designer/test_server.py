@@ -21,10 +21,13 @@ import cuefem as cf
 from cuefem.designer import in_thread
 from cuefem.designer.header import MAX_FILE, file_name
 from cuefem.designer.server import REJECTED, RequestValidation
+from cuefem.designer.state import Design
+from tests.helpers.command_line import call
 from tests.helpers.designer_browser import wait_for_port
 from tests.helpers.invalid_input import assert_rejects
 
 OWN = "http://127.0.0.1:8470"
+KIM = Path(__file__).parents[2] / "studies/scenes/kim.toml"
 PIECE = 1_000_000  # bytes of a chunk of a body
 
 
@@ -104,6 +107,30 @@ def test_invalid_file_name_raises(name: str | None) -> None:
 def test_file_name_drops_folders() -> None:
     assert file_name("../../etc/cue.toml") == "cue.toml"
     assert file_name("C:\\cues\\Löffel.toml") == "Löffel.toml"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "served", "said"),
+    [
+        ([], ("pool_maple", True, True), "here\n"),
+        (["predator z", "--units", "us"], ("predator z", True, False), "here\n"),
+        ([str(KIM), "--no-open", "--json"], ("kim", False, True), '{"address": "here"}'),
+    ],
+)
+def test_designer_serves_the_design_of_its_scene(
+    monkeypatch: pytest.MonkeyPatch, arguments: list[str], served: tuple[object, ...], said: str
+) -> None:
+    """Its name, whether a browser opens, and whether the page keeps the units of the last visit."""
+    found = []
+
+    def serve(first: Design, *, show: bool, with_kept_units: bool, announce: Any, **given: Any) -> None:
+        found.append((first.name, show, with_kept_units))
+        announce("here")
+
+    monkeypatch.setattr("cuefem.designer.server.serve", serve)
+    status, out, _ = call("designer", *arguments, "--port", "0")
+    assert (status, found) == (0, [served])
+    assert "".join(out.split()) == "".join(said.split())
 
 
 def test_designer_without_nicegui_names_install_command(monkeypatch: pytest.MonkeyPatch) -> None:
