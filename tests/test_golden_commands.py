@@ -73,7 +73,7 @@ def estimate(folder: Path) -> list[list[object]]:
 
 
 def surfaces(folder: Path) -> list[list[object]]:
-    """CAD surfaces: in three units, bored, mirrored, off circles, oval, bent, with a hole, too short."""
+    """CAD surfaces: in three units, bored, mirrored, off circles, oval, nearly straight, bent, with a hole, too short."""
     inner, outer = BORED
     outline = [(1e-3 * x, 1e-3 * r) for x, r in (*inner[::-1], *outer, (700, 0))]
     points, faces = revolve(outline, 16)
@@ -85,6 +85,7 @@ def surfaces(folder: Path) -> list[list[object]]:
         "mirrored.stl": (points * [-1, 1, 1], faces, 1e-3),
         "trefoil.stl": (points * trefoil[:, None] ** [0, 1, 1], faces, 1e-3),
         "oval.stl": (points * [1, 1.04, 1], faces, 1e-3),
+        "straight.stl": (points + np.outer(points[:, 0] ** 2, [0, 5e-4, 3e-4]), faces, 1e-3),
         "bent.stl": (points + np.outer(points[:, 0] ** 2, [0, 0.1, 0.06]), faces, 1e-3),
         "open.stl": (points, faces[:-9], 1e-3),
         "metres.stl": (points, faces, 1.0),

@@ -253,4 +253,4 @@ def _scaled(cue: MeasuredCue, z: Array, at: Array, slopes: Array) -> tuple[Array
 
 def _limited(step: Array) -> Array:
     """A step of at most `MAX_STEP` in any parameter."""
-    return step * min(1.0, MAX_STEP / max(float(np.abs(step).max()), 1e-12))
+    return step / max(1.0, float(np.abs(step).max()) / MAX_STEP)

@@ -116,6 +116,14 @@ async def of_tabs() -> str:
         patch.setattr("cuefem.designer.computation.solved_strike", failing)
         await page._compute(page.run)
         lines.append(f"{page.banner.text} {page.banner.visible} {page.main.props['data-busy']}\n")
+        page.session.count = 3, 7
+        for step in (page.tabs.begin, lambda: setattr(page.tabs, "open", "Changes"), page.tabs.begin):
+            step()
+            lines.append(f"counts: {page.tabs.counting.active}\n")
+        page.tabs._show_count()
+        lines.append(page.tabs.count.text)
+        page.tabs.end()
+        lines.append(f" {page.tabs.counting.active} {page.tabs.count.text}\n")
         return "".join(lines)
 
 
