@@ -73,7 +73,7 @@ def estimate(folder: Path) -> list[list[object]]:
 
 
 def surfaces(folder: Path) -> list[list[object]]:
-    """CAD surfaces: in three units, bored, mirrored, off circles, oval, nearly straight, bent, with a hole, too short."""
+    """CAD surfaces: in three units, bored, mirrored, off circles, oval, nearly straight, bent, open, too short."""
     inner, outer = BORED
     outline = [(1e-3 * x, 1e-3 * r) for x, r in (*inner[::-1], *outer, (700, 0))]
     points, faces = revolve(outline, 16)
