@@ -73,8 +73,9 @@ KERNEL_TESTS = ("tests/contact", "tests/effects", "tests/endmass", "tests/test_g
 # Of signatures and tables, whose lines imports execute: first for a mutant at module level.
 TABLE_TESTS = ("tests/test_defaults.py", "tests/test_golden_tables.py")
 GOLDEN_TESTS = ("tests/test_golden_files.py", "tests/test_golden_commands.py")
-# Keywords: what a dataclass prints of itself, the size of a cache, the assertion of `zip` that lengths are equal.
-NO_RESULT = ("repr", "maxsize", "strict")
+# Keywords: what a dataclass prints of itself, the size of a cache, the assertion of `zip` that lengths are equal, and
+# what one test asserts of all dataclasses at once: such draws would say nothing of numbers.
+NO_RESULT = ("repr", "maxsize", "strict", "frozen", "eq")
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 SWAPS: dict[type, type] = {
     **{ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult},
@@ -125,13 +126,17 @@ class Mutant(NamedTuple):
         return self.path.relative_to(ROOT / "cuefem").parts[0]
 
 
-def changed(node: ast.AST, in_function: bool = True) -> ast.expr | None:
+def changed(node: ast.AST, in_function: bool = True) -> ast.expr | ast.AugAssign | None:
     """A changed expression for an operator, comparison, condition or number, or None."""
     match node:
-        case ast.BinOp(left, op, right) if type(op) in SWAPS and not isinstance(left, ast.Constant | ast.JoinedStr):
+        case ast.BinOp(ast.JoinedStr() | ast.Constant(str()), _, _):
+            return None  # no text has another operator
+        case ast.BinOp(left, op, right) if type(op) in SWAPS:
             return ast.BinOp(left, SWAPS[type(op)](), right)
-        case ast.Compare(left, [op], right):
-            return ast.Compare(left, [SWAPS[type(op)]()], right)
+        case ast.AugAssign(target, op, value) if type(op) in SWAPS:
+            return ast.AugAssign(target, SWAPS[type(op)](), value)
+        case ast.Compare(left, [op, *others], right):
+            return ast.Compare(left, [SWAPS[type(op)](), *others], right)
         case ast.BoolOp(op, values):
             return ast.BoolOp(SWAPS[type(op)](), values)
         case ast.UnaryOp(ast.Not() | ast.USub(), operand):
@@ -152,7 +157,7 @@ def is_order_of_magnitude(value: float) -> bool:
     return value > 0 and math.log10(value).is_integer() and not 1e-4 < value < 1e6
 
 
-def expressions(node: ast.AST, in_function: bool = False) -> Iterator[tuple[ast.expr, bool]]:
+def expressions(node: ast.AST, in_function: bool = False) -> Iterator[tuple[ast.expr | ast.AugAssign, bool]]:
     """Expressions below a node that are evaluated, each with whether it stands in a function's body.
 
     Annotations, patterns and the parts of f-strings, whose positions Python 3.11 does not know, are left out, and what
@@ -167,7 +172,7 @@ def expressions(node: ast.AST, in_function: bool = False) -> Iterator[tuple[ast.
             isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda) and name == "body"
         )
         for child in value if isinstance(value, list) else [value]:
-            if isinstance(child, ast.expr):
+            if isinstance(child, ast.expr | ast.AugAssign):
                 yield child, inside
             if isinstance(child, ast.AST):
                 yield from expressions(child, inside)
@@ -187,7 +192,8 @@ def python_mutants(path: Path) -> Iterator[Mutant]:
         ends = starts[node.lineno - 1] + node.col_offset, starts[node.end_lineno - 1] + node.end_col_offset
         row, old = rows[node.lineno - 1].decode().strip(), text[slice(*ends)].decode()
         group = kind if in_function else "module level"
-        yield Mutant(path, node.lineno, row, ends, old, f"({ast.unparse(new)})", group)
+        text_of_new = ast.unparse(new) if isinstance(new, ast.AugAssign) else f"({ast.unparse(new)})"
+        yield Mutant(path, node.lineno, row, ends, old, text_of_new, group)
 
 
 def c_mutants(path: Path) -> Iterator[Mutant]:
@@ -234,8 +240,11 @@ def library(tree: Path, file: str, text: bytes) -> bytes:
     return re.sub(rb"[0-9a-f]{64}", b"", next(path.parent.glob("_kernel.*")).read_bytes()) if compiles else b""
 
 
-def drawn(seed: int, counts: dict[str, int], tree: Path) -> list[Mutant]:
-    """A random sample of each group, without those listed as equivalent and those that `is_other` excludes."""
+def drawn(seed: int, counts: dict[str, int], tree: Path, only: str) -> list[Mutant]:
+    """A random sample of each group, without those listed as equivalent and those that `is_other` excludes.
+
+    only: a file and line, all mutants of which are taken instead.
+    """
     listed = EQUIVALENT.read_text(encoding="utf-8").splitlines() if EQUIVALENT.exists() else []
     equivalent = {row.partition(" | ")[0] for row in listed if row and not row.startswith("#")}
     python = sorted((ROOT / "cuefem").rglob("*.py"))
@@ -243,10 +252,12 @@ def drawn(seed: int, counts: dict[str, int], tree: Path) -> list[Mutant]:
     population, names = defaultdict(list), set()
     for mutant in itertools.chain(*map(python_mutants, python), *map(c_mutants, sources)):
         names.add(mutant.name)
-        if mutant.name not in equivalent:
+        if mutant.name not in equivalent and only in ("", f"{mutant.file}:{mutant.line}"):
             population[mutant.group].append(mutant)
     for name in sorted(equivalent - names):
         print(f"no such mutant, though listed as equivalent: {name}")
+    if not population:
+        raise SystemExit(f"no mutant at {only}")
     for group, mutants in population.items():
         print(f"{group}: {len(mutants)} mutants, {counts[group]} drawn")
     sample = []
@@ -478,18 +489,22 @@ def first_run(tree: Path, workers: int, folder: Path) -> Reach:
     return Reach(seconds, tests, at_import)
 
 
-def forked(run: Callable[[], object], file: Path, seconds: float) -> str:
+def forked(run: Callable[[], int], file: Path, seconds: float) -> str:
     """What a forked process writes to ``file`` as the first failure, ended after ``seconds`` of its processor time.
 
+    One that ends with another status detects too, as when the tests' own modules cannot import the mutant.
     A process that burns its time does not end, which a test detects; one that waits for `STILL` seconds tells nothing.
     """
     file.unlink(missing_ok=True)
     pid = os.fork()
     if pid == 0:
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(seconds), math.ceil(seconds) + 1))
-        run()
-        os._exit(0)
+        status = 1
+        try:
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+            resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(seconds), math.ceil(seconds) + 1))
+            status = run()
+        finally:  # also after an error, which must not go on in the parent's code
+            os._exit(status)
     used, since = 0.0, time.monotonic()
     while True:
         ended, status = os.waitpid(pid, os.WNOHANG)
@@ -497,7 +512,8 @@ def forked(run: Callable[[], object], file: Path, seconds: float) -> str:
             code = os.waitstatus_to_exitcode(status)
             if file.exists():
                 return file.read_text(encoding="utf-8")
-            return {0: "", -signal.SIGXCPU: "does not end"}.get(code, f"ends with status {code}")
+            quiet = {0: "", int(pytest.ExitCode.NO_TESTS_COLLECTED): "", -signal.SIGXCPU: "does not end"}
+            return quiet.get(code, f"ends with status {code}")
         with contextlib.suppress(psutil.Error):
             now = sum(psutil.Process(pid).cpu_times()[:4])
             if now > used:
@@ -557,7 +573,7 @@ class Server:
                 self.results.put((mutant, None))
                 continue
 
-            def run(names: list[str] = names, changes: list[Any] = changes) -> None:
+            def run(names: list[str] = names, changes: list[Any] = changes) -> int:
                 for cache in caches:
                     cache.cache_clear()
                 for function, code in changes:
@@ -566,7 +582,8 @@ class Server:
                 for test, following in zip(tests, [*tests[1:], None], strict=True):
                     if any(report.failed for report in runtestprotocol(test, nextitem=following, log=False)):
                         (self.tree / "failure.txt").write_text(test.nodeid, encoding="utf-8")
-                        break
+                        return 1
+                return 0
 
             seconds = START + 5 * sum(self.reach.seconds[name] for name in names)
             with written(self.tree, mutant) as compiles:
@@ -703,21 +720,18 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="random mutants, and how many of them a test detects")
     for name, value in (("--seed", 1), ("--core", 80), ("--interface", 50), ("--module", 40), ("--c", 30)):
         parser.add_argument(name, type=int, default=value)
+    parser.add_argument("--only", default="", metavar="FILE:LINE", help="all mutants of a line instead of random ones")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--first-run", type=Path, help="a folder that keeps the first run for the next call")
     options = parser.parse_args()
-    counts = {
-        "core": options.core,
-        "interface": options.interface,
-        "module level": options.module,
-        "C": options.c,
-    }
+    own = {"core": options.core, "interface": options.interface, "module level": options.module, "C": options.c}
+    counts = dict.fromkeys(own, sys.maxsize) if options.only else own
     os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     start = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
         trees = [copied(Path(folder) / f"tree{number}") for number in range(options.workers)]
-        sample = drawn(options.seed, counts, trees[0])
+        sample = drawn(options.seed, counts, trees[0], options.only)
         reach = first_run(trees[0], options.workers, (options.first_run or Path(folder) / "first run").resolve())
         print(f"{len(reach.seconds)} tests, first run {time.monotonic() - start:.0f} s", flush=True)
         unchanged = Mutant(ROOT / "cuefem/contact/strike.py", 0, "", (0, 0), "", "", "module level")
