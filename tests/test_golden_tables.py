@@ -21,6 +21,7 @@ from cuefem.measurements.measurement_types import MEASUREMENT_TYPES
 from cuefem.measurements.recording import spectral_peaks
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.quantity.display_units import displayed_in
+from cuefem.quantity.fields import quantity_fields
 from cuefem.quantity.units import UNITS, unit_of
 from cuefem.results.computable_results import computable_results, listed_results
 from cuefem.results.quantities import RESULTS
@@ -30,6 +31,7 @@ from cuefem.scene.solved_scene import SolvedScene
 from cuefem.show.plausibility import plausibility_warnings
 from tests.helpers.command_line import call
 from tests.helpers.cues import any_size
+from tests.quantity.test_declared_fields import INSTANCES
 from tests.test_golden_files import assert_golden
 
 MAGNITUDES = (1234.56789, 1.23456789, 0.00123456789)  # SI
@@ -90,6 +92,12 @@ def ranges(folder: Path) -> list[object]:
         with displayed_in(system):
             rows += [(system, key, *range_of(key)) for key, knob in KNOBS.items() if knob.range]
     return rows
+
+
+def bounds(folder: Path) -> list[object]:
+    """Unit, bounds, range of real cues and named values of every field of a cue, stroke or effect."""
+    marks = [(type(one).__name__, name, mark) for one in INSTANCES for name, mark, _ in quantity_fields(type(one))]
+    return [(kind, name, mark.bounds, mark.typical_range, mark.names) for kind, name, mark in marks]
 
 
 def effects(folder: Path) -> list[object]:
@@ -156,7 +164,7 @@ def measurements(folder: Path) -> list[object]:
 
 
 @pytest.mark.parametrize(
-    "table", [options, results, units, games, shafts, ranges, effects, changes, warnings, limits, measurements]
+    "table", [options, results, units, games, shafts, ranges, bounds, effects, changes, warnings, limits, measurements]
 )
 def test_table_equals_golden_file(
     table: Callable[[Path], list[object]], tmp_path: Path, request: pytest.FixtureRequest

@@ -338,7 +338,7 @@ def _numbers(solved: SolvedScene) -> Record:
 
 
 def _wall(scene: Scene) -> float:
-    """The thinnest wall of an empty bore or of a tube, m; where solid, the radius."""
+    """The thinnest wall of an empty bore or of a tube, m; where solid, the radius; infinite if all bores are filled."""
     tube = is_tube(scene.shaft)
     empty = [s for s in scene.shaft.segments if tube or s.core is None]
     return min((min(s.tip_diameter - s.tip_bore, s.butt_diameter - s.butt_bore) / 2 for s in empty), default=np.inf)

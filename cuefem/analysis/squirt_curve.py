@@ -68,7 +68,7 @@ class SquirtCurve(Analysis):
     models: dict[str, dict[str, Any]]
     about: ClassVar[str] = (
         "The tip offset b/R is the distance of the contact from the ball’s centre line, in ball radii. Pivoting the "
-        "cue about the point at the natural pivot length from the tip cancels squirt. Curves end at the miscue limit."
+        "cue about the point at the natural pivot length from the tip cancels squirt. Curves end at the first miscue."
     )
 
     def tables(self) -> list[Table | str]:

@@ -277,8 +277,13 @@ def offset_text(offset: float) -> str:
 
 def squirt_difference(difference: float, error: float, distinct: bool) -> str:
     """A difference of squirt, followed by the name of the other cue: "15.1 ± 8.2 % less squirt than"."""
-    text, more = difference_text(abs(difference), error).lstrip("+"), "more" if difference > 0 else "less"
-    return f"{'' if distinct else 'not distinct: '}{text} {more} squirt than"
+    text = difference_text(abs(difference), error).lstrip("+")
+    rounded, outside = text.split(maxsplit=1)
+    if float(rounded):
+        text = f"{text} {'more' if difference > 0 else 'less'} squirt than"
+    else:
+        text = f"as much squirt ({outside}) as"
+    return text if distinct else f"not distinct: {text}"
 
 
 def _percent(share: float) -> str:

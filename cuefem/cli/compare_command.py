@@ -168,7 +168,7 @@ def _reject_given(request: Request) -> None:
     opened = load_stroke(request.file, length_unit=unit)
     for name in sorted(given_keys(request.file, opened, unit) & request.given.keys()):
         problem = "would replace this file's own value: options of compare set what a file leaves open"
-        got, fix = repr(request.given[name]), "write it into a file that lacks it (`cuefem convert`)"
+        got, fix = repr(request.given[name]), "omit it; `cuefem convert` writes it into a file that lacks it"
         raise InputError(request.file, option(name), f"{problem}; got {got}; {fix}")
 
 

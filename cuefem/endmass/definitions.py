@@ -232,7 +232,7 @@ def squirt_equivalent(tip: TipModes, scene: Scene) -> float:
 def equivalent_end_mass(outcome: Outcome, scene: Scene) -> float:
     """The lumped end mass, kg, whose impulse-solver squirt is that of a scene's outcome, off centre.
 
-    ValueError for a miscue and if the tip slips until separation: squirt then does not depend on the end mass.
+    ValueError for a miscue, or if the tip slips until separation: squirt then does not depend on the end mass.
     """
     if outcome.regime == "miscue" or slips_at_end(outcome):
         raise ValueError(f"the stroke miscues at b/R {scene.stroke.offset:.4g}: its squirt has no end mass")

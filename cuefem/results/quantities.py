@@ -288,7 +288,7 @@ REGIMES = {
     "stick": "the tip sticks to the ball; no miscue",
     "late stick": "the tip slips first and sticks late; close to a miscue",
     "slip reversal": "the tip slips, then slips back",
-    "partial slip": "partial slip through much of the normal impulse: squirt rises fast, close to a miscue",
+    "partial slip": "partial slip that costs over 5 % of the ball's energy: squirt rises fast, close to a miscue",
     "gross slip": "gross slip: for more than a quarter of the normal impulse; close to a miscue",
     "miscue": f"miscue: {MISCUE_DEFINITION}",
 }

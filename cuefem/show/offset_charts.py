@@ -45,7 +45,7 @@ def offset_charts(
         inside = [*run]
         if shade:
             spans.append(Shade(float(ends[inside[0]]), float(ends[inside[-1] + 1]), shade))
-    longest = max(float(np.nanmax(curve.y, initial=0.0)) for curve in pivot)
+    longest = max((float(np.nanmax(curve.y, initial=0.0)) for curve in pivot), default=0.0)
     highest = Axis("", 0.0).scale_for([min(per_metre * MAX_PIVOT, longest)]).high
     at = Axis("tip offset b/R", 0.0, float(x[-1]))
     here = [Tick(abs(own), f"b/R {abs(own):.2f}")] if 0 < abs(own) <= x[-1] else []

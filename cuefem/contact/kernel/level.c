@@ -58,8 +58,8 @@ static bool newton(Contact *c)
 /* A quantity of a step that falls as x grows; it is 0 at the step's solution. */
 typedef double Residual(Contact *c, double x);
 
-/* The root of a residual: from x = 0 on, twice as far until the sign changes, then bisection. Returns whether
-   the sign changes. */
+/* The root of a residual: from x = 0 on, twice as far until the sign changes, then bisection. The first x has
+   the sign of the root, and any size. Returns whether the sign changes. */
 static bool find_root(Contact *c, Residual *residual, double *root)
 {
     const double first = residual(c, 0);
@@ -96,8 +96,10 @@ static double lack_of_indentation(Contact *c, double indentation)
 {
     c->normal = phase_of(c)->curve(c, indentation);
     c->F[N] = c->normal.force;
-    c->F[T] = c->slip * c->in->friction * c->F[N];
-    if (!c->slip) find_root(c, lack_of_stick, &c->F[T]);
+    if (c->slip)
+        c->F[T] = c->slip * c->in->friction * c->F[N];
+    else
+        find_root(c, lack_of_stick, &c->F[T]);
     velocities(c);
     return c->s->indentation - c->tables.h / 2 * c->u[N] - indentation;
 }
