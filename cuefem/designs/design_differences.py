@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 from cuefem.designs.evaluation import evaluate
@@ -27,37 +28,44 @@ class DesignResults(NamedTuple):
 
 
 def design_differences(
-    study: Study, first: StudyDesign, other: StudyDesign, *, with_shared: bool = True
-) -> dict[str, Record]:
-    """For each response of the study that both designs have, as of `relative_differences`.
+    study: Study, designs: Sequence[StudyDesign], *, with_shared: bool = True
+) -> list[dict[str, Record]]:
+    """Differences of each design from the one before, for each response of the study that both have, as of
+    `relative_differences`.
 
     Two designs of one wood are one shaft before and after a change. The dimensions of a shaft are as drawn, and not
     uncertain (`DRAWN`). with_shared: also computes what remains of an error that both designs share, which costs some
     twenty designs and is a small part of neighbours' difference.
     """
-    scenes = first.scene, other.scene
-    woods = {main_material(scene.shaft).E for scene in scenes if scene.cue.segments}
-    same_shaft = len(woods) < 2
-    inputs = [
-        key
-        for key in PARAMETERS
-        if key not in DRAWN
-        if with_shared or not is_shared(key, *scenes, same_shaft=same_shaft)
-    ]
-    pair = [_with_inputs(study, design, inputs) for design in (first, other)]
     modelled = {response.name for response in study.responses if response.result.has_model_error}
-    return relative_differences(*pair, same_shaft=same_shaft, with_model_error=modelled)
+    changes: list[dict[str, Mapping[str, float]]] = [{} for _ in designs]  # of each design, computed so far
+    records = []
+    for i, pair in enumerate(pairwise(designs)):
+        woods = {main_material(design.scene.shaft).E for design in pair if design.scene.cue.segments}
+        same_shaft = len(woods) < 2
+        inputs = [
+            key
+            for key in PARAMETERS
+            if key not in DRAWN
+            if with_shared or not is_shared(key, *(design.scene for design in pair), same_shaft=same_shaft)
+        ]
+        for design, known in zip(pair, changes[i : i + 2], strict=True):
+            known |= _changes(study, design, [key for key in inputs if key not in known])
+        first, other = (
+            DesignResults(design.scene, design.responses, {key: known[key] for key in inputs})
+            for design, known in zip(pair, changes[i : i + 2], strict=True)
+        )
+        records.append(relative_differences(first, other, same_shaft=same_shaft, with_model_error=modelled))
+    return records
 
 
-def _with_inputs(study: Study, design: StudyDesign, inputs: Sequence[str]) -> DesignResults:
-    """A design with the changes of its responses by some inputs."""
+def _changes(study: Study, design: StudyDesign, inputs: Sequence[str]) -> dict[str, Mapping[str, float]]:
+    """Changes of a design's responses by inputs, none by an input that it does not have."""
     names = [response.name for response in study.responses]
 
     def numbers(scene: Scene) -> dict[str, float]:
         found = evaluate([scene], study.responses, at=study.at).values[0]
         return dict(zip(names, found.tolist(), strict=True))
 
-    own = {name: design.responses[name] for name in names}
-    known = {name: value for name, value in own.items() if value and not math.isnan(value)}
-    changes = changes_by_input(design.scene, known, numbers, inputs)
-    return DesignResults(design.scene, own, changes.relative)
+    known = {name: value for name, value in design.responses.items() if value and not math.isnan(value)}
+    return {**dict.fromkeys(inputs, {}), **changes_by_input(design.scene, known, numbers, inputs).relative}

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -267,9 +266,10 @@ class SweepResult(StudyResult):
         if statistics is None or statistics.pair is None:
             return []
         two = replace(self.study, responses=tuple(statistics.responses[k] for k in statistics.pair))
-        designs = (self._design(int(statistics.numbers[i])) for i in statistics.shown_front)
-        pairs = pairwise(designs)
-        return [design_differences(two, first, other, with_shared=False) for first, other in pairs]
+        names = [response.name for response in two.responses]
+        designs = [self._design(int(statistics.numbers[i])) for i in statistics.shown_front]
+        designs = [replace(design, responses={name: design.responses[name] for name in names}) for design in designs]
+        return design_differences(two, designs, with_shared=False)
 
     def values(self) -> Record:
         """Counts of designs, and the summary: best designs, sensitivities, Pareto front."""
@@ -363,7 +363,8 @@ class OptimumResult(StudyResult):
         "difference", "error" (1 sigma) and "distinct"; without a response that one of them lacks.
         """
         assert self.optimum.start is not None
-        return design_differences(self.study, self.optimum.start, self.optimum)
+        (changes,) = design_differences(self.study, [self.optimum.start, self.optimum])
+        return changes
 
     def charts(self) -> list[CueDrawing]:
         """Drawings of the unmodified and of the best design."""

@@ -42,6 +42,7 @@ def read_table(path: Path) -> list[Row]:
     """The lines of a table that begins with its headings, as cells without blanks around them.
 
     The separator is the one that a line "sep=;" names, or the first of tab, semicolon, | and comma in the headings.
+    Rows of empty cells, and empty cells behind the last heading, which spreadsheets write, are left out.
     """
     lines = read_lines(path)
     separator = _named_separator(lines)
@@ -49,7 +50,16 @@ def read_table(path: Path) -> list[Row]:
         lines = lines[1:]
     elif lines:
         separator = next((mark for mark in _SEPARATORS if mark in lines[0][1]), None)
-    return [(i, [cell.strip() for cell in _cells(line, separator or ",")]) for i, line in lines]
+    rows = [(i, [cell.strip() for cell in _cells(line, separator or ",")]) for i, line in lines]
+    rows = [(i, cells) for i, cells in rows if any(cells)]
+    columns = len(_without_end(rows[0][1], 0)) if rows else 0
+    return [(i, _without_end(cells, columns)) for i, cells in rows]
+
+
+def _without_end(cells: Sequence[str], columns: int) -> list[str]:
+    """The cells without the empty ones at their end, as far as they are behind a number of columns."""
+    filled = max((k for k, cell in enumerate(cells, start=1) if cell), default=0)
+    return [*cells[: max(filled, columns)]]
 
 
 def _named_separator(lines: Sequence[tuple[int, str]]) -> str | None:

@@ -111,6 +111,8 @@ def test_residuals_are_in_units_of_errors() -> None:
 PLAIN = "offset,value [deg],error [deg],source\n0.3,2.1,0.1,by hand; twice\n0.4,2.8,0.1,\n"
 SERIES = {
     "semicolons and decimal commas": PLAIN.replace(";", ":").replace(",", ";").replace(".", ","),
+    "tabs, empty cells behind the headings and empty rows": PLAIN.replace("\n", ",,\n").replace(",", "\t") + "\t\t\n",
+    "an empty row": PLAIN.replace("\n", ",,\n") + ",,,,,\n\n,,,\n",
     "a byte-order mark and CRLF": "\ufeff" + PLAIN.replace("\n", "\r\n"),
 }
 
