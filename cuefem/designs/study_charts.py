@@ -63,7 +63,7 @@ def _parameter_chart(sweep: SweepStatistics, j: int, k: int) -> Chart:
     shown, name = _shown(len(column))
     is_single = len(medians) == len(column)
     return chart(
-        response.label,
+        f"{response.label} by {label}",
         [Curve("the response" if is_single else "median", medians[:, 0], medians[:, 1], "c1")],
         x=Axis(with_heading(label, sweep.units[j]), from_zero=False),
         y=Axis(response.heading, from_zero=False),

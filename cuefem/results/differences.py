@@ -12,7 +12,9 @@ from cuefem.results.records import Record
 from cuefem.results.uncertainty import RATIO_FLOOR, difference_record, model_share
 from cuefem.scene import Scene
 
-SHAPE_FLOOR = 2e-3  # relative, of shape, weights, frequencies: 0.2 g of 100 g, 0.01 mm of 13 mm to the fourth power
+# Relative, of shape, weights and frequencies: 0.2 g of 100 g, 0.01 mm of 13 mm to the fourth power; of ball speed and
+# energy of vibration the numerical error.
+SHAPE_FLOOR = 2e-3
 
 
 class Compared(Protocol):

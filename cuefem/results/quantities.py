@@ -34,9 +34,9 @@ class Result:
     compute it. argument: its argument in brackets, "", "mode" or "offset". segments: whether it needs cue segments.
     limit: whether without an offset it is the limit of small offsets. better: "lower" or "higher", the direction in
     which a summary ranks designs. odd: whether it changes its sign with the offset b/R, so that designs are compared by
-    its size. has_model_error: whether it follows from the impact, with the error of that model. is_listed: whether a
-    report and the designer list it (not if it has its own table). displayed: the key of its display unit, by default
-    ``unit``.
+    its size. has_model_error: whether it follows from squirt, of which the model's error is measured. is_listed:
+    whether a report and the designer list it (not if it has its own table). displayed: the key of its display unit, by
+    default ``unit``.
     """
 
     label: str
@@ -208,7 +208,6 @@ RESULTS = {
         of=of_strike(lambda outcome: outcome.ball_speed),
         argument="offset",
         better="higher",
-        has_model_error=True,
     ),
     "ball_velocity": Result("ball velocity", "m/s", 2),
     "spin": Result("spin", "rad/s", 1),
@@ -226,7 +225,6 @@ RESULTS = {
         of=of_strike(lambda outcome: outcome.energy["cue vibration"]),
         argument="offset",
         better="lower",
-        has_model_error=True,
     ),
     "impulse": Result("impulse", "N s"),
     "coupling": Result("coupling", "1/kg"),

@@ -17,6 +17,7 @@ from cuefem.designs.study_file import load_study
 from cuefem.designs.study_result import OptimumResult
 from cuefem.designs.study_table import NOT_DISTINCT
 from cuefem.results.differences import difference_text
+from cuefem.results.uncertainty import RATIO_FLOOR
 from studies.pages import STUDIES
 from tests.helpers.command_line import stdout_of
 from tests.helpers.cues import kim, low_deflection
@@ -173,7 +174,8 @@ def test_optimum_of_listed_values_alone(tmp_path: Path) -> None:
 def test_best_design_stands_beside_the_unmodified_one() -> None:
     """Its responses are those of the base alone; changes are as those of `compare`, in every output."""
     base, tip = cf.Scene(kim()), Vary("tip diameter", Span(0.011, 0.0125))
-    result = cf.study(Problem(base, (tip,), Response("end_mass"), (Limit(STIFFNESS, low=100.0),), PROBLEM.at))
+    limits = (Limit(STIFFNESS, low=100.0), Limit(Response("ball_speed", 0.3), low=0.0))
+    result = cf.study(Problem(base, (tip,), Response("end_mass"), limits, PROBLEM.at))
     assert isinstance(result, OptimumResult)
     best, start = result.optimum, result.optimum.start
     assert start is not None
@@ -185,6 +187,7 @@ def test_best_design_stands_beside_the_unmodified_one() -> None:
     change = result.changes["tip_stiffness"]
     assert change["difference"] == best.responses["tip_stiffness"] / start.responses["tip_stiffness"] - 1
     assert change == pytest.approx(compared["tip_stiffness"], rel=1e-2)
+    assert result.changes["ball_speed(0.3)"]["error"] < RATIO_FLOOR < result.changes["end_mass"]["error"]  # of squirt
     record = result.to_dict()
     assert record["start"]["responses"] == start.responses
     assert record["changes"] == result.changes

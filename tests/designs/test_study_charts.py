@@ -44,7 +44,7 @@ def test_chart_of_each_varied_parameter_has_medians() -> None:
     squirt = np.radians(1 + np.tile([0.0, 0.1, 0.2, 0.3, 0.9], 3) - 100 * bore)
     found = sweep({"bore": bore, "same": np.ones(15)}, np.stack([squirt, 900 - bore], axis=1))
     _, *charts = sweep_charts(found)
-    assert [drawn.x_label for drawn in charts] == ["bore, mm"]
+    assert [(drawn.title, drawn.x_label) for drawn in charts] == [("squirt at b/R 0.3 by bore", "bore, mm")]
     name, _, outline = charts[0].curves[0]
     assert name == "median"
     assert numbers(charts[0], outline) == pytest.approx(np.array([[2, 1.0], [5, 0.7], [9, 0.3]]), abs=0.01)
