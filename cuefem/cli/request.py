@@ -84,9 +84,14 @@ class Request:
         given = {name: text for name, text in options.items() if text is not None}
         return cls(file, given, frozenset(options), with_impact)
 
-    def errors(self) -> Any:
-        """A context in which errors of the computation name the file, and the options that help."""
-        return errors_name_file(self.file, "--tip-height, --leather, --speed" if "leather" in self.offered else "")
+    @contextmanager
+    def errors(self) -> Iterator[None]:
+        """A context in which errors of the computation name the file, and the option given or those that help."""
+        with errors_name_file(self.file, "--tip-height, --leather, --speed" if "leather" in self.offered else ""):
+            try:
+                yield
+            except OutOfBounds as error:
+                raise self._named(error) from None
 
     @cached_property
     def opened(self) -> Any:
@@ -184,13 +189,18 @@ class Request:
         try:
             return with_values_at(scene, changes) if changes else scene
         except OutOfBounds as error:
-            if not error.name.endswith("cue.body_mass") or "body_mass" not in self.given:
-                raise InputError(self.file, "", str(error)) from None
-            bounds = error.bounds.bounds_in(error.bounds.unit)
-            problem = f"must be {bounds}{error.reason}; got {self.given['body_mass']}"
-            raise InputError(self.file, "--body-mass", problem) from None
+            raise self._named(error) from None
         except ValueError as error:
             raise InputError(self.file, "", str(error)) from None
+
+    def _named(self, error: OutOfBounds) -> InputError:
+        """The error with the option that gave the number, as it was given; with the field's name if none did."""
+        for known in self._parameters():
+            if error.name.casefold().endswith(known.path.casefold()):
+                bounds = error.bounds.bounds_in(error.bounds.unit)
+                problem = f"must be {bounds}{error.reason}; got {self.given[known.key]}"
+                return InputError(self.file, option(known.key), problem)
+        return InputError(self.file, "", str(error))
 
     def _parameters(self) -> list[Parameter]:
         """The parameters that options set."""

@@ -11,6 +11,7 @@ import numpy as np
 from cuefem.contact.kernel.declarations import CONSTANTS, KernelInput
 from cuefem.effects.contact_terms import ContactTerms, PowerLaw, TipModel
 from cuefem.effects.force_law import LeatherLaw, TipLaw, contact_time_ratio
+from cuefem.quantity.fields import OutOfBounds, Quantity
 from cuefem.scene import Scene
 
 # A tip of small restitution e unloads 1/e times as fast as it loads, which needs 1/e times as many steps. Lower bounds
@@ -114,9 +115,7 @@ def contact_time_of(scene: Scene) -> float:
 
 
 def check_restitution(name: str, restitution: float, bound: float = MIN_RESTITUTION) -> None:
-    """ValueError for a restitution below ``bound``."""
+    """OutOfBounds for a restitution below ``bound``."""
     if restitution < bound:
-        raise ValueError(
-            f"{name} must be in [{bound:g}, 1] for a contact computed in time; got {restitution:g} "
-            "(cuefem.impulse takes any)"
-        )
+        bounds = Quantity("", f"[{bound:g}, 1]")
+        raise OutOfBounds(name, bounds, float(restitution), " for a contact computed in time")

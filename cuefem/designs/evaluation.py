@@ -132,11 +132,11 @@ def _unknown(text: str) -> ValueError:
     return ValueError(f"must be one of {', '.join(map(_usage, computable_results()))}; got {text!r}{hint}")
 
 
-def _number(text: str) -> float:
-    """The number of a text, nan if it is none."""
+def _number(argument: str | float) -> float:
+    """The number of an argument, nan if it is none."""
     try:
-        return float(text)
-    except ValueError:
+        return float(argument)
+    except (TypeError, ValueError):
         return math.nan
 
 
@@ -149,7 +149,7 @@ def _checked(kind: str, argument: float | None, text: str) -> float | int | None
         return None
     if expected == "":
         raise ValueError(f"must be {kind}, without brackets; got {text!r}")
-    number = math.nan if argument is None else float(argument)
+    number = math.nan if argument is None else _number(argument)
     if expected == "mode":
         if not (number >= 1 and number.is_integer()):
             raise ValueError(f"must be {kind}(n), n a whole number >= 1; got {text!r}")

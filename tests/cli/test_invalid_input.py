@@ -58,7 +58,7 @@ strike spring.toml --game pool | --game: does not apply: FILE is a scene
 strike spring.toml --dome dime | --dome: does not apply: the scene has no LeatherTip
 strike shaft.toml --dome penny | or "dime", "nickel", "flat"; got 'penny'
 strike shaft.toml --leather sofd | got 'sofd'
-strike shaft.toml --restitution 0.05 | Tip.restitution must be in [0.1, 1]
+strike shaft.toml --restitution 0.05 | --restitution: must be 0.1 to 1 for a contact computed in time; got 0.05
 modes shaft.toml --tip-height 40mm | got 40 mm (options: --tip-height, --dome)
 strike shaft.toml --leather 1MPa | (--tip-height, --leather, --speed)
 modes lumped.toml --material ash | is a lumped cue, without material

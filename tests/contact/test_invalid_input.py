@@ -53,7 +53,7 @@ CALLS: list[Any] = [
     # strikes
     (strike_call(leather_scene(e=0.05)), "Tip.restitution must be in [0.1, 1] for a contact"),
     (strike_call(leather_scene(speed=60.0)), "mm); raise height or E of the leather, or lower the speed"),
-    (strike_call(kim_scene(restitution=0.049), effects=(cf.Elevation(0.1),)), f"{DEAD}0.049 (cuefem.impulse takes"),
+    (strike_call(kim_scene(restitution=0.049), effects=(cf.Elevation(0.1),)), f"{DEAD}0.049"),
     (strike_call(kim_scene(friction=inf), effects=(cf.SecondHit(),)), "Tip.friction must be finite beside SecondHit"),
     (lambda: cf.Resolution(4, 8, 0), "Resolution.modes"),
     (lambda: cf.Resolution(1, 1, 1, 19), "Resolution.steps must be a whole number in [20, 1000000]; got 19"),

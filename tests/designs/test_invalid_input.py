@@ -59,6 +59,7 @@ CALLS: dict[str, Callable[[], object]] = {
     "got 'squrit'": lambda: Response("squrit"),
     "must be squirt(b), b an offset b/R in (-1, 1); got 'squirt(2.0)'": lambda: Response("squirt", 2.0),
     "must be frequency(n), n a whole number >= 1; got 'frequency(1.5)'": lambda: Response("frequency", 1.5),
+    "must be squirt(b), b an offset b/R in (-1, 1); got \"squirt('x')\"": lambda: Response("squirt", "x"),
     "must be mass, without brackets": lambda: Response.of("mass(3)"),
     "must be frequency(n), n a whole number": lambda: Response.of("frequency(inf)"),
     "must be ball_speed(b), b an": lambda: Response.of("ball_speed(fast)"),
