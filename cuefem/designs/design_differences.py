@@ -68,4 +68,5 @@ def _changes(study: Study, design: StudyDesign, inputs: Sequence[str]) -> dict[s
         return dict(zip(names, found.tolist(), strict=True))
 
     known = {name: value for name, value in design.responses.items() if value and not math.isnan(value)}
-    return {key: {} for key in inputs} | changes_by_input(design.scene, known, numbers, inputs).relative
+    found: dict[str, Mapping[str, float]] = {key: {} for key in inputs}
+    return found | changes_by_input(design.scene, known, numbers, inputs).relative
