@@ -1,11 +1,48 @@
-"""Assertions on invalid input: a call or a command, and a part of its one-line error message; no tests."""
+"""Invalid input: calls and commands, and their one-line error messages, golden files for whole tables; no tests."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
 
 from tests.helpers.command_line import call
+from tests.test_golden_files import assert_golden
+
+
+def assert_refused(
+    table: str, messages: Mapping[str, str], request: pytest.FixtureRequest, *, exact: bool = True
+) -> None:
+    """The messages, by the names of their rows, are tests/golden/refused_TABLE.txt, which `--update` writes.
+
+    exact: whether numbers equal to 1e-6; those of an iteration to one unit in their last digit.
+    """
+    text = "".join(f"{row}: {message}\n" for row, message in messages.items())
+    assert_golden(f"refused_{table}.txt", text, request, exact=exact)
+
+
+def messages_of(calls: Mapping[str, Callable[[], object]]) -> dict[str, str]:
+    """What each call raises."""
+    return {row: raised(action) for row, action in calls.items()}
+
+
+def raised(action: Callable[[], object]) -> str:
+    """The type and the message, one line, of the exception that a call raises."""
+    with pytest.raises((ValueError, TypeError, RuntimeError)) as error:
+        action()
+    text = str(error.value)
+    assert len(text.splitlines()) == 1
+    return f"{error.typename}: {text}"
+
+
+def rejected(folder: Path, *arguments: object) -> str:
+    """The one line on stderr of a command that exits with status 2, prints nothing else and changes no file."""
+    before = file_contents(folder)
+    code, out, err = call(*arguments)
+    assert (code, out) == (2, ""), err
+    assert err.startswith("cuefem: ")
+    assert len(err.splitlines()) == 1
+    assert file_contents(folder) == before
+    return err.strip().replace(f"{folder}/", "")
 
 
 def assert_raises(action: Callable[[], object], message: str) -> None:
