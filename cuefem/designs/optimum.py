@@ -17,7 +17,7 @@ import numpy as np
 from cuefem.beam.blas_threads import one_blas_thread
 from cuefem.cue import Array, Material
 from cuefem.cue.materials import material_name
-from cuefem.designs.evaluation import Response, evaluate
+from cuefem.designs.evaluation import Evaluation, Response, evaluate
 from cuefem.designs.sampling import Levels, Normal, Span, Value
 from cuefem.designs.study import Study, StudyDesign, Vary
 from cuefem.parameters.scene_paths import value_at
@@ -230,9 +230,9 @@ class Problem:
         """The design at a point; ValueError if it is invalid."""
         return self.study.scene(self.design(point))
 
-    def values(self, points: Array) -> Array:
-        """Responses of the study at points (n, variables): (n, responses), nan where a design has none."""
-        return self.study.evaluate([self.design(point) for point in points]).values
+    def evaluate(self, points: Array) -> Evaluation:
+        """Responses of the study at points (n, variables), nan and a reason where a design has none."""
+        return self.study.evaluate([self.design(point) for point in points])
 
     def sizes(self, values: Array) -> Array:
         """Values (n, responses) as they are compared: `Response.size`."""
@@ -330,13 +330,15 @@ class _Search:
         self.choice = {problem.vary[i].name: value for i, value in problem.choice.items()}
         self.rounds, self.best, self.scale = 0, np.inf, -1.0 if problem.maximize else 1.0
         self._responses, self._slopes = dict[bytes, Array](), dict[bytes, Array]()
+        self._reasons = dict[bytes, str]()
 
     def rows(self, shares: Array) -> Array:
         """Responses at points (n, variables)."""
-        values = self.problem.values(self.problem.points(shares))
+        found = self.problem.evaluate(self.problem.points(shares))
+        self._reasons |= {u.tobytes(): reason for u, reason in zip(shares, found.reasons, strict=True) if reason}
         self.evaluations += len(shares)
-        self.best = min(self.best, self.scores(values).min(initial=np.inf))
-        return values
+        self.best = min(self.best, self.scores(found.values).min(initial=np.inf))
+        return found.values
 
     def scores(self, values: Array) -> Array:
         """The scores to minimize: the objective, or `EXCLUDED` plus the violation of the limits."""
@@ -364,7 +366,7 @@ class _Search:
         u = self.onto_ends(min((u for u, _ in ends), key=lambda u: self.scores(self.at(u)[None])[0]))
         violated, stop_reason = self.violated(u), "" if self.is_least(u) else ends[-1][1]
         if violated or not np.isfinite(self.at(u)).all():
-            raise ValueError(f"no design {self.none_found(u, violated)}")
+            raise ValueError(self.none_found(u, violated))
         point, study = self.problem.points(u), self.problem.study
         return Optimum(
             self.problem.scene(point),
@@ -376,14 +378,15 @@ class _Search:
         )
 
     def none_found(self, u: Array, violated: Sequence[str]) -> str:
-        """The rest of the error for a nearest point that violates limits, or lacks a response for a reason."""
-        failure = self.problem.study.evaluate([self.problem.design(self.problem.points(u))]).reasons[0]
-        if failure:
-            names = ", ".join(response.name for response in self.problem.study.responses)
-            return f"that has {names} was found; of the nearest: {failure}"
-        nearest = zip(self.problem.study.responses, self.at(u), strict=True)
-        has = ", ".join(f"{response.name} {value:.6g} {response.unit}".strip() for response, value in nearest)
-        return f"within {', '.join(violated)} was found; the nearest has {has}: relax a limit or widen a range"
+        """The error for a nearest point that lacks responses, or violates limits."""
+        nearest = dict(zip(self.problem.study.responses, self.at(u).tolist(), strict=True))
+        missing = [response.name for response, value in nearest.items() if not np.isfinite(value)]
+        if missing:
+            reason = self._reasons[np.clip(u, 0, 1).tobytes()]
+            return f"no design that has {', '.join(missing)} was found; of the nearest: {reason}"
+        has = ", ".join(f"{response.name} {value:.6g} {response.unit}".strip() for response, value in nearest.items())
+        limits = ", ".join(violated)
+        return f"no design within {limits} was found; the nearest has {has}: relax a limit or widen a range"
 
     def is_least(self, u: Array) -> bool:
         """Whether a size that is minimized, such as that of squirt, is 0 at a point within the limits.

@@ -25,7 +25,7 @@ WOOD = Vary(("cue.segments[2].material",), Levels(("hard maple", "ash")), "wood"
 BORE = Vary(("cue.segments[1].tip_bore", "cue.segments[1].butt_bore"), Span(0.002, 0.010), "bore")
 PROBLEM = Problem(scene(low_deflection(), 1e-3), (BORE,), Response("squirt_slope"), (), cf.Resolution(1, 6, 8))
 STIFF = replace(PROBLEM, limits=(Limit(Response("tip_stiffness"), low=1e3),))
-MISCUE = replace(PROBLEM, objective=Response("squirt", 0.8))
+MISCUE = replace(STIFF, objective=Response("squirt", 0.8))
 
 
 def scattered(

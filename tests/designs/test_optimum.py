@@ -98,7 +98,7 @@ def test_optimum_of_strike_converges_to_same_design() -> None:
 def test_active_limits_constrain_the_optimum() -> None:
     """Removing a limit improves the objective if and only if the limit is active."""
     point = np.array([best().values[v.name] for v in PROBLEM.vary])
-    assert PROBLEM.margins(PROBLEM.values(point[None])).min() == pytest.approx(0.0, abs=1e-6)
+    assert PROBLEM.margins(PROBLEM.evaluate(point[None]).values).min() == pytest.approx(0.0, abs=1e-6)
     assert (best().scene, best().stop_reason) == (PROBLEM.scene(point), "")
     assert best().active
     for limit in LIMITS:
