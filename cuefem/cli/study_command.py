@@ -22,7 +22,7 @@ from cuefem.designs import Study
 from cuefem.designs.optimum import Problem, Round
 from cuefem.designs.scatter import Scatter
 from cuefem.designs.store import SqliteStore, check_parquet, write_parquet, write_table
-from cuefem.designs.study_file import base_assumptions, load_study
+from cuefem.designs.study_file import base_assumptions, load_study, study_kind
 from cuefem.designs.study_result import StudyResult
 from cuefem.designs.sweep import sweep
 from cuefem.files import InputError, save, write_atomically
@@ -94,10 +94,8 @@ def study(
     command; an edited study computes only its new designs. --workers computes in processes of this machine, --scheduler
     on a Dask cluster. -o FILE.toml writes the best design (of a sweep: by its first response).
     """
-    plan = load_study(file)
-    designs = plan if isinstance(plan, Study) else plan.sobol_study if isinstance(plan, Scatter) else plan.study
-    notes = base_assumptions(file, designs.base)
-    if isinstance(plan, Problem) and (stores or workers or scheduler or part):
+    kind = study_kind(file)
+    if kind == "optimum" and (stores or workers or scheduler or part):
         raise click.UsageError(
             "--store, --workers, --scheduler and --part do not apply to an optimum, which runs in one process"
         )
@@ -107,7 +105,7 @@ def study(
         raise click.UsageError("--workers (of this machine) and --scheduler (of a cluster) cannot be combined")
     for path in output:
         if path.suffix.lower() == ".toml":
-            if isinstance(plan, Scatter):
+            if kind == "scatter":
                 raise InputError(
                     path,
                     "--output",
@@ -116,6 +114,9 @@ def study(
             check_overwrite(path, force=force)
         if path.suffix.lower() == ".parquet":
             check_parquet()
+    plan = load_study(file)
+    designs = plan if isinstance(plan, Study) else plan.sobol_study if isinstance(plan, Scatter) else plan.study
+    notes = base_assumptions(file, designs.base)
     print_warnings(designs.base)
     database = None
     if isinstance(plan, Problem):
@@ -186,7 +187,7 @@ def _write(path: Path, result: StudyResult, shown: Presentation) -> None:
     elif path.suffix.lower() != ".toml":
         shown.write(path)
     elif not result.best:
-        raise InputError(path, "--output", "has no design to write: none has all responses")
+        raise InputError(path, "--output", "has no design to write: none has a response")
     else:
         save(_rounded(next(iter(result.best.values())).scene, result.study), path)
 

@@ -151,6 +151,12 @@ def load_study(path: str | PathLike[str]) -> Study | Scatter | Problem:
         return Scatter(study, correlations, tolerances.groups, tolerances.count, tolerances.seed)
 
 
+def study_kind(path: str | PathLike[str]) -> str:
+    """ "optimum", "scatter" or "sweep": the kind of a study's file, without its scene, which takes seconds to build."""
+    tables = _study_tables(Path(path))
+    return "optimum" if "objective" in tables else "scatter" if "tolerances" in tables else "sweep"
+
+
 def study(
     what: str | PathLike[str] | Study | Scatter | Problem,
     *,
@@ -205,11 +211,12 @@ def study(
     >>> result.designs["tip"], result.units["tip"]
     (array([0.011, 0.012, 0.013]), 'm')
     """
+    is_optimum = study_kind(what) == "optimum" if isinstance(what, str | PathLike) else isinstance(what, Problem)
+    if is_optimum and (store or workers):
+        raise ValueError("an optimum takes no store or workers: it computes one design after the other")
     problem = load_study(what) if isinstance(what, str | PathLike) else what
     check_kind("study what", problem, (Study, Scatter, Problem))
     if isinstance(problem, Problem):
-        if store or workers:
-            raise ValueError("an optimum takes no store or workers: it computes one design after the other")
         return compute_study(problem, progress=progress, rounds=rounds)
     designs = problem.sobol_study if isinstance(problem, Scatter) else problem
     with SqliteStore(store, designs) if isinstance(store, str | PathLike) else nullcontext(store) as stored:

@@ -174,7 +174,7 @@ def test_study_without_scheduler_exits_within_seconds(tmp_path: Path) -> None:
     ("text", "options", "message"),
     [
         (STUDY, ("--workers", "2"), "--workers (of this machine) and --scheduler (of a cluster) cannot be combined"),
-        (OPTIMUM, (), "--store, --workers, --scheduler and --part do not apply to an optimum"),
+        (OPTIMUM.replace("scene.toml", "none.toml"), (), "--scheduler and --part do not apply to an optimum"),
         (STUDY, (), "no Dask scheduler responds at nowhere: missing port number"),
     ],
 )
