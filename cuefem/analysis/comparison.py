@@ -113,19 +113,18 @@ class Comparison(Analysis):
         return {"scenes": scenes, **self.values(), "units": dict(UNITS)}
 
     def sentences(self) -> list[str]:
-        """A sentence on the squirt of each cue relative to the first, and one on those without a difference."""
-        differences = [
+        """A sentence on the squirt of each cue relative to the first."""
+        return [
             f"{name}: {squirt_difference(**each['squirt'])} {self.reference} (1σ)."
             for name, each in self.differences.items()
             if "squirt" in each
         ]
-        return [*differences, *filter(None, [self.without_difference()])]
 
-    def without_difference(self) -> str:
-        """A sentence on the cues whose squirt cannot be compared with that of the first, each reason once, or ""."""
+    def gaps(self) -> list[str]:
+        """A sentence on the cues whose squirt cannot be compared with that of the first, each reason once."""
         apart = [name for name, each in self.differences.items() if "squirt" not in each]
         if not apart:
-            return ""
+            return []
         cues = [self.reference, *apart]
         having: dict[str, list[str]] = {}
         for name in cues:
@@ -133,7 +132,7 @@ class Comparison(Analysis):
                 having.setdefault(self.problems[name], []).append(name)
         reasons = [problem if names == cues else f"{listed(names)}: {problem}" for problem, names in having.items()]
         why = "; ".join(reasons) or "a stroke is nearly a miscue"
-        return f"{listed(apart)} and {self.reference} cannot be compared in squirt: {why}."
+        return [f"{listed(apart)} and {self.reference} cannot be compared in squirt: {why}."]
 
     def calibration_warnings(self) -> list[str]:
         """Warnings of the calibration, each once."""
@@ -152,8 +151,9 @@ class Comparison(Analysis):
         from cuefem.analysis.first_screen import HeadlineCue, screen_markup
         from cuefem.analysis.report_page import facts, page, section_of
 
+        title = f"{self.heading()}: compared"
         if self.reference in self.problems:
-            return super().to_html(name, assumptions, warnings, made)
+            return super().to_html(title, assumptions, warnings, made)
         own, *others = [HeadlineCue(name, scene, self.cues[name]) for name, scene in self.scenes.items()]
         answer = replace(verdict(self.scene), calibrated=self.calibrated.get(self.reference))
         facts_of = {name: facts(scene) for name, scene in self.scenes.items()}
@@ -163,10 +163,10 @@ class Comparison(Analysis):
             [*self.scenes, *answer.references],
             kind="compare",
             name=self.heading(),
-            title=f"{self.heading()}: compared",
+            title=title,
             made=made,
             notes=[*map(str, assumptions)],
-            warnings=[*warnings, *(f"warning: {line}" for line in self.calibration_warnings())],
+            warnings=[*self.gaps(), *warnings, *(f"warning: {line}" for line in self.calibration_warnings())],
             facts=[*apart, *shared],
             uncertainty=[
                 f"{own.name}, {answer.uncertainty_line()}",
@@ -184,7 +184,6 @@ class Comparison(Analysis):
             [(name, styles[name]), (f": {squirt_difference(**each).removesuffix(' than')}", "")]
             for name, each in squirts.items()
         ]
-        lines += [[(text, "")] for text in filter(None, [self.without_difference()])]
         lines += [[(name, styles[name]), (f", {each.headline()}", "")] for name, each in self.calibrated.items()]
         return lines
 

@@ -191,6 +191,7 @@ class Presentation:
         if as_json:
             print_json(self.record())
         elif output is not None:
-            print_tables([*filter(None, [self.answer.headline()]), f"wrote {output}", *self.hints])
+            headline = filter(None, [self.answer.headline()])
+            print_tables([*headline, *self.answer.gaps(), f"wrote {output}", *self.hints])
         else:
             print_tables(self.answer.lines(self.name, self.assumptions, self.hints))

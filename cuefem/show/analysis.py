@@ -71,6 +71,10 @@ class Answer:
         """Why a part of the answer is missing; a command then ends with an error."""
         return ""
 
+    def gaps(self) -> list[str]:
+        """What parts of the answer lack and why, a line each: warnings of a page, and first in a terminal."""
+        return []
+
     def values(self) -> Record:
         """The numbers alone, in SI units."""
         return {each.name: _plain(getattr(self, each.name)) for each in fields(self) if each.repr}
@@ -87,9 +91,13 @@ class Answer:
         self, name: str = "", assumptions: Sequence[Assumption] = (), hints: Sequence[Table | str] = ()
     ) -> list[Table | str]:
         """What a terminal and a plain page show: heading, tables, hints, effects and assumptions."""
-        heading, effects = ": ".join(filter(None, (name, self.heading()))), self.effects_line()
+        heading = ": ".join(filter(None, (name, self.heading())))
+        return [*([heading, ""] if heading else []), *self.gaps(), *self._body(assumptions, hints)]
+
+    def _body(self, assumptions: Sequence[Assumption], hints: Sequence[Table | str] = ()) -> list[Table | str]:
+        """Tables, hints, effects and assumptions."""
+        effects = self.effects_line()
         return [
-            *([heading, ""] if heading else []),
             *self.tables(),
             *(["", *hints] if hints else []),
             "",
@@ -103,12 +111,11 @@ class Answer:
         """A self-contained page with tables and charts. made: the date at its end."""
         from cuefem.show.templates import plain_page  # templates take 0.1 s to load
 
-        lines = self.lines(name.partition(":")[0] if self.heading() else "", assumptions)
-        heading = lines[:1] if self.heading() else []
-        others = lines[len(heading) :]
         title = name or effect_name(type(self).__name__).capitalize()
+        heading = "" if self.heading() in title else ": ".join(filter(None, (name.partition(":")[0], self.heading())))
         more = (chart for folded in self.more_charts() for chart in folded.charts)
-        return plain_page(title, [*heading, *warnings, *self.charts(), *more, *others], made)
+        things = [heading, *self.charts(), *more, *self._body(assumptions)]
+        return plain_page(title, things, made, [*self.gaps(), *warnings])
 
     def save(self, path: str | Path) -> None:
         """Write the record (.json) or a page (.html); the extension sets the format."""

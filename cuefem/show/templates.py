@@ -82,10 +82,12 @@ def answer_markup(key: str, answer: Any) -> str:
     return str(_macros().answer(key, answer.charts(), answer.tables(), answer.about, answer.more_charts()))
 
 
-def plain_page(name: str, things: Sequence[str | Table | Chart | CueDrawing], made: str = "") -> str:
+def plain_page(
+    name: str, things: Sequence[str | Table | Chart | CueDrawing], made: str = "", warnings: Sequence[str] = ()
+) -> str:
     """Lines, tables, charts and drawings as a self-contained page. made: the date at its end."""
     groups = [[*group] for _, group in groupby(filter(None, things), type)]
-    return environment().get_template("plain.html.j2").render(name=name, groups=groups, made=made)
+    return environment().get_template("plain.html.j2").render(name=name, groups=groups, made=made, warnings=warnings)
 
 
 @cache
