@@ -12,7 +12,7 @@ import numpy as np
 
 from cuefem.beam.modes import Modes
 from cuefem.cue import Array
-from cuefem.quantity.display import one_line
+from cuefem.quantity.display import counted, one_line
 from cuefem.quantity.display_units import with_heading
 from cuefem.quantity.equality import equal_fields
 from cuefem.quantity.fields import suggestion
@@ -116,8 +116,8 @@ class Response:
             raise ValueError(f"{self.name} needs a cue of segments; got a lumped cue")
         assert self.result.of is not None
         value = self.result.of(design, self.argument)
-        if value != value:
-            raise ValueError(f"{self.name} is not a number")
+        if not math.isfinite(value):
+            raise ValueError(f"{self.name} is not a finite number")
         return value
 
 
@@ -196,3 +196,24 @@ def evaluate(
             except Failed as error:
                 reasons[i] = reasons[i] or one_line(str(error))
     return Evaluation(values, tuple(reasons))
+
+
+def shortfalls(responses: Sequence[Response], values: Array) -> list[tuple[str, int | None]]:
+    """What designs lack, such as "3 of 8 designs lack squirt(0.75)", each with the first design whose reason is of it.
+
+    values: (designs, responses), nan where one is missing. Responses that the same designs lack are named together.
+    """
+    missing = np.isnan(values)
+    together: dict[bytes, list[int]] = {}
+    for k in np.flatnonzero(missing.any(axis=0)).tolist():
+        together.setdefault(missing[:, k].tobytes(), []).append(k)
+    lines = list[tuple[str, int | None]]()
+    for lacked in together.values():
+        designs = np.flatnonzero(missing[:, lacked[0]])
+        names = ", ".join(responses[k].name for k in lacked)
+        verb = "lacks" if len(designs) == 1 else "lack"
+        what = "failed" if len(lacked) == len(responses) else f"{verb} {names}"
+        explained = designs[missing[designs].argmax(axis=1) == lacked[0]]  # a design's reason is that of its first
+        first = int(explained[0]) if len(explained) else None
+        lines.append((f"{len(designs)} of {counted(len(values), 'design')} {what}", first))
+    return lines

@@ -19,6 +19,7 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from cuefem.cue import Array
+from cuefem.designs.evaluation import shortfalls
 from cuefem.designs.sampling import Levels
 from cuefem.designs.study import Study, check_column_name
 from cuefem.designs.sweep import Columns
@@ -208,9 +209,10 @@ def sobol_indices_of(scatter: Scatter, columns: Columns) -> SobolIndices:
     about 1/sqrt(count) or less, see the intervals. ValueError if a design has no response, with the first reason, or
     if a response is constant.
     """
-    failed, count = columns.failures, len(columns.values)
+    failed = columns.failures
     if failed:
-        raise ValueError(f"{len(failed)} of {count} designs failed: narrow the ranges; first: {failed[min(failed)]}")
+        lacks = "; ".join(text for text, _ in shortfalls(scatter.study.responses, columns.values))
+        raise ValueError(f"{lacks}: narrow the ranges; first: {failed[min(failed)]}")
     results = columns.values.reshape(-1, scatter.count, len(scatter.study.responses))
     for response, column in zip(scatter.study.responses, np.moveaxis(results[:2], -1, 0), strict=True):
         if column.std() <= 1e-12 * abs(column.mean()):

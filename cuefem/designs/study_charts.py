@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cuefem.cue import Array
 from cuefem.designs.evaluation import Response
@@ -33,7 +33,7 @@ def sweep_charts(sweep: SweepStatistics) -> list[Chart]:
 def _trade_off(sweep: SweepStatistics, first: int, second: int) -> Chart:
     """Designs by two responses, and the front."""
     x, y = (to_display(sweep.results[:, k], sweep.responses[k].display_key) for k in (second, first))
-    shown, name = _shown(len(x))
+    shown, name = _shown(sweep.having(first, second))
     front = sweep.front
     return chart(
         f"Trade-off: {sweep.responses[first].label}",
@@ -45,22 +45,25 @@ def _trade_off(sweep: SweepStatistics, first: int, second: int) -> Chart:
     )
 
 
-def _shown(count: int) -> tuple[Any, str]:
-    """The designs that a chart draws, and their name in the legend."""
+def _shown(rows: NDArray[np.int_]) -> tuple[NDArray[np.int_], str]:
+    """Of the rows of designs those that a chart draws, and their name in the legend."""
+    count = len(rows)
     if count <= MAX_POINTS:
-        return np.arange(count), "designs"
-    return np.linspace(0, count - 1, MAX_POINTS).round().astype(int), f"{MAX_POINTS} of {count} designs, evenly spaced"
+        return rows, "designs"
+    spaced = np.linspace(0, count - 1, MAX_POINTS).round().astype(int)
+    return rows[spaced], f"{MAX_POINTS} of {count} designs, evenly spaced"
 
 
 def _parameter_chart(sweep: SweepStatistics, j: int, k: int) -> Chart:
     """A response against a parameter, with its median at each value or range of values."""
-    response, column, label = sweep.responses[k], sweep.values[j], column_label(sweep.names[j])
-    results = to_display(sweep.results[:, k], response.display_key)
+    rows = sweep.rows[k]
+    response, column, label = sweep.responses[k], sweep.values[j][rows], column_label(sweep.names[j])
+    results = to_display(sweep.results[rows, k], response.display_key)
     if column.dtype.kind not in "fi":
         return _names_chart(response, label, column, results)
     values = to_display(column, sweep.units[j])
     medians = _medians(column, np.stack([values, results], axis=1))
-    shown, name = _shown(len(column))
+    shown, name = _shown(np.arange(len(column)))
     is_single = len(medians) == len(column)
     return chart(
         f"{response.label} by {label}",
@@ -83,7 +86,7 @@ def _names_chart(response: Response, label: str, column: np.ndarray, results: Ar
     names = [*dict.fromkeys(column.tolist())][::-1]
     rows = np.array([names.index(name) for name in column.tolist()])
     medians = _medians(rows, results[:, None])[:, 0]
-    shown, name = _shown(len(rows))
+    shown, name = _shown(np.arange(len(rows)))
     points = [Dots(name, results[shown], rows[shown], "c5")]
     if len(names) < len(rows):
         points.append(Dots("median", medians, np.arange(len(names)), "c1"))

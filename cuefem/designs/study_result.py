@@ -13,16 +13,17 @@ import numpy as np
 
 from cuefem.cue import Array
 from cuefem.designs.design_differences import design_differences
+from cuefem.designs.evaluation import shortfalls
 from cuefem.designs.optimum import Optimum, Problem, optimum
 from cuefem.designs.sampling import Value
 from cuefem.designs.scatter import Scatter, SobolIndices, sobol_indices_of
 from cuefem.designs.study import Study, StudyDesign
 from cuefem.designs.study_statistics import SweepStatistics, sweep_statistics
 from cuefem.designs.study_table import (
+    failure_lines,
     optimum_record,
     scatter_record,
     sweep_record,
-    tabulate_failures,
     tabulate_optimum,
     tabulate_parameters,
     tabulate_scatter,
@@ -88,6 +89,10 @@ class StudyResult(Analysis):
     def heading(self) -> str:
         """The kind of the study."""
         return self.kind
+
+    def page_title(self, name: str, question: str) -> str:
+        """The file and the kind of the study."""
+        return super().page_title(name, self.kind)
 
     def to_dict(self) -> Record:
         """The record: scene, resolution, varied parameters, numbers in SI units, and the unit of each."""
@@ -220,8 +225,8 @@ class StudyResult(Analysis):
         return lines
 
     def __repr__(self) -> str:
-        failed = f", {len(self.failures)} failed" if self.failures else ""
-        title = f"{type(self).__name__}({counted(self._computed(), 'design')}{failed})"
+        lacks = "".join(f"; {text}" for text, _ in shortfalls(self.study.responses, self.columns.values))
+        title = f"{type(self).__name__}({counted(self._computed(), 'design')}{lacks})"
         return "\n  ".join([title, *(f"{name}: {value}, {at}" for name, value, at in self._lines())])
 
     def _computed(self) -> int:
@@ -237,7 +242,7 @@ class SweepResult(StudyResult):
 
     @cached_property
     def best(self) -> dict[str, StudyDesign]:
-        """Of the designs with all responses the best for each with a preferred direction; without one, the lowest."""
+        """Of the designs with a response the best for it, if one direction is preferred; without any, the lowest."""
         statistics = self.statistics
         if statistics is None:
             return {}
@@ -249,11 +254,11 @@ class SweepResult(StudyResult):
     def _design(self, i: int) -> StudyDesign:
         values = {name: column[i].item() for name, column in self.designs.items()}
         numbers = {name: float(column[i]) for name, column in self.responses.items()}
-        return StudyDesign(self.study.scene(tuple(values.values())), values, numbers)
+        return StudyDesign(self.study.scene(tuple(values.values())), values, numbers, failure=self.failures.get(i))
 
     @cached_property
     def statistics(self) -> SweepStatistics | None:
-        """Its statistics; None if no design has all responses."""
+        """Its statistics; None if no design has a response."""
         return sweep_statistics(self.study, self.designs, self.columns.values)
 
     @cached_property
@@ -274,7 +279,13 @@ class SweepResult(StudyResult):
     def values(self) -> Record:
         """Counts of designs, and the summary: best designs, sensitivities, Pareto front."""
         first_failure = next(iter(self.failures.values()), None)
-        counts = {"designs": self.count, "failed": len(self.failures), "first_failure": first_failure}
+        lacking = np.isnan(self.columns.values)
+        counts = {
+            "designs": self.count,
+            "failed": np.all(lacking, axis=1).sum(),
+            "lacking": dict(zip(self.responses, lacking.sum(axis=0), strict=True)),
+            "first_failure": first_failure,
+        }
         return counts | {"summary": self.statistics and sweep_record(self.statistics, self.front_steps)}
 
     def charts(self) -> list[Chart]:
@@ -283,10 +294,14 @@ class SweepResult(StudyResult):
 
         return [] if self.statistics is None else sweep_charts(self.statistics)
 
+    def gaps(self) -> list[str]:
+        """Which responses designs lack, with the first reason."""
+        return failure_lines(self.study, self.designs, self.columns.values, self.failures)
+
     def tables(self) -> list[Table | str]:
-        """Failures, varied parameters, best designs, sensitivities, and the Pareto front."""
+        """Varied parameters, best designs, sensitivities, and the Pareto front."""
         found = [] if self.statistics is None else tabulate_sweep(self.statistics, self.front_steps)
-        return [*tabulate_failures(self.study, self.designs, self.failures), *super().tables(), *found]
+        return [*super().tables(), *found]
 
 
 @dataclass(frozen=True, repr=False)

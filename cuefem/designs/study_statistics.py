@@ -22,10 +22,10 @@ MIN_TREND = 0.2  # minimum rank correlation of a trend
 
 @dataclass(frozen=True, eq=False)
 class SweepStatistics:
-    """Designs with all responses.
+    """Designs with any response, and the responses that any of them has.
 
     names, units: of the parameters. numbers: of the designs. values: of each parameter, numbers or names.
-    results: (designs, responses).
+    results: (designs, responses), nan where one is missing. Each statistic is of the designs that have its responses.
     """
 
     names: tuple[str, ...]
@@ -40,14 +40,30 @@ class SweepStatistics:
     @cached_property
     def shares(self) -> Array:
         """Part of the variance of each response that each parameter explains alone, (parameters, responses)."""
-        return np.array([explained_variance(column, self.results) for column in self.values])
+        shares = [
+            [explained_variance(column[rows], self.results[rows, k]) for k, rows in enumerate(self.rows)]
+            for column in self.values
+        ]
+        return np.array(shares)
+
+    def having(self, *responses: int) -> NDArray[np.int_]:
+        """Rows of the designs that have all of some responses."""
+        return np.flatnonzero(np.isfinite(self.results[:, responses]).all(axis=1))
+
+    @cached_property
+    def rows(self) -> list[NDArray[np.int_]]:
+        """Rows of the designs that have each response."""
+        return [self.having(k) for k in range(len(self.responses))]
 
     @cached_property
     def trends(self) -> list[list[str]]:
         """ "rises", "falls" or nothing, by parameter and response; squirt by its size."""
         columns = zip(self.responses, self.results.T, strict=True)
         sizes = [response.size(column) for response, column in columns]
-        return [[_trend(column, size) for size in sizes] for column in self.values]
+        return [
+            [_trend(column[rows], size[rows]) for rows, size in zip(self.rows, sizes, strict=True)]
+            for column in self.values
+        ]
 
     @cached_property
     def ranked(self) -> list[int]:
@@ -63,24 +79,26 @@ class SweepStatistics:
 
     def best(self, k: int) -> int:
         """The row of the best design for a response."""
-        return int(self.losses[:, k].argmin())
+        return int(np.nanargmin(self.losses[:, k]))
 
     @cached_property
     def pair(self) -> tuple[int, int] | None:
-        """The first ranked response and the one with the strongest trade-off; None if there is only one."""
-        first, *others = self.ranked
-        correlations = [_rank_correlation(self.losses[:, first], self.losses[:, k]) for k in others]
-        return (first, others[int(np.argmin(correlations))]) if others else None
+        """The first ranked response and the one with the strongest trade-off; None if no design has both."""
+        first, *ranked = self.ranked
+        common = {k: rows for k in ranked if len(rows := self.having(first, k))}
+        correlations = {k: _rank_correlation(*self.losses[rows][:, [first, k]].T) for k, rows in common.items()}
+        return (first, min(correlations, key=correlations.__getitem__)) if correlations else None
 
     @cached_property
     def front(self) -> list[int]:
         """Rows on the Pareto front of the pair of responses, in order of the first."""
         if self.pair is None:
             return []
-        first, second = self.losses[:, self.pair].T
+        rows = self.having(*self.pair)
+        first, second = self.losses[rows][:, self.pair].T
         order = np.lexsort((second, first))
         least = np.minimum.accumulate(second[order])
-        return order[np.r_[True, least[1:] < least[:-1]]].tolist()
+        return rows[order[np.r_[True, least[1:] < least[:-1]]]].tolist()
 
     @cached_property
     def shown_front(self) -> list[int]:
@@ -91,30 +109,32 @@ class SweepStatistics:
 
 
 def sweep_statistics(study: Study, designs: Mapping[str, np.ndarray], results: Array) -> SweepStatistics | None:
-    """The statistics of a sweep; None if no design has all responses.
+    """The statistics of a sweep; None if no design has a response.
 
     designs: values of each parameter by its name. results: (designs, responses), nan where one is missing.
     """
-    complete = np.flatnonzero(~np.isnan(results).any(axis=1))
-    if len(complete) == 0:
+    finite = np.isfinite(results)
+    numbers, found = np.flatnonzero(finite.any(axis=1)), np.flatnonzero(finite.any(axis=0))
+    if len(numbers) == 0:
         return None
-    columns = tuple(column[complete] for column in designs.values())
+    columns = tuple(column[numbers] for column in designs.values())
     names, units = (texts[: len(columns)] for texts in (study.columns, study.units))
-    return SweepStatistics(names, units, study.responses, complete, columns, results[complete])
+    responses = tuple(study.responses[k] for k in found)
+    return SweepStatistics(names, units, responses, numbers, columns, results[np.ix_(numbers, found)])
 
 
-def explained_variance(column: np.ndarray, results: Array) -> Array:
-    """Variance of the means over equal values, or over ranges of values, over the total variance, (responses,).
+def explained_variance(column: np.ndarray, results: Array) -> float:
+    """Variance of the means over equal values, or over ranges of values, over the total variance.
 
     For ranges it is corrected for the share expected by chance.
     """
     group, chance = groups_of(column)
     member = np.eye(group.max() + 1)[group]
-    between = np.var(member @ ((member.T @ results) / member.sum(axis=0)[:, None]), axis=0)
-    total = results.var(axis=0)
-    share = np.divide(between, total, out=np.zeros_like(total), where=total > 0)
+    between = np.var(member @ ((member.T @ results) / member.sum(axis=0)))
+    total = np.var(results)
+    share = float(between / total) if total > 0 else 0.0
     count, groups = member.shape
-    return np.clip(1 - (1 - share) * (count - 1) / (count - groups), 0, 1) if chance else share
+    return min(max(1 - (1 - share) * (count - 1) / (count - groups), 0.0), 1.0) if chance else share
 
 
 def groups_of(column: np.ndarray) -> tuple[NDArray[np.int_], bool]:

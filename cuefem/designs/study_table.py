@@ -15,9 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.cue import Cue
+from cuefem.cue import Array, Cue
 from cuefem.cue.materials import material_name
 from cuefem.designs import Levels, Normal, Span, Study, Vary
+from cuefem.designs.evaluation import shortfalls
 from cuefem.designs.optimum import Optimum, Problem
 from cuefem.designs.scatter import Scatter, SobolIndices
 from cuefem.designs.study_statistics import MAX_FRONT_ROWS, SweepStatistics
@@ -57,12 +58,17 @@ MIN_SHARE = 0.01  # of the variance, of a factor that is named among the stronge
 
 def varied_segments(vary: Sequence[Vary], base: Scene) -> dict[str, list[str]]:
     """The segments of the cue that each parameter varies, with their extents, by the parameter's name."""
-    pieces = {each.name: _segments(base.shaft, each.fields(base)) for each in vary} if base.lumped is None else {}
+    if base.lumped is not None:
+        return {}
+    pieces = dict[str, list[str]]()
+    for each in vary:
+        is_material = isinstance(each.range, Levels) and any(isinstance(value, str) for value in each.range.values)
+        pieces[each.name] = _segments(base.shaft, each.fields(base), with_material=not is_material)
     return {name: texts for name, texts in pieces.items() if texts}
 
 
-def _segments(cue: Cue, paths: Sequence[Path]) -> list[str]:
-    """The segments at the paths, each with its material and its extent from the tip."""
+def _segments(cue: Cue, paths: Sequence[Path], *, with_material: bool) -> list[str]:
+    """The segments at the paths, each with its extent from the tip, and its material unless that varies."""
     layout = Layout.of(cue)
     parts = {"ferrule": layout.ferrule, "bore": layout.bore or (), "shaft": layout.shaft}
     varied = set[int]()
@@ -72,7 +78,8 @@ def _segments(cue: Cue, paths: Sequence[Path]) -> list[str]:
     for i in sorted(varied):
         hollow = "bored " if layout.bore and i in layout.bore else ""
         part = "ferrule" if i in layout.ferrule else "shaft" if i in layout.shaft else f"segment {i}"
-        name = f"{hollow}{part} of {material_name(cue.segments[i].material)}"
+        material = f" of {material_name(cue.segments[i].material)}" if with_material else ""
+        name = f"{hollow}{part}{material}"
         pieces[name] = (pieces.get(name, (cue.nodes[i],))[0], cue.nodes[i + 1])
     return [f"{name}, {span_text(first, last, 'm', 5)}" for name, (first, last) in pieces.items()]
 
@@ -136,16 +143,22 @@ def shown(value: Any, unit: str) -> str:
     return number_text(float(value), unit)
 
 
-def tabulate_failures(study: Study, designs: Designs, failures: Mapping[int, str]) -> list[str]:
-    """How many designs failed, with the first of them and its reason; empty without failures."""
-    if not failures:
-        return []
-    number, failure = next(iter(failures.items()))
-    values = [column[number].item() for column in designs.values()]
-    levels = [replace(vary, range=Levels((x,))) for vary, x in zip(study.vary, values, strict=True)]
-    texts = map(range_text, levels, study.units)
-    design = ", ".join(f"{column_label(vary.name)} {x}" for vary, x in zip(levels, texts, strict=True))
-    return [f"{len(failures)} failed, the first of them design {number} ({design}): {failure}"]
+def failure_lines(study: Study, designs: Designs, results: Array, failures: Mapping[int, str]) -> list[str]:
+    """How many designs failed or lack which responses, with the first of them and its reason.
+
+    results: (designs, responses). failures: reasons by the number of the design.
+    """
+    lines = list[str]()
+    for text, number in shortfalls(study.responses, results):
+        if number is None:
+            lines.append(text)
+            continue
+        values = [column[number].item() for column in designs.values()]
+        levels = [replace(vary, range=Levels((x,))) for vary, x in zip(study.vary, values, strict=True)]
+        texts = map(range_text, levels, study.units)
+        design = ", ".join(f"{column_label(vary.name)} {x}" for vary, x in zip(levels, texts, strict=True))
+        lines.append(f"{text}, the first of them design {number} ({design}): {failures[number]}")
+    return lines
 
 
 def sweep_record(sweep: SweepStatistics, steps: Sequence[Mapping[str, Record]]) -> Record:
@@ -198,7 +211,7 @@ def tabulate_sweep(sweep: SweepStatistics, steps: Sequence[Mapping[str, Record]]
     best, sensitivities = list[tuple[str, ...]](), list[tuple[str, ...]]()
     for k in sweep.ranked:
         response, i = sweep.responses[k], sweep.best(k)
-        ends = " to ".join(shown(end(sweep.results[:, k]), response.display_key) for end in (np.min, np.max))
+        ends = " to ".join(shown(end(sweep.results[:, k]), response.display_key) for end in (np.nanmin, np.nanmax))
         which = f"{response.result.better} is better" if response.result.better else "the lowest"
         which += ", by size" if response.result.odd else ""
         value, *rest = cells(i, [k])
@@ -321,14 +334,14 @@ def _share(value: float, ends: Any) -> str:
 
 def optimum_record(problem: Problem, best: Optimum, changes: Mapping[str, Record]) -> Record:
     """The best design, its responses and active constraints beside the unmodified design, and the evaluations."""
+    assert best.start is not None
     aim = {"maximize" if problem.maximize else "minimize": problem.objective.name}
     return {
         "objective": aim,
         "value": best.responses[problem.objective.name],
         "values": best.values,
         "responses": best.responses,
-        "start": best.start
-        and {"values": best.start.values, "responses": best.start.responses, "failure": best.start.failure},
+        "start": {"values": best.start.values, "responses": best.start.responses, "failure": best.start.failure},
         "changes": changes,
         "active": [constraint._asdict() for constraint in best.active],
         "is_set_by_constraints": is_set_by_constraints(problem, best),

@@ -71,5 +71,5 @@ def assert_one_fails(scene: str, vary: str, message: str) -> None:
     """One of a sweep's two designs fails, and its reason contains ``message``."""
     Path("study.toml").write_text(f"scene = '{scene}'\nresponses = ['squirt(0.5)', 'frequency(1)']\n[[vary]]\n{vary}\n")
     record = json.loads(call("study", "study.toml", "--json")[1])
-    assert (record["designs"], record["failed"]) == (2, 1)
+    assert (record["designs"], record["lacking"]["squirt(0.5)"]) == (2, 1)
     assert message in record["first_failure"]

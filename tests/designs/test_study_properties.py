@@ -219,22 +219,26 @@ def test_study_of_one_design_shows_its_responses() -> None:
     assert [*values.values()] == pytest.approx([np.degrees(squirt), 1e3 * mass], rel=1e-3)
 
 
-def test_best_design_has_all_responses_in_result_and_table() -> None:
-    """Without friction a stroke miscues: it has no squirt, for a reason that is given once, and is the best in none."""
+def test_best_designs_are_of_the_designs_that_have_the_response() -> None:
+    """Without friction a stroke miscues, at b/R 0.9 with any: it has no squirt, for a reason that is given once."""
     friction = Vary(("tip.friction",), Levels((0.0, 0.6, 0.7)), "friction")
     of_squirt = ("squirt(0.3)", "pivot_length(0.3)", "end_mass_squirt(0.3)")
-    result = cf.study(study(friction, responses=(*of_squirt, "ball_speed(0.3)")))
-    assert [math.isnan(values[0]) for values in result.responses.values()] == [True, True, True, False]
-    assert str(result).count("miscue at") == 1
-    statistics = result.statistics  # type: ignore[attr-defined]
-    assert statistics is not None
-    assert [*result.failures] == [0]
-    numbers = {
-        response.name: int(statistics.numbers[statistics.best(k)]) for k, response in enumerate(result.study.responses)
-    }
-    assert {name: result.designs["friction"][i] for name, i in numbers.items()} == {
-        name: best.values["friction"] for name, best in result.best.items()
-    }
+    result = cf.study(study(friction, responses=(*of_squirt, "ball_speed(0.3)", "squirt(0.9)")))
+    text = " ".join(str(result).split())
+    assert f"1 of 3 designs lacks {', '.join(of_squirt)}, the first of them design 0 (friction 0): miscue at" in text
+    assert "3 of 3 designs lack squirt(0.9), the first of them design 1 (friction 0.6): miscue at b/R 0.9" in text
+    assert text.count("miscue at") == 2
+    record = result.to_dict()
+    assert (record["failed"], [*record["lacking"].values()]) == (0, [1, 1, 1, 0, 3])
+    assert len(result.charts()) == 2
+    whole = cf.study(study(replace(friction, range=Levels((0.6, 0.7))), responses=of_squirt))
+    for name in of_squirt:
+        assert result.best[name].values == whole.best[name].values
+        assert (result.best[name].failure or "").startswith("miscue at b/R 0.9")
+    for name, of_whole in whole.to_dict()["summary"]["sensitivities"].items():
+        assert record["summary"]["sensitivities"][name] == of_whole
+    speeds = result.responses["ball_speed(0.3)"]
+    assert result.best["ball_speed(0.3)"].responses["ball_speed(0.3)"] == speeds.max()
 
 
 @pytest.mark.parametrize(("name", "shown"), [("=cmd|' /C calc'!A0", "=cmd"), ("bore\nwidth", "bore"), (" @bore", "@")])
