@@ -1,12 +1,15 @@
 """Invalid input: calls and commands, and their one-line error messages, golden files for whole tables; no tests."""
 
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import pytest
 
 from tests.helpers.command_line import call
 from tests.test_golden_files import assert_golden
+
+PROGRAM = re.compile(r"`[^`]*?( [a-z-]+)? --help`")  # tests run as another program
 
 
 def assert_refused(
@@ -34,15 +37,21 @@ def raised(action: Callable[[], object]) -> str:
     return f"{error.typename}: {text}"
 
 
-def rejected(folder: Path, *arguments: object) -> str:
-    """The one line on stderr of a command that exits with status 2, prints nothing else and changes no file."""
+def rejected(folder: Path, *arguments: object, adds: Sequence[str] = ()) -> str:
+    """The one line on stderr of a command that exits with status 2, prints nothing else and changes no file.
+
+    adds: names of files that the command adds to the folder.
+    """
     before = file_contents(folder)
     code, out, err = call(*arguments)
     assert (code, out) == (2, ""), err
     assert err.startswith("cuefem: ")
     assert len(err.splitlines()) == 1
-    assert file_contents(folder) == before
-    return err.strip().replace(f"{folder}/", "")
+    after = file_contents(folder)
+    for name in adds:
+        del after[folder / name]
+    assert after == before
+    return PROGRAM.sub(r"`cuefem\1 --help`", err.strip().replace(f"{folder}/", ""))
 
 
 def assert_raises(action: Callable[[], object], message: str) -> None:
