@@ -18,7 +18,7 @@ from cuefem.measurements.estimate import STEP_TOLERANCE, Estimate, InformationGa
 from cuefem.measurements.measured_cue import MeasuredCue, OffsetZero, Residual, offset_zeros
 from cuefem.measurements.measured_folder import load_measured
 from cuefem.measurements.measurement_types import EndMass
-from cuefem.quantity.display_units import END_MASS, with_unit
+from cuefem.quantity.display_units import END_MASS, format_change, with_unit
 from cuefem.results.progress import Progress
 from cuefem.results.quantities import DASH
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
@@ -374,7 +374,7 @@ def _tabulate_fit(title: str, rows: Sequence[Record], optional: Sequence[str], n
     """A row for each measurement with its computed value. optional: names of `OPTIONAL_COLUMNS`."""
     columns: dict[str, ColumnEntry] = {"measurement": "{label}"}
     columns |= {heading: _with_error(*names) for heading, names in VALUES_WITH_ERRORS.items()}
-    columns["residual"] = "{residual:+.1f}"
+    columns["residual"] = lambda row: format_change(row["residual"], 1)
     columns |= {heading: entry for heading, entry in OPTIONAL_COLUMNS.items() if heading in optional}
     return tabulate(title, columns, rows, *notes, texts=(0, 5))
 
@@ -388,7 +388,10 @@ def _with_error(value: str, error: str) -> Callable[[Mapping[str, Any]], str]:
     return lambda row: with_unit(row[value], _display_key(row), error=row[error])
 
 
-OPTIONAL_COLUMNS = {"normalized residual": "{normalized_residual:+.1f}", "source": "{source}"}
+OPTIONAL_COLUMNS: Mapping[str, ColumnEntry] = {
+    "normalized residual": lambda row: format_change(row["normalized_residual"], 1),
+    "source": "{source}",
+}
 VALUES_WITH_ERRORS = {"measured": ("measured_value", "error"), "computed": ("computed_value", "spread")}
 
 

@@ -151,10 +151,11 @@ def change_with_unit(change: float, unit: str, decimals: int) -> str:
     return format_change(shown.factor * change, decimals if shown.decimals is None else shown.decimals, shown.name)
 
 
-def format_change(change: float, decimals: int, unit: str) -> str:
-    """A change with its sign and unit; nothing that rounds to zero has a sign."""
+def format_change(change: float, decimals: int, unit: str = "") -> str:
+    """A change with its sign and unit, if it has one; nothing that rounds to zero has a sign."""
     text = f"{change:+.{decimals}f}"
-    return f"{text if float(text) else text[1:]}\u00a0{unit}".replace("-", "−")
+    number = (text if float(text) else text[1:]).replace("-", "−")
+    return f"{number}\u00a0{unit}" if unit else number
 
 
 def significant(value: float, digits: int = 4) -> str:
