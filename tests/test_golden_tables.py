@@ -57,7 +57,7 @@ def results(folder: Path) -> list[object]:
     named = [
         Response.of(f"{name}(1)" if one.argument == "mode" else name) for name, one in computable_results().items()
     ]
-    return rows + [(one.label, one.size(-1.0)) for one in named]
+    return rows + [(one.label, one.size(-1.0), one.result.has_model_error) for one in named]
 
 
 def units(folder: Path) -> list[object]:
@@ -144,6 +144,8 @@ def limits(folder: Path) -> list[object]:
         partial(spectral_peaks, np.arange(2.0)[::-1, None], 5e3, 50.0, 500.0),
         partial(spectral_peaks, np.ones((9, 1)), 5e5, 50.0, 500.0),
         partial(parse, "offset", "0.30000" + "0" * 34, scene),
+        *(partial(Response.of, f"squirt({offset})") for offset in (-1.5, 1.5)),
+        *(partial(cf.Normal, *numbers) for numbers in ((700.0, np.inf), (np.inf, 1.0), (700.0, -1.0))),
     ]
     return [raised(call) for call in refused]
 

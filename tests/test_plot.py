@@ -38,6 +38,23 @@ def test_shaft_figure_has_drawn_dimensions() -> None:
     assert len(colours) == 4  # leather, ferrule, wood, and the bore
 
 
+def test_colour_of_a_segment_tells_the_kind_of_its_material() -> None:
+    """E, Pa, and density, kg/m3, of two materials of each kind: white cedar and maple, phenolic and ABS, ..."""
+    kinds = {
+        "wood": ((5.5e9, 340.0), (13e9, 700.0)),
+        "plastic": ((7e9, 1350.0), (2.3e9, 1050.0)),
+        "metal": ((69e9, 2700.0), (200e9, 7850.0)),
+        "composite": ((135e9, 1600.0), (40e9, 1900.0)),
+        "leather": ((2e8, 900.0), (6e7, 1000.0)),
+        "foam": ((5e7, 60.0), (2e8, 250.0)),
+    }
+    colours = {}
+    for kind, pair in kinds.items():
+        cue = cf.Cue(tuple(cf.Segment(0.4, 0.012, 0.012, cf.Material(E, E / 3, rho)) for E, rho in pair), 0.4)
+        (colours[kind],) = {tuple(item.get_facecolor()[0]) for item in cf.plot.shaft(cue).collections}
+    assert len({*colours.values()}) == len(kinds)
+
+
 def test_modes_figure_lists_frequencies_of_cue() -> None:
     axes = cf.plot.modes(HOLLOW, 3)
     named = [text.get_text() for text in axes.get_legend().get_texts()]

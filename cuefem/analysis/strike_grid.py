@@ -29,7 +29,7 @@ WITHIN = 0.99  # of strokes
 COARSE = 8  # cells in each direction before refinement
 FINEST = 2e-3  # width of a cell that is not divided again, as a part of the range
 MAX_ROUNDS = 24  # of refinement
-SMALL_RATIOS = (0.01, 0.1, 0.1)  # of `FIELDS`: errors of smaller values are relative to these
+SMALL = 0.01  # value of a field: errors of smaller ones are relative to it
 STROKES = 400  # random strokes that measure the error
 DIGITS = 6  # of the table's numbers
 FIELDS = {
@@ -234,8 +234,8 @@ def _is_wrong(low: Array, middle: Array, high: Array) -> bool:
 
 
 def _relative(value: Array, true: Array) -> Array:
-    """Relative errors; of values near zero relative to `SMALL_RATIOS`."""
-    return np.abs(value - true) / np.maximum(np.abs(true), SMALL_RATIOS)
+    """Relative errors; of values near zero relative to `SMALL`."""
+    return np.abs(value - true) / np.maximum(np.abs(true), SMALL)
 
 
 def within_tolerance(errors: Array) -> float:

@@ -21,7 +21,6 @@ from cuefem.scene import Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, usual_scene
 
 SLIDE_PAUSE = 1.5  # s: moves of one slider that follow each other within it are one step
-MAX_STEPS = 60
 MAX_SEGMENTS = 300  # the natural frequencies and the stiffness of as many take 15 s and 0.6 GB
 MAX_NAME = 80
 FAILURES = (ValueError, RuntimeError, ArithmeticError, MemoryError, OSError, KernelError)
@@ -120,7 +119,7 @@ class UndoHistory:
             self.steps = [old._replace(other=step.other) for old in self.steps]
             return
         kept = self.steps[: self.at + (not self.continues_slide(label, when))]
-        self.steps = [*kept, step][-MAX_STEPS:]
+        self.steps = [*kept, step]
         self.at, self.label, self.when = len(self.steps) - 1, label, when
 
     def move(self, steps: int) -> bool:

@@ -266,6 +266,7 @@ STEPS: dict[str, Step] = {
     "edit the offset": edit("offset = 1.3", "offset = 0.25"),
     "invalid change": lambda page: page.attempt(page.session.set_parameters, {"tip diameter": -0.01}),
     "change": lambda page: page.attempt(page.session.set_parameters, {"tip diameter": 0.012}),
+    "other wood": choose("shaft_material", "ash"),
 }
 
 

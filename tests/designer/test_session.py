@@ -51,6 +51,12 @@ def test_plan_ends_at_a_failed_strike() -> None:
     assert stages == [["solved_strike", "solved_strike"]]
 
 
+def test_undo_and_redo_end_at_the_first_and_the_last_step() -> None:
+    session = Session(FIRST)
+    session.set_knob("offset", 0.4)
+    assert [session.undo_redo(steps) for steps in (1, -1, -1, 1)] == [False, True, False, True]
+
+
 def test_miscue_has_numbers_and_no_verdict() -> None:
     session = Session(FIRST)
     session.set_knob("offset", 0.66)

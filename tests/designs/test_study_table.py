@@ -42,10 +42,12 @@ def test_shares_of_grid_equal_exact_variances() -> None:
 
 
 def test_shares_of_sample_and_of_choices_equal_exact_variances() -> None:
-    """y = x + z/2 has shares of 80 and 20 %; a column without effect has 0; choices are groups."""
+    """y = x + z/2 has shares of 80 and 20 %, a column without effect 0; waves are resolved; choices are groups."""
     x, z, w = np.random.default_rng(3).random((3, 2000))
     result = table({"x": x, "z": z, "w": w}, np.stack([x + z / 2, w], axis=1))
     assert result.shares[:, 0] == pytest.approx([0.8, 0.2, 0.0], abs=0.045)
+    waves = table({"x": x}, np.stack([np.cos(4 * np.pi * x), w], axis=1))
+    assert waves.shares[0, 0] == pytest.approx(1.0, abs=0.1)
     wood = np.array(["maple", "ash"] * 6)
     named = table({"wood": wood}, np.stack([np.where(wood == "ash", 1.0, 2.0), np.arange(12.0)], axis=1))
     assert (named.shares[0, 0], named.trends) == (pytest.approx(1.0, rel=1e-12), [["", ""]])

@@ -200,6 +200,12 @@ def test_profile_repeated_position_steps_core_and_material(tmp_path: Path) -> No
     ]
 
 
+def test_bore_tapers_to_the_last_row_whose_material_has_no_interval(tmp_path: Path) -> None:
+    text = "x [mm],diameter [mm],bore [mm],material\n0,12.4,8,ash\n300,13,7,ash\n736,21,6,hard maple\n"
+    segments = cf.load(write_profile(tmp_path, text)).segments
+    assert [(1e3 * s.tip_bore, 1e3 * s.butt_bore) for s in segments] == [(8, 7), (7, 6)]
+
+
 @pytest.mark.parametrize("word", ["Ferrule", "Zwinge", "Hülse", "virola", "virole", "先角", "선골"])
 def test_profile_ferrule_heading_in_another_language_is_read(word: str, tmp_path: Path) -> None:
     text = f"x [mm],diameter [mm],{word}\n0,12.75,25 mm melamine\n330,13.2,\n736.6,21.5,\n"

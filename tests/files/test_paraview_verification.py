@@ -33,6 +33,7 @@ def test_shaft_surface_is_closed_and_oriented_outwards() -> None:
     _, volume = area_and_volume(surface.points, dict(surface.cells))
     frusta = [(0.025, 0.0125, 0.0128), (0.7, 0.012, 0.021)]
     prism = RING_POINTS / (2 * np.pi) * np.sin(2 * np.pi / RING_POINTS)  # area of the polygon over that of the circle
+    assert prism == pytest.approx(1, abs=0.02)
     expected = prism * np.pi / 12 * sum(length * (d**2 + d * D + D**2) for length, d, D in frusta)
     assert volume == pytest.approx(expected, rel=1e-12)
     edges = np.concatenate([np.stack([c, np.roll(c, -1, axis=1)], axis=-1).reshape(-1, 2) for _, c in surface.cells])

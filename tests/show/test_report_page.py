@@ -123,6 +123,13 @@ def test_squirt_curves_end_at_the_miscue_limit() -> None:
             assert name == "plain maple" or box(outline)[1] <= limit + 0.01, (each.title, name)
 
 
+def test_pivot_chart_ends_about_a_cue_length_from_the_tip() -> None:
+    """A light end mass has its pivot point 1.05 m from the tip, a lighter one beyond the cue."""
+    cues = [cf.LumpedCue(0.54, end_mass) for end_mass in (0.002, 0.0005)]
+    far, beyond = (cf.squirt_curve(replace(LUMPED, cue=cue), (0.1, 0.3)).charts()[1].y_scale.high for cue in cues)
+    assert 1050 < far < beyond < 1700
+
+
 def test_squirt_curve_head_on_has_no_pivot_length() -> None:
     shown = cf.squirt_curve(LUMPED, (-0.3, 0.0, 0.3))
     left, head_on, right = shown.models["coupled, this cue"]["pivot_length"]
