@@ -70,7 +70,8 @@ def test_squirt_figure_equals_strikes_and_ends_at_miscue() -> None:
     assert x.tolist() == [0.0, 0.3, 0.8]
     assert y[:2].tolist() == [0.0, pytest.approx(np.degrees(cf.strike(SCENE, AT).squirt), rel=1e-12)]
     assert np.isnan(y[2])
-    assert line(axes, 1)[0].tolist() == [0.8]
+    assert np.transpose(line(axes, 1)).tolist() == [[0.8, 0.0]]
+    assert not axes.lines[1].get_clip_on()  # the cross stands whole on the axis
 
 
 def test_forces_figure_integrates_to_impulse() -> None:
