@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
@@ -18,7 +17,7 @@ from cuefem.measurements.calibration import CalibratedSquirt, Calibration
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measured_folder import load_measured
 from cuefem.parameters.parts import main_material, shaft_word
-from cuefem.quantity.display_units import off_line, with_unit
+from cuefem.quantity.display_units import cached_by_units, off_line, with_unit
 from cuefem.results.computable_results import computable_results
 from cuefem.results.differences import difference_text, relative_differences
 from cuefem.results.progress import Progress
@@ -415,7 +414,7 @@ class _CueResults(NamedTuple):
     miscues: tuple[str, ...]
 
 
-@lru_cache(maxsize=16)  # the reference usually remains while the other cue changes
+@cached_by_units(16)  # the reference usually remains while the other cue changes
 def _cue_results(scene: Scene, names: tuple[str, ...]) -> _CueResults:
     design = SolvedDesign.of(scene)
     numbers = _numbers(design, names)

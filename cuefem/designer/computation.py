@@ -24,7 +24,7 @@ from cuefem.designs.sensitivity import sensitivity
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.measurements.calibration import Calibration
 from cuefem.parameters.parts import main_material
-from cuefem.quantity.display_units import displayed_system
+from cuefem.quantity.display_units import cached_by_units
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.computable_results import listed_results
 from cuefem.results.records import Record
@@ -122,26 +122,16 @@ def end_mass_distribution(scene: Scene) -> tuple[Array, Array]:
     return effect.x[near], (effect.rhoA + effect.axial_mass)[near]
 
 
+@cached_by_units(CACHED_DESIGNS)
 def changes(scene: Scene, calibration: Calibration | None = None) -> DesignChanges:
     """The design changes a maker can make, with their results."""
-    return _changes(scene, calibration, displayed_system())
-
-
-@lru_cache(CACHED_DESIGNS)
-def _changes(scene: Scene, calibration: Calibration | None, system: str) -> DesignChanges:
-    """The changes, with texts in the units of a system."""
     strike = solved_strike(scene)
     return design_changes(SolvedDesign(strike.solved, strike.outcome), calibration=calibration, progress=_counted)
 
 
+@cached_by_units(CACHED_DESIGNS)
 def answers(scene: Scene, calibration: Calibration | None = None) -> CueReport:
     """Every section of the report."""
-    return _answers(scene, calibration, displayed_system())
-
-
-@lru_cache(CACHED_DESIGNS)
-def _answers(scene: Scene, calibration: Calibration | None, system: str) -> CueReport:
-    """The sections, with texts in the units of a system."""
     return report(scene, calibration=calibration, details=True)
 
 

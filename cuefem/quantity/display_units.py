@@ -6,15 +6,19 @@ A process displays metric units or those of the United States; files (TOML, CSV,
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import lru_cache, wraps
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cuefem.quantity.units import conversion_factor
+
+P = ParamSpec("P")
+R = TypeVar("R")
 
 
 class DisplayUnit(NamedTuple):
@@ -71,6 +75,24 @@ def displayed_in(system: str) -> Iterator[None]:
         yield
     finally:
         display(before)
+
+
+def cached_by_units(maxsize: int) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """A cache of calls whose results have texts with units: a call in other display units is computed anew."""
+
+    def decorated(call: Callable[P, R]) -> Callable[P, R]:
+        @lru_cache(maxsize)
+        def cached(system: str, *arguments: Any, **named: Any) -> R:
+            return call(*arguments, **named)
+
+        @wraps(call)
+        def as_displayed(*arguments: P.args, **named: P.kwargs) -> R:
+            return cached(_displayed, *arguments, **named)  # type: ignore[arg-type]  # of no known type
+
+        as_displayed.cache_clear = cached.cache_clear  # type: ignore[attr-defined]
+        return as_displayed
+
+    return decorated
 
 
 def display_unit(unit: str) -> DisplayUnit:
