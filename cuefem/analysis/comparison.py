@@ -147,19 +147,20 @@ class Comparison(Analysis):
     ) -> str:
         """The page with the first screen of the first cue; a plain page if that has no verdict."""
         # templates take 0.1 s to load
-        from cuefem.analysis.first_screen import HeadlineCue, screen_markup
+        from cuefem.analysis.first_screen import HeadlineCue, cue_names, screen_markup
         from cuefem.analysis.report_page import facts, page, section_of
 
         title = f"{self.heading()}: compared"
         if self.reference in self.problems:
             return super().to_html(title, assumptions, warnings, made)
-        own, *others = [HeadlineCue(name, scene, self.cues[name]) for name, scene in self.scenes.items()]
         answer = replace(verdict(self.scene), calibrated=self.calibrated.get(self.reference))
+        first, *others = [HeadlineCue(name, scene, self.cues[name]) for name, scene in self.scenes.items()]
+        own = replace(first, verdict=answer)
         facts_of = {name: facts(scene) for name, scene in self.scenes.items()}
         shared = [fact for fact in facts_of[own.name] if all(fact in each for each in facts_of.values())]
         apart = [f"{name}: {fact}" for name, each in facts_of.items() for fact in each if fact not in shared]
         return page(
-            [*self.scenes, *answer.references],
+            cue_names(own, others),
             kind="compare",
             name=self.heading(),
             title=title,
@@ -171,7 +172,7 @@ class Comparison(Analysis):
                 f"{own.name}, {answer.uncertainty_line()}",
                 *(f"{name}: {each.basis()}" for name, each in self.calibrated.items()),
             ],
-            screen=screen_markup(replace(own, verdict=answer), others, self._headlines(), with_values=True),
+            screen=screen_markup(own, others, self._headlines(), with_values=True),
             sections=[section_of(self.table(), self.curves())],
         )
 

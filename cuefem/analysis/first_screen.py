@@ -79,7 +79,7 @@ def screen_markup(
     assert own.verdict is not None
     designs = {each.name: each.scene for each in (own, *others)}
     return {
-        "headline": headline_markup(own, lines, whose=own.name if others else ""),
+        "headline": headline_markup(own, lines, with_name=bool(others)),
         "scale": scale_markup(own, others),
         "tiles": tiles_markup(own, others, with_values=with_values),
         "drawings": drawings_markup(designs) if own.scene.cue.segments else "",
@@ -87,10 +87,15 @@ def screen_markup(
     }
 
 
-def headline_markup(own: HeadlineCue, lines: Sequence[Line] = (), warning: str = "", whose: str = "") -> str:
+def cue_names(own: HeadlineCue, others: Sequence[HeadlineCue]) -> list[str]:
+    """The names of the cues on a screen, those of the reference cues too."""
+    return [*(each.name for each in (own, *others)), *(own.verdict.references if own.verdict else ())]
+
+
+def headline_markup(own: HeadlineCue, lines: Sequence[Line] = (), warning: str = "", *, with_name: bool = False) -> str:
     """Squirt with its uncertainty, and lines below it.
 
-    warning: about the contact state. whose: the name of the design, where others are shown.
+    warning: about the contact state. with_name: whether it says of which design, as beside others.
     """
     verdict = own.verdict
     squirt, where = own.numbers["squirt"], f"{verdict.offset if verdict else own.scene.stroke.offset:.2f}"
@@ -99,7 +104,7 @@ def headline_markup(own: HeadlineCue, lines: Sequence[Line] = (), warning: str =
         where += " (default; this stroke is head-on)" if verdict.head_on else ""
     else:
         text, error = DASH if squirt is None else with_unit(abs(squirt), "rad", decimals=2), ""
-    return _macro("headline", whose, squirt, text, error, where, lines, warning)
+    return _macro("headline", own.name if with_name else "", squirt, text, error, where, lines, warning)
 
 
 def comparison_lines(
@@ -135,10 +140,12 @@ def tiles(own: HeadlineCue, others: Sequence[HeadlineCue] = (), *, with_values: 
             beside = _value(other, key)
             if value is None or beside is None:
                 continue
-            change = _difference(value, beside, unit, decimals)
             if with_values:
-                change = f"{with_unit(beside, unit, decimals=decimals)} ({_difference(beside, value, unit, decimals)})"
-            more.append(OtherValue(other.name, change, style))
+                from_own = _difference(beside, value, unit, decimals)
+                shown = f"{with_unit(beside, unit, decimals=decimals)} ({from_own})"
+            else:
+                shown = _difference(value, beside, unit, decimals)
+            more.append(OtherValue(other.name, shown, style))
         made.append(Tile(key, label, hint, text, value, more))
     return made
 

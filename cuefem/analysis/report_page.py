@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from cuefem.analysis import report_sections
-from cuefem.analysis.first_screen import HeadlineCue, comparison_lines, screen_markup
+from cuefem.analysis.first_screen import HeadlineCue, comparison_lines, cue_names, screen_markup
 from cuefem.analysis.squirt_curve import FINE_OFFSETS
 from cuefem.analysis.strike_models import regime_warning
 from cuefem.files.defaults_report import Assumption
@@ -65,12 +65,12 @@ def page_of(
         }
         for key, part in parts.items()
     ]
-    other, difference = None, None
+    others = [] if beside is None else [beside.cue]
     if beside is not None:
-        other, difference = beside.cue, beside.difference
         sections.insert(0, _beside(scene, answers, name, beside))
+    lines = comparison_lines(own) if beside is None else comparison_lines(own, beside.cue, beside.difference)
     return page(
-        [name, *([other.name] if other else []), *verdict.references],
+        cue_names(own, others),
         kind="report",
         name=name,
         title=f"{name}: squirt {format_value('squirt', verdict.squirt)}",
@@ -83,7 +83,7 @@ def page_of(
         ],
         facts=facts(scene),
         uncertainty=[verdict.uncertainty_line(), *([calibrated.basis()] if calibrated else [])],
-        screen=screen_markup(own, [*filter(None, [other])], comparison_lines(own, other, difference)),
+        screen=screen_markup(own, others, lines),
         sections=sections,
     )
 

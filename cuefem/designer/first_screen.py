@@ -8,6 +8,7 @@ from nicegui import ui
 
 from cuefem.analysis.first_screen import (
     comparison_lines,
+    cue_names,
     drawings_markup,
     headline_markup,
     parts_line,
@@ -99,9 +100,9 @@ class FirstScreen:
         if "numbers" in results.own:
             self.card.classes(remove="stale")
         others = [*filter(None, [other])]
-        names = [each.name for each in (own, *others)] + [*(own.verdict.references if own.verdict else ())]
+        names = cue_names(own, others)
         lines = comparison_lines(own, other, results.difference)
-        headline = headline_markup(own, lines, self.session.warning(), whose=own.name if others else "")
+        headline = headline_markup(own, lines, self.session.warning(), with_name=bool(others))
         self.headline.set_content(with_term_buttons(headline, names))
         self.scale.set_content(scale_markup(own, others))
         self.tiles.set_content(with_term_buttons(tiles_markup(own, others), names))
