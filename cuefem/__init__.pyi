@@ -16,13 +16,16 @@ from .contact.tip_identification import rebound as rebound
 from .cue.materials import material as material
 from .cue.geometry import Cue as Cue, LumpedCue as LumpedCue, Material as Material, Segment as Segment
 from .analysis.comparison import compare as compare
+from .analysis.contact_history import contact_history as contact_history
 from .analysis.convergence_study import convergence_study as convergence_study
+from .analysis.cue_numbers import cue_numbers as cue_numbers
 from .analysis.design_changes import design_changes as design_changes
 from .analysis.effect_sensitivity import effect_sensitivity as effect_sensitivity
 from .analysis.end_mass import end_masses as end_masses
 from .analysis.measured import estimate as estimate
 from .analysis.model_error import model_error as model_error
 from .analysis.natural_frequencies import natural_frequencies as natural_frequencies
+from .analysis.page_notes import accuracy as accuracy, definitions as definitions, segments as segments
 from .analysis.parts import parts as parts
 from .analysis.cue_report import report as report
 from .analysis.simulator_export import pooltool_export as pooltool_export

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import cuefem
+from cuefem.analysis import QUESTIONS
 from tests.conftest import SOLVED_AT_COLLECTION
 from tests.helpers.sources import PACKAGE, statements, trees
 
@@ -204,6 +205,12 @@ def test_room_of_every_public_name_has_title_on_reference_page() -> None:
     values = {name: getattr(cuefem, name) for name in cuefem.__all__}
     rooms = {name: getattr(value, "__module__", value.__name__).split(".")[1] for name, value in values.items()}
     assert {name: room for name, room in rooms.items() if not any(room in listed for listed in titles.values())} == {}
+
+
+def test_every_question_is_a_listed_name_with_an_example() -> None:
+    functions = {question.call: question.function() for question in QUESTIONS.values()}
+    assert {*functions} - {*cuefem.__all__} == set()
+    assert [name for name, function in functions.items() if ">>> " not in (function.__doc__ or "")] == []
 
 
 HEAVY = ["skfem", "scipy", "pint", "pydantic", "matplotlib", "meshio", "tomlkit", "rich", "click"]

@@ -60,6 +60,31 @@ class ContactHistory(Analysis):
 
 
 def contact_history(scene: Scene | SolvedDesign) -> ContactHistory:
-    """The contact over time."""
+    """Force and velocity of the tip over time, the events of the contact, and where the energy went.
+
+    Parameters
+    ----------
+    scene : Scene
+        A stroke.
+
+    Returns
+    -------
+    ContactHistory
+        Energies in J.
+
+    Raises
+    ------
+    TypeError
+        If it is not a Scene.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43))
+    >>> energy = cf.contact_history(scene).energy
+    >>> round(energy["ball translation"] / energy["initial"], 3)
+    0.417
+    """
     design = SolvedDesign.of(scene)
     return ContactHistory(design.scene, design.strike().energy, design.strike())

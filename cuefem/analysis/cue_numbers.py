@@ -44,7 +44,32 @@ class CueNumbers(Analysis):
 
 
 def cue_numbers(scene: Scene | SolvedDesign) -> CueNumbers:
-    """All listed results, and the end mass that has the squirt."""
+    """All listed results, and the end mass that has the squirt.
+
+    Parameters
+    ----------
+    scene : Scene
+        A stroke.
+
+    Returns
+    -------
+    CueNumbers
+        In SI units by name; None where the scene has no such result.
+
+    Raises
+    ------
+    TypeError
+        If it is not a Scene.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43))
+    >>> found = cf.cue_numbers(scene)
+    >>> f"{1e3 * found.numbers['shaft_mass']:.1f} g, end mass {1e3 * found.squirt_end_mass:.2f} g"
+    '111.8 g, end mass 6.56 g'
+    """
     design = SolvedDesign.of(scene)
     try:
         mass = design.end_mass("squirt", None)

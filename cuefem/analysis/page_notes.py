@@ -40,8 +40,35 @@ class Segments(Analysis):
 
 
 def segments(scene: Scene | SolvedDesign) -> Segments:
-    """The segments of the shaft."""
-    return Segments(SolvedDesign.of(scene).scene)
+    """The segments of the shaft as a table, from tip to butt.
+
+    Parameters
+    ----------
+    scene : Scene
+        A scene with a cue of segments.
+
+    Returns
+    -------
+    Segments
+
+    Raises
+    ------
+    TypeError
+        If it is not a Scene.
+    ValueError
+        If its cue is lumped, which has no segments.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43))
+    >>> cf.segments(scene).tables()[0].rows
+    (('0.0', '700.0', '12.75 – 21.00', '–', '111.8 g', 'E 12.6 GPa'),)
+    """
+    scene = SolvedDesign.of(scene).scene
+    _ = scene.shaft  # ValueError for a lumped cue
+    return Segments(scene)
 
 
 @dataclass(frozen=True)
@@ -66,7 +93,31 @@ class EndMassDefinitions(Analysis):
 
 
 def definitions(scene: Scene | SolvedDesign) -> EndMassDefinitions:
-    """The definitions of the end mass, with the value of Alciatore's for the stroke."""
+    """The definitions of the end mass, with the value of Alciatore's for the stroke.
+
+    Parameters
+    ----------
+    scene : Scene
+        A stroke.
+
+    Returns
+    -------
+    EndMassDefinitions
+        With the end mass by Alciatore's formula, kg; None where no end mass gives the squirt.
+
+    Raises
+    ------
+    TypeError
+        If it is not a Scene.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43))
+    >>> round(cf.definitions(scene).alciatore_end_mass, 5)
+    0.00846
+    """
     design = SolvedDesign.of(scene)
     ball, offset = design.scene.ball, float(design.scene.stroke.offset)
     try:
@@ -97,7 +148,7 @@ COMPARING = (
 class ModelAccuracy(Analysis):
     """How far the model can be trusted; the size of its error is in `cuefem.results.uncertainty`.
 
-    error: estimated relative numerical error of the stroke; None where it is exact.
+    error: estimated relative numerical error of the stroke; None without an estimate.
     """
 
     error: float | None
@@ -111,6 +162,30 @@ class ModelAccuracy(Analysis):
 
 
 def accuracy(scene: Scene | SolvedDesign) -> ModelAccuracy:
-    """How far the model can be trusted."""
+    """How far the model can be trusted.
+
+    Parameters
+    ----------
+    scene : Scene
+        A stroke.
+
+    Returns
+    -------
+    ModelAccuracy
+        With the estimated relative numerical error; None without an estimate.
+
+    Raises
+    ------
+    TypeError
+        If it is not a Scene.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43))
+    >>> [text.partition(" ")[0] for text in cf.accuracy(scene).tables()]
+    ['The', 'A']
+    """
     design = SolvedDesign.of(scene)
     return ModelAccuracy(design.scene, design.strike().error)

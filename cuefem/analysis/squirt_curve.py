@@ -140,6 +140,15 @@ def squirt_curve(scene: Scene | SolvedDesign, offsets: Sequence[float] = OFFSETS
     ------
     ValueError
         If there is no offset, or one is not between -1 and 1.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43))
+    >>> curve = cf.squirt_curve(scene, (0.1, 0.3))
+    >>> np.degrees(curve.models["coupled, this cue"]["squirt"]).round(2).tolist()
+    [0.59, 1.75]
     """
     if not len(offsets):
         raise ValueError("squirt_curve offsets must be at least one b/R between -1 and 1; got none")

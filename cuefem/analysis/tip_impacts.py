@@ -71,6 +71,14 @@ def tip_impacts(scene: Scene | SolvedDesign) -> TipImpacts:
     Returns
     -------
     TipImpacts
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43))
+    >>> [round(1e3 * impact["contact_time"], 2) for impact in cf.tip_impacts(scene).impacts]  # ms
+    [1.22, 1.04, 0.87, 0.79, 0.69, 0.6]
     """
     scene = SolvedDesign.of(scene).scene
     leather = scene.leather_tip
