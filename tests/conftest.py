@@ -57,7 +57,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Properties and long verifications take limits and scale models, whose warnings are not of interest there.
 
-    Of the other tests those that take them say so by the same mark.
+    Any other test that takes them has the same mark.
     """
     for item in items:
         if any(item.get_closest_marker(name) for name in ("hypothesis", "heavy", "nightly")):

@@ -76,7 +76,6 @@ GOLDEN_TESTS = ("tests/test_golden_files.py", "tests/test_golden_commands.py")
 # Keywords: what a dataclass prints of itself, the size of a cache, the assertion of `zip` that lengths are equal, and
 # what one test asserts of all dataclasses at once: such draws would say nothing of numbers.
 NO_RESULT = ("repr", "maxsize", "strict", "frozen", "eq")
-FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 SWAPS: dict[type, type] = {
     **{ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult},
     **{ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq},
@@ -241,7 +240,7 @@ def library(tree: Path, file: str, text: bytes) -> bytes:
 
 
 def drawn(seed: int, counts: dict[str, int], tree: Path, only: str) -> list[Mutant]:
-    """A random sample of each group, without those listed as equivalent and those that `is_other` excludes.
+    """A random sample of each group: mutants that are not listed as equivalent and that `is_other` tells apart.
 
     only: a file and line, all mutants of which are taken instead.
     """

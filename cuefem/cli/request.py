@@ -86,7 +86,7 @@ class Request:
 
     @contextmanager
     def errors(self) -> Iterator[None]:
-        """A context in which errors of the computation name the file, and the option given or those that help."""
+        """A context that adds to an error of the computation the file, and the option that caused it or can mend it."""
         with errors_name_file(self.file, "--tip-height, --leather, --speed" if "leather" in self.offered else ""):
             try:
                 yield

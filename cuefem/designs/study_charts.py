@@ -46,7 +46,7 @@ def _trade_off(sweep: SweepStatistics, first: int, second: int) -> Chart:
 
 
 def _shown(rows: NDArray[np.int_]) -> tuple[NDArray[np.int_], str]:
-    """Of the rows of designs those that a chart draws, and their name in the legend."""
+    """The rows of designs that a chart draws, and their name in the legend."""
     count = len(rows)
     if count <= MAX_POINTS:
         return rows, "designs"

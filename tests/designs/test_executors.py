@@ -93,7 +93,7 @@ class Deadly(Executor):
 def test_designs_that_end_their_workers_fail_alone_unless_they_are_many(
     monkeypatch: pytest.MonkeyPatch, workers: int | None, ended: str, problem: str
 ) -> None:
-    """Those that share a block with them do not; 16 in a row are no fault of theirs.
+    """Designs of the same block do not fail; 16 failures in a row are not blamed on the designs.
 
     A design ends six workers where a block of 16 is halved to it, and three where it has a block of its own.
     """

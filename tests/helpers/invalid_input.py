@@ -43,15 +43,21 @@ def rejected(folder: Path, *arguments: object, adds: Sequence[str] = ()) -> str:
     adds: names of files that the command adds to the folder.
     """
     before = file_contents(folder)
-    code, out, err = call(*arguments)
-    assert (code, out) == (2, ""), err
-    assert err.startswith("cuefem: ")
-    assert len(err.splitlines()) == 1
+    line = error_line(*arguments)
     after = file_contents(folder)
     for name in adds:
         del after[folder / name]
     assert after == before
-    return PROGRAM.sub(r"`cuefem\1 --help`", err.strip().replace(f"{folder}/", ""))
+    return PROGRAM.sub(r"`cuefem\1 --help`", line.strip().replace(f"{folder}/", ""))
+
+
+def error_line(*arguments: object) -> str:
+    """The one line on stderr of a command that exits with status 2 and prints nothing else."""
+    code, out, err = call(*arguments)
+    assert (code, out) == (2, ""), err
+    assert err.startswith("cuefem: ")
+    assert len(err.splitlines()) == 1
+    return err
 
 
 def assert_raises(action: Callable[[], object], message: str) -> None:
@@ -66,11 +72,7 @@ def assert_raises(action: Callable[[], object], message: str) -> None:
 
 def assert_rejects(message: str, *arguments: object) -> None:
     """The command exits with status 2, an empty stdout and one line on stderr that contains ``message``."""
-    code, out, err = call(*arguments)
-    assert (code, out) == (2, ""), err
-    assert err.startswith("cuefem: ")
-    assert len(err.splitlines()) == 1
-    assert message in err
+    assert message in error_line(*arguments)
 
 
 def assert_unchanged(folder: Path, message: str, *arguments: object) -> None:
