@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from cuefem.show.charts import Chart
 
 FINE_OFFSETS = tuple(i / 40 for i in range(1, 25))  # b/R of the curves of a page; a table has each 0.1
-MAX_ROWS = 12  # a table of more offsets has only each 0.1
+MAX_ROWS = 20  # a table of more offsets has only each 0.1
 OWN = "coupled, this cue"
 # CSS classes of the models' curves.
 STYLES = {
@@ -79,15 +80,25 @@ class SquirtCurve(Analysis):
         """Squirt, natural pivot length and contact state of the coupled strike, a row for each offset."""
         own = self.models[OWN]
         rows = []
-        for i, (offset, regime) in enumerate(zip(self.offsets, own["regime"], strict=True)):
-            if len(self.offsets) > MAX_ROWS and round(10 * offset) != 10 * offset:
-                continue
+        for i in self._rows():
+            offset, regime = self.offsets[i], own["regime"][i]
             values = (None if regime == "miscue" else own[name][i] for name in ("squirt", "pivot_length"))
             texts = map(format_value, ("squirt", "pivot_length"), values)
             rows.append((f"{offset:g}", *texts, regime))
         head = ("b/R", "squirt", "natural pivot length", "contact")
-        notes = (assumptions(scene_record(self.scene)), PIVOT_NOTE)
+        left_out = f"{len(rows)} of {len(self.offsets)} offsets, each 0.1."
+        notes = (
+            assumptions(scene_record(self.scene)),
+            PIVOT_NOTE,
+            *([left_out] if len(rows) < len(self.offsets) else []),
+        )
         return Table("Squirt and tip offset", head, tuple(rows), notes, texts=(3,))
+
+    def _rows(self) -> list[int]:
+        """Indices of the offsets in the table: all; of more than `MAX_ROWS` those at each 0.1, if there are any."""
+        every = list(range(len(self.offsets)))
+        tenths = [i for i in every if math.isclose(10 * self.offsets[i], round(10 * self.offsets[i]), abs_tol=1e-9)]
+        return tenths if tenths and len(every) > MAX_ROWS else every
 
     def charts(self) -> list[Chart]:
         """Squirt and natural pivot length against the offset, of this cue and of the first reference cue."""
