@@ -18,6 +18,7 @@ from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measured_folder import load_measured
 from cuefem.parameters.parts import main_material, shaft_word
 from cuefem.quantity.display_units import cached_by_units, off_line, with_unit
+from cuefem.quantity.fields import brief_value
 from cuefem.results.computable_results import computable_results
 from cuefem.results.differences import difference_text, relative_differences
 from cuefem.results.progress import Progress
@@ -26,7 +27,7 @@ from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import SolvedDesign, coupled_curve, off_centre
 from cuefem.results.uncertainty import changes_by_input, miscue_note
 from cuefem.results.verdict import verdict_problem
-from cuefem.scene import Scene
+from cuefem.scene import Scene, check_scene
 from cuefem.scene.solved_scene import SolvedScene
 from cuefem.show.analysis import DESIGN_STYLES, Analysis
 from cuefem.show.scene_summary import effect_text, listed, scene_record
@@ -338,6 +339,9 @@ def compare(
         if calibration is None:
             return compared
         return replace(compared, calibrated=_calibrated(compared.scenes, calibration))
+    if not isinstance(cues, MeasuredCue | str | Path):
+        takes = f"2 to {MAX_CUES} scenes by name, {{'a': scene, 'b': other}}, or the folder of a measured cue"
+        raise TypeError(f"compare cues must be {takes}; got {brief_value(cues)}")
     measured = cues if isinstance(cues, MeasuredCue) else load_measured(Path(cues))[0]
     return compare_measured(measured, progress=progress or iter)
 
@@ -369,6 +373,8 @@ def compare_cues(
     """
     if not 2 <= len(scenes) <= MAX_CUES:
         raise ValueError(f"compare takes 2 to {MAX_CUES} cues; got {len(scenes)}")
+    for name, scene in scenes.items():
+        check_scene(f"compare cues[{name!r}]", scene)
     struck = with_same_stroke(scenes)
     woods = {main_material(scene.shaft).E for scene in struck.values()}
     if same_shaft and len(woods) > 1:

@@ -237,14 +237,14 @@ def check_kind(name: str, value: Any, kind: type | tuple[type, ...]) -> None:
     """TypeError unless ``value`` is an instance of ``kind``; the message names a field of it that is one."""
     if not isinstance(value, kind):
         expected = " or ".join(k.__name__ for k in (kind if isinstance(kind, tuple) else (kind,)))
-        raise TypeError(f"{name} must be {_a(expected)}; got {_brief_value(value, kind)}")
+        raise TypeError(f"{name} must be {_a(expected)}; got {brief_value(value, kind)}")
 
 
 def _a(noun: str) -> str:
     return f"{'an' if noun[0] in 'AEIOUaeiou' else 'a'} {noun}"
 
 
-def _brief_value(value: Any, kind: type | tuple[type, ...]) -> str:
+def brief_value(value: Any, kind: type | tuple[type, ...] = ()) -> str:
     """A value for a message: numbers and texts by value, others by type; of a dataclass also the field to pass."""
     if not dataclasses.is_dataclass(value) or isinstance(value, type):
         return quote(value)

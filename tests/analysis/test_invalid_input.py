@@ -14,6 +14,8 @@ SMOOTH = replace(SCENE, tip=cf.Tip(0.75, 0.0, 1e-3))
 KIM = Path(__file__).parents[2] / "studies" / "scenes" / "kim.toml"
 CALLS: dict[str, Callable[[], object]] = {
     "one cue": lambda: cf.compare({"alone": SCENE}),
+    "a Cue to compare": lambda: cf.compare(cf.load("plain maple")),
+    "a Cue among scenes": lambda: cf.compare({"mine": cf.load("plain maple"), "other": SCENE}),
     "no modes": lambda: cf.convergence_study(SCENE, max_modes=0),
     "accuracy of 0": lambda: cf.effect_sensitivity(SCENE, 0.0),
     "accuracy without a number": lambda: cf.effect_sensitivity(SCENE, float("nan")),
