@@ -11,7 +11,7 @@ import numpy as np
 
 from cuefem.analysis.strike_models import regime_warning
 from cuefem.cue import Cue
-from cuefem.cue.materials import MATERIALS, WOODS, table_name
+from cuefem.cue.materials import MATERIALS, table_name
 from cuefem.designs.evaluation import Response
 from cuefem.effects.leather_tip import DOMES
 from cuefem.measurements.calibration import CalibratedSquirt, Calibration
@@ -39,6 +39,7 @@ EMPTY_FRONT, NEW_INSERT = 150 * MM, 25 * MM
 CARBON_WALL = 1.5 * MM  # the middle of meshes/carbon.toml
 PRO_GAIN = 0.5 * MM  # from the tip to the taper's position, as in meshes/pool_maple.toml
 FERRULES = ("abs", "melamine", "phenolic")  # sold for cues; brass and steel are not suggested
+SHAFT_WOODS = ("hard maple", "ash", "yellow birch", "purpleheart", "rosewood")
 MIN_STIFFNESS_LOSS = 0.05  # perceptible relative loss of stiffness
 MIN_CONTRIBUTION = 0.002  # of squirt: smaller contributions to its uncertainty are neglected in a change
 NUMBERS = tuple(map(Response.of, ("squirt", "tip_stiffness", "shaft_mass", "frequency(1)")))
@@ -142,7 +143,7 @@ def _tapers(cue: Cue, values: Record) -> Iterator[DesignChange]:
 def _woods(cue: Cue) -> Iterator[DesignChange]:
     shaft = Layout.of(cue).shaft
     current = table_name(cue.segments[shaft.start].material)
-    for name in WOODS:
+    for name in SHAFT_WOODS:
         if name != current:
             yield DesignChange(f"{name} shaft", {"shaft material": name}, WOOD)
     tube: dict[str, Any] = {}

@@ -28,7 +28,7 @@ class Parts(Answer):
         "source" of each shaft.
     materials : dict of str to dict
         For each material its "use", "wood", "ferrule" or ""; "E", "G", Pa; "rho", kg/m3; "loss", the loss factor;
-        "ranges" of real pieces; "source" and "note".
+        "ranges" of real pieces; "aliases", other names; "source" and "note".
     tips : dict of str to dict
         The constants of each leather in SI, and their "source".
     """
@@ -70,7 +70,7 @@ class Parts(Answer):
                 "in brackets the range of real pieces; loss: loss factor; --json has more",
                 'wood: material = "ash" at the top of a .toml, a column material, --material "ash"',
                 'ferrule: ferrule = "25 mm melamine" there, a column ferrule, --ferrule "25 mm melamine"',
-                *(f"{name}: {values['source']}" for name, values in self.materials.items()),
+                *(_name_and_source(name, values) for name, values in self.materials.items()),
                 texts=(0, 1),
             ),
             tabulate(
@@ -105,6 +105,7 @@ def parts() -> Parts:
             "use": "wood" if name in WOODS else "ferrule" if name in FERRULES else "",
             **asdict(known.material),
             "ranges": {key: list(ends) for key, ends in known.ranges.items()},
+            "aliases": list(known.aliases),
             "source": known.source,
             "note": known.note,
         }
@@ -120,6 +121,11 @@ def parts() -> Parts:
 
 def _rows(parts: Record) -> list[Record]:
     return [{"name": name, **values} for name, values in parts.items()]
+
+
+def _name_and_source(name: str, values: Record) -> str:
+    also = f" (also {', '.join(values['aliases'])})" if values["aliases"] else ""
+    return f"{name}{also}: {values['source']}"
 
 
 def _with_range(name: str) -> ColumnEntry:

@@ -15,8 +15,7 @@ from cuefem.cli.output import command, print_json
 from cuefem.cli.request import Request, errors_name_file
 from cuefem.cli.scene_command import calibration_option, cue_options
 from cuefem.cli.scene_options import CueFile, option
-from cuefem.files.cue_names import cue_name
-from cuefem.files.reference_cues import PRESETS
+from cuefem.files.cue_names import REFERENCES, cue_name
 
 if TYPE_CHECKING:
     from cuefem.measurements.calibration import Calibration
@@ -53,14 +52,14 @@ def designer(
     if scene is None:
         for name in [name for name, text in options.items() if text is not None]:
             raise ValueError(f"{option(name)} needs a SCENE, whose cue or stroke it changes; got none")
-        first = reference_design(PRESETS[0])
+        first = reference_design(REFERENCES[0])
     else:
         request = Request.of(scene, options)
         with request.errors():
             first = design_of(cue_name(scene) or scene.stem, request.scene, request.assumed)
         request.print_warnings()
     if calibration is not None:
-        with errors_name_file(scene or Path(PRESETS[0].file)):
+        with errors_name_file(scene or Path(REFERENCES[0])):
             calibration.check(first.scene)
     announce: Callable[[str], None] = (lambda address: print_json({"address": address})) if as_json else click.echo
     with suppress(KeyboardInterrupt):  # Ctrl-C is how one ends it

@@ -16,12 +16,18 @@ from cuefem.quantity.fields import check_kind, suggestion
 
 
 class MaterialEntry(NamedTuple):
-    """A material, the ranges of its properties (SI; keys E, G, rho, loss, nu), and its source."""
+    """A material, the ranges of its properties (SI; keys E, G, rho, loss, nu), and its source.
+
+    aliases: other names, of the trade. is_class: whether it stands for materials of which nobody publishes a modulus,
+    so that its E and density are uncertain inputs.
+    """
 
     material: Material
     ranges: Mapping[str, tuple[float, float]]
     source: str
     note: str
+    aliases: tuple[str, ...]
+    is_class: bool
 
 
 class LeatherEntry(NamedTuple):
@@ -41,7 +47,14 @@ class LeatherEntry(NamedTuple):
 def _entry(row: Mapping[str, Any]) -> MaterialEntry:
     numbers = {field.name: row[field.name] for field in fields(Material) if field.name in row}
     ranges = {name: (low, high) for name, (low, high) in row["ranges"].items()}
-    return MaterialEntry(Material(**numbers), MappingProxyType(ranges), row["source"], row.get("note", ""))
+    return MaterialEntry(
+        material=Material(**numbers),
+        ranges=MappingProxyType(ranges),
+        source=row["source"],
+        note=row.get("note", ""),
+        aliases=tuple(row.get("aliases", ())),
+        is_class=row.get("is_class", False),
+    )
 
 
 _TABLES = tomllib.loads(Path(__file__).with_name("materials.toml").read_text(encoding="utf-8"))
@@ -70,15 +83,18 @@ LEATHER_CONSTANTS: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {name: {field: getattr(entry, field) for field in ("E", "nu", "rho")} for name, entry in LEATHER_BY_NAME.items()}
 )
 _ALIASES = {alias: name for name, row in _ROWS.items() for alias in row.get("aliases", ())}
+FERRULE_KINDS = ("plastic", "metal")
 
 
-def material(name: str) -> Material:
+def material(name: str, use: str = "") -> Material:
     """The material of a name in the table of materials (`cuefem parts`).
 
     Parameters
     ----------
     name : str
         Such as "hard maple", in any case, with blanks, hyphens or underscores.
+    use : {"", "ferrule"}
+        What the material is for: an error offers materials of that use.
 
     Returns
     -------
@@ -101,9 +117,21 @@ def material(name: str) -> Material:
     key = " ".join(name.replace("_", " ").replace("-", " ").casefold().split())
     key = _ALIASES.get(key, key)
     if key not in MATERIALS:
-        hint = suggestion(key, MATERIALS) or f"; choose {', '.join(MATERIALS)}"
-        raise ValueError(f"unknown material {name!r}{hint}")
+        raise ValueError(_unknown(name, key, use))
     return MATERIALS[key].material
+
+
+def _unknown(name: str, key: str, use: str) -> str:
+    """The message for a name that the table lacks: a similar one, or the names of that use."""
+    if use != "ferrule":
+        return f"unknown material {name!r}" + (
+            suggestion(key, [*MATERIALS, *_ALIASES]) or f"; choose {', '.join(MATERIALS)}"
+        )
+    offered = [each for each, row in _ROWS.items() if row["kind"] in FERRULE_KINDS]
+    names = [*offered, *(alias for each in offered for alias in MATERIALS[each].aliases)]
+    own = "or give its E and density in a .toml (cuefem guide files)"
+    hint = suggestion(key, names) or f"; choose {', '.join(offered)}; {own}"
+    return f"unknown ferrule material {name!r}{hint}"
 
 
 def table_name(material: Material) -> str | None:

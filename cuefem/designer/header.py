@@ -12,7 +12,7 @@ from nicegui import Client, events, ui
 from cuefem.designer.host import Host
 from cuefem.designer.in_thread import run_in_thread
 from cuefem.designer.state import FAILURES, MAX_NAME, one_line, read_file
-from cuefem.files.reference_cues import PRESETS
+from cuefem.files.cue_names import CUES
 from cuefem.quantity.display_units import display, displayed_system
 
 MAX_FILE = 5_000_000  # bytes
@@ -71,10 +71,8 @@ class Header:
             with ui.element("div").classes("tools").props('role=toolbar aria-label="File and history"'):
                 _tool("Open", "folder_open", lambda: self.upload.pick(self.session.open_file))
                 with _tool("Reference cues", "list", lambda: None), ui.menu().props('aria-label="Reference cues"'):
-                    for preset in PRESETS:
-                        ui.menu_item(
-                            preset.name, lambda preset=preset: page.attempt(self.session.open_reference, preset)
-                        )
+                    for name in CUES:
+                        ui.menu_item(name, lambda name=name: page.attempt(self.session.open_reference, name))
                 _tool("Save", "save_alt", self._save)
                 self.report = _tool("Report", "description", self._report)
                 self.undo = _tool("Undo", "undo", lambda: self.undo_redo(-1))

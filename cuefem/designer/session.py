@@ -30,8 +30,8 @@ from cuefem.designer.state import (
     reference_design,
 )
 from cuefem.files import today
-from cuefem.files.defaults_report import Assumption, tenon_assumption
-from cuefem.files.reference_cues import PRESETS, REFERENCE_FILES, Preset
+from cuefem.files.cue_names import CUES
+from cuefem.files.defaults_report import Assumption, ferrule_assumption, tenon_assumption
 from cuefem.files.toml_writer import toml_text
 from cuefem.measurements.calibration import Calibration
 from cuefem.parameters.scene_changes import with_parameters
@@ -149,18 +149,17 @@ class Session:
         else:
             self.open(read)
 
-    def open_reference(self, preset: Preset) -> None:
-        """Begin with a reference cue."""
-        self.open(reference_design(preset))
+    def open_reference(self, name: str) -> None:
+        """Begin with the cue or scene of a name."""
+        self.open(reference_design(name))
 
     def compare_with(self, choice: str) -> None:
         """Compare with one of `compare_choices`, but `FILE`, whose design `compare_with_file` takes."""
         design = self.step.design
         if choice == NOTHING:
             self._push(Step(design))
-        elif choice in REFERENCE_FILES:
-            preset = next(preset for preset in PRESETS if preset.file == REFERENCE_FILES[choice])
-            self._push(Step(design, ComparedDesign("reference", replace(reference_design(preset), name=choice))))
+        elif choice in CUES:
+            self._push(Step(design, ComparedDesign("reference", reference_design(choice))))
         else:
             kind = next(kind for kind, words in OPTIONS.items() if words == choice)
             self._push(Step(design, ComparedDesign(kind, self.history.opened if kind == "opened" else design)))
@@ -192,8 +191,8 @@ class Session:
 
     def notes(self) -> list[Assumption]:
         """Assumptions without a control."""
-        tenon = tenon_assumption(self.scene.shaft)
-        return [*self.step.design.notes, *(Assumption("", f"{each.text} (change it in File)") for each in tenon)]
+        drawn = [*ferrule_assumption(self.scene.shaft), *tenon_assumption(self.scene.shaft)]
+        return [*self.step.design.notes, *(Assumption("", f"{each.text} (change it in File)") for each in drawn)]
 
     def assumptions(self) -> list[Assumption]:
         """All assumptions: the values of controls, and those without a control."""
@@ -223,7 +222,7 @@ class Session:
 
     def compare_choices(self) -> list[str]:
         """What the design can be compared with, including what it is compared with."""
-        offered = [NOTHING, *OPTIONS.values(), *REFERENCE_FILES, FILE]
+        offered = [NOTHING, *OPTIONS.values(), *CUES, FILE]
         return offered if self.compared in offered else [self.compared, *offered]
 
     def designs(self) -> dict[str, Design]:

@@ -13,9 +13,10 @@ from cuefem.contact.kernel import KernelError
 from cuefem.cue import Cue
 from cuefem.designer.controls import alike, value
 from cuefem.files import load_stroke
+from cuefem.files.cue_names import CUES
 from cuefem.files.defaults_report import Assumption, assumptions, offered_assumptions
 from cuefem.files.parts_catalogue import data_folder
-from cuefem.files.reference_cues import Preset, preset_scene, reference_cue_file
+from cuefem.files.reference_cues import named_scene, reference_cue_file
 from cuefem.measurements.calibration import Calibration, load_calibration
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, usual_scene
@@ -138,11 +139,11 @@ def design_of(name: str, scene: Scene, assumed: Sequence[Assumption]) -> Design:
     return Design(name[:MAX_NAME], scene, frozenset(keys), {}, tuple(notes))
 
 
-def reference_design(preset: Preset) -> Design:
-    """A reference cue."""
-    path = data_folder() / preset.file
-    scene = preset_scene(preset)
-    return design_of(path.stem, scene, assumptions(path, scene, {}))
+def reference_design(name: str) -> Design:
+    """The cue or scene of a name."""
+    path = data_folder() / CUES[name].file
+    scene = named_scene(name)
+    return design_of(name, scene, assumptions(path, scene, {}))
 
 
 def read_design(name: str, content: bytes, game: str = DEFAULT_GAME) -> Design:

@@ -1,4 +1,4 @@
-"""Cues by name: the reference cues and the published measured cues, in every place that takes a cue's file."""
+"""Cues and scenes by name, in every place that takes a file: one list for calls, commands and the designer."""
 
 from __future__ import annotations
 
@@ -12,27 +12,35 @@ from cuefem.quantity.fields import suggestion
 
 
 class NamedCue(NamedTuple):
-    """A drawing that has a name: its path from the data folder, and what is assumed in it."""
+    """A drawing or scene that has a name: its path from the data folder, what is assumed in it, and its game."""
 
     file: str
     assumed: str
+    game: str = "pool"
 
 
 _USUAL = "usual dimensions (meshes/README.md)"
 _SOLD = "a size that is sold, its inside assumed (meshes/README.md)"
 _INSIDE = "inside and taper assumed (studies/measured)"
 _WIDTH = "all but the width of the tip assumed (studies/measured)"
+_EXAMPLE = "an example: cue, tip and stroke are usual"
 CUES = {
     "plain maple": NamedCue("meshes/pool_maple.toml", _USUAL),
     "low deflection": NamedCue("meshes/pool_hollow.toml", _SOLD),
     "carbon": NamedCue("meshes/carbon.toml", _SOLD),
     "whole cue": NamedCue("meshes/whole_cue.toml", _USUAL),
-    "kim": NamedCue("meshes/kim.toml", "the shaft of Kim's paper (meshes/README.md)"),
-    "predator z": NamedCue("studies/measured/predator_z/cue.toml", _INSIDE),
+    "kim": NamedCue("meshes/kim.toml", "the shaft of Kim's paper (meshes/README.md)", "carom"),
     "predator z2": NamedCue("studies/measured/predator_z2/cue.toml", _INSIDE),
     "players maple": NamedCue("studies/measured/players_maple/cue.toml", _WIDTH),
     "stinger": NamedCue("studies/measured/stinger/cue.toml", _WIDTH),
+    "kim bare": NamedCue("studies/scenes/kim.toml", "the stroke of Kim's paper: bare shaft, 2 ms", "carom"),
+    "hollow front on bridge": NamedCue("studies/scenes/pool_low_deflection.toml", _EXAMPLE),
+    "carom cone": NamedCue("studies/scenes/carom.toml", _EXAMPLE, "carom"),
+    "break cue": NamedCue("studies/scenes/break_cue.toml", "a break at 25 mph with a phenolic tip: example"),
+    "snooker ash": NamedCue("studies/scenes/snooker.toml", "thin ash shaft with a brass ferrule: example", "snooker"),
+    "clay on shaft": NamedCue("studies/scenes/clay_on_shaft.toml", "11 g of clay on the shaft: example"),
 }
+REFERENCES = ("plain maple", "low deflection", "carbon")  # of a verdict; other cues are compared with the first
 
 
 def named_path(path: Path) -> Path:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from cuefem.cue import Cue, Material
+from cuefem.cue.materials import MATERIALS, table_name
 from cuefem.files.cue_names import CUES, cue_name, named_path
 from cuefem.files.lathe_profile import (
     DEFAULT_MATERIAL,
@@ -21,7 +22,7 @@ from cuefem.files.shaft_additions import BORE, FERRULE, LEATHER, TENON_RATIO
 from cuefem.files.surface_sections import TOLERANCE
 from cuefem.files.toml_reader import missing_keys, read_tables
 from cuefem.parameters.parts import Layout
-from cuefem.quantity.display_units import with_unit
+from cuefem.quantity.display_units import span_text, with_unit
 from cuefem.scene import DEFAULT_CONTACT_TIME, Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, GAMES
 
@@ -106,7 +107,7 @@ def drawing_assumptions(path: Path, cue: Cue, options: Mapping[str, Any]) -> lis
     """Assumptions for a drawing: unit, material, parts and rest of the cue of a profile or surface; the tenon."""
     ending = path.suffix.lower()
     if ending not in SHAPE_EXTENSIONS:
-        return tenon_assumption(cue)
+        return [*ferrule_assumption(cue), *tenon_assumption(cue)]
     wood = {"material": f"material {DEFAULT_MATERIAL}", "shaft_mass": "mass by the density of that material"}
     parts = {
         "body_mass": "no butt behind the shaft",
@@ -129,6 +130,7 @@ def drawing_assumptions(path: Path, cue: Cue, options: Mapping[str, Any]) -> lis
     return [
         *notes,
         *(Assumption.on(key, text) for key, text in lacking.items() if key not in given),
+        *ferrule_assumption(cue),
         *tenon_assumption(cue),
     ]
 
@@ -176,6 +178,20 @@ def _given_in_drawing(path: Path, cue: Cue, length_unit: str | None) -> set[str]
         "shaft_mass": cue.shaft_mass_measured,
     }
     return {key for key, is_given in given.items() if is_given}
+
+
+def ferrule_assumption(cue: Cue) -> list[Assumption]:
+    """Assumption of the E and density of a ferrule whose name stands for materials without published numbers."""
+    for i in Layout.of(cue).ferrule:
+        name = table_name(cue.segments[i].material)
+        if name is not None and MATERIALS[name].is_class:
+            low, high = MATERIALS[name].ranges["E"]
+            return [
+                Assumption(
+                    "ferrule_class", f"the ferrule is read as {name}, E {span_text(low, high, 'Pa')}: none is published"
+                )
+            ]
+    return []
 
 
 def tenon_assumption(cue: Cue) -> list[Assumption]:

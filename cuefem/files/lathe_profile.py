@@ -197,7 +197,9 @@ def _inside(
     for row, outer in zip(header.rows, diameters, strict=True):
         line, cells = row
         found = {
-            kind: named_material(text.casefold(), path, f"line {line}, {kind}")
+            kind: named_material(
+                text.casefold(), path, f"line {line}, {kind}", "ferrule" if kind == FERRULE_COLUMN else ""
+            )
             for kind, column in named.items()
             if (text := _entry(cells, column)) and not (kind == FERRULE_COLUMN and has_length(text))
         }

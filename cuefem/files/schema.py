@@ -53,10 +53,10 @@ def _convert(hint: Any, value: Any, file: str, key: str) -> Any:
     raise InputError(file, key, f"must be {_expected(hint)}; got {quote(value)}")
 
 
-def named_material(name: str, file: str | PathLike[str], key: str) -> Material:
-    """The material of this name; InputError with similar names if it is unknown."""
+def named_material(name: str, file: str | PathLike[str], key: str, use: str = "") -> Material:
+    """The material of this name; InputError with similar names of its use (`material`) if it is unknown."""
     try:
-        return material(name)
+        return material(name, use)
     except ValueError as error:
         raise InputError(file, key, f"{error}; see `cuefem parts`") from None
 

@@ -159,7 +159,7 @@ def _ferrule_of(text: str) -> tuple[float, Material, float | None]:
             raise ValueError(f'must be such as "{FERRULE}, tenon 8 mm" or "{FERRULE}, no tenon"; got {text!r}')
         width = piece.replace("tenon", " ").strip()
         tenon = 0.0 if width == "no" else _length(width)
-    return _length(size[0]), material_of(" ".join(name.split())), tenon
+    return _length(size[0]), material_of(" ".join(name.split()), "ferrule"), tenon
 
 
 def _bored(cue: Cue, text: str) -> Cue:

@@ -549,6 +549,7 @@ CONTACT_TIME_OF_SPRING = Part(_spring_time, _with_spring_time, CONTACT_TIME)
 # Heads of paths, in addition to the fields of a scene.
 PARTS: dict[str, Part] = {
     "leather": _effect(_leather),
+    "ferrule": FERRULE_MATERIAL,
     "waves": _effect(_waves),
     "wood": Part(
         lambda scene: main_material(scene.shaft),

@@ -80,6 +80,20 @@ def _body_spread(scene: Scene) -> float | None:
     return math.log(BODY_MASS_RANGE[1] / BODY_MASS_RANGE[0]) / 2 if scene.shaft.is_body_mass_assumed else None
 
 
+def _ferrule_spread(name: str) -> Callable[[Scene], float | None]:
+    """Half the width of the range of a ferrule that stands for a trade name, in logarithms; None for others."""
+
+    def spread(scene: Scene) -> float | None:
+        ferrule = FERRULE_MATERIAL.read(scene)
+        entry = MATERIALS.get(table_name(ferrule) or "") if ferrule else None
+        if entry is None or not entry.is_class:
+            return None
+        low, high = entry.ranges[name]
+        return math.log(high / low) / 2
+
+    return spread
+
+
 def _bore_spread(scene: Scene) -> float | None:
     """Half the range of drilled bores, 6 to 7.5 mm (meshes/README.md), in logarithms; None without a bore."""
     return math.log(7.5 / 6) / 2 if Layout.of(scene.shaft).bore else None
@@ -101,6 +115,8 @@ PARAMETERS: dict[str, Parameter] = {
         Parameter("E", "E of the wood", "wood.E", spread=_wood_spread("E")),
         Parameter("G", "G of the wood", "wood.G", spread=_wood_spread("G")),
         Parameter("rho", "density of the wood", "wood.rho", spread=_wood_spread("rho")),
+        Parameter("ferrule E", "E of the ferrule", "ferrule.E", spread=_ferrule_spread("E")),
+        Parameter("ferrule density", "density of the ferrule", "ferrule.rho", spread=_ferrule_spread("rho")),
         # half the logarithm of E's and rho's variation in one wood (22 and 10 %, materials.toml), in quadrature
         Parameter("wave speed", "speed of axial waves in the butt", "waves.wave_speed", spread=0.12),
         Parameter(

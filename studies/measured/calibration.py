@@ -149,7 +149,7 @@ def text() -> str:
 EXAMPLE = """\
 import cuefem as cf
 
-made = cf.estimate("predator z").calibration()
+made = cf.estimate("studies/measured/predator_z").calibration()
 found = made.squirt(cf.usual_scene(cf.load("low deflection")))
 print(found.headline())
 print(f"instead of {100 * found.uncalibrated_error:.0f} %")

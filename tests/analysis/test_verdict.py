@@ -11,7 +11,8 @@ import cuefem as cf
 from cuefem.analysis.comparison import compare_cues
 from cuefem.analysis.verdict import Verdict, with_cue
 from cuefem.cue.materials import MATERIALS
-from cuefem.files.reference_cues import REFERENCE_FILES, reference_cues
+from cuefem.files.cue_names import REFERENCES
+from cuefem.files.reference_cues import reference_cues
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.results.uncertainty import NUMERICAL_ERROR, RATIO_FLOOR
@@ -29,9 +30,9 @@ def own() -> Verdict:
     return cf.verdict(SCENE)
 
 
-@pytest.mark.parametrize("name", REFERENCE_FILES)
+@pytest.mark.parametrize("name", REFERENCES)
 def test_verdict_reference_cues_agree_with_strikes(own: Verdict, name: str) -> None:
-    outcome = cf.strike(replace(SCENE, cue=without_leather(cf.load(ROOT / REFERENCE_FILES[name]))))
+    outcome = cf.strike(replace(SCENE, cue=without_leather(cf.load(name))))
     reference = own.references[name]
     assert reference["squirt"] == pytest.approx(outcome.squirt, rel=1e-12)
     assert reference["difference"] == pytest.approx(cf.strike(SCENE).squirt / outcome.squirt - 1, abs=1e-12)
@@ -61,7 +62,7 @@ def test_verdict_known_input_has_smaller_uncertainty(own: Verdict, known: dict[s
 
 @pytest.mark.parametrize(("depth", "distinct"), [(0.01, False), (0.1, True)])
 def test_verdict_difference_within_error_is_not_distinct(depth: float, distinct: bool) -> None:
-    maple = cf.load(ROOT / REFERENCE_FILES["plain maple"])
+    maple = cf.load("plain maple")
     bored = with_parameters(cf.usual_scene(maple), {"bore depth": depth, "bore width": 0.006})
     verdict = cf.verdict(bored, {"plain maple": maple})
     reference = verdict.references["plain maple"]
@@ -133,7 +134,7 @@ def test_reference_cue_has_a_tip_that_fits_its_own_face(game: str, front: float,
     cue = cf.Cue((cf.Segment(1.4, front, 0.03, wood),))
     tip = default_tip(cue, game) if dome is None else replace(default_tip(cue, game), dome_radius=dome)
     scene = cf.usual_scene(cue, game, tip=tip)
-    assert [*cf.verdict(scene).references] == [*REFERENCE_FILES]
+    assert [*cf.verdict(scene).references] == [*REFERENCES]
     for reference in reference_cues().values():
         other = with_cue(scene, reference)
         face = other.shaft.segments[0].tip_diameter

@@ -101,8 +101,8 @@ guide --print -o guide.html
 guide -o guide.txt
 improve spring.toml -o x.pdf
 modes good.toml --units imperial
-report predator
-report 'predator z-3'
+report maple
+report 'predator z'
 report 'predatr z2'
 report carbon.csv
 strike bare.csv --shaft-mass 112

@@ -65,11 +65,17 @@ def test_leather_ranges_are_soft_to_hard() -> None:
 
 
 OFFERS = {
-    **{"hard mapel": "hard maple", "mapel": "hard maple", "Maple": "hard maple", "carbon fiver": "carbon fibre"},
-    **{"alu": "aluminium", "ABS plastic": "abs", "steal": "steel", "Birch": "yellow birch", "ebony": "hard maple"},
-    "ivory": "melamine",
+    **{"hard mapel": "hard maple", "mapel": "maple", "carbon fiver": "carbon fiber"},
+    **{"alu": "aluminium", "ABS plastic": "abs", "steal": "steel", "ebony": "hard maple"},
 }
 SPELT = {"Hard Maple": "hard maple", " HARD_MAPLE": "hard maple", "sugar maple": "hard maple", "aluminum": "aluminium"}
+SPELT |= {
+    "Maple": "hard maple",
+    "Birch": "yellow birch",
+    "LBM": "linen melamine",
+    "Delrin": "acetal",
+    "juma": "cast resin",
+}
 
 
 def test_material_unknown_name_suggests_and_spelling_variant_loads() -> None:

@@ -22,12 +22,11 @@ from cuefem.designer.knob_row import KnobRow
 from cuefem.designer.page import Page
 from cuefem.designer.session import FILE, NOTHING, OPENED
 from cuefem.designer.state import reference_design
-from cuefem.files.reference_cues import PRESETS
 from cuefem.scene import Scene
 from tests.test_golden_files import assert_golden, drawing_text, page_text
 
 Step = Callable[[Page], Any]
-KIM = reference_design(next(preset for preset in PRESETS if preset.file == "studies/scenes/kim.toml"))
+KIM = reference_design("kim bare")
 # Typed in the first page's fields, one after the other: with and without units, too small, too large, no numbers.
 TYPED = {
     "tip_diameter": ("11,8", "1/2 in", "30", "x", "", "12 g", "1/0 in", "nan mm", "9" * 50),

@@ -14,7 +14,6 @@ from cuefem.analysis.first_screen import comparison_lines, headline_markup
 from cuefem.designer.controls import KNOBS, label, parse, range_of, value, value_text
 from cuefem.designer.session import OF_TAB, OPENED, Results, Session
 from cuefem.designer.state import read_file, reference_design
-from cuefem.files.reference_cues import PRESETS
 from cuefem.quantity.display_units import displayed_in
 from tests.cli.test_units import METRIC_LEFT
 from tests.helpers.command_line import call
@@ -22,7 +21,7 @@ from tests.measurements.test_calibration import calibration
 from tests.test_golden_files import last_place
 
 DESIGNER = Path(cf.__file__).parent / "designer"
-FIRST = reference_design(next(preset for preset in PRESETS if preset.file == "meshes/pool_maple.toml"))
+FIRST = reference_design("plain maple")
 
 
 SNOOKER = Path(__file__).parents[2] / "studies/scenes/snooker.toml"
@@ -173,4 +172,4 @@ def test_designer_rejects_calibration_of_another_game_in_one_line(tmp_path: Path
     calibration().save(path)
     status, out, err = call("designer", SNOOKER, "--no-open", "--calibration", path)
     assert (status, out, err.count("\n")) == (2, "", 1)
-    assert err.startswith(f"cuefem: {SNOOKER}: the calibration is of another game: ")
+    assert err.startswith("cuefem: snooker ash: the calibration is of another game: ")

@@ -25,7 +25,7 @@ def test_every_name_loads_its_drawing_and_comes_with_the_wheel(name: str) -> Non
 
 def test_words_of_one_name_are_enough_and_files_come_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert cue_name(named_path(Path("z2"))) == "predator z2"
-    assert cue_name(named_path(Path("predator z"))) == "predator z"
+    assert cue_name(named_path(Path("predator"))) == "predator z2"
     monkeypatch.chdir(tmp_path)
     (tmp_path / "carbon").mkdir()
     assert named_path(Path("carbon")) == Path("carbon")

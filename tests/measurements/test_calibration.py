@@ -14,6 +14,7 @@ from cuefem.measurements.calibration import MAX_FACTOR, Calibration
 from cuefem.results.uncertainty import MODEL_ERROR, RATIO_FLOOR, SHAFT_ERROR, squirt_of
 from tests.helpers.command_line import as_json, call, stdout_of
 
+PREDATOR = Path(__file__).parents[2] / "studies/measured/predator_z"
 OLD = cf.usual_scene(cf.load("plain maple"))
 NEW = cf.usual_scene(cf.load("low deflection"))
 TIP = {"leather": OLD.leather_tip.E, "restitution": float(OLD.tip.restitution)}
@@ -130,7 +131,7 @@ def test_commands_reject_what_a_calibration_cannot_do(file: Path, tmp_path: Path
         (("compare", "predator z2", "--calibration", file), "--calibration: needs two or more FILEs"),
         (("compare", "predator z2", "-o", tmp_path / "c.toml"), "a calibration (.toml) needs --estimate"),
         (("compare", "kim", "carbon", "-o", tmp_path / "c.toml"), "a calibration (.toml) needs one FOLDER"),
-        (("compare", "predator z", "--estimate", "-o", file), "already exists; --force overwrites it"),
+        (("compare", PREDATOR, "--estimate", "-o", file), "already exists; --force overwrites it"),
     ):
         status, out, err = call(*arguments)
         assert (status, out) == (2, "")
@@ -142,7 +143,7 @@ def test_commands_reject_what_a_calibration_cannot_do(file: Path, tmp_path: Path
 def test_estimate_writes_a_calibration_that_every_command_takes(tmp_path: Path) -> None:
     """Predator Z: pivot length measured in 2007; 12 % for a bored shaft instead of 20 %."""
     path, page = tmp_path / "z.toml", tmp_path / "page.html"
-    status, out, err = call("compare", "predator z", "--estimate", "-o", path)
+    status, out, err = call("compare", PREDATOR, "--estimate", "-o", path)
     assert (status, err) == (
         0,
         "warning: no other measurement of Predator Z checks natural pivot length at b/R 0.375\n",

@@ -12,15 +12,16 @@ from cuefem.cue.materials import LEATHERS, material
 from cuefem.designs.evaluation import Response
 from cuefem.designs.sampling import Span
 from cuefem.designs.study import Study, Vary
-from cuefem.files.reference_cues import PRESETS, preset_scene
+from cuefem.files.cue_names import CUES
+from cuefem.files.reference_cues import named_scene
 from cuefem.parameters.parts import outer_diameter
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.parameters.scene_paths import paths
 from cuefem.parameters.table import PARAMETERS
 from tests.helpers.examples import examples
 
-SCENES = {preset.name: preset_scene(preset) for preset in PRESETS}
-FIRST = SCENES[PRESETS[0].name]
+SCENES = {name: named_scene(name) for name in CUES}
+FIRST = SCENES["plain maple"]
 
 
 def numbers(scene: cf.Scene) -> dict[str, float]:
