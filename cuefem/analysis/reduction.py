@@ -285,7 +285,7 @@ def _end_masses_at(design: SolvedDesign, contact_time: float) -> Record:
     masses: Record = {"contact_time": contact_time}
     for drive in DRIVES:
         try:
-            masses[drive] = float(DEFINITIONS[drive].of(design.solved.stick_tip, scene))
+            masses[drive] = float(DEFINITIONS[drive].of(design.solved.step_tip, scene))
         except ValueError:
             masses[drive] = None
     return masses

@@ -165,7 +165,7 @@ def squirt_curve(scene: Scene | SolvedDesign, offsets: Sequence[float] = OFFSETS
         raise ValueError("squirt_curve offsets must be at least one b/R between -1 and 1; got none")
     design = SolvedDesign.of(scene)
     scene, solved = design.scene, design.solved
-    own = lumped_cues(scene, offsets, solved.stick_tip)
+    own = lumped_cues(scene, offsets, solved.step_tip)
     cues = {f"{name}, this cue": each for name, each in own.items()}
     cues["two-part, 12 g"] = [LumpedCue.two_part(scene.axial_mass, PAPER_CUE_ENDS["Kim's guess"])] * len(offsets)
     cues["A.31, this cue"] = own["two-part"]

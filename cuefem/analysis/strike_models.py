@@ -144,7 +144,7 @@ def strike_models(scene: Scene | SolvedDesign, rtol: float | None = None) -> Str
     """
     design = SolvedDesign.of(scene, rtol)
     scene, solved = design.scene, design.solved
-    cues = lumped_cues(scene, [scene.stroke.offset], solved.stick_tip)
+    cues = lumped_cues(scene, [scene.stroke.offset], solved.step_tip)
     models = {"coupled": outcome_record(design.strike(), scene)}
     models |= {name: outcome_record(lumped_strike(scene, cue), scene) for name, (cue,) in cues.items() if cue}
     (cue,), (lumped,) = cues["two-part"], cues.get("lumped", [None])

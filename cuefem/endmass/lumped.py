@@ -55,7 +55,7 @@ def lump(scene: Scene, at: Resolution | None = None) -> LumpedCue:
     (4.4, 0.0)
     """
     check_scene("lump scene", scene)
-    return scene.lumped or lump_modes(scene, SolvedScene(scene, at).stick_tip)
+    return scene.lumped or lump_modes(scene, SolvedScene(scene, at).step_tip)
 
 
 def lump_modes(scene: Scene, tip: TipModes) -> LumpedCue:

@@ -37,9 +37,10 @@ LEATHER_PERIODS, MIN_LEATHER_MODES = 8, 12
 # whole scenes of 0.5 to 2 ms the error by force is 3.7e-4 (95th percentile), 4.5e-4 (maximum); on a mesh for all of
 # them 1.9e-4, 5.1e-4; with the modes of a strike, 30 periods and 40, 6.2e-4, 1.3e-3.
 PULSE_PERIODS, MIN_PULSE_MODES, PULSE_MESH = 60, 80, 0.75
-# The end mass of a tip that sticks needs more: its velocity begins with a step, whose front returns from the butt
-# after 2 L/c with frequencies of 10 to 80 kHz, at any contact time. The mesh resolves the first MESHED_MODES of
-# them; the others only add compliance: the end mass is as accurate as on a mesh for 160 (50 shafts, 50 whole cues).
+# The end mass of a tip that sticks without compliance needs more: its velocity begins with a step, whose front returns
+# from the butt after 2 L/c with frequencies of 10 to 80 kHz, at any contact time. The mesh resolves the first
+# MESHED_MODES of them; the others only add compliance: the end mass is as accurate as on a mesh for 160 (50 shafts, 50
+# whole cues).
 # Accuracy with these numbers: studies/accuracy/accuracy.md.
 MIN_STICK_MODES, MESHED_MODES = 160, 120
 # Limit of the default number, which contacts of a fraction of a millisecond reach: the truncation correction replaces
@@ -111,14 +112,24 @@ class SolvedScene:
         if self.at is not None or self.scene.lumped is not None:
             return self.tip
         count = default_mode_count(self.scene, periods=PULSE_PERIODS, min_modes=MIN_PULSE_MODES)
-        return tip_modes_from(self._default(count, meshed=round(PULSE_MESH * count)), self.scene)
+        bending = self._default(count, meshed=round(PULSE_MESH * count))
+        return tip_modes_from(bending, self.scene, axial_force=False, axial_waves=False)
+
+    @property
+    def stick_tip(self) -> TipModes:
+        """Tip modes for a tip that sticks: those of a strike if the tip is compliant, otherwise `step_tip`."""
+        return self.step_tip if self.scene.contact_terms.tip is None else self.tip
 
     @cached_property
-    def stick_tip(self) -> TipModes:
-        """Tip modes for an end mass, whose drive may begin with a step: at least `MIN_STICK_MODES` by default."""
+    def step_tip(self) -> TipModes:
+        """Tip modes for an end mass whose drive begins with a velocity step: at least `MIN_STICK_MODES` by default.
+
+        They are without geometric stiffness, as every end mass with such a drive.
+        """
         if self.at is not None or self.scene.lumped is not None:
             return self.tip
-        return tip_modes_from(self._default(default_mode_count(self.scene, min_modes=MIN_STICK_MODES)), self.scene)
+        bending = self._default(default_mode_count(self.scene, min_modes=MIN_STICK_MODES))
+        return tip_modes_from(bending, self.scene, axial_force=False)
 
     def _default(self, count: int, *, meshed: int = MESHED_MODES) -> Modes:
         return self._bending(count, with_correction=True, mesh_modes=min(count, meshed))
@@ -166,14 +177,21 @@ def has_moment_arm(scene: Scene) -> bool:
 
 
 @one_blas_thread
-def tip_modes_from(bending: Modes, scene: Scene) -> TipModes:
-    """Tip modes of the scene's finite-element cue from its bending modes and its effects."""
+def tip_modes_from(bending: Modes, scene: Scene, *, axial_force: bool = True, axial_waves: bool = True) -> TipModes:
+    """Tip modes of the scene's finite-element cue from its bending modes and its effects.
+
+    axial_force: whether the axial force of the impact acts on the bent cue (geometric stiffness). axial_waves: whether
+    the cue vibrates along its axis. A prescribed drive across the axis needs neither.
+    """
     cue, effects = scene.shaft, scene.cue_effects
     tip = tip_modes(bending, scene.axial_mass)
-    matrices = [m for m in (effect.geometric_stiffness(bending, cue, effects) for effect in effects) if m is not None]
-    if matrices:  # the first of the tip modes is the axial rigid-body mode
-        tip = replace(tip, geometric=embedded(sum(matrices[1:], matrices[0]), len(tip.omega), first=1))
-    families = tuple(chain.from_iterable(effect.axial_modes(bending, cue, effects) for effect in effects))
+    if axial_force:
+        stiffness = (effect.geometric_stiffness(bending, cue, effects) for effect in effects)
+        matrices = [matrix for matrix in stiffness if matrix is not None]
+        if matrices:  # the first of the tip modes is the axial rigid-body mode
+            tip = replace(tip, geometric=embedded(sum(matrices[1:], matrices[0]), len(tip.omega), first=1))
+    waves = effects if axial_waves else ()
+    families = tuple(chain.from_iterable(effect.axial_modes(bending, cue, effects) for effect in waves))
     for family in families:
         tip = tip.with_axial_modes(family.omega, family.tip_displacement, family.radiation)
     for effect in effects:

@@ -1,10 +1,12 @@
 """End masses at the default resolution, against many modes (verification)."""
 
+from dataclasses import replace
+
 import matplotlib as mpl
 import numpy as np
 import pytest
 
-from cuefem import end_mass
+from cuefem import Stroke, end_mass, usual_scene
 from cuefem.endmass.definitions import definition_of
 from cuefem.scene.solved_scene import MAX_MODES, corrected_tip_modes
 from tests.helpers.cues import scene
@@ -42,3 +44,15 @@ def test_stick_end_mass_random_cues_has_stated_error() -> None:
         errors.append(abs(end_mass(pulse) / exact - 1))
     assert np.quantile(errors, 0.95) < 1e-3
     assert max(errors) < 2e-3
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("drive", ["stick", "offset"])
+def test_stick_end_mass_through_leather_with_modes_of_a_strike_equals_many_modes(drive: str) -> None:
+    """A compliant tip has no velocity step: the modes of a strike are enough for 0.05 %."""
+    draw = np.random.default_rng(10)
+    for _ in range(20):
+        struck = usual_scene(random_cue(draw))
+        struck = replace(struck, stroke=Stroke(speed=draw.uniform(1, 6), offset=draw.uniform(0.05, 0.5)))
+        exact = definition_of(drive).of(*corrected_tip_modes(struck, MAX_MODES), struck)
+        assert end_mass(struck, drive) == pytest.approx(exact, rel=5e-4)
