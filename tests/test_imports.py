@@ -1,6 +1,7 @@
 """Imports: order of rooms, room of each heavy library, loading on demand (properties)."""
 
 import ast
+import os
 import re
 import subprocess
 import sys
@@ -170,6 +171,17 @@ def test_no_two_classes_of_package_have_one_name() -> None:
 def test_collection_solves_nothing(request: pytest.FixtureRequest) -> None:
     """A broken core fails tests, and not their collection: what solves or strikes stands in a test or a fixture."""
     assert request.config.stash[SOLVED_AT_COLLECTION] == []
+
+
+@pytest.mark.heavy
+def test_properties_run_where_every_dict_is_tracked(tmp_path: Path) -> None:
+    """As from Python 3.14 on: hypothesis would find no owner of its random generator among frozen objects."""
+    tracked = "import hypothesis.core\nhypothesis.core.threadlocal._ThreadLocal__threadlocal.other = []\n"
+    (tmp_path / "tracked.py").write_text(tracked)
+    command = [sys.executable, "-m", "pytest", "-n", "0", "-p", "tracked", "tests/quantity/test_quantity.py"]
+    paths = os.pathsep.join((str(tmp_path), str(PACKAGE.parent)))
+    done = subprocess.run(command, env=os.environ | {"PYTHONPATH": paths}, cwd=PACKAGE.parent, capture_output=True)
+    assert done.returncode == 0, done.stdout.decode()
 
 
 def test_public_names_are_importable() -> None:
