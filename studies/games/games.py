@@ -108,6 +108,10 @@ def text() -> str:
         "pooltool_model.py is a stick-ball collision for pooltool that reads the table; strike_table.js reads it in "
         "JavaScript. pooltool's `a` is positive to the left, cuefem's offset to the right: angles and spin change "
         "their signs. A stroke above the miscue limit leaves as at the limit, and `miscue` is set.",
+        "pooltool_model.py needs pooltool 0.6.0. pip chooses 0.3.3, since 0.6.0 pins a build of panda3d that PyPI has "
+        "not; install it without its pins, then what it imports: `pip install --no-deps pooltool-billiards==0.6.0`, "
+        "then `pip install scipy attrs 'rich<15' numba numpy-quaternion panda3d panda3d-gltf panda3d-simplepbr pillow "
+        "cattrs msgpack msgpack-numpy pyyaml h5py h11 click`.",
     )
 
 

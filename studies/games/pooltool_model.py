@@ -14,16 +14,26 @@ from __future__ import annotations
 
 import json
 import math
+from importlib.metadata import distributions
 from pathlib import Path
 from typing import Any
 
-import attrs
 import numpy as np
-import pooltool.constants as const
-from pooltool.objects.ball.datatypes import BallState
-from pooltool.physics.resolve.models import StickBallModel
-from pooltool.physics.resolve.stick_ball.core import CoreStickBallCollision
-from pooltool.ptmath.utils import coordinate_rotation
+
+try:
+    import attrs
+    import pooltool.constants as const
+    from pooltool.objects.ball.datatypes import BallState
+    from pooltool.physics.resolve.models import StickBallModel
+    from pooltool.physics.resolve.stick_ball.core import CoreStickBallCollision
+    from pooltool.ptmath.utils import coordinate_rotation
+except ImportError as error:
+    found = [one.version for one in distributions(name="pooltool-billiards")]
+    raise ImportError(
+        f"pooltool_model.py needs pooltool 0.6.0; {found[0] if found else 'none'} is installed. pip chooses 0.3.3, "
+        "which has other modules: `pip install --no-deps pooltool-billiards==0.6.0`, then what it imports "
+        "(studies/games/games.md)"
+    ) from error
 
 
 def read(table: dict[str, Any], speed: float, offset: float) -> dict[str, float]:

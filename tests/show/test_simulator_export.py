@@ -3,6 +3,8 @@
 import json
 import math
 import re
+import runpy
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,6 +13,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.analysis.simulator_export import DEFAULT, VERSION, pooltool_record
+from studies.pages import STUDIES
 from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.cues import kim
 from tests.helpers.pooltool import in_pooltool
@@ -45,6 +48,22 @@ def test_pooltool_formula_with_exported_end_mass_equals_strike(offset: float) ->
     assert record["squirt"] == pytest.approx(squirt, rel=1e-12)
     assert -pooltool_squirt(0.17, record["CueSpecs"]["end_mass"], offset) == pytest.approx(squirt, rel=1e-12)
     assert -pooltool_squirt(0.17, 0.170097 / 30, offset) == pytest.approx(record["default_squirt"], rel=1e-12)
+
+
+def test_model_for_pooltool_names_the_version_that_it_needs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """pip chooses 0.3.3, which has other modules."""
+    (tmp_path / "pooltool").mkdir()
+    (tmp_path / "pooltool" / "__init__.py").touch()
+    (tmp_path / "pooltool_billiards-0.3.3.dist-info").mkdir()
+    (tmp_path / "pooltool_billiards-0.3.3.dist-info" / "METADATA").write_text(
+        "Name: pooltool-billiards\nVersion: 0.3.3\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    for name in [name for name in sys.modules if name.partition(".")[0] == "pooltool"]:
+        monkeypatch.delitem(sys.modules, name)
+    with pytest.raises(ImportError, match=r"needs pooltool 0\.6\.0; 0\.3\.3 is installed.*pip install --no-deps"):
+        runpy.run_path(str(STUDIES / "games" / "pooltool_model.py"))
+    monkeypatch.delitem(sys.modules, "pooltool")
 
 
 @pytest.mark.parametrize("offset", [-0.3, 0.0001, 0.5])
