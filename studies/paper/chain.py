@@ -99,6 +99,38 @@ def held() -> Mapping[str, tuple[cf.Cue, Sequence[cf.Effect]]]:
     }
 
 
+def contact(offset: float, time: float) -> cf.Outcome:
+    """The vibrating shaft at an offset b/R, struck with a tip whose contact with a rigid cue lasts ``time`` head on."""
+    return cf.strike(replace(KIM, tip=replace(KIM.tip, contact_time=time), stroke=replace(KIM.stroke, offset=offset)))
+
+
+def duration_note() -> str:
+    """How long the contacts of the table last, and the squirt of contacts that last as long as the paper's."""
+    paper = KIM.tip.contact_time
+    own = [f"{1e3 * contact(offset, paper).duration:.2f}" for offset in chain().offsets]
+
+    def lasting(offset: float) -> float:
+        time = brentq(lambda time: contact(offset, time).duration - paper, paper, 2 * paper, xtol=1e-6)
+        return contact(offset, time).squirt
+
+    kept = [degrees(lasting(offset)) for offset in chain().offsets]
+    return (
+        f"2 ms is the contact with a rigid cue head on. That of the vibrating shaft lasts {', '.join(own[:-1])} and "
+        f"{own[-1]} ms at these offsets; with softer tips, whose contacts last 2 ms there, it has "
+        f"{', '.join(kept[:-1])} and {kept[-1]}."
+    )
+
+
+def definition_note() -> str:
+    """Which end mass the table has, and what others would be."""
+    losses = [cf.end_mass(replace(KIM, tip=replace(KIM.tip, restitution=e)), "stick") for e in (0.5, 1.0)]
+    return (
+        f'm_e is the end mass "stick": a tip that sticks to the ball. By the tip\'s restitution, 0.5 to 1, it is '
+        f'{1e3 * losses[0]:.1f} to {grams(losses[1], 1)}; of a half-sine force ("force") it would be '
+        f"{grams(cf.end_mass(KIM, 'force'), 1)} ([definitions](../end_mass/definitions.md))."
+    )
+
+
 def supports_table() -> str:
     """The mode nearest to 250 Hz, end mass and squirt for each support."""
     rows = []
@@ -196,6 +228,8 @@ def text() -> str:
         f"a uniform rod; the first 12 cm of this cone have {chain().front_ratio:.2f}. Rigid end: the length of the "
         "cone that has this m_e as a rigid body. The impulse solver computes the squirt of the two-part cues.",
         chain_table(),
+        definition_note(),
+        duration_note(),
         "![squirt against the offset, end mass against the contact time](chain.svg)",
         "## (b) Modes near 250 Hz: which support?",
         "E of the table is 12.6 GPa; maple has 10 to 16. Two candidates: the second mode pinned at the joint, and the "

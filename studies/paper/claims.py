@@ -8,7 +8,9 @@ from dataclasses import dataclass
 
 from studies.pages import NONE, number
 
-VERDICTS = ("agrees", "rounding", "error", "not derivable")
+# An error: the paper's own definitions give another value. A misprint: a wrong sign, symbol or factor in print whose
+# right one the paper uses. A hypothesis: a guess of the paper, or of ours about what it means.
+VERDICTS = ("agrees", "rounding", "misprint", "simplification", "hypothesis", "error", "open")
 COLUMNS = ("source", "what", "printed", "derived", "unit", "relative difference", "verdict", "cause")
 NOISE = 1e-9  # relative differences below it are rounding errors, the same on no two machines
 
@@ -18,8 +20,9 @@ class Claim:
     """One statement of a source: its place, its subject, both values, and the cause of a difference.
 
     printed, derived: numbers in ``unit``, None if the source (or the derivation) gives no number. verdict: one of
-    VERDICTS; "rounding" means that the source's own digits or its stated approximation explain the difference. cause:
-    in a few words, empty if the two agree without a remark.
+    VERDICTS; "rounding" means that the source's own digits or its stated approximation explain the difference,
+    "simplification" that its model leaves out what makes it, "open" that it gives too little to decide. cause: in a few
+    words, empty if the two agree without a remark.
     """
 
     source: str

@@ -9,6 +9,8 @@ from studies.pages import IN_PYTHON, STUDIES, Study, disagreements
 
 # Studies whose page takes more than 20 s of processor time; `.ci/nightly` computes them again.
 NIGHTLY = ("accuracy", "calibration", "games", "leather", "solid")
+# Studies of few sums and no search, whose pages are equal: one unit in a last digit is a stale number.
+SMOOTH = ("chain", "definitions", "kim")
 PROGRAMS = sorted(path for path in STUDIES.rglob("*.py") if re.search(r"^STUDY = ", path.read_text("utf-8"), re.M))
 STUDY: dict[str, Study] = {
     path.stem: import_module(".".join(path.relative_to(STUDIES.parent).with_suffix("").parts)).STUDY
@@ -27,7 +29,9 @@ INDEX = (STUDIES / "README.md").read_text(encoding="utf-8")
     ],
 )
 def test_study_page_equals_its_program(name: str) -> None:
-    assert disagreements(STUDY[name].committed, STUDY[name].page()) == []
+    page = STUDY[name].page()
+    assert disagreements(STUDY[name].committed, page) == []
+    assert page == STUDY[name].committed or name not in SMOOTH
 
 
 @pytest.mark.heavy
