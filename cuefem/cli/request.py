@@ -23,7 +23,13 @@ from cuefem.cli.scene_options import (
 from cuefem.cue import Cue
 from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.files import InputError, load, load_stroke
-from cuefem.files.defaults_report import Assumption, assumptions, drawing_assumptions, offered_assumptions
+from cuefem.files.defaults_report import (
+    Assumption,
+    assumptions,
+    drawing_assumptions,
+    notes_on_options,
+    offered_assumptions,
+)
 from cuefem.files.shaft_additions import SHAFT_ADDITIONS
 from cuefem.parameters.field_paths import Path as Steps
 from cuefem.parameters.field_paths import with_fields
@@ -139,7 +145,11 @@ class Request:
         """Those of the drawing alone."""
         if not isinstance(self.drawing, Cue):
             return []
-        return offered_assumptions(drawing_assumptions(self.file, self.drawing, self.given), self.offered)
+        listed = [
+            *notes_on_options(self.file, self.given),
+            *drawing_assumptions(self.file, self.drawing, self.given),
+        ]
+        return offered_assumptions(listed, self.offered)
 
     def print_warnings(self) -> None:
         """Warn on stderr of implausible numbers of the scene."""

@@ -21,7 +21,6 @@ from cuefem.files.shaft_additions import with_additions, with_shaft_material
 from cuefem.files.toml_reader import cue_as_drawn, load_accuracy, load_cue, load_toml
 from cuefem.files.warnings_of_drawings import drawing_warnings
 from cuefem.parameters.field_paths import with_fields
-from cuefem.parameters.parts import with_shaft_mass
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.unit_checks import DrawingWarning, warn
 from cuefem.scene import Scene
@@ -63,7 +62,9 @@ def load(
         A drawing or a scene (.toml), a lathe profile (.csv), or a closed CAD surface (.stl, .ply, .obj); or the name of
         a cue, such as "plain maple", "carbon" or "predator z2" (`cuefem parts` lists them).
     material : str, optional
-        Name of the material of the shaft; for a lathe profile or a surface "hard maple" by default.
+        Name of the material of the shaft, instead of the one in the file; for a lathe profile or a surface that names
+        none "hard maple" by default. A weighed density (``shaft_mass``) is that of the wood of the file: another
+        material has its own, and all other options keep it.
     length_unit : str, optional
         Unit of a surface's coordinates, "mm" by default, or of a lathe profile without units.
     front : str, optional
@@ -108,19 +109,16 @@ def load(
     else:
         loaded = _load_cue(path, material if shape else None, length_unit)
     additions = {"front": front, "ferrule": ferrule, "bore": bore}
-    changed = any(additions.values()) or (material is not None and not shape)
+    changed = any(additions.values()) or material is not None
     if (changed or body_mass is not None) and isinstance(loaded, Scene) and loaded.lumped:
         raise InputError(path, "cue", "is a lumped cue, without material, ferrule, bore or body mass")
     if changed:
         with as_input_error(path, ""):
-            before: Any = loaded if isinstance(loaded, Cue) else loaded.cue
-            cue = before
-            if material is not None and not shape:
+            cue: Any = loaded if isinstance(loaded, Cue) else loaded.cue
+            if material is not None:
                 named_material(material, path, "material")
                 cue = with_shaft_material(cue, material)
             cue = with_additions(cue, **additions)
-            if before.shaft_mass_measured:  # options on a shaft do not change its measured mass
-                cue = with_shaft_mass(cue, before.shaft_mass)
             loaded = cue if isinstance(loaded, Cue) else replace(loaded, cue=cue)
     return loaded if body_mass is None else with_body_mass(loaded, path, "body_mass", body_mass)
 

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from cuefem.cue import Cue, Material
-from cuefem.cue.materials import MATERIALS, table_name
+from cuefem.cue.materials import MATERIALS, material, table_name
+from cuefem.files import load_stroke
 from cuefem.files.cue_names import CUES, cue_name, named_path
 from cuefem.files.lathe_profile import (
     DEFAULT_MATERIAL,
@@ -21,7 +22,7 @@ from cuefem.files.lathe_profile import (
 from cuefem.files.shaft_additions import BORE, FERRULE, LEATHER, TENON_RATIO
 from cuefem.files.surface_sections import TOLERANCE
 from cuefem.files.toml_reader import missing_keys, read_tables
-from cuefem.parameters.parts import Layout
+from cuefem.parameters.parts import Layout, is_wood_of, main_material
 from cuefem.quantity.display_units import span_text, with_unit
 from cuefem.scene import DEFAULT_CONTACT_TIME, Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, GAMES
@@ -67,8 +68,9 @@ class Assumption:
 def assumptions(path: Path, scene: Scene, options: Mapping[str, Any]) -> list[Assumption]:
     """Assumptions for the scene of a file; options: values of the command's options by name."""
     tables = read_tables(path) if path.suffix.lower() == ".toml" else {}
+    notes = notes_on_options(path, options)
     if "cue" in tables:
-        return assumptions_of_tables(tables, path.parent, scene, options)
+        return [*notes, *assumptions_of_tables(tables, path.parent, scene, options)]
     game = options.get("game") or DEFAULT_GAME
     known, butt = GAMES.get(game), ""
     if known and scene.shaft.body_mass:
@@ -76,7 +78,27 @@ def assumptions(path: Path, scene: Scene, options: Mapping[str, Any]) -> list[As
         butt = f", butt to {length}, {diameter} wide, for axial waves"
     stroke = Assumption.on("game", f"default stroke of {game}{butt}")
     missing = [] if "game" in options else [stroke]
-    return [*_of_cue(path, scene.shaft, options), *missing, *_stroke({}, game, scene, options)]
+    return [*notes, *_of_cue(path, scene.shaft, options), *missing, *_stroke({}, game, scene, options)]
+
+
+def notes_on_options(path: Path, options: Mapping[str, Any]) -> list[Assumption]:
+    """What options replace in a file's drawing, in which state a shaft was weighed, and whose density another has."""
+    added = [key for key in ("ferrule", "bore") if key in options]
+    wood = options.get("material")
+    if not added and wood is None:
+        return []
+    unit = options.get("length_unit")
+    opened = load_stroke(path, length_unit=unit)
+    own = given_keys(path, opened, unit)
+    notes = [Assumption("", f"the {key} in the file is replaced: {options[key]}") for key in added if key in own]
+    if "shaft_mass" in options:
+        state = ", ".join(["its tip", *(f"this {key}" for key in added)])
+        return [*notes, Assumption("", f"the shaft was weighed with {state}")]
+    cue = opened.shaft if isinstance(opened, Scene) else opened
+    if wood is not None and "shaft_mass" in own and not is_wood_of(material(wood), main_material(cue)):
+        text = f"mass by the density of {wood}: the weighed wood is replaced"
+        notes.append(Assumption.on("shaft_mass", text))
+    return notes
 
 
 def assumptions_of_tables(

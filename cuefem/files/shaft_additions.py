@@ -16,6 +16,7 @@ from cuefem.cue.materials import material as material_of
 from cuefem.parameters.parts import MAX_FERRULE, SAME_POSITION, Layout, split_at
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.quantity.display_units import with_unit
+from cuefem.quantity.unit_checks import MIN_CUE_MASS
 from cuefem.quantity.units import parse_number
 from cuefem.scene import Scene
 
@@ -78,7 +79,14 @@ def with_additions(cue: Cue, **texts: str | None) -> Cue:
 
 def with_shaft_material(cue: Cue, name: str) -> Cue:
     """The cue with shaft and tenon of another material."""
-    return with_parameters(Scene(cue), {"shaft material": name}).shaft
+    return _with_parameters(cue, {"shaft material": name})
+
+
+def _with_parameters(cue: Cue, changes: dict[str, Any]) -> Cue:
+    """The cue with other parameters; a scene of a shaft that has no butt yet would warn."""
+    whole = replace(cue, body_mass=cue.body_mass or MIN_CUE_MASS)
+    changed = with_parameters(Scene(whole), changes).shaft
+    return replace(changed, body_mass=cue.body_mass)
 
 
 def _with_leather(cue: Cue, text: str) -> Cue:
@@ -170,7 +178,7 @@ def _bored(cue: Cue, text: str) -> Cue:
     width, depth = (_length(size) for size in sizes.groups())
     if Layout.of(cue).bore is None:
         raise ValueError("must be omitted: the drawing has a filled bore")
-    return with_parameters(Scene(cue), {"bore depth": depth, "bore width": width}).shaft
+    return _with_parameters(cue, {"bore depth": depth, "bore width": width})
 
 
 def _length(text: str) -> float:

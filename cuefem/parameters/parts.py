@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.cue import MAX_LEATHER_MODULUS, Cue, Material, Segment
-from cuefem.cue.materials import MATERIALS
+from cuefem.cue.materials import MATERIALS, table_name
 from cuefem.quantity.display_units import short_number, span_text, with_unit
 from cuefem.quantity.fields import CONTACT_TIME, DIAMETER, LENGTH, Quantity
 
@@ -150,6 +150,12 @@ def main_material(cue: Cue) -> Material:
     return max(lengths, key=lambda material: lengths[material])
 
 
+def is_wood_of(tabulated: Material, weighed: Material) -> bool:
+    """Whether a material is the one of the table of which a weighed one has another density."""
+    name = table_name(weighed)
+    return name is not None and MATERIALS[name].material == tabulated
+
+
 # --- the mass ------------------------------------------------------------------------------
 
 
@@ -238,10 +244,10 @@ def _with_ferrule_material(scene: Any, new: Material) -> Any:
 
 
 def _with_shaft_material(scene: Any, new: Material) -> Any:
-    """Set the shaft's material; a tenon of its wood changes with it."""
+    """Set the shaft's material; a tenon of its wood changes with it. A weighed density is kept with its own wood."""
     layout, segments = Layout.of(scene.shaft), list(scene.shaft.segments)
     old = segments[layout.shaft.start].material
-    if new == old:
+    if new == old or (scene.shaft.shaft_mass_measured and is_wood_of(new, old)):
         return scene
     for i in layout.shaft:
         segments[i] = replace(segments[i], material=new)

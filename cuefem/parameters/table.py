@@ -124,7 +124,10 @@ PARAMETERS: dict[str, Parameter] = {
             label="weight of the shaft as drawn, with its tip",
             part=WEIGHT,
             option="MASS",
-            help='Measured mass of the shaft as drawn, with its tip, e.g. "112 g"; sets the density of its wood.',
+            help=(
+                "Measured mass of the shaft with its tip, and with any ferrule and bore that other options add, e.g. "
+                '"112 g"; sets the density of its wood.'
+            ),
             slider=Slider("g", 1e3, 0, 0, 0.1, 0.1, 100_000),
         ),
         Parameter(

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import cuefem as cf
+from cuefem.designs.study_file import load_study
 from cuefem.parameters.parts import main_material, with_shaft_mass
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.results.uncertainty import squirt_changes
@@ -16,6 +17,7 @@ from tests.helpers.command_line import as_json, call
 from tests.helpers.cues import pool
 from tests.helpers.examples import examples
 
+VARIED = '[[vary]]\npath = "offset"\nvalues = [0.3]'
 CSV = "x [mm],diameter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n"
 
 
@@ -68,16 +70,66 @@ def test_shaft_mass_option_and_file_key_agree(tmp_path: Path) -> None:
     assert main_material(other).rho == pytest.approx(main_material(cue).rho, rel=1e-12)
 
 
-@pytest.mark.parametrize("options", [{"material": "ash"}, {"bore": "6 mm wide, 127 mm deep"}, {"ferrule": "25 mm abs"}])
-def test_load_weighed_shaft_with_options_preserves_mass(options: dict[str, str], tmp_path: Path) -> None:
-    bare = cf.Cue((cf.Segment(0.73, 0.0127, 0.0215, main_material(pool())),), 0.42)
-    for item in (with_shaft_mass(bare, 0.112), cf.Scene(with_shaft_mass(bare, 0.112))):
-        cf.save(item, tmp_path / "weighed.toml")
-        loaded = cf.load(tmp_path / "weighed.toml", **options)
-        cue = loaded if isinstance(loaded, cf.Cue) else loaded.cue
+def weighed(folder: Path) -> Path:
+    """A shaft with a ferrule that was weighed when it was converted."""
+    (csv := folder / "my.csv").write_text(CSV)
+    toml = folder / "weighed.toml"
+    assert (
+        call("convert", csv, toml, "--shaft-mass", "112 g", "--ferrule", "1 in melamine", "--body-mass", "15 oz")[0]
+        == 0
+    )
+    return toml
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{"bore": "8 mm wide, 127 mm deep"}, {"ferrule": "15 mm abs"}, {"material": "hard maple"}, {"body_mass": "16 oz"}],
+    ids=str,
+)
+def test_options_keep_the_density_of_a_weighed_shaft_at_every_door(options: dict[str, str], tmp_path: Path) -> None:
+    file = weighed(tmp_path)
+    before = cf.load(file)
+    assert isinstance(before, cf.Cue)
+    given = [text for key, value in options.items() for text in (f"--{key.replace('_', '-')}", value)]
+    assert call("convert", file, tmp_path / "converted.toml", *given)[0] == 0
+    study = tmp_path / "study.toml"
+    lines = [f'{key} = "{value}"' for key, value in options.items()]
+    study.write_text("\n".join(['scene = "weighed.toml"', 'responses = ["squirt"]', *lines, VARIED]))
+    doors = {
+        "convert": cf.load(tmp_path / "converted.toml"),
+        "strike": cf.Scene(cf.load(file, **options)),
+        "study": load_study(study).base,
+    }
+    for door, loaded in doors.items():
+        cue = loaded.shaft if isinstance(loaded, cf.Scene) else loaded
         assert isinstance(cue, cf.Cue)
-        assert (cue.shaft_mass_measured, cue.shaft_mass) == (True, pytest.approx(0.112, rel=1e-12))
-        assert len(cue.segments) > 1 or main_material(cue).E != main_material(bare).E
+        assert cue.shaft_mass_measured, door
+        assert main_material(cue).rho == pytest.approx(main_material(before).rho, rel=1e-9), door
+
+
+def test_another_wood_is_not_weighed(tmp_path: Path) -> None:
+    cue = cf.load(weighed(tmp_path), material="ash")
+    assert isinstance(cue, cf.Cue)
+    assert (main_material(cue), cue.shaft_mass_measured) == (cf.material("ash"), False)
+
+
+def test_material_option_replaces_the_material_column_of_a_profile(tmp_path: Path) -> None:
+    (csv := tmp_path / "maple.csv").write_text("x [mm],diameter [mm],material\n0,12.75,hard maple\n736.6,21.5,\n")
+    cue = cf.load(csv, material="ash")
+    assert isinstance(cue, cf.Cue)
+    assert [segment.material for segment in cue.segments] == [cf.material("ash")]
+
+
+def test_report_says_what_options_replace_and_how_a_shaft_was_weighed(tmp_path: Path) -> None:
+    file, bore, ferrule = weighed(tmp_path), "8 mm wide, 127 mm deep", "15 mm abs"
+
+    def notes(*options: str) -> list[str]:
+        return [*as_json("strike", file, *options)["assumptions"]]
+
+    assert f"the ferrule in the file is replaced: {ferrule}" in notes("--ferrule", ferrule)
+    both = notes("--ferrule", ferrule, "--bore", bore, "--shaft-mass", "110 g")
+    assert "the shaft was weighed with its tip, this ferrule, this bore" in both
+    assert any("the weighed wood is replaced" in note for note in notes("--material", "ash"))
 
 
 @pytest.mark.parametrize(("mass", "noted"), [("112 g", False), ("300 g", True), ("60 g", True)])
