@@ -35,7 +35,7 @@ from tests.quantity.test_declared_fields import INSTANCES
 from tests.test_golden_files import assert_golden
 
 MAGNITUDES = (1234.56789, 1.23456789, 0.00123456789)  # SI
-MAPLE = material("hard maple")
+MAPLE, ABS = material("hard maple"), material("abs")
 CUE = cf.Cue((cf.Segment(0.7, 0.012, 0.021, MAPLE),), 0.4)
 
 
@@ -127,6 +127,9 @@ def warnings(folder: Path) -> list[object]:
     ball, tip = cf.Ball(mass=0.6, radius=0.06), cf.Tip(restitution=0.99, friction=1.5, contact_time=0.02)
     scenes = [cf.Scene(cue, ball, tip, cf.Stroke(50.0, 0.3), (cf.TipDome(0.2),)), cf.Scene(cf.LumpedCue(0.1, 0.01))]
     scenes.append(cf.Scene(cf.Cue((cf.Segment(0.7, 0.012, 0.021, MAPLE, 0.0, 0.003),), 0.4)))
+    thin_walled = cf.Segment(0.7, 0.0127, 0.021, MAPLE, 6e-4, 0.0209)
+    ferrules = [cf.Segment(length, 0.0127, 0.0127, ABS, 0.008, 0.008, core=MAPLE) for length in (2e-4, 0.1)]
+    scenes += [cf.Scene(cf.Cue((ferrule, thin_walled), 0.4)) for ferrule in ferrules]
     return [warning for scene in scenes for warning in plausibility_warnings(scene)]
 
 

@@ -31,6 +31,7 @@ from cuefem.files.heading_words import (
     POSITION_COLUMN,
     RADIUS_COLUMN,
 )
+from cuefem.files.misplaced_diameters import misplaced_rows
 from cuefem.files.schema import named_material
 from cuefem.files.shaft_additions import ferrule_on_tenon, has_length, with_additions
 from cuefem.files.surface_sections import polyline_corners
@@ -47,9 +48,6 @@ SHAPE_EXTENSIONS = (".csv", *SURFACE_EXTENSIONS)  # files with the shape of a sh
 SPREADSHEET_EXTENSIONS = (".xlsx", ".xls", ".ods", ".numbers", ".txt", ".tsv", ".dat")
 # Points closer than this to a straight taper lie on it, m: the rounding of a file, far below the error of a lathe.
 _STRAIGHTNESS = 1e-9
-# A diameter this many times that of both its neighbours, or as much smaller, which fits them within SLACK times when
-# its decimal point is moved, is misplaced: a cue's largest step, ferrule to collar, is 1.5.
-MAX_RATIO, SLACK = 3.0, 1.5
 # Kinds of columns of which a table has one at most.
 _COLUMNS = (
     (POSITION_COLUMN,),
@@ -125,19 +123,20 @@ def read_profile(path: Path, material: Material, length_unit: str | None = None)
 def _check_decimal_points(
     path: Path, header: CsvHeader, column: ProfileColumn, x: Sequence[float], diameters: Sequence[float]
 ) -> None:
-    """InputError for a diameter that fits its neighbours ten times smaller or larger, and not as it is."""
+    """InputError for the first row whose diameter does not belong to the shaft of the others."""
+    order = sorted(range(len(x)), key=lambda i: x[i])
+    in_order = [[values[i] for i in order] for values in (x, diameters)]
+    misplaced = misplaced_rows(*in_order, in_inches=column.unit == "in")
+    if not misplaced:
+        return
+    found = misplaced[0]
     unit_size = parse_number(f"1 {column.unit}", "m") * (2 if column.kind == RADIUS_COLUMN else 1)
-    for i, (line, _) in enumerate(header.rows):
-        neighbours = [diameters[k] for k in (i - 1, i + 1) if 0 <= k < len(x) and x[k] != x[i]]
-        if len(neighbours) < 2:
-            continue
-        low, high = min(neighbours), max(neighbours)
-        for factor in (0.1, 10.0):
-            is_off = not low / MAX_RATIO < diameters[i] < high * MAX_RATIO
-            if is_off and low / SLACK <= factor * diameters[i] <= high * SLACK:
-                own, before, after = (value / unit_size for value in (diameters[i], *neighbours))
-                problem = f"{own:.6g} {column.unit} between {before:.6g} and {after:.6g}: decimal point?"
-                raise InputError(path, f"line {line}, {column.kind}", f"{problem} {factor * own:.6g} would fit")
+    row, *neighbours = (order[i] for i in (found.row, *found.neighbours))
+    own, *nearby = (diameters[i] / unit_size for i in (row, *neighbours))
+    beside = f"{'between' if len(nearby) == 2 else 'beside'} {' and '.join(f'{each:.6g}' for each in nearby)}"
+    guess = f"{found.question} {found.factor * own:.4g} would fit" if found.question else "check it"
+    line, _ = header.rows[row]
+    raise InputError(path, f"line {line}, {column.kind}", f"{own:.6g} {column.unit} {beside}: {guess}")
 
 
 def _sides(

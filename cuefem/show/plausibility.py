@@ -11,6 +11,7 @@ import numpy as np
 
 from cuefem.cue import Cue, Segment
 from cuefem.effects.tip_effects import TipDome
+from cuefem.parameters.parts import MAX_FERRULE, Layout
 from cuefem.quantity.display_units import short_number, span_text, unit_suffix, with_unit
 from cuefem.quantity.fields import quantity_fields
 from cuefem.quantity.unit_checks import CUE_DIAMETER, CUE_LENGTH, MIN_CUE_MASS
@@ -21,6 +22,7 @@ MAX_STEP = 1.5  # ratio of the diameters at the joint of two segments
 MIN_DRAWN_MASS = 0.02  # kg
 BUTT_END = 0.01  # of the volume: what lies behind it is no part of the taper
 DENSITY_MARGIN = 0.1  # relative, beyond the density range of a wood
+MIN_FERRULE, MIN_WALL, MIN_BORE = 5e-4, 2e-4, 1e-3  # m; a fibre pad in front of a shaft is 0.8 mm thick
 LONG, STIFF, LIGHT = 0.3, 3e10, 2500.0  # m, Pa, kg/m3: a long segment, stiffer than wood and lighter than metal
 
 
@@ -61,6 +63,7 @@ def _of_drawing(cue: Cue) -> Iterator[Check]:
             f"{span_text(0.0085, 0.014, 'm')} at the tip" if is_tip else f"{span_text(0.0085, 0.035, 'm')} along a cue"
         )
         yield name, diameter, CUE_DIAMETER, "m", f"expected {usual}; {check}"
+    yield from _of_parts(cue)
     yield "drawn mass", cue.shaft_mass, (MIN_DRAWN_MASS, inf), "kg", "check the sizes and the densities"
     if any(
         segment.length > LONG and segment.material.E > STIFF and segment.material.rho < LIGHT
@@ -69,6 +72,35 @@ def _of_drawing(cue: Cue) -> Iterator[Check]:
     ):
         tubes = "carbon shafts are tubes; add the bore (--bore, or `cuefem guide files`)"
         yield "a solid rod as stiff as carbon fibre, drawn mass", cue.shaft_mass, (0.0, 0.0), "kg", tubes
+
+
+def _of_parts(cue: Cue) -> Iterator[Check]:
+    """Sizes that a slip of unit or decimal point leaves of a ferrule, of a bore or of a wall."""
+    ferrule = sum(cue.segments[i].length for i in Layout.of(cue).ferrule)
+    usual = f"expected {span_text(0.005, 0.04, 'm')}; check its unit"
+    if ferrule:
+        yield "ferrule length", ferrule, (MIN_FERRULE, inf), "m", usual
+    for i, segment in enumerate(cue.segments):
+        core, bore = segment.core, max(segment.tip_bore, segment.butt_bore)
+        if core is not None and segment.material.E < core.E:
+            yield f"segments[{i}].length, a ferrule on its tenon,", segment.length, (0.0, MAX_FERRULE), "m", usual
+        if bore:
+            wall = min(segment.tip_diameter - segment.tip_bore, segment.butt_diameter - segment.butt_bore) / 2
+            sizes = "check diameter and bore"
+            yield (
+                f"wall of segments[{i}]",
+                wall,
+                (MIN_WALL, inf),
+                "m",
+                f"expected {with_unit(8e-4, 'm')} or more; {sizes}",
+            )
+            yield (
+                f"bore of segments[{i}]",
+                bore,
+                (MIN_BORE, inf),
+                "m",
+                f"expected {with_unit(3e-3, 'm')} or more; {sizes}",
+            )
 
 
 def _without_rounded_butt(segments: tuple[Segment, ...]) -> tuple[Segment, ...]:

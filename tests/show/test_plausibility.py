@@ -9,9 +9,11 @@ import pytest
 import cuefem as cf
 from cuefem.show.plausibility import plausibility_warnings
 from tests.helpers.command_line import call
+from tests.helpers.random_shafts import random_shaft
 
 ROOT = Path(__file__).parents[2]
-FILES = sorted(path for kind in ("meshes/*.toml", "meshes/*.stl", "studies/scenes/*.toml") for path in ROOT.glob(kind))
+KINDS = ("meshes/*.toml", "meshes/*.stl", "studies/scenes/*.toml", "studies/measured/*/cue.toml")
+FILES = sorted(path for kind in KINDS for path in ROOT.glob(kind))
 PROFILE = "x [mm],diameter [mm]\n0,12.5\n250,12.9\n737,21\n"
 
 
@@ -52,3 +54,27 @@ BUTTS = {"chamfer": "1460,30\n1470,5\n", "bumper": "1440,30\n1440.1,12\n1470,12\
 def test_chamfer_or_bumper_at_the_butt_causes_no_warning(name: str, tmp_path: Path) -> None:
     (tmp_path / "cue.csv").write_text("x [mm],diameter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n" + BUTTS[name])
     assert plausibility_warnings(cf.Scene(cf.load(tmp_path / "cue.csv"))) == []
+
+
+WOOD, PLASTIC = cf.material("hard maple"), cf.material("melamine")
+CONE = cf.Segment(0.7, 0.01275, 0.0215, WOOD)
+SLIPPED = {
+    "a ferrule of 25 in": (cf.Segment(0.635, 0.01275, 0.02, PLASTIC, 0.008, 0.008, core=WOOD), CONE),
+    "a ferrule of 0.25 mm": (cf.Segment(2.5e-4, 0.01275, 0.01275, PLASTIC, 0.008, 0.008, core=WOOD), CONE),
+    "a bore of 12.7 mm in 12.75 mm": (cf.Segment(0.127, 0.01275, 0.01275, WOOD, 0.0127, 0.0127), CONE),
+    "a bore of 0.6 mm": (cf.Segment(0.127, 0.01275, 0.01275, WOOD, 6e-4, 6e-4), CONE),
+}
+
+
+@pytest.mark.parametrize("slip", SLIPPED)
+def test_slipped_size_of_a_part_is_warned(slip: str) -> None:
+    part = "bore" if "0.6" in slip else "wall" if "bore" in slip else "ferrule"
+    warnings = plausibility_warnings(cf.Scene(cf.Cue(SLIPPED[slip], 0.43)))
+    assert any(part in line.partition(";")[0] for line in warnings)
+
+
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
+def test_random_shafts_have_no_warning_of_their_parts() -> None:
+    for seed in range(580_000, 580_300):
+        lines = plausibility_warnings(cf.Scene(replace(random_shaft(seed).cue, body_mass=0.43)))
+        assert [line for line in lines if "check its unit" in line or "diameter and bore" in line] == [], seed
