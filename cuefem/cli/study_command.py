@@ -24,7 +24,7 @@ from cuefem.designs.scatter import Scatter
 from cuefem.designs.store import SqliteStore, check_parquet, write_parquet, write_table
 from cuefem.designs.study_file import base_assumptions, load_study, study_kind
 from cuefem.designs.study_result import StudyResult
-from cuefem.designs.sweep import sweep
+from cuefem.designs.many_designs import compute_designs
 from cuefem.files import InputError, save, write_atomically
 from cuefem.parameters.scene_changes import with_values_at
 from cuefem.parameters.scene_paths import value_at
@@ -133,7 +133,7 @@ def study(
         database = SqliteStore(first, designs, others)
         with dask_executor(scheduler) if scheduler else nullcontext(workers) as where:
             if part:
-                compute_part = partial(sweep, designs, database, workers=where, part=part)
+                compute_part = partial(compute_designs, designs, database, workers=where, part=part)
                 _run_stored(file, database, len(range(designs.size)[part]), compute_part)
                 if as_json:
                     print_json({"file": str(file), "store": str(first), "designs": database.done})

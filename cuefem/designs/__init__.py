@@ -3,6 +3,6 @@
 from cuefem.designs.evaluation import Response, evaluate
 from cuefem.designs.sampling import Levels, Normal, Sample, Span
 from cuefem.designs.study import Study, Vary
-from cuefem.designs.sweep import Row
+from cuefem.designs.many_designs import Row
 
 __all__ = ["Levels", "Normal", "Response", "Row", "Sample", "Span", "Study", "Vary", "evaluate"]

@@ -22,7 +22,7 @@ from cuefem.cue import Array
 from cuefem.designs.evaluation import shortfalls
 from cuefem.designs.sampling import Levels
 from cuefem.designs.study import Study, check_column_name
-from cuefem.designs.sweep import Columns
+from cuefem.designs.many_designs import Columns
 from cuefem.quantity.equality import equal_fields
 from cuefem.quantity.fields import check_count
 

@@ -30,7 +30,7 @@ from cuefem.designs.study_table import (
     tabulate_sweep,
     varied_segments,
 )
-from cuefem.designs.sweep import Columns, Row, Store, sweep
+from cuefem.designs.many_designs import Columns, Row, Store, compute_designs
 from cuefem.quantity.display import counted
 from cuefem.quantity.display_units import with_unit
 from cuefem.results.records import Record, Table
@@ -404,7 +404,7 @@ def compute_study(
 ) -> StudyResult:
     """Compute a study.
 
-    store: stored designs; by default none. workers: as in `sweep`. progress: as in `sweep`, in an
+    store: stored designs; by default none. workers: as in `compute_designs`. progress: as in `compute_designs`, in an
     optimization called with each `Round`. rounds: of an optimization, which has neither store nor workers.
     """
     if isinstance(definition, Problem):
@@ -412,7 +412,7 @@ def compute_study(
         columns = Columns(np.array([[*best.responses.values()]]), {})
         return OptimumResult(definition.study.base, definition, columns, best)
     designs = designs_of(definition)
-    columns = sweep(designs, store, workers=workers, progress=progress)
+    columns = compute_designs(designs, store, workers=workers, progress=progress)
     if isinstance(definition, Scatter):
         return ScatterResult(designs.base, definition, columns, sobol_indices_of(definition, columns))
     return SweepResult(designs.base, definition, columns)

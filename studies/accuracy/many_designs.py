@@ -32,7 +32,7 @@ from cuefem.designs.design_key import KEY_BYTES, code_digest
 from cuefem.designs.executors import in_parallel
 from cuefem.designs.sampling import Sample, Span
 from cuefem.designs.store import SqliteStore
-from cuefem.designs.sweep import Columns
+from cuefem.designs.many_designs import Columns
 from studies import pages, strokes
 from studies.pages import table
 

@@ -20,7 +20,7 @@ from cuefem.designs.store import SqliteStore
 from cuefem.designs.study import Study
 from cuefem.designs.study_file import load_study
 from cuefem.designs.study_result import compute_study
-from cuefem.designs.sweep import Columns
+from cuefem.designs.many_designs import Columns
 
 ENVIRONMENT = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])}
 SCENE = """

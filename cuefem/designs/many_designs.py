@@ -78,7 +78,7 @@ class Store(Protocol):
         """Store a computed block, all or none of it."""
 
 
-def sweep(
+def compute_designs(
     study: Study,
     store: Store | None = None,
     *,
