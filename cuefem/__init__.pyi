@@ -62,7 +62,7 @@ from .designs.optimum import Limit as Limit, Problem as Problem
 from .designs.sampling import Levels as Levels, Normal as Normal, Sample as Sample, Span as Span
 from .designs.scatter import Scatter as Scatter
 from .designs.study import Study as Study, Vary as Vary
-from .designs.study_file import study as study
+from .designs.study_answer import study as study
 from .files.errors import InputError as InputError
 from .parameters.scene_changes import with_parameters as with_parameters
 from .quantity.unit_checks import PlausibilityWarning as PlausibilityWarning

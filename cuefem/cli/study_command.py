@@ -19,12 +19,11 @@ from cuefem.cli.progress import ProgressLines, progress_bar
 from cuefem.cli.request import errors_name_file, print_warnings
 from cuefem.cli.scene_command import Presentation, check_overwrite, force_option
 from cuefem.designs import Study
+from cuefem.designs.many_designs import compute_designs
 from cuefem.designs.optimum import Problem, Round
-from cuefem.designs.scatter import Scatter
 from cuefem.designs.store import SqliteStore, check_parquet, write_parquet, write_table
 from cuefem.designs.study_file import base_assumptions, load_study, study_kind
 from cuefem.designs.study_result import StudyResult
-from cuefem.designs.many_designs import compute_designs
 from cuefem.files import InputError, save, write_atomically
 from cuefem.parameters.scene_changes import with_values_at
 from cuefem.parameters.scene_paths import value_at
@@ -115,7 +114,7 @@ def study(
         if path.suffix.lower() == ".parquet":
             check_parquet()
     plan = load_study(file)
-    designs = plan if isinstance(plan, Study) else plan.sobol_study if isinstance(plan, Scatter) else plan.study
+    designs = plan.all_designs
     notes = base_assumptions(file, designs.base)
     print_warnings(designs.base)
     database = None

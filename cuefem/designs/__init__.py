@@ -1,8 +1,8 @@
 """Design studies: sweeps, optima, tolerance analyses and sensitivities, their files, and the store of designs."""
 
 from cuefem.designs.evaluation import Response, evaluate
+from cuefem.designs.many_designs import Row
 from cuefem.designs.sampling import Levels, Normal, Sample, Span
 from cuefem.designs.study import Study, Vary
-from cuefem.designs.many_designs import Row
 
 __all__ = ["Levels", "Normal", "Response", "Row", "Sample", "Span", "Study", "Vary", "evaluate"]

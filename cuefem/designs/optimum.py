@@ -1,35 +1,35 @@
-"""Optimization of a design within limits on its responses.
-
-SLSQP on finite differences starts at the base design. If it ends outside the limits, differential evolution searches
-the ranges and SLSQP continues from there. Values in a list (names of materials) are tried one by one.
-"""
+"""An optimum: the best design within limits on its responses, beside the unmodified one; `search` finds it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import math
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from cuefem.beam.blas_threads import one_blas_thread
 from cuefem.cue import Array, Material
 from cuefem.cue.materials import material_name
+from cuefem.designs.design_differences import design_differences
 from cuefem.designs.evaluation import Evaluation, Response, evaluate
 from cuefem.designs.sampling import Levels, Normal, Span, Value
 from cuefem.designs.study import Study, StudyDesign, Vary
+from cuefem.designs.study_result import StudyResult
+from cuefem.designs.study_table import column_label, shown
 from cuefem.parameters.scene_paths import value_at
-from cuefem.quantity.fields import check_count
+from cuefem.quantity.display import counted
+from cuefem.quantity.display_units import format_change, with_unit
+from cuefem.results.differences import difference_text
+from cuefem.results.quantities import DASH
+from cuefem.results.records import Record, Table
 from cuefem.scene import Resolution, Scene
+from cuefem.show.drawings import DIAMETER_SCALE, CueDrawing, cue_drawing
 
-TOLERANCE = 1e-6  # relative to a limit's own size (1 if it is 0): a closer value makes the limit active
-EXCLUDED = 1e9  # score of a design that violates a limit: worse than any within the limits
-INVALID_OBJECTIVE = 1e3  # scaled objective of an invalid design in SLSQP
-ZERO_SQUIRT = 1e-7  # rad
-STEP = 1e-4  # of differences, relative to a range: a hundred times the numerical error of a strike (1e-6)
-POPULATION = 15  # designs per variable in differential evolution
+EXCLUDED = 1e9  # relative margin of a missing response to a limit
+NOT_DISTINCT = "* smaller than its uncertainty: the two designs are not distinct in this result."
 
 
 @dataclass(frozen=True)
@@ -196,6 +196,11 @@ class Problem:
         return _each(Span.share, self.spans, points)
 
     @property
+    def all_designs(self) -> Study:
+        """Its study, whose ranges the search fills."""
+        return self.study
+
+    @property
     def start(self) -> Array:
         """The base design as a point, (variables,), clipped to the ranges, or their middle if it has no value."""
         point = list[float]()
@@ -259,243 +264,145 @@ def _each(of: Callable[[Span, float], float], spans: Mapping[int, Span], values:
     return np.array([*rows], float).reshape(values.shape)
 
 
-def optimum(
-    problem: Problem,
-    *,
-    start: Array | None = None,
-    rounds: int = 60,
-    seed: int = 0,
-    progress: Callable[[Round], object] = lambda round: None,
-) -> Optimum:
-    """The best design within ranges and limits.
+@dataclass(frozen=True, repr=False)
+class OptimumResult(StudyResult):
+    """The result of an optimization: the best design and its active limits.
 
     Parameters
     ----------
-    problem : Problem
-        Variables, objective and limits. Each combination of listed values is a separate search.
-    start : array, optional
-        The point to start from; the default is the base design.
-    rounds : int
-        Maximum number of steps of SLSQP, and of generations of differential evolution.
-    seed : int
-        Of differential evolution.
-    progress : callable, optional
-        Called with a `Round` after each step or generation.
-
-    Returns
-    -------
-    Optimum
-        A local optimum if SLSQP converged from the base: try another ``start`` to search for a better one.
-
-    Raises
-    ------
-    ValueError
-        If no design is within the limits, the message names the violated ones; if ``rounds`` is below 1.
-
-    Notes
-    -----
-    SLSQP (`scipy.optimize.minimize`) in numbers scaled to their ranges (their logarithms, if the spacing is
-    logarithmic); its gradients are forward differences of `STEP`, all of a step in one batch. Differential evolution
-    (`scipy.optimize.differential_evolution`) prefers, among designs that violate a limit, the smallest violation.
+    optimum : Optimum
+        The best design: ``scene``, ``values``, ``responses``, ``active`` limits and ``evaluations``.
     """
-    check_count("rounds", rounds, 1)
-    optima, choices, reasons = list[Optimum](), list[ChoiceResult](), list[str]()
-    sign, count = -1 if problem.maximize else 1, 0
-    for case in problem.choices():
-        search = _Search(case, progress, count)
-        first = case.shares(case.start if start is None else np.asarray(start, float))
-        try:
-            optima.append(search.optimum(first, rounds, seed))
-            choices.append(ChoiceResult(search.choice, optima[-1].responses[problem.objective.name]))
-        except ValueError as error:
-            reasons.append(str(error))
-            choices.append(ChoiceResult(search.choice, np.nan, str(error)))
-        count = search.evaluations
-    if not optima:
-        raise ValueError(reasons[0])
-    best = min(optima, key=lambda each: sign * problem.objective.size(each.responses[problem.objective.name]))
-    listed = tuple(choices) if len(choices) > 1 else ()
-    return replace(best, evaluations=count, choices=listed, start=problem.base_design)
 
+    optimum: Optimum = field(repr=False)
+    definition: Problem
+    kind: ClassVar[str] = "optimum"
 
-class _NoDesign(Exception):
-    """A point whose design is invalid or lacks a response."""
+    @property
+    def best(self) -> dict[str, StudyDesign]:
+        """The best design, by the name of every response."""
+        return {response.name: self.optimum for response in self.study.responses}
 
+    def _values(self) -> Iterator[tuple[Value, ...]]:
+        return iter([tuple(self.optimum.values.values())])
 
-class _Search:
-    """One search: points are fractions in [0, 1] of the ranges; evaluations start at ``count``."""
+    def _computed(self) -> int:
+        return self.optimum.evaluations
 
-    def __init__(self, problem: Problem, progress: Callable[[Round], object], count: int) -> None:
-        self.problem, self.progress, self.evaluations = problem, progress, count
-        self.choice = {problem.vary[i].name: value for i, value in problem.choice.items()}
-        self.rounds, self.best, self.scale = 0, np.inf, -1.0 if problem.maximize else 1.0
-        self._responses, self._slopes = dict[bytes, Array](), dict[bytes, Array]()
-        self._reasons = dict[bytes, str]()
+    def values(self) -> Record:
+        """The best design, its responses and active constraints, and the evaluations."""
+        return optimum_record(self.definition, self.optimum, self.changes)
 
-    def rows(self, shares: Array) -> Array:
-        """Responses at points (n, variables)."""
-        found = self.problem.evaluate(self.problem.points(shares))
-        self._reasons |= {u.tobytes(): reason for u, reason in zip(shares, found.reasons, strict=True) if reason}
-        self.evaluations += len(shares)
-        self.best = min(self.best, self.scores(found.values).min(initial=np.inf))
-        return found.values
+    def tables(self) -> list[Table | str]:
+        """Varied parameters, the best design, its active constraints, and the best design for each choice."""
+        return [*super().tables(), *tabulate_optimum(self.definition, self.optimum, self.changes)]
 
-    def scores(self, values: Array) -> Array:
-        """The scores to minimize: the objective, or `EXCLUDED` plus the violation of the limits."""
-        violation = np.minimum(self.problem.margins(values) + TOLERANCE, 0).sum(axis=1)
-        objective = np.nan_to_num(self.scale * self.problem.sizes(values)[:, 0], nan=EXCLUDED)
-        return np.asarray(np.where(violation < 0, EXCLUDED - violation, objective))
+    @cached_property
+    def changes(self) -> dict[str, Record]:
+        """Relative difference of each response of the best design from the unmodified one, as of `cuefem.compare`.
 
-    def report(self, *_: Any, **__: Any) -> None:
-        """Count a round and report progress."""
-        self.rounds += 1
-        best = self.best / self.scale if self.best < EXCLUDED else np.nan
-        self.progress(Round(self.choice, self.rounds, self.evaluations, best))
-
-    def optimum(self, start: Array, rounds: int, seed: int) -> Optimum:
-        """The best design; ValueError if none is within the limits."""
-        size = abs(self.at(start)[0]) if self.problem.objective.unit else 1.0
-        self.scale, self.best = self.scale / (size if np.isfinite(size) and size else 1.0), np.inf
-        ends = [(start, "")]
-        if len(start) and not self.is_least(start):
-            ends.append(self.by_slsqp(start, rounds))
-            is_found = self.is_least(ends[-1][0]) or not (ends[-1][1] or self.violated(ends[-1][0]))
-            if not is_found:
-                ends.append(self.by_evolution(start, rounds, seed))
-                ends.append(self.by_slsqp(ends[-1][0], rounds))
-        u = self.onto_ends(min((u for u, _ in ends), key=lambda u: self.scores(self.at(u)[None])[0]))
-        violated, stop_reason = self.violated(u), "" if self.is_least(u) else ends[-1][1]
-        if violated or not np.isfinite(self.at(u)).all():
-            raise ValueError(self.none_found(u, violated))
-        point, study = self.problem.points(u), self.problem.study
-        return Optimum(
-            self.problem.scene(point),
-            dict(zip((vary.name for vary in self.problem.vary), self.problem.design(point), strict=True)),
-            dict(zip((response.name for response in study.responses), self.at(u).tolist(), strict=True)),
-            tuple(constraint for constraint, margin in self.margins(u) if margin < TOLERANCE),
-            self.evaluations,
-            stop_reason,
-        )
-
-    def none_found(self, u: Array, violated: Sequence[str]) -> str:
-        """The error for a nearest point that lacks responses, or violates limits."""
-        nearest = dict(zip(self.problem.study.responses, self.at(u).tolist(), strict=True))
-        missing = [response.name for response, value in nearest.items() if not np.isfinite(value)]
-        if missing:
-            reason = self._reasons[np.clip(u, 0, 1).tobytes()]
-            return f"no design that has {', '.join(missing)} was found; of the nearest: {reason}"
-        has = ", ".join(f"{response.name} {value:.6g} {response.unit}".strip() for response, value in nearest.items())
-        limits = ", ".join(violated)
-        return f"no design within {limits} was found; the nearest has {has}: relax a limit or widen a range"
-
-    def is_least(self, u: Array) -> bool:
-        """Whether a size that is minimized, such as that of squirt, is 0 at a point within the limits.
-
-        No design is better. SLSQP does not converge there: the size has a kink.
+        "difference", "error" (1 sigma) and "distinct"; without a response that one of them lacks.
         """
-        objective = self.problem.objective
-        is_zero = float(objective.size(self.at(u)[0])) <= ZERO_SQUIRT
-        return objective.result.odd and not self.problem.maximize and is_zero and not self.violated(u)
+        assert self.optimum.start is not None
+        (changes,) = design_differences(self.study, [self.optimum.start, self.optimum])
+        return changes
 
-    def at(self, u: Array) -> Array:
-        """Responses at one point, (responses,)."""
-        u = np.clip(u, 0, 1)  # SLSQP oversteps by rounding
-        key = u.tobytes()
-        if key not in self._responses:
-            self._responses[key] = self.rows(u[None])[0]
-        return self._responses[key]
-
-    def slopes(self, u: Array) -> Array:
-        """Derivatives of the responses' sizes by forward differences into the ranges, (responses, variables)."""
-        u = np.clip(u, 0, 1)
-        key = u.tobytes()
-        if key not in self._slopes:
-            steps = np.where(u > 0.5, -STEP, STEP)
-            ahead, here = (self.problem.sizes(rows) for rows in (self.rows(u + np.diag(steps)), self.at(u)[None]))
-            self._slopes[key] = ((ahead - here) / steps[:, None]).T
-        if not np.isfinite(self._slopes[key]).all():
-            raise _NoDesign
-        return self._slopes[key]
-
-    def onto_ends(self, u: Array) -> Array:
-        """The point with values closer than `TOLERANCE` to an end of a range on that end, if this violates no limit."""
-        end = np.round(u)
-        ends = np.where(np.abs(u - end) < TOLERANCE, end, u)
-        return u if self.violated(ends) else ends
-
-    @one_blas_thread  # SLSQP's own equations, too: their round-off decides how many designs it takes
-    def by_slsqp(self, start: Array, rounds: int) -> tuple[Array, str]:
-        """(The last point of SLSQP; why it stopped without convergence, or "")."""
-        from scipy.optimize import minimize  # loaded when used: a second
-
-        responses, last = self.problem.study.responses, start
-
-        def value(u: Array, k: int, missing: float) -> float:
-            """The size of a response; ``missing`` for a design without one, so that SLSQP shortens the step."""
-            nonlocal last
-            values = self.at(u)
-            last = u if np.isfinite(values).all() else last
-            return float(responses[k].size(values[k])) if np.isfinite(values).all() else missing
-
-        def constraint(k: int, sign: int, bound: float) -> dict[str, Any]:
-            unit = sign / (abs(bound) or 1.0)
-            return {
-                "type": "ineq",
-                "fun": lambda u: unit * (value(u, k, bound - INVALID_OBJECTIVE / unit) - bound),
-                "jac": lambda u: unit * self.slopes(u)[k],
-            }
-
-        try:
-            result = minimize(
-                lambda u: self.scale * value(u, 0, INVALID_OBJECTIVE / self.scale),
-                start,
-                jac=lambda u: self.scale * self.slopes(u)[0],
-                method="SLSQP",
-                bounds=[(0, 1)] * len(start),
-                constraints=[
-                    constraint(responses.index(limit.response), *side)
-                    for limit in self.problem.limits
-                    for side in limit.sides
-                ],
-                options={"maxiter": rounds, "ftol": 1e-9},
-                callback=self.report,
-            )
-        except _NoDesign:
-            return last, "a design in the ranges is invalid"
-        return np.clip(result.x, 0, 1), "" if result.success else result.message.rstrip(".")
-
-    def by_evolution(self, start: Array, rounds: int, seed: int) -> tuple[Array, str]:
-        """The same for differential evolution."""
-        from scipy.optimize import differential_evolution
-
-        result = differential_evolution(
-            lambda u: self.scores(self.rows(u.T)),
-            [(0, 1)] * len(start),
-            x0=start,
-            rng=np.random.default_rng(seed),
-            popsize=POPULATION,
-            maxiter=rounds,
-            tol=1e-6,
-            vectorized=True,
-            updating="deferred",
-            polish=False,
-            callback=self.report,
-        )
-        return result.x, "" if result.success else result.message.rstrip(".")
-
-    def margins(self, u: Array) -> list[tuple[Constraint, float]]:
-        """Every limit and every end of a range, with its relative margin."""
-        limits = [
-            Constraint(limit.response.name, ">=" if sign > 0 else "<=", bound)
-            for limit in self.problem.limits
-            for sign, bound in limit.sides
+    def charts(self) -> list[CueDrawing]:
+        """Drawings of the unmodified and of the best design."""
+        assert self.optimum.start is not None
+        designs = {"start": self.optimum.start, "best design": self.optimum}
+        return [
+            cue_drawing(design.scene, f"{name}, diameters {DIAMETER_SCALE:g} times enlarged")
+            for name, design in designs.items()
+            if design.scene.cue.segments
         ]
-        margins = list(zip(limits, self.problem.margins(self.at(u)[None])[0].tolist(), strict=True))
-        for (i, span), share in zip(self.problem.spans.items(), u.tolist(), strict=True):
-            name = self.problem.vary[i].name
-            margins += [(Constraint(name, ">=", span.low), share), (Constraint(name, "<=", span.high), 1 - share)]
-        return margins
 
-    def violated(self, u: Array) -> list[str]:
-        """The limits that a point violates."""
-        return [str(constraint) for constraint, margin in self.margins(u) if not margin >= -TOLERANCE]
+
+def optimum_record(problem: Problem, best: Optimum, changes: Mapping[str, Record]) -> Record:
+    """The best design, its responses and active constraints beside the unmodified design, and the evaluations."""
+    assert best.start is not None
+    aim = {"maximize" if problem.maximize else "minimize": problem.objective.name}
+    return {
+        "objective": aim,
+        "value": best.responses[problem.objective.name],
+        "values": best.values,
+        "responses": best.responses,
+        "start": {"values": best.start.values, "responses": best.start.responses, "failure": best.start.failure},
+        "changes": changes,
+        "active": [constraint._asdict() for constraint in best.active],
+        "is_set_by_constraints": is_set_by_constraints(problem, best),
+        "evaluations": best.evaluations,
+        "stop_reason": best.stop_reason,
+        "choices": [choice._asdict() for choice in best.choices],
+    }
+
+
+def is_set_by_constraints(problem: Problem, best: Optimum) -> bool:
+    """Whether as many constraints are active as there are numbers to choose."""
+    reached = {constraint.name for constraint in best.active}  # a limit with one bound on both sides counts once
+    return len(reached) >= len(problem.spans) > 0
+
+
+def tabulate_optimum(problem: Problem, best: Optimum, changes: Mapping[str, Record]) -> list[Table | str]:
+    """The best design beside the unmodified one, its active constraints, and the best design for each choice.
+
+    changes: differences of the responses, as of `design_differences`.
+    """
+    units = dict(zip(problem.study.columns, problem.study.units, strict=True))
+    units |= {response.name: response.display_key for response in problem.study.responses}
+    labels = {response.name: response.label for response in problem.study.responses}
+
+    def text(name: str, value: Any) -> str:
+        if isinstance(value, str):
+            return value
+        return DASH if math.isnan(value) else with_unit(value, units[name])
+
+    assert best.start is not None
+    start = {**best.start.responses, **best.start.values}
+    both = {**best.responses, **best.values}
+    names = {name: labels.get(name) or column_label(name) for name in both}
+    aim = f"{'maximize' if problem.maximize else 'minimize'} {problem.objective.label}"
+    compared = tuple(
+        (names[name], text(name, start[name]), text(name, value), _change_text(start[name], value, changes.get(name)))
+        for name, value in both.items()
+    )
+    marked = any(not change["distinct"] for change in changes.values())
+    shared = ("±: 1σ of the difference; shared errors cancel.",) if changes else ()
+    missing = (f"start: {best.start.failure}",) if best.start.failure else ()
+    notes = (*shared, *((NOT_DISTINCT,) if marked else ()), *missing)
+    active = [f"{names[name]} {sense} {text(name, bound)}" for name, sense, bound in best.active]
+    tables: list[Table | str] = [
+        f"{aim}: {counted(best.evaluations, 'design')} computed",
+        Table("Best design", ("", "start", "best", "change"), compared, notes),
+        f"active constraints: {', '.join(active) or 'none'}",
+    ]
+    if is_set_by_constraints(problem, best):
+        tables.append(
+            "The answer is your limits: as many constraints are active as there are numbers to choose. Only another "
+            "limit or a wider range gives a better design."
+        )
+    if best.stop_reason:
+        tables.append(f"not finished: {best.stop_reason}; more --iterations may find a better design")
+    if best.choices:
+        head = (*map(column_label, best.choices[0].values), problem.objective.heading, "")
+        rows = tuple(
+            (
+                *(text(name, value) for name, value in choice.values.items()),
+                DASH if choice.reason else shown(choice.objective, problem.objective.display_key),
+                choice.reason,
+            )
+            for choice in best.choices
+        )
+        texts = (*range(len(head) - 2), len(head) - 1)
+        tables.append(Table("Best design for each choice", head, rows, texts=texts))
+    return tables
+
+
+def _change_text(start: Any, value: Any, change: Record | None) -> str:
+    """A change in %, of a response with its uncertainty; a dash where there is none."""
+    if change is not None:
+        return difference_text(change["difference"], change["error"]) + ("" if change["distinct"] else " *")
+    numbers = not isinstance(start, str) and not isinstance(value, str)
+    if not numbers or not start * value > 0:
+        return DASH
+    return format_change(100 * (value / start - 1), 1, "%")

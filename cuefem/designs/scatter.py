@@ -10,24 +10,32 @@ part that would remain if all others were known. Single parameters of a group ha
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from scipy.special import ndtr, ndtri
 
 from cuefem.cue import Array
-from cuefem.designs.evaluation import shortfalls
+from cuefem.designs.evaluation import Response, shortfalls
+from cuefem.designs.many_designs import Columns
 from cuefem.designs.sampling import Levels
 from cuefem.designs.study import Study, check_column_name
-from cuefem.designs.many_designs import Columns
+from cuefem.designs.study_result import CHART_HEIGHT, ROW_HEIGHT, ROWS_END, StudyResult
+from cuefem.designs.study_table import shown
+from cuefem.quantity.display_units import display_unit, to_display
 from cuefem.quantity.equality import equal_fields
 from cuefem.quantity.fields import check_count
+from cuefem.results.records import Record, Table
+from cuefem.show.charts import Axis, Chart, Curve, Dots, Tick, chart
 
 CONFIDENCE, RESAMPLES = 0.95, 400  # of the bootstrapped intervals
 CHUNK = 256  # points computed at a time
+MIN_SHARE = 0.01  # of the variance, of a factor that is named among the strongest
+MAX_BINS = 40  # of a histogram
+QUANTILES = ("5 %", "50 %", "95 %")  # marked in it
 HALF_CELL = 2.0**-31  # half the spacing of scipy's Sobol points: added, so that no point is 0
 
 
@@ -151,7 +159,7 @@ class Scatter:
         return tuple(groups.get(each[0], " + ".join(self.names[i] for i in each)) for each in self.factor_indices)
 
     @property
-    def sobol_study(self) -> Study:
+    def all_designs(self) -> Study:
         """The study of (factors + 2) ``count`` designs: two independent samples, and for each factor the first sample
         with the factor's parameters from the second."""
         return replace(self.study, sample=_Points(self))
@@ -203,7 +211,7 @@ class SobolIndices:
 
 
 def sobol_indices_of(scatter: Scatter, columns: Columns) -> SobolIndices:
-    """Sobol indices from the responses of the designs of `Scatter.sobol_study`.
+    """Sobol indices from the responses of the designs of `Scatter.all_designs`.
 
     Estimators of Saltelli et al. (Comput. Phys. Commun. 181 (2010) 259, table 2 b, f) as scipy.stats has them; error
     about 1/sqrt(count) or less, see the intervals. ValueError if a design has no response, with the first reason, or
@@ -263,3 +271,155 @@ def bootstrap_sobol_indices(values: Array, *, seed: int) -> tuple[Array, Array, 
     ).confidence_interval
     (first, total), low, high = estimate(np.arange(count)), resampled.low, resampled.high
     return first, total, np.stack([low[0], high[0]]), np.stack([low[1], high[1]])
+
+
+@dataclass(frozen=True, repr=False)
+class ScatterResult(StudyResult):
+    """The result of a tolerance analysis: the spread of each response, and the share of each factor in it.
+
+    Parameters
+    ----------
+    sobol_indices : SobolIndices
+        Sobol indices of each response.
+    """
+
+    sobol_indices: SobolIndices = field(repr=False)
+    definition: Scatter
+    kind: ClassVar[str] = "scatter"
+
+    def _independent(self) -> int:
+        """The two independent samples; the other designs mix them."""
+        return 2 * self.definition.count
+
+    def values(self) -> Record:
+        """The distribution of each response, and the shares of its factors."""
+        about = {"count": self.definition.count, "seed": self.definition.seed}
+        return about | {"responses": scatter_record(self.study, self.spread, self.sobol_indices)}
+
+    def charts(self) -> list[Chart]:
+        """The distribution of each response, and the share of each factor in its variance."""
+        return scatter_charts(self.study.responses, self.finite_samples, self.spread, self.sobol_indices)
+
+    def tables(self) -> list[Table | str]:
+        """Varied parameters, spreads, and the shares of the factors."""
+        return [*super().tables(), *tabulate_scatter(self.definition, self.spread, self.sobol_indices)]
+
+
+def scatter_record(study: Study, spread: Mapping[str, Mapping[str, float]], drivers: SobolIndices) -> Record:
+    """The distribution of each response, and the shares of its factors in the variance."""
+    parts = ("first", "first_interval", "total", "total_interval")
+    return {
+        response.name: {
+            "unit": response.unit,
+            **spread[response.name],
+            "factors": {
+                factor: {part: getattr(drivers, part)[..., i, k] for part in parts}
+                for i, factor in enumerate(drivers.factors)
+            },
+        }
+        for k, response in enumerate(study.responses)
+    }
+
+
+def tabulate_scatter(
+    scatter: Scatter, spread: Mapping[str, Mapping[str, float]], drivers: SobolIndices
+) -> list[Table | str]:
+    """The spread of each response, the shares of its factors, and a sentence on both."""
+    spreads, rows, bold, lines = list[tuple[str, ...]](), list[tuple[str, ...]](), dict[int, str](), list[str]()
+    for k, response in enumerate(scatter.study.responses):
+        numbers = {name: shown(value, response.display_key) for name, value in spread[response.name].items()}
+        spreads.append((response.heading, *numbers.values()))
+        bold[len(rows)] = "bold"
+        rows.append((response.label, "", ""))
+        strongest = drivers.total[:, k].argsort()[::-1]
+        for i in strongest:
+            both = ((drivers.first, drivers.first_interval), (drivers.total, drivers.total_interval))
+            rows.append((f"  {drivers.factors[i]}", *(_share(value[i, k], ends[:, i, k]) for value, ends in both)))
+        total = np.clip(drivers.total[:, k], 0.0, 1.0)  # an estimate may be outside
+        most = [f"{drivers.factors[i]} ({100 * total[i]:.0f} %)" for i in strongest[:2] if total[i] >= MIN_SHARE]
+        unit = display_unit(response.display_key).name
+        ends = f"{response.label}: 90 % of the designs from {numbers['5 %']} to {numbers['95 %']} {unit}".rstrip()
+        named = f"the strongest factor{'s are' if len(most) > 1 else ' is'} {' and '.join(most)}"
+        lines.append(f"{ends}; {named if most else 'no factor stands out'}")
+    quantiles = "column 5 %: 5 % of the designs are below this value; sd: standard deviation"
+    notes = (
+        "first-order: share of the variance that disappears if this factor is known; total: share that remains if all "
+        "other factors are known",
+        "in parentheses 95 % intervals by bootstrap",
+        *(f"{factor}: {', '.join(names)}" for factor, names in scatter.groups.items()),
+    )
+    return [
+        Table(
+            f"Spread of {2 * scatter.count} designs, the two independent samples",
+            ("response", *numbers),
+            tuple(spreads),
+            (quantiles,),
+        ),
+        Table(
+            "Sensitivity: share of the variance, %",
+            ("response, factor", "first-order", "total"),
+            tuple(rows),
+            notes,
+            styles=bold,
+        ),
+        *lines,
+    ]
+
+
+def _share(value: float, ends: Any) -> str:
+    low, high = (100 * float(end) for end in ends)
+    return f"{100 * value:.1f} ({low:.1f} to {high:.1f})"
+
+
+def scatter_charts(
+    responses: Sequence[Response],
+    samples: Mapping[str, Array],
+    spread: Mapping[str, Mapping[str, float]],
+    drivers: SobolIndices,
+) -> list[Chart]:
+    """The distribution of each response, and the share of each factor in its variance.
+
+    samples: finite responses of the two independent samples, by name.
+    """
+    charts = []
+    for k, response in enumerate(responses):
+        if response.name in spread:
+            charts += [
+                _histogram(response, samples[response.name], spread[response.name]),
+                _factors_chart(response, drivers, k),
+            ]
+    return charts
+
+
+def _histogram(response: Response, sample: Array, spread: Mapping[str, float]) -> Chart:
+    """The share of the designs in equal intervals of a response."""
+    values = to_display(sample, response.display_key)
+    bins = min(MAX_BINS, len(np.histogram_bin_edges(values, "auto")) - 1)
+    counts, edges = np.histogram(values, bins)
+    outline = np.r_[0.0, np.repeat(100 * counts / len(values), 2), 0.0]
+    marks = [Tick(float(to_display(spread[name], response.display_key)), name) for name in QUANTILES]
+    return chart(
+        f"Distribution: {response.label}",
+        [Curve("share of the designs", np.repeat(edges, 2), outline, "c1 bars")],
+        x=Axis(response.heading, from_zero=False),
+        y=Axis("designs in %", 0.0),
+        marks=marks,
+        height=CHART_HEIGHT,
+    )
+
+
+def _factors_chart(response: Response, drivers: SobolIndices, k: int) -> Chart:
+    """The total index of each factor with its interval, the strongest on top."""
+    order = drivers.total[:, k].argsort()
+    share, interval = 100 * drivers.total[order, k], 100 * drivers.total_interval[:, order, k]
+    rows = np.arange(len(order))
+    gaps = np.full(len(order), np.nan)
+    lines = Curve("95 % interval", np.stack([*interval, gaps]).T, np.stack([rows, rows, gaps]).T, "c1")
+    return chart(
+        f"Factors: {response.label}",
+        [lines],
+        x=Axis("total share of the variance, %", 0.0),
+        y=Axis("factor", names=tuple(drivers.factors[i] for i in order)),
+        points=[Dots("share", share, rows, "c1")],
+        height=ROW_HEIGHT * len(order) + ROWS_END,
+    )

@@ -61,7 +61,7 @@ def _opened(path: Path, mode: str = "rwc") -> Iterator[sqlite3.Connection]:
 
 
 class SqliteStore:
-    """The designs of a study in a file of any number of studies; a `cuefem.designs.many_designs.Store` and a context manager.
+    """The designs of a study in a file of any number of studies; a `many_designs.Store` and a context manager.
 
     others: further stores, such as those of a study's parts, whose designs are read only.
     InputError if the file is not a store or is damaged. done: number of designs of the study that are stored, so far as

@@ -34,6 +34,18 @@ class DesignSample(Protocol):
         """The points, each of ``dimensions`` numbers."""
 
 
+class StudyDefinition(Protocol):
+    """The definition of a study of any kind: a `Study` (a sweep), a `Scatter` or a `Problem` (an optimum)."""
+
+    @property
+    def study(self) -> Study:
+        """Parameters and responses."""
+
+    @property
+    def all_designs(self) -> Study:
+        """The study of all designs to compute."""
+
+
 def check_column_name(what: str, name: str) -> None:
     """ValueError for control characters, and for a first character that makes a cell of a spreadsheet a formula."""
     if not name.isprintable() or name.strip()[:1] in "=+-@":
@@ -222,6 +234,16 @@ class Study:
     def units(self) -> tuple[str, ...]:
         """SI units of the columns, "" for pure numbers and names."""
         return (*(vary.unit(self.base) for vary in self.vary), *(response.unit for response in self.responses))
+
+    @property
+    def study(self) -> Study:
+        """Itself: parameters and responses, as of every kind of study."""
+        return self
+
+    @property
+    def all_designs(self) -> Study:
+        """Itself: the study of all designs to compute, as of every kind of study."""
+        return self
 
     @property
     def size(self) -> int:

@@ -6,9 +6,8 @@ The handbook's chapter on studies lists every key.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
-from concurrent.futures import Executor
-from contextlib import contextmanager, nullcontext
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
@@ -17,8 +16,6 @@ from typing import Any
 from cuefem.designs import Levels, Normal, Response, Sample, Span, Study, Vary
 from cuefem.designs.optimum import Limit, Problem
 from cuefem.designs.scatter import Scatter
-from cuefem.designs.store import SqliteStore
-from cuefem.designs.study_result import StudyResult, compute_study
 from cuefem.files import load_stroke, replaced_segments
 from cuefem.files.defaults_report import Assumption, assumptions, offered_assumptions
 from cuefem.files.errors import InputError, as_input_error, errors_name_key, file_state, quote
@@ -29,7 +26,7 @@ from cuefem.files.toml_reader import game_of, read_tables
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.parameters.scene_paths import paths, quantity_at
 from cuefem.parameters.table import PARAMETERS
-from cuefem.quantity.fields import Quantity, check_kind
+from cuefem.quantity.fields import Quantity
 from cuefem.scene import Resolution, Scene, Stroke
 from cuefem.scene.default_scene import KIM, usual_scene
 
@@ -155,72 +152,6 @@ def study_kind(path: str | PathLike[str]) -> str:
     """ "optimum", "scatter" or "sweep": the kind of a study's file, without its scene, which takes seconds to build."""
     tables = _study_tables(Path(path))
     return "optimum" if "objective" in tables else "scatter" if "tolerances" in tables else "sweep"
-
-
-def study(
-    what: str | PathLike[str] | Study | Scatter | Problem,
-    *,
-    store: str | PathLike[str] | SqliteStore | None = None,
-    workers: int | Executor | None = None,
-    progress: Callable[[Any], object] = lambda step: None,
-    rounds: int = 60,
-) -> StudyResult:
-    """Compute a study: a sweep over designs, a scatter with tolerances, or an optimum within limits.
-
-    Parameters
-    ----------
-    what : str, path, Study, Scatter or Problem
-        A study's file (.toml; see `cuefem guide study`), or the object that `load_study` makes of it.
-    store : str, path or SqliteStore, optional
-        A file (.sqlite) for the designs, with which an interrupted or edited study resumes. Not for an optimum.
-    workers : int or Executor, optional
-        Number of worker processes, by default none; or any `concurrent.futures.Executor`, such as a cluster's, which
-        the caller closes.
-    progress : callable, optional
-        Called with the number of designs that were computed since its last call; of an optimum with each round.
-    rounds : int, optional
-        Largest number of rounds of an optimum.
-
-    Returns
-    -------
-    SweepResult, ScatterResult or OptimumResult
-        ``designs`` and ``responses`` are arrays by name, in the SI ``units``; ``best`` has the best design by response,
-        ``spread`` mean, standard deviation and quantiles; a scatter has ``sobol_indices``, an optimum ``optimum``.
-        ``to_frame()`` converts it to a pandas frame. Show it with ``print``, in a notebook, or by
-        ``.save("study.html")``.
-
-    Raises
-    ------
-    ValueError
-        If the file is not a study, a response does not exist, no design is within the limits, or a worker has no or
-        another cuefem.
-    RuntimeError
-        If worker processes die repeatedly, or the executor is lost.
-
-    Examples
-    --------
-    >>> import cuefem as cf
-    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.material("hard maple")),), 0.42)
-    >>> tip = cf.Vary("tip diameter", cf.Span(0.011, 0.013, count=3), name="tip")
-    >>> responses = (cf.Response("tip_stiffness"), cf.Response("shaft_mass"))
-    >>> result = cf.study(cf.Study(cf.Scene(cue), (tip,), responses))
-    >>> result
-    SweepResult(3 designs)
-      tip_stiffness: 671.6 N/m, tip 13 mm
-      shaft_mass: 108.3 ± 2.5 g, mean ± sd
-    >>> result.designs["tip"], result.units["tip"]
-    (array([0.011, 0.012, 0.013]), 'm')
-    """
-    is_optimum = study_kind(what) == "optimum" if isinstance(what, str | PathLike) else isinstance(what, Problem)
-    if is_optimum and (store or workers):
-        raise ValueError("an optimum takes no store or workers: it computes one design after the other")
-    problem = load_study(what) if isinstance(what, str | PathLike) else what
-    check_kind("study what", problem, (Study, Scatter, Problem))
-    if isinstance(problem, Problem):
-        return compute_study(problem, progress=progress, rounds=rounds)
-    designs = problem.sobol_study if isinstance(problem, Scatter) else problem
-    with SqliteStore(store, designs) if isinstance(store, str | PathLike) else nullcontext(store) as stored:
-        return compute_study(problem, store=stored, workers=workers, progress=progress)
 
 
 def _problem(tables: StudyTable, objective: ObjectiveTable, base: Scene, vary: tuple[Vary, ...], path: Path) -> Problem:

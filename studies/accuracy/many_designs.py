@@ -30,9 +30,9 @@ from cuefem.designs import Response, Study, Vary
 from cuefem.designs.blocks import Block, BlockResult, Blocks, lost_block
 from cuefem.designs.design_key import KEY_BYTES, code_digest
 from cuefem.designs.executors import in_parallel
+from cuefem.designs.many_designs import Columns
 from cuefem.designs.sampling import Sample, Span
 from cuefem.designs.store import SqliteStore
-from cuefem.designs.many_designs import Columns
 from studies import pages, strokes
 from studies.pages import table
 

@@ -10,7 +10,8 @@ import cuefem as cf
 from cuefem.beam.blas_threads import one_blas_thread
 from cuefem.beam.eigensolver import solve_eigenproblem
 from cuefem.designs import Response, Span, Vary
-from cuefem.designs.optimum import Problem, optimum
+from cuefem.designs.optimum import Problem
+from cuefem.designs.search import optimum
 from tests.helpers.cues import kim
 
 

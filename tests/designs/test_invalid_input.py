@@ -8,8 +8,9 @@ import pytest
 
 import cuefem as cf
 from cuefem.designs import Levels, Normal, Response, Sample, Span, Study, Vary
-from cuefem.designs.optimum import Limit, Problem, optimum
+from cuefem.designs.optimum import Limit, Problem
 from cuefem.designs.scatter import Scatter
+from cuefem.designs.search import optimum
 from cuefem.designs.sensitivity import sensitivity
 from tests.helpers.cues import low_deflection, scene
 from tests.helpers.invalid_input import assert_refused, messages_of, rejected

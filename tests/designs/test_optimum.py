@@ -12,10 +12,9 @@ import cuefem as cf
 from cuefem.analysis.comparison import compare_cues
 from cuefem.cue.materials import material
 from cuefem.designs import Response, Span, Vary, evaluate
-from cuefem.designs.optimum import Constraint, Limit, Optimum, Problem, Round, optimum
+from cuefem.designs.optimum import NOT_DISTINCT, Constraint, Limit, Optimum, OptimumResult, Problem, Round
+from cuefem.designs.search import optimum
 from cuefem.designs.study_file import load_study
-from cuefem.designs.study_result import OptimumResult
-from cuefem.designs.study_table import NOT_DISTINCT
 from cuefem.results.differences import difference_text
 from cuefem.results.uncertainty import RATIO_FLOOR
 from studies.pages import STUDIES
@@ -165,7 +164,7 @@ def test_listed_values_are_searched_one_by_one(tmp_path: Path) -> None:
 
 def test_optimum_of_listed_values_alone(tmp_path: Path) -> None:
     head, *_, last = NAMES.split("[[vary]]")
-    result = cf.study(write_study(tmp_path, f"{head}[[vary]]{last}")).optimum  # type: ignore[attr-defined]
+    result = cf.study(write_study(tmp_path, f"{head}[[vary]]{last}")).optimum
     assert result.evaluations == len(result.choices) == 3
     best = min(result.choices, key=lambda choice: choice.objective)
     assert (result.values, result.responses["squirt_slope"]) == (best.values, best.objective)

@@ -7,8 +7,7 @@ import pytest
 
 from cuefem.cue import Array
 from cuefem.designs import Response
-from cuefem.designs.study_charts import MAX_POINTS, sweep_charts
-from cuefem.designs.study_statistics import SweepStatistics
+from cuefem.designs.sweep import MAX_POINTS, SweepStatistics, sweep_charts
 from cuefem.quantity.display_units import displayed_in
 from cuefem.show.charts import Chart
 

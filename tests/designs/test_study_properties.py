@@ -200,11 +200,11 @@ def test_best_design_of_left_hand_offset_is_that_of_right_hand() -> None:
     stiffness = Response("tip_stiffness")
     result = cf.study(replace(study(BORES), responses=(right, left, stiffness)))
     assert result.best[left.name].values == result.best[right.name].values == {"bore": 8e-3}
-    statistics = result.statistics  # type: ignore[attr-defined]
+    statistics = result.statistics
     assert statistics is not None
     assert statistics.best(0) == statistics.best(1) == 2
     assert statistics.trends == [["falls"] * 3]
-    sides = [cf.study(replace(study(BORES), responses=(each, stiffness))).statistics for each in (right, left)]  # type: ignore[attr-defined]
+    sides = [cf.study(replace(study(BORES), responses=(each, stiffness))).statistics for each in (right, left)]
     assert sides[0].front == sides[1].front == [2, 1, 0]
     mirrored = cf.study(replace(study(BORES, responses=("squirt",)), base=at_offset(BASE, -0.3)))
     assert mirrored.best["squirt"].values == {"bore": 8e-3}

@@ -12,9 +12,8 @@ from hypothesis.extra.numpy import arrays
 
 import cuefem as cf
 from cuefem.designs import Response
-from cuefem.designs.study_result import SweepResult
-from cuefem.designs.study_statistics import SweepStatistics
 from cuefem.designs.study_table import column_label
+from cuefem.designs.sweep import SweepResult, SweepStatistics
 from cuefem.results.uncertainty import RATIO_FLOOR, SHAFT_ERROR
 from tests.helpers.examples import examples
 from tests.helpers.sweeps import STUDY, write_study

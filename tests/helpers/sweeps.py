@@ -16,11 +16,11 @@ import numpy as np
 
 from cuefem.designs.blocks import Block, BlockResult, Blocks, compute_block, lost_block
 from cuefem.designs.executors import in_parallel
+from cuefem.designs.many_designs import Columns
 from cuefem.designs.store import SqliteStore
 from cuefem.designs.study import Study
+from cuefem.designs.study_answer import study as compute_study
 from cuefem.designs.study_file import load_study
-from cuefem.designs.study_result import compute_study
-from cuefem.designs.many_designs import Columns
 
 ENVIRONMENT = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])}
 SCENE = """

@@ -13,9 +13,7 @@ import pytest
 import cuefem as cf
 from cuefem.analysis.squirt_curve import FINE_OFFSETS, squirt_curve
 from cuefem.designs import Response
-from cuefem.designs.study_charts import sweep_charts
-from cuefem.designs.study_statistics import SweepStatistics
-from cuefem.designs.study_table import tabulate_sweep
+from cuefem.designs.sweep import SweepStatistics, sweep_charts, tabulate_sweep
 from cuefem.results.records import Record
 from cuefem.show.templates import plain_page
 from tests.helpers.designer_browser import BROWSER, empty_page, open_browser
