@@ -24,10 +24,9 @@ class Block(NamedTuple):
     numbers: list[int]
     values: list[tuple[Value, ...]]
 
-    def halves(self) -> list[Block]:
-        """The two halves of a block."""
-        middle = len(self.numbers) // 2
-        return [Block(self.numbers[part], self.values[part]) for part in (slice(middle), slice(middle, None))]
+    def singles(self) -> list[Block]:
+        """A block of each design."""
+        return [Block([number], [values]) for number, values in zip(*self, strict=True)]
 
 
 class BlockResult(NamedTuple):

@@ -57,7 +57,7 @@ def running_cluster(folder: Path, *roots: Path) -> Iterator[tuple[str, Processes
         port = free.getsockname()[1]
     address, processes = f"tcp://127.0.0.1:{port}", Processes()
     local = ("--host", "127.0.0.1", "--port", str(port), "--dashboard-address", ":0", "--no-dashboard")
-    quick = {"DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "0"}  # of workers that one task ends: halves come sooner
+    quick = {"DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "0"}  # workers that one task may end
 
     def start(name: str, root: Path, *arguments: str) -> None:
         with (folder / f"{name}.log").open("wb") as log:
