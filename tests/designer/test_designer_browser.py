@@ -155,11 +155,11 @@ def test_every_tab_is_accessible_and_not_cropped(browser: Any, address: str, sch
 
 
 @pytest.mark.nightly
-def test_memory_is_flat_after_ten_sessions(browser: Any, tmp_path: Path) -> None:
-    """What a closed page held is released: it grew by 12 MB a session of six moves of a slider, now by 1 at most."""
+def test_memory_is_flat_between_sessions_20_and_50(browser: Any, tmp_path: Path) -> None:
+    """What a closed page held is released; caches of designs are full by session 20 of six moves of a slider each."""
     with designer_process(tmp_path) as (address, process):
         used = []
-        for session in range(25):
+        for session in range(50):
             with designer_page(browser, address) as page:
                 slider = page.locator("input.slide:visible").first
                 slider.focus()
@@ -168,4 +168,4 @@ def test_memory_is_flat_after_ten_sessions(browser: Any, tmp_path: Path) -> None
                         page.keyboard.press("ArrowLeft" if move % 2 else "ArrowRight")
                     wait_until_idle(page)
             used.append(resident_memory(process))
-    assert used[-1] < 1.1 * max(used[:12]), used
+    assert max(used[45:]) < 1.05 * max(used[15:20]), used
