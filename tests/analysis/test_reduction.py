@@ -1,6 +1,5 @@
 """The chain from the drawing to squirt on [Kim]'s cone, its limits, and invalid input (verification)."""
 
-import json
 import math
 from dataclasses import replace
 from functools import cache
@@ -10,16 +9,13 @@ from typing import Any
 import pytest
 
 import cuefem as cf
-from cuefem.analysis.reduction import SMALL_OFFSETS, VIBRATING, Reduction
+from cuefem.analysis.reduction import VIBRATING, Reduction
 from cuefem.endmass.rigid_front import RigidFront
-from cuefem.show.renderers import json_text
 from studies.pages import STUDIES
 from studies.paper.closed_forms import cone_end_mass, inertia_factor, squirt_slope
-from tests.helpers.command_line import call
 from tests.helpers.cues import rod
 
 KIM: Any = cf.load(STUDIES / "scenes" / "kim.toml")
-LUMPED = replace(KIM, cue=cf.LumpedCue(0.54, 0.006))
 AT_OFFSET = "this shaft, b/R 0.3"
 
 
@@ -34,22 +30,6 @@ def scaled(factor: float, *names: str) -> cf.Scene:
 @cache
 def kim_reduction() -> Reduction:
     return cf.reduction(KIM)
-
-
-def test_reduction_equals_its_public_parts() -> None:
-    own = cf.reduction(KIM, offsets=(0.3, -0.5))
-    assert own.models[SMALL_OFFSETS]["end_mass"] == cf.end_mass(KIM)
-    assert own.models[AT_OFFSET]["end_mass"] == cf.end_mass(KIM, "offset")
-    assert own.models[AT_OFFSET]["squirt"][0] == pytest.approx(cf.impulse(KIM).squirt, rel=1e-12)
-    assert own.models[VIBRATING]["squirt"] == pytest.approx(
-        [cf.strike(replace(KIM, stroke=replace(KIM.stroke, offset=b))).squirt for b in (0.3, -0.5)], rel=1e-12
-    )
-    by_time = {row["contact_time"]: row for row in own.end_mass_by_contact_time}
-    assert by_time[2e-3]["stick"] == pytest.approx(cf.end_mass(KIM), rel=1e-12)
-    short = replace(KIM, tip=replace(KIM.tip, contact_time=1e-3))
-    assert by_time[1e-3]["offset"] == pytest.approx(cf.end_mass(short, "offset"), rel=1e-12)
-    curves = own.squirt_curves()
-    assert curves[VIBRATING][own.chart_offsets.index(0.3)] == own.models[VIBRATING]["squirt"][0]
 
 
 def test_rigid_front_equals_closed_forms_of_kims_cue_end() -> None:
@@ -93,32 +73,3 @@ def test_vibrating_squirt_of_stiff_shaft_converges_to_rigid_cue_end() -> None:
     errors = [max(error(10 ** (decade + step)) for step in (0.0, 0.2, 0.4, 0.6, 0.8)) for decade in (2, 3, 4)]
     assert all(stiff < soft / 2 for soft, stiff in pairwise(errors))
     assert errors[-1] < 0.015
-
-
-def test_lumped_cue_has_the_row_of_its_own_end_mass() -> None:
-    own = cf.reduction(LUMPED)
-    assert [*own.models] == ["this cue"]
-    assert (own.frequencies, own.nearest, own.end_mass_by_contact_time) == ([], {}, [])
-    squirt = cf.impulse(replace(LUMPED, stroke=replace(LUMPED.stroke, offset=0.1))).squirt
-    assert own.models["this cue"]["squirt"][0] == pytest.approx(squirt, rel=1e-12)
-    assert [*cf.reduction(LUMPED, cue_ends={"12 g": 0.012}).models] == ["12 g", "this cue"]
-
-
-def test_head_on_stroke_has_the_offsets_of_the_table() -> None:
-    own = cf.reduction(replace(KIM, stroke=cf.Stroke(1.0, 0.0)))
-    assert [*own.models] == ["Kim's guess", SMALL_OFFSETS, VIBRATING]
-    assert own.models[VIBRATING]["squirt"] == pytest.approx(kim_reduction().models[VIBRATING]["squirt"], rel=1e-9)
-
-
-def test_miscue_has_no_squirt() -> None:
-    own = cf.reduction(replace(KIM, tip=replace(KIM.tip, friction=0.1)))
-    model = own.models[VIBRATING]
-    assert (model["regime"][-1], model["squirt"][-1]) == ("miscue", None)
-    assert "–" in own.tables()[1].rows[-1]
-
-
-def test_end_mass_command_compares_typed_guesses() -> None:
-    _, out, _ = call("end-mass", "--json", "--near", 300, "--cue-end", "15 g", STUDIES / "scenes" / "kim.toml")
-    shown = json.loads(out)["reduction"]
-    expected = cf.reduction(KIM, near=300.0, cue_ends={"Kim's guess": 0.012, "two-part, m_c 15 g": 0.015})
-    assert shown == json.loads(json_text(expected.values()))

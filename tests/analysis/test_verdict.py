@@ -150,11 +150,3 @@ def test_default_tip_fits_every_usual_front(game: str, front: float) -> None:
     scene = cf.usual_scene(cf.Cue((cf.Segment(1.4, front, 0.03, wood),)), game)
     assert scene.leather_tip.height == GAMES[game].height
     assert front > GAMES[game].face_diameter or scene.leather_tip == GAMES[game].tip
-
-
-@pytest.mark.parametrize(
-    ("squirt", "error", "text"), [(1.847, 0.31, "1.85°"), (0.4, 0.042, "0.40°"), (0.04, 0.0042, "0.040°")]
-)
-def test_squirt_text_has_digits_of_tables(own: Verdict, squirt: float, error: float, text: str) -> None:
-    verdict: Verdict = replace(own, squirt=math.radians(squirt), squirt_error=math.radians(error))
-    assert verdict.squirt_text()[0] == text

@@ -9,9 +9,6 @@ from threadpoolctl import threadpool_info, threadpool_limits
 import cuefem as cf
 from cuefem.beam.blas_threads import one_blas_thread
 from cuefem.beam.eigensolver import solve_eigenproblem
-from cuefem.designs import Response, Span, Vary
-from cuefem.designs.optimum import Problem
-from cuefem.designs.search import optimum
 from tests.helpers.cues import kim
 
 
@@ -33,16 +30,6 @@ def test_modes_are_solved_by_one_blas_thread(monkeypatch: pytest.MonkeyPatch) ->
         cf.strike(cf.Scene(kim()))
         assert blas_threads() == {2}
     assert during == [{1}] * 2
-
-
-def test_search_takes_the_same_designs_with_any_number_of_threads() -> None:
-    """With two threads SLSQP's own equations had another round-off, and the committed study took 121 designs for 86."""
-    during = list[set[int]]()
-    bore = Vary(("cue.segments[0].tip_diameter",), Span(0.011, 0.013), "tip")
-    problem = Problem(cf.Scene(kim()), (bore,), Response("tip_stiffness"), (), cf.Resolution(1, 6, 8))
-    with threadpool_limits(2, user_api="blas"):
-        optimum(problem, rounds=2, progress=lambda _: during.append(blas_threads()))
-    assert during[0] == {1}
 
 
 class Library:

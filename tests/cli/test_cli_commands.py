@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from tests.helpers.command_line import as_json, stdout_of
+from tests.helpers.command_line import stdout_of
 from tests.helpers.cues import kim as kims_shaft
 
 KIM = kims_shaft()
@@ -26,28 +26,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "shaft.csv").write_text(CSV)
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-def test_report_json_of_lumped_cue_equals_library(folder: Path) -> None:
-    """Reports of other cues: tests/test_golden_files.py."""
-    cf.save(cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=KIM_SCENE.stroke), "lumped.toml")
-    lumped = as_json("report", "lumped.toml")
-    assert "modes" not in lumped
-    assert lumped["end_masses"]["definitions"]["force"]["end_mass"] == 0.006
-    paper = cf.Scene(cf.LumpedCue.two_part(0.54, 0.012), stroke=KIM_SCENE.stroke)
-    reported = lumped["squirt"]["models"]["two-part, 12 g"]["squirt"][2]
-    assert reported == pytest.approx(cf.impulse(paper).squirt, rel=1e-12)
-
-
-def test_strike_options_replace_values_of_scene_file(folder: Path) -> None:
-    result = as_json("strike", "scene.toml")
-    assert result["assumptions"] == []
-    clip = {"type": "PointMass", "position": 0.1, "mass": 0.005, "rotary_inertia": 0, "axial_share": 1}
-    assert result["scene"]["effects"][0] == clip
-    assert result["models"]["coupled"]["squirt"] == pytest.approx(cf.strike(SCENE).squirt, rel=1e-12)
-    changed = as_json("strike", "scene.toml", "--offset", "0.1", "--friction", "0.5", "--body-mass", "14 oz")["scene"]
-    assert (changed["stroke"]["offset"], changed["tip"]["friction"]) == (0.1, 0.5)
-    assert changed["cue"]["body_mass"] == 0.39689332375
 
 
 def test_convert_writes_equal_cue_or_scene(folder: Path) -> None:

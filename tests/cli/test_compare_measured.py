@@ -8,25 +8,9 @@ import pytest
 import cuefem as cf
 from cuefem.measurements.measured_folder import TEMPLATE, load_measured
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES
-from tests.helpers.command_line import as_json, call, stdout_of
+from tests.helpers.command_line import call
 from tests.helpers.invalid_input import assert_rejects
 from tests.helpers.measured_cues import measured_folder
-
-
-def test_compare_json_equals_library(tmp_path: Path) -> None:
-    folder = measured_folder(tmp_path / "cue")
-    (folder / "squirt.csv").write_text("offset,value [deg],error [deg]\n0.3,1.5,0.1\n", encoding="utf-8")
-    result, compared, (cue, _) = as_json("compare", folder), cf.compare(folder), load_measured(folder)
-    assert result | compared.values() == result
-    assert [row["label"] for row in result["rows"]] == [one.label for one in cue.measurements]
-    assert (result["name"], result["missing"]) == ("a cue", cue.missing)
-
-
-def test_compare_help_shows_both_forms() -> None:
-    usage = stdout_of("compare", "--help").partition("\n\n")[0]
-    files, folder = usage.splitlines()
-    assert files.endswith("compare FILE FILE ... [OPTIONS]")
-    assert folder.endswith("compare FOLDER [--estimate | --template]")
 
 
 @pytest.mark.parametrize("drawing", ["cue.toml", "cue.csv"])

@@ -1,22 +1,17 @@
 """A drawing without its butt: the same usual rest of the cue from every door, and what options of compare fill in."""
 
-import math
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 import cuefem as cf
-from cuefem.cue import Cue
-from cuefem.designer.state import read_design
 from cuefem.designs.study_file import load_study
-from cuefem.scene.default_scene import GAMES, OUNCE
 from tests.helpers.command_line import as_json
 
 PROFILE = "x [mm],diameter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n"
 PREDATOR = Path(__file__).parents[2] / "studies/measured/predator_z2/cue.toml"
 STUDY = 'scene = "{scene}"\nresponses = ["squirt"]\n{more}[[vary]]\npath = "speed"\nvalues = ["2 m/s"]\n'
-RESTS = {"pool": 15, "carom": 13.5, "snooker": 12.5}  # oz
 
 
 @pytest.fixture
@@ -31,19 +26,6 @@ def study_scene(shaft: Path, scene: str, more: str = "") -> cf.Scene:
     path = shaft.parent / "study.toml"
     path.write_text(STUDY.format(scene=scene, more=more), encoding="utf-8")
     return load_study(path).base
-
-
-@pytest.mark.parametrize("game", GAMES)
-def test_light_drawing_gets_usual_rest_of_its_game(game: str, shaft: Path) -> None:
-    drawn = cf.load(shaft)
-    assert isinstance(drawn, Cue)
-    expected = cf.usual_scene(drawn, game)
-    assert expected.cue.body_mass == pytest.approx(RESTS[game] * OUNCE, rel=1e-12)
-    assert read_design("shaft.csv", PROFILE.encode(), game).scene == expected
-    assert study_scene(shaft, "shaft.csv", f'game = "{game}"\n') == expected
-    reported = as_json("end-mass", shaft, "--game", game)
-    assert reported["scene"]["cue"]["body_mass"] == expected.cue.body_mass
-    assert f"usual rest of the cue, {1e3 * expected.cue.body_mass:.4g} g (--body-mass)" in reported["assumptions"]
 
 
 @pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
@@ -71,14 +53,6 @@ def test_assumed_rest_is_an_uncertain_input_until_it_is_set(shaft: Path) -> None
     assert not other.cue.is_body_mass_assumed
 
 
-def test_whole_cue_gets_no_rest(tmp_path: Path) -> None:
-    whole = tmp_path / "whole.csv"
-    whole.write_text("x [mm],diameter [mm]\n0,12.75\n1470,31\n", encoding="utf-8")
-    scene = cf.usual_scene(cf.load(whole))
-    assert (scene.cue.body_mass, scene.cue.is_body_mass_assumed) == (0.0, False)
-    assert read_design("whole.csv", whole.read_bytes()).scene == scene
-
-
 @pytest.mark.heavy
 def test_compare_fills_in_the_usual_rest(shaft: Path) -> None:
     record = as_json("compare", shaft, PREDATOR)
@@ -86,12 +60,3 @@ def test_compare_fills_in_the_usual_rest(shaft: Path) -> None:
     assert difference["difference"] == pytest.approx(-0.278, abs=5e-4)
     assert difference["error"] >= 0.086
     assert "shaft: usual rest of the cue, 425.2 g (--body-mass)" in record["assumptions"]
-
-
-@pytest.mark.heavy
-def test_compare_option_fills_in_every_open_file(shaft: Path) -> None:
-    other = shaft.with_name("other.csv")
-    other.write_text(PROFILE.replace("13.2", "13.6"), encoding="utf-8")
-    record = as_json("compare", shaft, other, "--body-mass", "16 oz", "--leather", "hard", "--offset", "0.2")
-    assert [scene["cue"]["body_mass"] for scene in record["scenes"].values()] == [pytest.approx(16 * OUNCE)] * 2
-    assert not math.isnan(record["cues"]["other"]["squirt"])

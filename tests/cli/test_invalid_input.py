@@ -142,6 +142,7 @@ def test_error_message_of_long_text_is_short_and_printable(file: str, options: l
     assert len(err.replace(str(path), "")) < 420
 
 
+@pytest.mark.heavy
 def test_command_on_full_disk_prints_one_line() -> None:
     program = "from cuefem.cli import main; main()"
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}

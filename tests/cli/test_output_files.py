@@ -47,12 +47,6 @@ def formats() -> list[object]:
     return found
 
 
-@pytest.mark.parametrize("extension", [".HTML", ".Json"])
-def test_extension_of_output_may_have_capitals(extension: str, tmp_path: Path) -> None:
-    stdout_of("modes", KIM, "-o", tmp_path / f"out{extension}")
-    assert (tmp_path / f"out{extension}").stat().st_size
-
-
 @pytest.mark.parametrize(("command", "extension"), formats())
 def test_command_writes_every_format_of_its_help(command: str, extension: str, tmp_path: Path) -> None:
     if command == "study":
@@ -104,17 +98,6 @@ def test_full_disk_at_any_write_prints_one_line_and_leaves_no_part(tmp_path: Pat
         assert set(left) <= WRITING[command], (command, n)
 
 
-@pytest.mark.parametrize("command", [pytest.param("report", marks=pytest.mark.heavy), "strike", "modes", "end-mass"])
-def test_json_with_page_prints_json_alone(command: str, tmp_path: Path) -> None:
-    record = as_json(command, KIM, "-o", tmp_path / "page.html")
-    assert record["file"] == str(KIM)
-    assert (tmp_path / "page.html").exists()
-
-
-def test_pooltool_export_prints_json_alone(tmp_path: Path) -> None:
-    assert "CueSpecs" in as_json("strike", KIM, "--format", "pooltool", "-o", tmp_path / "cue.json")
-
-
 def test_modules_have_every_name_they_promise() -> None:
     for found in pkgutil.walk_packages(cf.__path__, "cuefem."):
         if found.name.endswith(("__main__", "._kernel")):  # runs; is no module of Python
@@ -124,14 +107,6 @@ def test_modules_have_every_name_they_promise() -> None:
         if found.ispkg:
             missing = [name for name in missing if not (Path(module.__path__[0]) / f"{name}.py").exists()]
         assert missing == [], found.name
-
-
-@pytest.mark.heavy
-def test_saved_design_change_prints_json(tmp_path: Path) -> None:
-    output = tmp_path / "changed.toml"
-    printed = as_json("improve", KIM, "--take", 1, "-o", output)
-    assert (printed["file"], printed["output_file"]) == (str(KIM), str(output))
-    assert printed["change"] == as_json("improve", KIM)["changes"][0]["change"]
 
 
 def test_template_prints_json(tmp_path: Path) -> None:

@@ -139,6 +139,7 @@ def test_page_in_us_units_has_no_metric_one(command: list[object], tmp_path: Pat
     assert_in_us_units(page.read_text(encoding="utf-8"))
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("text", [STUDY, SCATTER], ids=["sweep", "scatter"])
 def test_study_page_in_us_units_has_no_metric_one(text: str, tmp_path: Path) -> None:
     result = cf.study(write_study(tmp_path, text))

@@ -139,6 +139,7 @@ def test_designer_without_nicegui_names_install_command(monkeypatch: pytest.Monk
     assert_rejects("the designer needs nicegui: pip install '.[designer]' in the clone", "designer", "--no-open")
 
 
+@pytest.mark.heavy
 def test_designer_with_too_many_segments_exits_with_message(tmp_path: Path) -> None:
     piece = cf.Segment(1.8e-3, 0.012, 0.012, cf.Material(12.6e9, 0.84e9, 700.0))
     cf.save(cf.Cue((piece,) * 301, body_mass=0.45), tmp_path / "many.toml")

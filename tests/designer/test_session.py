@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.analysis.comparison import compare_cues
 from cuefem.analysis.design_changes import changes_of
 from cuefem.analysis.first_screen import comparison_lines, headline_markup
 from cuefem.designer.controls import KNOBS, label, parse, range_of, value, value_text
@@ -82,14 +81,6 @@ def test_controls_read_what_they_show_in_us_units(key: str) -> None:
         for typed in (text, bare):
             assert parse(key, typed, scene) == pytest.approx(own, abs=0.51 * last_place(bare) / known.scale)
         assert not METRIC_LEFT.search(label(key, scene))
-
-
-def test_comparison_of_a_cue_without_verdict_has_the_units_displayed() -> None:
-    """The reason is a text with units; the same cues in other units are not taken from memory."""
-    light = cf.usual_scene(cf.Cue(FIRST.scene.shaft.segments, body_mass=0.05))
-    for system, words in {"metric": "149.2 g, less than 250 g", "us": "5.264 oz, less than 8.818 oz"}.items():
-        with displayed_in(system):
-            assert words in compare_cues({"own": FIRST.scene, "light": light}).problems["light"]
 
 
 @pytest.mark.heavy

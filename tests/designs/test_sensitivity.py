@@ -55,6 +55,7 @@ def slope(function: Callable[[float], float], step: float) -> float:
 CUES = pytest.mark.parametrize("cue", [kim(), low_deflection(), reference_cue("carbon")], ids=["kim", "bored", "tube"])
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("cue", [low_deflection(), reference_cue("carbon")], ids=["bored", "tube"])
 def test_sensitivity_to_point_mass_equals_difference(cue: Cue) -> None:
     """The density of rhoA is the end mass that a point mass there adds."""

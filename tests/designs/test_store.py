@@ -101,6 +101,7 @@ EDITS = [  # the edit of the study, its designs, and how many of them are new
 ]
 
 
+@pytest.mark.heavy
 def test_edited_study_computes_only_new_designs(tmp_path: Path) -> None:
     store = tmp_path / "all.sqlite"
     for (old, new), size, fresh in EDITS:

@@ -49,6 +49,7 @@ def test_leather_small_patch_equals_half_space() -> None:
     np.testing.assert_allclose(np.divide(errors[1], errors[2]), 2, rtol=0.05)
 
 
+@pytest.mark.heavy
 def test_leather_central_impact_equals_hertz() -> None:
     """Force and indentation of a small contact, for gaps of second and fourth order."""
     shape, fineness = Shape(1.0, 0.0), contact_fineness(1.0, 0.01)

@@ -14,22 +14,11 @@ from cuefem.handbook import MAKERS, chapters
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.results.quantities import drawn_mass
 from cuefem.results.uncertainty import MODEL_ERROR, SHAFT_ERROR
-from cuefem.scene.default_scene import without_leather
 from studies.measured.published import mass_ratios
-from tests.helpers.command_line import call
 from tests.helpers.maker_pictures import FOLDER, PICTURES, command_json, reference_squirts
 
 TEXTS = {chapter.name: chapter.text for chapter in chapters() if chapter.name in MAKERS}
 NUMBER = re.compile(r"[−+-]?\d+(?:\.\d+)?")
-
-
-def test_makers_chapters_are_first_and_short() -> None:
-    assert [chapter.name for chapter in chapters()][:6] == [*TEXTS] == [*MAKERS]
-    assert max(len(text.split()) for text in TEXTS.values()) < 400
-    pictures = re.findall(r"```drawing\n(\w+)", "".join(TEXTS.values()))
-    assert len(pictures) == len(TEXTS)
-    assert {*PICTURES} <= {*pictures}
-    assert all((FOLDER / f"{name}.svg").exists() for name in pictures)
 
 
 @pytest.mark.heavy
@@ -82,12 +71,7 @@ def assert_density_and_butt_as_stated() -> None:
         assert f"from {100 * before:.1f} to {100 * after:.1f} %" in TEXTS["read_the_report"]
 
 
-def squirt_of(path: Path) -> float:
-    """Squirt, degrees, by the default stroke of pool with a butt of 15 oz."""
-    cue: Any = cf.load(path)
-    return math.degrees(cf.strike(cf.usual_scene(replace(cue, body_mass=0.42524))).squirt)
-
-
+@pytest.mark.heavy
 @pytest.mark.parametrize(
     ("name", "ferrule", "deeper"),
     [
@@ -113,6 +97,7 @@ def test_deeper_bore_changes_squirt_by_shaft_not_ferrule(name: str, ferrule: str
         assert 1 - at_5 / cf.strike(scene).squirt == pytest.approx(0.055, abs=0.005)
 
 
+@pytest.mark.heavy
 def test_speed_and_tip_hardness_change_squirt_as_stated() -> None:
     limits, cue = TEXTS["limits"], cf.load("meshes/pool_maple.toml")
     scene = cf.usual_scene(cue)
@@ -177,34 +162,3 @@ def test_limits_of_masses_are_computed() -> None:
     (small, count), (large, other) = parts
     stated = f"by 3 g is {small} of the measured one ({count} positions), by 11 g {large} ({other})."
     assert stated in TEXTS["limits"]
-
-
-def test_profiles_in_chapters_load_as_bored_shaft(tmp_path: Path) -> None:
-    """The bore behind the ferrule is empty, and both notations of the ferrule have the same squirt."""
-    plain, ferrule = re.findall(r"```csv\n(.*?)```", TEXTS["measure_your_shaft"], re.DOTALL)
-    files = next(chapter.text for chapter in chapters() if chapter.name == "files")
-    cored = next(text for text in re.findall(r"```csv\n(.*?)```", files, re.DOTALL) if "core" in text)
-    squirts = []
-    for text in (plain, ferrule, cored):
-        (path := tmp_path / "my_shaft.csv").write_text(text, encoding="utf-8")
-        status, out, err = call("modes", path)
-        assert (status, err) == (0, "")
-        squirts.append(squirt_of(path))
-        if text == plain:
-            continue
-        assert "bored 6 mm from 25 to 152 mm " in " ".join(out.split())
-        front, bored, *rest = cf.load(path).segments
-        assert (front.length, front.tip_bore, bored.tip_bore) == pytest.approx((0.025, 0.008, 0.006), rel=0.02)
-        assert (bored.core, bored.material) == (None, front.core)
-        assert all(segment.tip_bore == 0 for segment in rest)
-    assert squirts[2] == pytest.approx(1.660, abs=5e-3)  # 1.79 with the bore filled by the tenon's wood
-    assert squirts[1] == pytest.approx(squirts[2], rel=0.01)
-
-
-def test_complete_scene_of_files_chapter_is_default_stroke(tmp_path: Path) -> None:
-    text = next(chapter.text for chapter in chapters() if chapter.name == "files").partition("A complete scene")[2]
-    maple = without_leather(cf.load("meshes/pool_maple.toml"))
-    cf.save(maple, tmp_path / "my_shaft.toml")
-    (tmp_path / "scene.toml").write_text(re.findall(r"```toml\n(.*?)```", text, re.DOTALL)[0], encoding="utf-8")
-    squirts = [cf.strike(scene).squirt for scene in (cf.load(tmp_path / "scene.toml"), cf.usual_scene(maple))]
-    assert squirts[0] == pytest.approx(squirts[1], rel=1e-9)

@@ -27,6 +27,7 @@ def site() -> ModuleType:
     return module
 
 
+@pytest.mark.heavy
 def test_reference_lists_public_names(site: ModuleType) -> None:
     listed = re.findall(r"^   (\w+)$", site.reference(), flags=re.MULTILINE)
     assert sorted(listed) == sorted(cuefem.__all__)
@@ -46,11 +47,6 @@ def test_reference_without_docstring_or_title_raises(
     monkeypatch.setattr(cuefem, "__all__", [*cuefem.__all__, "extra"])
     with pytest.raises(ValueError, match=re.escape(message)):
         site.reference()
-
-
-def test_effects_chapter_of_another_table_raises(site: ModuleType) -> None:
-    with pytest.raises(ValueError, match="the chapter of effects has no section TipDome"):
-        site.with_worth("# Effects\n")
 
 
 @pytest.mark.heavy

@@ -41,6 +41,7 @@ def test_squirt_changes_surface_restitution_is_one_sided() -> None:
     assert "surface_restitution" not in squirt_changes(SolvedScene(spring), own).relative
 
 
+@pytest.mark.heavy
 def test_friction_is_an_input_of_late_slip_alone() -> None:
     """At 5 m/s and b/R 0.45 friction changes squirt by about 10 %, at 2 m/s and b/R 0.3 by less than 0.1 %."""
     scene = cf.usual_scene(cf.load(MESHES / "pool_maple.toml"))
@@ -52,6 +53,7 @@ def test_friction_is_an_input_of_late_slip_alone() -> None:
     assert 0.05 < shares[1] < 0.15
 
 
+@pytest.mark.heavy
 def test_squirt_changes_miscue_on_one_side_takes_the_other() -> None:
     """At b/R 0.57 a tip with less friction slips off: its squirt, which hardly depends on the cue, does not count."""
     scene = with_parameters(cf.usual_scene(cf.load(MESHES / "pool_maple.toml")), {"offset": 0.57})

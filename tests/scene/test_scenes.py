@@ -29,6 +29,17 @@ def test_ready_scenes_are_all_listed() -> None:
     assert tuple(sorted(path.stem for path in SCENES.glob("*.toml"))) == tuple(sorted(rows())) == NAMES
 
 
+def test_kim_mesh_has_published_dimensions() -> None:
+    """[Kim] sec. 4: radius 6 to 10.5 mm over 0.70 m, 120 g, a cue of 540 g; E 12.6 GPa, G = E/15."""
+    cue = cf.load(SCENES.parents[1] / "meshes" / "kim.toml")
+    assert isinstance(cue, cf.Cue)
+    (cone,) = cue.segments
+    assert cue.shaft_mass == pytest.approx(0.120, rel=1e-12)
+    assert cue.mass == pytest.approx(0.540, rel=1e-12)
+    assert (cone.length, cone.tip_diameter, cone.butt_diameter, cone.kappa) == (0.70, 0.012, 0.021, 0.9)
+    assert pytest.approx((12.6e9, 15), rel=1e-14) == (cone.material.E, cone.material.E / cone.material.G)
+
+
 def test_readme_of_meshes_states_computed_squirts() -> None:
     text = (SCENES.parents[1] / "meshes" / "README.md").read_text(encoding="utf-8")
     stated = re.findall(r"([\d.]+)° \((\w+)\)", text.partition("Squirt at b/R 0.3 is then ")[2].partition(".\n")[0])

@@ -3,6 +3,8 @@
 import csv
 import math
 
+import pytest
+
 from cuefem.handbook import chapters
 from cuefem.measurements.measured_folder import load_measured
 from cuefem.measurements.measurement_types import AddedMass, PivotLength, Squirt
@@ -40,6 +42,7 @@ def test_measured_folders_have_every_row_of_data() -> None:
     assert {(kind, name, float(x), float(y)) for kind, name, x, y in expected} - own == set()
 
 
+@pytest.mark.heavy
 def test_measured_readme_states_computed_values() -> None:
     """Every measurement except the series of added masses."""
     text = (HOME / "README.md").read_text(encoding="utf-8")
