@@ -26,7 +26,7 @@ HOMES = {
     "skfem": {"solid", "beam"},
     "meshio": {"files"},
     "matplotlib": {"show", "plot"},
-    "pandas": {"designs"},
+    "pandas": {"quantity"},
     "pyarrow": {"designs"},
     "distributed": {"cli"},
     "pint": set(),

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from cuefem.results.quantities import format_value
 from cuefem.results.records import Record, Table
-from cuefem.results.solved_design import SolvedDesign
-from cuefem.scene import Outcome, Scene
+from cuefem.results.solved_design import Solvable, SolvedDesign
+from cuefem.scene import Outcome
 from cuefem.show.analysis import Analysis
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ class ContactHistory(Analysis):
         return Table("Energy balance", ("", "share", "energy"), tuple(rows))
 
 
-def contact_history(scene: Scene | SolvedDesign) -> ContactHistory:
+def contact_history(scene: Solvable) -> ContactHistory:
     """Force and velocity of the tip over time, the events of the contact, and where the energy went.
 
     Parameters

@@ -8,8 +8,7 @@ from cuefem.analysis.end_mass import SQUIRT_END_MASS
 from cuefem.results.computable_results import listed_results
 from cuefem.results.quantities import format_value
 from cuefem.results.records import Record, Table, tabulate_values, value_rows
-from cuefem.results.solved_design import SolvedDesign
-from cuefem.scene import Scene
+from cuefem.results.solved_design import Solvable, SolvedDesign
 from cuefem.show.analysis import Analysis
 from cuefem.show.scene_summary import assumptions, scene_record
 
@@ -43,7 +42,7 @@ class CueNumbers(Analysis):
         return [tabulate_values(title, [end_mass, *value_rows(self.numbers)], assumptions(about))]
 
 
-def cue_numbers(scene: Scene | SolvedDesign) -> CueNumbers:
+def cue_numbers(scene: Solvable) -> CueNumbers:
     """All listed results, and the end mass that has the squirt.
 
     Parameters

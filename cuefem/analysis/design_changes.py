@@ -21,7 +21,7 @@ from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.display_units import change_with_unit, format_change, short_number, with_unit
 from cuefem.results.progress import Progress
 from cuefem.results.records import Record, Table, tabulate
-from cuefem.results.solved_design import SolvedDesign, off_centre
+from cuefem.results.solved_design import Solvable, SolvedDesign, off_centre
 from cuefem.results.uncertainty import miscue_note, model_share, ratio_error, squirt_changes
 from cuefem.results.verdict import reject_no_verdict
 from cuefem.scene import Scene
@@ -270,7 +270,7 @@ class DesignChanges(Analysis):
 
 
 def design_changes(
-    scene: Scene | SolvedDesign, *, calibration: Calibration | None = None, progress: Progress = list
+    scene: Solvable, *, calibration: Calibration | None = None, progress: Progress = list
 ) -> DesignChanges:
     """Changes that a maker can make to a cue, and the effect of each on its own.
 

@@ -10,8 +10,7 @@ from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.quantity.display_units import END_MASS, with_unit
 from cuefem.results.closed_forms import cue_end_mass
 from cuefem.results.records import Record, Table, tabulate
-from cuefem.results.solved_design import SolvedDesign
-from cuefem.scene import Scene
+from cuefem.results.solved_design import Solvable, SolvedDesign
 from cuefem.scene.solved_scene import SolvedScene
 from cuefem.show.analysis import Analysis
 from cuefem.show.charts import Chart
@@ -114,7 +113,7 @@ def _tip_effects_note() -> str:
 
 
 def end_masses(
-    scene: Scene | SolvedDesign,
+    scene: Solvable,
     *,
     with_reduction: bool = False,
     near: float = PAPER_TONE,
@@ -124,7 +123,7 @@ def end_masses(
 
     Parameters
     ----------
-    scene : Scene or SolvedDesign
+    scene : Scene, or what `cuefem.solve` returns
         A stroke, or a solved one. Definitions of an off-centre stroke use its offset.
     with_reduction : bool
         Whether the result also has the `cuefem.reduction` to the two-part cue of Kim's paper.

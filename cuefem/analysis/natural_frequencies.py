@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from cuefem.beam.modes import modes
 from cuefem.results.records import ColumnEntry, Table, tabulate
-from cuefem.results.solved_design import SolvedDesign
-from cuefem.scene import Scene
+from cuefem.results.solved_design import Solvable, SolvedDesign
 from cuefem.show.analysis import Analysis
 from cuefem.show.scene_summary import effect_name
 
@@ -78,9 +77,7 @@ class NaturalFrequencies(Analysis):
         return tabulate(title, columns, rows, "; ".join(notes), texts=())
 
 
-def natural_frequencies(
-    scene: Scene | SolvedDesign, count: int = 6, *, near: float | None = None
-) -> NaturalFrequencies:
+def natural_frequencies(scene: Solvable, count: int = 6, *, near: float | None = None) -> NaturalFrequencies:
     """Natural frequencies of the bending modes of a scene's cue.
 
     Parameters

@@ -11,8 +11,7 @@ from cuefem.quantity.display_units import with_heading
 from cuefem.results.closed_forms import alciatore_a31_mass_ratio
 from cuefem.results.quantities import DASH, RESULTS, format_value
 from cuefem.results.records import Table
-from cuefem.results.solved_design import SolvedDesign
-from cuefem.scene import Scene
+from cuefem.results.solved_design import Solvable, SolvedDesign
 from cuefem.show.analysis import Analysis
 
 
@@ -39,7 +38,7 @@ class Segments(Analysis):
         return [Table("Segments, from tip to butt", head, tuple(rows), texts=(5,))]
 
 
-def segments(scene: Scene | SolvedDesign) -> Segments:
+def segments(scene: Solvable) -> Segments:
     """The segments of the shaft as a table, from tip to butt.
 
     Parameters
@@ -92,7 +91,7 @@ class EndMassDefinitions(Analysis):
         return lines
 
 
-def definitions(scene: Scene | SolvedDesign) -> EndMassDefinitions:
+def definitions(scene: Solvable) -> EndMassDefinitions:
     """The definitions of the end mass, with the value of Alciatore's for the stroke.
 
     Parameters
@@ -161,7 +160,7 @@ class ModelAccuracy(Analysis):
         return [f"Estimated numerical error of squirt, ball speed and spin: {100 * self.error:.2g} %.", tip, COMPARING]
 
 
-def accuracy(scene: Scene | SolvedDesign) -> ModelAccuracy:
+def accuracy(scene: Solvable) -> ModelAccuracy:
     """How far the model can be trusted.
 
     Parameters

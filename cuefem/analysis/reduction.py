@@ -12,18 +12,18 @@ import numpy as np
 
 from cuefem.beam.mode_count import modes_below
 from cuefem.beam.modes import modes
-from cuefem.contact.impulse_solver import impact, impulse_inputs
+from cuefem.contact.impulse_solver import impacts, impulse_inputs
 from cuefem.cue import Array, Cue, LumpedCue
 from cuefem.cue.materials import LEATHERS
 from cuefem.effects.cue_effects import Support
-from cuefem.endmass.definitions import DEFINITIONS
+from cuefem.endmass.definitions import DEFINITIONS, Drive
 from cuefem.endmass.rigid_front import RigidFront
 from cuefem.quantity.display_units import END_MASS, to_display, with_heading, with_unit
 from cuefem.quantity.fields import Quantity
 from cuefem.results.closed_forms import cue_end_mass
 from cuefem.results.quantities import format_value
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
-from cuefem.results.solved_design import SolvedDesign
+from cuefem.results.solved_design import Solvable, SolvedDesign
 from cuefem.scene import Scene, Stroke
 from cuefem.scene.scene import DEFAULT_CONTACT_TIME
 from cuefem.show.analysis import Analysis
@@ -128,7 +128,7 @@ class Reduction(Analysis):
 
 
 def reduction(
-    scene: Scene | SolvedDesign,
+    scene: Solvable,
     *,
     near: float = PAPER_TONE,
     cue_ends: Mapping[str, float] | None = None,
@@ -138,7 +138,7 @@ def reduction(
 
     Parameters
     ----------
-    scene : Scene or SolvedDesign
+    scene : Scene, or what `cuefem.solve` returns
         Cue, ball, tip and stroke, or a solved one. The impact lasts the scene's contact time; Kim's paper states 2 ms.
     near : float
         A frequency, Hz, such as that of a tap: the mode nearest to it is listed.
@@ -221,7 +221,7 @@ def _own_cues(design: SolvedDesign) -> tuple[dict[str, LumpedCue | None], dict[s
     scene = design.scene
     if scene.lumped is not None:
         return {LUMPED: scene.lumped}, {}
-    drives = {SMALL_OFFSETS: "stick"}
+    drives: dict[str, Drive] = {SMALL_OFFSETS: "stick"}
     if scene.stroke.offset:  # head-on, both are the same
         drives[_at_offset_name(scene)] = "offset"
     cues: dict[str, LumpedCue | None] = {}
@@ -252,8 +252,8 @@ def _strokes(design: SolvedDesign, cue: LumpedCue | None, offsets: Sequence[floa
         outcomes = [design.strike(offset) for offset in offsets]
         squirts, regimes = [float(each.squirt) for each in outcomes], [str(each.regime) for each in outcomes]
     else:
-        outcome = impact(impulse_inputs(design.scene, cue) | {"offset": np.array(offsets)})
-        squirts, regimes = outcome.squirt.tolist(), outcome.regime.tolist()
+        many = impacts(impulse_inputs(design.scene, cue) | {"offset": np.array(offsets)})
+        squirts, regimes = many.squirt.tolist(), many.regime.tolist()
     valid = [None if regime == "miscue" else squirt for squirt, regime in zip(squirts, regimes, strict=True)]
     return {"squirt": valid, "regime": regimes}
 

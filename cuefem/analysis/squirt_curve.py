@@ -18,7 +18,7 @@ from cuefem.files.reference_cues import reference_cues
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.quantities import format_value
 from cuefem.results.records import Record, Table
-from cuefem.results.solved_design import OFFSETS, SolvedDesign, at_offset, coupled_curve
+from cuefem.results.solved_design import OFFSETS, Solvable, SolvedDesign, at_offset, coupled_curve
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
 from cuefem.show.analysis import Analysis, MoreCharts
@@ -131,7 +131,7 @@ def _other_curve(scene: Scene, offsets: tuple[float, ...]) -> Record | None:
         return None
 
 
-def squirt_curve(scene: Scene | SolvedDesign, offsets: Sequence[float] = OFFSETS) -> SquirtCurve:
+def squirt_curve(scene: Solvable, offsets: Sequence[float] = OFFSETS) -> SquirtCurve:
     """Squirt and natural pivot length at each offset, by every model.
 
     Parameters

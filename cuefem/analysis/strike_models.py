@@ -15,7 +15,7 @@ from cuefem.quantity.display_units import END_MASS, with_unit
 from cuefem.results.closed_forms import alciatore_a31, pivot_length
 from cuefem.results.quantities import REGIMES, RESULTS, format_value
 from cuefem.results.records import Record, Table
-from cuefem.results.solved_design import SolvedDesign, at_offset
+from cuefem.results.solved_design import Solvable, SolvedDesign, at_offset
 from cuefem.results.verdict import MISCUE_DEFINITION
 from cuefem.scene import Outcome, Scene
 from cuefem.show.analysis import Analysis
@@ -119,7 +119,7 @@ class StrikeModels(Analysis):
         return [LUMPED_SPEED_NOTE] if any(other < (1 - SPEED_NOTE_THRESHOLD) * coupled for other in others) else []
 
 
-def strike_models(scene: Scene | SolvedDesign, rtol: float | None = None) -> StrikeModels:
+def strike_models(scene: Solvable, rtol: float | None = None) -> StrikeModels:
     """One stroke by the coupled strike and by lumped models.
 
     Parameters

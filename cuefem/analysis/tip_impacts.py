@@ -11,8 +11,7 @@ import numpy as np
 from cuefem.quantity.display_units import significant, with_unit
 from cuefem.results.quantities import DASH, format_value
 from cuefem.results.records import Record, Table, by_label, tabulate
-from cuefem.results.solved_design import SolvedDesign
-from cuefem.scene import Scene
+from cuefem.results.solved_design import Solvable, SolvedDesign
 from cuefem.show.analysis import Analysis
 
 SPEEDS = (0.5, 1.0, 2.0, 3.0, 5.0, 8.0)  # m/s
@@ -60,7 +59,7 @@ class TipImpacts(Analysis):
         )
 
 
-def tip_impacts(scene: Scene | SolvedDesign) -> TipImpacts:
+def tip_impacts(scene: Solvable) -> TipImpacts:
     """Central impacts of a scene's leather tip at several speeds.
 
     Parameters

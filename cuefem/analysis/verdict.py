@@ -15,7 +15,7 @@ from cuefem.parameters.parts import shaft_word
 from cuefem.quantity.display_units import off_line, to_display, with_unit
 from cuefem.results.differences import difference_text
 from cuefem.results.records import Record, ScaleCell, Table
-from cuefem.results.solved_design import SolvedDesign, off_centre
+from cuefem.results.solved_design import Solvable, SolvedDesign, off_centre
 from cuefem.results.uncertainty import (
     NUMERICAL_ERROR,
     SHAFT_ERROR,
@@ -170,7 +170,7 @@ class Verdict(Analysis):
 
 
 def verdict(
-    scene: Scene | SolvedDesign,
+    scene: Solvable,
     references: Mapping[str, Cue] | None = None,
     calibration: Calibration | None = None,
 ) -> Verdict:
@@ -178,7 +178,7 @@ def verdict(
 
     Parameters
     ----------
-    scene : Scene or SolvedDesign
+    scene : Scene, or what `cuefem.solve` returns
         A stroke with a cue of segments or a lumped cue, or a solved one. A head-on stroke, which has no squirt, is
         computed at the game's default offset.
     references : mapping of str to Cue, optional

@@ -39,7 +39,7 @@ from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.fields import OutOfBounds
 from cuefem.results.records import Table
 from cuefem.scene import Scene
-from cuefem.scene.default_scene import DEFAULT_GAME, default_tip, usual_scene
+from cuefem.scene.default_scene import DEFAULT_GAME, default_tip, stroke_name, usual_scene
 from cuefem.show.plausibility import plausibility_warnings
 from cuefem.solid.tip_cache import computing_message
 
@@ -172,7 +172,7 @@ class Request:
 
     def _struck(self, cue: Cue) -> Scene:
         """The scene of a cue alone: the game's default stroke."""
-        game = self.given.get("game", DEFAULT_GAME)
+        game = stroke_name(self.given.get("game", DEFAULT_GAME))
         leather = default_tip(cue, game)
         changes = self._values(SimpleNamespace(effects=(leather,)), _is_leather)
         try:

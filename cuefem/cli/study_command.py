@@ -117,6 +117,7 @@ def study(
     designs = plan.all_designs
     notes = base_assumptions(file, designs.base)
     print_warnings(designs.base)
+    result: StudyResult
     database = None
     if isinstance(plan, Problem):
         with errors_name_file(file), progress_bar() as bar:

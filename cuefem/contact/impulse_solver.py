@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from cuefem.cue import Array, LumpedCue
 from cuefem.quantity.fields import sine_cosine
-from cuefem.scene import Outcome, Scene
+from cuefem.scene import Outcome, Outcomes, Scene
 
 # Replaces infinite friction: slip then ends after 1e-100 of the normal impulse, and the square is still finite.
 INFINITE_FRICTION = 1e100
@@ -214,15 +214,19 @@ def impulse_inputs(scene: Scene, cue: LumpedCue) -> dict[str, float]:
 
 
 def impact(inputs: Mapping[str, Any]) -> Outcome:
-    """Outcome of a lumped cue's stroke by `impulse_inputs`, every regime; of many strokes where some are arrays, (n,).
+    """Outcome of a lumped cue's stroke by `impulse_inputs`, every regime.
 
     phases: the events "slip ends", "greatest compression", "separation" with the normal impulse until then. energy:
     "ball translation", "ball rotation", "cue", "tip loss", "friction loss", which add up to "initial". The coupling of
     a LumpedCue is meant for positive offsets and changes sign with them, so that all is odd in the offset.
     """
-    strokes = _strokes(**inputs)
-    is_batch = any(np.ndim(value) for value in inputs.values())
-    return _outcome(strokes if is_batch else _Strokes(*(values[0].item() for values in strokes)))
+    stroke = _Strokes(*(values[0].item() for values in _strokes(**inputs)))
+    return Outcome(**_columns(stroke))
+
+
+def impacts(inputs: Mapping[str, Any]) -> Outcomes:
+    """Outcomes of many strokes of lumped cues by `impulse_inputs`, some of which are arrays, (n,)."""
+    return Outcomes(**_columns(_strokes(**inputs)))
 
 
 class _Strokes(NamedTuple):
@@ -306,29 +310,32 @@ def _strokes(
     )
 
 
-def _outcome(strokes: _Strokes) -> Outcome:
-    return Outcome(
-        squirt=strokes.squirt,
-        ball_velocity=np.stack([strokes.v_t, strokes.v_n], axis=-1),
-        ball_speed=strokes.ball_speed,
-        spin=strokes.spin,
-        cue_speed=strokes.cue_speed,
-        impulse=np.stack([strokes.p_t, strokes.p_n], axis=-1),
-        duration=None,
-        regime=strokes.regime,
-        jam=strokes.jam,
-        phases=(
-            Event("slip ends", strokes.slip_end),
-            Event("greatest compression", strokes.compression),
-            Event("separation", strokes.p_n),
-        ),
-        energy={
-            "initial": strokes.initial,
-            "ball translation": strokes.translation,
-            "ball rotation": strokes.rotation,
-            "cue": strokes.cue,
-            "tip loss": strokes.tip_loss,
-            "friction loss": strokes.friction_loss,
-        },
-        unknowns=2,
+def _columns(strokes: _Strokes) -> dict[str, Any]:
+    """The fields of an `Outcome` or of `Outcomes`."""
+    events = (
+        Event("slip ends", strokes.slip_end),
+        Event("greatest compression", strokes.compression),
+        Event("separation", strokes.p_n),
     )
+    energy = {
+        "initial": strokes.initial,
+        "ball translation": strokes.translation,
+        "ball rotation": strokes.rotation,
+        "cue": strokes.cue,
+        "tip loss": strokes.tip_loss,
+        "friction loss": strokes.friction_loss,
+    }
+    return {
+        "squirt": strokes.squirt,
+        "ball_velocity": np.stack([strokes.v_t, strokes.v_n], axis=-1),
+        "ball_speed": strokes.ball_speed,
+        "spin": strokes.spin,
+        "cue_speed": strokes.cue_speed,
+        "impulse": np.stack([strokes.p_t, strokes.p_n], axis=-1),
+        "duration": None,
+        "regime": strokes.regime,
+        "jam": strokes.jam,
+        "phases": events,
+        "energy": energy,
+        "unknowns": 2,
+    }

@@ -5,18 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
 from cuefem.beam.blas_threads import one_blas_thread
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.contact_model import model_of
 from cuefem.contact.refinement import check_one_resolution, refined_strike
 from cuefem.contact.step_records import solve_contact
-from cuefem.scene import Outcome, Resolution, Scene, as_scenes, check_scene
+from cuefem.scene import Outcome, Outcomes, Resolution, Scene, as_scenes, check_scene
 from cuefem.scene.solved_scene import has_moment_arm, strike_mode_count, tip_modes_of
 from cuefem.solid.solid_resolution import Solid
-
-BATCH_FIELDS = ("squirt", "ball_velocity", "ball_speed", "spin", "cue_speed", "impulse", "duration", "regime", "jam")
 
 
 def strike(scene: Scene, at: Resolution | Solid | None = None, *, rtol: float | None = None) -> Outcome:
@@ -96,7 +92,7 @@ def strike_modes(scene: Scene, tip: TipModes, *, steps: int | None = None) -> Ou
     return solve_contact(model_of(scene, tip), steps=steps).outcome
 
 
-def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None) -> Outcome:
+def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None) -> Outcomes:
     """Strike many balls with vibrating cues: the results of `cuefem.strike` as arrays.
 
     Parameters
@@ -109,9 +105,9 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None) -> Outco
 
     Returns
     -------
-    Outcome
-        Every field an array with one entry a scene, vectors (scenes, 2). ``energy`` has the names of all scenes, zero
-        where a scene lacks one. ``phases`` is empty, ``history`` None, ``unknowns`` the maximum.
+    Outcomes
+        Arrays with one entry a scene, vectors (scenes, 2); ``outcomes[i]`` is one `Outcome`, ``outcomes.to_frame()`` a
+        pandas frame.
 
     Raises
     ------
@@ -130,9 +126,9 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None) -> Outco
     >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
     >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),), body_mass=0.43)
     >>> scenes = [cf.Scene(cue, stroke=cf.Stroke(2.0, offset)) for offset in (0.1, 0.2, 0.3)]
-    >>> outcome = cf.batch_strike(scenes, cf.Resolution(2, 10, 10))
-    >>> outcome.squirt.shape, bool(outcome.squirt[2] > outcome.squirt[1])
-    ((3,), True)
+    >>> outcomes = cf.batch_strike(scenes, cf.Resolution(2, 10, 10))
+    >>> outcomes.squirt.shape, bool(outcomes.squirt[2] > outcomes.squirt[1]), outcomes[0].regime
+    ((3,), True, 'stick')
     """
     scenes = as_scenes("batch_strike scenes", scenes)
     tips: dict[Any, TipModes] = {}
@@ -145,11 +141,7 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None) -> Outco
         except (ValueError, RuntimeError) as error:
             error_type = ValueError if isinstance(error, ValueError) else RuntimeError
             raise error_type(f"scene {i}: {error}") from error
-    names = dict.fromkeys(name for outcome in results for name in outcome.energy)
-    energy = {name: np.array([outcome.energy.get(name, 0.0) for outcome in results]) for name in names}
-    columns = {name: np.array([getattr(outcome, name) for outcome in results]) for name in BATCH_FIELDS}
-    unknowns = max(outcome.unknowns for outcome in results)
-    return Outcome(**columns, phases=(), energy=energy, unknowns=unknowns)  # type: ignore[arg-type]
+    return Outcomes.of(results)
 
 
 def _mode_inputs(scene: Scene, at: Resolution | None) -> tuple[Any, ...]:

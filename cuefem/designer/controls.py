@@ -20,7 +20,7 @@ from cuefem.quantity.display_units import with_unit as quantity_text
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.units import plain_fractions, split_quantity, unit_of
 from cuefem.scene import Scene
-from cuefem.scene.default_scene import GAMES, usual_scene, without_leather
+from cuefem.scene.default_scene import GAMES, stroke_name, usual_scene, without_leather
 
 MIN_WALL = 0.0005  # m, the thinnest wall around a typed bore
 NEW_FERRULE, NEW_BORE, NEW_DEPTH = "25 mm", 0.006, 0.127
@@ -205,7 +205,7 @@ def _with_ferrule(scene: Scene, name: str) -> Scene:
 
 def _with_game(scene: Scene, name: str) -> Scene:
     """The scene with a game's ball, tip and stroke; effects on the cue are unchanged."""
-    usual = usual_scene(scene.shaft, name)
+    usual = usual_scene(scene.shaft, stroke_name(name))
     brought = {type(effect) for effect in usual.effects}
     staying = tuple(effect for effect in scene.effects if not effect.at_tip and type(effect) not in brought)
     return replace(usual, effects=(*usual.effects, *staying))

@@ -19,7 +19,7 @@ from cuefem.files.parts_catalogue import data_folder
 from cuefem.files.reference_cues import named_scene, reference_cue_file
 from cuefem.measurements.calibration import Calibration, load_calibration
 from cuefem.scene import Scene
-from cuefem.scene.default_scene import DEFAULT_GAME, usual_scene
+from cuefem.scene.default_scene import DEFAULT_GAME, GameName, usual_scene
 
 SLIDE_PAUSE = 1.5  # s: moves of one slider that follow each other within it are one step
 MAX_SEGMENTS = 300  # the natural frequencies and the stiffness of as many take 15 s and 0.6 GB
@@ -146,7 +146,7 @@ def reference_design(name: str) -> Design:
     return design_of(name, scene, assumptions(path, scene, {}))
 
 
-def read_design(name: str, content: bytes, game: str = DEFAULT_GAME) -> Design:
+def read_design(name: str, content: bytes, game: GameName = DEFAULT_GAME) -> Design:
     """The design of an uploaded file; ValueError in one line.
 
     A cue alone gets the default stroke of a game. A scene may name a reference cue without its folder.

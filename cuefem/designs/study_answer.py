@@ -6,7 +6,7 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from os import PathLike
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 
@@ -21,6 +21,42 @@ from cuefem.designs.sweep import SweepResult
 from cuefem.quantity.fields import check_kind
 
 
+@overload
+def study(
+    what: Study,
+    *,
+    store: str | PathLike[str] | SqliteStore | None = ...,
+    workers: int | Executor | None = ...,
+    progress: Callable[[Any], object] = ...,
+    rounds: int = ...,
+) -> SweepResult: ...
+@overload
+def study(
+    what: Scatter,
+    *,
+    store: str | PathLike[str] | SqliteStore | None = ...,
+    workers: int | Executor | None = ...,
+    progress: Callable[[Any], object] = ...,
+    rounds: int = ...,
+) -> ScatterResult: ...
+@overload
+def study(
+    what: Problem,
+    *,
+    store: str | PathLike[str] | SqliteStore | None = ...,
+    workers: int | Executor | None = ...,
+    progress: Callable[[Any], object] = ...,
+    rounds: int = ...,
+) -> OptimumResult: ...
+@overload
+def study(
+    what: str | PathLike[str] | Study | Scatter | Problem,
+    *,
+    store: str | PathLike[str] | SqliteStore | None = ...,
+    workers: int | Executor | None = ...,
+    progress: Callable[[Any], object] = ...,
+    rounds: int = ...,
+) -> SweepResult | ScatterResult | OptimumResult: ...
 def study(
     what: str | PathLike[str] | Study | Scatter | Problem,
     *,

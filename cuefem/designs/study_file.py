@@ -28,7 +28,7 @@ from cuefem.parameters.scene_paths import paths, quantity_at
 from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.fields import Quantity
 from cuefem.scene import Resolution, Scene, Stroke
-from cuefem.scene.default_scene import KIM, usual_scene
+from cuefem.scene.default_scene import KIM, StrokeName, usual_scene
 
 OFFSET = 0.3  # b/R, for a cue without a scene and the game "kim"
 FACTOR = Quantity("", "(0, inf)")
@@ -232,7 +232,7 @@ def _with_masses(scene: Scene, tables: StudyTable, path: Path) -> Scene:
     return scene
 
 
-def _game(tables: StudyTable, path: Path) -> str:
+def _game(tables: StudyTable, path: Path) -> StrokeName:
     return game_of({} if tables.game is None else {"game": tables.game}, path)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -18,6 +17,7 @@ from cuefem.designs.study import Study, StudyDefinition, StudyDesign
 from cuefem.designs.study_table import tabulate_parameters, varied_segments
 from cuefem.quantity.display import counted
 from cuefem.quantity.display_units import with_unit
+from cuefem.quantity.frames import frame_of
 from cuefem.results.records import Record, Table
 from cuefem.show.analysis import Analysis
 from cuefem.show.scene_summary import scene_record
@@ -158,14 +158,9 @@ class StudyResult(Analysis):
         RuntimeError
             If pandas is not installed.
         """
-        try:
-            pandas = importlib.import_module("pandas")
-        except ModuleNotFoundError:
-            raise RuntimeError("frames need pandas: pip install 'cuefem[pandas]'") from None
-        index = pandas.RangeIndex(self.count, name="design")
-        frame: pd.DataFrame = pandas.DataFrame({**self.designs, **self.responses}, index=index)
-        frame["failure"] = [self.columns.failures.get(design) for design in range(self.count)]
-        frame.attrs = {"units": self.units, "varied_fields": [*self.designs], "responses": [*self.responses]}
+        failures = [self.columns.failures.get(design) for design in range(self.count)]
+        frame = frame_of({**self.designs, **self.responses, "failure": failures}, self.units, index="design")
+        frame.attrs |= {"varied_fields": [*self.designs], "responses": [*self.responses]}
         return frame
 
     @property

@@ -11,13 +11,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from cuefem.beam.blas_threads import one_blas_thread
 from cuefem.beam.tip_modes import TipModes
-from cuefem.contact.impulse_solver import impact, impulse_inputs
+from cuefem.contact.impulse_solver import impacts, impulse_inputs
 from cuefem.contact.outcome import slips_at_end
 from cuefem.contact.refinement import check_one_resolution, refined_end_mass
 from cuefem.contact.strike import strike_modes
@@ -35,8 +35,10 @@ SEARCH_ROUNDS = 2  # rounds of refinement
 SMALL_OFFSET = 1e-5  # b/R in the limit of small offsets
 SQUIRT_TOLERANCE = 1e-12  # rad: squirts that differ by less are equal
 
+Drive = Literal["stick", "offset", "velocity", "force", "squirt"]
 
-def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None, *, rtol: float | None = None) -> float:
+
+def end_mass(scene: Scene, drive: Drive = "stick", at: Resolution | None = None, *, rtol: float | None = None) -> float:
     """Effective end mass m_e of a scene's cue: its transverse inertia at the tip.
 
     Parameters
@@ -261,7 +263,7 @@ def lumped_number(name: str, values: Array, squirt: float, *, scene: Scene, cue:
     side, inputs = np.sign(scene.stroke.offset), impulse_inputs(scene, cue)
 
     def excess(values: Array) -> Array:
-        return np.asarray(side * impact(inputs | {name: values}).squirt - squirt)
+        return np.asarray(side * impacts(inputs | {name: values}).squirt - squirt)
 
     excesses = excess(values)
     if not excesses[0] < -SQUIRT_TOLERANCE < SQUIRT_TOLERANCE < excesses[-1]:
@@ -284,7 +286,7 @@ class Definition(NamedTuple):
     by default those of a tip that sticks.
     """
 
-    name: str
+    name: Drive
     label: str
     meaning: str
     value: Callable[[TipModes, Scene], Any]

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import overload
 
 import numpy as np
 
 from cuefem.beam.tip_modes import TipModes
-from cuefem.contact.impulse_solver import impact, impulse_inputs
+from cuefem.contact.impulse_solver import impact, impacts, impulse_inputs
 from cuefem.cue import LumpedCue
 from cuefem.endmass.definitions import (
     SEARCH_POINTS,
@@ -19,7 +20,7 @@ from cuefem.endmass.definitions import (
     sticking_squirt,
     without_slip,
 )
-from cuefem.scene import Outcome, Resolution, Scene, as_scenes, check_scene
+from cuefem.scene import Outcome, Outcomes, Resolution, Scene, as_scenes, check_scene
 from cuefem.scene.solved_scene import SolvedScene
 
 
@@ -73,7 +74,11 @@ def lump_modes(scene: Scene, tip: TipModes) -> LumpedCue:
     return replace(cue, coupling=coupling)
 
 
-def impulse(scene: Scene | Sequence[Scene]) -> Outcome:
+@overload
+def impulse(scene: Scene) -> Outcome: ...
+@overload
+def impulse(scene: Sequence[Scene]) -> Outcomes: ...
+def impulse(scene: Scene | Sequence[Scene]) -> Outcome | Outcomes:
     """Outcome of a stroke by the general impulse solver: without time and vibration, exact in every regime.
 
     Parameters
@@ -84,9 +89,10 @@ def impulse(scene: Scene | Sequence[Scene]) -> Outcome:
 
     Returns
     -------
-    Outcome
-        Of a sequence of scenes every field is an array, (scenes,), vectors (scenes, 2). See
-        `cuefem.contact.impulse_solver.impact` for phases and energies.
+    Outcome or Outcomes
+        Outcomes of a sequence of scenes. The ``phases`` of an Outcome are the events "slip ends", "greatest
+        compression" and "separation" with the normal impulse until then; its energies "ball translation", "ball
+        rotation", "cue", "tip loss" and "friction loss" add up to "initial".
 
     Raises
     ------
@@ -103,13 +109,13 @@ def impulse(scene: Scene | Sequence[Scene]) -> Outcome:
     >>> import cuefem as cf
     >>> scene = cf.Scene(cf.LumpedCue.two_part(mass=0.54, cue_end_mass=0.012), stroke=cf.Stroke(offset=0.3))
     >>> outcome = cf.impulse(scene)
-    >>> outcome.regime, round(float(outcome.squirt), 4)  # rad
+    >>> outcome.regime, round(outcome.squirt, 4)  # rad
     ('stick', 0.0127)
     """
     if isinstance(scene, Scene):
         return impact(_lumped_numbers(scene))
     inputs = [_lumped_numbers(item) for item in as_scenes("impulse scene", scene)]
-    return impact({name: np.array([numbers[name] for numbers in inputs]) for name in inputs[0]})
+    return impacts({name: np.array([numbers[name] for numbers in inputs]) for name in inputs[0]})
 
 
 def _lumped_numbers(scene: Scene) -> dict[str, float]:

@@ -148,7 +148,9 @@ def _load_cue(path: Path, material: str | None = None, length_unit: str | None =
             warn(line, DrawingWarning)
         return cue
     if os.path.isdir(path):  # does not raise for a name that is too long, unlike Path.is_dir
-        raise InputError(path, "", "must be a file; got a folder")
+        is_measured = (path / "measured.toml").exists()
+        what = "a measured cue's folder: `cuefem compare`, cuefem.compare(folder)" if is_measured else "a folder"
+        raise InputError(path, "", f"must be a file; got {what}")
     hint = "; save the table as .csv" if ending in SPREADSHEET_EXTENSIONS else ""
     raise InputError(path, "", f"must end in .toml, .csv, .stl, .ply or .obj; got {path.suffix!r}{hint}")
 

@@ -11,13 +11,13 @@ from cuefem.files import load
 from cuefem.files.cue_names import CUES, REFERENCES
 from cuefem.files.parts_catalogue import data_folder
 from cuefem.scene import Scene
-from cuefem.scene.default_scene import usual_scene
+from cuefem.scene.default_scene import stroke_name, usual_scene
 
 
 def named_scene(name: str) -> Scene:
     """The scene of a name, or the usual one of its cue and game."""
     scene: Any = load(data_folder() / CUES[name].file)
-    return usual_scene(scene, CUES[name].game) if isinstance(scene, Cue) else scene
+    return usual_scene(scene, stroke_name(CUES[name].game)) if isinstance(scene, Cue) else scene
 
 
 @cache

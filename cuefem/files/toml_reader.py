@@ -22,7 +22,16 @@ from cuefem.files.schema import build, key_path, keys_of, table, unknown_key
 from cuefem.parameters.parts import with_shaft_mass
 from cuefem.quantity.fields import MAX_SEGMENTS, Quantity, check_fields, quantity_fields
 from cuefem.scene import Scene, Stroke
-from cuefem.scene.default_scene import DEFAULT_GAME, GAMES, KIM, STROKES, usual_scene, with_usual_rest
+from cuefem.scene.default_scene import (
+    DEFAULT_GAME,
+    GAMES,
+    KIM,
+    STROKES,
+    StrokeName,
+    stroke_name,
+    usual_scene,
+    with_usual_rest,
+)
 
 # Keys of a scene that default to those of its game.
 GAME_KEYS = {"ball": ("mass", "radius"), "tip": ("restitution", "friction"), "stroke": ("speed", "offset")}
@@ -86,6 +95,8 @@ def _unquoted(text: str, error: str) -> str:
 def load_toml(path: Path, cue_file: Callable[[Path], Cue]) -> Cue | Scene | SideStrike:
     """Load the cue or scene of a TOML file; ``cue_file`` loads the cue file of a scene."""
     tables = read_tables(path)
+    if "scene" in tables and "cue" not in tables:
+        raise InputError(path, "scene", "must be a cue or a scene; got a study: `cuefem study`, cuefem.study(file)")
     if {"segments", "shaft"} & {*tables} and "cue" not in tables:
         return _cue(tables, path, "")
     if "striker" in tables:
@@ -160,13 +171,13 @@ def scene_from_tables(tables: dict[str, Any], path: Path, cue_file: Callable[[Pa
     return scene
 
 
-def game_of(tables: dict[str, Any], path: Path) -> str:
+def game_of(tables: dict[str, Any], path: Path) -> StrokeName:
     """The game of a file's tables, by default pool."""
     game = tables.get("game", DEFAULT_GAME)
     if game not in STROKES:
         hint = suggestion(game, STROKES) if isinstance(game, str) else ""
         raise InputError(path, "game", f"must be one of {', '.join(STROKES)}; got {quote(game)}{hint}")
-    return str(game)
+    return stroke_name(game)
 
 
 def missing_keys(tables: dict[str, Any]) -> list[str]:
@@ -180,7 +191,7 @@ def missing_keys(tables: dict[str, Any]) -> list[str]:
     return missing + ["effects"] * ("effects" not in tables)
 
 
-def _completed(parts: dict[str, Any], game: str, path: Path, *, is_body_mass_given: bool) -> dict[str, Any]:
+def _completed(parts: dict[str, Any], game: StrokeName, path: Path, *, is_body_mass_given: bool) -> dict[str, Any]:
     """The fields of a scene, completed from a game; a spring tip and a lumped cue get no leather tip."""
     known, cue, tip = GAMES[game], parts["cue"], parts.get("tip", {})
     if isinstance(cue, Cue) and not is_body_mass_given:

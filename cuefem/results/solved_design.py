@@ -15,7 +15,7 @@ from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.strike import steps_of, strike, strike_modes
 from cuefem.cue import Array
 from cuefem.effects.cue_effects import Support
-from cuefem.endmass.definitions import DEFINITIONS, small_offset_slope
+from cuefem.endmass.definitions import DEFINITIONS, Drive, small_offset_slope
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.verdict import reject_miscue
 from cuefem.scene import Outcome, Scene, check_scene
@@ -59,9 +59,29 @@ def time_history(outcome: Outcome, name: str, times: Array) -> dict[str, Array]:
 
 
 class SolvedDesign:
-    """A solved scene: its results in SI, each equal to that of its public function, computed on first access.
+    """A scene whose modes and strikes are computed once and shared by all that is asked of it: see `solve`.
 
-    solved: the scene and its modes. outcome: of its own strike, if already computed.
+    Every question about a scene takes it in place of the scene.
+
+    Parameters
+    ----------
+    solved : SolvedScene
+        The scene and its modes.
+    outcome : Outcome, optional
+        Of its own strike, if already computed.
+
+    Attributes
+    ----------
+    scene : Scene
+        The scene.
+    tip_stiffness : float
+        Static transverse stiffness at the tip, the joint end clamped, N/m.
+    squirt_slope : float
+        Squirt over phi in the limit of small offsets, sin(phi) the offset b/R.
+
+    Examples
+    --------
+    See `solve`.
     """
 
     def __init__(self, solved: SolvedScene, outcome: Outcome | None = None) -> None:
@@ -99,7 +119,7 @@ class SolvedDesign:
         """Squirt over phi in the limit of small offsets."""
         return small_offset_slope(self.solved.stick_tip, self.scene)
 
-    def end_mass(self, name: str, offset: float | None) -> float:
+    def end_mass(self, name: Drive, offset: float | None = None) -> float:
         """End mass by a definition, kg, at an offset b/R or at the scene's own."""
         return float(DEFINITIONS[name].of_design(self.solved, self._at(offset)))
 
@@ -118,3 +138,36 @@ class SolvedDesign:
 
     def _at(self, offset: float | None) -> Scene:
         return self.scene if offset is None else at_offset(self.scene, offset)
+
+
+Solvable = Scene | SolvedDesign  # what a question about a scene takes
+
+
+def solve(scene: Scene, *, rtol: float | None = None) -> SolvedDesign:
+    """Share the modes and the strike of a scene among the questions that are asked about it.
+
+    Parameters
+    ----------
+    scene : Scene
+        A stroke.
+    rtol : float, optional
+        The largest relative error of the scene's own strike, in (0, 1), as for `strike`; by default that of its default
+        resolution.
+
+    Returns
+    -------
+    SolvedDesign
+        Every question takes it in place of the scene. Its methods ``strike(offset)``, ``squirt(offset)``,
+        ``end_mass(drive)`` and ``frequency(mode)`` give single numbers.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> solved = cf.solve(cf.load_scene("plain maple"))
+    >>> cf.verdict(solved).squirt == solved.squirt() == cf.strike(solved.scene).squirt
+    True
+    >>> round(1e3 * solved.end_mass("stick"), 1), round(solved.frequency(1))  # g, Hz
+    (7.3, 92)
+    """
+    check_scene("scene", scene)
+    return SolvedDesign.of(scene, rtol)

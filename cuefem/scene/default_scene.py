@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
+from typing import Literal, cast
 
 from cuefem.cue import MAX_LEATHER_MODULUS, Cue
 from cuefem.cue.materials import LEATHERS, leather_restitution
@@ -16,6 +17,9 @@ from cuefem.quantity.fields import check_kind
 from cuefem.quantity.unit_checks import MIN_CUE_MASS
 from cuefem.quantity.units import conversion_factor
 from cuefem.scene.scene import Ball, Scene, Stroke, Tip
+
+GameName = Literal["pool", "carom", "snooker"]
+StrokeName = GameName | Literal["kim"]
 
 OUNCE = float(conversion_factor("oz", "kg"))
 BODY_MASS_RANGE = (13.5, 17.5)  # oz, of pool: cues of 18 to 21 oz less shafts of 3.5 to 4.5 oz
@@ -136,9 +140,16 @@ GAMES: Mapping[str, Game] = MappingProxyType(
         ),
     }
 )
-DEFAULT_GAME = "pool"
-KIM = "kim"  # no game, but the stroke of [Kim]: his ball, a spring as tip, head on, and no effects
+DEFAULT_GAME: GameName = "pool"
+KIM: Literal["kim"] = "kim"  # no game, but the stroke of [Kim]: his ball, a spring as tip, head on, and no effects
 STROKES = (*GAMES, KIM)
+
+
+def stroke_name(name: str) -> StrokeName:
+    """The name of a default stroke; ValueError if none has it."""
+    if name not in STROKES:
+        raise ValueError(f"game must be one of {', '.join(STROKES)}; got {name!r}")
+    return cast(StrokeName, name)
 
 
 def without_leather(cue: Cue) -> Cue:
@@ -201,7 +212,7 @@ def default_tip(cue: Cue, game: str = DEFAULT_GAME) -> LeatherTip:
     return wider if wider.fits(ferrule) else tip
 
 
-def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = None) -> Scene:
+def usual_scene(cue: Cue, game: StrokeName = DEFAULT_GAME, *, tip: LeatherTip | None = None) -> Scene:
     """The default stroke of a game with a cue, which the commands use for a cue without a scene.
 
     Parameters

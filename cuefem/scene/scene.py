@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from itertools import chain
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from cuefem.cue import Array, Cue, LumpedCue
 from cuefem.effects.contact_terms import ContactTerms
@@ -23,7 +26,11 @@ from cuefem.quantity.fields import (
     check_kind,
     quote,
 )
+from cuefem.quantity.frames import frame_of
 from cuefem.quantity.unit_checks import warn_light_cue
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 DEFAULT_CONTACT_TIME = 2e-3  # s, [Kim] sec. 4
 
@@ -352,34 +359,32 @@ def _loading_phase(law: LeatherLaw, mass: float, speed: float) -> tuple[float, f
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """Result of a strike.
-
-    Of many strokes every field is an array, (strokes,); vectors have one axis more.
+    """Result of a strike. `cuefem.batch_strike` has those of many as `Outcomes`.
 
     Attributes
     ----------
-    squirt : float or array
+    squirt : float
         Angle between the ball's path and the cue's, rad; positive when the ball leaves on the far side of the cue's
         line from the side that is struck.
-    ball_velocity : array
+    ball_velocity : (2,) array
         Velocity of the ball (t, n), m/s: t tangential, n normal into the ball at the contact.
-    ball_speed : float or array
+    ball_speed : float
         m/s.
-    spin : float or array
+    spin : float
         Angular velocity of the ball, p_t/(nu M R), rad/s.
-    cue_speed : float or array
+    cue_speed : float
         Speed of the cue along its axis after the stroke, m/s.
-    impulse : array
+    impulse : (2,) array
         Impulse on the ball (t, n), N s.
     duration : float or None
         Of the contact, s; None from the impulse solver.
-    regime : str or array
+    regime : str
         State of the contact: "stick" (at once, or after slip while the tip was being compressed), "late stick" (past
         the maximum indentation), "slip reversal", "partial slip" (friction took more than 5 % of the ball's energy
         while the patch as a whole stuck), "gross slip" (through more than a quarter of the normal impulse), "miscue"
         (slip through more than half of it, or through its last third). The impulse solver has "stick", "late stick",
         "slip reversal", and "miscue" where slip never ends.
-    jam : bool or array
+    jam : bool
         Whether friction increased the normal approach speed of ball and tip at first: usual for a light end mass.
     phases : tuple
         Phases of the contact.
@@ -394,17 +399,17 @@ class Outcome:
         solver.
     """
 
-    squirt: Any
+    squirt: float
     ball_velocity: Array
-    ball_speed: Any
-    spin: Any
-    cue_speed: Any
+    ball_speed: float
+    spin: float
+    cue_speed: float
     impulse: Array
-    duration: Any
-    regime: Any
-    jam: Any
+    duration: Any  # float, or None: a union would ask every program on strikes for a check
+    regime: str
+    jam: bool
     phases: tuple[Any, ...] = field(repr=False)
-    energy: dict[str, Any]
+    energy: dict[str, float]
     unknowns: int = 0
     error: float | None = None
     history: Any = None
@@ -415,3 +420,112 @@ class Outcome:
     def __repr__(self) -> str:
         names = ("squirt", "ball_speed", "spin", "cue_speed", "duration", "regime", "error")
         return brief_repr("Outcome", ((name, getattr(self, name)) for name in names if getattr(self, name) is not None))
+
+
+OUTCOME_COLUMNS = (
+    "squirt",
+    "ball_velocity",
+    "ball_speed",
+    "spin",
+    "cue_speed",
+    "impulse",
+    "duration",
+    "regime",
+    "jam",
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Outcomes:
+    """Results of many strikes: arrays with one entry a strike. ``len`` counts them, ``outcomes[i]`` is one `Outcome`.
+
+    Attributes
+    ----------
+    squirt, ball_speed, spin, cue_speed : (strikes,) array
+        As in `Outcome`: rad, m/s, rad/s, m/s.
+    ball_velocity, impulse : (strikes, 2) array
+        (t, n), m/s and N s.
+    duration : (strikes,) array or None
+        s; None from the impulse solver.
+    regime : (strikes,) array of str
+        State of the contact.
+    jam : (strikes,) array of bool
+        Whether friction increased the normal approach speed of ball and tip at first.
+    energy : dict of str to (strikes,) array
+        J, by the names of all strikes; zero where a strike lacks one.
+    unknowns : int
+        Number of state variables, the largest of all strikes.
+    phases : tuple
+        Of the impulse solver its events, with an array of normal impulses each; () of strikes in time.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> cue = cf.LumpedCue(0.54, 0.01)
+    >>> outcomes = cf.batch_strike([cf.Scene(cue, stroke=cf.Stroke(2.0, offset)) for offset in (0.1, 0.3)])
+    >>> len(outcomes), outcomes.squirt.shape, outcomes[1].regime
+    (2, (2,), 'stick')
+    >>> outcomes.to_frame().attrs["units"]["squirt"]
+    'rad'
+    """
+
+    squirt: Array
+    ball_velocity: Array
+    ball_speed: Array
+    spin: Array
+    cue_speed: Array
+    impulse: Array
+    duration: Array | None
+    regime: NDArray[np.str_]
+    jam: NDArray[np.bool_]
+    energy: dict[str, Array]
+    unknowns: int = 0
+    phases: tuple[Any, ...] = field(default=(), repr=False)
+
+    __eq__ = equal_fields
+    __hash__ = None  # type: ignore[assignment]
+
+    @classmethod
+    def of(cls, outcomes: Sequence[Outcome]) -> Outcomes:
+        """The results of strikes as arrays."""
+        names = dict.fromkeys(name for outcome in outcomes for name in outcome.energy)
+        energy = {name: np.array([outcome.energy.get(name, 0.0) for outcome in outcomes]) for name in names}
+        columns: Any = {name: np.array([getattr(outcome, name) for outcome in outcomes]) for name in OUTCOME_COLUMNS}
+        return cls(**columns, energy=energy, unknowns=max(outcome.unknowns for outcome in outcomes))
+
+    def __len__(self) -> int:
+        return len(self.squirt)
+
+    def __getitem__(self, number: int) -> Outcome:
+        """One strike, without phases and history."""
+        columns: Any = {name: self._entry(name, number) for name in OUTCOME_COLUMNS}
+        energy = {name: float(values[number]) for name, values in self.energy.items()}
+        return Outcome(**columns, phases=(), energy=energy, unknowns=self.unknowns)
+
+    def _entry(self, name: str, number: int) -> Any:
+        values = getattr(self, name)
+        entry = None if values is None else values[number]
+        return entry.item() if isinstance(entry, np.generic) else entry
+
+    def __repr__(self) -> str:
+        names = ("squirt", "ball_speed", "spin", "cue_speed", "duration", "regime")
+        given = ((name, getattr(self, name)) for name in names if getattr(self, name) is not None)
+        return brief_repr("Outcomes", [("n", len(self)), *given])
+
+    def to_frame(self) -> pd.DataFrame:
+        """A row for each strike, SI units; ``attrs["units"]`` has them by column. RuntimeError without pandas."""
+        units = {
+            "squirt": "rad",
+            "ball_velocity_t": "m/s",
+            "ball_velocity_n": "m/s",
+            "ball_speed": "m/s",
+            "spin": "rad/s",
+            "cue_speed": "m/s",
+            "impulse_t": "N s",
+            "impulse_n": "N s",
+            "duration": "s",
+        }
+        columns = {name: getattr(self, name) for name in OUTCOME_COLUMNS if getattr(self, name) is not None}
+        for name in ("ball_velocity", "impulse"):
+            columns[f"{name}_t"], columns[f"{name}_n"] = columns.pop(name).T
+        return frame_of(columns, units)

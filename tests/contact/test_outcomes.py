@@ -46,6 +46,8 @@ def test_batch_strike_equals_single_strikes(scenes: list[cf.Scene], at: cf.Resol
         alone = numbers(cf.strike(scene, at))
         for name, values in numbers(together).items():
             assert np.array_equal(values[i], alone.get(name, 0.0)), (i, name)
+        assert numbers(together[i]).items() >= {"squirt": alone["squirt"], "regime": alone["regime"]}.items()
+    assert len(together) == len(scenes) == len(together.to_frame())
     assert together.unknowns > 20
 
 

@@ -15,7 +15,7 @@ from cuefem.designs import Levels, Response, Study, Vary
 from cuefem.designs.store import SqliteStore
 from cuefem.files import InputError
 from tests.helpers.command_line import call
-from tests.helpers.invalid_input import assert_refused
+from tests.helpers.invalid_input import assert_refused, messages_of
 from tests.helpers.surfaces import revolve, write_surface
 
 
@@ -168,3 +168,27 @@ def test_load_missing_file_or_foreign_option_is_rejected(tmp_path: Path, request
     (tmp_path / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
     messages = {row: rejection(tmp_path / row.split()[0], **options) for row, options in OPTIONS.items()}
     assert_refused("file_options", messages, request)
+
+
+LUMPED = cf.Scene(cf.LumpedCue(0.54, 0.01))
+SIDE = cf.SideStrike(KIM, cf.Striker(mass=0.02, restitution=0.8, contact_time=1e-3))
+LOADERS: dict[str, Callable[[], object]] = {
+    "stroke of a study": lambda: cf.load_scene("studies/sweeps/bore.toml"),
+    "stroke of a measured folder": lambda: cf.load_scene("studies/measured/stinger"),
+    "stroke of a misspelt name": lambda: cf.load_scene("plane maple"),
+    "scene for another game": lambda: cf.load_scene("studies/scenes/snooker.toml", game="pool"),
+    "unknown game": lambda: cf.load_scene("plain maple", game="polo"),
+    "unknown game of a cue": lambda: cf.usual_scene(cf.load_cue("plain maple"), "polo"),
+    "cue of a lumped cue": lambda: cf.load_cue("lumped.toml"),
+    "stroke of a side strike": lambda: cf.load_scene("side.toml"),
+}
+
+
+def test_loader_of_another_kind_of_file_is_rejected(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
+) -> None:
+    (tmp_path / "studies").symlink_to(Path(__file__).parents[2] / "studies")
+    cf.save(LUMPED, tmp_path / "lumped.toml")
+    cf.save(SIDE, tmp_path / "side.toml")
+    monkeypatch.chdir(tmp_path)
+    assert_refused("loaders", messages_of(LOADERS), request)
