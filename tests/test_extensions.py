@@ -27,13 +27,13 @@ from cuefem.parameters.scene_paths import paths
 from cuefem.parameters.table import PARAMETERS
 from cuefem.results.quantities import RESULTS
 from tests.helpers.command_line import as_json, stdout_of
+from tests.helpers.contributors_guide import module_of
 from tests.helpers.extensions import (
     DEFINITION,
     DRAWING_RESULT,
     PARAMETER,
     STRIKE_RESULT,
     cap_effect,
-    collar_effect,
     outputs,
     outputs_without,
 )
@@ -75,7 +75,8 @@ def test_added_parameter_is_varied_and_uncertain(monkeypatch: pytest.MonkeyPatch
 
 def test_added_question_is_command_section_and_call(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """A file and its line in `QUESTIONS`: help, command, report in terminal, JSON, page and designer, and notebook."""
-    weigh = Question("Weight", "tests.helpers.made_up_question:weight", help="Weight of a cue.")
+    guide = module_of("A question about a scene", monkeypatch)
+    weigh = Question("Weight", f"{guide.__name__}:weight", help="Weight of a cue.")
     monkeypatch.setitem(QUESTIONS, "weight", weigh)
     scene = cf.Scene(cf.LumpedCue(0.54, 0.006))
     cf.save(scene, tmp_path / "scene.toml")
@@ -122,8 +123,9 @@ def test_added_end_mass_definition_is_displayed_and_evaluated(monkeypatch: pytes
 
 
 @pytest.mark.usefixtures("_effects_deleted")
-def test_added_cue_effect_is_displayed_saved_and_varied(tmp_path: Path) -> None:
-    kind: Any = collar_effect()
+def test_added_cue_effect_is_displayed_saved_and_varied(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The class of CONTRIBUTING.md alone."""
+    kind: Any = module_of("An effect", monkeypatch).Collar
     bare = kim_scene(0.3)
     scene = replace(bare, effects=(kind(0.03, 4e-3),))
     assert effect_kinds()["Collar"] is kind

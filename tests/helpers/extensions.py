@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from cuefem.designer.panels import tables_markup, tabulate_numbers
 from cuefem.designer.session import Session
 from cuefem.designer.state import Design
 from cuefem.effects.contact_terms import ContactTerms
-from cuefem.effects.effect import CueEffect, TipEffect, TrialValues
+from cuefem.effects.effect import TipEffect
 from cuefem.endmass.definitions import Definition
 from cuefem.parameters.parameter import Parameter
 from cuefem.parameters.parts import Part
@@ -71,29 +71,6 @@ DEFINITION = Definition(
     lambda tip, _: 1e-3 + 1 / float(np.sum(tip.amplitude[tip.omega == 0, 1] ** 2)),
     True,
 )
-
-
-def collar_effect() -> type[CueEffect]:
-    """The class of an effect on the cue; defined locally, so that it is deleted after the test."""
-
-    @dataclass(frozen=True)
-    class Collar(CueEffect):
-        """A collar on the shaft."""
-
-        trial_values: ClassVar[TrialValues | None] = TrialValues({"position": 0.03, "mass": 4e-3}, "made up")
-        position: Annotated[float, Quantity("m", "[0, inf)")]
-        mass: Annotated[float, Quantity("kg", "[0, inf)")]
-
-        @property
-        def positions(self) -> tuple[float, ...]:
-            """Where it acts, m."""
-            return (self.position,)
-
-        def add_to(self, terms: Any) -> None:
-            """Its mass."""
-            terms.add_mass(self.position, self.mass)
-
-    return Collar
 
 
 def cap_effect() -> type[TipEffect]:
