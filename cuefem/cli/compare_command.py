@@ -21,14 +21,18 @@ from cuefem.cli.scene_command import (
     cue_options,
     force_option,
 )
-from cuefem.cli.scene_options import impact_options, offset_option, option, typed_name
+from cuefem.cli.scene_options import CUE_KEYS, impact_options, offset_option, option, typed_name
 from cuefem.files import InputError, load_stroke
 from cuefem.files.cue_names import cue_name, named_path
 from cuefem.files.defaults_report import STROKE, Assumption, given_keys
+from cuefem.files.lathe_profile import names_units
+from cuefem.files.shaft_additions import SHAFT_ADDITIONS
 from cuefem.files.warnings_of_drawings import drawing_warnings
 from cuefem.measurements.calibration import Calibration
 from cuefem.measurements.measured_folder import load_measured, named_folder, write_template
+from cuefem.scene import Scene
 from cuefem.show.plausibility import plausibility_warnings
+from cuefem.show.scene_summary import listed
 
 
 class TwoForms(Command):
@@ -74,7 +78,7 @@ def compare(
     """Compare cues side by side, or the computed and measured values of one cue, with uncertainties.
 
     FILE FILE ...: two to five cues or scenes, struck with the ball and stroke of the first; each a file or the name of
-    a cue, such as "predator z2".
+    a cue, such as "predator z2". An option of cue or tip applies to each file that leaves its value open.
 
     FOLDER: a measured cue, with the shaft's drawing (cue.toml or cue.csv, required), measured.toml with single
     measurements, and one CSV for each long series, such as squirt.csv. The options of cue, tip and stroke stand in
@@ -139,14 +143,9 @@ def _side_by_side(
     first, files = requests[0], [request.file for request in requests]
     if len(files) > MAX_CUES:
         raise InputError(files[MAX_CUES], "", f"must be one of at most {MAX_CUES} cues; got {len(files)}")
-    if "shaft_mass" in first.given:
-        problem = (
-            "must be set in each cue's file (shaft_mass) when cues are compared; `cuefem convert` writes such a .toml"
-        )
-        raise InputError(files[0], option("shaft_mass"), problem)
-    for request in requests:
-        _reject_given(request)
-    asked = dict(zip(_names(files), requests, strict=True))
+    names = _names(files)
+    requests, notes = _distributed(requests, names)
+    asked = dict(zip(names, requests, strict=True))
     scenes = {name: request.scene for name, request in asked.items()}
     for request in requests:
         request.print_warnings()
@@ -158,18 +157,58 @@ def _side_by_side(
             for line in (*drawing_warnings(request.file), *plausibility_warnings(request.scene))
         ]
         about = {"files": [typed_name(file) for file in files]}
-        shown = Presentation(analysis, files=about, assumptions=_assumptions(asked), warnings=warnings)
+        assumed = [*notes, *_assumptions(asked)]
+        shown = Presentation(analysis, files=about, assumptions=assumed, warnings=warnings)
         shown.show(output, as_json=as_json)
 
 
-def _reject_given(request: Request) -> None:
-    """InputError for an option of cue or tip whose value the file has itself, other than that of compared cues."""
-    unit = request.given.get("length_unit")
-    opened = load_stroke(request.file, length_unit=unit)
-    for name in sorted(given_keys(request.file, opened, unit) & request.given.keys()):
-        problem = "would replace this file's own value: options of compare set what a file leaves open"
-        got, fix = repr(request.given[name]), "omit it; `cuefem convert` writes it into a file that lacks it"
-        raise InputError(request.file, option(name), f"{problem}; got {got}; {fix}")
+def _distributed(requests: Sequence[Request], names: Sequence[str]) -> tuple[list[Request], list[Assumption]]:
+    """The requests, each with the options of cue and tip that its file leaves open; notes on those for some files only.
+
+    InputError for an option that no file leaves open, and for a --shaft-mass of several shafts.
+    """
+    given = requests[0].given
+    own = {name: _own_values(request) & {*given} for name, request in zip(names, requests, strict=True)}
+    notes = []
+    for key in sorted(set().union(*own.values())):
+        having = [name for name in names if key in own[name]]
+        lacking = [name for name in names if key not in own[name]]
+        if not lacking:
+            raise InputError(requests[0].file, option(key), _no_file_lacks(given[key], len(names)))
+        verb = "has its" if len(having) == 1 else "have their"
+        notes.append(Assumption("", f"{option(key)} {given[key]}: for {listed(lacking)}; {listed(having)} {verb} own"))
+    weighed = [name for name in names if "shaft_mass" in given and "shaft_mass" not in own[name]]
+    if len(weighed) > 1:
+        problem = (
+            f"must be the weight of one shaft; {listed(weighed)} leave it open: `cuefem convert` writes it into one"
+        )
+        raise InputError(requests[0].file, option("shaft_mass"), problem)
+    filled = [
+        replace(request, given={key: text for key, text in given.items() if key not in own[name]})
+        for name, request in zip(names, requests, strict=True)
+    ]
+    return filled, notes
+
+
+def _no_file_lacks(text: str, count: int) -> str:
+    """Why an option of which every file has a value is refused."""
+    every = "both files have" if count == 2 else f"all {count} files have"
+    return f"must be a value that a file leaves open; got {text!r}, and {every} their own: omit it"
+
+
+def _own_values(request: Request) -> set[str]:
+    """The options of cue and tip whose values a file has itself; a cue by its name and a lumped cue are complete."""
+    file, unit, ending = request.file, request.given.get("length_unit"), request.file.suffix.lower()
+    own = {"length_unit", "front"} if ending == ".toml" else set[str]()
+    if ending == ".csv" and unit is not None and names_units(file):
+        own, unit = {"length_unit"}, None
+    opened = load_stroke(file, length_unit=None if "length_unit" in own else unit)
+    own |= given_keys(file, opened, unit)
+    has_no_shaft = False
+    if isinstance(opened, Scene):
+        own |= {"game"}
+        has_no_shaft = opened.lumped is not None
+    return own | {*SHAFT_ADDITIONS, *CUE_KEYS} if cue_name(file) or has_no_shaft else own
 
 
 def _assumptions(asked: Mapping[str, Request]) -> list[Assumption]:

@@ -259,13 +259,24 @@ def _cells(rows: Sequence[Row], column: ProfileColumn) -> list[str]:
     return [cells[column.index] if column.index < len(cells) else "" for _, cells in rows]
 
 
-def _with_units(path: Path, header: CsvHeader, length_unit: str | None) -> list[ProfileColumn]:
-    """The columns with their units from header, cells or ``length_unit``; InputError without a unit."""
+def names_units(path: Path) -> bool:
+    """Whether a profile names the units of its columns, in its header or its cells."""
+    return all(column.unit for column in _length_columns(read_header(path, read_rows(path))))
+
+
+def _length_columns(header: CsvHeader) -> list[ProfileColumn]:
+    """The columns of lengths with their units from header or cells; "" without one."""
     columns = []
     for column in header.length_columns:
         in_cells = {length_unit_of(rest) for _, rest in map(split_unit, _cells(header.rows, column)) if rest}
         unit = column.unit or ("".join(in_cells) if len(in_cells) == 1 else "")
         columns.append(ProfileColumn(column.kind, column.index, column.name, unit))
+    return columns
+
+
+def _with_units(path: Path, header: CsvHeader, length_unit: str | None) -> list[ProfileColumn]:
+    """The columns with their units from header, cells or ``length_unit``; InputError without a unit."""
+    columns = _length_columns(header)
     without_unit = [column for column in columns if not column.unit]
     if length_unit is not None:
         if not without_unit:

@@ -60,3 +60,16 @@ def test_compare_fills_in_the_usual_rest(shaft: Path) -> None:
     assert difference["difference"] == pytest.approx(-0.278, abs=5e-4)
     assert difference["error"] >= 0.086
     assert "shaft: usual rest of the cue, 425.2 g (--body-mass)" in record["assumptions"]
+
+
+def test_compare_options_fill_in_what_each_file_leaves_open(shaft: Path) -> None:
+    options = ("--body-mass", "15 oz", "--ferrule", "1 in melamine", "--shaft-mass", "3.9 oz", "--game", "pool")
+    record = as_json("compare", shaft, PREDATOR, *options)
+    own = cf.load(PREDATOR)
+    assert isinstance(own, cf.Cue)
+    filled, named = (scene["cue"] for scene in record["scenes"].values())
+    assert filled["body_mass"] == pytest.approx(15 * OUNCE)
+    assert filled["shaft_mass"] + 6e-4 == pytest.approx(3.9 * OUNCE, rel=1e-2)  # with its tip
+    assert (named["body_mass"], named["mass"]) == (pytest.approx(own.body_mass), pytest.approx(own.mass, rel=0.02))
+    for text in ("--body-mass 15 oz", "--ferrule 1 in melamine", "--shaft-mass 3.9 oz"):
+        assert f"{text}: for shaft; predator z2 has its own" in record["assumptions"]

@@ -87,14 +87,15 @@ strike spring.toml --format pooltool -o cue.json --offset 0.9
 report spring.toml -o page.html --offset 0.9
 compare shaft.toml
 compare shaft.toml --speed '3 m/s'
-compare shaft.toml shaft.toml --shaft-mass '112 g'
+compare shaft.toml shaft.toml
+compare bare.csv bored.csv --shaft-mass '112 g'
 compare shaft.toml shaft.toml --estimate
 compare shaft.toml shaft.toml shaft.toml shaft.toml shaft.toml shaft.toml
 compare shaft.toml lumped.toml
 compare shaft.toml ash.toml --same-shaft
 compare shaft.toml lumped.toml ./shaft.toml
 compare nowhere
-compare bare.csv 'predator z2' --material ash
+compare shaft.toml 'predator z2' --material ash
 guide glosary
 guide qqqq
 guide --print -o guide.html
