@@ -9,6 +9,7 @@ d^2), I = pi/64 (D^4 - d^4). Lengths are in the unit of the points.
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -41,15 +42,24 @@ class ConicalPiece(NamedTuple):
     bore: tuple[float, float]
 
 
+class Gap(NamedTuple):
+    """A gap between two bodies: its position and its width along the axis."""
+
+    position: float
+    width: float
+
+
 @dataclass(frozen=True)
 class SectionedShaft:
     """A shaft from a surface. pieces: from the thinner end to the thicker.
 
     facets: largest distance of a corner outside the circle of its slice; the true radius lies between the two.
+    gaps: between bodies, which the piece in front of each of them bridges.
     """
 
     pieces: tuple[ConicalPiece, ...]
     facets: float
+    gaps: tuple[Gap, ...] = ()
 
     @property
     def widest(self) -> float:
@@ -272,14 +282,22 @@ def section_shaft(body: Surface, tolerance: float = TOLERANCE) -> SectionedShaft
     """The conical pieces that approximate the slices of a surface to ``tolerance`` (of the widest diameter).
 
     Slices are at every level of corners and between the levels, at least `SLICES`; steps at flat faces are preserved.
-    ValueError if a section is not one round piece about the axis.
+    A gap between the flat faces of two bodies is bridged by the body in front of it. ValueError if a section is not one
+    round piece about the axis.
     """
     pieces: list[ConicalPiece] = []
+    gaps: list[Gap] = []
     facets = 0.0
     widest = 2 * float(np.sqrt((body.points[:, 1:] ** 2).sum(axis=1)).max())
     for start, stop in itertools.pairwise(body.flats):
         x = _cut_positions(body, float(start), float(stop))
         cuts = [body.cut(p, butt_side=p < stop) for p in x]
+        if all(cut.area == 0 for cut in cuts):
+            width = float(stop - start)
+            gaps.append(Gap(float(start), width))
+            pieces[-1] = pieces[-1]._replace(length=pieces[-1].length + width)
+            continue
+        _check_one_body(cuts, x, body.length)
         for position, cut in zip(x, cuts, strict=True):
             _check_round(cut, position, widest)
         diameters = np.array([cut.diameters for cut in cuts])
@@ -288,7 +306,14 @@ def section_shaft(body: Surface, tolerance: float = TOLERANCE) -> SectionedShaft
             (outer0, bore0), (outer1, bore1) = diameters[i].tolist(), diameters[j].tolist()
             pieces.append(ConicalPiece(float(x[j] - x[i]), (outer0, outer1), (bore0, bore1)))
         facets = max(facets, *(float(cut.reach - d / 2) for cut, d in zip(cuts, diameters[:, 0], strict=True)))
-    return SectionedShaft(tuple(pieces), facets)
+    return SectionedShaft(tuple(pieces), facets, tuple(gaps))
+
+
+def _check_one_body(cuts: Sequence[Slice], x: Array, length: float) -> None:
+    """ValueError for an empty section between the ends, which two bodies with round faces leave."""
+    empty = [position for position, cut in zip(x, cuts, strict=True) if cut.area == 0 and 0 < position < length]
+    if empty:
+        raise ValueError(f"must be one body; got none at {empty[0]:.6g} from its thinner end: join the bodies in CAD")
 
 
 def _cut_positions(body: Surface, start: float, stop: float) -> Array:
@@ -311,7 +336,8 @@ def _check_round(cut: Slice, position: float, widest: float) -> None:
         return  # an apex
     outside, inside = cut.outlines
     if outside != 1:
-        raise ValueError(f"must have one outer outline in every section; got {outside} outlines {where}")
+        problem = f"must have one outer outline in every section; got {outside} outlines {where}"
+        raise ValueError(f"{problem}: bodies that overlap, or stand in one another, must be joined in CAD")
     off = float(np.hypot(*cut.centre))
     if off > STRAIGHT * widest:
         bound = f"its sections' centres within {100 * STRAIGHT:g} % of the width of one axis"

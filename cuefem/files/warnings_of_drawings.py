@@ -1,4 +1,4 @@
-"""Warnings of a drawing's file: columns that are not used, facets that are too few."""
+"""Warnings of a drawing's file: columns that are not used, facets that are too few, gaps that are bridged."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def drawing_warnings(path: Path) -> list[str]:
     if ending == ".csv":
         return _of_columns(path)
     if ending in SURFACE_EXTENSIONS:
-        return _of_facets(path)
+        return _of_surface(path)
     cue = read_tables(path).get("cue") if ending == ".toml" else None
     return drawing_warnings(named_path(path.parent / cue)) if isinstance(cue, str) else []
 
@@ -35,12 +35,17 @@ def _of_columns(path: Path) -> list[str]:
     return [f"{what} not used; a profile may have columns {', '.join(COLUMNS)}"]
 
 
-def _of_facets(path: Path) -> list[str]:
-    """Facets whose corners lie off the circles that replace them."""
+def _of_surface(path: Path) -> list[str]:
+    """Gaps between bodies that are bridged, and facets whose corners lie off the circles that replace them."""
     from cuefem.files.surface_reader import read_surface  # meshio takes 0.1 s to load
 
     surface = read_surface(path)
+    lines = [
+        f"two bodies {gap.width:.4g} apart are read as one, {gap.position:.6g} from the thinner end in the file's unit"
+        for gap in surface.gaps
+    ]
     error = 2 * surface.facets / surface.widest
-    if error <= COARSE:
-        return []
-    return [f"its facets are coarse: corners lie up to {100 * error:.2g} % of the diameter outside; use more facets"]
+    if error > COARSE:
+        percent = f"{100 * error:.2g} %"
+        lines.append(f"its facets are coarse: corners lie up to {percent} of the diameter outside; use more facets")
+    return lines

@@ -9,6 +9,7 @@ import cuefem as cf
 from cuefem.designs.study_file import load_study
 from tests.helpers.command_line import as_json
 
+OUNCE = 0.028349523125  # kg
 PROFILE = "x [mm],diameter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n"
 PREDATOR = Path(__file__).parents[2] / "studies/measured/predator_z2/cue.toml"
 STUDY = 'scene = "{scene}"\nresponses = ["squirt"]\n{more}[[vary]]\npath = "speed"\nvalues = ["2 m/s"]\n'

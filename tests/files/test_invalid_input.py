@@ -16,7 +16,7 @@ from cuefem.designs.store import SqliteStore
 from cuefem.files import InputError
 from tests.helpers.command_line import call
 from tests.helpers.invalid_input import assert_refused, messages_of
-from tests.helpers.surfaces import revolve, write_surface
+from tests.helpers.surfaces import revolve, two_bodies, write_surface
 
 
 def rejection(path: Path, **options: str) -> str:
@@ -110,6 +110,8 @@ def test_load_invalid_content_is_rejected(tmp_path: Path, request: pytest.Fixtur
 
 
 BAR = revolve([(0, 0), *((x, 0.006) for x in np.linspace(0, 0.7, 30)), (0.7, 0)], 16)
+CONE_AT_BUTT = revolve([(0, 0), (0, 0.006), (0.3, 0.006), (0.303, 0)], 16)
+CONE_AT_TIP = revolve([(0.3035, 0), (0.306, 0.006), (0.7, 0.007), (0.7, 0)], 16)
 SIGNALLING = struct.pack("<I", 1) + bytes(12) + struct.pack("<I", 0x7F80FF00) + bytes(34)
 SURFACES = {
     "open": (POINTS, FACES[1:]),
@@ -119,7 +121,21 @@ SURFACES = {
     "oval": (BAR[0] * (1, 1.05, 1), BAR[1]),
     "square": revolve([(0, 0), (0, 0.006), (0.7, 0.006), (0.7, 0)], 4),
     "bent": (BAR[0] + 0.003 * np.outer(BAR[0][:, 0] ** 2, (0, 0, 1)), BAR[1]),
+    "a gap of 1 mm": two_bodies(1e-3),
+    "a gap between round ends": (
+        np.concatenate([CONE_AT_BUTT[0], CONE_AT_TIP[0]]),
+        np.concatenate([CONE_AT_BUTT[1], CONE_AT_TIP[1] + len(CONE_AT_BUTT[0])]),
+    ),
     "two": (np.concatenate([POINTS, np.add(POINTS, (0, 0.03, 0))]), np.concatenate([FACES, FACES + len(POINTS)])),
+}
+
+# Of an ASCII file.
+DAMAGED: dict[str, Callable[[bytes], bytes]] = {
+    "decimal commas": lambda text: text.replace(b".", b","),
+    "a corner lost": lambda text: text.replace(b"vertex", b"", 1),
+    "a facet cut off": lambda text: text[: text.rindex(b"vertex")],
+    "no facets": lambda text: text[:10],
+    "binary, cut off": lambda text: bytes(80) + struct.pack("<I", 5) + bytes(60),
 }
 
 
@@ -128,6 +144,10 @@ def test_load_surface_that_is_not_a_shaft_is_rejected(tmp_path: Path, request: p
     messages = {name: rejection(write_surface(path, *surface, binary=False)) for name, surface in SURFACES.items()}
     damaged.write_bytes(bytes(80) + SIGNALLING)
     messages["a signalling NaN"] = rejection(damaged)
+    text = write_surface(damaged, POINTS, FACES, binary=False).read_bytes()
+    for name, content in DAMAGED.items():
+        damaged.write_bytes(content(text))
+        messages[name] = rejection(damaged)
     assert_refused("surfaces", messages, request)
 
 

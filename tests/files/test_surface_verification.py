@@ -13,7 +13,7 @@ from cuefem.files.defaults_report import drawing_assumptions
 from cuefem.files.errors import InputError
 from cuefem.files.surface_sections import TOLERANCE, aligned_surface, section_shaft
 from cuefem.files.warnings_of_drawings import drawing_warnings
-from tests.helpers.surfaces import outline_of, revolve, write_surface
+from tests.helpers.surfaces import outline_of, revolve, two_bodies, write_surface
 
 MAPLE = material("hard maple")
 CYLINDER = cf.Cue((cf.Segment(0.5, 0.013, 0.013, MAPLE),))
@@ -161,3 +161,16 @@ def test_surface_with_a_bumper_at_the_butt_begins_at_the_tip(tmp_path: Path) -> 
     outline = [(0, 0), (0, 0.0065), (1.44, 0.015), (1.44, 0.006), (1.47, 0.006), (1.47, 0)]
     cue = cf.load(write_surface(tmp_path / "cue.stl", *revolve(outline, 32), binary=True))
     assert cue.segments[0].tip_diameter == pytest.approx(0.013, rel=1e-6)
+
+
+@pytest.mark.parametrize("gap", [1e-5, 5e-4])
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
+def test_gap_between_two_bodies_is_bridged_and_warned(gap: float, tmp_path: Path) -> None:
+    path = write_surface(tmp_path / "bodies.obj", *two_bodies(gap))
+    cue = cf.load(path)
+    assert cue.length == pytest.approx(0.7366, rel=1e-6)
+    widths = [width for segment in cue.segments for width in (segment.tip_diameter, segment.butt_diameter)]
+    exact = np.interp([0, 0.031, 0.031, 0.7366], [0, 0.7366], [0.01275, 0.0215])
+    assert widths == pytest.approx(exact, rel=gap / 0.03)
+    (line,) = drawing_warnings(path)
+    assert "read as one" in line

@@ -50,3 +50,15 @@ def write_surface(
     mesh = meshio.Mesh(points / unit, [("triangle", faces)])
     mesh.write(path) if path.suffix == ".obj" else mesh.write(path, binary=binary)
     return path
+
+
+def two_bodies(gap: float, facets: int = 16) -> tuple[np.ndarray, np.ndarray]:
+    """Corners and triangles of a cone of 12.75 to 21.5 mm by 736.6 mm, cut at 31 mm by a gap, m."""
+
+    def radius(x: float) -> float:
+        return 6.375e-3 + 4.375e-3 * x / 0.7366
+
+    ends = ((0.0, 0.031 - gap), (0.031, 0.7366))
+    bodies = [revolve([(x, 0), (x, radius(x)), (y, radius(y)), (y, 0)], facets) for x, y in ends]
+    (front, faces), (back, more) = bodies
+    return np.concatenate([front, back]), np.concatenate([faces, more + len(front)])
