@@ -18,7 +18,17 @@ from tests.helpers.sources import PACKAGE
 
 CODE = re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", GUIDE, flags=re.DOTALL))
 # Of other programs, or made up.
-FOREIGN = {"cc", "ziglang", "site/index.html", "cf.Collar", "cf.NAME", "tests/golden/refused_ROOM.txt", "raise"}
+FOREIGN = {
+    "cc",
+    "ziglang",
+    "site/index.html",
+    "cf.Collar",
+    "cf.NAME",
+    "tests/golden/refused_ROOM.txt",
+    "raise",
+    "v5",
+    "pypa/cibuildwheel",
+}
 SHARES = {"effects": 0.7, "endmass": 0.7}  # of statements in tests over those of a room
 OWN = {name: kind for name, kind in effect_kinds().items() if kind.__module__.startswith("cuefem.")}
 EFFECTS = [

@@ -1,6 +1,7 @@
 """The version: one number in package, citation and changelog (regression)."""
 
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -19,6 +20,14 @@ def released_version(changelog: str) -> str:
 def has_unreleased_changes(changelog: str) -> bool:
     unreleased = changelog.partition("## Unreleased\n")[2].partition("\n## ")[0]
     return "\n- " in unreleased
+
+
+def test_workflows_try_every_python_of_the_classifiers() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    listed = re.findall(r"Python :: (3\.\d+)", " ".join(project["classifiers"]))
+    (matrix,) = re.findall(r"python: \[(.*)\]", (ROOT / ".github/workflows/tests.yml").read_text(encoding="utf-8"))
+    assert re.findall(r"[\d.]+", matrix) == listed
+    assert project["requires-python"] == f">={listed[0]}"
 
 
 def test_citation_names_package_version() -> None:
