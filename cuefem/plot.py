@@ -209,7 +209,7 @@ def forces(stroke: Scene | Outcome, ax: Axes | None = None, *, at: Resolution | 
         raise ValueError("forces needs an outcome of strike; got one without a time history")
     axes, times = _axes(ax), np.linspace(0, outcome.duration, 400)
     for label, force in time_history(outcome, "force", times).items():
-        axes.plot(to_display(times, "s"), force, label=label)
+        axes.plot(to_display(times, "s"), to_display(force, "N"), label=label)
     axes.axhline(0, color="#888", linewidth=0.6)
     axes.set(
         xlabel=with_heading(TIME, "s"),

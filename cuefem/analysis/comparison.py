@@ -17,7 +17,7 @@ from cuefem.measurements.calibration import CalibratedSquirt, Calibration
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measured_folder import load_measured
 from cuefem.parameters.parts import main_material, shaft_word
-from cuefem.quantity.display_units import cached_by_units, off_line, with_unit
+from cuefem.quantity.display_units import cached_by_units, modulus_text, off_line, with_unit
 from cuefem.quantity.fields import brief_value
 from cuefem.results.computable_results import computable_results
 from cuefem.results.differences import difference_text, relative_differences
@@ -205,7 +205,7 @@ class Comparison(Analysis):
                 lateral = [_lateral(self.cues[cue][name]) for cue in (first, *others)]
                 rows.append(
                     (
-                        f"off line after 1 {off_line(0.0)[1]}",
+                        f"off line after {off_line(0.0)[1]}",
                         lateral[0],
                         *(cell for each in lateral[1:] for cell in (each, "")),
                     )
@@ -378,7 +378,7 @@ def compare_cues(
     struck = with_same_stroke(scenes)
     woods = {main_material(scene.shaft).E for scene in struck.values()}
     if same_shaft and len(woods) > 1:
-        moduli = " and ".join(f"{E / 1e9:.4g} GPa" for E in sorted(woods))
+        moduli = " and ".join(modulus_text(E) for E in sorted(woods))
         raise ValueError(f"one shaft before and after a change must be of one wood; got E of {moduli}")
     results = {name: _cue_results(struck[name], tuple(names)) for name in progress([*struck])}
     reference, *others = results

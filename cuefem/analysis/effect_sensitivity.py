@@ -68,7 +68,7 @@ class EffectSensitivity(Analysis):
             rows += [(f"changes less than {percent}:", *[""] * 4), *map(_cells, small)]
         table = Table(
             f"Sensitivity to each effect at offset b/R = {self.scene.stroke.offset:.4g}",
-            ("", "squirt", "end mass", with_heading("ball speed", "m/s"), "spin, rad/s"),
+            ("", "squirt", "end mass", with_heading("ball speed", "m/s"), with_heading("spin", "rad/s")),
             tuple(rows),
             (
                 "without: this effect removed; with: an effect that is not listed added, at a default value; %: change "

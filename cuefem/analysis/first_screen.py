@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from cuefem.analysis.verdict import Verdict, squirt_difference
 from cuefem.parameters.parts import shaft_word
-from cuefem.quantity.display_units import END_MASS, OFF_LINE, short_number, with_unit
+from cuefem.quantity.display_units import DISTANCE, END_MASS, OFF_LINE, short_number, with_unit
 from cuefem.results.quantities import DASH
 from cuefem.results.records import Record
 from cuefem.scene import Scene
@@ -25,10 +25,10 @@ from cuefem.show.templates import environment
 # The four numbers: label, key of the display unit, decimals, tooltip.
 TILES = {
     "off_line": ("Off line", OFF_LINE, 0, "Distance of the ball from the line of aim over its path"),
-    "end_mass_squirt": ("End mass", END_MASS, 2, "Squirt-equivalent: mass at the tip of a lumped cue with this squirt"),
+    "end_mass_squirt": ("End mass", END_MASS, 1, "Squirt-equivalent: mass at the tip of a lumped cue with this squirt"),
     "pivot_length": (
         "Pivot length",
-        "m",
+        DISTANCE,
         0,
         "Distance from the end of the tip to the point about which pivoting the cue cancels squirt",
     ),

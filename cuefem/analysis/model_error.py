@@ -17,7 +17,7 @@ from cuefem.contact.strike import strike_modes
 from cuefem.cue import Cue
 from cuefem.effects.effect import CueEffect
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.quantity.display_units import END_MASS, display_unit
+from cuefem.quantity.display_units import END_MASS, display_unit, displayed_system
 from cuefem.results.progress import Progress
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.scene import Scene, check_scene
@@ -229,7 +229,8 @@ def _numbers(scene: Scene, tip: TipModes, transverse: float, axial: float) -> Nu
 def _display_unit(row: Record) -> tuple[float, str]:
     """The factor from the SI unit, and the unit, that a quantity is displayed in."""
     unit = END_MASS if row["unit"] == "kg" else row["unit"]
-    return LARGE_UNITS.get((unit, abs(row["solid"]) >= 1e5)) or display_unit(unit)[:2]
+    large = LARGE_UNITS.get((unit, abs(row["solid"]) >= 1e5)) if displayed_system() == "metric" else None
+    return large or display_unit(unit)[:2]
 
 
 def _percent(part: float, digits: int, sign: str = "-") -> str:

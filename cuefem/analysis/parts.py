@@ -9,8 +9,9 @@ from typing import Any
 from cuefem.cue.materials import LEATHER_CONSTANTS, LEATHERS, MATERIALS, TIPS, WOODS
 from cuefem.files.cue_names import CUES
 from cuefem.files.parts_catalogue import CATALOGUE_SHAFTS
+from cuefem.files.shaft_additions import example
 from cuefem.parameters.table import FERRULES
-from cuefem.quantity.display_units import short_number, with_heading
+from cuefem.quantity.display_units import modulus_text, short_number, with_heading
 from cuefem.results.quantities import RESULTS, units_of
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.show.analysis import Answer
@@ -69,13 +70,13 @@ class Parts(Answer):
                 _rows(self.materials),
                 "in brackets the range of real pieces; loss: loss factor; --json has more",
                 'wood: material = "ash" at the top of a .toml, a column material, --material "ash"',
-                'ferrule: ferrule = "25 mm melamine" there, a column ferrule, --ferrule "25 mm melamine"',
+                f'ferrule: ferrule = "{example("ferrule")}" there, a column ferrule, --ferrule "{example("ferrule")}"',
                 *(_name_and_source(name, values) for name, values in self.materials.items()),
                 texts=(0, 1),
             ),
             tabulate(
                 "Tips",
-                {"name": "{name}", "E, MPa": lambda row: f"{1e-6 * row['E']:g}", **source},
+                {"name": "{name}", "E": lambda row: modulus_text(row["E"]), **source},
                 _rows(self.tips),
                 'leather = "kamui soft" of a LeatherTip, --leather "kamui soft"',
                 texts=(0, 2),

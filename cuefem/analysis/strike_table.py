@@ -26,6 +26,7 @@ from cuefem.analysis.strike_grid import (
 )
 from cuefem.cue import Array
 from cuefem.effects.force_law import IndentationOutOfRange
+from cuefem.quantity.display_units import with_unit
 from cuefem.results.progress import Progress
 from cuefem.results.quantities import RESULTS, format_value
 from cuefem.results.records import Record, Table
@@ -228,12 +229,13 @@ def strike_table(scene: Scene, speeds: tuple[float, float] = SPEEDS, *, progress
         raise ValueError("strike_table scene must have a level cue; got an elevated one, whose ball leaves the plane")
     low, high = (Stroke(float(speed)).speed for speed in speeds)
     if not low < high:
-        raise ValueError(f"speeds must ascend, the lowest before the highest; got {low:g} and {high:g} m/s")
+        got = f"{with_unit(low, 'm/s')} and {with_unit(high, 'm/s')}"
+        raise ValueError(f"speeds must ascend, the lowest before the highest; got {got}")
     strikes = Strikes(scene, (low, high))
     try:
         strikes.strike(high, CENTRE)
     except IndentationOutOfRange as error:
-        raise ValueError(f"speeds must be lower than {high:g} m/s: {error}") from None
+        raise ValueError(f"speeds must be lower than {with_unit(high, 'm/s')}: {error}") from None
     grid, errors = Refinement(strikes).run(progress)
     squirt, ball_speed, spin = (tuple(map(tuple, grid.ratios[:, :, k].tolist())) for k in range(len(FIELDS)))
     return StrikeTable(

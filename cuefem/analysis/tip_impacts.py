@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.quantity.display_units import significant, with_unit
+from cuefem.quantity.display_units import displayed_system, modulus_text, significant, with_unit
 from cuefem.results.quantities import DASH, format_value
 from cuefem.results.records import Record, Table, by_label, tabulate
 from cuefem.results.solved_design import Solvable, SolvedDesign
@@ -50,7 +50,7 @@ class TipImpacts(Analysis):
             "Leather tip, head-on impact",
             {"speed": "{speed:m/s}", **columns, "stiffness": _stiffness},
             self.impacts,
-            f"leather of {format_value('tip_mass', self.tip_mass)}, E {significant(self.E / 1e6)} MPa; force, "
+            f"leather of {format_value('tip_mass', self.tip_mass)}, E {modulus_text(self.E)}; force, "
             "indentation, contact diameter and stiffness at maximum indentation",
             f"contact time: of a rigid cue, without axial waves; a measured one is longer (medium leather, "
             f"{with_unit(2.0, 'm/s')}: 1.135 ms)",
@@ -105,4 +105,6 @@ def tip_impacts(scene: Solvable) -> TipImpacts:
 
 def _stiffness(impact: Mapping[str, Any]) -> str:
     value = impact["stiffness"]
-    return DASH if value is None else f"{significant(1e-6 * value)} kN/mm"
+    if value is None:
+        return DASH
+    return with_unit(value, "N/m", decimals=0) if displayed_system() == "us" else f"{significant(1e-6 * value)} kN/mm"

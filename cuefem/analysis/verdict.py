@@ -99,7 +99,7 @@ class Verdict(Analysis):
         where = f"at b/R {self.offset:.4g}, {offset_text(self.offset)}"
         if self.head_on:
             where += "; the stroke itself is head-on"
-        return f"squirt {squirt.rstrip('°')} ± {error} ({where}): the ball is {distance} off line after 1 {per}"
+        return f"squirt {squirt.rstrip('°')} ± {error} ({where}): the ball is {distance} off line after {per}"
 
     def squirt_text(self) -> tuple[str, str]:
         """Squirt and its uncertainty as text: "1.82°" and "0.31°"."""

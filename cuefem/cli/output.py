@@ -41,7 +41,7 @@ def _units_option() -> SharedOption:
         envvar=UNITS_VARIABLE,
         show_envvar=True,
         is_eager=True,
-        help="Units in the terminal and on pages; us: in, oz and mph.",
+        help="Units in the terminal and on pages; us: in, oz, lbf, psi and mph.",
     )
 
 

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.cue.geometry import Material
+from cuefem.quantity.display_units import modulus_text, with_unit
 from cuefem.quantity.fields import check_kind, suggestion
 
 
@@ -144,5 +145,7 @@ def material_name(material: Material) -> str:
     """A material's name in the table of materials, with its density if that differs from the table; or its modulus."""
     name = table_name(material)
     if name is None:
-        return f"E {material.E / 1e9:.4g} GPa"
-    return name if MATERIALS[name].material == material else f"{name} of {material.rho:.0f} kg/m³"
+        return f"E {modulus_text(material.E)}"
+    return (
+        name if MATERIALS[name].material == material else f"{name} of {with_unit(material.rho, 'kg/m^3', decimals=0)}"
+    )

@@ -15,7 +15,7 @@ from cuefem.parameters.parameter import Slider, millimetres
 from cuefem.parameters.parts import Layout, bore_mouth, max_bore_depth, split_segment, taper_position
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.parameters.table import PARAMETERS
-from cuefem.quantity.display_units import display_unit
+from cuefem.quantity.display_units import display_unit, displayed_system, modulus_text
 from cuefem.quantity.display_units import with_unit as quantity_text
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.units import plain_fractions, split_quantity, unit_of
@@ -23,7 +23,8 @@ from cuefem.scene import Scene
 from cuefem.scene.default_scene import GAMES, stroke_name, usual_scene, without_leather
 
 MIN_WALL = 0.0005  # m, the thinnest wall around a typed bore
-NEW_FERRULE, NEW_BORE, NEW_DEPTH = "25 mm", 0.006, 0.127
+NEW_BORE, NEW_DEPTH = 0.006, 0.127
+NEW_FERRULES = {"metric": "25 mm", "us": "1 in"}
 DECIMALS = {"mm": 2, "g": 1, "mph": 2}  # the most that are shown; of other units 3
 NONE, DRILLED = "none", "drilled"
 MAX_TEXT = 40
@@ -110,7 +111,7 @@ def value(key: str, scene: Scene) -> Any:
         return _name(cue.segments[layout.shaft.start].material)
     if key == "leather":
         E = PARAMETERS[key].value(scene)
-        return E and next((n for n, known in LEATHERS.items() if known.E == E), f"E {E / 1e6:.4g} MPa")
+        return E and next((n for n, known in LEATHERS.items() if known.E == E), f"E {modulus_text(E)}")
     if key == "game":
         return next((name for name, game in GAMES.items() if game.ball == scene.ball), "another ball")
     if key == "front":
@@ -198,7 +199,7 @@ def _with_ferrule(scene: Scene, name: str) -> Scene:
     """The scene with a ferrule of a material, a new one on a tenon; or with wood instead of it."""
     layout = Layout.of(scene.shaft)
     if name == NONE or not layout.ferrule:
-        ferrule = name if name == NONE else f"{NEW_FERRULE} {name}"
+        ferrule = name if name == NONE else f"{NEW_FERRULES[displayed_system()]} {name}"
         return replace(scene, cue=with_additions(scene.shaft, ferrule=ferrule))
     return with_parameters(scene, {"ferrule material": name})
 

@@ -19,11 +19,11 @@ from cuefem.files.lathe_profile import (
     SURFACE_EXTENSIONS,
     read_profile,
 )
-from cuefem.files.shaft_additions import BORE, FERRULE, LEATHER, TENON_RATIO
+from cuefem.files.shaft_additions import EXAMPLES, TENON_RATIO, example
 from cuefem.files.surface_sections import TOLERANCE
 from cuefem.files.toml_reader import missing_keys, read_tables
 from cuefem.parameters.parts import Layout, is_wood_of, main_material
-from cuefem.quantity.display_units import span_text, with_unit
+from cuefem.quantity.display_units import modulus_text, span_text, with_unit
 from cuefem.scene import DEFAULT_CONTACT_TIME, Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, GAMES
 
@@ -34,7 +34,6 @@ _OF = {
     **dict.fromkeys(("ball_mass", "ball_diameter", "speed", "offset"), STROKE),
 }
 _OPTIONS = {"ball_mass": "game", "ball_diameter": "game"}  # of other keys: that of the same name
-_EXAMPLES = {"ferrule": FERRULE, "bore": BORE, "front": LEATHER}
 # Options of missing keys of a scene file; for other keys the name of the field.
 _KEYS = {"ball.mass": ("ball_mass",), "ball.radius": ("ball_diameter",), "effects": ("tip_height", "dome", "leather")}
 _ROUND_OFF = 1e-9  # of the widest diameter
@@ -61,8 +60,8 @@ class Assumption:
 
     def __str__(self) -> str:
         """The text, with the option."""
-        example = f' "{_EXAMPLES[self.key]}"' if self.key in _EXAMPLES else ""
-        return f"{self.text} (--{self.option.replace('_', '-')}{example})" if self.option else self.text
+        shown = f' "{example(self.key)}"' if self.key in EXAMPLES["metric"] else ""
+        return f"{self.text} (--{self.option.replace('_', '-')}{shown})" if self.option else self.text
 
 
 def assumptions(path: Path, scene: Scene, options: Mapping[str, Any]) -> list[Assumption]:
@@ -256,7 +255,7 @@ def _stroke(tables: dict[str, Any], game: str, scene: Scene, options: Mapping[st
         words |= {
             "tip_height": f"leather tip {with_unit(leather.height, 'm')} high, replacing any drawn leather",
             "dome": f"tip radius (dome) {with_unit(leather.dome_radius, 'm', 6)}",
-            "leather": f"tip hardness {known.leather if known else ''}, E {1e-6 * leather.E:g} MPa",
+            "leather": f"tip hardness {known.leather if known else ''}, E {modulus_text(leather.E)}",
         }
     elif tip.contact_time is None and tip.stiffness is None:
         words["contact_time"] = (

@@ -15,27 +15,38 @@ from cuefem.cue import MAX_LEATHER_MODULUS, Cue, Material, Segment
 from cuefem.cue.materials import material as material_of
 from cuefem.parameters.parts import MAX_FERRULE, SAME_POSITION, Layout, split_at
 from cuefem.parameters.scene_changes import with_parameters
-from cuefem.quantity.display_units import with_unit
+from cuefem.quantity.display_units import displayed_system, with_unit
 from cuefem.quantity.unit_checks import MIN_CUE_MASS
 from cuefem.quantity.units import parse_number
 from cuefem.scene import Scene
 
 MAX_LEATHER = 0.03  # m, height of leather
 TENON_RATIO = 0.62  # tenon over ferrule diameter: 5/16 in in a pool ferrule of 12.75 mm
-# Examples.
-FERRULE, BORE, LEATHER = "25 mm melamine", "6 mm wide, 127 mm deep", "leather 6 mm"
+# Examples, by the system of units displayed.
+EXAMPLES = {
+    "metric": {"ferrule": "25 mm melamine", "bore": "6 mm wide, 127 mm deep", "front": "leather 6 mm"},
+    "us": {"ferrule": "1 in melamine", "bore": "1/4 in wide, 5 in deep", "front": "leather 1/4 in"},
+}
 
 _SIZE = re.compile(r"[\d.,/ ¼-¾⅐-⅞-]*[\d¼-¾⅐-⅞]\s*(?:mm|cm|m|in|inch|inches|\"|″)(?!\w)")
 _BORE = re.compile(r"(.+)\bwide\s*,\s*(.+)\bdeep")
 
 
 class ShaftAddition(NamedTuple):
-    """An addition to a drawing: metavar and help of its option, title and example of its field."""
+    """An addition to a drawing: metavar and help of its option, title of its field."""
 
     metavar: str
     title: str
     help: str
-    example: str = ""
+
+
+def example(key: str) -> str:
+    """An example of an addition's text, in the units displayed."""
+    return EXAMPLES[displayed_system()][key]
+
+
+def _both(key: str) -> str:
+    return " or ".join(f'"{texts[key]}"' for texts in EXAMPLES.values())
 
 
 SHAFT_ADDITIONS = {
@@ -48,20 +59,17 @@ SHAFT_ADDITIONS = {
     "front": ShaftAddition(
         "WHERE",
         "Front of the drawing",
-        f'What the front of the .csv profile or CAD surface is: "ferrule" (default) or "{LEATHER}".',
-        "ferrule",
+        f'What the front of the .csv profile or CAD surface is: "ferrule" (default), {_both("front")}.',
     ),
     "ferrule": ShaftAddition(
         "FERRULE",
         "Ferrule",
-        f'Ferrule at the front, e.g. "{FERRULE}", on a wooden tenon ("tenon 8 mm", "no tenon"); "none" removes it.',
-        f"none; or such as {FERRULE}",
+        f'Ferrule at the front, {_both("ferrule")}, on a wooden tenon ("tenon 8 mm", "no tenon"); "none" removes it.',
     ),
     "bore": ShaftAddition(
         "BORE",
         "Bore",
-        f'Bore, drilled from behind the tenon of the ferrule, or from the front: "{BORE}".',
-        f"none; or such as {BORE}",
+        f"Bore, drilled from behind the tenon of the ferrule, or from the front: {_both('bore')}.",
     ),
 }
 
@@ -96,7 +104,7 @@ def _with_leather(cue: Cue, text: str) -> Cue:
         return cue
     height = words.removeprefix("leather").strip()
     if height in (words, ""):
-        raise ValueError(f'must be "ferrule" or leather with a height, such as "{LEATHER}"; got {text!r}')
+        raise ValueError(f'must be "ferrule" or leather with a height, such as "{example("front")}"; got {text!r}')
     if cue.leather_height:
         raise ValueError("must be omitted: the drawing already has leather")
     end = _length(height)
@@ -160,11 +168,13 @@ def _ferrule_of(text: str) -> tuple[float, Material, float | None]:
     size = _SIZE.search(first)
     name = _SIZE.sub(" ", first).replace("ferrule", " ").strip()
     if size is None or not name:
-        raise ValueError(f'must be a length and a material, such as "{FERRULE}"; got {text!r}')
+        raise ValueError(f'must be a length and a material, such as "{example("ferrule")}"; got {text!r}')
     tenon = None
     for piece in more:
         if "tenon" not in piece:
-            raise ValueError(f'must be such as "{FERRULE}, tenon 8 mm" or "{FERRULE}, no tenon"; got {text!r}')
+            raise ValueError(
+                f'must be such as "{example("ferrule")}, tenon 8 mm" or "{example("ferrule")}, no tenon"; got {text!r}'
+            )
         width = piece.replace("tenon", " ").strip()
         tenon = 0.0 if width == "no" else _length(width)
     return _length(size[0]), material_of(" ".join(name.split()), "ferrule"), tenon
@@ -174,7 +184,7 @@ def _bored(cue: Cue, text: str) -> Cue:
     """The cue with the bore of a text."""
     sizes = _BORE.fullmatch(text.strip().casefold())
     if not sizes:
-        raise ValueError(f'must be a width and a depth, such as "{BORE}"; got {text!r}')
+        raise ValueError(f'must be a width and a depth, such as "{example("bore")}"; got {text!r}')
     width, depth = (_length(size) for size in sizes.groups())
     if Layout.of(cue).bore is None:
         raise ValueError("must be omitted: the drawing has a filled bore")

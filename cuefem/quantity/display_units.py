@@ -35,21 +35,39 @@ class DisplayUnit(NamedTuple):
 
 
 # Keys beside the SI units. Makers weigh cues in ounces, and state end masses and tips in grams everywhere; a distance
-# off the line of aim grows with the distance to the ball aimed at.
-END_MASS, OFF_LINE = "kg of end mass", "m/m"
+# off the line of aim grows with the distance to the ball aimed at. A wave runs at ft/s, a cue at mph;
+# a computed distance, such as a pivot length, is known to a tenth of an inch at best, a drawn one to a thousandth.
+END_MASS, OFF_LINE, WAVE_SPEED, DISTANCE = "kg of end mass", "m/m", "m/s of waves", "m of distance"
+POUND_FORCE = 4.4482216152605  # N
+PSI = POUND_FORCE / 0.0254**2  # Pa
+POUND_PER_CUBIC_FOOT = 0.45359237 / 0.3048**3  # kg/m3
 _METRIC_NAMES = {"kg": "g", "m": "mm", "m/s": "m/s", "s": "ms", "rad": "°", "Pa": "GPa", "kg/m^3": "kg/m³"}
-_US_NAMES = {"kg": ("oz", 3), "m": ("in", 3), "m/s": ("mph", 2)}
+_US_NAMES = {"kg": ("oz", 2), "m": ("in", 3), "m/s": ("mph", 1)}
 METRIC = MappingProxyType(
     {unit: DisplayUnit.of(unit, name) for unit, name in _METRIC_NAMES.items()}
     | {
         END_MASS: DisplayUnit.of("kg", "g"),
         OFF_LINE: DisplayUnit.of("m/m", "mm/m"),
+        WAVE_SPEED: DisplayUnit.of("m/s", "m/s", 0),
+        DISTANCE: DisplayUnit.of("m", "mm", 0),
         "J": DisplayUnit(1e3, "mJ"),
         "1/sqrt(kg)": DisplayUnit(1.0, "/√kg"),
     }
 )
 US = METRIC | {unit: DisplayUnit.of(unit, *name) for unit, name in _US_NAMES.items()}
-US |= {OFF_LINE: DisplayUnit.of("m/m", "in/ft", 2)}
+US |= {
+    OFF_LINE: DisplayUnit(48.0, "in/4 ft", 1),  # a usual shot
+    WAVE_SPEED: DisplayUnit.of("m/s", "ft/s", 0),
+    DISTANCE: DisplayUnit.of("m", "in", 1),
+    "N/m": DisplayUnit(0.0254 / POUND_FORCE, "lbf/in"),
+    "N": DisplayUnit(1 / POUND_FORCE, "lbf", 0),
+    "Pa": DisplayUnit(1e-6 / PSI, "×10⁶ psi"),
+    "kg/m^3": DisplayUnit(1 / POUND_PER_CUBIC_FOOT, "lb/ft³", 1),
+    "J": DisplayUnit(1 / (POUND_FORCE * 0.0254), "in·lbf"),
+    "m/N": DisplayUnit(POUND_FORCE / 0.0254, "in/lbf"),
+    "N s": DisplayUnit(1 / POUND_FORCE, "lbf·s"),
+    "rad/s": DisplayUnit(30 / math.pi, "rpm", 0),
+}
 SYSTEMS = MappingProxyType({"metric": METRIC, "us": US})
 _displayed = "metric"  # of this process: threads that compute a page's results write its texts too
 
@@ -112,14 +130,14 @@ def with_heading(label: str, unit: str) -> str:
 
 
 def off_line(squirt: float) -> tuple[str, str]:
-    """How far off the line of aim squirt, rad, carries a ball, and after which distance: ("35 mm", "m").
+    """How far off the line of aim squirt, rad, carries a ball, and after which distance: ("35 mm", "1 m").
 
     >>> import math
     >>> off_line(math.radians(2.0))
-    ('35 mm', 'm')
+    ('35 mm', '1 m')
     """
     size, _, per = with_unit(math.tan(squirt), OFF_LINE, decimals=0).partition("/")
-    return size, per
+    return size, per if per[0].isdigit() else f"1 {per}"
 
 
 def number_text(value: float, unit: str, digits: int = 4, *, decimals: int | None = None) -> str:
@@ -146,7 +164,7 @@ def with_unit(
     ('12.5 mm', '12.500 ± 0.030 mm')
     >>> with displayed_in("us"):
     ...     with_unit(0.0125, "m"), with_unit(0.538, "kg"), with_unit(0.012, END_MASS)
-    ('0.492 in', '18.977 oz', '12 g')
+    ('0.492 in', '18.98 oz', '12 g')
     """
     if error is not None and math.isfinite(error) and error > 0:
         factor = display_unit(unit).factor
@@ -163,8 +181,15 @@ def span_text(low: float, high: float, unit: str, digits: int = 4) -> str:
 def short_number(value: float, unit: str, digits: int = 4, *, decimals: int | None = None) -> str:
     """An SI number in its display unit, without the unit: to decimals, or to at most so many digits."""
     shown = display_unit(unit)
+    if decimals is None and shown.decimals is not None:
+        return trimmed(f"{shown.factor * value:z.{shown.decimals}f}")
     decimals = decimals if shown.decimals is None else shown.decimals
     return f"{shown.factor * value:{f'z.{digits}g' if decimals is None else f'z.{decimals}f'}}"
+
+
+def trimmed(number: str) -> str:
+    """The text of a number without zeros at the end of its decimals: "58" for "58.000"."""
+    return number.rstrip("0").rstrip(".") if "." in number else number
 
 
 def change_with_unit(change: float, unit: str, decimals: int) -> str:
@@ -193,3 +218,11 @@ def unit_suffix(unit: str) -> str:
     """What follows a number of an SI unit: its display unit behind a blank, a degree sign without."""
     name = display_unit(unit).name
     return f" {name}" if name not in ("", "°") else name
+
+
+def modulus_text(value: float) -> str:
+    """A modulus, Pa, of leather in MPa or thousands of psi, of wood in GPa or 10⁶ psi."""
+    if _displayed == "us":
+        psi = float(f"{value / PSI:.3g}")
+        return f"{psi:.0f} psi" if psi < 1e6 else f"{psi / 1e6:.3g} ×10⁶ psi"
+    return f"{1e-6 * value:.4g} MPa" if value < 1e9 else f"{1e-9 * value:.4g} GPa"

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
 from typing import TYPE_CHECKING, Any
 
-from cuefem.quantity.display_units import END_MASS, number_text, unit_suffix
+from cuefem.quantity.display_units import DISTANCE, END_MASS, number_text, unit_suffix
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.verdict import MISCUE_DEFINITION
 from cuefem.scene import Outcome, Scene
@@ -21,7 +21,9 @@ if TYPE_CHECKING:  # at work every command that writes a number would pay for it
     from cuefem.results.solved_design import SolvedDesign
 
 DASH = "–"
-_NUMBER_UNIT = re.compile(r'(?<=\d) (?=(?:[cmµ]?m|in|k?g|oz|%|m?s|k?Hz|k?N(?:/m?m)?|[MG]Pa|m/s|mph|m?J)(?![\w/"`]))')
+_METRIC_UNIT = r"[cmµ]?m|k?g|%|m?s|k?Hz|k?N(?:/m?m)?|[MG]Pa|m/s|m?J"
+_US_UNIT = r"in|oz|mph|ft/s|lbf(?:/in)?|psi|in·lbf|lb/ft³|rpm"
+_NUMBER_UNIT = re.compile(rf'(?<=\d) (?=(?:{_METRIC_UNIT}|{_US_UNIT})(?![\w/"`]))')
 
 
 @dataclass(frozen=True)
@@ -163,6 +165,7 @@ RESULTS = {
         unit="m",
         decimals=1,
         heading="balance point",
+        displayed=DISTANCE,
         about="centre of mass of the drawn part with its tip, from the end of the tip",
         of=of_drawing(balance_point),
         segments=True,
@@ -191,6 +194,7 @@ RESULTS = {
         label="natural pivot length",
         unit="m",
         decimals=0,
+        displayed=DISTANCE,
         about="of small offsets, or of the coupled strike at an offset",
         of=_pivot_length,
         argument="offset",

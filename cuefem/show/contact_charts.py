@@ -31,7 +31,7 @@ def contact_section(outcome: Outcome) -> Record:
 
     def draw(title: str, name: str, unit: str) -> Chart:
         lines = zip(time_history(outcome, name, t).items(), ("c1", "c2"), strict=True)
-        curves = [Curve(label, to_display(t, "s"), values, style) for (label, values), style in lines]
+        curves = [Curve(label, to_display(t, "s"), to_display(values, unit), style) for (label, values), style in lines]
         return chart(title, curves, x=time, y=Axis(with_heading(name, unit)), spans=spans, marks=marks)
 
     return {

@@ -10,7 +10,7 @@ from typing import Any
 from cuefem.cue import Cue, LumpedCue
 from cuefem.effects.effect import Effect
 from cuefem.files.schema import table as file_table
-from cuefem.quantity.display_units import END_MASS, with_unit
+from cuefem.quantity.display_units import END_MASS, WAVE_SPEED, modulus_text, with_unit
 from cuefem.quantity.units import parse_number
 from cuefem.results.quantities import format_value
 from cuefem.results.records import Record
@@ -74,7 +74,8 @@ def effect_text(effect: Effect) -> str:
     """An effect and its values other than defaults: "PointMass (position 100 mm, mass 5 g)"."""
     defaults = {field.name: field.default for field in fields(effect)}
     entered = {name: value for name, value in file_table(effect).items() if getattr(effect, name) != defaults[name]}
-    entries = [f"{name.replace('_', ' ')} {_short(value)}" for name, value in entered.items()]
+    displayed = {"wave_speed": WAVE_SPEED}
+    entries = [f"{name.replace('_', ' ')} {_short(value, displayed.get(name, ''))}" for name, value in entered.items()]
     return type(effect).__name__ + (f" ({', '.join(entries)})" if entries else "")
 
 
@@ -90,10 +91,10 @@ def effect_name(kind: str) -> str:
 
 
 # Units of files whose numbers have a display unit: its key and the SI unit. Masses of effects are those of tips.
-_DISPLAYED = {"mm": ("m", "m"), "g": (END_MASS, "kg"), "m/s": ("m/s", "m/s")}
+_DISPLAYED = {"mm": ("m", "m"), "g": (END_MASS, "kg"), "m/s": ("m/s", "m/s"), "N/m": ("N/m", "N/m")}
 
 
-def _short(value: Any) -> str:
+def _short(value: Any, displayed: str = "") -> str:
     """A number with its unit to six digits, a Boolean, or a table or list of them, as text."""
     if isinstance(value, bool):
         return str(value).lower()
@@ -104,10 +105,10 @@ def _short(value: Any) -> str:
     number_text, _, unit = str(value).partition(" ")
     if unit in _DISPLAYED:
         key, si = _DISPLAYED[unit]
-        return with_unit(parse_number(str(value), si), key, 6)
+        return with_unit(parse_number(str(value), si), displayed or key, 6)
+    if unit in ("GPa", "MPa"):
+        return modulus_text(parse_number(str(value), "Pa"))
     number = float(number_text)
-    if unit == "GPa" and abs(number) < 1:  # the usual unit of leather
-        number, unit = 1e3 * number, "MPa"
     return f"{number:.6g} {unit}".rstrip()
 
 
