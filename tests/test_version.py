@@ -12,11 +12,6 @@ ROOT = Path(__file__).parents[1]
 CHANGELOG = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
 
 
-def released_version(changelog: str) -> str:
-    """The newest version of a changelog that has a date."""
-    return re.findall(r"^## (\d+\.\d+\.\d+), \d{4}-\d\d-\d\d$", changelog, re.M)[0]
-
-
 def has_unreleased_changes(changelog: str) -> bool:
     unreleased = changelog.partition("## Unreleased\n")[2].partition("\n## ")[0]
     return "\n- " in unreleased
@@ -45,10 +40,3 @@ def test_citation_names_package_version() -> None:
 )
 def test_version_is_of_development_while_unreleased_holds_changes(changelog: str, unreleased: bool) -> None:
     assert has_unreleased_changes(changelog) == unreleased
-
-
-def test_version_under_development_follows_last_release() -> None:
-    base, _, development = cuefem.__version__.partition(".dev")
-    numbers = tuple(map(int, base.split(".")))
-    released = tuple(map(int, released_version(CHANGELOG).split(".")))
-    assert numbers > released if development else numbers == released
