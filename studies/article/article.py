@@ -102,7 +102,8 @@ def text() -> str:
         "Yes, with three effects that other models neglect: partial slip of the contact, axial waves, and the axial "
         f"force on the bent shaft. Four published series differ from the model by {100 * error.total:.0f} % RMS, "
         f"of which unmeasured wood and tips explain {100 * error.inputs:.0f} %; the model error is "
-        f"{100 * error.low:.0f} to {100 * error.high:.0f} % (1σ; [uncertainty](../measured/uncertainty.md)). On one "
+        f"{100 * error.low:.0f} to {100 * error.high:.0f} % (1σ; [uncertainty](../measured/uncertainty.md)), and "
+        "14 to 28 % with cues held out. On one "
         f"maple shaft at b/R 0.375 squirt is {min(squirts):.2f} to {max(squirts):.2f}° from 0.8 to 7 m/s; a robot "
         f"measured 2.30 and 2.43°, without a trend from {low:.1f} to {high:.1f} m/s. Nothing is fitted to squirt: E "
         "and the restitution of the leather follow from a published contact time and restitution of whole cues.",
