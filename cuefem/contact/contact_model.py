@@ -15,7 +15,7 @@ from cuefem.contact.tips import Leather, PowerTip, contact_time_of, tip_of
 from cuefem.cue import Array
 from cuefem.scene import Scene
 
-INFINITE_FRICTION = 1e12  # finite value for infinite friction
+INFINITE_FRICTION = 1e6  # stands for infinite friction: at 1e12 the forces of a last touch drown in round-off
 MAX_CONTACT_TIMES = 200  # longest contact, in head-on contact times; beyond it the strike raises an error
 
 

@@ -23,11 +23,9 @@ from cuefem.quantity.fields import Quantity
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import MAX_MODES, corrected_tip_modes, strike_mode_count
 
-# Modes from one level to the next; the first level with an error has the default number, or more for a tip of low
-# restitution. The last level is MAX_MODES, at least MIN_LAST times as many as the one before.
+# Modes from one level to the next; the first level with an error has the default number. The last level is MAX_MODES,
+# at least MIN_LAST times as many as the one before.
 MODES_RATIO, MIN_LAST = 2**0.5, 1.2
-# Restitution down to which the default modes resolve the unloading, too; below it the kernel shortens its steps alike.
-RESOLVED_RESTITUTION = 0.5
 # The levels of steps begin with this part of the default number, and double up to MAX_STEPS in a contact time.
 FIRST_STEPS, MAX_STEPS = 1 / 4, 51_200
 # Strikes with different modes are compared at half the default number of steps.
@@ -100,15 +98,6 @@ def refinement_levels(scene: Scene, rtol: float, *, max_modes: int = MAX_MODES) 
             i += 1
 
 
-def unloading_part(scene: Scene) -> float:
-    """The part of the contact time that the first level's modes resolve.
-
-    A tip of restitution e unloads 1/e times as fast as it loads. Levels that all lack the modes of a fast unloading
-    agree with each other, although they are wrong.
-    """
-    return min(1.0, float(scene.tip.restitution) / RESOLVED_RESTITUTION)
-
-
 class ModeLadder:
     """Ascending numbers of modes of a scene's cue, and the tip modes of each; a lumped cue has one, 0.
 
@@ -123,7 +112,7 @@ class ModeLadder:
             self.counts, self.start = [0], 0
             self._tips[0] = lumped_tip_modes(scene.lumped)
             return
-        first, self.start = strike_mode_count(scene, part=unloading_part(scene)), self.compared
+        first, self.start = strike_mode_count(scene), self.compared
         counts = [round(first * MODES_RATIO**k) for k in range(-self.start, 20)]
         rising = [*(count for count in counts if MIN_LAST * count <= MAX_MODES), MAX_MODES]
         self.counts = [count for k, count in enumerate(rising) if k <= self.start or count <= max_modes]

@@ -13,26 +13,26 @@ from cuefem.effects.contact_terms import ContactTerms, PowerLaw, TipModel
 from cuefem.effects.force_law import LeatherLaw, TipLaw, contact_time_ratio
 from cuefem.quantity.fields import OutOfBounds, Quantity
 from cuefem.scene import Scene
+from cuefem.scene.solved_scene import MIN_RESTITUTION
 
-# A tip of small restitution e unloads 1/e times as fast as it loads, which needs 1/e times as many steps. Lower bounds
-# of spring tips and of leather, which vibrates on the ball below its bound.
-MIN_RESTITUTION, MIN_LEATHER_RESTITUTION = 0.05, 0.1
+MIN_LEATHER_RESTITUTION = 0.1  # leather vibrates on the ball below it
 ANNULI_MARGIN = 1.05  # annuli up to 1.05 times the largest indentation
 # Steps in a head-on contact time, and those of a leather tip that does not slip as a whole: the error of squirt is
-# below 0.1 % (tests/contact/test_stored_answers.py).
-STEPS, LEATHER_STEPS = 400, 200
+# below 0.1 % (tests/contact/test_stored_answers.py). The impulse that begins infinite friction needs twice as many.
+STEPS, LEATHER_STEPS, STICKING_STEPS = 400, 200, 800
 
 
 @dataclass(frozen=True)
 class PowerTip:
     """A tip whose force is a power of its indentation. Its patch sticks or slips as a whole.
 
-    law: F = stiffness d^exponent. compliance: of the tangential spring, m/N; 0 for a rigid patch.
+    law: F = stiffness d^exponent. compliance: of the tangential spring, m/N; 0 for a rigid patch. steps: default number
+    in a head-on contact time.
     """
 
     law: TipLaw
     compliance: float = 0.0
-    steps: ClassVar[int] = STEPS
+    steps: int = STEPS
     slips_in_parts: ClassVar[bool] = False
 
     @property
@@ -91,7 +91,8 @@ def _power_tip(scene: Scene, terms: ContactTerms) -> PowerTip:
     check_restitution("Tip.restitution", restitution)
     exponent, speed = terms.law or PowerLaw(exponent=1.0, speed=scene.stroke.speed)
     law = TipLaw.for_contact_time(exponent, restitution, mass=scene.reduced_mass, speed=speed, time=scene.contact_time)
-    return PowerTip(law, compliance=terms.compliance / scene.stiffness)
+    steps = STICKING_STEPS if math.isinf(scene.tip.friction) else STEPS
+    return PowerTip(law, compliance=terms.compliance / scene.stiffness, steps=steps)
 
 
 def _leather(scene: Scene, tip: TipModel) -> Leather:

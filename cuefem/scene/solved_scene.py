@@ -30,6 +30,10 @@ if TYPE_CHECKING:
 # Modes are retained up to PERIODS periods in a contact with a truncation correction, and up to TRUNCATED_SUM_PERIODS
 # without: the carbon cue's error is 1 % even at 100. Long contacts have at least MIN_MODES.
 PERIODS, TRUNCATED_SUM_PERIODS, MIN_MODES = 30, 60, 40
+# Restitution down to which these modes resolve the unloading, too; below it the kernel shortens its steps alike.
+RESOLVED_RESTITUTION = 0.5
+# The least restitution of a contact computed in time, which needs 1/e times as many steps.
+MIN_RESTITUTION = 0.05
 # The same for a strike with a leather tip, whose tangential compliance leaves no velocity step at the shaft's end: over
 # 160 random cues the error of squirt, with 200 steps, is 8.5e-5 (95th percentile), 1.3e-4 (maximum).
 LEATHER_PERIODS, MIN_LEATHER_MODES = 8, 12
@@ -48,11 +52,17 @@ MIN_STICK_MODES, MESHED_MODES = 160, 120
 MAX_DEFAULT_MODES, MAX_MODES = 160, 400
 
 
-def strike_mode_count(scene: Scene, *, part: float = 1.0) -> int:
-    """Number of modes that resolve a part of a strike's contact time; by default all of it."""
-    has_tip_model = scene.contact_terms.tip is not None
-    numbers = dict(periods=LEATHER_PERIODS, min_modes=MIN_LEATHER_MODES) if has_tip_model else {}
-    return default_mode_count(scene, part=part, **numbers)
+def strike_mode_count(scene: Scene) -> int:
+    """Number of modes of a strike.
+
+    A tip of restitution e unloads 1/e times as fast as it loads. The impulse that begins a contact of infinite friction
+    sends out waves that twice the modes resolve.
+    """
+    part = min(1.0, max(scene.tip.restitution, MIN_RESTITUTION) / RESOLVED_RESTITUTION)
+    if scene.contact_terms.tip is not None:
+        return default_mode_count(scene, part=part, periods=LEATHER_PERIODS, min_modes=MIN_LEATHER_MODES)
+    factor = 2 if math.isinf(scene.tip.friction) else 1
+    return default_mode_count(scene, part=part, periods=factor * PERIODS, min_modes=factor * MIN_MODES)
 
 
 def default_mode_count(scene: Scene, *, part: float = 1.0, periods: float = PERIODS, min_modes: int = MIN_MODES) -> int:

@@ -118,6 +118,66 @@ def test_leather_first_touch_sticks_at_any_step(offset: float, regime: str, step
     assert end_of_first_slip(cf.strike(scene, cf.Resolution(4, 12, 12, steps)).phases) == regime
 
 
+def bare_scene(name: str, tip: cf.Tip, offset: float, *effects: cf.Effect) -> cf.Scene:
+    """A pool stroke with a drawn shaft and its mass, without the default effects."""
+    return cf.Scene(
+        cf.load(MESHES[0].with_name(f"{name}.toml")), cf.Ball(0.17, 0.028575), tip, cf.Stroke(2.0, offset), effects
+    )
+
+
+@pytest.mark.parametrize("steps", [100, pytest.param(400, marks=pytest.mark.heavy)])
+def test_squirt_of_many_modes_is_that_of_small_steps(steps: int) -> None:
+    """The 300th mode swings through 10 rad in a step of 1/100 of the contact time. 0.03249: of 6,400 steps."""
+    effects = (cf.TipDome(0.0095), cf.AxialWaves(), cf.GeometricStiffness())
+    drawn = bare_scene("carbon", cf.Tip(contact_time=1e-3), 0.3, *effects)
+    scene = replace(drawn, cue=cf.usual_scene(drawn.cue).cue)
+    assert cf.strike(scene, cf.Resolution(1, 40, 300, steps)).squirt == pytest.approx(0.032486, rel=2e-3)
+
+
+HARD_TIPS = {  # squirt of 400 modes and 12,800 steps
+    "low restitution": ("pool_maple", cf.Tip(0.2348983, 0.8133191, contact_time=7.0436e-4), -0.3755904, -0.0214451),
+    "infinite friction": ("carbon", cf.Tip(0.985, math.inf, contact_time=6.68e-4), -0.86355, -0.0162106),
+}
+
+
+@pytest.mark.parametrize("kind", HARD_TIPS)
+def test_default_strike_resolves_hard_tips(kind: str) -> None:
+    name, tip, offset, squirt = HARD_TIPS[kind]
+    assert cf.strike(bare_scene(name, tip, offset)).squirt == pytest.approx(squirt, rel=1e-3)
+
+
+@pytest.mark.kernel
+@pytest.mark.parametrize("effects", [(), (cf.Elevation(0.2),)], ids=["level", "raised"])
+def test_step_without_forces_is_repeated_at_half_its_length(effects: tuple[cf.Effect, ...]) -> None:
+    """Newton's method alternates where a law rises steeply, and then hardly: force = 3e4 N (indentation/m)^0.1."""
+    scene = replace(kim_scene(0.3), effects=effects)
+    model = model_of(scene, tip_modes_of(scene, KIM_AT))
+    law = replace(model.tip.law, exponent=0.1, stiffness=3e4)
+    model = replace(model, tip=replace(model.tip, law=law))
+    halved = solve_contact(model, steps=20).steps
+    halvings = round(math.log2(model.time / 20 / halved["length"][0]))
+    assert halvings >= 1
+    short = solve_contact(model, steps=20 * 2**halvings).steps[0]
+    assert halved["length"][0] == pytest.approx(short["length"], rel=1e-12)
+    assert halved["F"][0] == pytest.approx(short["F"], rel=1e-9)
+    assert halvings == 1 or halved["length"][1] == 2 * halved["length"][0]  # the steps grow again
+
+
+def test_sticking_contact_of_bored_shafts_is_solved() -> None:
+    """A quarter of such shafts had a last step whose normal force was below the last bit of the indentation."""
+    wood, melamine = cf.material("hard maple"), cf.material("melamine")
+    rng = np.random.default_rng(1)
+    for _ in range(20):
+        tip, middle, bore = np.array([0.012827, 0.013208, 0.00796]) * rng.uniform(0.9999, 1.0001, 3)
+        segments = (
+            cf.Segment(0.0254, tip, tip, melamine, tip_bore=bore, butt_bore=bore),
+            cf.Segment(0.3302, tip, middle, wood),
+            cf.Segment(0.381, middle, 0.021463, wood),
+        )
+        scene = cf.usual_scene(cf.Cue(segments, body_mass=0.425)).without_tip_effects
+        assert 0.003 < cf.end_mass(replace(scene, stroke=cf.Stroke(2.0, 0.3)), "offset") < 0.01
+
+
 @cache
 def default_scene(kind: str) -> tuple[cf.Scene, TipModes]:
     """A pool strike with all default effects, or with a spring tip."""

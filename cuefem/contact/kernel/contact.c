@@ -93,7 +93,7 @@ static bool advance(Contact *c, Step *row)
     }
     if (!take_step(c, row)) return false;
     s->steps++;
-    s->next_step = c->tables.h;
+    s->next_step = fmin(2 * c->tables.h, full_step(c)); /* a step that was halved grows again */
     phase_of(c)->next(c);
     update_max_slope(c);
     if (s->status == RUNNING) s->status = status_of(c);

@@ -263,6 +263,7 @@ void contact_matrices(Contact *c);
 void velocities(Contact *c);
 
 /* phases.c */
+double full_step(const Contact *c);
 void separate(Contact *c);
 
 /* step.c */

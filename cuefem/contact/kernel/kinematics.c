@@ -26,7 +26,8 @@ static void rolled_kinematics(const Input *in, double angle, double C[FORCES][VE
 
 /* C at mid-step, where the contact has rolled on by half of the step's angle. Bending shortens the cue by the
    sum of weight slope^2/2 (second-order theory), so that the tip's axial velocity is reduced by the sum of
-   weight slope slope'. */
+   weight slope slope'. The slopes move on as over the last step: the velocity at its end would move a mode
+   that swings through within a step by many of its amplitudes. */
 static void kinematics_at_middle(Contact *c)
 {
     const Input *in = c->in;
@@ -34,7 +35,7 @@ static void kinematics_at_middle(Contact *c)
     const int ports = in->ports, n_cue = ports + in->slopes, n_velocities = ports + in->speeds;
     const double half = c->tables.h / 2;
     for (int a = 0; a < in->slopes; a++)
-        c->shortening[a] = in->slope_weights[a] * (s->slopes[a] + half * s->port_velocities[ports + a]);
+        c->shortening[a] = in->slope_weights[a] * (s->slopes[a] + half * c->mean_velocities[ports + a]);
     for (int f = 0; f < in->forces; f++) {
         memcpy(c->C[f], in->kinematics + f * n_velocities, ports * sizeof(double));
         memcpy(c->C[f] + n_cue, in->kinematics + f * n_velocities + ports, in->speeds * sizeof(double));

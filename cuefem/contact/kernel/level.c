@@ -1,8 +1,6 @@
 /* The forces of a level cue: the force-indentation law at mid-step, friction as a return mapping. */
 #include "contact.h"
 
-enum { MAX_DOUBLINGS = 60, MAX_BISECTIONS = 100 };
-
 /* Relative change of the forces in Newton's last iteration. It leaves an error of its square where the
    equations are smooth; where an annulus begins to slip in this iteration, one of its own size. */
 static const double NEWTON_REL_TOL = 1e-9;
@@ -55,71 +53,6 @@ static bool newton(Contact *c)
     return false;
 }
 
-/* A quantity of a step that falls as x grows; it is 0 at the step's solution. */
-typedef double Residual(Contact *c, double x);
-
-/* The root of a residual: from x = 0 on, twice as far until the sign changes, then bisection. The first x has
-   the sign of the root, and any size. Returns whether the sign changes. */
-static bool find_root(Contact *c, Residual *residual, double *root)
-{
-    const double first = residual(c, 0);
-    double near = 0, far = first;
-    bool changes = residual(c, far) * first <= 0;
-    for (int i = 0; i < MAX_DOUBLINGS && !changes; i++) {
-        near = far;
-        far *= 2;
-        changes = residual(c, far) * first <= 0;
-    }
-    for (int i = 0; i < MAX_BISECTIONS; i++) {
-        double middle = (near + far) / 2;
-        if (residual(c, middle) * first > 0)
-            near = middle;
-        else
-            far = middle;
-    }
-    *root = far;
-    return changes;
-}
-
-/* How far F_t is below what a sticking tip has under it. */
-static double lack_of_stick(Contact *c, double F_t)
-{
-    Equations e;
-    c->F[T] = F_t;
-    velocities(c);
-    c->patch->stick(c, &e);
-    return -e.g[T];
-}
-
-/* The forces at an indentation at mid-step; returns how far it is below the one that they lead to. */
-static double lack_of_indentation(Contact *c, double indentation)
-{
-    c->normal = phase_of(c)->curve(c, indentation);
-    c->F[N] = c->normal.force;
-    if (c->slip)
-        c->F[T] = c->slip * c->in->friction * c->F[N];
-    else
-        find_root(c, lack_of_stick, &c->F[T]);
-    velocities(c);
-    return c->s->indentation - c->tables.h / 2 * c->u[N] - indentation;
-}
-
-/* The forces in the state c->slip as a root of the indentation alone. Forces are 0 at no indentation and
-   continuous, so the indentation that they lead to and their own one agree somewhere, unless the tip draws
-   ball and cue together. Returns whether they agree. */
-static bool bisect(Contact *c)
-{
-    double indentation;
-    bool brackets = find_root(c, lack_of_indentation, &indentation);
-    double lack = lack_of_indentation(c, indentation);
-    double scale = fabs(c->F[T]) + fabs(c->F[N]) + MIN_FORCE;
-    return brackets && fabs(c->normal.slope * lack) <= REL_TOL_ACCEPTED * scale;
-}
-
-/* Newton's method alternates where a sticking tip hardly touches: there the tangential stiffness of leather
-   is like a root of the indentation. */
-static bool solve(Contact *c) { return newton(c) || bisect(c); }
-
 /* Begin the iteration where the forces of the last two steps lead. */
 static void extrapolate(Contact *c)
 {
@@ -133,11 +66,11 @@ static bool forces(Contact *c)
     const bool in_parts = c->patch->slips_in_parts;
     c->slip = mu == 0 && !in_parts ? SLIP : STICK;
     extrapolate(c);
-    if (!solve(c)) return false;
+    if (!newton(c)) return false;
     if (in_parts || c->slip) return true;
     if (fabs(c->F[T]) <= mu * c->F[N] * (1 + REL_TOL)) return true;
     c->slip = c->F[T] > 0 ? SLIP : SLIP_BACK;
-    return solve(c);
+    return newton(c);
 }
 
 /* The impulse that stops the tangential motion. */

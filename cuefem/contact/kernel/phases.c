@@ -7,16 +7,17 @@
    shortened by the factor e / MIN_STEP_RESTITUTION. */
 static const double MIN_STEP_RESTITUTION = 0.5;
 
-static void begin(Contact *c, int phase, double step)
-{
-    c->s->phase = phase;
-    c->s->next_step = step;
-}
-
-static void begin_unloading(Contact *c)
+/* Length of a step in the phase, s, unless an event or forces that are not found shorten it. */
+double full_step(const Contact *c)
 {
     const Input *in = c->in;
-    begin(c, UNLOADING, in->step * fmin(1, in->restitution / MIN_STEP_RESTITUTION));
+    return c->s->phase == UNLOADING ? in->step * fmin(1, in->restitution / MIN_STEP_RESTITUTION) : in->step;
+}
+
+static void begin(Contact *c, int phase)
+{
+    c->s->phase = phase;
+    c->s->next_step = full_step(c);
 }
 
 static bool is_indented(const Contact *c) { return c->s->indentation > residual_indentation(c); }
@@ -41,7 +42,7 @@ static void after_loading(Contact *c)
     State *s = c->s;
     if (c->v[N] > 0) {
         s->max_indentation = larger(s->max_indentation, s->indentation);
-        begin_unloading(c);
+        begin(c, UNLOADING);
     }
 }
 
@@ -50,9 +51,9 @@ static void after_unloading(Contact *c)
     const State *s = c->s;
     if (s->ends_at_event || !is_indented(c)) {
         separate(c);
-        begin(c, FREE, c->in->step);
+        begin(c, FREE);
     } else if (s->indentation > s->max_indentation) {
-        begin(c, LOADING, c->in->step);
+        begin(c, LOADING);
     }
 }
 
@@ -72,7 +73,7 @@ static void after_flight(Contact *c)
 {
     if (c->s->ends_at_event || is_indented(c)) {
         c->s->ends_at_event = false;
-        begin_unloading(c);
+        begin(c, UNLOADING);
     }
 }
 

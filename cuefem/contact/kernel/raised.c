@@ -58,16 +58,18 @@ static bool plane_friction(Contact *c, int a, int b, double bound)
     return sticks;
 }
 
-/* Newton's method for F_n, the other forces held. */
-static void normal_force(Contact *c)
+/* Newton's method for F_n, the other forces held. Returns whether it converged. */
+static bool normal_force(Contact *c)
 {
     const double half = c->tables.h / 2;
+    double correction = 0;
     for (int i = 0; i < MAX_ITERATIONS; i++) {
         NormalForce normal = phase_of(c)->curve(c, c->s->indentation - half * mean_velocity(c, N));
-        double correction = (c->F[N] - normal.force) / (1 + normal.slope * half * c->W[N][N]);
+        correction = (c->F[N] - normal.force) / (1 + normal.slope * half * c->W[N][N]);
         c->F[N] -= correction;
-        if (fabs(correction) <= REL_TOL * fabs(c->F[N])) return;
+        if (fabs(correction) <= REL_TOL * fabs(c->F[N])) return true;
     }
+    return fabs(correction) <= REL_TOL_ACCEPTED * (fabs(c->F[N]) + MIN_FORCE);
 }
 
 /* The table's normal force: it pushes the ball unless that rises. */
@@ -80,25 +82,28 @@ static void table_force(Contact *c)
     c->F[UP] = leaves ? 0 : larger(0, (c->u_stick[UP] - u) / c->W[UP][UP]);
 }
 
-/* One sweep over all forces; friction of the tip is at most mu F_n, N, and a constant, N, more. */
-static void sweep(Contact *c, double mu, double more)
+/* One sweep over all forces; friction of the tip is at most mu F_n, N, and a constant, N, more. Returns whether
+   the normal force was found. */
+static bool sweep(Contact *c, double mu, double more)
 {
-    normal_force(c);
+    bool found = normal_force(c);
     c->slip = plane_friction(c, T, P, mu * larger(c->F[N], 0) + more) ? STICK : SLIP;
     table_force(c);
     bool sticks = plane_friction(c, LATERAL, FORWARD, c->in->table_friction * c->F[UP]);
     c->on_table = c->F[UP] > 0;
     c->table_stuck = sticks && c->on_table;
+    return found;
 }
 
 /* Sweeps until the forces stay. Returns whether they converged. */
 static bool solve(Contact *c, double mu, double more)
 {
     double change = 1, scale = 1;
+    bool found = false;
     for (int n = 0; n < MAX_SWEEPS && change > REL_TOL_SWEEPS * scale; n++) {
         double before[FORCES];
         memcpy(before, c->F, sizeof before);
-        sweep(c, mu, more);
+        found = sweep(c, mu, more);
         change = 0;
         scale = MIN_FORCE;
         for (int f = 0; f < FORCES; f++) {
@@ -106,7 +111,7 @@ static bool solve(Contact *c, double mu, double more)
             scale = larger(scale, fabs(c->F[f]));
         }
     }
-    return change <= REL_TOL_ACCEPTED * scale;
+    return found && change <= REL_TOL_ACCEPTED * scale;
 }
 
 /* Strong friction may support so much that F_n vanishes, and with it mu F_n: the iteration then alternates.

@@ -6,13 +6,14 @@
 
 static const double MIN_FRACTION = 1e-6; /* of a step, to its event */
 
-/* The forces of the step; in free flight they are 0. A step without a solution is recorded, and is the last.
- */
-static void solve_forces(Contact *c)
+/* Repeat a step whose forces were not found at half of its length. Newton's method may alternate where a
+   sticking tip hardly touches: there the tangential stiffness of leather is like a root of the indentation. */
+static void halve(Contact *c)
 {
-    if (!phase_of(c)->touches) return;
-    bool solved = c->cue->forces(c);
-    if (!solved) c->s->status = UNSOLVED;
+    State *s = c->s;
+    s->next_step = c->tables.h / 2;
+    s->ends_at_event = false;
+    if (s->next_step < MIN_FRACTION * c->in->step) s->status = UNSOLVED;
 }
 
 /* Ball and tip separate or touch where the indentation passes the residual one. If that happens within the
@@ -122,7 +123,10 @@ bool take_step(Contact *c, Step *row)
 {
     free_motion(c);
     contact_matrices(c);
-    solve_forces(c);
+    if (phase_of(c)->touches && !c->cue->forces(c)) {
+        halve(c);
+        return false;
+    }
     velocities(c);
     if (shorten_to_event(c)) return false;
     add_work(c);
