@@ -175,12 +175,12 @@ def lumped_cues(scene: Scene, offsets: Sequence[float], tip: TipModes) -> dict[s
 def _coupling_slope(scene: Scene, tip: TipModes) -> float:
     """The coupling by effects at the tip per b/R, 1/kg, at the offset of the stroke, or at 0.1 of a central impact.
 
-    Zero without such effects, or if no lumped cue has the squirt with them.
+    Zero without such effects, or if no lumped cue with the squirt is found.
     """
     offset = scene.stroke.offset or 0.1
     try:
         cue = lump_modes(at_offset(scene, offset), tip)
-    except ValueError:
+    except (ValueError, RuntimeError):
         return 0.0
     return cue.coupling / abs(offset)
 

@@ -324,19 +324,24 @@ class AxialWaves(CueEffect):
             raise ValueError(f"AxialWaves must be given {BUTT_FIELDS} together, or none of them; got {self}")
 
     def with_butt(self, cue: Cue) -> Cue:
-        """The cue with its butt as a segment; unchanged without a butt, or with one that is too short."""
+        """The cue with its butt as a segment; unchanged without a butt, or with one that is too short.
+
+        The butt begins at the last full section (`_full_segments`), and replaces what is drawn behind it.
+        """
         if self.cue_length is None or self.butt_diameter is None or self.wave_speed is None or not cue.body_mass:
             return cue
-        length, last = self.cue_length - cue.length, cue.segments[-1]
-        if length < MIN_BUTT_LENGTH:
+        if self.cue_length - cue.length < MIN_BUTT_LENGTH:
             return cue
+        full = _full_segments(cue)
+        length, last = self.cue_length - float(cue.nodes[full]), cue.segments[full - 1]
+        mass = cue.body_mass + math.fsum(segment.mass for segment in cue.segments[full:])
         first = last.butt_diameter
         area_ratio = first**2 + first * self.butt_diameter + self.butt_diameter**2
-        rho = cue.body_mass / (math.pi / 12 * area_ratio * length)
+        rho = mass / (math.pi / 12 * area_ratio * length)
         modulus_ratio = rho * self.wave_speed**2 / last.material.E
         wood = replace(last.material, E=modulus_ratio * last.material.E, G=modulus_ratio * last.material.G, rho=rho)
         butt = Segment(length, first, self.butt_diameter, wood)
-        return replace(cue, segments=(*cue.segments, butt), body_mass=0.0)
+        return replace(cue, segments=(*cue.segments[:full], butt), body_mass=0.0)
 
     def axial_modes(self, bending: Modes, cue: Cue, effects: Sequence[CueEffect]) -> tuple[RodModes, ...]:
         """The rod modes."""
@@ -346,7 +351,7 @@ class AxialWaves(CueEffect):
         max_count = max(MAX_ROD_MODES, len(bending.omega))
         masses = tuple(point_masses_on(rod, effects))
         nodes = bending.system.mesh.nodes
-        nodes = nodes[np.isin(nodes, [*cue.nodes, *(x for x, _ in masses)])]  # without those that divide a segment
+        nodes = nodes[np.isin(nodes, [*rod.nodes, *(x for x, _ in masses)])]  # without those that divide a segment
         if rod is not cue:
             nodes = np.append(nodes, rod.length)
         resolved = rod_modes(
@@ -401,6 +406,16 @@ class GeometricStiffness(CueEffect):
         """Geometric stiffness of the bending modes per newton of axial force."""
         vectors = np.concatenate([bending.rigid_vectors, bending.vectors], axis=1)
         return bending.system.geometric_stiffness(vectors, point_masses_on(cue, effects))
+
+
+def _full_segments(cue: Cue) -> int:
+    """Number of segments up to the last full section, the widest end of a segment in the last `MIN_BUTT_LENGTH`.
+
+    A joint end drawn narrower, such as a pin or a chamfer, is inside the butt or a step of its surface.
+    """
+    ends = [segment.butt_diameter for segment in cue.segments]
+    near = np.flatnonzero(cue.nodes[1:] > cue.length - MIN_BUTT_LENGTH)
+    return 1 + max(near.tolist(), key=lambda i: (ends[i], i))
 
 
 def point_masses_on(cue: Cue, effects: Sequence[CueEffect]) -> list[tuple[float, float]]:

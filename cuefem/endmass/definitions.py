@@ -124,8 +124,8 @@ def definition_of(drive: str) -> Definition:
 def force(tip: TipModes, scene: Scene) -> float:
     """Impulse of a half-sine force over the final tip velocity, kg; its kinks make the error fall like 1/modes^2.
 
-    A soft tip on a heavy ferrule may be at rest when the force ends, or move back: the value is then huge or negative,
-    and only its inverse is accurate.
+    A soft tip on a heavy ferrule may be almost at rest when the force ends: the value is then huge, and only its
+    inverse is accurate. If the tip moves back, `Definition.of` refuses the value.
     """
     T = float(scene.contact_time)
     return 2 * T / np.pi / half_sine_velocity(tip, T)
@@ -163,12 +163,12 @@ def stick_at_offset(tip: TipModes, scene: Scene) -> float:
 
 
 def stick_at_offsets(tip: TipModes, scene: Scene, offsets: Sequence[float]) -> list[float]:
-    """`stick_at_offset` at each offset, kg; nan where no end mass has that squirt."""
+    """`stick_at_offset` at each offset, kg; nan where no end mass has that squirt, or none is found."""
 
     def mass(offset: float) -> float:
         try:
             return stick_at_offset(tip, replace(scene, stroke=Stroke(scene.stroke.speed, offset)))
-        except ValueError:
+        except (ValueError, RuntimeError):
             return math.nan
 
     return [mass(offset) for offset in offsets]
@@ -190,7 +190,7 @@ def small_offset_slope(tip: TipModes, scene: Scene) -> float:
 
     `StickLimit` excludes effects at the tip (a dome, shear), axial waves and lumped cues: with them it is that of a
     strike at b/R = 1e-5. The initial slip vanishes in the limit, like sqrt(b); infinite friction removes it, which
-    leaves an error of b^2.
+    leaves an error of b^2. Geometric stiffness is excluded: see `coupled_slope`.
     """
     if scene.lumped is None and not _needs_strike(tip, scene):
         limit = StickLimit.of(scene)
@@ -199,17 +199,30 @@ def small_offset_slope(tip: TipModes, scene: Scene) -> float:
     return sticking_squirt(tip, near_centre) / float(near_centre.stroke.angle)
 
 
+def coupled_slope(tip: TipModes, scene: Scene) -> float:
+    """As `small_offset_slope`, with geometric stiffness, as a strike at the scene's speed has it."""
+    if tip.geometric is None:
+        return small_offset_slope(tip, scene)
+    near_centre = _near_centre(scene)
+    return _stuck_squirt(tip, near_centre) / float(near_centre.stroke.angle)
+
+
 def _near_centre(scene: Scene) -> Scene:
     """The scene's stroke at an offset so small that squirt is proportional to it."""
     return replace(scene, stroke=Stroke(scene.stroke.speed, SMALL_OFFSET))
 
 
 def sticking_squirt(tip: TipModes, scene: Scene) -> float:
-    """Squirt, rad, away from the side struck, of a coupled strike with infinite friction, up to separation.
+    """Squirt, rad, away from the side struck, of a sticking tip: that of end masses.
 
     Geometric stiffness is excluded, as for all end masses but "squirt": it would make them fall with the speed.
     """
-    p_t, p_n = strike_modes(without_slip(scene), tip.without_geometric_stiffness).impulse
+    return _stuck_squirt(tip.without_geometric_stiffness, scene)
+
+
+def _stuck_squirt(tip: TipModes, scene: Scene) -> float:
+    """Squirt, rad, away from the side struck, of a coupled strike with infinite friction, up to separation."""
+    p_t, p_n = strike_modes(without_slip(scene), tip).impulse
     return float(abs(scene.stroke.angle) - math.atan2(p_t * np.sign(scene.stroke.offset), p_n))
 
 
@@ -300,8 +313,20 @@ class Definition(NamedTuple):
 
     @one_blas_thread
     def of(self, tip: TipModes, scene: Scene) -> Any:
-        """The end mass of any cue by this definition, kg; of a lumped cue its `LumpedCue.end_mass`."""
-        return self.value(tip, scene) if scene.lumped is None else scene.lumped.end_mass
+        """The end mass of any cue by this definition, kg; of a lumped cue its `LumpedCue.end_mass`.
+
+        ValueError if it is not positive: soft leather, or a support near the tip, drives the tip back before the
+        contact ends.
+        """
+        if scene.lumped is not None:
+            return scene.lumped.end_mass
+        mass = self.value(tip, scene)
+        if not mass > 0:
+            raise ValueError(
+                f"end_mass drive {self.name!r}: the tip must move with the impulse when the contact ends; it moves "
+                f"back (impulse over velocity {mass:.4g} kg): move supports away from the tip, or shorten the contact"
+            )
+        return mass
 
     def label_at(self, offset: Any) -> str:
         """The label, with the offset b/R if the definition depends on it."""

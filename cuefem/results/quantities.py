@@ -92,7 +92,7 @@ SMALL_OFFSET = 1e-6
 
 def _pivot_length(design: SolvedDesign, offset: float | None) -> float:
     if offset is None:
-        return float(pivot_length(design.scene, design.squirt_slope * math.asin(SMALL_OFFSET), SMALL_OFFSET))
+        return float(pivot_length(design.scene, design.coupled_slope * math.asin(SMALL_OFFSET), SMALL_OFFSET))
     return float(pivot_length(design.scene, design.squirt(offset), offset))
 
 

@@ -15,7 +15,7 @@ from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.strike import steps_of, strike, strike_modes
 from cuefem.cue import Array
 from cuefem.effects.cue_effects import Support
-from cuefem.endmass.definitions import DEFINITIONS, Drive, small_offset_slope
+from cuefem.endmass.definitions import DEFINITIONS, Drive, coupled_slope, small_offset_slope
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.verdict import reject_miscue
 from cuefem.scene import Outcome, Scene, check_scene
@@ -116,8 +116,13 @@ class SolvedDesign:
 
     @cached_property
     def squirt_slope(self) -> float:
-        """Squirt over phi in the limit of small offsets."""
+        """Squirt over phi of a sticking tip in the limit of small offsets, without geometric stiffness, as end mass."""
         return small_offset_slope(self.solved.stick_tip, self.scene)
+
+    @cached_property
+    def coupled_slope(self) -> float:
+        """Squirt over phi of the coupled strike in the limit of small offsets."""
+        return coupled_slope(self.solved.stick_tip, self.scene)
 
     def end_mass(self, name: Drive, offset: float | None = None) -> float:
         """End mass by a definition, kg, at an offset b/R or at the scene's own."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import nan
 
 import numpy as np
 from hypothesis import given
@@ -50,6 +51,16 @@ def test_modes_scaled_units_scale(cue: Cue, length: float, time: float, mass: fl
     )
 
 
+def inverse_end_mass(scene: Scene, drive: str) -> float:
+    """1/kg; nan where soft leather drives the tip back before the contact ends."""
+    try:
+        return 1 / end_mass(scene, drive, AT)
+    except ValueError as error:
+        if "must move with the impulse" not in str(error):
+            raise
+        return nan
+
+
 @given(cues(), drives, factors, factors, factors)
 @examples(20)
 def test_end_mass_scaled_units_scales(cue: Cue, drive: str, length: float, time: float, mass: float) -> None:
@@ -57,8 +68,9 @@ def test_end_mass_scaled_units_scales(cue: Cue, drive: str, length: float, time:
     other = replace(scaled(cue, E=stiff, G=stiff, rho=heavy, length=length), body_mass=cue.body_mass * mass)
     original = Scene(cue, tip=Tip(contact_time=1e-3))
     scaled_scene = Scene(other, Ball(mass=0.21 * mass), Tip(contact_time=1e-3 * time))
-    one, two = end_mass(original, drive, AT), end_mass(scaled_scene, drive, AT)
-    np.testing.assert_allclose(two, one * mass, rtol=1e-8)  # as frequencies; soft ends have 1.1e-9 in 1,000 cues
+    one, two = inverse_end_mass(original, drive), inverse_end_mass(scaled_scene, drive) * mass
+    # as frequencies; soft ends have 1.1e-9 in 1,000 cues; a tip almost at rest has almost no inverse
+    np.testing.assert_allclose(two, one, rtol=1e-8, atol=1e-8 / cue.mass)
 
 
 @given(cues(), st.floats(1.01, 4.0))

@@ -84,6 +84,18 @@ def test_axial_waves_stated_butt_equals_drawn_butt():
     assert cf.end_mass(scene, "velocity") == cf.end_mass(head_on(cue), "velocity")
 
 
+def test_axial_waves_narrow_joint_end_is_inside_the_butt() -> None:
+    """The butt continues the last full section, whatever pin or chamfer is drawn behind it."""
+    cue = reference_cue("pool_maple")
+    last, squirts = cue.segments[-1], []
+    for end in (0.02, 1e-3, 2e-4):
+        pin = cf.Segment(0.0036, last.butt_diameter, end, last.material)
+        drawn = replace(cue, segments=(*cue.segments, pin))
+        squirts.append(cf.strike(cf.usual_scene(drawn)).squirt)
+        assert cf.AxialWaves(**BUTT, wave_speed=4430.0).with_butt(drawn).mass == pytest.approx(drawn.mass, rel=1e-12)
+    assert squirts == pytest.approx([cf.strike(cf.usual_scene(cue)).squirt] * 3, rel=2e-3)
+
+
 @pytest.mark.parametrize("cutoff", [1e3, 2e5])
 def test_rod_truncation_correction_has_compliance_of_all_modes(cutoff):
     """A free uniform rod on springs of s per mass under a steady force at its end: the sum of along^2/(omega^2 + s),

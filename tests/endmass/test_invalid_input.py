@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import pytest
@@ -30,3 +31,10 @@ def test_equivalent_end_mass_sliding_tip_raises(mass: float) -> None:
         equivalent_end_mass(slid, scene)
     sticking = replace(scene, cue=cf.LumpedCue(0.54, 0.15))
     assert equivalent_end_mass(cf.impulse(sticking), sticking) == pytest.approx(0.15, rel=1e-9)
+
+
+def test_end_mass_of_a_tip_that_moves_back_raises() -> None:
+    clamp = cf.Support(0.01, math.inf, math.inf)
+    impact = replace(scene(kim(), 2e-3), effects=(clamp,))
+    with pytest.raises(ValueError, match="must move with the impulse when the contact ends"):
+        end_mass(impact, "force")

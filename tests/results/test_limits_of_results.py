@@ -1,0 +1,34 @@
+"""Results in the limit of small offsets, and numbers beside a strike that cannot be computed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from cuefem.results.quantities import RESULTS
+from cuefem.results.solved_design import SolvedDesign
+
+MESHES = Path(__file__).parents[2] / "meshes"
+
+
+@pytest.mark.parametrize("name", ["pool_maple", "pool_hollow"])
+def test_pivot_length_tends_to_its_limit_of_small_offsets(name: str) -> None:
+    """At the scene's speed: geometric stiffness makes it 5 % longer than that of the end mass."""
+    design = SolvedDesign.of(cf.usual_scene(cf.load(MESHES / f"{name}.toml")))
+    value = RESULTS["pivot_length"].of
+    assert value is not None
+    assert value(design, None) == pytest.approx(value(design, 1e-3), rel=1e-4)
+
+
+def test_report_without_solution_of_a_side_number_lacks_that_number(monkeypatch: pytest.MonkeyPatch) -> None:
+    def unsolved(*_: object) -> None:
+        raise RuntimeError("the forces of the contact have no solution")
+
+    scene = cf.usual_scene(cf.load(MESHES / "pool_maple.toml"))
+    with_all = cf.strike_models(scene).models
+    monkeypatch.setattr("cuefem.endmass.definitions.strike_modes", unsolved)
+    models = cf.strike_models(scene).models
+    assert list(models) == ["coupled"] != list(with_all)
+    assert models["coupled"]["squirt"] == with_all["coupled"]["squirt"]
