@@ -11,6 +11,7 @@ import io
 import os
 import platform
 import re
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -78,6 +79,21 @@ class Study:
         self.path.with_suffix(".md").write_text(self.page(), encoding="utf-8")
         for name, drawing in self.figures.items():
             drawing.save(self.path.with_name(name))
+
+
+def run(study: Study, answer: Callable[[str], str]) -> None:
+    """Write the page and its figures; or, with a file as argument, print what the study computes of that cue.
+
+    Invalid input prints one line and ends with status 2.
+    """
+    if len(sys.argv) == 1:
+        study.write()
+        return
+    try:
+        print(answer(sys.argv[1]))
+    except (ValueError, OSError) as error:
+        print(f"{sys.argv[1]}: {error}", file=sys.stderr)
+        raise SystemExit(2) from error
 
 
 def output_of(example: str) -> str:

@@ -83,6 +83,33 @@ def full_model(shaft: cf.Cue, offset: float = 0.375, speed: float = 2.0, **leath
     return replace(base, stroke=cf.Stroke(speed, offset), effects=effects)
 
 
+def drawn_stroke(draw: np.random.Generator, shaft: cf.Cue | None = None) -> cf.Scene:
+    """Pool's default stroke of a shaft, or of one drawn at random, with speed, offset and leather drawn at random."""
+    u = draw.uniform
+    struck = shaft or random_cue(draw, str(draw.choice(["none", "ferrule"])))
+    leather = {"E": 80e6 * (300 / 80) ** draw.random(), "height": u(4e-3, 8e-3), "dome_radius": u(8.95e-3, 10.6e-3)}
+    return full_model(struck, u(0.2, 0.4), u(1.0, 4.0), **leather)
+
+
+def pool_stroke(struck: cf.Scene) -> cf.Scene:
+    """The scene, if its cue has a drawing and strikes a lighter ball of pool; ValueError otherwise."""
+    if struck.lumped is not None:
+        raise ValueError("cue is a LumpedCue, without waves; this study needs a drawing of its shaft")
+    if not 0.027 <= struck.ball.radius <= 0.030:
+        size = f"{2e3 * struck.ball.radius:g} mm"
+        raise ValueError(f"ball.radius is of another game ({size} wide); this study needs a ball of pool, 54 to 60 mm")
+    if struck.ball.mass >= struck.cue.mass:
+        masses = f"{1e3 * struck.ball.mass:g} g, the cue {1e3 * struck.cue.mass:g} g"
+        raise ValueError(f"ball.mass must be less than the mass of the cue; the ball has {masses}")
+    return struck
+
+
+def own_stroke(path: str) -> cf.Scene:
+    """The stroke of a file, or pool's default stroke of its cue; ValueError unless it is a `pool_stroke`."""
+    loaded = cf.load(path)
+    return pool_stroke(loaded if isinstance(loaded, cf.Scene) else cf.usual_scene(loaded))
+
+
 def with_tip(struck: cf.Scene, E: float, restitution: float) -> cf.Scene:
     """The scene with another modulus, Pa, and restitution of its leather tip."""
     effects = tuple(replace(e, E=E) if isinstance(e, cf.LeatherTip) else e for e in struck.effects)

@@ -134,7 +134,8 @@ def text() -> str:
         "## Point mass of 11 g on the maple shaft: squirt over that without it",
         mass_table(),
         "The minimum at 6 to 9 in is caused by the bending wave that the mass reflects; in shorter contacts it is "
-        f"nearer to the tip. The change of squirt by 3 g is {added} of that by 11 g at 2 and 4 in; measured: 0.51 to "
+        "nearer to the tip: one curve ([distribution](../end_mass/distribution.md)). "
+        f"The change of squirt by 3 g is {added} of that by 11 g at 2 and 4 in; measured: 0.51 to "
         "0.80. It is nearly proportional to a small mass, so either the model fails here, or the label or the "
         "digitised curve is wrong.",
         "## Squirt of the hollow shaft over the maple shaft at b/R 0.453 by bore, measured 0.72",

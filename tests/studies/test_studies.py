@@ -1,14 +1,17 @@
 """Studies: each page equals the output of its program, and the index lists it (regression)."""
 
 import re
+from dataclasses import replace
 from importlib import import_module
 
 import pytest
 
+import cuefem as cf
 from studies.pages import IN_PYTHON, STUDIES, Study, disagreements
+from studies.strokes import cue, full_model, pool_stroke
 
 # Studies whose page takes more than 20 s of processor time; `.ci/nightly` computes them again.
-NIGHTLY = ("accuracy", "calibration", "games", "leather", "solid")
+NIGHTLY = ("accuracy", "calibration", "distribution", "games", "leather", "solid")
 # Studies of few sums and no search, whose pages are equal: one unit in a last digit is a stale number.
 SMOOTH = ("chain", "definitions", "kim")
 PROGRAMS = sorted(path for path in STUDIES.rglob("*.py") if re.search(r"^STUDY = ", path.read_text("utf-8"), re.M))
@@ -54,6 +57,16 @@ def test_study_page_has_question_answer_and_index_entry(name: str) -> None:
     for figure in study.figures:
         assert study.path.with_name(figure).exists()
         assert "<text" in study.path.with_name(figure).read_text("utf-8")
+
+
+def test_study_of_own_stroke_rejects_other_scenes() -> None:
+    base = full_model(cue("pool_maple"))
+    carom = replace(base, ball=replace(base.ball, radius=0.03075))
+    heavy = replace(base, ball=replace(base.ball, mass=0.7))
+    lumped = replace(base, cue=cf.LumpedCue(0.5, 0.008), effects=())
+    for scene, first in ((lumped, "cue is"), (carom, "ball.radius"), (heavy, "ball.mass")):
+        with pytest.raises(ValueError, match=f"^{first}"):
+            pool_stroke(scene)
 
 
 def test_study_folders_have_no_other_pages_or_figures() -> None:
