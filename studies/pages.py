@@ -81,8 +81,8 @@ class Study:
             drawing.save(self.path.with_name(name))
 
 
-def run(study: Study, answer: Callable[[str], str]) -> None:
-    """Write the page and its figures; or, with a file as argument, print what the study computes of that cue.
+def run(study: Study, answer: Callable[..., str]) -> None:
+    """Write the page and its figures; or, with files as arguments, print what the study computes of them.
 
     Invalid input prints one line and ends with status 2.
     """
@@ -90,9 +90,9 @@ def run(study: Study, answer: Callable[[str], str]) -> None:
         study.write()
         return
     try:
-        print(answer(sys.argv[1]))
-    except (ValueError, OSError) as error:
-        print(f"{sys.argv[1]}: {error}", file=sys.stderr)
+        print(answer(*sys.argv[1:]))
+    except (TypeError, ValueError, OSError) as error:
+        print(f"{' '.join(sys.argv[1:])}: {error}", file=sys.stderr)
         raise SystemExit(2) from error
 
 

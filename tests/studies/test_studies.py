@@ -3,10 +3,13 @@
 import re
 from dataclasses import replace
 from importlib import import_module
+from pathlib import Path
 
 import pytest
 
 import cuefem as cf
+from cuefem.measurements.measured_folder import write_template
+from studies.measured import two_balls
 from studies.pages import IN_PYTHON, STUDIES, Study, disagreements
 from studies.strokes import cue, full_model, pool_stroke
 
@@ -67,6 +70,21 @@ def test_study_of_own_stroke_rejects_other_scenes() -> None:
     for scene, first in ((lumped, "cue is"), (carom, "ball.radius"), (heavy, "ball.mass")):
         with pytest.raises(ValueError, match=f"^{first}"):
             pool_stroke(scene)
+
+
+@pytest.mark.heavy
+def test_two_measured_balls_are_compared_with_both_predictions(tmp_path: Path) -> None:
+    light, heavy = tmp_path / "light", tmp_path / "heavy"
+    for folder, grams in ((light, 156), (heavy, 200)):
+        write_template(folder)
+        measured = (folder / "measured.toml").read_text("utf-8")
+        (folder / "measured.toml").write_text(measured.replace('mass = "170 g"', f'mass = "{grams} g"'), "utf-8")
+    table = "offset,speed [m/s],left [deg],right [deg],error [deg]\n0.3,2,{0},{0},0.01\n"
+    for folder, squirt in ((light, 2.0), (heavy, 1.62)):
+        (folder / "squirt.csv").write_text(table.format(squirt), "utf-8")
+    assert two_balls.result(str(light), str(heavy)).endswith("nearer to an end mass")
+    with pytest.raises(ValueError, match="at least 5 % more"):
+        two_balls.result(str(light), str(light))
 
 
 def test_study_folders_have_no_other_pages_or_figures() -> None:
