@@ -109,10 +109,10 @@ def written(path: Path) -> str:
     return page_text(text) + drawing_text(text) if path.suffix == ".html" else text
 
 
-HEAVY = pytest.param(beside, marks=pytest.mark.heavy)
+HEAVY = [pytest.param(each, marks=pytest.mark.heavy) for each in (beside, surfaces)]
 
 
-@pytest.mark.parametrize("prepare", [sweep, scatter, optimum, comparison, HEAVY, estimate, surfaces, parts])
+@pytest.mark.parametrize("prepare", [sweep, scatter, optimum, comparison, estimate, parts, *HEAVY])
 def test_written_files_equal_golden_file(
     prepare: Callable[[Path], list[list[object]]],
     tmp_path: Path,

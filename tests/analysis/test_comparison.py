@@ -22,6 +22,7 @@ def both() -> Comparison:
     return cf.compare({"plain": SCENE, "bored": BORED})
 
 
+@pytest.mark.heavy
 def test_comparison_differences_agree_with_single_cues(both: Comparison) -> None:
     squirts = [float(cf.strike(scene).squirt) for scene in (SCENE, BORED)]
     assert [both.cues[name]["squirt"] for name in ("plain", "bored")] == pytest.approx(squirts, rel=1e-9)
@@ -31,6 +32,7 @@ def test_comparison_differences_agree_with_single_cues(both: Comparison) -> None
     assert squirt["error"] > abs(squirt["difference"]) * SHAFT_ERROR / 1.1
 
 
+@pytest.mark.heavy
 def test_comparison_reversed_order_has_same_significance(both: Comparison) -> None:
     other = cf.compare({"bored": BORED, "plain": SCENE}).differences["plain"]
     for name, each in both.differences["bored"].items():

@@ -108,6 +108,7 @@ def test_frequency_error_has_order_2p(order: int, mode: int) -> None:
     assert_order(2 * order, 1 / elements, errors, within=20.0 / elements[:-1] ** 2)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(("cue", "tolerance"), [(kim(), 1e-10), (stiff_ferrule(), 1e-6)])
 def test_inverse_form_low_modes_have_small_roundoff_error(cue: Cue, tolerance: float) -> None:
     """On every mesh; `eigh(K, M)` has 30 times the error. A 1 mm steel ferrule leaves the round-off error of K."""

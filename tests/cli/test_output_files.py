@@ -111,3 +111,8 @@ def test_modules_have_every_name_they_promise() -> None:
 
 def test_template_prints_json(tmp_path: Path) -> None:
     assert as_json("compare", tmp_path / "cue", "--template") == {"output_folder": str(tmp_path / "cue")}
+
+
+def test_json_with_page_prints_json_alone_and_the_typed_path(tmp_path: Path) -> None:
+    assert as_json("end-mass", KIM, "-o", tmp_path / "page.html")["file"] == str(KIM)
+    assert (tmp_path / "page.html").exists()

@@ -137,6 +137,7 @@ def test_side_strike_light_striker_measures_end_mass_by_force(name: str) -> None
     assert outcome.impulse / outcome.contact_point_speed == pytest.approx(expected, rel=1e-4)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", ON)
 def test_side_strike_default_resolution_restitution_within_1e_4(name: str) -> None:
     rng, cue = np.random.default_rng(7), FAMILY[name]

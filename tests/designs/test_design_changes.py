@@ -183,6 +183,7 @@ def test_parameters_of_tubes_have_bounds(cue: str, name: str, value: float, prob
         with_parameters(scene_of(cue), {name: value})
 
 
+@pytest.mark.heavy
 def test_improve_take_saves_row_and_replaces_no_file(tmp_path: Path, computed: tuple[cf.Scene, DesignChanges]) -> None:
     path, target = tmp_path / "scene.toml", tmp_path / "better.toml"
     cf.save(computed[0], path)

@@ -109,6 +109,7 @@ def test_active_limits_constrain_the_optimum() -> None:
         assert (gained < 1 - 1e-5) == named or (named and gained == pytest.approx(1, abs=1e-6)), limit
 
 
+@pytest.mark.heavy
 def test_optimum_of_left_hand_offset_is_that_of_right_hand() -> None:
     """Objective, maximum and limits compare the size of squirt; the result has its sign."""
     right, left = Response("squirt", 0.3), Response("squirt", -0.3)
@@ -163,6 +164,7 @@ def test_optimum_of_listed_values_alone(tmp_path: Path) -> None:
     assert (result.values, result.responses["squirt_slope"]) == (best.values, best.objective)
 
 
+@pytest.mark.heavy
 def test_best_design_stands_beside_the_unmodified_one() -> None:
     """Its responses are those of the base alone; changes are as those of `compare`, in every output."""
     base, tip = cf.Scene(kim()), Vary("tip diameter", Span(0.011, 0.0125))

@@ -27,6 +27,7 @@ def integral(result: Sensitivity, cue: Cue, *names: str) -> float:
     return math.fsum(result.weights @ (getattr(result, name) * getattr(section, name)) for name in names)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("path", sorted(MESHES.glob("*.toml")), ids=lambda path: path.stem)
 def test_sensitivity_parts_sum_to_end_mass(path: Path) -> None:
     """handbook: Effective end mass, on every cue in meshes/."""

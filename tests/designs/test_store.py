@@ -198,6 +198,7 @@ def test_store_altered_raises_and_is_unchanged(tmp_path: Path, statement: str, m
     assert_unchanged(tmp_path, message, "study", study)
 
 
+@pytest.mark.heavy
 def test_parquet_has_the_table_of_the_csv(tmp_path: Path) -> None:
     parquet = pytest.importorskip("pyarrow.parquet")
     study = write_study(tmp_path)
@@ -212,6 +213,7 @@ def test_parquet_has_the_table_of_the_csv(tmp_path: Path) -> None:
     assert texts == lines
 
 
+@pytest.mark.heavy
 def test_long_study_prints_a_line_every_tenth(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cuefem.cli.progress.FIRST_LINE", 0.0)
     _, _, err = call("study", write_study(tmp_path))

@@ -43,6 +43,7 @@ def test_shaft_mass_includes_tip_and_precedes_other_changes() -> None:
     assert not with_parameters(weighed, {"shaft material": "ash"}).shaft.shaft_mass_measured
 
 
+@pytest.mark.heavy
 def test_weighed_density_is_not_uncertain() -> None:
     scene = cf.usual_scene(pool())
     inputs = [

@@ -74,6 +74,7 @@ def test_squirt_changes_miscue_on_one_side_takes_the_other() -> None:
         squirt_of(slippery)
 
 
+@pytest.mark.heavy
 def test_input_beyond_the_range_of_the_tip_is_named_by_report_and_comparison() -> None:
     """At 19 m/s softer leather is indented beyond its range: both say so of it, by one rule."""
     scene = with_parameters(cf.usual_scene(cf.load(MESHES / "pool_maple.toml")), {"offset": 0.2, "speed": 19.0})

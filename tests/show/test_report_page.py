@@ -27,6 +27,7 @@ def scene(name: str) -> cf.Scene:
     return loaded
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(
     "stroke",
     [
