@@ -22,7 +22,7 @@ import numpy as np
 from cuefem.beam.modes import modes as solved_modes
 from cuefem.contact.strike import strike
 from cuefem.cue import Cue, Material
-from cuefem.designs.sensitivity import sensitivity
+from cuefem.endmass.end_mass_density import end_mass_density
 from cuefem.quantity.display_units import END_MASS, to_display, with_heading, with_unit
 from cuefem.quantity.fields import check_count, check_kind
 from cuefem.results.solved_design import coupled_curve, time_history
@@ -253,7 +253,7 @@ def end_mass(scene: Scene, ax: Axes | None = None, *, at: Resolution | None = No
     if scene.effects:
         bare = replace(scene.without_tip_effects, effects=())
         excluded = f", without the {with_unit(scene.axial_mass - bare.axial_mass, END_MASS, 2)} of its leather"
-    drivers, axes = sensitivity(bare, at=at), _axes(ax)
+    drivers, axes = end_mass_density(bare, at=at), _axes(ax)
     behind = drivers.x > scene.shaft.leather_height + _LOCAL
     axes.plot(to_display(drivers.x[behind], "m"), (drivers.rhoA + drivers.axial_mass)[behind])
     axes.axhline(0, color="#888", linewidth=0.6)

@@ -9,7 +9,7 @@ import pytest
 from matplotlib.axes import Axes
 
 import cuefem as cf
-from cuefem.designs.sensitivity import sensitivity
+from cuefem.endmass.end_mass_density import end_mass_density
 
 HOLLOW = cf.load(Path(__file__).parents[1] / "meshes" / "pool_hollow.toml")
 assert isinstance(HOLLOW, cf.Cue)
@@ -90,7 +90,7 @@ def test_end_mass_figure_behind_leather_tip_equals_bare_shaft() -> None:
     axes = cf.plot.end_mass(scene, at=AT)
     bare = cf.Scene(scene.cue, scene.ball, replace(scene.tip, contact_time=scene.contact_time), scene.stroke)
     np.testing.assert_allclose(line(axes)[1], line(cf.plot.end_mass(bare, at=AT))[1], rtol=1e-12)
-    drivers = sensitivity(bare, at=AT)
+    drivers = end_mass_density(bare, at=AT)
     drawn = np.interp(line(axes)[0], 1e3 * drivers.x, drivers.rhoA + drivers.axial_mass)
     np.testing.assert_allclose(line(axes)[1], drawn, rtol=1e-9)
     assert axes.get_title().endswith(" g of its leather")

@@ -20,8 +20,8 @@ from cuefem.analysis.verdict import Verdict
 from cuefem.analysis.verdict import verdict as verdict_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
-from cuefem.designs.sensitivity import sensitivity
 from cuefem.endmass.definitions import DEFINITIONS
+from cuefem.endmass.end_mass_density import end_mass_density
 from cuefem.measurements.calibration import Calibration
 from cuefem.parameters.parts import main_material
 from cuefem.quantity.display_units import cached_by_units
@@ -117,7 +117,7 @@ def end_mass_distribution(scene: Scene) -> tuple[Array, Array]:
     Without effects; the contact time is that of the scene's tip.
     """
     bare = replace(scene.without_tip_effects, effects=())
-    effect = sensitivity(bare, min(default_mode_count(bare), MAX_MASS_MODES))
+    effect = end_mass_density(bare, min(default_mode_count(bare), MAX_MASS_MODES))
     near = effect.x <= MASS_RANGE
     return effect.x[near], (effect.rhoA + effect.axial_mass)[near]
 

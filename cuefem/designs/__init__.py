@@ -1,4 +1,4 @@
-"""Design studies: sweeps, optima, tolerance analyses and sensitivities, their files, and the store of designs."""
+"""Design studies: sweeps, optima, tolerance analyses, their files, and the store of designs."""
 
 from cuefem.designs.evaluation import Response, evaluate
 from cuefem.designs.many_designs import Row

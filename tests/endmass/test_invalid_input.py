@@ -10,6 +10,7 @@ import pytest
 import cuefem as cf
 from cuefem import end_mass
 from cuefem.endmass.definitions import equivalent_end_mass
+from cuefem.endmass.end_mass_density import end_mass_density
 from tests.helpers.cues import kim, scene
 from tests.helpers.invalid_input import assert_raises
 
@@ -19,6 +20,15 @@ SCENE = scene(kim(), 1e-3)
 def test_end_mass_unknown_drive_raises() -> None:
     message = "end_mass drive must be one of stick, offset, velocity, force, squirt; got 'push'"
     assert_raises(lambda: end_mass(SCENE, "push"), message)
+
+
+def test_end_mass_density_of_a_lumped_cue_or_with_an_effect_raises() -> None:
+    assert_raises(
+        lambda: end_mass_density(replace(SCENE, cue=cf.LumpedCue(0.54, 0.01))),
+        "Scene.cue must be a Cue of segments: its modes or its shape are needed; got a LumpedCue",
+    )
+    loaded = replace(SCENE, effects=(cf.PointMass(position=0.1, mass=1e-3),))
+    assert_raises(lambda: end_mass_density(loaded), "end_mass_density scene must have no effects; got 1")
 
 
 @pytest.mark.parametrize("mass", [1e-4, 1e-3, 0.01, 0.05])

@@ -1,4 +1,4 @@
-"""Sensitivities: the sum rule, and central differences of the end mass (verification)."""
+"""Density of the end mass along the cue: the sum rule, and central differences of the end mass (verification)."""
 
 import math
 from collections.abc import Callable
@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from cuefem import Cue, Material, PointMass, Resolution, Scene, Tip, load
-from cuefem.designs.sensitivity import Sensitivity, sensitivity
 from cuefem.endmass.definitions import end_mass
+from cuefem.endmass.end_mass_density import EndMassDensity, end_mass_density
 from studies.strokes import cue as reference_cue
 from tests.helpers.cues import kim, low_deflection
 
@@ -21,7 +21,7 @@ def scene(cue: Cue, contact_time: float = 1e-3) -> Scene:
     return Scene(cue, tip=Tip(contact_time=contact_time))
 
 
-def integral(result: Sensitivity, cue: Cue, *names: str) -> float:
+def integral(result: EndMassDensity, cue: Cue, *names: str) -> float:
     """Integral of densities times their properties."""
     section = cue.section(result.x)
     return math.fsum(result.weights @ (getattr(result, name) * getattr(section, name)) for name in names)
@@ -29,20 +29,20 @@ def integral(result: Sensitivity, cue: Cue, *names: str) -> float:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", sorted(MESHES.glob("*.toml")), ids=lambda path: path.stem)
-def test_sensitivity_parts_sum_to_end_mass(path: Path) -> None:
+def test_end_mass_density_parts_sum_to_end_mass(path: Path) -> None:
     """handbook: Effective end mass, on every cue in meshes/."""
     cue = load(path)
     assert isinstance(cue, Cue)
     base = scene(cue)
-    result = sensitivity(base, Resolution(2, 14, 40))
+    result = end_mass_density(base, Resolution(2, 14, 40))
     whole = result.end_mass - base.ball.mass * result.ball_mass - base.axial_mass * result.axial_mass
     assert integral(result, cue, "rhoA", "rhoI", "EI", "kGA") == pytest.approx(whole, rel=1e-8)
     assert result.end_mass == pytest.approx(end_mass(base, "stick", Resolution(2, 14, 40)), rel=1e-11)
 
 
-def test_sensitivity_sum_of_kim_shaft_equals_handbook() -> None:
+def test_end_mass_density_sum_of_kim_shaft_equals_handbook() -> None:
     """Kim's shaft, 1 ms: 1.0206 m_e."""
-    result = sensitivity(scene(kim()))
+    result = end_mass_density(scene(kim()))
     sum_of_parts = integral(result, kim(), "rhoA", "rhoI", "EI", "kGA")
     assert sum_of_parts / result.end_mass == pytest.approx(1.0206, abs=6e-5)
 
@@ -58,10 +58,10 @@ CUES = pytest.mark.parametrize("cue", [kim(), low_deflection(), reference_cue("c
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("cue", [low_deflection(), reference_cue("carbon")], ids=["bored", "tube"])
-def test_sensitivity_to_point_mass_equals_difference(cue: Cue) -> None:
+def test_end_mass_density_to_point_mass_equals_difference(cue: Cue) -> None:
     """The density of rhoA is the end mass that a point mass there adds."""
     fine = Resolution(4, 20, 14)  # so fine that the node of the point mass has no effect
-    result = sensitivity(scene(cue), fine)
+    result = end_mass_density(scene(cue), fine)
     i = len(result.x) // 3
     mass = 1e-5  # kg: at 1 mg round-off is 1e-6, here 1e-7
     scenes = (replace(scene(cue), effects=(PointMass(position=result.x[i], mass=count * mass),)) for count in (1, 2, 3))
@@ -83,10 +83,10 @@ def multiplied(cue: Cue, constant: str, factor: float) -> Cue:
 
 @CUES
 @pytest.mark.parametrize(("constant", "names"), [("E", ["EI"]), ("G", ["kGA"]), ("rho", ["rhoA", "rhoI"])])
-def test_sensitivity_to_material_constant_equals_difference(cue: Cue, constant: str, names: list[str]) -> None:
+def test_end_mass_density_to_material_constant_equals_difference(cue: Cue, constant: str, names: list[str]) -> None:
     """With nu = 0 the shear coefficient is independent of E and G; a denser cue has a larger axial mass."""
     cue = multiplied(cue, constant, 1.0)
-    result = sensitivity(scene(cue), AT)
+    result = end_mass_density(scene(cue), AT)
     expected = integral(result, cue, *names) + (result.axial_mass * cue.shaft_mass if constant == "rho" else 0.0)
     measured = slope(lambda h: end_mass(scene(multiplied(cue, constant, 1 + h)), "stick", AT), 1e-2)
     assert measured == pytest.approx(expected, rel=1e-6)

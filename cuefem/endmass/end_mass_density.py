@@ -1,4 +1,4 @@
-"""End-mass distribution along the shaft: exact derivatives of the stick end mass to the section properties.
+"""Density of the end mass along the cue: exact derivatives of the stick end mass to the section properties.
 
 The end mass is a function of lambda_k = omega_k^2 and the tip amplitudes phi_k of the retained modes. A change of
 stiffness and mass changes those by first-order perturbation over *all* modes of the mesh (retained, truncated and
@@ -29,7 +29,7 @@ from cuefem.scene.solved_scene import TRUNCATED_SUM_PERIODS, default_mode_count
 
 
 @dataclass(frozen=True, eq=False)
-class Sensitivity:
+class EndMassDensity:
     """Derivatives of an end mass, kg.
 
     x: Gauss points of the mesh, m from the tip, (points,). weights: their lengths, m. rhoA, rhoI, EI, kGA: densities of
@@ -62,7 +62,7 @@ class _Gradient:
     axial_mass: float
 
 
-def sensitivity(scene: Scene, at: Resolution | int | None = None) -> Sensitivity:
+def end_mass_density(scene: Scene, at: Resolution | int | None = None) -> EndMassDensity:
     """Derivatives of a bare cue's stick end mass to the section properties along it.
 
     Parameters
@@ -74,7 +74,7 @@ def sensitivity(scene: Scene, at: Resolution | int | None = None) -> Sensitivity
 
     Returns
     -------
-    Sensitivity
+    EndMassDensity
         Exact for the retained modes of the mesh.
 
     Raises
@@ -84,12 +84,12 @@ def sensitivity(scene: Scene, at: Resolution | int | None = None) -> Sensitivity
 
     Notes
     -----
-    See the top of `cuefem.designs.sensitivity` for the formulas. The densities times their properties integrate to
+    See the top of `cuefem.endmass.end_mass_density` for the formulas. The densities times their properties integrate to
     m_e - M dm/dM - m_a dm/dm_a: m_e scales with all masses and stiffnesses together. The cost is one dense eigenproblem
     for all modes of the mesh.
     """
     if scene.effects:
-        raise ValueError(f"sensitivity scene must have no effects; got {len(scene.effects)}")
+        raise ValueError(f"end_mass_density scene must have no effects; got {len(scene.effects)}")
     at = at or default_mode_count(scene, periods=TRUNCATED_SUM_PERIODS)
     system, count = assemble(scene.shaft, at), at if isinstance(at, int) else at.modes
     bending = solve(system, system.size - system.rigid_basis.shape[1])
@@ -117,13 +117,13 @@ def _forms(gradient: _Gradient, squares: Array, phi: Array, rigid_phi: Array) ->
     return (to_K + to_K.T) / 2, (to_M + to_M.T) / 2
 
 
-def _densities(system: System, vectors: Array, to_K: Array, to_M: Array, gradient: _Gradient) -> Sensitivity:
+def _densities(system: System, vectors: Array, to_K: Array, to_M: Array, gradient: _Gradient) -> EndMassDensity:
     fields, points = system.fields(vectors), system.points
 
     def density(form: Array, fields: Array) -> Array:
         return np.asarray(((fields @ form) * fields).sum(axis=1))
 
-    return Sensitivity(
+    return EndMassDensity(
         x=points.x,
         weights=points.weights,
         rhoA=density(to_M, fields.w),
