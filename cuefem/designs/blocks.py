@@ -13,8 +13,10 @@ from cuefem.cue import Array
 from cuefem.designs.design_key import code_digest, design_key
 from cuefem.designs.sampling import Value
 from cuefem.designs.study import Study
+from cuefem.quantity.display_units import displayed_in
 
 FIRST_SIZE, MAX_SIZE = 16, 1024  # designs of a block, which is stored in one transaction
+LOST = "ended its worker twice: out of memory, or killed"  # the reason for a design that is not computed
 SHORT = 0.1  # s; a block that takes less doubles the size of the next ones
 
 
@@ -69,8 +71,9 @@ def block_keys(study: Study, block: Block) -> BlockResult:
     return BlockResult(block, code_digest(), keys, None, {}, perf_counter() - begun)
 
 
+@displayed_in("metric")
 def compute_block(study: Study, with_keys: bool, block: Block) -> BlockResult:
-    """The responses of a block, and its keys if they are needed."""
+    """The responses of a block, reasons in metric units, and its keys if they are needed."""
     begun = perf_counter()
     scenes = [study.scene_or_reason(values) for values in block.values]
     keys = b"".join(design_key(scene, study.at) for scene in scenes) if with_keys else b""
@@ -79,8 +82,8 @@ def compute_block(study: Study, with_keys: bool, block: Block) -> BlockResult:
     return BlockResult(block, code_digest(), keys, evaluation.values, failures, perf_counter() - begun)
 
 
-def lost_block(study: Study, block: Block, reason: str) -> BlockResult:
+def lost_block(study: Study, block: Block) -> BlockResult:
     """The result of a block that cannot be computed: every design failed, to be tried again by the next run."""
     missing = np.full((len(block.numbers), len(study.responses)), np.nan)
-    failures = dict.fromkeys(range(len(block.numbers)), reason)
+    failures = dict.fromkeys(range(len(block.numbers)), LOST)
     return BlockResult(block, code_digest(), b"", missing, failures, is_lost=True)

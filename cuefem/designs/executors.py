@@ -29,7 +29,7 @@ CHECK_INTERVAL = 1.0  # s, of waits: on Windows Ctrl-C does not interrupt a wait
 SAME_VERSION = "install the same version of cuefem on every worker"
 
 Work = Callable[[Block], BlockResult]
-Lost = Callable[[Block, str], BlockResult]
+Lost = Callable[[Block], BlockResult]
 Errors = tuple[type[Exception], ...]
 
 
@@ -68,7 +68,7 @@ def in_parallel(
                 n_lost = 0 if result else n_lost + 1
                 if n_lost == MAX_LOST:
                     raise RuntimeError(f"workers ended for {MAX_LOST} designs in a row")
-                yield result or lost(block, "ended its worker twice: out of memory, or killed")
+                yield result or lost(block)
     except broken as error:
         raise RuntimeError(f"the workers were lost: {one_line(str(error)) or type(error).__name__}") from error
     except (ImportError, AttributeError, TypeError) as error:

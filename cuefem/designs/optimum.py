@@ -18,10 +18,10 @@ from cuefem.designs.evaluation import Evaluation, Response, evaluate
 from cuefem.designs.sampling import Levels, Normal, Span, Value
 from cuefem.designs.study import Study, StudyDesign, Vary
 from cuefem.designs.study_result import StudyResult
-from cuefem.designs.study_table import column_label, shown
+from cuefem.designs.study_table import column_label, displayed_reason, shown
 from cuefem.parameters.scene_paths import value_at
 from cuefem.quantity.display import counted
-from cuefem.quantity.display_units import format_change, with_unit
+from cuefem.quantity.display_units import displayed_in, format_change, with_unit
 from cuefem.results.differences import difference_text
 from cuefem.results.quantities import DASH
 from cuefem.results.records import Record, Table
@@ -218,10 +218,11 @@ class Problem:
 
     @property
     def base_design(self) -> StudyDesign:
-        """The base with the values of its variables and its responses, nan where it has none."""
+        """The base with the values of its variables and its responses, nan where it has none, for a metric reason."""
         values = {vary.name: self.base_value(vary) for vary in self.vary}
         values = {name: np.nan if value is None else value for name, value in values.items()}
-        found = evaluate([self.base], self.study.responses, at=self.at)
+        with displayed_in("metric"):
+            found = evaluate([self.base], self.study.responses, at=self.at)
         names = (response.name for response in self.study.responses)
         responses = dict(zip(names, found.values[0].tolist(), strict=True))
         return StudyDesign(self.base, values, responses, failure=found.reasons[0])
@@ -235,8 +236,9 @@ class Problem:
         """The design at a point; ValueError if it is invalid."""
         return self.study.scene(self.design(point))
 
+    @displayed_in("metric")
     def evaluate(self, points: Array) -> Evaluation:
-        """Responses of the study at points (n, variables), nan and a reason where a design has none."""
+        """Responses of the study at points (n, variables), nan and a reason, in metric units, where it has none."""
         return self.study.evaluate([self.design(point) for point in points])
 
     def sizes(self, values: Array) -> Array:
@@ -368,7 +370,8 @@ def tabulate_optimum(problem: Problem, best: Optimum, changes: Mapping[str, Reco
     )
     marked = any(not change["distinct"] for change in changes.values())
     shared = ("±: 1σ of the difference; shared errors cancel.",) if changes else ()
-    missing = (f"start: {best.start.failure}",) if best.start.failure else ()
+    failure = best.start.failure and displayed_reason(problem.study, best.start.scene, best.start.failure)
+    missing = (f"start: {failure}",) if failure else ()
     notes = (*shared, *((NOT_DISTINCT,) if marked else ()), *missing)
     active = [f"{names[name]} {sense} {text(name, bound)}" for name, sense, bound in best.active]
     tables: list[Table | str] = [

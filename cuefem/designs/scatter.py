@@ -10,32 +10,41 @@ part that would remain if all others were known. Single parameters of a group ha
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from scipy.special import ndtr, ndtri
 
 from cuefem.cue import Array
-from cuefem.designs.evaluation import Response, shortfalls
+from cuefem.designs.evaluation import Response
 from cuefem.designs.many_designs import Columns
 from cuefem.designs.sampling import Levels
+from cuefem.designs.sobol_indices import CONFIDENCE, SobolIndices, is_constant, sobol_indices_of
 from cuefem.designs.study import Study, check_column_name
-from cuefem.designs.study_result import CHART_HEIGHT, ROW_HEIGHT, ROWS_END, StudyResult
+from cuefem.designs.study_result import CHART_HEIGHT, ROW_HEIGHT, ROWS_END, SHARES, StudyResult
 from cuefem.designs.study_table import shown
-from cuefem.quantity.display_units import display_unit, to_display
-from cuefem.quantity.equality import equal_fields
+from cuefem.quantity.display_units import display_unit, to_display, with_unit
 from cuefem.quantity.fields import check_count
 from cuefem.results.records import Record, Table
 from cuefem.show.charts import Axis, Chart, Curve, Dots, Tick, chart
 
-CONFIDENCE, RESAMPLES = 0.95, 400  # of the bootstrapped intervals
 CHUNK = 256  # points computed at a time
 MIN_SHARE = 0.01  # of the variance, of a factor that is named among the strongest
 MAX_BINS = 40  # of a histogram
 QUANTILES = ("5 %", "50 %", "95 %")  # marked in it
+QUANTILE_NAMES = tuple(f"{100 * share:g} %" for share in SHARES)
+QUANTILE_NOTE = "column 5 %: 5 % of the designs are below this value; sd: standard deviation"
+INDEX_NOTES = (
+    "first-order: share of the variance that disappears if this factor is known; total: share that remains if all "
+    "other factors are known",
+    "in parentheses 95 % intervals by bootstrap",
+)
+NO_SHARES = "no shares of factors, since designs lack it"
+OUTSIDE_NOTE = "a share below 0 or above 100 % is the error of its estimate: a larger count reduces it"
+MIN_LACKING = 10  # designs without a response, of whose lack there are Sobol indices
 HALF_CELL = 2.0**-31  # half the spacing of scipy's Sobol points: added, so that no point is 0
 
 
@@ -164,6 +173,10 @@ class Scatter:
         with the factor's parameters from the second."""
         return replace(self.study, sample=_Points(self))
 
+    def sobol_indices(self, values: Array) -> SobolIndices:
+        """Sobol indices of numbers of all designs, (designs, n)."""
+        return sobol_indices_of(self.factors, self.count, self.seed, values)
+
 
 @dataclass(frozen=True)
 class _Points:
@@ -187,90 +200,30 @@ class _Points:
                 yield from ndtr(scores[start : start + CHUNK] @ root.T).tolist()
 
 
-@dataclass(frozen=True, eq=False)
-class SobolIndices:
-    """Sobol indices: the part of each response's variance due to each factor.
-
-    Parameters
-    ----------
-    factors : tuple of str
-        Names of groups and of single parameters.
-    first, total : ndarray
-        First-order and total indices, (factors, responses).
-    first_interval, total_interval : ndarray
-        Ends of their 95 % intervals by bootstrap, (2, factors, responses).
+class Missing(NamedTuple):
+    """The designs that lack a response: its column, their share of the two independent samples with its 95 % interval
+    (Wilson), and the Sobol indices of the lack, a number 1 or 0 (nan if fewer than `MIN_LACKING` lack or have it).
     """
 
-    factors: tuple[str, ...]
-    first: Array
-    total: Array
-    first_interval: Array
-    total_interval: Array
-
-    __eq__ = equal_fields
+    column: int
+    share: float
+    interval: tuple[float, float]
+    indices: SobolIndices
 
 
-def sobol_indices_of(scatter: Scatter, columns: Columns) -> SobolIndices:
-    """Sobol indices from the responses of the designs of `Scatter.all_designs`.
+def missing_responses(scatter: Scatter, values: Array) -> list[Missing]:
+    """The responses that designs lack, from the responses of all designs, (designs, responses)."""
+    from scipy.stats import binomtest  # loaded when used: half a second
 
-    Estimators of Saltelli et al. (Comput. Phys. Commun. 181 (2010) 259, table 2 b, f) as scipy.stats has them; error
-    about 1/sqrt(count) or less, see the intervals. ValueError if a design has no response, with the first reason, or
-    if a response is constant.
-    """
-    failed = columns.failures
-    if failed:
-        lacks = "; ".join(text for text, _ in shortfalls(scatter.study.responses, columns.values))
-        raise ValueError(f"{lacks}: narrow the ranges; first: {failed[min(failed)]}")
-    results = columns.values.reshape(-1, scatter.count, len(scatter.study.responses))
-    for response, column in zip(scatter.study.responses, np.moveaxis(results[:2], -1, 0), strict=True):
-        if column.std() <= 1e-12 * abs(column.mean()):
-            raise ValueError(f"{response.name} is constant: no parameter of the study changes it")
-    return SobolIndices(scatter.factors, *bootstrap_sobol_indices(results.swapaxes(1, 2), seed=scatter.seed))
-
-
-def bootstrap_sobol_indices(values: Array, *, seed: int) -> tuple[Array, Array, Array, Array]:
-    """First-order and total Sobol indices with their intervals.
-
-    Parameters
-    ----------
-    values : ndarray
-        Responses of both samples and of the mixed ones, (2 + factors, responses, count).
-    seed : int
-        Of the bootstrap.
-
-    Returns
-    -------
-    first, total : ndarray
-        (factors, responses).
-    first_interval, total_interval : ndarray
-        (2, factors, responses).
-    """
-    from scipy.stats import bootstrap, sobol_indices
-
-    count = values.shape[-1]
-    # scipy fails for one factor and one response: with the first response once more there are at least two
-    twice = np.concatenate([values, values[:, :1]], axis=1)
-
-    def estimate(rows: Any) -> Array:
-        """(2, factors, responses): first-order and total indices from some designs of each sample."""
-        A, B, *mixed = twice[:, :, rows]
-        shares = sobol_indices(func={"f_A": A, "f_B": B, "f_AB": np.array(mixed)}, n=count)
-        # scipy drops axes of length 1
-        parts = (part.reshape(len(A), len(mixed)).T for part in (shares.first_order, shares.total_order))
-        return np.stack([part[:, :-1] for part in parts])
-
-    # scipy's own bootstrap of the indices takes no seed
-    resampled = bootstrap(
-        (np.arange(count),),
-        estimate,
-        vectorized=False,
-        method="percentile",
-        n_resamples=RESAMPLES,
-        confidence_level=CONFIDENCE,
-        random_state=np.random.default_rng(seed),
-    ).confidence_interval
-    (first, total), low, high = estimate(np.arange(count)), resampled.low, resampled.high
-    return first, total, np.stack([low[0], high[0]]), np.stack([low[1], high[1]])
+    found, n = list[Missing](), 2 * scatter.count
+    for k in np.flatnonzero(np.isnan(values).any(axis=0)).tolist():
+        lacks = np.isnan(values[:, [k]]).astype(float)
+        count = int(lacks[:n].sum())
+        interval = binomtest(count, n).proportion_ci(CONFIDENCE, method="wilson")
+        is_rare = not MIN_LACKING <= count <= n - MIN_LACKING
+        indices = scatter.sobol_indices(np.full_like(lacks, np.nan) if is_rare else lacks)
+        found.append(Missing(k, count / n, (interval.low, interval.high), indices))
+    return found
 
 
 @dataclass(frozen=True, repr=False)
@@ -287,6 +240,14 @@ class ScatterResult(StudyResult):
     definition: Scatter
     kind: ClassVar[str] = "scatter"
 
+    @classmethod
+    def of(cls, scatter: Scatter, columns: Columns) -> ScatterResult:
+        """The result for the responses of all designs; ValueError if none has any."""
+        if np.isnan(columns.values).all():
+            first = columns.failures[min(columns.failures)]
+            raise ValueError(f"no design has a response: narrow the ranges; first: {first}")
+        return cls(scatter.study.base, scatter, columns, scatter.sobol_indices(columns.values))
+
     def _independent(self) -> int:
         """The two independent samples; the other designs mix them."""
         return 2 * self.definition.count
@@ -294,100 +255,127 @@ class ScatterResult(StudyResult):
     def values(self) -> Record:
         """The distribution of each response, and the shares of its factors."""
         about = {"count": self.definition.count, "seed": self.definition.seed}
-        return about | {"responses": scatter_record(self.study, self.spread, self.sobol_indices)}
+        return about | {"responses": scatter_record(self)}
 
     def charts(self) -> list[Chart]:
         """The distribution of each response, and the share of each factor in its variance."""
-        return scatter_charts(self.study.responses, self.finite_samples, self.spread, self.sobol_indices)
+        return scatter_charts(self)
 
     def tables(self) -> list[Table | str]:
         """Varied parameters, spreads, and the shares of the factors."""
-        return [*super().tables(), *tabulate_scatter(self.definition, self.spread, self.sobol_indices)]
+        return [*super().tables(), *tabulate_scatter(self)]
+
+    @cached_property
+    def missing(self) -> list[Missing]:
+        """The share of designs that lack a response, and the factors that decide it."""
+        return missing_responses(self.definition, self.columns.values)
+
+    def sentence(self, k: int) -> str:
+        """The range of a response and its strongest factors, or why there are none; empty if no design has it."""
+        response = self.study.responses[k]
+        spread, unit = self.spread.get(response.name), response.display_key
+        if spread is None:
+            return ""
+        if is_constant(self.columns.values[:, k]):
+            return f"{response.label}: {with_unit(spread['50 %'], unit)} in all designs: no parameter changes it"
+        ends = f"{shown(spread['5 %'], unit)} to {shown(spread['95 %'], unit)} {display_unit(unit).name}".rstrip()
+        factors = _strongest(self.sobol_indices, k) if self.sobol_indices.are_valid[k] else NO_SHARES
+        return f"{response.label}: 90 % of the designs from {ends}; {factors}"
 
 
-def scatter_record(study: Study, spread: Mapping[str, Mapping[str, float]], drivers: SobolIndices) -> Record:
-    """The distribution of each response, and the shares of its factors in the variance."""
-    parts = ("first", "first_interval", "total", "total_interval")
-    return {
+def scatter_record(result: ScatterResult) -> Record:
+    """The distribution of each response, the shares of its factors in the variance, and of designs that lack it."""
+    record: Record = {
         response.name: {
             "unit": response.unit,
-            **spread[response.name],
-            "factors": {
-                factor: {part: getattr(drivers, part)[..., i, k] for part in parts}
-                for i, factor in enumerate(drivers.factors)
-            },
+            **result.spread.get(response.name, {}),
+            "factors": _factors(result.sobol_indices, k),
         }
-        for k, response in enumerate(study.responses)
+        for k, response in enumerate(result.study.responses)
+    }
+    for each in result.missing:
+        lack = {"share": each.share, "interval": each.interval, "factors": _factors(each.indices, 0)}
+        record[result.study.responses[each.column].name]["missing"] = lack
+    return record
+
+
+def _factors(drivers: SobolIndices, k: int) -> Record | None:
+    """The indices of a response by factor, None if there are none."""
+    if not drivers.are_valid[k]:
+        return None
+    parts = ("first", "first_interval", "total", "total_interval")
+    return {
+        factor: {part: getattr(drivers, part)[..., i, k] for part in parts} for i, factor in enumerate(drivers.factors)
     }
 
 
-def tabulate_scatter(
-    scatter: Scatter, spread: Mapping[str, Mapping[str, float]], drivers: SobolIndices
-) -> list[Table | str]:
-    """The spread of each response, the shares of its factors, and a sentence on both."""
-    spreads, rows, bold, lines = list[tuple[str, ...]](), list[tuple[str, ...]](), dict[int, str](), list[str]()
+def tabulate_scatter(result: ScatterResult) -> list[Table | str]:
+    """The spread of each response, the shares of its factors, and sentences on both and on designs that lack it."""
+    scatter, drivers = result.definition, result.sobol_indices
+    spreads, rows, bold = list[tuple[str, ...]](), list[tuple[str, ...]](), dict[int, str]()
     for k, response in enumerate(scatter.study.responses):
-        numbers = {name: shown(value, response.display_key) for name, value in spread[response.name].items()}
-        spreads.append((response.heading, *numbers.values()))
-        bold[len(rows)] = "bold"
-        rows.append((response.label, "", ""))
-        strongest = drivers.total[:, k].argsort()[::-1]
-        for i in strongest:
-            both = ((drivers.first, drivers.first_interval), (drivers.total, drivers.total_interval))
-            rows.append((f"  {drivers.factors[i]}", *(_share(value[i, k], ends[:, i, k]) for value, ends in both)))
-        total = np.clip(drivers.total[:, k], 0.0, 1.0)  # an estimate may be outside
-        most = [f"{drivers.factors[i]} ({100 * total[i]:.0f} %)" for i in strongest[:2] if total[i] >= MIN_SHARE]
-        unit = display_unit(response.display_key).name
-        ends = f"{response.label}: 90 % of the designs from {numbers['5 %']} to {numbers['95 %']} {unit}".rstrip()
-        named = f"the strongest factor{'s are' if len(most) > 1 else ' is'} {' and '.join(most)}"
-        lines.append(f"{ends}; {named if most else 'no factor stands out'}")
-    quantiles = "column 5 %: 5 % of the designs are below this value; sd: standard deviation"
-    notes = (
-        "first-order: share of the variance that disappears if this factor is known; total: share that remains if all "
-        "other factors are known",
-        "in parentheses 95 % intervals by bootstrap",
-        *(f"{factor}: {', '.join(names)}" for factor, names in scatter.groups.items()),
-    )
+        spread = result.spread.get(response.name)
+        if spread is not None:
+            spreads.append((response.heading, *(shown(value, response.display_key) for value in spread.values())))
+        if drivers.are_valid[k]:
+            bold[len(rows)] = "bold"
+            rows.append((response.label, "", ""))
+            rows += [_factor_row(drivers, i, k) for i in drivers.total[:, k].argsort()[::-1]]
+    tables = list[Table | str]()
+    if spreads:
+        title = f"Spread of {2 * scatter.count} designs, the two independent samples"
+        few = ("of a response that designs lack: of the designs that have it",) if result.missing else ()
+        tables.append(Table(title, ("response", "mean", "sd", *QUANTILE_NAMES), tuple(spreads), (QUANTILE_NOTE, *few)))
+    if rows:
+        groups = [f"{factor}: {', '.join(names)}" for factor, names in scatter.groups.items()]
+        outside = (OUTSIDE_NOTE,) if drivers.is_any_outside else ()
+        head = ("response, factor", "first-order", "total")
+        notes = (*INDEX_NOTES, *outside, *groups)
+        tables.append(Table("Sensitivity: share of the variance, %", head, tuple(rows), notes, styles=bold))
+    return [*tables, *filter(None, map(result.sentence, range(len(scatter.study.responses)))), *_lacks(result)]
+
+
+def _factor_row(drivers: SobolIndices, i: int, k: int) -> tuple[str, ...]:
+    """The shares of a factor in the variance of a response."""
+    first = _share(drivers.first[i, k], drivers.first_interval[:, i, k])
+    return f"  {drivers.factors[i]}", first, _share(drivers.total[i, k], drivers.total_interval[:, i, k])
+
+
+def _lacks(result: ScatterResult) -> list[str]:
+    """How many designs lack which response, and the factors that decide it."""
     return [
-        Table(
-            f"Spread of {2 * scatter.count} designs, the two independent samples",
-            ("response", *numbers),
-            tuple(spreads),
-            (quantiles,),
-        ),
-        Table(
-            "Sensitivity: share of the variance, %",
-            ("response, factor", "first-order", "total"),
-            tuple(rows),
-            notes,
-            styles=bold,
-        ),
-        *lines,
+        f"{result.study.responses[each.column].label}: missing in {_share(each.share, each.interval, ' %')} of the "
+        f"designs; {_strongest(each.indices, 0) if each.indices.are_valid[0] else 'too few to name a factor'}"
+        for each in result.missing
     ]
 
 
-def _share(value: float, ends: Any) -> str:
+def _strongest(drivers: SobolIndices, k: int) -> str:
+    """The strongest factors of a response, at most two."""
+    total = np.clip(drivers.total[:, k], 0.0, 1.0)  # an estimate may be outside
+    strongest = drivers.total[:, k].argsort()[::-1][:2]
+    most = [f"{drivers.factors[i]} ({100 * total[i]:.0f} %)" for i in strongest if total[i] >= MIN_SHARE]
+    named = f"the strongest factor{'s are' if len(most) > 1 else ' is'} {' and '.join(most)}"
+    return named if most else "no factor stands out"
+
+
+def _share(value: float, ends: Any, unit: str = "") -> str:
     low, high = (100 * float(end) for end in ends)
-    return f"{100 * value:.1f} ({low:.1f} to {high:.1f})"
+    return f"{100 * value:.1f}{unit} ({low:.1f} to {high:.1f})"
 
 
-def scatter_charts(
-    responses: Sequence[Response],
-    samples: Mapping[str, Array],
-    spread: Mapping[str, Mapping[str, float]],
-    drivers: SobolIndices,
-) -> list[Chart]:
-    """The distribution of each response, and the share of each factor in its variance.
-
-    samples: finite responses of the two independent samples, by name.
-    """
-    charts = []
-    for k, response in enumerate(responses):
-        if response.name in spread:
-            charts += [
-                _histogram(response, samples[response.name], spread[response.name]),
-                _factors_chart(response, drivers, k),
-            ]
+def scatter_charts(result: ScatterResult) -> list[Chart]:
+    """The distribution of each response, and the share of each factor in its variance, or in that of its lack."""
+    charts, samples = list[Chart](), result.finite_samples
+    lacks = {each.column: each.indices for each in result.missing if each.indices.are_valid[0]}
+    for k, response in enumerate(result.study.responses):
+        spread = result.spread.get(response.name)
+        if spread is not None and not is_constant(samples[response.name]):
+            charts.append(_histogram(response, samples[response.name], spread))
+        if result.sobol_indices.are_valid[k]:
+            charts.append(_factors_chart(response.label, result.sobol_indices, k))
+        if k in lacks:
+            charts.append(_factors_chart(f"designs without {response.label}", lacks[k], 0))
     return charts
 
 
@@ -408,7 +396,7 @@ def _histogram(response: Response, sample: Array, spread: Mapping[str, float]) -
     )
 
 
-def _factors_chart(response: Response, drivers: SobolIndices, k: int) -> Chart:
+def _factors_chart(label: str, drivers: SobolIndices, k: int) -> Chart:
     """The total index of each factor with its interval, the strongest on top."""
     order = drivers.total[:, k].argsort()
     share, interval = 100 * drivers.total[order, k], 100 * drivers.total_interval[:, order, k]
@@ -416,7 +404,7 @@ def _factors_chart(response: Response, drivers: SobolIndices, k: int) -> Chart:
     gaps = np.full(len(order), np.nan)
     lines = Curve("95 % interval", np.stack([*interval, gaps]).T, np.stack([rows, rows, gaps]).T, "c1")
     return chart(
-        f"Factors: {response.label}",
+        f"Factors: {label}",
         [lines],
         x=Axis("total share of the variance, %", 0.0),
         y=Axis("factor", names=tuple(drivers.factors[i] for i in order)),

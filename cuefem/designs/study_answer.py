@@ -12,7 +12,7 @@ import numpy as np
 
 from cuefem.designs.many_designs import Columns, compute_designs
 from cuefem.designs.optimum import OptimumResult, Problem
-from cuefem.designs.scatter import Scatter, ScatterResult, sobol_indices_of
+from cuefem.designs.scatter import Scatter, ScatterResult
 from cuefem.designs.search import optimum
 from cuefem.designs.store import SqliteStore
 from cuefem.designs.study import Study
@@ -123,5 +123,5 @@ def study(
     with SqliteStore(store, designs) if isinstance(store, str | PathLike) else nullcontext(store) as stored:
         columns = compute_designs(designs, stored, workers=workers, progress=progress)
     if isinstance(definition, Scatter):
-        return ScatterResult(base, definition, columns, sobol_indices_of(definition, columns))
+        return ScatterResult.of(definition, columns)
     return SweepResult(base, definition, columns)

@@ -14,7 +14,7 @@ from cuefem.designs.evaluation import shortfalls
 from cuefem.designs.many_designs import Columns, Row
 from cuefem.designs.sampling import Value
 from cuefem.designs.study import Study, StudyDefinition, StudyDesign
-from cuefem.designs.study_table import tabulate_parameters, varied_segments
+from cuefem.designs.study_table import failure_lines, tabulate_parameters, varied_segments
 from cuefem.quantity.display import counted
 from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.frames import frame_of
@@ -92,6 +92,10 @@ class StudyResult(Analysis):
     def tables(self) -> list[Table | str]:
         """The varied parameters; then, by kind, the results."""
         return [tabulate_parameters(self.study)]
+
+    def gaps(self) -> list[str]:
+        """Which responses designs lack, with the first reason."""
+        return failure_lines(self.study, self.designs, self.columns.values, self.failures)
 
     @property
     def study(self) -> Study:

@@ -11,12 +11,13 @@ import numpy as np
 
 from cuefem.cue import Array, Cue
 from cuefem.cue.materials import material_name
+from cuefem.designs.blocks import LOST
 from cuefem.designs.evaluation import shortfalls
 from cuefem.designs.sampling import Levels, Normal, Span
 from cuefem.designs.study import Study, Vary
 from cuefem.parameters.field_paths import Path
 from cuefem.parameters.parts import Layout
-from cuefem.quantity.display_units import display_unit, number_text, short_number, span_text
+from cuefem.quantity.display_units import display_unit, displayed_system, number_text, short_number, span_text
 from cuefem.results.records import Table
 from cuefem.scene import Scene
 from cuefem.show.scene_summary import assumptions, scene_record
@@ -129,5 +130,13 @@ def failure_lines(
         levels = [replace(vary, range=Levels((x,))) for vary, x in zip(study.vary, values, strict=True)]
         texts = map(range_text, levels, study.units)
         design = ", ".join(f"{column_label(vary.name)} {x}" for vary, x in zip(levels, texts, strict=True))
-        lines.append(f"{text}, the first of them design {number} ({design}): {failures[number]}")
+        reason = displayed_reason(study, study.scene_or_reason(tuple(values)), failures[number])
+        lines.append(f"{text}, the first of them design {number} ({design}): {reason}")
     return lines
+
+
+def displayed_reason(study: Study, design: Scene | str, reason: str) -> str:
+    """The reason why a design (or an invalid one) lacks a response, in the units displayed; as data it is metric."""
+    if displayed_system() == "metric" or reason == LOST:
+        return reason
+    return study.evaluate_scenes([design]).reasons[0] or reason

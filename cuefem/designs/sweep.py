@@ -19,7 +19,7 @@ from cuefem.designs.design_differences import design_differences
 from cuefem.designs.evaluation import Response
 from cuefem.designs.study import Study, StudyDesign
 from cuefem.designs.study_result import CHART_HEIGHT, ROW_HEIGHT, ROWS_END, StudyResult
-from cuefem.designs.study_table import column_label, failure_lines, shown
+from cuefem.designs.study_table import column_label, shown
 from cuefem.quantity.display_units import to_display, with_heading
 from cuefem.quantity.equality import equal_fields
 from cuefem.results.records import Record, Table
@@ -96,10 +96,6 @@ class SweepResult(StudyResult):
     def charts(self) -> list[Chart]:
         """The trade-off with its Pareto front, and the first response against each parameter."""
         return [] if self.statistics is None else sweep_charts(self.statistics)
-
-    def gaps(self) -> list[str]:
-        """Which responses designs lack, with the first reason."""
-        return failure_lines(self.study, self.designs, self.columns.values, self.failures)
 
     def tables(self) -> list[Table | str]:
         """Varied parameters, best designs, sensitivities, and the Pareto front."""

@@ -11,7 +11,9 @@ from scipy.stats import qmc, spearmanr
 
 import cuefem as cf
 from cuefem.designs import Normal, Response, Span, Study, Vary, evaluate
-from cuefem.designs.scatter import Scatter, bootstrap_sobol_indices
+from cuefem.designs.scatter import Scatter, ScatterResult
+from cuefem.designs.sobol_indices import bootstrap_sobol_indices
+from tests.helpers.sweeps import SCATTER, resolution, vary, write_study
 
 MAPLE = cf.load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml")
 BASE = cf.Scene(MAPLE, tip=cf.Tip(contact_time=1e-3))
@@ -126,3 +128,37 @@ def test_single_factor_explains_single_response() -> None:
     result = cf.study(Scatter(replace(STUDY, vary=VARY[1:2], responses=STUDY.responses[:1]), count=16, seed=1))
     assert result.sobol_indices.total == pytest.approx(np.ones((1, 1)), abs=0.1)
     assert result.sobol_indices.first_interval.shape == (2, 1, 1)
+
+
+def test_designs_without_a_response_leave_the_others_answered(tmp_path: Path) -> None:
+    """The share of miscues is an answer; only responses that every design has have indices, a constant one has none."""
+    text = 'scene = "scene.toml"\nresponses = ["squirt", "end_mass", "mass"]\n' + resolution(8, 4)
+    text += "[tolerances]\ncount = 64\nseed = 1\n" + vary('"stroke.offset"', "median = 0.5", "sd = 0.08")
+    text += vary('"cue.segments[0].material.E"', 'name = "E"', 'median = "12 GPa"', 'sd = "2 GPa"')
+    found = cf.study(write_study(tmp_path, text))
+    assert isinstance(found, ScatterResult)
+    (miscues,) = found.missing
+    lacks = np.isnan(found.responses["squirt"][:128])
+    assert miscues.column == 0
+    assert miscues.share == lacks.mean() > 0.1
+    assert miscues.interval[0] < miscues.share < miscues.interval[1]
+    assert miscues.indices.total[:, 0] == pytest.approx([1, 0], abs=0.1)
+    squirt, end_mass, mass = found.sobol_indices.total.T
+    assert np.isnan([squirt, mass]).all()
+    assert end_mass == pytest.approx([0, 1], abs=0.1)
+    assert found.spread["squirt"]["mean"] == found.responses["squirt"][:128][~lacks].mean()
+    record = found.to_dict()["responses"]
+    assert record["squirt"]["factors"] is record["mass"]["factors"] is None
+    assert record["squirt"]["missing"]["share"] == miscues.share
+    assert "miscue" in found.gaps()[0]
+    charts = [each.title for each in found.charts()]
+    assert len(charts) == 4  # two of the end mass, the distribution of squirt, and the factors of its lack
+
+
+def test_invalid_designs_are_gaps(tmp_path: Path) -> None:
+    """A modulus drawn below 0 fails its designs alone; the reason is metric as data."""
+    found = cf.study(write_study(tmp_path, SCATTER.replace('median = "12 GPa"', 'median = "3 GPa"')))
+    assert isinstance(found, ScatterResult)
+    assert [each.share for each in found.missing] == [np.isnan(found.responses["end_mass"][:32]).mean()] * 2
+    assert 0 < found.missing[0].share < 0.5
+    assert {*found.spread} == {"end_mass", "tip_stiffness"}

@@ -14,6 +14,7 @@ import cuefem as cf
 from cuefem.cue.materials import material
 from cuefem.designs import Levels, Normal, Response, Sample, Span, Study, Vary, evaluate
 from cuefem.endmass.definitions import DEFINITIONS
+from cuefem.quantity.display_units import displayed_in
 from cuefem.results.computable_results import computable_results
 from cuefem.results.quantities import RESULTS
 from cuefem.results.records import Table
@@ -301,3 +302,13 @@ def test_evaluate_lumped_cue_has_responses_without_segments() -> None:
     result = evaluate([lumped, lumped], ["mass", "frequency(1)"])
     assert result.values[:, 0].tolist() == [0.5, 0.5]
     assert result.reasons == ("frequency(1) needs a cue of segments; got a lumped cue",) * 2
+
+
+def test_reasons_are_metric_as_data_and_displayed_in_the_readers_units() -> None:
+    """A run in inches stores millimetres: of a bore as wide as the shaft."""
+    wide = Vary("bore width", Span(0.005, 0.020, count=3))
+    with displayed_in("us"):
+        found = cf.study(Study(cf.Scene(low_deflection()), (wide,), (Response("shaft_mass"),)))
+        assert " in wide" in found.gaps()[0]
+    assert " mm wide" in found.gaps()[0]
+    assert all(" mm wide" in reason for reason in found.failures.values())
