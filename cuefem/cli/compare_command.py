@@ -30,6 +30,7 @@ from cuefem.files.shaft_additions import SHAFT_ADDITIONS
 from cuefem.files.warnings_of_drawings import drawing_warnings
 from cuefem.measurements.calibration import Calibration
 from cuefem.measurements.measured_folder import load_measured, named_folder, write_template
+from cuefem.quantity.display_units import displayed_system
 from cuefem.scene import Scene
 from cuefem.show.plausibility import plausibility_warnings
 from cuefem.show.scene_summary import listed
@@ -118,7 +119,12 @@ def compare(
 
 def _write_calibration(folder: Path, output: Path, *, as_json: bool) -> None:
     """Write the calibration by a measured cue."""
-    cue, _ = load_measured(folder)
+    cue, loaded_notes = load_measured(folder)
+    system = displayed_system()
+
+    def notes() -> list[Assumption]:
+        return loaded_notes if displayed_system() == system else load_measured(folder)[1]
+
     print_warnings(cue.scene)
     with errors_name_file(folder):
         made = cf.estimate(cue, progress=with_progress_bar).calibration()
@@ -151,14 +157,18 @@ def _side_by_side(
         request.print_warnings()
     with first.errors():
         analysis = cf.compare(scenes, same_shaft=same_shaft, calibration=calibration, progress=with_progress_bar)
-        warnings = [
-            f"{name}: {line}"
-            for name, request in asked.items()
-            for line in (*drawing_warnings(request.file), *plausibility_warnings(request.scene))
-        ]
+
+        def warnings() -> list[str]:
+            return [
+                f"{name}: {line}"
+                for name, request in asked.items()
+                for line in (*drawing_warnings(request.file), *plausibility_warnings(request.scene))
+            ]
+
         about = {"files": [typed_name(file) for file in files]}
-        assumed = [*notes, *_assumptions(asked)]
-        shown = Presentation(analysis, files=about, assumptions=assumed, warnings=warnings)
+        shown = Presentation(
+            analysis, files=about, assumptions=lambda: [*notes, *_assumptions(asked)], warnings=warnings
+        )
         shown.show(output, as_json=as_json)
 
 
@@ -236,11 +246,17 @@ def _names(files: Sequence[Path]) -> list[str]:
 
 def _with_measurements(folder: Path, output: Path | None, *, as_json: bool, estimate: bool) -> None:
     """Print or write the comparison with measurements, or the estimate from them."""
-    cue, notes = load_measured(folder)
+    cue, loaded_notes = load_measured(folder)
+    system = displayed_system()
+
+    def notes() -> list[Assumption]:
+        return loaded_notes if displayed_system() == system else load_measured(folder)[1]
+
     print_warnings(cue.scene)
     with errors_name_file(folder):
         question = cf.estimate if estimate else cf.compare
         analysis = question(cue, progress=with_progress_bar)
-        warnings = plausibility_warnings(cue.scene)
-        shown = Presentation(analysis, folder.name, {"file": str(folder)}, notes, warnings)
+        shown = Presentation(
+            analysis, folder.name, {"file": str(folder)}, notes, lambda: plausibility_warnings(cue.scene)
+        )
         shown.show(output, as_json=as_json)

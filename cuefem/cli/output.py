@@ -53,11 +53,9 @@ class Command(click.Command):
         self.params.append(_units_option())
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run it in the chosen units of display; JSON, also in a file, is metric in every text."""
-        system, output = ctx.params.pop("units"), ctx.params.get("output") or ()
-        outputs = output if isinstance(output, tuple) else (output,)  # `study` writes several
-        is_json = ctx.params.get("as_json") or any(Path(each).suffix.lower() == ".json" for each in outputs)
-        with displayed_in("metric" if is_json else system):
+        """Run it in the chosen units of display; what becomes JSON alone is metric in every text."""
+        system = ctx.params.pop("units")
+        with displayed_in("metric" if ctx.params.get("as_json") and not ctx.params.get("output") else system):
             return super().invoke(ctx)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

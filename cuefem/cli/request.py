@@ -128,7 +128,7 @@ class Request:
             drawing = with_shaft_mass_option(drawing, self.file, self.given["shaft_mass"])
         return drawing
 
-    @cached_property
+    @property
     def assumed(self) -> list[Assumption]:
         """The values that neither the file nor an option sets."""
         found = assumptions(self.file, self.scene, self.given)

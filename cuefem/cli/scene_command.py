@@ -33,6 +33,7 @@ from cuefem.files import InputError, check_writable, load_accuracy, today
 from cuefem.files.defaults_report import Assumption
 from cuefem.files.shaft_additions import SHAFT_ADDITIONS
 from cuefem.files.warnings_of_drawings import drawing_warnings
+from cuefem.quantity.display_units import displayed_in
 from cuefem.results.records import Record, Table
 from cuefem.show.analysis import Analysis, Answer, write
 from cuefem.show.plausibility import plausibility_warnings
@@ -149,10 +150,12 @@ def question_command(name: str, question: Question) -> click.Command:
 def _show(request: Request, analysis: Analysis, output: Path | None, *, as_json: bool) -> None:
     """Print the analysis of a file, or write it."""
     file = request.file
-    warnings = [*drawing_warnings(file), *plausibility_warnings(analysis.scene, with_impact=analysis.has_stroke)]
-    shown = Presentation(
-        analysis, file_label(file), {"file": typed_name(file)}, request.assumptions, warnings, request.hints
-    )
+
+    def warnings() -> list[str]:
+        return [*drawing_warnings(file), *plausibility_warnings(analysis.scene, with_impact=analysis.has_stroke)]
+
+    about = {"file": typed_name(file)}
+    shown = Presentation(analysis, file_label(file), about, lambda: request.assumptions, warnings, request.hints)
     with request.errors():
         shown.show(output, as_json=as_json)
     if analysis.problem() and output is None:
@@ -163,26 +166,28 @@ def _show(request: Request, analysis: Analysis, output: Path | None, *, as_json:
 class Presentation:
     """An answer with what a command adds to it.
 
-    name: of what was analysed. files: for JSON. hints: lines after the tables.
+    name: of what was analysed. files: for JSON. assumptions, warnings: their texts in the units displayed at the call.
+    hints: lines after the tables.
     """
 
     answer: Answer
     name: str = ""
     files: Record = field(default_factory=dict)
-    assumptions: Sequence[Assumption] = ()
-    warnings: Sequence[str] = ()
+    assumptions: Callable[[], Sequence[Assumption]] = tuple
+    warnings: Callable[[], Sequence[str]] = tuple
     hints: Sequence[Table | str] = ()
 
     def record(self) -> Record:
-        """The JSON record."""
-        notes = {"assumptions": [*map(str, self.assumptions)], "warnings": [*self.warnings]}
-        return (self.files | notes if self.files else {}) | self.answer.to_dict()
+        """The JSON record, metric in every text."""
+        with displayed_in("metric"):
+            notes = {"assumptions": [*map(str, self.assumptions())], "warnings": [*self.warnings()]}
+            return (self.files | notes if self.files else {}) | self.answer.to_dict()
 
     def write(self, path: Path) -> None:
         """Write the record (.json) or a page (.html)."""
         title = self.answer.page_title(self.name, click.get_current_context().info_name or "")
-        warnings = [f"warning: {line}" for line in self.warnings]
-        write(path, self.record, lambda: self.answer.to_html(title, self.assumptions, warnings, today()))
+        warnings = [f"warning: {line}" for line in self.warnings()]
+        write(path, self.record, lambda: self.answer.to_html(title, self.assumptions(), warnings, today()))
 
     def show(self, output: Path | None, *, as_json: bool) -> None:
         """Write a file, or print tables; print JSON if asked for."""
@@ -194,4 +199,4 @@ class Presentation:
             headline = filter(None, [self.answer.headline()])
             print_tables([*headline, *self.answer.gaps(), f"wrote {output}", *self.hints])
         else:
-            print_tables(self.answer.lines(self.name, self.assumptions, self.hints))
+            print_tables(self.answer.lines(self.name, self.assumptions(), self.hints))

@@ -18,19 +18,16 @@ from cuefem.cli.output import command, json_option, output_option, print_json
 from cuefem.cli.progress import ProgressLines, progress_bar
 from cuefem.cli.request import errors_name_file, print_warnings
 from cuefem.cli.scene_command import Presentation, check_overwrite, force_option
-from cuefem.designs import Study
+from cuefem.designs.design_table import check_parquet
 from cuefem.designs.many_designs import compute_designs
 from cuefem.designs.optimum import Problem, Round
-from cuefem.designs.store import SqliteStore, check_parquet, write_parquet, write_table
+from cuefem.designs.store import SqliteStore
 from cuefem.designs.study_file import base_assumptions, load_study, study_kind
 from cuefem.designs.study_result import StudyResult
-from cuefem.files import InputError, save, write_atomically
-from cuefem.parameters.scene_changes import with_values_at
-from cuefem.parameters.scene_paths import value_at
+from cuefem.files import InputError
 from cuefem.quantity.display import counted
 from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.fields import quote
-from cuefem.scene import Scene
 from cuefem.show.plausibility import plausibility_warnings
 
 Computed = TypeVar("Computed")
@@ -115,7 +112,6 @@ def study(
             check_parquet()
     plan = load_study(file)
     designs = plan.all_designs
-    notes = base_assumptions(file, designs.base)
     print_warnings(designs.base)
     result: StudyResult
     database = None
@@ -149,11 +145,20 @@ def study(
         before = database.done - database.computed
         more = f", {before} of them from before" if before else ""
         stored.append(f"{counted(database.done, 'design')} in {database.path}{more}")
-    warnings = plausibility_warnings(designs.base)
     hints = [*stored, *(f"wrote {path}" for path in output)]
-    shown = Presentation(result, file.name, files, notes, warnings, hints)
+    shown = Presentation(
+        result,
+        file.name,
+        files,
+        lambda: base_assumptions(file, designs.base),
+        lambda: plausibility_warnings(designs.base),
+        hints,
+    )
     for path in output:
-        _write(path, result, shown)
+        if path.suffix.lower() in (".html", ".json"):
+            shown.write(path)
+        else:
+            result.save(path)
     shown.show(None, as_json=as_json)
 
 
@@ -176,27 +181,6 @@ def _run_stored(file: Path, designs: SqliteStore, count: int, run: Callable[...,
                 raise RuntimeError(f"{error}; {message}; run the same command to resume") from None
             click.echo(f"cuefem: interrupted; {message}; run the same command to resume", err=True)
             raise click.exceptions.Exit(130) from None
-
-
-def _write(path: Path, result: StudyResult, shown: Presentation) -> None:
-    """Write the tables as a page, the record, the designs as a table, or the best design."""
-    tables_of_designs = {".csv": write_table, ".parquet": write_parquet}
-    if path.suffix.lower() in tables_of_designs:
-        write = tables_of_designs[path.suffix.lower()]
-        write_atomically(path, lambda temporary: write(result.study, result.rows, temporary))
-    elif path.suffix.lower() != ".toml":
-        shown.write(path)
-    elif not result.best:
-        raise InputError(path, "--output", "has no design to write: none has a response")
-    else:
-        save(_rounded(next(iter(result.best.values())).scene, result.study), path)
-
-
-def _rounded(scene: Scene, study: Study) -> Scene:
-    """The scene with varied numbers rounded to nine digits, far within the tolerance of the limits."""
-    moved = {path for vary in study.vary for path in (*vary.fields(scene), *vary.compensating_fields(scene))}
-    numbers = {path: value_at(scene, path) for path in moved}
-    return with_values_at(scene, {path: float(f"{x:.9g}") for path, x in numbers.items() if isinstance(x, float)})
 
 
 def round_text(problem: Problem, reached: Round, most: int) -> str:

@@ -239,6 +239,7 @@ class ScatterResult(StudyResult):
     sobol_indices: SobolIndices = field(repr=False)
     definition: Scatter
     kind: ClassVar[str] = "scatter"
+    why_no_best: ClassVar[str] = "a tolerance analysis has no best one"
 
     @classmethod
     def of(cls, scatter: Scatter, columns: Columns) -> ScatterResult:

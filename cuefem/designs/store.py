@@ -8,24 +8,21 @@ or Parquet of `cuefem study`, or `StudyResult.to_frame`.
 
 from __future__ import annotations
 
-import csv
-import importlib
 import json
 import sqlite3
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, closing, contextmanager
 from functools import lru_cache
-from itertools import islice
 from os import PathLike
 from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
 
-from cuefem.designs import Row, Study
 from cuefem.designs.blocks import BlockResult
 from cuefem.designs.design_key import KEY_BYTES, digest
 from cuefem.designs.many_designs import Stored
+from cuefem.designs.study import Study
 from cuefem.files.errors import InputError, check_path, file_state
 from cuefem.quantity.display import full_repr
 
@@ -40,7 +37,6 @@ COMMIT;
 """
 KEY = np.dtype([("first", "<u8"), ("second", "<u8")])
 READ_BLOCKS = 64  # stored blocks in memory: designs in order are in few of them
-CHUNK = 4096  # designs that are exported at a time
 
 
 @contextmanager
@@ -167,41 +163,3 @@ class SqliteStore:
 
 def _line_digest(names: str, keys: bytes, answers: bytes, failures: str) -> bytes:
     return digest(names, bytes(keys).hex(), bytes(answers).hex(), failures)
-
-
-def _heads(study: Study) -> list[str]:
-    """The columns of an exported table, with SI units."""
-    pairs = zip(study.columns, study.units, strict=True)
-    return ["design", *(f"{name} [{unit}]" if unit else name for name, unit in pairs), "failure"]
-
-
-def write_table(study: Study, rows: Iterable[Row], path: Path) -> None:
-    """Write a study's table as .csv, numbers with all digits, units in the header."""
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(_heads(study))
-        writer.writerows((row.design, *row.values, *row.responses, row.failure) for row in rows)
-
-
-def check_parquet() -> None:
-    """RuntimeError if pyarrow is not installed."""
-    try:
-        importlib.import_module("pyarrow.parquet")
-    except ModuleNotFoundError:
-        raise RuntimeError("a table in .parquet needs pyarrow: pip install 'cuefem[parquet]'") from None
-
-
-def write_parquet(study: Study, rows: Iterable[Row], path: Path) -> None:
-    """Write a study's table as .parquet, with the columns of the CSV, `CHUNK` designs at a time."""
-    check_parquet()
-    arrow = importlib.import_module("pyarrow")
-    parquet = importlib.import_module("pyarrow.parquet")
-    is_text = [isinstance(vary.range.ends[0], str) for vary in study.vary]
-    kinds = [arrow.int64(), *(arrow.string() if text else arrow.float64() for text in is_text)]
-    kinds += [*[arrow.float64()] * len(study.responses), arrow.string()]
-    schema, remaining = arrow.schema([*zip(_heads(study), kinds, strict=True)]), iter(rows)
-    with parquet.ParquetWriter(path, schema) as writer:
-        while chunk := [*islice(remaining, CHUNK)]:
-            lines = ((row.design, *row.values, *row.responses, row.failure) for row in chunk)
-            columns = [arrow.array(column, kind) for column, kind in zip(zip(*lines, strict=True), kinds, strict=True)]
-            writer.write_batch(arrow.record_batch(columns, schema=schema))

@@ -5,20 +5,26 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from cuefem.cue import Array
+from cuefem.designs.design_table import write_parquet, write_table
 from cuefem.designs.evaluation import shortfalls
 from cuefem.designs.many_designs import Columns, Row
 from cuefem.designs.sampling import Value
 from cuefem.designs.study import Study, StudyDefinition, StudyDesign
 from cuefem.designs.study_table import failure_lines, tabulate_parameters, varied_segments
+from cuefem.files import InputError, save, write_atomically
+from cuefem.parameters.scene_changes import with_values_at
+from cuefem.parameters.scene_paths import value_at
 from cuefem.quantity.display import counted
 from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.frames import frame_of
 from cuefem.results.records import Record, Table
+from cuefem.scene import Scene
 from cuefem.show.analysis import Analysis
 from cuefem.show.scene_summary import scene_record
 
@@ -68,6 +74,37 @@ class StudyResult(Analysis):
     definition: StudyDefinition = field(repr=False)
     columns: Columns = field(repr=False)
     kind: ClassVar[str] = ""
+    why_no_best: ClassVar[str] = "none has a response"
+
+    def save(self, path: str | Path) -> None:
+        """Write the page (.html), the record (.json), the designs (.csv, .parquet), or the best one as a scene (.toml).
+
+        Raises
+        ------
+        InputError
+            For another extension, or a .toml if there is no best design.
+        RuntimeError
+            If pyarrow is not installed, for .parquet.
+        """
+        path = Path(path)
+        match path.suffix.lower():
+            case ".html" | ".json":
+                super().save(path)
+            case ".csv" | ".parquet" as kind:
+                write = write_table if kind == ".csv" else write_parquet
+                write_atomically(path, lambda temporary: write(self.study, self.rows, temporary))
+            case ".toml" if self.best:
+                save(self._rounded(next(iter(self.best.values())).scene), path)
+            case ".toml":
+                raise InputError(path, "", f"has no design to write: {self.why_no_best}")
+            case other:
+                raise InputError(path, "", f"must end in .html, .json, .csv, .parquet or .toml; got {other!r}")
+
+    def _rounded(self, scene: Scene) -> Scene:
+        """The scene with varied numbers rounded to nine digits, far within the tolerance of the limits."""
+        moved = {path for vary in self.study.vary for path in (*vary.fields(scene), *vary.compensating_fields(scene))}
+        numbers = {path: value_at(scene, path) for path in moved}
+        return with_values_at(scene, {path: float(f"{x:.9g}") for path, x in numbers.items() if isinstance(x, float)})
 
     def heading(self) -> str:
         """The kind of the study."""

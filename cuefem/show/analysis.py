@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from cuefem.files import InputError, save_page, write_atomically
 from cuefem.files.defaults_report import Assumption
+from cuefem.quantity.display_units import displayed_in
 from cuefem.results.quantities import UNITS
 from cuefem.results.records import Record, Table, json_value
 from cuefem.scene import Scene
@@ -164,14 +165,15 @@ class Analysis(Answer):
 
 
 def write(path: Path, record: Callable[[], Record], html: Callable[[], str]) -> None:
-    """Write a record as .json, or a page as .html; InputError for another extension."""
+    """Write a record, metric, as .json, or a page as .html; InputError for another extension."""
     if path.suffix.lower() not in (".html", ".json"):
         raise InputError(path, "", f"must end in .html or .json; got {path.suffix!r}")
     if path.suffix.lower() == ".html":
         return save_page(html(), path)
     from cuefem.show.renderers import json_text
 
-    text = json_text(record()) + "\n"
+    with displayed_in("metric"):
+        text = json_text(record()) + "\n"
     write_atomically(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
 
 

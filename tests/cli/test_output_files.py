@@ -98,6 +98,13 @@ def test_full_disk_at_any_write_prints_one_line_and_leaves_no_part(tmp_path: Pat
         assert set(left) <= WRITING[command], (command, n)
 
 
+@pytest.mark.parametrize("command", ["strike", "end-mass"])
+def test_page_keeps_its_units_beside_metric_json(command: str, tmp_path: Path) -> None:
+    page = tmp_path / "page.html"
+    assert as_json(command, KIM, "--units", "us", "-o", page) == as_json(command, KIM)
+    assert " mph" in page.read_text(encoding="utf-8").replace("\u00a0", " ")
+
+
 def test_modules_have_every_name_they_promise() -> None:
     for found in pkgutil.walk_packages(cf.__path__, "cuefem."):
         if found.name.endswith(("__main__", "._kernel")):  # runs; is no module of Python

@@ -8,9 +8,9 @@ import cuefem as cf
 from cuefem.designs import Normal, Span
 from cuefem.designs.study_file import load_study
 from cuefem.files import InputError
-from tests.helpers.command_line import as_json
+from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.invalid_input import assert_rejects
-from tests.helpers.sweeps import SCENE, STRIKES, STUDY, write_study
+from tests.helpers.sweeps import GRID, SCATTER, SCENE, STRIKES, STUDY, write_study
 
 LEATHER = ("6 mm", "12.75 mm", "12.75 mm", 'material = "leather"')
 TENON = 'tip_bore = "8 mm"\nbutt_bore = "8 mm"\ncore = "ash"\nmaterial = "melamine"'
@@ -141,3 +141,21 @@ def test_study_file_ranges_are_read(tmp_path: Path) -> None:
     assert (length.range, length.shift) == (Span(-5e-3, 5e-3), True)
     assert length.compensating_path == ("cue.segments[1].length",)
     assert result.units[:3] == ("m", "", "m")
+
+
+def test_result_saves_what_the_command_writes(tmp_path: Path) -> None:
+    """Each output in its own units: a page in inches beside metric JSON; tables and the best design byte for byte."""
+    path = write_study(tmp_path, GRID)
+    outputs = {kind: tmp_path / f"asked.{kind}" for kind in ("html", "json", "csv", "toml")}
+    text = stdout_of("study", path, "--units", "us", *(part for each in outputs.values() for part in ("-o", each)))
+    assert "0.472, 0.492 in" in text
+    assert "0.472" in outputs["html"].read_text(encoding="utf-8")
+    assert "61.5 mm" in outputs["json"].read_text(encoding="utf-8")
+    found = cf.study(path)
+    for kind in ("csv", "toml"):
+        found.save(tmp_path / f"saved.{kind}")
+        assert (tmp_path / f"saved.{kind}").read_bytes() == outputs[kind].read_bytes()
+    with pytest.raises(cf.InputError, match=r"must end in .html, .json, .csv, .parquet or .toml; got '.docx'"):
+        found.save(tmp_path / "saved.docx")
+    with pytest.raises(cf.InputError, match="a tolerance analysis has no best one"):
+        cf.study(write_study(tmp_path, SCATTER.replace("count = 16", "count = 2"))).save(tmp_path / "best.toml")
