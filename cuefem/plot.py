@@ -288,13 +288,15 @@ def reduction(own: Reduction, axes: Sequence[Axes] | None = None) -> tuple[Axes,
         left.plot(own.chart_offsets, to_display(angles, "rad"), color=colours[name], label=name)
     for name, masses in own.end_mass_curves().items():
         right.plot(to_display(own.chart_times, "s"), to_display(masses, END_MASS), color=colours[name])
-    for time in own.marked_times:
+    for time, label in own.marked_times.items():
         at = float(to_display(time, "s"))
         right.axvline(at, color="#888", linewidth=0.8, linestyle="--")
-        right.annotate(with_unit(time, "s"), (at, 0), xytext=(3, 4), textcoords="offset points")
+        right.annotate(label, (at, 0), xytext=(3, 4), textcoords="offset points")
     left.set(xlabel="tip offset b/R", ylabel="squirt, degrees", xlim=(0, None), ylim=(0, None))
     right.set(
-        xlabel=with_heading("contact time", "s"), ylabel=with_heading("effective end mass", END_MASS), ylim=(0, None)
+        xlabel=with_heading("contact time of a rigid cue", "s"),
+        ylabel=with_heading("effective end mass", END_MASS),
+        ylim=(0, None),
     )
     left.legend(fontsize="small")
     return left, right

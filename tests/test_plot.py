@@ -107,4 +107,4 @@ def test_reduction_figure_shows_every_model_and_both_contact_times() -> None:
     assert y[x.tolist().index(0.3)] == pytest.approx(np.degrees(own.models["this shaft, vibrating"]["squirt"][1]))
     times, masses = line(right)
     assert masses[times.tolist().index(2.0)] == pytest.approx(1e3 * cf.end_mass(own.scene))
-    assert [text.get_text() for text in right.texts] == ["1.135 ms", "2 ms"]
+    assert [text.get_text() for text in right.texts] == ["filmed, 1.135 ms", "2 ms"]

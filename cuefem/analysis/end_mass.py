@@ -91,7 +91,7 @@ class EndMasses(Analysis):
             assumptions(about),
             *(f"{row['name']}: {row['reason']}" for row in rows if row["reason"]),
             "m_e: effective end mass, the transverse inertia of the cue at its tip; `report` and `compare` use squirt; "
-            "lumped models: offset without tip effects; published end masses and pooltool: [A.31]",
+            "two-part cue: offset; published end masses and pooltool: [A.31]",
             *tip_effect_notes(about, _tip_effects_note()),
         )
 
@@ -107,8 +107,8 @@ def _tip_effects_note() -> str:
         [definition.name for definition in DEFINITIONS.values() if definition.includes_tip is c] for c in (True, False)
     )
     return (
-        f"{listed(counting)} include tip effects (dome, shear), axial waves and the butt; {listed(others)} and the "
-        "two-part model of `strike` and `report` exclude them"
+        f"{listed(counting)} include tip effects (dome, shear), axial waves and the butt; {listed(others)} "
+        "exclude them, A.31 in `strike` the tip effects"
     )
 
 

@@ -9,10 +9,12 @@ from itertools import starmap
 from typing import ClassVar
 
 import numpy as np
+from scipy.optimize import brentq
 
 from cuefem.beam.mode_count import modes_below
 from cuefem.beam.modes import modes
 from cuefem.contact.impulse_solver import impacts, impulse_inputs
+from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, Cue, LumpedCue
 from cuefem.cue.materials import LEATHERS
 from cuefem.effects.cue_effects import Support
@@ -36,8 +38,9 @@ PAPER_CUE_ENDS = {"Kim's guess": 0.012}  # m_c, kg
 PAPER_LENGTH = 0.12  # of the cue end, ten diameters of the tip, m
 PAPER_TONE = 250.0  # Hz
 
-FILMED_CONTACT_TIME = LEATHERS["medium"].contact_time  # s
-CONTACT_TIMES = (5e-4, 1e-3, FILMED_CONTACT_TIME, DEFAULT_CONTACT_TIME, 3e-3)  # s
+FILMED_CONTACT_TIME = LEATHERS["medium"].contact_time  # s, that the contact of a cue lasts
+CONTACT_TIMES = (5e-4, 1e-3, DEFAULT_CONTACT_TIME, 3e-3)  # s, of a rigid cue
+SAME_TIME = 1e-4  # relative: contact times that differ by less are equal
 OFFSETS = (0.1, 0.3, 0.5)  # b/R
 CHART_OFFSETS = tuple(i / 20 for i in range(11))  # b/R
 CHART_TIMES = tuple(i / 1e4 for i in range(4, 31))  # s
@@ -81,15 +84,17 @@ class Reduction(Analysis):
         mass.
     missing : dict of str to str
         Why a model does not exist, by its name.
+    duration : float
+        How long the contact of the scene's stroke lasts, s: longer than ``contact_time`` with axial waves.
     end_mass_by_contact_time : list of dict
-        "contact_time", s, and the end masses without effects at the tip, kg: "stick", at small offsets, and "offset",
-        at ``offset``.
+        "contact_time", s, of a rigid cue head-on, ascending, and the end masses without effects at the tip, kg:
+        "stick", at small offsets, and "offset", at ``offset``.
+    filmed_contact_time : float or None
+        That of them, s, with which the contact of this cue head-on lasts as long as one that was filmed.
     """
 
     chart_offsets: ClassVar = CHART_OFFSETS
     chart_times: ClassVar = CHART_TIMES
-    marked_times: ClassVar = (FILMED_CONTACT_TIME, DEFAULT_CONTACT_TIME)
-
     frequencies: list[float]
     near: float
     nearest: dict[str, Record]
@@ -101,7 +106,9 @@ class Reduction(Analysis):
     offsets: list[float]
     models: dict[str, Record]
     missing: dict[str, str]
+    duration: float
     end_mass_by_contact_time: list[Record]
+    filmed_contact_time: float | None
     design: SolvedDesign = field(repr=False, compare=False)
     cues: dict[str, LumpedCue | None] = field(repr=False, compare=False)
 
@@ -112,6 +119,13 @@ class Reduction(Analysis):
     def charts(self) -> list[Chart]:
         """Squirt against the offset, and end mass against the contact time."""
         return [_squirt_chart(self), *([_end_mass_chart(self)] if self.scene.cue.segments else [])]
+
+    @property
+    def marked_times(self) -> dict[float, str]:
+        """Contact times of a rigid cue that charts mark, s, with their labels."""
+        filmed = self.filmed_contact_time
+        marks = {} if filmed is None else {filmed: f"filmed, {with_unit(FILMED_CONTACT_TIME, 's')}"}
+        return marks | {DEFAULT_CONTACT_TIME: with_unit(DEFAULT_CONTACT_TIME, "s")}
 
     def squirt_curves(self) -> dict[str, Array]:
         """Squirt of every model at `CHART_OFFSETS`, rad; nan for a miscue."""
@@ -139,7 +153,8 @@ def reduction(
     Parameters
     ----------
     scene : Scene, or what `cuefem.solve` returns
-        Cue, ball, tip and stroke, or a solved one. The impact lasts the scene's contact time; Kim's paper states 2 ms.
+        Cue, ball, tip and stroke, or a solved one. End masses are those of the scene's contact time, that of a rigid
+        cue head-on; Kim's paper states 2 ms.
     near : float
         A frequency, Hz, such as that of a tap: the mode nearest to it is listed.
     cue_ends : dict of str to float, optional
@@ -187,6 +202,8 @@ def reduction(
         wanted = cue_end_quantity(scene)
         masses = {name: wanted.check(f"reduction cue_ends[{name!r}]", mass) for name, mass in cue_ends.items()}
     own, missing = _own_cues(design)
+    filmed = _filmed_contact_time(design) if front else None
+    times = sorted([*CONTACT_TIMES, *([] if filmed is None else [filmed])]) if front else []
     cues = {name: LumpedCue.two_part(scene.axial_mass, mass, NU_C) for name, mass in masses.items()} | own
     return Reduction(
         scene,
@@ -201,7 +218,9 @@ def reduction(
         offsets=offsets,
         models={name: _model(design, cue, offsets, front) for name, cue in cues.items()},
         missing=missing,
-        end_mass_by_contact_time=[_end_masses_at(design, time) for time in CONTACT_TIMES] if front else [],
+        duration=float(design.strike().duration),
+        end_mass_by_contact_time=[_end_masses_at(design, time) for time in times],
+        filmed_contact_time=filmed,
         design=design,
         cues=cues,
     )
@@ -278,10 +297,37 @@ def _frequencies(scene: Scene, count: int, supports: Sequence[Support]) -> list[
     return [float(frequency) for frequency in bending.frequencies]
 
 
+def _with_contact_time(scene: Scene, contact_time: float) -> Scene:
+    """The scene without effects at the tip, with another contact time of a rigid cue, s."""
+    scene = scene.without_tip_effects
+    return replace(scene, tip=replace(scene.tip, contact_time=contact_time, stiffness=None))
+
+
+def _filmed_contact_time(design: SolvedDesign) -> float | None:
+    """The contact time of a rigid cue with which a head-on contact lasts `FILMED_CONTACT_TIME`; None if none does.
+
+    Without axial waves both are equal; with them a contact lasts longer than that of a rigid cue.
+    """
+    head_on = replace(design.scene, stroke=replace(design.scene.stroke, offset=0.0))
+
+    def too_long(time: float) -> float:
+        outcome = strike_modes(_with_contact_time(head_on, time), design.solved.step_tip)
+        return float(outcome.duration) / FILMED_CONTACT_TIME - 1
+
+    shortest, longest = FILMED_CONTACT_TIME / 2, 2 * FILMED_CONTACT_TIME
+    try:
+        if abs(too_long(FILMED_CONTACT_TIME)) < SAME_TIME:
+            return FILMED_CONTACT_TIME
+        if not too_long(shortest) < 0 < too_long(longest):
+            return None
+        return float(brentq(too_long, shortest, longest, xtol=SAME_TIME * FILMED_CONTACT_TIME))
+    except (ValueError, RuntimeError):  # a number beside the answer does not take it down
+        return None
+
+
 def _end_masses_at(design: SolvedDesign, contact_time: float) -> Record:
     """End masses without effects at the tip for another contact time, s; None where there is none."""
-    scene = design.scene.without_tip_effects
-    scene = replace(scene, tip=replace(scene.tip, contact_time=contact_time, stiffness=None))
+    scene = _with_contact_time(design.scene, contact_time)
     masses: Record = {"contact_time": contact_time}
     for drive in DRIVES:
         try:
@@ -299,16 +345,17 @@ def _steps_table(own: Reduction) -> Table:
         ("natural frequencies", f"{', '.join(f'{each:.0f}' for each in own.frequencies)} Hz (free)"),
         (f"modes near {own.near:g} Hz", ", ".join(starmap(_nearest_mode, own.nearest.items()))),
         (
-            f"effective end mass for a {with_unit(own.contact_time, 's')} impact",
+            f"effective end mass, contact time {with_unit(own.contact_time, 's')}",
             f"{format_value('end_mass', end_mass)} (small offsets)",
         ),
-        ("end mass by contact time", ", ".join(map(_end_mass_at, own.end_mass_by_contact_time))),
+        ("end mass by contact time", ", ".join(_end_mass_at(row, own) for row in own.end_mass_by_contact_time)),
     )
-    filmed, paper = (with_unit(time, "s") for time in (FILMED_CONTACT_TIME, DEFAULT_CONTACT_TIME))
     without = " and no effects at the tip" if own.scene.at_tip else ""
     notes = (
         f"free, pinned, clamped: the joint end of the shaft; E × : the factor on E and G that gives {own.near:g} Hz",
-        f"end mass by contact time: small offsets{without}; {paper} in Kim's paper, {filmed} filmed with a leather tip",
+        f"contact time: of a rigid cue head-on; the contact of this stroke lasts {with_unit(own.duration, 's')}",
+        f"end mass by contact time: small offsets{without}; {with_unit(DEFAULT_CONTACT_TIME, 's')} in Kim's paper; "
+        f"filmed: a contact that lasts {with_unit(FILMED_CONTACT_TIME, 's')}, as one with a leather tip was filmed",
     )
     return Table("From the drawing to squirt", ("step", "result"), rows, notes, texts=(0, 1))
 
@@ -324,8 +371,10 @@ def _nearest_mode(support: str, mode: Record) -> str:
     return f"{support} {mode['frequency']:.0f} Hz (mode {mode['mode']}, E × {mode['stiffness_ratio']:.2f})"
 
 
-def _end_mass_at(row: Record) -> str:
-    return f"{format_value('end_mass', row['stick'])} at {with_unit(row['contact_time'], 's')}"
+def _end_mass_at(row: Record, own: Reduction) -> str:
+    """The end mass of a contact time; marks the filmed one."""
+    filmed = " (filmed)" if row["contact_time"] == own.filmed_contact_time else ""
+    return f"{format_value('end_mass', row['stick'])} at {with_unit(row['contact_time'], 's')}{filmed}"
 
 
 def _models_table(own: Reduction) -> Table:
@@ -384,7 +433,7 @@ def _end_mass_chart(own: Reduction) -> Chart:
     return chart(
         "Effective end mass",
         curves,
-        x=Axis(with_heading("contact time", "s"), 0.0, float(times[-1])),
+        x=Axis(with_heading("contact time of a rigid cue", "s"), 0.0, float(times[-1])),
         y=Axis(with_heading("effective end mass", END_MASS)),
-        marks=[Tick(float(to_display(time, "s")), with_unit(time, "s")) for time in own.marked_times],
+        marks=[Tick(float(to_display(time, "s")), label) for time, label in own.marked_times.items()],
     )

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from cuefem.analysis.reduction import PAPER_CUE_ENDS
-from cuefem.analysis.strike_models import PIVOT_NOTE, a31_squirt, lumped_cues, lumped_strike
+from cuefem.analysis.strike_models import PIVOT_NOTE, a31_cues, a31_squirt, lumped_strike, two_part_cue
 from cuefem.analysis.verdict import with_cue
 from cuefem.cue import LumpedCue
 from cuefem.files.reference_cues import reference_cues
@@ -33,17 +33,15 @@ OWN = "coupled, this cue"
 # CSS classes of the models' curves.
 STYLES = {
     OWN: "c1",
-    "lumped, this cue": "c2",
-    "two-part, this cue": "c3",
+    "two-part, this cue": "c2",
     "two-part, 12 g": "c5",
     "A.31, this cue": "c4",
 }
 
 MODELS = (
-    "Coupled: the vibrating cue, integrated in time. Two-part and A.31 replace the cue by two masses, with the end "
-    "mass of a tip that sticks at each offset and without effects at the tip; lumped adds these effects as a coupling "
-    "between the cue’s axial and transverse motions, computed at the offset of this stroke. 12 g: the two-part cue "
-    "with the paper’s cue end, of which the effective end mass is a quarter."
+    "Coupled: the vibrating cue, integrated in time. Two-part replaces the cue by its axial mass and its end mass at "
+    "the offset of this stroke; A.31 by the end mass at each offset without effects at the tip, as published end "
+    "masses are. 12 g: the two-part cue with the paper’s cue end, of which the effective end mass is a quarter."
 )
 
 
@@ -57,15 +55,17 @@ class SquirtCurve(Analysis):
         The analysed stroke.
     offsets : list of float
         Offsets b/R.
-    end_mass, coupling : list of float or None
-        End mass, kg, and coupling, 1/kg, of the lumped models at each offset; None where no lumped cue fits.
+    end_mass : float or None
+        End mass of the two-part cue, kg, at the offset of the stroke; None if no end mass has the squirt.
+    a31_end_mass : list of float or None
+        End mass of A.31 at each offset, kg, without effects at the tip; None where no end mass fits.
     models : dict of str to dict
-        "squirt", rad, and "pivot_length", m, at each offset by the model's name; nan where no lumped cue fits.
+        "squirt", rad, and "pivot_length", m, at each offset by the model's name; nan where no end mass fits.
     """
 
     offsets: list[float]
-    end_mass: list[float | None]
-    coupling: list[float | None]
+    end_mass: float | None
+    a31_end_mass: list[float | None]
     models: dict[str, dict[str, Any]]
     about: ClassVar[str] = (
         "The tip offset b/R is the distance of the contact from the ball’s centre line, in ball radii. Pivoting the "
@@ -144,8 +144,7 @@ def squirt_curve(scene: Solvable, offsets: Sequence[float] = OFFSETS) -> SquirtC
     Returns
     -------
     SquirtCurve
-        Models: the coupled strike; lumped, if effects at the tip or a lumped cue's own constant couple transverse and
-        axial motion; two-part, with this cue's end mass and with Kim's 12 g; Alciatore's formula [A.31].
+        Models: the coupled strike; two-part, with this cue's end mass and with Kim's 12 g; Alciatore's formula [A.31].
 
     Raises
     ------
@@ -165,10 +164,13 @@ def squirt_curve(scene: Solvable, offsets: Sequence[float] = OFFSETS) -> SquirtC
         raise ValueError("squirt_curve offsets must be at least one b/R between -1 and 1; got none")
     design = SolvedDesign.of(scene)
     scene, solved = design.scene, design.solved
-    own = lumped_cues(scene, offsets, solved.step_tip)
-    cues = {f"{name}, this cue": each for name, each in own.items()}
-    cues["two-part, 12 g"] = [LumpedCue.two_part(scene.axial_mass, PAPER_CUE_ENDS["Kim's guess"])] * len(offsets)
-    cues["A.31, this cue"] = own["two-part"]
+    own, published = two_part_cue(design), a31_cues(design, offsets)
+    guess = LumpedCue.two_part(scene.axial_mass, PAPER_CUE_ENDS["Kim's guess"])
+    cues: dict[str, list[LumpedCue | None]] = {
+        "two-part, this cue": [own] * len(offsets),
+        "two-part, 12 g": [guess] * len(offsets),
+        "A.31, this cue": published,
+    }
     struck = [at_offset(scene, offset) for offset in offsets]
     models: Record = {"coupled, this cue": coupled_curve(scene, offsets, solved.tip)}
     for name, each in cues.items():
@@ -182,7 +184,7 @@ def squirt_curve(scene: Solvable, offsets: Sequence[float] = OFFSETS) -> SquirtC
     return SquirtCurve(
         scene,
         list(offsets),
-        [cue.end_mass if cue else None for cue in own["two-part"]],
-        [cue.coupling if cue else None for cue in own.get("lumped", own["two-part"])],
+        None if own is None else own.end_mass,
+        [None if cue is None else cue.end_mass for cue in published],
         models,
     )

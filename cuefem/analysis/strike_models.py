@@ -1,4 +1,4 @@
-"""One stroke by the coupled strike and by lumped models."""
+"""One stroke by the coupled strike, by the two-part cue and by Alciatore's formula."""
 
 from __future__ import annotations
 
@@ -7,15 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from cuefem.beam.tip_modes import TipModes
 from cuefem.cue import LumpedCue
 from cuefem.endmass.definitions import stick_at_offsets
-from cuefem.endmass.lumped import impulse, lump_modes
+from cuefem.endmass.lumped import impulse
 from cuefem.quantity.display_units import END_MASS, with_unit
 from cuefem.results.closed_forms import alciatore_a31, pivot_length
 from cuefem.results.quantities import REGIMES, RESULTS, format_value
 from cuefem.results.records import Record, Table
-from cuefem.results.solved_design import Solvable, SolvedDesign, at_offset
+from cuefem.results.solved_design import Solvable, SolvedDesign
 from cuefem.results.verdict import MISCUE_DEFINITION
 from cuefem.scene import Outcome, Scene
 from cuefem.show.analysis import Analysis
@@ -27,9 +26,9 @@ ROWS: tuple[tuple[str, int | None, str], ...] = (
     *(("ball_velocity", 1, ", normal"), ("ball_velocity", 0, ", tangential")),
     *((name, None, "") for name in ("spin", "cue_speed", "duration", "regime", "error")),
 )
-SPEED_NOTE_THRESHOLD = 0.02  # relative deficit of a lumped model's ball speed from which a note explains it
-LUMPED_SPEED_NOTE = (
-    "ball speed: use the coupled value; the lumped models omit axial waves, which raise the restitution of the whole "
+SPEED_NOTE_THRESHOLD = 0.02  # relative deficit of the two-part cue's ball speed from which a note explains it
+TWO_PART_SPEED_NOTE = (
+    "ball speed: use the coupled value; the two-part cue omits axial waves, which raise the restitution of the whole "
     "cue above that of its tip"
 )
 PIVOT_NOTE = (
@@ -54,17 +53,17 @@ class StrikeModels(Analysis):
     scene : Scene
         The analysed stroke.
     end_mass : float or None
-        End mass of the lumped models, kg; None if no lumped cue has the squirt.
-    coupling : float
-        Coupling of the model "lumped": transverse velocity of the tip per unit axial impulse, 1/kg.
+        End mass of the two-part cue, kg: "offset" of `cuefem.end_masses`; None if no end mass has the squirt.
+    a31_end_mass : float or None
+        End mass of A.31, kg: that at this offset without effects at the tip, as in published values.
     models : dict of str to dict
         Squirt (rad), natural pivot length (m), speeds (m/s), spin (rad/s) and other values by the model's name.
-        "coupled": integrated in time. "lumped" and "two-part": the impulse solver for the cues of `lumped_cues`.
-        "A.31": Alciatore's formula with the end mass of "two-part", squirt and pivot length only.
+        "coupled": integrated in time. "two-part": the impulse solver for axial mass and end mass, as in
+        `cuefem.reduction`. "A.31": Alciatore's formula, squirt and pivot length only.
     """
 
     end_mass: float | None
-    coupling: float
+    a31_end_mass: float | None
     models: dict[str, Record]
 
     def tables(self) -> list[Table | str]:
@@ -95,32 +94,30 @@ class StrikeModels(Analysis):
     def _model_notes(self) -> list[str]:
         """Which model to use, and the definitions of the models, for a vibrating or a lumped cue."""
         use = "use the coupled column; the others are simpler published models, for comparison"
-        coupling = f"coupling of {self.coupling:.4g} /kg (transverse tip velocity per unit axial impulse)"
         if self.scene.lumped is not None:
-            own = [f"two-part and A.31 exclude the cue's {coupling}"] if self.coupling else []
             models = "coupled: contact integrated in time; two-part and A.31: two masses, with the cue's end mass"
             tip = tip_effect_notes(scene_record(self.scene), "only coupled includes the effects at the tip")
-            return [use, models, *own, *tip]
+            return [use, models, *tip]
         is_default = self.models["coupled"]["error"] is None
         accuracy = ", numerical error of squirt at most 0.1 % for 95 % of default strikes" if is_default else ""
         beam = f"coupled: vibrating shaft in time{accuracy}"
-        end_mass = f"an end mass of {with_unit(self.end_mass, END_MASS)}, " if self.end_mass else "an end mass, "
-        where = f"stick at b/R {self.scene.stroke.offset:.4g} without tip effects"
-        masses = f"one axial mass and {end_mass}{where}"
-        if not self.coupling:
-            return [use, beam, f"two-part and A.31: {masses}"]
-        return [use, beam, f"two-part and A.31: {masses}; lumped: the same, with the tip effects as a {coupling}"]
+        where = f"stick at b/R {self.scene.stroke.offset:.4g}"
+        two_part = f"two-part: one axial mass and {_mass_text(self.end_mass)}, {where}"
+        if self.end_mass == self.a31_end_mass:
+            return [use, beam, f"{two_part}; A.31: the same end mass"]
+        left_out = "without effects at the tip, as published ones"
+        return [use, beam, two_part, f"A.31: {_mass_text(self.a31_end_mass)}, {where} {left_out}"]
 
     def _speed_notes(self) -> list[str]:
-        """A note on the lower ball speed of lumped models, which omit the axial waves of the coupled strike."""
+        """A note on the lower ball speed of the two-part cue, which omits the axial waves of the coupled strike."""
         if not any(type(effect).__name__ == "AxialWaves" for effect in self.scene.effects):
             return []
         coupled, *others = (model["ball_speed"] for model in self.models.values() if "ball_speed" in model)
-        return [LUMPED_SPEED_NOTE] if any(other < (1 - SPEED_NOTE_THRESHOLD) * coupled for other in others) else []
+        return [TWO_PART_SPEED_NOTE] if any(other < (1 - SPEED_NOTE_THRESHOLD) * coupled for other in others) else []
 
 
 def strike_models(scene: Solvable, rtol: float | None = None) -> StrikeModels:
-    """One stroke by the coupled strike and by lumped models.
+    """One stroke by the coupled strike, by the two-part cue and by Alciatore's formula.
 
     Parameters
     ----------
@@ -143,54 +140,48 @@ def strike_models(scene: Solvable, rtol: float | None = None) -> StrikeModels:
     ['coupled', 'two-part', 'A.31']
     """
     design = SolvedDesign.of(scene, rtol)
-    scene, solved = design.scene, design.solved
-    cues = lumped_cues(scene, [scene.stroke.offset], solved.step_tip)
+    scene = design.scene
     models = {"coupled": outcome_record(design.strike(), scene)}
-    models |= {name: outcome_record(lumped_strike(scene, cue), scene) for name, (cue,) in cues.items() if cue}
-    (cue,), (lumped,) = cues["two-part"], cues.get("lumped", [None])
-    if cue:
-        squirt = a31_squirt(scene, cue)
+    cue = two_part_cue(design)
+    if cue is not None:
+        models["two-part"] = outcome_record(lumped_strike(scene, cue), scene)
+    (a31_cue,) = a31_cues(design, [scene.stroke.offset])
+    if a31_cue is not None:
+        squirt = a31_squirt(scene, a31_cue)
         models["A.31"] = {"squirt": squirt, "pivot_length": pivot_length(scene, squirt)}
-    return StrikeModels(scene, cue.end_mass if cue else None, lumped.coupling if lumped else 0.0, models)
+    end_mass, a31_end_mass = (None if each is None else each.end_mass for each in (cue, a31_cue))
+    return StrikeModels(scene, end_mass, a31_end_mass, models)
 
 
-def lumped_cues(scene: Scene, offsets: Sequence[float], tip: TipModes) -> dict[str, list[LumpedCue | None]]:
-    """The lumped cues of "lumped" and "two-part" at each offset; None where no lumped cue has the squirt.
+def _mass_text(end_mass: float | None) -> str:
+    return f"an end mass of {with_unit(end_mass, END_MASS)}" if end_mass else "an end mass"
 
-    "two-part" has the end mass for sticking contact at that offset, without effects at the tip and without coupling.
-    "lumped" adds the coupling by effects at the tip, proportional to |b/R|; it is absent if they add none, or if no
-    lumped cue has the squirt with them. A scene's own lumped cue has its own end mass and, as "lumped", its own
-    coupling, both at all offsets. tip: the cue's tip modes with sticking contact.
+
+def two_part_cue(design: SolvedDesign) -> LumpedCue | None:
+    """The two-part cue of a scene, of its axial mass and its end mass at the stroke's offset; a lumped cue itself.
+
+    None if no end mass with the squirt is found.
     """
-    if (own := scene.lumped) is not None:
-        coupled: list[LumpedCue | None] = [own] * len(offsets)
-        return ({"lumped": coupled} if own.coupling else {}) | {"two-part": [replace(own, coupling=0.0)] * len(offsets)}
-    masses = stick_at_offsets(tip, scene.without_tip_effects, offsets)
-    cues = [None if math.isnan(mass) else LumpedCue(scene.axial_mass, mass) for mass in masses]
-    slope = _coupling_slope(scene, tip)
-    coupled = [_with_coupling(cue, slope * abs(b)) for cue, b in zip(cues, offsets, strict=True)]
-    return ({"lumped": coupled} if slope else {}) | {"two-part": cues}
-
-
-def _coupling_slope(scene: Scene, tip: TipModes) -> float:
-    """The coupling by effects at the tip per b/R, 1/kg, at the offset of the stroke, or at 0.1 of a central impact.
-
-    Zero without such effects, or if no lumped cue with the squirt is found.
-    """
-    offset = scene.stroke.offset or 0.1
+    scene = design.scene
+    if scene.lumped is not None:
+        return scene.lumped
     try:
-        cue = lump_modes(at_offset(scene, offset), tip)
+        return LumpedCue(scene.axial_mass, design.end_mass("offset", None))
     except (ValueError, RuntimeError):
-        return 0.0
-    return cue.coupling / abs(offset)
-
-
-def _with_coupling(cue: LumpedCue | None, coupling: float) -> LumpedCue | None:
-    """The cue with a coupling; None without a cue, or if the coupling is out of its bounds."""
-    try:
-        return cue and replace(cue, coupling=coupling)
-    except ValueError:
         return None
+
+
+def a31_cues(design: SolvedDesign, offsets: Sequence[float]) -> list[LumpedCue | None]:
+    """The cues of Alciatore's formula at each offset; None where no end mass has the squirt.
+
+    Their end mass is that of sticking contact at the offset without effects at the tip, as in published
+    values. A scene's own lumped cue has its own end mass.
+    """
+    scene = design.scene
+    if scene.lumped is not None:
+        return [replace(scene.lumped, coupling=0.0)] * len(offsets)
+    masses = stick_at_offsets(design.solved.step_tip, scene.without_tip_effects, offsets)
+    return [None if math.isnan(mass) else LumpedCue(scene.axial_mass, mass) for mass in masses]
 
 
 def lumped_strike(scene: Scene, cue: LumpedCue) -> Outcome:

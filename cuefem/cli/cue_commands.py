@@ -179,7 +179,7 @@ def end_mass(request: Request, near: float, cue_ends: tuple[str, ...]) -> Analys
     help="Lowest and highest cue speed of the table (default: 0.2 and 10 m/s).",
 )
 def strike(request: Request, target: str | None, speeds: tuple[str, str] | None, output: Path | None) -> Analysis:
-    """Compute squirt, ball speed, spin and pivot length of one stroke, by the coupled strike and by lumped models.
+    """Compute squirt, ball speed, spin and pivot length of one stroke, by the coupled strike and by simpler models.
 
     The numerical error target is the rtol of the file's [accuracy] table, if it has one.
     """

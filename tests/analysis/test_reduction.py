@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import cuefem as cf
-from cuefem.analysis.reduction import VIBRATING, Reduction
+from cuefem.analysis.reduction import FILMED_CONTACT_TIME, VIBRATING, Reduction
 from cuefem.endmass.rigid_front import RigidFront
 from studies.pages import STUDIES
 from studies.paper.closed_forms import cone_end_mass, inertia_factor, squirt_slope
@@ -30,6 +30,22 @@ def scaled(factor: float, *names: str) -> cf.Scene:
 @cache
 def kim_reduction() -> Reduction:
     return cf.reduction(KIM)
+
+
+def test_filmed_contact_lasts_as_long_as_the_filmed_one() -> None:
+    """With axial waves a contact lasts longer than that of a rigid cue; without them as long."""
+    pool = cf.usual_scene(cf.load(STUDIES.parent / "meshes" / "pool_maple.toml"))
+    for scene in (KIM, pool):
+        own = cf.reduction(scene, offsets=(0.3,))
+        filmed = own.filmed_contact_time
+        assert filmed is not None
+        bare = scene.without_tip_effects
+        head_on = replace(bare.stroke, offset=0.0)
+        struck = replace(bare, tip=replace(bare.tip, contact_time=filmed, stiffness=None), stroke=head_on)
+        assert cf.strike(struck).duration == pytest.approx(FILMED_CONTACT_TIME, rel=2e-4)
+        assert filmed in [row["contact_time"] for row in own.end_mass_by_contact_time]
+        assert (filmed < 0.9 * FILMED_CONTACT_TIME) == (scene is pool)
+        assert own.duration == pytest.approx(cf.strike(scene).duration, rel=1e-12)
 
 
 def test_rigid_front_equals_closed_forms_of_kims_cue_end() -> None:

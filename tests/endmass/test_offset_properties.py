@@ -16,7 +16,8 @@ from cuefem.endmass.lumped import lump
 from cuefem.scene.solved_scene import tip_modes_of
 from tests.helpers.strike_scenes import KIM_AT, kim_scene
 
-EFFECTS = {
+OFFSETS = (0.1, 0.3, 0.5)
+EFFECTS: dict[str, tuple[cf.Effect, ...]] = {
     "bare": (),
     "damped": (cf.StructuralDamping(0.02),),
     "dome and shear": (cf.TipDome(9e-3), cf.TipShear(0.75)),
@@ -48,11 +49,17 @@ def test_offset_end_mass_equals_impulse_and_lump() -> None:
     lumped = lump(scene)
     assert lumped.end_mass == cf.end_mass(scene, "offset") == strike_models(scene).end_mass
     assert cf.impulse(scene).squirt == cf.impulse(replace(scene, cue=lumped)).squirt
-    curve = squirt_curve(scene, (0.1, 0.4))
-    assert curve.end_mass[1] == pytest.approx(lumped.end_mass, rel=1e-12)
-    assert curve.models["two-part, this cue"]["squirt"][1] == pytest.approx(cf.impulse(scene).squirt, rel=1e-12)
-    squirts = cf.impulse([at_offset(scene, 0.1), at_offset(scene, 0.4)]).squirt
-    assert squirts == pytest.approx(curve.models["two-part, this cue"]["squirt"], rel=1e-12)
+
+
+@pytest.mark.parametrize("effects", EFFECTS.values(), ids=EFFECTS.keys())
+def test_two_part_cue_is_the_same_in_strike_curve_and_chain(effects: tuple[cf.Effect, ...]) -> None:
+    scene = replace(kim_scene(0.3), effects=effects)
+    struck, curve, chain = strike_models(scene), squirt_curve(scene, OFFSETS), cf.reduction(scene, offsets=OFFSETS)
+    own = chain.models["this shaft, b/R 0.3"]
+    assert struck.end_mass == curve.end_mass == own["end_mass"] == cf.end_mass(scene, "offset")
+    assert curve.models["two-part, this cue"]["squirt"].tolist() == pytest.approx(own["squirt"], rel=1e-12)
+    assert struck.models["two-part"]["squirt"] == pytest.approx(own["squirt"][OFFSETS.index(0.3)], rel=1e-12)
+    assert struck.a31_end_mass == pytest.approx(cf.end_mass(scene.without_tip_effects, "offset"), rel=1e-8)
 
 
 @pytest.mark.parametrize("offset", [-0.4, 0.1, 0.3])
@@ -63,15 +70,13 @@ def test_lump_with_dome_squirt_equals_strike_without_slip(offset: float) -> None
     assert cf.impulse(lumped).squirt == pytest.approx(cf.strike(gripping, KIM_AT).squirt, rel=1e-9)
 
 
-def test_lumped_cue_coupling_is_the_same_at_all_offsets() -> None:
-    """A cue's own coupling is a constant, that by effects at the tip is proportional to the offset."""
+def test_two_part_cue_of_a_lumped_cue_has_its_own_coupling() -> None:
     scene = at_offset(cf.Scene(cf.LumpedCue(0.54, 0.006, coupling=3.0), tip=cf.Tip(contact_time=1e-3)), 0.2)
     models = squirt_curve(scene, (-0.3, 0.3)).models
-    assert models["lumped, this cue"]["squirt"] == pytest.approx(models["coupled, this cue"]["squirt"], rel=1e-3)
-    assert strike_models(scene).coupling == 3.0
+    assert models["two-part, this cue"]["squirt"] == pytest.approx(models["coupled, this cue"]["squirt"], rel=1e-3)
 
 
-def test_strike_record_without_end_mass_omits_lumped_models() -> None:
+def test_strike_record_without_end_mass_omits_two_part_models() -> None:
     """A tip of low restitution, far off centre: the tip moves ahead of the ball."""
     scene = replace(kim_scene(0.85), tip=cf.Tip(0.05, 0.7, 1e-3))
     with pytest.raises(ValueError, match=r"end_mass: squirt of a sticking tip must be in \(0, .* angle; got"):
@@ -80,8 +85,9 @@ def test_strike_record_without_end_mass_omits_lumped_models() -> None:
     assert record.end_mass is None
     assert set(record.models) == {"coupled"}
     curve = squirt_curve(scene, (0.3, 0.85))
-    assert curve.end_mass[1] is None
-    assert np.isnan(curve.models["two-part, this cue"]["squirt"]).tolist() == [False, True]
+    assert (curve.end_mass, curve.a31_end_mass[1]) == (None, None)
+    assert np.isnan(curve.models["two-part, this cue"]["squirt"]).all()
+    assert np.isnan(curve.models["A.31, this cue"]["squirt"]).tolist() == [False, True]
 
 
 @pytest.mark.parametrize("effects", [(), (cf.GeometricStiffness(),), (cf.Elevation(0.2), cf.GeometricStiffness())])
