@@ -159,5 +159,3 @@ def test_added_tip_effect_acts_in_contact() -> None:
     assert scene_with(cap(0.002)).without_tip_effects == scene_with()
     with pytest.raises(ValueError, match="takes a tip without tangential compliance, a fixed normal"):
         cf.strike(scene_with(cap(0.0, compliance=1.0), cf.Elevation(0.1)), AT)
-    with pytest.raises(ValueError, match=r"Scene\.effects must add one window for a double hit to the contact; got"):
-        scene_with(cf.SecondHit(), cap(0.0, window=1e-3))

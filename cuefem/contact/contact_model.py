@@ -11,8 +11,9 @@ from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.kernel.declarations import KernelInput
 from cuefem.contact.modal_response import ModalPropagator
 from cuefem.contact.ports import Ports, ports_of
-from cuefem.contact.tips import Leather, PowerTip, contact_time_of, tip_of
+from cuefem.contact.tips import contact_time_of, default_steps, tip_fields, tip_of
 from cuefem.cue import Array
+from cuefem.effects.force_law import LeatherLaw, TipLaw
 from cuefem.scene import Scene
 
 INFINITE_FRICTION = 1e6  # stands for infinite friction: at 1e12 the forces of a last touch drown in round-off
@@ -25,13 +26,14 @@ class ContactModel:
 
     propagator: the cue's modes at the ports. ball: (n,), the ball's velocities at the first touch, m/s. ball_mass: kg.
     inertia: the factor of the ball's moment of inertia. radius: of the ball, m. speed: of the cue, m/s. time: head-on
-    contact time, s. window: time simulated after separation, s; None without double hits. side: struck side of the
-    ball, 1 or -1; all other fields are those of the mirrored stroke, on side 1.
+    contact time, s. steps: default number in it. max_indentation: of leather in a head-on impact, m. window: time
+    simulated after separation, s; None without double hits. side: struck side of the ball, 1 or -1; all other fields
+    are those of the mirrored stroke, on side 1.
     """
 
     propagator: ModalPropagator
     ports: Ports
-    tip: PowerTip | Leather
+    tip: TipLaw | LeatherLaw
     ball: Array
     ball_mass: float
     inertia: float
@@ -39,6 +41,8 @@ class ContactModel:
     friction: float
     speed: float
     time: float
+    steps: int
+    max_indentation: float = 0.0
     window: float | None = None
     side: float = 1.0
     radius: float = 1.0
@@ -83,6 +87,13 @@ class ContactModel:
         return np.asarray(self.ball_mass * self.ports.horizontal(ball))
 
     @property
+    def slope_weights(self) -> Array:
+        """Weight of each slope in the tip's shortening; the last one of each plane is that of the cue's end."""
+        per_plane = len(self.propagator.slopes) // self.ports.planes
+        weights = np.append(np.ones(max(per_plane - 1, 0)), self.ports.touch.ahead)
+        return np.tile(weights[:per_plane], self.ports.planes)
+
+    @property
     def unknowns(self) -> int:
         """Number of state variables: modal displacements and velocities, the ball's, and the tip's."""
         omega = self.propagator.tip.omega
@@ -90,19 +101,21 @@ class ContactModel:
 
     def kernel_input(self, *, step: float) -> KernelInput:
         """The kernel's input; step: length of the steps, s."""
-        fields = KernelInput()
-        self.propagator.write_to(fields)
-        self.ports.write_to(fields, radius=self.radius)
-        self.tip.write_to(fields)
-        fields.speeds = len(self.ball)
-        fields.inverse_masses = self.inverse_masses
-        fields.restitution = self.restitution
-        fields.friction = min(self.friction, INFINITE_FRICTION)
-        fields.begins_with_impact = self.never_slips and self.tip.is_rigid and self.phi > 0
-        fields.step = step
-        fields.max_time = MAX_CONTACT_TIMES * self.time
-        fields.window = self.window or 0.0
-        return fields
+        return KernelInput(
+            **self.propagator.fields,
+            **self.ports.fields,
+            **tip_fields(self.tip, self.max_indentation),
+            slope_weights=self.slope_weights,
+            radius=self.radius,
+            speeds=len(self.ball),
+            inverse_masses=self.inverse_masses,
+            restitution=self.restitution,
+            friction=min(self.friction, INFINITE_FRICTION),
+            begins_with_impact=self.never_slips and self.tip.is_rigid and self.phi > 0,
+            step=step,
+            max_time=MAX_CONTACT_TIMES * self.time,
+            window=self.window or 0.0,
+        )
 
 
 def model_of(scene: Scene, tip: TipModes) -> ContactModel:
@@ -124,13 +137,15 @@ def model_of(scene: Scene, tip: TipModes) -> ContactModel:
         friction=scene.tip.friction,
         speed=scene.stroke.speed,
         time=contact_time_of(scene),
+        steps=default_steps(scene),
+        max_indentation=0.0 if scene.contact_terms.tip is None else scene.max_indentation,
         window=window,
         side=math.copysign(1.0, offset),
         radius=ball.radius,
     )
 
 
-def _check_window(tip: PowerTip | Leather, *, friction: float, window: float | None) -> None:
+def _check_window(tip: TipLaw | LeatherLaw, *, friction: float, window: float | None) -> None:
     """ValueError for a second hit of a rigid patch with infinite friction."""
     if tip.is_rigid and window is not None and math.isinf(friction):
         raise ValueError(

@@ -15,22 +15,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.geometric_stiffness import slope_rows
-from cuefem.contact.kernel.declarations import KernelInput, StepTables
+from cuefem.contact.kernel.declarations import StepTables
 from cuefem.cue import Array
 
 if TYPE_CHECKING:
     from cuefem.contact.coupled_modes import CoupledModes
-
-# Gauss points of a step in the integral of a mode's loss: these, and one more per radian of its fastest oscillation.
-# Relative error 1e-14 at 1 and at 100 rad; more than MAX_LOSS_POINTS are not needed by steps that resolve a contact.
-LOSS_POINTS, MAX_LOSS_POINTS = 8, 108
-
 
 NOTHING = np.zeros(0)  # a table that no mode has
 
@@ -65,21 +60,6 @@ class Oscillators(NamedTuple):
         return cls(v_v=a_a - 2 * x * mean, sine=z * mean, a_a=a_a, mean=mean, versine=versine)
 
 
-def structural_loss(h: float, omega: Array, loss: Array) -> Array:
-    """The energy that uncoupled modes lose in a step, (3, n): coefficients of v^2, v g and g^2, with g = f - omega a.
-
-    Over the step the velocity is v_v(t) v + t mean(t) g. Its square is integrated at Gauss points.
-    """
-    fastest = float(np.max(omega, initial=0.0)) * h
-    points, weights = np.polynomial.legendre.leggauss(min(LOSS_POINTS + int(fastest), MAX_LOSS_POINTS))
-    coefficients = np.zeros((3, len(omega)))
-    for point, weight in zip((points + 1) / 2, weights / 2, strict=True):
-        after = Oscillators.after(point * h, omega, loss)
-        per_v, per_g = after.v_v, point * h * after.mean
-        coefficients += weight * np.array([per_v**2, 2 * per_v * per_g, per_g**2])
-    return np.asarray(h * loss * omega * coefficients)
-
-
 class _RowVelocities(NamedTuple):
     """Velocities of ports, slopes and dashpots in a step: of_state: (r, 2 n), from the state. of_loads: (r, r)."""
 
@@ -112,14 +92,14 @@ class ModalPropagator:
         radiation = np.zeros((n, n)) if tip.radiation is None else tip.radiation
         self.radiating = np.flatnonzero(radiation.any(axis=1))
         self._radiation = radiation[np.ix_(self.radiating, self.radiating)]
-        self._group_loss = np.diag((self.loss * tip.omega)[self.radiating])
 
     @cached_property
     def _group(self) -> CoupledModes:
         """The modes that radiate."""
         from cuefem.contact.coupled_modes import CoupledModes  # loaded when used: a lumped cue needs no SciPy
 
-        return CoupledModes(self.tip.omega[self.radiating], self._radiation + self._group_loss)
+        omega = self.tip.omega[self.radiating]
+        return CoupledModes(omega, self._radiation + np.diag(self.loss[self.radiating] * omega))
 
     @cached_property
     def _by_itself(self) -> Array:
@@ -148,17 +128,20 @@ class ModalPropagator:
         """Velocities of ports and slopes, (ports + slopes,), from those of the modes."""
         return np.asarray(self.rows[: len(self.ports) + len(self.slopes)] @ velocities)
 
-    def write_to(self, fields: KernelInput) -> None:
-        """Write the modes to the kernel's input."""
-        fields.modes = len(self.tip.omega)
-        fields.ports = len(self.ports)
-        fields.slopes = len(self.slopes)
-        fields.dashpots = len(self.dashpots)
-        fields.radiating = len(self.radiating)
-        fields.structural_loss = bool(self.loss.any())
-        fields.radiating_modes = self.radiating
-        fields.omega = self.tip.omega
-        fields.rows = self.rows
+    @property
+    def fields(self) -> dict[str, Any]:
+        """The modes in the kernel's input."""
+        return dict(
+            modes=len(self.tip.omega),
+            ports=len(self.ports),
+            slopes=len(self.slopes),
+            dashpots=len(self.dashpots),
+            radiating=len(self.radiating),
+            structural_loss=bool(self.loss.any()),
+            radiating_modes=self.radiating,
+            omega=self.tip.omega,
+            rows=self.rows,
+        )
 
     def tables(self, h: float) -> StepTables:
         """Tables of a step of the length h, s; of 0 those of an impact."""
@@ -170,7 +153,6 @@ class ModalPropagator:
         ports = rows[: len(self.mobility)]
         velocities = np.hstack([ports, np.zeros_like(ports)])
         v, a, impulse = np.eye(3 * m).reshape(3, m, 3 * m)
-        no_loss = np.zeros((3 * m, 3 * m))
         return StepTables(
             h=0.0,
             load_time=1.0,
@@ -181,10 +163,7 @@ class ModalPropagator:
             mean_per_load=self.mobility / 2,
             response=np.hstack([rows * self._by_itself, np.zeros_like(rows)]),
             dashpots=np.zeros((len(self.dashpots), 2 * n + len(ports))),
-            loss=np.zeros((3, n)),
             radiating=np.vstack([v + impulse, a]),
-            radiated=no_loss,
-            dissipated=no_loss,
         )
 
     def _step_tables(self, h: float) -> StepTables:
@@ -193,7 +172,7 @@ class ModalPropagator:
         rise = omega * h * after.versine
         end = _RowVelocities(np.hstack([rows * after.v_v, -rows * after.sine]), h * (rows * after.mean) @ rows.T)
         mean = _RowVelocities(np.hstack([rows * after.mean, -rows * rise]), h * (rows * after.versine) @ rows.T)
-        radiating, radiated, dissipated = self._add_radiating(h, end, mean)
+        radiating = self._add_radiating(h, end, mean)
         dashpots: Array = NOTHING
         if len(self.dashpots):
             # A dashpot's force is minus its mean velocity, which the state and all forces determine.
@@ -212,59 +191,20 @@ class ModalPropagator:
             mean_per_load=mean.of_loads,
             response=h * np.hstack([rows * after.mean, rows * rise]),
             dashpots=dashpots,
-            loss=structural_loss(h, omega, self._by_itself * self.loss) if self.loss.any() else NOTHING,
             radiating=radiating,
-            radiated=radiated,
-            dissipated=dissipated,
         )
 
-    def _add_radiating(self, h: float, end: _RowVelocities, mean: _RowVelocities) -> tuple[Array, Array, Array]:
-        """Add the modes that radiate to the rows' velocities in a step; their own tables of `StepTables`."""
+    def _add_radiating(self, h: float, end: _RowVelocities, mean: _RowVelocities) -> Array:
+        """Add the modes that radiate to the rows' velocities in a step; their own table of `StepTables`."""
         m, rows = len(self.radiating), self.rows[:, self.radiating]
         if not m:
-            return NOTHING, NOTHING, NOTHING
+            return NOTHING
         columns = np.append(self.radiating, len(self.tip.omega) + self.radiating)
         state, mean_velocity = self._group.after(h)
         for velocities, of_group in ((end, state[:m]), (mean, mean_velocity)):
             velocities.of_state[:, columns] += rows @ of_group[:, : 2 * m]
             velocities.of_loads[:] += rows @ of_group[:, 2 * m :] @ rows.T
-        lost = self._group.energy_lost(h, state, mean_velocity)
-        if not self.loss.any():
-            return state, lost, NOTHING
-        dissipated = self._group.energy_lost_to(self._group_loss, h)
-        return state, lost - dissipated, dissipated
-
-    def advanced(self, states: Array, loads: Array, times: Array) -> Array:
-        """States after k times, s, (k, 2, n), from states, (k, 2, n), under modal loads, (k, n), dashpots' included."""
-        t, omega, m = times[:, None], self.tip.omega, len(self.radiating)
-        v, a = states[:, 0], states[:, 1]
-        after = Oscillators.after(t, omega, self.loss)
-        v_after = after.v_v * v - after.sine * a + t * after.mean * loads
-        a_after = after.sine * v + after.a_a * a + t**2 * omega * after.versine * loads
-        result = np.stack([v_after, a_after], axis=1)
-        if m:
-            x = np.concatenate([states[:, :, self.radiating].reshape(-1, 2 * m), loads[:, self.radiating]], axis=1)
-            moved = [self._group.state_after(time) @ start for time, start in zip(times, x, strict=True)]
-            result[:, :, self.radiating] = np.reshape(moved, (-1, 2, m))
-        return result
-
-    def modal_loads(self, states: Array, lengths: Array) -> Array:
-        """The constant modal loads of k steps, (k, n), from the states at their ends, (k + 1, 2, n).
-
-        lengths: (k,), s. The loads of an impact, a step of no length, are 0.
-        """
-        loads, steps, m = np.zeros((len(lengths), len(self.tip.omega))), np.flatnonzero(lengths), len(self.radiating)
-        t = lengths[steps, None]
-        change = states[steps + 1] - self.advanced(states[steps], loads[steps], lengths[steps])
-        after = Oscillators.after(t, self.tip.omega, self.loss)
-        v_per_load, a_per_load = t * after.mean, t**2 * self.tip.omega * after.versine
-        loads[steps] = (change[:, 0] * v_per_load + change[:, 1] * a_per_load) / (v_per_load**2 + a_per_load**2)
-        for length in np.unique(lengths[steps]) if m else ():
-            same = lengths[steps] == length
-            per_load = self._group.state_after(length)[:, 2 * m :]
-            of_group = change[same][:, :, self.radiating].reshape(-1, 2 * m)
-            loads[np.ix_(steps[same], self.radiating)] = of_group @ np.linalg.pinv(per_load).T
-        return loads
+        return state
 
 
 # Strikes with the same tip modes share the propagator, and those with steps of one length its tables: 0.1 to 1 MB for

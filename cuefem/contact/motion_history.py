@@ -1,7 +1,6 @@
 """Motion of cue and ball at any time of a strike and after it.
 
-Over a step the contact's forces are constant and the modal response is exact, so that the states at the ends of steps
-determine the motion at every time.
+The states at the ends of the steps determine the motion in between by cubic polynomials.
 Coordinates: u axial in the direction of the stroke and w lateral, positive on the side that is struck at a positive
 offset; their origin is the tip's centre at first touch.
 """
@@ -14,6 +13,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import CubicHermiteSpline
 from scipy.linalg import expm
 
 from cuefem.beam.modes import Modes
@@ -108,8 +108,7 @@ def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Moti
     Notes
     -----
     u is axial in the direction of the stroke and w lateral, positive on the side that is struck at a positive offset;
-    the origin is the tip's centre at first touch. The modes are integrated exactly over each step, so that the motion
-    is as accurate as the strike at every time.
+    the origin is the tip's centre at first touch. Between the steps' ends the modes move by cubic polynomials.
 
     Examples
     --------
@@ -178,28 +177,28 @@ def _bending(bending: Modes, tip: TipModes) -> tuple[Array, Any]:
 def _path(contact: SolvedContact, times: Array) -> tuple[Array, Array]:
     """Displacements of the modes, (modes, times), and of the ball along each of its velocities, m, (times, n).
 
-    The loads of a step, constant over it, follow from the states at its ends. After the contact cue and ball move
-    freely.
+    Within a step cubic polynomials of time, by positions and velocities at its ends; after the contact free motion.
     """
     assert contact.states is not None
-    propagator, states, lengths = contact.model.propagator, contact.states, contact.steps["length"]
-    ends, rigid = np.append(0.0, contact.steps["time"]), propagator.tip.omega == 0
+    tip, states, lengths = contact.model.propagator.tip, contact.states, contact.steps["length"]
+    ends, rigid = np.append(0.0, contact.steps["time"]), tip.omega == 0
+    velocities = states[:, 0]
+    travelled = np.cumsum(lengths[:, None] * (velocities[:-1] + velocities[1:]) / 2, axis=0)
+    positions = states[:, 1] / np.where(rigid, 1.0, tip.omega)
+    positions[1:, rigid] = travelled[:, rigid]
     step = np.searchsorted(ends, times, side="right") - 1  # the step of each time; after the last, free motion
-    t = times - ends[step]
-    loads = np.vstack([propagator.modal_loads(states, lengths), np.zeros(states.shape[2])])
-    at_times = propagator.advanced(states[step], loads[step], t)
-    travel = t[:, None] * (states[step, 0] + at_times[:, 0]) / 2  # of rigid-body modes, since the start of the step
-    flight = step == len(lengths)
-    if len(propagator.dashpots):
-        at_times[flight], travel[flight] = _damped_flight(propagator.tip, states[-1], t[flight])
-    travelled = np.cumsum(lengths[:, None] * (states[:-1, 0] + states[1:, 0]) / 2, axis=0)
-    rigid_path = np.vstack([0 * states[:1, 0], travelled])[step] + travel
-    displacements = np.where(rigid, rigid_path, at_times[:, 1] / np.where(rigid, 1.0, propagator.tip.omega))
-    return displacements.T, _ball_path(contact, step, t)
+    flight, t = step == len(lengths), times - ends[step]
+    moved, travel = _free_flight(tip, states[-1], t[flight])
+    path = np.empty((len(times), len(rigid)))
+    path[flight] = np.where(rigid, positions[-1] + travel, moved[:, 1] / np.where(rigid, 1.0, tip.omega))
+    for i in np.flatnonzero(~flight):
+        span = slice(step[i], step[i] + 2)
+        path[i] = CubicHermiteSpline(ends[span], positions[span], velocities[span])(times[i])
+    return path.T, _ball_path(contact, step, t)
 
 
-def _damped_flight(tip: TipModes, state: Array, times: Array) -> tuple[Array, Array]:
-    """States of free modes with dashpots after ascending times, s, (k, 2, n), and their integrals of v, (k, n)."""
+def _free_flight(tip: TipModes, state: Array, times: Array) -> tuple[Array, Array]:
+    """States of free modes after ascending times, s, (k, 2, n), and their integrals of v, (k, n)."""
     n = len(tip.omega)
     loads = slice(2 * n, 3 * n)
     system = np.delete(np.delete(CoupledModes(tip.omega, tip.damping).system, loads, axis=0), loads, axis=1)

@@ -28,12 +28,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from cuefem.beam.tip_modes import TipModes
-from cuefem.contact.kernel.declarations import KernelInput
 from cuefem.contact.modal_response import ModalPropagator, raised_propagator, straight_propagator, turning_propagator
 from cuefem.cue import Array
 from cuefem.scene import Scene
@@ -79,7 +78,6 @@ class Straight:
     touch: FirstTouch
     rolls: bool = False
     planes: ClassVar[int] = 1
-    is_raised: ClassVar[bool] = False
 
     @cached_property
     def kinematics(self) -> Array:
@@ -104,15 +102,17 @@ class Straight:
         """Of the ball's velocities, 1/kg."""
         return np.array([1 / mass, 1 / mass, 1 / (inertia * mass)])
 
-    def write_to(self, fields: KernelInput, *, radius: float) -> None:
-        """Write C and its rolling over a ball of ``radius``, m, to the kernel's input."""
-        _write_kinematics(self, fields)
-        if self.rolls:
-            fields.rolling = True
-            fields.dome = self.touch.dome
-            fields.rim = min(self.touch.rim, math.pi)
-            fields.radius = radius
-            fields.arm_t, fields.arm_n = self.arms
+    @property
+    def fields(self) -> dict[str, Any]:
+        """C and its rolling over ball and dome in the kernel's input."""
+        arm_t, arm_n = self.arms
+        return _kinematics(self) | dict(
+            rolling=self.rolls,
+            dome=self.touch.dome,
+            rim=min(self.touch.rim, math.pi),
+            arm_t=arm_t,
+            arm_n=arm_n,
+        )
 
     def horizontal(self, ball: Array) -> Array:
         """(t, n) of the velocity of the ball's centre, m/s, (..., 2), from its velocities, (..., 3)."""
@@ -156,7 +156,6 @@ class Raised:
     angle: float
     table_friction: float
     planes: ClassVar[int] = 2
-    is_raised: ClassVar[bool] = True
     unknowns: ClassVar[int] = 8
 
     @cached_property
@@ -192,10 +191,10 @@ class Raised:
         """Of the ball's velocities, 1/kg."""
         return np.array([1 / mass] * 3 + [1 / (inertia * mass)] * 3)
 
-    def write_to(self, fields: KernelInput, *, radius: float) -> None:
-        """Write C and the table to the kernel's input; the contact does not roll."""
-        _write_kinematics(self, fields)
-        fields.table_friction = self.table_friction
+    @property
+    def fields(self) -> dict[str, Any]:
+        """C and the table in the kernel's input; the contact does not roll."""
+        return _kinematics(self) | dict(table_friction=self.table_friction)
 
     def horizontal(self, ball: Array) -> Array:
         """(t, n) of the horizontal velocity of the ball's centre, m/s, (..., 2), from its velocities, (..., 6)."""
@@ -214,15 +213,14 @@ class Raised:
 Ports = Straight | Turning | Raised
 
 
-def _write_kinematics(ports: Ports, fields: KernelInput) -> None:
-    """Write what all ports have; the last slope of each plane in which the cue bends is that of its end."""
-    fields.forces = len(ports.kinematics)
-    fields.kinematics = ports.kinematics
-    fields.phi = ports.touch.phi
-    fields.planes = ports.planes
-    if fields.slopes:
-        in_shaft = np.ones(fields.slopes // ports.planes - 1)
-        fields.slope_weights = np.tile(np.append(in_shaft, ports.touch.ahead), ports.planes)
+def _kinematics(ports: Ports) -> dict[str, Any]:
+    """What all ports have in the kernel's input."""
+    return dict(
+        forces=len(ports.kinematics),
+        kinematics=ports.kinematics,
+        phi=ports.touch.phi,
+        planes=ports.planes,
+    )
 
 
 def ports_of(scene: Scene) -> Ports:
@@ -231,12 +229,11 @@ def ports_of(scene: Scene) -> Ports:
     ValueError for effects that exclude each other.
     """
     terms, phi = scene.contact_terms, math.asin(abs(scene.stroke.offset))
-    rim = math.inf if terms.tip is None else terms.tip.rim
-    touch = FirstTouch(phi, arm=terms.moment_arm(phi), dome=terms.dome_radius, rim=rim)
+    touch = FirstTouch(phi, arm=terms.moment_arm(phi), dome=terms.dome_radius, rim=terms.rim)
     if terms.table is not None:
         if terms.compliance or terms.turns or terms.window is not None or terms.tip is not None:
             raise ValueError("Elevation takes a tip without tangential compliance, a fixed normal and a single hit")
         return Raised(touch, angle=terms.table.angle, table_friction=terms.table.friction)
-    rolls = bool(terms.turns)
+    rolls = terms.turns
     has_arm = any(touch.arm) or (rolls and touch.dome > 0)
     return Turning(touch, rolls) if has_arm else Straight(touch, rolls)

@@ -133,7 +133,7 @@ class StrikeGrid:
         self.scene, self.ladder = scene, ModeLadder(scene, max_modes)
         self._models: dict[int, ContactModel] = {}
         self._outcomes: dict[tuple[int, int], Outcome] = {}
-        first = round(FIRST_STEPS * self._model(self.ladder.start).tip.steps)
+        first = round(FIRST_STEPS * self._model(self.ladder.start).steps)
         self.steps = [first * 2**k for k in range(64) if first * 2**k <= MAX_STEPS]
 
     def _model(self, i: int) -> ContactModel:

@@ -19,7 +19,7 @@ from cuefem.contact.contact_model import ContactModel
 from cuefem.contact.outcome import Phase
 from cuefem.contact.ports import FirstTouch, Straight
 from cuefem.contact.step_records import SolvedContact, solve_contact
-from cuefem.contact.tips import PowerTip, check_restitution
+from cuefem.contact.tips import STEPS, check_restitution
 from cuefem.cue import Cue
 from cuefem.effects.effect import (
     POSITION_TOLERANCE,
@@ -318,7 +318,7 @@ def solve_side_contact(scene: SideStrike, at: Resolution | None = None) -> Solve
     model = ContactModel(
         propagator=ports.propagator(_position_modes(scene, at)),
         ports=ports,
-        tip=PowerTip(striker.law),
+        tip=striker.law,
         ball=np.array([0.0, -scene.speed, 0.0]),
         ball_mass=striker.mass,
         inertia=1.0,
@@ -326,6 +326,7 @@ def solve_side_contact(scene: SideStrike, at: Resolution | None = None) -> Solve
         friction=math.inf,
         speed=scene.speed,
         time=time,
+        steps=STEPS,
         window=scene.window,
     )
     return solve_contact(model, steps=None if at is None else at.steps)

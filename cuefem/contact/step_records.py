@@ -17,8 +17,8 @@ from cuefem.contact.kernel.library import library
 from cuefem.contact.modal_response import ModalPropagator, repeated_tables
 from cuefem.contact.outcome import IMPACT, SEPARATION, History, Phase, contact_state
 from cuefem.contact.ports import Raised
-from cuefem.contact.tips import Leather
 from cuefem.cue import Array
+from cuefem.effects.force_law import LeatherLaw
 from cuefem.scene import Outcome
 
 FRICTION_STATES = {
@@ -207,7 +207,7 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
     """
     kernel, propagator = library(), model.propagator
     start = np.array([model.speed * propagator.tip.approach, np.zeros_like(propagator.tip.approach)])
-    fields = model.kernel_input(step=model.time / (steps or model.tip.steps))
+    fields = model.kernel_input(step=model.time / (steps or model.steps))
     state = KernelState(modes=start.copy(), separated_modes=start.copy())
     state.ball[: len(model.ball)] = model.ball.tolist()
     port_velocities = propagator.port_velocities(start[0])
@@ -257,7 +257,7 @@ def _losses(model: ContactModel, state: KernelState, last: np.void) -> Losses:
     tangential = state.work[CONSTANTS["T"]] + state.work[CONSTANTS["P"]]
     shear = tangential if model.tip.slips_in_parts and model.never_slips else state.shear_loss
     return Losses(
-        tip=model.tip.law.loss(state.max_indentation),
+        tip=model.tip.loss(state.max_indentation),
         friction=tangential - shear,
         shear=shear,
         table=sum(state.work[CONSTANTS["UP"] :]),
@@ -268,8 +268,8 @@ def _losses(model: ContactModel, state: KernelState, last: np.void) -> Losses:
 
 def _failure(model: ContactModel, state: KernelState) -> Exception:
     """The exception for a contact that did not end."""
-    if state.status == CONSTANTS["INDENTATION_OUT_OF_RANGE"] and isinstance(model.tip, Leather):
-        return model.tip.law.out_of_range(state.indentation)
+    if state.status == CONSTANTS["INDENTATION_OUT_OF_RANGE"] and isinstance(model.tip, LeatherLaw):
+        return model.tip.out_of_range(state.indentation)
     if state.status == CONSTANTS["SLOPE_OUT_OF_RANGE"]:
         return SlopeOutOfRange(
             f"the axial force of {state.axial_force:.4g} N bends the shaft by {state.max_slope:.3g} rad at its tip, "

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from cuefem.contact.kernel.declarations import CONSTANTS, KernelInput
-from cuefem.effects.contact_terms import ContactTerms, PowerLaw, TipModel
+from cuefem.contact.kernel.declarations import CONSTANTS
+from cuefem.effects.contact_terms import PowerLaw
 from cuefem.effects.force_law import LeatherLaw, TipLaw, contact_time_ratio
 from cuefem.quantity.fields import OutOfBounds, Quantity
 from cuefem.scene import Scene
@@ -22,88 +22,46 @@ ANNULI_MARGIN = 1.05  # annuli up to 1.05 times the largest indentation
 STEPS, LEATHER_STEPS, STICKING_STEPS = 400, 200, 800
 
 
-@dataclass(frozen=True)
-class PowerTip:
-    """A tip whose force is a power of its indentation. Its patch sticks or slips as a whole.
-
-    law: F = stiffness d^exponent. compliance: of the tangential spring, m/N; 0 for a rigid patch. steps: default number
-    in a head-on contact time.
-    """
-
-    law: TipLaw
-    compliance: float = 0.0
-    steps: int = STEPS
-    slips_in_parts: ClassVar[bool] = False
-
-    @property
-    def is_rigid(self) -> bool:
-        """Whether the tip has no tangential compliance."""
-        return self.compliance == 0
-
-    def write_to(self, fields: KernelInput) -> None:
-        """Write law and patch to the kernel's input."""
-        fields.law = CONSTANTS["POWER_LAW"]
-        fields.stiffness = self.law.stiffness
-        fields.exponent = self.law.exponent
-        fields.indentation_limit = math.inf
-        fields.patch = CONSTANTS["RIGID_PATCH"] if self.is_rigid else CONSTANTS["SPRING_PATCH"]
-        fields.compliance = self.compliance
-
-
-@dataclass(frozen=True)
-class Leather:
-    """A leather tip. Its patch slips annulus by annulus.
-
-    law: series of force and tangential compliance. surface_restitution: square root of the part of the tangential
-    strain energy that the leather returns. largest_indentation: of a head-on impact, m. steps: default number in a
-    head-on contact time.
-    """
-
-    law: LeatherLaw
-    surface_restitution: float
-    largest_indentation: float
-    steps: int
-    slips_in_parts: ClassVar[bool] = True
-    is_rigid: ClassVar[bool] = False
-
-    def write_to(self, fields: KernelInput) -> None:
-        """Write law and patch to the kernel's input."""
-        law = self.law
-        fields.law = CONSTANTS["LEATHER_LAW"]
-        fields.terms = len(law.force_terms)
-        fields.force_terms = np.array(law.force_terms)
-        fields.compliance_terms = np.array(law.compliance_terms)
-        fields.indentation_limit = law.indentation_limit
-        fields.patch = CONSTANTS["PARTIAL_SLIP"]
-        fields.surface_restitution = self.surface_restitution
-        fields.annuli_end = min(law.indentation_limit, ANNULI_MARGIN * self.largest_indentation)
-
-
-def tip_of(scene: Scene) -> PowerTip | Leather:
-    """The tip of a scene. ValueError for a restitution below its bound."""
-    terms = scene.contact_terms
-    return _power_tip(scene, terms) if terms.tip is None else _leather(scene, terms.tip)
-
-
-def _power_tip(scene: Scene, terms: ContactTerms) -> PowerTip:
-    """A tip with the law of an effect, or a linear one."""
-    restitution = scene.tip.restitution
+def tip_of(scene: Scene) -> TipLaw | LeatherLaw:
+    """The forces of a scene's tip. ValueError for a restitution below its bound."""
+    terms, restitution = scene.contact_terms, scene.tip.restitution
+    if terms.tip is not None:
+        check_restitution("Tip.restitution", restitution, MIN_LEATHER_RESTITUTION)
+        return scene.tip_law(restitution, scene.stroke.offset)
     check_restitution("Tip.restitution", restitution)
     exponent, speed = terms.law or PowerLaw(exponent=1.0, speed=scene.stroke.speed)
     law = TipLaw.for_contact_time(exponent, restitution, mass=scene.reduced_mass, speed=speed, time=scene.contact_time)
-    steps = STICKING_STEPS if math.isinf(scene.tip.friction) else STEPS
-    return PowerTip(law, compliance=terms.compliance / scene.stiffness, steps=steps)
+    return replace(law, compliance=terms.compliance / scene.stiffness)
 
 
-def _leather(scene: Scene, tip: TipModel) -> Leather:
-    restitution, offset = scene.tip.restitution, abs(scene.stroke.offset)
-    check_restitution("Tip.restitution", restitution, MIN_LEATHER_RESTITUTION)
-    slips_at_touch = math.tan(math.asin(offset)) > scene.tip.friction
-    return Leather(
-        law=tip.law(scene.ball.radius, offset, restitution),
-        surface_restitution=tip.surface_restitution,
-        largest_indentation=scene.max_indentation,
-        steps=STEPS if slips_at_touch else LEATHER_STEPS,
+def default_steps(scene: Scene) -> int:
+    """Default number of steps in a head-on contact time."""
+    if scene.contact_terms.tip is None:
+        return STICKING_STEPS if math.isinf(scene.tip.friction) else STEPS
+    slips_at_touch = math.tan(abs(scene.stroke.angle)) > scene.tip.friction
+    return STEPS if slips_at_touch else LEATHER_STEPS
+
+
+def tip_fields(law: TipLaw | LeatherLaw, max_indentation: float) -> dict[str, Any]:
+    """Law and patch in the kernel's input; max_indentation: of a head-on impact, m."""
+    if isinstance(law, TipLaw):
+        return dict(
+            law=CONSTANTS["POWER_LAW"],
+            stiffness=law.stiffness,
+            exponent=law.exponent,
+            indentation_limit=math.inf,
+            patch=CONSTANTS["RIGID_PATCH"] if law.is_rigid else CONSTANTS["SPRING_PATCH"],
+            compliance=law.compliance,
+        )
+    return dict(
+        law=CONSTANTS["LEATHER_LAW"],
+        terms=len(law.force_terms),
+        force_terms=np.array(law.force_terms),
+        compliance_terms=np.array(law.compliance_terms),
+        indentation_limit=law.indentation_limit,
+        patch=CONSTANTS["PARTIAL_SLIP"],
+        surface_restitution=law.surface_restitution,
+        annuli_end=min(law.indentation_limit, ANNULI_MARGIN * max_indentation),
     )
 
 

@@ -3,29 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple, Protocol
 
 from cuefem.effects.force_law import LeatherLaw
 
 
-@dataclass(frozen=True)
-class TipModel:
-    """A complete tip model: the position of the contact on the cue, and its forces.
+class WholeTip(Protocol):
+    """An effect that models the whole tip, such as `LeatherTip`; diameter: of the tip, m. phi: contact's angle, rad."""
 
-    diameter: m. dome_radius: m; 0 for a flat tip. rim: the contact's angle at which the dome ends, rad; beyond it the
-    ball rolls on an edge. surface_restitution: square root of the part of the tangential strain energy that the leather
-    returns. moment_arm: displacement (u, w) of the contact per unit rotation of the tip's end section, m, at an angle
-    >= 0, rad. law: the forces on a ball by its radius, m, the offset b/R >= 0 and the restitution.
-    """
+    @property
+    def dome_radius(self) -> float:
+        """m; inf of a flat tip."""
 
-    diameter: float
-    dome_radius: float
-    rim: float
-    surface_restitution: float
-    moment_arm: Callable[[float], tuple[float, float]]
-    law: Callable[[float, float, float], LeatherLaw]
+    def rim(self, diameter: float) -> float:
+        """The contact's angle at which the dome ends, rad; beyond it the ball rolls on an edge."""
+
+    def moment_arm(self, phi: float, diameter: float) -> tuple[float, float]:
+        """Displacement (u, w) of the contact per unit rotation of the tip's end section, m."""
+
+    def law(self, diameter: float, ball_radius: float, offset: float, restitution: float) -> LeatherLaw:
+        """The forces on a ball at an offset b/R >= 0."""
 
 
 class PowerLaw(NamedTuple):
@@ -45,10 +42,12 @@ class BilliardTable(NamedTuple):
 class ContactTerms:
     """Terms of the contact; each effect of a scene adds its own (`Effect.add_to_contact`), in any order.
 
-    tip_diameter: of the cue's end, m; None for a lumped cue. law: of the force over the indentation, by default linear.
-    tip: a complete tip model. turns: whether the normal turns as the contact rolls over ball and tip. table: under the
-    ball of a raised cue. window: simulated time after the first separation, s. They become the kernel's input in
-    `cuefem.contact.contact_model`.
+    Radii and compliances add; what a contact has once is set by effects of which a scene has one (`check_effects`).
+
+    tip_diameter: of the cue's end or of the leather tip on it, m; None for a lumped cue. law: of the force over the
+    indentation, by default linear. tip: a whole tip, which replaces law, domes and compliances. turns: whether the
+    normal turns as the contact rolls over ball and tip. table: under the ball of a raised cue. window: simulated time
+    after the first separation, s. They become the kernel's input in `cuefem.contact.contact_model`.
     """
 
     def __init__(self, tip_diameter: float | None = None) -> None:
@@ -56,8 +55,8 @@ class ContactTerms:
         self.dome_radii: list[float] = []
         self.compliances: list[float] = []
         self.law: PowerLaw | None = None
-        self.tip: TipModel | None = None
-        self.turns: bool | None = None
+        self.tip: WholeTip | None = None
+        self.turns = False
         self.table: BilliardTable | None = None
         self.window: float | None = None
 
@@ -69,35 +68,16 @@ class ContactTerms:
         """Add tangential compliance, relative to the normal loading compliance; compliances in series add."""
         self.compliances.append(value)
 
-    def set_law(self, law: PowerLaw) -> None:
-        """Set the force-indentation law of the tip; ValueError the second time."""
-        _check_first(self.law, "law of the tip")
-        self.law = law
-
-    def set_tip(self, tip: TipModel) -> None:
-        """Set the model of the whole tip; ValueError the second time."""
-        _check_first(self.tip, "whole tip")
-        self.tip = tip
-
-    def turn_normal(self) -> None:
-        """Let the normal turn as the contact rolls over ball and tip; ValueError the second time."""
-        _check_first(self.turns, "turning normal")
-        self.turns = True
-
-    def set_table(self, table: BilliardTable) -> None:
-        """Set the table under the ball of a raised cue; ValueError the second time."""
-        _check_first(self.table, "table")
-        self.table = table
-
-    def set_window(self, window: float) -> None:
-        """Set the time simulated after the first separation, s; ValueError the second time."""
-        _check_first(self.window, "window for a double hit")
-        self.window = window
-
     @property
     def dome_radius(self) -> float:
         """Radius of the tip's dome, m; 0 without one."""
-        return math.fsum(self.dome_radii) + (0.0 if self.tip is None else self.tip.dome_radius)
+        radii = self.dome_radii if self.tip is None else [self.tip.dome_radius]
+        return math.fsum(filter(math.isfinite, radii))
+
+    @property
+    def rim(self) -> float:
+        """The contact's angle at which the tip's dome ends, rad; beyond it the ball rolls on an edge."""
+        return math.inf if self.tip is None else self.tip.rim(self.tip_diameter or 0.0)
 
     @property
     def compliance(self) -> float:
@@ -110,12 +90,6 @@ class ContactTerms:
         On a dome of radius r the contact is r (1 - cos(phi)) along x and -r sin(phi) along w from its apex.
         """
         if self.tip is not None:
-            return self.tip.moment_arm(phi)
+            return self.tip.moment_arm(phi, self.tip_diameter or 0.0)
         radius = math.fsum(self.dome_radii)
         return -radius * math.sin(phi), radius * (1 - math.cos(phi))
-
-
-def _check_first(present: Any, label: str) -> None:
-    """ValueError if a term that a contact has once is present."""
-    if present is not None:
-        raise ValueError(f"Scene.effects must add one {label} to the contact; got a second one")

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -26,12 +26,19 @@ class TipLaw:
     """A power law (`PowerLawTip`; exponent 1 is the base model's): F = stiffness d^exponent during loading, N.
 
     Unloading follows the loading curve with the indentation scaled by e^2, which returns the part e^2 of the work; e is
-    the restitution.
+    the restitution. compliance: of a tangential spring, m/N; 0 for a rigid patch. The patch sticks or slips as a whole.
     """
 
     stiffness: float
     exponent: float
     restitution: float
+    compliance: float = 0.0
+    slips_in_parts: ClassVar[bool] = False
+
+    @property
+    def is_rigid(self) -> bool:
+        """Whether the patch has no tangential compliance."""
+        return self.compliance == 0
 
     @classmethod
     def for_contact_time(cls, exponent: float, restitution: float, *, mass: float, speed: float, time: float) -> TipLaw:
@@ -72,6 +79,8 @@ class IndentationOutOfRange(ValueError):
 class LeatherLaw:
     """The law of leather: series of F and k_t in the root of the indentation, restitution e, and range of validity, m.
 
+    surface_restitution: square root of the part of the tangential strain energy that the leather returns. The patch
+    slips annulus by annulus.
     Unloading follows the loading curve with the indentation scaled by e^2, which returns the part e^2 of the work. The
     virtual indentation is that of the loading curve at the same force.
     """
@@ -80,16 +89,20 @@ class LeatherLaw:
     compliance_terms: tuple[float, ...]
     restitution: float
     indentation_limit: float
+    surface_restitution: float = 1.0
+    slips_in_parts: ClassVar[bool] = True
+    is_rigid: ClassVar[bool] = False
 
     @classmethod
-    def fit(cls, depth: Array, force: Array, shear: Array, restitution: float) -> LeatherLaw:
+    def fit(cls, depth: Array, force: Array, shear: Array, restitution: float, surface: float = 1.0) -> LeatherLaw:
         """The law through computed curves, (n,), ascending, without zero, by least squares of relative differences.
 
         depth, force: of a central impact, m and N. shear: tangential stiffness of the patch at that depth, N/m.
+        surface: the surface restitution.
         """
         root = np.sqrt(depth)
         terms = _series(root, force, lowest=3), _series(root, root / shear, lowest=0)
-        return cls(*terms, restitution, float(depth[-1]))
+        return cls(*terms, restitution, float(depth[-1]), surface)
 
     @cached_property
     def _force(self) -> Polynomial:

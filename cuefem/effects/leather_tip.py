@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from cuefem.cue import MAX_LEATHER_MODULUS, Array, Cue
 from cuefem.cue.materials import LEATHER_CONSTANTS
-from cuefem.effects.contact_terms import ContactTerms, TipModel
+from cuefem.effects.contact_terms import ContactTerms
 from cuefem.effects.cue_effects import PointMass
 from cuefem.effects.effect import CueEffect, Effect
 from cuefem.effects.force_law import LeatherLaw
@@ -247,11 +247,11 @@ class LeatherTip(CueEffect):
         return (PointMass(position=0.0, mass=self.mass_on(cue)),)
 
     def add_to_contact(self, terms: ContactTerms) -> None:
-        """The complete tip model, and the rolling contact."""
+        """The whole tip, and the rolling contact."""
         if terms.tip_diameter is not None:  # `check_effects` rejects a lumped cue
-            terms.set_tip(tip_model(self, self.diameter_on(terms.tip_diameter)))
-        if self.rolling:
-            terms.turn_normal()
+            terms.tip = self
+            terms.tip_diameter = self.diameter_on(terms.tip_diameter)
+        terms.turns = self.rolling
 
     def check_diameter(self, diameter: float) -> None:
         """Check that the tip fits a shaft, and that its height is computable.
@@ -415,6 +415,14 @@ class LeatherTip(CueEffect):
         stiffness = np.maximum.accumulate(1 / compliance)  # near the rim it levels off, to a thousandth
         return RADII * diameter, np.append(0.0, self.E * diameter * stiffness)
 
+    def rim(self, diameter: float) -> float:
+        """The contact's angle at which the dome ends, rad; ``diameter``: of the tip, m."""
+        return math.asin(diameter / 2 / self.dome_radius) if self.dome_radius > diameter / 2 else math.pi / 2
+
+    def law(self, diameter: float, ball_radius: float, offset: float, restitution: float) -> LeatherLaw:
+        """The tip's forces on a ball at an offset b/R >= 0; diameter: of the tip, m."""
+        return _law(self, diameter, ball_radius, offset, restitution)
+
     def _dome_depth(self, distance: float) -> float:
         """Depth of the dome below its apex at a distance from the axis, m."""
         return distance**2 / self.dome_radius / (1 + math.sqrt(max(1 - (distance / self.dome_radius) ** 2, 0.0)))
@@ -476,19 +484,6 @@ class LeatherTip(CueEffect):
         return matrices * np.array([[1, math.copysign(1, offset)], [math.copysign(1, offset), 1]])
 
 
-def tip_model(tip: LeatherTip, diameter: float) -> TipModel:
-    """Tip model of a leather tip of this diameter, m."""
-    has_rim = tip.dome_radius > diameter / 2  # the dome ends at a rim
-    return TipModel(
-        diameter=diameter,
-        dome_radius=tip.dome_radius if math.isfinite(tip.dome_radius) else 0.0,
-        rim=math.asin(diameter / 2 / tip.dome_radius) if has_rim else math.pi / 2,
-        surface_restitution=tip.surface_restitution,
-        moment_arm=lambda phi: tip.moment_arm(phi, diameter),
-        law=lambda ball_radius, offset, restitution: _law(tip, diameter, ball_radius, offset, restitution),
-    )
-
-
 @lru_cache(maxsize=64)
 def _loading_curve(tip: LeatherTip, diameter: float, ball_radius: float) -> tuple[Array, Array, Array]:
     """Patch radius, indentation and force of a central impact, without zero, shared by the laws of all offsets."""
@@ -505,4 +500,4 @@ def _law(tip: LeatherTip, diameter: float, ball_radius: float, offset: float, re
     radius, shear = tip.shear_stiffness(diameter, offset)
     # stiffness over radius is nearly straight
     stiffness = patch * np.interp(patch, radius[1:], shear[1:] / radius[1:])
-    return LeatherLaw.fit(depth, force, stiffness, restitution)
+    return LeatherLaw.fit(depth, force, stiffness, restitution, tip.surface_restitution)

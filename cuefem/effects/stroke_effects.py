@@ -51,7 +51,7 @@ class SecondHit(Effect):
 
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The simulated time after the first separation."""
-        terms.set_window(self.window)
+        terms.window = self.window
 
 
 @dataclass(frozen=True)
@@ -107,4 +107,4 @@ class Elevation(Effect):
 
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The table under the ball."""
-        terms.set_table(BilliardTable(self.angle, self.friction))
+        terms.table = BilliardTable(self.angle, self.friction)

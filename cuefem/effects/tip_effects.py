@@ -149,7 +149,7 @@ class PowerLawTip(TipEffect):
 
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The power law."""
-        terms.set_law(PowerLaw(self.exponent, self.speed))
+        terms.law = PowerLaw(self.exponent, self.speed)
 
 
 @dataclass(frozen=True)
@@ -185,4 +185,4 @@ class RollingContact(TipEffect):
 
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The normal turns."""
-        terms.turn_normal()
+        terms.turns = True

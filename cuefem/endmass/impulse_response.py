@@ -73,8 +73,10 @@ def imposed_velocity_impulse(tip: TipModes, T: float, velocity: Array, ball_inve
     tables, means = repeated_tables(propagator, T / STEPS), (velocity[1:] + velocity[:-1]) / 2
     first_impulse = velocity[0] / (float(propagator.mobility[1, 1]) + ball_inverse_mass)
     velocities = first_impulse * propagator.ports[1]
-    fields, state = KernelInput(), KernelState(modes=np.array([velocities, np.zeros_like(velocities)]))
-    propagator.write_to(fields)
+    fields, state = (
+        KernelInput(**propagator.fields),
+        KernelState(modes=np.array([velocities, np.zeros_like(velocities)])),
+    )
     contact = kernel.contact_new(fields, state)
     if not contact:
         raise MemoryError("no memory for the steps of a contact")

@@ -192,7 +192,7 @@ class Scene:
         object.__setattr__(self, "effects", check_effects(self.cue, self.effects))
         if isinstance(self.cue, Cue) and self.cue.segments and self.cue.body_mass == 0:
             warn_light_cue(self.cue.mass, self.cue.length)
-        has_tip_model = self.contact_terms.tip is not None  # `terms_at_contact` rejects effects that may act only once
+        has_tip_model = self.contact_terms.tip is not None
         for name, unit in (("contact_time", "s"), ("stiffness", "N/m")):
             value = getattr(self.tip, name)
             if has_tip_model and value is not None:
@@ -240,8 +240,8 @@ class Scene:
     @property
     def tip_diameter(self) -> float:
         """Diameter of the leather tip, or else of the shaft's end, m; ValueError for a lumped cue."""
-        tip = self.contact_terms.tip
-        return self.shaft.segments[0].tip_diameter if tip is None else float(tip.diameter)
+        diameter = self.contact_terms.tip_diameter
+        return self.shaft.segments[0].tip_diameter if diameter is None else diameter
 
     @property
     def _end_diameter(self) -> float | None:
@@ -307,10 +307,7 @@ class Scene:
 
     def tip_law(self, restitution: float = 1.0, offset: float = 0.0) -> LeatherLaw:
         """The force-indentation law of the `LeatherTip` on this cue and ball; ValueError without one."""
-        tip = self.contact_terms.tip
-        if tip is None:
-            raise ValueError("Scene.effects must hold a LeatherTip for its force-indentation law; got none")
-        return tip.law(self.ball.radius, abs(offset), restitution)
+        return self.leather_tip.law(self.tip_diameter, self.ball.radius, abs(offset), restitution)
 
     @property
     def max_indentation(self) -> float:

@@ -152,8 +152,7 @@ def test_step_without_forces_is_repeated_at_half_its_length(effects: tuple[cf.Ef
     """Newton's method alternates where a law rises steeply, and then hardly: force = 3e4 N (indentation/m)^0.1."""
     scene = replace(kim_scene(0.3), effects=effects)
     model = model_of(scene, tip_modes_of(scene, KIM_AT))
-    law = replace(model.tip.law, exponent=0.1, stiffness=3e4)
-    model = replace(model, tip=replace(model.tip, law=law))
+    model = replace(model, tip=replace(model.tip, exponent=0.1, stiffness=3e4))
     halved = solve_contact(model, steps=20).steps
     halvings = round(math.log2(model.time / 20 / halved["length"][0]))
     assert halvings >= 1

@@ -20,8 +20,8 @@ import numpy as np
 
 import cuefem as cf
 from cuefem.beam.tip_modes import TipModes, lumped_tip_modes
-from cuefem.effects import leather_tip
 from cuefem.effects.force_law import LeatherLaw
+from cuefem.effects.leather_tip import LeatherTip
 from cuefem.scene import Scene
 
 DATA = Path(__file__).parent
@@ -92,11 +92,11 @@ def stored_law(row: dict[str, Any]) -> Iterator[None]:
     if "law" not in row:
         yield
         return
-    real, laws = leather_tip.tip_model, row["law"]
+    laws = row["law"]
 
-    def law(radius: float, offset: float, restitution: float) -> LeatherLaw:
+    def law(tip: LeatherTip, diameter: float, radius: float, offset: float, restitution: float) -> LeatherLaw:
         force, give, most = laws["at offset" if offset else "head on"]
-        return LeatherLaw(tuple(force), tuple(give), restitution, most)
+        return LeatherLaw(tuple(force), tuple(give), restitution, most, tip.surface_restitution)
 
-    with mock.patch.object(leather_tip, real.__name__, lambda tip, diameter: replace(real(tip, diameter), law=law)):
+    with mock.patch.object(LeatherTip, "law", law):
         yield

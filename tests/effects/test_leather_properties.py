@@ -10,7 +10,6 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from cuefem import LeatherTip
-from cuefem.effects.leather_tip import tip_model
 from tests.helpers.examples import examples
 
 DIAMETERS = st.floats(8e-3, 15e-3)
@@ -74,7 +73,7 @@ def test_leather_law_stiffness_of_every_annulus_is_positive(tip: LeatherTip, dia
     diameters) by less than 0.4 % (85,102 random tips). Only where the dome ends within 3 % of a diameter over the
     ferrule, and the contact area is at that rim, its series of seven terms falls by up to 0.9 % (30 of 4632 such tips).
     """
-    law = tip_model(possible(tip, diameter), diameter).law(0.028575, offset, 0.7)
+    law = possible(tip, diameter).law(diameter, 0.028575, offset, 0.7)
     depth = law.indentation_limit * np.linspace(0.0, 1.0, 1000) ** 2
     slope, stiffness = law.slope(depth), law.at(depth)[1]
     assert np.all(np.diff(slope)[depth[1:] < 0.8 * law.indentation_limit] > 0)

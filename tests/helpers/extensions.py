@@ -82,14 +82,11 @@ def cap_effect() -> type[TipEffect]:
 
         radius: Annotated[float, Quantity("m")]
         compliance: float = 0.0
-        window: float = 0.0
 
         def add_to_contact(self, terms: ContactTerms) -> None:
-            """A dome, a tangential compliance relative to the normal one, the window of a second hit."""
+            """A dome, and a tangential compliance relative to the normal one."""
             terms.add_dome(self.radius)
             if self.compliance:
                 terms.add_compliance(self.compliance)
-            if self.window:
-                terms.set_window(self.window)
 
     return Cap

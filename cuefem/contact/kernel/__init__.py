@@ -36,7 +36,7 @@ def sources_digest() -> str:
 def check() -> None:
     """KernelError unless the kernel is there, whole, and built from the sources beside it.
 
-    The library holds their digest (contact.c), behind all code, so that one that was cut short has lost it.
+    The library holds their digest (run.c), behind all code, so that one that was cut short has lost it.
     """
     if not BINARY.exists():
         raise KernelError(f"the contact's compiled kernel is missing; {BUILD}")

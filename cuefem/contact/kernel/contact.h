@@ -114,6 +114,7 @@ typedef struct {
     double *separated_modes;                /* the same after the last separation */
     double ball[BALL_VELOCITIES];           /* velocities, m/s */
     double port_velocities[CUE_VELOCITIES]; /* of ports and slopes */
+    double mean_velocities[CUE_VELOCITIES]; /* the same over the last step */
     int status, steps, steps_to_last_separation;
     int phase, friction_state;
     double time, next_step;      /* s; length of the next step, s */
@@ -126,6 +127,8 @@ typedef struct {
     double max_slope, axial_force; /* largest slope of the cue's end, rad; the force on the cue then, N */
     bool tip_stuck;                /* in the last step */
     bool on_table, table_stuck;    /* in the last step: the table presses the ball; its lowest point sticks */
+    double last_F[FORCES], former_F[FORCES]; /* of the last step in contact and the one before it, N */
+    double virtual_mid;           /* virtual indentation of leather at the middle of the last step, m */
     double shift, shift_mid;      /* of the tip along t against the ball, m; at the middle of the last step */
     double origin;                /* shift at which a spring patch is unstrained, m */
     double annulus_force[ANNULI]; /* at the middle of the last step, N */
@@ -143,15 +146,10 @@ typedef struct {
     const double *end_per_load, *mean_per_load; /* velocities per load on ports and slopes */
     const double *response;                     /* change of the state per load */
     const double *dashpots;                     /* forces of the dashpots from the state and the loads */
-    const double *loss;                         /* energy lost by each mode */
     const double *radiating;                    /* modes that radiate, from their state and loads */
-    const double *radiated, *dissipated;        /* their losses, quadratic forms in state and loads */
 } StepTables;
 
 typedef struct Contact Contact;
-
-/* Normal force of a loading tip, N, and its slope, N/m, at an indentation > 0, m. */
-typedef double Law(const Input *in, double indentation, double *slope);
 
 /* Normal force of the tip at an indentation: force, N, and slope, N/m. virtual: where the loading curve has
    this force, m; scale: indentation per virtual indentation. */
@@ -180,35 +178,13 @@ typedef struct {
     int (*friction_state)(const Contact *c); /* of the step */
 } Patch;
 
-/* A cue in the plane of t and n (level.c), or one raised over a table (raised.c). Both solvers return whether
-   they converged. */
-typedef struct {
-    bool (*forces)(Contact *c);              /* of a step */
-    bool (*impulses)(Contact *c);            /* of an impact, without a normal one */
-    int (*friction_state)(const Contact *c); /* of the step */
-} Cue;
-
-/* The contact while the tip loads, unloads, or is free (phases.c). */
-typedef struct {
-    bool touches; /* whether tip and ball are in contact */
-    int event;   /* sign of the indentation's change at which a step ends: touch 1, separation -1; none 0 */
-    NormalForce (*curve)(const Contact *c, double indentation); /* in contact alone */
-    void (*update)(Contact *c);                                 /* the tip's state after a step */
-    void (*next)(Contact *c);                                   /* phase and length of the next step */
-    int (*status)(const State *s);
-} Phase;
-
 extern const Patch rigid_patch, spring_patch, partial_slip;
-extern const Cue level_cue, raised_cue;
-extern const Phase phases[];
 
 /* A contact: its input and state, the variants that serve it, and the step under way. */
 struct Contact {
     const Input *in;
     State *s;
-    Law *law;
     const Patch *patch;
-    const Cue *cue;
     StepTables tables;
     double end_free[CUE_VELOCITIES], mean_free[CUE_VELOCITIES]; /* of ports and slopes without loads */
     double C[FORCES][VELOCITIES];                               /* v = C y, at mid-step */
@@ -219,19 +195,17 @@ struct Contact {
     double u_stick[FORCES];                      /* u of a point that sticks */
     double V[FORCES][FORCES], W[FORCES][FORCES]; /* v = v_free + V F, u = u_free + W F */
     double F[FORCES], v[FORCES], u[FORCES];      /* the step's forces, N, and velocities */
-    double last_F[2][FORCES];                    /* of the last step in contact and the one before it, N */
     bool on_table, table_stuck;   /* in the step: of a raised cue, as in State */
     int slip;                     /* its direction, or STICK; a patch that slips in parts keeps STICK */
     NormalForce normal;           /* of a level cue, at mid-step */
     Edge edges[ANNULI + 1];       /* of the annuli */
-    Edge last_middle;             /* at the virtual indentation at the middle of the last step */
     double annulus_force[ANNULI]; /* at mid-step, N; State has that of the last step */
     double annuli_loss;           /* dissipated in the step, J */
     double axial_force;           /* on the cue, N */
-    double mean_velocities[CUE_VELOCITIES]; /* of ports and slopes */
     double mean_spin;                       /* of the ball, times its radius, m/s */
     double ball_loads[BALL_VELOCITIES];
     double *radiating; /* state and loads of the modes that radiate */
+    double *before;    /* state of the modes before the step */
     double loads[];    /* on ports, slopes and dashpots */
 };
 
@@ -241,7 +215,8 @@ static const double REL_TOL = 1e-12, REL_TOL_ACCEPTED = 1e-7;
 static const double MIN_FORCE = 1e-9; /* N, least scale of the relative change */
 
 static inline double larger(double a, double b) { return a > b ? a : b; }
-static inline const Phase *phase_of(const Contact *c) { return &phases[c->s->phase]; }
+static inline bool touches(const State *s) { return s->phase != FREE; }
+static inline bool is_raised(const Input *in) { return in->forces == FORCES; }
 static inline void nothing(Contact *c) { (void)c; }
 
 /* modes.c */
@@ -251,19 +226,25 @@ void add_losses(Contact *c);
 void advance_modes(Contact *c);
 
 /* laws.c */
-double power_law(const Input *in, double indentation, double *slope);
-double leather_law(const Input *in, double indentation, double *slope);
-NormalForce loading_curve(const Contact *c, double indentation);
-NormalForce unloading_curve(const Contact *c, double indentation);
-double residual_indentation(const Contact *c);
+NormalForce normal_force(const Input *in, const State *s, double indentation);
+NormalForce loading_curve(const Input *in, double indentation);
+double residual_indentation(const Input *in, const State *s);
 double tangential_stiffness(const Input *in, double virtual);
 
 /* kinematics.c */
 void contact_matrices(Contact *c);
 void velocities(Contact *c);
 
+/* level.c, raised.c: the forces of a step, the impulses of an impact. They return whether they were found. */
+bool level_forces(Contact *c);
+bool level_impulses(Contact *c);
+bool raised_forces(Contact *c);
+bool raised_impulses(Contact *c);
+
 /* phases.c */
-double full_step(const Contact *c);
+double full_step(const Input *in, const State *s);
+void update_tip(Contact *c);
+void next_phase(Contact *c);
 void separate(Contact *c);
 
 /* step.c */

@@ -139,9 +139,7 @@ class StepTables(Declared):
     to the velocities of ports and slopes at the end of the step and on average over it, dashpots included.
     end_per_load, mean_per_load: (c, c), the same from loads on ports and slopes. response: (c + d, 2 n), change of the
     state of the modes that do not radiate, per load. dashpots: (d, 2 n + c), the dashpots' forces from the state and
-    the loads. loss: (3, n), of `structural_loss`. radiating: (2 m, 3 m), state of the modes that radiate, from the x of
-    `CoupledModes`. radiated, dissipated: (3 m, 3 m), their losses by radiation and by loss factors, quadratic forms in
-    x.
+    the loads. radiating: (2 m, 3 m), state of the modes that radiate, from the x of `CoupledModes`.
     """
 
     __slots__ = ()

@@ -35,7 +35,7 @@ static void kinematics_at_middle(Contact *c)
     const int ports = in->ports, n_cue = ports + in->slopes, n_velocities = ports + in->speeds;
     const double half = c->tables.h / 2;
     for (int a = 0; a < in->slopes; a++)
-        c->shortening[a] = in->slope_weights[a] * (s->slopes[a] + half * c->mean_velocities[ports + a]);
+        c->shortening[a] = in->slope_weights[a] * (s->slopes[a] + half * s->mean_velocities[ports + a]);
     for (int f = 0; f < in->forces; f++) {
         memcpy(c->C[f], in->kinematics + f * n_velocities, ports * sizeof(double));
         memcpy(c->C[f] + n_cue, in->kinematics + f * n_velocities + ports, in->speeds * sizeof(double));

@@ -4,7 +4,8 @@
    with the residual indentation d0 = (1 - e^2) D, so that a part e^2 of the work is returned. */
 #include "contact.h"
 
-double power_law(const Input *in, double indentation, double *slope)
+/* Normal force of a loading tip, N, and its slope, N/m, at an indentation > 0, m. */
+static double power_law(const Input *in, double indentation, double *slope)
 {
     double power = in->exponent == 1 ? indentation : pow(indentation, in->exponent);
     double force = in->stiffness * power;
@@ -13,7 +14,7 @@ double power_law(const Input *in, double indentation, double *slope)
 }
 
 /* Leather: the root of the indentation cubed, times a series in the root (Horner's scheme). */
-double leather_law(const Input *in, double indentation, double *slope)
+static double leather_law(const Input *in, double indentation, double *slope)
 {
     double root = sqrt(indentation), force = 0, derivative = 0;
     for (int i = in->terms - 1; i >= 0; i--) {
@@ -24,28 +25,30 @@ double leather_law(const Input *in, double indentation, double *slope)
     return force * (indentation * root);
 }
 
-NormalForce loading_curve(const Contact *c, double indentation)
+NormalForce loading_curve(const Input *in, double indentation)
 {
     NormalForce normal = {.virtual = indentation, .scale = 1};
-    if (indentation > 0) normal.force = c->law(c->in, indentation, &normal.slope);
+    if (indentation <= 0) return normal;
+    normal.force = in->law == LEATHER_LAW ? leather_law(in, indentation, &normal.slope)
+                                          : power_law(in, indentation, &normal.slope);
     return normal;
 }
 
-/* Beyond D the tip loads again. */
-NormalForce unloading_curve(const Contact *c, double indentation)
+/* Residual indentation d0, m, where the unloading force vanishes; 0 while the tip loads for the first time. */
+double residual_indentation(const Input *in, const State *s)
 {
-    if (indentation > c->s->max_indentation) return loading_curve(c, indentation);
-    const double scale = c->in->restitution * c->in->restitution;
-    NormalForce normal = loading_curve(c, (indentation - residual_indentation(c)) / scale);
+    return (1 - in->restitution * in->restitution) * s->max_indentation;
+}
+
+/* The tip loads beyond the largest indentation so far, and unloads below it. */
+NormalForce normal_force(const Input *in, const State *s, double indentation)
+{
+    if (s->phase == LOADING || indentation > s->max_indentation) return loading_curve(in, indentation);
+    const double scale = in->restitution * in->restitution;
+    NormalForce normal = loading_curve(in, (indentation - residual_indentation(in, s)) / scale);
     normal.slope /= scale;
     normal.scale = scale;
     return normal;
-}
-
-/* Residual indentation d0, m, where the unloading force vanishes. */
-double residual_indentation(const Contact *c)
-{
-    return (1 - c->in->restitution * c->in->restitution) * c->s->max_indentation;
 }
 
 /* Tangential stiffness of a leather patch, N/m, at a virtual indentation, m. */

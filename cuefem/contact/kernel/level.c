@@ -9,7 +9,7 @@ static const double NEWTON_REL_TOL = 1e-9;
 static void normal_equation(Contact *c, Equations *e)
 {
     const double half = c->tables.h / 2;
-    c->normal = phase_of(c)->curve(c, c->s->indentation - half * c->u[N]);
+    c->normal = normal_force(c->in, c->s, c->s->indentation - half * c->u[N]);
     e->g[N] = c->F[N] - c->normal.force;
     e->J[N][T] = c->normal.slope * half * c->W[N][T];
     e->J[N][N] = 1 + c->normal.slope * half * c->W[N][N];
@@ -56,11 +56,11 @@ static bool newton(Contact *c)
 /* Begin the iteration where the forces of the last two steps lead. */
 static void extrapolate(Contact *c)
 {
-    for (int f = 0; f < c->in->forces; f++) c->F[f] = 2 * c->last_F[0][f] - c->last_F[1][f];
+    for (int f = 0; f < c->in->forces; f++) c->F[f] = 2 * c->s->last_F[f] - c->s->former_F[f];
 }
 
 /* Trial stick, and slip if |F_t| of the trial exceeds mu F_n. */
-static bool forces(Contact *c)
+bool level_forces(Contact *c)
 {
     const double mu = c->in->friction;
     const bool in_parts = c->patch->slips_in_parts;
@@ -74,18 +74,8 @@ static bool forces(Contact *c)
 }
 
 /* The impulse that stops the tangential motion. */
-static bool impulses(Contact *c)
+bool level_impulses(Contact *c)
 {
     c->slip = STICK;
     return newton(c);
 }
-
-/* Without friction there is no force to tell: by the velocity. */
-static int friction_state(const Contact *c)
-{
-    if (c->in->friction > 0) return c->patch->friction_state(c);
-    if (c->u[T] == 0) return STICK;
-    return c->u[T] < 0 ? SLIP : SLIP_BACK;
-}
-
-const Cue level_cue = {.forces = forces, .impulses = impulses, .friction_state = friction_state};

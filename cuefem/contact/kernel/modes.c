@@ -63,38 +63,29 @@ void load_modes(Contact *c)
     gather_radiating(c);
 }
 
-static double quadratic_form(const double *matrix, const double *x, int count)
-{
-    double sum = 0;
-    for (int i = 0; i < count; i++) sum += x[i] * product(matrix + i * count, x, count);
-    return sum;
-}
-
-/* Energy lost in the step by the loss factor of each mode, a quadratic form in v and g = load - omega a. */
-static double structural_loss(const Contact *c)
+/* Energy that damping takes from a mode in the step: the work of its load, less the increase of its energy. */
+static double energy_lost(const Contact *c, int k)
 {
     const int n_modes = c->in->modes;
-    const double *v = c->s->modes, *a = v + n_modes;
-    const double *per_vv = c->tables.loss, *per_vg = per_vv + n_modes, *per_gg = per_vg + n_modes;
-    double sum = 0;
-    for (int k = 0; k < n_modes; k++) {
-        double g = modal_load(c, k) - c->in->omega[k] * a[k];
-        sum += (per_vv[k] * v[k] + per_vg[k] * g) * v[k] + per_gg[k] * g * g;
-    }
-    return sum;
+    const double *v = c->s->modes, *a = v + n_modes, *v_before = c->before, *a_before = c->before + n_modes;
+    double increase = (v[k] * v[k] - v_before[k] * v_before[k] + a[k] * a[k] - a_before[k] * a_before[k]) / 2;
+    return modal_load(c, k) * (a[k] - a_before[k]) / c->in->omega[k] - increase;
 }
 
-/* Add the energies that dashpots and loss factors dissipate in the step, and that waves radiate. The row of a
-   dashpot includes the root of its constant. */
+/* Add the energies that dashpots and loss factors dissipate in the step, and what leaves the modes that radiate.
+   The row of a dashpot includes the root of its constant. */
 void add_losses(Contact *c)
 {
-    const int n_cue = c->in->ports + c->in->slopes, n_radiating = 3 * c->in->radiating;
+    const int n_cue = c->in->ports + c->in->slopes;
+    double radiated = 0;
+    for (int i = 0; i < c->in->radiating; i++) radiated += energy_lost(c, c->in->radiating_modes[i]);
     for (int d = 0; d < c->in->dashpots; d++)
         c->s->damping_loss += c->tables.h * c->loads[n_cue + d] * c->loads[n_cue + d];
-    c->s->radiated += quadratic_form(c->tables.radiated, c->radiating, n_radiating);
+    c->s->radiated += radiated;
     if (!c->in->structural_loss) return;
-    c->s->damping_loss += structural_loss(c);
-    c->s->damping_loss += quadratic_form(c->tables.dissipated, c->radiating, n_radiating);
+    c->s->damping_loss -= radiated;
+    for (int k = 0; k < c->in->modes; k++)
+        if (c->in->omega[k] > 0) c->s->damping_loss += energy_lost(c, k);
 }
 
 static void advance_radiating(Contact *c)
@@ -127,6 +118,7 @@ FAST static void add_scaled(double *restrict sum, double load, const double *res
 void advance_modes(Contact *c)
 {
     const int n_state = 2 * c->in->modes, n_rows = c->in->ports + c->in->slopes + c->in->dashpots;
+    memcpy(c->before, c->s->modes, n_state * sizeof(double));
     advance_own(c->in->modes, c->tables.own, c->s->modes);
     for (int q = 0; q < n_rows; q++)
         if (c->loads[q] != 0) add_scaled(c->s->modes, c->loads[q], c->tables.response + q * n_state, n_state);

@@ -35,7 +35,7 @@ typedef struct {
 
 static Edge edge_at(const Contact *c, double virtual)
 {
-    NormalForce normal = loading_curve(c, virtual);
+    NormalForce normal = loading_curve(c->in, virtual);
     return (Edge){.indentation = virtual,
                   .force = normal.force,
                   .slope = normal.slope,
@@ -94,7 +94,7 @@ FAST static double shift_annuli(Contact *c, double virtual, double shift, double
 {
     const Input *in = c->in;
     const double e2 = in->surface_restitution * in->surface_restitution, mu = in->friction;
-    const Edge from = c->last_middle, to = edge_at(c, virtual);
+    const Edge from = edge_at(c, c->s->virtual_mid), to = edge_at(c, virtual);
     double sum = 0;
     *by_shift = 0;
     *by_virtual = 0;
@@ -137,10 +137,10 @@ static void update(Contact *c)
 {
     memcpy(c->s->annulus_force, c->annulus_force, sizeof c->s->annulus_force);
     c->s->shear_loss += c->annuli_loss;
-    c->last_middle = edge_at(c, c->normal.virtual);
+    c->s->virtual_mid = c->normal.virtual;
 }
 
-static void release(Contact *c) { c->last_middle = (Edge){0}; }
+static void release(Contact *c) { c->s->virtual_mid = 0; }
 
 static int friction_state(const Contact *c)
 {

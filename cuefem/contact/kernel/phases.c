@@ -8,97 +8,91 @@
 static const double MIN_STEP_RESTITUTION = 0.5;
 
 /* Length of a step in the phase, s, unless an event or forces that are not found shorten it. */
-double full_step(const Contact *c)
+double full_step(const Input *in, const State *s)
 {
-    const Input *in = c->in;
-    return c->s->phase == UNLOADING ? in->step * fmin(1, in->restitution / MIN_STEP_RESTITUTION) : in->step;
+    return s->phase == UNLOADING ? in->step * fmin(1, in->restitution / MIN_STEP_RESTITUTION) : in->step;
 }
 
-static void begin(Contact *c, int phase)
+static void enter(const Input *in, State *s, int phase)
 {
-    c->s->phase = phase;
-    c->s->next_step = full_step(c);
+    s->phase = phase;
+    s->next_step = full_step(in, s);
 }
 
-static bool is_indented(const Contact *c) { return c->s->indentation > residual_indentation(c); }
+static bool is_indented(const Input *in, const State *s)
+{
+    return s->indentation > residual_indentation(in, s);
+}
 
-/* In contact: */
+/* Without friction a level cue has no force to tell: by the velocity. */
+static int friction_state(const Contact *c)
+{
+    if (is_raised(c->in) || c->in->friction > 0) return c->patch->friction_state(c);
+    if (c->u[T] == 0) return STICK;
+    return c->u[T] < 0 ? SLIP : SLIP_BACK;
+}
 
-static void update_contact(Contact *c)
+/* The tip's state after a step in free flight: a spring patch will be unstrained at touch. */
+static void update_flight(State *s, double shift_mid)
+{
+    s->friction_state = SEPARATED;
+    s->shift_mid = shift_mid;
+    s->origin = shift_mid;
+}
+
+/* The tip's state after a step. */
+void update_tip(Contact *c)
 {
     State *s = c->s;
+    if (!touches(s)) {
+        update_flight(s, s->shift - c->tables.h * c->u[T]);
+        return;
+    }
     s->shift_mid = s->shift - c->tables.h / 2 * c->u[T];
     c->patch->update(c);
-    s->friction_state = c->cue->friction_state(c);
+    s->friction_state = friction_state(c);
     s->tip_stuck = !c->slip;
     s->on_table = c->on_table;
     s->table_stuck = c->table_stuck;
 }
 
-static int contact_status(const State *s) { return s->time > s->deadline ? TIME_LIMIT : RUNNING; }
-
 static void after_loading(Contact *c)
 {
     State *s = c->s;
-    if (c->v[N] > 0) {
-        s->max_indentation = larger(s->max_indentation, s->indentation);
-        begin(c, UNLOADING);
-    }
+    if (c->v[N] <= 0) return;
+    s->max_indentation = larger(s->max_indentation, s->indentation);
+    enter(c->in, s, UNLOADING);
 }
 
 static void after_unloading(Contact *c)
 {
-    const State *s = c->s;
-    if (s->ends_at_event || !is_indented(c)) {
-        separate(c);
-        begin(c, FREE);
-    } else if (s->indentation > s->max_indentation) {
-        begin(c, LOADING);
-    }
-}
-
-/* In free flight: */
-
-/* A spring patch will be unstrained at touch. */
-static void update_flight(Contact *c)
-{
     State *s = c->s;
-    s->friction_state = SEPARATED;
-    s->shift_mid = s->shift - c->tables.h * c->u[T];
-    s->origin = s->shift_mid;
+    if (s->ends_at_event || !is_indented(c->in, s)) {
+        separate(c);
+        enter(c->in, s, FREE);
+    } else if (s->indentation > s->max_indentation) {
+        enter(c->in, s, LOADING);
+    }
 }
 
 /* Below the maximum indentation a second contact follows the unloading curve, beyond it the loading curve. */
-static void after_flight(Contact *c)
+static void after_flight(const Input *in, State *s)
 {
-    if (c->s->ends_at_event || is_indented(c)) {
-        c->s->ends_at_event = false;
-        begin(c, UNLOADING);
-    }
+    if (!s->ends_at_event && !is_indented(in, s)) return;
+    s->ends_at_event = false;
+    enter(in, s, UNLOADING);
 }
 
-static int flight_status(const State *s) { return s->time >= s->window_end ? ENDED : RUNNING; }
-
-const Phase phases[] = {
-    [LOADING] = {.touches = true,
-                 .event = 0,
-                 .curve = loading_curve,
-                 .update = update_contact,
-                 .next = after_loading,
-                 .status = contact_status},
-    [UNLOADING] = {.touches = true,
-                   .event = -1,
-                   .curve = unloading_curve,
-                   .update = update_contact,
-                   .next = after_unloading,
-                   .status = contact_status},
-    [FREE] = {.touches = false,
-              .event = 1,
-              .curve = NULL,
-              .update = update_flight,
-              .next = after_flight,
-              .status = flight_status},
-};
+/* Phase and length of the next step. */
+void next_phase(Contact *c)
+{
+    if (c->s->phase == LOADING)
+        after_loading(c);
+    else if (c->s->phase == UNLOADING)
+        after_unloading(c);
+    else
+        after_flight(c->in, c->s);
+}
 
 /* Separation: the tip forgets its strain, and the modes are kept for Python. */
 void separate(Contact *c)
@@ -113,7 +107,8 @@ void separate(Contact *c)
     s->shift_mid = s->shift;
     memset(s->annulus_force, 0, sizeof s->annulus_force);
     memset(c->F, 0, sizeof c->F);
-    memset(c->last_F, 0, sizeof c->last_F);
+    memset(s->last_F, 0, sizeof s->last_F);
+    memset(s->former_F, 0, sizeof s->former_F);
     memcpy(s->separated_modes, s->modes, 2 * c->in->modes * sizeof(double));
     if (!isfinite(s->window_end)) s->window_end = s->time + c->in->window;
 }

@@ -59,12 +59,12 @@ static bool plane_friction(Contact *c, int a, int b, double bound)
 }
 
 /* Newton's method for F_n, the other forces held. Returns whether it converged. */
-static bool normal_force(Contact *c)
+static bool tip_force(Contact *c)
 {
     const double half = c->tables.h / 2;
     double correction = 0;
     for (int i = 0; i < MAX_ITERATIONS; i++) {
-        NormalForce normal = phase_of(c)->curve(c, c->s->indentation - half * mean_velocity(c, N));
+        NormalForce normal = normal_force(c->in, c->s, c->s->indentation - half * mean_velocity(c, N));
         correction = (c->F[N] - normal.force) / (1 + normal.slope * half * c->W[N][N]);
         c->F[N] -= correction;
         if (fabs(correction) <= REL_TOL * fabs(c->F[N])) return true;
@@ -86,7 +86,7 @@ static void table_force(Contact *c)
    the normal force was found. */
 static bool sweep(Contact *c, double mu, double more)
 {
-    bool found = normal_force(c);
+    bool found = tip_force(c);
     c->slip = plane_friction(c, T, P, mu * larger(c->F[N], 0) + more) ? STICK : SLIP;
     table_force(c);
     bool sticks = plane_friction(c, LATERAL, FORWARD, c->in->table_friction * c->F[UP]);
@@ -116,7 +116,7 @@ static bool solve(Contact *c, double mu, double more)
 
 /* Strong friction may support so much that F_n vanishes, and with it mu F_n: the iteration then alternates.
    The bound mu F_n lies between 0 and the friction force of stick, and is found by bisection. */
-static bool forces(Contact *c)
+bool raised_forces(Contact *c)
 {
     if (solve(c, c->in->friction, 0)) return true;
     bool solved = solve(c, 0, HUGE_VAL);
@@ -132,8 +132,4 @@ static bool forces(Contact *c)
     return solved;
 }
 
-static bool impulses(Contact *c) { return solve(c, 0, HUGE_VAL); }
-
-static int friction_state(const Contact *c) { return c->patch->friction_state(c); }
-
-const Cue raised_cue = {.forces = forces, .impulses = impulses, .friction_state = friction_state};
+bool raised_impulses(Contact *c) { return solve(c, 0, HUGE_VAL); }

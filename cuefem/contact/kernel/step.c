@@ -6,6 +6,13 @@
 
 static const double MIN_FRACTION = 1e-6; /* of a step, to its event */
 
+/* The forces of the step, 0 in free flight. Returns whether they were found. */
+static bool find_forces(Contact *c)
+{
+    if (!touches(c->s)) return true;
+    return is_raised(c->in) ? raised_forces(c) : level_forces(c);
+}
+
 /* Repeat a step whose forces were not found at half of its length. Newton's method may alternate where a
    sticking tip hardly touches: there the tangential stiffness of leather is like a root of the indentation. */
 static void halve(Contact *c)
@@ -16,14 +23,21 @@ static void halve(Contact *c)
     if (s->next_step < MIN_FRACTION * c->in->step) s->status = UNSOLVED;
 }
 
+/* Sign of the indentation's change at which a step ends: at a touch 1, at a separation -1; 0 for no event. */
+static int event_sign(int phase)
+{
+    if (phase == FREE) return 1;
+    return phase == UNLOADING ? -1 : 0;
+}
+
 /* Ball and tip separate or touch where the indentation passes the residual one. If that happens within the
    step, set the length of a step that ends there, which replaces this one, and return true. */
 static bool shorten_to_event(Contact *c)
 {
     State *s = c->s;
     const double h = c->tables.h;
-    const int event = phase_of(c)->event;
-    double excess = s->indentation - residual_indentation(c);
+    const int event = event_sign(s->phase);
+    double excess = s->indentation - residual_indentation(c->in, s);
     double excess_at_end = excess - h * c->u[N];
     bool passes = event * excess < 0 && event * excess_at_end > 0;
     if (s->ends_at_event || !passes) return false;
@@ -57,17 +71,17 @@ static void advance_cue(Contact *c)
     const Input *in = c->in;
     State *s = c->s;
     load_modes(c);
-    add_losses(c);
     advance_modes(c);
+    if (c->tables.h > 0) add_losses(c);
     for (int p = 0; p < in->ports + in->slopes; p++) {
         s->port_velocities[p] = c->end_free[p];
-        c->mean_velocities[p] = c->mean_free[p];
+        s->mean_velocities[p] = c->mean_free[p];
         for (int f = 0; f < in->forces; f++) {
             s->port_velocities[p] += c->end_per_force[f][p] * c->F[f];
-            c->mean_velocities[p] += c->mean_per_force[f][p] * c->F[f];
+            s->mean_velocities[p] += c->mean_per_force[f][p] * c->F[f];
         }
     }
-    for (int a = 0; a < in->slopes; a++) s->slopes[a] += c->tables.h * c->mean_velocities[in->ports + a];
+    for (int a = 0; a < in->slopes; a++) s->slopes[a] += c->tables.h * s->mean_velocities[in->ports + a];
 }
 
 static void advance_ball(Contact *c)
@@ -88,7 +102,7 @@ static void roll(Contact *c)
     const Input *in = c->in;
     State *s = c->s;
     double dome = fabs(in->phi + s->angle) < in->rim ? in->dome : 0;
-    double section_rotation = in->ports > THIRD_PORT ? c->mean_velocities[THIRD_PORT] : 0;
+    double section_rotation = in->ports > THIRD_PORT ? s->mean_velocities[THIRD_PORT] : 0;
     s->rolling_rate = (c->mean_spin - c->u[T] + dome * section_rotation) / (in->radius + dome);
     s->angle += c->tables.h * s->rolling_rate;
 }
@@ -97,7 +111,7 @@ static void roll(Contact *c)
    the end. */
 static void advance_tip(Contact *c)
 {
-    phase_of(c)->update(c);
+    update_tip(c);
     c->s->shift -= c->tables.h * c->u[T];
     c->s->indentation -= c->tables.h * c->u[N];
 }
@@ -118,12 +132,13 @@ static void record(const Contact *c, Step *row)
 }
 
 /* Take one step and return true; false if it must be repeated with the length s->next_step. The phase of the
-   next step follows in contact.c, from phases.c. */
+   next step follows in run.c, from phases.c. */
 bool take_step(Contact *c, Step *row)
 {
     free_motion(c);
     contact_matrices(c);
-    if (phase_of(c)->touches && !c->cue->forces(c)) {
+    bool found = find_forces(c);
+    if (!found) {
         halve(c);
         return false;
     }
@@ -135,8 +150,8 @@ bool take_step(Contact *c, Step *row)
     advance_ball(c);
     if (c->in->rolling) roll(c);
     advance_tip(c);
-    memcpy(c->last_F[1], c->last_F[0], sizeof c->F);
-    memcpy(c->last_F[0], c->F, sizeof c->F);
+    memcpy(c->s->former_F, c->s->last_F, sizeof c->F);
+    memcpy(c->s->last_F, c->F, sizeof c->F);
     c->s->time += c->tables.h;
     record(c, row);
     return true;
@@ -161,7 +176,7 @@ bool take_impact(Contact *c, Step *row)
     State *s = c->s;
     free_motion(c);
     contact_matrices(c);
-    bool solved = c->cue->impulses(c);
+    bool solved = is_raised(c->in) ? raised_impulses(c) : level_impulses(c);
     if (!solved) s->status = UNSOLVED;
     bool parts = bounces(c);
     velocities(c);

@@ -12,21 +12,19 @@ EXPORTED const size_t structure_sizes[] = {sizeof(Input), sizeof(State), sizeof(
 
 static void choose_variants(Contact *c)
 {
-    static Law *const laws[] = {[POWER_LAW] = power_law, [LEATHER_LAW] = leather_law};
     static const Patch *const patches[] = {
         [RIGID_PATCH] = &rigid_patch, [SPRING_PATCH] = &spring_patch, [PARTIAL_SLIP] = &partial_slip};
-    c->law = laws[c->in->law];
     c->patch = patches[c->in->patch];
-    c->cue = c->in->forces == FORCES ? &raised_cue : &level_cue;
 }
 
 /* A contact at its first touch; NULL if memory runs out. Input and state must outlive it. */
 EXPORTED Contact *contact_new(const Input *in, State *s)
 {
     const size_t n_loads = in->ports + in->slopes + in->dashpots, n_radiating = 3 * in->radiating;
-    Contact *c = calloc(1, sizeof *c + (n_loads + n_radiating) * sizeof(double));
+    Contact *c = calloc(1, sizeof *c + (n_loads + n_radiating + 2 * in->modes) * sizeof(double));
     if (!c) return NULL;
     c->radiating = c->loads + n_loads;
+    c->before = c->radiating + n_radiating;
     c->in = in;
     c->s = s;
     s->next_step = in->begins_with_impact ? 0 : in->step;
@@ -44,7 +42,7 @@ EXPORTED void contact_free(Contact *c) { free(c); }
 static void update_max_slope(Contact *c)
 {
     State *s = c->s;
-    if (!phase_of(c)->touches) return;
+    if (!touches(s)) return;
     const int per_plane = c->in->slopes / c->in->planes;
     for (int a = per_plane; a && a <= c->in->slopes; a += per_plane) {
         double slope = fabs(s->slopes[a - 1]);
@@ -69,7 +67,8 @@ static int status_of(const Contact *c)
     if (!is_finite(c)) return UNSOLVED;
     if (s->indentation > c->in->indentation_limit) return INDENTATION_OUT_OF_RANGE;
     if (s->max_slope > SLOPE_LIMIT) return SLOPE_OUT_OF_RANGE;
-    return phase_of(c)->status(s);
+    if (touches(s)) return s->time > s->deadline ? TIME_LIMIT : RUNNING;
+    return s->time >= s->window_end ? ENDED : RUNNING;
 }
 
 static void begin_with_impact(Contact *c, Step *row)
@@ -93,8 +92,8 @@ static bool advance(Contact *c, Step *row)
     }
     if (!take_step(c, row)) return false;
     s->steps++;
-    s->next_step = fmin(2 * c->tables.h, full_step(c)); /* a step that was halved grows again */
-    phase_of(c)->next(c);
+    s->next_step = fmin(2 * c->tables.h, full_step(c->in, s)); /* a step that was halved grows again */
+    next_phase(c);
     update_max_slope(c);
     if (s->status == RUNNING) s->status = status_of(c);
     return true;
