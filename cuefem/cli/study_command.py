@@ -66,6 +66,7 @@ def read_part(context: click.Context, option: click.Parameter, text: str | None)
     show_default=True,
     help="Largest number of rounds of an optimum.",
 )
+@click.option("--front", is_flag=True, help="Write only the designs of the Pareto front into a table.")
 @output_option(".html", ".csv", ".parquet", ".json", ".toml", many=True)
 @force_option
 @json_option
@@ -79,6 +80,7 @@ def study(
     workers: int | None,
     scheduler: str | None,
     part: slice | None,
+    front: bool,
 ) -> None:
     """Compute the designs of STUDY (.toml), which lists parameters and responses (`cuefem guide study` has the format).
 
@@ -158,7 +160,7 @@ def study(
         if path.suffix.lower() in (".html", ".json"):
             shown.write(path)
         else:
-            result.save(path)
+            result.save(path, front=front)
     shown.show(None, as_json=as_json)
 
 
@@ -186,6 +188,6 @@ def _run_stored(file: Path, designs: SqliteStore, count: int, run: Callable[...,
 def round_text(problem: Problem, reached: Round, most: int) -> str:
     """A round of a search: "round 3 of at most 60, 45 designs, squirt slope 0.0412346 so far"."""
     choice = "".join(f"{value if isinstance(value, str) else f'{value:g}'}: " for value in reached.choice.values())
-    best = f"{problem.objective.label} {with_unit(reached.best, problem.objective.display_key, 6)} so far"
+    best = f"{reached.objective.label} {with_unit(reached.best, reached.objective.display_key, 6)} so far"
     best = best if isfinite(reached.best) else "no design within the limits yet"
     return f"{choice}round {reached.number} of at most {most}, {counted(reached.evaluations, 'design')}, {best}"

@@ -22,10 +22,12 @@ from cuefem.designs.study_table import column_label, displayed_reason, shown
 from cuefem.parameters.scene_paths import value_at
 from cuefem.quantity.display import counted
 from cuefem.quantity.display_units import displayed_in, format_change, with_unit
+from cuefem.quantity.fields import check_count
 from cuefem.results.differences import difference_text
 from cuefem.results.quantities import DASH
 from cuefem.results.records import Record, Table
 from cuefem.scene import Resolution, Scene
+from cuefem.show.charts import Chart
 from cuefem.show.drawings import DIAMETER_SCALE, CueDrawing, cue_drawing
 
 EXCLUDED = 1e9  # relative margin of a missing response to a limit
@@ -75,12 +77,13 @@ class Limit:
 
 class Round(NamedTuple):
     """Progress of a search: its listed values, rounds and designs so far, and the best objective within the limits (nan
-    without one)."""
+    without one). objective: which response that is."""
 
     choice: dict[str, Value]
     number: int
     evaluations: int
     best: float
+    objective: Response
 
 
 class ChoiceResult(NamedTuple):
@@ -140,11 +143,15 @@ class Problem:
         Maximize the objective instead.
     choice : mapping
         Values of the variables over a list, by index; by default those of the base.
+    against : Response, optional
+        A response with a preferred direction: the answer is the trade-off between the two.
+    count : int
+        Designs on the trade-off, at least 3.
 
     Raises
     ------
     ValueError
-        If a range is a distribution; as of a `Study`.
+        If a range is a distribution, ``against`` is the objective, or ``count`` is below 3; as of a `Study`.
 
     Examples
     --------
@@ -164,8 +171,13 @@ class Problem:
     at: Resolution | None = None
     maximize: bool = False
     choice: Mapping[int, Value] = field(default_factory=dict)
+    against: Response | None = None
+    count: int = 7
 
     def __post_init__(self) -> None:
+        check_count("count", self.count, 3)
+        if self.against == self.objective:
+            raise ValueError(f"against must be another response than the objective; got {self.objective.name} for both")
         for vary in self.vary:
             if isinstance(vary.range, Normal):
                 raise ValueError(f"{vary.name} must have low and high, or values, in an optimization")
@@ -174,7 +186,8 @@ class Problem:
     @cached_property
     def study(self) -> Study:
         """The same variables and responses as a study, the objective first."""
-        responses = dict.fromkeys((self.objective, *(limit.response for limit in self.limits)))
+        against = () if self.against is None else (self.against,)
+        responses = dict.fromkeys((self.objective, *against, *(limit.response for limit in self.limits)))
         return Study(self.base, self.vary, tuple(responses), at=self.at)
 
     @property
@@ -291,13 +304,26 @@ class OptimumResult(StudyResult):
     def _computed(self) -> int:
         return self.optimum.evaluations
 
+    def headline(self) -> str:
+        """The objective before and after, with the uncertainty of the change, and how many limits are active."""
+        problem, best, name = self.definition, self.optimum, self.definition.objective.name
+        start = best.start.responses[name] if best.start else math.nan
+        before = "" if math.isnan(start) else f"{shown(start, problem.objective.display_key)} → "
+        change = _change_text(start, best.responses[name], self.changes.get(name))
+        limited = {each.name for each in best.active}
+        of = len(problem.limits) + len(problem.spans)
+        value = f"{before}{with_unit(best.responses[name], problem.objective.display_key)}"
+        changed = "" if change == DASH else f", {change}"
+        return f"{problem.objective.label} {value}{changed}; {len(limited)} of {counted(of, 'limit')} and ranges active"
+
     def values(self) -> Record:
         """The best design, its responses and active constraints, and the evaluations."""
         return optimum_record(self.definition, self.optimum, self.changes)
 
     def tables(self) -> list[Table | str]:
         """Varied parameters, the best design, its active constraints, and the best design for each choice."""
-        return [*super().tables(), *tabulate_optimum(self.definition, self.optimum, self.changes)]
+        found = tabulate_optimum(self.definition, self.optimum, self.changes)
+        return [self.headline(), *super().tables(), *found]
 
     @cached_property
     def changes(self) -> dict[str, Record]:
@@ -309,7 +335,7 @@ class OptimumResult(StudyResult):
         (changes,) = design_differences(self.study, [self.optimum.start, self.optimum])
         return changes
 
-    def charts(self) -> list[CueDrawing]:
+    def charts(self) -> list[Chart | CueDrawing]:
         """Drawings of the unmodified and of the best design."""
         assert self.optimum.start is not None
         designs = {"start": self.optimum.start, "best design": self.optimum}

@@ -115,7 +115,7 @@ class _Search:
         """Count a round and report progress."""
         self.rounds += 1
         best = self.best / self.scale if self.best < EXCLUDED else np.nan
-        self.progress(Round(self.choice, self.rounds, self.evaluations, best))
+        self.progress(Round(self.choice, self.rounds, self.evaluations, best, self.problem.objective))
 
     def optimum(self, start: Array, rounds: int, seed: int) -> Optimum:
         """The best design; ValueError if none is within the limits."""

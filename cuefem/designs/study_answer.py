@@ -11,13 +11,14 @@ from typing import Any, overload
 import numpy as np
 
 from cuefem.designs.many_designs import Columns, compute_designs
-from cuefem.designs.optimum import OptimumResult, Problem
+from cuefem.designs.optimum import Optimum, OptimumResult, Problem
 from cuefem.designs.scatter import Scatter, ScatterResult
 from cuefem.designs.search import optimum
 from cuefem.designs.store import SqliteStore
 from cuefem.designs.study import Study
 from cuefem.designs.study_file import load_study, study_kind
 from cuefem.designs.sweep import SweepResult
+from cuefem.designs.trade_off import TradeOffResult, trade_off
 from cuefem.quantity.fields import check_kind
 
 
@@ -118,10 +119,19 @@ def study(
     check_kind("study what", definition, (Study, Scatter, Problem))
     base, designs = definition.study.base, definition.all_designs
     if isinstance(definition, Problem):
-        best = optimum(definition, rounds=rounds, progress=progress)
-        return OptimumResult(base, definition, Columns(np.array([[*best.responses.values()]]), {}), best)
+        if definition.against is None:
+            best = optimum(definition, rounds=rounds, progress=progress)
+            return OptimumResult(base, definition, _columns(definition, (best,)), best)
+        front = trade_off(definition, rounds=rounds, progress=progress)
+        return TradeOffResult(base, definition, _columns(definition, front), front[0], trade_off=front)
     with SqliteStore(store, designs) if isinstance(store, str | PathLike) else nullcontext(store) as stored:
         columns = compute_designs(designs, stored, workers=workers, progress=progress)
     if isinstance(definition, Scatter):
         return ScatterResult.of(definition, columns)
     return SweepResult(base, definition, columns)
+
+
+def _columns(problem: Problem, designs: tuple[Optimum, ...]) -> Columns:
+    """The responses of designs of an optimization."""
+    names = [response.name for response in problem.study.responses]
+    return Columns(np.array([[design.responses[name] for name in names] for design in designs]), {})

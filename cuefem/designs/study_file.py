@@ -69,10 +69,12 @@ class LimitTable:
 
 @dataclass(frozen=True)
 class ObjectiveTable:
-    """[objective] of a file: the response to minimize or maximize."""
+    """[objective] of a file: the response to minimize or maximize, and the one that it is traded against."""
 
     minimize: str | None = None
     maximize: str | None = None
+    against: str | None = None
+    count: int = Problem.count
 
     def __post_init__(self) -> None:
         if (self.minimize is None) == (self.maximize is None):
@@ -158,8 +160,19 @@ def _problem(tables: StudyTable, objective: ObjectiveTable, base: Scene, vary: t
     aim = "maximize" if objective.minimize is None else "minimize"
     response = _response(getattr(objective, aim), path, key_path("objective", aim))
     limits = tuple(_limit(table, path, key_path("limit", i)) for i, table in enumerate(tables.limit))
+    other = objective.against
+    against = None if other is None else _response(other, path, key_path("objective", "against"))
     with as_input_error(path, ""):
-        return Problem(base, vary, response, limits, tables.resolution, maximize=aim == "maximize")
+        return Problem(
+            base,
+            vary,
+            response,
+            limits,
+            tables.resolution,
+            maximize=aim == "maximize",
+            against=against,
+            count=objective.count,
+        )
 
 
 def _limit(tables: LimitTable, path: Path, key: str) -> Limit:

@@ -76,8 +76,15 @@ class StudyResult(Analysis):
     kind: ClassVar[str] = ""
     why_no_best: ClassVar[str] = "none has a response"
 
-    def save(self, path: str | Path) -> None:
+    def save(self, path: str | Path, *, front: bool = False) -> None:
         """Write the page (.html), the record (.json), the designs (.csv, .parquet), or the best one as a scene (.toml).
+
+        Parameters
+        ----------
+        path : str or path
+            The file.
+        front : bool, optional
+            Of the designs only those of the Pareto front.
 
         Raises
         ------
@@ -90,9 +97,13 @@ class StudyResult(Analysis):
         match path.suffix.lower():
             case ".html" | ".json":
                 super().save(path)
+            case ".csv" | ".parquet" if front and not self.front:
+                raise InputError(path, "", "has no Pareto front to write: no two responses trade off")
             case ".csv" | ".parquet" as kind:
                 write = write_table if kind == ".csv" else write_parquet
-                write_atomically(path, lambda temporary: write(self.study, self.rows, temporary))
+                kept = {*self.front} if front else range(self.count)
+                rows = (row for row in self.rows if row.design in kept)
+                write_atomically(path, lambda temporary: write(self.study, rows, temporary))
             case ".toml" if self.best:
                 save(self._rounded(next(iter(self.best.values())).scene), path)
             case ".toml":
@@ -179,6 +190,11 @@ class StudyResult(Analysis):
     def failures(self) -> dict[int, str]:
         """Reasons for missing responses."""
         return dict(sorted(self.columns.failures.items()))
+
+    @property
+    def front(self) -> list[int]:
+        """The designs of the Pareto front by number, of all but a sweep every one."""
+        return [*range(self.count)]
 
     @property
     def best(self) -> dict[str, StudyDesign]:

@@ -66,6 +66,11 @@ class SweepResult(StudyResult):
         """Its statistics; None if no design has a response."""
         return sweep_statistics(self.study, self.designs, self.columns.values)
 
+    @property
+    def front(self) -> list[int]:
+        """The designs of the Pareto front by number, in order of the first of its two responses."""
+        return [] if self.statistics is None else self.statistics.numbers[self.statistics.front].tolist()
+
     @cached_property
     def front_steps(self) -> list[dict[str, Record]]:
         """Differences of each design of the front in the table from the one above, as of `design_differences`.
@@ -356,7 +361,10 @@ def _trade_off(sweep: SweepStatistics, first: int, second: int) -> Chart:
         [Curve("best trade-offs (Pareto front)", x[front], y[front], "c1")],
         x=Axis(sweep.responses[second].heading, from_zero=False),
         y=Axis(sweep.responses[first].heading, from_zero=False),
-        points=[Dots(name, x[shown], y[shown], "c5"), Dots("", x[front], y[front], "c1")],
+        points=[
+            Dots(name, x[shown], y[shown], "c5"),
+            *(Dots("", x[[i]], y[[i]], "c1", f"design {sweep.numbers[i]}") for i in front),
+        ],
         height=CHART_HEIGHT,
     )
 

@@ -43,12 +43,16 @@ class Curve(NamedTuple):
 
 
 class Dots(NamedTuple):
-    """Named dots of a chart, in the axes' units; without a name they belong to a curve. style: their CSS class."""
+    """Named dots of a chart, in the axes' units; without a name they belong to a curve. style: their CSS class.
+
+    title: what the page says of them at the pointer, if not the name.
+    """
 
     name: str
     x: ArrayLike
     y: ArrayLike
     style: str
+    title: str = ""
 
 
 class Shade(NamedTuple):
@@ -157,7 +161,7 @@ class Chart:
     x_ticks: tuple[Tick, ...]
     y_ticks: tuple[Tick, ...]
     curves: tuple[tuple[str, str, str], ...]  # name, style, path
-    points: tuple[tuple[str, str, str], ...]  # the same
+    points: tuple[tuple[str, str, str, str], ...]  # the same, and the title at the pointer
     spans: tuple[tuple[float, float, str], ...]  # left, right, style
     marks: tuple[Tick, ...]
     labels: tuple[Tick, ...]  # of the marks, without overlap
@@ -199,7 +203,12 @@ def chart(
             for c in curves
         ),
         tuple(
-            (p.name, p.style, dots(x_scale.position(p.x, left, right), y_scale.position(p.y, bottom, top)))
+            (
+                p.name,
+                p.style,
+                dots(x_scale.position(p.x, left, right), y_scale.position(p.y, bottom, top)),
+                p.title or p.name,
+            )
             for p in points
         ),
         tuple((*x_scale.position((span.start, span.end), left, right).tolist(), span.style) for span in spans),

@@ -15,13 +15,14 @@ from cuefem.designs import Response, Span, Vary, evaluate
 from cuefem.designs.optimum import NOT_DISTINCT, Constraint, Limit, Optimum, OptimumResult, Problem, Round
 from cuefem.designs.search import optimum
 from cuefem.designs.study_file import load_study
+from cuefem.designs.trade_off import TradeOffResult
 from cuefem.results.differences import difference_text
 from cuefem.results.uncertainty import RATIO_FLOOR
 from studies.pages import STUDIES
 from tests.helpers.command_line import stdout_of
 from tests.helpers.cues import kim, low_deflection
 from tests.helpers.invalid_input import assert_rejects
-from tests.helpers.sweeps import OPTIMUM, write_study
+from tests.helpers.sweeps import GRID, OPTIMUM, write_study
 
 STUDY = STUDIES / "design" / "optimum.toml"
 OPTIMAL = {
@@ -224,3 +225,37 @@ def test_least_squirt_over_offsets_through_0_is_found(offset: float) -> None:
 
 def of(cue: cf.Cue, name: str) -> cf.Segment:
     return replace(cue.segments[0], material=material(name))
+
+
+def test_trade_off_is_never_worse_than_a_grid_and_evenly_spread(tmp_path: Path) -> None:
+    """Of 9 x 9 designs none is better in both responses than a design of the curve."""
+    text = OPTIMUM.partition("[[limit]]")[0] + OPTIMUM[OPTIMUM.index("\n[[vary]]") :]
+    text = text.replace('"squirt_slope"', '"squirt_slope"\nagainst = "tip_stiffness"\ncount = 5')
+    found = cf.study(write_study(tmp_path, text))
+    assert isinstance(found, TradeOffResult)
+    slope, stiffness = found.responses["squirt_slope"], found.responses["tip_stiffness"]
+    assert slope[0] == found.optimum.responses["squirt_slope"]
+    pieces = np.hypot(*(np.diff(each) / np.ptp(each) for each in (slope, stiffness)))
+    assert (len(pieces), pieces.max() < 2.5 * pieces.min()) == (4, True)
+    grid = tuple(replace(vary, range=replace(vary.range, count=9)) for vary in found.study.vary)
+    others = cf.study(replace(found.study, vary=grid)).responses
+    for low, least in zip(stiffness, slope, strict=True):
+        assert least <= others["squirt_slope"][others["tip_stiffness"] >= low * (1 - 1e-6)].min() * (1 + 1e-6)
+    found.save(tmp_path / "front.csv")
+    assert len((tmp_path / "front.csv").read_text(encoding="utf-8").splitlines()) == 6
+    assert [each["values"] for each in found.to_dict()["trade_off"]["designs"]] == [
+        each.values for each in found.trade_off
+    ]
+    assert found.headline().startswith("squirt slope 0.07521 → ")
+
+
+def test_front_of_a_sweep_is_written_alone(tmp_path: Path) -> None:
+    """The rows of its Pareto front; refused for one response, which trades off with none."""
+    path = write_study(tmp_path)
+    stdout_of("study", path, "--front", "-o", tmp_path / "front.csv")
+    rows = (tmp_path / "front.csv").read_text(encoding="utf-8").splitlines()[1:]
+    assert {int(row.partition(",")[0]) for row in rows} == {*cf.study(path).front}
+    assert 1 < len(rows) < 32
+    one = cf.study(write_study(tmp_path, GRID.replace('["end_mass", "mass"]', '["mass"]')))
+    with pytest.raises(cf.InputError, match="has no Pareto front to write"):
+        one.save(tmp_path / "none.csv", front=True)
