@@ -24,6 +24,10 @@ UNKNOWN = """\
 The dissipation law of leather: others exist (Hunt and Crossley 1975; Ting 1966 for a viscoelastic half-space); a ball
 dropped obliquely on a clamped tip would discriminate between them. The wood, tapers and bores of the measured shafts
 are assumed. Squirt of one known shaft at five offsets, left and right, to 3 %, would resolve most of these questions.
+Four results name measurements that would decide them: two balls on one shaft
+([two_balls](../measured/two_balls.md)), clay along a shaft ([distribution](../end_mass/distribution.md)), miscues of
+two shafts ([miscue_limit](../contact/miscue_limit.md)), and the stiffness of sold shafts
+([fronts](../design/fronts.md)).
 Change of squirt, % ([left_out](../contact/left_out.md)):"""
 SOURCES = """\
 Measured: D. G. Alciatore, Billiards Digest, September and November 2007, February 2008; billiards.colostate.edu, TP

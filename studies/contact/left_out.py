@@ -17,6 +17,7 @@ import numpy as np
 from scipy.optimize import fsolve
 
 import cuefem as cf
+from cuefem.results.closed_forms import pivot_length
 from studies import pages, strokes
 from studies.contact.annuli import Leather, plain, stepped
 from studies.pages import table
@@ -119,6 +120,30 @@ def left_out_table(offsets: tuple[float, ...] = OFFSETS) -> str:
     return table(["neglected or assumed", *(f"b/R {b:g}" for b in offsets)], lines)
 
 
+def ball_text() -> str:
+    """Change of squirt by a lighter ball at several speeds, and of pivot lengths by a heavier one."""
+    speeds, light, pivots = (1.0, 2.0, 3.5, 5.0, 7.0), [], []
+    for speed in speeds:
+        base = full_model(cue("pool_maple"), 0.375, speed)
+        light.append(100 * change(replace(base, ball=replace(base.ball, mass=0.156)), base, 0.375))
+    for name in ("pool_maple", "pool_hollow", "carbon"):
+        base = full_model(cue(name), 0.3)
+        heavy = replace(base, ball=replace(base.ball, mass=1.1 * base.ball.mass))
+        usual, longer = (float(pivot_length(scene, cf.strike(scene).squirt)) for scene in (base, heavy))
+        pivots.append(100 * (longer / usual - 1))
+    ratio = base.ball.mass / 0.007
+    rule = 10 * ratio / (1 + 1 / base.ball.inertia + ratio)
+    changes, lengths = (", ".join(f"{x:+.1f}" for x in values) for values in (light, pivots))
+    return (
+        f"The row of a ball of 156 g holds at 2 m/s: at {', '.join(f'{v:g}' for v in speeds)} m/s it is {changes} "
+        f"% at b/R 0.375, by "
+        f"the echo of the butt. A ball 10 % heavier changes the natural pivot length at b/R 0.3 by {lengths} % "
+        f"(maple, bored, carbon); a "
+        f"fixed end mass of 7 g would change it by {rule:+.0f} % ([A.31]). [two_balls](../measured/two_balls.md) "
+        f"tests this."
+    )
+
+
 def text() -> str:
     normal, both = ([float(v) for v in values[1].split(", ")] for values in list(rows().values())[:2])
     base = max(abs(stepped(plain(b), Leather())[0] / squirt(plain(b)) - 1) for b in OFFSETS)
@@ -137,6 +162,7 @@ def text() -> str:
         "contact time of a central impact. The unloading law of the package has no published source. The hand grips "
         "the whole cue of meshes/ 10 in before its end. From 4 m/s on the indentation of a 6 mm tip is 25 % of its "
         "height, beyond small strains.",
+        ball_text(),
         "In the whole stroke, with axial waves, axial force and rolling, viscoelastic loss is not computed: the "
         "annuli have none of these. The law of loss of the package stays as it is, on purpose: contact time and "
         "rebound of a central impact fix one stiffness and one loss, and do not distinguish two laws. Three "
