@@ -36,6 +36,7 @@ DRAWINGS = ("cue.toml", "cue.csv")
 SCENE_KEYS = ("cue", "game", "ball", "tip", "stroke", "effects")
 OWN_KEYS = ("name", "source", "prior")
 READINGS: dict[str, type] = {"recording": Recording, "pendulum": Pendulum}  # tables that yield measurements
+WAV_HEAD = 12  # bytes before the chunks of a .wav file
 LONGEST, LARGEST_SOUND = 120.0, 100_000_000  # s, bytes of a recording: 120 s of two channels at 96 kHz and 32 bits
 TEMPLATE = ("README.md", "added_mass.csv", "cue.toml", MEASURED, "squirt.csv")
 
@@ -172,7 +173,7 @@ def _sound(path: Path) -> tuple[Any, float]:
     """Samples, (n, channels), and samples per second of a .wav file; InputError if it cannot be read."""
     if path.suffix.lower() != ".wav":
         raise InputError(path, "", f"must end in .wav; got {path.suffix!r} (ffmpeg -i tap.m4a tap.wav converts)")
-    content = read_bytes(path, LARGEST_SOUND)
+    content = _with_data_size(read_bytes(path, LARGEST_SOUND))
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", wavfile.WavFileWarning)  # for chunks of metadata that phones add
@@ -183,6 +184,19 @@ def _sound(path: Path) -> tuple[Any, float]:
     if samples.size == 0 or not 0 < len(samples) <= LONGEST * rate:
         raise InputError(path, "", f"must last at most {LONGEST:g} s and contain samples; got {len(samples)} samples")
     return samples.reshape(len(samples), -1).astype(float), float(rate)
+
+
+def _with_data_size(content: bytes) -> bytes:
+    """The .wav file with the size of its data where a program that did not know it wrote 0 or too much."""
+    at = content.find(b"data", WAV_HEAD)
+    if content[:4] != b"RIFF" or at < 0:
+        return content
+    start = at + 8
+    size, present = int.from_bytes(content[at + 4 : start], "little"), len(content) - start
+    if 0 < size <= present:
+        return content
+    sizes = [(whole - whole % 2).to_bytes(4, "little") for whole in (len(content) - 8, present)]
+    return content[:4] + sizes[0] + content[8 : at + 4] + sizes[1] + content[start:]
 
 
 def _series(path: Path, kind: type) -> Iterator[Measurement]:

@@ -1,7 +1,7 @@
 """Recordings: estimate of the wood, mode numbers with missing modes, noise (verification)."""
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -101,6 +101,56 @@ def test_peaks_and_mode_numbers_equal_golden_file(drawn: np.ndarray, request: py
         numbers = assign_modes([Peak(factor * float(drawn[i]), 0.1) for i in chosen], drawn)
         lines.append(f"modes {chosen} times {factor}: {sorted(numbers)}")
     assert_golden("recordings.txt", "\n".join(lines) + "\n", request)
+
+
+DISTORTED: dict[str, Callable[[np.ndarray], np.ndarray]] = {
+    "gain 10": lambda sound: np.clip(10 * sound, -1, 1),
+    "gain 3": lambda sound: np.clip(3 * sound, -1, 1),
+    "gain 2": lambda sound: np.clip(2 * sound, -1, 1),
+    "tanh": lambda sound: np.tanh(4 * sound),
+}
+
+
+@pytest.mark.parametrize("name", DISTORTED)
+def test_clipped_recording_is_rejected(name: str) -> None:
+    time, drawn = np.arange(35280) / 44100, np.array([92.0, 277.0, 555.0, 917.0])
+    tones = zip(drawn, (0.3, 0.5, 0.4, 0.2), (3, 5, 8, 10), (0, 0.3, 0.7, 1.1), strict=True)
+    sound = sum(a * np.exp(-rho * time) * np.sin(2 * np.pi * f * time + phase) for f, a, rho, phase in tones)
+    clean = 0.8 * sound / np.abs(sound).max()
+    assert len(tones_in(clean[:, None], 44100.0, drawn)) >= 4
+    distorted = np.round(32767 * 0.99 * DISTORTED[name](clean)) / 32767
+    for channels in (distorted[:, None], np.column_stack([0.3 * clean, distorted])):
+        with pytest.raises(ValueError, match="must not be clipped"):
+            tones_in(channels, 44100.0, drawn)
+
+
+def test_random_taps_are_not_taken_for_clipped() -> None:
+    """One to six tones over 40 dB, decaying as of wood or of carbon, loud or at 5 % of full scale."""
+    generator, ratios = np.random.default_rng(58), np.array([1, 2.9, 5.9, 9.8, 14.6, 20.2])
+    time = np.arange(4410) / 11025
+    for _ in range(100):
+        count = int(generator.integers(1, 7))
+        f = generator.uniform(60, 130) * ratios[:count]
+        decay = np.pi * f * generator.uniform(0.0005, 0.015, count)
+        waves = np.exp(-np.outer(time, decay)) * np.sin(np.outer(time, 2 * np.pi * f) + generator.uniform(0, 6, count))
+        sound = waves @ 10 ** generator.uniform(-2, 0, count)
+        loud = generator.uniform(0.05, 1) * sound / np.abs(sound).max()
+        samples = np.round(32767 * (loud + 1e-4 * generator.normal(size=len(time)))) / 32767
+        spectral_peaks(samples[:, None], 11025.0, 40.0, 3000.0)
+
+
+@pytest.mark.parametrize("size", [0, 0xFFFFFFFF])
+def test_recording_with_unknown_size_of_its_data_is_read(size: int, drawn: np.ndarray, tmp_path: Path) -> None:
+    directory = measured_folder(tmp_path / "cue", RECORDING)
+    time = np.arange(22050) / 44100
+    save_wav(
+        directory / "tap.wav", 0.3 * np.sum([np.exp(-15 * time) * np.sin(2 * np.pi * f * time) for f in drawn[:3]], 0)
+    )
+    known = load_measured(directory)[0].measurements
+    content = (directory / "tap.wav").read_bytes()
+    at = content.index(b"data") + 4
+    (directory / "tap.wav").write_bytes(content[:at] + size.to_bytes(4, "little") + content[at + 4 :])
+    assert load_measured(directory)[0].measurements == known
 
 
 def test_mode_numbers_of_any_subset_and_wood_are_right(drawn: np.ndarray) -> None:
