@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, overload
 from cuefem.analysis.end_mass import SQUIRT_END_MASS
 from cuefem.analysis.measured import MeasuredComparison, compare_measured
 from cuefem.analysis.strike_models import regime_warning
-from cuefem.analysis.verdict import squirt_difference, verdict
+from cuefem.analysis.verdict import squirt_difference, verdict_by
 from cuefem.files.defaults_report import Assumption
 from cuefem.measurements.calibration import CalibratedSquirt, Calibration
 from cuefem.measurements.measured_cue import MeasuredCue
@@ -79,8 +79,8 @@ class Comparison(Analysis):
         that shaft, and the uncertainty of the difference (1 sigma) that remains with its E known.
     scenes : dict of str to Scene
         The compared scenes, all with the ball and the stroke of the first.
-    calibrated : dict of str to CalibratedSquirt
-        Squirt of each cue by a calibrated model; empty without a calibration.
+    calibrated : CalibratedSquirt or None
+        The calibration of the first cue, by which every squirt is given: the others carry the same factor.
     """
 
     offset: float
@@ -94,7 +94,7 @@ class Comparison(Analysis):
     miscues: dict[str, tuple[str, ...]]
     unmeasured_moduli: dict[str, tuple[str, float]]
     scenes: dict[str, Scene] = field(repr=False)
-    calibrated: dict[str, CalibratedSquirt] = field(default_factory=dict)
+    calibrated: CalibratedSquirt | None = None
 
     def heading(self) -> str:
         """The names of the cues."""
@@ -134,14 +134,22 @@ class Comparison(Analysis):
         why = "; ".join(reasons) or "a stroke is nearly a miscue"
         return [f"{listed(apart)} and {self.reference} cannot be compared in squirt: {why}."]
 
-    def calibration_warnings(self) -> list[str]:
-        """Warnings of the calibration, each once."""
-        return [*dict.fromkeys(line for each in self.calibrated.values() for line in each.warnings)]
-
     def tables(self) -> list[Table | str]:
         """A sentence on each difference of squirt, and the table."""
-        calibrated = [line for name, each in self.calibrated.items() for line in each.lines(name)]
-        return [*self.sentences(), *calibrated, "", self.table()]
+        return [*self.sentences(), *self.calibration_lines(), "", self.table()]
+
+    def calibration_lines(self) -> list[str]:
+        """The calibrated squirt of the first cue, what it rests on, and warnings; empty without a calibration."""
+        own = self.calibrated
+        if own is None:
+            return []
+        squirt = with_unit(abs(own.squirt), "rad", error=own.squirt_error)
+        others = "the other carries" if len(self.cues) == 2 else "the others carry"
+        return [
+            f"{self.reference}: squirt {squirt} (1σ), {own.origin()}; {others} the same factor.",
+            own.basis(),
+            *own.warning_lines(),
+        ]
 
     def to_html(
         self, name: str = "", assumptions: Sequence[Assumption] = (), warnings: Sequence[str] = (), made: str = ""
@@ -154,7 +162,7 @@ class Comparison(Analysis):
         title = f"{self.heading()}: compared"
         if self.reference in self.problems:
             return super().to_html(title, assumptions, warnings, made)
-        answer = replace(verdict(self.scene), calibrated=self.calibrated.get(self.reference))
+        answer = verdict_by(SolvedDesign.of(self.scene), None, lambda _: self.calibrated)
         first, *others = [HeadlineCue(name, scene, self.cues[name]) for name, scene in self.scenes.items()]
         own = replace(first, verdict=answer)
         facts_of = {name: facts(scene) for name, scene in self.scenes.items()}
@@ -167,12 +175,9 @@ class Comparison(Analysis):
             title=title,
             made=made,
             notes=[*map(str, assumptions)],
-            warnings=[*self.gaps(), *warnings, *(f"warning: {line}" for line in self.calibration_warnings())],
+            warnings=[*self.gaps(), *warnings, *(self.calibrated.warning_lines() if self.calibrated else ())],
             facts=[*apart, *shared],
-            uncertainty=[
-                f"{own.name}, {answer.uncertainty_line()}",
-                *(f"{name}: {each.basis()}" for name, each in self.calibrated.items()),
-            ],
+            uncertainty=[f"{own.name}, {answer.uncertainty_line()}"],
             screen=screen_markup(own, others, self._headlines(), with_values=True),
             sections=[section_of(self.table(), self.curves())],
         )
@@ -185,7 +190,8 @@ class Comparison(Analysis):
             [(name, styles[name]), (f": {squirt_difference(**each).removesuffix(' than')}", "")]
             for name, each in squirts.items()
         ]
-        lines += [[(name, styles[name]), (f", {each.headline()}", "")] for name, each in self.calibrated.items()]
+        if self.calibrated:
+            lines.append([(self.calibrated.origin(), "")])
         return lines
 
     def table(self) -> Table:
@@ -248,8 +254,9 @@ class Comparison(Analysis):
         """Squirt and natural pivot length against the offset."""
         from cuefem.show.offset_charts import offset_charts  # drawings and charts are not for terminals
 
+        factor = self.calibrated.factor if self.calibrated else 1.0
         lines = [
-            (name, style, coupled_curve(scene, CURVE_OFFSETS, SolvedScene(scene).tip))
+            (name, style, coupled_curve(scene, CURVE_OFFSETS, SolvedScene(scene).tip, factor))
             for style, (name, scene) in zip(DESIGN_STYLES, self.scenes.items(), strict=False)
         ]
         return offset_charts(lines, CURVE_OFFSETS, self.offset, height=300)
@@ -308,8 +315,8 @@ def compare(
     same_shaft : bool
         Whether the cues are one shaft before and after a change: the uncertainty of its wood cancels.
     calibration : Calibration, optional
-        Squirt that was measured on another shaft with the same tip: the squirt of each cue is given with its smaller
-        uncertainty too.
+        Squirt that was measured on another shaft with the same tip: squirt and what follows from it are calibrated by
+        the factor of the first cue.
     progress : callable, optional
         Wraps the list of cues or of uncertain parameters, to show progress.
 
@@ -335,10 +342,7 @@ def compare(
     ('-17% ± 6%', True)
     """
     if isinstance(cues, Mapping):
-        compared = compare_cues(cues, same_shaft=same_shaft, progress=progress or list)
-        if calibration is None:
-            return compared
-        return replace(compared, calibrated=_calibrated(compared.scenes, calibration))
+        return compare_cues(cues, same_shaft=same_shaft, calibration=calibration, progress=progress or list)
     if not isinstance(cues, MeasuredCue | str | Path):
         takes = f"2 to {MAX_CUES} scenes by name, {{'a': scene, 'b': other}}, or the folder of a measured cue"
         raise TypeError(f"compare cues must be {takes}; got {brief_value(cues)}")
@@ -346,15 +350,13 @@ def compare(
     return compare_measured(measured, progress=progress or iter)
 
 
-def _calibrated(scenes: Mapping[str, Scene], calibration: Calibration) -> dict[str, CalibratedSquirt]:
-    """The calibrated squirt of each cue; ValueError with the cue's name if it has another tip."""
-    squirts = {}
+def _check_calibration(calibration: Calibration, scenes: Mapping[str, Scene]) -> None:
+    """ValueError with the name of a cue that has another tip than a calibration."""
     for name, scene in scenes.items():
         try:
-            squirts[name] = calibration.squirt(scene)
+            calibration.check(scene)
         except ValueError as error:
             raise ValueError(f"{name}: {error}") from None
-    return squirts
 
 
 def compare_cues(
@@ -362,14 +364,17 @@ def compare_cues(
     *,
     same_shaft: bool = False,
     names: Sequence[str] = RESULT_NAMES,
+    calibration: Calibration | None = None,
+    squirt_factor: float = 1.0,
     progress: Progress = list,
 ) -> Comparison:
     """Compare cues by the ball and the stroke of the first, with the uncertainty of each difference.
 
     same_shaft: whether they are one shaft before and after a change (`relative_differences`).
 
-    names: the results that are compared. progress: wraps the list of cues, to show progress. ValueError for less than
-    two cues or more than `MAX_CUES`, and for one shaft of two woods.
+    names: the results that are compared. calibration: its factor for the first cue, or else squirt_factor, scales every
+    squirt. progress: wraps the list of cues, to show progress. ValueError for less than two cues or more than
+    `MAX_CUES`, for one shaft of two woods, and for another tip than the calibration's.
     """
     if not 2 <= len(scenes) <= MAX_CUES:
         raise ValueError(f"compare takes 2 to {MAX_CUES} cues; got {len(scenes)}")
@@ -380,8 +385,13 @@ def compare_cues(
     if same_shaft and len(woods) > 1:
         moduli = " and ".join(modulus_text(E) for E in sorted(woods))
         raise ValueError(f"one shaft before and after a change must be of one wood; got E of {moduli}")
-    results = {name: _cue_results(struck[name], tuple(names)) for name in progress([*struck])}
-    reference, *others = results
+    reference, *others = struck
+    calibrated = None
+    if calibration is not None:
+        _check_calibration(calibration, struck)
+        calibrated = calibration.squirt(struck[reference])
+        squirt_factor = calibrated.factor
+    results = {name: _cue_results(struck[name], tuple(names), squirt_factor) for name in progress([*struck])}
     first = struck[reference]
     return Comparison(
         first,
@@ -400,6 +410,7 @@ def compare_cues(
             if (modulus := _unmeasured_modulus(results, reference, name, same_shaft=same_shaft))
         },
         scenes=struck,
+        calibrated=calibrated,
     )
 
 
@@ -422,15 +433,19 @@ class _CueResults(NamedTuple):
 
 
 @cached_by_units(16)  # the reference usually remains while the other cue changes
-def _cue_results(scene: Scene, names: tuple[str, ...]) -> _CueResults:
-    design = SolvedDesign.of(scene)
+def _cue_results(scene: Scene, names: tuple[str, ...], squirt_factor: float) -> _CueResults:
+    design = SolvedDesign.of(scene).calibrated(squirt_factor)
     numbers = _numbers(design, names)
     try:
         outcome = design.strike()
         regime, problem = outcome.regime, verdict_problem(scene, outcome)
     except (ValueError, RuntimeError) as error:
         regime, problem = "", str(error)
-    changes = changes_by_input(scene, numbers, lambda other: _numbers(SolvedDesign.of(other), names))
+
+    def numbers_of(other: Scene) -> dict[str, float]:
+        return _numbers(SolvedDesign.of(other).calibrated(squirt_factor), names)
+
+    changes = changes_by_input(scene, numbers, numbers_of)
     return _CueResults(scene, numbers, regime, problem, *changes)
 
 

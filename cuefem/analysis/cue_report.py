@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from cuefem.analysis import has_segments, report_sections
 from cuefem.analysis.natural_frequencies import natural_frequencies
@@ -97,7 +98,8 @@ class CueReport(Analysis):
         from cuefem.analysis.first_screen import HeadlineCue
         from cuefem.analysis.report_page import Beside
 
-        compared = compare_cues({other: other_scene, name: self.scene})
+        verdict: Any = self.sections["verdict"]
+        compared = compare_cues({other: other_scene, name: self.scene}, squirt_factor=verdict.factor)
         cue = HeadlineCue(other, other_scene, compared.cues[other])
         return Beside(cue, compared.differences[name].get("squirt"), compared.table())
 
@@ -119,7 +121,7 @@ def report(
     rtol : float, optional
         Relative numerical error target of the coupled strike; by default that of a default strike.
     calibration : Calibration, optional
-        Squirt that was measured on another shaft with the same tip: squirt is given with its smaller uncertainty too.
+        Squirt that was measured on another shaft with the same tip: squirt and all that follows from it are calibrated.
     details : bool
         Whether the sections are computed too that only a page has, and the finer curves.
     progress : callable
@@ -151,6 +153,9 @@ def report(
         return CueReport(scene, modes, no_contact=str(error))
     wanted = [*report_sections(scene, details=details).items()]
     calibrated: Record = {} if calibration is None else {"calibration": calibration}
+    if calibration is not None:
+        with suppress(NoVerdict):  # the section of the verdict says why
+            design = design.calibrated(calibration.factor(scene))
     arguments = {"verdict": calibrated, "advice": calibrated, "squirt": {"offsets": FINE_OFFSETS} if details else {}}
     for key, question in progress(wanted):
         answer = question.function()

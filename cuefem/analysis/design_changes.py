@@ -218,7 +218,7 @@ class DesignChanges(Analysis):
         Inputs that make the stroke of the cue itself a miscue one standard deviation up or down: their part of the
         uncertainties is that of the other side.
     calibrated : CalibratedSquirt or None
-        Squirt of the cue itself by a calibrated model.
+        The calibration by which every squirt is given: all changes carry the factor of the cue itself.
     """
 
     offset: float
@@ -229,8 +229,16 @@ class DesignChanges(Analysis):
     calibrated: CalibratedSquirt | None = None
 
     def tables(self) -> list[Table | str]:
-        """A table with a row for each change, after the calibrated squirt of the cue itself."""
-        return [*([*self.calibrated.lines(), ""] if self.calibrated else []), self.table()]
+        """A table with a row for each change, after the calibration of the cue itself."""
+        return [*self._calibration_lines(), self.table()]
+
+    def _calibration_lines(self) -> list[str]:
+        """The calibrated squirt of the cue itself, and warnings; empty without a calibration."""
+        own = self.calibrated
+        if own is None:
+            return []
+        squirt = with_unit(abs(own.squirt), "rad", error=own.squirt_error)
+        return [f"squirt {squirt} (1σ), {own.origin()}", own.basis(), *own.warning_lines(), ""]
 
     def table(self) -> Table:
         """A row for each change, the lowest squirt first."""
@@ -280,8 +288,8 @@ def design_changes(
         A stroke with a cue of segments, such as that of `usual_scene`. A head-on stroke is computed at the game's
         default offset.
     calibration : Calibration, optional
-        Squirt that was measured on another shaft with the same tip: squirt of this cue is given with its smaller
-        uncertainty. A change alters squirt by the same share.
+        Squirt that was measured on another shaft with the same tip: every squirt is calibrated. A change alters squirt
+        by the same share.
     progress : callable
         Wraps the list of changes, to show progress.
 
@@ -309,6 +317,8 @@ def design_changes(
         design = SolvedDesign.of(struck)
     outcome = design.strike()
     reject_no_verdict(struck, outcome)
+    calibrated = calibration.squirt(struck) if calibration else None
+    factor = calibrated.factor if calibrated else 1.0
     base = _numbers(design.solved)
     changes = squirt_changes(design.solved, base["squirt"])
     before = {key: x for key, x in changes.of("squirt").items() if abs(x) > MIN_CONTRIBUTION}
@@ -326,8 +336,9 @@ def design_changes(
             rows.append(_changed_design(change, base, numbers, error))
         except (ValueError, RuntimeError):
             continue
+    rows = [replace(row, squirt=factor * row.squirt) for row in rows]
     rows.sort(key=lambda row: row.squirt_change)
-    calibrated = calibration.squirt(struck) if calibration else None
+    base["squirt"] *= factor
     return DesignChanges(
         design.scene, float(struck.stroke.offset), outcome.regime, base, rows, changes.miscues, calibrated
     )

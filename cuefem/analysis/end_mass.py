@@ -6,12 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from cuefem.analysis.reduction import PAPER_TONE, Reduction, reduction
-from cuefem.endmass.definitions import DEFINITIONS
+from cuefem.endmass.definitions import DEFINITIONS, Drive
 from cuefem.quantity.display_units import END_MASS, with_unit
 from cuefem.results.closed_forms import cue_end_mass
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.results.solved_design import Solvable, SolvedDesign
-from cuefem.scene.solved_scene import SolvedScene
 from cuefem.show.analysis import Analysis
 from cuefem.show.charts import Chart
 from cuefem.show.scene_summary import assumptions, listed, scene_record, tip_effect_notes
@@ -151,15 +150,15 @@ def end_masses(
     """
     design = SolvedDesign.of(scene)
     scene = design.scene
-    masses = {name: _end_mass(design.solved, name) for name in DEFINITIONS}
+    masses: dict[str, DefinedEndMass] = {each.name: _end_mass(design, each.name) for each in DEFINITIONS.values()}
     reduced = reduction(design, near=near, cue_ends=cue_ends) if with_reduction else None
     return EndMasses(scene, scene.contact_time, scene.stroke.offset, masses, reduced)
 
 
-def _end_mass(solved: SolvedScene, name: str) -> DefinedEndMass:
-    scene = solved.scene
+def _end_mass(design: SolvedDesign, name: Drive) -> DefinedEndMass:
+    scene = design.scene
     try:
-        end_mass = float(DEFINITIONS[name].of_design(solved))
+        end_mass = design.end_mass(name, None)
     except ValueError as error:
         return DefinedEndMass(None, None, None, str(error))
     if not end_mass > 0:

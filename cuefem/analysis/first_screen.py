@@ -110,14 +110,14 @@ def headline_markup(own: HeadlineCue, lines: Sequence[Line] = (), warning: str =
 def comparison_lines(
     own: HeadlineCue, other: HeadlineCue | None = None, difference: Record | None = None
 ) -> list[Line]:
-    """Calibrated squirt, and the difference of squirt from another design's and from a reference cue's.
+    """The calibration of squirt, and the difference of squirt from another design's and from a reference cue's.
 
     difference: of `cuefem.analysis.comparison`, from the other design.
     """
     verdict = own.verdict
     lines: list[Line] = []
     if verdict and verdict.calibrated:
-        lines.append([(verdict.calibrated.headline(), "")])
+        lines.append([(verdict.calibrated.origin(), "")])
     if other is not None and own.numbers["squirt"] is not None and (not verdict or verdict.references):
         text = "compared with" if difference is None else squirt_difference(**difference)
         lines.append([(f"{text} ", ""), (other.name, DESIGN_STYLES[1])])
@@ -194,9 +194,12 @@ def parts_line(verdict: Verdict) -> str:
     _, error = verdict.squirt_text()
     parts = verdict.uncertainty
     model, inputs = f"{100 * parts['model']:.0f} %", f"{100 * parts['inputs']:.0f} %"
-    return (
-        f"± {error} (1σ) is {100 * parts['total']:.0f} %: model {model}, {shaft_word(verdict.scene)} and tip {inputs}"
-    )
+    shaft = shaft_word(verdict.scene)
+    if verdict.calibrated:
+        model, inputs = f"calibrated model and tip {model}", f"{shaft} {inputs}"
+    else:
+        model, inputs = f"model {model}", f"{shaft} and tip {inputs}"
+    return f"± {error} (1σ) is {100 * parts['total']:.0f} %: {model}, {inputs}"
 
 
 def _macro(name: str, *values: object) -> str:

@@ -119,8 +119,9 @@ def definitions(scene: Solvable) -> EndMassDefinitions:
     """
     design = SolvedDesign.of(scene)
     ball, offset = design.scene.ball, float(design.scene.stroke.offset)
+    squirt = design.squirt_factor * design.strike().squirt
     try:
-        ratio = alciatore_a31_mass_ratio(offset, design.strike().squirt, inertia=ball.inertia)
+        ratio = alciatore_a31_mass_ratio(offset, squirt, inertia=ball.inertia)
     except ValueError:
         return EndMassDefinitions(design.scene, None)
     mass = float(ball.mass / ratio)

@@ -67,7 +67,7 @@ def page_of(
     ]
     others = [] if beside is None else [beside.cue]
     if beside is not None:
-        sections.insert(0, _beside(scene, answers, name, beside))
+        sections.insert(0, _beside(scene, answers, name, beside, verdict.factor))
     lines = comparison_lines(own) if beside is None else comparison_lines(own, beside.cue, beside.difference)
     return page(
         cue_names(own, others),
@@ -79,10 +79,10 @@ def page_of(
         warnings=[
             *warnings,
             *filter(None, [regime_warning(regime)]),
-            *(f"warning: {line}" for line in (calibrated.warnings if calibrated else ())),
+            *(calibrated.warning_lines() if calibrated else ()),
         ],
         facts=facts(scene),
-        uncertainty=[verdict.uncertainty_line(), *([calibrated.basis()] if calibrated else [])],
+        uncertainty=[verdict.uncertainty_line()],
         screen=screen_markup(own, others, lines),
         sections=sections,
     )
@@ -102,10 +102,10 @@ def facts(scene: Scene) -> list[str]:
     ]
 
 
-def _beside(scene: Scene, answers: Answers, name: str, beside: Beside) -> Record:
-    """The section that compares with another cue."""
+def _beside(scene: Scene, answers: Answers, name: str, beside: Beside, squirt_factor: float) -> Record:
+    """The section that compares with another cue, which carries the same squirt factor."""
     other = beside.cue
-    curve = coupled_curve(other.scene, FINE_OFFSETS, SolvedScene(other.scene).tip)
+    curve = coupled_curve(other.scene, FINE_OFFSETS, SolvedScene(other.scene).tip, squirt_factor)
     curves = [(name, "c1", answers["squirt"].values()["models"]["coupled, this cue"]), (other.name, "c2", curve)]
     return section_of(beside.table, offset_charts(curves, FINE_OFFSETS, scene.stroke.offset, height=300))
 

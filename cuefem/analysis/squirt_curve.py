@@ -59,6 +59,8 @@ class SquirtCurve(Analysis):
         End mass of the two-part cue, kg, at the offset of the stroke; None if no end mass has the squirt.
     a31_end_mass : list of float or None
         End mass of A.31 at each offset, kg, without effects at the tip; None where no end mass fits.
+    squirt_factor : float, default 1.0
+        Of a calibration: that of the coupled curve over the computed one, and of the reference cue beside it.
     models : dict of str to dict
         "squirt", rad, and "pivot_length", m, at each offset by the model's name; nan where no end mass fits.
     """
@@ -67,6 +69,7 @@ class SquirtCurve(Analysis):
     end_mass: float | None
     a31_end_mass: list[float | None]
     models: dict[str, dict[str, Any]]
+    squirt_factor: float = 1.0
     about: ClassVar[str] = (
         "The tip offset b/R is the distance of the contact from the ball’s centre line, in ball radii. Pivoting the "
         "cue about the point at the natural pivot length from the tip cancels squirt. Curves end at the first miscue."
@@ -105,15 +108,16 @@ class SquirtCurve(Analysis):
         name, reference = next(iter(reference_cues().items()))
         lines = [("this cue", "c1", self.models[OWN])]
         other = with_cue(self.scene, reference)
-        beside = None if other.cue == self.scene.cue else _other_curve(other, tuple(self.offsets))
+        beside = None if other.cue == self.scene.cue else _other_curve(other, tuple(self.offsets), self.squirt_factor)
         if beside is not None:
             lines.append((name, "c2", beside))
         return self._charts(lines, "{}", 260.0)
 
     def more_charts(self) -> list[MoreCharts]:
-        """The same of published models."""
+        """The same of published models, which no calibration changes."""
+        about = MODELS if self.squirt_factor == 1.0 else f"{MODELS} Of these curves only the coupled one is calibrated."
         lines = [(name, STYLES[name], curve) for name, curve in self.models.items()]
-        return [MoreCharts("Other models", self._charts(lines, "{} by model", 220.0), MODELS)]
+        return [MoreCharts("Other models", self._charts(lines, "{} by model", 220.0), about)]
 
     def _charts(self, lines: Sequence[tuple[str, str, Record]], title: str, height: float) -> list[Chart]:
         from cuefem.show.offset_charts import offset_charts
@@ -123,10 +127,10 @@ class SquirtCurve(Analysis):
 
 
 @lru_cache(maxsize=16)  # the designer draws the same reference for every change of the cue
-def _other_curve(scene: Scene, offsets: tuple[float, ...]) -> Record | None:
+def _other_curve(scene: Scene, offsets: tuple[float, ...], squirt_factor: float) -> Record | None:
     """The coupled curve of another cue; None if its strike fails."""
     try:
-        return coupled_curve(scene, offsets, SolvedScene(scene).tip)
+        return coupled_curve(scene, offsets, SolvedScene(scene).tip, squirt_factor)
     except (ValueError, RuntimeError):
         return None
 
@@ -172,7 +176,7 @@ def squirt_curve(scene: Solvable, offsets: Sequence[float] = OFFSETS) -> SquirtC
         "A.31, this cue": published,
     }
     struck = [at_offset(scene, offset) for offset in offsets]
-    models: Record = {"coupled, this cue": coupled_curve(scene, offsets, solved.tip)}
+    models: Record = {"coupled, this cue": coupled_curve(scene, offsets, solved.tip, design.squirt_factor)}
     for name, each in cues.items():
         squirt = a31_squirt if name.startswith("A.31") else lambda at, cue: lumped_strike(at, cue).squirt
         pairs = [*zip(struck, each, strict=True)]
@@ -187,4 +191,5 @@ def squirt_curve(scene: Solvable, offsets: Sequence[float] = OFFSETS) -> SquirtC
         None if own is None else own.end_mass,
         [None if cue is None else cue.end_mass for cue in published],
         models,
+        design.squirt_factor,
     )

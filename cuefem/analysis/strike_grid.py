@@ -94,10 +94,13 @@ class Grid:
 
 
 class Strikes:
-    """Strikes of one cue by speed and share, each computed once: x is the position of log speed in its range."""
+    """Strikes of one cue by speed and share, each computed once: x is the position of log speed in its range.
 
-    def __init__(self, scene: Scene, speeds: Sequence[float]) -> None:
-        self.scene, self.speeds = scene, (speeds[0], speeds[-1])
+    squirt_factor: of a calibration.
+    """
+
+    def __init__(self, scene: Scene, speeds: Sequence[float], squirt_factor: float = 1.0) -> None:
+        self.scene, self.speeds, self.squirt_factor = scene, (speeds[0], speeds[-1]), squirt_factor
         self.tip = SolvedScene(scene).tip
         self._limits: dict[float, float] = {}
         self._ratios: dict[tuple[float, float], Array] = {}
@@ -108,8 +111,9 @@ class Strikes:
         return float(f"{low * (high / low) ** x:.{DIGITS}g}")
 
     def strike(self, speed: float, offset: float) -> Outcome:
-        """The coupled strike."""
-        return strike_modes(replace(self.scene, stroke=Stroke(speed, offset)), self.tip)
+        """The coupled strike, its squirt calibrated."""
+        outcome = strike_modes(replace(self.scene, stroke=Stroke(speed, offset)), self.tip)
+        return replace(outcome, squirt=self.squirt_factor * outcome.squirt)
 
     def limit(self, x: float) -> float:
         """The largest b/R without a miscue, from below."""

@@ -36,6 +36,7 @@ from cuefem.show.analysis import Analysis
 from cuefem.show.scene_summary import assumptions, scene_record
 
 if TYPE_CHECKING:
+    from cuefem.measurements.calibration import Calibration
     from cuefem.show.charts import Chart
 
 SPEEDS = (0.2, 10.0)  # m/s: from a soft stroke to a break at 22 mph
@@ -93,6 +94,8 @@ class StrikeTable(Analysis):
         "error" of squirt, speed and spin: median, 95 %, 99 %, largest.
     example : dict
         A stroke, what the table gives, and what the coupled strike gives.
+    calibration : str
+        What scales its squirt, if it is calibrated.
     """
 
     speed: tuple[float, ...]
@@ -103,6 +106,7 @@ class StrikeTable(Analysis):
     spin_over_offset: tuple[tuple[float, ...], ...]
     error: Record
     example: Record
+    calibration: str = ""
 
     def at(self, speed: float, offset: float) -> TableStroke:
         """Interpolate a stroke, as a game does.
@@ -134,7 +138,8 @@ class StrikeTable(Analysis):
         """The record of the file: the table, with units, signs and how to read it."""
         ball = {"mass": self.scene.ball.mass, "radius": self.scene.ball.radius}
         about = {"reading": READING, "signs": SIGNS, "miscue": MISCUE_DEFINITION}
-        return about | {"ball": ball, **self.values(), "units": UNITS, "scene": scene_record(self.scene)}
+        values = {name: value for name, value in self.values().items() if name != "calibration" or value}
+        return about | {"ball": ball, **values, "units": UNITS, "scene": scene_record(self.scene)}
 
     def tables(self) -> list[Table | str]:
         """Strokes read off the table, and the error of interpolation."""
@@ -146,6 +151,7 @@ class StrikeTable(Analysis):
             f"{len(self.share)} shares of the miscue limit by {len(self.speed)} cue speeds",
             assumptions(scene_record(self.scene)),
             f"miscue: {MISCUE_DEFINITION}",
+            *([self.calibration] if self.calibration else []),
         )
         return [Table("Strike table", head, tuple(rows), notes), "", self._error_table()]
 
@@ -187,7 +193,13 @@ class StrikeTable(Analysis):
 _SHOWN = ("squirt", "ball_speed", "spin")
 
 
-def strike_table(scene: Scene, speeds: tuple[float, float] = SPEEDS, *, progress: Progress = list) -> StrikeTable:
+def strike_table(
+    scene: Scene,
+    speeds: tuple[float, float] = SPEEDS,
+    *,
+    calibration: Calibration | None = None,
+    progress: Progress = list,
+) -> StrikeTable:
     """Tabulate squirt, ball speed and spin of a cue over cue speed and tip offset, for games.
 
     Parameters
@@ -196,6 +208,8 @@ def strike_table(scene: Scene, speeds: tuple[float, float] = SPEEDS, *, progress
         The cue, the ball and the tip; its own stroke does not matter.
     speeds : tuple of float
         Lowest and highest cue speed, m/s.
+    calibration : Calibration, optional
+        Squirt that was measured on another shaft with the same tip: its factor scales squirt at every speed and offset.
     progress : callable
         Wraps the rounds of refinement, to show progress.
 
@@ -231,7 +245,8 @@ def strike_table(scene: Scene, speeds: tuple[float, float] = SPEEDS, *, progress
     if not low < high:
         got = f"{with_unit(low, 'm/s')} and {with_unit(high, 'm/s')}"
         raise ValueError(f"speeds must ascend, the lowest before the highest; got {got}")
-    strikes = Strikes(scene, (low, high))
+    calibrated = calibration.squirt(scene) if calibration else None
+    strikes = Strikes(scene, (low, high), calibrated.factor if calibrated else 1.0)
     try:
         strikes.strike(high, CENTRE)
     except IndentationOutOfRange as error:
@@ -248,6 +263,7 @@ def strike_table(scene: Scene, speeds: tuple[float, float] = SPEEDS, *, progress
         spin_over_offset=spin,
         error=_error_record(errors),
         example=_example(strikes, grid),
+        calibration=calibrated.origin() if calibrated else "",
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import NamedTuple
@@ -79,7 +79,8 @@ class Verdict(Analysis):
     miscues : tuple of str
         Inputs that make the stroke a miscue one standard deviation up or down: their part is that of the other side.
     calibrated : CalibratedSquirt or None
-        Squirt with the smaller uncertainty of a model that was calibrated on another shaft.
+        The calibration by which squirt and its uncertainty are given, and the squirts of the reference cues, which
+        carry the same factor.
     """
 
     offset: float
@@ -91,6 +92,11 @@ class Verdict(Analysis):
     references: dict[str, Record]
     miscues: tuple[str, ...] = ()
     calibrated: CalibratedSquirt | None = None
+
+    @property
+    def factor(self) -> float:
+        """Shown over computed squirt."""
+        return self.calibrated.factor if self.calibrated else 1.0
 
     def headline(self) -> str:
         """Squirt with its uncertainty as one line."""
@@ -115,13 +121,16 @@ class Verdict(Analysis):
         ]
 
     def uncertainty_line(self) -> str:
-        """The parts of the uncertainty as one line."""
+        """The parts of the uncertainty as one line, with what a calibration rests on."""
         parts = {name: _percent(share) for name, share in self.uncertainty.items()}
         tip = "spring tip; " if self.uncertainty["model"] == SPRING_ERROR else ""
         note, shaft = miscue_note(self.miscues), shaft_word(self.scene)
+        source, unmeasured, basis = f"{tip}from published squirt", f"{shaft} and tip", ""
+        if self.calibrated:
+            source, unmeasured, basis = f"calibrated on {self.calibrated.name}", shaft, f" {self.calibrated.basis()}"
         return (
-            f"±: uncertainty (1σ): model {parts['model']} ({tip}from published squirt), unmeasured {shaft} and tip "
-            f"{parts['inputs']}, numerical {parts['computation']}; combined {parts['total']}. Of a difference between "
+            f"±: uncertainty (1σ): model {parts['model']} ({source}), unmeasured {unmeasured} {parts['inputs']}, "
+            f"numerical {parts['computation']}; combined {parts['total']}.{basis} Of a difference between "
             f"two shafts: {_percent(SHAFT_ERROR)} of it (model) or that of their {shaft} if larger, and 1 % of squirt."
             f"{f' {note}' if note else ''}"
         )
@@ -156,8 +165,8 @@ class Verdict(Analysis):
 
     def tables(self) -> list[Table | str]:
         """Headline, comparison, and the table of reference cues."""
-        calibrated = self.calibrated.lines() if self.calibrated else []
-        text = [self.headline(), *self.reference_comparison(), *calibrated, ""]
+        origin = [self.calibrated.origin(), *self.calibrated.warning_lines()] if self.calibrated else []
+        text = [self.headline(), *self.reference_comparison(), *origin, ""]
         uncertainty = self.uncertainty_line()
         if not self.references:
             return [*text, uncertainty, ""]
@@ -207,6 +216,13 @@ def verdict(
     (True, True)
     """
     own = SolvedDesign.of(scene)
+    return verdict_by(own, references, lambda struck: calibration.squirt(struck) if calibration else None)
+
+
+def verdict_by(
+    own: SolvedDesign, references: Mapping[str, Cue] | None, calibrated: Callable[[Scene], CalibratedSquirt | None]
+) -> Verdict:
+    """`verdict`; calibrated: the squirt of a stroke by a calibration, asked for once the stroke has a verdict."""
     struck = off_centre(own.scene)
     head_on = struck is not own.scene
     design = SolvedDesign.of(struck) if head_on else own
@@ -220,27 +236,30 @@ def verdict(
     computation = NUMERICAL_ERROR if outcome.error is None else outcome.error
     uncertainty = Uncertainty(model_error(struck), math.hypot(*inputs.values()), computation)
     shaft = shaft_uncertainty(inputs)
+    found = calibrated(struck)
+    factor = found.factor if found else 1.0
+    shares = found.uncertainty if found else uncertainty._asdict() | {"total": uncertainty.total}
     compared = reference_cues() if references is None else references
-    rows = {name: _reference_row(struck, base, cue, shaft) for name, cue in compared.items()}
+    rows = {name: _reference_row(struck, base, cue, shaft, factor) for name, cue in compared.items()}
     return Verdict(
         own.scene,
         offset=float(struck.stroke.offset),
         head_on=head_on,
-        squirt=squirt,
-        uncertainty=uncertainty._asdict() | {"total": uncertainty.total},
-        inputs=inputs,
-        squirt_error=uncertainty.total * abs(squirt),
+        squirt=factor * squirt,
+        uncertainty=shares,
+        inputs=found.inputs if found else inputs,
+        squirt_error=shares["total"] * abs(factor * squirt),
         references={name: row for name, row in rows.items() if row},
         miscues=changes.miscues,
-        calibrated=calibration.squirt(struck) if calibration else None,
+        calibrated=found,
     )
 
 
-def _reference_row(scene: Scene, squirt: float, cue: Cue, inputs: float) -> Record | None:
+def _reference_row(scene: Scene, squirt: float, cue: Cue, inputs: float, factor: float) -> Record | None:
     """Comparison with another cue at the same stroke; None if its strike fails or the signs of squirt differ.
 
     squirt: that of the scene, rad. inputs: relative uncertainty of squirt by the inputs of the scene's shaft; the
-    same is assumed, independently, for the other shaft.
+    same is assumed, independently, for the other shaft. factor: of a calibration; the difference does not depend on it.
     """
     struck = with_cue(scene, cue)
     try:
@@ -249,7 +268,7 @@ def _reference_row(scene: Scene, squirt: float, cue: Cue, inputs: float) -> Reco
         return None
     if not squirt * other > 0:
         return None
-    return {"squirt": other} | difference_record(squirt / other, model_share(scene, struck), inputs, inputs)
+    return {"squirt": factor * other} | difference_record(squirt / other, model_share(scene, struck), inputs, inputs)
 
 
 def with_cue(scene: Scene, cue: Cue) -> Scene:

@@ -178,7 +178,14 @@ def end_mass(request: Request, near: float, cue_ends: tuple[str, ...]) -> Analys
     metavar="LOW HIGH",
     help="Lowest and highest cue speed of the table (default: 0.2 and 10 m/s).",
 )
-def strike(request: Request, target: str | None, speeds: tuple[str, str] | None, output: Path | None) -> Analysis:
+@calibration_option
+def strike(
+    request: Request,
+    target: str | None,
+    speeds: tuple[str, str] | None,
+    output: Path | None,
+    calibration: Calibration | None,
+) -> Analysis:
     """Compute squirt, ball speed, spin and pivot length of one stroke, by the coupled strike and by simpler models.
 
     The numerical error target is the rtol of the file's [accuracy] table, if it has one.
@@ -186,17 +193,21 @@ def strike(request: Request, target: str | None, speeds: tuple[str, str] | None,
     written = str(output) if output is not None and output.suffix.lower() == ".json" else ""
     if speeds is not None and target != "table":
         raise InputError(request.file, "--speeds", "applies to --format table")
+    if calibration is not None and target != "table":
+        raise InputError(request.file, "--calibration", "applies to --format table")
     if target is None:
         return cf.strike_models(request.scene, load_accuracy(request.file))
     if target == "table":
-        return _strike_table(request, speeds, written)
+        return _strike_table(request, speeds, written, calibration)
     answer = cf.pooltool_export(request.scene, request.file.stem, written)
     if written:
         request.hints.extend(answer.tables())
     return answer
 
 
-def _strike_table(request: Request, speeds: tuple[str, str] | None, written: str) -> StrikeTable:
+def _strike_table(
+    request: Request, speeds: tuple[str, str] | None, written: str, calibration: Calibration | None
+) -> StrikeTable:
     """The table for games, over the speeds of the option."""
     for name in ("speed", "offset"):
         if name in request.given:
@@ -205,7 +216,7 @@ def _strike_table(request: Request, speeds: tuple[str, str] | None, written: str
     if speeds is not None:
         low, high = (option_value(request.file, "--speeds", text, Quantity("m/s", "(0, inf)")) for text in speeds)
         limits["speeds"] = (low, high)
-    answer = cf.strike_table(request.scene, **limits, progress=with_progress_bar)
+    answer = cf.strike_table(request.scene, **limits, calibration=calibration, progress=with_progress_bar)
     if not written:
         request.hints.append("-o table.json writes the whole table, with units, signs and an example")
     return answer

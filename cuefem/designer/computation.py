@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import cuefem as cf
 from cuefem.analysis.comparison import compare_cues
@@ -20,7 +20,7 @@ from cuefem.analysis.verdict import Verdict
 from cuefem.analysis.verdict import verdict as verdict_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
-from cuefem.endmass.definitions import DEFINITIONS
+from cuefem.endmass.definitions import DEFINITIONS, Drive
 from cuefem.endmass.end_mass_density import end_mass_density
 from cuefem.measurements.calibration import Calibration
 from cuefem.parameters.parts import main_material
@@ -29,6 +29,7 @@ from cuefem.results.closed_forms import pivot_length
 from cuefem.results.computable_results import listed_results
 from cuefem.results.records import Record
 from cuefem.results.solved_design import MIN_SOLVED_MODES, SolvedDesign, coupled_curve
+from cuefem.results.verdict import verdict_problem
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.solved_scene import SolvedScene, default_mode_count
 
@@ -61,27 +62,46 @@ def solved_strike(scene: Scene) -> SolvedStrike:
     return SolvedStrike(solved, replace(outcome, history=None))
 
 
-def first_numbers(scene: Scene) -> dict[str, float | None]:
+class SquirtFactor(NamedTuple):
+    """The squirt factor that a calibration gives a design; the design beside it carries the same one."""
+
+    calibration: Calibration
+    scene: Scene
+
+    def value(self) -> float:
+        """1 for a stroke without a verdict."""
+        if verdict_problem(self.scene, solved_strike(self.scene).outcome):
+            return 1.0
+        return self.calibration.factor(self.scene)
+
+
+def _value(factor: SquirtFactor | None) -> float:
+    return 1.0 if factor is None else factor.value()
+
+
+def first_numbers(scene: Scene, factor: SquirtFactor | None = None) -> dict[str, float | None]:
     """Results of the strike alone, SI; None for a miscue."""
     outcome = solved_strike(scene).outcome
-    pivot = None if outcome.regime == "miscue" else pivot_length(scene, outcome.squirt)
-    squirt = None if outcome.regime == "miscue" else float(outcome.squirt)
+    if outcome.regime == "miscue":
+        return {"squirt": None, "pivot_length": None}
+    squirt = _value(factor) * float(outcome.squirt)
+    pivot = pivot_length(scene, squirt)
     return {"squirt": squirt, "pivot_length": None if pivot is None else float(pivot)}
 
 
 @lru_cache(CACHED_DESIGNS)
-def numbers(scene: Scene) -> dict[str, Any]:
+def numbers(scene: Scene, factor: SquirtFactor | None = None) -> dict[str, Any]:
     """Every number that a table lists: the results by name, all end masses, and natural frequencies."""
     strike = solved_strike(scene)
-    design = SolvedDesign(strike.solved, strike.outcome)
-    masses = {f"end_mass_{name}": _end_mass(name, strike.solved) for name in DEFINITIONS}
+    design = SolvedDesign(strike.solved, strike.outcome, _value(factor))
+    masses = {f"end_mass_{each.name}": _end_mass(each.name, design) for each in DEFINITIONS.values()}
     frequencies = [design.frequency(mode) for mode in range(1, MIN_SOLVED_MODES + 1)]
-    return listed_results(design) | first_numbers(scene) | masses | {"frequencies": frequencies}
+    return listed_results(design) | first_numbers(scene, factor) | masses | {"frequencies": frequencies}
 
 
-def _end_mass(name: str, solved: SolvedScene) -> float | None:
+def _end_mass(name: Drive, design: SolvedDesign) -> float | None:
     try:
-        return float(DEFINITIONS[name].of_design(solved))
+        return design.end_mass(name, None)
     except ValueError:
         return None
 
@@ -105,9 +125,9 @@ def comparison(scene: Scene, other: Scene, same_shaft: bool, names: Sequence[str
 
 
 @lru_cache(CACHED_DESIGNS)
-def curve(scene: Scene) -> dict[str, Any]:
+def curve(scene: Scene, factor: SquirtFactor | None = None) -> dict[str, Any]:
     """Squirt, pivot length and the contact state against the offset."""
-    return coupled_curve(scene, CURVE_OFFSETS, solved_strike(scene).solved.tip)
+    return coupled_curve(scene, CURVE_OFFSETS, solved_strike(scene).solved.tip, _value(factor))
 
 
 @lru_cache(CACHED_DESIGNS)

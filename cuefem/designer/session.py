@@ -52,6 +52,7 @@ FIRST = ("solved_strike", "numbers", "verdict")
 OF_TAB = {"Curves": ("curve", "end_mass_distribution"), "Changes": ("changes",), "Report": ("answers",)}
 OF_VERDICT = ("verdict", "changes")  # which need a squirt that can be reported
 OF_CALIBRATION = ("verdict", "changes", "answers")  # which take a calibration
+OF_FACTOR = ("numbers", "curve")  # which take its factor for the current design
 SHARED = ("solved_strike", "numbers", "curve", "end_mass_distribution")  # also computed of the other design
 OLD_NUMBERS = "The numbers are those of the previous design."
 
@@ -278,7 +279,7 @@ class Session:
             return []
         calibrated = self.results.own["verdict"].calibrated if "verdict" in self.results.own else None
         if calibrated is not None:
-            return [calibrated.basis(), *(f"warning: {line}" for line in calibrated.warnings)]
+            return [calibrated.basis(), *calibrated.warning_lines()]
         try:
             self.history.calibration.check(self.scene)
         except ValueError as error:
@@ -303,18 +304,25 @@ class Session:
             if name in OF_VERDICT and verdict_problem(scene, results.own["solved_strike"].outcome):
                 continue
             call = getattr(computation, name)
-            arguments = [scene, self.calibration_of_tip()] if name in OF_CALIBRATION else [scene]
-            work: Callable[[], Any] = partial(call, *arguments)
+            more = self._calibration_of(name)
+            work: Callable[[], Any] = partial(call, scene, *more)
             if name == "changes":
                 work = partial(computation.with_count, self._count, work)
             stage = [Work(name, results.own, work)]
             if other is not None and name in SHARED:
-                stage.append(Work(name, results.other, partial(call, other)))
+                stage.append(Work(name, results.other, partial(call, other, *more)))
             if name == "verdict" and other is not None and "solved_strike" in results.other:
                 stage.append(Work("comparison", results.own, partial(computation.comparison, scene, other, same_shaft)))
             yield tuple(stage)
             if "solved_strike" not in results.own:
                 return
+
+    def _calibration_of(self, name: str) -> list[Any]:
+        """What a function of the computation takes of the calibration."""
+        calibration = self.calibration_of_tip()
+        if name in OF_FACTOR:
+            return [calibration and computation.SquirtFactor(calibration, self.scene)]
+        return [calibration] if name in OF_CALIBRATION else []
 
     def _count(self, done: int, of: int) -> None:
         self.count = done, of
@@ -345,9 +353,10 @@ class Session:
             self.solid_of, self.results.own["solid"] = scene, solid
 
     def headline_cue(self, i: int) -> HeadlineCue | None:
-        """The design (0) or the other one (1) on the first screen; None until its strike is computed."""
+        """The design (0) or the other one (1) on the first screen; None until its squirt is computed."""
         side = (self.results.own, self.results.other)[i]
-        if "solved_strike" not in side or i >= len(self.designs()):
+        first = "solved_strike" if self.calibration_of_tip() is None else "numbers"
+        if first not in side or i >= len(self.designs()):
             return None
         name, design = [*self.designs().items()][i]
         scene = self.scene if i == 0 else self.compared_scene()

@@ -236,23 +236,26 @@ def without_slip(scene: Scene) -> Scene:
     return replace(scene, tip=replace(scene.tip, friction=math.inf), effects=tuple(filter(in_contact, scene.effects)))
 
 
-def squirt_equivalent(tip: TipModes, scene: Scene) -> float:
+def squirt_equivalent(tip: TipModes, scene: Scene, squirt_factor: float = 1.0) -> float:
     """The lumped end mass with the squirt of the coupled strike, kg; at the centre that at b/R = 1e-5.
 
-    ValueError if no end mass has this squirt: see `equivalent_end_mass`.
+    squirt_factor: of a calibration, calibrated over computed squirt. ValueError if no end mass has this squirt: see
+    `equivalent_end_mass`.
     """
     off_centre = scene if scene.stroke.offset else _near_centre(scene)
-    return equivalent_end_mass(strike_modes(off_centre, tip), off_centre)
+    return equivalent_end_mass(strike_modes(off_centre, tip), off_centre, squirt_factor)
 
 
-def equivalent_end_mass(outcome: Outcome, scene: Scene) -> float:
+def equivalent_end_mass(outcome: Outcome, scene: Scene, squirt_factor: float = 1.0) -> float:
     """The lumped end mass, kg, whose impulse-solver squirt is that of a scene's outcome, off centre.
+
+    squirt_factor: of a calibration, calibrated over computed squirt.
 
     ValueError for a miscue, or if the tip slips until separation: squirt then does not depend on the end mass.
     """
     if outcome.regime == "miscue" or slips_at_end(outcome):
         raise ValueError(f"the stroke miscues at b/R {scene.stroke.offset:.4g}: its squirt has no end mass")
-    return _with_squirt(float(np.sign(scene.stroke.offset) * outcome.squirt), scene, "squirt")
+    return _with_squirt(float(np.sign(scene.stroke.offset) * squirt_factor * outcome.squirt), scene, "squirt")
 
 
 def _with_squirt(squirt: float, scene: Scene, drive: str) -> float:

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -31,6 +32,7 @@ from cuefem.results.solved_design import off_centre
 from cuefem.results.uncertainty import (
     NUMERICAL_ERROR,
     RATIO_FLOOR,
+    Uncertainty,
     model_error,
     model_share,
     squirt_changes,
@@ -62,13 +64,14 @@ class CalibratedSquirt:
     offset : float
         Offset b/R.
     squirt, squirt_error : float
-        Squirt and its uncertainty (1 sigma), rad.
-    error, uncalibrated_error : float
-        Relative uncertainty, and that of the model alone.
+        Calibrated squirt and its uncertainty (1 sigma), rad.
+    uncertainty, inputs : dict of str to float
+        The relative uncertainty, and the part of each uncertain parameter in it, as in a `Verdict`; "model" is of the
+        calibrated squirt factor, the tip's values with it.
+    computed, uncalibrated_error : float
+        Squirt without the calibration, rad, and its relative uncertainty.
     measured_factor : float
         Measured over computed squirt of the measured cue.
-    factor : float
-        The part of it that is carried over: this squirt over the computed one.
     correlation : float
         Of the squirt factors of the two shafts.
     warnings : tuple of str
@@ -79,33 +82,42 @@ class CalibratedSquirt:
     offset: float
     squirt: float
     squirt_error: float
-    error: float
+    uncertainty: dict[str, float]
+    inputs: dict[str, float]
+    computed: float
     uncalibrated_error: float
     measured_factor: float
-    factor: float
     correlation: float
     warnings: tuple[str, ...]
 
-    def headline(self) -> str:
-        """The calibrated squirt as one line."""
-        squirt = with_unit(abs(self.squirt), "rad", error=self.squirt_error)
-        return f"calibrated on {self.name}: squirt {squirt}, {100 * self.error:.0f} % (1σ)"
+    @property
+    def factor(self) -> float:
+        """Calibrated over computed squirt; other cues on a page carry the same factor."""
+        return self.squirt / self.computed
 
-    def lines(self, cue: str = "") -> list[str]:
-        """The calibrated squirt, what it rests on, and warnings. cue: whose it is, of several."""
-        return [
-            f"{f'{cue}, ' if cue else ''}{self.headline()} instead of {100 * self.uncalibrated_error:.0f} %",
-            self.basis(),
-            *(f"warning: {line}" for line in self.warnings),
-        ]
+    @property
+    def error(self) -> float:
+        """Relative uncertainty (1 sigma)."""
+        return self.uncertainty["total"]
+
+    def origin(self) -> str:
+        """The measured cue, and the squirt without its measurements."""
+        computed = with_unit(abs(self.computed), "rad", decimals=3)
+        return (
+            f"calibrated on {self.name}: {self.factor:.2f} times the computed {computed} ± "
+            f"{100 * self.uncalibrated_error:.0f} %"
+        )
 
     def basis(self) -> str:
         """What it rests on, and what it can claim."""
         return (
-            f"It rests on the squirt measured there, {self.measured_factor:.2f} times the computed one, of which "
-            f"{self.factor:.3f} is carried over (correlation of the two shafts {self.correlation:.2f}), and on the "
-            f"same tip. What it can claim: {CLAIM}."
+            f"It rests on the squirt measured on {self.name}, {self.measured_factor:.2f} times the computed one "
+            f"(correlation of the two shafts {self.correlation:.2f}), and on the same tip. What it can claim: {CLAIM}."
         )
+
+    def warning_lines(self) -> list[str]:
+        """The warnings as lines of a page."""
+        return [f"warning: {line}" for line in self.warnings]
 
 
 @dataclass(frozen=True)
@@ -141,7 +153,7 @@ class Calibration:
     unchecked: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        C, count = self._matrix, len(self.drawn) + 1
+        C, count = self.matrix, len(self.drawn) + 1
         if C.shape != (count, count) or not np.isfinite(C).all() or np.linalg.eigvalsh(C).min() < -1e-9:
             raise ValueError(
                 f"Calibration.covariance must be a covariance of {count} values, those of drawn and log_factor"
@@ -179,13 +191,14 @@ class Calibration:
         )
 
     @property
-    def _matrix(self) -> Array:
+    def matrix(self) -> Array:
+        """``covariance`` as an array."""
         return np.atleast_2d(np.array(self.covariance, float))
 
     @property
     def _information(self) -> float:
         """The part of the prior variance of the squirt factor that measurements removed."""
-        return float(1 - self._matrix[-1, -1] / model_error(self.scene) ** 2)
+        return float(1 - self.matrix[-1, -1] / model_error(self.scene) ** 2)
 
     @property
     def measured_factor(self) -> float:
@@ -210,36 +223,11 @@ class Calibration:
         ValueError for another ball, another tip, or squirt of the other sign.
         """
         self.check(scene)
-        scene = off_centre(scene)
-        keys, s = (*self.drawn,), model_error(scene)
-        values = {PARAMETERS[key].steps(): PARAMETERS[key].value(self.scene) for key in keys}
-        new = with_values_at(scene, values) if values else scene
-        old = replace(self.scene, stroke=scene.stroke)
-        computed, before = squirt_of(new), squirt_of(old)
-        if not computed * before > 0:
-            raise ValueError(f"a calibration needs squirt of one sign; got {computed:.3g} and {before:.3g} rad")
-        d = max(model_share(old, new) * abs(math.log(computed / before)), RATIO_FLOOR)
-        r = max(1 - d**2 / (2 * s**2), 0.0)
-        changes = squirt_changes(SolvedScene(new), computed).of("squirt")
-        shared = [changes.get(key, 0.0) / (PARAMETERS[key].spread_in(new) or 1.0) for key in keys]
-        slopes = np.array([*shared, r])
-        others = (change for key, change in changes.items() if key not in keys)
-        variance = float(slopes @ self._matrix @ slopes) + (1 - r**2) * s**2
-        error = math.hypot(math.sqrt(variance), *others, NUMERICAL_ERROR)
-        alone = squirt_changes(SolvedScene(scene), squirt_of(scene)).of("squirt").values()
-        factor = math.exp(r * self.log_factor)
-        return CalibratedSquirt(
-            self.name,
-            offset=float(scene.stroke.offset),
-            squirt=factor * computed,
-            squirt_error=error * abs(factor * computed),
-            error=error,
-            uncalibrated_error=math.hypot(s, *alone, NUMERICAL_ERROR),
-            measured_factor=self.measured_factor,
-            factor=factor,
-            correlation=r,
-            warnings=self.warnings,
-        )
+        return _squirt_by(self, off_centre(scene))
+
+    def factor(self, scene: Scene) -> float:
+        """Calibrated over computed squirt of a scene, as `squirt`."""
+        return self.squirt(scene).factor
 
     def check(self, scene: Scene) -> None:
         """ValueError for a scene of another game or another tip."""
@@ -272,6 +260,43 @@ class Calibration:
 
         text = toml_text(self.scene, **{TABLE: own})
         write_atomically(Path(path), lambda temporary: temporary.write_text(text, encoding="utf-8"))
+
+
+@lru_cache(maxsize=32)  # the verdict, the changes and the curves of one page ask for the same
+def _squirt_by(calibration: Calibration, scene: Scene) -> CalibratedSquirt:
+    """The squirt of an off-centre stroke of another shaft with the tip of the calibration."""
+    keys, s = (*calibration.drawn,), model_error(scene)
+    values = {PARAMETERS[key].steps(): PARAMETERS[key].value(calibration.scene) for key in keys}
+    new = with_values_at(scene, values) if values else scene
+    old = replace(calibration.scene, stroke=scene.stroke)
+    after, before = squirt_of(new), squirt_of(old)
+    if not after * before > 0:
+        raise ValueError(f"a calibration needs squirt of one sign; got {after:.3g} and {before:.3g} rad")
+    d = max(model_share(old, new) * abs(math.log(after / before)), RATIO_FLOOR)
+    r = max(1 - d**2 / (2 * s**2), 0.0)
+    changes = squirt_changes(SolvedScene(new), after).of("squirt")
+    slopes = np.array([*(changes.get(key, 0.0) / (PARAMETERS[key].spread_in(new) or 1.0) for key in keys), r])
+    covariance = calibration.matrix
+    variance = float(slopes @ covariance @ slopes) + (1 - r**2) * s**2
+    own = {key: abs(change) for key, change in changes.items() if key not in keys}
+    shared = np.abs(slopes[:-1]) * np.sqrt(np.diag(covariance)[:-1])
+    parts = Uncertainty(math.sqrt(variance), math.hypot(*own.values()), NUMERICAL_ERROR)
+    computed = squirt_of(scene)
+    alone = squirt_changes(SolvedScene(scene), computed).of("squirt").values()
+    squirt = math.exp(r * calibration.log_factor) * after
+    return CalibratedSquirt(
+        calibration.name,
+        offset=float(scene.stroke.offset),
+        squirt=squirt,
+        squirt_error=parts.total * abs(squirt),
+        uncertainty=parts._asdict() | {"total": parts.total},
+        inputs=own | dict(zip(keys, shared.tolist(), strict=True)),
+        computed=computed,
+        uncalibrated_error=math.hypot(s, *alone, NUMERICAL_ERROR),
+        measured_factor=calibration.measured_factor,
+        correlation=r,
+        warnings=calibration.warnings,
+    )
 
 
 KEYS = ("name", "drawn", "log_factor", "covariance", "unchecked")

@@ -15,7 +15,7 @@ from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.strike import steps_of, strike, strike_modes
 from cuefem.cue import Array
 from cuefem.effects.cue_effects import Support
-from cuefem.endmass.definitions import DEFINITIONS, Drive, coupled_slope, small_offset_slope
+from cuefem.endmass.definitions import DEFINITIONS, Drive, coupled_slope, small_offset_slope, squirt_equivalent
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.verdict import reject_miscue
 from cuefem.scene import Outcome, Scene, check_scene
@@ -37,13 +37,15 @@ def off_centre(scene: Scene) -> Scene:
     return scene if scene.stroke.offset else at_offset(scene, DEFAULT_OFFSET)
 
 
-def coupled_curve(scene: Scene, offsets: Sequence[float], tip_modes: TipModes) -> dict[str, Any]:
+def coupled_curve(
+    scene: Scene, offsets: Sequence[float], tip_modes: TipModes, squirt_factor: float = 1.0
+) -> dict[str, Any]:
     """Squirt, natural pivot length, and regime of the coupled strike against the offset: every curve of a page.
 
-    tip_modes: those of the cue.
+    tip_modes: those of the cue. squirt_factor: of a calibration.
     """
     struck = [strike_modes(at_offset(scene, offset), tip_modes) for offset in offsets]
-    squirt = np.array([outcome.squirt for outcome in struck])
+    squirt = squirt_factor * np.array([outcome.squirt for outcome in struck])
     return {
         "squirt": squirt,
         "pivot_length": pivot_length(scene, squirt, np.array(offsets)),
@@ -69,6 +71,9 @@ class SolvedDesign:
         The scene and its modes.
     outcome : Outcome, optional
         Of its own strike, if already computed.
+    squirt_factor : float, default 1.0
+        Of a calibration: calibrated over computed squirt. Squirt and all results that follow from it carry it, an
+        `Outcome` does not.
 
     Attributes
     ----------
@@ -84,8 +89,8 @@ class SolvedDesign:
     See `solve`.
     """
 
-    def __init__(self, solved: SolvedScene, outcome: Outcome | None = None) -> None:
-        self.solved, self.scene = solved, solved.scene
+    def __init__(self, solved: SolvedScene, outcome: Outcome | None = None, squirt_factor: float = 1.0) -> None:
+        self.solved, self.scene, self.squirt_factor = solved, solved.scene, squirt_factor
         self._outcomes: dict[float | None, Outcome] = {} if outcome is None else {None: outcome}
         self._frequencies = np.array([])
 
@@ -114,18 +119,24 @@ class SolvedDesign:
             self._frequencies = modes(self.scene.shaft, count, effects=self.scene.cue_effects, at=at).frequencies
         return float(self._frequencies[mode - 1])
 
+    def calibrated(self, squirt_factor: float) -> SolvedDesign:
+        """The same solved scene with another squirt factor."""
+        return SolvedDesign(self.solved, self._outcomes.get(None), squirt_factor)
+
     @cached_property
     def squirt_slope(self) -> float:
         """Squirt over phi of a sticking tip in the limit of small offsets, without geometric stiffness, as end mass."""
-        return small_offset_slope(self.solved.stick_tip, self.scene)
+        return self.squirt_factor * small_offset_slope(self.solved.stick_tip, self.scene)
 
     @cached_property
     def coupled_slope(self) -> float:
         """Squirt over phi of the coupled strike in the limit of small offsets."""
-        return coupled_slope(self.solved.stick_tip, self.scene)
+        return self.squirt_factor * coupled_slope(self.solved.stick_tip, self.scene)
 
     def end_mass(self, name: Drive, offset: float | None = None) -> float:
         """End mass by a definition, kg, at an offset b/R or at the scene's own."""
+        if name == "squirt" and self.squirt_factor != 1.0:
+            return squirt_equivalent(self.solved.stick_tip, self._at(offset), self.squirt_factor)
         return float(DEFINITIONS[name].of_design(self.solved, self._at(offset)))
 
     def strike(self, offset: float | None = None) -> Outcome:
@@ -139,7 +150,7 @@ class SolvedDesign:
         """Squirt of the coupled strike at an offset b/R, or at the scene's own, rad; `NoVerdict` for a miscue."""
         outcome = self.strike(offset)
         reject_miscue(self._at(offset), outcome)
-        return float(outcome.squirt)
+        return self.squirt_factor * float(outcome.squirt)
 
     def _at(self, offset: float | None) -> Scene:
         return self.scene if offset is None else at_offset(self.scene, offset)

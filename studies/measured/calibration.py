@@ -151,7 +151,7 @@ import cuefem as cf
 
 made = cf.estimate("studies/measured/predator_z").calibration()
 found = made.squirt(cf.usual_scene(cf.load("low deflection")))
-print(found.headline())
+print(found.origin())
 print(f"instead of {100 * found.uncalibrated_error:.0f} %")
 """
 STUDY = Study(__file__, text, example=EXAMPLE)

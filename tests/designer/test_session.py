@@ -113,15 +113,16 @@ def test_calibration_shows_as_in_the_commands() -> None:
     assert headline is not None
     assert headline.verdict == verdict
     assert verdict.calibrated is not None
-    assert verdict.calibrated.squirt_error < verdict.squirt_error
+    assert verdict.squirt == pytest.approx(verdict.calibrated.factor * verdict.calibrated.computed)
+    assert headline.numbers["squirt"] == pytest.approx(verdict.squirt)
     warning = "warning: no other measurement of old checks pivot"
     lines = comparison_lines(headline)
-    assert verdict.calibrated.headline() in headline_markup(headline, lines).replace("\u00a0", " ")
+    assert verdict.calibrated.origin() in headline_markup(headline, lines).replace("\u00a0", " ")
     assert session.calibration_lines() == [verdict.calibrated.basis(), warning]
     assert session.results.own["changes"].calibrated == verdict.calibrated
     page = session.report_call()()
     assert "calibrated on old" in page
-    assert "It rests on the squirt measured there" in page
+    assert "It rests on the squirt measured on old" in page
     assert warning in page
 
 

@@ -5,12 +5,14 @@ import math
 import re
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import cuefem as cf
 from cuefem.measurements.calibration import MAX_FACTOR, Calibration
+from cuefem.results.closed_forms import pivot_length
 from cuefem.results.uncertainty import MODEL_ERROR, RATIO_FLOOR, SHAFT_ERROR, squirt_of
 from tests.helpers.command_line import as_json, call, stdout_of
 
@@ -151,14 +153,49 @@ def test_estimate_writes_a_calibration_that_every_command_takes(tmp_path: Path) 
     assert f"cuefem report NEW.toml --calibration {path}" in out
     found = cf.load_calibration(path).squirt(NEW)
     assert (round(found.error, 2), round(found.uncalibrated_error, 2)) == (0.12, 0.20)
-    line = found.headline()
+    line = found.origin()
     assert line in stdout_of("improve", "low deflection", "--calibration", path)
-    assert line in stdout_of("compare", "plain maple", "low deflection", "--calibration", path)
+    assert line in stdout_of("compare", "low deflection", "plain maple", "--calibration", path)
     record = as_json("report", "low deflection", "--calibration", path)
     assert record["verdict"]["calibrated"]["squirt"] == pytest.approx(found.squirt, rel=1e-9)
     assert stdout_of("report", "low deflection", "--calibration", path, "-o", page)
     assert page.read_text("utf-8").count("calibrated on Predator Z") >= 1
     assert json.dumps(record)
+
+
+@pytest.mark.heavy
+def test_one_factor_scales_every_squirt_of_every_answer() -> None:
+    """Squirt, its reference cues, curves and table times the factor; pivot length and end mass those of that squirt."""
+    made = calibration()
+    found = made.squirt(NEW)
+    assert found.factor > 1.1
+
+    plain, own = (cf.report(NEW, calibration=each, details=True).sections for each in (None, made))
+    verdicts: list[Any] = [each["verdict"] for each in (plain, own)]
+    numbers: list[Any] = [each["numbers"] for each in (plain, own)]
+    curves: list[Any] = [each["squirt"].models["coupled, this cue"]["squirt"] for each in (plain, own)]  # type: ignore[attr-defined]
+    changes = [cf.design_changes(NEW, calibration=each) for each in (None, made)]
+    pairs = [cf.compare({"new": NEW, "old": OLD}, calibration=each) for each in (None, made)]
+    tables = [cf.strike_table(NEW, (1.9, 2.1), calibration=each) for each in (None, made)]
+    squirts = [
+        [each.squirt for each in verdicts],
+        [each.references["plain maple"]["squirt"] for each in verdicts],
+        [each.numbers["squirt"] for each in numbers],
+        [each[5] for each in curves],
+        [each.unmodified["squirt"] for each in changes],
+        [each.changes[0].squirt for each in changes],
+        [each.cues["new"]["squirt"] for each in pairs],
+        [each.cues["old"]["squirt"] for each in pairs],
+        [each.at(2.0, 0.2).squirt for each in tables],
+    ]
+    for before, after in squirts:
+        assert after / before == pytest.approx(found.factor, rel=2e-4)  # a table has four digits
+    assert verdicts[1].squirt_error == pytest.approx(found.squirt_error, rel=1e-9)
+    assert pairs[1].differences["old"]["squirt"] == pytest.approx(pairs[0].differences["old"]["squirt"], rel=1e-9)
+    pivot = pivot_length(NEW, found.squirt)
+    assert pairs[1].cues["new"]["pivot_length"] == pytest.approx(pivot, rel=1e-9)
+    lumped = replace(NEW, cue=cf.LumpedCue(NEW.axial_mass, numbers[1].squirt_end_mass), effects=())
+    assert float(cf.impulse(lumped).squirt) == pytest.approx(found.squirt, rel=1e-4)
 
 
 @pytest.mark.heavy
