@@ -164,9 +164,10 @@ class TradeOffResult(OptimumResult):
 
     def active(self, design: Optimum) -> list[str]:
         """The limits and ranges whose ends a design has reached, without the limit that made it."""
-        limited = {limit.response.name for limit in self.definition.limits}
-        own = {response.name for response in self.two} - limited
-        return [*dict.fromkeys(one.name for one in design.active if one.name not in own)]
+        two = {response.name for response in self.two}
+        asked = {(limit.response.name, bound) for limit in self.definition.limits for _, bound in limit.sides}
+        active = (each.name for each in design.active if each.name not in two or (each.name, each.bound) in asked)
+        return [*dict.fromkeys(active)]
 
     def values(self) -> Record:
         """The best design, and the designs of the trade-off."""
@@ -180,19 +181,24 @@ class TradeOffResult(OptimumResult):
         study = self.study
         units = study.units[: len(study.vary)]
         labels = [column_label(vary.name) for vary in study.vary]
-        response_labels = {response.name: response.label for response in study.responses}
-        head = ("design", *(each.heading for each in self.two), *map(with_heading, labels, units), "active")
+        head = ("design", *(each.heading for each in self.two), *map(with_heading, labels, units))
         rows = tuple(
             (
                 str(i),
                 *(shown(each.responses[response.name], response.display_key) for response in self.two),
                 *(shown(value, unit) for value, unit in zip(each.values.values(), units, strict=True)),
-                ", ".join(response_labels.get(name) or column_label(name) for name in self.active(each)),
             )
             for i, each in enumerate(self.trade_off)
         )
         title = f"Trade-off, {self.two[0].label} against {self.two[1].label}"
-        return [*super().tables(), Table(title, head, rows, (FRONT_NOTE,), texts=(len(head) - 1,))]
+        notes = (FRONT_NOTE, *filter(None, map(self._limits_text, range(len(self.trade_off)))))
+        return [*super().tables(), Table(title, head, rows, notes)]
+
+    def _limits_text(self, i: int) -> str:
+        """The limits and ranges whose ends a design of the trade-off has reached; empty if there are none."""
+        labels = {response.name: response.label for response in self.study.responses}
+        active = [labels.get(name) or column_label(name) for name in self.active(self.trade_off[i])]
+        return f"design {i} is at the limit of {', '.join(active)}" if active else ""
 
     def charts(self) -> list[Chart | CueDrawing]:
         """The trade-off with the unmodified design; drawings of that and of the best one."""
