@@ -302,6 +302,8 @@ def draw(axes: Any) -> None:
     solid = low_squirt.measures(cue("pool_maple"))
     axes.plot(solid[0], solid[2], "ks", label="solid maple")
     axes.set(xlabel="static tip stiffness, N/m", ylabel=f"squirt at b/R {OFFSET:g}, degrees", xscale="log")
+    axes.set_xticks([300, 400, 600, 1000, 2000], ["300", "400", "600", "1000", "2000"])
+    axes.set_xticks([], minor=True)
     axes.legend(fontsize=7)
 
 
