@@ -16,6 +16,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from cuefem.analysis import asked_questions
+from cuefem.cli.pending_warnings import print_pending_warnings, warn
 from cuefem.contact.kernel import KernelError
 from cuefem.quantity.display import one_line
 from cuefem.quantity.encoding import spell_lacking_characters
@@ -136,7 +137,12 @@ class _OneLine(_Commands):
                 warnings.filterwarnings("ignore", category=PlausibilityWarning)
                 warnings.filterwarnings("always", category=DrawingWarning)
                 warnings.showwarning = _print_warning
-                return super().invoke(ctx)
+                result = super().invoke(ctx)
+            print_pending_warnings()
+            return result
+        except click.exceptions.Exit:
+            print_pending_warnings()
+            raise
         except click.UsageError as error:
             _exit_with_usage_error(error)
         except (ArithmeticError, MemoryError) as error:
@@ -146,7 +152,7 @@ class _OneLine(_Commands):
             click.echo(f"cuefem: {what} ({type(error).__name__})", err=True)
             raise click.exceptions.Exit(2) from None
         except (ValueError, RuntimeError, KernelError) as error:
-            if isinstance(error, click.exceptions.Exit | click.exceptions.Abort):
+            if isinstance(error, click.exceptions.Abort):
                 raise
             click.echo(f"cuefem: {_error_text(error)}", err=True)
             raise click.exceptions.Exit(2 if isinstance(error, ValueError | KernelError) else 1) from None
@@ -165,7 +171,7 @@ def _error_text(error: Exception) -> str:
 
 def _print_warning(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
     """Print a warning as one line on stderr, as commands do."""
-    click.echo(f"warning: {one_line(str(message))}", err=True)
+    warn(one_line(str(message)))
 
 
 def _exit_with_usage_error(error: click.UsageError) -> NoReturn:

@@ -12,6 +12,7 @@ import click
 import cuefem as cf
 from cuefem.analysis.comparison import MAX_CUES
 from cuefem.cli.output import Command, command, output_option, print_json
+from cuefem.cli.pending_warnings import warn
 from cuefem.cli.progress import with_progress_bar
 from cuefem.cli.request import Request, errors_name_file, print_warnings
 from cuefem.cli.scene_command import (
@@ -133,7 +134,7 @@ def _write_calibration(folder: Path, output: Path, *, as_json: bool) -> None:
         print_json({"file": str(folder), "output_file": str(output), "warnings": [*made.warnings]})
         return
     for line in made.warnings:
-        click.echo(f"warning: {line}", err=True)
+        warn(line)
     click.echo(f"wrote {output}; for the next shaft with this tip: cuefem report NEW.toml --calibration {output}")
 
 

@@ -12,6 +12,7 @@ import click
 from click.core import ParameterSource
 
 from cuefem.cli.output import command, print_json
+from cuefem.cli.pending_warnings import print_pending_warnings
 from cuefem.cli.request import Request, errors_name_file
 from cuefem.cli.scene_command import calibration_option, cue_options
 from cuefem.cli.scene_options import CueFile, option
@@ -58,6 +59,7 @@ def designer(
         with request.errors():
             first = design_of(cue_name(scene) or scene.stem, request.scene, request.assumed)
         request.print_warnings()
+        print_pending_warnings()
     if calibration is not None:
         with errors_name_file(scene or Path(REFERENCES[0])):
             calibration.check(first.scene)

@@ -12,6 +12,7 @@ from typing import Any
 
 import click
 
+from cuefem.cli.pending_warnings import warn
 from cuefem.cli.scene_options import (
     NO_SHAFT,
     offset_value,
@@ -250,7 +251,7 @@ def compute_tip(scene: Scene) -> None:
 def print_warnings(scene: Scene, *, with_impact: bool = True) -> None:
     """Warn on stderr of implausible numbers; a wrong unit is the most common reason."""
     for line in plausibility_warnings(scene, with_impact=with_impact):
-        click.echo(f"warning: {line}", err=True)
+        warn(line)
 
 
 def _is_leather(known: Parameter) -> bool:

@@ -15,6 +15,7 @@ import click
 import cuefem as cf
 from cuefem.cli.cluster import dask_executor
 from cuefem.cli.output import command, json_option, output_option, print_json
+from cuefem.cli.pending_warnings import print_pending_warnings
 from cuefem.cli.progress import ProgressLines, progress_bar
 from cuefem.cli.request import errors_name_file, print_warnings
 from cuefem.cli.scene_command import Presentation, check_overwrite, force_option
@@ -115,6 +116,7 @@ def study(
     plan = load_study(file)
     designs = plan.all_designs
     print_warnings(designs.base)
+    print_pending_warnings()
     result: StudyResult
     database = None
     if isinstance(plan, Problem):
