@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.analysis.design_changes import changes_of
+from cuefem.analysis.shop_changes import changes_of
 from cuefem.cli import listed_commands
 from cuefem.cue.materials import material
 from cuefem.designer.controls import KNOBS, parse, range_of

@@ -37,7 +37,8 @@ class Question(NamedTuple):
     `SolvedDesign`, which shares modes and strike) and returns an `Analysis`. It is imported when it is called.
     help, group: line and heading in `cuefem --help` of a question whose command needs no options of its own; "" for
     others. in_report: whether it is a section of the report; page_only: of its page alone, for long or slow parts;
-    folded: closed there. needs: what the scene must have.
+    folded: closed there. engineer: among the parts "For engineers", behind those of a maker. needs: what the scene must
+    have.
     """
 
     title: str
@@ -47,6 +48,7 @@ class Question(NamedTuple):
     in_report: bool = True
     page_only: bool = False
     folded: bool = False
+    engineer: bool = False
     needs: Callable[[Scene], bool] = is_any
 
     @property
@@ -64,26 +66,43 @@ class Question(NamedTuple):
 # By the key of its JSON, of its section on a page, and the name of its command; in the order of the report.
 QUESTIONS: dict[str, Question] = {
     "verdict": Question("Squirt", "cuefem.analysis.verdict:verdict"),
-    "reduction": Question("From the drawing to squirt", "cuefem.analysis.reduction:reduction"),
     "advice": Question(
         "Design changes", "cuefem.analysis.design_changes:design_changes", page_only=True, needs=has_segments
     ),
     "squirt": Question("Squirt and tip offset", "cuefem.analysis.squirt_curve:squirt_curve"),
+    "numbers": Question("Cue and stroke", "cuefem.analysis.cue_numbers:cue_numbers"),
     "modes": Question(
         "Natural frequencies", "cuefem.analysis.natural_frequencies:natural_frequencies", needs=has_segments
     ),
-    "numbers": Question("Cue and stroke", "cuefem.analysis.cue_numbers:cue_numbers"),
-    "end_masses": Question("Effective end mass", "cuefem.analysis.end_mass:end_masses"),
-    "tip": Question("Leather tip, head-on impact", "cuefem.analysis.tip_impacts:tip_impacts", needs=has_leather),
-    "strike": Question("Stroke by model", "cuefem.analysis.strike_models:strike_models", page_only=True, folded=True),
-    "contact": Question("The contact", "cuefem.analysis.contact_history:contact_history", page_only=True, folded=True),
+    "reduction": Question("From the drawing to squirt", "cuefem.analysis.reduction:reduction", engineer=True),
+    "end_masses": Question("Effective end mass", "cuefem.analysis.end_mass:end_masses", engineer=True),
+    "tip": Question(
+        "Leather tip, head-on impact", "cuefem.analysis.tip_impacts:tip_impacts", needs=has_leather, engineer=True
+    ),
+    "strike": Question(
+        "Stroke by model", "cuefem.analysis.strike_models:strike_models", page_only=True, folded=True, engineer=True
+    ),
+    "contact": Question(
+        "The contact", "cuefem.analysis.contact_history:contact_history", page_only=True, folded=True, engineer=True
+    ),
     "segments": Question(
-        "Segments", "cuefem.analysis.page_notes:segments", page_only=True, folded=True, needs=has_segments
+        "Segments",
+        "cuefem.analysis.page_notes:segments",
+        page_only=True,
+        folded=True,
+        needs=has_segments,
+        engineer=True,
     ),
     "meanings": Question(
-        "Definitions of the end mass", "cuefem.analysis.page_notes:definitions", page_only=True, folded=True
+        "Definitions of the end mass",
+        "cuefem.analysis.page_notes:definitions",
+        page_only=True,
+        folded=True,
+        engineer=True,
     ),
-    "accuracy": Question("Accuracy of the model", "cuefem.analysis.page_notes:accuracy", page_only=True, folded=True),
+    "accuracy": Question(
+        "Accuracy of the model", "cuefem.analysis.page_notes:accuracy", page_only=True, folded=True, engineer=True
+    ),
     "effects": Question(
         "Sensitivity to effects",
         "cuefem.analysis.effect_sensitivity:effect_sensitivity",

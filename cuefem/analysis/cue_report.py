@@ -139,7 +139,7 @@ def report(
     >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
     >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43))
     >>> list(cf.report(scene).sections)
-    ['verdict', 'reduction', 'squirt', 'modes', 'numbers', 'end_masses', 'tip']
+    ['verdict', 'squirt', 'numbers', 'modes', 'reduction', 'end_masses', 'tip']
     """
     found: dict[str, Analysis] = {}
     lacking = ""

@@ -1,24 +1,22 @@
-"""Design changes of a cue, and the effect of each on its own by the coupled strike."""
+"""Design changes of a cue: the effect of each on its own, and of the best of them together, by the coupled strike."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from itertools import combinations
+from typing import Any
 
 import numpy as np
 
+from cuefem.analysis.shop_changes import MIN_STIFFNESS_LOSS, DesignChange, Limits, changes_of
 from cuefem.analysis.strike_models import regime_warning
-from cuefem.cue import Cue
-from cuefem.cue.materials import MATERIALS, table_name
 from cuefem.designs.evaluation import Response
-from cuefem.effects.leather_tip import DOMES
 from cuefem.measurements.calibration import CalibratedSquirt, Calibration
-from cuefem.parameters.parts import TUBE_FRONT, Layout, is_tube, is_wooden, shaft_word, taper_position
+from cuefem.parameters.parts import is_tube, shaft_word
 from cuefem.parameters.scene_changes import with_parameters
-from cuefem.parameters.table import PARAMETERS
-from cuefem.quantity.display_units import change_with_unit, format_change, short_number, with_unit
+from cuefem.quantity.display_units import change_with_unit, format_change, with_unit
 from cuefem.results.progress import Progress
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.results.solved_design import Solvable, SolvedDesign, off_centre
@@ -28,138 +26,13 @@ from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
 from cuefem.show.analysis import Analysis
 
-MM = 1e-3
-WIDER, DEEPER, SHORTER, LOWER, THINNER = 1 * MM, 25 * MM, 5 * MM, 1 * MM, 0.5 * MM
-NEW_BORE, NEW_DEPTH = 6 * MM, 127 * MM  # of meshes/pool_hollow.toml, 5 in deep
-MIN_WALL = 0.8 * MM  # the thinnest of carbon tubes (meshes/README.md); a thinner wall splits
-MIN_FERRULE = 5 * MM  # length after the change
-MIN_TIP = 2 * MM  # height after the change
-WALL_STEP = 0.2 * MM  # two plies of prepreg, 0.1 mm each
-EMPTY_FRONT, NEW_INSERT = 150 * MM, 25 * MM
-CARBON_WALL = 1.5 * MM  # the middle of meshes/carbon.toml
-PRO_GAIN = 0.5 * MM  # from the tip to the taper's position, as in meshes/pool_maple.toml
-FERRULES = ("abs", "melamine", "phenolic")  # sold for cues; brass and steel are not suggested
-SHAFT_WOODS = ("hard maple", "ash", "yellow birch", "purpleheart", "rosewood")
-MIN_STIFFNESS_LOSS = 0.05  # perceptible relative loss of stiffness
+MIN_CHANGE = 0.02  # relative, of squirt: below it nobody turns a ferrule
+MAX_STRIKES = 30  # of single and combined changes
+TRIPLE_GAIN = 0.02  # of squirt, by which three changes together must beat two
 MIN_CONTRIBUTION = 0.002  # of squirt: smaller contributions to its uncertainty are neglected in a change
 NUMBERS = tuple(map(Response.of, ("squirt", "tip_stiffness", "shaft_mass", "frequency(1)")))
-WOOD = ("E", "G", "rho")
-STYLES = {"worthwhile": "bold", "more squirt": "dim", "within uncertainty": "dim"}
-
-
-class DesignChange(NamedTuple):
-    """A change: its label, and the values that it sets, SI or names of materials, by parameter.
-
-    resets: uncertain parameters whose value it replaces, so that the error of the new one is independent.
-    """
-
-    label: str
-    values: dict[str, Any]
-    resets: tuple[str, ...] = ()
-
-
-def changes_of(scene: Scene) -> list[DesignChange]:
-    """Candidate changes of this cue; `design_changes` drops those that its geometry does not allow."""
-    values = {key: parameter.value(scene) for key, parameter in PARAMETERS.items()}
-    if is_tube(scene.shaft):
-        return [*_walls(values), *_fillings(values), *_ferrules(values), *_tips(values)]
-    changes = [*_bores(scene.shaft, values), *_ferrules(values), *_tips(values)]
-    if is_wooden(scene.shaft):
-        changes += [*_tapers(scene.shaft, values), *_woods(scene.shaft)]
-    return changes
-
-
-def _walls(values: Record) -> Iterator[DesignChange]:
-    """Another wall in front: a tube is made on a mandrel, and is neither turned nor replaced by solid wood."""
-    wall = values["front_wall"]
-    if wall is None:
-        return
-    where = f"over the first {with_unit(TUBE_FRONT, 'm')}"
-    for name, new in (("thinner", wall - WALL_STEP), ("thicker", wall + WALL_STEP)):
-        yield DesignChange(f"wall {name}, {_from_to(wall, new)} {where}", {"front wall": new})
-
-
-def _fillings(values: Record) -> Iterator[DesignChange]:
-    """Nothing inside the front of the tube, or a maple insert."""
-    empty, insert = values["empty_depth"], values["insert_depth"]
-    if empty == insert == 0:
-        label = f"no filling in the first {with_unit(EMPTY_FRONT, 'm')} of the tube"
-        yield DesignChange(label, {"empty depth": EMPTY_FRONT})
-    if insert == 0:
-        yield DesignChange(f"maple insert, {with_unit(NEW_INSERT, 'm')} long, in front", {"insert depth": NEW_INSERT})
-    elif insert is not None:
-        yield DesignChange("no insert in front", {"insert depth": 0.0})
-
-
-def _bores(cue: Cue, values: Record) -> Iterator[DesignChange]:
-    depth, width = values["bore_depth"], values["bore_width"]
-    if depth is None:
-        return
-    if depth <= 0:
-        new = {"bore depth": NEW_DEPTH, "bore width": NEW_BORE}
-        yield DesignChange(f"bore, {with_unit(NEW_BORE, 'm')} wide and {with_unit(NEW_DEPTH, 'm')} deep", new)
-        return
-    bored = [cue.segments[i] for i in Layout.of(cue).bore or ()]
-    is_cylinder = all(s.tip_bore == s.butt_bore == width for s in bored)
-    at_mouth = "" if is_cylinder else " at its mouth"
-    yield DesignChange(f"bore wider, {_from_to(width, width + WIDER)}{at_mouth}", {"bore width": width + WIDER})
-    yield DesignChange(f"bore deeper, {_from_to(depth, depth + DEEPER)}", {"bore depth": depth + DEEPER})
-
-
-def _ferrules(values: Record) -> Iterator[DesignChange]:
-    length, material = values["ferrule_length"], values["ferrule_material"]
-    if length is None:
-        return
-    if length - SHORTER >= MIN_FERRULE:
-        yield DesignChange(
-            f"ferrule shorter, {_from_to(length, length - SHORTER)}", {"ferrule length": length - SHORTER}
-        )
-    for name in FERRULES:
-        if MATERIALS[name].material != material:
-            yield DesignChange(f"{'ABS' if name == 'abs' else name} ferrule", {"ferrule material": name})
-
-
-def _tips(values: Record) -> Iterator[DesignChange]:
-    height, dome = values["tip_height"], values["dome"]
-    if height is not None and height - LOWER >= MIN_TIP:
-        yield DesignChange(f"tip height {_from_to(height, height - LOWER)}", {"tip height": height - LOWER})
-    for name in ("dime", "nickel"):
-        if dome is not None and abs(DOMES[name] - dome) > 0.1 * MM:
-            yield DesignChange(f"tip radius of a {name}", {"dome": DOMES[name]}, ("dome",))
-
-
-def _tapers(cue: Cue, values: Record) -> Iterator[DesignChange]:
-    tip, taper, end = (values[f"{name}_diameter"] for name in ("tip", "taper", "butt"))
-    x = taper_position(cue)
-    at = with_unit(x, "m", decimals=0)
-    thinner = {"tip diameter": tip - THINNER, "taper diameter": taper - THINNER}
-    yield DesignChange(f"{with_unit(THINNER, 'm')} thinner from the front to {at}", thinner)
-    cone, pro = tip + (end - tip) * x / cue.length, tip + PRO_GAIN
-    for name, diameter in (("straight taper, a cone", cone), ("pro taper", pro)):
-        if abs(diameter - taper) > 0.2 * MM:
-            yield DesignChange(f"{name}, {with_unit(diameter, 'm')} at {at}", {"taper diameter": diameter})
-
-
-def _woods(cue: Cue) -> Iterator[DesignChange]:
-    shaft = Layout.of(cue).shaft
-    current = table_name(cue.segments[shaft.start].material)
-    for name in SHAFT_WOODS:
-        if name != current:
-            yield DesignChange(f"{name} shaft", {"shaft material": name}, WOOD)
-    tube: dict[str, Any] = {}
-    for i in shaft:
-        segment = cue.segments[i]
-        tube |= {
-            f"cue.segments[{i}].material": "carbon fibre",
-            f"cue.segments[{i}].core": "foam",
-            f"cue.segments[{i}].tip_bore": segment.tip_diameter - 2 * CARBON_WALL,
-            f"cue.segments[{i}].butt_bore": segment.butt_diameter - 2 * CARBON_WALL,
-        }
-    yield DesignChange(f"carbon tube, wall {with_unit(CARBON_WALL, 'm')}, foam inside", tube, WOOD)
-
-
-def _from_to(old: float, new: float) -> str:
-    return f"{short_number(old, 'm')} → {with_unit(new, 'm')}"
+_NUMBER = {1: "best two together", 2: "best three together"}
+STYLES = {"worthwhile": "bold", "more squirt": "dim", "within uncertainty": "dim", "small": "dim"}
 
 
 @dataclass(frozen=True)
@@ -219,6 +92,8 @@ class DesignChanges(Analysis):
         uncertainties is that of the other side.
     calibrated : CalibratedSquirt or None
         The calibration by which every squirt is given: all changes carry the factor of the cue itself.
+    together : list of ChangedDesign
+        The best two changes of this shaft together, and the best three if they lower squirt by 2 % more.
     """
 
     offset: float
@@ -227,10 +102,11 @@ class DesignChanges(Analysis):
     changes: list[ChangedDesign]
     miscues: tuple[str, ...] = ()
     calibrated: CalibratedSquirt | None = None
+    together: Sequence[ChangedDesign] = ()
 
     def tables(self) -> list[Table | str]:
-        """A table with a row for each change, after the calibration of the cue itself."""
-        return [*self._calibration_lines(), self.table()]
+        """A table with a row for each change, after the calibration of the cue itself and the best changes together."""
+        return [*self._calibration_lines(), *([*self.together_lines(), ""] if self.together else []), self.table()]
 
     def _calibration_lines(self) -> list[str]:
         """The calibrated squirt of the cue itself, and warnings; empty without a calibration."""
@@ -239,6 +115,17 @@ class DesignChanges(Analysis):
             return []
         squirt = with_unit(abs(own.squirt), "rad", error=own.squirt_error)
         return [f"squirt {squirt} (1σ), {own.origin()}", own.basis(), *own.warning_lines(), ""]
+
+    def together_lines(self) -> list[str]:
+        """The best changes together, a line each: what, squirt before and after, stiffness and mass."""
+        return [f"{_NUMBER[row.change.count(' + ')]}: {self.together_text(row)}" for row in self.together]
+
+    def together_text(self, row: ChangedDesign) -> str:
+        """Changes together in words: their squirt, and what they cost."""
+        before, after = (with_unit(each, "rad", decimals=2) for each in (self.unmodified["squirt"], row.squirt))
+        change = format_change(100 * row.squirt_change, 1, f"± {100 * row.squirt_change_error:.1f} %")
+        costs = f"stiffness {_percent(row.tip_stiffness_change)}, {change_with_unit(row.shaft_mass_change, 'kg', 1)}"
+        return f"{row.change}: {change} ({before} → {after}), {costs}"
 
     def table(self) -> Table:
         """A row for each change, the lowest squirt first."""
@@ -269,8 +156,8 @@ class DesignChanges(Analysis):
             *([warning] if warning else []),
             f"Each change on its own, by the coupled strike at b/R {self.offset:.4g}; this cue: {own}. "
             f"±: uncertainty of the change (1σ): model, unmeasured {shaft_word(self.scene)} and tip, and 1 %. "
-            "Worthwhile: squirt falls by more than its uncertainty; within uncertainty: the change is smaller than its "
-            "uncertainty.",
+            f"Worthwhile: squirt falls by more than its uncertainty and by {100 * MIN_CHANGE:g} % or more (small: by "
+            "less); within uncertainty: the change is smaller than its uncertainty.",
             *([note] if (note := miscue_note(self.miscues)) else []),
             "Stiffness: static, at the tip, joint end clamped. Costs stiffness: by 5 % or more. Natural frequency: of "
             "the first mode.",
@@ -278,15 +165,21 @@ class DesignChanges(Analysis):
 
 
 def design_changes(
-    scene: Solvable, *, calibration: Calibration | None = None, progress: Progress = list
+    scene: Solvable,
+    *,
+    limits: Limits = Limits(),  # noqa: B008  # frozen
+    calibration: Calibration | None = None,
+    progress: Progress = list,
 ) -> DesignChanges:
-    """Changes that a maker can make to a cue, and the effect of each on its own.
+    """Changes that a maker can make to a cue, the effect of each on its own, and the best of them together.
 
     Parameters
     ----------
     scene : Scene
         A stroke with a cue of segments, such as that of `usual_scene`. A head-on stroke is computed at the game's
         default offset.
+    limits : Limits
+        What the maker does not accept: least wall, parts that stay, loss of stiffness.
     calibration : Calibration, optional
         Squirt that was measured on another shaft with the same tip: every squirt is calibrated. A change alters squirt
         by the same share.
@@ -321,27 +214,111 @@ def design_changes(
     factor = calibrated.factor if calibrated else 1.0
     base = _numbers(design.solved)
     changes = squirt_changes(design.solved, base["squirt"])
-    before = {key: x for key, x in changes.of("squirt").items() if abs(x) > MIN_CONTRIBUTION}
-    rows = []
-    for change in progress(changes_of(struck)):
-        try:
-            variant = with_parameters(struck, change.values)
-            if _wall(variant) < (1 - 1e-9) * min(MIN_WALL, _wall(struck)):
-                continue
-            new = SolvedScene(variant)
-            numbers = _numbers(new)
-            after = squirt_changes(new, numbers["squirt"], before).of("squirt")
-            residual = (_residual(before.get(key, 0.0), after.get(key, 0.0), key in change.resets) for key in before)
-            error = ratio_error(numbers["squirt"] / base["squirt"], model_share(struck, variant), *residual)
-            rows.append(_changed_design(change, base, numbers, error))
-        except (ValueError, RuntimeError):
-            continue
-    rows = [replace(row, squirt=factor * row.squirt) for row in rows]
-    rows.sort(key=lambda row: row.squirt_change)
-    base["squirt"] *= factor
+    trial = _Trial(struck, base, changes.of("squirt"), limits)
+    candidates = [change for change in changes_of(struck) if change.part not in limits.keep]
+    singles = [(change, row) for change in progress(candidates) if (row := trial.changed(change)) is not None]
+    together = _together(trial, singles, MAX_STRIKES - len(candidates))
+    rows = sorted((row for _, row in singles), key=lambda row: row.squirt_change)
     return DesignChanges(
-        design.scene, float(struck.stroke.offset), outcome.regime, base, rows, changes.miscues, calibrated
+        scene=design.scene,
+        offset=float(struck.stroke.offset),
+        regime=outcome.regime,
+        unmodified=base | {"squirt": factor * base["squirt"]},
+        changes=[replace(row, squirt=factor * row.squirt) for row in rows],
+        together=[replace(row, squirt=factor * row.squirt) for row in together],
+        miscues=changes.miscues,
+        calibrated=calibrated,
     )
+
+
+class _Trial:
+    """A shaft, on which changes are tried within the limits of its maker."""
+
+    def __init__(self, struck: Scene, base: Record, inputs: Mapping[str, float], limits: Limits) -> None:
+        self.struck, self.base, self.limits = struck, base, limits
+        self.before = {key: x for key, x in inputs.items() if abs(x) > MIN_CONTRIBUTION}
+
+    def changed(self, change: DesignChange) -> ChangedDesign | None:
+        """The shaft with a change; None where its geometry or the limits do not allow it."""
+        numbers = self.numbers(change)
+        return None if numbers is None else self.with_error(change, numbers)
+
+    def numbers(self, change: DesignChange) -> Record | None:
+        """The numbers of the changed shaft, without their uncertainty: one strike."""
+        try:
+            variant = with_parameters(self.struck, change.values)
+            least = min(self.limits.least_wall(variant), _wall(self.struck))
+            if _wall(variant) < (1 - 1e-9) * least:
+                return None
+            return _numbers(SolvedScene(variant))
+        except (ValueError, RuntimeError):
+            return None
+
+    def with_error(self, change: DesignChange, numbers: Record) -> ChangedDesign | None:
+        """The changed shaft with the uncertainty of its change of squirt."""
+        try:
+            variant = with_parameters(self.struck, change.values)
+            after = squirt_changes(SolvedScene(variant), numbers["squirt"], self.before).of("squirt")
+            residual = (
+                _residual(self.before.get(key, 0.0), after.get(key, 0.0), key in change.resets) for key in self.before
+            )
+            ratio = numbers["squirt"] / self.base["squirt"]
+            error = ratio_error(ratio, model_share(self.struck, variant), *residual)
+            return _changed_design(change, self.base, numbers, error)
+        except (ValueError, RuntimeError):
+            return None
+
+
+def _together(
+    trial: _Trial, singles: Sequence[tuple[DesignChange, ChangedDesign]], strikes: int
+) -> list[ChangedDesign]:
+    """The best two changes together, and the best three if they gain `TRIPLE_GAIN` more.
+
+    Of single changes of this shaft that lower squirt; changes of the tip wear off and are none of them. Groups are
+    ranked by the product of their single ratios, and the first ones struck, as many as `strikes` allows.
+    """
+    useful = [
+        (change, math.log1p(row.squirt_change))
+        for change, row in singles
+        if row.squirt_change < 0 and change.part != "tip" and not change.is_new_shaft
+    ]
+    shares = {2: strikes - strikes // 3, 3: strikes // 3}
+    best = []
+    for size, most in shares.items():
+        groups = [group for group in combinations(useful, size) if _is_compatible([change for change, _ in group])]
+        groups.sort(key=lambda group: sum(gain for _, gain in group))
+        struck = []
+        for group in groups[: max(0, most)]:
+            change = _joined([change for change, _ in group])
+            numbers = trial.numbers(change)
+            if numbers is not None and _is_stiff(numbers, trial):
+                struck.append((numbers["squirt"], change, numbers))
+        if struck:
+            _, change, numbers = min(struck, key=lambda each: each[0])
+            best.append(trial.with_error(change, numbers))
+    rows = [row for row in best if row is not None]
+    if len(rows) == 2 and rows[1].squirt_change > rows[0].squirt_change - TRIPLE_GAIN:
+        rows.pop()
+    return rows
+
+
+def _is_compatible(group: Sequence[DesignChange]) -> bool:
+    """Whether no two changes set the same parameter."""
+    keys = [key for change in group for key in change.values]
+    return len(keys) == len({*keys})
+
+
+def _joined(group: Sequence[DesignChange]) -> DesignChange:
+    """Several changes as one."""
+    values = {key: value for change in group for key, value in change.values.items()}
+    resets = tuple(key for change in group for key in change.resets)
+    return DesignChange(" + ".join(change.label for change in group), values, resets)
+
+
+def _is_stiff(numbers: Record, trial: _Trial) -> bool:
+    """Whether the stiffness at the tip stays within the limits."""
+    least = (1 - trial.limits.stiffness_loss) * trial.base["tip_stiffness"]
+    return bool(numbers["tip_stiffness"] >= least)
 
 
 def _numbers(solved: SolvedScene) -> Record:
@@ -385,6 +362,8 @@ def _verdict(squirt: float, stiffness: float, error: float) -> str:
         return "within uncertainty"
     if squirt > 0:
         return "more squirt"
+    if squirt > -MIN_CHANGE:
+        return "small"
     return "worthwhile, costs stiffness" if stiffness < -MIN_STIFFNESS_LOSS else "worthwhile"
 
 

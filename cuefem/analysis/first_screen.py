@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from cuefem.analysis.verdict import Verdict, squirt_difference
 from cuefem.parameters.parts import shaft_word
-from cuefem.quantity.display_units import DISTANCE, END_MASS, OFF_LINE, short_number, with_unit
+from cuefem.quantity.display_units import DISTANCE, END_MASS, OFF_LINE, SHAFT_STIFFNESS, short_number, with_unit
 from cuefem.results.quantities import DASH
 from cuefem.results.records import Record
 from cuefem.scene import Scene
@@ -32,7 +32,7 @@ TILES = {
         0,
         "Distance from the end of the tip to the point about which pivoting the cue cancels squirt",
     ),
-    "tip_stiffness": ("Stiffness", "N/m", 0, "Static, transverse, at the tip; joint end clamped"),
+    "tip_stiffness": ("Stiffness", SHAFT_STIFFNESS, 0, "Static, transverse, at the tip; joint end clamped"),
 }
 
 

@@ -9,7 +9,7 @@ from cuefem.analysis import report_sections
 from cuefem.analysis.first_screen import HeadlineCue, comparison_lines, cue_names, screen_markup
 from cuefem.analysis.squirt_curve import FINE_OFFSETS
 from cuefem.analysis.strike_models import regime_warning
-from cuefem.files.defaults_report import Assumption
+from cuefem.files.defaults_report import STROKE, TIP, Assumption
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.quantities import format_value
 from cuefem.results.records import Record, Table
@@ -58,6 +58,7 @@ def page_of(
             "key": key,
             "title": part.title,
             "folded": part.folded,
+            "engineer": part.engineer,
             "about": answers[key].about,
             "charts": answers[key].charts(),
             "more": answers[key].more_charts(),
@@ -69,6 +70,9 @@ def page_of(
     if beside is not None:
         sections.insert(0, _beside(scene, answers, name, beside, verdict.factor))
     lines = comparison_lines(own) if beside is None else comparison_lines(own, beside.cue, beside.difference)
+    advice: Any = answers.get("advice")
+    if advice is not None and advice.together:
+        lines = [*lines, [(advice.together_lines()[0], "")]]
     return page(
         cue_names(own, others),
         kind="report",
@@ -84,8 +88,16 @@ def page_of(
         facts=facts(scene),
         uncertainty=[verdict.uncertainty_line()],
         screen=screen_markup(own, others, lines),
-        sections=sections,
+        sections=[part for part in sections if not part["engineer"]],
+        engineers=[part for part in sections if part["engineer"]],
+        engineers_open=_is_for_engineers(scene, name, notes),
     )
+
+
+def _is_for_engineers(scene: Scene, name: str, notes: Sequence[Assumption]) -> bool:
+    """Whether the parts for engineers are open: of a lumped cue, Kim's, a scene with its own tip or stroke."""
+    is_default = any(each.of in (TIP, STROKE) for each in notes)
+    return scene.lumped is not None or name == "kim" or not is_default
 
 
 def page(cues: Iterable[str], **parts: Any) -> str:
@@ -112,7 +124,7 @@ def _beside(scene: Scene, answers: Answers, name: str, beside: Beside, squirt_fa
 
 def section_of(table: Table, charts: Sequence[Chart]) -> Record:
     """The section of compared cues."""
-    made: Record = {"key": "other", "title": table.title, "folded": False, "about": "", "more": []}
+    made: Record = {"key": "other", "title": table.title, "folded": False, "engineer": False, "about": "", "more": []}
     return made | {"charts": charts, "tables": [table]}
 
 

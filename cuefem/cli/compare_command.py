@@ -23,18 +23,22 @@ from cuefem.cli.scene_command import (
     force_option,
 )
 from cuefem.cli.scene_options import CUE_KEYS, impact_options, offset_option, option, typed_name
-from cuefem.files import InputError, load_stroke
+from cuefem.files import InputError, load_stroke, write_atomically
 from cuefem.files.cue_names import cue_name, named_path
 from cuefem.files.defaults_report import STROKE, Assumption, given_keys
 from cuefem.files.lathe_profile import names_units
 from cuefem.files.shaft_additions import SHAFT_ADDITIONS
 from cuefem.files.warnings_of_drawings import drawing_warnings
 from cuefem.measurements.calibration import Calibration
-from cuefem.measurements.measured_folder import load_measured, named_folder, write_template
+from cuefem.measurements.measured_folder import MEASURED, load_measured, named_folder, write_template
 from cuefem.quantity.display_units import displayed_system
 from cuefem.scene import Scene
 from cuefem.show.plausibility import plausibility_warnings
+from cuefem.show.renderers import csv_text
 from cuefem.show.scene_summary import listed
+
+DRAWINGS = (".toml", ".csv", ".stl", ".ply", ".obj")
+MEASURED_FILES = (MEASURED, "cue.toml", "cue.csv")  # one of them makes a folder a measured cue
 
 
 class TwoForms(Command):
@@ -60,7 +64,7 @@ class TwoForms(Command):
     help="Estimate wood, bore and tip from all measurements in FOLDER (maximum a posteriori), with uncertainties.",
 )
 @click.option("--template", is_flag=True, help="Create FOLDER with example files to fill in.")
-@output_option(".html", ".json", ".toml")
+@output_option(".html", ".json", ".csv", ".toml")
 @calibration_option
 @force_option
 @cue_options
@@ -86,6 +90,14 @@ def compare(
     measurements, and one CSV for each long series, such as squirt.csv. The options of cue, tip and stroke stand in
     these files.
     """
+    listed = [] if estimate or template else _listed_files(files)
+    if listed:
+        if same_shaft or calibration is not None:
+            raise InputError(files[0], "", f"--same-shaft and --calibration take at most {MAX_CUES} FILEs, not a list")
+        _list(listed, options, output, as_json=as_json)
+        return
+    if output is not None and output.suffix.lower() == ".csv":
+        raise InputError(output, "--output", f"a table (.csv) needs a folder of drawings or over {MAX_CUES} files")
     if len(files) > 1:
         requests = [Request.of(named_path(file), options) for file in files]
         if output is not None and output.suffix.lower() == ".toml":
@@ -118,6 +130,50 @@ def compare(
         _with_measurements(folder, output, as_json=as_json, estimate=estimate)
 
 
+def _listed_files(files: Sequence[Path]) -> list[Path]:
+    """The files of a list of shafts: more than `MAX_CUES`, or the drawings of a folder; empty for another question."""
+    if len(files) > MAX_CUES:
+        return [named_path(file) for file in files]
+    folder = files[0]
+    if len(files) > 1 or not folder.is_dir() or any((folder / name).exists() for name in MEASURED_FILES):
+        return []
+    drawings = sorted(file for file in folder.iterdir() if file.suffix.lower() in DRAWINGS and file.name != "shop.toml")
+    if not drawings:
+        problem = f"must hold drawings ({', '.join(DRAWINGS)}), or measured.toml and the drawing of a measured cue"
+        raise InputError(folder, "", f"{problem}; got none")
+    return drawings
+
+
+def _list(files: Sequence[Path], options: Mapping[str, str | None], output: Path | None, *, as_json: bool) -> None:
+    """Print or write the list of shafts; files without an answer stand in it."""
+    if output is not None and output.suffix.lower() == ".toml":
+        raise InputError(output, "--output", "a list is written as .html, .json or .csv")
+    scenes, unread = {}, {}
+    for name, file in zip(_names(files), files, strict=True):
+        try:
+            scenes[name] = _open_request(file, options).scene
+        except (ValueError, OSError) as error:
+            unread[name] = " ".join(str(error).removeprefix(f"{file}: ").split())
+    with errors_name_file(files[0].parent):
+        made = cf.shop_list(scenes, unread=unread, progress=with_progress_bar)
+    if output is not None and output.suffix.lower() == ".csv":
+        head, *rows = made.plain_rows()
+        text = "\ufeff" + csv_text(head, rows)
+        write_atomically(output, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+        click.echo(f"{made.headline()}\nwrote {output}")
+    else:
+        Presentation(made, files={"files": [typed_name(file) for file in files]}).show(output, as_json=as_json)
+    if unread:
+        raise InputError(files[0].parent, "", made.problem())
+
+
+def _open_request(file: Path, options: Mapping[str, str | None]) -> Request:
+    """The request of a file with the options that it leaves open."""
+    request = Request.of(file, options)
+    own = _own_values(request)
+    return replace(request, given={key: text for key, text in request.given.items() if key not in own})
+
+
 def _write_calibration(folder: Path, output: Path, *, as_json: bool) -> None:
     """Write the calibration by a measured cue."""
     cue, loaded_notes = load_measured(folder)
@@ -148,8 +204,6 @@ def _side_by_side(
 ) -> None:
     """Print or write the comparison of cues."""
     first, files = requests[0], [request.file for request in requests]
-    if len(files) > MAX_CUES:
-        raise InputError(files[MAX_CUES], "", f"must be one of at most {MAX_CUES} cues; got {len(files)}")
     names = _names(files)
     requests, notes = _distributed(requests, names)
     asked = dict(zip(names, requests, strict=True))

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 import cuefem as cf
 from cuefem.analysis.reduction import PAPER_CUE_ENDS, PAPER_TONE, cue_end_quantity
+from cuefem.analysis.shop_changes import PARTS, Limits
 from cuefem.cli.output import Command, print_json
 from cuefem.cli.progress import with_progress_bar
 from cuefem.cli.request import Request
@@ -20,7 +21,7 @@ from cuefem.cli.scene_command import (
     file_options,
     force_option,
 )
-from cuefem.cli.scene_options import option_value, tip_options, typed_name
+from cuefem.cli.scene_options import option, option_value, tip_options, typed_name
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.files import InputError, load_accuracy, save
 from cuefem.files.errors import as_input_error
@@ -63,15 +64,22 @@ def report(request: Request, output: Path | None, calibration: Calibration | Non
 @analysis_command(formats=(".html", ".json", ".toml"))
 @click.option(
     "--take",
-    type=click.IntRange(min=1),
-    metavar="ROW",
-    help="Save the cue of table row ROW (1 is the first) as the .toml of -o.",
+    metavar="ROW|together",
+    help="Save the cue of table row ROW (1 is the first), or of the best changes together, as the .toml of -o.",
+)
+@click.option("--wall", metavar="LENGTH", help='Least wall of a bore or tube, e.g. ".100 in" (default: wood 2.5 mm).')
+@click.option("--keep", metavar="PARTS", help=f"Parts that stay as they are, with commas: {', '.join(PARTS)}.")
+@click.option(
+    "--stiffness-loss", metavar="SHARE", help='Largest loss of stiffness of changes together (default: "5 %").'
 )
 @calibration_option
 @force_option
 def improve(
     request: Request,
-    take: int | None,
+    take: str | None,
+    wall: str | None,
+    keep: str | None,
+    stiffness_loss: str | None,
     output: Path | None,
     calibration: Calibration | None,
     force: bool,
@@ -79,8 +87,10 @@ def improve(
 ) -> Analysis | None:
     """List design changes a maker can make, with squirt, stiffness, mass and first natural frequency of each.
 
-    Each change is applied on its own and computed by the coupled strike. Rows are sorted by squirt, lowest first.
+    Each change is applied on its own and computed by the coupled strike. Rows are sorted by squirt, lowest first. Above
+    them: the best two changes together, within the limits; sizes are those of a shop.
     """
+    limits = _limits(request, wall, keep, stiffness_loss)
     drawing = output if output is not None and output.suffix.lower() == ".toml" else None
     if take is None and drawing is not None:
         raise InputError(drawing, "--output", "a drawing (.toml) needs the row to save, such as --take 1")
@@ -88,19 +98,47 @@ def improve(
         raise InputError(request.file, "--take", "requires -o FILE.toml")
     if drawing is not None:
         check_overwrite(drawing, force=force)
-    answer = cf.design_changes(request.scene, calibration=calibration, progress=with_progress_bar)
+    answer = cf.design_changes(request.scene, limits=limits, calibration=calibration, progress=with_progress_bar)
     if take is None or drawing is None:
         return answer
     _save_change(request, answer, take, drawing, as_json=as_json)
     return None
 
 
-def _save_change(request: Request, answer: DesignChanges, take: int, output: Path, *, as_json: bool) -> None:
+def _limits(request: Request, wall: str | None, keep: str | None, stiffness_loss: str | None) -> Limits:
+    """The limits of the options, each checked in its own name."""
+    given: dict[str, Any] = {}
+    if wall is not None:
+        given["wall"] = option_value(request.file, "--wall", wall, Quantity("m", "(0, 1]"))
+    if keep is not None:
+        given["keep"] = tuple(part.strip().casefold() for part in keep.split(","))
+    if stiffness_loss is not None:
+        given["stiffness_loss"] = _share(request, stiffness_loss)
+    for name, value in given.items():
+        with as_input_error(request.file, option(name)):
+            Limits(**{name: value})
+    return Limits(**given)
+
+
+def _share(request: Request, text: str) -> float:
+    """A share such as "5 %" or 0.05."""
+    number, percent = text.strip().removesuffix("%"), text.strip().endswith("%")
+    with as_input_error(request.file, "--stiffness-loss"):
+        try:
+            return float(number) / (100 if percent else 1)
+        except ValueError:
+            raise ValueError(f'must be a share such as "5 %"; got {text!r}') from None
+
+
+def _save_change(request: Request, answer: DesignChanges, take: str, output: Path, *, as_json: bool) -> None:
     """Save the cue of a row, and name the command that compares it."""
-    file, rows = request.file, answer.changes
-    if take > len(rows):
-        raise InputError(file, "--take", f"must be a row of the table, 1 to {len(rows)}; got {take}")
-    row = rows[take - 1]
+    file, rows = request.file, [*answer.changes]
+    row = answer.together[-1] if take == "together" and answer.together else None
+    if row is None and take.isdecimal() and 1 <= int(take) <= len(rows):
+        row = rows[int(take) - 1]
+    if row is None:
+        none = "" if answer.together else " (no changes together were found)"
+        raise InputError(file, "--take", f"must be a row of the table, 1 to {len(rows)}, or together{none}; got {take}")
     changed = with_parameters(request.scene, row.values)
     save(changed, output)
     if as_json:

@@ -133,6 +133,11 @@ def changes_panel(session: Session, attempt: Callable[[Mapping[str, Any]], None]
         return
     made = record.table()
     ui.label(f"Changes to {session.step.design.name}, each alone").classes("h2")
+    for line, row in zip(record.together_lines(), record.together, strict=True):
+        with ui.row().classes("together"):
+            ui.label(unbroken(line))
+            button = ui.button("Try", on_click=lambda places=row.values: attempt(places))
+            button.props(f'outline dense no-caps aria-label="Try {row.change}"')
     around = ui.element("div").classes("scroll").props('tabindex=0 role=region aria-label="Design changes"')
     with around, ui.element("table").classes("changes"):
         with ui.element("thead"), ui.element("tr"):

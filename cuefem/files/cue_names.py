@@ -57,7 +57,7 @@ def named_path(path: Path) -> Path:
     if not found:
         problem = f"must be a file, or a cue's name: {', '.join(CUES)}; got neither{suggestion(path.name, CUES)}"
         raise InputError(path, "", problem)
-    return data_folder() / CUES[found[0]].file
+    return _place(found[0])
 
 
 def matching_names(path: Path) -> list[str]:
@@ -69,7 +69,13 @@ def matching_names(path: Path) -> list[str]:
 
 def cue_name(path: Path) -> str:
     """The name of the cue whose drawing this is; "" for another file."""
-    return next((name for name, cue in CUES.items() if path == data_folder() / cue.file), "")
+    return next((name for name in CUES if path == _place(name)), "")
+
+
+def _place(name: str) -> Path:
+    """The file of a name; that of a scene is spelt with "..", so that a path that was typed keeps its own name."""
+    folder, file = data_folder(), CUES[name].file
+    return folder / "studies" / ".." / file if file.startswith("studies/scenes/") else folder / file
 
 
 def _words(name: str) -> list[str]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from fractions import Fraction
 from functools import lru_cache, wraps
 from types import MappingProxyType
 from typing import Any, NamedTuple, ParamSpec, TypeVar
@@ -38,6 +39,7 @@ class DisplayUnit(NamedTuple):
 # off the line of aim grows with the distance to the ball aimed at. A wave runs at ft/s, a cue at mph;
 # a computed distance, such as a pivot length, is known to a tenth of an inch at best, a drawn one to a thousandth.
 END_MASS, OFF_LINE, WAVE_SPEED, DISTANCE = "kg of end mass", "m/m", "m/s of waves", "m of distance"
+SHAFT_STIFFNESS = "N/m of a shaft"
 POUND_FORCE = 4.4482216152605  # N
 PSI = POUND_FORCE / 0.0254**2  # Pa
 POUND_PER_CUBIC_FOOT = 0.45359237 / 0.3048**3  # kg/m3
@@ -50,6 +52,7 @@ METRIC = MappingProxyType(
         OFF_LINE: DisplayUnit.of("m/m", "mm/m"),
         WAVE_SPEED: DisplayUnit.of("m/s", "m/s", 0),
         DISTANCE: DisplayUnit.of("m", "mm", 0),
+        SHAFT_STIFFNESS: DisplayUnit(1.0, "N/m"),
         "J": DisplayUnit(1e3, "mJ"),
         "1/sqrt(kg)": DisplayUnit(1.0, "/√kg"),
     }
@@ -60,6 +63,7 @@ US |= {
     WAVE_SPEED: DisplayUnit.of("m/s", "ft/s", 0),
     DISTANCE: DisplayUnit.of("m", "in", 1),
     "N/m": DisplayUnit(0.0254 / POUND_FORCE, "lbf/in"),
+    SHAFT_STIFFNESS: DisplayUnit(0.0254 / POUND_FORCE, "lbf/in", 2),
     "N": DisplayUnit(1 / POUND_FORCE, "lbf", 0),
     "Pa": DisplayUnit(1e-6 / PSI, "×10⁶ psi"),
     "kg/m^3": DisplayUnit(1 / POUND_PER_CUBIC_FOOT, "lb/ft³", 1),
@@ -185,6 +189,18 @@ def short_number(value: float, unit: str, digits: int = 4, *, decimals: int | No
         return trimmed(f"{shown.factor * value:z.{shown.decimals}f}")
     decimals = decimals if shown.decimals is None else shown.decimals
     return f"{shown.factor * value:{f'z.{digits}g' if decimals is None else f'z.{decimals}f'}}"
+
+
+def inch_fraction(length: float) -> str:
+    """A length, m, as a shop says it, in 1/64 in: "17/64", "1 1/4".
+
+    >>> inch_fraction(0.25 * 0.0254), inch_fraction(1.25 * 0.0254)
+    ('1/4', '1 1/4')
+    """
+    sixty_fourths = round(length / 0.0254 * 64)
+    whole, rest = divmod(sixty_fourths, 64)
+    fraction = f"{Fraction(rest, 64)}" if rest else ""
+    return " ".join(filter(None, (str(whole) if whole or not rest else "", fraction)))
 
 
 def trimmed(number: str) -> str:

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
 from typing import TYPE_CHECKING, Any
 
-from cuefem.quantity.display_units import DISTANCE, END_MASS, number_text, unit_suffix
+from cuefem.quantity.display_units import DISTANCE, END_MASS, SHAFT_STIFFNESS, number_text, unit_suffix
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.verdict import MISCUE_DEFINITION
 from cuefem.scene import Outcome, Scene
@@ -237,6 +237,7 @@ RESULTS = {
         label="shaft stiffness at the tip, static, joint end clamped",
         unit="N/m",
         heading="stiffness at the tip",
+        displayed=SHAFT_STIFFNESS,
         about="static: force across the tip over its deflection, the joint end clamped",
         of=lambda design, _: design.tip_stiffness,
         segments=True,

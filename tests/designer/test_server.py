@@ -114,7 +114,7 @@ def test_file_name_drops_folders() -> None:
     [
         ([], ("plain maple", True, True), "here\n"),
         (["predator z2", "--units", "us"], ("predator z2", True, False), "here\n"),
-        ([str(KIM), "--no-open", "--json"], ("kim bare", False, True), '{"address": "here"}'),
+        ([str(KIM), "--no-open", "--json"], ("kim", False, True), '{"address": "here"}'),
     ],
 )
 def test_designer_serves_the_design_of_its_scene(

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.analysis.design_changes import changes_of
 from cuefem.analysis.first_screen import comparison_lines, headline_markup
+from cuefem.analysis.shop_changes import changes_of
 from cuefem.designer.controls import KNOBS, label, parse, range_of, value, value_text
 from cuefem.designer.session import OF_TAB, OPENED, Results, Session
 from cuefem.designer.state import read_file, reference_design
@@ -164,4 +164,4 @@ def test_designer_rejects_calibration_of_another_game_in_one_line(tmp_path: Path
     calibration().save(path)
     status, out, err = call("designer", SNOOKER, "--no-open", "--calibration", path)
     assert (status, out, err.count("\n")) == (2, "", 1)
-    assert err.startswith("cuefem: snooker ash: the calibration is of another game: ")
+    assert err.startswith(f"cuefem: {SNOOKER}: the calibration is of another game: ")

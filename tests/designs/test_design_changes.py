@@ -9,14 +9,13 @@ import pytest
 
 import cuefem as cf
 from cuefem.analysis.design_changes import (
-    MIN_WALL,
     ChangedDesign,
     DesignChanges,
-    changes_of,
     design_changes,
 )
+from cuefem.analysis.shop_changes import MIN_TUBE_WALL, MIN_WOOD_WALL, changes_of
 from cuefem.cue.materials import material
-from cuefem.parameters.parts import shaft_word
+from cuefem.parameters.parts import is_tube, shaft_word
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.parameters.table import PARAMETERS
 from tests.helpers.command_line import call
@@ -87,13 +86,10 @@ def test_design_change_error_equals_comparison_of_same_shaft() -> None:
 def test_design_changes_walls_are_thick_enough(computed: tuple[cf.Scene, DesignChanges]) -> None:
     scene, record = computed
     for row in record.changes:
-        bored = [
-            s
-            for s in with_parameters(scene, row.values).cue.segments
-            if s.core is None and max(s.tip_bore, s.butt_bore)
-        ]
+        changed = with_parameters(scene, row.values)
+        bored = [s for s in changed.cue.segments if s.core is None and max(s.tip_bore, s.butt_bore)]
         walls = [min(s.tip_diameter - s.tip_bore, s.butt_diameter - s.butt_bore) / 2 for s in bored]
-        assert min(walls, default=np.inf) >= (1 - 1e-9) * MIN_WALL
+        assert min(walls, default=np.inf) >= (1 - 1e-9) * (MIN_TUBE_WALL if is_tube(changed.shaft) else MIN_WOOD_WALL)
 
 
 @pytest.mark.heavy

@@ -139,7 +139,7 @@ def test_template_write_failure_leaves_nothing(tmp_path: Path, monkeypatch: pyte
 def test_invalid_folders_are_rejected(tmp_path: Path) -> None:
     assert_rejects("got no folder", "compare", tmp_path / "none")
     (empty := tmp_path / "empty").mkdir()
-    assert_rejects("must contain the shaft's drawing, cue.toml or cue.csv; got none", "compare", empty)
+    assert_rejects("must hold drawings (.toml, .csv, .stl, .ply, .obj), or", "compare", empty)
     assert_unchanged(tmp_path, "cannot be written: No such file", "compare", tmp_path / "no" / "folder", "--template")
     scene = f"game = 'kim'\n[cue]\n{CUE_TOML.replace('[[segments]]', '[[cue.segments]]')}"
     of_scene = measured_folder(tmp_path / "scene", MEASURED_TOML, scene)

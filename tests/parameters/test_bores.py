@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 
 import cuefem as cf
-from cuefem.analysis.design_changes import changes_of
+from cuefem.analysis.shop_changes import changes_of
 from cuefem.parameters.parts import bore_mouth
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.parameters.table import PARAMETERS
