@@ -380,7 +380,7 @@ def _tabulate_fit(title: str, rows: Sequence[Record], optional: Sequence[str], n
 
 
 def _display_key(row: Mapping[str, Any]) -> str:
-    """The key of a measurement's display unit: a pendulum measures an end mass, scales a weight."""
+    """The key of a measurement's display unit: a side strike measures an end mass, scales a weight."""
     return END_MASS if row["kind"] == EndMass.key else str(row["unit"])
 
 

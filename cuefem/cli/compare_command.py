@@ -11,6 +11,7 @@ import click
 
 import cuefem as cf
 from cuefem.analysis.comparison import MAX_CUES
+from cuefem.analysis.measured import contradictions
 from cuefem.cli.output import Command, command, output_option, print_json
 from cuefem.cli.pending_warnings import warn
 from cuefem.cli.progress import with_progress_bar
@@ -63,7 +64,7 @@ class TwoForms(Command):
     is_flag=True,
     help="Estimate wood, bore and tip from all measurements in FOLDER (maximum a posteriori), with uncertainties.",
 )
-@click.option("--template", is_flag=True, help="Create FOLDER with example files to fill in.")
+@click.option("--template", is_flag=True, help="Create FOLDER with files to fill in.")
 @output_option(".html", ".json", ".csv", ".toml")
 @calibration_option
 @force_option
@@ -89,6 +90,10 @@ def compare(
     FOLDER: a measured cue, with the shaft's drawing (cue.toml or cue.csv, required), measured.toml with single
     measurements, and one CSV for each long series, such as squirt.csv. The options of cue, tip and stroke stand in
     these files.
+
+    To measure squirt: strike hard (ball over 4 m/s: 1 m in a quarter of a second) with the cue as low as the rail
+    allows, read the ball within 1 m, ten shots a side. Give the distance and how far the cue's centre line (or the
+    chalk mark) is from the ball's centre; if you cannot strike hard, give the elevation, or a second speed.
     """
     listed = [] if estimate or template else _listed_files(files)
     if listed:
@@ -118,7 +123,9 @@ def compare(
             print_json({"output_folder": str(folder)})
             return
         asked = shlex.join(["cuefem", "compare", str(folder)])
-        click.echo(f"wrote {folder}: replace the example numbers by yours, then run: {asked}")
+        click.echo(
+            f"wrote {folder}: replace cue.toml by your drawing, fill in each ? of measured.toml, then run: {asked}"
+        )
     elif folder.is_file() or cue_name(folder := named_folder(folder)):
         raise InputError(folder, "", "needs another FILE to compare with, or a FOLDER with measurements")
     elif output is not None and output.suffix.lower() == ".toml":
@@ -176,21 +183,20 @@ def _open_request(file: Path, options: Mapping[str, str | None]) -> Request:
 
 def _write_calibration(folder: Path, output: Path, *, as_json: bool) -> None:
     """Write the calibration by a measured cue."""
-    cue, loaded_notes = load_measured(folder)
-    system = displayed_system()
-
-    def notes() -> list[Assumption]:
-        return loaded_notes if displayed_system() == system else load_measured(folder)[1]
-
+    cue, assumed = load_measured(folder)
     print_warnings(cue.scene)
     with errors_name_file(folder):
+        contradictory = contradictions(cf.compare(cue, progress=with_progress_bar).rows)
         made = cf.estimate(cue, progress=with_progress_bar).calibration()
     made.save(output)
+    warnings = [*contradictory, *made.warnings]
     if as_json:
-        print_json({"file": str(folder), "output_file": str(output), "warnings": [*made.warnings]})
+        print_json({"file": str(folder), "output_file": str(output), "warnings": warnings})
         return
-    for line in made.warnings:
+    for line in warnings:
         warn(line)
+    for each in assumed:
+        click.echo(f"assumed: {each}", err=True)
     click.echo(f"wrote {output}; for the next shaft with this tip: cuefem report NEW.toml --calibration {output}")
 
 

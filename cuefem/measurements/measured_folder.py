@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import io
+import math
 import os
 import re
 import struct
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from importlib.resources import files
 from pathlib import Path
@@ -23,11 +24,20 @@ from cuefem.files.errors import as_input_error, check_path, quote, read_bytes, s
 from cuefem.files.schema import build, field_types, key_path, member_types, unknown_key
 from cuefem.files.toml_reader import GAME_KEYS, game_of, missing_keys, read_tables, scene_from_tables
 from cuefem.measurements.measured_cue import MeasuredCue
-from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Setup, Tone
-from cuefem.measurements.pendulum import Pendulum
+from cuefem.measurements.measurement_types import (
+    ELEVATION,
+    ELEVATION_SPREAD,
+    MEASUREMENT_TYPES,
+    BallDirection,
+    Measurement,
+    Setup,
+    Tone,
+)
 from cuefem.measurements.recording import Recording, combine_tones, tones_in
+from cuefem.measurements.shot import Shot
 from cuefem.measurements.uncertain_parameters import Prior
 from cuefem.parameters.scene_paths import parameter
+from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.fields import Quantity, quantity_of
 from cuefem.scene import Scene
 
@@ -35,10 +45,11 @@ MEASURED = "measured.toml"
 DRAWINGS = ("cue.toml", "cue.csv")
 SCENE_KEYS = ("cue", "game", "ball", "tip", "stroke", "effects")
 OWN_KEYS = ("name", "source", "prior")
-READINGS: dict[str, type] = {"recording": Recording, "pendulum": Pendulum}  # tables that yield measurements
 WAV_HEAD = 12  # bytes before the chunks of a .wav file
+READINGS: dict[str, type] = {"recording": Recording, "shot": Shot}  # tables that yield measurements
 LONGEST, LARGEST_SOUND = 120.0, 100_000_000  # s, bytes of a recording: 120 s of two channels at 96 kHz and 32 bits
-TEMPLATE = ("README.md", "added_mass.csv", "cue.toml", MEASURED, "squirt.csv")
+TEMPLATE = ("README.md", "cue.toml", MEASURED)
+BLANK = "?"  # begins a value of the template that is to be filled in
 
 _COLUMN = re.compile(r"\s*([a-z_]+)\s*(?:\[([^\]]+)\])?\s*")
 
@@ -62,7 +73,16 @@ def load_measured(folder: Path) -> tuple[MeasuredCue, list[Assumption]]:
     name, source = (_text(path, tables, key) for key in ("name", "source"))
     with as_input_error(path, ""):
         made = MeasuredCue(name or folder.resolve().name, scene, measurements, priors, source)
-    return made, [*notes, *_examples(folder)]
+    return made, [*notes, *_assumed_elevation(measurements)]
+
+
+def _assumed_elevation(measurements: Sequence[Measurement]) -> list[Assumption]:
+    """The elevation of readings at a distance that state none."""
+    read = [each for each in measurements if isinstance(each, BallDirection) and each.distance is not None]
+    if all(each.elevation is not None for each in read):
+        return []
+    low, high = (with_unit(ELEVATION * math.exp(sign * ELEVATION_SPREAD), "rad", decimals=1) for sign in (-1, 1))
+    return [Assumption("", f"elevation of the cue {low} to {high} (elevation in {MEASURED})")]
 
 
 def named_folder(folder: Path) -> Path:
@@ -89,14 +109,6 @@ def _example(name: str) -> str:
     return files(__package__).joinpath("measured_template", name).read_text(encoding="utf-8")
 
 
-def _examples(folder: Path) -> list[Assumption]:
-    """A note on files that are unchanged from the template."""
-    there = [name for name in TEMPLATE[1:] if (folder / name).is_file()]
-    left = [name for name in there if read_text(folder / name) == _example(name)]
-    text = f"{', '.join(left)} as in the template, whose numbers are examples: replace them"
-    return [Assumption("", text)] if left else []
-
-
 def _text(path: Path, tables: dict[str, Any], key: str) -> str:
     value = tables.get(key, "")
     if not isinstance(value, str):
@@ -108,10 +120,13 @@ def _scene(folder: Path, path: Path, tables: dict[str, Any]) -> tuple[Scene, lis
     """The scene, and the assumptions for it: ball, tip, stroke and effects default to those of the game, or of pool."""
     parts = {key: tables[key] for key in SCENE_KEYS if key in tables}
     if "cue" not in parts:
-        there = next((name for name in DRAWINGS if (folder / name).exists()), None)
-        if there is None:
-            raise InputError(folder, "", f"must contain the shaft's drawing, {' or '.join(DRAWINGS)}; got none")
-        parts["cue"] = there
+        there = [name for name in DRAWINGS if (folder / name).exists()]
+        if len(there) != 1:
+            got = "both" if there else "none"
+            raise InputError(folder, "", f"must contain the shaft's drawing, {' or '.join(DRAWINGS)}; got {got}")
+        parts["cue"] = there[0]
+        if there[0] in TEMPLATE and read_text(folder / there[0]) == _example(there[0]):
+            raise InputError(folder / there[0], "", "must be replaced by your drawing; got the example of the template")
     present = {*GAME_KEYS, "effects"} & {*parts}
     if not present or missing_keys(parts) == ["stroke.offset"]:  # every measurement has its own offset
         parts["game"] = game_of(parts, path)
@@ -152,13 +167,24 @@ def _tables(path: Path, tables: dict[str, Any], key: str) -> list[dict[str, Any]
 def _rows(path: Path, tables: dict[str, Any], key: str, kind: type[Any]) -> Iterator[Any]:
     """The objects of the tables [[key]]."""
     for i, row in enumerate(_tables(path, tables, key)):
+        _reject_blanks(path, key_path(key, i), row)
         yield build(kind, row, file=str(path), key=key_path(key, i))
 
 
+def _reject_blanks(path: Path, key: str, row: dict[str, Any]) -> None:
+    """InputError for a value of the template that is not filled in."""
+    for name, value in row.items():
+        if isinstance(value, str) and value.startswith(BLANK):
+            raise InputError(
+                path, key_path(key, name), f'must be filled in, such as "40 mm" or "1.6 in"; got "{value}"'
+            )
+
+
 def _readings(folder: Path, path: Path, tables: dict[str, Any], scene: Scene) -> Iterator[Measurement]:
-    """Measurements from pendulum tests and recordings: end masses, and one tone for each mode in the recordings."""
-    for pendulum in _rows(path, tables, "pendulum", Pendulum):
-        yield pendulum.end_mass
+    """Measurements from shots and recordings: squirts, and one tone for each mode in the recordings."""
+    for i, shot in enumerate(_rows(path, tables, "shot", Shot)):
+        with as_input_error(path, key_path("shot", i)):
+            yield shot.squirt(scene)
     tones: list[Tone] = []
     for recording in _rows(path, tables, "recording", Recording):
         sound = folder / recording.file

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
@@ -9,6 +10,7 @@ from typing import Annotated, Any, ClassVar, NamedTuple
 
 from cuefem.contact.side_strike import Striker
 from cuefem.measurements.predictions import N_FREQUENCIES, Predictions, predictions_of
+from cuefem.measurements.swerve import reading_angle
 from cuefem.quantity.display_units import END_MASS, with_unit
 from cuefem.quantity.fields import CONTACT_TIME, LENGTH, Quantity, check_count, check_fields
 from cuefem.quantity.units import parse_number
@@ -18,6 +20,8 @@ from cuefem.scene import Scene
 
 MASS = Quantity("kg", "(0, inf)")
 ANGLE = Quantity("rad", "(-1.5, 1.5)")
+DISTANCE = Quantity("m", "[0.1, 3]")  # nearer, the reading error is all; farther, the cloth is no plane
+ELEVATION_BOUNDS = Quantity("rad", f"[0, {math.radians(15)}]")  # higher, the tip does not strike as a level one
 POSITIVE = "(0, inf)"
 PARTS = ("shaft", "cue")
 NEAR_TIP = parse_number("8 in", "m")  # free length of a second stiffness
@@ -27,22 +31,40 @@ SCALE_ERROR = 0.5e-3  # kg, of a kitchen scale
 STIFFNESS_ERROR = 0.02  # relative, of a static stiffness: a kitchen scale and a dial gauge
 BALANCE_ERROR = 1e-3  # m, of a balance point
 SQUIRT_ERROR = 8.7e-4  # rad, 0.05 degrees: the mean of some shots on either side
-END_MASS_ERROR = 0.03  # relative, of a pendulum test: ten swings on either side
+END_MASS_ERROR = 0.03  # relative, of ten impacts
 PIVOT_ERROR = 0.05  # relative, of a pivot length: both sides, the bridge to half an inch
+# Of readings at a distance: what is assumed of the stroke, and how well it is known (1 sigma).
+ELEVATION, ELEVATION_SPREAD = math.radians(3.0), 0.5  # of a cue over a rail: 1.8 to 4.9 degrees, lognormal
+ELEVATION_ERROR = math.radians(1.0)  # of a stated elevation
+CLOTH_FRICTION, CLOTH_SPREAD = 0.2, 0.2  # of a sliding ball; the spread is relative, as the next two
+SPEED_SPREAD, UNKNOWN_SPEED_SPREAD = 0.1, 0.5  # of a stated cue speed, and of the scene's in its place
 CONTACT_TIME_ERROR = 0.05  # relative, of a contact time
+
+
+class StatedElevation(NamedTuple):
+    """An elevation of the cue, rad, and its error (1 sigma); both None if it was not measured."""
+
+    value: float | None
+    error: float | None
 
 
 class Setup(NamedTuple):
     """A scene with the systematic errors of its measurements.
 
     zeros: zero error of the offset of each series, m, by its name. squirt_factor: true squirt over that of the model.
-    time_factor: true contact time of a pendulum's ball over the stated one.
+    time_factor: true contact time of an end mass's ball over the stated one. elevations: of the cue, rad, by the stated
+    value and its error. speed_factor: true over computed ball speed. cloth_friction: of the sliding ball.
+    contact_shift: true less stated offset, m, of readings with an offset_error.
     """
 
     scene: Scene
     zeros: Mapping[str, float] = MappingProxyType({})
     squirt_factor: float = 1.0
     time_factor: float = 1.0
+    elevations: Mapping[StatedElevation, float] = MappingProxyType({})
+    speed_factor: float = 1.0
+    cloth_friction: float = CLOTH_FRICTION
+    contact_shift: float = 0.0
 
     @property
     def predictions(self) -> Predictions:
@@ -234,11 +256,68 @@ class Stiffness(Measurement):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Squirt(Measurement):
+class BallDirection(Measurement):
+    """A measurement of the ball's direction at an offset b/R of the contact, read where the ball crosses a distance.
+
+    speed: of the cue, by default the scene's. distance: from the ball's start, m; without it the value is the initial
+    direction, as in published data. elevation: of the cue, rad, by default that of a cue over a rail, with its error.
+    offset_error: of the contact, m; all readings of a cue share it.
+    """
+
+    offset: Annotated[float, Quantity("", "(0, 1)")]
+    speed: Annotated[float | None, Quantity("m/s", "(0, inf)")] = None
+    distance: Annotated[float | None, DISTANCE] = None
+    elevation: Annotated[float | None, ELEVATION_BOUNDS] = None
+    elevation_error: Annotated[float | None, ELEVATION_BOUNDS] = None
+    offset_error: Annotated[float | None, LENGTH] = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.distance is None and self.elevation is not None:
+            raise ValueError(f"{type(self).__name__}.distance must be given beside an elevation, which matters by it")
+        if self.elevation is None and self.elevation_error is not None:
+            raise ValueError(f"{type(self).__name__}.elevation must be given beside elevation_error")
+
+    @property
+    def stated_elevation(self) -> StatedElevation:
+        """What is known of the elevation."""
+        if self.elevation is None:
+            return StatedElevation(None, None)
+        return StatedElevation(self.elevation, self.elevation_error or ELEVATION_ERROR)
+
+    @property
+    def circumstances(self) -> str:
+        """Offset, speed and distance for its label."""
+        speed = "" if self.speed is None else f", {with_unit(self.speed, 'm/s', digits=3)}"
+        distance = "" if self.distance is None else f", read at {with_unit(self.distance, 'm')}"
+        return f"at b/R {self.offset:.4g}{speed}{distance}"
+
+    def direction(self, setup: Setup, offset: float) -> float:
+        """The angle that is read of a contact at b/R ``offset``, rad; ValueError if the ball does not get there."""
+        squirt = setup.squirt_factor * setup.predictions.squirt(offset, self.speed)
+        if self.distance is None:
+            return squirt
+        return reading_angle(
+            squirt,
+            offset,
+            elevation=setup.elevations.get(self.stated_elevation, self.elevation or ELEVATION),
+            speed=setup.speed_factor * setup.predictions.ball_speed(offset, self.speed),
+            distance=self.distance,
+            friction=setup.cloth_friction,
+        )
+
+    def shifted(self, setup: Setup, zero: float = 0.0) -> float:
+        """b/R of the contact with its systematic errors. zero: error of the offset of its series, m."""
+        shift = zero + (setup.contact_shift if self.offset_error else 0.0)
+        return min(max(self.offset + shift / float(setup.scene.ball.radius), -0.99), 0.99)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Squirt(BallDirection):
     """Squirt at an offset b/R: one value, or left and right, whose mean is free of the zero error of the offset.
 
-    error: of each value. series: strokes with the same aim have one zero error of the offset, zero_error,
-    one standard deviation, where only one side was measured. speed: of the cue, by default the scene's.
+    All count away from the struck side. error: of each value. series: strokes with the same aim have one zero error of
+    the offset, zero_error, one standard deviation, where only one side was measured.
     """
 
     key: ClassVar[str] = "squirt"
@@ -246,12 +325,10 @@ class Squirt(Measurement):
     title: ClassVar[str] = "squirt, left and right, at three offsets and two speeds"
     consequence: ClassVar[str] = "no measurement tests the tip or the contact"
 
-    offset: Annotated[float, Quantity("", "(0, 1)")]
     value: Annotated[float | None, ANGLE] = None
     left: Annotated[float | None, ANGLE] = None
     right: Annotated[float | None, ANGLE] = None
     error: Annotated[float, Quantity("rad", POSITIVE)]
-    speed: Annotated[float | None, Quantity("m/s", "(0, inf)")] = None
     series: str = ""
     zero_error: Annotated[float | None, Quantity("m", "(0, inf)")] = None
 
@@ -264,6 +341,13 @@ class Squirt(Measurement):
             raise ValueError(
                 f"Squirt.zero_error must be absent beside left and right, whose mean has none; got {self.zero_error} m"
             )
+        for name in ("value", "left", "right"):
+            value = getattr(self, name)
+            if value is not None and value < 0:
+                raise ValueError(
+                    f"Squirt.{name} must be at least 0: squirt counts away from the struck side, left or right; got "
+                    f"{with_unit(value, 'rad')}"
+                )
 
     def _present(self) -> str:
         present = [name for name in ("value", "left", "right") if getattr(self, name) is not None]
@@ -285,14 +369,12 @@ class Squirt(Measurement):
     @property
     def label(self) -> str:
         """At which offset and speed."""
-        at = "" if self.speed is None else f", {self.speed:.3g} m/s"
-        return f"squirt at b/R {self.offset:g}{at}{', ' + self.series if self.series else ''}"
+        return f"squirt {self.circumstances}{', ' + self.series if self.series else ''}"
 
     def compute(self, setup: Setup) -> float:
         """Of the coupled strike; the mean of both sides, to first order, if both were measured."""
-        shift = 0.0 if self.left is not None else setup.zeros.get(self.series, 0.0)
-        offset = self.offset + shift / float(setup.scene.ball.radius)
-        return setup.squirt_factor * setup.predictions.squirt(min(max(offset, -0.99), 0.99), self.speed)
+        zero = 0.0 if self.left is not None else setup.zeros.get(self.series, 0.0)
+        return self.direction(setup, self.shifted(setup, zero))
 
     @classmethod
     def missing(cls, measurements: Sequence[Any]) -> str:
@@ -316,10 +398,10 @@ class Squirt(Measurement):
 
 
 @dataclass(frozen=True, kw_only=True)
-class PivotLength(Measurement):
+class PivotLength(BallDirection):
     """The natural pivot length at an offset b/R: pivoted about it, the cue sends the ball along the original aim.
 
-    Zero errors of angle and offset cancel in it. speed: of the cue, by default the scene's.
+    Zero errors of angle and offset cancel in it.
     """
 
     key: ClassVar[str] = "pivot_length"
@@ -327,24 +409,23 @@ class PivotLength(Measurement):
     title: ClassVar[str] = "natural pivot length"
     consequence: ClassVar[str] = "no value of squirt is free of the zero errors of angle and offset"
 
-    offset: Annotated[float, Quantity("", "(0, 1)")]
     value: Annotated[float, Quantity("m", "(0, inf)")]
     error: Annotated[float, Quantity("m", POSITIVE)]
-    speed: Annotated[float | None, Quantity("m/s", "(0, inf)")] = None
 
     @property
     def label(self) -> str:
         """At which offset and speed."""
-        return f"{self.title} at b/R {self.offset:g}{'' if self.speed is None else f', {self.speed:.3g} m/s'}"
+        return f"{self.title} {self.circumstances}"
 
     def compute(self, setup: Setup) -> float:
         """Of the coupled strike's squirt and the radii of ball and dome [B.1]; ValueError without squirt."""
-        squirt = setup.squirt_factor * setup.predictions.squirt(self.offset, self.speed)
+        offset = self.shifted(setup)
+        squirt = self.direction(setup, offset)
         if not squirt > 0:
             raise ValueError(
                 f"pivot_length must be of a stroke with squirt above 0 rad; got {squirt:.3g} rad at b/R {self.offset:g}"
             )
-        return float(pivot_length(setup.scene, squirt, self.offset))
+        return float(pivot_length(setup.scene, squirt, offset))
 
     @classmethod
     def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
@@ -433,15 +514,15 @@ class ContactTime(Measurement):
 
 @dataclass(frozen=True, kw_only=True)
 class EndMass(Measurement):
-    """The end mass by a pendulum test (`cuefem.measurements.pendulum`): the transverse inertia in a side strike.
+    """The end mass by a ball that rebounds from the side of the shaft: the transverse inertia in a side strike.
 
     ball_mass, restitution, contact_time: of the ball on the clamped shaft. position: of the impact, from the end of the
-    tip. contact_time_error: shared by all pendulum tests of a cue.
+    tip. contact_time_error: shared by all of a cue.
     """
 
     key: ClassVar[str] = "end_mass"
     unit: ClassVar[str] = "kg"
-    title: ClassVar[str] = "end mass, by a pendulum"
+    title: ClassVar[str] = "end mass, by a side strike"
     consequence: ClassVar[str] = "the mass that causes squirt is not measured directly"
 
     value: Annotated[float, MASS]
@@ -455,7 +536,7 @@ class EndMass(Measurement):
     @property
     def label(self) -> str:
         """At which contact time."""
-        return f"end mass, pendulum, {1e3 * self.contact_time:.3g} ms"
+        return f"end mass, side strike, {1e3 * self.contact_time:.3g} ms"
 
     def compute(self, setup: Setup) -> float:
         """Of a side strike."""

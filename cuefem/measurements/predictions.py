@@ -25,10 +25,11 @@ STATIC_MODES = 8  # modes that the mesh of a static load resolves: error 1e-8
 
 
 class _Strike(NamedTuple):
-    """What is kept of a strike: squirt, rad, and contact time, s."""
+    """What is kept of a strike: squirt, rad, contact time, s, and ball speed, m/s."""
 
     squirt: float
     duration: float
+    ball_speed: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +65,10 @@ class Predictions:
         """Squirt of the coupled strike, rad; added_mass: mass, kg, and its position, m from the end of the tip."""
         return self._strike(offset, speed, added_mass).squirt
 
+    def ball_speed(self, offset: float, speed: float | None = None) -> float:
+        """Speed of the ball after the coupled strike, m/s."""
+        return self._strike(offset, speed, None).ball_speed
+
     def duration(self, speed: float | None = None) -> float:
         """Contact time of a central impact, s."""
         return self._strike(0.0, speed, None).duration
@@ -82,7 +87,7 @@ class Predictions:
             if scene.effects not in self._tips:
                 self._tips[scene.effects] = SolvedScene(scene).tip
             outcome = strike_modes(scene, self._tips[scene.effects])
-            self._strikes[scene] = _Strike(float(outcome.squirt), float(outcome.duration))
+            self._strikes[scene] = _Strike(float(outcome.squirt), float(outcome.duration), float(outcome.ball_speed))
         return self._strikes[scene]
 
     def drawing_position(self, position: float, name: str) -> float:

@@ -13,7 +13,20 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 from cuefem.cue import Material
-from cuefem.measurements.measurement_types import EndMass, Measurement, Setup, Squirt
+from cuefem.measurements.measurement_types import (
+    CLOTH_FRICTION,
+    CLOTH_SPREAD,
+    ELEVATION,
+    ELEVATION_SPREAD,
+    SPEED_SPREAD,
+    UNKNOWN_SPEED_SPREAD,
+    BallDirection,
+    EndMass,
+    Measurement,
+    Setup,
+    Squirt,
+    StatedElevation,
+)
 from cuefem.parameters.field_paths import Path
 from cuefem.parameters.scene_changes import with_values_at
 from cuefem.parameters.scene_paths import parameter
@@ -116,13 +129,14 @@ def parameters_of(
     _, spread = _prior(by_key.get(SQUIRT_MODEL), 1.0, model_error(scene))
     factor: Any = lambda setup, value: setup._replace(squirt_factor=value)  # noqa: E731
     parameters.append(UncertainParameter(SQUIRT_MODEL, "true squirt over the model's", "", 1.0, spread, factor))
-    pendulums = [test for test in measurements if isinstance(test, EndMass)]
-    spreads = [test.contact_time_error / test.contact_time for test in pendulums if test.contact_time_error]
+    end_masses = [test for test in measurements if isinstance(test, EndMass)]
+    spreads = [test.contact_time_error / test.contact_time for test in end_masses if test.contact_time_error]
     if spreads:
         spread = max(spreads)
         time_factor: Any = lambda setup, value: setup._replace(time_factor=value)  # noqa: E731
-        label = "true contact time of the pendulum over the stated"
+        label = "true contact time of the ball over the stated"
         parameters.append(UncertainParameter(BALL_TIME, label, "", 1.0, spread, time_factor))
+    parameters += _of_strokes(measurements)
     series: dict[str, float] = {}
     for measurement in squirts:
         if measurement.zero_error is not None:
@@ -133,6 +147,44 @@ def parameters_of(
             UncertainParameter(f"{ZERO} {name}".strip(), label, "m", 0.0, error, _zero(name), normal=True)
         )
     return tuple(parameter for parameter in parameters if parameter.spread > 0)
+
+
+def _of_strokes(measurements: Sequence[Measurement]) -> list[UncertainParameter]:
+    """Uncertain parameters of strokes: the contact's offset; of readings at a distance elevation, speed and cloth."""
+    directions = [each for each in measurements if isinstance(each, BallDirection)]
+    shift: Any = lambda setup, value: setup._replace(contact_shift=value)  # noqa: E731
+    error = max((each.offset_error or 0.0 for each in directions), default=0.0)
+    contact = UncertainParameter(
+        "contact", "true less stated offset of the contact", "m", 0.0, error, shift, normal=True
+    )
+    read = [each for each in directions if each.distance is not None]
+    if not read:
+        return [contact]
+    speed: Any = lambda setup, value: setup._replace(speed_factor=value)  # noqa: E731
+    cloth: Any = lambda setup, value: setup._replace(cloth_friction=value)  # noqa: E731
+    spread = SPEED_SPREAD if all(each.speed is not None for each in read) else UNKNOWN_SPEED_SPREAD
+    elevations = dict.fromkeys(each.stated_elevation for each in read)
+    return [
+        contact,
+        *(_elevation(stated, number) for number, stated in enumerate(elevations, start=1)),
+        UncertainParameter("ball speed", "true ball speed over the computed", "", 1.0, spread, speed),
+        UncertainParameter(
+            "cloth", "friction of the sliding ball on the cloth", "", CLOTH_FRICTION, CLOTH_SPREAD, cloth
+        ),
+    ]
+
+
+def _elevation(stated: StatedElevation, number: int) -> UncertainParameter:
+    """A stated elevation with its error, or that of a cue over a rail; shots with the same statement share it."""
+
+    def apply(setup: Setup, value: float) -> Setup:
+        return setup._replace(elevations={**setup.elevations, stated: value})
+
+    name = "elevation" if number == 1 else f"elevation {number}"
+    if stated.value is None or stated.error is None:
+        label = "elevation of the cue, assumed"
+        return UncertainParameter(name, label, "rad", ELEVATION, ELEVATION_SPREAD, apply)
+    return UncertainParameter(name, "elevation of the cue", "rad", stated.value, stated.error, apply, normal=True)
 
 
 def _prior(prior: Prior | None, median: float, spread: float | None) -> tuple[float, float]:

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.measurements.measured_folder import TEMPLATE, load_measured
+from cuefem.measurements.measured_folder import load_measured
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES
 from tests.helpers.command_line import call
 from tests.helpers.invalid_input import assert_rejects
@@ -23,19 +23,6 @@ def test_compare_folder_with_drawing_alone_lists_measurement_types(tmp_path: Pat
     status, out, err = call("compare", folder)
     assert (status, err) == (0, "")
     assert all(kind.title in out for kind in MEASUREMENT_TYPES.values())
-
-
-def test_compare_template_has_every_measurement_type(tmp_path: Path) -> None:
-    folder = tmp_path / "mine"
-    assert call("compare", folder, "--template")[::2] == (0, "")
-    assert sorted(path.name for path in folder.iterdir()) == sorted(TEMPLATE)
-    cue, notes = load_measured(folder)
-    assert {type(one) for one in cue.measurements} == set(MEASUREMENT_TYPES.values())
-    assert cue.missing == []
-    assert notes[0].text.startswith(", ".join(name for name in sorted(TEMPLATE) if name != "README.md"))
-    (folder / "squirt.csv").unlink()
-    (folder / "cue.toml").write_text((folder / "cue.toml").read_text().replace("467 g", "450 g"), encoding="utf-8")
-    assert load_measured(folder)[1][0].text.startswith("added_mass.csv, measured.toml as in the template")
 
 
 def test_load_measured_without_scene_has_default_stroke_of_game(tmp_path: Path) -> None:

@@ -72,9 +72,9 @@ def test_file_round_trips(file: Path) -> None:
 
 
 def test_warning_beyond_plausible_factor() -> None:
-    assert calibration(1.29).warnings == ("no other measurement of old checks pivot",)
-    assert "1.31 times the computed one, beyond 1/1.3 to 1.3" in calibration(1.31).warnings[0]
-    assert "0.76 times the computed one" in calibration(0.76).warnings[0]
+    assert calibration(1.19).warnings == ("no other measurement of old checks pivot",)
+    assert "1.21 times the computed one, a factor farther from 1 than 1/1.2 to 1.2" in calibration(1.21).warnings[0]
+    assert "0.79 times the computed one" in calibration(0.79).warnings[0]
 
 
 CAROM = cf.usual_scene(cf.load("kim"), "carom")
@@ -89,7 +89,7 @@ SPRING = replace(OLD, tip=cf.Tip(0.73, 0.7, 1e-3), effects=())
         (
             OTHER_TIP,
             "the calibration is of another tip: E of the leather 0.229 GPa there, 0.1 GPa here; if it is that tip, "
-            "set leather to 0.229 GPa",
+            "set leather to 0.229 GPa (--leather)",
         ),
         (SPRING, "the calibration is of another kind of tip"),
     ],
@@ -102,7 +102,10 @@ def test_other_game_or_tip_is_rejected(scene: cf.Scene, message: str) -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"covariance": ((MODEL_ERROR**2,),), "drawn": {}}, "Calibration needs [[squirt]] or [[pivot_length]]"),
+        (
+            {"covariance": ((MODEL_ERROR**2,),), "drawn": {}},
+            "Calibration needs [[shot]], [[squirt]] or [[pivot_length]]",
+        ),
         ({"covariance": ((1.0, 2.0), (2.0, 1.0))}, "Calibration.covariance must be a covariance of 3 values"),
         ({"log_factor": math.log(2)}, f"Calibration: measured squirt must be 1/{MAX_FACTOR} to {MAX_FACTOR} times"),
         ({"log_factor": -math.log(2)}, f"Calibration: measured squirt must be 1/{MAX_FACTOR} to {MAX_FACTOR} times"),
@@ -202,5 +205,5 @@ def test_one_factor_scales_every_squirt_of_every_answer() -> None:
 def test_unmeasured_squirt_makes_no_calibration(tmp_path: Path) -> None:
     status, out, err = call("compare", "predator z2", "--estimate", "-o", tmp_path / "z2.toml")
     assert (status, out) == (2, "")
-    assert "Calibration needs [[squirt]] or [[pivot_length]] among the measurements" in err
+    assert "Calibration needs [[shot]], [[squirt]] or [[pivot_length]] among the measurements" in err
     assert not (tmp_path / "z2.toml").exists()

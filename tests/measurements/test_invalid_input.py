@@ -11,15 +11,15 @@ import pytest
 from cuefem.measurements.estimate import estimate
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measurement_types import AddedMass, PivotLength, Setup, Squirt, Stiffness, Tone
-from cuefem.measurements.pendulum import Pendulum
+from cuefem.measurements.shot import Shot
+from cuefem.measurements.swerve import reading_angle
 from cuefem.measurements.uncertain_parameters import Prior
 from tests.helpers.command_line import call
 from tests.helpers.invalid_input import assert_refused, assert_rejects, assert_unchanged, messages_of, rejected
 from tests.helpers.measured_cues import CUE_TOML, MEASURED_TOML, SCENE, measured_cue, measured_folder
 from tests.helpers.recordings import save_wav
 
-SWING = {"release": (0.19,), "rebound": (-0.03,), "clamped_rebound": (0.15,)}
-GOOD = Pendulum(ball_mass=8e-3, thread_length=1.0, position=0.02, contact_time=1e-3, **SWING)
+SHOT = Shot(cue_offset=0.0143, left=0.04, right=0.038, distance=1.2)
 FAR = AddedMass(mass=0.01, position=0.8, value=0.1, baseline=0.1, error=0.01, offset=0.3)
 PIVOT = PivotLength(offset=0.3, value=0.3, error=0.01)
 CALLS: dict[str, Callable[[], object]] = {
@@ -42,14 +42,15 @@ CALLS: dict[str, Callable[[], object]] = {
     "long free length": lambda: Stiffness(free_length=0.8, value=1.0, error=1.0).compute(Setup(SCENE)),
     "added mass off the cue": lambda: FAR.compute(Setup(SCENE)),
     "estimate of nothing": lambda: estimate(measured_cue()),
-    "short thread": lambda: replace(GOOD, thread_length=0.1),
-    "no rebound": lambda: replace(GOOD, rebound=()),
-    "two releases": lambda: replace(GOOD, release=(0.2, 0.2)),
-    "no contact time": lambda: replace(GOOD, contact_time=None),
-    "contact time and force": lambda: replace(GOOD, force=9.0),
-    "fast clamped rebound": lambda: replace(GOOD, clamped_rebound=(0.3,)),
-    "fast rebound": lambda: replace(GOOD, rebound=(0.188,)),
-    "rebound near the clamped": lambda: replace(GOOD, rebound=(0.1495,)),
+    "squirt of a left-hand stroke": lambda: Squirt(offset=0.3, value=-0.03, error=1e-3),
+    "sides of opposite sense": lambda: Squirt(offset=0.3, left=0.03, right=-0.03, error=1e-3),
+    "elevation without distance": lambda: replace(PIVOT, elevation=0.05),
+    "error of no elevation": lambda: replace(PIVOT, distance=1.0, elevation_error=0.05),
+    "shot without offset": lambda: replace(SHOT, cue_offset=None),
+    "shot with both offsets": lambda: replace(SHOT, chalk_mark=0.01),
+    "shot of opposite sides": lambda: replace(SHOT, right=-0.038),
+    "shot beyond the miscue limit": lambda: replace(SHOT, cue_offset=0.03).squirt(SCENE),
+    "slow ball": lambda: reading_angle(0.03, 0.3, elevation=0.05, speed=0.3, distance=1.2, friction=0.2),
 }
 
 
@@ -57,11 +58,8 @@ def test_invalid_arguments_are_rejected(request: pytest.FixtureRequest) -> None:
     assert_refused("measurements", messages_of(CALLS), request)
 
 
-PENDULUM = (
-    r"""[[pendulum]]\nball_mass = "8 g"\nthread_length = "1 m"\nrelease = ["200 mm"]\nclamped_rebound = ["162 mm"]\n"""
-)
-PENDULUM += r"""contact_time = "1 ms"\nposition = "10 mm"\n"""
-# A file of the folder, its content (P: a pendulum test without the rebound).
+SHOTS = r"""[[shot]]\nleft = "40 mm"\nright = "38 mm"\n"""
+# A file of the folder, its content (P: a shot without its distance and its offset).
 FILES = r"""
 measured.toml | [[weigth]]\nvalue = "1 g"\n
 measured.toml | [[weight]]\nvalue = 100\nerror = "1 g"\n
@@ -71,7 +69,13 @@ measured.toml | [[squirt]]\noffset = 0.3\nerror = "1 deg"\n
 measured.toml | name = 3\n
 measured.toml | prior = 3\n
 measured.toml | cue = { mass = "0.5 kg", end_mass = "6 g" }\n
-measured.toml | Prebound = ["250 cm"]\n
+measured.toml | Pdistance = "1.2 m"\n
+measured.toml | Pdistance = "1.2 m"\noffset = 0.375\n
+measured.toml | Pdistance = "4 m"\ncue_offset = "14.3 mm"\n
+measured.toml | Pdistance = "9 cm"\ncue_offset = "14.3 mm"\n
+measured.toml | Pdistance = "1.2 m"\ncue_offset = "14.3 mm"\nelevation = "16 deg"\n
+measured.toml | Pdistance = "1.2 m"\ncue_offset = "1.1 in"\n
+measured.toml | Pdistance = "1.2 m"\nchalk_mark = "?"\n
 measured.toml | [[recording]]\nfile = "none.wav"\n
 measured.toml | [[recording]]\nfile = "tap.mp3"\n
 measured.toml | [[recording]]\nfile = "tap.wav"\nloud = 1\n
@@ -92,7 +96,7 @@ def test_invalid_files_are_rejected(tmp_path: Path, request: pytest.FixtureReque
     for i, row in enumerate(FILES):
         name, text = row.split(" | ")
         directory = measured_folder(tmp_path / f"{i}")
-        text = (PENDULUM + text[1:]) if text[0] == "P" else text
+        text = (SHOTS + text[1:]) if text[0] == "P" else text
         (directory / name).write_text(text.replace("\\n", "\n"), encoding="utf-8")
         messages[row] = rejected(directory, "compare", directory)
     assert_refused("measured_files", messages, request)

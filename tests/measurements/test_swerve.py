@@ -1,0 +1,151 @@
+"""The path of a ball struck by a raised cue, and the shots that a maker reads (verification)."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem.measurements.measurement_types import Setup
+from cuefem.measurements.shot import Shot
+from cuefem.measurements.swerve import GRAVITY, reading_angle
+from tests.helpers.command_line import call
+from tests.helpers.measured_cues import SCENE, measured_cue
+
+STEP = 1e-4  # s
+
+
+def integrated(
+    squirt: float, offset: float, *, elevation: float, speed: float, distance: float, friction: float
+) -> float:
+    """By small steps of Coulomb friction against the slip, whose direction is computed anew in each."""
+    sine, cosine = math.sin(elevation), math.cos(elevation)
+    velocity = speed * np.array([cosine * math.cos(squirt), math.sin(squirt)])
+    slip = velocity + np.array([0.0, 2.5 * speed * sine * math.sin(math.asin(offset) - squirt)])
+    position, pressed = (
+        np.zeros(2),
+        speed * sine * math.cos(squirt),
+    )  # the impulse that stops the downward motion, over M
+    while True:
+        size = float(np.hypot(*slip))
+        change = min(friction * pressed, 2 / 7 * size) * slip / max(size, 1e-300)
+        after = velocity - change
+        slip = slip - 3.5 * change
+        mean = after if not position.any() else (velocity + after) / 2
+        if position[0] + mean[0] * STEP > distance:
+            return math.atan2(position[1] + mean[1] * (distance - position[0]) / mean[0], distance)
+        position = position + mean * STEP
+        velocity, pressed = after, GRAVITY * STEP
+
+
+@pytest.mark.heavy
+def test_closed_form_equals_integration_of_random_strokes() -> None:
+    """200 strokes: largest difference 0.001 degrees, of a step's length."""
+    draw = np.random.default_rng(6)
+    largest = 0.0
+    for _ in range(200):
+        squirt, offset = math.radians(draw.uniform(0.5, 4)), draw.uniform(0.1, 0.5)
+        path = {
+            "elevation": math.radians(draw.uniform(0, 8)),
+            "speed": draw.uniform(1.5, 8),
+            "distance": draw.uniform(0.4, 2.5),
+            "friction": draw.uniform(0.1, 0.35),
+        }
+        largest = max(largest, abs(reading_angle(squirt, offset, **path) - integrated(squirt, offset, **path)))
+    assert math.degrees(largest) < 1e-3
+
+
+def test_limits_of_the_path() -> None:
+    """A level cue has no swerve; a long path has Coriolis' final direction, tan = b/R tan(elevation)."""
+    level = {"elevation": 0.0, "speed": 3.0, "distance": 2.0, "friction": 0.2}
+    assert reading_angle(0.04, 0.4, **level) == pytest.approx(0.04, abs=1e-15)
+    raised = {"elevation": math.radians(5), "speed": 2.0, "distance": 3.0, "friction": 100.0}
+    final = reading_angle(0.0, 0.375, **raised)  # it rolls almost from the start
+    assert math.tan(final) == pytest.approx(-0.375 * math.tan(math.radians(5)), rel=1e-3)
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize(
+    ("degrees", "speed", "limit"), [(2, 3.0, 0.013), (2, 1.5, 0.04), (5, 3.0, 0.03), (5, 1.5, 0.11)]
+)
+def test_closed_form_equals_a_raised_strike(degrees: float, speed: float, limit: float) -> None:
+    """The package's own strike with `Elevation`, and the path after it: only the pinch during contact differs."""
+    elevation, friction = math.radians(degrees), 0.2
+    cue = cf.LumpedCue(mass=0.54, end_mass=0.0069)
+    for offset in (0.2, 0.375, 0.45):
+        level = cf.Scene(cue, stroke=cf.Stroke(speed, offset))
+        plain = cf.strike(level)
+        raised = cf.strike(replace(level, effects=(cf.Elevation(elevation, friction),)))
+        assert raised.history is not None
+        right, ahead, _ = np.array(raised.history.velocity)
+        spin_right, spin_ahead, _ = np.array(raised.history.spin)
+        radius = float(level.ball.radius)
+        velocity = np.array([ahead, -right])
+        slip = velocity + radius * np.array([spin_right, spin_ahead])
+        for distance in (0.7, 1.2):
+            path = {
+                "elevation": elevation,
+                "speed": float(plain.ball_speed),
+                "distance": distance,
+                "friction": friction,
+            }
+            closed = reading_angle(float(plain.squirt), offset, **path)
+            assert math.degrees(abs(closed - _slid(velocity, slip, distance, friction))) < limit
+
+
+def _slid(velocity: np.ndarray, slip: np.ndarray, distance: float, friction: float) -> float:
+    """The angle of a ball that slides from a velocity and a slip on, and then rolls."""
+    size = float(np.hypot(*slip))
+    force = friction * GRAVITY * slip / size
+    until = 2 * size / (7 * friction * GRAVITY)
+    end = velocity * until - force * until**2 / 2
+    if end[0] < distance:
+        rolling = velocity - 2 / 7 * slip
+        return math.atan2(end[1] + rolling[1] / rolling[0] * (distance - end[0]), distance)
+    time = 2 * distance / (velocity[0] + math.sqrt(velocity[0] ** 2 - 2 * force[0] * distance))
+    return math.atan2(velocity[1] * time - force[1] * time**2 / 2, distance)
+
+
+SHOT = Shot(cue_offset=0.0143, left=0.04, right=0.038, distance=1.2, speed=2.3)
+
+
+def test_shot_of_cue_offset_equals_that_of_its_chalk_mark() -> None:
+    radius, dome = float(SCENE.ball.radius), SCENE.dome_radius
+    mark = replace(SHOT, cue_offset=None, chalk_mark=0.0143 * radius / (radius + dome))
+    assert mark.squirt(SCENE).offset == pytest.approx(SHOT.squirt(SCENE).offset, rel=1e-12)
+    assert SHOT.squirt(SCENE).offset == pytest.approx(0.0143 / (radius + dome), rel=1e-12)
+
+
+@pytest.mark.heavy
+def test_estimate_finds_squirt_and_elevation_from_two_speeds() -> None:
+    """Readings of the model at 4 degrees, without its value: squirt factor to 1 %, elevation to half a degree."""
+    cue = measured_cue()
+    truth, path = Setup(cue.scene), {"elevation": math.radians(4), "distance": 1.2, "friction": 0.2}
+    shots = []
+    for speed in (2.0, 5.0):
+        squirt = 1.1 * truth.predictions.squirt(0.375, speed)
+        angle = reading_angle(squirt, 0.375, speed=truth.predictions.ball_speed(0.375, speed), **path)
+        miss = 1.2 * math.tan(angle)
+        chalk = 0.375 * float(cue.scene.ball.radius)
+        shot = Shot(chalk_mark=chalk, left=miss, right=miss, distance=1.2, speed=speed, offset_error=1e-5)
+        shots.append(replace(shot, reading_error=2e-4).squirt(cue.scene))
+    values = {each.name: each for each in cf.estimate(measured_cue(*shots)).found.values}
+    assert values["squirt model"].value == pytest.approx(1.1, rel=0.02)
+    assert math.degrees(values["elevation"].value) == pytest.approx(4.0, abs=0.5)
+
+
+def test_untouched_template_is_refused_by_name(tmp_path: Path) -> None:
+    folder = tmp_path / "mine"
+    assert call("compare", folder, "--template")[0] == 0
+    assert "cue.toml: must be replaced by your drawing" in call("compare", folder)[2]
+    (folder / "cue.toml").write_text((folder / "cue.toml").read_text("utf-8").replace("467 g", "450 g"), "utf-8")
+    text = (folder / "measured.toml").read_text("utf-8")
+    for name in ("cue_offset", "left", "right", "distance"):
+        status, out, err = call("compare", folder, "--estimate", "-o", tmp_path / "c.toml")
+        assert (status, out, err.count("\n")) == (2, "", 1)
+        assert f"shot[0].{name}: must be filled in" in err
+        text = text.replace(f'{name} = "?"', f'{name} = "{"1 m" if name == "distance" else "14 mm"}"', 1)
+        (folder / "measured.toml").write_text(text, "utf-8")
+    assert not (tmp_path / "c.toml").exists()
