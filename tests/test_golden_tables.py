@@ -24,11 +24,11 @@ from cuefem.quantity.display_units import displayed_in
 from cuefem.quantity.fields import quantity_fields
 from cuefem.quantity.units import UNITS, unit_of
 from cuefem.results.computable_results import computable_results, listed_results
+from cuefem.results.plausibility import plausibility_warnings
 from cuefem.results.quantities import RESULTS
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.scene.default_scene import GAMES
 from cuefem.scene.solved_scene import SolvedScene
-from cuefem.show.plausibility import plausibility_warnings
 from tests.helpers.command_line import call
 from tests.helpers.cues import any_size
 from tests.quantity.test_declared_fields import INSTANCES

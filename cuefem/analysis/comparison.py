@@ -23,13 +23,13 @@ from cuefem.results.computable_results import computable_results
 from cuefem.results.differences import difference_text, relative_differences
 from cuefem.results.progress import Progress
 from cuefem.results.quantities import DASH, RESULTS, UNITS, format_value
-from cuefem.results.records import Record, Table
+from cuefem.results.records import Record, Table, json_value
 from cuefem.results.solved_design import SolvedDesign, coupled_curve, off_centre
 from cuefem.results.uncertainty import changes_by_input, miscue_note
 from cuefem.results.verdict import verdict_problem
 from cuefem.scene import Scene, check_scene
 from cuefem.scene.solved_scene import SolvedScene
-from cuefem.show.analysis import DESIGN_STYLES, Analysis
+from cuefem.show.analysis import DESIGN_STYLES, Analysis, Rows
 from cuefem.show.scene_summary import effect_text, listed, scene_record
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ _LABELS = {"end_mass_squirt": SQUIRT_END_MASS}
 
 
 @dataclass(frozen=True)
-class Comparison(Analysis):
+class Comparison(Rows, Analysis):
     """Results of some cues, and the relative differences of the others from the first with their uncertainty.
 
     Parameters
@@ -110,7 +110,35 @@ class Comparison(Analysis):
     def to_dict(self) -> Record:
         """The record: every scene, numbers in SI units, and the unit of each."""
         scenes = {name: scene_record(scene) for name, scene in self.scenes.items()}
-        return {"scenes": scenes, **self.values(), "units": dict(UNITS)}
+        return json_value({**self.said(), "scenes": scenes, **self.values(), "units": dict(UNITS)})
+
+    @property
+    def warnings(self) -> list[str]:
+        """What is implausible in each cue and its file."""
+        own = {name: Analysis(scene).warnings for name, scene in self.scenes.items()}
+        return [f"{name}: {line}" for name, lines in own.items() for line in lines]
+
+    @property
+    def assumptions(self) -> list[Assumption]:
+        """What is assumed of each cue; of the stroke, which all have, once."""
+        own = {name: Analysis(scene).assumptions for name, scene in self.scenes.items()}
+        shared = [each for each in own[self.reference] if all(each in listed for listed in own.values())]
+        apart = [
+            replace(each, text=f"{name}: {each.text}")
+            for name, listed in own.items()
+            for each in listed
+            if each not in shared
+        ]
+        return [*shared, *apart]
+
+    def frame_rows(self) -> list[Record]:
+        """A row for each cue and quantity, with its difference from the first cue."""
+        return [
+            {"cue": cue, "quantity": name, "value": value, "unit": UNITS.get(name, "")}
+            | self.differences.get(cue, {}).get(name, {})
+            for cue, numbers in self.cues.items()
+            for name, value in numbers.items()
+        ]
 
     def sentences(self) -> list[str]:
         """A sentence on the squirt of each cue relative to the first."""
@@ -152,7 +180,11 @@ class Comparison(Analysis):
         ]
 
     def to_html(
-        self, name: str = "", assumptions: Sequence[Assumption] = (), warnings: Sequence[str] = (), made: str = ""
+        self,
+        name: str = "",
+        assumptions: Sequence[Assumption] | None = None,
+        warnings: Sequence[str] | None = None,
+        made: str = "",
     ) -> str:
         """The page with the first screen of the first cue; a plain page if that has no verdict."""
         # templates take 0.1 s to load
@@ -162,6 +194,7 @@ class Comparison(Analysis):
         title = f"{self.heading()}: compared"
         if self.reference in self.problems:
             return super().to_html(title, assumptions, warnings, made)
+        assumptions, warnings = self._noted(assumptions), self._warned(warnings)
         answer = verdict_by(SolvedDesign.of(self.scene), None, lambda _: self.calibrated)
         first, *others = [HeadlineCue(name, scene, self.cues[name]) for name, scene in self.scenes.items()]
         own = replace(first, verdict=answer)

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from types import MappingProxyType
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
 
 from cuefem.results.quantities import format_value
 from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import Solvable, SolvedDesign
 from cuefem.scene import Outcome
-from cuefem.show.analysis import Analysis
+from cuefem.show.analysis import Analysis, Rows
 
 if TYPE_CHECKING:
     from cuefem.show.charts import Chart
 
+FRAME_TIMES = 201
+
 
 @dataclass(frozen=True)
-class ContactHistory(Analysis):
+class ContactHistory(Rows, Analysis):
     """The contact over time, and where the energy went.
 
     Parameters
@@ -31,6 +37,17 @@ class ContactHistory(Analysis):
 
     energy: Record
     outcome: Outcome = field(repr=False)
+    own_units: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {"time": "s", "force_t": "N", "force_n": "N", "velocity_t": "m/s", "velocity_n": "m/s"}
+    )
+
+    def frame_rows(self) -> list[Record]:
+        """Force on the ball and velocity of the tip at 201 times of the contact; none of an impact."""
+        if self.outcome.history is None:
+            return []
+        times = np.linspace(0.0, self.outcome.duration, FRAME_TIMES)
+        columns = {"time": times, **self.outcome.history(times)}
+        return [dict(zip(columns, values, strict=True)) for values in zip(*columns.values(), strict=True)]
 
     def charts(self) -> list[Chart]:
         """Force and velocity of the tip against time, if the strike has a history."""

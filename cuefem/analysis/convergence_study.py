@@ -16,7 +16,7 @@ from cuefem.quantity.fields import check_count
 from cuefem.results.progress import Progress
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.scene import Scene, check_scene
-from cuefem.show.analysis import Analysis
+from cuefem.show.analysis import Analysis, Rows
 from cuefem.show.charts import Axis, Chart, Curve, chart
 
 RECOMMENDED_RTOLS = (1e-2, 1e-3, 1e-4, 1e-6)
@@ -24,7 +24,7 @@ DEFAULT_MAX_MODES = 150
 
 
 @dataclass(frozen=True)
-class ConvergenceStudy(Analysis):
+class ConvergenceStudy(Rows, Analysis):
     """Error of a strike against degrees of freedom and run time, and the resolution for some accuracies.
 
     Parameters
@@ -41,6 +41,10 @@ class ConvergenceStudy(Analysis):
 
     levels: list[Record]
     recommended_resolutions: list[Record]
+
+    def frame_rows(self) -> list[Record]:
+        """A row for each level."""
+        return self.levels
 
     def tables(self) -> list[Table | str]:
         """The refinement levels, and the recommended resolutions."""

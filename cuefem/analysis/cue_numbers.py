@@ -6,15 +6,15 @@ from dataclasses import dataclass
 
 from cuefem.analysis.end_mass import SQUIRT_END_MASS
 from cuefem.results.computable_results import listed_results
-from cuefem.results.quantities import format_value
+from cuefem.results.quantities import UNITS, format_value
 from cuefem.results.records import Record, Table, tabulate_values, value_rows
 from cuefem.results.solved_design import Solvable, SolvedDesign
-from cuefem.show.analysis import Analysis
+from cuefem.show.analysis import Analysis, Rows
 from cuefem.show.scene_summary import assumptions, scene_record
 
 
 @dataclass(frozen=True)
-class CueNumbers(Analysis):
+class CueNumbers(Rows, Analysis):
     """Every listed result of the registry.
 
     Parameters
@@ -33,6 +33,10 @@ class CueNumbers(Analysis):
     def values(self) -> Record:
         """The results by name."""
         return self.numbers
+
+    def frame_rows(self) -> list[Record]:
+        """A row for each quantity."""
+        return [{"quantity": name, "value": value, "unit": UNITS.get(name, "")} for name, value in self.numbers.items()]
 
     def tables(self) -> list[Table | str]:
         """A row for each result."""

@@ -78,16 +78,17 @@ class CueReport(Analysis):
     def to_html(
         self,
         name: str = "",
-        assumptions: Sequence[Assumption] = (),
-        warnings: Sequence[str] = (),
+        assumptions: Sequence[Assumption] | None = None,
+        warnings: Sequence[str] | None = None,
         made: str = "",
         other: tuple[str, Scene] | None = None,
     ) -> str:
-        """The page with the first screen, beside that of another cue; ValueError for a miscue."""
+        """The page with the first screen, beside that of another cue; without squirt a plain page of the numbers."""
         from cuefem.analysis.report_page import page_of
 
         if self.no_squirt or self.no_contact:
-            raise ValueError(self.no_squirt or self.no_contact)
+            return super().to_html(name, assumptions, warnings, made)
+        assumptions, warnings = self._noted(assumptions), self._warned(warnings)
         name = name or "cue"
         beside = None if other is None else self._beside(name, *other)
         return page_of(self.scene, self.sections, self.regime, name, assumptions, warnings, made, beside)

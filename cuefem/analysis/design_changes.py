@@ -24,7 +24,7 @@ from cuefem.results.uncertainty import miscue_note, model_share, ratio_error, sq
 from cuefem.results.verdict import reject_no_verdict
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
-from cuefem.show.analysis import Analysis
+from cuefem.show.analysis import Analysis, Rows
 
 MIN_CHANGE = 0.02  # relative, of squirt: below it nobody turns a ferrule
 MAX_STRIKES = 30  # of single and combined changes
@@ -72,7 +72,7 @@ class ChangedDesign:
 
 
 @dataclass(frozen=True)
-class DesignChanges(Analysis):
+class DesignChanges(Rows, Analysis):
     """Changes that a maker can make to a cue, each on its own.
 
     Parameters
@@ -103,6 +103,10 @@ class DesignChanges(Analysis):
     miscues: tuple[str, ...] = ()
     calibrated: CalibratedSquirt | None = None
     together: Sequence[ChangedDesign] = ()
+
+    def frame_rows(self) -> list[Record]:
+        """A row for each change."""
+        return [{name: value for name, value in vars(each).items() if name != "values"} for each in self.changes]
 
     def tables(self) -> list[Table | str]:
         """A table with a row for each change, after the calibration of the cue itself and the best changes together."""

@@ -17,7 +17,7 @@ from cuefem.results.quantities import DASH, format_value
 from cuefem.results.records import Record, Table
 from cuefem.scene import Outcome, Scene, check_scene
 from cuefem.scene.solved_scene import corrected_tip_modes
-from cuefem.show.analysis import Analysis
+from cuefem.show.analysis import Analysis, Rows
 from cuefem.show.scene_summary import assumptions, effect_text, scene_record
 
 DEFAULT_RTOL = 1e-2
@@ -26,7 +26,7 @@ MARGIN = 3
 
 
 @dataclass(frozen=True)
-class EffectSensitivity(Analysis):
+class EffectSensitivity(Rows, Analysis):
     """Change of a strike by removing each effect of a scene and by adding each other one.
 
     Parameters
@@ -53,6 +53,14 @@ class EffectSensitivity(Analysis):
     base: Record
     effects: list[Record]
     recommendation: dict[str, list[str]]
+
+    def frame_rows(self) -> list[Record]:
+        """The unmodified scene, then a row for each effect."""
+        whole = self.base
+        return [{"name": "", "is_listed": None} | whole] + [
+            {key: value for key, value in row.items() if key not in ("values", "label", "change")}
+            for row in self.effects
+        ]
 
     def tables(self) -> list[Table | str]:
         """A row for each effect, the largest change first; the recommendation in the notes."""

@@ -11,7 +11,7 @@ from cuefem.quantity.display_units import END_MASS, with_unit
 from cuefem.results.closed_forms import cue_end_mass
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.results.solved_design import Solvable, SolvedDesign
-from cuefem.show.analysis import Analysis
+from cuefem.show.analysis import Analysis, Rows
 from cuefem.show.charts import Chart
 from cuefem.show.scene_summary import assumptions, listed, scene_record, tip_effect_notes
 
@@ -41,7 +41,7 @@ class DefinedEndMass:
 
 
 @dataclass(frozen=True)
-class EndMasses(Analysis):
+class EndMasses(Rows, Analysis):
     """Effective end mass of a cue by each definition.
 
     Parameters
@@ -70,6 +70,10 @@ class EndMasses(Analysis):
             if not row["reason"]:
                 del row["reason"]
         return record if self.reduction is None else record | {"reduction": self.reduction.values()}
+
+    def frame_rows(self) -> list[Record]:
+        """A row for each definition."""
+        return [{"definition": name, **vars(mass)} for name, mass in self.definitions.items()]
 
     def tables(self) -> list[Table | str]:
         """A table with a row for each definition, and those of the reduction."""

@@ -22,7 +22,7 @@ from cuefem.quantity.display_units import END_MASS, format_change, with_unit
 from cuefem.results.progress import Progress
 from cuefem.results.quantities import DASH
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
-from cuefem.show.analysis import Analysis
+from cuefem.show.analysis import Analysis, Rows
 
 if TYPE_CHECKING:
     from cuefem.show.charts import Chart
@@ -34,7 +34,7 @@ UNITS = {"residual": "", "normalized_residual": "", "zero_error": "m", "squirt_e
 
 
 @dataclass(frozen=True)
-class MeasuredComparison(Analysis):
+class MeasuredComparison(Rows, Analysis):
     """Measured values of a cue beside computed ones; nothing is fitted.
 
     Parameters
@@ -66,6 +66,10 @@ class MeasuredComparison(Analysis):
     uncertain_parameters: list[str]
     missing: list[str]
     own_units: ClassVar = UNITS
+
+    def frame_rows(self) -> list[Record]:
+        """A row for each measurement."""
+        return self.rows
 
     def heading(self) -> str:
         """The name of the cue."""
@@ -106,7 +110,7 @@ class MeasuredComparison(Analysis):
 
 
 @dataclass(frozen=True)
-class MeasuredEstimate(Analysis):
+class MeasuredEstimate(Rows, Analysis):
     """The uncertain parameters of a cue, estimated from all its measurements.
 
     Parameters
@@ -161,6 +165,10 @@ class MeasuredEstimate(Analysis):
     recommended_measurements: list[Record]
     found: Estimate = field(repr=False, compare=False)
     own_units: ClassVar = UNITS
+
+    def frame_rows(self) -> list[Record]:
+        """A row for each measurement."""
+        return self.rows
 
     def heading(self) -> str:
         """The name of the cue."""

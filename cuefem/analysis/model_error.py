@@ -22,7 +22,7 @@ from cuefem.results.progress import Progress
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.scene import Scene, check_scene
 from cuefem.scene.solved_scene import mass_on_face
-from cuefem.show.analysis import Analysis
+from cuefem.show.analysis import Analysis, Rows
 from cuefem.show.scene_summary import effect_name
 from cuefem.solid.meridian_mesh import Fineness, blocks, check_mesh_size
 from cuefem.solid.shaft import AXIAL, SolidBody
@@ -51,7 +51,7 @@ def checked_scene(scene: Scene) -> tuple[Scene, list[str]]:
 
 
 @dataclass(frozen=True)
-class ModelError(Analysis):
+class ModelError(Rows, Analysis):
     """Beam model of a shaft beside a 3-D elastic solid: frequencies, stiffness, end masses and squirt.
 
     Parameters
@@ -81,6 +81,10 @@ class ModelError(Analysis):
     order: int
     excluded_effects: list[str]
     summary: str
+
+    def frame_rows(self) -> list[Record]:
+        """A row for each quantity."""
+        return self.rows
 
     def tables(self) -> list[Table | str]:
         """Beam and solid side by side, and the summary."""

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
 from cuefem.beam.modes import modes
-from cuefem.results.records import ColumnEntry, Table, tabulate
+from cuefem.results.quantities import UNITS
+from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.results.solved_design import Solvable, SolvedDesign
-from cuefem.show.analysis import Analysis
+from cuefem.show.analysis import Analysis, Rows
 from cuefem.show.scene_summary import effect_name
 
 if TYPE_CHECKING:
@@ -16,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class NaturalFrequencies(Analysis):
+class NaturalFrequencies(Rows, Analysis):
     """Natural frequencies of a cue's bending modes.
 
     Parameters
@@ -39,11 +42,17 @@ class NaturalFrequencies(Analysis):
     frequencies: list[float]
     tip_amplitudes: list[float]
     has_stroke: ClassVar[bool] = False
+    own_units: ClassVar[Mapping[str, str]] = MappingProxyType({"tip_amplitude": UNITS["tip_amplitudes"]})
 
     def heading(self) -> str:
         """The cue, and whether a scene adds a tip or other effects to what is drawn."""
         added = ", ".join(effect_name(type(effect).__name__) for effect in self.scene.effects)
         return f"{super().heading()}; frequencies {f'with {added}' if added else 'as drawn'}"
+
+    def frame_rows(self) -> list[Record]:
+        """A row for each mode."""
+        pairs = zip(self.frequencies, self.tip_amplitudes, strict=True)
+        return [{"frequency": frequency, "tip_amplitude": amplitude} for frequency, amplitude in pairs]
 
     def tables(self) -> list[Table | str]:
         """A table with a row for each mode."""

@@ -14,11 +14,11 @@ from cuefem.parameters.table import FERRULES
 from cuefem.quantity.display_units import modulus_text, short_number, with_heading
 from cuefem.results.quantities import RESULTS, units_of
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
-from cuefem.show.analysis import Answer
+from cuefem.show.analysis import Answer, Rows
 
 
 @dataclass(frozen=True)
-class Parts(Answer):
+class Parts(Rows, Answer):
     """Cues, shafts, materials and tips that a file can name.
 
     Parameters
@@ -42,6 +42,11 @@ class Parts(Answer):
     def to_dict(self) -> Record:
         """The record, with the units of its numbers."""
         return {**self.values(), "units": units_of("E", "G", "rho")}
+
+    def frame_rows(self) -> list[Record]:
+        """A row for each part: what it is, its name, and what is known of it."""
+        kinds = {"cue": self.cues, "shaft": self.shafts, "material": self.materials, "tip": self.tips}
+        return [{"kind": kind, "name": name, **known} for kind, of in kinds.items() for name, known in of.items()]
 
     def tables(self) -> list[Table | str]:
         """A table for each kind of part; the notes show how a file and an option name it."""

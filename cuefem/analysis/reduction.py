@@ -28,7 +28,7 @@ from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.results.solved_design import Solvable, SolvedDesign
 from cuefem.scene import Scene, Stroke
 from cuefem.scene.scene import DEFAULT_CONTACT_TIME
-from cuefem.show.analysis import Analysis
+from cuefem.show.analysis import Analysis, Rows
 from cuefem.show.charts import Axis, Chart, Curve, Tick, chart
 from cuefem.show.scene_summary import assumptions, scene_record, tip_effect_notes
 
@@ -51,7 +51,7 @@ SMALL_OFFSETS, VIBRATING, LUMPED = "this shaft, small offsets", "this shaft, vib
 
 
 @dataclass(frozen=True)
-class Reduction(Analysis):
+class Reduction(Rows, Analysis):
     """A cue reduced to the two-part cue of Kim's paper, and the squirt of both.
 
     Parameters
@@ -111,6 +111,15 @@ class Reduction(Analysis):
     filmed_contact_time: float | None
     design: SolvedDesign = field(repr=False, compare=False)
     cues: dict[str, LumpedCue | None] = field(repr=False, compare=False)
+
+    def frame_rows(self) -> list[Record]:
+        """A row for each model and offset."""
+        return [
+            {"model": name, "offset": offset}
+            | {key: each[i] if type(each) is list else each for key, each in of.items()}
+            for name, of in self.models.items()
+            for i, offset in enumerate(self.offsets)
+        ]
 
     def tables(self) -> list[Table | str]:
         """The steps from the drawing, and a row for each end mass with its squirt."""

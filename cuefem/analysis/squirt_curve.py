@@ -21,7 +21,7 @@ from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import OFFSETS, Solvable, SolvedDesign, at_offset, coupled_curve
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
-from cuefem.show.analysis import Analysis, MoreCharts
+from cuefem.show.analysis import Analysis, MoreCharts, Rows
 from cuefem.show.scene_summary import assumptions, scene_record
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ MODELS = (
 
 
 @dataclass(frozen=True)
-class SquirtCurve(Analysis):
+class SquirtCurve(Rows, Analysis):
     """Squirt and natural pivot length against the tip offset.
 
     Parameters
@@ -74,6 +74,14 @@ class SquirtCurve(Analysis):
         "The tip offset b/R is the distance of the contact from the ball’s centre line, in ball radii. Pivoting the "
         "cue about the point at the natural pivot length from the tip cancels squirt. Curves end at the first miscue."
     )
+
+    def frame_rows(self) -> list[Record]:
+        """A row for each model and offset."""
+        return [
+            {"model": name, "offset": offset} | {key: values[i] for key, values in model.items()}
+            for name, model in self.models.items()
+            for i, offset in enumerate(self.offsets)
+        ]
 
     def tables(self) -> list[Table | str]:
         """A table with a row for each offset."""

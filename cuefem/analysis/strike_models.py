@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
+
+import numpy as np
 
 from cuefem.cue import LumpedCue
 from cuefem.endmass.definitions import stick_at_offsets
@@ -17,7 +19,7 @@ from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import Solvable, SolvedDesign
 from cuefem.results.verdict import MISCUE_DEFINITION
 from cuefem.scene import Outcome, Scene
-from cuefem.show.analysis import Analysis
+from cuefem.show.analysis import Analysis, Rows
 from cuefem.show.scene_summary import assumptions, scene_record, tip_effect_notes
 
 # Rows of the table: quantity, component of a vector (0 tangential, 1 normal), and the end of the label.
@@ -39,13 +41,24 @@ UNCERTAINTY_NOTE = "run `cuefem report FILE` for the uncertainty of squirt"
 MISCUE_NOTE = f"miscue: {MISCUE_DEFINITION}. Do not use squirt and natural pivot length; use a smaller offset"
 
 
+def _components(value: Any) -> dict[str, Any]:
+    """A value, or each component of a vector or a dict, by what follows its name."""
+    if isinstance(value, Mapping):
+        return {f"_{key.replace(' ', '_')}": number for key, number in value.items()}
+    return (
+        {f"_{axis}": number for axis, number in zip("tn", value, strict=True)}
+        if isinstance(value, tuple | list) or np.ndim(value)
+        else {"": value}
+    )
+
+
 def regime_warning(regime: str) -> str:
     """The warning for a miscue, or for slip that increases squirt; "" for other contact states."""
     return MISCUE_NOTE if regime == "miscue" else REGIMES[regime] if regime in ("partial slip", "gross slip") else ""
 
 
 @dataclass(frozen=True)
-class StrikeModels(Analysis):
+class StrikeModels(Rows, Analysis):
     """One stroke by each model.
 
     Parameters
@@ -65,6 +78,14 @@ class StrikeModels(Analysis):
     end_mass: float | None
     a31_end_mass: float | None
     models: dict[str, Record]
+
+    def frame_rows(self) -> list[Record]:
+        """A row for each model; of vectors a column for each component."""
+        return [
+            {"model": name}
+            | {f"{key}{part}": number for key, each in model.items() for part, number in _components(each).items()}
+            for name, model in self.models.items()
+        ]
 
     def tables(self) -> list[Table | str]:
         """A table with a column for each model."""

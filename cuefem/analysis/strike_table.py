@@ -32,7 +32,7 @@ from cuefem.results.quantities import RESULTS, format_value
 from cuefem.results.records import Record, Table
 from cuefem.results.verdict import MISCUE_DEFINITION
 from cuefem.scene import Scene, Stroke, check_scene
-from cuefem.show.analysis import Analysis
+from cuefem.show.analysis import Analysis, Rows
 from cuefem.show.scene_summary import assumptions, scene_record
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ CHART_STYLES = ("c1", "c2", "c4", "c3")  # CSS classes
 
 
 @dataclass(frozen=True)
-class StrikeTable(Analysis):
+class StrikeTable(Rows, Analysis):
     """The strike of a cue over cue speed and tip offset, for games.
 
     Parameters
@@ -140,6 +140,15 @@ class StrikeTable(Analysis):
         about = {"reading": READING, "signs": SIGNS, "miscue": MISCUE_DEFINITION}
         values = {name: value for name, value in self.values().items() if name != "calibration" or value}
         return about | {"ball": ball, **values, "units": UNITS, "scene": scene_record(self.scene)}
+
+    def frame_rows(self) -> list[Record]:
+        """A row for each speed and share of the miscue limit."""
+        return [
+            {"speed": speed, "share": share, "offset": share * limit}
+            | {name: getattr(self, name)[i][k] for name in FIELDS}
+            for i, (speed, limit) in enumerate(zip(self.speed, self.limit, strict=True))
+            for k, share in enumerate(self.share)
+        ]
 
     def tables(self) -> list[Table | str]:
         """Strokes read off the table, and the error of interpolation."""

@@ -12,13 +12,13 @@ from cuefem.quantity.display_units import displayed_system, modulus_text, signif
 from cuefem.results.quantities import DASH, format_value
 from cuefem.results.records import Record, Table, by_label, tabulate
 from cuefem.results.solved_design import Solvable, SolvedDesign
-from cuefem.show.analysis import Analysis
+from cuefem.show.analysis import Analysis, Rows
 
 SPEEDS = (0.5, 1.0, 2.0, 3.0, 5.0, 8.0)  # m/s
 
 
 @dataclass(frozen=True)
-class TipImpacts(Analysis):
+class TipImpacts(Rows, Analysis):
     """Central impacts of a leather tip at several speeds, on an axially rigid cue.
 
     Parameters
@@ -37,6 +37,10 @@ class TipImpacts(Analysis):
     tip_mass: float
     E: float
     impacts: list[Record]
+
+    def frame_rows(self) -> list[Record]:
+        """A row for each speed."""
+        return self.impacts
 
     def tables(self) -> list[Table | str]:
         """A table with a row for each speed."""

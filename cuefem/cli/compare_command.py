@@ -33,8 +33,8 @@ from cuefem.files.warnings_of_drawings import drawing_warnings
 from cuefem.measurements.calibration import Calibration
 from cuefem.measurements.measured_folder import MEASURED, load_measured, named_folder, write_template
 from cuefem.quantity.display_units import displayed_system
+from cuefem.results.plausibility import plausibility_warnings
 from cuefem.scene import Scene
-from cuefem.show.plausibility import plausibility_warnings
 from cuefem.show.renderers import csv_text
 from cuefem.show.scene_summary import listed
 

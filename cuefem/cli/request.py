@@ -38,10 +38,10 @@ from cuefem.parameters.parameter import Parameter
 from cuefem.parameters.scene_changes import with_values_at
 from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.fields import OutOfBounds
+from cuefem.results.plausibility import drawing_warnings_of, plausibility_warnings
 from cuefem.results.records import Table
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, default_tip, stroke_name, usual_scene
-from cuefem.show.plausibility import plausibility_warnings
 from cuefem.solid.tip_cache import computing_message
 
 
@@ -181,7 +181,7 @@ class Request:
             leather = with_fields(leather, own)
             scene = usual_scene(cue, game, tip=leather)
         except ValueError as error:
-            implausible = plausibility_warnings(Scene(cue), with_impact=False)
+            implausible = drawing_warnings_of(cue)
             hint = f"; {implausible[0]}" if implausible else " (options: --tip-height, --dome)"
             text = str(error).replace("dome radius", "--dome") if "dome" in self.given else str(error)
             raise InputError(self.file, "", f"{text}{hint}") from None

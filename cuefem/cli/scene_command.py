@@ -34,9 +34,9 @@ from cuefem.files.defaults_report import Assumption
 from cuefem.files.shaft_additions import SHAFT_ADDITIONS
 from cuefem.files.warnings_of_drawings import drawing_warnings
 from cuefem.quantity.display_units import displayed_in
+from cuefem.results.plausibility import plausibility_warnings
 from cuefem.results.records import Record, Table
 from cuefem.show.analysis import Analysis, Answer, write
-from cuefem.show.plausibility import plausibility_warnings
 from cuefem.show.renderers import print_tables
 
 if TYPE_CHECKING:
@@ -181,7 +181,8 @@ class Presentation:
         """The JSON record, metric in every text."""
         with displayed_in("metric"):
             notes = {"assumptions": [*map(str, self.assumptions())], "warnings": [*self.warnings()]}
-            return (self.files | notes if self.files else {}) | self.answer.to_dict()
+            added = self.files | notes if self.files else {}
+            return added | self.answer.to_dict() | added
 
     def write(self, path: Path) -> None:
         """Write the record (.json) or a page (.html)."""

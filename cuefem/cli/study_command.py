@@ -29,7 +29,7 @@ from cuefem.files import InputError
 from cuefem.quantity.display import counted
 from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.fields import quote
-from cuefem.show.plausibility import plausibility_warnings
+from cuefem.results.plausibility import plausibility_warnings
 
 Computed = TypeVar("Computed")
 

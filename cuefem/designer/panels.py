@@ -15,6 +15,7 @@ from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.parameters.parts import shaft_word
 from cuefem.quantity.display_units import format_change, to_display, with_heading
 from cuefem.results.differences import difference_text
+from cuefem.results.plausibility import plausibility_warnings
 from cuefem.results.quantities import DASH, RESULTS
 from cuefem.results.records import Record, Table
 from cuefem.results.uncertainty import SHAFT_ERROR
@@ -22,7 +23,6 @@ from cuefem.scene import Scene
 from cuefem.show.analysis import DESIGN_STYLES
 from cuefem.show.charts import Axis, Curve, chart
 from cuefem.show.offset_charts import offset_charts
-from cuefem.show.plausibility import plausibility_warnings
 from cuefem.show.templates import answer_markup, chart_markup, shading_markup, table_markup
 
 COMPUTING = '<p class="soft">computing …</p>'

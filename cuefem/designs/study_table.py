@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,12 +17,13 @@ from cuefem.designs.sampling import Levels, Normal, Span
 from cuefem.designs.study import Study, Vary
 from cuefem.parameters.field_paths import Path
 from cuefem.parameters.parts import Layout
+from cuefem.parameters.scene_paths import SCENE_FIELDS
 from cuefem.quantity.display_units import display_unit, displayed_system, number_text, short_number, span_text
 from cuefem.results.records import Table
 from cuefem.scene import Scene
 from cuefem.show.scene_summary import assumptions, scene_record
 
-_FIELD = re.compile(rf"({'|'.join(field.name for field in fields(Scene))})(\[[\d*]+\])?(\.\w+(\[[\d*]+\])?)+")
+_FIELD = re.compile(rf"({'|'.join(SCENE_FIELDS)})(\[[\d*]+\])?(\.\w+(\[[\d*]+\])?)+")
 _ITEM = re.compile(r"(\w+)s\[(\d+|\*)\]")
 
 

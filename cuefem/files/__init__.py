@@ -23,6 +23,7 @@ from cuefem.files.warnings_of_drawings import drawing_warnings
 from cuefem.parameters.field_paths import with_fields
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.unit_checks import DrawingWarning, warn
+from cuefem.results.plausibility import drawing_warnings_of
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import without_leather
 
@@ -120,6 +121,9 @@ def load(
                 cue = with_shaft_material(cue, material)
             cue = with_additions(cue, **additions)
             loaded = cue if isinstance(loaded, Cue) else replace(loaded, cue=cue)
+    drawn = loaded if isinstance(loaded, Cue) else loaded.cue
+    for line in drawing_warnings_of(drawn) if isinstance(drawn, Cue) else ():
+        warn(f"{path.name}: {line}")
     return loaded if body_mass is None else with_body_mass(loaded, path, "body_mass", body_mass)
 
 

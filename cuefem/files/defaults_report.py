@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -23,6 +23,7 @@ from cuefem.files.shaft_additions import EXAMPLES, TENON_RATIO, example
 from cuefem.files.surface_sections import TOLERANCE
 from cuefem.files.toml_reader import missing_keys, read_tables
 from cuefem.parameters.parts import Layout, is_wood_of, main_material
+from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.display_units import modulus_text, span_text, with_unit
 from cuefem.scene import DEFAULT_CONTACT_TIME, Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, GAMES
@@ -274,6 +275,38 @@ def _stroke(tables: dict[str, Any], game: str, scene: Scene, options: Mapping[st
 def _missing(tables: dict[str, Any]) -> set[str]:
     """The options whose values a scene's tables lack."""
     return {key for left in missing_keys(tables) for key in _KEYS.get(left, (left.rpartition(".")[2],))}
+
+
+# What ends an assumption on an addition to a drawing if it changes.
+_ADDITIONS: Mapping[str, Callable[[Cue], Any]] = {
+    "material": main_material,
+    "shaft_mass": lambda cue: cue.shaft_mass_measured,
+    "body_mass": lambda cue: cue.body_mass,
+    "ferrule": lambda cue: bool(Layout.of(cue).ferrule),
+    "tenon": lambda cue: len(tenon_assumption(cue)),
+    "bore": _is_bored,
+    "front": lambda cue: bool(cue.leather_height),
+}
+
+
+def held_assumptions(scene: Scene) -> list[Assumption]:
+    """What was assumed when the scene was loaded, without what was changed since; of other scenes nothing."""
+    if scene.assumed is None:
+        return []
+    loaded = scene.assumed.scene
+    return [each for each in scene.assumed.listed if _assumed_value(each, scene) == _assumed_value(each, loaded)]
+
+
+def _assumed_value(assumption: Assumption, scene: Scene) -> Any:
+    """The value of a scene that an assumption is on."""
+    key = assumption.key
+    if key == "game":
+        return scene.ball
+    if scene.lumped is None and key in _ADDITIONS:
+        return _ADDITIONS[key](scene.shaft)
+    if key in PARAMETERS:
+        return PARAMETERS[key].value(scene)
+    return len(scene.cue.segments)
 
 
 def offered_assumptions(

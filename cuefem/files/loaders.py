@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import os
+from copy import copy
 from pathlib import Path
 from typing import TypedDict, Unpack
 
 from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue
 from cuefem.files import load
+from cuefem.files.cue_names import named_path
+from cuefem.files.defaults_report import assumptions, offered_assumptions
 from cuefem.files.errors import InputError
+from cuefem.files.warnings_of_drawings import drawing_warnings
 from cuefem.quantity.fields import quote, suggestion
-from cuefem.scene import Scene
+from cuefem.scene import Assumed, Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, STROKES, StrokeName, usual_scene
 
 
@@ -98,10 +102,21 @@ def load_scene(
         raise InputError(Path(path), "game", f"must be one of {', '.join(STROKES)}; got {quote(game)}{hint}")
     loaded = load(path, **options)
     if isinstance(loaded, Cue):
-        return usual_scene(loaded, game or DEFAULT_GAME)
+        given = {**options} if game is None else {**options, "game": game}
+        return _with_assumptions(usual_scene(loaded, game or DEFAULT_GAME), path, given)
     if isinstance(loaded, SideStrike):
         raise InputError(Path(path), "striker", "must be absent: load loads a side strike, for `cuefem.side_strike`")
     if game is not None:
         problem = "does not apply: the file is a scene, which has its own ball, tip and stroke"
         raise InputError(Path(path), "game", f"{problem}; got {quote(game)}")
-    return loaded
+    return _with_assumptions(loaded, path, {**options})
+
+
+def _with_assumptions(scene: Scene, path: str | os.PathLike[str], options: dict[str, object]) -> Scene:
+    """The scene with what its file and the options leave open, and the warnings of the file."""
+    file = named_path(Path(path))
+    found = assumptions(file, scene, {name: value for name, value in options.items() if value is not None})
+    made = copy(scene)
+    listed = tuple(offered_assumptions(found))
+    object.__setattr__(made, "assumed", Assumed(scene, listed, tuple(drawing_warnings(file))))
+    return made

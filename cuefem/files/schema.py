@@ -82,7 +82,7 @@ def _build_table(kind: type, table: dict[str, Any], file: str, key: str) -> Any:
 def field_types(kind: type) -> dict[str, Any]:
     """The types of a dataclass's fields, with their annotations."""
     hints = typing.get_type_hints(kind, include_extras=True)
-    return {field.name: hints[field.name] for field in fields(cast(Any, kind))}
+    return {field.name: hints[field.name] for field in fields(cast(Any, kind)) if field.compare}
 
 
 def required_keys(kind: type) -> list[str]:
@@ -108,7 +108,7 @@ def key_path(key: str, part: str | int) -> str:
 
 def keys_of(kind: type) -> list[str]:
     """The valid keys of a table of ``kind``."""
-    names = [field.name for field in fields(kind)] if is_dataclass(kind) else []
+    names = [field.name for field in fields(kind) if field.compare] if is_dataclass(kind) else []
     return [*names, *(kind.presets if issubclass(kind, Effect) else ())]
 
 

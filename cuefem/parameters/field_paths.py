@@ -40,7 +40,9 @@ def items(value: Any) -> dict[Step, Any]:
     """The items or fields of a value, by index or name."""
     if isinstance(value, tuple):
         return dict(enumerate(value))
-    return {field.name: getattr(value, field.name) for field in fields(value)} if is_dataclass(value) else {}
+    if not is_dataclass(value):
+        return {}
+    return {field.name: getattr(value, field.name) for field in fields(value) if field.compare}
 
 
 def field_value(scene: Any, path: Path) -> Any:

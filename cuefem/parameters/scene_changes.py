@@ -97,7 +97,7 @@ def with_values_at(scene: Scene, changes: Mapping[Path, Any]) -> Scene:
     for head, part in parts.items():
         if values.get(head) is not None:
             draft = part.write(draft, values[head])
-    return Scene(**{name: getattr(draft, name) for name in SCENE_FIELDS})
+    return Scene(**{name: getattr(draft, name) for name in SCENE_FIELDS}, assumed=scene.assumed)
 
 
 def _check_part(name: str, part: Part, value: Any) -> None:

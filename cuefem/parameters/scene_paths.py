@@ -15,7 +15,7 @@ from cuefem.quantity.fields import Quantity, field_quantity, suggestion
 from cuefem.quantity.units import parse_number
 from cuefem.scene import Scene
 
-SCENE_FIELDS = tuple(field.name for field in fields(Scene))
+SCENE_FIELDS = tuple(field.name for field in fields(Scene) if field.compare)
 
 _TAPER = re.compile(r"taper at (.+)")
 

@@ -3,6 +3,7 @@
 from cuefem.beam.mesh import Resolution
 from cuefem.scene.scene import (
     DEFAULT_CONTACT_TIME,
+    Assumed,
     Ball,
     Outcome,
     Outcomes,
@@ -15,6 +16,7 @@ from cuefem.scene.scene import (
 
 __all__ = [
     "DEFAULT_CONTACT_TIME",
+    "Assumed",
     "Ball",
     "Outcome",
     "Outcomes",

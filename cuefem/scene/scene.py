@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from itertools import chain
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -147,6 +147,17 @@ class Stroke:
         return math.asin(self.offset)
 
 
+class Assumed(NamedTuple):
+    """A scene as it was loaded, and what was assumed then: an `Assumption` each. A later change of the scene ends some.
+
+    warnings: of the file that was read, such as a column that is not used.
+    """
+
+    scene: Scene
+    listed: tuple[Any, ...]
+    warnings: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True)
 class Scene:
     """A scene: cue, ball, tip, stroke, and the effects beyond the base model.
@@ -160,6 +171,8 @@ class Scene:
         `cuefem.usual_scene` has those of a game.
     effects
         Effects such as `TipDome` or `PointMass`, in any order.
+    assumed
+        What a file left open, set by `cuefem.load_scene`: answers list what the scene still has of it.
 
     Raises
     ------
@@ -183,6 +196,7 @@ class Scene:
     tip: Tip = field(default_factory=Tip)
     stroke: Stroke = field(default_factory=Stroke)
     effects: tuple[Effect, ...] = ()
+    assumed: Assumed | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         check_kind("Scene.cue", self.cue, (Cue, LumpedCue))

@@ -10,17 +10,23 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from cuefem.files import InputError, save_page, write_atomically
-from cuefem.files.defaults_report import Assumption
+from cuefem.files.defaults_report import Assumption, held_assumptions, offered_assumptions
+from cuefem.quantity.display import brief
 from cuefem.quantity.display_units import displayed_in
+from cuefem.quantity.frames import frame_of
+from cuefem.results.plausibility import plausibility_warnings
 from cuefem.results.quantities import UNITS
 from cuefem.results.records import Record, Table, json_value
 from cuefem.scene import Scene
 from cuefem.show.scene_summary import cue_line, effect_name, effect_text, scene_record
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from cuefem.show.charts import Chart
     from cuefem.show.drawings import CueDrawing
 
+MAX_SHOWN, MAX_REPR = 12, 320  # of `__repr__`: entries of a container, characters
 DESIGN_STYLES = ("c1", "c2", "c3", "c4", "c5")  # CSS classes of designs side by side
 
 
@@ -39,6 +45,12 @@ class Answer:
     A subclass adds its numbers as fields, in SI units, and defines `tables`. A field with ``repr=False`` is not part of
     the record: intermediate results, and options of the tables.
     """
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Keep the inherited `__repr__`, which a dataclass would replace."""
+        super().__init_subclass__(**options)
+        if "__repr__" not in cls.__dict__:
+            cls.__repr__ = cls.__repr__  # type: ignore[method-assign]
 
     has_stroke: ClassVar[bool] = True  # whether ball, tip and stroke matter to the answer
     about: ClassVar[str] = ""  # definitions, for pages
@@ -64,6 +76,16 @@ class Answer:
         """The effects of the scene as one line, or an empty line."""
         return ""
 
+    @property
+    def warnings(self) -> list[str]:
+        """What is implausible in the input, a line each."""
+        return []
+
+    @property
+    def assumptions(self) -> list[Assumption]:
+        """What neither the file nor a later change of its scene set, as `cuefem.load_scene` found it."""
+        return []
+
     def headline(self) -> str:
         """The answer in one line, or an empty line."""
         return ""
@@ -80,9 +102,13 @@ class Answer:
         """The numbers alone, in SI units."""
         return {each.name: _plain(getattr(self, each.name)) for each in fields(self) if each.repr}
 
+    def said(self) -> Record:
+        """Assumptions and warnings as texts."""
+        return {"assumptions": [*map(str, self.assumptions)], "warnings": [*self.warnings]}
+
     def to_dict(self) -> Record:
-        """The record: numbers in SI units, and the unit of each."""
-        return {**self.values(), "units": {**UNITS, **self.own_units}}
+        """The record: numbers in SI units, and the unit of each, as JSON has them: lists, and None for nan."""
+        return _as_json({**self.values(), "units": {**UNITS, **self.own_units}})
 
     def page_title(self, name: str, question: str) -> str:
         """The title of a page on a file."""
@@ -107,16 +133,31 @@ class Answer:
         ]
 
     def to_html(
-        self, name: str = "", assumptions: Sequence[Assumption] = (), warnings: Sequence[str] = (), made: str = ""
+        self,
+        name: str = "",
+        assumptions: Sequence[Assumption] | None = None,
+        warnings: Sequence[str] | None = None,
+        made: str = "",
     ) -> str:
-        """A self-contained page with tables and charts. made: the date at its end."""
+        """A self-contained page with tables and charts.
+
+        assumptions, warnings: instead of the answer's own. made: the date at its end.
+        """
         from cuefem.show.templates import plain_page  # templates take 0.1 s to load
 
         title = name or effect_name(type(self).__name__).capitalize()
         heading = "" if self.heading() in title else ": ".join(filter(None, (name.partition(":")[0], self.heading())))
         more = (chart for folded in self.more_charts() for chart in folded.charts)
-        things = [heading, *self.charts(), *more, *self._body(assumptions)]
-        return plain_page(title, things, made, [*self.gaps(), *warnings])
+        things = [heading, *self.charts(), *more, *self._body(self._noted(assumptions))]
+        return plain_page(title, things, made, [*self.gaps(), *self._warned(warnings)])
+
+    def _noted(self, assumptions: Sequence[Assumption] | None) -> Sequence[Assumption]:
+        """Given assumptions, or the answer's own."""
+        return self.assumptions if assumptions is None else assumptions
+
+    def _warned(self, warnings: Sequence[str] | None) -> Sequence[str]:
+        """Given lines of warning, or those of the answer."""
+        return [f"warning: {line}" for line in self.warnings] if warnings is None else warnings
 
     def save(self, path: str | Path) -> None:
         """Write the record (.json) or a page (.html); the extension sets the format."""
@@ -125,7 +166,15 @@ class Answer:
     def __str__(self) -> str:
         from cuefem.show.renderers import plain_text
 
-        return plain_text(self.lines())
+        warnings = [f"warning: {line}" for line in self.warnings]
+        return plain_text([*warnings, *self.lines(assumptions=self.assumptions)])
+
+    def __repr__(self) -> str:
+        """Class, headline, numbers to four digits, and the sizes of longer fields, in one line."""
+        values = ((each.name, getattr(self, each.name)) for each in fields(self) if each.repr)
+        shown = [f"{name}={_brief(value)}" for name, value in values if not _is_empty(value)]
+        text = "; ".join(filter(None, [self.headline(), ", ".join(shown)]))
+        return f"<{type(self).__name__}: {text if len(text) <= MAX_REPR else f'{text[:MAX_REPR]}...'}>"
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
         """The tables, in IPython."""
@@ -156,12 +205,47 @@ class Analysis(Answer):
         """The effects of the scene as one line, or an empty line."""
         return ", ".join(map(effect_text, self.scene.effects))
 
+    @property
+    def warnings(self) -> list[str]:
+        """What is implausible in the scene and in the file that it is of, a line each."""
+        of_file = self.scene.assumed.warnings if self.scene.assumed else ()
+        return [*of_file, *plausibility_warnings(self.scene, with_impact=self.has_stroke)]
+
+    @property
+    def assumptions(self) -> list[Assumption]:
+        """What neither the file nor a later change of its scene set, as `cuefem.load_scene` found it."""
+        return offered_assumptions(held_assumptions(self.scene), with_impact=self.has_stroke)
+
     def to_dict(self) -> Record:
-        """The record: scene, numbers in SI units, and the unit of each."""
+        """The record: assumptions, warnings, scene, numbers in SI units, and the unit of each."""
         about = scene_record(self.scene)
         if not self.has_stroke:
             about = {name: about[name] for name in ("cue", "effects")}
-        return {"scene": about, **super().to_dict()}
+        return {**_as_json({**self.said(), "scene": about}), **super().to_dict()}
+
+
+class Rows:
+    """An answer whose numbers are a table."""
+
+    own_units: ClassVar[Mapping[str, str]]
+
+    def frame_rows(self) -> list[Record]:
+        """The rows of the table as records, SI units."""
+        raise NotImplementedError
+
+    def to_frame(self) -> pd.DataFrame:
+        """The rows as a pandas frame, in SI units; ``attrs["units"]`` has the unit of each column.
+
+        Returns
+        -------
+        pandas.DataFrame
+
+        Raises
+        ------
+        RuntimeError
+            If pandas is not installed.
+        """
+        return frame_of(self.frame_rows(), {**UNITS, **self.own_units})
 
 
 def write(path: Path, record: Callable[[], Record], html: Callable[[], str]) -> None:
@@ -175,6 +259,26 @@ def write(path: Path, record: Callable[[], Record], html: Callable[[], str]) -> 
     with displayed_in("metric"):
         text = json_text(record()) + "\n"
     write_atomically(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+
+
+def _as_json(record: Record) -> Record:
+    made: Record = json_value(record)
+    return made
+
+
+def _is_empty(value: Any) -> bool:
+    """Whether a field says nothing: None, or a text or container without content."""
+    return value is None or (isinstance(value, str | Mapping | list | tuple) and not value)
+
+
+def _brief(value: Any) -> str:
+    """A value of `__repr__`: a short list in full, other containers by their names or their size."""
+    if isinstance(value, list | tuple):
+        is_short = len(value) <= MAX_SHOWN and all(isinstance(each, int | float | None) for each in value)
+        return f"[{', '.join(map(brief, value))}]" if is_short else f"[{len(value)}]"
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(map(str, value))}}}" if len(value) <= MAX_SHOWN else f"{{{len(value)}}}"
+    return type(value).__name__ if is_dataclass(value) else brief(value)
 
 
 def _plain(value: Any) -> Any:

@@ -1,12 +1,15 @@
 """Warnings for implausible values, and none for shipped cues (regression)."""
 
+import html
+import json
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 import cuefem as cf
-from cuefem.show.plausibility import plausibility_warnings
+from cuefem.results.plausibility import plausibility_warnings
+from tests.helpers.command_line import call
 from tests.helpers.random_shafts import random_shaft
 
 ROOT = Path(__file__).parents[2]
@@ -57,3 +60,26 @@ def test_random_shafts_have_no_warning_of_their_parts() -> None:
     for seed in range(580_000, 580_300):
         lines = plausibility_warnings(cf.Scene(replace(random_shaft(seed).cue, body_mass=0.43)))
         assert [line for line in lines if "check its unit" in line or "diameter and bore" in line] == [], seed
+
+
+REVERSED = "x [mm],diameter [mm]\n0,21\n500,13.2\n736.6,12.75\n"
+
+
+def test_python_says_what_the_command_says(tmp_path: Path) -> None:
+    """Warnings and assumptions at each door: load, print, record, page; a changed value is assumed no longer."""
+    path = tmp_path / "shaft.csv"
+    path.write_text(REVERSED)
+    with pytest.warns(cf.PlausibilityWarning, match="shaft.csv: the tip end is thicker than the butt end"):
+        scene = cf.load_scene(path)
+    answer = cf.verdict(scene)
+    said = json.loads(call("strike", path, "--json")[1])
+    record = answer.to_dict()
+    assert answer.warnings == record["warnings"] == said["warnings"] != []
+    assert record["assumptions"] == [line.partition(" (--")[0] for line in said["assumptions"]]
+    page = html.unescape(answer.to_html())
+    for line in [*answer.warnings, *record["assumptions"]]:
+        assert " ".join(line.split()) in " ".join(str(answer).split())
+        assert line.replace("\N{NO-BREAK SPACE}", " ") in page.replace("\N{NO-BREAK SPACE}", " ")
+    faster = cf.verdict(cf.with_parameters(scene, {"speed": 3.0}))
+    assert {*map(str, answer.assumptions)} - {*map(str, faster.assumptions)} == {"cue speed 2 m/s"}
+    assert cf.verdict(replace(scene, assumed=None)).assumptions == []

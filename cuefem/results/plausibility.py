@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from math import inf
 from typing import Any
@@ -131,27 +131,32 @@ def plausibility_warnings(scene: Scene, *, with_impact: bool = True) -> list[str
 
     with_impact: also check ball, tip, stroke and the mass of the whole cue.
     """
-    drawn = scene.cue.segments
-    checks = [
-        *(_of_stroke(scene) if with_impact else ()),
-        *(_of_drawing(scene.shaft) if drawn else ()),
-        *(_of_mass(scene) if with_impact else ()),
-    ]
-    outside = [
+    drawing = [] if scene.lumped else drawing_warnings_of(scene.shaft)
+    if not with_impact:
+        return drawing
+    return [*_outside(_of_stroke(scene)), *drawing, *_outside(_of_mass(scene)), *_of_missing_butt(scene)]
+
+
+def drawing_warnings_of(cue: Cue) -> list[str]:
+    """Warnings of a drawing, without the rest of the cue behind it."""
+    if not cue.segments:
+        return []
+    density = density_problem(cue, DENSITY_MARGIN) if cue.shaft_mass_measured else ""
+    return [*_outside(_of_drawing(cue)), *filter(None, [density]), *_of_outline(cue.segments)]
+
+
+def _outside(checks: Iterable[Check]) -> list[str]:
+    """The warnings of the values that lie outside their ranges."""
+    return [
         f"{name} {with_unit(value, unit, 6)}; {hint}"
         for name, value, (low, high), unit, hint in checks
         if value is not None and not low <= value <= high
     ]
-    return [*outside, *_of_masses(scene, with_impact=with_impact), *_of_outline(drawn)]
 
 
-def _of_masses(scene: Scene, *, with_impact: bool) -> Iterator[str]:
-    """Warnings of a missing butt, and of the density of a weighed shaft."""
-    drawn = scene.lumped is None
-    if drawn and scene.shaft.shaft_mass_measured:
-        yield from filter(None, [density_problem(scene.shaft, DENSITY_MARGIN)])
-    is_drawing_too_light = drawn and scene.shaft.shaft_mass < MIN_DRAWN_MASS  # has a warning of its own
-    if with_impact and scene.cue.mass < MIN_CUE_MASS and not is_drawing_too_light:
+def _of_missing_butt(scene: Scene) -> Iterator[str]:
+    is_drawing_too_light = scene.lumped is None and scene.shaft.shaft_mass < MIN_DRAWN_MASS  # has its own warning
+    if scene.cue.mass < MIN_CUE_MASS and not is_drawing_too_light:
         yield mass_problem(scene)
 
 
