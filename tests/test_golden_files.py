@@ -44,9 +44,14 @@ OUTPUTS = {
 NUMBER = re.compile(r"(?<![\w.])[-+−]?\d+(?:\.\d+)?(?:e[-+]\d+)?")
 
 
+def one_level(page: str) -> str:
+    """A page whose charts are no longer nested <svg>: the inner one, which clips, as <g>."""
+    return re.sub(r'<svg( class="plot".*?)</svg>', r"<g\1</g>", page, flags=re.DOTALL)
+
+
 def page_text(page: str) -> str:
     """The text of a page, one line an element, without script, style and charts."""
-    body = re.sub(r"<(style|script|svg|head).*?</\1>", "", page, flags=re.DOTALL)
+    body = re.sub(r"<(style|script|svg|head).*?</\1>", "", one_level(page), flags=re.DOTALL)
     return "\n".join(line for part in re.split(r"<[^>]*>", body) if (line := html.unescape(part).strip())) + "\n"
 
 
@@ -173,7 +178,7 @@ def drawing_text(page: str) -> str:
         pieces = re.findall(r"[A-Zz][^A-Zz]*", path[1])
         return f' d="{" ".join(pieces[::8] + pieces[-1:])}"'
 
-    charts = re.findall(r"<svg.*?</svg>", page, re.DOTALL)
+    charts = re.findall(r"<svg.*?</svg>", one_level(page), re.DOTALL)
     charts = [re.sub(r"\d+\.\d{5,}", lambda number: f"{float(number[0]):.4f}", chart) for chart in charts]
     lines = [line.strip() for chart in charts for line in re.sub(r"(<(?!/))", r"\n\1", chart).splitlines()]
     lines = [str(sorted(Counter(re.findall(r'class="([^"]*)"', page)).items())), *lines]

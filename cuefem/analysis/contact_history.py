@@ -42,7 +42,7 @@ class ContactHistory(Rows, Analysis):
     )
 
     def frame_rows(self) -> list[Record]:
-        """Force on the ball and velocity of the tip at 201 times of the contact; none of an impact."""
+        """Force on the ball and velocity of the tip over the contact; none of an impact."""
         if self.outcome.history is None:
             return []
         times = np.linspace(0.0, self.outcome.duration, FRAME_TIMES)

@@ -83,11 +83,14 @@ class CueReport(Analysis):
         made: str = "",
         other: tuple[str, Scene] | None = None,
     ) -> str:
-        """The page with the first screen, beside that of another cue; without squirt a plain page of the numbers."""
+        """The page with the first screen, beside that of another cue; ValueError for a miscue, outside notebooks."""
         from cuefem.analysis.report_page import page_of
+        from cuefem.show.templates import is_inline  # templates take 0.1 s to load
 
         if self.no_squirt or self.no_contact:
-            return super().to_html(name, assumptions, warnings, made)
+            if is_inline():
+                return super().to_html(name, assumptions, warnings, made)
+            raise ValueError(self.no_squirt or self.no_contact)
         assumptions, warnings = self._noted(assumptions), self._warned(warnings)
         name = name or "cue"
         beside = None if other is None else self._beside(name, *other)

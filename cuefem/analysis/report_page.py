@@ -21,7 +21,7 @@ from cuefem.show.charts import Chart
 from cuefem.show.glossary import with_glossary
 from cuefem.show.offset_charts import offset_charts
 from cuefem.show.scene_summary import assumptions, plain_cue_line, plain_effect_line, scene_record
-from cuefem.show.templates import environment
+from cuefem.show.templates import framed, is_inline
 
 Answers = Mapping[str, Analysis]
 
@@ -102,7 +102,8 @@ def _is_for_engineers(scene: Scene, name: str, notes: Sequence[Assumption]) -> b
 
 def page(cues: Iterable[str], **parts: Any) -> str:
     """The page of these parts, which page.html.j2 names. cues: names of the cues on it."""
-    return with_glossary(environment().get_template("page.html.j2").render(**parts), cues) + "\n"
+    made = framed("page.html.j2", **parts)
+    return made if is_inline() else with_glossary(made, cues) + "\n"
 
 
 def facts(scene: Scene) -> list[str]:

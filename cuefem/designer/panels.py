@@ -56,7 +56,7 @@ def curves_markup(session: Session) -> str:
                 height=280,
             )
         )
-    figures = "".join(chart_markup(each, f"curve{i}") for i, each in enumerate(charts))
+    figures = "".join(map(chart_markup, charts))
     missed = [b for b, regime in zip(CURVE_OFFSETS, regimes, strict=True) if regime == "miscue"]
     note = f"{session.step.design.name}: miscue from b/R {missed[0] - OFFSET_STEP / 2:.2f} on." if missed else ""
     of = f"({session.step.design.name})" if len(drawn) > 1 else ""
@@ -140,8 +140,7 @@ def sections_markup(session: Session) -> str:
     if answers is None:
         return COMPUTING
     return "".join(
-        f"<details><summary><h2>{escape(question.title)}</h2></summary>"
-        f"{answer_markup(f'report-{key}', answers.sections[key])}</details>"
+        f"<details><summary><h2>{escape(question.title)}</h2></summary>{answer_markup(answers.sections[key])}</details>"
         for key, question in report_sections().items()
         if key in answers.sections
     )

@@ -25,7 +25,7 @@ from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.frames import frame_of
 from cuefem.results.records import Record, Table
 from cuefem.scene import Scene
-from cuefem.show.analysis import Analysis
+from cuefem.show.analysis import Analysis, as_json
 from cuefem.show.scene_summary import scene_record
 
 if TYPE_CHECKING:
@@ -128,7 +128,8 @@ class StudyResult(Analysis):
     def to_dict(self) -> Record:
         """The record: scene, resolution, varied parameters, numbers in SI units, and the unit of each."""
         study = self.definition.all_designs
-        return {
+        record: Record = {
+            **self.said(),
             "scene": scene_record(self.scene),
             "resolution": study.at and vars(study.at),
             "kind": self.kind,
@@ -136,6 +137,7 @@ class StudyResult(Analysis):
             **self.values(),
             "units": self.units,
         }
+        return as_json(record)
 
     def tables(self) -> list[Table | str]:
         """The varied parameters; then, by kind, the results."""

@@ -148,7 +148,7 @@ def drawing_warnings_of(cue: Cue) -> list[str]:
 def _outside(checks: Iterable[Check]) -> list[str]:
     """The warnings of the values that lie outside their ranges."""
     return [
-        f"{name} {with_unit(value, unit, 6)}; {hint}"
+        f"{name} {with_unit(value, unit, 6).replace('inf', '∞')}; {hint}"
         for name, value, (low, high), unit, hint in checks
         if value is not None and not low <= value <= high
     ]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass
-from html import escape
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
@@ -108,7 +107,7 @@ class Answer:
 
     def to_dict(self) -> Record:
         """The record: numbers in SI units, and the unit of each, as JSON has them: lists, and None for nan."""
-        return _as_json({**self.values(), "units": {**UNITS, **self.own_units}})
+        return as_json({**self.values(), "units": {**UNITS, **self.own_units}})
 
     def page_title(self, name: str, question: str) -> str:
         """The title of a page on a file."""
@@ -181,8 +180,11 @@ class Answer:
         printer.text(str(self))
 
     def _repr_html_(self) -> str:
-        """The page in a frame, so that its style does not change the notebook's."""
-        return f'<iframe srcdoc="{escape(self.to_html())}" style="width: 100%; height: 480px; border: 0"></iframe>'
+        """The page's content as a part of the notebook, in its colours, at full height."""
+        from cuefem.show.templates import inline  # templates take 0.1 s to load
+
+        with inline():
+            return self.to_html()
 
 
 @dataclass(frozen=True)
@@ -221,7 +223,7 @@ class Analysis(Answer):
         about = scene_record(self.scene)
         if not self.has_stroke:
             about = {name: about[name] for name in ("cue", "effects")}
-        return {**_as_json({**self.said(), "scene": about}), **super().to_dict()}
+        return {**as_json({**self.said(), "scene": about}), **super().to_dict()}
 
 
 class Rows:
@@ -261,7 +263,8 @@ def write(path: Path, record: Callable[[], Record], html: Callable[[], str]) -> 
     write_atomically(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
 
 
-def _as_json(record: Record) -> Record:
+def as_json(record: Record) -> Record:
+    """A record of lists, texts and finite numbers; nan becomes None."""
     made: Record = json_value(record)
     return made
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import cache
 from html import escape
 from itertools import groupby
@@ -17,6 +19,9 @@ from cuefem.results.records import Table
 from cuefem.show.charts import Chart
 from cuefem.show.drawings import CueDrawing
 
+# Colours of curves where no style sheet holds: 3 to 1 at least on white and on black.
+INKS = {"c1": "#2f86d0", "c2": "#c8691f", "c3": "#1f9a75", "c4": "#b064a5", "c5": "#7f8890"}
+_inline = ContextVar("inline", default=False)  # whether pages are made for a notebook
 OPTIONS = re.compile(r"(\s*\([^()]*--[^()]*\)|\S*--\S+)")  # in parentheses, or alone
 
 
@@ -34,6 +39,7 @@ def environment() -> Environment:
     made.filters["code"] = code_markup
     made.filters["css_string"] = css_string
     made.filters["options"] = option_pieces
+    made.filters["ink"] = ink
     return made
 
 
@@ -47,6 +53,11 @@ def option_pieces(text: str) -> list[tuple[str, bool]]:
     return [(piece, i % 2 == 1) for i, piece in enumerate(OPTIONS.split(text)) if piece]
 
 
+def ink(style: str) -> Markup:
+    """The colour of a curve as attributes, for viewers that remove style sheets; those of a page override them."""
+    return Markup(f' fill="none" stroke="{INKS.get(style[:2], "currentColor")}"')
+
+
 def css_string(text: str) -> Markup:
     """A text as a string of a style sheet."""
     return Markup('"' + "".join(c if c.isalnum() else f"\\{ord(c):06x}" for c in text) + '"')
@@ -54,7 +65,7 @@ def css_string(text: str) -> Markup:
 
 def page_style() -> str:
     """The style sheet of pages, including the first screen."""
-    return "".join(environment().get_template(name).render() for name in ("page.css", "first_screen.css"))
+    return "".join(environment().get_template(name).render() for name in ("page.css", "answer.css", "first_screen.css"))
 
 
 def chart_script() -> str:
@@ -62,9 +73,9 @@ def chart_script() -> str:
     return environment().get_template("charts.js").render()
 
 
-def chart_markup(drawing: Chart, name: str) -> str:
-    """A chart as a figure. name: its id on the page."""
-    return str(_macros().chart(drawing, name))
+def chart_markup(drawing: Chart) -> str:
+    """A chart as a figure."""
+    return str(_macros().chart(drawing))
 
 
 def shading_markup(drawing: Chart, of: str = "") -> str:
@@ -77,9 +88,9 @@ def table_markup(sheet: Table) -> str:
     return f"<h2>{escape(sheet.title)}</h2>{_macros().table(sheet)}"
 
 
-def answer_markup(key: str, answer: Any) -> str:
-    """Charts, tables and description of an analysis. key: the first part of the charts' ids on the page."""
-    return str(_macros().answer(key, answer.charts(), answer.tables(), answer.about, answer.more_charts()))
+def answer_markup(answer: Any) -> str:
+    """Charts, tables and description of an analysis."""
+    return str(_macros().answer(answer.charts(), answer.tables(), answer.about, answer.more_charts()))
 
 
 def plain_page(
@@ -87,7 +98,29 @@ def plain_page(
 ) -> str:
     """Lines, tables, charts and drawings as a self-contained page. made: the date at its end."""
     groups = [[*group] for _, group in groupby(filter(None, things), type)]
-    return environment().get_template("plain.html.j2").render(name=name, groups=groups, made=made, warnings=warnings)
+    parts = {"title": name, "name": name, "groups": groups, "made": made, "warnings": warnings}
+    return framed("plain.html.j2", **parts, screen="", kind="")
+
+
+def framed(template: str, **parts: Any) -> str:
+    """A template in the frame of a page, or of an output of a notebook."""
+    frame = "inline.html.j2" if _inline.get() else "frame.html.j2"
+    return environment().get_template(template).render(frame=frame, inline=_inline.get(), **parts)
+
+
+@contextmanager
+def inline() -> Iterator[None]:
+    """Within this block, pages are parts of another page: no title, no script, no ids, a style of their own alone."""
+    token = _inline.set(True)
+    try:
+        yield
+    finally:
+        _inline.reset(token)
+
+
+def is_inline() -> bool:
+    """Whether pages are made for a notebook."""
+    return _inline.get()
 
 
 @cache

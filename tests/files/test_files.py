@@ -67,6 +67,7 @@ def test_save_vtu_contains_the_cue(tmp_path: Path) -> None:
     assert mesh.cell_data["body_mass"][0].tolist() == [0.42, 0.42]
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 def test_save_over_file_replaces_it(tmp_path: Path) -> None:
     path = tmp_path / "cue.toml"
     path.write_text("before")

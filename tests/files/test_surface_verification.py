@@ -115,6 +115,7 @@ def test_polygon_faces_are_triangulated(tmp_path: Path) -> None:
     assert segment.tip_diameter == pytest.approx(0.012, rel=1e-6)
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 def test_surface_length_unit_and_uppercase_extension_are_read(tmp_path: Path) -> None:
     """Also by a scene file."""
     points, faces = revolve(outline_of(KIM), 16)

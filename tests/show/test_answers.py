@@ -1,6 +1,7 @@
 """Every answer: one line of repr, strict JSON, a frame with units where it is a table (properties)."""
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -65,3 +66,15 @@ def test_frame_without_pandas_is_refused_in_one_line(monkeypatch: pytest.MonkeyP
     monkeypatch.setitem(__import__("sys").modules, "pandas", None)
     with pytest.raises(RuntimeError, match=r"^frames need pandas: pip install 'cuefem\[pandas\]'$"):
         cf.natural_frequencies(cf.load_scene(KIM)).to_frame()
+
+
+def test_answers_in_one_notebook_share_no_id_script_or_frame() -> None:
+    """Of a miscue, too, whose page does not exist: its numbers alone."""
+    scene = cf.load_scene(KIM)
+    miscue = cf.report(cf.with_parameters(scene, {"offset": 0.8}))
+    for answer in (cf.reduction(scene), cf.report(scene), cf.compare({"a": scene, "b": scene}), miscue):
+        markup = answer._repr_html_()
+        assert markup.lstrip().startswith('<div class="cuefem">')
+        assert markup.count("<style>") == 1
+        assert not re.search(r"""<(iframe|script|html|body)\b|\sid=|clip-path=|prefers-color-scheme""", markup)
+    assert miscue.no_squirt
