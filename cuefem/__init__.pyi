@@ -45,7 +45,7 @@ from .analysis.parts import Parts as Parts, parts as parts
 from .analysis.cue_report import CueReport as CueReport, report as report
 from .analysis.simulator_export import PooltoolExport as PooltoolExport, pooltool_export as pooltool_export
 from .analysis.shop_changes import Limits as Limits
-from .analysis.shop_list import shop_list as shop_list
+from .analysis.shop_list import ShopList as ShopList, shop_list as shop_list
 from .analysis.squirt_curve import SquirtCurve as SquirtCurve, squirt_curve as squirt_curve
 from .analysis.strike_models import StrikeModels as StrikeModels, strike_models as strike_models
 from .analysis.strike_table import StrikeTable as StrikeTable, strike_table as strike_table

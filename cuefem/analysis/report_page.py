@@ -100,9 +100,12 @@ def _is_for_engineers(scene: Scene, name: str, notes: Sequence[Assumption]) -> b
     return scene.lumped is not None or name == "kim" or not is_default
 
 
-def page(cues: Iterable[str], **parts: Any) -> str:
-    """The page of these parts, which page.html.j2 names. cues: names of the cues on it."""
-    made = framed("page.html.j2", **parts)
+def page(cues: Iterable[str], *, engineers: Sequence[Record] = (), engineers_open: bool = False, **parts: Any) -> str:
+    """The page of these parts, which page.html.j2 names.
+
+    cues: names of the cues on it. engineers: the sections for engineers, folded unless ``engineers_open``.
+    """
+    made = framed("page.html.j2", engineers=engineers, engineers_open=engineers_open, **parts)
     return made if is_inline() else with_glossary(made, cues) + "\n"
 
 

@@ -4,7 +4,7 @@ Derivation: an infinite Euler-Bernoulli beam with a free end, a = sqrt(EI/rhoA).
 q = sqrt(s/2a), a velocity V(s) of its end moves the point x by V exp(-qx) cos(qx). A mass m there adds the force
 m s V (exp(-qx) cos(qx))^2 at the end, to first order in m, by reciprocity. The impulse of that force, over m V(T), is
 the weight of the mass in the end mass. For a velocity step it is `step_weight`, by Duhamel's integral that of any
-velocity; a given normal force prescribes the velocity of a tip that sticks (handbook: Stick end mass). The moment M(s)
+velocity; a given normal force prescribes the velocity of a tip that sticks (handbook: Effective end mass). The moment
 of the force on a dome moves a held tip's shaft by s M exp(-qx) sin(qx)/(2 EI q^2): the mass adds the weight `domed`.
 `distribution.py FILE` prints the places of a cue.
 """

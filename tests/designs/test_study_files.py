@@ -129,6 +129,7 @@ def test_invalid_option_of_the_cue_is_one_line_on_its_key(name: str, text: str, 
     assert_rejects(f"s.toml: {name}: {problem}", "study", file)
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")  # the same cone twice, one behind the other
 def test_study_file_ranges_are_read(tmp_path: Path) -> None:
     text = STRIKES.replace('low = "0 mm"\nhigh = "13 mm"', 'median = "5 mm"\nsd = "1 mm"')
     text = text.replace("low = 0.7\nhigh = 1.3", 'median = 1\nsd = 0.2\nspacing = "logarithmic"')

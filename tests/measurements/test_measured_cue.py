@@ -91,7 +91,7 @@ def test_offset_zero_moves_one_side_and_not_the_mean() -> None:
     (result,) = offset_zeros(cue, compare(cue))
     assert result.zero_error == pytest.approx(shift, rel=0.2)
     assert result.error > 0
-    symmetric = measured_cue(Squirt(offset=0.3, left=0.01, right=-0.01, error=1e-3))
+    symmetric = measured_cue(Squirt(offset=0.3, left=0.0, right=0.0, error=1e-3))
     assert offset_zeros(symmetric, compare(symmetric)) == ()  # no slope of squirt over the offset
 
 

@@ -19,7 +19,7 @@ OBJECTS = {
     "cue": (lambda: CUE, "Cue(6 segments, 0.7366 m, "),
     "scene": (lambda: SCENE, "Scene(cue=Cue(6 segments, 0.7366 m, "),
     "outcome": (lambda: cf.strike(SCENE), "Outcome(squirt=0.0"),
-    "array": (lambda: cf.impulse(LUMPED), "Outcome(squirt=array(50,), ball_speed=array(50,), "),
+    "array": (lambda: cf.impulse(LUMPED), "Outcomes(n=50, squirt=array(50,), ball_speed=array(50,), "),
     "modes": (lambda: cf.modes(CUE, 40), "Modes(["),
     "motion": (lambda: cf.motion(SCENE, np.linspace(0, 1e-3, 30)), "Motion(30 times to 0.001 s, "),
 }

@@ -10,6 +10,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.files import today
+from cuefem.files.defaults_report import Assumption
 from cuefem.results.quantities import DASH
 from cuefem.show.charts import WIDTH, Axis, round_step, spread_labels
 from cuefem.show.drawings import DIAMETER_SCALE, cue_drawing
@@ -46,7 +47,7 @@ def test_page_of_lumped_cue_is_valid_html(stroke: cf.Scene) -> None:
 
 def test_page_with_markup_in_name_is_escaped() -> None:
     text = cf.report(LUMPED, details=True).to_html(
-        "<script>alert(1)</script> & co.toml", ["a < b", "ash (take --material)"]
+        "<script>alert(1)</script> & co.toml", [Assumption("", "a < b"), Assumption("", "ash (take --material)")]
     )
     assert "<script>alert" not in text
     assert "&lt;script&gt;alert(1)&lt;/script&gt; &amp; co.toml" in text
