@@ -53,6 +53,7 @@ autosummary_generate = True
 autodoc_typehints = "description"
 autodoc_member_order = "bysource"
 autodoc_default_options = {"members": True}
+napoleon_use_ivar = True  # a documented attribute that is a member, too, has one description
 napoleon_google_docstring = False
 myst_enable_extensions, myst_heading_anchors = ["colon_fence", "dollarmath"], 3
 

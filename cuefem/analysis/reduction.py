@@ -9,7 +9,6 @@ from itertools import starmap
 from typing import ClassVar
 
 import numpy as np
-from scipy.optimize import brentq
 
 from cuefem.beam.mode_count import modes_below
 from cuefem.beam.modes import modes
@@ -41,6 +40,7 @@ PAPER_TONE = 250.0  # Hz
 FILMED_CONTACT_TIME = LEATHERS["medium"].contact_time  # s, that the contact of a cue lasts
 CONTACT_TIMES = (5e-4, 1e-3, DEFAULT_CONTACT_TIME, 3e-3)  # s, of a rigid cue
 SAME_TIME = 1e-4  # relative: contact times that differ by less are equal
+MAX_ROUNDS = 20  # of the search for the contact time of a filmed contact
 OFFSETS = (0.1, 0.3, 0.5)  # b/R
 CHART_OFFSETS = tuple(i / 20 for i in range(11))  # b/R
 CHART_TIMES = tuple(i / 1e4 for i in range(4, 31))  # s
@@ -319,19 +319,17 @@ def _filmed_contact_time(design: SolvedDesign) -> float | None:
     """
     head_on = replace(design.scene, stroke=replace(design.scene.stroke, offset=0.0))
 
-    def too_long(time: float) -> float:
-        outcome = strike_modes(_with_contact_time(head_on, time), design.solved.step_tip)
-        return float(outcome.duration) / FILMED_CONTACT_TIME - 1
-
-    shortest, longest = FILMED_CONTACT_TIME / 2, 2 * FILMED_CONTACT_TIME
+    time = FILMED_CONTACT_TIME
     try:
-        if abs(too_long(FILMED_CONTACT_TIME)) < SAME_TIME:
-            return FILMED_CONTACT_TIME
-        if not too_long(shortest) < 0 < too_long(longest):
-            return None
-        return float(brentq(too_long, shortest, longest, xtol=SAME_TIME * FILMED_CONTACT_TIME))
+        for _ in range(MAX_ROUNDS):
+            outcome = strike_modes(_with_contact_time(head_on, time), design.solved.step_tip)
+            ratio = float(outcome.duration) / FILMED_CONTACT_TIME
+            if abs(ratio - 1) < SAME_TIME:
+                return time
+            time /= ratio  # the duration is nearly proportional to the contact time of a rigid cue
     except (ValueError, RuntimeError):  # a number beside the answer does not take it down
-        return None
+        pass
+    return None
 
 
 def _end_masses_at(design: SolvedDesign, contact_time: float) -> Record:

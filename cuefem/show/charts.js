@@ -84,7 +84,7 @@
   });
   addEventListener("beforeprint", () => {
     hide();
-    for (const fold of document.querySelectorAll("details:not([open])")) { fold.open = true; fold.dataset.shut = ""; }
+    for (const fold of document.querySelectorAll("details:not([open]):not(.engineers, .engineers *)")) { fold.open = true; fold.dataset.shut = ""; }
   });
   addEventListener("afterprint", () => {
     for (const fold of document.querySelectorAll("details[data-shut]")) {

@@ -29,7 +29,10 @@ count = 2
 """
 ARGUMENTS = {"compare": (KIM, Path("meshes/kim.toml").resolve()), "parts": (), "guide": ("beam",)}
 MORE = {("improve", ".toml"): ("--take", 1)}
-ELSEWHERE = {("compare", ".toml")}  # a calibration: tests/measurements/test_calibration.py
+ELSEWHERE = {
+    ("compare", ".toml"),  # a calibration: tests/measurements/test_calibration.py
+    ("compare", ".csv"),  # a list of shafts: tests/analysis/test_shop_list.py
+}
 HEAVY = {"report", "improve", "effects", "cost", "check", "compare"}
 
 

@@ -39,8 +39,6 @@ METRIC_LEFT = re.compile(rf"\d[\s\u00a0]*{METRIC}|, {METRIC}")
 QUICK = [["report", KIM], ["strike", HOLLOW], ["end-mass", KIM], ["modes", KIM], ["effects", KIM]]
 SLOW = [
     ["report", HOLLOW],
-    ["improve", HOLLOW],
-    ["improve", "plain maple"],
     ["compare", HOLLOW, "plain maple"],
     ["compare", "players maple"],
     ["compare", "predator z2", "--estimate"],
@@ -50,7 +48,6 @@ SLOW = [
 PAGES = [
     ["report", "plain maple"],
     ["compare", HOLLOW, "plain maple"],
-    ["improve", HOLLOW],
     ["study", ROOT / "studies/design/optimum.toml"],
 ]
 

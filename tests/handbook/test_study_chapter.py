@@ -26,6 +26,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     cf.save(cf.load(Path(__file__).parents[2] / "meshes" / "pool_hollow.toml"), tmp_path / "my_cue.toml")
     for kind, (text, *_) in EXAMPLES.items():
         (tmp_path / f"{kind}.toml").write_text(text, encoding="utf-8")
+    text, *_ = EXAMPLES["optimum"]
+    front = text.replace("[[limit]]", 'against = "tip_stiffness"\ncount = 3\n\n[[limit]]', 1)
+    (tmp_path / "front.toml").write_text(front, encoding="utf-8")
     return tmp_path
 
 

@@ -14,6 +14,7 @@ import cuefem as cf
 from cuefem.analysis.squirt_curve import FINE_OFFSETS, squirt_curve
 from cuefem.designs import Response
 from cuefem.designs.sweep import SweepStatistics, sweep_charts, tabulate_sweep
+from cuefem.files.defaults_report import Assumption
 from cuefem.results.records import Record
 from cuefem.show.templates import plain_page
 from tests.helpers.designer_browser import BROWSER, empty_page, open_browser
@@ -97,12 +98,12 @@ def test_design_changes_on_a_phone_show_three_columns_and_all_on_demand(opened: 
         "squirt change",
         "recommendation",
     ]
-    opened.get_by_label("all columns").check()
+    opened.locator(".advice").get_by_label("all columns").check()
     assert all(heads.nth(i).is_visible() for i in range(6))
 
 
 def test_report_on_paper_names_no_options(opened: Any) -> None:
-    note = "ferrule of melamine (--ferrule)"
+    note = Assumption("ferrule", "ferrule of melamine", "ferrule")
     opened.set_content(cf.report(SCENE, details=True).to_html("pool_maple.toml", [note]))
     opened.emulate_media(media="print")
     text = opened.locator("body").inner_text()

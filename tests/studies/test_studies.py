@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.measurements.measured_folder import write_template
 from studies.measured import two_balls
 from studies.pages import IN_PYTHON, STUDIES, Study, disagreements
 from studies.strokes import cue, full_model, pool_stroke
@@ -76,9 +75,9 @@ def test_study_of_own_stroke_rejects_other_scenes() -> None:
 def test_two_measured_balls_are_compared_with_both_predictions(tmp_path: Path) -> None:
     light, heavy = tmp_path / "light", tmp_path / "heavy"
     for folder, grams in ((light, 156), (heavy, 200)):
-        write_template(folder)
-        measured = (folder / "measured.toml").read_text("utf-8")
-        (folder / "measured.toml").write_text(measured.replace('mass = "170 g"', f'mass = "{grams} g"'), "utf-8")
+        folder.mkdir()
+        cf.save(cf.load_cue("plain maple"), folder / "cue.toml")
+        (folder / "measured.toml").write_text(f'[ball]\nmass = "{grams} g"\n', "utf-8")
     table = "offset,speed [m/s],left [deg],right [deg],error [deg]\n0.3,2,{0},{0},0.01\n"
     for folder, squirt in ((light, 2.0), (heavy, 1.62)):
         (folder / "squirt.csv").write_text(table.format(squirt), "utf-8")
