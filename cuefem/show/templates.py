@@ -65,7 +65,7 @@ def css_string(text: str) -> Markup:
 
 def page_style() -> str:
     """The style sheet of pages, including the first screen."""
-    return "".join(environment().get_template(name).render() for name in ("page.css", "answer.css", "first_screen.css"))
+    return "".join(environment().get_template(name).render() for name in ("answer.css", "page.css", "first_screen.css"))
 
 
 def chart_script() -> str:
