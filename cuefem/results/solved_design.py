@@ -131,12 +131,12 @@ class SolvedDesign:
     @cached_property
     def coupled_slope(self) -> float:
         """Squirt over phi of the coupled strike in the limit of small offsets."""
-        return self.squirt_factor * coupled_slope(self.solved.stick_tip, self.scene)
+        return self.squirt_factor * coupled_slope(self.solved.tip, self.scene)
 
     def end_mass(self, name: Drive, offset: float | None = None) -> float:
         """End mass by a definition, kg, at an offset b/R or at the scene's own."""
         if name == "squirt" and self.squirt_factor != 1.0:
-            return squirt_equivalent(self.solved.stick_tip, self._at(offset), self.squirt_factor)
+            return squirt_equivalent(self.solved.tip, self._at(offset), self.squirt_factor)
         return float(DEFINITIONS[name].of_design(self.solved, self._at(offset)))
 
     def strike(self, offset: float | None = None) -> Outcome:
