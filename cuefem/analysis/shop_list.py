@@ -147,8 +147,9 @@ def shop_list(
     struck = with_same_stroke(scenes) if scenes else {}
     solved: dict[str, tuple[Scene, float, float]] = {}
     for name in progress([*struck]):
+        design = SolvedDesign.of(struck[name])
         try:
-            own = verdict(design := SolvedDesign.of(struck[name]), {})
+            own = verdict(design, {})
             rows.append({"name": name, "squirt": own.squirt, **_numbers(design)})
         except (ValueError, RuntimeError) as error:
             missing[name] = str(error)
@@ -168,12 +169,11 @@ def shop_list(
 def _numbers(design: SolvedDesign) -> Record:
     """What a maker can check of a shaft."""
     scene = design.scene
-    pivot = design.squirt(float(scene.stroke.offset))
     return {
         "shaft_mass": drawn_mass(scene),
         "tip_stiffness": design.tip_stiffness,
         "frequency": design.frequency(1),
-        "pivot_length": float(pivot_length(scene, pivot)),
+        "pivot_length": float(pivot_length(scene, design.squirt())),
         "tip_diameter": scene.tip_diameter,
     }
 
