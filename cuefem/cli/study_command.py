@@ -8,7 +8,7 @@ from contextlib import nullcontext
 from functools import partial
 from math import isfinite
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -18,7 +18,7 @@ from cuefem.cli.output import command, json_option, output_option, print_json
 from cuefem.cli.pending_warnings import print_pending_warnings
 from cuefem.cli.progress import ProgressLines, progress_bar
 from cuefem.cli.request import errors_name_file, print_warnings
-from cuefem.cli.scene_command import Presentation, check_overwrite, force_option
+from cuefem.cli.scene_command import Presentation, calibration_option, check_overwrite, force_option
 from cuefem.designs.design_table import check_parquet
 from cuefem.designs.many_designs import compute_designs
 from cuefem.designs.optimum import Problem, Round
@@ -30,6 +30,9 @@ from cuefem.quantity.display import counted
 from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.fields import quote
 from cuefem.results.plausibility import plausibility_warnings
+
+if TYPE_CHECKING:
+    from cuefem.measurements.calibration import Calibration
 
 Computed = TypeVar("Computed")
 
@@ -68,6 +71,7 @@ def read_part(context: click.Context, option: click.Parameter, text: str | None)
     help="Largest number of rounds of an optimum.",
 )
 @click.option("--front", is_flag=True, help="Write only the designs of the Pareto front into a table.")
+@calibration_option
 @output_option(".html", ".csv", ".parquet", ".json", ".toml", many=True)
 @force_option
 @json_option
@@ -82,6 +86,7 @@ def study(
     scheduler: str | None,
     part: slice | None,
     front: bool,
+    calibration: Calibration | None,
 ) -> None:
     """Compute the designs of STUDY (.toml), which lists parameters and responses (`cuefem guide study` has the format).
 
@@ -114,6 +119,12 @@ def study(
         if path.suffix.lower() == ".parquet":
             check_parquet()
     plan = load_study(file)
+    basis = []
+    if calibration is not None:
+        with errors_name_file(file):
+            found = calibration.squirt(plan.study.base)
+        plan = plan.calibrated(found.factor)
+        basis = [found.origin(), *found.warning_lines()]
     designs = plan.all_designs
     print_warnings(designs.base)
     print_pending_warnings()
@@ -149,7 +160,7 @@ def study(
         before = database.done - database.computed
         more = f", {before} of them from before" if before else ""
         stored.append(f"{counted(database.done, 'design')} in {database.path}{more}")
-    hints = [*stored, *(f"wrote {path}" for path in output)]
+    hints = [*basis, *stored, *(f"wrote {path}" for path in output)]
     shown = Presentation(
         result,
         file.name,

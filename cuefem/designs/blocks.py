@@ -67,7 +67,8 @@ class Blocks:
 def block_keys(study: Study, block: Block) -> BlockResult:
     """The keys of a block."""
     begun = perf_counter()
-    keys = b"".join(design_key(study.scene_or_reason(values), study.at) for values in block.values)
+    scenes = (study.scene_or_reason(values) for values in block.values)
+    keys = b"".join(design_key(scene, study.at, study.squirt_factor) for scene in scenes)
     return BlockResult(block, code_digest(), keys, None, {}, perf_counter() - begun)
 
 
@@ -76,7 +77,7 @@ def compute_block(study: Study, with_keys: bool, block: Block) -> BlockResult:
     """The responses of a block, reasons in metric units, and its keys if they are needed."""
     begun = perf_counter()
     scenes = [study.scene_or_reason(values) for values in block.values]
-    keys = b"".join(design_key(scene, study.at) for scene in scenes) if with_keys else b""
+    keys = b"".join(design_key(scene, study.at, study.squirt_factor) for scene in scenes) if with_keys else b""
     evaluation = study.evaluate_scenes(scenes)
     failures = {i: reason for i, reason in enumerate(evaluation.reasons) if reason}
     return BlockResult(block, code_digest(), keys, evaluation.values, failures, perf_counter() - begun)

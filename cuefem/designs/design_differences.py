@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from cuefem.designs.evaluation import evaluate
 from cuefem.designs.study import Study, StudyDesign
 from cuefem.parameters.parts import main_material
 from cuefem.parameters.table import PARAMETERS
@@ -64,7 +63,7 @@ def _changes(study: Study, design: StudyDesign, inputs: Sequence[str]) -> dict[s
     names = [response.name for response in study.responses]
 
     def numbers(scene: Scene) -> dict[str, float]:
-        found = evaluate([scene], study.responses, at=study.at).values[0]
+        found = study.evaluate_scenes([scene]).values[0]
         return dict(zip(names, found.tolist(), strict=True))
 
     known = {name: value for name, value in design.responses.items() if value and not math.isnan(value)}

@@ -29,6 +29,7 @@ def code_digest() -> str:
     return content.hexdigest()
 
 
-def design_key(scene: Scene | str, at: Resolution | None) -> bytes:
-    """The key of a design: of its scene, or of the reason why it is invalid."""
-    return digest(code_digest(), f"invalid: {scene}" if isinstance(scene, str) else full_repr(scene), repr(at))
+def design_key(scene: Scene | str, at: Resolution | None, squirt_factor: float) -> bytes:
+    """The key of a design: of its scene, or of the reason why it is invalid, and of what computes it."""
+    text = f"invalid: {scene}" if isinstance(scene, str) else full_repr(scene)
+    return digest(code_digest(), text, repr(at), squirt_factor)

@@ -174,11 +174,16 @@ class Evaluation:
 
 @np.errstate(**FLOAT_ERRORS)
 def evaluate(
-    scenes: Sequence[Scene], responses: Sequence[Response | str], *, at: Resolution | None = None
+    scenes: Sequence[Scene],
+    responses: Sequence[Response | str],
+    *,
+    at: Resolution | None = None,
+    squirt_factor: float = 1.0,
 ) -> Evaluation:
     """The responses of every scene, each as the call for one scene computes it.
 
-    at: one resolution for all scenes; by default each has its own, that of `cuefem.strike` and `cuefem.end_mass`. The
+    at: one resolution for all scenes; by default each has its own, that of `cuefem.strike` and `cuefem.end_mass`.
+    squirt_factor: of a calibration, as of a `SolvedDesign`. The
     modes of a scene are solved once for all responses, and once for consecutive scenes with equal cue and effects on
     it. A failed response does not affect the others. ValueError for an unknown name.
     """
@@ -189,7 +194,7 @@ def evaluate(
     for i, scene in enumerate(scenes):
         on_cue = scene.cue, scene.cue_effects
         previous, solved = on_cue, solved if on_cue == previous else {}
-        design = SolvedDesign(SolvedScene(scene, at, solved))
+        design = SolvedDesign(SolvedScene(scene, at, solved), squirt_factor=squirt_factor)
         for j, response in enumerate(parsed):
             try:
                 values[i, j] = response.value(design)

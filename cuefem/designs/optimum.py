@@ -14,7 +14,7 @@ import numpy as np
 from cuefem.cue import Array, Material
 from cuefem.cue.materials import material_name
 from cuefem.designs.design_differences import design_differences
-from cuefem.designs.evaluation import Evaluation, Response, evaluate
+from cuefem.designs.evaluation import Evaluation, Response
 from cuefem.designs.sampling import Levels, Normal, Span, Value
 from cuefem.designs.study import Study, StudyDesign, Vary
 from cuefem.designs.study_result import StudyResult
@@ -139,14 +139,16 @@ class Problem:
         Which the best design keeps.
     at : Resolution, optional
         As of a `Study`.
-    maximize : bool
+    maximize : bool, default False
         Maximize the objective instead.
     choice : mapping
         Values of the variables over a list, by index; by default those of the base.
     against : Response, optional
         A response with a preferred direction: the answer is the trade-off between the two.
-    count : int
+    count : int, default 7
         Designs on the trade-off, at least 3.
+    squirt_factor : float, default 1.0
+        As of a `Study`.
 
     Raises
     ------
@@ -173,6 +175,7 @@ class Problem:
     choice: Mapping[int, Value] = field(default_factory=dict)
     against: Response | None = None
     count: int = 7
+    squirt_factor: float = 1.0
 
     def __post_init__(self) -> None:
         check_count("count", self.count, 3)
@@ -188,7 +191,11 @@ class Problem:
         """The same variables and responses as a study, the objective first."""
         against = () if self.against is None else (self.against,)
         responses = dict.fromkeys((self.objective, *against, *(limit.response for limit in self.limits)))
-        return Study(self.base, self.vary, tuple(responses), at=self.at)
+        return Study(self.base, self.vary, tuple(responses), at=self.at, squirt_factor=self.squirt_factor)
+
+    def calibrated(self, squirt_factor: float) -> Problem:
+        """The same problem with another squirt factor."""
+        return replace(self, squirt_factor=squirt_factor)
 
     @property
     def spans(self) -> dict[int, Span]:
@@ -235,7 +242,7 @@ class Problem:
         values = {vary.name: self.base_value(vary) for vary in self.vary}
         values = {name: np.nan if value is None else value for name, value in values.items()}
         with displayed_in("metric"):
-            found = evaluate([self.base], self.study.responses, at=self.at)
+            found = self.study.evaluate_scenes([self.base])
         names = (response.name for response in self.study.responses)
         responses = dict(zip(names, found.values[0].tolist(), strict=True))
         return StudyDesign(self.base, values, responses, failure=found.reasons[0])

@@ -113,6 +113,10 @@ class Scatter:
             raise ValueError("the correlations must have a positive definite matrix: some contradict others")
         self._check_groups()
 
+    def calibrated(self, squirt_factor: float) -> Scatter:
+        """The same with another squirt factor."""
+        return replace(self, study=self.study.calibrated(squirt_factor))
+
     def _check_groups(self) -> None:
         grouped = [name for names in self.groups.values() for name in names]
         for group, names in self.groups.items():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
 from typing import Any, Protocol
@@ -44,6 +44,9 @@ class StudyDefinition(Protocol):
     @property
     def all_designs(self) -> Study:
         """The study of all designs to compute."""
+
+    def calibrated(self, squirt_factor: float) -> StudyDefinition:
+        """The same with the squirt factor of a calibration, `Calibration.factor` of the base."""
 
 
 def check_column_name(what: str, name: str) -> None:
@@ -179,6 +182,8 @@ class Study:
     at : Resolution, optional
         One resolution for all designs. By default each design has its own, that of `cuefem.strike` and
         `cuefem.end_mass`.
+    squirt_factor : float, default 1.0
+        Of a calibration, as `SolvedDesign` takes it: all designs carry that of the base.
 
     Raises
     ------
@@ -200,6 +205,7 @@ class Study:
     responses: tuple[Response, ...]
     sample: DesignSample | None = None
     at: Resolution | None = None
+    squirt_factor: float = 1.0
 
     def __post_init__(self) -> None:
         if not self.vary or not self.responses:
@@ -244,6 +250,10 @@ class Study:
     def all_designs(self) -> Study:
         """Itself: the study of all designs to compute, as of every kind of study."""
         return self
+
+    def calibrated(self, squirt_factor: float) -> Study:
+        """The same study with another squirt factor."""
+        return replace(self, squirt_factor=squirt_factor)
 
     @property
     def size(self) -> int:
@@ -306,7 +316,7 @@ class Study:
     def evaluate_scenes(self, scenes: Sequence[Scene | str]) -> Evaluation:
         """The responses of scenes; nan for the reason of an invalid one."""
         valid = {i: scene for i, scene in enumerate(scenes) if not isinstance(scene, str)}
-        evaluation = evaluate([*valid.values()], self.responses, at=self.at)
+        evaluation = evaluate([*valid.values()], self.responses, at=self.at, squirt_factor=self.squirt_factor)
         values = np.full((len(scenes), len(self.responses)), np.nan)
         values[[*valid]] = evaluation.values
         reasons = dict(zip(valid, evaluation.reasons, strict=True))

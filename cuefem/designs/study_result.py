@@ -132,6 +132,7 @@ class StudyResult(Analysis):
             **self.said(),
             "scene": scene_record(self.scene),
             "resolution": study.at and vars(study.at),
+            **({"squirt_factor": study.squirt_factor} if study.squirt_factor != 1.0 else {}),
             "kind": self.kind,
             "varied_fields": varied_segments(study.vary, study.base),
             **self.values(),
@@ -140,8 +141,10 @@ class StudyResult(Analysis):
         return as_json(record)
 
     def tables(self) -> list[Table | str]:
-        """The varied parameters; then, by kind, the results."""
-        return [tabulate_parameters(self.study)]
+        """The squirt factor of a calibration and the varied parameters; then, by kind, the results."""
+        factor = self.study.squirt_factor
+        calibrated = [f"calibrated: all squirt is {factor:.2f} times the computed one"] if factor != 1.0 else []
+        return [*calibrated, tabulate_parameters(self.study)]
 
     def gaps(self) -> list[str]:
         """Which responses designs lack, with the first reason."""

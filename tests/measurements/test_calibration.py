@@ -145,6 +145,24 @@ def test_commands_reject_what_a_calibration_cannot_do(file: Path, tmp_path: Path
 
 
 @pytest.mark.heavy
+def test_studies_have_the_calibrated_squirt_of_reports(file: Path, tmp_path: Path) -> None:
+    """One store holds the designs of both, which are not mixed; the base is the report's cue."""
+    study, table = tmp_path / "bore.toml", tmp_path / "bore.csv"
+    cf.save(NEW, tmp_path / "new.toml")
+    vary = '[[vary]]\npath = "bore depth"\nfactor = true\nvalues = [0.8, 1.0]\n'
+    study.write_text(f'scene = "new.toml"\nresponses = ["squirt", "pivot_length(0.3)"]\n{vary}', "utf-8")
+    _, plain = stdout_of("study", study, "-o", table), np.loadtxt(table, delimiter=",", skiprows=1, usecols=(2, 3))
+    out = stdout_of("study", study, "--calibration", file, "-o", table)
+    own = np.loadtxt(table, delimiter=",", skiprows=1, usecols=(2, 3))
+    verdict = cf.verdict(NEW, calibration=cf.load_calibration(file))
+    assert verdict.calibrated is not None
+    assert own[1] == pytest.approx([verdict.squirt, pivot_length(NEW, verdict.squirt)], rel=1e-9)
+    assert own[:, 0] / plain[:, 0] == pytest.approx(verdict.calibrated.factor, rel=1e-9)
+    assert verdict.calibrated.origin() in re.sub(r"\s+", " ", out)
+    assert f"calibrated: all squirt is {verdict.calibrated.factor:.2f} times the computed one" in out
+
+
+@pytest.mark.heavy
 def test_estimate_writes_a_calibration_that_every_command_takes(tmp_path: Path) -> None:
     """Predator Z: pivot length measured in 2007; 12 % for a bored shaft instead of 20 %."""
     path, page = tmp_path / "z.toml", tmp_path / "page.html"
