@@ -14,6 +14,7 @@ from rich.markdown import Markdown
 from cuefem.cli.output import command, json_option, page_option, print_json
 from cuefem.files import InputError
 from cuefem.handbook import CHAPTERS, chapters, sections_with
+from cuefem.handbook.formulas import with_plain_formulas
 from cuefem.handbook.page import page
 from cuefem.show.analysis import write
 
@@ -47,7 +48,7 @@ def guide(subject: str | None, output: Path | None, in_terminal: bool, as_json: 
     elif output is not None:
         click.echo(f"wrote {output}")
     elif in_terminal:
-        _print(list(record.values()))
+        _print([with_plain_formulas(text) for text in record.values()])
     else:
         _open(subject)
 

@@ -7,6 +7,8 @@ import re
 from importlib.resources import files
 from typing import NamedTuple
 
+from cuefem.handbook.formulas import with_plain_formulas
+
 __all__ = ["CHAPTERS", "LINES", "MAKERS", "Chapter", "FoundSection", "chapters", "effect_lines", "sections_with"]
 
 # The chapters' files in the order of reading, first those for makers (tests/helpers/maker_pictures.py draws for them).
@@ -75,7 +77,7 @@ def sections_with(word: str) -> tuple[FoundSection, ...]:
     pattern = re.compile(rf"\b{re.escape(word)}", re.IGNORECASE)
     sections = []
     for chapter in chapters():
-        for text in re.split(r"\n(?=## )", chapter.text):
+        for text in re.split(r"\n(?=## )", with_plain_formulas(chapter.text)):
             title = text.partition("\n")[0].lstrip("# ")
             if matches := len(pattern.findall(text)):
                 sections.append(FoundSection(chapter.name, title, matches))

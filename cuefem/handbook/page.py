@@ -16,9 +16,10 @@ from markdown_it.renderer import RendererHTML
 from markdown_it.token import Token
 
 from cuefem.handbook import CHAPTERS, MAKERS, Chapter, chapters
+from cuefem.handbook.formulas import as_mathml
 from cuefem.results.quantities import unbroken
 
-SUBSCRIPT = re.compile(r"\b([A-Za-zα-ωΩ]{1,2})_([A-Za-z∥⊥0]{1,4})(?![A-Za-z0-9_])")
+SUBSCRIPT = re.compile(r"\b([A-Za-zα-ωΩ]{1,2})_([A-Za-z∥⊥0-9]{1,4})(?![A-Za-z0-9_])")
 PAGE = Template("""<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -78,7 +79,7 @@ def page(opens_with: str = CHAPTERS[0]) -> str:
         bodies.append(f"<section{first}>\n{html}{onward}</section>\n")
     drawings, own, script = (
         files(__package__).joinpath(name).read_text(encoding="utf-8")
-        for name in ("drawings.css", "page.css", "search.js")
+        for name in ("content.css", "page.css", "search.js")
     )
     style = drawings + own
     makers, engineers = "".join(entries[: len(MAKERS)]), "".join(entries[len(MAKERS) :])
@@ -113,8 +114,10 @@ def _names() -> dict[str, str]:
 
 
 def _fence(renderer: RendererHTML, tokens: Sequence[Token], index: int, *more: Any) -> str:
-    """A block of code; one of the kind "drawing" names a drawing beside this file, which replaces it."""
+    """A block of code; one of the kind "math" is a formula, "drawing" names a drawing beside this file."""
     token = tokens[index]
+    if token.info == "math":
+        return f'<div class="formula" tabindex="0">{as_mathml(token.content)}</div>\n'
     if token.info != "drawing":
         return RendererHTML.fence(renderer, tokens, index, *more).replace("<pre>", '<pre tabindex="0">', 1)
     drawn = files(__package__).joinpath(f"{token.content.strip()}.svg").read_text(encoding="utf-8")

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from cuefem.effects.effect import effect_kinds
-from cuefem.handbook import CHAPTERS, LINES, chapters, effect_lines
+from cuefem.handbook import CHAPTERS, LINES, chapters, effect_lines, sections_with
 from cuefem.handbook.page import page
 from tests.helpers.command_line import stdout_of
 from tests.helpers.page_reader import PageReader
@@ -70,6 +70,16 @@ def test_handbook_page_is_self_contained_with_valid_links() -> None:
     assert {link[1:] for link in links if link.startswith("#")} | set(CHAPTERS) <= set(anchors)
     assert [title for title in TITLES if f">{title}</h1>" not in text] == []
     assert 'handbook: <a href="#beam">The beam</a>, <a href="#strike">The strike</a>, <a href="#effects">' in text
+
+
+def test_formulas_are_text_in_terminal_and_mathml_on_page() -> None:
+    formulas = sum(chapter.text.count("```math") for chapter in chapters())
+    printed = stdout_of("guide", "--print")
+    assert formulas > 30
+    assert "\\" not in printed + re.sub(r"<script>.*</script>", "", whole(), flags=re.DOTALL)
+    assert "ν_e/(1 + ν_e) = 2 νG / E" in printed
+    assert whole().count("<math ") == formulas
+    assert sections_with("qquad") == ()
 
 
 @pytest.mark.parametrize("has_browser", [True, False])

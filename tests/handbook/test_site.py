@@ -1,11 +1,13 @@
 """The documentation site: every public name is on it, and a gap or a broken link fails the build (bad input)."""
 
+import json
 import re
 import subprocess
 import sys
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
+from xml.etree.ElementTree import fromstring
 
 import pytest
 
@@ -13,18 +15,38 @@ import cuefem
 
 ROOT = Path(__file__).parents[2]
 CONFIGURATION = ROOT / ".ci" / "conf.py"
+FORMULAS = ROOT / ".ci" / "formulas.py"
 pytest.importorskip("sphinx", reason="the extra [docs] is not installed")
 pytest.importorskip("latex2mathml", reason="the extra [docs] is not installed")
 
 
-@pytest.fixture(scope="module")
-def site() -> ModuleType:
-    spec = spec_from_file_location("site_configuration", CONFIGURATION)
+def module_of(path: Path) -> ModuleType:
+    spec = spec_from_file_location(path.stem, path)
     assert spec is not None
     assert spec.loader is not None
     module = module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
+
+
+@pytest.fixture(scope="module")
+def site() -> ModuleType:
+    return module_of(CONFIGURATION)
+
+
+def test_stored_formulas_are_those_of_chapters() -> None:
+    formulas = module_of(FORMULAS)
+    stored = json.loads(formulas.STORED.read_text(encoding="utf-8"))
+    made = formulas.stored_formulas()
+    assert {key: formula["text"] for key, formula in stored.items()} == {
+        key: formula["text"] for key, formula in made.items()
+    }, "run .venv/bin/python .ci/formulas.py"
+    assert [key for key in made if letters(stored[key]) != letters(made[key])] == []
+
+
+def letters(formula: dict[str, str]) -> str:
+    """What a formula's MathML shows: its attributes differ between versions of latex2mathml."""
+    return "".join(fromstring(formula["mathml"]).itertext())
 
 
 @pytest.mark.heavy
