@@ -24,7 +24,7 @@ from cuefem.cli.scene_command import (
     force_option,
 )
 from cuefem.cli.scene_options import CUE_KEYS, impact_options, offset_option, option, typed_name
-from cuefem.files import InputError, load_stroke, write_atomically
+from cuefem.files import InputError, load, write_atomically
 from cuefem.files.cue_names import cue_name, named_path
 from cuefem.files.defaults_report import STROKE, Assumption, given_keys
 from cuefem.files.lathe_profile import names_units
@@ -273,7 +273,7 @@ def _own_values(request: Request) -> set[str]:
     own = {"length_unit", "front"} if ending == ".toml" else set[str]()
     if ending == ".csv" and unit is not None and names_units(file):
         own, unit = {"length_unit"}, None
-    opened = load_stroke(file, length_unit=None if "length_unit" in own else unit)
+    opened = load(file, length_unit=None if "length_unit" in own else unit)
     own |= given_keys(file, opened, unit)
     has_no_shaft = False
     if isinstance(opened, Scene):

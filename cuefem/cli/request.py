@@ -23,7 +23,7 @@ from cuefem.cli.scene_options import (
 )
 from cuefem.cue import Cue
 from cuefem.effects.force_law import IndentationOutOfRange
-from cuefem.files import InputError, load, load_stroke
+from cuefem.files import InputError, load
 from cuefem.files.defaults_report import (
     Assumption,
     assumptions,
@@ -103,7 +103,7 @@ class Request:
     @cached_property
     def opened(self) -> Any:
         """The cue or the scene of the file, with the additions to its drawing."""
-        return self._load(load_stroke)
+        return self._load(load)
 
     @cached_property
     def scene(self) -> Scene:

@@ -13,7 +13,6 @@ from typing import Any
 import click
 
 from cuefem.cli.output import shared_option
-from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue, LumpedCue
 from cuefem.files import InputError, with_body_mass
 from cuefem.files.cue_names import cue_name, named_path
@@ -118,17 +117,17 @@ def offset_value(file: Path, text: str, radius: float) -> float:
     return offset
 
 
-def with_body_option(thing: Cue | Scene | SideStrike, file: Path, text: str) -> Any:
+def with_body_option(thing: Cue | Scene, file: Path, text: str) -> Any:
     """The cue or scene of a file with the mass behind its segments by --body-mass."""
     if not isinstance(thing, Cue) and isinstance(thing.cue, LumpedCue):
         raise InputError(file, "--body-mass", NO_SHAFT)
     return with_body_mass(thing, file, "--body-mass", text)
 
 
-def with_shaft_mass_option(thing: Cue | Scene | SideStrike, file: Path, text: str) -> Any:
+def with_shaft_mass_option(thing: Cue | Scene, file: Path, text: str) -> Any:
     """The cue or scene of a file with the density of its wood by --shaft-mass."""
     mass = option_value(file, "--shaft-mass", text, Quantity("kg", "(0, 100]"))
-    if isinstance(thing, SideStrike) or (isinstance(thing, Scene) and thing.lumped):
+    if isinstance(thing, Scene) and thing.lumped:
         raise InputError(file, "--shaft-mass", "does not apply: FILE has no shaft")
     with as_input_error(file, "--shaft-mass"):
         if not isinstance(thing, Cue):

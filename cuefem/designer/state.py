@@ -12,7 +12,7 @@ from typing import NamedTuple
 from cuefem.contact.kernel import KernelError
 from cuefem.cue import Cue
 from cuefem.designer.controls import alike, value
-from cuefem.files import load_stroke
+from cuefem.files import load
 from cuefem.files.cue_names import CUES
 from cuefem.files.defaults_report import Assumption, assumptions, offered_assumptions
 from cuefem.files.parts_catalogue import data_folder
@@ -155,7 +155,7 @@ def read_design(name: str, content: bytes, game: GameName = DEFAULT_GAME) -> Des
         path = Path(place) / name
         try:
             path.write_bytes(_with_reference_cue(name, content, Path(place)))
-            thing = load_stroke(path)
+            thing = load(path)
             scene = usual_scene(thing, game) if isinstance(thing, Cue) else thing
             return design_of(path.stem, scene, assumptions(path, scene, {}))
         except (*FAILURES, RecursionError) as error:

@@ -16,7 +16,7 @@ from typing import Any
 from cuefem.designs import Levels, Normal, Response, Sample, Span, Study, Vary
 from cuefem.designs.optimum import Limit, Problem
 from cuefem.designs.scatter import Scatter
-from cuefem.files import load_stroke, replaced_segments
+from cuefem.files import load, replaced_segments
 from cuefem.files.defaults_report import Assumption, assumptions, offered_assumptions
 from cuefem.files.errors import InputError, as_input_error, errors_name_key, file_state, quote
 from cuefem.files.lathe_profile import SHAPE_EXTENSIONS
@@ -214,7 +214,7 @@ def _study_tables(path: Path) -> dict[str, Any]:
 def _base(tables: StudyTable, path: Path) -> Scene:
     game = _game(tables, path)
     with errors_name_key(path, "scene"), _errors_name_option(tables, path):
-        base = load_stroke(path.parent / tables.scene, **tables.drawing_options)
+        base = load(path.parent / tables.scene, **tables.drawing_options)
     if not isinstance(base, Scene):
         with as_input_error(path, "scene" if tables.game is None else "game"):
             scene = Scene(base, stroke=Stroke(offset=OFFSET)) if game == KIM else usual_scene(base, game)

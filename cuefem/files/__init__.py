@@ -11,7 +11,6 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue, LumpedCue
 from cuefem.files.cue_names import named_path
 from cuefem.files.errors import InputError, as_input_error, check_path, os_error_text, quote
@@ -34,7 +33,6 @@ __all__ = [
     "check_writable",
     "load",
     "load_accuracy",
-    "load_stroke",
     "save",
     "save_page",
     "today",
@@ -54,7 +52,7 @@ def load(
     ferrule: str | None = None,
     bore: str | None = None,
     body_mass: str | float | None = None,
-) -> Cue | Scene | SideStrike:
+) -> Cue | Scene:
     """Load a cue or a scene from a file.
 
     Parameters
@@ -80,8 +78,8 @@ def load(
 
     Returns
     -------
-    Cue, Scene or SideStrike
-        A .toml file with [[segments]] is a cue, one with [cue] a scene, one with [cue] and [striker] a side strike.
+    Cue or Scene
+        A .toml file with [[segments]] is a cue, one with [cue] a scene.
 
     Raises
     ------
@@ -128,7 +126,7 @@ def load(
 
 
 def with_body_mass(thing: Any, path: Path, key: str, mass: str | float) -> Any:
-    """The cue, scene or side strike with another mass behind the drawing: a text with its unit, or a number in kg."""
+    """The cue or scene with another mass behind the drawing: a text with its unit, or a number in kg."""
     with as_input_error(path, key):
         value = Quantity("kg", "[0, inf)").read(mass if isinstance(mass, str) else f"{mass!r} kg")
     cue: tuple[str, ...] = () if isinstance(thing, Cue) else ("cue",)
@@ -159,34 +157,24 @@ def _load_cue(path: Path, material: str | None = None, length_unit: str | None =
     raise InputError(path, "", f"must end in .toml, .csv, .stl, .ply or .obj; got {path.suffix!r}{hint}")
 
 
-def load_stroke(path: Path, **options: str | None) -> Cue | Scene:
-    """Load a cue or the scene of a stroke, with the options of `load`; InputError for a side strike."""
-    stroke = load(path, **options)
-    if isinstance(stroke, SideStrike):
-        raise InputError(
-            path, "striker", "must be absent: commands compute strokes; for a side strike use `cuefem.side_strike`"
-        )
-    return stroke
-
-
 def replaced_segments(path: Path, scene: Scene, **options: Any) -> int:
     """Number of drawn segments, the first of the file, that a `LeatherTip` replaces in the scene.
 
     options: of `load`, with which the scene was loaded.
     """
-    loaded = load_stroke(path, **options)
+    loaded = load(path, **options)
     drawn = cue_as_drawn(path, _load_cue) if isinstance(loaded, Scene) else loaded
     if isinstance(drawn, LumpedCue) or scene.shaft.leather_height:
         return 0
     return len(drawn.segments) - len(without_leather(drawn).segments)
 
 
-def save(obj: Cue | Scene | SideStrike, path: str | os.PathLike[str]) -> None:
+def save(obj: Cue | Scene, path: str | os.PathLike[str]) -> None:
     """Save a cue or a scene as TOML for `load`, numbers to 12 digits, or a cue as a line mesh.
 
     Parameters
     ----------
-    obj : Cue, Scene or SideStrike
+    obj : Cue or Scene
         The object to save.
     path : str or path
         A .toml file; for a cue also a line mesh (.vtu) for other programs: one cell per segment, dimensions and
@@ -197,7 +185,7 @@ def save(obj: Cue | Scene | SideStrike, path: str | os.PathLike[str]) -> None:
     InputError
         If the file cannot be written.
     TypeError
-        If ``obj`` is not a cue, scene or side strike.
+        If ``obj`` is neither a cue nor a scene.
     ValueError
         If the scene contains arrays.
 
@@ -205,8 +193,8 @@ def save(obj: Cue | Scene | SideStrike, path: str | os.PathLike[str]) -> None:
     --------
     See `load`.
     """
-    if not isinstance(obj, Cue | Scene | SideStrike):
-        raise TypeError(f"save writes a Cue, a Scene or a SideStrike; got {quote(obj)}")
+    if not isinstance(obj, Cue | Scene):
+        raise TypeError(f"save writes a Cue or a Scene; got {quote(obj)}")
     path = Path(path)
     if path.suffix.lower() == ".toml":
         from cuefem.files.toml_writer import toml_text

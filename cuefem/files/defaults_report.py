@@ -10,7 +10,7 @@ from typing import Any
 
 from cuefem.cue import Cue, Material
 from cuefem.cue.materials import MATERIALS, material, table_name
-from cuefem.files import load_stroke
+from cuefem.files import load
 from cuefem.files.cue_names import CUES, cue_name, named_path
 from cuefem.files.lathe_profile import (
     DEFAULT_MATERIAL,
@@ -88,7 +88,7 @@ def notes_on_options(path: Path, options: Mapping[str, Any]) -> list[Assumption]
     if not added and wood is None:
         return []
     unit = options.get("length_unit")
-    opened = load_stroke(path, length_unit=unit)
+    opened = load(path, length_unit=unit)
     own = given_keys(path, opened, unit)
     notes = [Assumption("", f"the {key} in the file is replaced: {options[key]}") for key in added if key in own]
     if "shaft_mass" in options:

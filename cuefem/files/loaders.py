@@ -7,7 +7,6 @@ from copy import copy
 from pathlib import Path
 from typing import TypedDict, Unpack
 
-from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue
 from cuefem.files import load
 from cuefem.files.cue_names import named_path
@@ -31,7 +30,7 @@ class LoadOptions(TypedDict, total=False):
 
 
 def load_cue(path: str | os.PathLike[str], **options: Unpack[LoadOptions]) -> Cue:
-    """Load the cue of a file: that of a drawing, of a scene or of a side strike.
+    """Load the cue of a file: that of a drawing or of a scene.
 
     Parameters
     ----------
@@ -85,8 +84,7 @@ def load_scene(
     Raises
     ------
     InputError
-        As `load`; also for an unknown game, a game beside a scene, which has its own ball, tip and stroke, and a side
-        strike.
+        As `load`; also for an unknown game, and a game beside a scene, which has its own ball, tip and stroke.
 
     Examples
     --------
@@ -104,8 +102,6 @@ def load_scene(
     if isinstance(loaded, Cue):
         given = {**options} if game is None else {**options, "game": game}
         return _with_assumptions(usual_scene(loaded, game or DEFAULT_GAME), path, given)
-    if isinstance(loaded, SideStrike):
-        raise InputError(Path(path), "striker", "must be absent: load loads a side strike, for `cuefem.side_strike`")
     if game is not None:
         problem = "does not apply: the file is a scene, which has its own ball, tip and stroke"
         raise InputError(Path(path), "game", f"{problem}; got {quote(game)}")

@@ -1,6 +1,6 @@
 """Reader of cues and scenes as TOML: `[[segments]]` makes a cue, `[cue]` (a table or a path) a scene.
 
-Ball, tip, stroke and effects default to those of the scene's `game`, by default pool. `[striker]` makes a side strike.
+Ball, tip, stroke and effects default to those of the scene's `game`, by default pool.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue, LumpedCue
 from cuefem.effects.effect import Effect, effect_kinds
 from cuefem.files.csv_reader import read_text
@@ -92,15 +91,13 @@ def _unquoted(text: str, error: str) -> str:
     return "; put a value with a unit in quotes" if re.search(r"=\s*[-+.\d]+\s*[^\W\d_]", line) else ""
 
 
-def load_toml(path: Path, cue_file: Callable[[Path], Cue]) -> Cue | Scene | SideStrike:
+def load_toml(path: Path, cue_file: Callable[[Path], Cue]) -> Cue | Scene:
     """Load the cue or scene of a TOML file; ``cue_file`` loads the cue file of a scene."""
     tables = read_tables(path)
     if "scene" in tables and "cue" not in tables:
         raise InputError(path, "scene", "must be a cue or a scene; got a study: `cuefem study`, cuefem.study(file)")
     if {"segments", "shaft"} & {*tables} and "cue" not in tables:
         return _cue(tables, path, "")
-    if "striker" in tables:
-        return _side_strike(tables, path, cue_file)
     return scene_from_tables(tables, path, cue_file)
 
 
@@ -229,17 +226,6 @@ def _parts(tables: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) 
     if isinstance(effects, list):
         parts["effects"] = [_effect(e, path, key_path("effects", i)) for i, e in enumerate(effects)]
     return parts
-
-
-def _side_strike(tables: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> SideStrike:
-    """A side strike from tables with [striker]."""
-    _check_keys(tables, keys_of(SideStrike), path)
-    if "cue" not in tables:
-        raise InputError(path, "cue", "must be given: a table or the path of a cue file; got nothing")
-    parts = _parts(tables, path, cue_file)
-    if isinstance(parts["cue"], LumpedCue):
-        raise InputError(path, "cue", "must be a cue of segments for a side strike; got a lumped cue")
-    return build(SideStrike, parts, file=str(path), key="")
 
 
 def _check_effects(scene: Scene, path: Path) -> None:

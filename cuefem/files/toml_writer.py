@@ -7,13 +7,12 @@ from typing import Any
 
 import tomlkit
 
-from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue
 from cuefem.files.schema import table
 from cuefem.scene import Scene
 
 
-def toml_text(thing: Cue | Scene | SideStrike, **tables: dict[str, Any]) -> str:
+def toml_text(thing: Cue | Scene, **tables: dict[str, Any]) -> str:
     """A cue or scene as TOML text that `load_toml` converts back exactly, and other tables behind it."""
     document = tomlkit.document()
     if isinstance(thing, Scene) and not thing.effects:  # without the key they would be those of pool

@@ -1,10 +1,9 @@
-"""The side strike: rigid limit, closed forms of Hertz and infinite beams, energy, files, bad input (verification)."""
+"""The side strike: rigid limit, closed forms of Hertz and infinite beams, energy (verification)."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,17 +13,12 @@ from scipy.special import wofz
 
 import cuefem as cf
 from cuefem import PointMass, Resolution, SideStrike, Striker, Support, side_strike
-from tests.helpers.cues import FAMILY, MAPLE, cone, kim, rod, scaled
-from tests.helpers.invalid_input import assert_rejects
+from tests.helpers.cues import FAMILY, cone, kim, rod, scaled
 
 BALL = Striker(0.005, 0.8, contact_time=1e-3)
 SOFT = Striker(0.005, 0.8, modulus=1e8, radius=0.02)
 FEW = Resolution(2, 10, 8)
 HAND, DAMPED, JOINT = Support(0.5, 1e4, dashpot=3.0), cf.StructuralDamping(0.02), cf.Joint(0.3, 1e-3)
-PLAIN = cf.Cue((cf.Segment(0.7, 0.012, 0.021, MAPLE),), body_mass=0.42)
-SCENE = SideStrike(
-    PLAIN, Striker(0.02, 0.8, contact_time=1e-3), 0.05, 2.0, (PointMass(position=0.1, mass=2e-3), Support(0.6, 5e3))
-)
 
 
 def stiffened(cue: cf.Cue) -> cf.Cue:
@@ -161,11 +155,3 @@ def test_side_strike_second_hit_is_computed(law: dict[str, float]) -> None:
     cut = side_strike(replace(scene, effects=(cf.SecondHit(window),)), FEW)
     assert sum(phase.state == "separated" for phase in cut.phases) == 1
     assert cut.duration > once.duration + window
-
-
-@pytest.mark.parametrize("striker", [BALL, SOFT, Striker(0.1, 0.5, stiffness=3e5)])
-def test_side_strike_file_round_trip_is_equal(tmp_path: Path, striker: Striker) -> None:
-    scene = replace(SCENE, striker=striker)
-    cf.save(scene, tmp_path / "side.toml")
-    assert cf.load(tmp_path / "side.toml") == scene
-    assert_rejects("striker: must be absent: ", "strike", tmp_path / "side.toml")

@@ -191,7 +191,6 @@ def test_load_missing_file_or_foreign_option_is_rejected(tmp_path: Path, request
 
 
 LUMPED = cf.Scene(cf.LumpedCue(0.54, 0.01))
-SIDE = cf.SideStrike(KIM, cf.Striker(mass=0.02, restitution=0.8, contact_time=1e-3))
 LOADERS: dict[str, Callable[[], object]] = {
     "stroke of a study": lambda: cf.load_scene("studies/sweeps/bore.toml"),
     "stroke of a measured folder": lambda: cf.load_scene("studies/measured/stinger"),
@@ -200,7 +199,6 @@ LOADERS: dict[str, Callable[[], object]] = {
     "unknown game": lambda: cf.load_scene("plain maple", game="polo"),
     "unknown game of a cue": lambda: cf.usual_scene(cf.load_cue("plain maple"), "polo"),
     "cue of a lumped cue": lambda: cf.load_cue("lumped.toml"),
-    "stroke of a side strike": lambda: cf.load_scene("side.toml"),
 }
 
 
@@ -209,6 +207,5 @@ def test_loader_of_another_kind_of_file_is_rejected(
 ) -> None:
     (tmp_path / "studies").symlink_to(Path(__file__).parents[2] / "studies")
     cf.save(LUMPED, tmp_path / "lumped.toml")
-    cf.save(SIDE, tmp_path / "side.toml")
     monkeypatch.chdir(tmp_path)
     assert_refused("loaders", messages_of(LOADERS), request)
