@@ -3,7 +3,8 @@
 In the tangent-normal frame (t, n) the contact velocity changes by dv = B dp. Over the normal impulse p it has at most
 three straight pieces, so every event is the root of a line or a parabola:
 
-- slip: dp_t = mu dp (the tip slides towards -t at first touch, so friction on the ball points to +t);
+- slip: dp_t = mu dp (the tip slides towards -t at first touch, so friction on the ball points to +t), for mu > 1 as
+  dp = dp_t/mu, which holds for infinite friction, too;
 - then, from p_s on, stick: dp_t = mu_c dp, mu_c = -B_tn/B_tt, where |mu_c| <= mu; or reversed slip: dp_t = -mu dp;
 - compression lasts until v_n = 0; at separation the returned normal work is e^2 times the work of compression.
 
@@ -15,6 +16,7 @@ so that squirt has no round-off error at small end masses.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,9 +26,11 @@ from cuefem.cue import Array, LumpedCue
 from cuefem.quantity.fields import sine_cosine
 from cuefem.scene import Outcome, Outcomes, Scene
 
-# Replaces infinite friction: slip then ends after 1e-100 of the normal impulse, and the square is still finite.
-INFINITE_FRICTION = 1e100
-
+INPUTS = (
+    *("mass", "end_mass", "coupling"),
+    *("ball_mass", "inertia", "radius"),
+    *("restitution", "friction", "speed", "offset"),
+)
 REGIMES = np.array(["stick", "late stick", "miscue", "slip reversal"])
 SLIPPING = 2  # from this index on, the tip slips at separation
 
@@ -70,8 +74,7 @@ class _Impact(NamedTuple):
     """An impact in one regime, at unit cue speed.
 
     compression, separation: normal impulse until then, N s. tangential: impulse, N s. v_t, v_n: velocity at separation,
-    m/s. work, returned: normal work of compression and of restitution on ball and cue, -work and its part e^2, J.
-    friction_loss: J.
+    m/s. work: normal work of compression on ball and cue, J. friction_loss: J.
     """
 
     compression: Array
@@ -80,26 +83,27 @@ class _Impact(NamedTuple):
     v_t: Array
     v_n: Array
     work: Array
-    returned: Array
     friction_loss: Array
 
 
 class _Contact(NamedTuple):
-    """A contact that starts with v_t = -s <= 0 and v_n = -c < 0, its rates over the normal impulse, and its first slip.
+    """A contact that starts with v_t = -s <= 0 and v_n = -c < 0, its rates over the impulse, and its first slip.
 
-    mu_c: dp_t/dp during stick. slip_t, slip_n: dv_t/dp and dv_n/dp during slip; slip_n is negative in a jam. deficit:
-    dp_t/dp that friction lacks to stick once slip has ended. after_t, after_n: dp_t/dp and dv_n/dp then. p_s, t_s, v_s:
-    normal and tangential impulse, N s, and v_n, m/s, at the end of slip; infinite if it does not end.
+    Slip adds (slip_t, slip_n) dq to the impulse (t, n): (mu, 1) dp up to mu = 1, (1, 1/mu) dp_t above. rate_t, rate_n:
+    dv_t/dq and dv_n/dq during slip; rate_n is negative in a jam. mu_c: dp_t/dp during stick. deficit: dp_t/dp that
+    friction lacks to stick once slip has ended. after_t, after_n: dp_t/dp and dv_n/dp then. p_s, t_s, v_s: normal and
+    tangential impulse, N s, and v_n, m/s, at the end of slip; infinite if it does not end.
     """
 
     B: InverseMass
     v_t: Array
     v_n: Array
-    mu: Array
     e: Array
-    mu_c: Array
     slip_t: Array
     slip_n: Array
+    rate_t: Array
+    rate_n: Array
+    mu_c: Array
     deficit: Array
     after_t: Array
     after_n: Array
@@ -110,25 +114,27 @@ class _Contact(NamedTuple):
     @classmethod
     def of(cls, B: InverseMass, v_t: Array, v_n: Array, *, mu: Array, e: Array) -> _Contact:
         mu_c, stick_n = -B.tn / B.tt, B.det / B.tt
-        slip_t, slip_n = B.tt * (mu - mu_c), stick_n + B.tn * (mu - mu_c)
-        deficit = np.maximum(-mu_c - mu, 0)
-        p_s, t_s, v_s = -v_t / slip_t, mu * -v_t / slip_t, (B.cross_t - mu * B.cross_n) / slip_t
+        slip_t, slip_n = np.minimum(mu, 1.0), 1 / np.maximum(mu, 1.0)
+        excess = slip_t - mu_c * slip_n
+        rate_t, rate_n = B.tt * excess, stick_n * slip_n + B.tn * excess
+        q_s = -v_t / rate_t
+        p_s, t_s, v_s = slip_n * q_s, slip_t * q_s, (slip_n * B.cross_t - slip_t * B.cross_n) / rate_t
         always_slips, sticks_at_touch = mu <= mu_c, v_t == 0
         for end in (p_s, t_s, v_s):
             end[always_slips] = np.inf
         p_s[sticks_at_touch] = 0.0
         t_s[sticks_at_touch] = 0.0
         v_s[sticks_at_touch] = v_n[sticks_at_touch]
+        deficit = np.maximum(-mu_c - mu, 0)
         after_t, after_n = mu_c + deficit, stick_n + B.tn * deficit
-        return cls(B, v_t, v_n, mu, e, mu_c, slip_t, slip_n, deficit, after_t, after_n, p_s, t_s, v_s)
+        return cls(B, v_t, v_n, e, slip_t, slip_n, rate_t, rate_n, mu_c, deficit, after_t, after_n, p_s, t_s, v_s)
 
     def from_slip_end(self, *, compression: Array, separation: Array, v_n: Array, work: Array) -> _Impact:
         """An impact that slips until p_s, and then sticks or slips back; friction dissipates -v_t dp_t."""
         p = separation - self.p_s
         v_t = self.B.tt * self.deficit * p
-        loss = (v_t * self.mu * p - self.v_t * self.t_s) / 2
-        tangential = self.t_s + self.after_t * p
-        return _Impact(compression, separation, tangential, v_t, v_n, work, self.e**2 * -work, loss)
+        loss = (v_t * self.slip_t * p - self.v_t * self.t_s) / 2
+        return _Impact(compression, separation, self.t_s + self.after_t * p, v_t, v_n, work, loss)
 
     @property
     def work_after_slip(self) -> Array:
@@ -136,10 +142,15 @@ class _Contact(NamedTuple):
         return (self.v_n + self.v_s) / 2 * self.p_s - self.v_s**2 / (2 * self.after_n)
 
     @property
-    def compression_in_slip(self) -> tuple[Array, Array]:
-        """Normal impulse, N s, and work, J, until greatest compression before the end of slip."""
-        p_c = -self.v_n / self.slip_n
-        return p_c, self.v_n * p_c / 2
+    def compression_in_slip(self) -> Array:
+        """The impulse q, N s, until greatest compression before the end of slip; its work is slip_n v_n q/2."""
+        return -self.v_n / self.rate_n
+
+    @property
+    def work_left_after_slip(self) -> Array:
+        """Work over slip_n, J, that is returned after the end of slip in restitution; negative if slip goes on."""
+        work = self.v_n * self.compression_in_slip / 2
+        return self.e**2 * -work - self.v_s**2 / (2 * self.rate_n)
 
 
 def _stick(c: _Contact) -> _Impact:
@@ -160,182 +171,94 @@ def _reversal(c: _Contact) -> _Impact:
 
 def _late(c: _Contact) -> _Impact:
     """Slip ends in restitution, and the tip sticks or slips back."""
-    p_c, work = c.compression_in_slip
-    later = np.maximum(c.e**2 * -work - c.v_s**2 / (2 * c.slip_n), 0)  # work returned after slip
+    p_c, later = c.slip_n * c.compression_in_slip, c.slip_n * np.maximum(c.work_left_after_slip, 0)
     v_n = np.sqrt(c.v_s**2 + 2 * c.after_n * later)
-    return c.from_slip_end(compression=p_c, separation=c.p_s + 2 * later / (c.v_s + v_n), v_n=v_n, work=work)
+    p_f = c.p_s + 2 * later / (c.v_s + v_n)
+    return c.from_slip_end(compression=p_c, separation=p_f, v_n=v_n, work=c.v_n * p_c / 2)
 
 
 def _miscue(c: _Contact) -> _Impact:
     """The tip slips until separation."""
-    p_c, work = c.compression_in_slip
-    p_f = p_c * (1 + c.e)
-    v_t = c.v_t + c.slip_t * p_f
-    loss = -(c.v_t + v_t) / 2 * c.mu * p_f
-    return _Impact(p_c, p_f, c.mu * p_f, v_t, -c.e * c.v_n, work, c.e**2 * -work, loss)
+    q_c = c.compression_in_slip
+    q_f = q_c * (1 + c.e)
+    v_t, t_f = c.v_t + c.rate_t * q_f, c.slip_t * q_f
+    loss = -(c.v_t + v_t) / 2 * t_f
+    return _Impact(c.slip_n * q_c, c.slip_n * q_f, t_f, v_t, -c.e * c.v_n, c.slip_n * c.v_n * q_c / 2, loss)
 
 
-class _Solution(NamedTuple):
-    """An impact, its normal impulse until slip ends, N s, the index of its regime, and whether it jams."""
-
-    impact: _Impact
-    slip_end: Array
-    regime: NDArray[np.intp]
-    jam: NDArray[np.bool_]
-
-
-def _solve(B: InverseMass, v_t: Array, v_n: Array, *, mu: Array, e: Array) -> _Solution:
-    """Contacts that start with v_t = -s <= 0 and v_n = -c < 0, at unit cue speed."""
-    is_infinite, mu = np.isinf(mu), np.minimum(mu, INFINITE_FRICTION)
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        contact = _Contact.of(B, v_t, v_n, mu=mu, e=e)
-        late, reverses = contact.v_s >= 0, contact.deficit > 0  # greatest compression in slip; slip back after it
-        returned_in_slip, work = contact.v_s**2 / (2 * contact.slip_n), contact.compression_in_slip[1]
-        slips = late & (returned_in_slip >= e**2 * -work)
-        cases = ((slips, _miscue), (late & ~slips, _late), (reverses & ~late, _reversal), (~reverses & ~late, _stick))
-        occurring = [(strokes, regime(contact)) for strokes, regime in cases if strokes.any()]
-    impact = _Impact(*np.select([strokes for strokes, _ in occurring], [np.array(solved) for _, solved in occurring]))
-    return _Solution(
-        impact=impact,
-        slip_end=np.where(slips, np.inf, np.where(is_infinite & ~late, 0.0, contact.p_s)),
-        regime=np.where(slips, 2, np.where(reverses, 3, late.astype(int))),
-        jam=(contact.slip_n < 0) & (contact.p_s > 0) & ~is_infinite,
-    )
+def _impact(contact: _Contact) -> tuple[_Impact, NDArray[np.intp]]:
+    """The impact, and the index of its regime."""
+    late, reverses = contact.v_s >= 0, contact.deficit > 0  # greatest compression in slip; slip back after it
+    slips = late & (contact.work_left_after_slip <= 0)
+    cases = ((slips, _miscue), (late & ~slips, _late), (reverses & ~late, _reversal), (~reverses & ~late, _stick))
+    occurring = [(strokes, np.array(regime(contact))) for strokes, regime in cases if strokes.any()]
+    impact = _Impact(*np.select([strokes for strokes, _ in occurring], [numbers for _, numbers in occurring]))
+    return impact, np.where(slips, SLIPPING, np.where(reverses, 3, late.astype(int)))
 
 
 def impulse_inputs(scene: Scene, cue: LumpedCue) -> dict[str, float]:
     """Arguments of `impact` for a scene, struck with a lumped cue."""
     ball, tip, stroke = scene.ball, scene.tip, scene.stroke
-    return {
-        **{"mass": cue.mass, "end_mass": cue.end_mass, "coupling": cue.coupling},
-        **{"ball_mass": ball.mass, "inertia": ball.inertia, "radius": ball.radius},
-        **{"restitution": tip.restitution, "friction": tip.friction, "speed": stroke.speed, "offset": stroke.offset},
-    }
+    of_cue, of_ball = (cue.mass, cue.end_mass, cue.coupling), (ball.mass, ball.inertia, ball.radius)
+    values = (*of_cue, *of_ball, tip.restitution, tip.friction, stroke.speed, stroke.offset)
+    return dict(zip(INPUTS, values, strict=True))
 
 
-def impact(inputs: Mapping[str, Any]) -> Outcome:
-    """Outcome of a lumped cue's stroke by `impulse_inputs`, every regime.
+def impact(inputs: Mapping[str, float]) -> Outcome:
+    """Outcome of a lumped cue's stroke by `impulse_inputs`, in every regime, as in `impacts`."""
+    one = impacts(inputs)
+    return replace(one[0], phases=tuple(Event(event.name, event.impulse.item()) for event in one.phases))
+
+
+def impacts(inputs: Mapping[str, Any]) -> Outcomes:
+    """Outcomes of strokes of lumped cues by `impulse_inputs`, some of which are arrays, (n,).
 
     phases: the events "slip ends", "greatest compression", "separation" with the normal impulse until then. energy:
     "ball translation", "ball rotation", "cue", "tip loss", "friction loss", which add up to "initial". The coupling of
     a LumpedCue is meant for positive offsets and changes sign with them, so that all is odd in the offset.
     """
-    stroke = _Strokes(*(values[0].item() for values in _strokes(**inputs)))
-    return Outcome(**_columns(stroke))
-
-
-def impacts(inputs: Mapping[str, Any]) -> Outcomes:
-    """Outcomes of many strokes of lumped cues by `impulse_inputs`, some of which are arrays, (n,)."""
-    return Outcomes(**_columns(_strokes(**inputs)))
-
-
-class _Strokes(NamedTuple):
-    """Numbers of strokes, arrays, (n,), or of one stroke: the fields of an `Outcome`, its events and energies."""
-
-    squirt: Any
-    p_t: Any
-    p_n: Any
-    v_t: Any
-    v_n: Any
-    ball_speed: Any
-    spin: Any
-    cue_speed: Any
-    regime: Any
-    jam: Any
-    slip_end: Any
-    compression: Any
-    initial: Any
-    translation: Any
-    rotation: Any
-    cue: Any
-    tip_loss: Any
-    friction_loss: Any
-
-
-def _strokes(
-    *,
-    mass: Any,
-    end_mass: Any,
-    coupling: Any,
-    ball_mass: Any,
-    inertia: Any,
-    radius: Any,
-    restitution: Any,
-    friction: Any,
-    speed: Any,
-    offset: Any,
-) -> _Strokes:
-    cue, ball = (mass, end_mass, coupling), (ball_mass, inertia, radius)
-    values = (*cue, *ball, restitution, friction, speed, offset)
-    rows = np.empty((len(values), max(np.size(value) for value in values)))
-    for row, value in zip(rows, values, strict=True):
-        row[:] = value
+    rows = np.broadcast_arrays(*(np.atleast_1d(np.asarray(inputs[name], float)) for name in INPUTS))
     m, m_e, coupling, M, nu, R, e, mu, U, offset = rows
     side, distance = np.sign(offset), np.abs(offset)
     coupling = np.where(side == 0, 0.0, coupling)
     B = inverse_mass(distance, mass=m, end_mass=m_e, coupling=coupling, ball_mass=M, inertia=nu)
     s, c = sine_cosine(distance)
-    solution = _solve(B, -s, -c, mu=mu, e=e)  # at unit speed
-    struck = solution.impact
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        contact = _Contact.of(B, -s, -c, mu=mu, e=e)  # at unit speed
+        struck, regime = _impact(contact)
     p_t, p_n = U * struck.tangential, U * struck.separation
     p_u = s * p_t + c * p_n
     # lateral velocity of the contact at separation: (1/M + 1/m_e) p_w + p_t c/(nu M) + coupling p_u
     v_w = U * (c * struck.v_t - s * struck.v_n)
     p_w = (v_w - c * p_t / (nu * M) - coupling * p_u) / (1 / M + 1 / m_e)
     # its round-off error is relative to m_e, that of c p_t - s p_n to m; during slip the latter is as accurate as mu
-    p_w = np.where(np.less(m_e, m) & (solution.regime < SLIPPING), p_w, c * p_t - s * p_n)
+    p_w = np.where(np.less(m_e, m) & (regime < SLIPPING), p_w, c * p_t - s * p_n)
     # the cue's tip velocity after the impact in (u, w), and kinetic energies with the inverse of B_cue
     tip_u, tip_w = U - p_u / m - coupling * p_w, -coupling * p_u - p_w / m_e
     axial_factor = 1 - coupling**2 * m * m_e  # m/axial_factor: the inertia of a cue that moves axially as a rigid body
-    cue_energy = (m * tip_u**2 + m_e * tip_w**2 - 2 * coupling * m * m_e * tip_u * tip_w) / (2 * axial_factor)
-    return _Strokes(
+    slip_end = np.where(regime == SLIPPING, np.inf, contact.p_s)
+    return Outcomes(
         squirt=side * np.arctan2(-p_w, p_u) + 0.0,
-        p_t=side * p_t,
-        p_n=p_n,
-        v_t=side * p_t / M,
-        v_n=p_n / M,
+        ball_velocity=np.stack([side * p_t / M, p_n / M], axis=-1),
         ball_speed=np.hypot(p_t, p_n) / M,
         spin=side * p_t / (nu * M * R),
         cue_speed=U - p_u * axial_factor / m,
-        regime=REGIMES[solution.regime],
-        jam=solution.jam,
-        slip_end=U * solution.slip_end,
-        compression=U * struck.compression,
-        initial=m * U**2 / (2 * axial_factor),
-        translation=(p_t**2 + p_n**2) / (2 * M),
-        rotation=p_t**2 / (2 * nu * M),
-        cue=cue_energy,
-        tip_loss=U**2 * (-struck.work - struck.returned),
-        friction_loss=U**2 * struck.friction_loss,
+        impulse=np.stack([side * p_t, p_n], axis=-1),
+        duration=None,
+        regime=REGIMES[regime],
+        jam=(contact.rate_n < 0) & (contact.p_s > 0),
+        phases=(
+            Event("slip ends", U * slip_end),
+            Event("greatest compression", U * struck.compression),
+            Event("separation", p_n),
+        ),
+        energy={
+            "initial": m * U**2 / (2 * axial_factor),
+            "ball translation": (p_t**2 + p_n**2) / (2 * M),
+            "ball rotation": p_t**2 / (2 * nu * M),
+            "cue": (m * tip_u**2 + m_e * tip_w**2 - 2 * coupling * m * m_e * tip_u * tip_w) / (2 * axial_factor),
+            "tip loss": U**2 * (1 - e**2) * -struck.work,
+            "friction loss": U**2 * struck.friction_loss,
+        },
+        unknowns=2,
     )
-
-
-def _columns(strokes: _Strokes) -> dict[str, Any]:
-    """The fields of an `Outcome` or of `Outcomes`."""
-    events = (
-        Event("slip ends", strokes.slip_end),
-        Event("greatest compression", strokes.compression),
-        Event("separation", strokes.p_n),
-    )
-    energy = {
-        "initial": strokes.initial,
-        "ball translation": strokes.translation,
-        "ball rotation": strokes.rotation,
-        "cue": strokes.cue,
-        "tip loss": strokes.tip_loss,
-        "friction loss": strokes.friction_loss,
-    }
-    return {
-        "squirt": strokes.squirt,
-        "ball_velocity": np.stack([strokes.v_t, strokes.v_n], axis=-1),
-        "ball_speed": strokes.ball_speed,
-        "spin": strokes.spin,
-        "cue_speed": strokes.cue_speed,
-        "impulse": np.stack([strokes.p_t, strokes.p_n], axis=-1),
-        "duration": None,
-        "regime": strokes.regime,
-        "jam": strokes.jam,
-        "phases": events,
-        "energy": energy,
-        "unknowns": 2,
-    }
