@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from cuefem.beam.basis import EXTRA_POINTS, Basis, element_basis, gauss_rule, line_basis, tabulated
 from cuefem.beam.blas_threads import one_blas_thread
 from cuefem.beam.mesh import Mesh, Resolution
-from cuefem.beam.meshing import POSITION_TOLERANCE, mesh_cue
+from cuefem.beam.meshing import mesh_cue
 from cuefem.beam.mode_count import segment_sections
 from cuefem.beam.point_terms import BeamEffect, PointTerms
-from cuefem.cue import Array, Cue, Section
+from cuefem.cue import POSITION_TOLERANCE, Array, Cue, Section
 
 if TYPE_CHECKING:
     import scipy.sparse as sp

@@ -10,11 +10,9 @@ from numpy.typing import NDArray
 from cuefem.beam.mesh import Mesh, Resolution
 from cuefem.beam.mode_count import MAX_PHASE, mode_phases, orders_for, segment_sections
 from cuefem.beam.point_terms import BeamEffect
-from cuefem.cue import Array, Cue
+from cuefem.cue import POSITION_TOLERANCE, Array, Cue
 from cuefem.quantity.fields import MAX_DOF
 
-# Positions count as one if they are closer than this fraction of the cue's length.
-POSITION_TOLERANCE = 1e-9
 # An element continues across the end of a segment if the section there differs from the mean of its neighbourhood by
 # less than this, relative. A smooth profile cut into many segments then needs few elements.
 JUMP_TOLERANCE = 2e-3

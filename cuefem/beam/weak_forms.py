@@ -14,9 +14,8 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike
 from skfem import Basis, BilinearForm, ElementLinePp, MeshLine
 
-from cuefem.beam.meshing import POSITION_TOLERANCE
 from cuefem.beam.point_terms import MIN_COMPLIANCE, BeamEffect
-from cuefem.cue import Array, Cue
+from cuefem.cue import POSITION_TOLERANCE, Array, Cue
 
 
 @BilinearForm

@@ -15,6 +15,7 @@ from cuefem.contact.tips import contact_time_of, default_steps, tip_fields, tip_
 from cuefem.cue import Array
 from cuefem.effects.force_law import LeatherLaw, TipLaw
 from cuefem.scene import Scene
+from cuefem.scene.solved_scene import RESOLVED_RESTITUTION
 
 INFINITE_FRICTION = 1e6  # stands for infinite friction: at 1e12 the forces of a last touch drown in round-off
 MAX_CONTACT_TIMES = 200  # longest contact, in head-on contact times; beyond it the strike raises an error
@@ -113,6 +114,7 @@ class ContactModel:
             friction=min(self.friction, INFINITE_FRICTION),
             begins_with_impact=self.never_slips and self.tip.is_rigid and self.phi > 0,
             step=step,
+            unloading_step=step * min(1.0, self.restitution / RESOLVED_RESTITUTION),
             max_time=MAX_CONTACT_TIMES * self.time,
             window=self.window or 0.0,
         )

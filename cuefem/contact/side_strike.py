@@ -20,9 +20,8 @@ from cuefem.contact.outcome import Phase
 from cuefem.contact.ports import FirstTouch, Straight
 from cuefem.contact.step_records import SolvedContact, solve_contact
 from cuefem.contact.tips import STEPS, check_restitution
-from cuefem.cue import Cue
+from cuefem.cue import POSITION_TOLERANCE, Cue
 from cuefem.effects.effect import (
-    POSITION_TOLERANCE,
     CueEffect,
     Effect,
     acting_on_cue,

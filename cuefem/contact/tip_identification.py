@@ -10,6 +10,7 @@ import numpy as np
 
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.strike import strike, strike_modes
+from cuefem.contact.tips import MIN_LEATHER_RESTITUTION
 from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.quantity.fields import CONTACT_TIME, Quantity
 from cuefem.scene import Outcome, Scene, check_scene
@@ -17,9 +18,8 @@ from cuefem.scene.solved_scene import tip_modes_of
 
 TOLERANCE = 1e-8  # of ln E and of the restitution
 MIN_E, MAX_E = 1e6, 2e10  # Pa, range of the search: softer and stiffer than any tip
-MIN_RESTITUTION = 0.1  # the least that a strike accepts of leather
 NO_SEPARATION = 10.0  # s, contact time where the indentation is out of range
-REBOUND = Quantity("", "[0.1, 1]")
+REBOUND = Quantity("", f"[{MIN_LEATHER_RESTITUTION}, 1]")
 
 
 class IdentifiedTip(NamedTuple):
@@ -75,7 +75,7 @@ def identify_tip(scene: Scene, contact_time: float, rebound: float) -> Identifie
     check_scene("identify_tip scene", scene)
     contact_time = CONTACT_TIME.check("identify_tip contact_time", contact_time)
     rebound = REBOUND.check("identify_tip rebound", rebound)
-    low, high = math.log(MIN_E), math.log(MAX_E)
+    bounds = np.array([[math.log(MIN_E), MIN_LEATHER_RESTITUTION], [math.log(MAX_E), 1.0]])
 
     def central_impact(tip: TipModes, log_E: float, e: float) -> tuple[float, float]:
         """Contact time, s, and rebound; `NO_SEPARATION` and 0 if the indentation leaves the range of the law."""
@@ -87,7 +87,7 @@ def identify_tip(scene: Scene, contact_time: float, rebound: float) -> Identifie
         return float(outcome.duration), rebound_of_outcome(outcome, trial)
 
     def residuals(guess: Any, tip: TipModes) -> Any:
-        clipped = np.clip(guess, [low, MIN_RESTITUTION], [high, 1.0])  # the residuals grow beyond the bounds
+        clipped = np.clip(guess, *bounds)  # the residuals grow beyond the bounds
         time, computed = central_impact(tip, *clipped)
         return [math.log(time / contact_time), computed - rebound] + np.array([-1.0, 1.0]) * (guess - clipped)
 
@@ -96,14 +96,15 @@ def identify_tip(scene: Scene, contact_time: float, rebound: float) -> Identifie
     start = [math.log(GUESS.E) - 3 * math.log(contact_time / GUESS_TIME), GUESS.restitution]
     for _ in range(2):
         tip = tip_modes_of(with_tip(scene, found))
-        solution = root(residuals, np.clip(start, [low, MIN_RESTITUTION], [high, 1.0]), args=(tip,), tol=TOLERANCE)
-        if not (solution.success and low < solution.x[0] < high and MIN_RESTITUTION <= solution.x[1] <= 1):
+        solution = root(residuals, np.clip(start, *bounds), args=(tip,), tol=TOLERANCE)
+        is_within = MIN_E < math.exp(solution.x[0]) < MAX_E and MIN_LEATHER_RESTITUTION <= solution.x[1] <= 1
+        if not (solution.success and is_within):
             break
         found, start = IdentifiedTip(math.exp(solution.x[0]), float(solution.x[1])), solution.x
     else:
         return found
 
-    E, e = np.clip(solution.x, [low, MIN_RESTITUTION], [high, 1.0])
+    E, e = np.clip(solution.x, *bounds)
     time, computed = central_impact(tip, E, e)
     raise ValueError(
         f"identify_tip: no leather has a contact time of {contact_time:g} s and a rebound of {rebound:g} on this cue; "

@@ -1,5 +1,14 @@
 """Finite-element cues and their geometry, lumped cues, and the table of materials."""
 
-from cuefem.cue.geometry import MAX_LEATHER_MODULUS, Array, Cue, LumpedCue, Material, Section, Segment
+from cuefem.cue.geometry import (
+    MAX_LEATHER_MODULUS,
+    POSITION_TOLERANCE,
+    Array,
+    Cue,
+    LumpedCue,
+    Material,
+    Section,
+    Segment,
+)
 
-__all__ = ["MAX_LEATHER_MODULUS", "Array", "Cue", "LumpedCue", "Material", "Section", "Segment"]
+__all__ = ["MAX_LEATHER_MODULUS", "POSITION_TOLERANCE", "Array", "Cue", "LumpedCue", "Material", "Section", "Segment"]

@@ -27,6 +27,8 @@ Array = NDArray[np.float64]
 # A material at the tip of a smaller E than this, Pa, is leather: leathers have 0.05 to 0.2 GPa, the softest plastics of
 # ferrules 1.2 GPa, woods about 10 GPa.
 MAX_LEATHER_MODULUS = 1e9
+# Positions count as one if they are closer than this fraction of the cue's length: round-off of summed lengths.
+POSITION_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import numpy as np
 
-from cuefem.cue import Array, Cue, Segment
-from cuefem.effects.effect import POSITION_TOLERANCE, CueEffect, TrialValues
+from cuefem.cue import POSITION_TOLERANCE, Array, Cue, Segment
+from cuefem.effects.effect import CueEffect, TrialValues
 from cuefem.quantity.fields import DIAMETER, LENGTH, Quantity
 
 if TYPE_CHECKING:

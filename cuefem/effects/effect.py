@@ -7,7 +7,7 @@ from dataclasses import dataclass, is_dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
-from cuefem.cue import Array, Cue, LumpedCue
+from cuefem.cue import POSITION_TOLERANCE, Array, Cue, LumpedCue
 from cuefem.effects.contact_terms import ContactTerms
 from cuefem.quantity.fields import OutOfBounds, Quantity, check_fields, check_kind
 
@@ -16,9 +16,6 @@ if TYPE_CHECKING:
     from cuefem.beam.modes import Modes
     from cuefem.beam.point_terms import PointTerms
     from cuefem.beam.tip_modes import TipModes
-
-# Tolerance of positions on the cue, relative to its length: round-off of summed lengths.
-POSITION_TOLERANCE = 1e-9
 
 
 class TrialValues(NamedTuple):

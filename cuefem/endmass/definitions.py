@@ -23,7 +23,7 @@ from cuefem.contact.refinement import check_one_resolution, refined_end_mass
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, LumpedCue
 from cuefem.effects.effect import Effect
-from cuefem.endmass.impulse_response import STEPS, half_sine_velocity, imposed_velocity_impulse
+from cuefem.endmass.impulse_response import PULSE_STEPS, half_sine_velocity, imposed_velocity_impulse
 from cuefem.endmass.sticking_contact import StickLimit
 from cuefem.scene import Outcome, Resolution, Scene, Stroke, check_scene
 from cuefem.scene.solved_scene import SolvedScene
@@ -133,7 +133,7 @@ def force(tip: TipModes, scene: Scene) -> float:
 
 def velocity(tip: TipModes, scene: Scene) -> float:
     """Impulse for the tip velocity (1 - cos(pi t/T))/2, over the final velocity, kg."""
-    raised_cosine = (1 - np.cos(np.pi * np.linspace(0.0, 1.0, STEPS + 1))) / 2
+    raised_cosine = (1 - np.cos(np.pi * np.linspace(0.0, 1.0, PULSE_STEPS + 1))) / 2
     return imposed_velocity_impulse(tip, float(scene.contact_time), raised_cosine)
 
 

@@ -21,7 +21,7 @@ import scipy.linalg
 from cuefem.beam.assembly import System, assemble
 from cuefem.beam.modes import solve
 from cuefem.cue import Array
-from cuefem.endmass.impulse_response import STEPS
+from cuefem.endmass.impulse_response import PULSE_STEPS
 from cuefem.endmass.sticking_contact import StickLimit
 from cuefem.quantity.equality import equal_fields
 from cuefem.scene import Resolution, Scene
@@ -145,7 +145,7 @@ def _stick(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
     """
     limit, omega = StickLimit.of(scene), np.sqrt(squares)
     T, c, K = limit.T, limit.c, limit.K
-    h, t = T / STEPS, T / STEPS * np.arange(STEPS)
+    h, t = T / PULSE_STEPS, T / PULSE_STEPS * np.arange(PULSE_STEPS)
 
     def mean_velocities(omega: Any) -> tuple[Array, Array]:
         """Of modes of phi = 1, (steps, modes): after an impulse at the start, and after a force over the first step."""
@@ -161,10 +161,10 @@ def _stick(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
     P = limit.normal_impulse(np.append(t, T))
     mean_P = (P[1:] + P[:-1]) / 2
     first = -1 / (float(phi @ phi) + rigid + c)  # the velocity K P - 1 begins with -1
-    matrix = scipy.linalg.toeplitz(column, np.zeros(STEPS))
+    matrix = scipy.linalg.toeplitz(column, np.zeros(PULSE_STEPS))
     force = scipy.linalg.solve_triangular(matrix, K * mean_P - 1 - first * after_impulse, lower=True)
-    adjoint = scipy.linalg.solve_triangular(matrix, np.full(STEPS, h), trans="T", lower=True)
-    of_column = -np.correlate(adjoint, force, "full")[STEPS - 1 :]
+    adjoint = scipy.linalg.solve_triangular(matrix, np.full(PULSE_STEPS, h), trans="T", lower=True)
+    of_column = -np.correlate(adjoint, force, "full")[PULSE_STEPS - 1 :]
 
     def R(omega: Any) -> Array:
         of_impulse, of_force = mean_velocities(omega)

@@ -15,7 +15,7 @@ from cuefem.cue import Array
 
 # Steps of a contact. Against closed forms at the same 120 modes (100 random cues, 0.5 to 3 ms, free and damped, "stick"
 # and "offset"): relative error 1e-6 (median), 9e-5 (maximum); with half the steps 1e-3 (maximum).
-STEPS = 2048
+PULSE_STEPS = 2048
 
 
 def half_sine_velocity(tip: TipModes, T: float) -> float:
@@ -62,7 +62,7 @@ def _coupled_half_sine_velocity(tip: TipModes, T: float) -> float:
 
 
 def imposed_velocity_impulse(tip: TipModes, T: float, velocity: Array, ball_inverse_mass: float = 0.0) -> float:
-    """Impulse on the tip, N s, for a transverse velocity from rest, m/s, (`STEPS` + 1,) at the edges of steps of 0..T.
+    """Impulse on the tip, N s, for a transverse velocity from rest, m/s, (`PULSE_STEPS` + 1,) from 0 to T.
 
     It may begin with a jump. Forces are constant over the steps. ball_inverse_mass: of a ball that the impulse moves,
     too, 1/kg: the velocity is then relative to it.
@@ -70,7 +70,7 @@ def imposed_velocity_impulse(tip: TipModes, T: float, velocity: Array, ball_inve
     check_moves(tip)
     tip = tip.lateral
     propagator, kernel = straight_propagator(tip), library()
-    tables, means = repeated_tables(propagator, T / STEPS), (velocity[1:] + velocity[:-1]) / 2
+    tables, means = repeated_tables(propagator, T / PULSE_STEPS), (velocity[1:] + velocity[:-1]) / 2
     first_impulse = velocity[0] / (float(propagator.mobility[1, 1]) + ball_inverse_mass)
     velocities = first_impulse * propagator.ports[1]
     fields, state = (
@@ -81,8 +81,9 @@ def imposed_velocity_impulse(tip: TipModes, T: float, velocity: Array, ball_inve
     if not contact:
         raise MemoryError("no memory for the steps of a contact")
     try:
-        return float(
-            kernel.imposed_velocity_impulse(contact, tables, STEPS, means.ctypes.data, ball_inverse_mass, first_impulse)
+        impulse = kernel.imposed_velocity_impulse(
+            contact, tables, PULSE_STEPS, means.ctypes.data, ball_inverse_mass, first_impulse
         )
+        return float(impulse)
     finally:
         kernel.contact_free(contact)

@@ -8,7 +8,7 @@ import numpy as np
 
 from cuefem.cue import Array, Cue
 
-STEPS = 2000  # along the shaft; the relative error of the end mass of a tenth of it is about 1e-5
+SECTIONS = 2000  # along the shaft; the relative error of the end mass of a tenth of it is about 1e-5
 
 
 class RigidFront(NamedTuple):
@@ -25,7 +25,7 @@ class RigidFront(NamedTuple):
     @classmethod
     def of(cls, cue: Cue) -> RigidFront:
         """Of the drawn segments, with rotary inertia, by the trapezoidal rule."""
-        x = np.linspace(0.0, cue.length, STEPS + 1)
+        x = np.linspace(0.0, cue.length, SECTIONS + 1)
         section = cue.section(x)
         densities = np.array([section.rhoA, section.rhoA * x, section.rhoA * x**2 + section.rhoI])
         steps = (densities[:, 1:] + densities[:, :-1]) / 2 * np.diff(x)

@@ -8,7 +8,7 @@ import numpy as np
 
 from cuefem.beam.tip_modes import TipModes
 from cuefem.cue import Array
-from cuefem.endmass.impulse_response import STEPS, imposed_velocity_impulse
+from cuefem.endmass.impulse_response import PULSE_STEPS, imposed_velocity_impulse
 from cuefem.scene import Scene
 
 
@@ -49,7 +49,7 @@ class StickLimit(NamedTuple):
 
     def transverse_impulse(self, tip: TipModes) -> float:
         """J, kg."""
-        P = self.normal_impulse(self.T * np.linspace(0.0, 1.0, STEPS + 1))
+        P = self.normal_impulse(self.T * np.linspace(0.0, 1.0, PULSE_STEPS + 1))
         return imposed_velocity_impulse(tip, self.T, self.K * P - 1, self.c)
 
     def end_mass(self, J: float) -> float:

@@ -11,9 +11,9 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-from cuefem.cue import MAX_LEATHER_MODULUS, Cue, Material, Segment
+from cuefem.cue import MAX_LEATHER_MODULUS, POSITION_TOLERANCE, Cue, Material, Segment
 from cuefem.cue.materials import material as material_of
-from cuefem.parameters.parts import MAX_FERRULE, SAME_POSITION, Layout, split_at
+from cuefem.parameters.parts import MAX_FERRULE, Layout, split_at
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.quantity.display_units import displayed_system, with_unit
 from cuefem.quantity.unit_checks import MIN_CUE_MASS
@@ -111,7 +111,7 @@ def _with_leather(cue: Cue, text: str) -> Cue:
     if end > MAX_LEATHER:
         raise ValueError(f"must have at most {with_unit(MAX_LEATHER, 'm', 6)} of leather; got {text!r}")
     cue = split_at(cue, end)
-    stop = next(i for i, x in enumerate(cue.nodes) if x >= end * (1 - SAME_POSITION))
+    stop = next(i for i, x in enumerate(cue.nodes) if x >= end * (1 - POSITION_TOLERANCE))
     front = (
         replace(s, material=material_of("leather"), tip_bore=0.0, butt_bore=0.0, core=None) for s in cue.segments[:stop]
     )
@@ -132,7 +132,7 @@ def _with_ferrule(cue: Cue, text: str) -> Cue:
     if not 0 < length <= longest:
         raise ValueError(f"must be at most {with_unit(longest, 'm', 3)} long; got {text!r}")
     cue = split_at(replace(cue, segments=tuple(stripped)), start + length)
-    stop = next(i for i, x in enumerate(cue.nodes) if x >= (start + length) * (1 - SAME_POSITION))
+    stop = next(i for i, x in enumerate(cue.nodes) if x >= (start + length) * (1 - POSITION_TOLERANCE))
     front = (ferrule_on_tenon(s, ferrule_material, wood, tenon) for s in cue.segments[first:stop])
     return replace(cue, segments=(*cue.segments[:first], *front, *cue.segments[stop:]))
 

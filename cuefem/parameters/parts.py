@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cuefem.cue import MAX_LEATHER_MODULUS, Cue, Material, Segment
+from cuefem.cue import MAX_LEATHER_MODULUS, POSITION_TOLERANCE, Cue, Material, Segment
 from cuefem.cue.materials import MATERIALS, table_name
 from cuefem.quantity.display_units import short_number, span_text, with_unit
 from cuefem.quantity.fields import CONTACT_TIME, DIAMETER, LENGTH, Quantity
@@ -28,7 +28,6 @@ MAX_FERRULE = 0.06  # m
 TAPER_AT = 0.3302  # m, 13 in: so far pool shafts stay nearly straight; half the length of a cue shorter than twice that
 DEFAULT_BORE = 0.006  # m, the width of a new bore, where the front is wide enough
 MIN_DENSITY, MAX_DENSITY = 20.0, 23_000.0  # kg/m3, foam and platinum: of a material that a weight determines
-SAME_POSITION = 1e-9  # relative to a length: positions closer than this are the same
 
 
 class Part(NamedTuple):
@@ -66,7 +65,7 @@ class Layout(NamedTuple):
         last = len(segments) - 1
         front = next((i for i, s in enumerate(segments) if s.material.E >= MAX_LEATHER_MODULUS), last)
         first = _next_material(segments, front)
-        if first > last or cue.nodes[first] - cue.nodes[front] > MAX_FERRULE * (1 + SAME_POSITION):
+        if first > last or cue.nodes[first] - cue.nodes[front] > MAX_FERRULE * (1 + POSITION_TOLERANCE):
             first = front
         shaft = range(first, _next_material(segments, first))
         mouth = _mouth(cue, front, first)
@@ -78,7 +77,7 @@ class Layout(NamedTuple):
 def _mouth(cue: Cue, front: int, first: int) -> int:
     """Index of the segment with which the bore begins; without a bore, of the first one behind the ferrule."""
     for i in range(front, len(cue.segments)):
-        if cue.nodes[i] > taper_position(cue) * (1 + SAME_POSITION):
+        if cue.nodes[i] > taper_position(cue) * (1 + POSITION_TOLERANCE):
             break
         is_tenon = i < first and cue.segments[i].core is not None
         if _width(cue.segments[i]) > 0 and not is_tenon:
@@ -265,7 +264,7 @@ SHAFT_MATERIAL = Part(_material_of("shaft"), _with_shaft_material)
 def _with_gains(scene: Any, positions: Sequence[float], gains: Sequence[float]) -> Any:
     """The scene with diameters that are larger by ``gains`` at the cue's ends and one position between them."""
     cue, (_, middle, end) = scene.shaft, positions
-    if abs(gains[1] - np.interp(middle, [0, end], [gains[0], gains[2]])) > SAME_POSITION * end:
+    if abs(gains[1] - np.interp(middle, [0, end], [gains[0], gains[2]])) > POSITION_TOLERANCE * end:
         cue = split_at(cue, middle)
 
     def widen(segment: Segment, start: float) -> Segment:
@@ -330,7 +329,7 @@ def _with_bore(scene: Any, depth: float | None = None, width: float | None = Non
     if old is None or (depth in (None, old[0]) and width in (None, old[1])):
         return scene
     depth, new_width = old[0] if depth is None else depth, old[1] if width is None else width
-    bore, deepest, tolerance = Layout.of(cue).bore or range(0), max_bore_depth(cue), SAME_POSITION * cue.length
+    bore, deepest, tolerance = Layout.of(cue).bore or range(0), max_bore_depth(cue), POSITION_TOLERANCE * cue.length
     mouth = bore_mouth(cue)
     old_end = mouth + old[0]
     if depth > deepest + tolerance:
@@ -359,7 +358,7 @@ def _with_bore(scene: Any, depth: float | None = None, width: float | None = Non
 
 def split_at(cue: Cue, x: float) -> Cue:
     """The same cue with a segment's end at x m from the tip."""
-    if np.abs(cue.nodes - x).min() <= SAME_POSITION * cue.length or not 0 < x < cue.length:
+    if np.abs(cue.nodes - x).min() <= POSITION_TOLERANCE * cue.length or not 0 < x < cue.length:
         return cue
     i = int(np.searchsorted(cue.nodes, x)) - 1
     front, back = split_segment(cue.segments[i], float(x - cue.nodes[i]) / cue.segments[i].length)
@@ -422,7 +421,7 @@ def _tube_front(cue: Cue) -> list[int]:
     """Indices of the hollow segments of a tube that begin within `TUBE_FRONT`; none of another shaft."""
     if not is_tube(cue):
         return []
-    return [i for i in _hollow(cue) if cue.nodes[i] < TUBE_FRONT - SAME_POSITION * cue.length]
+    return [i for i in _hollow(cue) if cue.nodes[i] < TUBE_FRONT - POSITION_TOLERANCE * cue.length]
 
 
 def _wall(scene: Any) -> float | None:
@@ -485,16 +484,16 @@ def _with_front_core(read: Callable[[Any], float | None], core: Material | None)
         longest = with_unit(whole, "m", 6)
         if length > whole:
             raise ValueError(f"the tube is {longest} long; got {with_unit(length, 'm', 6)}")
-        if old > whole - SAME_POSITION * cue.length:
+        if old > whole - POSITION_TOLERANCE * cue.length:
             inside = "empty" if core is None else "filled like that"
             raise ValueError(
                 f"the tube is {inside} along all its {longest}, so that nothing is known to fill the rest with; got "
                 f"{with_unit(length, 'm', 6)}: state the core of its segments"
             )
-        behind = next((i for i in tube if cue.nodes[i] >= begin + old - SAME_POSITION * cue.length), tube[-1])
+        behind = next((i for i in tube if cue.nodes[i] >= begin + old - POSITION_TOLERANCE * cue.length), tube[-1])
         filling = cue.segments[behind].core
         cue = split_at(split_at(cue, begin + length), begin + old)
-        tolerance = SAME_POSITION * cue.length
+        tolerance = POSITION_TOLERANCE * cue.length
         segments = [
             replace(piece, core=core if x < begin + length - tolerance else filling)
             if begin - tolerance <= x < begin + max(length, old) - tolerance

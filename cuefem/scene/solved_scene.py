@@ -30,7 +30,8 @@ if TYPE_CHECKING:
 # Modes are retained up to PERIODS periods in a contact with a truncation correction, and up to TRUNCATED_SUM_PERIODS
 # without: the carbon cue's error is 1 % even at 100. Long contacts have at least MIN_MODES.
 PERIODS, TRUNCATED_SUM_PERIODS, MIN_MODES = 30, 60, 40
-# Restitution down to which these modes resolve the unloading, too; below it the kernel shortens its steps alike.
+# Restitution e down to which these modes and steps resolve the unloading, too, which is 1/e times as fast; below it
+# the contact has more modes, and shorter steps while the tip unloads.
 RESOLVED_RESTITUTION = 0.5
 # The least restitution of a contact computed in time, which needs 1/e times as many steps.
 MIN_RESTITUTION = 0.05

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from skfem import MeshQuad
 
 from cuefem.cue import Array, Cue, Material
+from cuefem.solid.elasticity import SAME_POINT
 
-SAME = 1e-9  # m: radii closer than this share a line of the mesh
 MIN_WALL = 1e-6  # m: elements across a thinner wall would be too flat
 MAX_MEMORY = 2**31  # bytes
 # For each entry of the cells' matrices: triplets, sparse matrices and their factors.
@@ -48,7 +48,8 @@ def mesh_lines(cue: Cue) -> tuple[Array, NDArray[np.intp], NDArray[np.intp]]:
         for kind, (first, last) in enumerate(bounds):
             if kind == 0 and first == last == 0:
                 continue
-            line = next((k for k, r in line_radii[i].items() if abs(r - first) < SAME), len(set(line_of.values())))
+            alike = (k for k, r in line_radii[i].items() if abs(r - first) < SAME_POINT)
+            line = next(alike, len(set(line_of.values())))
             line_of[i, kind] = line
             line_radii[i][line], line_radii[i + 1][line] = first, last
     order = TopologicalSorter[int]()
@@ -82,7 +83,7 @@ def element_ends(length: float, radii: tuple[float, float], fineness: Fineness) 
     first, last = [0.0, *left], [*right, length]
     if len(first) > 1 and last[0] - first[-1] < 0.5 * (first[-1] - first[-2]):
         first.pop()  # the two graded parts almost meet
-    count = max(1, int(np.ceil((last[0] - first[-1]) / fineness.max_length - SAME)))
+    count = max(1, int(np.ceil((last[0] - first[-1]) / fineness.max_length - SAME_POINT)))
     return np.concatenate([first, np.linspace(first[-1], last[0], count + 1)[1:-1], last]) / length
 
 
@@ -139,6 +140,6 @@ def half_section(cue: Cue, fineness: Fineness) -> tuple[MeshQuad, list[Material]
         corners.append(np.stack([grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]], axis=2).reshape(-1, 4, 2))
         materials += [material] * len(corners[-1])
     points = np.concatenate(corners).reshape(-1, 2)
-    keys = np.round(points / SAME).astype(np.int64)
+    keys = np.round(points / SAME_POINT).astype(np.int64)
     _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     return MeshQuad(np.ascontiguousarray(points[first].T), np.ascontiguousarray(inverse.reshape(-1, 4).T)), materials

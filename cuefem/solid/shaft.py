@@ -19,7 +19,8 @@ from cuefem.cue import Array, Cue, Material
 from cuefem.quantity.display import brief
 from cuefem.quantity.fields import check_count, check_kind
 from cuefem.solid import elasticity
-from cuefem.solid.meridian_mesh import SAME, Fineness, check_mesh_size, half_section
+from cuefem.solid.elasticity import SAME_POINT
+from cuefem.solid.meridian_mesh import Fineness, check_mesh_size, half_section
 from cuefem.solid.solid_resolution import Solid
 
 BENDING, AXIAL = 1, 0  # Fourier harmonics
@@ -62,7 +63,7 @@ class SolidBody:
 
     def _mean(self, z: float, fields: tuple[float, float, float], power: int = 0) -> Array:
         """Row of the mean over an end face of r^power times a sum of the fields, over the mean of r^(2 power)."""
-        facets = self.cells[0].facets_satisfying(lambda x: np.abs(x[0] - z) < SAME, boundaries_only=True)
+        facets = self.cells[0].facets_satisfying(lambda x: np.abs(x[0] - z) < SAME_POINT, boundaries_only=True)
         face_basis = FacetBasis(self.cells[0], self.basis.elem, facets=facets, intorder=2 * self.fineness.order + 2)
         row = LinearForm(lambda v, w: w.x[1] ** (1 + power) * v).assemble(face_basis)
         area = np.sum(np.asarray(face_basis.global_coordinates())[1] ** (1 + 2 * power) * face_basis.dx)

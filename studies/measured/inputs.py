@@ -16,7 +16,7 @@ from typing import Any
 from scipy.optimize import brentq
 
 import cuefem as cf
-from cuefem.contact.tip_identification import MIN_RESTITUTION
+from cuefem.contact.tips import MIN_LEATHER_RESTITUTION
 from cuefem.cue.materials import LEATHERS
 from cuefem.results.closed_forms import pivot_length
 from studies import pages, strokes
@@ -158,10 +158,10 @@ def waving(struck: cf.Scene, **factors: float) -> cf.Scene:
 
 
 def shortest(rebound: float) -> str:
-    """Contact time, ms, of the leather of restitution `MIN_RESTITUTION` with this rebound; a larger E shortens it."""
-    struck = full_model(cue("whole_cue"))
-    E = math.exp(brentq(lambda log_E: cf.rebound(with_tip(struck, math.exp(log_E), MIN_RESTITUTION)) - rebound, 18, 24))
-    central = with_tip(replace(struck, stroke=replace(struck.stroke, offset=0.0)), E, MIN_RESTITUTION)
+    """Contact time, ms, of the leather of the least restitution with this rebound; a larger E shortens it."""
+    struck, least = full_model(cue("whole_cue")), MIN_LEATHER_RESTITUTION
+    E = math.exp(brentq(lambda log_E: cf.rebound(with_tip(struck, math.exp(log_E), least)) - rebound, 18, 24))
+    central = with_tip(replace(struck, stroke=replace(struck.stroke, offset=0.0)), E, least)
     return f"{1e3 * cf.strike(central).duration:.2f}"
 
 

@@ -105,7 +105,8 @@ typedef struct {
     double phi, dome, rim;         /* angle of the first touch, rad; radius of the dome, m; its end, rad */
     double radius;                 /* of the ball, m */
     double arm_t, arm_n;           /* moment arms of (t, n) about the end section at the first touch, m */
-    double step, max_time, window; /* step; longest contact; time followed after the first separation, s */
+    double step, unloading_step;   /* length of a step; of one while the tip unloads, s */
+    double max_time, window;       /* longest contact; time followed after the first separation, s */
 } Input;
 
 /* What one step leaves to the next. Python fills the first four; the rest begins as zero. */

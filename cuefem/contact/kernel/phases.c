@@ -3,14 +3,10 @@
    Handbook: The strike: F = k d loading, (k/e^2)(d - (1 - e^2) D) unloading; Low restitution: h e/0.5. */
 #include "contact.h"
 
-/* A tip of restitution e unloads 1/e times as fast as it loads. Below this restitution, unloading steps are
-   shortened by the factor e / MIN_STEP_RESTITUTION. */
-static const double MIN_STEP_RESTITUTION = 0.5;
-
 /* Length of a step in the phase, s, unless an event or forces that are not found shorten it. */
 double full_step(const Input *in, const State *s)
 {
-    return s->phase == UNLOADING ? in->step * fmin(1, in->restitution / MIN_STEP_RESTITUTION) : in->step;
+    return s->phase == UNLOADING ? in->unloading_step : in->step;
 }
 
 static void enter(const Input *in, State *s, int phase)
