@@ -1,8 +1,7 @@
-"""Extensions by one table entry or class appear in all outputs: question, parameter, result, effects (properties)."""
+"""A question and effects appear in all outputs by their file or class alone (properties)."""
 
 import gc
 import html
-import json
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
@@ -18,31 +17,15 @@ from cuefem.analysis.effect_sensitivity import variants
 from cuefem.designer.panels import sections_markup
 from cuefem.designer.session import Session
 from cuefem.designer.state import Design
-from cuefem.designs import Levels, Response, Study, Vary, evaluate
+from cuefem.designs import Levels, Response, Study, Vary
 from cuefem.effects.effect import effect_kinds
-from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.measurements.uncertain_parameters import parameters_of
 from cuefem.parameters.scene_changes import with_parameters
-from cuefem.parameters.scene_paths import paths
-from cuefem.parameters.table import PARAMETERS
-from cuefem.results.quantities import RESULTS
+from tests.helpers.cap_effect import cap_effect
 from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.contributors_guide import module_of
-from tests.helpers.extensions import (
-    DEFINITION,
-    DRAWING_RESULT,
-    PARAMETER,
-    STRIKE_RESULT,
-    cap_effect,
-    outputs,
-    outputs_without,
-)
 from tests.helpers.strike_scenes import energy_residual, kim_scene
 
 AT = cf.Resolution(2, 8, 12)
-WOOD, BRASS = cf.Material(12.6e9, 0.84e9, 700.0), cf.Material(97e9, 37e9, 8500.0)
-FRONT, RING, REST = ((0.10, 0.0125, 0.0126, WOOD), (0.01, 0.0126, 0.0126, BRASS), (0.59, 0.0126, 0.021, WOOD))
-RINGED = cf.Cue(tuple(cf.Segment(*part) for part in (FRONT, RING, REST)), 0.42)
 
 
 @pytest.fixture
@@ -53,24 +36,6 @@ def _effects_deleted() -> Iterator[None]:
     for cached in [one for module in modules for one in vars(module).values() if hasattr(one, "cache_clear")]:
         cached.cache_clear()
     gc.collect()
-
-
-def test_added_parameter_is_varied_and_uncertain(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(PARAMETERS, PARAMETER.key, PARAMETER)
-    scene = cf.usual_scene(RINGED)
-    study = Study(scene, (Vary(("collar length",), Levels((0.005, 0.025))),), (Response.of("shaft_mass"),))
-    assert study.units[0] == "m"
-    assert study.scene((0.025,)).cue.segments[1].length == 0.025
-    (uncertain,) = (each for each in parameters_of(scene, ()) if each.name == "collar length")
-    assert (uncertain.label, uncertain.unit, uncertain.median, uncertain.spread) == (
-        "length of the collar",
-        "m",
-        0.01,
-        0.1,
-    )
-    plain = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.0125, 0.021, WOOD),), 0.42))
-    with pytest.raises(ValueError, match="got 'collar length', which this scene does not have"):
-        paths(plain, "collar length")
 
 
 def test_added_question_is_command_section_and_call(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -96,32 +61,6 @@ def test_added_question_is_command_section_and_call(monkeypatch: pytest.MonkeyPa
         assert f"<td>{newtons:.3f}</td>" in page
 
 
-def test_added_result_is_displayed_and_evaluated(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setitem(RESULTS, "sweet_spot", DRAWING_RESULT)
-    monkeypatch.setitem(RESULTS, "push", STRIKE_RESULT)
-    scene = kim_scene(0.3)
-    assert outputs_without("sweet spot", outputs(scene, tmp_path, "designer")) == []
-    numbers = json.loads(outputs(scene, tmp_path, "json")["json"])["numbers"]
-    assert numbers["sweet_spot"] == pytest.approx(scene.shaft.length / 5, rel=1e-12)
-    assert numbers["push"] == pytest.approx(2 * cf.strike(scene).ball_speed, rel=1e-12)
-    values = evaluate([scene], ["sweet_spot", "push(0.2)"], at=AT).values[0]
-    assert values == pytest.approx([0.14, 2 * cf.strike(kim_scene(0.2), AT).ball_speed], rel=1e-6)
-    with pytest.raises(ValueError, match="did you mean 'sweet_spot"):
-        Response.of("sweet_spott")
-
-
-def test_added_end_mass_definition_is_displayed_and_evaluated(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setitem(DEFINITIONS, DEFINITION.name, DEFINITION)
-    scene = kim_scene(0.3)
-    expected = cf.end_mass(scene, "rigid", AT)
-    assert cf.end_mass(scene, "rigid", rtol=1e-3) == pytest.approx(expected, rel=1e-6)
-    assert cf.end_mass(cf.Scene(cf.LumpedCue(0.5, 0.006)), "rigid") == 0.006
-    assert outputs_without("rigid (rigid body, b/R 0.3)", outputs(scene, tmp_path, "end-mass")) == []
-    assert outputs_without("rigid body, b/R 0.3", outputs(scene, tmp_path, "designer")) == []
-    values = evaluate([scene], ["end_mass_rigid", "end_mass_rigid(0.1)"], at=AT).values[0]
-    assert values == pytest.approx([expected] * 2, rel=1e-9)
-
-
 @pytest.mark.usefixtures("_effects_deleted")
 def test_added_cue_effect_is_displayed_saved_and_varied(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The class of CONTRIBUTING.md alone."""
@@ -129,7 +68,8 @@ def test_added_cue_effect_is_displayed_saved_and_varied(tmp_path: Path, monkeypa
     bare = kim_scene(0.3)
     scene = replace(bare, effects=(kind(0.03, 4e-3),))
     assert effect_kinds()["Collar"] is kind
-    assert outputs_without("Collar (position 30 mm, mass 4 g)", outputs(scene, tmp_path, "strike")) == []
+    cf.save(scene, tmp_path / "scene.toml")
+    assert "Collar (position 30 mm, mass 4 g)" in " ".join(stdout_of("strike", tmp_path / "scene.toml").split())
     assert 'type = "Collar"' in (tmp_path / "scene.toml").read_text(encoding="utf-8")
     assert cf.load(tmp_path / "scene.toml").effects == scene.effects
     assert cf.strike(scene, AT).squirt > 1.01 * cf.strike(bare, AT).squirt

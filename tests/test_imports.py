@@ -12,8 +12,6 @@ from pathlib import Path
 
 import pytest
 
-import cuefem
-from cuefem.analysis import QUESTIONS
 from tests.conftest import SOLVED_AT_COLLECTION
 from tests.helpers.sources import PACKAGE, statements, trees
 
@@ -184,15 +182,6 @@ def test_properties_run_where_every_dict_is_tracked(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stdout.decode()
 
 
-def test_public_names_are_importable() -> None:
-    """`dir` lists every public name, and each can be imported."""
-    assert {"load", "strike", "design_changes"} <= set(dir(cuefem))
-    for name in dir(cuefem):
-        assert getattr(cuefem, name).__name__.removeprefix("cuefem.") == name
-    with pytest.raises(AttributeError, match="stirke"):
-        _ = cuefem.stirke  # type: ignore[attr-defined]
-
-
 def hidden_names(package: Path) -> set[str]:
     """Names that a package's face or stub takes from a module, and that a room or module of the package would hide."""
     taken = set[str]()
@@ -209,20 +198,6 @@ def test_no_room_or_module_hides_a_public_name() -> None:
     """A package `study` would stand in `cuefem.study` once imported, instead of the function."""
     faces = {path.parent for path in PACKAGE.rglob("__init__.py*")}
     assert {face.name: hidden_names(face) for face in faces if hidden_names(face)} == {}
-
-
-def test_room_of_every_public_name_has_title_on_reference_page() -> None:
-    tree = ast.parse((PACKAGE.parent / ".ci" / "conf.py").read_bytes())
-    titles = next(ast.literal_eval(one.value) for one in tree.body if ast.unparse(one).startswith("TITLES ="))  # type: ignore[attr-defined]
-    values = {name: getattr(cuefem, name) for name in cuefem.__all__}
-    rooms = {name: getattr(value, "__module__", value.__name__).split(".")[1] for name, value in values.items()}
-    assert {name: room for name, room in rooms.items() if not any(room in listed for listed in titles.values())} == {}
-
-
-def test_every_question_is_a_listed_name_with_an_example() -> None:
-    functions = {question.call: question.function() for question in QUESTIONS.values()}
-    assert {*functions} - {*cuefem.__all__} == set()
-    assert [name for name, function in functions.items() if ">>> " not in (function.__doc__ or "")] == []
 
 
 HEAVY = ["skfem", "scipy", "pint", "pydantic", "matplotlib", "meshio", "tomlkit", "rich", "click"]

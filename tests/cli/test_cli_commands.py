@@ -1,8 +1,6 @@
 """Commands: JSON equals the library, and lists assumptions; printed text: tests/test_golden_files.py (regression)."""
 
 import math
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -37,10 +35,3 @@ def test_convert_writes_equal_cue_or_scene(folder: Path) -> None:
     stdout_of("convert", "scene.toml", "shaft.toml", "--body-mass", "0.4 kg", "--force")
     scene = cf.load("scene.toml")
     assert cf.load("shaft.toml") == replace(scene, cue=replace(scene.cue, body_mass=0.4))
-
-
-@pytest.mark.parametrize("module", ["cuefem", "cuefem.cli"])
-def test_package_run_as_module_prints_version(module: str) -> None:
-    done = subprocess.run([sys.executable, "-m", module, "--version"], capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.startswith("cuefem, version ")

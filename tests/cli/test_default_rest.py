@@ -41,28 +41,6 @@ def test_scene_file_of_light_drawing_gets_usual_rest(shaft: Path) -> None:
     assert cf.load(shaft.parent / "bare.toml").cue.body_mass == 0.0
 
 
-@pytest.mark.heavy
-def test_assumed_rest_is_an_uncertain_input_until_it_is_set(shaft: Path) -> None:
-    record = as_json("report", shaft)["verdict"]
-    assert 0.001 < record["inputs"]["body_mass"] < 0.05
-    given = as_json("report", shaft, "--body-mass", "15 oz")["verdict"]
-    assert given["squirt"] == record["squirt"]
-    assert "body_mass" not in given["inputs"]
-    assert given["uncertainty"]["inputs"] < record["uncertainty"]["inputs"]
-    scene = cf.usual_scene(cf.load(shaft))
-    other = replace(scene, cue=replace(scene.cue, body_mass=0.43))
-    assert not other.cue.is_body_mass_assumed
-
-
-@pytest.mark.heavy
-def test_compare_fills_in_the_usual_rest(shaft: Path) -> None:
-    record = as_json("compare", shaft, PREDATOR)
-    (difference,) = (each["squirt"] for each in record["differences"].values())
-    assert difference["difference"] == pytest.approx(-0.278, abs=5e-4)
-    assert difference["error"] >= 0.086
-    assert "shaft: usual rest of the cue, 425.2 g (--body-mass)" in record["assumptions"]
-
-
 def test_compare_options_fill_in_what_each_file_leaves_open(shaft: Path) -> None:
     options = ("--body-mass", "15 oz", "--ferrule", "1 in melamine", "--shaft-mass", "3.9 oz", "--game", "pool")
     record = as_json("compare", shaft, PREDATOR, *options)

@@ -111,6 +111,11 @@ strike bare.csv --shaft-mass '0 g'
 convert bare.csv made.toml --shaft-mass '9 kg'
 strike
 strike shaft.toml --offset
+improve spring.toml --wall '0.1 mm'
+improve spring.toml --keep shine
+improve spring.toml --keep bore,ferrule,tip,taper,wood
+improve spring.toml --stiffness-loss '120 %'
+improve spring.toml --stiffness-loss much
 """.strip().splitlines()
 
 
@@ -181,11 +186,3 @@ def test_command_out_of_memory_prints_one_line(tmp_path: Path, monkeypatch: pyte
     path.write_text(GOOD, encoding="utf-8")
     why = "out of memory: request less, or check the units of sizes, masses and times (MemoryError)"
     assert call("modes", path, "--count", "1000000") == (2, "", f"cuefem: {why}\n")
-
-
-def test_error_after_warnings_is_one_line(tmp_path: Path) -> None:
-    (tmp_path / "radii.toml").write_text(GOOD.replace("12 mm", "6 mm").replace("21 mm", "10.5 mm"))
-    status, _, err = call(
-        "strike", tmp_path / "radii.toml", "--body-mass", "15 oz", "--format", "table", "--speeds", "5", "1"
-    )
-    assert (status, len(err.splitlines())) == (2, 1)

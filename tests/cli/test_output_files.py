@@ -2,17 +2,14 @@
 
 import json
 import os
-import pkgutil
 import shutil
 import subprocess
 import sys
-from importlib import import_module
 from pathlib import Path
 
 import click
 import pytest
 
-import cuefem as cf
 from cuefem.cli import listed_commands, main
 from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.full_disk import SHIM
@@ -99,24 +96,6 @@ def test_full_disk_at_any_write_prints_one_line_and_leaves_no_part(tmp_path: Pat
         assert err.startswith("cuefem: ")
         assert "No space left on device" in err or "disk is full" in err
         assert set(left) <= WRITING[command], (command, n)
-
-
-@pytest.mark.parametrize("command", ["strike", "end-mass"])
-def test_page_keeps_its_units_beside_metric_json(command: str, tmp_path: Path) -> None:
-    page = tmp_path / "page.html"
-    assert as_json(command, KIM, "--units", "us", "-o", page) == as_json(command, KIM)
-    assert " mph" in page.read_text(encoding="utf-8").replace("\u00a0", " ")
-
-
-def test_modules_have_every_name_they_promise() -> None:
-    for found in pkgutil.walk_packages(cf.__path__, "cuefem."):
-        if found.name.endswith(("__main__", "._kernel")):  # runs; is no module of Python
-            continue
-        module = import_module(found.name)
-        missing = [name for name in getattr(module, "__all__", ()) if not hasattr(module, name)]
-        if found.ispkg:
-            missing = [name for name in missing if not (Path(module.__path__[0]) / f"{name}.py").exists()]
-        assert missing == [], found.name
 
 
 def test_template_prints_json(tmp_path: Path) -> None:

@@ -123,12 +123,6 @@ def test_results_with_arrays_copy_pickle_and_compare() -> None:
     assert np.array_equal(pickle.loads(pickle.dumps(cf.modes(cue, 3))).shape(0.1), cf.modes(cue, 3).shape(0.1))
 
 
-def test_point_mass_takes_numbers_by_keyword() -> None:
-    """Mass and position swapped were accepted in silence."""
-    with pytest.raises(TypeError, match="positional"):
-        cf.PointMass(1e-3, 0.01)
-
-
 @pytest.mark.nightly
 def test_strike_repeated_does_not_leak_memory() -> None:
     """The maximum memory of the process grows by less than 4 MB over 8,900 rounds."""

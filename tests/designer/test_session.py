@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import pytest
@@ -19,25 +18,10 @@ from tests.helpers.command_line import call
 from tests.measurements.test_calibration import calibration
 from tests.test_golden_files import last_place
 
-DESIGNER = Path(cf.__file__).parent / "designer"
 FIRST = reference_design("plain maple")
 
 
 SNOOKER = Path(__file__).parents[2] / "studies/scenes/snooker.toml"
-
-
-def imported(module: str) -> set[str]:
-    """What a module of the designer imports, and the modules of the designer that it imports."""
-    text = (DESIGNER / f"{module}.py").read_text(encoding="utf-8")
-    names = {*re.findall(r"^(?:from|import) (\S+)", text, re.M)}
-    names |= {f"cuefem.designer.{name}" for name in re.findall(r"^from cuefem.designer import (\w+)", text, re.M)}
-    inner = {name.rpartition(".")[2] for name in names if name.startswith("cuefem.designer.")}
-    return names.union(*map(imported, inner))
-
-
-def test_session_and_content_of_tabs_need_no_nicegui() -> None:
-    assert {"session", "panels"} == {name for name in ("session", "panels") if "nicegui" not in imported(name)}
-    assert "nicegui" in imported("page")
 
 
 def test_plan_ends_at_a_failed_strike() -> None:
@@ -48,12 +32,6 @@ def test_plan_ends_at_a_failed_strike() -> None:
     session.compare_with(OPENED)
     stages = [[work.name for work in stage] for stage in session.plan("Curves", Results())]
     assert stages == [["solved_strike", "solved_strike"]]
-
-
-def test_undo_and_redo_end_at_the_first_and_the_last_step() -> None:
-    session = Session(FIRST)
-    session.set_knob("offset", 0.4)
-    assert [session.undo_redo(steps) for steps in (1, -1, -1, 1)] == [False, True, False, True]
 
 
 def test_miscue_has_numbers_and_no_verdict() -> None:

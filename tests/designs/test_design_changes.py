@@ -4,7 +4,6 @@ import math
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import cuefem as cf
@@ -13,9 +12,7 @@ from cuefem.analysis.design_changes import (
     DesignChanges,
     design_changes,
 )
-from cuefem.analysis.shop_changes import MIN_TUBE_WALL, MIN_WOOD_WALL, changes_of
 from cuefem.cue.materials import material
-from cuefem.parameters.parts import is_tube, shaft_word
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.parameters.table import PARAMETERS
 from tests.helpers.command_line import call
@@ -83,15 +80,6 @@ def test_design_change_error_equals_comparison_of_same_shaft() -> None:
     assert row.squirt_change_error == pytest.approx(error, rel=0.01)
 
 
-def test_design_changes_walls_are_thick_enough(computed: tuple[cf.Scene, DesignChanges]) -> None:
-    scene, record = computed
-    for row in record.changes:
-        changed = with_parameters(scene, row.values)
-        bored = [s for s in changed.cue.segments if s.core is None and max(s.tip_bore, s.butt_bore)]
-        walls = [min(s.tip_diameter - s.tip_bore, s.butt_diameter - s.butt_bore) / 2 for s in bored]
-        assert min(walls, default=np.inf) >= (1 - 1e-9) * (MIN_TUBE_WALL if is_tube(changed.shaft) else MIN_WOOD_WALL)
-
-
 @pytest.mark.heavy
 def test_tube_with_less_mass_in_front_has_less_squirt() -> None:
     """Thinner by 0.2 mm and without filling less, thicker and with an insert more; mass by the volume of each."""
@@ -108,35 +96,6 @@ def test_tube_with_less_mass_in_front_has_less_squirt() -> None:
         -0.2 * ring * 0.144 * (front.material.rho - material("foam").rho), rel=0.02
     )
     assert "unmeasured tube and tip" in " ".join(record.table().notes)
-
-
-def test_bored_maple_is_no_tube_and_solid_carbon_no_wood() -> None:
-    bored = with_parameters(scene_of("pool_maple"), {"bore width": 6e-3, "bore depth": 0.5})
-    labels = " ".join(change.label for change in changes_of(bored))
-    assert "ash shaft" in labels
-    assert "bore wider" in labels
-    assert "taper" in labels
-    assert "wall thinner" not in labels
-    assert shaft_word(bored) == "wood"
-    rod = with_parameters(scene_of("pool_maple"), {"shaft material": "carbon fibre"})
-    labels = " ".join(change.label for change in changes_of(rod))
-    assert "ferrule" in labels
-    assert "taper" not in labels
-    assert "ash" not in labels
-
-
-@pytest.mark.parametrize(
-    ("name", "core", "inside"), [("empty depth", None, "empty"), ("insert depth", "hard maple", "filled like that")]
-)
-def test_tube_of_one_filling_names_what_its_shorter_part_lacks(name: str, core: str | None, inside: str) -> None:
-    scene = scene_of("carbon")
-    filling = material(core) if core else None
-    whole = [replace(segment, core=filling) if segment.tip_bore else segment for segment in scene.cue.segments]
-    scene = replace(scene, cue=replace(scene.cue, segments=tuple(whole)))
-    with pytest.raises(
-        ValueError, match=rf"the tube is {inside} along all its [\d.]+ mm.*; got 100 mm: state the core"
-    ):
-        with_parameters(scene, {name: 0.1})
 
 
 def test_tube_front_parameters_read_back_and_undo() -> None:
@@ -162,21 +121,6 @@ def test_front_of_a_tube_ends_at_a_solid_part() -> None:
     assert [segment.core for segment in filled.cue.segments[1:4]] == [material("hard maple"), None, behind[0].core]
     with pytest.raises(ValueError, match="the tube is 100 mm long; got 120 mm"):
         with_parameters(scene, {"insert depth": 0.12})
-
-
-@pytest.mark.parametrize(
-    ("cue", "name", "value", "problem"),
-    [
-        ("carbon", "front wall", 7e-3, "the wall must be"),
-        ("carbon", "empty depth", 0.9, "the tube is 724.6 mm long; got 900 mm"),
-        ("carbon", "insert depth", 0.9, "the tube is 724.6 mm long; got 900 mm"),
-        ("pool_maple", "front wall", 1e-3, "got 'front wall', which this scene does not have"),
-        ("pool_hollow", "empty depth", 1e-3, "got 'empty depth', which this scene does not have"),
-    ],
-)
-def test_parameters_of_tubes_have_bounds(cue: str, name: str, value: float, problem: str) -> None:
-    with pytest.raises(ValueError, match=problem):
-        with_parameters(scene_of(cue), {name: value})
 
 
 @pytest.mark.heavy

@@ -56,6 +56,8 @@ CALLS: dict[str, Callable[[], object]] = {
     "number for a material": lambda: varying("cue.segments[0].material", 1.0),
     "name for a mass": lambda: varying("ball.mass", "ash"),
     "factor of a constant": lambda: varying("cue.segments[0].kappa", 1.1, factor=True),
+    "name of a formula": lambda: varying("ball.mass", 0.2, name="=cmd|' /C calc'!A0"),
+    "name of two lines": lambda: varying("ball.mass", 0.2, name="bore\nwidth"),
     "field varied twice": lambda: Study(
         MAPLE, tuple(Vary(("ball.mass",), Levels((0.2,)), name) for name in "ab"), (Response("mass"),)
     ),
@@ -181,6 +183,9 @@ study study.toml --part 1/3 -o out.csv
 study study.toml -o out.xlsx
 study study.toml -o out.sqlite
 study study.toml -o nowhere/out.csv
+study study.toml --scheduler nowhere
+study study.toml --scheduler nowhere --workers 2
+study best.toml --scheduler nowhere
 """.strip().splitlines()
 
 
@@ -189,6 +194,7 @@ def test_study_invalid_options_change_no_file(
 ) -> None:
     """Errors before the run: a store that is none, options, a drawing and a scene instead of a study."""
     monkeypatch.chdir(tmp_path)
+    write_study(tmp_path, OPTIMUM, name="best.toml")
     write_study(tmp_path)
     Path("cue.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
     messages = {}

@@ -30,11 +30,3 @@ def test_chart_of_many_designs_shows_an_even_part() -> None:
     few, many = (sweep_charts(two_parameters(count))[0].points[0] for count in (MAX_POINTS, 10_000))
     assert (few[0], len(positions(few[2]))) == ("designs", MAX_POINTS)
     assert (many[0], len(positions(many[2]))) == ("2000 of 10000 designs, evenly spaced", MAX_POINTS)
-
-
-def test_equal_results_and_one_design_are_drawn() -> None:
-    equal = np.full((9, 2), 0.02)
-    drawn = sweep_charts(sweep({"bore": np.arange(9.0)}, equal))[1]
-    assert drawn.y_scale.low < np.degrees(0.02) < drawn.y_scale.high
-    assert len(drawn.y_ticks) > 2
-    assert sweep_charts(sweep({"bore": np.arange(1.0)}, equal[:1])) == []

@@ -56,13 +56,10 @@ def test_study_compensated_length_of_segment_in_file(tmp_path: Path) -> None:
     assert lengths == pytest.approx([0.005, 0.141, 0.55])
 
 
-@pytest.mark.parametrize(
-    ("path", "message"),
-    [("cue.segments[0].length", "must not name the drawn leather"), ("cue.segments[4].length", "cue's file, 0 to 3")],
-)
-def test_study_segment_off_the_modelled_cue_raises(path: str, message: str, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=message):
-        load_study(varying(tmp_path, path))
+@pytest.mark.parametrize(("segment", "problem"), [(0, "must not name the drawn leather"), (4, "cue's file, 0 to 3")])
+def test_study_segment_off_the_modelled_cue_raises(segment: int, problem: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=problem):
+        load_study(varying(tmp_path, f"cue.segments[{segment}].length"))
 
 
 def test_study_of_cue_has_default_stroke_of_game(tmp_path: Path) -> None:

@@ -12,7 +12,6 @@ from hypothesis.extra.numpy import arrays
 
 import cuefem as cf
 from cuefem.designs import Response
-from cuefem.designs.study_table import column_label
 from cuefem.designs.sweep import SweepResult, SweepStatistics
 from cuefem.results.uncertainty import RATIO_FLOOR, SHAFT_ERROR
 from tests.helpers.examples import examples
@@ -87,16 +86,3 @@ def test_neighbours_on_the_front_that_are_not_distinct_are_marked(tmp_path: Path
         marks.count(False),
         True,
     )
-
-
-LABELS = {
-    "tip.contact_time": "tip contact time",
-    "cue.segments[2].tip_bore": "segment 3 tip bore",
-    "cue.segments[*].material.E": "all segments material E",
-    "cue.segments[0].length, effects[0].dome_radius": "segment 1 length, effect 1 dome radius",
-    "bore of 2.5, v1.5": "bore of 2.5, v1.5",
-}
-
-
-def test_labels_of_columns_and_responses_are_distinct_text() -> None:
-    assert {name: column_label(name) for name in LABELS} == LABELS

@@ -100,12 +100,47 @@ FILES = {
     "joint": 'type = "Joint"\nposition = "0.71 m"',
     "mass": 'type = "PointMass"\nposition = "71 cm"\nmass = "5 g"',
 }
+TIP = {"height": '"6 mm"', "dome_radius": '"9.5 mm"', "leather": '"medium"'}
+# Entries that a leather tip refuses; "" leaves one out.
+TIPS: list[dict[str, str]] = [
+    {"leather": ""},
+    {"leather": '"sofd"'},
+    {"E": '"1 MPa"'},
+    {"leather": "", "lether": '"soft"'},
+    {"dome_radius": '"penny"'},
+    {"dome_radius": "9.5"},
+    {"height": "inf"},
+    {"height": '"60 mm"'},
+    {"rolling": '"no"'},
+    {"nu": "0.5"},
+    {"diameter": '"14 mm"'},
+    *(
+        {"layers": f"[{{ {layer} }}]"}
+        for layer in (
+            'height = "0 mm", E = "2 GPa"',
+            'height = "1 mm"',
+            'height = "1 mm", E = "2 GPa", nu = 0.5',
+            'height = "1 mm", E = "2e6 GPa"',
+            'height = "5 mm", E = "2 GPa"',
+            'thickness = "1 mm", E = "2 GPa"',
+        )
+    ),
+]
 
 
-def test_effect_in_file_off_the_cue_raises(
+def leather_tip(entries: dict[str, str]) -> str:
+    """The table of a leather tip."""
+    return "\n".join(['type = "LeatherTip"', *(f"{key} = {text}" for key, text in (TIP | entries).items() if text)])
+
+
+def test_effect_in_file_invalid_raises(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ) -> None:
+    """Before any computation."""
     monkeypatch.chdir(tmp_path)
-    for name, effect in FILES.items():
-        (tmp_path / f"{name}.toml").write_text(SCENE.format(effect=effect), encoding="utf-8")
-    assert_refused("effect_files", {name: raised(lambda name=name: cf.load(f"{name}.toml")) for name in FILES}, request)
+    files = FILES | {str(entries): leather_tip(entries) for entries in TIPS}
+    messages = {}
+    for name, effect in files.items():
+        Path("scene.toml").write_text(SCENE.format(effect=effect), encoding="utf-8")
+        messages[name] = raised(lambda: cf.load("scene.toml"))
+    assert_refused("effect_files", messages, request)

@@ -8,7 +8,6 @@ import pytest
 import cuefem as cf
 from cuefem.files.cue_names import CUES, cue_name, named_path
 from cuefem.files.parts_catalogue import data_folder
-from tests.helpers.command_line import call, stdout_of
 
 ROOT = Path(__file__).parents[2]
 
@@ -29,11 +28,3 @@ def test_words_of_one_name_are_enough_and_files_come_first(tmp_path: Path, monke
     monkeypatch.chdir(tmp_path)
     (tmp_path / "carbon").mkdir()
     assert named_path(Path("carbon")) == Path("carbon")
-
-
-@pytest.mark.heavy
-def test_name_of_measured_cue_stands_for_its_folder() -> None:
-    assert "Predator Z-2" in stdout_of("compare", "predator z2")
-    assert cf.compare("predator z2").rows
-    status, _, err = call("compare", "carbon")
-    assert (status, "needs another FILE" in err) == (2, True)

@@ -56,17 +56,6 @@ def test_load_profile_merges_straight_tapers(tmp_path: Path) -> None:
     assert replace(ash.segments[1], material=cue.segments[1].material) == cue.segments[1]
 
 
-def test_save_vtu_contains_the_cue(tmp_path: Path) -> None:
-    path = tmp_path / "kim.vtu"
-    cf.save(cf.Cue((SEGMENT, replace(SEGMENT, core=MAPLE, kappa=None)), 0.42), path)
-    mesh = meshio.vtu.read(path)
-    assert mesh.points[:, 0].tolist() == [0, 0.7, 1.4]
-    assert mesh.cells_dict["line"].tolist() == [[0, 1], [1, 2]]
-    assert mesh.cell_data["core_E"][0].tolist() == [0, 12.6e9]
-    assert mesh.cell_data["kappa"][0].tolist() == [0.9, 0]
-    assert mesh.cell_data["body_mass"][0].tolist() == [0.42, 0.42]
-
-
 @pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
 def test_save_over_file_replaces_it(tmp_path: Path) -> None:
     path = tmp_path / "cue.toml"
@@ -74,21 +63,6 @@ def test_save_over_file_replaces_it(tmp_path: Path) -> None:
     cf.save(cf.Cue((SEGMENT, SEGMENT)), path)
     assert cf.load(path).length == 1.4
     assert list(tmp_path.iterdir()) == [path]
-
-
-@pytest.mark.parametrize(
-    ("item", "name", "message"),
-    [
-        (KIM, "cue.msh", r"must end in .toml or .vtu; got '.msh'"),
-        (cf.Scene(KIM), "scene.vtu", r"must end in .toml, for a scene; got '.vtu'"),
-        (KIM, "nowhere/cue.toml", r"cannot be written: No such file or directory"),
-        (KIM, "nowhere/cue.vtu", r"cannot be written: No such file or directory"),
-    ],
-)
-def test_save_to_invalid_path_is_rejected(tmp_path: Path, item: cf.Cue | cf.Scene, name: str, message: str) -> None:
-    with pytest.raises(InputError, match=f"{name}: {message}"):
-        cf.save(item, tmp_path / name)
-    assert not list(tmp_path.iterdir())
 
 
 def test_save_failure_leaves_no_file(tmp_path: Path) -> None:

@@ -5,12 +5,16 @@ Every declared field of every table: tests/quantity/test_declared_fields.py.
 
 import struct
 from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from math import nan
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.contact.motion_history import motion
 from cuefem.designs import Levels, Response, Study, Vary
 from cuefem.designs.store import SqliteStore
 from cuefem.files import InputError
@@ -93,6 +97,15 @@ ply  | solid
 obj  | v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9
 obj  | v 0 0 0\nv 1 0 0\nf 1 2
 obj  | v 0 0 0\nv 1 nan 0\nv 0 1 0\nf 1 2 3
+csv  | H0,12.75\n330,0.132\n736.6,21.5
+csv  | H0,12.75\n330,.52\n736.6,21.5
+csv  | H0,12.75\n330,1320\n736.6,21.5
+csv  | H0,12.75\n330,13.2\n736.6,2.15
+csv  | H0,12.75\n330,13.2\n736.6,215
+csv  | H0,1.275\n330,13.2\n736.6,21.5
+csv  | H0,127.5\n330,13.2\n736.6,21.5
+csv  | x [in],diameter [in]\n0,.505\n14,.00520\n29,.845
+csv  | x [in],diameter [in]\n0,.505\n14,13.2\n29,.845
 """.strip().splitlines()
 
 
@@ -190,8 +203,33 @@ def test_load_missing_file_or_foreign_option_is_rejected(tmp_path: Path, request
     assert_refused("file_options", messages, request)
 
 
+PIECE = '[[segments]]\nlength = "{}"\ntip_diameter = "{}"\nbutt_diameter = "21 mm"\nmaterial = "hard maple"\n'
+LARGE = {
+    "long": PIECE.format("1e9 m", "12 mm"),
+    "wide": PIECE.format("700 mm", "99999 mm"),
+    "short contact": 'tip = { contact_time = "1e-12 s" }\ncue = { mass = "1 kg", end_mass = "6 g" }\nstroke = {}\n',
+    "2,001 segments": PIECE.format("1 mm", "12 mm") * 2001,
+    "1 MB": PIECE.format("1 mm", "12 mm") * 40_000,
+    "keys of 20,001 parts": "a" + ".a" * 20_000 + " = 1\n",
+    "keys in quotes": "x = {" + '"a".' * 20_000 + "a = 1}\n",
+    "200,000 blanks": PIECE.format("700" + 200_000 * " " + "x", "12 mm"),
+}
+
+
+def test_file_of_unlimited_time_or_memory_is_rejected(tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    path = tmp_path / "cue.toml"
+    messages = {}
+    for name, text in LARGE.items():
+        path.write_text(text, encoding="utf-8")
+        messages[name] = rejection(path)
+    assert_refused("large_files", messages, request)
+
+
 LUMPED = cf.Scene(cf.LumpedCue(0.54, 0.01))
-LOADERS: dict[str, Callable[[], object]] = {
+ASH = cf.Material(12e9, 8e8, 680.0)
+BAR = cf.Cue((cf.Segment(0.7, 0.012, 0.021, ASH),))
+STRUCK = cf.Scene(KIM, tip=cf.Tip(0.75, 0.7, 1e-3), stroke=cf.Stroke(2.0, 0.3))
+CALLS: dict[str, Callable[[], object]] = {
     "stroke of a study": lambda: cf.load_scene("studies/sweeps/bore.toml"),
     "stroke of a measured folder": lambda: cf.load_scene("studies/measured/stinger"),
     "stroke of a misspelt name": lambda: cf.load_scene("plane maple"),
@@ -199,13 +237,32 @@ LOADERS: dict[str, Callable[[], object]] = {
     "unknown game": lambda: cf.load_scene("plain maple", game="polo"),
     "unknown game of a cue": lambda: cf.usual_scene(cf.load_cue("plain maple"), "polo"),
     "cue of a lumped cue": lambda: cf.load_cue("lumped.toml"),
+    "mesh of a cue": lambda: cf.save(KIM, "cue.msh"),
+    "mesh of a scene": lambda: cf.save(cf.Scene(KIM), "scene.vtu"),
+    "cue in no folder": lambda: cf.save(KIM, "nowhere/cue.toml"),
+    "mesh in no folder": lambda: cf.save(KIM, "nowhere/cue.vtu"),
+    **{f"motion at {times}": partial(motion, STRUCK, times) for times in ((-1e-3,), (1e-3, 0.0), (nan,), ())},
+    "motion of a lumped cue": lambda: motion(LUMPED, [0.0]),
+    "one frame": lambda: cf.save_motion(STRUCK, "seen", frames=1),
+    "motion until 0": lambda: cf.save_motion(STRUCK, "seen", until=0.0),
+    "scale without a number": lambda: cf.save_motion(STRUCK, "seen", scale=nan),
+    "motion of a raised cue": lambda: cf.save_motion(replace(STRUCK, effects=(cf.Elevation(0.1),)), "seen"),
+    "motion into a file": lambda: cf.save_motion(STRUCK, "lumped.toml"),
+    "motion in no folder": lambda: cf.save_motion(STRUCK, "none/seen", frames=2),
+    "segment of 1e9 m": lambda: cf.Segment(1e9, 0.012, 0.021, ASH),
+    "contact of 1e-12 s": lambda: cf.Tip(contact_time=1e-12),
+    "2,002 segments": lambda: cf.Cue((cf.Segment(1e-3, 0.012, 0.012, ASH),) * 2002),
+    "stiff tip": lambda: cf.end_mass(cf.Scene(BAR, tip=cf.Tip(stiffness=1e30))),
+    "fine mesh": lambda: cf.end_mass(cf.Scene(BAR, tip=cf.Tip(stiffness=1e6)), at=cf.Resolution(4000, 8, 4)),
+    "many modes": lambda: cf.modes(BAR, 10**9),
 }
 
 
-def test_loader_of_another_kind_of_file_is_rejected(
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
+def test_call_on_another_kind_or_size_is_rejected(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ) -> None:
     (tmp_path / "studies").symlink_to(Path(__file__).parents[2] / "studies")
     cf.save(LUMPED, tmp_path / "lumped.toml")
     monkeypatch.chdir(tmp_path)
-    assert_refused("loaders", messages_of(LOADERS), request)
+    assert_refused("file_calls", messages_of(CALLS), request)

@@ -1,8 +1,6 @@
 """Lathe profiles in unusual but unambiguous formats are read; rejected ones: test_invalid_input.py (regression)."""
 
 import itertools
-import json
-import re
 from pathlib import Path
 
 import pytest
@@ -10,7 +8,6 @@ import pytest
 import cuefem as cf
 from cuefem.cue.materials import material
 from cuefem.files.defaults_report import Assumption, drawing_assumptions
-from tests.helpers.command_line import call
 
 MAPLE = material("hard maple")
 POINTS = ((0.0, 12.75), (330.0, 13.2), (736.6, 21.5))  # mm
@@ -219,15 +216,3 @@ def test_profile_column_of_another_word_is_read_with_a_warning(name: str, tmp_pa
     (path := tmp_path / "shaft.csv").write_text(f"x [mm],diameter [mm],{name}\n0,12.4,1\n736,21,2\n")
     with pytest.warns(cf.PlausibilityWarning, match=f"column '{name}' is not used"):
         cf.load(path)
-
-
-def test_profile_unused_column_is_the_first_warning(tmp_path: Path) -> None:
-    """In Python a PlausibilityWarning, in a command the first line, in JSON the first of the warnings."""
-    path = write_profile(tmp_path, PROFILES["extra columns"])
-    line = "columns 'No', 'note' are not used; a profile may have columns x, diameter, radius, bore, material, core"
-    with pytest.warns(cf.PlausibilityWarning, match=re.escape(line)):
-        cf.load(path)
-    status, out, err = call("modes", path, "--json")
-    assert status == 0
-    assert err.startswith(f"warning: {line}")
-    assert json.loads(out)["warnings"][0].startswith(line)

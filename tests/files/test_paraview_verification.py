@@ -1,7 +1,6 @@
 """ParaView files: modes and motion equal the library (verification)."""
 
 import xml.etree.ElementTree as ET
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,7 +12,6 @@ import cuefem as cf
 from cuefem.contact.motion_history import motion
 from cuefem.files import InputError
 from cuefem.files.paraview import RING_POINTS, ball_surface, displacements, shaft_surface
-from tests.helpers.invalid_input import assert_raises
 
 MAPLE = cf.Material(12.6e9, 0.84e9, 782.3284453057836)
 CUE = cf.Cue((cf.Segment(0.025, 0.0125, 0.0128, MAPLE), cf.Segment(0.7, 0.012, 0.021, MAPLE)), 0.42)
@@ -126,23 +124,3 @@ def test_save_motion_failure_leaves_no_folder(tmp_path: Path, monkeypatch: pytes
     with pytest.raises(InputError, match="seen: cannot be written: No space left on device"):
         cf.save_motion(SCENE, tmp_path / "seen", frames=2)
     assert list(tmp_path.iterdir()) == []
-
-
-RAISED = replace(SCENE, effects=(cf.Elevation(0.1),))
-LUMPED = replace(SCENE, cue=cf.LumpedCue(0.5, 0.005))
-TIMES = "motion takes ascending times in [0, inf) s; got"
-CALLS = [
-    *((lambda times=times: motion(SCENE, times), TIMES) for times in ([-1e-3], [1e-3, 0.0], [np.nan], [], [np.inf])),
-    (lambda: motion(LUMPED, [0.0]), "Scene.cue must be a Cue of segments"),
-    (lambda: cf.save_motion(SCENE, "seen", frames=1), "save_motion: frames must be an integer in [2, 10000]; got 1"),
-    (lambda: cf.save_motion(SCENE, "seen", until=0.0), "save_motion: until must be in (0, inf) s; got 0.0"),
-    (lambda: cf.save_motion(SCENE, "seen", scale=np.nan), "save_motion: scale must be finite; got nan"),
-    (lambda: cf.save_motion(RAISED, "seen"), "motion takes strokes in the plane of cue and ball; got Elevation"),
-    (lambda: cf.save_motion(SCENE, Path(__file__)), "must be a new folder; a folder or file of this name exists"),
-    (lambda: cf.save_motion(SCENE, "none/seen", frames=2), "seen: cannot be written: No such file or directory"),
-]
-
-
-@pytest.mark.parametrize(("call", "message"), CALLS)
-def test_save_motion_invalid_arguments_are_rejected(call: Callable[[], object], message: str) -> None:
-    assert_raises(call, message)

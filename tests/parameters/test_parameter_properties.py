@@ -9,9 +9,6 @@ from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.cue.materials import LEATHERS, material
-from cuefem.designs.evaluation import Response
-from cuefem.designs.sampling import Span
-from cuefem.designs.study import Study, Vary
 from cuefem.files.cue_names import CUES
 from cuefem.files.reference_cues import named_scene
 from cuefem.parameters.parts import outer_diameter
@@ -98,40 +95,3 @@ def test_parameter_material_and_leather_names_set_values() -> None:
 def test_contact_time_of_spring_clears_stiffness() -> None:
     spring = cf.Scene(FIRST.cue, tip=cf.Tip(stiffness=1e6))
     assert with_parameters(spring, {"contact time": 1e-3}).tip == cf.Tip(contact_time=1e-3)
-
-
-INVALID = {
-    "unknown": ("ferule length", "did you mean 'ferrule length'"),
-    "absent": ("contact time", "got 'contact time', which this scene does not have"),
-    "beyond": ("taper at 5 m", "got 'taper at 5 m', which this scene does not have"),
-    "unit": ("taper at 5 kg", "must name a position such as \"taper at 330 mm\"; got 'taper at 5 kg'"),
-    "blank": ("x y", "unknown parameter"),
-    "whole": ("ball", "must name one number or a material; got 'ball', which holds mass"),
-}
-
-
-@pytest.mark.parametrize("case", INVALID)
-def test_unknown_parameter_raises(case: str) -> None:
-    text, message = INVALID[case]
-    with pytest.raises(ValueError, match=r"got|unknown") as error:
-        with_parameters(FIRST, {text: 1.0})
-    assert message in str(error.value)
-
-
-@pytest.mark.parametrize(("name", "value"), [("bore depth", -1.0), ("bore depth", np.nan), ("taper diameter", np.nan)])
-def test_number_of_drawing_out_of_bounds_raises(name: str, value: float) -> None:
-    with pytest.raises(ValueError, match=f"^{name} must be in .* m; got {value}$"):
-        with_parameters(FIRST, {name: value})
-
-
-def test_text_for_number_of_drawing_raises() -> None:
-    with pytest.raises(TypeError, match=r"^tip diameter must be a number in"):
-        with_parameters(FIRST, {"tip diameter": "12 mm"})
-
-
-def test_bore_width_without_bore_raises() -> None:
-    maple = cf.usual_scene(cf.load("meshes/pool_maple.toml"))
-    with pytest.raises(ValueError, match=r"^bore width has no effect: the cue has no bore"):
-        with_parameters(maple, {"bore width": 0.015})
-    with pytest.raises(ValueError, match=r"^bore width has no effect: the cue has no bore"):
-        Study(maple, (Vary(("bore width",), Span(0.004, 0.009, 2)),), (Response.of("squirt"),))

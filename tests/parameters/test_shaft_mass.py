@@ -108,12 +108,6 @@ def test_options_keep_the_density_of_a_weighed_shaft_at_every_door(options: dict
         assert main_material(cue).rho == pytest.approx(main_material(before).rho, rel=1e-9), door
 
 
-def test_another_wood_is_not_weighed(tmp_path: Path) -> None:
-    cue = cf.load(weighed(tmp_path), material="ash")
-    assert isinstance(cue, cf.Cue)
-    assert (main_material(cue), cue.shaft_mass_measured) == (cf.material("ash"), False)
-
-
 def test_material_option_replaces_the_material_column_of_a_profile(tmp_path: Path) -> None:
     (csv := tmp_path / "maple.csv").write_text("x [mm],diameter [mm],material\n0,12.75,hard maple\n736.6,21.5,\n")
     cue = cf.load(csv, material="ash")
@@ -131,10 +125,3 @@ def test_report_says_what_options_replace_and_how_a_shaft_was_weighed(tmp_path: 
     both = notes("--ferrule", ferrule, "--bore", bore, "--shaft-mass", "110 g")
     assert "the shaft was weighed with its tip, this ferrule, this bore" in both
     assert any("the weighed wood is replaced" in note for note in notes("--material", "ash"))
-
-
-@pytest.mark.parametrize(("mass", "noted"), [("112 g", False), ("300 g", True), ("60 g", True)])
-def test_shaft_mass_implausible_density_is_noted(mass: str, noted: bool, tmp_path: Path) -> None:
-    (csv := tmp_path / "my.csv").write_text(CSV)
-    status, _, err = call("strike", csv, "--body-mass", "15 oz", "--shaft-mass", mass)
-    assert (status, "density of its hard maple" in err) == (0, noted)

@@ -8,7 +8,6 @@ import pytest
 import cuefem as cf
 from cuefem.cue.materials import LEATHERS, material
 from cuefem.scene.default_scene import GAMES, default_tip
-from tests.helpers.invalid_input import assert_raises
 
 WOOD = cf.Segment(0.7, 0.0118, 0.021, material("hard maple"))
 
@@ -31,17 +30,6 @@ def test_default_scene_drawn_tip_has_all_effects(game: str) -> None:
     bare = cf.usual_scene(cf.Cue((WOOD,), 0.4), game)
     with_leather = cf.usual_scene(cf.Cue((leather(bare.leather_tip.height), WOOD), 0.4), game)
     assert with_leather == bare
-
-
-def test_default_scene_invalid_input_raises() -> None:
-    assert_raises(
-        lambda: cf.usual_scene(cf.Cue((WOOD,)), "croquet"), "game must be one of pool, carom, snooker; got 'croquet'"
-    )
-    assert_raises(lambda: default_tip(cf.Cue((WOOD,)), "golf"), "game must be one of pool, carom, snooker; got 'golf'")
-    assert_raises(
-        lambda: cf.usual_scene(cf.LumpedCue(0.5, 0.01)), "TypeError: usual_scene cue must be a Cue; got a LumpedCue"
-    )
-    assert_raises(lambda: cf.usual_scene(cf.Cue((leather(1e-3), WOOD))), "higher than 2.054 mm, the depth of its dome")
 
 
 def test_axial_waves_short_butt_is_rigid_mass() -> None:

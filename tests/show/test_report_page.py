@@ -14,7 +14,6 @@ from cuefem.files.defaults_report import Assumption
 from cuefem.results.quantities import DASH
 from cuefem.show.charts import WIDTH, Axis, round_step, spread_labels
 from cuefem.show.drawings import DIAMETER_SCALE, cue_drawing
-from cuefem.show.templates import option_pieces
 from tests.helpers.page_reader import assert_valid
 
 MESHES = Path(__file__).parents[2] / "meshes"
@@ -26,23 +25,6 @@ def scene(name: str) -> cf.Scene:
     loaded = cf.load(SCENES / f"{name}.toml")
     assert isinstance(loaded, cf.Scene)
     return loaded
-
-
-@pytest.mark.heavy
-@pytest.mark.parametrize(
-    "stroke",
-    [
-        replace(LUMPED, stroke=cf.Stroke(offset=-0.3)),
-        replace(LUMPED, stroke=cf.Stroke(offset=0.0)),
-        replace(LUMPED, cue=cf.LumpedCue(0.54, 0.006, 0.5), effects=(cf.TipShear(0.75),)),
-        replace(LUMPED, tip=cf.Tip(friction=math.inf)),
-    ],
-    ids=["left", "head on", "coupled", "no slip"],
-)
-def test_page_of_lumped_cue_is_valid_html(stroke: cf.Scene) -> None:
-    texts = " ".join(assert_valid(cf.report(stroke, details=True).to_html("lumped.toml")).text)
-    assert "Mode shapes" not in texts
-    assert f"{math.degrees(cf.strike(stroke).squirt):.2f}°" in texts
 
 
 def test_page_with_markup_in_name_is_escaped() -> None:
@@ -149,15 +131,6 @@ def test_squirt_curve_head_on_has_no_pivot_length() -> None:
     )
     assert math.isnan(head_on)
     assert shown.table().rows[1][1:3] == ("0.00°", DASH)
-
-
-def test_options_are_pieces_that_paper_leaves_out() -> None:
-    assert option_pieces('no ferrule (--ferrule "abs 1 in"), hard maple') == [
-        ("no ferrule", False),
-        (' (--ferrule "abs 1 in")', True),
-        (", hard maple", False),
-    ]
-    assert option_pieces("use --leather soft") == [("use ", False), ("--leather", True), (" soft", False)]
 
 
 def test_date_of_a_page_is_that_of_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:

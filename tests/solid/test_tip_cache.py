@@ -11,10 +11,8 @@ import cuefem as cf
 from cuefem.solid.tip_cache import cached_table
 from cuefem.solid.tip_table import HEIGHT, TipTable, UntabulatedTip, table_of_tip
 from tests.helpers.command_line import call
-from tests.helpers.invalid_input import assert_rejects
 
 D = 12.75e-3
-PLAIN = cf.LeatherTip(height=6e-3, dome_radius=9.5e-3, E=100e6)
 FLAT = cf.LeatherTip(height=1.5e-3, dome_radius=np.inf, E=100e6)  # lower than the table covers, and fastest to compute
 PATCHES = np.array([1e-3, 2e-3, 3e-3])
 
@@ -113,24 +111,3 @@ def test_tip_cache_without_home_folder_stores_nothing(
     status, _, err = call("strike", scene)
     assert (status, len(computed_tips), cache.exists()) == (0, 1, False)
     assert "not stored" in err.splitlines()[0]
-
-
-@pytest.mark.parametrize(
-    ("entries", "message"),
-    [
-        ('height = "6 mm"\nlayers = [{ height = "0 mm", E = "2 GPa" }]', "effects[0].layers[0].height: must be"),
-        ('height = "6 mm"\nlayers = [{ height = "1 mm" }]', "effects[0].layers[0].E: must be given"),
-        ('height = "6 mm"\nlayers = [{ height = "1 mm", E = "2 GPa", nu = 0.5 }]', "layers[0].nu: must be 0 to 0.49"),
-        ('height = "6 mm"\nlayers = [{ height = "1 mm", E = "2e6 GPa" }]', "1e-3 to 1e4 of the leather's E"),
-        ('height = "6 mm"\nlayers = [{ height = "5 mm", E = "2 GPa" }]', "to end below its dome; got 5 mm"),
-        ('height = "6 mm"\nlayers = [{ thickness = "1 mm", E = "2 GPa" }]', "unknown key; valid: height, E, nu"),
-        ('height = "6 mm"\ndiameter = "14 mm"', "diameter: must be"),
-        ('height = "60 mm"', "high; got 60 mm"),
-        ('height = "6 mm"\nnu = 0.5', "nu: must be 0 to 0.49; got 0.5"),
-    ],
-)
-def test_leather_tip_invalid_input_prints_one_line(tmp_path: Path, entries: str, message: str) -> None:
-    """Before any computation."""
-    file = tmp_path / "scene.toml"
-    file.write_text(SCENE + entries + "\n")
-    assert_rejects(message, "strike", file)
