@@ -76,8 +76,8 @@ from .measurements.calibration import (
 from .endmass.definitions import end_mass as end_mass
 from .endmass.lumped import impulse as impulse, lump as lump
 from .scene.default_scene import usual_scene as usual_scene
-from .files import load as load, save as save
-from .files.loaders import load_cue as load_cue, load_scene as load_scene
+from .files import save as save
+from .files.loaders import load as load, load_cue as load_cue, load_scene as load_scene
 from .files.paraview import save_motion as save_motion
 from .designs.evaluation import Response as Response
 from .designs.optimum import Limit as Limit, OptimumResult as OptimumResult, Problem as Problem

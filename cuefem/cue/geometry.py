@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterable
+from copy import copy
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import takewhile
-from typing import Annotated, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -274,6 +276,17 @@ def _shear_coefficients(c: SegmentRows, bore_ratio: Array) -> tuple[Array, Array
     return np.where(default, shell, c.kappa), np.where(default, core, c.kappa)
 
 
+class AssumedDrawing(NamedTuple):
+    """A cue as it was loaded, and what was assumed of it: an `Assumption` each. A later change of the cue ends some.
+
+    warnings: of the file that was read, such as a column that is not used.
+    """
+
+    cue: Cue
+    listed: tuple[Any, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True)
 class Cue:
     """A cue of segments from tip to butt, and the mass of the rest of the cue.
@@ -291,6 +304,8 @@ class Cue:
     assumed_body_mass
         The body mass that was assumed because a drawing has none, kg (`usual_scene`). While ``body_mass`` equals it, it
         is an uncertain parameter.
+    assumed
+        What a drawing left open, set by `cuefem.load`.
 
     Raises
     ------
@@ -312,6 +327,7 @@ class Cue:
     body_mass: Annotated[float, Quantity("kg", "[0, inf)").with_typical_range(0.05, 0.8)] = 0.0
     shaft_mass_measured: bool = False
     assumed_body_mass: Annotated[float, Quantity("kg", "[0, inf)")] = 0.0
+    assumed: AssumedDrawing | None = field(default=None, compare=False, repr=False)
 
     def __repr__(self) -> str:
         count = f"{len(self.segments)} segment{'s' if len(self.segments) > 1 else ''}"
@@ -329,6 +345,12 @@ class Cue:
             raise ValueError(f"Cue.segments must hold at most {limit} segments; got {len(self.segments)}")
         for i, segment in enumerate(self.segments):
             check_kind(f"Cue.segments[{i}]", segment, Segment)
+
+    def assuming(self, listed: Iterable[Any], warnings: Iterable[str]) -> Cue:
+        """The cue with what was assumed of it as it is now: the fields of `AssumedDrawing`."""
+        made = copy(self)
+        object.__setattr__(made, "assumed", AssumedDrawing(self, tuple(listed), tuple(warnings)))
+        return made
 
     @cached_property
     def nodes(self) -> Array:

@@ -53,50 +53,7 @@ def load(
     bore: str | None = None,
     body_mass: str | float | None = None,
 ) -> Cue | Scene:
-    """Load a cue or a scene from a file.
-
-    Parameters
-    ----------
-    path : str or path
-        A drawing or a scene (.toml), a lathe profile (.csv), or a closed CAD surface (.stl, .ply, .obj); or the name of
-        a cue, such as "plain maple", "carbon" or "predator z2" (`cuefem parts` lists them).
-    material : str, optional
-        Name of the material of the shaft, instead of the one in the file; for a lathe profile or a surface that names
-        none "hard maple" by default. A weighed density (``shaft_mass``) is that of the wood of the file: another
-        material has its own, and all other options keep it.
-    length_unit : str, optional
-        Unit of a surface's coordinates, "mm" by default, or of a lathe profile without units.
-    front : str, optional
-        Front of a lathe profile or a surface: "ferrule" (default) or "leather 6 mm".
-    ferrule : str, optional
-        A ferrule at the front, such as "25 mm melamine", on a wooden tenon of 0.62 of its diameter. The tenon may be
-        named: "25 mm melamine, tenon 8 mm", "25 mm melamine, no tenon".
-    bore : str, optional
-        A bore, such as "6 mm wide, 127 mm deep", drilled from behind the tenon of the ferrule, or from the front.
-    body_mass : str or float, optional
-        Mass of the rest of the cue behind the drawing, such as "15 oz", or a number in kg; by default from the file.
-
-    Returns
-    -------
-    Cue or Scene
-        A .toml file with [[segments]] is a cue, one with [cue] a scene.
-
-    Raises
-    ------
-    InputError
-        A ValueError in one line that names the file, the key, the bound with its unit, and the value in the file.
-
-    Examples
-    --------
-    >>> import cuefem as cf
-    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 700.0)),))
-    >>> import tempfile, pathlib
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     path = pathlib.Path(folder) / "cue.toml"
-    ...     cf.save(cue, path)
-    ...     cf.load(path) == cue, cf.load(path, body_mass="15 oz").body_mass
-    (True, 0.425242...)
-    """
+    """The content of a file, without what it leaves open: see `cuefem.files.loaders.load`."""
     path = named_path(Path(path))
     shape = path.suffix.lower() in SHAPE_EXTENSIONS
     for name, value, whose in (("length_unit", length_unit, "units of length"), ("front", front, "leather")):

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from cuefem.cue import Cue, Material
+from cuefem.cue import Cue, LumpedCue, Material
 from cuefem.cue.materials import MATERIALS, material, table_name
 from cuefem.files import load
 from cuefem.files.cue_names import CUES, cue_name, named_path
@@ -22,11 +22,12 @@ from cuefem.files.lathe_profile import (
 from cuefem.files.shaft_additions import EXAMPLES, TENON_RATIO, example
 from cuefem.files.surface_sections import TOLERANCE
 from cuefem.files.toml_reader import missing_keys, read_tables
+from cuefem.files.warnings_of_drawings import drawing_warnings
 from cuefem.parameters.parts import Layout, is_wood_of, main_material
 from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.display_units import modulus_text, span_text, with_unit
 from cuefem.scene import DEFAULT_CONTACT_TIME, Scene
-from cuefem.scene.default_scene import DEFAULT_GAME, GAMES
+from cuefem.scene.default_scene import DEFAULT_GAME, GAMES, without_leather
 
 CUE, TIP, IMPACT, STROKE = "cue", "tip", "impact", "stroke"  # what an assumption is on
 _OF = {
@@ -71,14 +72,19 @@ def assumptions(path: Path, scene: Scene, options: Mapping[str, Any]) -> list[As
     notes = notes_on_options(path, options)
     if "cue" in tables:
         return [*notes, *assumptions_of_tables(tables, path.parent, scene, options)]
-    game = options.get("game") or DEFAULT_GAME
-    known, butt = GAMES.get(game), ""
-    if known and scene.shaft.body_mass:
-        length, diameter = (with_unit(size, "m", 6) for size in (known.cue_length, known.butt_diameter))
-        butt = f", butt to {length}, {diameter} wide, for axial waves"
-    stroke = Assumption.on("game", f"default stroke of {game}{butt}")
-    missing = [] if "game" in options else [stroke]
-    return [*notes, *_of_cue(path, scene.shaft, options), *missing, *_stroke({}, game, scene, options)]
+    drawing = _with_rest(scene.shaft, _of_drawing(path, scene.shaft, options))
+    return [*notes, *drawing, *_default_stroke(options.get("game") or DEFAULT_GAME, scene, options)]
+
+
+def loaded_cue(path: Path, cue: Cue, options: Mapping[str, Any]) -> Cue:
+    """The cue of a drawing's file with its assumptions and warnings; options: those it was loaded with."""
+    listed = [*notes_on_options(path, options), *_of_drawing(path, cue, options)]
+    return cue.assuming(listed, drawing_warnings(path))
+
+
+def loaded_scene(path: Path, scene: Scene, options: Mapping[str, Any]) -> Scene:
+    """The scene of a scene's file with its assumptions and warnings; options: those it was loaded with."""
+    return scene.assuming(listed=tuple(assumptions(path, scene, options)), warnings=tuple(drawing_warnings(path)))
 
 
 def notes_on_options(path: Path, options: Mapping[str, Any]) -> list[Assumption]:
@@ -107,18 +113,23 @@ def assumptions_of_tables(
     """Assumptions for a scene of a file's tables."""
     cue, game = tables["cue"], str(tables.get("game", DEFAULT_GAME))
     file = named_path(folder / cue) if isinstance(cue, str) else None
-    drawing = [] if scene.lumped else _of_cue(file, scene.shaft, options)
+    drawing = [] if file is None or scene.lumped else _of_drawing(file, scene.shaft, options)
+    drawing = drawing if scene.lumped else _with_rest(scene.shaft, drawing)
     stroke = _stroke(tables, game, scene, options)
     if stroke and "game" not in tables:
         stroke = [Assumption("", f"missing values from the default stroke of {game}"), *stroke]
     return [*drawing, *stroke]
 
 
-def _of_cue(path: Path | None, cue: Cue, options: Mapping[str, Any]) -> list[Assumption]:
-    """Assumptions for the drawing of a stroke's cue, and for the rest of the cue. path: None of a scene's own table."""
-    drawing = [] if path is None else drawing_assumptions(path, cue, options)
-    if path is not None and (name := cue_name(path)):
-        drawing = [Assumption("", CUES[name].assumed), *drawing]
+def _of_drawing(path: Path, cue: Cue, options: Mapping[str, Any]) -> list[Assumption]:
+    """Assumptions for the drawing of a file, which may be a cue with a name."""
+    name = cue_name(path)
+    named = [Assumption("", CUES[name].assumed)] if name else []
+    return [*named, *drawing_assumptions(path, cue, options)]
+
+
+def _with_rest(cue: Cue, drawing: list[Assumption]) -> list[Assumption]:
+    """The assumptions for a drawing, with that for the rest of its cue."""
     if not cue.is_body_mass_assumed:
         return drawing
     rest = Assumption.on("body_mass", f"usual rest of the cue, {with_unit(cue.body_mass, 'kg')}")
@@ -240,10 +251,20 @@ def _surface(path: Path) -> list[str]:
     ]
 
 
-def _stroke(tables: dict[str, Any], game: str, scene: Scene, options: Mapping[str, Any]) -> list[Assumption]:
+def _default_stroke(game: str, scene: Scene, given: Collection[str]) -> list[Assumption]:
+    """Assumptions for ball, tip and stroke of a cue alone."""
+    known, butt = GAMES.get(game), ""
+    if known and scene.shaft.body_mass:
+        length, diameter = (with_unit(size, "m", 6) for size in (known.cue_length, known.butt_diameter))
+        butt = f", butt to {length}, {diameter} wide, for axial waves"
+    stroke = [] if "game" in given else [Assumption.on("game", f"default stroke of {game}{butt}")]
+    return [*stroke, *_stroke({}, game, scene, given)]
+
+
+def _stroke(tables: dict[str, Any], game: str, scene: Scene, given: Collection[str]) -> list[Assumption]:
     """Assumptions for ball, tip, stroke and effects that a scene's tables lack, with the values of the scene."""
     known, ball, tip = GAMES.get(game), scene.ball, scene.tip
-    missing = _missing(tables) - {*options}
+    missing = _missing(tables) - {*given}
     whole_cue = ""
     if known and tip.restitution != known.restitution:
         whole_cue = f" of the tip (with axial waves, {known.restitution:g} of the whole cue head-on)"
@@ -290,23 +311,40 @@ _ADDITIONS: Mapping[str, Callable[[Cue], Any]] = {
 
 
 def held_assumptions(scene: Scene) -> list[Assumption]:
-    """What was assumed when the scene was loaded, without what was changed since; of other scenes nothing."""
-    if scene.assumed is None:
-        return []
-    loaded = scene.assumed.scene
-    return [each for each in scene.assumed.listed if _assumed_value(each, scene) == _assumed_value(each, loaded)]
+    """What was assumed when cue and scene were loaded or made, without what was changed since."""
+    made = scene.assumed
+    if made is not None and not made.game:  # of a scene's file, which lists its cue, too
+        return _held(made.listed, scene, made.scene)
+    stroke = [] if made is None else _held(_default_stroke(made.game, made.scene, made.given), scene, made.scene)
+    if isinstance(scene.cue, LumpedCue):
+        return stroke
+    drawn = scene.cue.assumed
+    drawing = [each for each in drawn.listed if _is_of_drawing(each, scene.cue, drawn.cue)] if drawn else []
+    return [*_with_rest(scene.cue, drawing), *stroke]
 
 
-def _assumed_value(assumption: Assumption, scene: Scene) -> Any:
+def _held(listed: Iterable[Assumption], scene: Scene, made: Scene) -> list[Assumption]:
+    """The assumptions whose values are those of the scene as it was made."""
+    return [each for each in listed if _assumed_value(each.key, scene) == _assumed_value(each.key, made)]
+
+
+def _is_of_drawing(assumption: Assumption, cue: Cue, drawn: Cue) -> bool:
+    """Whether the value that an assumption is on is that of the cue as it was drawn."""
+    return bool(_drawn_value(assumption.key, cue) == _drawn_value(assumption.key, drawn))
+
+
+def _assumed_value(key: str, scene: Scene) -> Any:
     """The value of a scene that an assumption is on."""
-    key = assumption.key
     if key == "game":
         return scene.ball
-    if scene.lumped is None and key in _ADDITIONS:
-        return _ADDITIONS[key](scene.shaft)
-    if key in PARAMETERS:
+    if key in PARAMETERS and (scene.lumped or key not in _ADDITIONS):
         return PARAMETERS[key].value(scene)
-    return len(scene.cue.segments)
+    return None if scene.lumped else _drawn_value(key, scene.shaft)
+
+
+def _drawn_value(key: str, cue: Cue) -> Any:
+    """The value of a drawing that an assumption is on; of other assumptions its count of segments behind the tip."""
+    return _ADDITIONS[key](cue) if key in _ADDITIONS else len(without_leather(cue).segments)
 
 
 def offered_assumptions(

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import os
-from copy import copy
 from pathlib import Path
 from typing import TypedDict, Unpack
 
 from cuefem.cue import Cue
-from cuefem.files import load
+from cuefem.files import load as read_file
 from cuefem.files.cue_names import named_path
-from cuefem.files.defaults_report import assumptions, offered_assumptions
-from cuefem.files.errors import InputError
-from cuefem.files.warnings_of_drawings import drawing_warnings
-from cuefem.quantity.fields import quote, suggestion
-from cuefem.scene import Assumed, Scene
-from cuefem.scene.default_scene import DEFAULT_GAME, STROKES, StrokeName, usual_scene
+from cuefem.files.defaults_report import loaded_cue, loaded_scene
+from cuefem.files.errors import InputError, as_input_error, quote
+from cuefem.scene import Scene
+from cuefem.scene.default_scene import DEFAULT_GAME, StrokeName, stroke_name, usual_scene
 
 
 class LoadOptions(TypedDict, total=False):
@@ -27,6 +24,73 @@ class LoadOptions(TypedDict, total=False):
     ferrule: str | None
     bore: str | None
     body_mass: str | float | None
+
+
+def load(
+    path: str | os.PathLike[str],
+    *,
+    material: str | None = None,
+    length_unit: str | None = None,
+    front: str | None = None,
+    ferrule: str | None = None,
+    bore: str | None = None,
+    body_mass: str | float | None = None,
+) -> Cue | Scene:
+    """Load a cue or a scene from a file.
+
+    Parameters
+    ----------
+    path : str or path
+        A drawing or a scene (.toml), a lathe profile (.csv), or a closed CAD surface (.stl, .ply, .obj); or the name of
+        a cue, such as "plain maple", "carbon" or "predator z2" (`cuefem parts` lists them).
+    material : str, optional
+        Name of the material of the shaft, instead of the one in the file; for a lathe profile or a surface that names
+        none "hard maple" by default. A weighed density (``shaft_mass``) is that of the wood of the file: another
+        material has its own, and all other options keep it.
+    length_unit : str, optional
+        Unit of a surface's coordinates, "mm" by default, or of a lathe profile without units.
+    front : str, optional
+        Front of a lathe profile or a surface: "ferrule" (default) or "leather 6 mm".
+    ferrule : str, optional
+        A ferrule at the front, such as "25 mm melamine", on a wooden tenon of 0.62 of its diameter. The tenon may be
+        named: "25 mm melamine, tenon 8 mm", "25 mm melamine, no tenon".
+    bore : str, optional
+        A bore, such as "6 mm wide, 127 mm deep", drilled from behind the tenon of the ferrule, or from the front.
+    body_mass : str or float, optional
+        Mass of the rest of the cue behind the drawing, such as "15 oz", or a number in kg; by default from the file.
+
+    Returns
+    -------
+    Cue or Scene
+        A .toml file with [[segments]] is a cue, one with [cue] a scene.
+
+    Raises
+    ------
+    InputError
+        A ValueError in one line that names the file, the key, the bound with its unit, and the value in the file.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 700.0)),))
+    >>> import tempfile, pathlib
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder) / "cue.toml"
+    ...     cf.save(cue, path)
+    ...     cf.load(path) == cue, cf.load(path, body_mass="15 oz").body_mass
+    (True, 0.425242...)
+    """
+    options: LoadOptions = {
+        "material": material,
+        "length_unit": length_unit,
+        "front": front,
+        "ferrule": ferrule,
+        "bore": bore,
+        "body_mass": body_mass,
+    }
+    loaded, file = read_file(path, **options), named_path(Path(path))
+    given = {name: value for name, value in options.items() if value is not None}
+    return loaded_cue(file, loaded, given) if isinstance(loaded, Cue) else loaded_scene(file, loaded, given)
 
 
 def load_cue(path: str | os.PathLike[str], **options: Unpack[LoadOptions]) -> Cue:
@@ -95,24 +159,13 @@ def load_scene(
     >>> cf.load_scene("plain maple", game="snooker", body_mass="13 oz").ball.mass
     0.142
     """
-    if game not in (None, *STROKES):
-        hint = suggestion(str(game), STROKES)
-        raise InputError(Path(path), "game", f"must be one of {', '.join(STROKES)}; got {quote(game)}{hint}")
+    with as_input_error(Path(path), ""):
+        stroke = stroke_name(DEFAULT_GAME if game is None else game)
     loaded = load(path, **options)
     if isinstance(loaded, Cue):
-        given = {**options} if game is None else {**options, "game": game}
-        return _with_assumptions(usual_scene(loaded, game or DEFAULT_GAME), path, given)
+        given = frozenset() if game is None else frozenset(("game",))
+        return usual_scene(loaded, stroke).assuming(game=stroke, given=given)
     if game is not None:
         problem = "does not apply: the file is a scene, which has its own ball, tip and stroke"
         raise InputError(Path(path), "game", f"{problem}; got {quote(game)}")
-    return _with_assumptions(loaded, path, {**options})
-
-
-def _with_assumptions(scene: Scene, path: str | os.PathLike[str], options: dict[str, object]) -> Scene:
-    """The scene with what its file and the options leave open, and the warnings of the file."""
-    file = named_path(Path(path))
-    found = assumptions(file, scene, {name: value for name, value in options.items() if value is not None})
-    made = copy(scene)
-    listed = tuple(offered_assumptions(found))
-    object.__setattr__(made, "assumed", Assumed(scene, listed, tuple(drawing_warnings(file))))
-    return made
+    return loaded

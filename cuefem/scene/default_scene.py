@@ -13,7 +13,7 @@ from cuefem.cue.materials import LEATHERS, leather_restitution
 from cuefem.effects.cue_effects import AxialWaves, GeometricStiffness
 from cuefem.effects.effect import Effect
 from cuefem.effects.leather_tip import LeatherTip
-from cuefem.quantity.fields import check_kind
+from cuefem.quantity.fields import check_kind, quote, suggestion
 from cuefem.quantity.unit_checks import MIN_CUE_MASS
 from cuefem.quantity.units import conversion_factor
 from cuefem.scene.scene import Ball, Scene, Stroke, Tip
@@ -22,6 +22,7 @@ GameName = Literal["pool", "carom", "snooker"]
 StrokeName = GameName | Literal["kim"]
 
 OUNCE = float(conversion_factor("oz", "kg"))
+LEATHER_KEYS = frozenset(("tip_height", "dome", "leather"))  # parameters of a leather tip
 BODY_MASS_RANGE = (13.5, 17.5)  # oz, of pool: cues of 18 to 21 oz less shafts of 3.5 to 4.5 oz
 WAVE_SPEED = 4430.0  # m/s in the butt: the root of E over the density of maple, and of ash
 
@@ -148,7 +149,7 @@ STROKES = (*GAMES, KIM)
 def stroke_name(name: str) -> StrokeName:
     """The name of a default stroke; ValueError if none has it."""
     if name not in STROKES:
-        raise ValueError(f"game must be one of {', '.join(STROKES)}; got {name!r}")
+        raise ValueError(f"game must be one of {', '.join(STROKES)}; got {quote(name)}{suggestion(str(name), STROKES)}")
     return cast(StrokeName, name)
 
 
@@ -252,13 +253,15 @@ def usual_scene(cue: Cue, game: StrokeName = DEFAULT_GAME, *, tip: LeatherTip | 
     (0.425242846875, 0.0)
     """
     check_kind("usual_scene cue", cue, Cue)
+    stroke_name(game)
     if game == KIM and tip is None:
-        return Scene(cue)
+        return Scene(cue).assuming(game=KIM)
     defaults = _game(game)
     effects = (default_tip(cue, game) if tip is None else tip, *defaults.effects)
     stroke = Stroke(defaults.speed, defaults.offset)
     struck = with_usual_rest(without_leather(cue), game)
-    return Scene(struck, defaults.ball, defaults.tip_with(effects), stroke, effects)
+    scene = Scene(struck, defaults.ball, defaults.tip_with(effects), stroke, effects)
+    return scene.assuming(game=game, given=frozenset() if tip is None else LEATHER_KEYS)
 
 
 def _game(name: str) -> Game:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from itertools import chain
@@ -148,14 +149,17 @@ class Stroke:
 
 
 class Assumed(NamedTuple):
-    """A scene as it was loaded, and what was assumed then: an `Assumption` each. A later change of the scene ends some.
+    """A scene as it was made, and what was assumed then. A later change of the scene ends some.
 
-    warnings: of the file that was read, such as a column that is not used.
+    listed: of a scene's file, an `Assumption` each. warnings: of its drawing. game: of the default stroke of a cue
+    alone. given: keys of its values that were chosen.
     """
 
     scene: Scene
-    listed: tuple[Any, ...]
+    listed: tuple[Any, ...] = ()
     warnings: tuple[str, ...] = ()
+    game: str = ""
+    given: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -172,7 +176,8 @@ class Scene:
     effects
         Effects such as `TipDome` or `PointMass`, in any order.
     assumed
-        What a file left open, set by `cuefem.load_scene`: answers list what the scene still has of it.
+        What a file left open, set by `cuefem.load`, or what `cuefem.usual_scene` chose: answers list what the scene
+        still has of it.
 
     Raises
     ------
@@ -215,12 +220,24 @@ class Scene:
                     f"got {value} {unit}"
                 )
 
+    def assuming(self, **what: Any) -> Scene:
+        """The scene with what was assumed of it as it is now: the fields of `Assumed`."""
+        made = copy(self)  # without the checks and warnings of a new scene
+        object.__setattr__(made, "assumed", Assumed(self, **what))
+        return made
+
     @property
     def shaft(self) -> Cue:
         """The finite-element cue; ValueError for a lumped cue, which has neither modes nor shape."""
         if isinstance(self.cue, LumpedCue):
             raise ValueError("Scene.cue must be a Cue of segments: its modes or its shape are needed; got a LumpedCue")
         return self.cue
+
+    @property
+    def file_warnings(self) -> tuple[str, ...]:
+        """Warnings of the files that cue and scene were loaded from."""
+        drawing = self.cue.assumed if isinstance(self.cue, Cue) else None
+        return tuple(line for each in (drawing, self.assumed) if each for line in each.warnings)
 
     @property
     def lumped(self) -> LumpedCue | None:

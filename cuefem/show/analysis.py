@@ -210,8 +210,7 @@ class Analysis(Answer):
     @property
     def warnings(self) -> list[str]:
         """What is implausible in the scene and in the file that it is of, a line each."""
-        of_file = self.scene.assumed.warnings if self.scene.assumed else ()
-        return [*of_file, *plausibility_warnings(self.scene, with_impact=self.has_stroke)]
+        return [*self.scene.file_warnings, *plausibility_warnings(self.scene, with_impact=self.has_stroke)]
 
     @property
     def assumptions(self) -> list[Assumption]:

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
+from cuefem.files.defaults_report import held_assumptions
 from cuefem.results.plausibility import plausibility_warnings
 from tests.helpers.command_line import call
 from tests.helpers.random_shafts import random_shaft
@@ -70,7 +71,7 @@ def test_python_says_what_the_command_says(tmp_path: Path) -> None:
     path = tmp_path / "shaft.csv"
     path.write_text(REVERSED)
     with pytest.warns(cf.PlausibilityWarning, match="shaft.csv: the tip end is thicker than the butt end"):
-        scene = cf.load_scene(path)
+        scene, cue = cf.load_scene(path), cf.load_cue(path)
     answer = cf.verdict(scene)
     said = json.loads(call("strike", path, "--json")[1])
     record = answer.to_dict()
@@ -82,4 +83,17 @@ def test_python_says_what_the_command_says(tmp_path: Path) -> None:
         assert line.replace("\N{NO-BREAK SPACE}", " ") in page.replace("\N{NO-BREAK SPACE}", " ")
     faster = cf.verdict(cf.with_parameters(scene, {"speed": 3.0}))
     assert {*map(str, answer.assumptions)} - {*map(str, faster.assumptions)} == {"cue speed 2 m/s"}
-    assert cf.verdict(replace(scene, assumed=None)).assumptions == []
+    assert cf.verdict(cf.usual_scene(cue)).said() == answer.said()
+    assert {each.of for each in cf.verdict(replace(scene, assumed=None)).assumptions} == {"cue"}
+
+
+def test_usual_scene_lists_what_it_chose_alone() -> None:
+    cue = cf.Cue((cf.Segment(0.7, 0.01275, 0.0215, WOOD),))
+    listed = [*map(str, cf.cue_numbers(cf.usual_scene(cue)).assumptions)]
+    assert [line.partition(" ")[0] for line in listed] == [
+        *("usual", "default", "ball", "ball", "leather", "tip", "tip", "restitution", "friction", "cue", "offset")
+    ]
+    whole = replace(cue, body_mass=0.43)
+    scene = cf.usual_scene(whole, tip=cf.LeatherTip(6e-3, 9.5e-3, 6e7))
+    assert {each.of for each in held_assumptions(scene)} == {"cue", "impact", "stroke"}
+    assert next(map(str, held_assumptions(cf.usual_scene(whole, "kim")))) == "default stroke of kim (--game)"
