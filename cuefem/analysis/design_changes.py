@@ -20,7 +20,7 @@ from cuefem.quantity.display_units import change_with_unit, format_change, with_
 from cuefem.results.progress import Progress
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.results.solved_design import Solvable, SolvedDesign, off_centre
-from cuefem.results.uncertainty import miscue_note, model_share, ratio_error, squirt_changes
+from cuefem.results.uncertainty import miscue_note, model_share, ratio_error, squirt_changes, squirt_inputs
 from cuefem.results.verdict import reject_no_verdict
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
@@ -217,7 +217,7 @@ def design_changes(
     calibrated = calibration.squirt(struck) if calibration else None
     factor = calibrated.factor if calibrated else 1.0
     base = _numbers(design.solved)
-    changes = squirt_changes(design.solved, base["squirt"])
+    changes = squirt_inputs(struck)
     trial = _Trial(struck, base, changes.of("squirt"), limits)
     candidates = [change for change in changes_of(struck) if change.part not in limits.keep]
     singles = [(change, row) for change in progress(candidates) if (row := trial.changed(change)) is not None]
@@ -244,30 +244,28 @@ class _Trial:
 
     def changed(self, change: DesignChange) -> ChangedDesign | None:
         """The shaft with a change; None where its geometry or the limits do not allow it."""
-        numbers = self.numbers(change)
-        return None if numbers is None else self.with_error(change, numbers)
+        variant = self.variant(change)
+        return None if variant is None else self.with_error(change, *variant)
 
-    def numbers(self, change: DesignChange) -> Record | None:
-        """The numbers of the changed shaft, without their uncertainty: one strike."""
+    def variant(self, change: DesignChange) -> tuple[SolvedScene, Record] | None:
+        """The changed shaft and its numbers, without their uncertainty: one strike."""
         try:
-            variant = with_parameters(self.struck, change.values)
-            least = min(self.limits.least_wall(variant), _wall(self.struck))
-            if _wall(variant) < (1 - 1e-9) * least:
+            scene = with_parameters(self.struck, change.values)
+            least = min(self.limits.least_wall(scene), _wall(self.struck))
+            if _wall(scene) < (1 - 1e-9) * least:
                 return None
-            return _numbers(SolvedScene(variant))
+            solved = SolvedScene(scene)
+            return solved, _numbers(solved)
         except (ValueError, RuntimeError):
             return None
 
-    def with_error(self, change: DesignChange, numbers: Record) -> ChangedDesign | None:
+    def with_error(self, change: DesignChange, solved: SolvedScene, numbers: Record) -> ChangedDesign | None:
         """The changed shaft with the uncertainty of its change of squirt."""
         try:
-            variant = with_parameters(self.struck, change.values)
-            after = squirt_changes(SolvedScene(variant), numbers["squirt"], self.before).of("squirt")
-            residual = (
-                _residual(self.before.get(key, 0.0), after.get(key, 0.0), key in change.resets) for key in self.before
-            )
+            after = squirt_changes(solved, numbers["squirt"], self.before).of("squirt")
+            residual = (_residual(x, after.get(key, 0.0), key in change.resets) for key, x in self.before.items())
             ratio = numbers["squirt"] / self.base["squirt"]
-            error = ratio_error(ratio, model_share(self.struck, variant), *residual)
+            error = ratio_error(ratio, model_share(self.struck, solved.scene), *residual)
             return _changed_design(change, self.base, numbers, error)
         except (ValueError, RuntimeError):
             return None
@@ -294,12 +292,11 @@ def _together(
         struck = []
         for group in groups[: max(0, most)]:
             change = _joined([change for change, _ in group])
-            numbers = trial.numbers(change)
-            if numbers is not None and _is_stiff(numbers, trial):
-                struck.append((numbers["squirt"], change, numbers))
+            variant = trial.variant(change)
+            if variant is not None and _is_stiff(variant[1], trial):
+                struck.append((change, *variant))
         if struck:
-            _, change, numbers = min(struck, key=lambda each: each[0])
-            best.append(trial.with_error(change, numbers))
+            best.append(trial.with_error(*min(struck, key=lambda each: each[2]["squirt"])))
     rows = [row for row in best if row is not None]
     if len(rows) == 2 and rows[1].squirt_change > rows[0].squirt_change - TRIPLE_GAIN:
         rows.pop()

@@ -26,9 +26,8 @@ from cuefem.results.uncertainty import (
     model_error,
     model_share,
     shaft_uncertainty,
-    squirt_changes,
+    squirt_inputs,
     squirt_of,
-    variant_squirt,
 )
 from cuefem.results.verdict import reject_no_verdict
 from cuefem.scene import Scene
@@ -230,8 +229,8 @@ def verdict_by(
     reject_no_verdict(struck, outcome)
     squirt = float(outcome.squirt)
     # at the resolution of the reference cues, since the outcome may be finer
-    base = squirt if outcome.error is None else variant_squirt(design.solved, struck)
-    changes = squirt_changes(design.solved, base)
+    base = squirt if outcome.error is None else squirt_of(struck)
+    changes = squirt_inputs(struck)
     inputs = {key: abs(change) for key, change in changes.of("squirt").items()}
     computation = NUMERICAL_ERROR if outcome.error is None else outcome.error
     uncertainty = Uncertainty(model_error(struck), math.hypot(*inputs.values()), computation)

@@ -36,11 +36,10 @@ from cuefem.results.uncertainty import (
     Uncertainty,
     model_error,
     model_share,
-    squirt_changes,
+    squirt_inputs,
     squirt_of,
 )
 from cuefem.scene import Scene
-from cuefem.scene.solved_scene import SolvedScene
 
 # A squirt factor beyond PLAUSIBLE, or its inverse, causes a warning: 32 % of makers have one, at a model error of 18 %.
 # One beyond MAX_FACTOR is rejected; 1 % of makers have one.
@@ -280,12 +279,6 @@ class Calibration:
         write_atomically(Path(path), lambda temporary: temporary.write_text(text, encoding="utf-8"))
 
 
-@lru_cache(maxsize=32)
-def _changes(scene: Scene) -> dict[str, float]:
-    """Relative changes of squirt with each uncertain input."""
-    return squirt_changes(SolvedScene(scene), squirt_of(scene)).of("squirt")
-
-
 @lru_cache(maxsize=32)  # the verdict, the changes and the curves of one page ask for the same
 def _squirt_by(calibration: Calibration, scene: Scene) -> CalibratedSquirt:
     """The squirt of an off-centre stroke of another shaft with the tip of the calibration."""
@@ -298,7 +291,7 @@ def _squirt_by(calibration: Calibration, scene: Scene) -> CalibratedSquirt:
         raise ValueError(f"a calibration needs squirt of one sign; got {after:.3g} and {before:.3g} rad")
     d = max(model_share(old, new) * abs(math.log(after / before)), RATIO_FLOOR)
     r = max(1 - d**2 / (2 * s**2), 0.0)
-    changes = _changes(new)
+    changes = squirt_inputs(new).of("squirt")
     slopes = np.array([*(changes.get(key, 0.0) / (PARAMETERS[key].spread_in(new) or 1.0) for key in keys), r])
     covariance = calibration.matrix
     variance = float(slopes @ covariance @ slopes) + (1 - r**2) * s**2
@@ -315,7 +308,7 @@ def _squirt_by(calibration: Calibration, scene: Scene) -> CalibratedSquirt:
         uncertainty=parts._asdict() | {"total": parts.total},
         inputs=own | dict(zip(keys, shared.tolist(), strict=True)),
         computed=computed,
-        uncalibrated_error=math.hypot(s, *_changes(scene).values(), NUMERICAL_ERROR),
+        uncalibrated_error=math.hypot(s, *squirt_inputs(scene).of("squirt").values(), NUMERICAL_ERROR),
         measured_factor=calibration.measured_factor,
         correlation=r,
         warnings=calibration.warnings,

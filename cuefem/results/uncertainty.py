@@ -74,6 +74,13 @@ def shaft_uncertainty(inputs: Mapping[str, float]) -> float:
     return math.hypot(*(share for key, share in inputs.items() if not PARAMETERS[key].is_shareable))
 
 
+@lru_cache(maxsize=32)  # the verdict, the design changes and the calibration of one page ask for the same
+def squirt_inputs(scene: Scene) -> InputChanges:
+    """`squirt_changes` of a stroke at the default resolution; `NoVerdict` for a miscue."""
+    solved = SolvedScene(scene)
+    return squirt_changes(solved, _valid_squirt(scene, solved.tip))
+
+
 def squirt_changes(solved: SolvedScene, base: float, of: Iterable[str] = PARAMETERS) -> InputChanges:
     """`changes_by_input` of squirt alone; base: that of the scene, rad; none without squirt."""
     if not base:
