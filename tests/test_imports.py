@@ -182,24 +182,6 @@ def test_properties_run_where_every_dict_is_tracked(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stdout.decode()
 
 
-def hidden_names(package: Path) -> set[str]:
-    """Names that a package's face or stub takes from a module, and that a room or module of the package would hide."""
-    taken = set[str]()
-    for face in (package / "__init__.py", package / "__init__.pyi"):
-        for one in ast.parse(face.read_bytes()).body if face.exists() else []:
-            itself = isinstance(one, ast.ImportFrom) and one.module in (None, f"cuefem.{package.name}")
-            if isinstance(one, ast.ImportFrom) and not itself:
-                taken |= {alias.name for alias in one.names}
-    inside = {path.stem for path in package.iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()}
-    return taken & inside
-
-
-def test_no_room_or_module_hides_a_public_name() -> None:
-    """A package `study` would stand in `cuefem.study` once imported, instead of the function."""
-    faces = {path.parent for path in PACKAGE.rglob("__init__.py*")}
-    assert {face.name: hidden_names(face) for face in faces if hidden_names(face)} == {}
-
-
 HEAVY = ["skfem", "scipy", "pint", "pydantic", "matplotlib", "meshio", "tomlkit", "rich", "click"]
 # A command on a valid file in common units needs none of these, whose import takes several times as long as its work.
 WORKED_ON = ["skfem", "scipy.sparse", "scipy.optimize", "pint", "pydantic", "tomlkit", "jinja2", "matplotlib"]

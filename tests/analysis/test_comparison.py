@@ -74,20 +74,6 @@ def test_comparison_with_tube_names_the_measurement_of_its_stiffness() -> None:
 
 
 @pytest.mark.heavy
-def test_comparison_near_miscue_is_uncertain_to_one_side() -> None:
-    """One standard deviation less friction is a miscue of both cues: their difference has an error nevertheless."""
-    plain, bored = (with_parameters(scene, {"offset": 0.56}) for scene in (SCENE, BORED))
-    compared = cf.compare({"plain": plain, "bored": bored})
-    assert compared.miscues == {"plain": ("friction",), "bored": ("friction",)}
-    assert compared.differences["bored"]["squirt"]["error"] > 0
-    note = (
-        "Uncertain to one side only, since the other is a miscue or beyond the valid range of the tip: friction of tip "
-        "and ball."
-    )
-    assert f"plain: {note}" in compared.table().notes
-
-
-@pytest.mark.heavy
 def test_comparison_with_shaft_masses_has_smaller_error() -> None:
     faster = replace(SCENE, stroke=cf.Stroke(4.0, 0.1))
     light, heavy = (with_parameters(scene, {"shaft mass": mass}) for scene, mass in ((SCENE, 0.112), (faster, 0.128)))

@@ -12,7 +12,7 @@ import pytest
 import cuefem as cf
 from cuefem.cue.materials import material
 from tests.helpers.command_line import call
-from tests.helpers.invalid_input import assert_refused, rejected
+from tests.helpers.invalid_input import assert_refused, rejected, stored_rows
 
 GOOD = """
 [[segments]]
@@ -37,97 +37,18 @@ FILES = {
 }
 SAVED = {"shaft.toml": SHAFT, "spring.toml": cf.Scene(SHAFT, stroke=cf.Stroke(offset=0.3))}
 SAVED["ash.toml"] = cf.Cue((cf.Segment(0.7, 0.0118, 0.021, material("ash")),), 0.42)
-# Commands on these files; their messages are stored in tests/golden/refused_cli.txt.
-COMMANDS = r"""
-strike good.toml --offset nan
-strike good.toml --offset half
-strike shaft.toml --offset 0,3
-strike shaft.toml --offset 8
-strike shaft.toml --offset '40 mm'
-strike shaft.toml --restitution 2
-strike shaft.toml --speed fast
-end-mass good.toml --speed 2
-end-mass good.toml --near 0
-end-mass good.toml --cue-end '-3 g'
-end-mass shaft.toml --cue-end '600 g'
-modes good.toml --near -5
-guide bore -o bore.json
-report good.toml --body-mass '-1 oz'
-report shaft.toml --game chess
-strike spring.toml --game pool
-strike spring.toml --dome dime
-strike shaft.toml --dome penny
-strike shaft.toml --leather sofd
-strike shaft.toml --restitution 0.05
-modes shaft.toml --tip-height 40mm
-strike shaft.toml --leather 1MPa
-modes lumped.toml --material ash
-modes good.toml --front ferrule
-modes bare.csv --front leather
-modes bare.csv --front 'leather 40 mm'
-modes bare.csv --ferrule melamine
-modes bare.csv --ferrule '25 mm cheese'
-modes bare.csv --ferrule '70 mm abs'
-modes bare.csv --ferrule '25 mm abs, tenon 14 mm'
-modes bare.csv --ferrule '25 mm abs, glued'
-modes bare.csv --bore '6 mm'
-modes bare.csv --bore '6 wide, 127 mm deep'
-modes bare.csv --bore '15 mm wide, 127 mm deep'
-modes bare.csv --bore '6 mm wide, 2 m deep'
-modes bored.csv --ferrule '25 mm abs, tenon 8 mm'
-modes bare.csv --material 'hard mapel'
-modes lumped.toml
-modes lumped.toml --body-mass '1 kg'
-strike of_bad.toml
-report off.toml -o page.html
-convert good.toml own.toml
-report lumped.toml -o page.pdf
-strike spring.toml --format pooltool --offset 0
-strike spring.toml --format pooltool -o cue.json --offset 0.9
-report spring.toml -o page.html --offset 0.9
-compare shaft.toml
-compare shaft.toml --speed '3 m/s'
-compare shaft.toml shaft.toml
-compare bare.csv bored.csv --shaft-mass '112 g'
-compare shaft.toml shaft.toml --estimate
-compare shaft.toml shaft.toml shaft.toml shaft.toml shaft.toml shaft.toml
-compare shaft.toml lumped.toml
-compare shaft.toml ash.toml --same-shaft
-compare shaft.toml lumped.toml ./shaft.toml
-compare nowhere
-compare shaft.toml 'predator z2' --material ash
-guide glosary
-guide qqqq
-guide --print -o guide.html
-guide -o guide.txt
-improve spring.toml -o x.pdf
-modes good.toml --units imperial
-report maple
-report 'predator z'
-report 'predatr z2'
-report carbon.csv
-strike bare.csv --shaft-mass 112
-strike bare.csv --shaft-mass '0 g'
-convert bare.csv made.toml --shaft-mass '9 kg'
-strike
-strike shaft.toml --offset
-improve spring.toml --wall '0.1 mm'
-improve spring.toml --keep shine
-improve spring.toml --keep bore,ferrule,tip,taper,wood
-improve spring.toml --stiffness-loss '120 %'
-improve spring.toml --stiffness-loss much
-""".strip().splitlines()
 
 
 def test_command_invalid_input_prints_one_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ) -> None:
+    """Commands on these files: the rows of tests/golden/refused_cli.txt."""
     for name, content in FILES.items():
         (tmp_path / name).write_text(content)
     for name, item in SAVED.items():
         cf.save(item, tmp_path / name)
     monkeypatch.chdir(tmp_path)
-    assert_refused("cli", {row: rejected(tmp_path, *shlex.split(row)) for row in COMMANDS}, request)
+    assert_refused("cli", {row: rejected(tmp_path, *shlex.split(row)) for row in stored_rows("cli")}, request)
 
 
 ECHOED = [

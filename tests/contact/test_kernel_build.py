@@ -76,14 +76,6 @@ def test_kernel_of_other_sources_raises_until_built(folder: Path, damage: str) -
         assert sorted(path.name for path in binary.parent.glob("_kernel*")) == [BINARY.name]
 
 
-def test_sources_with_windows_line_ends_have_the_same_digest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for source in [*kernel.HERE.glob("*.c"), *kernel.HERE.glob("*.h")]:
-        (tmp_path / source.name).write_bytes(source.read_bytes().replace(b"\n", b"\r\n"))
-    digest = sources_digest()
-    monkeypatch.setattr(kernel, "HERE", tmp_path)
-    assert sources_digest() == digest
-
-
 def test_structures_have_the_sizes_that_the_library_was_compiled_with() -> None:
     structures = (KernelInput, KernelState, KernelStep, StepTables)
     sizes = (ctypes.c_size_t * len(structures)).in_dll(library(), "structure_sizes")

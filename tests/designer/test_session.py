@@ -8,7 +8,6 @@ import pytest
 
 import cuefem as cf
 from cuefem.analysis.first_screen import comparison_lines, headline_markup
-from cuefem.analysis.shop_changes import changes_of
 from cuefem.designer.controls import KNOBS, label, parse, range_of, value, value_text
 from cuefem.designer.session import OF_TAB, OPENED, Results, Session
 from cuefem.designer.state import read_file, reference_design
@@ -62,24 +61,6 @@ def test_controls_read_what_they_show_in_us_units(key: str) -> None:
 
 
 @pytest.mark.heavy
-def test_changes_count_while_they_are_computed_and_have_the_units_displayed() -> None:
-    """The count ends at all changes; the same design in other units is not taken from memory."""
-    session = Session(FIRST)
-    seen = list[tuple[int, int]]()
-    results = Results()
-    for stage in session.plan("Changes", results):
-        for work in stage:
-            work.store(work.call())
-            seen += [session.count] if session.count else []
-    assert seen == [(len(changes_of(FIRST.scene)),) * 2]
-    with displayed_in("us"):
-        assert session.compute("Changes") == []
-    labels = [row.change for row in session.results.own["changes"].changes]
-    assert [label for label in labels if METRIC_LEFT.search(label)] == []
-    assert any(label.endswith(" in") for label in labels)
-
-
-@pytest.mark.heavy
 def test_calibration_shows_as_in_the_commands() -> None:
     """First screen, Changes and report have the calibrated squirt of the functions, and what it rests on."""
     made, session = calibration(scene=FIRST.scene), Session(FIRST)
@@ -102,23 +83,6 @@ def test_calibration_shows_as_in_the_commands() -> None:
     assert "calibrated on old" in page
     assert "It rests on the squirt measured on old" in page
     assert warning in page
-
-
-@pytest.mark.heavy
-def test_calibration_of_another_tip_waits_for_its_tip() -> None:
-    """A design with another tip has its own squirt and the reason; undo brings the calibrated one back."""
-    session = Session(FIRST, calibration(scene=FIRST.scene))
-    session.set_knob("leather", "hard")
-    assert session.compute() == []
-    assert session.results.own["verdict"].calibrated is None
-    (line,) = session.calibration_lines()
-    assert line.startswith("not calibrated: the calibration is of another tip: ")
-    session.undo_redo(-1)
-    assert session.compute() == []
-    assert session.results.own["verdict"].calibrated is not None
-    session.calibrate(None)
-    assert session.compute() == []
-    assert (session.results.own["verdict"].calibrated, session.calibration_lines()) == (None, [])
 
 
 def test_opened_calibration_calibrates_and_another_is_rejected(tmp_path: Path) -> None:

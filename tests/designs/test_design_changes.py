@@ -14,7 +14,6 @@ from cuefem.analysis.design_changes import (
 )
 from cuefem.cue.materials import material
 from cuefem.parameters.scene_changes import with_parameters
-from cuefem.parameters.table import PARAMETERS
 from tests.helpers.command_line import call
 from tests.helpers.invalid_input import assert_rejects
 from tests.test_golden_files import assert_golden, drawing_text, page_text
@@ -72,15 +71,6 @@ def test_table_of_changes_equals_golden_file(request: pytest.FixtureRequest) -> 
 
 
 @pytest.mark.heavy
-def test_design_change_error_equals_comparison_of_same_shaft() -> None:
-    scene = scene_of("pool_maple")
-    (row,) = (row for row in design_changes(scene).changes if row.change == "ABS ferrule")
-    pair = {"before": scene, "after": with_parameters(scene, row.values)}
-    error = cf.compare(pair, same_shaft=True).differences["after"]["squirt"]["error"]
-    assert row.squirt_change_error == pytest.approx(error, rel=0.01)
-
-
-@pytest.mark.heavy
 def test_tube_with_less_mass_in_front_has_less_squirt() -> None:
     """Thinner by 0.2 mm and without filling less, thicker and with an insert more; mass by the volume of each."""
     scene = with_parameters(scene_of("carbon"), {"front wall": 1.2e-3})
@@ -96,19 +86,6 @@ def test_tube_with_less_mass_in_front_has_less_squirt() -> None:
         -0.2 * ring * 0.144 * (front.material.rho - material("foam").rho), rel=0.02
     )
     assert "unmeasured tube and tip" in " ".join(record.table().notes)
-
-
-def test_tube_front_parameters_read_back_and_undo() -> None:
-    scene = scene_of("carbon")
-    for name, value in {"front wall": 1e-3, "empty depth": 0.15, "insert depth": 0.025}.items():
-        changed = with_parameters(scene, {name: value})
-        old = PARAMETERS[name.replace(" ", "_")].value(scene)
-        assert PARAMETERS[name.replace(" ", "_")].value(changed) == pytest.approx(value, rel=1e-12)
-        undone = with_parameters(changed, {name: old})
-        assert undone.cue.shaft_mass == pytest.approx(scene.cue.shaft_mass, rel=1e-12)
-        assert undone.cue.section(0.1) == pytest.approx(scene.cue.section(0.1), rel=1e-9)
-    both = with_parameters(scene, {"empty depth": 0.15, "insert depth": 0.025})
-    assert [segment.core for segment in both.cue.segments[1:3]] == [material("hard maple"), None]
 
 
 def test_front_of_a_tube_ends_at_a_solid_part() -> None:

@@ -12,7 +12,7 @@ from cuefem.designs.optimum import Limit, Problem
 from cuefem.designs.scatter import Scatter
 from cuefem.designs.search import optimum
 from tests.helpers.cues import low_deflection, scene
-from tests.helpers.invalid_input import assert_refused, messages_of, rejected
+from tests.helpers.invalid_input import assert_refused, messages_of, rejected, stored_rows
 from tests.helpers.sweeps import OPTIMUM, SCATTER, STRIKES, STUDY, write_study
 
 AT = cf.Resolution(1, 4, 2)
@@ -170,36 +170,14 @@ def test_study_invalid_file_raises(tmp_path: Path, request: pytest.FixtureReques
     assert_refused("study_files", messages, request)
 
 
-COMMANDS = """
-study cue.csv
-study scene.toml
-study study.toml --store none/out.sqlite
-study study.toml --store a.sqlite --store none.sqlite
-study study.toml --store a.sqlite --store scene.toml
-study study.toml --part 0/3
-study study.toml --part 4/3
-study study.toml --part 3
-study study.toml --part 1/3 -o out.csv
-study study.toml -o out.xlsx
-study study.toml -o out.sqlite
-study study.toml -o nowhere/out.csv
-study study.toml --scheduler nowhere
-study study.toml --scheduler nowhere --workers 2
-study best.toml --scheduler nowhere
-""".strip().splitlines()
-
-
 def test_study_invalid_options_change_no_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ) -> None:
     """Errors before the run: a store that is none, options, a drawing and a scene instead of a study."""
     monkeypatch.chdir(tmp_path)
-    write_study(tmp_path, OPTIMUM, name="best.toml")
-    write_study(tmp_path)
+    for name, study in (("best", OPTIMUM), ("beside_text", STUDY), ("study", STUDY)):
+        write_study(tmp_path, study, name=f"{name}.toml")
     Path("cue.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
-    messages = {}
-    for command in COMMANDS:
-        messages[command] = rejected(tmp_path, *command.split())
-    Path("study.sqlite").write_bytes(b"design,end_mass\n" * 100)
-    messages["study study.toml, beside a store of text"] = rejected(tmp_path, "study", "study.toml")
+    Path("beside_text.sqlite").write_bytes(b"design,end_mass\n" * 100)
+    messages = {row: rejected(tmp_path, *row.split()) for row in stored_rows("study_options")}
     assert_refused("study_options", messages, request)

@@ -157,14 +157,6 @@ def test_listed_values_are_searched_one_by_one(tmp_path: Path) -> None:
     assert result.scene.cue.segments[0].material == material(result.values["cue.segments[0].material"])
 
 
-def test_optimum_of_listed_values_alone(tmp_path: Path) -> None:
-    head, *_, last = NAMES.split("[[vary]]")
-    result = cf.study(write_study(tmp_path, f"{head}[[vary]]{last}")).optimum
-    assert result.evaluations == len(result.choices) == 3
-    best = min(result.choices, key=lambda choice: choice.objective)
-    assert (result.values, result.responses["squirt_slope"]) == (best.values, best.objective)
-
-
 @pytest.mark.heavy
 def test_best_design_stands_beside_the_unmodified_one() -> None:
     """Its responses are those of the base alone; changes are as those of `compare`, in every output."""
@@ -201,16 +193,6 @@ def test_designs_that_are_not_distinct_are_marked() -> None:
     assert not result.changes["end_mass"]["distinct"]
     assert "% *" in str(result)
     assert NOT_DISTINCT in " ".join(str(result).split())
-
-
-@pytest.mark.heavy
-def test_unmodified_design_that_miscues_has_no_squirt_and_says_why() -> None:
-    base, offset = replace(SCENE, stroke=cf.Stroke(offset=0.8)), Vary("stroke.offset", Span(0.3, 0.85))
-    limit = Limit(Response("squirt"), high=0.04)
-    result = cf.study(Problem(base, (offset,), Response("ball_speed"), (limit,), cf.Resolution(1, 6, 6)))
-    assert isinstance(result, OptimumResult)
-    assert [*result.changes] == ["ball_speed"]
-    assert str(result).count("miscue at b/R 0.8") == 1
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.3])

@@ -10,7 +10,6 @@ import time
 from pathlib import Path
 from typing import Any
 
-import psutil
 import pytest
 
 from cuefem.designs import evaluate
@@ -76,18 +75,6 @@ def test_study_interrupted_prints_one_line_and_stores_designs(tmp_path: Path, wo
     progress = f"{count} of 3000 designs are stored in {store}"
     assert err.decode() == f"cuefem: interrupted; {progress}; run the same command to resume\n"
     assert 100 <= count < 3000
-
-
-@pytest.mark.heavy
-def test_study_killed_worker_is_replaced(tmp_path: Path) -> None:
-    study = write_study(tmp_path, STRIKES)
-    run = start_study(study, "--workers", "2")
-    wait_for_rows(tmp_path / "study.sqlite", run, 32)
-    workers = [p for p in psutil.Process(run.pid).children(recursive=True) if "spawn_main" in " ".join(p.cmdline())]
-    workers[0].kill()
-    assert (run.communicate()[1], run.returncode) == (b"", 0)
-    assert stored_count(tmp_path / "study.sqlite") == 150
-    assert computed_rows(study, tmp_path / "study.sqlite") == computed_rows(study, tmp_path / "alone.sqlite")
 
 
 EDITS = [  # the edit of the study, its designs, and how many of them are new

@@ -9,7 +9,7 @@ from cuefem.designs import Normal, Span
 from cuefem.designs.study_file import load_study
 from cuefem.files import InputError
 from tests.helpers.command_line import as_json, stdout_of
-from tests.helpers.invalid_input import assert_rejects
+from tests.helpers.invalid_input import assert_refused, assert_rejects, rejected, stored_rows
 from tests.helpers.sweeps import GRID, SCATTER, SCENE, STRIKES, STUDY, write_study
 
 LEATHER = ("6 mm", "12.75 mm", "12.75 mm", 'material = "leather"')
@@ -106,24 +106,12 @@ def test_options_of_the_cue_in_a_study_are_those_of_load(tmp_path: Path) -> None
     assert load_study(file).base == cf.usual_scene(cf.load(tmp_path / "shaft.csv", length_unit="mm"))
 
 
-@pytest.mark.parametrize(
-    ("name", "text", "problem"),
-    [
-        ("game", "chess", "must be one of pool"),
-        ("material", "cheese", "unknown material 'cheese'"),
-        ("length_unit", "kg", "must be a unit of length"),
-        ("front", "330 mm", 'must be "ferrule" or leather'),
-        ("ferrule", "abs", "must be a length and a material"),
-        ("bore", "none", "must be a width and a depth"),
-        ("body_mass", "15 mm", "must be a mass"),
-        ("shaft_mass", "4 kg", "must be 2.64 to 3036 g"),
-        ("weight", "15 oz", "unknown key"),
-    ],
-)
-def test_invalid_option_of_the_cue_is_one_line_on_its_key(name: str, text: str, problem: str, tmp_path: Path) -> None:
-    profile = PROFILE.replace(" [mm]", "") if name == "length_unit" else PROFILE
-    file = of_profile(tmp_path, f'{name} = "{text}"', profile)
-    assert_rejects(f"s.toml: {name}: {problem}", "study", file)
+def test_invalid_key_of_the_cue_is_rejected(tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    messages = {}
+    for row in stored_rows("study_keys"):
+        profile = PROFILE.replace(" [mm]", "") if row.startswith("length_unit") else PROFILE
+        messages[row] = rejected(tmp_path, "study", of_profile(tmp_path, row, profile))
+    assert_refused("study_keys", messages, request)
 
 
 @pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")  # the same cone twice, one behind the other

@@ -19,7 +19,7 @@ from cuefem.designs import Levels, Response, Study, Vary
 from cuefem.designs.store import SqliteStore
 from cuefem.files import InputError
 from tests.helpers.command_line import call
-from tests.helpers.invalid_input import assert_refused, messages_of
+from tests.helpers.invalid_input import assert_refused, messages_of, stored_rows
 from tests.helpers.surfaces import revolve, two_bodies, write_surface
 
 
@@ -33,91 +33,18 @@ def rejection(path: Path, **options: str) -> str:
 
 
 POINTS, FACES = revolve([(0, 0), (0, 0.006), (0.7, 0.0105), (0.7, 0)], 16)
-# One error a line: file extension, content (H is the header of a profile).
-CONTENTS = r"""
-toml |
-toml | a = 1\na = 2\n
-toml | [[segments]]\nlength = 700 mm
-toml | \xff\xfe
-toml | # nothing
-toml | cue = 3
-toml | cue = 'x.toml'
-toml | cue = 'none.toml'
-toml | segments = []
-toml | [segments]\nx = 1
-toml | [accuracy]\nrtol = 2\n[cue]\nmass = '1 kg'\nend_mass = '6 g'
-toml | game = 'snoker'\n[cue]
-toml | effects = 3\n[cue]\nmass = '1 kg'
-toml | effects = [{type = 'P'}]\n[cue]\nmass = '1 kg'\nend_mass = '6 g'
-toml | [ball]\ndiameter = '6 mm'\n[cue]\nmass = '1 kg'\nend_mass = '6 g'
-toml | [cue]\nmass = '540 g'\nend_mass = '6 g'\ncoupling = '99 1/kg'
-toml | [tip]\ncontact_time = '1 ms'\nstiffness = '1e5 N/m'\n[cue]\nmass = '1 kg'\nend_mass = '6 g'
-toml | shaft = 3
-toml | shaft = 'carbon'\nbody_mass = '15 oz'\nbore = 'wide'
-toml | shaft = 'carbon'\nbody_mass = '15 oz'\nsegments = []
-csv  |
-csv  | # x
-csv  | H0,12
-csv  | H0,12\n\n700,-21
-csv  | Hnan,12\n700,1
-csv  | H0,0,12,75\n330,0,13,2
-csv  | H0,12.75\n736.6,21.5\n330,13.2
-csv  | H0,12.75\n330,about 13
-csv  | x,diameter\n0,12.75\n700,21.5
-csv  | x [mm],diameter\n0,12.75\n700,21.5
-csv  | 0,12.75\n700,21.5
-csv  | x [mm],diamter [mm]\n0,12\n700,21
-csv  | a,b\n1,2
-csv  | x [mm],weight [g]\n0,12\n700,21
-csv  | no.,diameter [mm]\n0,12\n700,21
-csv  | x [mm],diameter [mm],Wandstärke\n0,12,3
-csv  | x [mm],diameter [mm],ferrule\n0,12,\n20,12,5 mm abs\n700,21,
-csv  | x [kg],diameter [mm]\n0,12
-csv  | x [mm],diameter 1 [mm],diameter 2 [mm]\n0,12.75,12.9\n700,21,22
-csv  | x [mm],diameter [mm],bore [mm],hole [mm]\n0,12,6,7\n700,21,6,7
-csv  | x [mm],diameter [mm],material,wood\n0,12,ash,maple\n700,21,
-csv  | x [mm],diameter [mm],bore [mm]\n700,21,\n0,12,6
-csv  | x [mm],diameter [mm],bore [mm]\n0,12,12\n700,21,
-csv  | x [mm],diameter [mm],bore [mm]\n0,12,6\n7,12,6\n7,12,5\n7,12,4\n700,21,
-csv  | x [mm],diameter [mm],material\n0,12,hard mapel\n700,21,
-csv  | x [mm],diameter [mm],bor [mm]\n0,12,6\n700,21,
-csv  | x [mm],diameter [mm],materail\n0,12,ash\n700,21,
-csv  | x [mm],diameter [mm],Ferule\n0,12,abs\n700,21,
-csv  | x [mm],diameter [mm]\n0,12.4\n330,131\n700,21.3
-csv  | x [mm],diameter [mm]\n0,12.4\nmass,104 g\n700,21.3
-csv  | x [mm],diameter [mm]\n0,12.4\n700,21.3\nl0,21
-toml | cue.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a = 1
-csv  | x [mm],diameter [mm],core\n0,12.75,foam\n736.6,21.5,foam
-csv  | x [mm],radius [mm],inner radius (mm)\n0,6.4,3\n700,10,
-csv  | x [mm];diameter [mm]\n0;12.75\n330,5;13
-csv  | PK\x03\x04xxxx
-csv  | \x89PNG\r\n\x1a\n\x00\x01\x02
-stl  |
-ply  | solid
-obj  | v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9
-obj  | v 0 0 0\nv 1 0 0\nf 1 2
-obj  | v 0 0 0\nv 1 nan 0\nv 0 1 0\nf 1 2 3
-csv  | H0,12.75\n330,0.132\n736.6,21.5
-csv  | H0,12.75\n330,.52\n736.6,21.5
-csv  | H0,12.75\n330,1320\n736.6,21.5
-csv  | H0,12.75\n330,13.2\n736.6,2.15
-csv  | H0,12.75\n330,13.2\n736.6,215
-csv  | H0,1.275\n330,13.2\n736.6,21.5
-csv  | H0,127.5\n330,13.2\n736.6,21.5
-csv  | x [in],diameter [in]\n0,.505\n14,.00520\n29,.845
-csv  | x [in],diameter [in]\n0,.505\n14,13.2\n29,.845
-""".strip().splitlines()
 
 
 def test_load_invalid_content_is_rejected(tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    """One error a line of tests/golden/refused_files.txt: extension, content (H is the header of a profile)."""
     messages = {}
-    for i, row in enumerate(CONTENTS):
+    for i, row in enumerate(stored_rows("files")):
         end, content = (cell.strip() for cell in row.split("|"))
         path = tmp_path / str(i) / f"x.{end}"
         path.parent.mkdir()
         text = content.encode().decode("unicode_escape").encode("latin-1")
         path.write_bytes(b"x [mm],diameter [mm]\n" + text[1:] if text.startswith(b"H") else text)
-        messages[" ".join(row.split())] = rejection(path)
+        messages[row] = rejection(path)
         assert call("modes", path)[:2] == (2, "")
     assert_refused("files", messages, request)
 

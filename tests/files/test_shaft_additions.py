@@ -56,20 +56,6 @@ def test_bore_with_ferrule_starts_behind_the_tenon() -> None:
     assert (bored.tip_bore, bored.core, rest.tip_bore) == (0.006, None, 0)
 
 
-def test_load_options_on_drawing_and_scene_agree(tmp_path: Path) -> None:
-    drawing = Path("meshes/pool_maple.toml")
-    options = {"material": "ash", "ferrule": "13 mm abs", "bore": "6 mm wide, 100 mm deep"}
-    cue = cf.load(drawing, **options)
-    assert isinstance(cue, cf.Cue)
-    assert [segment.material for segment in cue.segments[:3]] == [material("leather"), ABS, ASH]
-    assert (cue.segments[1].core, cue.segments[2].tip_bore) == (ASH, 0.006)
-    scene = tmp_path / "scene.toml"
-    cf.save(cf.Scene(cf.load(drawing)), scene)
-    changed = cf.load(scene, **options)
-    assert isinstance(changed, cf.Scene)
-    assert changed.cue == cue
-
-
 def test_load_body_mass_equals_the_option(tmp_path: Path) -> None:
     csv, ounces = shaft(tmp_path), 15 * 0.028349523125
     assert [cf.load(csv, body_mass=mass).body_mass for mass in ("15 oz", ounces, 0)] == pytest.approx(

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.helpers.command_line import call
-from tests.test_golden_files import assert_golden
+from tests.test_golden_files import GOLDEN, assert_golden
 
 PROGRAM = re.compile(r"`[^`]*?( [a-z-]+)? --help`")  # tests run as another program
 
@@ -21,6 +21,15 @@ def assert_refused(
     """
     text = "".join(f"{row}: {message}\n" for row, message in messages.items())
     assert_golden(f"refused_{table}.txt", text, request, exact=exact)
+
+
+def stored_rows(table: str) -> list[str]:
+    """What the rows of tests/golden/refused_TABLE.txt try, before the first ": ".
+
+    A new row is a line of that file without a message, which `--update` adds.
+    """
+    lines = (GOLDEN / f"refused_{table}.txt").read_text(encoding="utf-8").splitlines()
+    return [line.partition(": ")[0] for line in lines]
 
 
 def messages_of(calls: Mapping[str, Callable[[], object]]) -> dict[str, str]:

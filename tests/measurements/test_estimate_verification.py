@@ -1,10 +1,7 @@
 """Estimates: exact data, coverage of intervals, next measurement, limits of the geometry (verification)."""
 
 import pickle
-import subprocess
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,12 +16,6 @@ from cuefem.measurements.uncertain_parameters import Prior
 from tests.helpers.measured_cues import SCENE, cheap_measurements, measured_cue
 
 SIGMAS_95 = 1.959964  # standard deviations of a 95 % interval
-# A child counts the memory of the process that it was forked from, so a small one starts the command.
-PEAK_OF_COMMAND = """
-import resource, subprocess, sys
-subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL, check=True)
-print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
-"""
 CLOSED = Prior("contact time", 0.0)  # no measurement here depends on it
 
 
@@ -91,15 +82,6 @@ def test_predictions_keep_no_solved_beams() -> None:
     for mass in range(1, 9):
         predictions.squirt(0.3, added_mass=(1e-3 * mass, 0.1))
     assert len(pickle.dumps(predictions)) < 3e5
-
-
-@pytest.mark.nightly
-def test_estimate_of_32_beams_has_bounded_memory() -> None:
-    """players_maple, 31 added masses that contradict each other; 4.8 GB when each setup kept its beams."""
-    folder = Path(__file__).parents[2] / "studies" / "measured" / "players_maple"
-    command = [sys.executable, "-m", "cuefem", "compare", folder, "--estimate"]
-    measured = subprocess.run([sys.executable, "-c", PEAK_OF_COMMAND, *command], stdout=subprocess.PIPE, check=True)
-    assert int(measured.stdout) * (1 if sys.platform == "darwin" else 1024) < 2e8
 
 
 @pytest.mark.nightly

@@ -15,7 +15,14 @@ from cuefem.measurements.shot import Shot
 from cuefem.measurements.swerve import reading_angle
 from cuefem.measurements.uncertain_parameters import Prior
 from tests.helpers.command_line import call
-from tests.helpers.invalid_input import assert_refused, assert_rejects, assert_unchanged, messages_of, rejected
+from tests.helpers.invalid_input import (
+    assert_refused,
+    assert_rejects,
+    assert_unchanged,
+    messages_of,
+    rejected,
+    stored_rows,
+)
 from tests.helpers.measured_cues import CUE_TOML, MEASURED_TOML, SCENE, measured_cue, measured_folder
 from tests.helpers.recordings import save_wav
 
@@ -59,41 +66,12 @@ def test_invalid_arguments_are_rejected(request: pytest.FixtureRequest) -> None:
 
 
 SHOTS = r"""[[shot]]\nleft = "40 mm"\nright = "38 mm"\n"""
-# A file of the folder, its content (P: a shot without its distance and its offset).
-FILES = r"""
-measured.toml | [[weigth]]\nvalue = "1 g"\n
-measured.toml | [[weight]]\nvalue = 100\nerror = "1 g"\n
-measured.toml | [[weight]]\nvalue = "100 g"\n
-measured.toml | weight = "100 g"\n
-measured.toml | [[squirt]]\noffset = 0.3\nerror = "1 deg"\n
-measured.toml | name = 3\n
-measured.toml | prior = 3\n
-measured.toml | cue = { mass = "0.5 kg", end_mass = "6 g" }\n
-measured.toml | Pdistance = "1.2 m"\n
-measured.toml | Pdistance = "1.2 m"\noffset = 0.375\n
-measured.toml | Pdistance = "4 m"\ncue_offset = "14.3 mm"\n
-measured.toml | Pdistance = "9 cm"\ncue_offset = "14.3 mm"\n
-measured.toml | Pdistance = "1.2 m"\ncue_offset = "14.3 mm"\nelevation = "16 deg"\n
-measured.toml | Pdistance = "1.2 m"\ncue_offset = "1.1 in"\n
-measured.toml | Pdistance = "1.2 m"\nchalk_mark = "?"\n
-measured.toml | [[recording]]\nfile = "none.wav"\n
-measured.toml | [[recording]]\nfile = "tap.mp3"\n
-measured.toml | [[recording]]\nfile = "tap.wav"\nloud = 1\n
-measured.toml | [[recording]]\nfile = "\u0000.wav"\n
-squirt.csv | offset,sqirt [deg]\n0.3,2\n
-squirt.csv | offset,value,error [deg]\n0.3,2,1\n
-squirt.csv | offset,value [deg],error [deg]\n0.3,2\n
-squirt.csv | offset,value [deg],error [deg]\na,2,1\n
-tone.csv | # nothing\n
-squirt.csv | offset,value [deg],value [deg]\n0.3,2,1\n
-squirts.csv | offset\n
-squirt.CSV | offset\n
-""".strip().splitlines()
 
 
 def test_invalid_files_are_rejected(tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    """Each row: a file of the folder, its content (P: a shot without its distance and its offset)."""
     messages = {}
-    for i, row in enumerate(FILES):
+    for i, row in enumerate(stored_rows("measured_files")):
         name, text = row.split(" | ")
         directory = measured_folder(tmp_path / f"{i}")
         text = (SHOTS + text[1:]) if text[0] == "P" else text

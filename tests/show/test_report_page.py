@@ -14,7 +14,6 @@ from cuefem.files.defaults_report import Assumption
 from cuefem.results.quantities import DASH
 from cuefem.show.charts import WIDTH, Axis, round_step, spread_labels
 from cuefem.show.drawings import DIAMETER_SCALE, cue_drawing
-from tests.helpers.page_reader import assert_valid
 
 MESHES = Path(__file__).parents[2] / "meshes"
 SCENES = MESHES.parent / "studies" / "scenes"
@@ -34,7 +33,6 @@ def test_page_with_markup_in_name_is_escaped() -> None:
     assert "<script>alert" not in text
     assert "&lt;script&gt;alert(1)&lt;/script&gt; &amp; co.toml" in text
     assert "a &lt; b</li>" in text
-    assert_valid(text)
 
 
 def test_axis_ticks_are_round_numbers() -> None:

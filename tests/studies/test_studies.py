@@ -84,16 +84,3 @@ def test_two_measured_balls_are_compared_with_both_predictions(tmp_path: Path) -
     assert two_balls.result(str(light), str(heavy)).endswith("nearer to an end mass")
     with pytest.raises(ValueError, match="at least 5 % more"):
         two_balls.result(str(light), str(light))
-
-
-def test_study_folders_have_no_other_pages_or_figures() -> None:
-    written = {study.path.with_name(figure) for study in STUDY.values() for figure in study.figures}
-    written |= {study.path.with_suffix(".md") for study in STUDY.values()}
-    homes = {path.parent for path in PROGRAMS}
-    loose = {path for home in homes for path in home.iterdir() if path.suffix in (".md", ".svg", ".png")}
-    assert {path.name for path in loose - written} <= {"README.md"}
-
-
-def test_study_index_links_exist() -> None:
-    links = re.findall(r"\]\(([^)#]+)\)", INDEX)
-    assert [link for link in links if not link.startswith("http") and not (STUDIES / link).exists()] == []
