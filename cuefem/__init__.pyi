@@ -40,7 +40,6 @@ from .analysis.natural_frequencies import (
     NaturalFrequencies as NaturalFrequencies,
     natural_frequencies as natural_frequencies,
 )
-from .analysis.page_notes import accuracy as accuracy, definitions as definitions, segments as segments
 from .analysis.parts import Parts as Parts, parts as parts
 from .analysis.cue_report import CueReport as CueReport, report as report
 from .analysis.simulator_export import PooltoolExport as PooltoolExport, pooltool_export as pooltool_export

@@ -85,24 +85,6 @@ QUESTIONS: dict[str, Question] = {
     "contact": Question(
         "The contact", "cuefem.analysis.contact_history:contact_history", page_only=True, folded=True, engineer=True
     ),
-    "segments": Question(
-        "Segments",
-        "cuefem.analysis.page_notes:segments",
-        page_only=True,
-        folded=True,
-        needs=has_segments,
-        engineer=True,
-    ),
-    "meanings": Question(
-        "Definitions of the end mass",
-        "cuefem.analysis.page_notes:definitions",
-        page_only=True,
-        folded=True,
-        engineer=True,
-    ),
-    "accuracy": Question(
-        "Accuracy of the model", "cuefem.analysis.page_notes:accuracy", page_only=True, folded=True, engineer=True
-    ),
     "effects": Question(
         "Sensitivity to effects",
         "cuefem.analysis.effect_sensitivity:effect_sensitivity",

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from cuefem.analysis import report_sections
 from cuefem.analysis.first_screen import HeadlineCue, comparison_lines, cue_names, screen_markup
+from cuefem.analysis.page_notes import page_notes
 from cuefem.analysis.squirt_curve import FINE_OFFSETS
 from cuefem.analysis.strike_models import regime_warning
 from cuefem.files.defaults_report import STROKE, TIP, Assumption
@@ -52,20 +53,7 @@ def page_of(
     verdict: Any = answers["verdict"]
     calibrated = verdict.calibrated
     own = HeadlineCue(name, scene, _numbers(scene, answers), verdict)
-    parts = {key: part for key, part in report_sections().items() if key in answers and key != "verdict"}
-    sections = [
-        {
-            "key": key,
-            "title": part.title,
-            "folded": part.folded,
-            "engineer": part.engineer,
-            "about": answers[key].about,
-            "charts": answers[key].charts(),
-            "more": answers[key].more_charts(),
-            "tables": answers[key].tables(),
-        }
-        for key, part in parts.items()
-    ]
+    sections = [part for part in report_parts(scene, answers) if part["key"] != "verdict"]
     others = [] if beside is None else [beside.cue]
     if beside is not None:
         sections.insert(0, _beside(scene, answers, name, beside, verdict.factor))
@@ -92,6 +80,34 @@ def page_of(
         engineers=[part for part in sections if part["engineer"]],
         engineers_open=_is_for_engineers(scene, name, notes),
     )
+
+
+def report_parts(scene: Scene, answers: Answers) -> list[Record]:
+    """The sections of a page: each answer in the order of the report, then the notes on a stroke."""
+    sections = [
+        _section(key, part.title, answers[key].tables(), folded=part.folded, engineer=part.engineer)
+        | {"about": answers[key].about, "charts": answers[key].charts(), "more": answers[key].more_charts()}
+        for key, part in report_sections().items()
+        if key in answers
+    ]
+    stroke: Any = answers.get("strike")
+    if stroke is None:
+        return sections
+    verdict: Any = answers.get("verdict")
+    coupled, factor = stroke.models["coupled"], 1.0 if verdict is None else verdict.factor
+    notes = page_notes(scene, factor * coupled["squirt"], coupled["error"])
+    return [
+        *sections,
+        *(_section(key, title, tables, folded=True, engineer=True) for key, (title, tables) in notes.items()),
+    ]
+
+
+def _section(
+    key: str, title: str, tables: Sequence[Table | str], *, folded: bool = False, engineer: bool = False
+) -> Record:
+    """A section of a page, without charts."""
+    made: Record = {"key": key, "title": title, "folded": folded, "engineer": engineer}
+    return made | {"tables": tables, "charts": [], "about": "", "more": []}
 
 
 def _is_for_engineers(scene: Scene, name: str, notes: Sequence[Assumption]) -> bool:
@@ -128,8 +144,7 @@ def _beside(scene: Scene, answers: Answers, name: str, beside: Beside, squirt_fa
 
 def section_of(table: Table, charts: Sequence[Chart]) -> Record:
     """The section of compared cues."""
-    made: Record = {"key": "other", "title": table.title, "folded": False, "engineer": False, "about": "", "more": []}
-    return made | {"charts": charts, "tables": [table]}
+    return _section("other", table.title, [table]) | {"charts": charts}
 
 
 def _numbers(scene: Scene, answers: Answers) -> dict[str, float | None]:

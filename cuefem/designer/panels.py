@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Any
 
-from cuefem.analysis import report_sections
+from cuefem.analysis.report_page import report_parts
 from cuefem.analysis.strike_models import regime_warning
 from cuefem.designer.computation import CURVE_OFFSETS, OFFSET_STEP
 from cuefem.designer.controls import KNOBS, label, value, value_text
@@ -23,7 +23,7 @@ from cuefem.scene import Scene
 from cuefem.show.analysis import DESIGN_STYLES
 from cuefem.show.charts import Axis, Curve, chart
 from cuefem.show.offset_charts import offset_charts
-from cuefem.show.templates import answer_markup, chart_markup, shading_markup, table_markup
+from cuefem.show.templates import chart_markup, section_markup, shading_markup, table_markup
 
 COMPUTING = '<p class="soft">computing …</p>'
 
@@ -140,7 +140,6 @@ def sections_markup(session: Session) -> str:
     if answers is None:
         return COMPUTING
     return "".join(
-        f"<details><summary><h2>{escape(question.title)}</h2></summary>{answer_markup(answers.sections[key])}</details>"
-        for key, question in report_sections().items()
-        if key in answers.sections
+        f"<details><summary><h2>{escape(part['title'])}</h2></summary>{section_markup(part)}</details>"
+        for part in report_parts(answers.scene, answers.sections)
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache
@@ -88,9 +88,9 @@ def table_markup(sheet: Table) -> str:
     return f"<h2>{escape(sheet.title)}</h2>{_macros().table(sheet)}"
 
 
-def answer_markup(answer: Any) -> str:
-    """Charts, tables and description of an analysis."""
-    return str(_macros().answer(answer.charts(), answer.tables(), answer.about, answer.more_charts()))
+def section_markup(part: Mapping[str, Any]) -> str:
+    """Charts, tables and description of a section of a page."""
+    return str(_macros().answer(part["charts"], part["tables"], part["about"], part["more"]))
 
 
 def plain_page(
