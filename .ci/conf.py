@@ -1,10 +1,11 @@
-"""The documentation site: README, handbook, studies and notebooks of the repository, and the public names.
+"""The documentation site: a home page, README, handbook, studies and notebooks of the repository, and the public names.
 
 sphinx-build -W --keep-going -c .ci . site
 """
 
 from __future__ import annotations
 
+import ast
 import inspect
 import re
 from collections import defaultdict
@@ -15,9 +16,11 @@ import latex2mathml.converter
 from docutils import nodes
 from pygments.lexers.special import TextLexer
 from sphinx.application import Sphinx
+from sphinx.domains.python import PyObject
 
 import cuefem
 from cuefem.handbook import MAKERS, chapters
+from cuefem.show.analysis import Answer
 
 ROOT = Path(__file__).parents[1]
 
@@ -31,8 +34,10 @@ extensions = [
     "sphinx_design",
     "sphinx_copybutton",
 ]
-root_doc = "README"
+root_doc = "index"
+templates_path = [str(Path(__file__).parent / "templates")]
 include_patterns = [
+    "index.md",
     "README.md",
     "CHANGELOG.md",
     "CONTRIBUTING.md",
@@ -50,7 +55,10 @@ default_role = "py:obj"  # a name in backticks is a link
 html_math_renderer = "mathml"  # no script, no network
 nb_execution_mode = "off"  # outputs as stored; tests/studies executes the notebooks
 autosummary_generate = True
-autodoc_typehints = "description"
+for field in PyObject.doc_field_types:
+    if field.name == "variable":  # what napoleon makes of a section Attributes
+        field.label = "Attributes"
+autodoc_typehints, autodoc_typehints_description_target = "description", "documented_params"
 autodoc_member_order = "bysource"
 autodoc_default_options = {"members": True}
 napoleon_use_ivar = True  # a documented attribute that is a member, too, has one description
@@ -71,6 +79,13 @@ TITLES = {
     "Studies and measurements": ("designs", "measurements"),
     "Figures": ("plot",),
 }
+REFERENCE_HEAD = """# Python reference
+
+`import cuefem as cf`. Lengths in m, masses in kg, times in s, angles in rad.
+
+An answer to a question shows itself in a notebook and in print. It has `to_dict()`, `save(path)` (.html or .json),
+`warnings` and `assumptions`; one that is a table has `to_frame()`. Its page lists its numbers, each with its unit.
+"""
 SUMMARY = """
 ## {title}
 
@@ -82,16 +97,18 @@ SUMMARY = """
 {rows}
 ```
 """
+TABLE = re.compile(r"^\| question \| answer \| page \|\n(?:\|.*\n)+", re.MULTILINE)
 STUDY = re.compile(r"^\| (.+\?) \| (.+) \| \[(\w+)\]\((.+)\.md\) \|$", re.MULTILINE)
-CARD = """::::{{grid-item-card}} {question}
-{answer}
+# The rows with figures have them as pictures.
+CARD = """:::{{grid-item-card}} {question}
+:link: /studies/{page}
+:link-type: doc
 {picture}
-```python
-{example}
-```
-
-[{page}](/studies/{page}.md)
-::::
+{answer}
+:::
+"""
+PICTURE = """:img-top: /studies/{page}.svg
+:img-alt: figure of the study {page}
 """
 WORTH = """
 - **Change of squirt in the reference scenes:** {least} to {most} % ([effects](/studies/contact/effects.md)).
@@ -118,7 +135,7 @@ def side_bar() -> str:
             contents("For makers", *(f"/{HANDBOOK}/{name}" for name in MAKERS)),
             contents("For engineers", *(f"/{HANDBOOK}/{name}" for name in engineers)),
             contents("Python", f"/{REFERENCE}", *(f"/studies/notebooks/{name}" for name in notebooks)),
-            contents("Project", "Studies and gallery </studies/README>", "/CHANGELOG", "/CONTRIBUTING"),
+            contents("Project", "Studies </studies/README>", "README </README>", "/CHANGELOG", "/CONTRIBUTING"),
             "\n```{toctree}\n:hidden:\n:titlesonly:\n\n/meshes/README\n"
             + "\n".join(f"/{page}" for page in pages)
             + "\n```\n",
@@ -126,24 +143,20 @@ def side_bar() -> str:
     )
 
 
-def gallery() -> str:
-    """The studies as cards: question, answer, picture, and the lines of Python that their pages end with."""
-    rows = STUDY.findall((ROOT / "studies/README.md").read_text(encoding="utf-8"))
+def with_gallery(studies: str) -> str:
+    """The list of studies with its table as a gallery: a card for each, those with a figure first."""
+    rows = STUDY.findall(studies)
     cards = [study_card(question, answer, page) for question, answer, _, page in rows]
-    return "\n## Gallery\n\n:::::{grid} 1\n" + "".join(cards) + ":::::\n"
+    cards.sort(key=lambda card: ":img-top:" not in card)
+    grid = "::::{grid} 1 2 3 3\n:gutter: 3\n\n" + "\n".join(cards) + "\n::::\n"
+    return TABLE.sub(lambda _: grid, studies, count=1)
 
 
 def study_card(question: str, answer: str, page: str) -> str:
     """A card of the gallery."""
-    text = (ROOT / f"studies/{page}.md").read_text(encoding="utf-8")
     has_picture = (ROOT / f"studies/{page}.svg").exists()
-    return CARD.format(
-        question=question,
-        answer=answer,
-        page=page,
-        picture=f"\n```{{image}} /studies/{page}.svg\n:alt: figure of the study {page}\n```\n" if has_picture else "",
-        example=text.partition("## In Python\n\n```python\n")[2].partition("\n```")[0],
-    )
+    picture = PICTURE.format(page=page) if has_picture else ""
+    return CARD.format(question=question, answer=answer, page=page, picture=picture)
 
 
 def with_worth(chapter: str) -> str:
@@ -182,7 +195,7 @@ def reference() -> str:
     names = defaultdict(list)
     for name in sorted(cuefem.__all__, key=str.lower):
         names[room_of(name)].append(name)
-    text = "# Python reference\n\n`import cuefem as cf`. Lengths in m, masses in kg, times in s, angles in rad.\n"
+    text = REFERENCE_HEAD
     for title, rooms in TITLES.items():
         listed = [name for room in rooms for name in names.pop(room, [])]
         if listed:
@@ -193,20 +206,54 @@ def reference() -> str:
     return text
 
 
-def write_reference(app: Sphinx, config: Any) -> None:
-    """Write the page of public names, which autosummary reads from a file."""
-    path = ROOT / f"{REFERENCE}.md"
-    if not path.exists() or path.read_text(encoding="utf-8") != reference():
-        path.write_text(reference(), encoding="utf-8")
+def home() -> str:
+    """The first page, with the answer of its own lines of Python, and the side bar."""
+    text = (ROOT / ".ci/home.md").read_text(encoding="utf-8")
+    lines = text.partition("```python\n")[2].partition("\n```")[0]
+    return text.replace("FIRST_CONTACT", f"```{{raw}} html\n{last_answer(lines)._repr_html_()}\n```") + side_bar()
+
+
+def last_answer(lines: str) -> Answer:
+    """Run lines of Python; the value of the last one."""
+    *statements, last = ast.parse(lines).body
+    names: dict[str, Any] = {}
+    exec(compile(ast.Module(statements, []), "home.md", "exec"), names)
+    return eval(compile(ast.Expression(last.value), "home.md", "eval"), names)
+
+
+def write_pages(app: Sphinx, config: Any) -> None:
+    """Write the page of public names and, unless another page is the first, the home page: Sphinx reads files."""
+    pages = {f"{REFERENCE}.md": reference()}
+    if config.root_doc == root_doc:
+        pages["index.md"] = home()
+    for name, text in pages.items():
+        path = ROOT / name
+        if not path.exists() or path.read_text(encoding="utf-8") != text:
+            path.write_text(text, encoding="utf-8")
+
+
+def docstring_read(app: Sphinx, kind: str, name: str, value: Any, options: Any, lines: list[str]) -> None:
+    """The fields of an answer are its attributes: nobody makes one by its parameters."""
+    if is_answer(value) and "Parameters" in lines:
+        at = lines.index("Parameters")
+        lines[at : at + 2] = ["Attributes", "----------"]
+
+
+def signature_read(app: Sphinx, kind: str, name: str, value: Any, *more: Any) -> tuple[str, None] | None:
+    """No parameters of an answer."""
+    return ("", None) if is_answer(value) else None
+
+
+def is_answer(value: Any) -> bool:
+    """Whether a documented object is the class of an answer."""
+    return inspect.isclass(value) and issubclass(value, Answer)
 
 
 def source_read(app: Sphinx, document: str, source: list[str]) -> None:
     """Add what stands in no file: side bar, gallery, texts that the handbook's code adds, drawings."""
     text = WRITTEN.get(document, source[0])
-    if document == root_doc:
-        text += side_bar()
     if document == "studies/README":
-        text += gallery()
+        text = with_gallery(text)
     if document == f"{HANDBOOK}/effects":
         text = with_worth(text)
     text = re.sub(r"\[([^\]]+)\]\([\w/]+/\)", r"`\1`", text)  # a folder is no page of the site
@@ -229,19 +276,14 @@ def formula(display: str) -> tuple[Any, None]:
     return visit, None
 
 
-def redirect(app: Sphinx, error: Exception | None) -> None:
-    """Let index.html open the first page."""
-    page = f'<meta http-equiv="refresh" content="0; url={root_doc}.html">'
-    Path(app.outdir, "index.html").write_text(page, encoding="utf-8")
-
-
 WRITTEN = {f"{HANDBOOK}/{chapter.name}": chapter.text for chapter in chapters()}
 
 
 def setup(app: Sphinx) -> None:
     """Connect the parts above."""
     app.add_lexer("csv", TextLexer)
-    app.connect("config-inited", write_reference)
+    app.connect("config-inited", write_pages)
+    app.connect("autodoc-process-docstring", docstring_read, priority=400)  # before napoleon reads the sections
+    app.connect("autodoc-process-signature", signature_read)
     app.connect("source-read", source_read)
-    app.connect("build-finished", redirect)
     app.add_html_math_renderer("mathml", formula("inline"), formula("block"))

@@ -1,6 +1,6 @@
 "use strict";
 // Blocks that scroll sideways can be reached and scrolled by keyboard.
-for (const block of document.querySelectorAll(".highlight pre, .table-wrapper")) block.tabIndex = 0;
+for (const block of document.querySelectorAll(".highlight pre, .table-wrapper, .math-wrapper")) block.tabIndex = 0;
 // The theme leaves captions without a level and two side bars without names.
 for (const caption of document.querySelectorAll('.caption[role="heading"]')) caption.ariaLevel = 2;
 document.querySelector(".sidebar-drawer").ariaLabel = "Pages";

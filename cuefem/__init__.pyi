@@ -1,8 +1,8 @@
 from . import plot as plot
 from .analysis.reduction import Reduction as Reduction, reduction as reduction
 from .beam.mesh import Resolution as Resolution
-from .beam.modes import modes as modes
-from .contact.motion_history import motion as motion
+from .beam.modes import Modes as Modes, modes as modes
+from .contact.motion_history import Motion as Motion, motion as motion
 from .contact.table_frame import BallMotion as BallMotion, place as place
 from .contact.outcome import History as History, Phase as Phase
 from .contact.side_strike import (
@@ -12,8 +12,7 @@ from .contact.side_strike import (
     side_strike as side_strike,
 )
 from .contact.strike import batch_strike as batch_strike, strike as strike
-from .contact.tip_identification import identify_tip as identify_tip
-from .contact.tip_identification import rebound as rebound
+from .contact.tip_identification import IdentifiedTip as IdentifiedTip, identify_tip as identify_tip, rebound as rebound
 from .cue.materials import material as material
 from .cue.geometry import Cue as Cue, LumpedCue as LumpedCue, Material as Material, Segment as Segment
 from .analysis.comparison import Comparison as Comparison, compare as compare

@@ -73,7 +73,7 @@ class EigenSolution:
         )
 
     def lowest(self, count: int, cutoff: float = np.inf) -> Self:
-        """As `Spectrum.lowest`: without another eigenproblem."""
+        """The ``count`` lowest modes up to ``cutoff``, rad/s, as `Spectrum.lowest`: without another eigenproblem."""
         return replace(self, **vars(self.spectrum.lowest(count, cutoff)))
 
 

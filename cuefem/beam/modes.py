@@ -22,7 +22,24 @@ from cuefem.quantity.fields import Quantity, check_count, check_kind
 class Modes(EigenSolution):
     """Undamped flexible bending modes of a cue, with their motion at one node, the tip by default.
 
-    system: the assembled beam. rigid_vectors: (free, rigid), the mass-normalised rigid-body modes of zero frequency.
+    Attributes
+    ----------
+    omega : (n,) array
+        Angular frequencies, rad/s, ascending; those of a truncation correction last.
+    participation : (loads, n) array
+        The work of each load on each mode, 1/sqrt(kg); the first load is a transverse force at the tip.
+    cutoff : float
+        Highest angular frequency of the retained modes, rad/s.
+    resolved : float
+        Highest angular frequency that the mesh determines, rad/s.
+    vectors : (free, n) array
+        Mass-normalised mode shapes, in the degrees of freedom of ``system``; `shape` interpolates them.
+    rigid_vectors : (free, rigid) array
+        Mass-normalised rigid-body modes of zero frequency.
+    system : System
+        The assembled beam.
+    radiation, mix, spectrum, loads
+        The eigensolution behind the modes, of `cuefem/beam/eigensolver.py`.
     """
 
     system: System
@@ -71,7 +88,7 @@ class Modes(EigenSolution):
         return w, theta / self.system.cue.length
 
     def shape(self, x: ArrayLike) -> tuple[Array, Array]:
-        """Deflection w and rotation theta of every mode at ``x`` m from the tip: two arrays (n, *x.shape).
+        """Deflection w and rotation theta of every mode at ``x`` m from the tip: two arrays ``(n, *x.shape)``.
 
         Mass-normalised: w in 1/sqrt(kg), theta in 1/(m sqrt(kg)); w(0) > 0.
         """

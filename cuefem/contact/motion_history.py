@@ -77,7 +77,7 @@ class Motion:
 
         Returns
         -------
-        w, theta : arrays of shape (n, *x.shape)
+        w, theta : arrays of shape ``(n, *x.shape)``
             Deflection, m, and rotation, rad, at each time.
         """
         return self.modes.system.interpolate(self.fields, np.asarray(x, float))

@@ -23,7 +23,15 @@ REBOUND = Quantity("", f"[{MIN_LEATHER_RESTITUTION}, 1]")
 
 
 class IdentifiedTip(NamedTuple):
-    """A leather's Young's modulus, Pa, and the restitution of the tip."""
+    """Leather that explains a measured contact time and rebound.
+
+    Attributes
+    ----------
+    E : float
+        Young's modulus, Pa.
+    restitution : float
+        Coefficient of restitution of the tip.
+    """
 
     E: float
     restitution: float

@@ -127,8 +127,16 @@ class SolidBody:
 class SolidModes:
     """Mass-normalised modes of a solid cue, ascending in frequency, the rigid-body modes first.
 
-    omega: (n,) rad/s. tip: (n,) mean displacement of the tip's face, 1/sqrt(kg), positive. rotation: (n,) of the face,
-    1/(m sqrt(kg)). rigid: number of rigid-body modes.
+    Attributes
+    ----------
+    omega : (n,) array
+        Angular frequencies, rad/s.
+    tip : (n,) array
+        Mean displacement of the tip's face, 1/sqrt(kg), positive.
+    rotation : (n,) array
+        Rotation of the tip's face, 1/(m sqrt(kg)).
+    rigid : int
+        Number of rigid-body modes.
     """
 
     omega: Array

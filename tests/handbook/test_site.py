@@ -1,12 +1,15 @@
 """The documentation site: every public name is on it, and a gap or a broken link fails the build (bad input)."""
 
+import inspect
 import json
 import re
 import subprocess
 import sys
+from dataclasses import fields, is_dataclass
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
+from typing import Any
 from xml.etree.ElementTree import fromstring
 
 import pytest
@@ -69,6 +72,33 @@ def test_reference_without_docstring_or_title_raises(
     monkeypatch.setattr(cuefem, "__all__", [*cuefem.__all__, "extra"])
     with pytest.raises(ValueError, match=re.escape(message)):
         site.reference()
+
+
+def test_names_of_readme_and_their_answers_are_in_reference() -> None:
+    texts = (ROOT / "README.md").read_text(encoding="utf-8") + (ROOT / ".ci/home.md").read_text(encoding="utf-8")
+    promised = set(re.findall(r"\bcf\.(\w+)", texts))
+    functions = [getattr(cuefem, name) for name in promised if inspect.isfunction(getattr(cuefem, name, None))]
+    answers = {
+        word for each in functions for word in re.findall(r"[A-Z]\w+", str(inspect.signature(each).return_annotation))
+    }
+    assert promised | answers - {"Any", "None"} <= set(cuefem.__all__)
+
+
+def test_pages_of_classes_document_every_field() -> None:
+    classes = {name: value for name in cuefem.__all__ if is_dataclass(value := getattr(cuefem, name))}
+    missing = {name: set(shown_fields(value)) - documented(value) for name, value in classes.items()}
+    assert {name: names for name, names in missing.items() if names} == {}
+
+
+def shown_fields(kind: Any) -> list[str]:
+    return [field.name for field in fields(kind) if field.repr]
+
+
+def documented(kind: type) -> set[str]:
+    """Names that a class and its bases list in sections of their docstrings."""
+    texts = "\n".join(inspect.getdoc(base) or "" for base in kind.__mro__)
+    listed = re.findall(r"^(\w+(?:, \w+)*)(?: : .*)?\n +\S", texts, re.MULTILINE)
+    return {name for line in listed for name in line.split(", ")}
 
 
 @pytest.mark.heavy
