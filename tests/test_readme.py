@@ -105,6 +105,7 @@ def test_command_blocks_run(block: str, tmp_path: Path, monkeypatch: pytest.Monk
             assert option != "-o" or (tmp_path / path).exists()
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("code", blocks("python"))
 def test_python_blocks_run(
     code: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

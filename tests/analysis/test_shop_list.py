@@ -25,6 +25,7 @@ def write_shop(folder: Path) -> Path:
     return folder
 
 
+@pytest.mark.heavy
 def test_list_equals_comparisons_and_names_what_it_cannot_read(tmp_path: Path) -> None:
     """JSON, CSV and page of a folder; the reference is its first file, and each difference that of `compare`."""
     shop = write_shop(tmp_path / "shop")

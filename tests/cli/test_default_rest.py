@@ -41,6 +41,7 @@ def test_scene_file_of_light_drawing_gets_usual_rest(shaft: Path) -> None:
     assert cf.load(shaft.parent / "bare.toml").cue.body_mass == 0.0
 
 
+@pytest.mark.heavy
 def test_compare_options_fill_in_what_each_file_leaves_open(shaft: Path) -> None:
     options = ("--body-mass", "15 oz", "--ferrule", "1 in melamine", "--shaft-mass", "3.9 oz", "--game", "pool")
     record = as_json("compare", shaft, PREDATOR, *options)

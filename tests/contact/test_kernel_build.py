@@ -124,6 +124,7 @@ def test_kernel_without_memory_at_any_allocation_raises(folder: Path) -> None:
     assert printed.split("\n") == 2 * ["0 True", "passed True"]
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("environment", [{"PATH": ""}, {"CC": "false"}])
 def test_kernel_build_without_compiler_uses_zig_or_names_both(folder: Path, environment: dict[str, str]) -> None:
     without_zig = f"import sys; sys.modules['ziglang'] = None; {BUILDING}"

@@ -97,7 +97,7 @@ CALLS: dict[str, Callable[[], object]] = {
 }
 RUNS: dict[str, Callable[[], object]] = {
     "scatter of miscues": lambda: cf.study(scattered(vary=(TIME,), count=2, response="squirt(0.9)")),
-    "unreachable limit": lambda: optimum(STIFF, rounds=2),
+    "unreachable limit": lambda: optimum(STIFF, rounds=1),
     "miscue at every design": lambda: optimum(MISCUE, rounds=1),
 }
 

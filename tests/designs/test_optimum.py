@@ -231,6 +231,7 @@ def test_trade_off_is_never_worse_than_a_grid_and_evenly_spread(tmp_path: Path) 
     assert found.headline().startswith("squirt slope 0.07521 → ")
 
 
+@pytest.mark.heavy
 def test_front_of_a_sweep_is_written_alone(tmp_path: Path) -> None:
     """The rows of its Pareto front; refused for one response, which trades off with none."""
     path = write_study(tmp_path)

@@ -130,6 +130,7 @@ def test_single_factor_explains_single_response() -> None:
     assert result.sobol_indices.first_interval.shape == (2, 1, 1)
 
 
+@pytest.mark.heavy
 def test_designs_without_a_response_leave_the_others_answered(tmp_path: Path) -> None:
     """The share of miscues is an answer; only responses that every design has have indices, a constant one has none."""
     text = 'scene = "scene.toml"\nresponses = ["squirt", "end_mass", "mass"]\n' + resolution(8, 4)
