@@ -67,6 +67,13 @@ class CueReport(Analysis):
         first = first or as_entered or regime_warning(self.regime)
         return [*([first, ""] if first else []), *(table for _, answer in self._brief() for table in answer.tables())]
 
+    def lines(
+        self, name: str = "", assumptions: Sequence[Assumption] = (), hints: Sequence[Table | str] = ()
+    ) -> list[Table | str]:
+        """What a terminal shows, the assumptions by their part of the uncertainty."""
+        verdict: Any = self.sections.get("verdict")
+        return super().lines(name, verdict.by_part(assumptions) if verdict else assumptions, hints)
+
     def _brief(self) -> list[tuple[str, Analysis]]:
         """The sections that terminal and JSON show too."""
         return [(key, self.sections[key]) for key in report_sections(details=False) if key in self.sections]

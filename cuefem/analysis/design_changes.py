@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import combinations
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from cuefem.designs.evaluation import Response
 from cuefem.measurements.calibration import CalibratedSquirt, Calibration
 from cuefem.parameters.parts import is_tube, shaft_word
 from cuefem.parameters.scene_changes import with_parameters
-from cuefem.quantity.display_units import change_with_unit, format_change, with_unit
+from cuefem.quantity.display_units import change_with_unit, format_change, to_display, with_heading, with_unit
 from cuefem.results.progress import Progress
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.results.solved_design import Solvable, SolvedDesign, off_centre
@@ -25,6 +25,9 @@ from cuefem.results.verdict import reject_no_verdict
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
 from cuefem.show.analysis import Analysis, Rows
+
+if TYPE_CHECKING:
+    from cuefem.show.charts import Chart
 
 MIN_CHANGE = 0.02  # relative, of squirt: below it nobody turns a ferrule
 MAX_STRIKES = 30  # of single and combined changes
@@ -94,6 +97,8 @@ class DesignChanges(Rows, Analysis):
         The calibration by which every squirt is given: all changes carry the factor of the cue itself.
     together : list of ChangedDesign
         The best two changes of this shaft together, and the best three if they lower squirt by 2 % more.
+    limits : Limits
+        What the maker does not accept.
     """
 
     offset: float
@@ -103,6 +108,7 @@ class DesignChanges(Rows, Analysis):
     miscues: tuple[str, ...] = ()
     calibrated: CalibratedSquirt | None = None
     together: Sequence[ChangedDesign] = ()
+    limits: Limits = field(default=Limits(), repr=False)
 
     def frame_rows(self) -> list[Record]:
         """A row for each change."""
@@ -152,6 +158,27 @@ class DesignChanges(Rows, Analysis):
         styles = {i: STYLES[row.verdict] for i, row in enumerate(self.changes) if row.verdict in STYLES}
         return replace(table, styles=styles, more=(2, 3, 4))
 
+    def charts(self) -> list[Chart]:
+        """Squirt against mass: the cue as it is, each change, and the best ones together."""
+        from cuefem.show.charts import Axis, Dots, chart  # charts are not for terminals
+
+        rows = [("one change", "c5", self.changes), ("together", "c1", self.together)]
+        points = [
+            Dots(name if i == 0 else "", *_cost(row), style, row.change)
+            for name, style, listed in rows
+            for i, row in enumerate(listed)
+        ]
+        now = Dots("this cue", [0.0], [0.0], "c2")
+        x, y = Axis(with_heading("mass change", "kg")), Axis("squirt change, %")
+        return [chart("Squirt and mass of each change", [], x=x, y=y, points=[*points, now], height=230)]
+
+    def _limits_line(self) -> str:
+        """The limits of the changes as a line of text."""
+        wall = min(self.limits.least_wall(self.scene), thinnest_wall(self.scene))
+        kept = f"; {', '.join(self.limits.keep)} as they are" if self.limits.keep else ""
+        loss = f"together at most {100 * self.limits.stiffness_loss:g} % less stiff"
+        return f"Limits: wall {with_unit(wall, 'm')} or more{kept}; {loss} (--wall, --keep, --stiffness-loss)."
+
     def _notes(self) -> list[str]:
         """Definitions of the table's columns."""
         warning = regime_warning(self.regime)
@@ -163,6 +190,7 @@ class DesignChanges(Rows, Analysis):
             f"Worthwhile: squirt falls by more than its uncertainty and by {100 * MIN_CHANGE:g} % or more (small: by "
             "less); within uncertainty: the change is smaller than its uncertainty.",
             *([note] if (note := miscue_note(self.miscues)) else []),
+            self._limits_line(),
             "Stiffness: static, at the tip, joint end clamped. Costs stiffness: by 5 % or more. Natural frequency: of "
             "the first mode.",
         ]
@@ -232,6 +260,7 @@ def design_changes(
         together=[replace(row, squirt=factor * row.squirt) for row in together],
         miscues=changes.miscues,
         calibrated=calibrated,
+        limits=limits,
     )
 
 
@@ -251,8 +280,8 @@ class _Trial:
         """The changed shaft and its numbers, without their uncertainty: one strike."""
         try:
             scene = with_parameters(self.struck, change.values)
-            least = min(self.limits.least_wall(scene), _wall(self.struck))
-            if _wall(scene) < (1 - 1e-9) * least:
+            least = min(self.limits.least_wall(scene), thinnest_wall(self.struck))
+            if thinnest_wall(scene) < (1 - 1e-9) * least:
                 return None
             solved = SolvedScene(scene)
             return solved, _numbers(solved)
@@ -322,12 +351,17 @@ def _is_stiff(numbers: Record, trial: _Trial) -> bool:
     return bool(numbers["tip_stiffness"] >= least)
 
 
+def _cost(row: ChangedDesign) -> tuple[Any, list[float]]:
+    """Mass and squirt of a change, in the units of a chart."""
+    return to_display([row.shaft_mass_change], "kg"), [100 * row.squirt_change]
+
+
 def _numbers(solved: SolvedScene) -> Record:
     design = SolvedDesign(solved)
     return {response.kind: response.value(design) for response in NUMBERS}
 
 
-def _wall(scene: Scene) -> float:
+def thinnest_wall(scene: Scene) -> float:
     """The thinnest wall of an empty bore or of a tube, m; where solid, the radius; infinite if all bores are filled."""
     tube = is_tube(scene.shaft)
     empty = [s for s in scene.shaft.segments if tube or s.core is None]

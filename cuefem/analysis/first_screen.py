@@ -1,39 +1,40 @@
 """The first screen of a design, which begins the page of `cuefem report` and is always visible in the designer.
 
-Its parts are the headline, the scale of reference cues, four numbers and the drawings; each calls a macro of
-first_screen.html.j2.
+Its parts are the headline, the scale of reference cues, five numbers that a maker can check, and the drawings; each
+calls a macro of first_screen.html.j2.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from typing import NamedTuple
 
 from cuefem.analysis.verdict import Verdict, squirt_difference
+from cuefem.files.cue_names import INSIDE_ASSUMED
 from cuefem.parameters.parts import shaft_word
-from cuefem.quantity.display_units import DISTANCE, END_MASS, OFF_LINE, SHAFT_STIFFNESS, short_number, with_unit
-from cuefem.results.quantities import DASH
+from cuefem.quantity.display_units import (
+    DISTANCE,
+    SHAFT_STIFFNESS,
+    display_unit,
+    displayed_system,
+    short_number,
+    to_display,
+    unit_suffix,
+    with_unit,
+)
+from cuefem.results.quantities import DASH, drawn_mass
 from cuefem.results.records import Record
 from cuefem.scene import Scene
 from cuefem.show.analysis import DESIGN_STYLES
-from cuefem.show.drawings import DIAMETER_SCALE, FRONT_LENGTH, cue_drawing, leather_ahead, legend
+from cuefem.show.drawings import DIAMETER_SCALE, FRONT_LENGTH, cue_drawing, lathe_drawing, leather_ahead, legend
 from cuefem.show.templates import environment
 
-# The four numbers: label, key of the display unit, decimals, tooltip.
-TILES = {
-    "off_line": ("Off line", OFF_LINE, 0, "Distance of the ball from the line of aim over its path"),
-    "end_mass_squirt": ("End mass", END_MASS, 1, "Squirt-equivalent: mass at the tip of a lumped cue with this squirt"),
-    "pivot_length": (
-        "Pivot length",
-        DISTANCE,
-        0,
-        "Distance from the end of the tip to the point about which pivoting the cue cancels squirt",
-    ),
-    "tip_stiffness": ("Stiffness", SHAFT_STIFFNESS, 0, "Static, transverse, at the tip; joint end clamped"),
-}
+STANDARD_GRAVITY = 9.80665  # m/s2
+UNIT_WORDS = {"mm": "mm", "in": "inches"}
+BENT = {"metric": 0.010, "us": 0.0254}  # m, by which a weight at the tip bends the shaft
 
 
 @dataclass(frozen=True)
@@ -54,14 +55,64 @@ class OtherValue(NamedTuple):
     style: str
 
 
+class TileKind(NamedTuple):
+    """A number of the first screen: label, key of the display unit, decimals, tooltip, and a note below it."""
+
+    label: str
+    unit: str
+    decimals: int
+    hint: str
+    note: Callable[[Scene, float], str]
+
+
+def _whole_cue(scene: Scene, _: float) -> str:
+    return f"whole cue {with_unit(scene.cue.mass, 'kg', decimals=0)}"
+
+
+def _weight_that_bends(_: Scene, stiffness: float) -> str:
+    bent = BENT[displayed_system()]
+    weight = f"{to_display(stiffness * bent / STANDARD_GRAVITY, 'kg'):.0f}{unit_suffix('kg')}"
+    return f"{weight} at the tip bend it {with_unit(bent, 'm')}"
+
+
+def _offset(scene: Scene, _: float) -> str:
+    return f"back-hand English, b/R {abs(scene.stroke.offset):.4g}"
+
+
+TILES = {
+    "drawn_mass": TileKind("Weight", "kg", 1, "Mass of the drawn part with its tip, as on a scale", _whole_cue),
+    "balance_point": TileKind(
+        "Balance", DISTANCE, 0, "Centre of mass of the drawn part with its tip", lambda *_: "from the end of the tip"
+    ),
+    "tip_stiffness": TileKind(
+        "Stiffness",
+        SHAFT_STIFFNESS,
+        0,
+        "Static, transverse, at the tip; joint end clamped",
+        _weight_that_bends,
+    ),
+    "frequency_1": TileKind(
+        "Tap tone", "Hz", 0, "First natural frequency of bending, both ends free", lambda *_: "hung free, tapped"
+    ),
+    "pivot_length": TileKind(
+        "Pivot length",
+        DISTANCE,
+        0,
+        "Distance from the end of the tip to the point about which pivoting the cue cancels squirt",
+        _offset,
+    ),
+}
+
+
 class Tile(NamedTuple):
-    """A number of the first screen, and what the other designs have."""
+    """A number of the first screen, a note on it, and what the other designs have."""
 
     key: str
     label: str
     hint: str
     text: str
     value: float | None
+    note: str
     more: list[OtherValue]
 
 
@@ -73,7 +124,7 @@ def screen_markup(
 ) -> dict[str, str]:
     """The parts of the first screen of a page, by their names in page.html.j2.
 
-    own: a design with a verdict. lines: below its squirt. with_values: whether the four numbers show those of the
+    own: a design with a verdict. lines: below its squirt. with_values: whether the five numbers show those of the
     others, or only the differences from them.
     """
     assert own.verdict is not None
@@ -110,7 +161,8 @@ def headline_markup(own: HeadlineCue, lines: Sequence[Line] = (), warning: str =
 def comparison_lines(
     own: HeadlineCue, other: HeadlineCue | None = None, difference: Record | None = None
 ) -> list[Line]:
-    """The calibration of squirt, and the difference of squirt from another design's and from a reference cue's.
+    """The calibration of squirt, the difference of squirt from another design's and from a reference cue's, and how far
+    off line the ball is.
 
     difference: of `cuefem.analysis.comparison`, from the other design.
     """
@@ -125,29 +177,41 @@ def comparison_lines(
         if other is None or other.name != first:
             text = squirt_difference(among["difference"], among["error"], among["distinct"])
             lines.append([(f"{text} {first}", "")])
+    if verdict:
+        lines.append([(verdict.off_line_text(), "")])
     return lines
 
 
 def tiles(own: HeadlineCue, others: Sequence[HeadlineCue] = (), *, with_values: bool = False) -> list[Tile]:
-    """The four numbers with their differences from other designs', or with those of the others and their differences
+    """The five numbers with their differences from other designs', or with those of the others and their differences
     from this design's. A difference is that of the shown values, so that it adds up."""
     made = []
-    for key, (label, unit, decimals, hint) in TILES.items():
+    for key, kind in TILES.items():
         value = _value(own, key)
-        text = DASH if value is None else with_unit(value, unit, decimals=decimals)
         more = []
         for style, other in zip(DESIGN_STYLES[1:], others, strict=False):
             beside = _value(other, key)
             if value is None or beside is None:
                 continue
             if with_values:
-                from_own = _difference(beside, value, unit, decimals)
-                shown = f"{with_unit(beside, unit, decimals=decimals)} ({from_own})"
+                from_own = _difference(beside, value, kind.unit, kind.decimals)
+                shown = f"{with_unit(beside, kind.unit, decimals=kind.decimals)} ({from_own})"
             else:
-                shown = _difference(value, beside, unit, decimals)
+                shown = _difference(value, beside, kind.unit, kind.decimals)
             more.append(OtherValue(other.name, shown, style))
-        made.append(Tile(key, label, hint, text, value, more))
+        note = "" if value is None or with_values else kind.note(own.scene, value)
+        made.append(Tile(key, kind.label, kind.hint, _tile_text(own, key, value), value, note, more))
     return made
+
+
+def _tile_text(own: HeadlineCue, key: str, value: float | None) -> str:
+    """The value of a tile; of a pivot length with the uncertainty that it has by squirt."""
+    kind = TILES[key]
+    if value is None:
+        return DASH
+    if key == "pivot_length" and own.verdict:
+        return with_unit(value, kind.unit, error=own.verdict.uncertainty["total"] * abs(value))
+    return with_unit(value, kind.unit, decimals=kind.decimals)
 
 
 def _difference(value: float, other: float, unit: str, decimals: int) -> str:
@@ -157,8 +221,10 @@ def _difference(value: float, other: float, unit: str, decimals: int) -> str:
 
 
 def _value(design: HeadlineCue, key: str) -> float | None:
-    squirt = design.numbers.get("squirt")
-    value = (math.tan(abs(squirt)) if squirt else None) if key == "off_line" else design.numbers.get(key)
+    if key == "drawn_mass":
+        value = drawn_mass(design.scene) if design.scene.cue.segments else None
+    else:
+        value = design.numbers.get(key)
     return value if value is not None and math.isfinite(value) else None
 
 
@@ -166,11 +232,11 @@ def scale_markup(own: HeadlineCue, others: Sequence[HeadlineCue] = ()) -> str:
     """The reference cues, this design with its uncertainty, and the other ones, sorted by squirt."""
     squirts = {other.name: other.numbers["squirt"] for other in others}
     styled = {other.name: (style, squirts[other.name]) for style, other in zip(DESIGN_STYLES[1:], others, strict=False)}
-    return _macro("scale", own.verdict.scale(own.name, squirts) if own.verdict else [], styled)
+    return _macro("scale", own.verdict.scale(own.name, squirts) if own.verdict else [], styled, INSIDE_ASSUMED)
 
 
 def tiles_markup(own: HeadlineCue, others: Sequence[HeadlineCue] = (), *, with_values: bool = False) -> str:
-    """The four numbers as markup."""
+    """The five numbers as markup."""
     return _macro("tiles", tiles(own, others, with_values=with_values), with_values)
 
 
@@ -183,10 +249,15 @@ def drawings_markup(designs: Mapping[str, Scene]) -> str:
     fronts, wholes = [], []
     for style, (name, scene) in zip(DESIGN_STYLES, designs.items(), strict=False):
         front = cue_drawing(scene, f"Tip end of {name}, {title}", length, diameter_scale=1.0, ahead=ahead)
-        whole = cue_drawing(scene, f"{name}, diameters {DIAMETER_SCALE:g} times enlarged", longest, ahead=ahead)
+        enlarged = f"{name}, diameters {DIAMETER_SCALE:g} times enlarged"
+        whole = (
+            lathe_drawing(scene, enlarged) if len(designs) == 1 else cue_drawing(scene, enlarged, longest, ahead=ahead)
+        )
         fronts.append((name, style, front))
         wholes.append((name, style, whole))
-    return _macro("drawings", fronts, wholes, DIAMETER_SCALE, legend(designs.values()))
+    return _macro(
+        "drawings", fronts, wholes, DIAMETER_SCALE, UNIT_WORDS[display_unit("m").name], legend(designs.values())
+    )
 
 
 def parts_line(verdict: Verdict) -> str:

@@ -67,7 +67,7 @@ def page_of(
         name=name,
         title=f"{name}: squirt {format_value('squirt', verdict.squirt)}",
         made=made,
-        notes=[*map(str, notes)],
+        notes=[*map(str, verdict.by_part(notes))],
         warnings=[
             *warnings,
             *filter(None, [regime_warning(regime)]),
@@ -152,5 +152,6 @@ def _numbers(scene: Scene, answers: Answers) -> dict[str, float | None]:
     numbers = answers["numbers"]
     shown: dict[str, Any] = dict(numbers.values())
     shown["pivot_length"] = pivot_length(scene, shown["squirt"])
-    shown["end_mass_squirt"] = numbers.squirt_end_mass  # type: ignore[attr-defined]
+    modes: Any = answers.get("modes")
+    shown["frequency_1"] = modes.frequencies[0] if modes else None
     return shown

@@ -12,7 +12,7 @@ from cuefem.cue.materials import MATERIALS, table_name
 from cuefem.effects.leather_tip import DOMES
 from cuefem.parameters.parts import TUBE_FRONT, Layout, is_tube, is_wooden, taper_position
 from cuefem.parameters.table import PARAMETERS
-from cuefem.quantity.display_units import displayed_system, inch_fraction, short_number, with_unit
+from cuefem.quantity.display_units import DISTANCE, displayed_system, inch_fraction, short_number, with_unit
 from cuefem.results.records import Record
 from cuefem.scene import Scene
 
@@ -203,7 +203,7 @@ def _tips(values: Record) -> Iterator[DesignChange]:
 def _tapers(cue: Cue, values: Record) -> Iterator[DesignChange]:
     tip, taper, end = (values[f"{name}_diameter"] for name in ("tip", "taper", "butt"))
     x = taper_position(cue)
-    at = with_unit(x, "m", decimals=0)
+    at = with_unit(x, DISTANCE)
     cut = SHOP[displayed_system()].thinner
     thinner = {"tip diameter": tip - cut, "taper diameter": taper - cut}
     yield DesignChange(f"{with_unit(cut, 'm')} thinner from the front to {at}", thinner)

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import NamedTuple
 
 from cuefem.cue import Cue
+from cuefem.files.cue_names import CUES, INSIDE_ASSUMED
+from cuefem.files.defaults_report import Assumption
 from cuefem.files.reference_cues import reference_cues
 from cuefem.measurements.calibration import CalibratedSquirt, Calibration
 from cuefem.parameters.parts import shaft_word
+from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.display_units import off_line, to_display, with_unit
 from cuefem.results.differences import difference_text
 from cuefem.results.records import Record, ScaleCell, Table
@@ -35,11 +38,19 @@ from cuefem.scene.default_scene import without_leather
 from cuefem.show.analysis import Analysis
 
 BAR = 32  # characters of the scale in a terminal
+LEAST_PART = 0.5e-3  # of squirt, that is shown beside an assumption
+# The uncertain inputs of an assumption on more than the parameter of its own name.
+INPUTS_OF = {
+    "material": ("E", "G"),
+    "shaft_mass": ("rho",),
+    "game": ("wave_speed",),
+    "ferrule_class": ("ferrule E", "ferrule density"),
+}
 
 
 class ScaleRow(NamedTuple):
     """A cue on the scale: name, squirt and difference as text; kind "own" for the design, "other" for the compared one;
-    position and interval (1σ), per cent of the scale."""
+    position and interval (1σ), per cent of the scale; mark of a name whose cue's inside is assumed."""
 
     name: str
     text: str
@@ -48,6 +59,7 @@ class ScaleRow(NamedTuple):
     at: float
     low: float
     high: float
+    mark: str = ""
 
 
 @dataclass(frozen=True)
@@ -112,6 +124,11 @@ class Verdict(Analysis):
         decimals = 3 if error and to_display(error, "rad") < 0.01 else 2
         return with_unit(squirt, "rad", decimals=decimals), with_unit(error, "rad", decimals=decimals)
 
+    def off_line_text(self) -> str:
+        """How far off line the ball is, with the uncertainty: "30.9 ± 5.9 mm off line after 1 m"."""
+        distance, per = off_line(abs(self.squirt), self.squirt_error)
+        return f"{distance} off line after {per}"
+
     def reference_comparison(self) -> list[str]:
         """Squirt relative to the first reference cue as a sentence; empty without reference cues."""
         return [
@@ -133,6 +150,30 @@ class Verdict(Analysis):
             f"two shafts: {_percent(SHAFT_ERROR)} of it (model) or that of their {shaft} if larger, and 1 % of squirt."
             f"{f' {note}' if note else ''}"
         )
+
+    def by_part(self, notes: Sequence[Assumption]) -> list[Assumption]:
+        """Assumptions by their part of the uncertainty, the largest first, with those inputs that none names.
+
+        Of a scene without assumptions none.
+        """
+        if not notes:
+            return []
+        parts = [(self._part_of(note), note) for note in notes]
+        named = {key for note in notes for key in INPUTS_OF.get(note.key, (note.key,))}
+        parts += [
+            (share, Assumption("", f"{PARAMETERS[key].label}, uncertain"))
+            for key, share in self.inputs.items()
+            if key not in named and share >= LEAST_PART
+        ]
+        parts.sort(key=lambda each: -each[0])  # stable: without a part in the order of the file
+        return [
+            replace(note, text=f"{note.text}: {100 * part:.1f} % of squirt") if part >= LEAST_PART else note
+            for part, note in parts
+        ]
+
+    def _part_of(self, note: Assumption) -> float:
+        """The part of an assumption in the relative uncertainty."""
+        return math.hypot(*(self.inputs.get(key, 0.0) for key in INPUTS_OF.get(note.key, (note.key,))))
 
     def scale(self, name: str = "yours", others: Mapping[str, float | None] = MappingProxyType({})) -> list[ScaleRow]:
         """The cues by their squirt, the lowest first, the design with its uncertainty; none without reference cues.
@@ -159,7 +200,8 @@ class Verdict(Analysis):
             more = f"{abs(ratio)} % {'less' if ratio < 0 else 'more'} than {first}" if ratio else f"as much as {first}"
             kind = "other" if cue in shown else ""
             row_text = with_unit(own, "rad", decimals=decimals)
-            rows.append(ScaleRow(cue, row_text, more if cue != first else "", kind, *3 * (part * own,)))
+            mark = CUES[cue].mark if cue in CUES else ""
+            rows.append(ScaleRow(cue, row_text, more if cue != first else "", kind, *3 * (part * own,), mark))
         return sorted(rows, key=lambda row: row.at)
 
     def tables(self) -> list[Table | str]:
@@ -172,9 +214,10 @@ class Verdict(Analysis):
         rows = self.scale()
         own = {i: "bold" for i, row in enumerate(rows) if row.kind == "own"}
         head = ("cue", "squirt", "less to more squirt", "")
-        cells = tuple((row.name, row.text, _bar(row), row.difference) for row in rows)
+        cells = tuple((f"{row.name}{row.mark}", row.text, _bar(row), row.difference) for row in rows)
         title = "Reference pool cues, with this tip, ball and stroke"
-        return [*text, Table(title, head, cells, (uncertainty,), (0, 2, 3), own)]
+        marks = (INSIDE_ASSUMED,) if any(row.mark for row in rows) else ()
+        return [*text, Table(title, head, cells, (*marks, uncertainty), (0, 2, 3), own)]
 
 
 def verdict(

@@ -1,4 +1,4 @@
-"""The first screen of the page: headline, comparison, four numbers, drawings and assumptions."""
+"""The first screen of the page: headline, comparison, five numbers, drawings and assumptions."""
 
 from __future__ import annotations
 

@@ -361,7 +361,9 @@ class Session:
         name, design = [*self.designs().items()][i]
         scene = self.scene if i == 0 else self.compared_scene()
         assert scene is not None
-        numbers = side.get("numbers") or computation.first_numbers(scene)
+        numbers: dict[str, Any] = side.get("numbers") or computation.first_numbers(scene)
+        if "frequencies" in numbers:
+            numbers = numbers | {"frequency_1": numbers["frequencies"][0]}
         return HeadlineCue(name, design.scene, numbers, side.get("verdict"))
 
     def warning(self) -> str:

@@ -18,7 +18,13 @@ class NamedCue(NamedTuple):
     assumed: str
     game: str = "pool"
 
+    @property
+    def mark(self) -> str:
+        """A dagger for a cue whose inside is assumed, which no one but its maker has seen."""
+        return "†" if "inside" in self.assumed else ""
 
+
+INSIDE_ASSUMED = "† inside assumed"
 _USUAL = "usual dimensions (meshes/README.md)"
 _SOLD = "a size that is sold, its inside assumed (meshes/README.md)"
 _INSIDE = "inside and taper assumed (studies/measured)"

@@ -6,6 +6,7 @@ A process displays metric units or those of the United States; files (TOML, CSV,
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from fractions import Fraction
@@ -60,7 +61,7 @@ METRIC = MappingProxyType(
 US = METRIC | {unit: DisplayUnit.of(unit, *name) for unit, name in _US_NAMES.items()}
 US |= {
     OFF_LINE: DisplayUnit(48.0, "in/4 ft", 1),  # a usual shot
-    WAVE_SPEED: DisplayUnit.of("m/s", "ft/s", 0),
+    WAVE_SPEED: DisplayUnit.of("m/s", "ft/s", -2),
     DISTANCE: DisplayUnit.of("m", "in", 1),
     "N/m": DisplayUnit(0.0254 / POUND_FORCE, "lbf/in"),
     SHAFT_STIFFNESS: DisplayUnit(0.0254 / POUND_FORCE, "lbf/in", 2),
@@ -133,14 +134,17 @@ def with_heading(label: str, unit: str) -> str:
     return f"{label}, {name}" if name else label
 
 
-def off_line(squirt: float) -> tuple[str, str]:
+def off_line(squirt: float, error: float | None = None) -> tuple[str, str]:
     """How far off the line of aim squirt, rad, carries a ball, and after which distance: ("35 mm", "1 m").
 
+    error: of squirt, rad, 1 sigma.
+
     >>> import math
-    >>> off_line(math.radians(2.0))
-    ('35 mm', '1 m')
+    >>> off_line(math.radians(2.0)), off_line(math.radians(2.0), math.radians(0.3))
+    (('35 mm', '1 m'), ('34.9 ± 5.2 mm', '1 m'))
     """
-    size, _, per = with_unit(math.tan(squirt), OFF_LINE, decimals=0).partition("/")
+    aside = None if error is None else error / math.cos(squirt) ** 2
+    size, _, per = with_unit(math.tan(squirt), OFF_LINE, error=aside, decimals=0).partition("/")
     return size, per if per[0].isdigit() else f"1 {per}"
 
 
@@ -156,7 +160,7 @@ def number_text(value: float, unit: str, digits: int = 4, *, decimals: int | Non
     decimals = decimals if shown.decimals is None else shown.decimals
     if decimals is None:
         return significant(shown.factor * value, digits)
-    return f"{shown.factor * value:z.{decimals}f}"
+    return _fixed(value, shown, decimals)
 
 
 def with_unit(
@@ -168,7 +172,7 @@ def with_unit(
     ('12.5 mm', '12.500 ± 0.030 mm')
     >>> with displayed_in("us"):
     ...     with_unit(0.0125, "m"), with_unit(0.538, "kg"), with_unit(0.012, END_MASS)
-    ('0.492 in', '18.98 oz', '12 g')
+    ('.492 in', '18.98 oz', '12 g')
     """
     if error is not None and math.isfinite(error) and error > 0:
         factor = display_unit(unit).factor
@@ -186,9 +190,21 @@ def short_number(value: float, unit: str, digits: int = 4, *, decimals: int | No
     """An SI number in its display unit, without the unit: to decimals, or to at most so many digits."""
     shown = display_unit(unit)
     if decimals is None and shown.decimals is not None:
-        return trimmed(f"{shown.factor * value:z.{shown.decimals}f}")
+        return trimmed(_fixed(value, shown, shown.decimals))
     decimals = decimals if shown.decimals is None else shown.decimals
-    return f"{shown.factor * value:{f'z.{digits}g' if decimals is None else f'z.{decimals}f'}}"
+    return f"{shown.factor * value:z.{digits}g}" if decimals is None else _fixed(value, shown, decimals)
+
+
+def _fixed(value: float, shown: DisplayUnit, decimals: int) -> str:
+    """A number to decimals, of which negative ones are zeros before the point; a length in inches as on a drawing.
+
+    >>> with displayed_in("us"):
+    ...     with_unit(4430.0, WAVE_SPEED), with_unit(0.505 * 0.0254, "m"), with_unit(0.0, "m")
+    ('14500 ft/s', '.505 in', '0 in')
+    """
+    number = shown.factor * value
+    text = f"{number:z.{decimals}f}" if decimals >= 0 else f"{round(number, decimals):z.0f}"
+    return re.sub(r"^(-?)0(?=\.\d*[1-9])", r"\1", text) if shown is US["m"] else text
 
 
 def inch_fraction(length: float) -> str:

@@ -11,16 +11,19 @@ from typing import NamedTuple
 import numpy as np
 
 from cuefem.beam.modes import modes
-from cuefem.cue import Material, Segment
+from cuefem.cue import Cue, Material, Segment
 from cuefem.cue.materials import MATERIALS, material_name, table_name
-from cuefem.quantity.display_units import display_unit, significant, to_display, with_heading
+from cuefem.parameters.parts import outer_diameter
+from cuefem.quantity.display_units import display_unit, number_text, short_number, significant, to_display, with_heading
 from cuefem.scene import Scene
-from cuefem.show.charts import WIDTH, Axis, Chart, Curve, Tick, chart, path
+from cuefem.show.charts import WIDTH, Axis, Chart, Curve, Tick, chart, path, round_step, spread_labels
 
 DIAMETER_SCALE = 4.0  # enlargement of the diameters in the drawing of a whole cue
 FRONT_LENGTH = 0.16  # m, length of the drawing of the front, true to scale
 MIN_DRAWN = 1e-4  # m, of a segment
 SHAPES = 4  # mode shapes in the chart
+MOST_STATIONS, LABEL_GAP, BELOW = 15, 21.0, 24.0  # of a lathe drawing: room for a label and for two rows of them
+MOST_JOINTS = 6  # whose places are stations of their own; a table of a lathe has more
 
 
 class Piece(NamedTuple):
@@ -32,9 +35,22 @@ class Piece(NamedTuple):
     core: str
 
 
+class Station(NamedTuple):
+    """A place along a lathe drawing, its label's place, half the diameter in the drawing, and the texts below it."""
+
+    at: float
+    label_at: float
+    half: float
+    diameter: str
+    distance: str
+
+
 @dataclass(frozen=True)
 class CueDrawing:
-    """A cue from the side, tip on the left; ticks in the display unit of lengths from the front of its segments."""
+    """A cue from the side, tip on the left; ticks in the display unit of lengths from the front of its segments.
+
+    stations: of a lathe drawing, which has diameters below it; the height includes their room.
+    """
 
     title: str
     height: float
@@ -42,6 +58,7 @@ class CueDrawing:
     pieces: tuple[Piece, ...]
     ticks: tuple[Tick, ...]
     unit: str
+    stations: tuple[Station, ...] = ()
 
 
 def drawn_segments(scene: Scene) -> tuple[Segment, ...]:
@@ -111,6 +128,37 @@ def cue_drawing(
     per_metre, unit, _ = display_unit("m")
     ticks = Axis(unit, 0.0, per_metre * length).scale_for([np.zeros(1)]).ticks(scale * ahead, WIDTH)
     return CueDrawing(title, 2 * axis, axis, pieces, ticks, unit)
+
+
+def lathe_drawing(scene: Scene, title: str) -> CueDrawing:
+    """A whole cue from the side with its diameters at stations, which count from the front of its segments."""
+    cue, drawing = scene.shaft, cue_drawing(scene, title)
+    ahead = leather_ahead(scene)
+    scale = WIDTH / (cue.length + ahead)
+    places = stations_of(cue)
+    at = [scale * (ahead + x) for x in places]
+    labels = spread_labels(at, LABEL_GAP / 2, WIDTH - LABEL_GAP / 2, gap=LABEL_GAP)
+    stations = tuple(
+        Station(x, label, scale * DIAMETER_SCALE * outer_diameter(cue, place) / 2, *_station_texts(cue, place))
+        for x, label, place in zip(at, labels, places, strict=True)
+    )
+    return replace(drawing, height=drawing.height + BELOW, stations=stations)
+
+
+def _station_texts(cue: Cue, place: float) -> tuple[str, str]:
+    return number_text(outer_diameter(cue, place), "m", decimals=2), short_number(place, "m")
+
+
+def stations_of(cue: Cue) -> list[float]:
+    """Places, m, at which a lathe drawing has diameters: ends, joints of segments, and round steps between them."""
+    per_metre = display_unit("m").factor
+    step = round_step(per_metre * cue.length, MOST_STATIONS) / per_metre
+    joints = cue.nodes[1:-1].tolist() if len(cue.segments) <= MOST_JOINTS else []
+    between = [step * i for i in range(1, math.ceil(cue.length / step))]
+    chosen = [0.0, cue.length]
+    for places, apart in ((joints, 0.45), (between, 0.7)):
+        chosen += [x for x in places if min(abs(x - other) for other in chosen) >= apart * step]
+    return sorted(chosen)
 
 
 def _cut(segments: Sequence[Segment], length: float) -> list[Segment]:

@@ -33,6 +33,7 @@ QUANTITY = re.compile(
     rf"({NUMBER.pattern})|(?<=\d[ \u00a0])(mm/m|mm|g|m/s|in/4 ft|in·lbf|in|oz|mph|N/m|kN/mm|N|GPa|MPa|kg/m³|mJ|rad/s|"
     r"mm/N|lbf/in|in/lbf|lbf|×10⁶ psi|psi|lb/ft³|rpm|ft/s)(?![\w/])"
 )
+DRAWN = re.compile(r"(?<![\w.])\.(?=\d)")  # a size below 1 in, as on a drawing
 AFTER = re.compile(r"after (?:1 m|4 ft)")
 METRIC = r"(?:mm|m/s|kg|N/m|kN/mm|N|GPa|MPa|kg/m³|mJ|rad/s|mm/N)(?![\w/])"
 METRIC_LEFT = re.compile(rf"\d[\s\u00a0]*{METRIC}|, {METRIC}")
@@ -79,7 +80,7 @@ def quantities(text: str, column: str) -> list[Shown]:
     """The numbers of a text, each with the next unit behind it, or that of its column."""
     found: list[Shown] = []
     unit, begins = column, -1
-    for match in reversed([*QUANTITY.finditer(AFTER.sub("", text))]):
+    for match in reversed([*QUANTITY.finditer(DRAWN.sub("0.", AFTER.sub("", text)))]):
         if match[2]:
             unit, begins = OFF_LINE.get(match[2], match[2]) if column == "off line" else match[2], match.start()
         else:
@@ -95,7 +96,8 @@ def assert_same_quantities(metric: list[tuple[str, str]], us: list[tuple[str, st
             if mine.number == other.number and not mine.is_beside:
                 continue
             factor = FACTORS.get((mine.unit, other.unit), 1.0)
-            places = 100 if other.unit == "psi" else last_place(other.number)  # three digits of a leather's E
+            rounded = other.unit in ("psi", "ft/s")  # three digits of a leather's E or of a wave's speed
+            places = 100 if rounded else last_place(other.number)
             rounding = 0.51 * (last_place(mine.number) + factor * places)
             assert abs(float(mine.number) - factor * float(other.number)) <= rounding, (before, after)
             converted += factor != 1.0
