@@ -179,12 +179,14 @@ class Comparison(Rows, Analysis):
             *own.warning_lines(),
         ]
 
-    def to_html(
+    def _markup(
         self,
         name: str = "",
         assumptions: Sequence[Assumption] | None = None,
         warnings: Sequence[str] | None = None,
         made: str = "",
+        *,
+        inline: bool = False,
     ) -> str:
         """The page with the first screen of the first cue; a plain page if that has no verdict."""
         # templates take 0.1 s to load
@@ -193,7 +195,7 @@ class Comparison(Rows, Analysis):
 
         title = f"{self.heading()}: compared"
         if self.reference in self.problems:
-            return super().to_html(title, assumptions, warnings, made)
+            return super()._markup(title, assumptions, warnings, made, inline=inline)
         assumptions, warnings = self._noted(assumptions), self._warned(warnings)
         answer = verdict_by(SolvedDesign.of(self.scene), None, lambda _: self.calibrated)
         first, *others = [HeadlineCue(name, scene, self.cues[name]) for name, scene in self.scenes.items()]
@@ -203,6 +205,7 @@ class Comparison(Rows, Analysis):
         apart = [f"{name}: {fact}" for name, each in facts_of.items() for fact in each if fact not in shared]
         return page(
             cue_names(own, others),
+            inline=inline,
             kind="compare",
             name=self.heading(),
             title=title,

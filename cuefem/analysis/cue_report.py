@@ -90,18 +90,30 @@ class CueReport(Analysis):
         made: str = "",
         other: tuple[str, Scene] | None = None,
     ) -> str:
-        """The page with the first screen, beside that of another cue; ValueError for a miscue, outside notebooks."""
-        from cuefem.analysis.report_page import page_of
-        from cuefem.show.templates import is_inline  # templates take 0.1 s to load
+        """The page with the first screen, beside that of another cue; ValueError for a miscue, which has none."""
+        return self._markup(name, assumptions, warnings, made, other=other)
+
+    def _markup(
+        self,
+        name: str = "",
+        assumptions: Sequence[Assumption] | None = None,
+        warnings: Sequence[str] | None = None,
+        made: str = "",
+        *,
+        inline: bool = False,
+        other: tuple[str, Scene] | None = None,
+    ) -> str:
+        from cuefem.analysis.report_page import page_of  # templates take 0.1 s to load
 
         if self.no_squirt or self.no_contact:
-            if is_inline():
-                return super().to_html(name, assumptions, warnings, made)
+            if inline:
+                return super()._markup(name, assumptions, warnings, made, inline=True)
             raise ValueError(self.no_squirt or self.no_contact)
         assumptions, warnings = self._noted(assumptions), self._warned(warnings)
         name = name or "cue"
         beside = None if other is None else self._beside(name, *other)
-        return page_of(self.scene, self.sections, self.regime, name, assumptions, warnings, made, beside)
+        about = (self.scene, self.sections, self.regime, name, assumptions, warnings, made)
+        return page_of(*about, inline=inline, beside=beside)
 
     def _beside(self, name: str, other: str, other_scene: Scene) -> Beside:
         """Another cue beside this one, of this name."""

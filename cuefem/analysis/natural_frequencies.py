@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Literal, get_args
 
 from cuefem.beam.modes import modes
+from cuefem.cue import Cue
+from cuefem.effects.cue_effects import Support
+from cuefem.quantity.fields import quote, suggestion
 from cuefem.results.quantities import UNITS
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.results.solved_design import Solvable, SolvedDesign
@@ -17,6 +21,8 @@ from cuefem.show.scene_summary import effect_name
 if TYPE_CHECKING:
     from cuefem.show.charts import Chart
 
+JointName = Literal["free", "pinned", "clamped"]
+
 
 @dataclass(frozen=True)
 class NaturalFrequencies(Rows, Analysis):
@@ -25,7 +31,7 @@ class NaturalFrequencies(Rows, Analysis):
     Parameters
     ----------
     scene : Scene
-        The analysed scene.
+        The analysed scene, with the support of its joint.
     requested_frequency, nearest_frequency : float or None
         The frequency near which modes were requested, and the nearest of them, Hz.
     rigid : int
@@ -86,7 +92,22 @@ class NaturalFrequencies(Rows, Analysis):
         return tabulate(title, columns, rows, "; ".join(notes), texts=())
 
 
-def natural_frequencies(scene: Solvable, count: int = 6, *, near: float | None = None) -> NaturalFrequencies:
+def joint_supports(cue: Cue, joint: JointName) -> tuple[Support, ...]:
+    """The support of the end of a drawing, its joint; ValueError for an unknown name."""
+    match joint:
+        case "free":
+            return ()
+        case "pinned":
+            return (Support(cue.length, math.inf),)
+        case "clamped":
+            return (Support(cue.length, math.inf, math.inf),)
+    names = get_args(JointName)
+    raise ValueError(f"joint must be one of {', '.join(names)}; got {quote(joint)}{suggestion(str(joint), names)}")
+
+
+def natural_frequencies(
+    scene: Solvable, count: int = 6, *, near: float | None = None, joint: JointName = "free"
+) -> NaturalFrequencies:
     """Natural frequencies of the bending modes of a scene's cue.
 
     Parameters
@@ -97,6 +118,8 @@ def natural_frequencies(scene: Solvable, count: int = 6, *, near: float | None =
         Number of modes.
     near : float, optional
         Frequency whose nearest modes are computed instead of the lowest, Hz.
+    joint : str, optional
+        How the end of the drawing is held, where a shaft has its joint: "free" (default), "pinned" or "clamped".
 
     Returns
     -------
@@ -109,8 +132,13 @@ def natural_frequencies(scene: Solvable, count: int = 6, *, near: float | None =
     >>> scene = cf.Scene(cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),), body_mass=0.43))
     >>> [round(f) for f in cf.natural_frequencies(scene, 2).frequencies]
     [128, 344]
+    >>> [round(f) for f in cf.natural_frequencies(scene, 2, joint="pinned").frequencies]
+    [97, 287]
     """
     scene = SolvedDesign.of(scene).scene
+    supports = joint_supports(scene.shaft, joint)
+    if supports:
+        scene = replace(scene, effects=(*scene.effects, *supports))
     bending = modes(scene.shaft, count, near, effects=scene.cue_effects)
     amplitudes, _ = bending.shape(0.0)
     frequencies: list[float] = bending.frequencies.tolist()

@@ -6,10 +6,11 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import starmap
-from typing import ClassVar
+from typing import ClassVar, get_args
 
 import numpy as np
 
+from cuefem.analysis.natural_frequencies import JointName, joint_supports
 from cuefem.beam.mode_count import modes_below
 from cuefem.beam.modes import modes
 from cuefem.contact.impulse_solver import impacts, impulse_inputs
@@ -288,12 +289,10 @@ def _strokes(design: SolvedDesign, cue: LumpedCue | None, offsets: Sequence[floa
 
 def _nearest_modes(scene: Scene, near: float) -> dict[str, Record]:
     """The mode nearest to a frequency, Hz, for each support of the joint."""
-    joint = scene.shaft.length
-    supports = {"free": (), "pinned": (Support(joint, math.inf),), "clamped": (Support(joint, math.inf, math.inf),)}
     count = modes_below(scene.shaft, 2 * math.pi * near) + 4  # a support adds up to two, and the next may be nearer
     nearest = {}
-    for name, support in supports.items():
-        frequencies = _frequencies(scene, count, support)
+    for name in get_args(JointName):
+        frequencies = _frequencies(scene, count, joint_supports(scene.shaft, name))
         mode = int(np.argmin(np.abs(np.array(frequencies) - near)))
         frequency = frequencies[mode]
         nearest[name] = {"mode": mode + 1, "frequency": frequency, "stiffness_ratio": (near / frequency) ** 2}

@@ -22,7 +22,7 @@ from cuefem.show.charts import Chart
 from cuefem.show.glossary import with_glossary
 from cuefem.show.offset_charts import offset_charts
 from cuefem.show.scene_summary import assumptions, plain_cue_line, plain_effect_line, scene_record
-from cuefem.show.templates import framed, is_inline
+from cuefem.show.templates import framed
 
 Answers = Mapping[str, Analysis]
 
@@ -43,9 +43,11 @@ def page_of(
     notes: Sequence[Assumption],
     warnings: Sequence[str],
     made: str = "",
+    *,
+    inline: bool = False,
     beside: Beside | None = None,
 ) -> str:
-    """The computed answers of a report as HTML.
+    """The computed answers of a report as HTML; inline: for a notebook.
 
     answers: by the keys of `QUESTIONS`, a verdict among them. regime: of the contact. made: the date at the page's end.
     beside: a cue to compare with, with the same ball and stroke.
@@ -63,6 +65,7 @@ def page_of(
         lines = [*lines, [(advice.together_lines()[0], "")]]
     return page(
         cue_names(own, others),
+        inline=inline,
         kind="report",
         name=name,
         title=f"{name}: squirt {format_value('squirt', verdict.squirt)}",
@@ -116,13 +119,21 @@ def _is_for_engineers(scene: Scene, name: str, notes: Sequence[Assumption]) -> b
     return scene.lumped is not None or name == "kim" or not is_default
 
 
-def page(cues: Iterable[str], *, engineers: Sequence[Record] = (), engineers_open: bool = False, **parts: Any) -> str:
+def page(
+    cues: Iterable[str],
+    *,
+    inline: bool = False,
+    engineers: Sequence[Record] = (),
+    engineers_open: bool = False,
+    **parts: Any,
+) -> str:
     """The page of these parts, which page.html.j2 names.
 
-    cues: names of the cues on it. engineers: the sections for engineers, folded unless ``engineers_open``.
+    cues: names of the cues on it. inline: for a notebook. engineers: the sections for engineers, folded unless
+    ``engineers_open``.
     """
-    made = framed("page.html.j2", engineers=engineers, engineers_open=engineers_open, **parts)
-    return made if is_inline() else with_glossary(made, cues) + "\n"
+    made = framed("page.html.j2", inline=inline, engineers=engineers, engineers_open=engineers_open, **parts)
+    return made if inline else with_glossary(made, cues) + "\n"
 
 
 def facts(scene: Scene) -> list[str]:

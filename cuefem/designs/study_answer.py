@@ -106,9 +106,7 @@ def study(
     >>> responses = (cf.Response("tip_stiffness"), cf.Response("shaft_mass"))
     >>> result = cf.study(cf.Study(cf.Scene(cue), (tip,), responses))
     >>> result
-    SweepResult(3 designs)
-      tip_stiffness: 671.6 N/m, tip 13 mm
-      shaft_mass: 108.3 ± 2.5 g, mean ± sd
+    <SweepResult: 3 designs that vary tip; tip_stiffness: 671.6 N/m, tip 13 mm; shaft_mass: 108.3 ± 2.5 g, mean ± sd>
     >>> result.designs["tip"], result.units["tip"]
     (array([0.011, 0.012, 0.013]), 'm')
     """

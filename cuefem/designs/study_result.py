@@ -265,9 +265,12 @@ class StudyResult(Analysis):
         return lines
 
     def __repr__(self) -> str:
+        """How many designs, what they lack, and the best or mean of each response, in one line."""
         lacks = "".join(f"; {text}" for text, _ in shortfalls(self.study.responses, self.columns.values))
-        title = f"{type(self).__name__}({counted(self._computed(), 'design')}{lacks})"
-        return "\n  ".join([title, *(f"{name}: {value}, {at}" for name, value, at in self._lines())])
+        lines = (f"{name}: {value}, {at}" for name, value, at in self._lines())
+        varied = ", ".join(vary.name for vary in self.study.vary)
+        count = f"{counted(self._computed(), 'design')} that vary {varied}"
+        return self._in_one_line("; ".join([f"{count}{lacks}", *lines]))
 
     def _computed(self) -> int:
         """Number of computed designs."""

@@ -142,13 +142,25 @@ class Answer:
 
         assumptions, warnings: instead of the answer's own. made: the date at its end.
         """
+        return self._markup(name, assumptions, warnings, made)
+
+    def _markup(
+        self,
+        name: str = "",
+        assumptions: Sequence[Assumption] | None = None,
+        warnings: Sequence[str] | None = None,
+        made: str = "",
+        *,
+        inline: bool = False,
+    ) -> str:
+        """The page; inline: as a part of a notebook, in its colours, at full height."""
         from cuefem.show.templates import plain_page  # templates take 0.1 s to load
 
         title = name or effect_name(type(self).__name__).capitalize()
         heading = "" if self.heading() in title else ": ".join(filter(None, (name.partition(":")[0], self.heading())))
         more = (chart for folded in self.more_charts() for chart in folded.charts)
         things = [heading, *self.charts(), *more, *self._body(self._noted(assumptions))]
-        return plain_page(title, things, made, [*self.gaps(), *self._warned(warnings)])
+        return plain_page(title, things, made, [*self.gaps(), *self._warned(warnings)], inline=inline)
 
     def _noted(self, assumptions: Sequence[Assumption] | None) -> Sequence[Assumption]:
         """Given assumptions, or the answer's own."""
@@ -169,10 +181,13 @@ class Answer:
         return plain_text([*warnings, *self.lines(assumptions=self.assumptions)])
 
     def __repr__(self) -> str:
-        """Class, headline, numbers to four digits, and the sizes of longer fields, in one line."""
+        """Class, headline or heading, numbers to four digits, and the sizes of longer fields, in one line."""
         values = ((each.name, getattr(self, each.name)) for each in fields(self) if each.repr)
         shown = [f"{name}={_brief(value)}" for name, value in values if not _is_empty(value)]
-        text = "; ".join(filter(None, [self.headline(), ", ".join(shown)]))
+        return self._in_one_line("; ".join(filter(None, [self.headline() or self.heading(), ", ".join(shown)])))
+
+    def _in_one_line(self, text: str) -> str:
+        """The class and the beginning of a text."""
         return f"<{type(self).__name__}: {text if len(text) <= MAX_REPR else f'{text[:MAX_REPR]}...'}>"
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
@@ -181,10 +196,7 @@ class Answer:
 
     def _repr_html_(self) -> str:
         """The page's content as a part of the notebook, in its colours, at full height."""
-        from cuefem.show.templates import inline  # templates take 0.1 s to load
-
-        with inline():
-            return self.to_html()
+        return self._markup(inline=True)
 
 
 @dataclass(frozen=True)

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from contextvars import ContextVar
+from collections.abc import Mapping, Sequence
 from functools import cache
 from html import escape
 from itertools import groupby
@@ -21,7 +19,6 @@ from cuefem.show.drawings import CueDrawing
 
 # Colours of curves where no style sheet holds: 3 to 1 at least on white and on black.
 INKS = {"c1": "#2f86d0", "c2": "#c8691f", "c3": "#1f9a75", "c4": "#b064a5", "c5": "#7f8890"}
-_inline = ContextVar("inline", default=False)  # whether pages are made for a notebook
 OPTIONS = re.compile(r"(\s*\([^()]*--[^()]*\)|\S*--\S+)")  # in parentheses, or alone
 
 
@@ -94,33 +91,26 @@ def section_markup(part: Mapping[str, Any]) -> str:
 
 
 def plain_page(
-    name: str, things: Sequence[str | Table | Chart | CueDrawing], made: str = "", warnings: Sequence[str] = ()
+    name: str,
+    things: Sequence[str | Table | Chart | CueDrawing],
+    made: str = "",
+    warnings: Sequence[str] = (),
+    *,
+    inline: bool = False,
 ) -> str:
-    """Lines, tables, charts and drawings as a self-contained page. made: the date at its end."""
+    """Lines, tables, charts and drawings as a page, or as a part of one. made: the date at its end."""
     groups = [[*group] for _, group in groupby(filter(None, things), type)]
     parts = {"title": name, "name": name, "groups": groups, "made": made, "warnings": warnings}
-    return framed("plain.html.j2", **parts, screen="", kind="")
+    return framed("plain.html.j2", **parts, screen="", kind="", inline=inline)
 
 
-def framed(template: str, **parts: Any) -> str:
-    """A template in the frame of a page, or of an output of a notebook."""
-    frame = "inline.html.j2" if _inline.get() else "frame.html.j2"
-    return environment().get_template(template).render(frame=frame, inline=_inline.get(), **parts)
+def framed(template: str, *, inline: bool, **parts: Any) -> str:
+    """A template in the frame of a self-contained page; inline: of an output in a notebook.
 
-
-@contextmanager
-def inline() -> Iterator[None]:
-    """Within this block, pages are parts of another page: no title, no script, no ids, a style of their own alone."""
-    token = _inline.set(True)
-    try:
-        yield
-    finally:
-        _inline.reset(token)
-
-
-def is_inline() -> bool:
-    """Whether pages are made for a notebook."""
-    return _inline.get()
+    That has neither title nor script nor ids, and a style of its own alone.
+    """
+    frame = "inline.html.j2" if inline else "frame.html.j2"
+    return environment().get_template(template).render(frame=frame, inline=inline, **parts)
 
 
 @cache

@@ -16,6 +16,7 @@ CALLS: dict[str, Callable[[], object]] = {
     "one cue": lambda: cf.compare({"alone": SCENE}),
     "a Cue to compare": lambda: cf.compare(cf.load("plain maple")),
     "a Cue among scenes": lambda: cf.compare({"mine": cf.load("plain maple"), "other": SCENE}),
+    "glued joint": lambda: cf.natural_frequencies(SCENE, joint="glued"),
     "no modes": lambda: cf.convergence_study(SCENE, max_modes=0),
     "accuracy of 0": lambda: cf.effect_sensitivity(SCENE, 0.0),
     "accuracy without a number": lambda: cf.effect_sensitivity(SCENE, float("nan")),

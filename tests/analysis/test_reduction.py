@@ -89,3 +89,13 @@ def test_vibrating_squirt_of_stiff_shaft_converges_to_rigid_cue_end() -> None:
     errors = [max(error(10 ** (decade + step)) for step in (0.0, 0.2, 0.4, 0.6, 0.8)) for decade in (2, 3, 4)]
     assert all(stiff < soft / 2 for soft, stiff in pairwise(errors))
     assert errors[-1] < 0.015
+
+
+@pytest.mark.parametrize(("joint", "roots"), [("pinned", (3.926602, 7.068583)), ("clamped", (1.875104, 4.694091))])
+def test_frequencies_of_held_slender_rod_equal_closed_form(joint: Any, roots: tuple[float, ...]) -> None:
+    """(βL)² of the Euler-Bernoulli beam, over that of the free rod's first mode, 4.730041²."""
+    rod = cf.Scene(cf.Cue((cf.Segment(2.0, 0.005, 0.005, cf.material("hard maple")),), 0.45))
+    free, held = cf.natural_frequencies(rod, 1), cf.natural_frequencies(rod, 2, joint=joint)
+    expected = [(root / 4.730041) ** 2 for root in roots]
+    assert [f / free.frequencies[0] for f in held.frequencies] == pytest.approx(expected, rel=1e-3)
+    assert held.rigid == (joint == "pinned")

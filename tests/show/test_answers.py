@@ -47,8 +47,8 @@ def test_answer_has_short_repr_strict_json_and_frame(name: str) -> None:
     scene = cf.load_scene(KIM)
     answer = {**ANSWERS, **SLOW}[name](scene)
     text = repr(answer)
-    assert 20 <= len(text) <= 400
-    assert len(text.splitlines()) == 1 or name == "study"  # its best designs, a line each
+    assert 60 <= len(text) <= 350
+    assert len(text.splitlines()) == 1
     record = json.loads(json.dumps(answer.to_dict(), allow_nan=False))
     assert record.keys() == answer.to_dict().keys()
     if not isinstance(answer, Rows):
