@@ -25,6 +25,7 @@ SLOW = {  # more than half a second: strikes of every change, node or uncertain 
     "cuefem.analysis.design_changes",
     "cuefem.analysis.measured",
     "cuefem.analysis.model_error",
+    "cuefem.analysis.plays_like",
     "cuefem.analysis.shop_list",
     "cuefem.analysis.strike_table",
     "cuefem.designs.optimum",

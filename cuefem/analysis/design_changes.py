@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +21,14 @@ from cuefem.quantity.display_units import change_with_unit, format_change, to_di
 from cuefem.results.progress import Progress
 from cuefem.results.records import Record, Table, tabulate
 from cuefem.results.solved_design import Solvable, SolvedDesign, off_centre
-from cuefem.results.uncertainty import miscue_note, model_share, ratio_error, squirt_changes, squirt_inputs
+from cuefem.results.uncertainty import (
+    InputChanges,
+    miscue_note,
+    model_share,
+    ratio_error,
+    squirt_changes,
+    squirt_inputs,
+)
 from cuefem.results.verdict import reject_no_verdict
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
@@ -116,9 +124,9 @@ class DesignChanges(Rows, Analysis):
 
     def tables(self) -> list[Table | str]:
         """A table with a row for each change, after the calibration of the cue itself and the best changes together."""
-        return [*self._calibration_lines(), *([*self.together_lines(), ""] if self.together else []), self.table()]
+        return [*self.calibration_lines(), *([*self.together_lines(), ""] if self.together else []), self.table()]
 
-    def _calibration_lines(self) -> list[str]:
+    def calibration_lines(self) -> list[str]:
         """The calibrated squirt of the cue itself, and warnings; empty without a calibration."""
         own = self.calibrated
         if own is None:
@@ -236,40 +244,67 @@ def design_changes(
     >>> changes[0].squirt_change < changes[-1].squirt_change
     True
     """
-    design = SolvedDesign.of(scene)
-    struck = off_centre(design.scene)
-    if struck is not design.scene:
-        design = SolvedDesign.of(struck)
-    outcome = design.strike()
-    reject_no_verdict(struck, outcome)
-    calibrated = calibration.squirt(struck) if calibration else None
-    factor = calibrated.factor if calibrated else 1.0
-    base = _numbers(design.solved)
-    changes = squirt_inputs(struck)
-    trial = _Trial(struck, base, changes.of("squirt"), limits)
-    candidates = [change for change in changes_of(struck) if change.part not in limits.keep]
+    trial = Trial.of(scene, limits, calibration)
+    candidates = [change for change in changes_of(trial.struck) if change.part not in limits.keep]
     singles = [(change, row) for change in progress(candidates) if (row := trial.changed(change)) is not None]
     together = _together(trial, singles, MAX_STRIKES - len(candidates))
-    rows = sorted((row for _, row in singles), key=lambda row: row.squirt_change)
-    return DesignChanges(
-        scene=design.scene,
-        offset=float(struck.stroke.offset),
-        regime=outcome.regime,
-        unmodified=base | {"squirt": factor * base["squirt"]},
-        changes=[replace(row, squirt=factor * row.squirt) for row in rows],
-        together=[replace(row, squirt=factor * row.squirt) for row in together],
-        miscues=changes.miscues,
-        calibrated=calibrated,
-        limits=limits,
-    )
+    return trial.answer(sorted((row for _, row in singles), key=lambda row: row.squirt_change), together)
 
 
-class _Trial:
-    """A shaft, on which changes are tried within the limits of its maker."""
+@dataclass(frozen=True)
+class Trial:
+    """A shaft, on which changes are tried within the limits of its maker.
 
-    def __init__(self, struck: Scene, base: Record, inputs: Mapping[str, float], limits: Limits) -> None:
-        self.struck, self.base, self.limits = struck, base, limits
-        self.before = {key: x for key, x in inputs.items() if abs(x) > MIN_CONTRIBUTION}
+    design: of the scene, and its stroke off centre. base: its numbers. changes: of its squirt, by uncertain input.
+    """
+
+    scene: Scene
+    design: SolvedDesign
+    limits: Limits
+    calibrated: CalibratedSquirt | None
+    base: Record
+    changes: InputChanges
+
+    @classmethod
+    def of(cls, scene: Solvable, limits: Limits, calibration: Calibration | None = None) -> Trial:
+        """The shaft of a scene; ValueError if it is lumped or its stroke a miscue."""
+        design = SolvedDesign.of(scene)
+        original, struck = design.scene, off_centre(design.scene)
+        if struck is not original:
+            design = SolvedDesign.of(struck)
+        reject_no_verdict(struck, design.strike())
+        calibrated = calibration.squirt(struck) if calibration else None
+        return cls(original, design, limits, calibrated, _numbers(design.solved), squirt_inputs(struck))
+
+    @property
+    def struck(self) -> Scene:
+        """The scene, off centre."""
+        return self.design.scene
+
+    @property
+    def factor(self) -> float:
+        """By which the calibration scales squirt."""
+        return self.calibrated.factor if self.calibrated else 1.0
+
+    @cached_property
+    def before(self) -> dict[str, float]:
+        """The relative changes of squirt with the inputs that count."""
+        return {key: x for key, x in self.changes.of("squirt").items() if abs(x) > MIN_CONTRIBUTION}
+
+    def answer(self, rows: Sequence[ChangedDesign], together: Sequence[ChangedDesign] = ()) -> DesignChanges:
+        """The answer with these rows, their squirt calibrated."""
+        factor = self.factor
+        return DesignChanges(
+            scene=self.scene,
+            offset=float(self.struck.stroke.offset),
+            regime=self.design.strike().regime,
+            unmodified=self.base | {"squirt": factor * self.base["squirt"]},
+            changes=[replace(row, squirt=factor * row.squirt) for row in rows],
+            together=[replace(row, squirt=factor * row.squirt) for row in together],
+            miscues=self.changes.miscues,
+            calibrated=self.calibrated,
+            limits=self.limits,
+        )
 
     def changed(self, change: DesignChange) -> ChangedDesign | None:
         """The shaft with a change; None where its geometry or the limits do not allow it."""
@@ -288,6 +323,11 @@ class _Trial:
         except (ValueError, RuntimeError):
             return None
 
+    def is_stiff(self, numbers: Record) -> bool:
+        """Whether the stiffness at the tip stays within the limits."""
+        least = (1 - self.limits.stiffness_loss) * self.base["tip_stiffness"]
+        return bool(numbers["tip_stiffness"] >= least)
+
     def with_error(self, change: DesignChange, solved: SolvedScene, numbers: Record) -> ChangedDesign | None:
         """The changed shaft with the uncertainty of its change of squirt."""
         try:
@@ -300,9 +340,7 @@ class _Trial:
             return None
 
 
-def _together(
-    trial: _Trial, singles: Sequence[tuple[DesignChange, ChangedDesign]], strikes: int
-) -> list[ChangedDesign]:
+def _together(trial: Trial, singles: Sequence[tuple[DesignChange, ChangedDesign]], strikes: int) -> list[ChangedDesign]:
     """The best two changes together, and the best three if they gain `TRIPLE_GAIN` more.
 
     Of single changes of this shaft that lower squirt; changes of the tip wear off and are none of them. Groups are
@@ -316,13 +354,13 @@ def _together(
     shares = {2: strikes - strikes // 3, 3: strikes // 3}
     best = []
     for size, most in shares.items():
-        groups = [group for group in combinations(useful, size) if _is_compatible([change for change, _ in group])]
+        groups = [group for group in combinations(useful, size) if are_compatible([change for change, _ in group])]
         groups.sort(key=lambda group: sum(gain for _, gain in group))
         struck = []
         for group in groups[: max(0, most)]:
-            change = _joined([change for change, _ in group])
+            change = joined([change for change, _ in group])
             variant = trial.variant(change)
-            if variant is not None and _is_stiff(variant[1], trial):
+            if variant is not None and trial.is_stiff(variant[1]):
                 struck.append((change, *variant))
         if struck:
             best.append(trial.with_error(*min(struck, key=lambda each: each[2]["squirt"])))
@@ -332,23 +370,18 @@ def _together(
     return rows
 
 
-def _is_compatible(group: Sequence[DesignChange]) -> bool:
+def are_compatible(group: Sequence[DesignChange]) -> bool:
     """Whether no two changes set the same parameter."""
     keys = [key for change in group for key in change.values]
     return len(keys) == len({*keys})
 
 
-def _joined(group: Sequence[DesignChange]) -> DesignChange:
+def joined(group: Sequence[DesignChange]) -> DesignChange:
     """Several changes as one."""
     values = {key: value for change in group for key, value in change.values.items()}
     resets = tuple(key for change in group for key in change.resets)
-    return DesignChange(" + ".join(change.label for change in group), values, resets)
-
-
-def _is_stiff(numbers: Record, trial: _Trial) -> bool:
-    """Whether the stiffness at the tip stays within the limits."""
-    least = (1 - trial.limits.stiffness_loss) * trial.base["tip_stiffness"]
-    return bool(numbers["tip_stiffness"] >= least)
+    label, part = (" + ".join(texts) for texts in zip(*((each.label, each.part) for each in group), strict=True))
+    return DesignChange(label, values, resets, part)
 
 
 def _cost(row: ChangedDesign) -> tuple[Any, list[float]]:

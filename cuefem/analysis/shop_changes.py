@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from cuefem.cue import Cue
 from cuefem.cue.materials import MATERIALS, table_name
 from cuefem.effects.leather_tip import DOMES
-from cuefem.parameters.parts import TUBE_FRONT, Layout, is_tube, is_wooden, taper_position
+from cuefem.parameters.parts import TUBE_FRONT, Layout, is_tube, is_wooden, max_bore_depth, taper_position
 from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.display_units import DISTANCE, displayed_system, inch_fraction, short_number, with_unit
 from cuefem.results.records import Record
@@ -53,6 +53,8 @@ SHAFT_WOODS = ("hard maple", "ash", "yellow birch", "purpleheart", "rosewood")
 MIN_STIFFNESS_LOSS = 0.05  # perceptible relative loss of stiffness
 WOOD = ("E", "G", "rho")
 PARTS = ("bore", "ferrule", "tip", "taper", "wood")  # of a shaft that a maker may keep as they are
+DRILLS = 4  # widths of a bore that are tried
+DEEPEST, LONGEST_FERRULE, MOST_CUT, THICKEST_WALL = 250 * MM, 40 * MM, 2 * MM, 3 * MM
 
 
 @dataclass(frozen=True)
@@ -117,6 +119,78 @@ class DesignChange(NamedTuple):
     is_new_shaft: bool = False
 
 
+class Dimension(NamedTuple):
+    """A dimension that a shop chooses: the change for each size between that of the shaft and the farthest one, m.
+
+    step: to which a shop holds it; each size is a multiple of it from the first one.
+    """
+
+    change: Callable[[float], DesignChange]
+    first: float
+    last: float
+    step: float
+
+    @property
+    def count(self) -> int:
+        """The number of sizes after the first one."""
+        return round(abs(self.last - self.first) / self.step)
+
+    def size(self, k: int) -> float:
+        """The k-th size, m."""
+        return self.first + math.copysign(k * self.step, self.last - self.first)
+
+
+def dimensions_of(scene: Scene) -> list[Dimension]:
+    """The dimensions of this cue that a shop can choose, each in both directions; walls and stiffness bound them."""
+    values = {key: parameter.value(scene) for key, parameter in PARAMETERS.items()}
+    if is_tube(scene.shaft):
+        return [*_wall_sizes(values), *_insert_sizes(values), *_ferrule_sizes(values)]
+    bores, ferrules = _bore_sizes(scene.shaft, values), _ferrule_sizes(values)
+    return [*bores, *ferrules, *(_front_sizes(scene.shaft, values) if is_wooden(scene.shaft) else ())]
+
+
+def _bore_sizes(cue: Cue, values: Record) -> Iterator[Dimension]:
+    """The depth of a bore of the shaft's own width, and of some wider drills."""
+    depth, shop = values["bore_depth"], SHOP[displayed_system()]
+    if depth is None:
+        return
+    own = values["bore_width"] if depth > 0 else shop.new_bore
+    deepest = min(DEEPEST, max_bore_depth(cue))
+    if depth > 0:
+        for last in (max(depth, deepest), 0.0):
+            yield Dimension(lambda new: _bore_depth(depth, new), depth, last, MM)
+    first = 1 if depth > 0 else 0
+    for k in range(first, first + DRILLS):
+        width = shop.drill_step * round(own / shop.drill_step + k)
+        yield Dimension(lambda new, width=width: _bore(width, new), max(depth, MM), deepest, MM)
+
+
+def _ferrule_sizes(values: Record) -> Iterator[Dimension]:
+    length = values["ferrule_length"]
+    if length is not None:
+        for last in (MIN_FERRULE, LONGEST_FERRULE):
+            yield Dimension(lambda new: _ferrule_length(length, new), length, last, 0.1 * MM)
+
+
+def _front_sizes(cue: Cue, values: Record) -> Iterator[Dimension]:
+    for last in (MOST_CUT, -MOST_CUT):
+        yield Dimension(lambda cut: _cut(cue, values, cut), 0.0, last, 0.01 * MM)
+
+
+def _wall_sizes(values: Record) -> Iterator[Dimension]:
+    wall = values["front_wall"]
+    if wall is not None:
+        for last in (MIN_TUBE_WALL, THICKEST_WALL):
+            yield Dimension(lambda new: _wall(wall, new), wall, last, 0.01 * MM)
+
+
+def _insert_sizes(values: Record) -> Iterator[Dimension]:
+    insert = values["insert_depth"]
+    if insert is not None:
+        for last in (EMPTY_FRONT, 0.0):
+            yield Dimension(_insert, insert, last, MM)
+
+
 def changes_of(scene: Scene) -> list[DesignChange]:
     """Candidate changes of this cue; `design_changes` drops those that its geometry does not allow."""
     values = {key: parameter.value(scene) for key, parameter in PARAMETERS.items()}
@@ -133,11 +207,14 @@ def _walls(values: Record) -> Iterator[DesignChange]:
     wall = values["front_wall"]
     if wall is None:
         return
-    where = f"over the first {with_unit(TUBE_FRONT, 'm')}"
-    for name, new in (("thinner", wall - WALL_STEP), ("thicker", wall + WALL_STEP)):
-        yield DesignChange(
-            f"wall {name}, {_from_to(wall, new)} {where}", {"front wall": new}, part="wood", is_new_shaft=True
-        )
+    for new in (wall - WALL_STEP, wall + WALL_STEP):
+        yield _wall(wall, new)
+
+
+def _wall(wall: float, new: float) -> DesignChange:
+    name, where = "thinner" if new < wall else "thicker", f"over the first {with_unit(TUBE_FRONT, 'm')}"
+    label = f"wall {name}, {_from_to(wall, new)} {where}"
+    return DesignChange(label, {"front wall": new}, part="wood", is_new_shaft=True)
 
 
 def _fillings(values: Record) -> Iterator[DesignChange]:
@@ -146,12 +223,13 @@ def _fillings(values: Record) -> Iterator[DesignChange]:
     if empty == insert == 0:
         label = f"no filling in the first {with_unit(EMPTY_FRONT, 'm')} of the tube"
         yield DesignChange(label, {"empty depth": EMPTY_FRONT}, part="bore")
-    if insert == 0:
-        yield DesignChange(
-            f"maple insert, {with_unit(NEW_INSERT, 'm')} long, in front", {"insert depth": NEW_INSERT}, part="bore"
-        )
-    elif insert is not None:
-        yield DesignChange("no insert in front", {"insert depth": 0.0}, part="bore")
+    if insert is not None:
+        yield _insert(0.0 if insert else NEW_INSERT)
+
+
+def _insert(length: float) -> DesignChange:
+    label = f"maple insert, {with_unit(length, 'm')} long, in front" if length else "no insert in front"
+    return DesignChange(label, {"insert depth": length}, part="bore")
 
 
 def _bores(cue: Cue, values: Record) -> Iterator[DesignChange]:
@@ -159,9 +237,7 @@ def _bores(cue: Cue, values: Record) -> Iterator[DesignChange]:
     if depth is None:
         return
     if depth <= 0:
-        new = {"bore depth": shop.new_depth, "bore width": shop.new_bore}
-        label = f"bore, {drill_text(shop.new_bore)} wide and {with_unit(shop.new_depth, 'm')} deep"
-        yield DesignChange(label, new, part="bore")
+        yield _bore(shop.new_bore, shop.new_depth)
         return
     bored = [cue.segments[i] for i in Layout.of(cue).bore or ()]
     is_cylinder = all(s.tip_bore == s.butt_bore == width for s in bored)
@@ -169,8 +245,18 @@ def _bores(cue: Cue, values: Record) -> Iterator[DesignChange]:
     wider = shop.drill_step * round((width + shop.wider) / shop.drill_step)
     label = f"bore wider, {short_number(width, 'm')} → {drill_text(wider)}{at_mouth}"
     yield DesignChange(label, {"bore width": wider}, part="bore")
-    deeper = depth + shop.deeper
-    yield DesignChange(f"bore deeper, {_from_to(depth, deeper)}", {"bore depth": deeper}, part="bore")
+    yield _bore_depth(depth, depth + shop.deeper)
+
+
+def _bore(width: float, depth: float) -> DesignChange:
+    label = f"bore, {drill_text(width)} wide and {with_unit(depth, 'm')} deep"
+    return DesignChange(label, {"bore depth": depth, "bore width": width}, part="bore")
+
+
+def _bore_depth(depth: float, new: float) -> DesignChange:
+    is_deeper = new > depth  # a shallower one is drilled into another shaft
+    label = f"bore {'deeper' if is_deeper else 'shallower'}, {_from_to(depth, new)}"
+    return DesignChange(label, {"bore depth": new}, part="bore", is_new_shaft=not is_deeper)
 
 
 def drill_text(width: float) -> str:
@@ -184,7 +270,17 @@ def _ferrules(values: Record) -> Iterator[DesignChange]:
         return
     shorter = length - SHOP[displayed_system()].shorter
     if shorter >= MIN_FERRULE:
-        yield DesignChange(f"ferrule shorter, {_from_to(length, shorter)}", {"ferrule length": shorter}, part="ferrule")
+        yield _ferrule_length(length, shorter)
+    yield from ferrule_materials(material)
+
+
+def _ferrule_length(length: float, new: float) -> DesignChange:
+    label = f"ferrule {'shorter' if new < length else 'longer'}, {_from_to(length, new)}"
+    return DesignChange(label, {"ferrule length": new}, part="ferrule")
+
+
+def ferrule_materials(material: Any) -> Iterator[DesignChange]:
+    """Ferrules of another material than this."""
     for name in FERRULES:
         if MATERIALS[name].material != material:
             label = f"{'ABS' if name == 'abs' else name} ferrule"
@@ -204,15 +300,21 @@ def _tapers(cue: Cue, values: Record) -> Iterator[DesignChange]:
     tip, taper, end = (values[f"{name}_diameter"] for name in ("tip", "taper", "butt"))
     x = taper_position(cue)
     at = with_unit(x, DISTANCE)
-    cut = SHOP[displayed_system()].thinner
-    thinner = {"tip diameter": tip - cut, "taper diameter": taper - cut}
-    yield DesignChange(f"{with_unit(cut, 'm')} thinner from the front to {at}", thinner)
+    yield _cut(cue, values, SHOP[displayed_system()].thinner)
     cone, pro = tip + (end - tip) * x / cue.length, tip + PRO_GAIN
     for name, diameter in (("straight taper, a cone", cone), ("pro taper", pro)):
         if abs(diameter - taper) > 0.2 * MM:
             label = f"{name}, {with_unit(diameter, 'm')} at {at}"
             adds_wood = diameter > taper
             yield DesignChange(label, {"taper diameter": diameter}, is_new_shaft=adds_wood)
+
+
+def _cut(cue: Cue, values: Record, cut: float) -> DesignChange:
+    """So much off the front's diameter; a negative one adds wood, in another shaft."""
+    new = {"tip diameter": values["tip_diameter"] - cut, "taper diameter": values["taper_diameter"] - cut}
+    at = with_unit(taper_position(cue), DISTANCE)
+    label = f"{with_unit(abs(cut), 'm')} {'thicker' if cut < 0 else 'thinner'} from the front to {at}"
+    return DesignChange(label, new, is_new_shaft=cut < 0)
 
 
 def _woods(cue: Cue) -> Iterator[DesignChange]:

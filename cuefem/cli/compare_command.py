@@ -158,7 +158,7 @@ def _list(files: Sequence[Path], options: Mapping[str, str | None], output: Path
     scenes, unread = {}, {}
     for name, file in zip(_names(files), files, strict=True):
         try:
-            scenes[name] = _open_request(file, options).scene
+            scenes[name] = open_request(file, options).scene
         except (ValueError, OSError) as error:
             unread[name] = " ".join(str(error).removeprefix(f"{file}: ").split())
     with errors_name_file(files[0].parent):
@@ -174,7 +174,7 @@ def _list(files: Sequence[Path], options: Mapping[str, str | None], output: Path
         raise InputError(files[0].parent, "", made.problem())
 
 
-def _open_request(file: Path, options: Mapping[str, str | None]) -> Request:
+def open_request(file: Path, options: Mapping[str, str | None]) -> Request:
     """The request of a file with the options that it leaves open."""
     request = Request.of(file, options)
     own = _own_values(request)

@@ -11,6 +11,7 @@ import click
 import cuefem as cf
 from cuefem.analysis.reduction import PAPER_CUE_ENDS, PAPER_TONE, cue_end_quantity
 from cuefem.analysis.shop_changes import PARTS, Limits
+from cuefem.cli.compare_command import open_request
 from cuefem.cli.output import Command, print_json
 from cuefem.cli.progress import with_progress_bar
 from cuefem.cli.request import Request
@@ -21,7 +22,7 @@ from cuefem.cli.scene_command import (
     file_options,
     force_option,
 )
-from cuefem.cli.scene_options import option, option_value, tip_options, typed_name
+from cuefem.cli.scene_options import CueFile, file_label, option, option_value, tip_options, typed_name
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.files import InputError, load_accuracy, save
 from cuefem.files.errors import as_input_error
@@ -72,6 +73,12 @@ def report(request: Request, output: Path | None, calibration: Calibration | Non
 @click.option(
     "--stiffness-loss", metavar="SHARE", help='Largest loss of stiffness of changes together (default: "5 %").'
 )
+@click.option(
+    "--like",
+    metavar="CUE",
+    type=CueFile(),
+    help='Instead: the smallest change to the squirt of another cue, a file or a name such as "predator z2".',
+)
 @calibration_option
 @force_option
 def improve(
@@ -80,6 +87,7 @@ def improve(
     wall: str | None,
     keep: str | None,
     stiffness_loss: str | None,
+    like: Path | None,
     output: Path | None,
     calibration: Calibration | None,
     force: bool,
@@ -98,7 +106,12 @@ def improve(
         raise InputError(request.file, "--take", "requires -o FILE.toml")
     if drawing is not None:
         check_overwrite(drawing, force=force)
-    answer = cf.design_changes(request.scene, limits=limits, calibration=calibration, progress=with_progress_bar)
+    asked: dict[str, Any] = {"limits": limits, "calibration": calibration, "progress": with_progress_bar}
+    if like is None:
+        answer = cf.design_changes(request.scene, **asked)
+    else:
+        other = open_request(like, request.given).scene
+        answer = cf.plays_like(request.scene, other, name=file_label(like), **asked)
     if take is None or drawing is None:
         return answer
     _save_change(request, answer, take, drawing, as_json=as_json)

@@ -87,7 +87,7 @@ class Round(NamedTuple):
 
 
 class ChoiceResult(NamedTuple):
-    """Result for one combination of listed values: the best objective, or nan and the reason."""
+    """Result for one combination of listed values: the best `Optimum.score`, or nan and the reason."""
 
     values: dict[str, Value]
     objective: float
@@ -111,7 +111,8 @@ class Optimum(StudyDesign):
 
     active: the constraints that it has reached: limits and ends of ranges. evaluations: number of designs computed.
     stop_reason: why the search stopped without convergence, "" if it converged. choices: one for each combination of
-    listed values, if there are any. start: the unmodified design, nan where it has no value or response.
+    listed values, if there are any. start: the unmodified design, nan where it has no value or response. score: the
+    objective, or with a target the size of the change, `Problem.change`.
     """
 
     active: tuple[Constraint, ...] = ()
@@ -119,6 +120,7 @@ class Optimum(StudyDesign):
     stop_reason: str = ""
     choices: tuple[ChoiceResult, ...] = ()
     start: StudyDesign | None = None
+    score: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -149,11 +151,15 @@ class Problem:
         Designs on the trade-off, at least 3.
     squirt_factor : float, default 1.0
         As of a `Study`.
+    target : float, optional
+        A value that the objective, of squirt its size, must reach, SI: the answer is the design that does so with the
+        smallest change, the root mean square of the variables' changes in parts of their ranges.
 
     Raises
     ------
     ValueError
-        If a range is a distribution, ``against`` is the objective, or ``count`` is below 3; as of a `Study`.
+        If a range is a distribution, ``against`` is the objective, ``count`` is below 3, or a ``target`` stands beside
+        ``against`` or ``maximize``; as of a `Study`.
 
     Examples
     --------
@@ -176,9 +182,13 @@ class Problem:
     against: Response | None = None
     count: int = 7
     squirt_factor: float = 1.0
+    target: float | None = None
 
     def __post_init__(self) -> None:
         check_count("count", self.count, 3)
+        if self.target is not None and (self.maximize or self.against):
+            raise ValueError("target must stand alone: the objective reaches it, and is not maximized or traded off")
+        _ = self.bounds  # checks the target
         if self.against == self.objective:
             raise ValueError(f"against must be another response than the objective; got {self.objective.name} for both")
         for vary in self.vary:
@@ -196,6 +206,12 @@ class Problem:
     def calibrated(self, squirt_factor: float) -> Problem:
         """The same problem with another squirt factor."""
         return replace(self, squirt_factor=squirt_factor)
+
+    @property
+    def bounds(self) -> tuple[Limit, ...]:
+        """The limits, after them the target as one with both bounds."""
+        target = () if self.target is None else (Limit(self.objective, self.target, self.target),)
+        return (*self.limits, *target)
 
     @property
     def spans(self) -> dict[int, Span]:
@@ -236,6 +252,12 @@ class Problem:
         value = value_at(self.base, vary.fields(self.base)[0])
         return material_name(value) if isinstance(value, Material) else value
 
+    def change(self, shares: Array) -> Array:
+        """The size of the change to points in fractions of the ranges, (..., variables); another name is one range."""
+        others = sum(self.choice[i] != self.base_value(self.vary[i]) for i in self.choice)
+        squares = np.square(shares - self.shares(self.start)).sum(axis=-1) + others
+        return np.asarray(np.sqrt(squares / len(self.vary)))
+
     @property
     def base_design(self) -> StudyDesign:
         """The base with the values of its variables and its responses, nan where it has none, for a metric reason."""
@@ -274,7 +296,7 @@ class Problem:
         sizes = self.sizes(values)
         margins = [
             sign * (sizes[:, self.study.responses.index(limit.response)] - bound) / (abs(bound) or 1.0)
-            for limit in self.limits
+            for limit in self.bounds
             for sign, bound in limit.sides
         ]
         return np.nan_to_num(np.reshape(margins, (-1, len(values))).T, nan=-EXCLUDED)
@@ -317,7 +339,7 @@ class OptimumResult(StudyResult):
         start = best.start.responses[name] if best.start else math.nan
         before = "" if math.isnan(start) else f"{shown(start, problem.objective.display_key)} → "
         change = _change_text(start, best.responses[name], self.changes.get(name))
-        limited = {each.name for each in best.active}
+        limited = {each.name for each in best.active if each.name != name or problem.target is None}
         of = len(problem.limits) + len(problem.spans)
         value = f"{before}{with_unit(best.responses[name], problem.objective.display_key)}"
         changed = "" if change == DASH else f", {change}"
@@ -356,9 +378,9 @@ class OptimumResult(StudyResult):
 def optimum_record(problem: Problem, best: Optimum, changes: Mapping[str, Record]) -> Record:
     """The best design, its responses and active constraints beside the unmodified design, and the evaluations."""
     assert best.start is not None
-    aim = {"maximize" if problem.maximize else "minimize": problem.objective.name}
+    aim = "maximize" if problem.maximize else "minimize" if problem.target is None else "response"
     return {
-        "objective": aim,
+        "objective": {aim: problem.objective.name} | ({"target": problem.target} if problem.target is not None else {}),
         "value": best.responses[problem.objective.name],
         "values": best.values,
         "responses": best.responses,
@@ -375,7 +397,7 @@ def optimum_record(problem: Problem, best: Optimum, changes: Mapping[str, Record
 def is_set_by_constraints(problem: Problem, best: Optimum) -> bool:
     """Whether as many constraints are active as there are numbers to choose."""
     reached = {constraint.name for constraint in best.active}  # a limit with one bound on both sides counts once
-    return len(reached) >= len(problem.spans) > 0
+    return problem.target is None and len(reached) >= len(problem.spans) > 0
 
 
 def tabulate_optimum(problem: Problem, best: Optimum, changes: Mapping[str, Record]) -> list[Table | str]:
@@ -397,6 +419,8 @@ def tabulate_optimum(problem: Problem, best: Optimum, changes: Mapping[str, Reco
     both = {**best.responses, **best.values}
     names = {name: labels.get(name) or column_label(name) for name in both}
     aim = f"{'maximize' if problem.maximize else 'minimize'} {problem.objective.label}"
+    if problem.target is not None:
+        aim = f"smallest change to {problem.objective.label} {text(problem.objective.name, problem.target)}"
     compared = tuple(
         (names[name], text(name, start[name]), text(name, value), _change_text(start[name], value, changes.get(name)))
         for name, value in both.items()
@@ -406,7 +430,8 @@ def tabulate_optimum(problem: Problem, best: Optimum, changes: Mapping[str, Reco
     failure = best.start.failure and displayed_reason(problem.study, best.start.scene, best.start.failure)
     missing = (f"start: {failure}",) if failure else ()
     notes = (*shared, *((NOT_DISTINCT,) if marked else ()), *missing)
-    active = [f"{names[name]} {sense} {text(name, bound)}" for name, sense, bound in best.active]
+    limits = [each for each in best.active if (each.name, each.bound) != (problem.objective.name, problem.target)]
+    active = [f"{names[name]} {sense} {text(name, bound)}" for name, sense, bound in limits]
     tables: list[Table | str] = [
         f"{aim}: {counted(best.evaluations, 'design')} computed",
         Table("Best design", ("", "start", "best", "change"), compared, notes),
@@ -420,11 +445,14 @@ def tabulate_optimum(problem: Problem, best: Optimum, changes: Mapping[str, Reco
     if best.stop_reason:
         tables.append(f"not finished: {best.stop_reason}; more --iterations may find a better design")
     if best.choices:
-        head = (*map(column_label, best.choices[0].values), problem.objective.heading, "")
+        score, unit = problem.objective.heading, problem.objective.display_key
+        if problem.target is not None:
+            score, unit = "change, part of the ranges", ""
+        head = (*map(column_label, best.choices[0].values), score, "")
         rows = tuple(
             (
                 *(text(name, value) for name, value in choice.values.items()),
-                DASH if choice.reason else shown(choice.objective, problem.objective.display_key),
+                DASH if choice.reason else shown(choice.objective, unit),
                 choice.reason,
             )
             for choice in best.choices

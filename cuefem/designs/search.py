@@ -71,14 +71,14 @@ def optimum(
         first = case.shares(case.start if start is None else np.asarray(start, float))
         try:
             optima.append(search.optimum(first, rounds, seed))
-            choices.append(ChoiceResult(search.choice, optima[-1].responses[problem.objective.name]))
+            choices.append(ChoiceResult(search.choice, optima[-1].score))
         except ValueError as error:
             reasons.append(str(error))
             choices.append(ChoiceResult(search.choice, np.nan, str(error)))
         count = search.evaluations
     if not optima:
         raise ValueError(reasons[0])
-    best = min(optima, key=lambda each: sign * problem.objective.size(each.responses[problem.objective.name]))
+    best = min(optima, key=lambda each: sign * problem.objective.size(each.score))
     listed = tuple(choices) if len(choices) > 1 else ()
     return replace(best, evaluations=count, choices=listed, start=problem.base_design)
 
@@ -102,19 +102,23 @@ class _Search:
         found = self.problem.evaluate(self.problem.points(shares))
         self._reasons |= {u.tobytes(): reason for u, reason in zip(shares, found.reasons, strict=True) if reason}
         self.evaluations += len(shares)
-        self.best = min(self.best, self.scores(found.values).min(initial=np.inf))
+        self.best = min(self.best, self.scores(shares, found.values).min(initial=np.inf))
         return found.values
 
-    def scores(self, values: Array) -> Array:
+    def scores(self, shares: Array, values: Array) -> Array:
         """The scores to minimize: the objective, or `EXCLUDED` plus the violation of the limits."""
         violation = np.minimum(self.problem.margins(values) + TOLERANCE, 0).sum(axis=1)
-        objective = np.nan_to_num(self.scale * self.problem.sizes(values)[:, 0], nan=EXCLUDED)
+        if self.problem.target is None:
+            objective = np.nan_to_num(self.scale * self.problem.sizes(values)[:, 0], nan=EXCLUDED)
+        else:
+            objective = self.problem.change(shares)
         return np.asarray(np.where(violation < 0, EXCLUDED - violation, objective))
 
     def report(self, *_: Any, **__: Any) -> None:
         """Count a round and report progress."""
         self.rounds += 1
-        best = self.best / self.scale if self.best < EXCLUDED else np.nan
+        found = self.best / self.scale if self.problem.target is None else self.problem.target
+        best = found if self.best < EXCLUDED else np.nan
         self.progress(Round(self.choice, self.rounds, self.evaluations, best, self.problem.objective))
 
     def optimum(self, start: Array, rounds: int, seed: int) -> Optimum:
@@ -128,7 +132,7 @@ class _Search:
             if not is_found:
                 ends.append(self.by_evolution(start, rounds, seed))
                 ends.append(self.by_slsqp(ends[-1][0], rounds))
-        u = self.onto_ends(min((u for u, _ in ends), key=lambda u: self.scores(self.at(u)[None])[0]))
+        u = self.onto_ends(min((u for u, _ in ends), key=lambda u: self.scores(u[None], self.at(u)[None])[0]))
         violated, stop_reason = self.violated(u), "" if self.is_least(u) else ends[-1][1]
         if violated or not np.isfinite(self.at(u)).all():
             raise ValueError(self.none_found(u, violated))
@@ -140,6 +144,7 @@ class _Search:
             tuple(constraint for constraint, margin in self.margins(u) if margin < TOLERANCE),
             self.evaluations,
             stop_reason,
+            score=float(self.at(u)[0] if self.problem.target is None else self.problem.change(u)),
         )
 
     def none_found(self, u: Array, violated: Sequence[str]) -> str:
@@ -150,7 +155,7 @@ class _Search:
             reason = self._reasons[np.clip(u, 0, 1).tobytes()]
             return f"no design that has {', '.join(missing)} was found; of the nearest: {reason}"
         has = ", ".join(f"{response.name} {value:.6g} {response.unit}".strip() for response, value in nearest.items())
-        limits = ", ".join(violated)
+        limits = ", ".join(dict.fromkeys(violated))
         return f"no design within {limits} was found; the nearest has {has}: relax a limit or widen a range"
 
     def is_least(self, u: Array) -> bool:
@@ -210,18 +215,30 @@ class _Search:
                 "jac": lambda u: unit * self.slopes(u)[k],
             }
 
+        limits = [
+            constraint(responses.index(limit.response), *side) for limit in self.problem.limits for side in limit.sides
+        ]
+        own, target = self.problem.shares(self.problem.start), self.problem.target
+        if target is not None:
+            limits.append(constraint(0, 1, target) | {"type": "eq"})
+
+        def objective(u: Array) -> float:
+            """The scaled response, or the square of the change to the target."""
+            if target is not None:
+                return float(np.square(u - own).sum())
+            return self.scale * value(u, 0, INVALID_OBJECTIVE / self.scale)
+
+        def slope(u: Array) -> Array:
+            return self.scale * self.slopes(u)[0] if target is None else 2 * (u - own)
+
         try:
             result = minimize(
-                lambda u: self.scale * value(u, 0, INVALID_OBJECTIVE / self.scale),
+                objective,
                 start,
-                jac=lambda u: self.scale * self.slopes(u)[0],
+                jac=slope,
                 method="SLSQP",
                 bounds=[(0, 1)] * len(start),
-                constraints=[
-                    constraint(responses.index(limit.response), *side)
-                    for limit in self.problem.limits
-                    for side in limit.sides
-                ],
+                constraints=limits,
                 options={"maxiter": rounds, "ftol": 1e-9},
                 callback=self.report,
             )
@@ -234,7 +251,7 @@ class _Search:
         from scipy.optimize import differential_evolution
 
         result = differential_evolution(
-            lambda u: self.scores(self.rows(u.T)),
+            lambda u: self.scores(u.T, self.rows(u.T)),
             [(0, 1)] * len(start),
             x0=start,
             rng=np.random.default_rng(seed),
@@ -252,7 +269,7 @@ class _Search:
         """Every limit and every end of a range, with its relative margin."""
         limits = [
             Constraint(limit.response.name, ">=" if sign > 0 else "<=", bound)
-            for limit in self.problem.limits
+            for limit in self.problem.bounds
             for sign, bound in limit.sides
         ]
         margins = list(zip(limits, self.problem.margins(self.at(u)[None])[0].tolist(), strict=True))
@@ -261,6 +278,11 @@ class _Search:
             margins += [(Constraint(name, ">=", span.low), share), (Constraint(name, "<=", span.high), 1 - share)]
         return margins
 
+    def _text(self, constraint: Constraint) -> str:
+        """A constraint in words, the target as one."""
+        is_target = (constraint.name, constraint.bound) == (self.problem.objective.name, self.problem.target)
+        return f"{constraint.name} = {constraint.bound:g} (target)" if is_target else str(constraint)
+
     def violated(self, u: Array) -> list[str]:
         """The limits that a point violates."""
-        return [str(constraint) for constraint, margin in self.margins(u) if not margin >= -TOLERANCE]
+        return [self._text(constraint) for constraint, margin in self.margins(u) if not margin >= -TOLERANCE]

@@ -69,16 +69,26 @@ class LimitTable:
 
 @dataclass(frozen=True)
 class ObjectiveTable:
-    """[objective] of a file: the response to minimize or maximize, and the one that it is traded against."""
+    """[objective] of a file: the response to minimize or maximize, and the one that it is traded against; or the
+    response that reaches a target."""
 
     minimize: str | None = None
     maximize: str | None = None
+    response: str | None = None
+    target: Any = None
     against: str | None = None
     count: int = Problem.count
 
     def __post_init__(self) -> None:
-        if (self.minimize is None) == (self.maximize is None):
-            raise ValueError('must be a table such as minimize = "squirt(0.3)"; got both keys or none')
+        if len(self.aims) != 1:
+            raise ValueError(f"must have one of minimize, maximize, response; got {' and '.join(self.aims) or 'none'}")
+        if (self.response is None) != (self.target is None):
+            raise ValueError('must have response and target together, such as response = "squirt", target = "1.3 deg"')
+
+    @property
+    def aims(self) -> list[str]:
+        """The keys that name the response."""
+        return [name for name in ("minimize", "maximize", "response") if getattr(self, name) is not None]
 
 
 @dataclass(frozen=True)
@@ -157,8 +167,10 @@ def study_kind(path: str | PathLike[str]) -> str:
 
 
 def _problem(tables: StudyTable, objective: ObjectiveTable, base: Scene, vary: tuple[Vary, ...], path: Path) -> Problem:
-    aim = "maximize" if objective.minimize is None else "minimize"
+    (aim,) = objective.aims
     response = _response(getattr(objective, aim), path, key_path("objective", aim))
+    key, target = key_path("objective", "target"), objective.target
+    target = None if target is None else _number(target, Quantity(response.unit), path, key)
     limits = tuple(_limit(table, path, key_path("limit", i)) for i, table in enumerate(tables.limit))
     other = objective.against
     against = None if other is None else _response(other, path, key_path("objective", "against"))
@@ -172,6 +184,7 @@ def _problem(tables: StudyTable, objective: ObjectiveTable, base: Scene, vary: t
             maximize=aim == "maximize",
             against=against,
             count=objective.count,
+            target=target,
         )
 
 

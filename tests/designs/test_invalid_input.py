@@ -90,6 +90,8 @@ CALLS: dict[str, Callable[[], object]] = {
     "limits crossed": lambda: Limit(Response("mass"), 2.0, 1.0),
     "no parameters": lambda: replace(PROBLEM, vary=()),
     "optimum of a distribution": lambda: replace(PROBLEM, vary=(E,)),
+    "target below 0 of a size": lambda: replace(PROBLEM, objective=Response("squirt", 0.3), target=-0.02),
+    "target that is maximized": lambda: replace(PROBLEM, target=0.05, maximize=True),
     "optimum with workers": lambda: cf.study(PROBLEM, workers=2),
     "no rounds": lambda: cf.study(PROBLEM, rounds=0),
     "no workers": lambda: cf.study(varying("ball.mass", 0.2), workers=0),
@@ -98,6 +100,7 @@ CALLS: dict[str, Callable[[], object]] = {
 RUNS: dict[str, Callable[[], object]] = {
     "scatter of miscues": lambda: cf.study(scattered(vary=(TIME,), count=2, response="squirt(0.9)")),
     "unreachable limit": lambda: optimum(STIFF, rounds=1),
+    "unreachable target": lambda: optimum(replace(PROBLEM, target=0.01), rounds=1),
     "miscue at every design": lambda: optimum(MISCUE, rounds=1),
 }
 
@@ -147,6 +150,10 @@ FILES = [
     (OPTIMUM, '"squirt_slope"', '"squirt_slope"\nagainst = "squirt_slope"'),
     (OPTIMUM, '"squirt_slope"', '"squirt_slope"\nagainst = "tip_stiffness"\ncount = 2'),
     (OPTIMUM, '"squirt_slope"', '"squirt_slope"\nagainst = "balance_point"'),
+    (OPTIMUM, '"squirt_slope"', '"squirt_slope"\nresponse = "mass"'),
+    (OPTIMUM, "minimize", "response"),
+    (OPTIMUM, 'minimize = "squirt_slope"', 'response = "squirt_slope"\ntarget = "1 mm"'),
+    (OPTIMUM, 'minimize = "squirt_slope"', 'response = "squirt_slope"\ntarget = 0.05\nagainst = "mass"'),
     (OPTIMUM, '"tip_stiffness"', '"stiffness"'),
     (OPTIMUM, LEAST, ""),
     (OPTIMUM, BETWEEN, 'median = "5 mm"\nsd = "1 mm"'),

@@ -242,3 +242,20 @@ def test_front_of_a_sweep_is_written_alone(tmp_path: Path) -> None:
     one = cf.study(write_study(tmp_path, GRID.replace('["end_mass", "mass"]', '["mass"]')))
     with pytest.raises(cf.InputError, match="has no Pareto front to write"):
         one.save(tmp_path / "none.csv", front=True)
+
+
+def test_target_is_reached_by_the_smallest_change(tmp_path: Path) -> None:
+    """The change is along the gradient of the response, and no design of a grid beyond the target is nearer."""
+    target = OPTIMUM.replace('minimize = "squirt_slope"', 'response = "shaft_mass"\ntarget = "95 g"')
+    problem = load_study(write_study(tmp_path, target))
+    assert isinstance(problem, Problem)
+    best = cf.study(problem).optimum
+    assert best.start is not None
+    assert best.responses["shaft_mass"] == pytest.approx(0.095, rel=1e-6)
+    shares = np.array([[i, k] for i in np.linspace(0, 1, 21) for k in np.linspace(0, 1, 21)])
+    values = problem.evaluate(problem.points(shares)).values
+    start = best.start.responses["shaft_mass"]
+    is_beyond = (values[:, 0] - 0.095) * (start - 0.095) <= 0
+    assert best.score <= problem.change(shares[is_beyond]).min()
+    nearest = problem.change(problem.shares(np.array([*best.values.values()])))
+    assert best.score == pytest.approx(float(nearest), rel=1e-9)
