@@ -42,7 +42,6 @@ from .analysis.natural_frequencies import (
 from .analysis.parts import Parts as Parts, parts as parts
 from .analysis.cue_report import CueReport as CueReport, report as report
 from .analysis.plays_like import PlaysLike as PlaysLike, plays_like as plays_like
-from .analysis.simulator_export import PooltoolExport as PooltoolExport, pooltool_export as pooltool_export
 from .analysis.shop_changes import Limits as Limits
 from .analysis.shop_list import ShopList as ShopList, shop_list as shop_list
 from .analysis.squirt_curve import SquirtCurve as SquirtCurve, squirt_curve as squirt_curve

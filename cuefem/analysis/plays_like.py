@@ -39,7 +39,7 @@ class PlaysLike(DesignChanges):
     target : float
         Its squirt, rad.
     is_reached : bool
-        Whether the changes reach it, within 1 %; else the one change is the nearest.
+        Whether the changes reach it, but for the tolerance of calipers (`SAME`); else the one change is the nearest.
     difference : dict
         Of the other cue from the first of the changes, or from the shaft where no change is needed: relative
         "difference" of squirt, its "error" (1 sigma) and whether it is "distinct".
@@ -52,7 +52,8 @@ class PlaysLike(DesignChanges):
 
     def tables(self) -> list[Table | str]:
         """What reaches the squirt of the other cue, and a table of the changes."""
-        return [*self.calibration_lines(), *self.like_lines(), *(["", self.table()] if self.changes else [])]
+        lines = [*self.calibration_lines(), *self.like_lines()]
+        return [*lines, "", self.table()] if self.changes else [*lines]
 
     def like_lines(self) -> list[str]:
         """Whether and by what the squirt of the other cue is reached, and how sure it is that the two are alike."""
@@ -124,7 +125,7 @@ def plays_like(
     check_scene("plays_like other", other)
     struck = with_same_stroke({"shaft": scene, "other": other})
     trial = Trial.of(struck["shaft"], limits, calibration)
-    search = _Search(trial, abs(squirt_of(struck["other"])))
+    search = _ShaftSearch(trial, abs(squirt_of(struck["other"])))
     dimensions = [each for each in _choices(trial.struck) if each.change(each.first).part not in limits.keep]
     if not dimensions:
         raise ValueError(f"keep leaves no dimension of this shaft to change; got {', '.join(limits.keep)}")
@@ -145,18 +146,23 @@ def plays_like(
 
 def _choices(scene: Scene) -> list[Dimension]:
     """The dimensions of a shaft, and other materials of its ferrule, as dimensions of one size."""
-    materials = []
+    materials = list[DesignChange]()
     if PARAMETERS["ferrule_length"].value(scene) is not None:
         materials = [*ferrule_materials(PARAMETERS["ferrule_material"].value(scene))]
-    return [*dimensions_of(scene), *(Dimension(lambda _, made=made: made, 0.0, 0.0, 1.0) for made in materials)]
+    return [*dimensions_of(scene), *map(_of_one_size, materials)]
 
 
-def _alteration(base: Record, point: _Point) -> float:
+def _of_one_size(change: DesignChange) -> Dimension:
+    """A change that has no size."""
+    return Dimension(lambda _: change, 0.0, 0.0, 1.0)
+
+
+def _alteration(base: Record, point: _ChangedShaft) -> float:
     """How much else a change alters: the largest relative change of stiffness, mass and first natural frequency."""
     return max(abs(point.numbers[name] / base[name] - 1) for name in ("tip_stiffness", "shaft_mass", "frequency"))
 
 
-class _Point(NamedTuple):
+class _ChangedShaft(NamedTuple):
     """A changed shaft: its numbers, and the logarithm of its squirt over that of the other cue."""
 
     change: DesignChange
@@ -164,7 +170,7 @@ class _Point(NamedTuple):
     gap: float
 
 
-class _Search:
+class _ShaftSearch:
     """The search for changes that reach a squirt, rad."""
 
     def __init__(self, trial: Trial, target: float) -> None:
@@ -176,7 +182,7 @@ class _Search:
         """Whether the shaft has that squirt itself."""
         return abs(self.own_gap) < SAME
 
-    def run(self, dimensions: Sequence[Dimension], progress: Progress) -> list[_Point]:
+    def run(self, dimensions: Sequence[Dimension], progress: Progress) -> list[_ChangedShaft]:
         """The changes that reach the squirt, as few together as possible; else the nearest one."""
         ends = [(end, each) for each in progress(dimensions) if (end := self.end(None, each)) is not None]
         ends.sort(key=lambda pair: abs(pair[0].gap))
@@ -190,16 +196,16 @@ class _Search:
             points = sorted([*more, *points], key=lambda point: abs(point.gap))
         return [point for point in points if abs(point.gap) < SAME] or points[:1]
 
-    def end(self, base: _Point | None, dimension: Dimension) -> _Point | None:
+    def end(self, base: _ChangedShaft | None, dimension: Dimension) -> _ChangedShaft | None:
         """The first size of a dimension, beside other changes, that reaches the squirt; else the nearest one."""
         if base is not None and not are_compatible([base.change, dimension.change(dimension.last)]):
             return None
-        points = self._walk(partial(self.point, base, dimension), dimension.count)
+        points = self._walk(partial(self.point, base, dimension), dimension.steps)
         return min(points, key=lambda point: abs(point.gap), default=None)
 
-    def _walk(self, at: Callable[[int], _Point | None], count: int) -> list[_Point]:
+    def _walk(self, at: Callable[[int], _ChangedShaft | None], count: int) -> list[_ChangedShaft]:
         """Shafts with larger and larger sizes, until the squirt is crossed or farther away, or the limits are met."""
-        points = list[_Point]()
+        points = list[_ChangedShaft]()
         before = 0
         for k in sorted({round(count * i / SIZES) for i in range(SIZES + 1)}):
             point = at(k)
@@ -218,7 +224,7 @@ class _Search:
                 break
         return points
 
-    def point(self, base: _Point | None, dimension: Dimension, k: int) -> _Point | None:
+    def point(self, base: _ChangedShaft | None, dimension: Dimension, k: int) -> _ChangedShaft | None:
         """The shaft with the k-th size; None where its geometry or the limits do not allow it."""
         change = dimension.change(dimension.size(k))
         if base is not None:
@@ -227,12 +233,16 @@ class _Search:
         if variant is None or not self.trial.is_stiff(variant[1]):
             return None
         numbers = variant[1]
-        return _Point(change, numbers, math.log(abs(numbers["squirt"]) / self.target))
+        return _ChangedShaft(change, numbers, math.log(abs(numbers["squirt"]) / self.target))
 
 
 def _last_before(
-    at: Callable[[int], _Point | None], low: int, point: _Point, stop: int, is_before: Callable[[_Point], bool]
-) -> tuple[int, _Point]:
+    at: Callable[[int], _ChangedShaft | None],
+    low: int,
+    point: _ChangedShaft,
+    stop: int,
+    is_before: Callable[[_ChangedShaft], bool],
+) -> tuple[int, _ChangedShaft]:
     """The last size from one, that of a point, that is allowed and before something, and its point, by bisection."""
     while stop - low > 1:
         middle = (low + stop) // 2
@@ -244,12 +254,12 @@ def _last_before(
     return low, point
 
 
-def _is_on_side(end: _Point, point: _Point) -> bool:
+def _is_on_side(end: _ChangedShaft, point: _ChangedShaft) -> bool:
     """Whether a shaft is not yet on the side of the other cue's squirt where the end is."""
     return end.gap * point.gap < 0
 
 
-def _best_of_each_kind(ends: Iterable[tuple[_Point, Dimension]]) -> list[Dimension]:
+def _best_of_each_kind(ends: Iterable[tuple[_ChangedShaft, Dimension]]) -> list[Dimension]:
     """The dimension with the nearest end of all that set the same parameters; ends: the nearest first."""
     best = dict[tuple[str, ...], Dimension]()
     for point, dimension in ends:

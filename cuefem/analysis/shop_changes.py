@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, NamedTuple
 
 from cuefem.cue import Cue
@@ -131,7 +132,7 @@ class Dimension(NamedTuple):
     step: float
 
     @property
-    def count(self) -> int:
+    def steps(self) -> int:
         """The number of sizes after the first one."""
         return round(abs(self.last - self.first) / self.step)
 
@@ -162,7 +163,7 @@ def _bore_sizes(cue: Cue, values: Record) -> Iterator[Dimension]:
     first = 1 if depth > 0 else 0
     for k in range(first, first + DRILLS):
         width = shop.drill_step * round(own / shop.drill_step + k)
-        yield Dimension(lambda new, width=width: _bore(width, new), max(depth, MM), deepest, MM)
+        yield Dimension(partial(_bore, width), max(depth, MM), deepest, MM)
 
 
 def _ferrule_sizes(values: Record) -> Iterator[Dimension]:

@@ -50,11 +50,17 @@ class TableStroke(NamedTuple):
         m/s.
     spin : float
         rad/s.
+    miscue : bool
+        Whether the offset is beyond the miscue limit; the ball leaves as at the limit.
+    clamped : bool
+        Whether the speed is beyond the table's; the ratios are those of its first or last row.
     """
 
     squirt: float
     ball_speed: float
     spin: float
+    miscue: bool = False
+    clamped: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,18 +73,17 @@ class Grid:
     ratios: Array
 
     def stroke(self, speed: float, offset: float, radius: float) -> TableStroke:
-        """Interpolate a stroke; ValueError beyond the speeds or the miscue limit."""
-        low, high = self.speed[[0, -1]]
-        if not low <= speed <= high:
-            raise ValueError(f"strike_table speed must be in [{low:.4g}, {high:.4g}] m/s, the table's; got {speed}")
-        limit = self.limit_at(speed)
-        if not abs(offset) <= limit:
-            problem = (
-                f"must be in [-{limit:.4f}, {limit:.4f}] b/R at {speed:g} m/s, beyond which the stroke is a miscue"
-            )
-            raise ValueError(f"strike_table offset {problem}; got {offset}")
-        squirt, ball_speed, spin = self.ratios_at(speed, abs(offset) / limit)
-        return TableStroke(offset * squirt, speed * ball_speed, offset * spin * speed / radius)
+        """Interpolate a stroke; beyond the speeds or the miscue limit at the nearest of them."""
+        if not 0 <= speed < math.inf:
+            raise ValueError(f"strike_table speed must be in [0, inf) m/s; got {speed}")
+        if not math.isfinite(offset):
+            raise ValueError(f"strike_table offset must be a finite b/R; got {offset}")
+        row = float(np.clip(speed, *self.speed[[0, -1]]))
+        limit = self.limit_at(row)
+        held = float(np.clip(offset, -limit, limit))
+        squirt, ball_speed, spin = self.ratios_at(row, abs(held) / limit)
+        velocities = speed * ball_speed, held * spin * speed / radius
+        return TableStroke(held * squirt, *velocities, miscue=held != offset, clamped=row != speed)
 
     def limit_at(self, speed: float) -> float:
         """The miscue limit at a speed."""

@@ -9,6 +9,7 @@ interpolates linearly in the share and in the logarithm of the speed.
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -27,6 +28,7 @@ from cuefem.analysis.strike_grid import (
 from cuefem.cue import Array
 from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.quantity.display_units import with_unit
+from cuefem.results.closed_forms import alciatore_a31_mass_ratio
 from cuefem.results.progress import Progress
 from cuefem.results.quantities import RESULTS, format_value
 from cuefem.results.records import Record, Table
@@ -39,6 +41,7 @@ if TYPE_CHECKING:
     from cuefem.measurements.calibration import Calibration
     from cuefem.show.charts import Chart
 
+POOLTOOL_INERTIA = 0.4  # of every ball in pooltool 0.6.0
 SPEEDS = (0.2, 10.0)  # m/s: from a soft stroke to a break at 22 mph
 SIGNS = (
     "offset b/R is positive to the right of the ball's centre, seen along the cue; squirt is then positive and turns "
@@ -46,10 +49,18 @@ SIGNS = (
     "spin change their sign with the offset"
 )
 READING = (
-    "find the rows below and above the cue speed, and the position t of its logarithm between theirs; interpolate "
-    "limit, the largest b/R without a miscue, by t; u = |offset| / limit, a miscue above 1; interpolate the ratios "
-    "linearly by u between shares and by t between rows; squirt = offset * squirt_over_offset, ball speed = speed * "
-    "speed_ratio, spin = offset * spin_over_offset * speed / ball radius"
+    "find the rows below and above the cue speed, and the position t of its logarithm between theirs, 0 or 1 for a "
+    "speed beyond the first or last row; interpolate limit, the largest b/R without a miscue, by t; u = |offset| / "
+    "limit, a miscue above 1, which leaves as at 1; interpolate the ratios linearly by u between shares and by t "
+    "between rows; squirt = offset * squirt_over_offset, ball speed = speed * speed_ratio, spin = offset * "
+    "spin_over_offset * speed / ball radius"
+)
+FOLLOW = (
+    "with the tip a to the right and b above the ball's centre (follow; draw for b < 0), in parts of its radius, read "
+    "the ratios at offset = sqrt(a^2 + b^2), in the plane of cue and contact: squirt = a * squirt_over_offset, ball "
+    "speed = speed * speed_ratio, spin about the vertical = a * spin_over_offset * speed / ball radius, and spin "
+    "forward, about the horizontal axis across the cue, = b * spin_over_offset * speed / ball radius. The vertical "
+    "part of squirt, b * squirt_over_offset, is left out: the ball stays on the cloth. A raised cue has no table"
 )
 UNITS = {
     "mass": "kg",
@@ -108,15 +119,36 @@ class StrikeTable(Rows, Analysis):
     example: Record
     calibration: str = ""
 
+    @property
+    def pooltool(self) -> Record:
+        """The parameters of the cue and the ball in pooltool, whose own strike has no table.
+
+        "end_mass", if there is one, is that with which its formula, [A.31] with an inertia factor of
+        `POOLTOOL_INERTIA`, gives the squirt of the example. Dimensions that the cue does not have are left to its
+        defaults.
+        """
+        ball, cue = self.scene.ball, self.scene.cue
+        squirt = self.example["table"]["squirt"]
+        specs = {"M": self.scene.axial_mass}
+        with suppress(ValueError):  # no end mass has such a squirt
+            ratio = alciatore_a31_mass_ratio(self.example["offset"], squirt, inertia=POOLTOOL_INERTIA)
+            specs["end_mass"] = float(ball.mass / ratio)
+        if self.scene.dome_radius:
+            specs["tip_radius"] = self.scene.dome_radius
+        if cue.segments:
+            specs["shaft_radius_at_tip"] = cue.segments[0].tip_diameter / 2
+        return {"CueSpecs": specs, "BallParams": {"m": ball.mass, "R": ball.radius}}
+
     def at(self, speed: float, offset: float) -> TableStroke:
         """Interpolate a stroke, as a game does.
 
         Parameters
         ----------
         speed : float
-            Cue speed, m/s, within the table's.
+            Cue speed, m/s. Beyond the speeds of the table its first or last row is read, and ``clamped`` is true.
         offset : float
-            Tip offset b/R, within the miscue limit at that speed.
+            Tip offset b/R. Beyond the miscue limit at that speed the ball leaves as at the limit, and ``miscue`` is
+            true.
 
         Returns
         -------
@@ -125,9 +157,15 @@ class StrikeTable(Rows, Analysis):
         Raises
         ------
         ValueError
-            Beyond the speeds of the table, or beyond the miscue limit.
+            If the speed is negative, or a number is not finite.
         """
         return self.grid().stroke(float(speed), float(offset), self.scene.ball.radius)
+
+    def headline(self) -> str:
+        """Its size, and its error."""
+        size = f"{len(self.share)} shares of the miscue limit by {len(self.speed)} cue speeds"
+        within = f"{100 * self.error['within']:.1f} % of strokes within {100 * TOLERANCE:g} %"
+        return f"{size}, {within}"
 
     def grid(self) -> Grid:
         """The table as arrays."""
@@ -137,9 +175,10 @@ class StrikeTable(Rows, Analysis):
     def to_dict(self) -> Record:
         """The record of the file: the table, with units, signs and how to read it."""
         ball = {"mass": self.scene.ball.mass, "radius": self.scene.ball.radius}
-        about = {"reading": READING, "signs": SIGNS, "miscue": MISCUE_DEFINITION}
+        about = {"reading": READING, "signs": SIGNS, "follow_and_draw": FOLLOW, "miscue": MISCUE_DEFINITION}
         values = {name: value for name, value in self.values().items() if name != "calibration" or value}
-        return about | {"ball": ball, **values, "units": UNITS, "scene": scene_record(self.scene)}
+        others = {"pooltool": self.pooltool, "units": UNITS, "scene": scene_record(self.scene)}
+        return about | {"ball": ball, **values} | others
 
     def frame_rows(self) -> list[Record]:
         """A row for each speed and share of the miscue limit."""
@@ -290,6 +329,6 @@ def _example(strikes: Strikes, grid: Grid) -> Record:
     speed = strikes.speed(0.5)
     offset = round(grid.limit_at(speed) / 2, 3)
     outcome = strikes.strike(speed, offset)
-    own = TableStroke(float(outcome.squirt), float(outcome.ball_speed), float(outcome.spin))
-    read = grid.stroke(speed, offset, strikes.scene.ball.radius)
-    return {"speed": speed, "offset": offset, "table": read._asdict(), "strike": own._asdict()}
+    own = {name: float(getattr(outcome, name)) for name in _SHOWN}
+    read = grid.stroke(speed, offset, strikes.scene.ball.radius)._asdict()
+    return {"speed": speed, "offset": offset, "table": {name: read[name] for name in own}, "strike": own}

@@ -156,7 +156,7 @@ def _list(files: Sequence[Path], options: Mapping[str, str | None], output: Path
     if output is not None and output.suffix.lower() == ".toml":
         raise InputError(output, "--output", "a list is written as .html, .json or .csv")
     scenes, unread = {}, {}
-    for name, file in zip(_names(files), files, strict=True):
+    for name, file in zip(file_names(files), files, strict=True):
         try:
             scenes[name] = open_request(file, options).scene
         except (ValueError, OSError) as error:
@@ -210,7 +210,7 @@ def _side_by_side(
 ) -> None:
     """Print or write the comparison of cues."""
     first, files = requests[0], [request.file for request in requests]
-    names = _names(files)
+    names = file_names(files)
     requests, notes = _distributed(requests, names)
     asked = dict(zip(names, requests, strict=True))
     scenes = {name: request.scene for name, request in asked.items()}
@@ -296,7 +296,7 @@ def _assumptions(asked: Mapping[str, Request]) -> list[Assumption]:
     return [*shared, *others]
 
 
-def _names(files: Sequence[Path]) -> list[str]:
+def file_names(files: Sequence[Path]) -> list[str]:
     """The files' names, without folder and extension if they are distinct."""
     for i, file in enumerate(files):
         if file.resolve() in [other.resolve() for other in files[:i]]:

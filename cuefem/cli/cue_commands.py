@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
 import cuefem as cf
 from cuefem.analysis.reduction import PAPER_CUE_ENDS, PAPER_TONE, cue_end_quantity
 from cuefem.analysis.shop_changes import PARTS, Limits
-from cuefem.cli.compare_command import open_request
+from cuefem.analysis.strike_table import SPEEDS, StrikeTable
+from cuefem.cli.compare_command import file_names, open_request
 from cuefem.cli.output import Command, print_json
 from cuefem.cli.progress import with_progress_bar
 from cuefem.cli.request import Request
 from cuefem.cli.scene_command import (
+    Presentation,
     analysis_command,
     calibration_option,
     check_overwrite,
@@ -29,10 +33,10 @@ from cuefem.files.errors import as_input_error
 from cuefem.parameters.parts import main_material
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.quantity.fields import Quantity
+from cuefem.scene import Scene
 
 if TYPE_CHECKING:
     from cuefem.analysis.design_changes import DesignChanges
-    from cuefem.analysis.strike_table import StrikeTable
     from cuefem.measurements.calibration import Calibration
     from cuefem.show.analysis import Analysis
 
@@ -216,12 +220,13 @@ def end_mass(request: Request, near: float, cue_ends: tuple[str, ...]) -> Analys
     return cf.end_masses(request.scene, with_reduction=True, near=near, cue_ends=compared)
 
 
-@analysis_command()
+@analysis_command(formats=(".html", ".json", ""))
+@click.argument("others", metavar="[FILE ...]", nargs=-1, type=CueFile())
 @click.option(
     "--format",
     "target",
-    type=click.Choice(["pooltool", "table"]),
-    help="Export for games: the end mass for pooltool, or a table over cue speed and offset; -o FILE.json writes it.",
+    type=click.Choice(["table"]),
+    help="Export for games: a table over cue speed and offset, of each FILE; -o FILE.json, or FOLDER, writes it.",
 )
 @click.option(
     "--speeds",
@@ -232,45 +237,76 @@ def end_mass(request: Request, near: float, cue_ends: tuple[str, ...]) -> Analys
 @calibration_option
 def strike(
     request: Request,
+    others: tuple[Path, ...],
     target: str | None,
     speeds: tuple[str, str] | None,
     output: Path | None,
     calibration: Calibration | None,
-) -> Analysis:
+    as_json: bool,
+) -> Analysis | None:
     """Compute squirt, ball speed, spin and pivot length of one stroke, by the coupled strike and by simpler models.
 
     The numerical error target is the rtol of the file's [accuracy] table, if it has one.
     """
-    written = str(output) if output is not None and output.suffix.lower() == ".json" else ""
-    if speeds is not None and target != "table":
-        raise InputError(request.file, "--speeds", "applies to --format table")
-    if calibration is not None and target != "table":
-        raise InputError(request.file, "--calibration", "applies to --format table")
+    folder = output if output is not None and not output.suffix else None
     if target is None:
+        for name, value in (("--speeds", speeds), ("--calibration", calibration), ("FILE ...", others or folder)):
+            if value:
+                raise InputError(request.file, name, "applies to --format table")
         return cf.strike_models(request.scene, load_accuracy(request.file))
-    if target == "table":
-        return _strike_table(request, speeds, written, calibration)
-    answer = cf.pooltool_export(request.scene, request.file.stem, written)
-    if written:
-        request.hints.extend(answer.tables())
-    return answer
+    tables = _TableOptions(_speeds(request, speeds), calibration)
+    if folder is not None:
+        _write_tables(request, others, tables, folder, as_json=as_json)
+        return None
+    if others:
+        raise InputError(request.file, "FILE ...", f"{len(others) + 1} tables need -o FOLDER")
+    if output is None or output.suffix.lower() != ".json":
+        request.hints.append("-o table.json writes the whole table, with units, signs and an example")
+    return tables.of(request.scene)
 
 
-def _strike_table(
-    request: Request, speeds: tuple[str, str] | None, written: str, calibration: Calibration | None
-) -> StrikeTable:
-    """The table for games, over the speeds of the option."""
+class _TableOptions(NamedTuple):
+    """Speeds and calibration of tables for games."""
+
+    speeds: tuple[float, float]
+    calibration: Calibration | None
+
+    def of(self, scene: Scene) -> StrikeTable:
+        """The table of a scene."""
+        return cf.strike_table(scene, self.speeds, calibration=self.calibration, progress=with_progress_bar)
+
+
+def _speeds(request: Request, texts: tuple[str, str] | None) -> tuple[float, float]:
+    """The lowest and the highest speed of a table."""
     for name in ("speed", "offset"):
         if name in request.given:
             raise InputError(request.file, f"--{name}", "does not apply to --format table, which has all; use --speeds")
-    limits = {}
-    if speeds is not None:
-        low, high = (option_value(request.file, "--speeds", text, Quantity("m/s", "(0, inf)")) for text in speeds)
-        limits["speeds"] = (low, high)
-    answer = cf.strike_table(request.scene, **limits, calibration=calibration, progress=with_progress_bar)
-    if not written:
-        request.hints.append("-o table.json writes the whole table, with units, signs and an example")
-    return answer
+    if texts is None:
+        return SPEEDS
+    low, high = (option_value(request.file, "--speeds", text, Quantity("m/s", "(0, inf)")) for text in texts)
+    return low, high
+
+
+def _write_tables(
+    request: Request, others: Sequence[Path], tables: _TableOptions, folder: Path, *, as_json: bool
+) -> None:
+    """Write the table of each file into a folder, as soon as it is made."""
+    files = [request.file, *others]
+    requests = [request, *(open_request(file, request.given) for file in others)]
+    scenes = [each.scene for each in requests]  # all are read before the first table
+    folder.mkdir(exist_ok=True)
+    written = []
+    for name, own, scene in zip(file_names(files), requests, scenes, strict=True):
+        path = folder / f"{name}.json"
+        with own.errors():
+            made = tables.of(scene)
+        about = {"file": typed_name(own.file)}
+        Presentation(made, name, about, partial(getattr, own, "assumptions")).write(path)
+        written.append({"file": typed_name(own.file), "output_file": str(path)})
+        if not as_json:
+            click.echo(f"wrote {path}: {made.headline()}")
+    if as_json:
+        print_json({"tables": written})
 
 
 @analysis_command()

@@ -86,6 +86,7 @@ FORMATS = {
     ".parquet": ".parquet (table, needs pyarrow)",
     ".json": ".json",
     ".toml": ".toml (drawing, scene or calibration)",
+    "": "a FOLDER of tables",
 }
 
 
@@ -100,12 +101,14 @@ class Output(click.Path):
         """The path, if the command writes its extension."""
         path = Path(os.fsdecode(super().convert(value, param, ctx)))
         if path.suffix.lower() not in self.extensions:
-            wanted = " or ".join(self.extensions)
+            wanted = " or ".join(filter(None, self.extensions))
             more = "; --store names the file of stored designs" if path.suffix.lower() == ".sqlite" else ""
             more = "; a page (.html) has the figures" if path.suffix.lower() in (".png", ".svg", ".pdf") else more
             raise InputError(path, "--output", f"must end in {wanted}; got {path.suffix!r}{more}")
+        if not path.suffix and path.exists() and not path.is_dir():
+            raise InputError(path, "--output", "must be a folder; a file of this name exists")
         if path.suffix.lower() != ".toml":  # a command that writes a drawing checks it itself
-            check_writable(path)
+            check_writable(path / "table.json" if path.is_dir() and not path.suffix else path)
         return path
 
 

@@ -43,17 +43,6 @@ def alciatore_a31_mass_ratio(offset: Any, squirt: Any, *, inertia: Any = 0.4) ->
     return ratio[()]
 
 
-def alciatore_a30(offset: Any, *, speed: Any, mass_ratio: Any, inertia: Any = 0.4) -> tuple[Any, Any]:
-    """[A.30]: speed of the ball, m/s, and R times its spin, m/s, struck by a point of a rigid cue without any loss.
-
-    speed: V of the cue, m/s. mass_ratio: mass of ball over cue, M/m. Momentum M v and angular momentum M v b of the
-    ball, and energy m V^2 = m (V - M v/m)^2 + M v^2 + (M v b)^2/(nu M R^2), give
-    v = 2 V/(1 + M/m + (b/R)^2/nu) and R spin = v (b/R)/nu.
-    """
-    ball_speed = 2 * speed / (1 + mass_ratio + offset**2 / inertia)
-    return ball_speed, ball_speed * offset / inertia
-
-
 def natural_pivot_length(offset: Any, squirt: Any, *, radius: Any, dome_radius: Any = 0.0) -> Any:
     """[B.1]: distance from the end of the tip to the bridge about which pivoting the cue cancels squirt, m.
 

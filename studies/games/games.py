@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 
 import cuefem as cf
-from cuefem.analysis.simulator_export import DEFAULT_END_MASS
 from cuefem.analysis.strike_grid import FIELDS, Strikes, within_tolerance
 from cuefem.analysis.strike_table import StrikeTable
 from cuefem.results.closed_forms import alciatore_a31
@@ -25,6 +24,7 @@ from studies.strokes import at_offset, cue, full_model
 
 NAMES = {"pool_maple": "plain maple", "pool_hollow": "low deflection, bored"}
 STROKES = ((0.1, 2.0), (0.3, 0.5), (0.3, 2.0), (0.3, 7.0), (0.5, 0.5), (0.5, 2.0), (0.5, 7.0))  # b/R, m/s
+DEFAULT_END_MASS = 0.170097 / 30  # kg, of pooltool's cue
 RANDOM = 2000  # strokes
 SEED = 1  # other strokes than those that the table is refined by
 
@@ -105,9 +105,12 @@ def text() -> str:
         f"default end mass of {1e3 * DEFAULT_END_MASS:.2f} g, and by how much its squirt, speed and spin are larger:",
         table(["b/R", "m/s", "squirt, °", "pooltool, °", "squirt, %", "ball speed, %", "spin, %"], rows),
         "![Squirt and ball speed of the coupled strike and of pooltool](games.svg)",
-        "pooltool_model.py is a stick-ball collision for pooltool that reads the table; strike_table.js reads it in "
-        "JavaScript. pooltool's `a` is positive to the left, cuefem's offset to the right: angles and spin change "
-        "their signs. A stroke above the miscue limit leaves as at the limit, and `miscue` is set.",
+        "pooltool_model.py is a stick-ball collision for pooltool that reads the table; strike_table.mjs (a module) "
+        "and strike_table.js (a script) read it in JavaScript. pooltool's `a` is positive to the left, cuefem's offset "
+        "to the right: angles and spin change their signs. A stroke above the miscue limit leaves as at the limit, and "
+        "`miscue` is set; a softer or harder one than the table's reads its nearest row, and `clamped` is set. The "
+        "file's block `pooltool` has `CueSpecs` and `BallParams`: with its end mass pooltool's own strike has the "
+        "squirt of the file's example.",
         "pooltool_model.py needs pooltool 0.6.0. pip chooses 0.3.3, since 0.6.0 pins a build of panda3d that PyPI has "
         "not; install it without its pins, then what it imports: `pip install --no-deps pooltool-billiards==0.6.0`, "
         "then `pip install scipy attrs 'rich<15' numba numpy-quaternion panda3d panda3d-gltf panda3d-simplepbr pillow "

@@ -4,10 +4,11 @@
     resolver = attrs.evolve(Resolver.default(), stick_ball=StrikeTableCollision.load("table.json"))
     pt.simulate(shot, engine=PhysicsEngine(resolver=resolver), inplace=True)
 
-`cuefem strike FILE --format table -o table.json` writes the table. pooltool's ``a`` and ``b`` are b/R of the contact to
-the left and up. The table holds strokes in one plane, so an offset in any direction reads the row of its distance from
-the centre, in the plane through the cue and the contact; the vertical part of squirt is left out, as pooltool leaves
-out the ball's vertical velocity, and a raised cue only turns the stroke. The scale is that of the ball in pooltool.
+`cuefem strike FILE --format table -o table.json` writes the table, and in its block "pooltool" the parameters of cue
+and ball, `CueSpecs(**table["pooltool"]["CueSpecs"])`. pooltool's ``a`` and ``b`` are b/R of the contact to the left and
+up. The table holds strokes in one plane, so an offset in any direction reads the row of its distance from the centre,
+in the plane through the cue and the contact; the vertical part of squirt is left out, as pooltool leaves out the ball's
+vertical velocity, and a raised cue only turns the stroke. The scale is that of the ball in pooltool.
 """
 
 from __future__ import annotations
@@ -37,10 +38,9 @@ except ImportError as error:
 
 
 def read(table: dict[str, Any], speed: float, offset: float) -> dict[str, float]:
-    """The ratios of a stroke and its share of the miscue limit; beyond the limit the ratios at it."""
+    """The ratios of a stroke and its share of the miscue limit; beyond the limit or the speeds those at the nearest."""
     rows = table["speed"]
-    if not rows[0] <= speed <= rows[-1]:
-        raise ValueError(f"cue speed must be in [{rows[0]:g}, {rows[-1]:g}] m/s, the strike table's; got {speed:g}")
+    speed = min(max(speed, rows[0]), rows[-1])
     j = min(max(int(np.searchsorted(rows, speed)) - 1, 0), len(rows) - 2)
     t = math.log(speed / rows[j]) / math.log(rows[j + 1] / rows[j])
     share = abs(offset) / ((1 - t) * table["limit"][j] + t * table["limit"][j + 1])
@@ -56,11 +56,12 @@ class StrikeTableCollision(CoreStickBallCollision):
     """The strike of a cue by its table.
 
     table: the contents of the JSON file. miscue: whether the last stroke was beyond the miscue limit; the ball then
-    leaves as at the limit.
+    leaves as at the limit. clamped: whether its speed was beyond the table's, whose nearest row was read.
     """
 
     table: dict[str, Any] = attrs.field(factory=dict, repr=False)
     miscue: bool = False
+    clamped: bool = False
     model: StickBallModel = attrs.field(default=StickBallModel.INSTANTANEOUS_POINT, init=False, repr=False)
 
     @classmethod
@@ -70,9 +71,11 @@ class StrikeTableCollision(CoreStickBallCollision):
 
     def solve(self, cue: Any, ball: Any) -> tuple[Any, Any]:
         """Velocity and spin of the ball after the stroke."""
-        a, b, speed = float(cue.a), float(cue.b), float(cue.V0)
-        ratios = read(self.table, speed, math.hypot(a, b))
+        speed = float(cue.V0)
+        ratios = read(self.table, speed, math.hypot(cue.a, cue.b))
         self.miscue = ratios["share"] > 1
+        self.clamped = not self.table["speed"][0] <= speed <= self.table["speed"][-1]
+        a, b = (float(offset) / max(ratios["share"], 1.0) for offset in (cue.a, cue.b))
         elevation, turn = math.radians(cue.theta), math.radians(cue.phi) - math.pi / 2
         squirt = a * ratios["squirt_over_offset"]  # to the right of a stroke on the left
         forward = np.array([0.0, ratios["speed_ratio"] * speed * math.cos(elevation), 0.0])

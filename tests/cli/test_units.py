@@ -44,7 +44,6 @@ SLOW = [
     ["compare", "players maple"],
     ["compare", "predator z2", "--estimate"],
     ["check", HOLLOW],
-    ["strike", HOLLOW, "--format", "pooltool"],
 ]
 PAGES = [
     ["report", "plain maple"],

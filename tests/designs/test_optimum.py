@@ -244,6 +244,7 @@ def test_front_of_a_sweep_is_written_alone(tmp_path: Path) -> None:
         one.save(tmp_path / "none.csv", front=True)
 
 
+@pytest.mark.heavy
 def test_target_is_reached_by_the_smallest_change(tmp_path: Path) -> None:
     """The change is along the gradient of the response, and no design of a grid beyond the target is nearer."""
     target = OPTIMUM.replace('minimize = "squirt_slope"', 'response = "shaft_mass"\ntarget = "95 g"')
@@ -252,7 +253,7 @@ def test_target_is_reached_by_the_smallest_change(tmp_path: Path) -> None:
     best = cf.study(problem).optimum
     assert best.start is not None
     assert best.responses["shaft_mass"] == pytest.approx(0.095, rel=1e-6)
-    shares = np.array([[i, k] for i in np.linspace(0, 1, 21) for k in np.linspace(0, 1, 21)])
+    shares = np.array([[i, k] for i in np.linspace(0, 1, 11) for k in np.linspace(0, 1, 11)])
     values = problem.evaluate(problem.points(shares)).values
     start = best.start.responses["shaft_mass"]
     is_beyond = (values[:, 0] - 0.095) * (start - 0.095) <= 0

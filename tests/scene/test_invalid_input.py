@@ -15,7 +15,7 @@ CUE = cf.Cue((WOOD,), body_mass=0.43)
 PUBLIC = {name: getattr(cf, name) for name in cf.__all__ if inspect.isfunction(getattr(cf, name))}
 OF_SCENE = [name for name, call in PUBLIC.items() if [*inspect.signature(call).parameters][:1] == ["scene"]]
 OTHERS = {"identify_tip": (1e-3, 0.7), "motion": ([0.0],), "save_motion": ("folder",), "with_parameters": ({},)}
-OTHERS |= {"pooltool_export": ("a cue",)}
+OTHERS |= {"plays_like": (CUE,)}
 CALLS: dict[str, Callable[[], object]] = {
     "game of croquet": lambda: cf.usual_scene(CUE, "croquet"),
     "tip for golf": lambda: default_tip(CUE, "golf"),

@@ -21,7 +21,6 @@ ANSWERS: dict[str, Callable[[cf.Scene], Answer]] = {
     "strike_models": cf.strike_models,
     "contact_history": cf.contact_history,
     "cue_numbers": cf.cue_numbers,
-    "pooltool_export": lambda scene: cf.pooltool_export(scene, "a cue"),
     "parts": lambda scene: cf.parts(),
     "report": cf.report,
     "study": lambda scene: cf.study(
@@ -34,6 +33,7 @@ SLOW: dict[str, Callable[[cf.Scene], Answer]] = {
     "compare folder": lambda scene: cf.compare(KIM.parents[1] / "measured" / "stinger"),
     "estimate": lambda scene: cf.estimate(KIM.parents[1] / "measured" / "stinger"),
     "design_changes": cf.design_changes,
+    "plays_like": lambda scene: cf.plays_like(scene, cf.with_parameters(scene, {"tip diameter": 0.0115})),
     "effect_sensitivity": cf.effect_sensitivity,
     "convergence_study": lambda scene: cf.convergence_study(scene, max_modes=12),
     "model_error": cf.model_error,
@@ -52,7 +52,7 @@ def test_answer_has_short_repr_strict_json_and_frame(name: str) -> None:
     record = json.loads(json.dumps(answer.to_dict(), allow_nan=False))
     assert record.keys() == answer.to_dict().keys()
     if not isinstance(answer, Rows):
-        assert name in ("verdict", "report", "pooltool_export", "study")
+        assert name in ("verdict", "report", "study")
         return
     frame = answer.to_frame()
     assert len(frame) > 1
