@@ -93,17 +93,6 @@ class LeatherLaw:
     slips_in_parts: ClassVar[bool] = True
     is_rigid: ClassVar[bool] = False
 
-    @classmethod
-    def fit(cls, depth: Array, force: Array, shear: Array, restitution: float, surface: float = 1.0) -> LeatherLaw:
-        """The law through computed curves, (n,), ascending, without zero, by least squares of relative differences.
-
-        depth, force: of a central impact, m and N. shear: tangential stiffness of the patch at that depth, N/m.
-        surface: the surface restitution.
-        """
-        root = np.sqrt(depth)
-        terms = _series(root, force, lowest=3), _series(root, root / shear, lowest=0)
-        return cls(*terms, restitution, float(depth[-1]), surface)
-
     @cached_property
     def _force(self) -> Polynomial:
         """F in y, the root of the virtual indentation."""
@@ -154,8 +143,8 @@ class LeatherLaw:
         )
 
 
-def _series(y: Array, values: Array, *, lowest: int) -> tuple[float, ...]:
-    """Coefficients of y^lowest and up by least squares of relative differences."""
+def series_terms(y: Array, values: Array, *, lowest: int) -> tuple[float, ...]:
+    """Coefficients of y^lowest and up, through values at ascending y > 0, by least squares of relative differences."""
     scale = float(y[-1])
     powers = lowest + np.arange(min(TERMS, len(y)))
     rows = (y[:, None] / scale) ** powers / values[:, None]

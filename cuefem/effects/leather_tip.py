@@ -16,7 +16,7 @@ from cuefem.cue.materials import LEATHER_CONSTANTS
 from cuefem.effects.contact_terms import ContactTerms
 from cuefem.effects.cue_effects import PointMass
 from cuefem.effects.effect import CueEffect, Effect
-from cuefem.effects.force_law import LeatherLaw
+from cuefem.effects.force_law import LeatherLaw, series_terms
 from cuefem.quantity.display_units import span_text, with_unit
 from cuefem.quantity.fields import DIAMETER, OutOfBounds, Quantity, check_fields, check_kind
 from cuefem.solid.tip_cache import cached_table, read_table
@@ -485,19 +485,20 @@ class LeatherTip(CueEffect):
 
 
 @lru_cache(maxsize=64)
-def _loading_curve(tip: LeatherTip, diameter: float, ball_radius: float) -> tuple[Array, Array, Array]:
-    """Patch radius, indentation and force of a central impact, without zero, shared by the laws of all offsets."""
-    patch, depth, force = tip.head_on(diameter, ball_radius)
-    for values in (patch, depth, force):
-        values.flags.writeable = False
-    return patch[1:], depth[1:], force[1:]
+def _loading_curve(tip: LeatherTip, diameter: float, ball_radius: float) -> tuple[Array, Array, tuple[float, ...]]:
+    """Patch radius and indentation of a central impact, without zero, and the force's series, shared by the laws of all
+    offsets."""
+    patch, depth, force = (values[1:] for values in tip.head_on(diameter, ball_radius))
+    return patch, depth, series_terms(np.sqrt(depth), force, lowest=3)
 
 
 @lru_cache(maxsize=256)
 def _law(tip: LeatherTip, diameter: float, ball_radius: float, offset: float, restitution: float) -> LeatherLaw:
     """The force-indentation law of a tip."""
-    patch, depth, force = _loading_curve(tip, diameter, ball_radius)
+    patch, depth, force_terms = _loading_curve(tip, diameter, ball_radius)
     radius, shear = tip.shear_stiffness(diameter, offset)
     # stiffness over radius is nearly straight
     stiffness = patch * np.interp(patch, radius[1:], shear[1:] / radius[1:])
-    return LeatherLaw.fit(depth, force, stiffness, restitution, tip.surface_restitution)
+    root = np.sqrt(depth)
+    compliance_terms = series_terms(root, root / stiffness, lowest=0)
+    return LeatherLaw(force_terms, compliance_terms, restitution, float(depth[-1]), tip.surface_restitution)
