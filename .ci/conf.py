@@ -20,6 +20,7 @@ from sphinx.domains.python import PyObject
 
 import cuefem
 from cuefem.handbook import MAKERS, chapters
+from cuefem.handbook.page import SUBSCRIPT
 from cuefem.show.analysis import Answer
 
 ROOT = Path(__file__).parents[1]
@@ -110,6 +111,8 @@ CARD = """:::{{grid-item-card}} {question}
 PICTURE = """:img-top: /studies/{page}.svg
 :img-alt: figure of the study {page}
 """
+# Code in a line that begins with a name of the package: `cf.report(scene)`, `CueReport`.
+NAME = re.compile(r"(?<![`\[])`((?:cf\.(?=\w)|(?=[A-Z]))(\w+)(?:\([^`<\n]*\))?)`(?!`)")
 WORTH = """
 - **Change of squirt in the reference scenes:** {least} to {most} % ([effects](/studies/contact/effects.md)).
 """
@@ -257,13 +260,35 @@ def source_read(app: Sphinx, document: str, source: list[str]) -> None:
     if document == f"{HANDBOOK}/effects":
         text = with_worth(text)
     text = re.sub(r"\[([^\]]+)\]\([\w/]+/\)", r"`\1`", text)  # a folder is no page of the site
+    if document != REFERENCE:
+        text = NAME.sub(linked, text)
     source[0] = re.sub(r"```drawing\n(\w+)\n```", drawing, text)
+
+
+def linked(code: re.Match[str]) -> str:
+    """Code such as cf.report(scene) or CueReport as a link to the page of its public name."""
+    return f"{{py:obj}}`{code[1]} <cuefem.{code[2]}>`" if code[2] in cuefem.__all__ else code[0]
 
 
 def drawing(match: re.Match[str]) -> str:
     """A drawing of the handbook as part of the page: its colours are those of the page."""
     drawn = (ROOT / HANDBOOK / f"{match[1]}.svg").read_text(encoding="utf-8")
     return f"```{{raw}} html\n<figure class='drawing'>\n{drawn}</figure>\n```"
+
+
+def doctree_read(app: Sphinx, tree: nodes.document) -> None:
+    """Letters such as m_e with subscripts, as on the handbook's own page."""
+    for text in list(tree.findall(nodes.Text)):
+        if type(text.parent) in (nodes.paragraph, nodes.strong, nodes.emphasis):
+            text.parent.replace(text, with_subscripts(text))
+
+
+def with_subscripts(text: str) -> list[nodes.Node]:
+    """Nodes of a text: the pieces between symbols, and each symbol's letters and its subscript."""
+    pieces: list[nodes.Node] = []
+    for i, piece in enumerate(SUBSCRIPT.split(text)):
+        pieces.append(nodes.subscript(text=piece) if i % 3 == 2 else nodes.Text(piece))
+    return pieces
 
 
 def formula(display: str) -> tuple[Any, None]:
@@ -286,4 +311,5 @@ def setup(app: Sphinx) -> None:
     app.connect("autodoc-process-docstring", docstring_read, priority=400)  # before napoleon reads the sections
     app.connect("autodoc-process-signature", signature_read)
     app.connect("source-read", source_read)
+    app.connect("doctree-read", doctree_read)
     app.add_html_math_renderer("mathml", formula("inline"), formula("block"))

@@ -38,7 +38,7 @@ class Modes(EigenSolution):
         Mass-normalised rigid-body modes of zero frequency.
     system : System
         The assembled beam.
-    radiation, mix, spectrum, loads
+    radiation, mix, spectrum, loads : arrays and Spectrum
         The eigensolution behind the modes, of `cuefem/beam/eigensolver.py`.
     """
 

@@ -88,7 +88,7 @@ def page(opens_with: str = CHAPTERS[0]) -> str:
 
 def _scrolled(chapter: Chapter) -> str:
     """The start of a block that scrolls sideways where the window is narrow, also by keyboard."""
-    return f'<div class="scroll" role="region" tabindex="0" aria-label="Table in {escape(chapter.title)}">'
+    return f'<div class="scroll" role="group" tabindex="0" aria-label="Table in {escape(chapter.title)}">'
 
 
 def _text(_: object, tokens: Sequence[Token], index: int, *__: object) -> str:

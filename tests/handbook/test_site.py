@@ -1,4 +1,4 @@
-"""The documentation site: every public name is on it, and a gap or a broken link fails the build (bad input)."""
+"""The documentation site: names, formulas and pages; a gap or a broken link fails the build (bad input)."""
 
 import inspect
 import json
@@ -7,6 +7,7 @@ import subprocess
 import sys
 from dataclasses import fields, is_dataclass
 from importlib.util import module_from_spec, spec_from_file_location
+from itertools import product
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
@@ -15,12 +16,22 @@ from xml.etree.ElementTree import fromstring
 import pytest
 
 import cuefem
+from tests.helpers.designer_browser import BROWSER, empty_page, open_browser
 
 ROOT = Path(__file__).parents[2]
 CONFIGURATION = ROOT / ".ci" / "conf.py"
 FORMULAS = ROOT / ".ci" / "formulas.py"
 pytest.importorskip("sphinx", reason="the extra [docs] is not installed")
 pytest.importorskip("latex2mathml", reason="the extra [docs] is not installed")
+pytestmark = pytest.mark.heavy  # Sphinx takes seconds to import
+BUILT = ROOT / "site"  # by .ci/run, before the heavy tests
+PAGES = (
+    "index.html",
+    "studies/README.html",
+    "studies/notebooks/kims_chain.html",
+    "cuefem/handbook/beam.html",
+    "cuefem/handbook/api/cuefem.Verdict.html",
+)
 
 
 def module_of(path: Path) -> ModuleType:
@@ -47,15 +58,15 @@ def test_stored_formulas_are_those_of_chapters() -> None:
     assert [key for key in made if letters(stored[key]) != letters(made[key])] == []
 
 
+def test_symbols_of_site_have_subscripts(site: ModuleType) -> None:
+    pieces = site.with_subscripts("With m_e and R_1² of `two_balls`, ν_e.")
+    assert [piece.astext() for piece in pieces if piece.tagname == "subscript"] == ["e", "1", "e"]
+    assert "".join(piece.astext() for piece in pieces) == "With me and R1² of `two_balls`, νe."
+
+
 def letters(formula: dict[str, str]) -> str:
     """What a formula's MathML shows: its attributes differ between versions of latex2mathml."""
     return "".join(fromstring(formula["mathml"]).itertext())
-
-
-@pytest.mark.heavy
-def test_reference_lists_public_names(site: ModuleType) -> None:
-    listed = re.findall(r"^   (\w+)$", site.reference(), flags=re.MULTILINE)
-    assert sorted(listed) == sorted(cuefem.__all__)
 
 
 @pytest.mark.parametrize(
@@ -74,14 +85,14 @@ def test_reference_without_docstring_or_title_raises(
         site.reference()
 
 
-def test_names_of_readme_and_their_answers_are_in_reference() -> None:
+def test_reference_lists_public_names_and_what_readme_promises(site: ModuleType) -> None:
+    listed = re.findall(r"^   (\w+)$", site.reference(), flags=re.MULTILINE)
+    assert sorted(listed) == sorted(cuefem.__all__)
     texts = (ROOT / "README.md").read_text(encoding="utf-8") + (ROOT / ".ci/home.md").read_text(encoding="utf-8")
     promised = set(re.findall(r"\bcf\.(\w+)", texts))
-    functions = [getattr(cuefem, name) for name in promised if inspect.isfunction(getattr(cuefem, name, None))]
-    answers = {
-        word for each in functions for word in re.findall(r"[A-Z]\w+", str(inspect.signature(each).return_annotation))
-    }
-    assert promised | answers - {"Any", "None"} <= set(cuefem.__all__)
+    functions = [value for name in promised if inspect.isfunction(value := getattr(cuefem, name, None))]
+    returned = " ".join(str(inspect.signature(each).return_annotation) for each in functions)
+    assert promised | set(re.findall(r"[A-Z]\w+", returned)) - {"Any", "None"} <= set(listed)
 
 
 def test_pages_of_classes_document_every_field() -> None:
@@ -101,7 +112,6 @@ def documented(kind: type) -> set[str]:
     return {name for line in listed for name in line.split(", ")}
 
 
-@pytest.mark.heavy
 @pytest.mark.parametrize(("link", "status"), [("#contributing", 0), ("missing.md", 1), ("#no-such-section", 1)])
 def test_site_with_broken_link_fails(tmp_path: Path, link: str, status: int) -> None:
     (tmp_path / "CONTRIBUTING.md").write_text(f"# Contributing\n\n[A link]({link}).\n", encoding="utf-8")
@@ -112,3 +122,19 @@ def test_site_with_broken_link_fails(tmp_path: Path, link: str, status: int) -> 
     )
     assert built.returncode == status
     assert (link.lstrip("#") in built.stderr) == bool(status)
+
+
+@pytest.mark.skipif(not BUILT.exists(), reason="needs the site: python -m sphinx -c .ci . site")
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium")
+def test_pages_of_site_are_accessible_and_not_cropped() -> None:
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="needs axe-playwright-python")
+    found = {}
+    with open_browser() as browser, empty_page(browser, BUILT.as_uri()) as page:
+        for name, (width, scheme) in product(PAGES, ((1280, "light"), (390, "dark"))):
+            page.set_viewport_size({"width": width, "height": 900})
+            page.emulate_media(color_scheme=scheme)
+            page.goto((BUILT / name).as_uri())
+            rules = [each["id"] for each in axe.Axe().run(page, options={"preload": False}).response["violations"]]
+            if rules or page.evaluate("document.documentElement.scrollWidth") > width:
+                found[name, width] = rules
+    assert found == {}
