@@ -39,10 +39,13 @@ class BilliardTable(NamedTuple):
     friction: float
 
 
+ONCE = ("law", "tip", "table", "window")  # what a contact has once: a second effect that sets it is rejected
+
+
 class ContactTerms:
     """Terms of the contact; each effect of a scene adds its own (`Effect.add_to_contact`), in any order.
 
-    Radii and compliances add; what a contact has once is set by effects of which a scene has one (`check_effects`).
+    Radii and compliances add; of `ONCE` each is set by one effect.
 
     tip_diameter: of the cue's end or of the leather tip on it, m; None for a lumped cue. law: of the force over the
     indentation, by default linear. tip: a whole tip, which replaces law, domes and compliances. turns: whether the

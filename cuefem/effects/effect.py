@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from cuefem.cue import POSITION_TOLERANCE, Array, Cue, LumpedCue
-from cuefem.effects.contact_terms import ContactTerms
+from cuefem.effects.contact_terms import ONCE, ContactTerms
 from cuefem.quantity.fields import OutOfBounds, Quantity, check_fields, check_kind
 
 if TYPE_CHECKING:
@@ -127,10 +127,20 @@ def acting_on_cue(effects: Iterable[Effect]) -> tuple[CueEffect, ...]:
 
 
 def terms_at_contact(effects: Iterable[Effect], tip_diameter: float | None = None) -> ContactTerms:
-    """The terms of all these effects together at the contact; tip_diameter: see `ContactTerms`."""
+    """The terms of all these effects together at the contact; tip_diameter: see `ContactTerms`.
+
+    ValueError if two of them set what a contact has once.
+    """
     terms = ContactTerms(tip_diameter)
-    for effect in effects:
+    for i, effect in enumerate(effects):
+        before = {name: getattr(terms, name) for name in ONCE}
         effect.add_to_contact(terms)
+        again = [name for name in ONCE if before[name] is not None and getattr(terms, name) is not before[name]]
+        if again:
+            raise ValueError(
+                f"effects[{i}] must be an effect that goes with those before it, one of which sets the contact's "
+                f"{again[0]}; got {type(effect).__name__}, which sets it again"
+            )
     return terms
 
 

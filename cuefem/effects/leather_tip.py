@@ -251,7 +251,7 @@ class LeatherTip(CueEffect):
         if terms.tip_diameter is not None:  # `check_effects` rejects a lumped cue
             terms.tip = self
             terms.tip_diameter = self.diameter_on(terms.tip_diameter)
-        terms.turns = self.rolling
+        terms.turns = terms.turns or self.rolling
 
     def check_diameter(self, diameter: float) -> None:
         """Check that the tip fits a shaft, and that its height is computable.

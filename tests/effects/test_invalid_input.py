@@ -5,6 +5,7 @@ from dataclasses import replace
 from math import inf
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 import pytest
 
@@ -36,6 +37,12 @@ def clamped_end_mass(drive: str) -> Callable[[], object]:
     return lambda: cf.end_mass(CLAMPED, drive)
 
 
+def two_windows() -> cf.Scene:
+    """A user's effect that sets a window, beside a second hit."""
+    with mock.patch.object(cf.TipDome, "add_to_contact", lambda _, terms: setattr(terms, "window", 4e-3)):
+        return with_effects(cf.SecondHit(), cf.TipDome(9.876e-3))()
+
+
 CALLS: dict[str, Callable[[], object]] = {  # one line for each `raise`
     "shear and elevation": with_effects(SHEAR, RAISED),
     "loss of 1.2": lambda: cf.strike(with_effects(LOSSY, LOSSY)()),
@@ -62,6 +69,7 @@ CALLS: dict[str, Callable[[], object]] = {  # one line for each `raise`
     "modes with a number": lambda: cf.modes(KIM, 3, effects=(3,)),
     "one effect": lambda: replace(kim_scene(), effects=SHEAR),
     "rolling of a text": lambda: replace(LEATHER, rolling="no"),
+    "two windows": two_windows,
     "effect of a text": with_effects(SHEAR, "TipDome"),
     **{f"end mass by {drive} of a clamped tip": clamped_end_mass(drive) for drive in ("stick", "velocity", "force")},
 }
