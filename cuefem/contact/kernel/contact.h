@@ -19,6 +19,10 @@
 
    Python fills an Input and a State and calls contact_steps, with StepTables of the length State.next_step,
    until the status is no longer RUNNING. Each step leaves a record, a Step.
+
+   Arguments stand in this order: in, t (constant: of the contact, of the step's length), s (what one step
+   leaves to the next), w (the step under way, written anew by each step). What a function does not change is
+   const.
  */
 #ifndef CUEFEM_CONTACT_H
 #define CUEFEM_CONTACT_H
@@ -97,16 +101,16 @@ typedef struct {
     const double *compliance_terms; /* tangential compliance: such a series over the root of d */
     double restitution, friction;   /* of the tip */
     double table_friction;
-    double stiffness, exponent;    /* power law F = stiffness d^exponent */
-    double indentation_limit;      /* largest indentation of the law, m */
-    double compliance;             /* of a spring patch, m/N */
-    double annuli_end;             /* indentation that the annuli divide, m */
-    double surface_restitution;    /* its square: recovered part of an annulus's strain energy */
-    double phi, dome, rim;         /* angle of the first touch, rad; radius of the dome, m; its end, rad */
-    double radius;                 /* of the ball, m */
-    double arm_t, arm_n;           /* moment arms of (t, n) about the end section at the first touch, m */
-    double step, unloading_step;   /* length of a step; of one while the tip unloads, s */
-    double max_time, window;       /* longest contact; time followed after the first separation, s */
+    double stiffness, exponent;  /* power law F = stiffness d^exponent */
+    double indentation_limit;    /* largest indentation of the law, m */
+    double compliance;           /* of a spring patch, m/N */
+    double annuli_end;           /* indentation that the annuli divide, m */
+    double surface_restitution;  /* its square: recovered part of an annulus's strain energy */
+    double phi, dome, rim;       /* angle of the first touch, rad; radius of the dome, m; its end, rad */
+    double radius;               /* of the ball, m */
+    double arm_t, arm_n;         /* moment arms of (t, n) about the end section at the first touch, m */
+    double step, unloading_step; /* length of a step; of one while the tip unloads, s */
+    double max_time, window;     /* longest contact; time followed after the first separation, s */
 } Input;
 
 /* What one step leaves to the next. Python fills the first four; the rest begins as zero. */
@@ -150,8 +154,6 @@ typedef struct {
     const double *radiating;                    /* modes that radiate, from their state and loads */
 } StepTables;
 
-typedef struct Contact Contact;
-
 /* Normal force of the tip at an indentation: force, N, and slope, N/m. virtual: where the loading curve has
    this force, m; scale: indentation per virtual indentation. */
 typedef struct {
@@ -169,24 +171,8 @@ typedef struct {
     double g[2], J[2][2];
 } Equations;
 
-/* A tip by its tangential compliance (patch_*.c). */
+/* The step under way, from its free motion to its forces and velocities. */
 typedef struct {
-    bool slips_in_parts;                     /* the patch itself limits its force to mu F_n */
-    void (*begin)(Contact *c);               /* what it keeps during the contact */
-    void (*stick)(Contact *c, Equations *e); /* row T of the equations of a sticking tip */
-    void (*update)(Contact *c);              /* the patch's state after a step in contact */
-    void (*release)(Contact *c);             /* loss of strain energy at separation */
-    int (*friction_state)(const Contact *c); /* of the step */
-} Patch;
-
-extern const Patch rigid_patch, spring_patch, partial_slip;
-
-/* A contact: its input and state, the variants that serve it, and the step under way. */
-struct Contact {
-    const Input *in;
-    State *s;
-    const Patch *patch;
-    StepTables tables;
     double end_free[CUE_VELOCITIES], mean_free[CUE_VELOCITIES]; /* of ports and slopes without loads */
     double C[FORCES][VELOCITIES];                               /* v = C y, at mid-step */
     double shortening[SLOPES];                    /* of the cue per slope, m: columns of C over -C_u */
@@ -196,19 +182,31 @@ struct Contact {
     double u_stick[FORCES];                      /* u of a point that sticks */
     double V[FORCES][FORCES], W[FORCES][FORCES]; /* v = v_free + V F, u = u_free + W F */
     double F[FORCES], v[FORCES], u[FORCES];      /* the step's forces, N, and velocities */
-    bool on_table, table_stuck;   /* in the step: of a raised cue, as in State */
+    bool on_table, table_stuck;                  /* of a raised cue, as in State */
     int slip;                     /* its direction, or STICK; a patch that slips in parts keeps STICK */
     NormalForce normal;           /* of a level cue, at mid-step */
-    Edge edges[ANNULI + 1];       /* of the annuli */
+    const Edge *edges;            /* of the annuli, (ANNULI + 1,): the same for all steps */
     double annulus_force[ANNULI]; /* at mid-step, N; State has that of the last step */
     double annuli_loss;           /* dissipated in the step, J */
     double axial_force;           /* on the cue, N */
-    double mean_spin;                       /* of the ball, times its radius, m/s */
+    double mean_spin;             /* of the ball, times its radius, m/s */
     double ball_loads[BALL_VELOCITIES];
+    double *loads;     /* on ports, slopes and dashpots */
     double *radiating; /* state and loads of the modes that radiate */
     double *before;    /* state of the modes before the step */
-    double loads[];    /* on ports, slopes and dashpots */
-};
+} Work;
+
+/* A tip by its tangential compliance (patch_*.c). */
+typedef struct {
+    bool slips_in_parts; /* the patch itself limits its force to mu F_n */
+    /* row T of the equations of a sticking tip */
+    void (*stick)(const Input *in, double h, const State *s, Work *w, Equations *e);
+    void (*update)(const Input *in, State *s, const Work *w);  /* after a step in contact */
+    void (*release)(const Input *in, State *s, const Work *w); /* loss of strain energy at separation */
+    int (*friction_state)(const Input *in, const State *s, const Work *w); /* of the step */
+} Patch;
+
+extern const Patch rigid_patch, spring_patch, partial_slip;
 
 enum { MAX_ITERATIONS = 40 };
 /* Relative change of the forces per iteration at convergence, and the largest accepted after the last one. */
@@ -218,13 +216,13 @@ static const double MIN_FORCE = 1e-9; /* N, least scale of the relative change *
 static inline double larger(double a, double b) { return a > b ? a : b; }
 static inline bool touches(const State *s) { return s->phase != FREE; }
 static inline bool is_raised(const Input *in) { return in->forces == FORCES; }
-static inline void nothing(Contact *c) { (void)c; }
 
 /* modes.c */
-void free_motion(Contact *c);
-void load_modes(Contact *c);
-void add_losses(Contact *c);
-void advance_modes(Contact *c);
+double product(const double *a, const double *b, int count);
+void free_motion(const Input *in, const StepTables *t, const State *s, Work *w);
+void load_modes(const Input *in, const StepTables *t, const State *s, Work *w);
+void advance_modes(const Input *in, const StepTables *t, State *s, Work *w);
+void add_losses(const Input *in, const StepTables *t, State *s, const Work *w);
 
 /* laws.c */
 NormalForce normal_force(const Input *in, const State *s, double indentation);
@@ -233,23 +231,27 @@ double residual_indentation(const Input *in, const State *s);
 double tangential_stiffness(const Input *in, double virtual);
 
 /* kinematics.c */
-void contact_matrices(Contact *c);
-void velocities(Contact *c);
+void contact_matrices(const Input *in, const StepTables *t, const State *s, Work *w);
+void velocities(const Input *in, Work *w);
 
 /* level.c, raised.c: the forces of a step, the impulses of an impact. They return whether they were found. */
-bool level_forces(Contact *c);
-bool level_impulses(Contact *c);
-bool raised_forces(Contact *c);
-bool raised_impulses(Contact *c);
+bool level_forces(const Input *in, double h, const State *s, Work *w);
+bool level_impulses(const Input *in, const State *s, Work *w);
+bool raised_forces(const Input *in, double h, const State *s, Work *w);
+bool raised_impulses(const Input *in, const State *s, Work *w);
+
+/* run.c, patch_partial_slip.c */
+const Patch *patch_of(const Input *in);
+void find_edges(const Input *in, Edge edges[ANNULI + 1]);
 
 /* phases.c */
 double full_step(const Input *in, const State *s);
-void update_tip(Contact *c);
-void next_phase(Contact *c);
-void separate(Contact *c);
+void update_tip(const Input *in, double h, State *s, const Work *w);
+void next_phase(const Input *in, State *s, const Work *w);
+void separate(const Input *in, State *s, const Work *w);
 
 /* step.c */
-bool take_step(Contact *c, Step *row);
-bool take_impact(Contact *c, Step *row);
+bool take_step(const Input *in, const StepTables *t, State *s, Work *w, Step *row);
+bool take_impact(const Input *in, const StepTables *t, State *s, Work *w, Step *row);
 
 #endif

@@ -28,66 +28,63 @@ static void rolled_kinematics(const Input *in, double angle, double C[FORCES][VE
    sum of weight slope^2/2 (second-order theory), so that the tip's axial velocity is reduced by the sum of
    weight slope slope'. The slopes move on as over the last step: the velocity at its end would move a mode
    that swings through within a step by many of its amplitudes. */
-static void kinematics_at_middle(Contact *c)
+static void kinematics_at_middle(const Input *in, double h, const State *s, Work *w)
 {
-    const Input *in = c->in;
-    const State *s = c->s;
     const int ports = in->ports, n_cue = ports + in->slopes, n_velocities = ports + in->speeds;
-    const double half = c->tables.h / 2;
+    const double half = h / 2;
     for (int a = 0; a < in->slopes; a++)
-        c->shortening[a] = in->slope_weights[a] * (s->slopes[a] + half * s->mean_velocities[ports + a]);
+        w->shortening[a] = in->slope_weights[a] * (s->slopes[a] + half * s->mean_velocities[ports + a]);
     for (int f = 0; f < in->forces; f++) {
-        memcpy(c->C[f], in->kinematics + f * n_velocities, ports * sizeof(double));
-        memcpy(c->C[f] + n_cue, in->kinematics + f * n_velocities + ports, in->speeds * sizeof(double));
+        memcpy(w->C[f], in->kinematics + f * n_velocities, ports * sizeof(double));
+        memcpy(w->C[f] + n_cue, in->kinematics + f * n_velocities + ports, in->speeds * sizeof(double));
     }
-    if (in->rolling) rolled_kinematics(in, s->angle + half * s->rolling_rate, c->C);
+    if (in->rolling) rolled_kinematics(in, s->angle + half * s->rolling_rate, w->C);
     for (int f = 0; f < in->forces; f++)
-        for (int a = 0; a < in->slopes; a++) c->C[f][ports + a] = -c->C[f][U_PORT] * c->shortening[a];
+        for (int a = 0; a < in->slopes; a++) w->C[f][ports + a] = -w->C[f][U_PORT] * w->shortening[a];
 }
 
 /* Whether the point of a force stuck in the last step. */
-static bool stuck(const Contact *c, int f)
+static bool stuck(const State *s, int f)
 {
-    if (f == UP) return c->s->on_table;
-    if (f > UP) return c->s->table_stuck;
-    return c->s->tip_stuck;
+    if (f == UP) return s->on_table;
+    if (f > UP) return s->table_stuck;
+    return s->tip_stuck;
 }
 
 /* v_free, u_free and u_stick, m/s. A point that stuck before keeps the mean velocity 0; one that slipped and
    comes to rest has half of its initial velocity. */
-static void free_velocities(Contact *c)
+static void free_velocities(const Input *in, const State *s, Work *w)
 {
-    const Input *in = c->in;
-    const State *s = c->s;
     const int n_cue = in->ports + in->slopes;
     for (int f = 0; f < in->forces; f++) {
-        const double *C = c->C[f];
+        const double *C = w->C[f];
         double ball = 0;
         for (int b = 0; b < in->speeds; b++) ball += C[n_cue + b] * s->ball[b];
-        c->v_free[f] = ball;
-        c->u_free[f] = ball;
-        c->u_stick[f] = ball / 2;
+        w->v_free[f] = ball;
+        w->u_free[f] = ball;
+        w->u_stick[f] = ball / 2;
         for (int q = 0; q < n_cue; q++) {
-            c->v_free[f] += C[q] * c->end_free[q];
-            c->u_free[f] += C[q] * c->mean_free[q];
-            c->u_stick[f] += C[q] * s->port_velocities[q] / 2;
+            w->v_free[f] += C[q] * w->end_free[q];
+            w->u_free[f] += C[q] * w->mean_free[q];
+            w->u_stick[f] += C[q] * s->port_velocities[q] / 2;
         }
-        if (stuck(c, f)) c->u_stick[f] = 0;
+        if (stuck(s, f)) w->u_stick[f] = 0;
     }
 }
 
 /* Velocities of ports and slopes per force f of the contact, by a table of them per load. All slopes have the
    same share of the loads of every force: bending shortens the cue along its axis alone. */
-FAST static void per_force(const Contact *c, const double *table, double result[FORCES][CUE_VELOCITIES])
+FAST static void per_force(const Input *in, const Work *w, const double *table,
+                           double result[FORCES][CUE_VELOCITIES])
 {
-    const int ports = c->in->ports, n_cue = ports + c->in->slopes;
+    const int ports = in->ports, n_cue = ports + in->slopes;
     for (int p = 0; p < n_cue; p++) {
         const double *per_load = table + p * n_cue;
         double per_shortening = 0;
-        for (int q = ports; q < n_cue; q++) per_shortening += per_load[q] * c->shortening[q - ports];
-        for (int f = 0; f < c->in->forces; f++) {
-            double sum = -c->C[f][U_PORT] * per_shortening;
-            for (int q = 0; q < ports; q++) sum += per_load[q] * c->C[f][q];
+        for (int q = ports; q < n_cue; q++) per_shortening += per_load[q] * w->shortening[q - ports];
+        for (int f = 0; f < in->forces; f++) {
+            double sum = -w->C[f][U_PORT] * per_shortening;
+            for (int q = 0; q < ports; q++) sum += per_load[q] * w->C[f][q];
             result[f][p] = sum;
         }
     }
@@ -95,43 +92,42 @@ FAST static void per_force(const Contact *c, const double *table, double result[
 
 /* Change of the contact's velocities per force, (m/s)/N: V at the end of the step, W on average over it.
    Handbook: The contact, Ports and the matrix C: v = C y, loads = C' F. */
-static void velocities_per_force(Contact *c)
+static void velocities_per_force(const Input *in, const StepTables *t, Work *w)
 {
-    const Input *in = c->in;
     const int n_cue = in->ports + in->slopes;
-    per_force(c, c->tables.end_per_load, c->end_per_force);
-    per_force(c, c->tables.mean_per_load, c->mean_per_force);
+    per_force(in, w, t->end_per_load, w->end_per_force);
+    per_force(in, w, t->mean_per_load, w->mean_per_force);
     for (int f = 0; f < in->forces; f++)
         for (int g = 0; g < in->forces; g++) {
             double ball = 0, ends = 0, means = 0;
             for (int b = 0; b < in->speeds; b++)
-                ball += c->tables.load_time * c->C[f][n_cue + b] * in->inverse_masses[b] * c->C[g][n_cue + b];
+                ball += t->load_time * w->C[f][n_cue + b] * in->inverse_masses[b] * w->C[g][n_cue + b];
             for (int p = 0; p < n_cue; p++) {
-                ends += c->C[f][p] * c->end_per_force[g][p];
-                means += c->C[f][p] * c->mean_per_force[g][p];
+                ends += w->C[f][p] * w->end_per_force[g][p];
+                means += w->C[f][p] * w->mean_per_force[g][p];
             }
-            c->V[f][g] = ends + ball;
-            c->W[f][g] = means + ball / 2;
+            w->V[f][g] = ends + ball;
+            w->W[f][g] = means + ball / 2;
         }
 }
 
 /* The linear equations of a step: v = v_free + V F and u = u_free + W F. */
-void contact_matrices(Contact *c)
+void contact_matrices(const Input *in, const StepTables *t, const State *s, Work *w)
 {
-    kinematics_at_middle(c);
-    free_velocities(c);
-    velocities_per_force(c);
+    kinematics_at_middle(in, t->h, s, w);
+    free_velocities(in, s, w);
+    velocities_per_force(in, t, w);
 }
 
 /* The contact's velocities v and u under the forces F. */
-void velocities(Contact *c)
+void velocities(const Input *in, Work *w)
 {
-    for (int f = 0; f < c->in->forces; f++) {
-        c->v[f] = c->v_free[f];
-        c->u[f] = c->u_free[f];
-        for (int g = 0; g < c->in->forces; g++) {
-            c->v[f] += c->V[f][g] * c->F[g];
-            c->u[f] += c->W[f][g] * c->F[g];
+    for (int f = 0; f < in->forces; f++) {
+        w->v[f] = w->v_free[f];
+        w->u[f] = w->u_free[f];
+        for (int g = 0; g < in->forces; g++) {
+            w->v[f] += w->V[f][g] * w->F[g];
+            w->u[f] += w->W[f][g] * w->F[g];
         }
     }
 }

@@ -34,7 +34,7 @@ NormalForce loading_curve(const Input *in, double indentation)
     return normal;
 }
 
-/* Residual indentation d0, m, where the unloading force vanishes; 0 while the tip loads for the first time. */
+/* Residual indentation d0, m, where the unloading force vanishes; 0 during the first loading. */
 double residual_indentation(const Input *in, const State *s)
 {
     return (1 - in->restitution * in->restitution) * s->max_indentation;

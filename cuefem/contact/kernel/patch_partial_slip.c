@@ -33,23 +33,23 @@ typedef struct {
     double normal, normal_slope; /* its normal force, N, and the slope of that by the indentation, N/m */
 } Annulus;
 
-static Edge edge_at(const Contact *c, double virtual)
+static Edge edge_at(const Input *in, double virtual)
 {
-    NormalForce normal = loading_curve(c->in, virtual);
+    NormalForce normal = loading_curve(in, virtual);
     return (Edge){.indentation = virtual,
                   .force = normal.force,
                   .slope = normal.slope,
-                  .stiffness = tangential_stiffness(c->in, virtual)};
+                  .stiffness = tangential_stiffness(in, virtual)};
 }
 
 /* Edges evenly spaced in the root of the indentation; the last annulus has what lies beyond its edge, too. */
-static void begin(Contact *c)
+void find_edges(const Input *in, Edge edges[ANNULI + 1])
 {
     for (int r = 0; r < ANNULI; r++) {
         double root = (double)r / ANNULI;
-        c->edges[r] = edge_at(c, c->in->annuli_end * root * root);
+        edges[r] = edge_at(in, in->annuli_end * root * root);
     }
-    c->edges[ANNULI].indentation = HUGE_VAL;
+    edges[ANNULI].indentation = HUGE_VAL;
 }
 
 /* The annulus between two edges, in a step from one indentation to another. */
@@ -87,25 +87,25 @@ static inline double strain_loss(double old, double f, double k, double e2)
     return e2 < 1 && growth > 0 && k > 0 ? growth * (1 - e2) / (2 * k) : 0;
 }
 
-/* Forces of the annuli, N, at a virtual indentation, m, after a shift, m, since the middle of the last step.
-   Returns their sum; by_shift, by_virtual: its derivatives by the two, N/m. */
-FAST static double shift_annuli(Contact *c, double virtual, double shift, double *by_shift,
+/* Forces of the annuli, N, at the virtual indentation of the step, m, after a shift, m, since the middle of
+   the last step. Returns their sum; by_shift, by_virtual: its derivatives by the two, N/m. */
+FAST static double shift_annuli(const Input *in, const State *s, Work *w, double shift, double *by_shift,
                                 double *by_virtual)
 {
-    const Input *in = c->in;
-    const double e2 = in->surface_restitution * in->surface_restitution, mu = in->friction;
-    const Edge from = edge_at(c, c->s->virtual_mid), to = edge_at(c, virtual);
+    const double virtual = w->normal.virtual, e2 = in->surface_restitution * in->surface_restitution,
+                 mu = in->friction;
+    const Edge from = edge_at(in, s->virtual_mid), to = edge_at(in, virtual);
     double sum = 0;
     *by_shift = 0;
     *by_virtual = 0;
-    c->annuli_loss = 0;
+    w->annuli_loss = 0;
     for (int r = 0; r < ANNULI; r++) {
-        if (virtual <= c->edges[r].indentation) {
-            c->annulus_force[r] = 0;
+        if (virtual <= w->edges[r].indentation) {
+            w->annulus_force[r] = 0;
             continue;
         }
-        Annulus a = annulus(&c->edges[r], &c->edges[r + 1], &from, &to);
-        double old = c->s->annulus_force[r] * (a.k_before > a.k_after ? a.k_after / a.k_before : 1);
+        Annulus a = annulus(&w->edges[r], &w->edges[r + 1], &from, &to);
+        double old = s->annulus_force[r] * (a.k_before > a.k_after ? a.k_after / a.k_before : 1);
         double bound = mu * larger(a.normal, 0);
         double tangent;
         double f = trial_force(old, a.k * shift, a.k, e2, &tangent);
@@ -115,42 +115,41 @@ FAST static double shift_annuli(Contact *c, double virtual, double shift, double
             f = copysign(bound, f);
             *by_virtual += copysign(mu * a.normal_slope, f);
         }
-        c->annuli_loss += strain_loss(old, f, a.k, e2);
-        c->annulus_force[r] = f;
+        w->annuli_loss += strain_loss(old, f, a.k, e2);
+        w->annulus_force[r] = f;
         sum += f;
     }
     return sum;
 }
 
-static void stick(Contact *c, Equations *e)
+static void stick(const Input *in, double h, const State *s, Work *w, Equations *e)
 {
-    const double half = c->tables.h / 2;
+    const double half = h / 2;
     double by_shift, by_virtual;
-    double shift = c->s->shift - half * c->u[T];
-    e->g[T] = c->F[T] - shift_annuli(c, c->normal.virtual, shift - c->s->shift_mid, &by_shift, &by_virtual);
-    by_virtual /= c->normal.scale;
-    e->J[T][T] = 1 + half * (by_shift * c->W[T][T] + by_virtual * c->W[N][T]);
-    e->J[T][N] = half * (by_shift * c->W[T][N] + by_virtual * c->W[N][N]);
+    double shift = s->shift - half * w->u[T];
+    e->g[T] = w->F[T] - shift_annuli(in, s, w, shift - s->shift_mid, &by_shift, &by_virtual);
+    by_virtual /= w->normal.scale;
+    e->J[T][T] = 1 + half * (by_shift * w->W[T][T] + by_virtual * w->W[N][T]);
+    e->J[T][N] = half * (by_shift * w->W[T][N] + by_virtual * w->W[N][N]);
 }
 
-static void update(Contact *c)
+static void update(const Input *in, State *s, const Work *w)
 {
-    memcpy(c->s->annulus_force, c->annulus_force, sizeof c->s->annulus_force);
-    c->s->shear_loss += c->annuli_loss;
-    c->s->virtual_mid = c->normal.virtual;
+    memcpy(s->annulus_force, w->annulus_force, sizeof s->annulus_force);
+    s->shear_loss += w->annuli_loss;
+    s->virtual_mid = w->normal.virtual;
 }
 
-static void release(Contact *c) { c->s->virtual_mid = 0; }
+static void release(const Input *in, State *s, const Work *w) { s->virtual_mid = 0; }
 
-static int friction_state(const Contact *c)
+static int friction_state(const Input *in, const State *s, const Work *w)
 {
-    if (fabs(c->F[T]) < c->in->friction * c->F[N] * (1 - 1e-6)) return STICK;
-    if (c->F[T] == 0) return c->s->friction_state;
-    return c->F[T] > 0 ? SLIP : SLIP_BACK;
+    if (fabs(w->F[T]) < in->friction * w->F[N] * (1 - 1e-6)) return STICK;
+    if (w->F[T] == 0) return s->friction_state;
+    return w->F[T] > 0 ? SLIP : SLIP_BACK;
 }
 
 const Patch partial_slip = {.slips_in_parts = true,
-                            .begin = begin,
                             .stick = stick,
                             .update = update,
                             .release = release,

@@ -2,23 +2,24 @@
 #include "contact.h"
 
 /* The tip has the mean velocity of a sticking point. */
-static void stick(Contact *c, Equations *e)
+static void stick(const Input *in, double h, const State *s, Work *w, Equations *e)
 {
-    e->g[T] = c->u[T] - c->u_stick[T];
-    e->J[T][T] = c->W[T][T];
-    e->J[T][N] = c->W[T][N];
+    e->g[T] = w->u[T] - w->u_stick[T];
+    e->J[T][T] = w->W[T][T];
+    e->J[T][N] = w->W[T][N];
 }
 
 /* A tip that comes to rest within the step has slipped in a part of it: counted as slip. */
-static int friction_state(const Contact *c)
+static int friction_state(const Input *in, const State *s, const Work *w)
 {
-    bool stops = !c->slip && !c->s->tip_stuck;
-    if (!stops || c->u_stick[T] == 0) return c->slip;
-    return c->u_stick[T] < 0 ? SLIP : SLIP_BACK;
+    bool stops = !w->slip && !s->tip_stuck;
+    if (!stops || w->u_stick[T] == 0) return w->slip;
+    return w->u_stick[T] < 0 ? SLIP : SLIP_BACK;
 }
 
+static void nothing(const Input *in, State *s, const Work *w) {}
+
 const Patch rigid_patch = {.slips_in_parts = false,
-                           .begin = nothing,
                            .stick = stick,
                            .update = nothing,
                            .release = nothing,

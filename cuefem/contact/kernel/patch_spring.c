@@ -2,32 +2,31 @@
 #include "contact.h"
 
 /* F_t = (shift at mid-step - origin) / compliance. */
-static void stick(Contact *c, Equations *e)
+static void stick(const Input *in, double h, const State *s, Work *w, Equations *e)
 {
-    const double half = c->tables.h / 2, compliance = c->in->compliance;
-    double shift = c->s->shift - half * c->u[T];
-    e->g[T] = c->F[T] - (shift - c->s->origin) / compliance;
-    e->J[T][T] = 1 + half * c->W[T][T] / compliance;
-    e->J[T][N] = half * c->W[T][N] / compliance;
+    const double half = h / 2, compliance = in->compliance;
+    double shift = s->shift - half * w->u[T];
+    e->g[T] = w->F[T] - (shift - s->origin) / compliance;
+    e->J[T][T] = 1 + half * w->W[T][T] / compliance;
+    e->J[T][N] = half * w->W[T][N] / compliance;
 }
 
 /* Slip moves the shift at which the spring is unstrained. */
-static void update(Contact *c)
+static void update(const Input *in, State *s, const Work *w)
 {
-    if (c->slip) c->s->origin = c->s->shift_mid - c->in->compliance * c->F[T];
+    if (w->slip) s->origin = s->shift_mid - in->compliance * w->F[T];
 }
 
-static void release(Contact *c)
+static void release(const Input *in, State *s, const Work *w)
 {
-    const double compliance = c->in->compliance;
-    double F = c->slip ? c->F[T] : (c->s->shift - c->s->origin) / compliance;
-    c->s->shear_loss += compliance * F * F / 2;
+    const double compliance = in->compliance;
+    double F = w->slip ? w->F[T] : (s->shift - s->origin) / compliance;
+    s->shear_loss += compliance * F * F / 2;
 }
 
-static int friction_state(const Contact *c) { return c->slip; }
+static int friction_state(const Input *in, const State *s, const Work *w) { return w->slip; }
 
 const Patch spring_patch = {.slips_in_parts = false,
-                            .begin = nothing,
                             .stick = stick,
                             .update = update,
                             .release = release,

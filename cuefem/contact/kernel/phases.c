@@ -21,11 +21,11 @@ static bool is_indented(const Input *in, const State *s)
 }
 
 /* Without friction a level cue has no force to tell: by the velocity. */
-static int friction_state(const Contact *c)
+static int friction_state(const Input *in, const State *s, const Work *w)
 {
-    if (is_raised(c->in) || c->in->friction > 0) return c->patch->friction_state(c);
-    if (c->u[T] == 0) return STICK;
-    return c->u[T] < 0 ? SLIP : SLIP_BACK;
+    if (is_raised(in) || in->friction > 0) return patch_of(in)->friction_state(in, s, w);
+    if (w->u[T] == 0) return STICK;
+    return w->u[T] < 0 ? SLIP : SLIP_BACK;
 }
 
 /* The tip's state after a step in free flight: a spring patch will be unstrained at touch. */
@@ -37,37 +37,34 @@ static void update_flight(State *s, double shift_mid)
 }
 
 /* The tip's state after a step. */
-void update_tip(Contact *c)
+void update_tip(const Input *in, double h, State *s, const Work *w)
 {
-    State *s = c->s;
     if (!touches(s)) {
-        update_flight(s, s->shift - c->tables.h * c->u[T]);
+        update_flight(s, s->shift - h * w->u[T]);
         return;
     }
-    s->shift_mid = s->shift - c->tables.h / 2 * c->u[T];
-    c->patch->update(c);
-    s->friction_state = friction_state(c);
-    s->tip_stuck = !c->slip;
-    s->on_table = c->on_table;
-    s->table_stuck = c->table_stuck;
+    s->shift_mid = s->shift - h / 2 * w->u[T];
+    patch_of(in)->update(in, s, w);
+    s->friction_state = friction_state(in, s, w);
+    s->tip_stuck = !w->slip;
+    s->on_table = w->on_table;
+    s->table_stuck = w->table_stuck;
 }
 
-static void after_loading(Contact *c)
+static void after_loading(const Input *in, State *s, const Work *w)
 {
-    State *s = c->s;
-    if (c->v[N] <= 0) return;
+    if (w->v[N] <= 0) return;
     s->max_indentation = larger(s->max_indentation, s->indentation);
-    enter(c->in, s, UNLOADING);
+    enter(in, s, UNLOADING);
 }
 
-static void after_unloading(Contact *c)
+static void after_unloading(const Input *in, State *s, const Work *w)
 {
-    State *s = c->s;
-    if (s->ends_at_event || !is_indented(c->in, s)) {
-        separate(c);
-        enter(c->in, s, FREE);
+    if (s->ends_at_event || !is_indented(in, s)) {
+        separate(in, s, w);
+        enter(in, s, FREE);
     } else if (s->indentation > s->max_indentation) {
-        enter(c->in, s, LOADING);
+        enter(in, s, LOADING);
     }
 }
 
@@ -80,31 +77,29 @@ static void after_flight(const Input *in, State *s)
 }
 
 /* Phase and length of the next step. */
-void next_phase(Contact *c)
+void next_phase(const Input *in, State *s, const Work *w)
 {
-    if (c->s->phase == LOADING)
-        after_loading(c);
-    else if (c->s->phase == UNLOADING)
-        after_unloading(c);
+    if (s->phase == LOADING)
+        after_loading(in, s, w);
+    else if (s->phase == UNLOADING)
+        after_unloading(in, s, w);
     else
-        after_flight(c->in, c->s);
+        after_flight(in, s);
 }
 
 /* Separation: the tip forgets its strain, and the modes are kept for Python. */
-void separate(Contact *c)
+void separate(const Input *in, State *s, const Work *w)
 {
-    State *s = c->s;
-    c->patch->release(c);
+    patch_of(in)->release(in, s, w);
     s->steps_to_last_separation = s->steps;
-    s->deadline = c->in->max_time + s->time;
+    s->deadline = in->max_time + s->time;
     s->ends_at_event = false;
     s->tip_stuck = false;
     s->origin = s->shift;
     s->shift_mid = s->shift;
     memset(s->annulus_force, 0, sizeof s->annulus_force);
-    memset(c->F, 0, sizeof c->F);
     memset(s->last_F, 0, sizeof s->last_F);
     memset(s->former_F, 0, sizeof s->former_F);
-    memcpy(s->separated_modes, s->modes, 2 * c->in->modes * sizeof(double));
-    if (!isfinite(s->window_end)) s->window_end = s->time + c->in->window;
+    memcpy(s->separated_modes, s->modes, 2 * in->modes * sizeof(double));
+    if (!isfinite(s->window_end)) s->window_end = s->time + in->window;
 }
