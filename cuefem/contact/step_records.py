@@ -211,7 +211,7 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
     state = KernelState(modes=start.copy(), separated_modes=start.copy())
     state.ball[: len(model.ball)] = model.ball.tolist()
     port_velocities = propagator.port_velocities(start[0])
-    state.port_velocities[: len(port_velocities)] = port_velocities.tolist()
+    state.mean_velocities[: len(port_velocities)] = port_velocities.tolist()
     records, states = [], [start[None]]
     contact = kernel.contact_new(fields, state)
     if not contact:

@@ -28,7 +28,8 @@ def strike(scene: Scene, at: Resolution | Solid | None = None, *, rtol: float | 
         default strikes (studies/accuracy/accuracy.md). A lumped cue needs none.
     rtol : float, optional
         In place of ``at``: the requested accuracy, in (0, 1), the largest relative error of squirt, ball speed and
-        spin. Modes and steps are refined until the estimated error is within it.
+        spin. Modes and steps are refined until the estimated error is within it: an estimate, no bound (handbook:
+        Accuracy).
 
     Returns
     -------

@@ -118,8 +118,7 @@ typedef struct {
     double *modes;                          /* v and a, (2, modes) */
     double *separated_modes;                /* the same after the last separation */
     double ball[BALL_VELOCITIES];           /* velocities, m/s */
-    double port_velocities[CUE_VELOCITIES]; /* of ports and slopes */
-    double mean_velocities[CUE_VELOCITIES]; /* the same over the last step */
+    double mean_velocities[CUE_VELOCITIES]; /* of ports and slopes over the last step */
     int status, steps, steps_to_last_separation;
     int phase, friction_state;
     double time, next_step;      /* s; length of the next step, s */

@@ -51,6 +51,15 @@ static bool stuck(const State *s, int f)
     return s->tip_stuck;
 }
 
+/* Velocity of a port or slope at the beginning of the step, between its means over the last step and over this
+   one under the last forces. That of the modes then would be none of a mode that swings through within a step. */
+static double initial_velocity(const Input *in, const State *s, const Work *w, int port)
+{
+    double mean = w->mean_free[port];
+    for (int f = 0; f < in->forces; f++) mean += w->mean_per_force[f][port] * s->last_F[f];
+    return (s->mean_velocities[port] + mean) / 2;
+}
+
 /* v_free, u_free and u_stick, m/s. A point that stuck before keeps the mean velocity 0; one that slipped and
    comes to rest has half of its initial velocity. */
 static void free_velocities(const Input *in, const State *s, Work *w)
@@ -66,7 +75,7 @@ static void free_velocities(const Input *in, const State *s, Work *w)
         for (int q = 0; q < n_cue; q++) {
             w->v_free[f] += C[q] * w->end_free[q];
             w->u_free[f] += C[q] * w->mean_free[q];
-            w->u_stick[f] += C[q] * s->port_velocities[q] / 2;
+            w->u_stick[f] += C[q] * initial_velocity(in, s, w, q) / 2;
         }
         if (stuck(s, f)) w->u_stick[f] = 0;
     }
@@ -115,8 +124,8 @@ static void velocities_per_force(const Input *in, const StepTables *t, Work *w)
 void contact_matrices(const Input *in, const StepTables *t, const State *s, Work *w)
 {
     kinematics_at_middle(in, t->h, s, w);
-    free_velocities(in, s, w);
     velocities_per_force(in, t, w);
+    free_velocities(in, s, w);
 }
 
 /* The contact's velocities v and u under the forces F. */

@@ -70,12 +70,8 @@ static void advance_cue(const Input *in, const StepTables *t, State *s, Work *w)
     advance_modes(in, t, s, w);
     if (t->h > 0) add_losses(in, t, s, w);
     for (int p = 0; p < in->ports + in->slopes; p++) {
-        s->port_velocities[p] = w->end_free[p];
         s->mean_velocities[p] = w->mean_free[p];
-        for (int f = 0; f < in->forces; f++) {
-            s->port_velocities[p] += w->end_per_force[f][p] * w->F[f];
-            s->mean_velocities[p] += w->mean_per_force[f][p] * w->F[f];
-        }
+        for (int f = 0; f < in->forces; f++) s->mean_velocities[p] += w->mean_per_force[f][p] * w->F[f];
     }
     for (int a = 0; a < in->slopes; a++) s->slopes[a] += t->h * s->mean_velocities[in->ports + a];
 }
