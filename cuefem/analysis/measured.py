@@ -17,8 +17,7 @@ from cuefem.measurements.calibration import Calibration
 from cuefem.measurements.estimate import STEP_TOLERANCE, Estimate, InformationGain, predicted_squirt
 from cuefem.measurements.measured_cue import MeasuredCue, OffsetZero, Residual, offset_zeros
 from cuefem.measurements.measured_folder import load_measured
-from cuefem.measurements.measurement_types import EndMass
-from cuefem.quantity.display_units import END_MASS, format_change, with_unit
+from cuefem.quantity.display_units import format_change, with_unit
 from cuefem.results.progress import Progress
 from cuefem.results.quantities import DASH
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
@@ -192,7 +191,7 @@ class MeasuredEstimate(Rows, Analysis):
                 "Recommended measurements",
                 {
                     "measurement": "{label}",
-                    "1σ": lambda gain: with_unit(gain["error"], _display_key(gain)) if gain["unit"] else DASH,
+                    "1σ": lambda gain: with_unit(gain["error"], str(gain["unit"])) if gain["unit"] else DASH,
                     "parameter improved most": "{parameter}",
                     "its σ, after/before": "{error_ratio:.0 %}",
                     "σ of squirt after": "{relative_squirt_error:.1 %}",
@@ -387,13 +386,8 @@ def _tabulate_fit(title: str, rows: Sequence[Record], optional: Sequence[str], n
     return tabulate(title, columns, rows, *notes, texts=(0, 5))
 
 
-def _display_key(row: Mapping[str, Any]) -> str:
-    """The key of a measurement's display unit: a side strike measures an end mass, scales a weight."""
-    return END_MASS if row["kind"] == EndMass.key else str(row["unit"])
-
-
 def _with_error(value: str, error: str) -> Callable[[Mapping[str, Any]], str]:
-    return lambda row: with_unit(row[value], _display_key(row), error=row[error])
+    return lambda row: with_unit(row[value], str(row["unit"]), error=row[error])
 
 
 OPTIONAL_COLUMNS: Mapping[str, ColumnEntry] = {
@@ -410,7 +404,7 @@ def contradictions(rows: Sequence[Record]) -> list[str]:
         sigmas = abs(row["normalized_residual"])
         if sigmas > LARGE_RESIDUAL:
             measured, computed = (
-                with_unit(row[value], _display_key(row), error=row[error])
+                with_unit(row[value], str(row["unit"]), error=row[error])
                 for value, error in VALUES_WITH_ERRORS.values()
             )
             difference = f"measured {measured}, computed {computed}, a difference of {sigmas:.1f} combined σ"

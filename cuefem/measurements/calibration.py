@@ -164,7 +164,8 @@ class Calibration:
             )
         if not self._information > MIN_INFORMATION:
             raise ValueError(
-                "Calibration needs [[shot]], [[squirt]] or [[pivot_length]] among the measurements of the cue; got none"
+                "Calibration needs [[shot]], [[squirt]] or [[pivot_length]] among the measurements of the cue; "
+                "got none (or one that they contradict)"
             )
         if not 1 / MAX_FACTOR <= self.measured_factor <= MAX_FACTOR:
             raise ValueError(

@@ -8,14 +8,13 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Annotated, Any, ClassVar, NamedTuple
 
-from cuefem.contact.side_strike import Striker
 from cuefem.measurements.predictions import N_FREQUENCIES, Predictions, predictions_of
 from cuefem.measurements.swerve import reading_angle
 from cuefem.quantity.display_units import END_MASS, with_unit
 from cuefem.quantity.fields import CONTACT_TIME, LENGTH, Quantity, check_count, check_fields
 from cuefem.quantity.units import parse_number
 from cuefem.results.closed_forms import pivot_length
-from cuefem.results.quantities import balance_point, drawn_mass, tip_height
+from cuefem.results.quantities import balance_point, drawn_mass
 from cuefem.scene import Scene
 
 MASS = Quantity("kg", "(0, inf)")
@@ -31,7 +30,6 @@ SCALE_ERROR = 0.5e-3  # kg, of a kitchen scale
 STIFFNESS_ERROR = 0.02  # relative, of a static stiffness: a kitchen scale and a dial gauge
 BALANCE_ERROR = 1e-3  # m, of a balance point
 SQUIRT_ERROR = 8.7e-4  # rad, 0.05 degrees: the mean of some shots on either side
-END_MASS_ERROR = 0.03  # relative, of ten impacts
 PIVOT_ERROR = 0.05  # relative, of a pivot length: both sides, the bridge to half an inch
 # Of readings at a distance: what is assumed of the stroke, and how well it is known (1 sigma).
 ELEVATION, ELEVATION_SPREAD = math.radians(3.0), 0.5  # of a cue over a rail: 1.8 to 4.9 degrees, lognormal
@@ -52,15 +50,13 @@ class Setup(NamedTuple):
     """A scene with the systematic errors of its measurements.
 
     zeros: zero error of the offset of each series, m, by its name. squirt_factor: true squirt over that of the model.
-    time_factor: true contact time of an end mass's ball over the stated one. elevations: of the cue, rad, by the stated
-    value and its error. speed_factor: true over computed ball speed. cloth_friction: of the sliding ball.
-    contact_shift: true less stated offset, m, of readings with an offset_error.
+    elevations: of the cue, rad, by the stated value and its error. speed_factor: true over computed ball speed.
+    cloth_friction: of the sliding ball. contact_shift: true less stated offset, m, of readings with an offset_error.
     """
 
     scene: Scene
     zeros: Mapping[str, float] = MappingProxyType({})
     squirt_factor: float = 1.0
-    time_factor: float = 1.0
     elevations: Mapping[StatedElevation, float] = MappingProxyType({})
     speed_factor: float = 1.0
     cloth_friction: float = CLOTH_FRICTION
@@ -512,49 +508,7 @@ class ContactTime(Measurement):
         return (cls(value=float(scene.contact_time), error=CONTACT_TIME_ERROR * float(scene.contact_time)),)
 
 
-@dataclass(frozen=True, kw_only=True)
-class EndMass(Measurement):
-    """The end mass by a ball that rebounds from the side of the shaft: the transverse inertia in a side strike.
-
-    ball_mass, restitution, contact_time: of the ball on the clamped shaft. position: of the impact, from the end of the
-    tip. contact_time_error: shared by all of a cue.
-    """
-
-    key: ClassVar[str] = "end_mass"
-    unit: ClassVar[str] = "kg"
-    title: ClassVar[str] = "end mass, by a side strike"
-    consequence: ClassVar[str] = "the mass that causes squirt is not measured directly"
-
-    value: Annotated[float, MASS]
-    error: Annotated[float, Quantity("kg", POSITIVE)]
-    ball_mass: Annotated[float, MASS]
-    restitution: Annotated[float, Quantity("", "(0, 1]")]
-    contact_time: Annotated[float, CONTACT_TIME]
-    contact_time_error: Annotated[float | None, Quantity("s", POSITIVE)] = None
-    position: Annotated[float, LENGTH]
-
-    @property
-    def label(self) -> str:
-        """At which contact time."""
-        return f"end mass, side strike, {1e3 * self.contact_time:.3g} ms"
-
-    def compute(self, setup: Setup) -> float:
-        """Of a side strike."""
-        time = self.contact_time * setup.time_factor
-        striker = Striker(self.ball_mass, self.restitution, contact_time=time)
-        return setup.predictions.end_mass(striker, self.position)
-
-    @classmethod
-    def candidates(cls, scene: Scene) -> tuple[Measurement, ...]:
-        """A ball of 8 g that touches a wall for 1 ms, 10 mm behind the ferrule's end."""
-        position = 0.01 + tip_height(scene)
-        blank = cls(value=1.0, error=1.0, ball_mass=8e-3, restitution=0.8, contact_time=1e-3, position=position)
-        value = blank.compute(Setup(scene))
-        return (replace(blank, value=value, error=END_MASS_ERROR * value),)
-
-
 _TYPES: tuple[type[Measurement], ...] = (
-    *(Weight, Balance, Tone, Stiffness, ContactTime, EndMass),
-    *(Squirt, PivotLength, AddedMass),
+    *(Weight, Balance, Tone, Stiffness, ContactTime, Squirt, PivotLength, AddedMass),
 )
 MEASUREMENT_TYPES: dict[str, type[Measurement]] = {kind.key: kind for kind in _TYPES}

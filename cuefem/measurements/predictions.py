@@ -11,7 +11,6 @@ import numpy as np
 from cuefem.beam.assembly import assemble
 from cuefem.beam.modes import modes
 from cuefem.beam.tip_modes import TipModes
-from cuefem.contact.side_strike import SideStrike, Striker, side_strike
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, Cue
 from cuefem.effects.cue_effects import PointMass, Support
@@ -72,12 +71,6 @@ class Predictions:
     def duration(self, speed: float | None = None) -> float:
         """Contact time of a central impact, s."""
         return self._strike(0.0, speed, None).duration
-
-    def end_mass(self, striker: Striker, position: float) -> float:
-        """Effective transverse mass, kg, of the freely suspended shaft; position: m from the end of the tip."""
-        effects = tuple(effect for effect in self.scene.without_tip_effects.cue_effects if effect.part_of_cue)
-        at = self.drawing_position(position, "end_mass position")
-        return side_strike(SideStrike(self.scene.shaft, striker, at, effects=effects)).effective_mass
 
     def _strike(self, offset: float, speed: float | None, added_mass: tuple[float, float] | None) -> _Strike:
         scene = self._with_added_mass(added_mass)

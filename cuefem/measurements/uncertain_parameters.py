@@ -21,7 +21,6 @@ from cuefem.measurements.measurement_types import (
     SPEED_SPREAD,
     UNKNOWN_SPEED_SPREAD,
     BallDirection,
-    EndMass,
     Measurement,
     Setup,
     Squirt,
@@ -35,7 +34,7 @@ from cuefem.quantity.fields import Quantity, check_fields
 from cuefem.results.uncertainty import model_error
 from cuefem.scene import Scene
 
-ZERO, SQUIRT_MODEL, BALL_TIME = "zero", "squirt model", "ball time"
+ZERO, SQUIRT_MODEL = "zero", "squirt model"
 
 
 @dataclass(frozen=True)
@@ -129,13 +128,6 @@ def parameters_of(
     _, spread = _prior(by_key.get(SQUIRT_MODEL), 1.0, model_error(scene))
     factor: Any = lambda setup, value: setup._replace(squirt_factor=value)  # noqa: E731
     parameters.append(UncertainParameter(SQUIRT_MODEL, "true squirt over the model's", "", 1.0, spread, factor))
-    end_masses = [test for test in measurements if isinstance(test, EndMass)]
-    spreads = [test.contact_time_error / test.contact_time for test in end_masses if test.contact_time_error]
-    if spreads:
-        spread = max(spreads)
-        time_factor: Any = lambda setup, value: setup._replace(time_factor=value)  # noqa: E731
-        label = "true contact time of the ball over the stated"
-        parameters.append(UncertainParameter(BALL_TIME, label, "", 1.0, spread, time_factor))
     parameters += _of_strokes(measurements)
     series: dict[str, float] = {}
     for measurement in squirts:

@@ -82,15 +82,6 @@ error = "0.05 deg"
 [[contact_time]]
 value = "1.2 ms"
 error = "0.1 ms"
-
-[[end_mass]]
-value = "9 g"
-error = "0.5 g"
-ball_mass = "100 g"
-restitution = 0.7
-contact_time = "1 ms"
-contact_time_error = "0.1 ms"
-position = "2 mm"
 """
 
 

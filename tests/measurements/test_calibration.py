@@ -15,6 +15,7 @@ from cuefem.measurements.calibration import MAX_FACTOR, Calibration
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.uncertainty import MODEL_ERROR, RATIO_FLOOR, SHAFT_ERROR, squirt_of
 from tests.helpers.command_line import as_json, call, stdout_of
+from tests.helpers.measured_cues import measured_folder
 
 PREDATOR = Path(__file__).parents[2] / "studies/measured/predator_z"
 OLD = cf.usual_scene(cf.load("plain maple"))
@@ -122,6 +123,7 @@ def test_files_of_no_calibration_are_rejected_in_one_line(file: Path, tmp_path: 
         ("empty", "", "got an empty file"),
         ("scene", text.partition("[calibration]")[0], "calibration: must be a table of"),
         ("factor", re.sub(r"log_factor = .*", "log_factor = 0.6", text), "measured squirt must be 1/1.6 to 1.6 times"),
+        ("older", re.sub(r"without_distance = .*\n", "", text), "for a file of an older version again"),
         ("drawn", text.replace("leather =", "feather ="), "drawn must hold parameters of the tip; got 'feather'"),
     ):
         path = tmp_path / f"{name}.toml"
@@ -219,6 +221,15 @@ def test_one_factor_scales_every_squirt_of_every_answer() -> None:
     assert pairs[1].cues["new"]["pivot_length"] == pytest.approx(pivot, rel=1e-9)
     lumped = replace(NEW, cue=cf.LumpedCue(NEW.axial_mass, numbers[1].squirt_end_mass), effects=())
     assert float(cf.impulse(lumped).squirt) == pytest.approx(found.squirt, rel=1e-4)
+
+
+@pytest.mark.heavy
+def test_contradictions_are_printed_with_the_file_of_a_calibration(tmp_path: Path) -> None:
+    squirt = '[[squirt]]\noffset = 0.3\nleft = "1.0 deg"\nright = "1.2 deg"\nerror = "0.1 deg"\n'
+    folder = measured_folder(tmp_path / "mine", squirt + '[[balance]]\nvalue = "480 mm"\nerror = "2 mm"\n')
+    status, _, err = call("compare", folder, "--estimate", "-o", tmp_path / "c.toml")
+    assert status == 0
+    assert "balance point of the shaft contradicts the drawing: measured 480.0 ± 2.0 mm, computed 452.8" in err
 
 
 @pytest.mark.heavy

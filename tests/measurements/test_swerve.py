@@ -1,13 +1,16 @@
 """The path of a ball struck by a raised cue, and the shots that a maker reads (verification)."""
 
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import cuefem as cf
+from cuefem.handbook import chapters
 from cuefem.measurements.measurement_types import Setup
 from cuefem.measurements.shot import Shot
 from cuefem.measurements.swerve import GRAVITY, reading_angle
@@ -106,6 +109,34 @@ def _slid(velocity: np.ndarray, slip: np.ndarray, distance: float, friction: flo
         return math.atan2(end[1] + rolling[1] / rolling[0] * (distance - end[0]), distance)
     time = 2 * distance / (velocity[0] + math.sqrt(velocity[0] ** 2 - 2 * force[0] * distance))
     return math.atan2(velocity[1] * time - force[1] * time**2 / 2, distance)
+
+
+SQUIRT, OFFSET = math.radians(2.2), 0.375
+
+
+def change(stroke: dict[str, float], *, offset: float = OFFSET, miss: float = 0.0, **other: float) -> str:
+    """By how much squirt is another one, if a reading is of another offset, miss or number of the stroke."""
+    reading = reading_angle(SQUIRT, OFFSET, **stroke)
+    read = math.atan(math.tan(reading) + miss / stroke["distance"])
+    found = brentq(lambda guess: reading_angle(guess, offset, **stroke | other) - read, 0.0, 0.2)
+    return f"{100 * (found / SQUIRT - 1):.1f} %"
+
+
+def test_handbook_states_the_sensitivities_of_the_closed_form() -> None:
+    chapter = next(chapter for chapter in chapters() if chapter.name == "measuring")
+    rows = [line.split("|") for line in chapter.text.splitlines() if re.match(r"\| [\d.]+ m/s, ", line)]
+    assert len(rows) == 6
+    for _, label, *stated in rows:
+        speed, degrees, distance = (float(re.split("m|°", text)[0]) for text in label.split(","))
+        stroke = {"elevation": math.radians(degrees), "speed": speed, "distance": distance, "friction": 0.2}
+        assert [text.strip() for text in stated[:6]] == [
+            f"{math.degrees(reading_angle(SQUIRT, OFFSET, **stroke)):.2f}°",
+            change(stroke, elevation=math.radians(degrees + 1)),
+            change(stroke, friction=0.25),
+            change(stroke, speed=1.1 * speed),
+            change(stroke, offset=OFFSET + 1e-3 / 0.028575),
+            change(stroke, miss=2e-3),
+        ]
 
 
 SHOT = Shot(cue_offset=0.0143, left=0.04, right=0.038, distance=1.2, speed=2.3)
