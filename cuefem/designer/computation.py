@@ -23,6 +23,9 @@ from cuefem.cue import Array
 from cuefem.endmass.definitions import DEFINITIONS, Drive
 from cuefem.endmass.end_mass_density import end_mass_density
 from cuefem.measurements.calibration import Calibration
+from cuefem.measurements.estimate import estimate
+from cuefem.measurements.measured_cue import MeasuredCue
+from cuefem.measurements.shot import Shot
 from cuefem.parameters.parts import main_material
 from cuefem.quantity.display_units import cached_by_units
 from cuefem.results.closed_forms import pivot_length
@@ -52,6 +55,12 @@ class SolvedStrike:
 
     solved: SolvedScene
     outcome: Outcome
+
+
+def calibration_by(name: str, scene: Scene, shots: Sequence[Shot]) -> Calibration:
+    """The calibration by shots with a cue, as of a folder with nothing else measured."""
+    measured = MeasuredCue(name, scene, tuple(shot.squirt(scene) for shot in shots))
+    return Calibration.of(estimate(measured))
 
 
 @lru_cache(CACHED_DESIGNS)

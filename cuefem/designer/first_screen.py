@@ -48,6 +48,8 @@ class FirstScreen:
         self.tiles = ui.html(sanitize=False).classes("num")
         with ui.element("div").classes("calibration") as self.calibration:
             self.basis = ui.label().classes("soft")
+            save = ui.button("Save calibration", on_click=self._save_calibration)
+            save.props("outline dense no-caps")
             remove = ui.button("Remove calibration", on_click=lambda: page.attempt(self.session.calibrate, None))
             remove.props("outline dense no-caps")
         self.drawing = ui.html(sanitize=False)
@@ -119,6 +121,9 @@ class FirstScreen:
 
     def _assumptions(self) -> tuple[list[str], list[Assumption]]:
         return self.session.assumed(), self.session.notes()
+
+    def _save_calibration(self) -> None:
+        ui.download.content(*self.session.calibration_file())
 
     def _on_compare(self, event: Any) -> None:
         if event.value == self.session.compared:

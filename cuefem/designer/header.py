@@ -11,6 +11,7 @@ from nicegui import Client, events, ui
 
 from cuefem.designer.host import Host
 from cuefem.designer.in_thread import run_in_thread
+from cuefem.designer.measured_form import MeasuredForm
 from cuefem.designer.state import FAILURES, MAX_NAME, one_line, read_file
 from cuefem.files.cue_names import CUES
 from cuefem.quantity.display_units import display, displayed_system
@@ -18,7 +19,7 @@ from cuefem.quantity.display_units import display, displayed_system
 MAX_FILE = 5_000_000  # bytes
 UNITS_KEPT = "cuefem.units"  # of the browser's storage
 # By the system displayed: words and icon of the button that displays the other one, and its name.
-OTHER_UNITS = {"metric": ("Inches", "square_foot", "us"), "us": ("Metric", "straighten", "metric")}
+OTHER_UNITS = {"metric": ("Inches", "square_foot", "us"), "us": ("Metric", "square_foot", "metric")}
 KINDS = (".toml", ".csv", ".stl", ".ply", ".obj")
 
 
@@ -75,11 +76,13 @@ class Header:
                         ui.menu_item(name, lambda name=name: page.attempt(self.session.open_reference, name))
                 _tool("Save", "save_alt", self._save)
                 self.report = _tool("Report", "description", self._report)
+                _tool("I measured", "straighten", lambda: self.measured.open())
                 self.undo = _tool("Undo", "undo", lambda: self.undo_redo(-1))
                 self.redo = _tool("Redo", "redo", lambda: self.undo_redo(1))
                 _tool(*OTHER_UNITS[displayed_system()][:2], self._switch_units)
                 ui.link("Guide", "/guide", new_tab=True).classes("guide")
             self.upload = Upload(page)
+            self.measured = MeasuredForm(page)
 
     def show(self) -> None:
         """Show the design's name, and which steps can be undone and redone."""

@@ -7,7 +7,7 @@ numbers first; `compute` does it at once.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -34,6 +34,7 @@ from cuefem.files.cue_names import CUES
 from cuefem.files.defaults_report import Assumption, ferrule_assumption, tenon_assumption
 from cuefem.files.toml_writer import toml_text
 from cuefem.measurements.calibration import Calibration
+from cuefem.measurements.shot import Shot
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.parameters.scene_paths import parameter
 from cuefem.quantity.display_units import with_unit
@@ -143,6 +144,10 @@ class Session:
             calibration.check(self.scene)
         self.history.calibration = calibration
 
+    def calibration_call(self, shots: Sequence[Shot]) -> Callable[[], Calibration]:
+        """The calibration by shots with the current design; the call reads the session no more."""
+        return partial(computation.calibration_by, self.step.design.name, self.scene, shots)
+
     def open_file(self, read: Design | Calibration) -> None:
         """Begin with a design from a file, or calibrate by one."""
         if isinstance(read, Calibration):
@@ -242,8 +247,13 @@ class Session:
 
     def file_name(self, extension: str) -> str:
         """The design's name as a file name."""
-        name = "".join(c if c.isalnum() or c in " -_." else "_" for c in self.step.design.name)
-        return f"{name.strip(' .') or 'design'}.{extension}"
+        return f"{_file_stem(self.step.design.name)}.{extension}"
+
+    def calibration_file(self) -> tuple[str, str]:
+        """The text of the calibration's file, and its name."""
+        made = self.history.calibration
+        assert made is not None
+        return made.text(), f"{_file_stem(made.name)} calibration.toml"
 
     def report_call(self) -> Callable[[], str]:
         """The report of the design as a page, compared with the other one; the call reads the session no more."""
@@ -379,3 +389,9 @@ def _text(key: str, scene: Scene) -> str:
 
 def _texts(scene: Scene, *keys: str) -> str:
     return ", ".join(escape(value_text(key, own)) for key in keys if (own := value(key, scene)) is not None)
+
+
+def _file_stem(name: str) -> str:
+    """A name as a file name without extension."""
+    stem = "".join(c if c.isalnum() or c in " -_." else "_" for c in name)
+    return stem.strip(" .") or "design"

@@ -264,8 +264,8 @@ class Calibration:
                     f"{there}{option}"
                 )
 
-    def save(self, path: str | Path) -> None:
-        """Write it as .toml: the scene with the estimated parameters, and a table [calibration]."""
+    def text(self) -> str:
+        """The text of its file: the scene with the estimated parameters, and a table [calibration]."""
         own = {
             "name": self.name,
             "log_factor": self.log_factor,
@@ -276,8 +276,11 @@ class Calibration:
         }
         from cuefem.files.toml_writer import toml_text  # loaded when used: it loads tomlkit
 
-        text = toml_text(self.scene, **{TABLE: own})
-        write_atomically(Path(path), lambda temporary: temporary.write_text(text, encoding="utf-8"))
+        return toml_text(self.scene, **{TABLE: own})
+
+    def save(self, path: str | Path) -> None:
+        """Write it as .toml."""
+        write_atomically(Path(path), lambda temporary: temporary.write_text(self.text(), encoding="utf-8"))
 
 
 @lru_cache(maxsize=32)  # the verdict, the changes and the curves of one page ask for the same

@@ -169,3 +169,27 @@ def test_memory_is_flat_between_sessions_20_and_50(browser: Any, tmp_path: Path)
                     wait_until_idle(page)
             used.append(resident_memory(process))
     assert max(used[45:]) < 1.05 * max(used[15:20]), used
+
+
+def test_measured_shots_calibrate_the_page_and_its_saved_file(browser: Any, address: str, tmp_path: Path) -> None:
+    typed = {
+        "Cue's centre line from the ball's centre": "14.3 mm",
+        "Ball off the line, struck left": "-1 in",
+        "Ball off the line, struck right": "1.5 in",
+        "Distance where you read it": "4 ft",
+    }
+    with designer_page(browser, address) as page:
+        plain = displayed_number(page, "squirt")
+        page.get_by_role("button", name="I measured").click()
+        for label, text in typed.items():
+            page.get_by_label(label, exact=True).first.fill(text)
+        page.get_by_role("button", name="Calibrate", exact=True).click()
+        page.locator("[role=alert]").filter(has_text="count from the line of aim away from the struck side").wait_for()
+        assert violations(page) == []
+        page.get_by_label("Ball off the line, struck left", exact=True).first.fill("1.6 in")
+        page.get_by_role("button", name="Calibrate", exact=True).click()
+        page.get_by_role("button", name="Save calibration").wait_for()
+        wait_until_idle(page)
+        made = cf.load_calibration(download(page, "Save calibration", tmp_path))
+        squirt = displayed_number(page, "squirt")
+        assert squirt / plain == pytest.approx(made.squirt(cf.usual_scene(cf.load("plain maple"))).factor, rel=2e-3)
