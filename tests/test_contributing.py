@@ -28,7 +28,7 @@ FOREIGN = {
     "v5",
     "pypa/cibuildwheel",
 }
-SHARE = 0.55  # of lines in tests over those of a room
+SHARE = 0.5  # of lines in tests over those of a room
 OWN = {name: kind for name, kind in effect_kinds().items() if kind.__module__.startswith("cuefem.")}
 EFFECTS = [
     name for name, kind in OWN.items() if quantity_fields(kind) and name != "LeatherTip"

@@ -27,7 +27,7 @@ from cuefem.cli.scene_options import CUE_KEYS, impact_options, offset_option, op
 from cuefem.files import InputError, load, write_atomically
 from cuefem.files.cue_names import cue_name, named_path
 from cuefem.files.defaults_report import STROKE, Assumption, given_keys
-from cuefem.files.lathe_profile import names_units
+from cuefem.files.lathe_profile import DRAWING_EXTENSIONS, names_units
 from cuefem.files.shaft_additions import SHAFT_ADDITIONS
 from cuefem.files.warnings_of_drawings import drawing_warnings
 from cuefem.measurements.calibration import Calibration
@@ -38,7 +38,6 @@ from cuefem.scene import Scene
 from cuefem.show.renderers import csv_text
 from cuefem.show.scene_summary import listed
 
-DRAWINGS = (".toml", ".csv", ".stl", ".ply", ".obj")
 MEASURED_FILES = (MEASURED, "cue.toml", "cue.csv")  # one of them makes a folder a measured cue
 
 
@@ -144,9 +143,13 @@ def _listed_files(files: Sequence[Path]) -> list[Path]:
     folder = files[0]
     if len(files) > 1 or not folder.is_dir() or any((folder / name).exists() for name in MEASURED_FILES):
         return []
-    drawings = sorted(file for file in folder.iterdir() if file.suffix.lower() in DRAWINGS and file.name != "shop.toml")
+    drawings = sorted(
+        file for file in folder.iterdir() if file.suffix.lower() in DRAWING_EXTENSIONS and file.name != "shop.toml"
+    )
     if not drawings:
-        problem = f"must hold drawings ({', '.join(DRAWINGS)}), or measured.toml and the drawing of a measured cue"
+        problem = (
+            f"must hold drawings ({', '.join(DRAWING_EXTENSIONS)}), or measured.toml and the drawing of a measured cue"
+        )
         raise InputError(folder, "", f"{problem}; got none")
     return drawings
 

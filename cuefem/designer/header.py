@@ -14,13 +14,13 @@ from cuefem.designer.in_thread import run_in_thread
 from cuefem.designer.measured_form import MeasuredForm
 from cuefem.designer.state import FAILURES, MAX_NAME, one_line, read_file
 from cuefem.files.cue_names import CUES
+from cuefem.files.lathe_profile import DRAWING_EXTENSIONS
 from cuefem.quantity.display_units import display, displayed_system
 
 MAX_FILE = 5_000_000  # bytes
 UNITS_KEPT = "cuefem.units"  # of the browser's storage
 # By the system displayed: words and icon of the button that displays the other one, and its name.
 OTHER_UNITS = {"metric": ("Inches", "square_foot", "us"), "us": ("Metric", "square_foot", "metric")}
-KINDS = (".toml", ".csv", ".stl", ".ply", ".obj")
 
 
 class Upload:
@@ -35,7 +35,7 @@ class Upload:
             max_file_size=MAX_FILE,
             on_upload=lambda event: held.take_file(event),
             on_rejected=lambda: held.page.show_message(f"not opened: at most {MAX_FILE // 10**6} MB"),
-        ).props(f'accept="{",".join(KINDS)}"')
+        ).props(f'accept="{",".join(DRAWING_EXTENSIONS)}"')
         self.field.classes("unseen")
 
     def pick(self, take: Callable[[Any], None]) -> None:

@@ -13,9 +13,10 @@ from starlette.middleware.trustedhost import TrustedHostMiddleware
 from starlette.responses import HTMLResponse, PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from cuefem.designer.header import KINDS, MAX_FILE, UNITS_KEPT
+from cuefem.designer.header import MAX_FILE, UNITS_KEPT
 from cuefem.designer.page import Page, is_open
 from cuefem.designer.state import Design
+from cuefem.files.lathe_profile import DRAWING_EXTENSIONS
 from cuefem.handbook.page import page as handbook
 from cuefem.measurements.calibration import Calibration
 from cuefem.quantity.display_units import SYSTEMS, display, displayed_system
@@ -23,7 +24,8 @@ from cuefem.quantity.unit_checks import PlausibilityWarning
 
 HOST = "127.0.0.1"
 FORM_SIZE = 10_000  # bytes of a form beside its file
-REJECTED = f"a file must be a {', '.join(KINDS[:-1])} or {KINDS[-1]} of at most {MAX_FILE // 10**6} MB"
+ENDINGS = f"{', '.join(DRAWING_EXTENSIONS[:-1])} or {DRAWING_EXTENSIONS[-1]}"
+REJECTED = f"a file must be a {ENDINGS} of at most {MAX_FILE // 10**6} MB"
 
 
 def serve(

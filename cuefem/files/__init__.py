@@ -14,7 +14,13 @@ from typing import Any
 from cuefem.cue import Cue, LumpedCue
 from cuefem.files.cue_names import named_path
 from cuefem.files.errors import InputError, as_input_error, check_path, os_error_text, quote
-from cuefem.files.lathe_profile import DEFAULT_MATERIAL, SHAPE_EXTENSIONS, SPREADSHEET_EXTENSIONS, read_profile
+from cuefem.files.lathe_profile import (
+    DEFAULT_MATERIAL,
+    DRAWING_EXTENSIONS,
+    SHAPE_EXTENSIONS,
+    SPREADSHEET_EXTENSIONS,
+    read_profile,
+)
 from cuefem.files.schema import named_material
 from cuefem.files.shaft_additions import with_additions, with_shaft_material
 from cuefem.files.toml_reader import cue_as_drawn, load_accuracy, load_cue, load_toml
@@ -111,7 +117,8 @@ def _load_cue(path: Path, material: str | None = None, length_unit: str | None =
         what = "a measured cue's folder: `cuefem compare`, cuefem.compare(folder)" if is_measured else "a folder"
         raise InputError(path, "", f"must be a file; got {what}")
     hint = "; save the table as .csv" if ending in SPREADSHEET_EXTENSIONS else ""
-    raise InputError(path, "", f"must end in .toml, .csv, .stl, .ply or .obj; got {path.suffix!r}{hint}")
+    endings = f"{', '.join(DRAWING_EXTENSIONS[:-1])} or {DRAWING_EXTENSIONS[-1]}"
+    raise InputError(path, "", f"must end in {endings}; got {path.suffix!r}{hint}")
 
 
 def replaced_segments(path: Path, scene: Scene, **options: Any) -> int:

@@ -44,6 +44,7 @@ DEFAULT_MATERIAL = "hard maple"
 DEFAULT_UNIT = "mm"  # of a surface's coordinates
 SURFACE_EXTENSIONS = (".stl", ".ply", ".obj")
 SHAPE_EXTENSIONS = (".csv", *SURFACE_EXTENSIONS)  # files with the shape of a shaft and without its material
+DRAWING_EXTENSIONS = (".toml", *SHAPE_EXTENSIONS)
 # Extensions of programs that can export .csv.
 SPREADSHEET_EXTENSIONS = (".xlsx", ".xls", ".ods", ".numbers", ".txt", ".tsv", ".dat")
 # Points closer than this to a straight taper lie on it, m: the rounding of a file, far below the error of a lathe.

@@ -17,7 +17,7 @@ import numpy as np
 from cuefem.cue import Array, Cue, Material, Segment
 from cuefem.files.csv_header import length_unit_of
 from cuefem.files.errors import InputError, as_input_error, check_size, file_state, quote
-from cuefem.files.lathe_profile import DEFAULT_UNIT
+from cuefem.files.lathe_profile import DEFAULT_UNIT, SURFACE_EXTENSIONS
 from cuefem.files.surface_sections import Index, SectionedShaft, aligned_surface, section_shaft
 from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.units import conversion_factor
@@ -142,7 +142,7 @@ def _read_obj(path: Path) -> meshio.Mesh:
     return meshio.Mesh(np.array(points).reshape(-1, 3), cells)
 
 
-_READERS = {".stl": _read_stl, ".ply": _read_ply, ".obj": _read_obj}
+_READERS = dict(zip(SURFACE_EXTENSIONS, (_read_stl, _read_ply, _read_obj), strict=True))
 
 
 def _faces(path: Path) -> tuple[Array, Index]:

@@ -12,8 +12,9 @@ from studies.measured import two_balls
 from studies.pages import IN_PYTHON, STUDIES, Study, disagreements
 from studies.strokes import cue, full_model, pool_stroke
 
-# Studies whose page takes more than 20 s of processor time; `.ci/nightly` computes them again.
+# Studies whose page takes more than 10 s of processor time; `.ci/nightly` computes them again.
 NIGHTLY = ("accuracy", "calibration", "distribution", "fronts", "games", "leather", "miscue_limit", "solid")
+NIGHTLY += ("article", "scatter")
 # Studies of few sums and no search, whose pages are equal: one unit in a last digit is a stale number.
 SMOOTH = ("chain", "definitions", "kim")
 PROGRAMS = sorted(path for path in STUDIES.rglob("*.py") if re.search(r"^STUDY = ", path.read_text("utf-8"), re.M))
