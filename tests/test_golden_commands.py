@@ -103,6 +103,13 @@ def parts(folder: Path) -> list[list[object]]:
     return [["parts"]]
 
 
+def clamped(folder: Path) -> list[list[object]]:
+    """A stroke whose simpler models have no end mass."""
+    tip, clamp = cf.Tip(0.75, 0.7, contact_time=2e-3), cf.Support(0.01, 1e8)
+    cf.save(cf.Scene(kim(), tip=tip, stroke=cf.Stroke(offset=0.3), effects=(clamp,)), folder / "clamped.toml")
+    return [["strike", "clamped.toml"]]
+
+
 def written(path: Path) -> str:
     """A written file: a page's text and charts, or the file itself."""
     text = path.read_text(encoding="utf-8")
@@ -112,7 +119,7 @@ def written(path: Path) -> str:
 HEAVY = [pytest.param(each, marks=pytest.mark.heavy) for each in (beside, surfaces)]
 
 
-@pytest.mark.parametrize("prepare", [sweep, scatter, optimum, comparison, estimate, parts, *HEAVY])
+@pytest.mark.parametrize("prepare", [sweep, scatter, optimum, comparison, estimate, parts, clamped, *HEAVY])
 def test_written_files_equal_golden_file(
     prepare: Callable[[Path], list[list[object]]],
     tmp_path: Path,

@@ -37,6 +37,7 @@ PIVOT_NOTE = (
     "natural pivot length: distance from the end of the tip to the point about which pivoting the cue cancels squirt "
     "(back-hand English)"
 )
+NO_END_MASS = "left out, because no end mass that is found has the squirt of a tip that sticks at this offset"
 UNCERTAINTY_NOTE = "run `cuefem report FILE` for the uncertainty of squirt"
 MISCUE_NOTE = f"miscue: {MISCUE_DEFINITION}. Do not use squirt and natural pivot length; use a smaller offset"
 
@@ -123,11 +124,13 @@ class StrikeModels(Rows, Analysis):
         accuracy = ", numerical error of squirt at most 0.1 % for 95 % of default strikes" if is_default else ""
         beam = f"coupled: vibrating shaft in time{accuracy}"
         where = f"stick at b/R {self.scene.stroke.offset:.4g}"
-        two_part = f"two-part: one axial mass and {_mass_text(self.end_mass)}, {where}"
+        if self.end_mass is None and self.a31_end_mass is None:
+            return [use, beam, f"two-part and A.31: {NO_END_MASS}"]
+        two_part = f"two-part: {_mass_text(self.end_mass, where, beside='one axial mass and ')}"
         if self.end_mass == self.a31_end_mass:
             return [use, beam, f"{two_part}; A.31: the same end mass"]
-        left_out = "without effects at the tip, as published ones"
-        return [use, beam, two_part, f"A.31: {_mass_text(self.a31_end_mass)}, {where} {left_out}"]
+        bare = f"{where} without effects at the tip, as published ones"
+        return [use, beam, two_part, f"A.31: {_mass_text(self.a31_end_mass, bare)}"]
 
     def _speed_notes(self) -> list[str]:
         """A note on the lower ball speed of the two-part cue, which omits the axial waves of the coupled strike."""
@@ -174,8 +177,8 @@ def strike_models(scene: Solvable, rtol: float | None = None) -> StrikeModels:
     return StrikeModels(scene, end_mass, a31_end_mass, models)
 
 
-def _mass_text(end_mass: float | None) -> str:
-    return f"an end mass of {with_unit(end_mass, END_MASS)}" if end_mass else "an end mass"
+def _mass_text(end_mass: float | None, where: str, beside: str = "") -> str:
+    return NO_END_MASS if end_mass is None else f"{beside}an end mass of {with_unit(end_mass, END_MASS)}, {where}"
 
 
 def two_part_cue(design: SolvedDesign) -> LumpedCue | None:
