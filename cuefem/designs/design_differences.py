@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
 
+from cuefem.designs.evaluation import Response
 from cuefem.designs.study import Study, StudyDesign
 from cuefem.parameters.parts import main_material
 from cuefem.parameters.table import PARAMETERS
 from cuefem.results.differences import is_shared, relative_differences
 from cuefem.results.records import Record
-from cuefem.results.uncertainty import changes_by_input
+from cuefem.results.uncertainty import changes_by_input, model_error
 from cuefem.scene import Scene
 
 DRAWN = ("bore_width",)  # uncertain in a cue that exists; a study draws it
@@ -56,6 +58,17 @@ def design_differences(
         )
         records.append(relative_differences(first, other, same_shaft=same_shaft, with_model_error=modelled))
     return records
+
+
+def squirt_error(study: Study, design: StudyDesign, response: Response) -> float:
+    """Uncertainty (1 sigma) of a design's squirt, rad: of the model, and of inputs that a study does not draw."""
+    if study.squirt_factor != 1.0:
+        return math.nan  # a calibration has its own
+    squirt = design.responses[response.name]
+    alone = replace(study, responses=(response,)), replace(design, responses={response.name: squirt})
+    changes = _changes(*alone, [key for key in PARAMETERS if key not in DRAWN])
+    inputs = (each.get(response.name, 0.0) for each in changes.values())
+    return abs(squirt) * math.hypot(model_error(design.scene), *inputs)
 
 
 def _changes(study: Study, design: StudyDesign, inputs: Sequence[str]) -> dict[str, Mapping[str, float]]:

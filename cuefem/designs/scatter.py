@@ -402,16 +402,17 @@ def _histogram(response: Response, sample: Array, spread: Mapping[str, float]) -
 
 
 def _factors_chart(label: str, drivers: SobolIndices, k: int) -> Chart:
-    """The total index of each factor with its interval, the strongest on top."""
+    """The total index of each factor with its interval, the strongest on top, within what a share can be."""
     order = drivers.total[:, k].argsort()
-    share, interval = 100 * drivers.total[order, k], 100 * drivers.total_interval[:, order, k]
+    share, interval = (100 * np.clip(values, 0.0, 1.0) for values in (drivers.total, drivers.total_interval))
+    share, interval = share[order, k], interval[:, order, k]
     rows = np.arange(len(order))
     gaps = np.full(len(order), np.nan)
     lines = Curve("95 % interval", np.stack([*interval, gaps]).T, np.stack([rows, rows, gaps]).T, "c1")
     return chart(
         f"Factors: {label}",
         [lines],
-        x=Axis("total share of the variance, %", 0.0),
+        x=Axis("total share of the variance, %", 0.0, 100.0),
         y=Axis("factor", names=tuple(drivers.factors[i] for i in order)),
         points=[Dots("share", share, rows, "c1")],
         height=ROW_HEIGHT * len(order) + ROWS_END,

@@ -74,6 +74,7 @@ class StudyResult(Analysis):
     definition: StudyDefinition = field(repr=False)
     columns: Columns = field(repr=False)
     kind: ClassVar[str] = ""
+    folds_assumptions: ClassVar[bool] = True
     why_no_best: ClassVar[str] = "none has a response"
 
     def save(self, path: str | Path, *, front: bool = False) -> None:

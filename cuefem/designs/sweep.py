@@ -5,6 +5,7 @@ Which parameter explains which response, and where two responses trade off: stat
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -15,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cuefem.cue import Array
-from cuefem.designs.design_differences import design_differences
+from cuefem.designs.design_differences import design_differences, squirt_error
 from cuefem.designs.evaluation import Response
 from cuefem.designs.study import Study, StudyDesign
 from cuefem.designs.study_result import CHART_HEIGHT, ROW_HEIGHT, ROWS_END, StudyResult
 from cuefem.designs.study_table import column_label, shown
-from cuefem.quantity.display_units import to_display, with_heading
+from cuefem.quantity.display_units import to_display, with_heading, with_unit
 from cuefem.quantity.equality import equal_fields
 from cuefem.results.records import Record, Table
 from cuefem.show.charts import Axis, Chart, Curve, Dots, chart
@@ -33,6 +34,10 @@ MIN_TREND = 0.2  # minimum rank correlation of a trend
 TREND_NOTE = (
     "falls: a larger value of the parameter gives a smaller result (a larger bore, less squirt); rises: a larger one; "
     "the shares exclude interactions of parameters"
+)
+SQUIRT_NOTE = (
+    "squirt ±: 1σ, of the model and of unmeasured wood and tip; all designs share most of it, so that differences are "
+    "surer"
 )
 NOT_DISTINCT_FROM_ROW_ABOVE = (
     "* ±: 1σ of the difference from the row above, which is smaller: the two designs are not distinct in this result."
@@ -66,6 +71,15 @@ class SweepResult(StudyResult):
         """Its statistics; None if no design has a response."""
         return sweep_statistics(self.study, self.designs, self.columns.values)
 
+    @cached_property
+    def errors(self) -> dict[str, float]:
+        """Uncertainty (1 sigma) of the squirt of the best design for each squirt, rad, by response."""
+        return {
+            response.name: squirt_error(self.study, self.best[response.name], response)
+            for response in self.study.responses
+            if response.kind == "squirt" and response.name in self.best
+        }
+
     @property
     def front(self) -> list[int]:
         """The designs of the Pareto front by number, in order of the first of its two responses."""
@@ -96,7 +110,7 @@ class SweepResult(StudyResult):
             "lacking": dict(zip(self.responses, lacking.sum(axis=0), strict=True)),
             "first_failure": first_failure,
         }
-        return counts | {"summary": self.statistics and sweep_record(self.statistics, self.front_steps)}
+        return counts | {"summary": self.statistics and sweep_record(self.statistics, self.front_steps, self.errors)}
 
     def charts(self) -> list[Chart]:
         """The trade-off with its Pareto front, and the first response against each parameter."""
@@ -104,7 +118,7 @@ class SweepResult(StudyResult):
 
     def tables(self) -> list[Table | str]:
         """Varied parameters, best designs, sensitivities, and the Pareto front."""
-        found = [] if self.statistics is None else tabulate_sweep(self.statistics, self.front_steps)
+        found = [] if self.statistics is None else tabulate_sweep(self.statistics, self.front_steps, self.errors)
         return [*super().tables(), *found]
 
 
@@ -245,10 +259,10 @@ def _trend(column: np.ndarray, result: Array) -> str:
     return "rises" if correlation > MIN_TREND else "falls" if correlation < -MIN_TREND else ""
 
 
-def sweep_record(sweep: SweepStatistics, steps: Sequence[Mapping[str, Record]]) -> Record:
+def sweep_record(sweep: SweepStatistics, steps: Sequence[Mapping[str, Record]], errors: Mapping[str, float]) -> Record:
     """Best designs, sensitivities and the Pareto front of a sweep.
 
-    steps: differences of each shown design of the front from the one before.
+    steps: differences of each shown design of the front from the one before. errors: of the squirt of best designs.
     """
     names = [response.name for response in sweep.responses]
 
@@ -258,7 +272,11 @@ def sweep_record(sweep: SweepStatistics, steps: Sequence[Mapping[str, Record]]) 
         return {"design": sweep.numbers[i], "values": values, "responses": responses}
 
     record: Record = {
-        "best": {names[k]: {"better": sweep.responses[k].result.better, **design(sweep.best(k))} for k in sweep.ranked},
+        "best": {
+            names[k]: {"better": sweep.responses[k].result.better, **design(sweep.best(k))}
+            | ({"error": errors[names[k]]} if names[k] in errors else {})
+            for k in sweep.ranked
+        },
         "sensitivities": {
             name: {
                 column: {"share": sweep.shares[j, k], "trend": sweep.trends[j][k] or None}
@@ -277,10 +295,12 @@ def sweep_record(sweep: SweepStatistics, steps: Sequence[Mapping[str, Record]]) 
     return record
 
 
-def tabulate_sweep(sweep: SweepStatistics, steps: Sequence[Mapping[str, Record]]) -> list[Table | str]:
+def tabulate_sweep(
+    sweep: SweepStatistics, steps: Sequence[Mapping[str, Record]], errors: Mapping[str, float]
+) -> list[Table | str]:
     """The best design for each response, the sensitivities, and evenly spaced designs of the Pareto front.
 
-    Of a single design its responses alone. steps: as of `sweep_record`.
+    Of a single design its responses alone. steps, errors: as of `sweep_record`.
     """
     labels = [*map(column_label, sweep.names)]
     heads = [*map(with_heading, labels, sweep.units)]
@@ -299,6 +319,9 @@ def tabulate_sweep(sweep: SweepStatistics, steps: Sequence[Mapping[str, Record]]
         which = f"{response.result.better} is better" if response.result.better else "the lowest"
         which += ", by size" if response.result.odd else ""
         value, *rest = cells(i, [k])
+        error = errors.get(response.name, math.nan)
+        if not math.isnan(error):
+            value = with_unit(sweep.results[i, k], response.display_key, error=error)
         best.append((f"{response.heading} ({which})", value, ends, str(sweep.numbers[i]), *rest))
     for k, response in enumerate(sweep.responses):
         parts = (
@@ -306,8 +329,9 @@ def tabulate_sweep(sweep: SweepStatistics, steps: Sequence[Mapping[str, Record]]
             for share, trend in zip(sweep.shares[:, k], sweep.trends, strict=True)
         )
         sensitivities.append((response.label, *parts))
+    about = (SQUIRT_NOTE,) if errors else ()
     sheets: list[Table | str] = [
-        Table("Best designs", ("best for", "value", "all designs", "design", *heads), tuple(best)),
+        Table("Best designs", ("best for", "value", "all designs", "design", *heads), tuple(best), about),
         Table(
             "Sensitivity: share of a result's variance between designs by one parameter alone",
             ("result", *labels),

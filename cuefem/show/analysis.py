@@ -53,6 +53,7 @@ class Answer:
 
     has_stroke: ClassVar[bool] = True  # whether ball, tip and stroke matter to the answer
     about: ClassVar[str] = ""  # definitions, for pages
+    folds_assumptions: ClassVar[bool] = False  # on its page
     own_units: ClassVar[Mapping[str, str]] = MappingProxyType({})  # of numbers that are no quantities of the registry
 
     def tables(self) -> list[Table | str]:
@@ -159,8 +160,11 @@ class Answer:
         title = name or effect_name(type(self).__name__).capitalize()
         heading = "" if self.heading() in title else ": ".join(filter(None, (name.partition(":")[0], self.heading())))
         more = (chart for folded in self.more_charts() for chart in folded.charts)
-        things = [heading, *self.charts(), *more, *self._body(self._noted(assumptions))]
-        return plain_page(title, things, made, [*self.gaps(), *self._warned(warnings)], inline=inline)
+        noted = self._noted(assumptions)
+        folded = [*map(str, noted)] if self.folds_assumptions else []
+        things = [heading, *self.charts(), *more, *self._body(() if folded else noted)]
+        said = [*self.gaps(), *self._warned(warnings)]
+        return plain_page(title, things, made, said, notes=folded, inline=inline)
 
     def _noted(self, assumptions: Sequence[Assumption] | None) -> Sequence[Assumption]:
         """Given assumptions, or the answer's own."""

@@ -96,11 +96,12 @@ def plain_page(
     made: str = "",
     warnings: Sequence[str] = (),
     *,
+    notes: Sequence[str] = (),
     inline: bool = False,
 ) -> str:
-    """Lines, tables, charts and drawings as a page, or as a part of one. made: the date at its end."""
+    """Lines, tables, charts and drawings as a page, or as a part of one. made: the date at its end. notes: folded."""
     groups = [[*group] for _, group in groupby(filter(None, things), type)]
-    parts = {"title": name, "name": name, "groups": groups, "made": made, "warnings": warnings}
+    parts = {"title": name, "name": name, "groups": groups, "made": made, "warnings": warnings, "notes": notes}
     return framed("plain.html.j2", **parts, screen="", kind="", inline=inline)
 
 

@@ -13,6 +13,7 @@ from hypothesis.extra.numpy import arrays
 import cuefem as cf
 from cuefem.designs import Response
 from cuefem.designs.sweep import SweepResult, SweepStatistics
+from cuefem.files.defaults_report import Assumption
 from cuefem.results.uncertainty import RATIO_FLOOR, SHAFT_ERROR
 from tests.helpers.examples import examples
 from tests.helpers.sweeps import STUDY, write_study
@@ -86,3 +87,16 @@ def test_neighbours_on_the_front_that_are_not_distinct_are_marked(tmp_path: Path
         marks.count(False),
         True,
     )
+
+
+@pytest.mark.heavy
+def test_best_squirt_has_the_uncertainty_of_a_verdict() -> None:
+    scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.01275, 0.021, cf.material("hard maple")),), body_mass=0.43))
+    result = cf.study(
+        cf.Study(scene, (cf.Vary("tip diameter", cf.Span(0.0115, 0.0125, count=2)),), (cf.Response("squirt"),))
+    )
+    own = cf.verdict(result.best["squirt"].scene)
+    relative = result.errors["squirt"] / own.squirt
+    assert relative == pytest.approx(math.hypot(own.uncertainty["model"], own.uncertainty["inputs"]), rel=1e-3)
+    assert f"{math.degrees(own.squirt):.2f} ± {math.degrees(result.errors['squirt']):.2f}" in str(result)
+    assert "<summary>1 assumption</summary>" in result.to_html(assumptions=[Assumption("", "ball 170 g")])
