@@ -43,6 +43,7 @@ from .analysis.parts import Parts as Parts, parts as parts
 from .analysis.cue_report import CueReport as CueReport, report as report
 from .analysis.plays_like import PlaysLike as PlaysLike, plays_like as plays_like
 from .analysis.shop_changes import Limits as Limits
+from .analysis.customer_sheet import CustomerSheet as CustomerSheet, customer_sheet as customer_sheet
 from .analysis.shop_list import ShopList as ShopList, shop_list as shop_list
 from .analysis.squirt_curve import SquirtCurve as SquirtCurve, squirt_curve as squirt_curve
 from .analysis.strike_models import StrikeModels as StrikeModels, strike_models as strike_models
@@ -76,6 +77,8 @@ from .endmass.lumped import impulse as impulse, lump as lump
 from .scene.default_scene import usual_scene as usual_scene
 from .files import save as save
 from .files.loaders import load as load, load_cue as load_cue, load_scene as load_scene
+from .files.shop import Shop as Shop
+from .files.toml_reader import Order as Order
 from .files.paraview import save_motion as save_motion
 from .designs.evaluation import Response as Response
 from .designs.optimum import Limit as Limit, OptimumResult as OptimumResult, Problem as Problem

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from cuefem.analysis import has_segments, report_sections
 from cuefem.analysis.natural_frequencies import natural_frequencies
+from cuefem.analysis.shop_changes import Limits
 from cuefem.analysis.squirt_curve import FINE_OFFSETS
 from cuefem.analysis.strike_models import regime_warning
 from cuefem.contact.geometric_stiffness import SlopeOutOfRange
@@ -132,6 +133,7 @@ def report(
     rtol: float | None = None,
     *,
     calibration: Calibration | None = None,
+    limits: Limits = Limits(),  # noqa: B008  # frozen
     details: bool = False,
     progress: Progress = list,
 ) -> CueReport:
@@ -145,6 +147,8 @@ def report(
         Relative numerical error target of the coupled strike; by default that of a default strike.
     calibration : Calibration, optional
         Squirt that was measured on another shaft with the same tip: squirt and all that follows from it are calibrated.
+    limits : Limits
+        What the maker does not accept of a design change.
     details : bool
         Whether the sections are computed too that only a page has, and the finer curves.
     progress : callable
@@ -179,7 +183,11 @@ def report(
     if calibration is not None:
         with suppress(NoVerdict):  # the section of the verdict says why
             design = design.calibrated(calibration.factor(scene))
-    arguments = {"verdict": calibrated, "advice": calibrated, "squirt": {"offsets": FINE_OFFSETS} if details else {}}
+    arguments: Record = {
+        "verdict": calibrated,
+        "advice": calibrated | {"limits": limits},
+        "squirt": {"offsets": FINE_OFFSETS} if details else {},
+    }
     for key, question in progress(wanted):
         answer = question.function()
         try:

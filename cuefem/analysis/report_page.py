@@ -54,7 +54,7 @@ def page_of(
     """
     verdict: Any = answers["verdict"]
     calibrated = verdict.calibrated
-    own = HeadlineCue(name, scene, _numbers(scene, answers), verdict)
+    own = headline_cue(scene, answers, name)
     sections = [part for part in report_parts(scene, answers) if part["key"] != "verdict"]
     others = [] if beside is None else [beside.cue]
     if beside is not None:
@@ -158,11 +158,12 @@ def section_of(table: Table, charts: Sequence[Chart]) -> Record:
     return _section("other", table.title, [table]) | {"charts": charts}
 
 
-def _numbers(scene: Scene, answers: Answers) -> dict[str, float | None]:
-    """The numbers of the first screen, SI."""
+def headline_cue(scene: Scene, answers: Answers, name: str) -> HeadlineCue:
+    """The cue of a report's answers with the numbers of the first screen, SI."""
     numbers = answers["numbers"]
     shown: dict[str, Any] = dict(numbers.values())
     shown["pivot_length"] = pivot_length(scene, shown["squirt"])
     modes: Any = answers.get("modes")
     shown["frequency_1"] = modes.frequencies[0] if modes else None
-    return shown
+    verdict: Any = answers["verdict"]
+    return HeadlineCue(name, scene, shown, verdict)

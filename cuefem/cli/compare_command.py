@@ -23,18 +23,16 @@ from cuefem.cli.scene_command import (
     cue_options,
     force_option,
 )
-from cuefem.cli.scene_options import CUE_KEYS, impact_options, offset_option, option, typed_name
-from cuefem.files import InputError, load, write_atomically
+from cuefem.cli.scene_options import impact_options, offset_option, option, typed_name
+from cuefem.files import InputError, write_atomically
 from cuefem.files.cue_names import cue_name, named_path
-from cuefem.files.defaults_report import STROKE, Assumption, given_keys
-from cuefem.files.lathe_profile import DRAWING_EXTENSIONS, names_units
-from cuefem.files.shaft_additions import SHAFT_ADDITIONS
+from cuefem.files.defaults_report import STROKE, Assumption
+from cuefem.files.lathe_profile import DRAWING_EXTENSIONS
 from cuefem.files.warnings_of_drawings import drawing_warnings
 from cuefem.measurements.calibration import Calibration
 from cuefem.measurements.measured_folder import MEASURED, load_measured, named_folder, write_template
 from cuefem.quantity.display_units import displayed_system
 from cuefem.results.plausibility import plausibility_warnings
-from cuefem.scene import Scene
 from cuefem.show.renderers import csv_text
 from cuefem.show.scene_summary import listed
 
@@ -180,8 +178,8 @@ def _list(files: Sequence[Path], options: Mapping[str, str | None], output: Path
 def open_request(file: Path, options: Mapping[str, str | None]) -> Request:
     """The request of a file with the options that it leaves open."""
     request = Request.of(file, options)
-    own = _own_values(request)
-    return replace(request, given={key: text for key, text in request.given.items() if key not in own})
+    own = request.own_values()
+    return replace(request, given={key: text for key, text in request.given.items() if key not in own}).with_shop()
 
 
 def _write_calibration(folder: Path, output: Path, *, as_json: bool) -> None:
@@ -242,7 +240,7 @@ def _distributed(requests: Sequence[Request], names: Sequence[str]) -> tuple[lis
     InputError for an option that no file leaves open, and for a --shaft-mass of several shafts.
     """
     given = requests[0].given
-    own = {name: _own_values(request) & {*given} for name, request in zip(names, requests, strict=True)}
+    own = {name: request.own_values() & {*given} for name, request in zip(names, requests, strict=True)}
     notes = []
     for key in sorted(set().union(*own.values())):
         having = [name for name in names if key in own[name]]
@@ -258,7 +256,7 @@ def _distributed(requests: Sequence[Request], names: Sequence[str]) -> tuple[lis
         )
         raise InputError(requests[0].file, option("shaft_mass"), problem)
     filled = [
-        replace(request, given={key: text for key, text in given.items() if key not in own[name]})
+        replace(request, given={key: text for key, text in given.items() if key not in own[name]}).with_shop()
         for name, request in zip(names, requests, strict=True)
     ]
     return filled, notes
@@ -268,21 +266,6 @@ def _no_file_lacks(text: str, count: int) -> str:
     """Why an option of which every file has a value is refused."""
     every = "both files have" if count == 2 else f"all {count} files have"
     return f"must be a value that a file leaves open; got {text!r}, and {every} their own: omit it"
-
-
-def _own_values(request: Request) -> set[str]:
-    """The options of cue and tip whose values a file has itself; a cue by its name and a lumped cue are complete."""
-    file, unit, ending = request.file, request.given.get("length_unit"), request.file.suffix.lower()
-    own = {"length_unit", "front"} if ending == ".toml" else set[str]()
-    if ending == ".csv" and unit is not None and names_units(file):
-        own, unit = {"length_unit"}, None
-    opened = load(file, length_unit=None if "length_unit" in own else unit)
-    own |= given_keys(file, opened, unit)
-    has_no_shaft = False
-    if isinstance(opened, Scene):
-        own |= {"game"}
-        has_no_shaft = opened.lumped is not None
-    return own | {*SHAFT_ADDITIONS, *CUE_KEYS} if cue_name(file) or has_no_shaft else own
 
 
 def _assumptions(asked: Mapping[str, Request]) -> list[Assumption]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -30,6 +31,7 @@ from cuefem.cli.scene_options import CueFile, file_label, option, option_value, 
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.files import InputError, load_accuracy, save
 from cuefem.files.errors import as_input_error
+from cuefem.files.shop import order_of
 from cuefem.parameters.parts import main_material
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.quantity.fields import Quantity
@@ -51,19 +53,72 @@ class WithDefinitions(Command):
 
 
 @analysis_command()
+@click.option("--sheet", is_flag=True, help="Write the page of -o as one printed sheet for a customer.")
+@click.option("--customer", metavar="NAME", help="Customer on the sheet, instead of that of the file's [order].")
+@click.option("--serial", metavar="TEXT", help="Serial number on the sheet.")
+@click.option("--date", metavar="TEXT", help="Date on the sheet (default: today).")
 @calibration_option
-def report(request: Request, output: Path | None, calibration: Calibration | None) -> Analysis:
+def report(
+    request: Request,
+    sheet: bool,
+    customer: str | None,
+    serial: str | None,
+    date: str | None,
+    output: Path | None,
+    calibration: Calibration | None,
+) -> Analysis:
     """Report the squirt of a cue with its uncertainty, then natural frequencies, end mass, pivot length and masses.
 
     Prints tables; -o FILE.html writes a page with figures. Assumptions are listed last, each with its option.
+
+    --sheet -o FILE.html writes one page for the customer: drawing, numbers, and the ball's way on a table. The name of
+    the shop is that of shop.toml beside the file, in a folder above it, or in the user's configuration folder:
+    [shop] name, line, logo; [defaults] body_mass, ferrule, units; [defaults.limits] wall, keep, stiffness_loss.
     """
-    details = output is not None and output.suffix.lower() == ".html"
+    has_page = output is not None and output.suffix.lower() == ".html"
+    said = {name: text for name, text in (("customer", customer), ("serial", serial), ("date", date)) if text}
+    if sheet:
+        if not has_page:
+            raise InputError(request.file, "--sheet", "requires -o FILE.html")
+        return _customer_sheet(request, said, calibration)
+    if said:
+        raise InputError(request.file, option(next(iter(said))), "is for --sheet")
+    details = has_page
     rtol = load_accuracy(request.file) if details else None
-    answer = cf.report(request.scene, rtol, calibration=calibration, details=details, progress=with_progress_bar)
+    answer = cf.report(
+        request.scene,
+        rtol,
+        calibration=calibration,
+        limits=shop_limits(request),
+        details=details,
+        progress=with_progress_bar,
+    )
     if output is None and {"verdict", "modes"} <= {*answer.sections}:  # nothing of a lumped cue can be changed
         asked = shlex.join(["cuefem", "improve", typed_name(request.file)])
         request.hints.append(f"Design changes: {asked}, with the same options")
     return answer
+
+
+def _customer_sheet(request: Request, said: dict[str, str], calibration: Calibration | None) -> Analysis:
+    """The sheet of a cue, with its logo and order checked before the computation."""
+    logo, order = request.shop.logo(), order_of(request.file)
+    for name, text in said.items():
+        with as_input_error(request.file, option(name)):
+            order = replace(order, **{name: text})
+    answer = cf.report(request.scene, calibration=calibration, progress=with_progress_bar)
+    return cf.customer_sheet(answer, request.shop.shop, order, logo=logo)
+
+
+def shop_limits(request: Request) -> Limits:
+    """The limits of design changes of the shop.toml of a file; the usual ones without it."""
+    shop, given = request.shop, request.shop.defaults.limits
+    found: dict[str, Any] = {"keep": given.keep} if given.keep else {}
+    if given.wall is not None:
+        found["wall"] = option_value(shop.path, "defaults.limits.wall", given.wall, Quantity("m", "(0, 1]"))
+    if given.stiffness_loss is not None:
+        found["stiffness_loss"] = _share(shop.path, "defaults.limits.stiffness_loss", given.stiffness_loss)
+    with as_input_error(shop.path, "defaults.limits"):
+        return Limits(**found)
 
 
 @analysis_command(formats=(".html", ".json", ".toml"))
@@ -130,17 +185,17 @@ def _limits(request: Request, wall: str | None, keep: str | None, stiffness_loss
     if keep is not None:
         given["keep"] = tuple(part.strip().casefold() for part in keep.split(","))
     if stiffness_loss is not None:
-        given["stiffness_loss"] = _share(request, stiffness_loss)
+        given["stiffness_loss"] = _share(request.file, "--stiffness-loss", stiffness_loss)
     for name, value in given.items():
         with as_input_error(request.file, option(name)):
             Limits(**{name: value})
-    return Limits(**given)
+    return replace(shop_limits(request), **given)
 
 
-def _share(request: Request, text: str) -> float:
+def _share(file: Path, name: str, text: str) -> float:
     """A share such as "5 %" or 0.05."""
     number, percent = text.strip().removesuffix("%"), text.strip().endswith("%")
-    with as_input_error(request.file, "--stiffness-loss"):
+    with as_input_error(file, name):
         try:
             return float(number) / (100 if percent else 1)
         except ValueError:

@@ -55,7 +55,7 @@ def designer(
             raise ValueError(f"{option(name)} needs a SCENE, whose cue or stroke it changes; got none")
         first = reference_design(REFERENCES[0])
     else:
-        request = Request.of(scene, options)
+        request = Request.of(scene, options).with_shop()
         with request.errors():
             first = design_of(cue_name(scene) or scene.stem, request.scene, request.assumed)
         request.print_warnings()

@@ -10,9 +10,12 @@ from pathlib import Path
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from cuefem.files import InputError, check_writable
+from cuefem.files.cue_names import cue_name
 from cuefem.files.defaults_report import Assumption
+from cuefem.files.shop import find_shop
 from cuefem.quantity.display_units import SYSTEMS, displayed_in
 from cuefem.quantity.encoding import is_unicode
 from cuefem.show.renderers import json_text
@@ -55,6 +58,8 @@ class Command(click.Command):
     def invoke(self, ctx: click.Context) -> Any:
         """Run it in the chosen units of display; what becomes JSON alone is metric in every text."""
         system = ctx.params.pop("units")
+        if ctx.get_parameter_source("units") is ParameterSource.DEFAULT:
+            system = _shop_units(ctx) or system
         with displayed_in("metric" if ctx.params.get("as_json") and not ctx.params.get("output") else system):
             return super().invoke(ctx)
 
@@ -72,6 +77,13 @@ class Command(click.Command):
 def shared_option(heading: str, *names: str, **about: Any) -> Callable[[Any], Any]:
     """An option under a heading."""
     return click.option(*names, cls=SharedOption, heading=heading, **about)
+
+
+def _shop_units(ctx: click.Context) -> str | None:
+    """The units of the shop.toml of a command's file, or of the working folder."""
+    typed = ctx.params.get("file") or ctx.params.get("scene") or next(iter(ctx.params.get("files") or ()), None)
+    file = typed if isinstance(typed, Path) and not cue_name(typed) else Path()
+    return find_shop(file).defaults.units
 
 
 command = partial(click.command, cls=Command)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,6 +14,7 @@ import click
 
 from cuefem.cli.pending_warnings import warn
 from cuefem.cli.scene_options import (
+    CUE_KEYS,
     NO_SHAFT,
     offset_value,
     option,
@@ -24,14 +25,18 @@ from cuefem.cli.scene_options import (
 from cuefem.cue import Cue
 from cuefem.effects.force_law import IndentationOutOfRange
 from cuefem.files import InputError, load
+from cuefem.files.cue_names import cue_name
 from cuefem.files.defaults_report import (
     Assumption,
     assumptions,
     drawing_assumptions,
+    given_keys,
     notes_on_options,
     offered_assumptions,
 )
+from cuefem.files.lathe_profile import names_units
 from cuefem.files.shaft_additions import SHAFT_ADDITIONS
+from cuefem.files.shop import ShopFile, find_shop
 from cuefem.parameters.field_paths import Path as Steps
 from cuefem.parameters.field_paths import with_fields
 from cuefem.parameters.parameter import Parameter
@@ -77,6 +82,8 @@ class Request:
         game or tip.
     hints : list
         Lines that the command adds, printed after the tables.
+    shop_notes : sequence of Assumption
+        What a shop.toml adds to the options.
     """
 
     file: Path
@@ -84,12 +91,47 @@ class Request:
     offered: frozenset[str] = frozenset()
     with_impact: bool = True
     hints: list[Table | str] = field(default_factory=list)
+    shop_notes: Sequence[Assumption] = ()
 
     @classmethod
     def of(cls, file: Path, options: Mapping[str, str | None], *, with_impact: bool = True) -> Request:
         """The request of a command's options; None: not given."""
         given = {name: text for name, text in options.items() if text is not None}
         return cls(file, given, frozenset(options), with_impact)
+
+    def own_values(self) -> set[str]:
+        """The options of cue and tip whose values the file has itself; a cue by its name and a lumped cue have all."""
+        unit, ending = self.given.get("length_unit"), self.file.suffix.lower()
+        own = {"length_unit", "front"} if ending == ".toml" else set[str]()
+        if ending == ".csv" and unit is not None and names_units(self.file):
+            own, unit = {"length_unit"}, None
+        opened = load(self.file, length_unit=None if "length_unit" in own else unit)
+        own |= given_keys(self.file, opened, unit)
+        has_no_shaft = False
+        if isinstance(opened, Scene):
+            own |= {"game"}
+            has_no_shaft = opened.lumped is not None
+        return own | {*SHAFT_ADDITIONS, *CUE_KEYS} if cue_name(self.file) or has_no_shaft else own
+
+    def with_shop(self) -> Request:
+        """The request with the defaults of a shop.toml that the file and the options leave open."""
+        shop = self.shop
+        texts = {"body_mass": shop.defaults.body_mass, "ferrule": shop.defaults.ferrule}
+        open_keys = [key for key, text in texts.items() if text and key in self.offered and key not in self.given]
+        if not open_keys:
+            return self
+        own = self.own_values()
+        added = {key: str(texts[key]) for key in open_keys if key not in own}
+        notes = [
+            Assumption("", f"{key.replace('_', ' ')} {text}, the default of {shop.path.name}", key)
+            for key, text in added.items()
+        ]
+        return replace(self, given={**self.given, **added}, shop_notes=notes)
+
+    @cached_property
+    def shop(self) -> ShopFile:
+        """The shop.toml of the file; that of the working folder for a cue by its name."""
+        return find_shop(Path() if cue_name(self.file) else self.file)
 
     @contextmanager
     def errors(self) -> Iterator[None]:
@@ -132,7 +174,7 @@ class Request:
     @property
     def assumed(self) -> list[Assumption]:
         """The values that neither the file nor an option sets."""
-        found = assumptions(self.file, self.scene, self.given)
+        found = [*self.shop_notes, *assumptions(self.file, self.scene, self.given)]
         return [each for each in found if not (self._is_as_drawn and each.key == "game")]
 
     @property
@@ -147,6 +189,7 @@ class Request:
         if not isinstance(self.drawing, Cue):
             return []
         listed = [
+            *self.shop_notes,
             *notes_on_options(self.file, self.given),
             *drawing_assumptions(self.file, self.drawing, self.given),
         ]

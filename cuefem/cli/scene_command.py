@@ -118,7 +118,7 @@ def analysis_command(
         def run(file: Path, output: Path | None, as_json: bool, **options: Any) -> None:
             shared_values = {"output": output, "as_json": as_json}
             mine = {key: shared_values[key] if key in shared_values else options.pop(key) for key in own}
-            request = Request.of(file, options, with_impact=has_stroke)
+            request = Request.of(file, options, with_impact=has_stroke).with_shop()
             request.print_warnings()
             with request.errors():
                 analysis = analyse(request, **mine)

@@ -5,6 +5,7 @@ Ball, tip, stroke and effects default to those of the scene's `game`, by default
 
 from __future__ import annotations
 
+import datetime
 import re
 import tomllib
 from collections.abc import Callable
@@ -36,6 +37,7 @@ from cuefem.scene.default_scene import (
 GAME_KEYS = {"ball": ("mass", "radius"), "tip": ("restitution", "friction"), "stroke": ("speed", "offset")}
 
 
+LONGEST_LINE = 80  # characters, on a customer's sheet
 MAX_KEY_PARTS = 32  # of a dotted key, such as 3 of cue.segments.length
 _LONG_KEY = re.compile(rf"(?<![\w-])(?:[\w-]+\s*\.\s*){{{MAX_KEY_PARTS},}}")
 _QUOTED = re.compile(r"""\"(?:[^"\\]|\\.)*\"|'[^']*'""")
@@ -59,6 +61,35 @@ class Accuracy:
 
     def __post_init__(self) -> None:
         check_fields(self)
+
+
+@dataclass(frozen=True)
+class Order:
+    """Whom a cue is made for: what a customer's sheet says of the order.
+
+    Parameters
+    ----------
+    customer, serial : str
+        At most 80 characters each.
+    date : str or datetime.date
+        By default that of the page.
+    """
+
+    customer: str = ""
+    serial: str = ""
+    date: str | datetime.date = ""
+
+    def __post_init__(self) -> None:
+        check_lines(self)
+
+
+def check_lines(thing: Any) -> None:
+    """ValueError for a text of a dataclass that is longer than a line of a sheet."""
+    for name, text in vars(thing).items():
+        if isinstance(text, str) and len(text) > LONGEST_LINE:
+            raise ValueError(
+                f"{type(thing).__name__}.{name} must have at most {LONGEST_LINE} characters; got {len(text)}"
+            )
 
 
 def read_tables(path: Path) -> dict[str, Any]:
@@ -91,9 +122,16 @@ def _unquoted(text: str, error: str) -> str:
     return "; put a value with a unit in quotes" if re.search(r"=\s*[-+.\d]+\s*[^\W\d_]", line) else ""
 
 
+def _without_order(path: Path) -> dict[str, Any]:
+    """The tables of a cue or a scene; its [order], which is for a customer's sheet, is checked."""
+    tables = read_tables(path)
+    build(Order, tables.pop("order", {}), file=str(path), key="order")
+    return tables
+
+
 def load_toml(path: Path, cue_file: Callable[[Path], Cue]) -> Cue | Scene:
     """Load the cue or scene of a TOML file; ``cue_file`` loads the cue file of a scene."""
-    tables = read_tables(path)
+    tables = _without_order(path)
     if "scene" in tables and "cue" not in tables:
         raise InputError(path, "scene", "must be a cue or a scene; got a study: `cuefem study`, cuefem.study(file)")
     if {"segments", "shaft"} & {*tables} and "cue" not in tables:
@@ -108,7 +146,7 @@ def cue_as_drawn(path: Path, cue_file: Callable[[Path], Cue]) -> Cue | LumpedCue
 
 def load_cue(path: Path) -> Cue:
     """Load the cue of a TOML file; InputError for a scene."""
-    tables = read_tables(path)
+    tables = _without_order(path)
     if "cue" in tables:
         raise InputError(path, "cue", "must be absent: the cue of a scene is a cue file with [[segments]]; got a scene")
     return _cue(tables, path, "")

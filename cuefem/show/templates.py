@@ -19,6 +19,9 @@ from cuefem.show.drawings import CueDrawing
 
 # Colours of curves where no style sheet holds: 3 to 1 at least on white and on black.
 INKS = {"c1": "#2f86d0", "c2": "#c8691f", "c3": "#1f9a75", "c4": "#b064a5", "c5": "#7f8890"}
+PLAIN_STYLES = ("answer.css", "page.css")  # style sheets of a page, in their order
+SCREEN_STYLES = (*PLAIN_STYLES, "first_screen.css")
+SHEET_STYLES = (*SCREEN_STYLES, "sheet.css")
 OPTIONS = re.compile(r"(\s*\([^()]*--[^()]*\)|\S*--\S+)")  # in parentheses, or alone
 
 
@@ -62,7 +65,7 @@ def css_string(text: str) -> Markup:
 
 def page_style() -> str:
     """The style sheet of pages, including the first screen."""
-    return "".join(environment().get_template(name).render() for name in ("answer.css", "page.css", "first_screen.css"))
+    return "".join(environment().get_template(name).render() for name in SCREEN_STYLES)
 
 
 def chart_script() -> str:
@@ -102,16 +105,16 @@ def plain_page(
     """Lines, tables, charts and drawings as a page, or as a part of one. made: the date at its end. notes: folded."""
     groups = [[*group] for _, group in groupby(filter(None, things), type)]
     parts = {"title": name, "name": name, "groups": groups, "made": made, "warnings": warnings, "notes": notes}
-    return framed("plain.html.j2", **parts, screen="", kind="", inline=inline)
+    return framed("plain.html.j2", **parts, styles=PLAIN_STYLES, kind="", inline=inline)
 
 
-def framed(template: str, *, inline: bool, **parts: Any) -> str:
-    """A template in the frame of a self-contained page; inline: of an output in a notebook.
+def framed(template: str, *, inline: bool, styles: Sequence[str] = SCREEN_STYLES, **parts: Any) -> str:
+    """A template in the frame of a self-contained page, with its style sheets; inline: of an output in a notebook.
 
     That has neither title nor script nor ids, and a style of its own alone.
     """
     frame = "inline.html.j2" if inline else "frame.html.j2"
-    return environment().get_template(template).render(frame=frame, inline=inline, **parts)
+    return environment().get_template(template).render(frame=frame, inline=inline, styles=styles, **parts)
 
 
 @cache

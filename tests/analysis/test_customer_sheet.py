@@ -1,0 +1,134 @@
+"""The customer's sheet: one page, one date, escaped texts, the shop's defaults, and refused shop files."""
+
+import html
+import json
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.helpers.command_line import call, stdout_of
+from tests.helpers.invalid_input import assert_rejects
+
+PROFILE = "x (in),diameter (in)\n0,.505\n14,.520\n29,.845\n"
+SHOP = """[shop]
+name = "Cues <b>& Co.</b>"
+line = "12 Main Street"
+logo = "logo.svg"
+[defaults]
+body_mass = "15 oz"
+ferrule = "1 in melamine"
+units = "us"
+[defaults.limits]
+wall = ".120 in"
+"""
+LOGO = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1 1"><circle r="1"/></svg>'
+
+
+def texts_of(page: Path) -> str:
+    """What a reader sees of a page."""
+    body = page.read_text(encoding="utf-8").partition("</style>")[2]
+    return html.unescape(re.sub(r"<[^>]*>", " ", body)).replace("\u00a0", " ")
+
+
+@pytest.fixture
+def drawing(tmp_path: Path) -> Path:
+    """A shaft of a shop, one folder below its shop.toml."""
+    (tmp_path / "shop.toml").write_text(SHOP)
+    (tmp_path / "logo.svg").write_text(LOGO)
+    (tmp_path / "shafts").mkdir()
+    made = tmp_path / "shafts" / "pro.csv"
+    made.write_text(PROFILE)
+    return made
+
+
+def test_sheet_of_a_csv_has_shop_order_and_one_date(drawing: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1795859200")
+    page = drawing.with_name("0142.html")
+    given = ("--customer", "A <i>Player</i>", "--serial", "0142")
+    assert call("report", drawing, "--sheet", *given, "-o", page)[0] == 0
+    text = page.read_text(encoding="utf-8")
+    said = texts_of(page)
+    assert re.findall(r"\d{4}-\d\d-\d\d", said) == ["2026-11-28"]
+    assert all(part in said for part in ("Cues <b>& Co.</b>", "12 Main Street", "A <i>Player</i>", "0142"))
+    assert ("<b>& Co." in text, "<i>Player" in text, "data:image/svg+xml;base64," in text) == (False, False, True)
+    assert all(part in said for part in (".505", ".845", "Swerve: with the cue raised by 3°", "off line after 4 ft"))
+    call("report", drawing, "--sheet", *given, "--date", "Monday", "-o", page)
+    assert "Monday" in page.read_text(encoding="utf-8")
+    assert "2026-11-28" not in page.read_text(encoding="utf-8")
+
+
+def test_order_of_a_cue_is_on_its_sheet_and_in_no_record(drawing: Path) -> None:
+    cue = drawing.with_suffix(".toml")
+    assert call("convert", drawing, cue)[0] == 0
+    cue.write_text(cue.read_text() + '\n[order]\ncustomer = "B. Player"\nserial = "7"\ndate = 2026-03-01\n')
+    page = drawing.with_name("7.html")
+    assert call("report", cue, "--sheet", "-o", page)[0] == 0
+    said = texts_of(page)
+    assert ("B. Player" in said, "2026-03-01" in said) == (True, True)
+    assert "Player" not in stdout_of("report", cue, "--json")
+
+
+def test_defaults_of_a_shop_fill_what_a_file_leaves_open(drawing: Path) -> None:
+    """As options do, and below them; each is said among the assumptions; limits are those of improve."""
+    filled = json.loads(stdout_of("strike", drawing, "--json"))
+    (drawing.parents[1] / "shop.toml").unlink()
+    typed = json.loads(stdout_of("strike", drawing, "--json", "--body-mass", "15 oz", "--ferrule", "1 in melamine"))
+    assert [filled.pop(key) != typed.pop(key) for key in ("assumptions",)] == [True]
+    assert filled == typed
+    (drawing.parents[1] / "shop.toml").write_text(SHOP)
+    shown = stdout_of("strike", drawing)
+    assert "body mass 15 oz, the default of shop.toml (--body-mass)" in shown
+    assert "2.25 in" in shown
+    assert "57.15 mm" in stdout_of("strike", drawing, "--units", "metric", "--body-mass", "16 oz")
+    assert "Limits: wall .096 in or more" in stdout_of("improve", drawing, "--wall", ".096 in", "--keep", "wood")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (("name =", "nmae ="), "shop.toml: shop.nmae: unknown key; did you mean 'name'?"),
+        (("[defaults]", "[default]"), "shop.toml: default: unknown key; did you mean 'defaults'?"),
+        (('"us"', '"inch"'), "shop.toml: defaults.units: must be metric or us; got 'inch'"),
+        (('"12 Main', '"' + 81 * "x"), "shop.toml: shop.line: must have at most 80 characters"),
+        (("logo.svg", "pro.csv"), "pro.csv: cannot be read"),
+        (("logo.svg", "shafts/pro.csv"), "pro.csv: must be a picture for the logo: PNG, JPEG, GIF or SVG"),
+        (("logo.svg", "large.png"), "large.png: must be a file of at most 1 MB; got 1.000001"),
+    ],
+)
+def test_shop_file_or_logo_of_another_kind_is_one_line(change: tuple[str, str], message: str, drawing: Path) -> None:
+    (drawing.parents[1] / "large.png").write_bytes(bytes(1_000_001))
+    (drawing.parents[1] / "shop.toml").write_text(SHOP.replace(*change))
+    assert_rejects(message, "report", drawing, "--sheet", "-o", drawing.with_name("0142.html"))
+    assert not drawing.with_name("0142.html").exists()
+
+
+def test_limits_and_order_of_another_kind_are_one_line(drawing: Path) -> None:
+    (drawing.parents[1] / "shop.toml").write_text(SHOP.replace(".120 in", ".001 in"))
+    assert_rejects("shop.toml: defaults.limits: wall must be at least .008 in; got .001 in", "improve", drawing)
+    cue = drawing.with_name("cue.toml")
+    cue.write_text('shaft = "conical taper"\n[order]\ncostumer = "A"\n')
+    assert_rejects("cue.toml: order.costumer: unknown key; did you mean 'customer'?", "modes", cue)
+    assert_rejects("--customer: is for --sheet", "report", "plain maple", "--customer", "A")
+    assert_rejects("--sheet: requires -o FILE.html", "report", "plain maple", "--sheet")
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("paper", ["letter", "A4"])
+def test_sheet_prints_on_one_page(paper: str, drawing: Path) -> None:
+    """With the longest texts that it takes, in either paper size."""
+    chromium, pdfinfo = shutil.which("chromium"), shutil.which("pdfinfo")
+    if chromium is None or pdfinfo is None:
+        pytest.skip("needs chromium and pdfinfo")
+    page = drawing.with_name("long.html")
+    (drawing.parents[1] / "shop.toml").write_text(SHOP.replace("12 Main Street", 16 * "long "))
+    call("report", drawing, "--sheet", "--customer", 16 * "long ", "--serial", 16 * "long ", "-o", page)
+    text = page.read_text(encoding="utf-8")
+    page.write_text(text.replace("@page { margin", f"@page {{ size: {paper}; margin"), encoding="utf-8")
+    printed = page.with_suffix(".pdf")
+    asked = [chromium, "--headless", "--no-sandbox", "--no-pdf-header-footer", f"--print-to-pdf={printed}"]
+    subprocess.run([*asked, page.as_uri()], check=True, capture_output=True)
+    about = subprocess.run([pdfinfo, printed], check=True, capture_output=True, text=True).stdout
+    assert re.search(r"Pages: +1\n", about)
