@@ -89,8 +89,9 @@ def compare(
     these files.
 
     To measure squirt: strike hard (ball over 4 m/s: 1 m in a quarter of a second) with the cue as low as the rail
-    allows, read the ball within 1 m, ten shots a side. Give the distance and how far the cue's centre line (or the
-    chalk mark) is from the ball's centre; if you cannot strike hard, give the elevation, or a second speed.
+    allows, read the ball within 1 m, ten shots a side. Give the distance, the cue's speed, and how far the cue's centre
+    line (or the chalk mark) is from the ball's centre; if you cannot strike hard, give the elevation, or a second
+    speed.
     """
     listed = [] if estimate or template else _listed_files(files)
     if listed:

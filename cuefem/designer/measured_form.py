@@ -30,7 +30,7 @@ READING = {
     "left": FormField("Ball off the line, struck left", "1.6 in"),
     "right": FormField("Ball off the line, struck right", "1.5 in"),
     "distance": FormField("Distance where you read it", "3 ft"),
-    "speed": FormField("Speed of the cue", "3.5 m/s", "without it 50 % uncertain"),
+    "speed": FormField("Speed of the cue", "3.5 m/s", "0.9 of the ball's; without it the stroke's ± 50 %"),
 }
 STANCE = {"elevation": FormField("Elevation of the cue", "2 deg", "without it 1.8 to 4.9° are assumed")}
 FORM = "I measured"  # names the form in messages

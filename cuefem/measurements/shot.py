@@ -16,8 +16,8 @@ LENGTH = Quantity("m", "(0, 1)")
 MAX_OFFSET = 0.7  # b/R, beyond any tip's miscue limit
 ADVICE = (
     "Strike hard (ball over 4 m/s: 1 m in a quarter of a second) with the cue as low as the rail allows, read the ball "
-    "within 1 m, ten shots a side. Give the distance and how far the cue's centre line (or the chalk mark) is from the "
-    "ball's centre; if you cannot strike hard, give the elevation, or a second speed."
+    "within 1 m, ten shots a side. Give the distance, the cue's speed, and how far the cue's centre line (or the chalk "
+    "mark) is from the ball's centre; if you cannot strike hard, give the elevation, or a second speed."
 )
 WAYS = {
     "cue_offset": "how far the cue's centre line passes beside the ball's centre",

@@ -173,10 +173,11 @@ def test_untouched_template_is_refused_by_name(tmp_path: Path) -> None:
     assert "cue.toml: must be replaced by your drawing" in call("compare", folder)[2]
     (folder / "cue.toml").write_text((folder / "cue.toml").read_text("utf-8").replace("467 g", "450 g"), "utf-8")
     text = (folder / "measured.toml").read_text("utf-8")
-    for name in ("cue_offset", "left", "right", "distance"):
+    values = {"distance": "1 m", "speed": "3.5 m/s"}
+    for name in ("cue_offset", "left", "right", "distance", "speed"):
         status, out, err = call("compare", folder, "--estimate", "-o", tmp_path / "c.toml")
         assert (status, out, err.count("\n")) == (2, "", 1)
         assert f"shot[0].{name}: must be filled in" in err
-        text = text.replace(f'{name} = "?"', f'{name} = "{"1 m" if name == "distance" else "14 mm"}"', 1)
+        text = text.replace(f'{name} = "?"', f'{name} = "{values.get(name, "14 mm")}"', 1)
         (folder / "measured.toml").write_text(text, "utf-8")
     assert not (tmp_path / "c.toml").exists()
