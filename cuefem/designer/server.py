@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import warnings
 from collections.abc import Callable
+from importlib.resources import files
 from typing import Any
 
 from nicegui import app, ui
@@ -48,6 +49,7 @@ def serve(
 
     @ui.page("/")
     async def index() -> None:
+        ui.add_body_html(files("cuefem.designer").joinpath("states.html").read_text(encoding="utf-8"))
         if not await is_open(ui.context.client):
             return
         if with_kept_units:

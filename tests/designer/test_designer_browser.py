@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
+import signal
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -193,3 +195,11 @@ def test_measured_shots_calibrate_the_page_and_its_saved_file(browser: Any, addr
         made = cf.load_calibration(download(page, "Save calibration", tmp_path))
         squirt = displayed_number(page, "squirt")
         assert squirt / plain == pytest.approx(made.squirt(cf.usual_scene(cf.load("plain maple"))).factor, rel=2e-3)
+
+
+def test_page_says_that_it_loads_and_that_its_server_has_ended(browser: Any, tmp_path: Path) -> None:
+    with designer_process(tmp_path) as (address, process), designer_page(browser, address) as page:
+        assert not page.locator("#loading").is_visible()
+        assert "cuefem designer is loading" in page.request.get(address).text()
+        os.kill(process, signal.SIGTERM)
+        page.locator("#popup").filter(has_text="cuefem designer has ended: start it again").wait_for()
