@@ -110,3 +110,13 @@ def test_guide_writes_one_chapter_as_json_and_opens_page_with_it(tmp_path: Path)
     first = [text for text in page(opens_with="beam").split("<section") if text.startswith(' class="first"')]
     assert len(first) == 1
     assert 'id="beam"' in first[0]
+
+
+def test_moves_of_a_step_are_those_of_the_kernel() -> None:
+    """The table of the chapter The contact names the calls of `take_step` in their order."""
+    chapter = (ROOT / "cuefem/handbook/contact.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (`[a-z_]+`(?:, `[a-z_]+`)*) \|", chapter, re.MULTILINE)
+    source = (ROOT / "cuefem/contact/kernel/step.c").read_text(encoding="utf-8")
+    body = source.split("\nbool take_step(")[1].split("\n}")[0].partition("{")[2]
+    calls = [name for name in re.findall(r"\b(\w+)\(", body) if name != "memcpy"]
+    assert re.findall(r"`(\w+)`", " ".join(rows)) == calls
