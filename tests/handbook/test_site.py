@@ -28,7 +28,7 @@ BUILT = ROOT / "site"  # by .ci/run, before the heavy tests
 PAGES = (
     "index.html",
     "studies/README.html",
-    "studies/notebooks/kims_chain.html",
+    "studies/notebooks/every_question.html",
     "cuefem/handbook/beam.html",
     "cuefem/handbook/api/cuefem.Verdict.html",
 )
