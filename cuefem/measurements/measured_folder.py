@@ -50,6 +50,7 @@ READINGS: dict[str, type] = {"recording": Recording, "shot": Shot}  # tables tha
 LONGEST, LARGEST_SOUND = 120.0, 100_000_000  # s, bytes of a recording: 120 s of two channels at 96 kHz and 32 bits
 TEMPLATE = ("README.md", "cue.toml", MEASURED)
 BLANK = "?"  # begins a value of the template that is to be filled in
+EXAMPLES = {"speed": '"3.5 m/s" or "8 mph"', "distance": '"0.9 m" or "3 ft"', "elevation": '"2 deg"'}
 
 _COLUMN = re.compile(r"\s*([a-z_]+)\s*(?:\[([^\]]+)\])?\s*")
 
@@ -122,7 +123,7 @@ def _scene(folder: Path, path: Path, tables: dict[str, Any]) -> tuple[Scene, lis
     if "cue" not in parts:
         there = [name for name in DRAWINGS if (folder / name).exists()]
         if len(there) != 1:
-            got = "both" if there else "none"
+            got = "both: delete the one that is not your drawing" if there else "none"
             raise InputError(folder, "", f"must contain the shaft's drawing, {' or '.join(DRAWINGS)}; got {got}")
         parts["cue"] = there[0]
         if there[0] in TEMPLATE and read_text(folder / there[0]) == _example(there[0]):
@@ -175,9 +176,8 @@ def _reject_blanks(path: Path, key: str, row: dict[str, Any]) -> None:
     """InputError for a value of the template that is not filled in."""
     for name, value in row.items():
         if isinstance(value, str) and value.startswith(BLANK):
-            raise InputError(
-                path, key_path(key, name), f'must be filled in, such as "40 mm" or "1.6 in"; got "{value}"'
-            )
+            example = EXAMPLES.get(name, '"40 mm" or "1.6 in"')
+            raise InputError(path, key_path(key, name), f'must be filled in, such as {example}; got "{value}"')
 
 
 def _readings(folder: Path, path: Path, tables: dict[str, Any], scene: Scene) -> Iterator[Measurement]:
