@@ -13,6 +13,8 @@ pytestmark = pytest.mark.heavy
 
 ROOT = Path(__file__).parents[1]
 CHAPTERS = sorted((ROOT / "cuefem" / "handbook").glob("*.md"))
+PAGES = sorted((ROOT / "studies").rglob("*.md"))
+NOTEBOOKS = sorted((ROOT / "studies" / "notebooks").glob("*.ipynb"))
 USER = """
 import cuefem as cf
 
@@ -44,11 +46,16 @@ def python_of(path: Path) -> list[str]:
 
 def test_python_of_pages_passes_strict_types_and_mistakes_are_found(tmp_path: Path) -> None:
     programs = {
-        f"{path.stem.lower()}_{i}.py": block
-        for path in (ROOT / "README.md", *CHAPTERS)
+        f"{path.parent.name}_{path.stem.lower()}_{i}.py": block
+        for path in (ROOT / "README.md", *CHAPTERS, *PAGES, *NOTEBOOKS)
         for i, block in enumerate(python_of(path))
     }
-    assert {"readme_0.py", "working_0.py"} <= {*programs}
+    assert {
+        f"{ROOT.name}_readme_0.py",
+        "handbook_working_0.py",
+        "notebooks_kims_chain_0.py",
+        "contact_energy_0.py",
+    } <= {*programs}
     for name, block in {**programs, "user.py": USER}.items():
         (tmp_path / name).write_text(block, encoding="utf-8")
     command = [sys.executable, "-m", "mypy", "--strict", "--config-file=", "--follow-imports=silent", "--no-pretty"]

@@ -166,7 +166,7 @@ def text() -> str:
 EXAMPLE = """\
 import cuefem as cf
 
-scene = cf.load("studies/scenes/kim.toml")
+scene = cf.load_scene("studies/scenes/kim.toml")
 fine = cf.strike(scene, cf.Resolution(elements=4, order=20, modes=160)).squirt
 for modes in (4, 8, 16, 32):
     squirt = cf.strike(scene, cf.Resolution(elements=4, order=20, modes=modes)).squirt

@@ -171,7 +171,7 @@ EXAMPLE = """\
 from timeit import timeit
 import cuefem as cf
 
-scene = cf.load("studies/scenes/kim.toml")
+scene = cf.load_scene("studies/scenes/kim.toml")
 seconds = timeit(lambda: cf.strike(scene), number=10) / 10
 print(f"{1e3 * seconds:.1f} ms a strike")
 """

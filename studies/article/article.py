@@ -168,7 +168,7 @@ from dataclasses import replace
 from math import degrees
 import cuefem as cf
 
-scene = cf.usual_scene(cf.load("meshes/pool_maple.toml"))  # leather, axial waves, axial force on the bent shaft
+scene = cf.load_scene("meshes/pool_maple.toml")  # leather, axial waves, axial force on the bent shaft
 for offset in (0.1, 0.3, 0.5):
     outcome = cf.strike(replace(scene, stroke=cf.Stroke(speed=2.0, offset=offset)))
     print(f"b/R {offset}: squirt {degrees(outcome.squirt):.2f} degrees, contact {1e3 * outcome.duration:.2f} ms")

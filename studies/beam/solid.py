@@ -156,7 +156,7 @@ def draw(axes: Any) -> None:
 EXAMPLE = """\
 import cuefem as cf
 
-cue = cf.load("meshes/kim.toml")
+cue = cf.load_cue("meshes/kim.toml")
 beam = cf.modes(cue, 2).frequencies
 solid = cf.solid_modes(cue, 2).frequencies
 print("beam over solid, less 1:", ", ".join(f"{ratio - 1:+.0e}" for ratio in beam / solid))

@@ -127,7 +127,7 @@ EXAMPLE = """\
 from dataclasses import replace
 import cuefem as cf
 
-scene = cf.Scene(cf.load("meshes/pool_maple.toml"), tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(2.0, 0.3))
+scene = cf.Scene(cf.load_cue("meshes/pool_maple.toml"), tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(2.0, 0.3))
 for effect in (cf.TipDome(9.5e-3), cf.TipShear(0.75), cf.AxialWaves(), cf.GeometricStiffness()):
     squirt = cf.strike(replace(scene, effects=(effect,))).squirt
     print(f"{type(effect).__name__:20}{100 * (squirt / cf.strike(scene).squirt - 1):+.1f} %")

@@ -63,7 +63,7 @@ def draw(axes: Any) -> None:
 EXAMPLE = """\
 import cuefem as cf
 
-energy = dict(cf.strike(cf.usual_scene(cf.load("meshes/pool_maple.toml"))).energy)
+energy = dict(cf.strike(cf.load_scene("meshes/pool_maple.toml")).energy)
 initial = energy.pop("initial")
 for name, part in energy.items():
     print(f"{name:20}{100 * part / initial:5.1f} %")

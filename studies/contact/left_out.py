@@ -176,7 +176,7 @@ EXAMPLE = """\
 from dataclasses import replace
 import cuefem as cf
 
-scene = cf.usual_scene(cf.load("meshes/pool_maple.toml"))
+scene = cf.load_scene("meshes/pool_maple.toml")
 lossy = tuple(replace(e, surface_restitution=0.8) if isinstance(e, cf.LeatherTip) else e for e in scene.effects)
 ratio = cf.strike(replace(scene, effects=lossy)).squirt / cf.strike(scene).squirt
 print(f"a tangential loss of the leather: {100 * (ratio - 1):+.1f} % squirt")

@@ -239,7 +239,7 @@ EXAMPLE = """\
 import cuefem as cf
 from dataclasses import replace
 
-scene = cf.usual_scene(cf.load("meshes/pool_maple.toml"))
+scene = cf.load_scene("meshes/pool_maple.toml")
 for offset in (0.55, 0.59, 0.63):
     stroke = cf.Stroke(speed=2.0, offset=offset)
     print(offset, cf.strike(replace(scene, stroke=stroke)).regime)

@@ -201,7 +201,7 @@ def draw(panels: Any) -> None:
 EXAMPLE = """\
 import cuefem as cf
 
-bat = cf.load("meshes/kim.toml")
+bat = cf.load_cue("meshes/kim.toml")
 ball = cf.Striker(mass=0.02, restitution=0.8, contact_time=1e-3)
 for position in (0.05, 0.15, 0.35):
     outcome = cf.side_strike(cf.SideStrike(bat, ball, position=position))

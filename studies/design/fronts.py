@@ -328,7 +328,7 @@ import cuefem as cf
 from cuefem.designs import evaluate
 
 for name in ("pool_maple", "pool_hollow", "carbon"):
-    shaft = cf.load(f"meshes/{name}.toml")
+    shaft = cf.load_cue(f"meshes/{name}.toml")
     stiffness = evaluate([cf.Scene(shaft)], ["tip_stiffness"]).values[0, 0]
     squirt = cf.strike(cf.usual_scene(shaft)).squirt
     print(f"{name}: {stiffness:.0f} N/m, {squirt:.4f} rad")

@@ -172,11 +172,11 @@ EXAMPLE = """\
 from dataclasses import replace
 import cuefem as cf
 
-def wider(s):
+def wider(s: cf.Segment) -> cf.Segment:
     return replace(s, tip_bore=s.tip_bore + 1e-3, butt_bore=s.butt_bore + 1e-3) if s.tip_bore else s
 
-scene = cf.usual_scene(cf.load("meshes/pool_hollow.toml"))
-bored = replace(scene.cue, segments=tuple(wider(segment) for segment in scene.cue.segments))
+scene = cf.load_scene("meshes/pool_hollow.toml")
+bored = replace(scene.shaft, segments=tuple(map(wider, scene.shaft.segments)))
 ratio = cf.strike(replace(scene, cue=bored)).squirt / cf.strike(scene).squirt
 print(f"bore 1 mm wider: {100 * (ratio - 1):+.1f} % squirt")
 """

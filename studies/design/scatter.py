@@ -133,7 +133,7 @@ import numpy as np
 from dataclasses import replace
 import cuefem as cf
 
-scene = cf.usual_scene(cf.load("meshes/pool_maple.toml"))
+scene = cf.load_scene("meshes/pool_maple.toml")
 speeds = np.random.default_rng(1).uniform(1.0, 4.0, 20)
 squirt = cf.batch_strike([replace(scene, stroke=cf.Stroke(speed, 0.3)) for speed in speeds]).squirt
 print(f"by the speed alone: {np.degrees(squirt.mean()):.2f} ± {np.degrees(squirt.std()):.2f} degrees")

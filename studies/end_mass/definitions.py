@@ -118,7 +118,7 @@ EXAMPLE = """\
 from math import degrees
 import cuefem as cf
 
-scene = cf.load("studies/scenes/kim.toml")
+scene = cf.load_scene("studies/scenes/kim.toml")
 for definition in ("stick", "offset", "velocity", "force"):
     print(f"{definition:9}{1e3 * cf.end_mass(scene, definition):.2f} g")
 print(f"squirt by the end mass at the offset: {degrees(cf.impulse(scene).squirt):.2f} degrees")

@@ -342,7 +342,7 @@ EXAMPLE = """\
 from dataclasses import replace
 import cuefem as cf
 
-scene = cf.usual_scene(cf.load("meshes/pool_maple.toml"))
+scene = cf.load_scene("meshes/pool_maple.toml")
 for position in (0.02, 0.05, 0.1, 0.15, 0.2):
     heavier = replace(scene, effects=(*scene.effects, cf.PointMass(position=position, mass=5e-3)))
     ratio = cf.strike(heavier).squirt / cf.strike(scene).squirt

@@ -138,7 +138,7 @@ def draw(axes: Any) -> None:
 EXAMPLE = """\
 import cuefem as cf
 
-table = cf.strike_table(cf.usual_scene(cf.load("plain maple")), (1.0, 4.0))
+table = cf.strike_table(cf.load_scene("plain maple"), (1.0, 4.0))
 read = table.at(speed=2.0, offset=0.5)
 print(f"{read.squirt:.3f} rad, {read.ball_speed:.2f} m/s, {read.spin:.0f} rad/s")
 print(f"{100 * table.error['within']:.0f} % of strokes within 1 %")

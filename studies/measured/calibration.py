@@ -397,7 +397,7 @@ EXAMPLE = """\
 import cuefem as cf
 
 made = cf.estimate("studies/measured/predator_z").calibration()
-found = made.squirt(cf.usual_scene(cf.load("low deflection")))
+found = made.squirt(cf.load_scene("low deflection"))
 print(found.origin())
 print(f"instead of {100 * found.uncalibrated_error:.0f} %")
 """

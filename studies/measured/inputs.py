@@ -199,9 +199,9 @@ from dataclasses import replace
 from math import degrees
 import cuefem as cf
 
-scene = cf.usual_scene(cf.load("meshes/pool_maple.toml"))
+scene = cf.load_scene("meshes/pool_maple.toml")
 for butt in (0.38, 0.43, 0.48):
-    squirt = cf.strike(replace(scene, cue=replace(scene.cue, body_mass=butt))).squirt
+    squirt = cf.strike(replace(scene, cue=replace(scene.shaft, body_mass=butt))).squirt
     print(f"{butt} kg behind the shaft: {degrees(squirt):.2f} degrees")
 """
 STUDY = pages.Study(__file__, text, example=EXAMPLE)

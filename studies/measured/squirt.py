@@ -169,7 +169,7 @@ from dataclasses import replace
 from math import degrees
 import cuefem as cf
 
-scene = cf.usual_scene(cf.load("studies/measured/players_maple/cue.toml"))
+scene = cf.load_scene("studies/measured/players_maple/cue.toml")
 for offset, measured in ((0.187, "0.84"), (0.375, "2.30 and 2.43")):
     squirt = cf.strike(replace(scene, stroke=cf.Stroke(2.0, offset))).squirt
     print(f"b/R {offset}: computed {degrees(squirt):.2f} degrees, measured {measured}")

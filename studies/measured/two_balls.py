@@ -260,7 +260,7 @@ EXAMPLE = """\
 from dataclasses import replace
 import cuefem as cf
 
-scene = cf.usual_scene(cf.load("meshes/pool_maple.toml"))
+scene = cf.load_scene("meshes/pool_maple.toml")
 for grams in (156, 170, 187, 200):
     struck = replace(scene, ball=replace(scene.ball, mass=grams / 1000))
     lumped = replace(struck, cue=cf.LumpedCue(0.57, 0.008), effects=())

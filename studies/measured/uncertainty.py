@@ -269,7 +269,7 @@ EXAMPLE = """\
 from math import degrees
 import cuefem as cf
 
-verdict = cf.verdict(cf.usual_scene(cf.load("meshes/pool_maple.toml")))
+verdict = cf.verdict(cf.load_scene("meshes/pool_maple.toml"))
 print(f"{degrees(verdict.squirt):.2f} ± {degrees(verdict.squirt_error):.2f} degrees")
 for name, part in verdict.uncertainty.items():
     print(f"{name:12}{100 * part:4.1f} %")

@@ -258,7 +258,7 @@ EXAMPLE = """\
 from math import degrees
 import cuefem as cf
 
-chain = cf.reduction(cf.load("studies/scenes/kim.toml"))
+chain = cf.reduction(cf.load_scene("studies/scenes/kim.toml"))
 for name, model in chain.models.items():
     print(f"{name:26}", *(f"{degrees(squirt):.2f}" for squirt in model["squirt"]), "degrees")
 axes = cf.plot.reduction(chain)

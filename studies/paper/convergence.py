@@ -125,7 +125,7 @@ EXAMPLE = """\
 from dataclasses import replace
 import cuefem as cf
 
-scene = cf.load("studies/scenes/kim.toml")
+scene = cf.load_scene("studies/scenes/kim.toml")
 for time in (8e-3, 32e-3, 128e-3):
     slow = replace(scene, tip=replace(scene.tip, contact_time=time))
     print(f"T {1e3 * time:.0f} ms: squirt {cf.strike(slow).squirt:.5f} rad")

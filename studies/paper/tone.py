@@ -96,7 +96,7 @@ def text() -> str:
 EXAMPLE = """\
 import cuefem as cf
 
-shaft = cf.load("meshes/kim.toml")
+shaft = cf.load_cue("meshes/kim.toml")
 joint = cf.Support(position=0.7, stiffness=1e9)
 for name, effects in (("free", ()), ("pinned at the joint", (joint,))):
     frequencies = cf.modes(shaft, 3, effects=effects).frequencies

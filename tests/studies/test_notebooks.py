@@ -1,9 +1,12 @@
-"""Notebooks run, and print their stored output (regression). `.ci/nightly` executes them in a kernel of Jupyter."""
+"""Notebooks run, print and show their stored output (regression); `.ci/nightly` runs them in a kernel of Jupyter."""
 
+import ast
 import contextlib
 import io
 import json
+import re
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 import pytest
@@ -12,20 +15,37 @@ FOLDER = Path(__file__).parents[2] / "studies" / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
 
 
+def run_cell(source: str, names: dict[str, Any]) -> Any:
+    """Execute a cell; the value of its last expression, or None."""
+    *statements, last = ast.parse(source).body
+    if not isinstance(last, ast.Expr):
+        return exec(compile(source, "cell", "exec"), names)
+    exec(compile(ast.Module(statements, []), "cell", "exec"), names)
+    return eval(compile(ast.Expression(last.value), "cell", "eval"), names)
+
+
+def words(markup: str) -> list[str]:
+    """The words of an output, without numbers, of which some are times."""
+    return re.sub(r"<style>.*?</style>|<[^>]*>|[^a-zA-Z\s]", " ", markup, flags=re.DOTALL).split()
+
+
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_notebook_prints_stored_output(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_notebook_prints_and_shows_stored_output(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     plt.switch_backend("agg")
     monkeypatch.chdir(FOLDER)
     cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
-    names: dict[str, object] = {}
+    names: dict[str, Any] = {}
     for cell in (cell for cell in cells if cell["cell_type"] == "code"):
         plt.close("all")
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed):
-            exec(compile("".join(cell["source"]), path.name, "exec"), names)
+            value = run_cell("".join(cell["source"]), names)
         stored = [out for out in cell["outputs"] if out["output_type"] == "stream"]
         assert printed.getvalue() == "".join(line for out in stored for line in out["text"])
+        shown = ["".join(out["data"].get("text/html", "")) for out in cell["outputs"] if "data" in out]
+        answers = [value._repr_html_()] if hasattr(value, "_repr_html_") else []
+        assert [words(text) for text in shown if text] == [*map(words, answers)]
         figures = [out for out in cell["outputs"] if out["output_type"] == "display_data"]
         assert len(plt.get_fignums()) == len(figures)
     plt.close("all")
