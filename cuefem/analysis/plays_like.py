@@ -191,7 +191,9 @@ class _ShaftSearch:
         for _ in range(MAX_TOGETHER - 1):
             if points and abs(points[0].gap) < SAME:
                 break
-            pairs = [(base, dimension) for base in points[:BASES] for dimension in useful]
+            before = [point for point in points if point.gap * self.own_gap > 0]  # not yet beyond the squirt
+            fixed = [point for point in before[BASES:] if tuple(point.change.values) == ("ferrule material",)]
+            pairs = [(base, dimension) for base in [*before[:BASES], *fixed[:1]] for dimension in useful]
             more = [end for pair in progress(pairs) if (end := self.end(*pair)) is not None]
             points = sorted([*more, *points], key=lambda point: abs(point.gap))
         return [point for point in points if abs(point.gap) < SAME] or points[:1]
