@@ -198,8 +198,13 @@ def test_measured_shots_calibrate_the_page_and_its_saved_file(browser: Any, addr
 
 
 def test_page_says_that_it_loads_and_that_its_server_has_ended(browser: Any, tmp_path: Path) -> None:
-    with designer_process(tmp_path) as (address, process), designer_page(browser, address) as page:
+    """A page of its own: a lost connection fills the console."""
+    with designer_process(tmp_path) as (address, process):
+        page = browser.new_page()
+        page.goto(address)
+        wait_until_idle(page)
         assert not page.locator("#loading").is_visible()
         assert "cuefem designer is loading" in page.request.get(address).text()
         os.kill(process, signal.SIGTERM)
         page.locator("#popup").filter(has_text="cuefem designer has ended: start it again").wait_for()
+        page.close()
