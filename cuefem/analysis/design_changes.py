@@ -185,7 +185,7 @@ class DesignChanges(Rows, Analysis):
         wall = min(self.limits.least_wall(self.scene), thinnest_wall(self.scene))
         kept = f"; {', '.join(self.limits.keep)} as they are" if self.limits.keep else ""
         loss = f"together at most {100 * self.limits.stiffness_loss:g} % less stiff"
-        return f"Limits: wall {with_unit(wall, 'm')} or more{kept}; {loss} (--wall, --keep, --stiffness-loss)."
+        return f"Limits: wall {with_unit(wall, 'm')} or more{kept}; {loss}."
 
     def _notes(self) -> list[str]:
         """Definitions of the table's columns."""

@@ -32,8 +32,8 @@ OVERLAID = """[...document.querySelectorAll('.tiles dd *')].filter(e => {
   const box = e.closest('div').getBoundingClientRect(), own = e.getBoundingClientRect();
   return own.right > box.right + 1;}).map(e => e.innerText)"""
 SHEET = rb"/Type /Page\b(?!s)"
-OUTSIDE = """[...document.querySelectorAll("section, figure, header, svg text")].map(e => e.getBoundingClientRect())
-  .filter(r => r.right > innerWidth + 1 || r.left < 0).length"""
+OUTSIDE = """[...document.querySelectorAll("section, figure, header, svg:not(.lathe svg) text")]
+  .map(e => e.getBoundingClientRect()).filter(r => r.right > innerWidth + 1 || r.left < 0).length"""
 
 
 def report_page() -> str:
