@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from typing import NamedTuple
 
@@ -40,15 +40,15 @@ class PlaysLike(DesignChanges):
         Its squirt, rad.
     is_reached : bool
         Whether the changes reach it, but for the tolerance of calipers (`SAME`); else the one change is the nearest.
-    difference : dict
+    difference : dict, optional
         Of the other cue from the first of the changes, or from the shaft where no change is needed: relative
         "difference" of squirt, its "error" (1 sigma) and whether it is "distinct".
     """
 
-    like: str = ""
-    target: float = math.nan
-    is_reached: bool = True
-    difference: Record | None = None
+    like: str = field(kw_only=True)
+    target: float = field(kw_only=True)
+    is_reached: bool = field(kw_only=True)
+    difference: Record | None = field(kw_only=True)
 
     def tables(self) -> list[Table | str]:
         """What reaches the squirt of the other cue, and a table of the changes."""
@@ -88,8 +88,8 @@ def plays_like(
         A stroke with the shaft that is changed.
     other : Scene
         A stroke with the other cue, which is struck with the ball and the stroke of the shaft.
-    name : str, optional
-        Name of the other cue in texts.
+    name : str, default "the other cue"
+        In texts.
     limits : Limits
         What the maker does not accept. The largest loss of stiffness holds for one change, too.
     calibration : Calibration, optional

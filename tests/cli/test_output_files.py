@@ -24,6 +24,7 @@ MORE = {("improve", ".toml"): ("--take", 1)}
 ELSEWHERE = {
     ("compare", ".toml"),  # a calibration: tests/measurements/test_calibration.py
     ("compare", ".csv"),  # a list of shafts: tests/analysis/test_shop_list.py
+    ("strike", ""),  # a folder of tables: tests/analysis/test_strike_table.py
 }
 HEAVY = {"report", "improve", "effects", "cost", "check", "compare"}
 

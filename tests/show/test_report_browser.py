@@ -120,7 +120,7 @@ def study_of_ten_columns() -> str:
     values = (1e-3 * bore, 1e-3 * deep, 1e-3 * time)
     table = SweepStatistics(names, units, tuple(map(Response.of, kinds)), np.arange(12), values, results)
     steps: list[dict[str, Record]] = [{} for _ in table.shown_front[1:]]
-    return plain_page("bore", ["12 designs", *sweep_charts(table), *tabulate_sweep(table, steps)])
+    return plain_page("bore", ["12 designs", *sweep_charts(table), *tabulate_sweep(table, steps, {})])
 
 
 @pytest.mark.parametrize("width", [1280, 390])
