@@ -195,6 +195,16 @@ def test_designs_that_are_not_distinct_are_marked() -> None:
     assert NOT_DISTINCT in " ".join(str(result).split())
 
 
+@pytest.mark.heavy
+def test_unmodified_design_that_miscues_has_no_squirt_and_says_why() -> None:
+    base, offset = replace(SCENE, stroke=cf.Stroke(offset=0.8)), Vary("stroke.offset", Span(0.3, 0.85))
+    limit = Limit(Response("squirt"), high=0.04)
+    result = cf.study(Problem(base, (offset,), Response("ball_speed"), (limit,), cf.Resolution(1, 6, 6)))
+    assert isinstance(result, OptimumResult)
+    assert [*result.changes] == ["ball_speed"]
+    assert str(result).count("miscue at b/R 0.8") == 1
+
+
 @pytest.mark.parametrize("offset", [0.0, 0.3])
 def test_least_squirt_over_offsets_through_0_is_found(offset: float) -> None:
     """From the centre and from beside it: the size of squirt has a kink at 0, where SLSQP does not converge."""

@@ -107,6 +107,7 @@ DISTORTED: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "gain 10": lambda sound: np.clip(10 * sound, -1, 1),
     "gain 3": lambda sound: np.clip(3 * sound, -1, 1),
     "gain 2": lambda sound: np.clip(2 * sound, -1, 1),
+    "gain 1.6": lambda sound: np.clip(1.6 * sound, -1, 1),  # few samples are near the top, many at it
     "tanh": lambda sound: np.tanh(4 * sound),
 }
 
