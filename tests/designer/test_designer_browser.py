@@ -119,7 +119,7 @@ def test_switch_of_units_is_kept_with_the_design(browser: Any, tmp_path: Path) -
         page.get_by_role("button", name="Metric").wait_for()
         wait_until_idle(page)
         assert displayed_number(page, "squirt") == squirt
-        assert "in/4 ft" in page.locator(".tiles").inner_text()
+        assert "after 4 ft" in page.locator(".top").inner_text()
         type_value(page, "Taper, end", "0.9")
         assert page.get_by_label("Taper, end", exact=True).first.input_value() == "0.9 in"
         assert page.get_by_label("Tip diameter", exact=True).first.input_value() == "12 mm"  # as it was typed
