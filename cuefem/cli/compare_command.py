@@ -15,7 +15,7 @@ from cuefem.analysis.measured import contradictions
 from cuefem.cli.output import Command, command, output_option, print_json
 from cuefem.cli.pending_warnings import warn
 from cuefem.cli.progress import with_progress_bar
-from cuefem.cli.request import Request, errors_name_file, print_warnings
+from cuefem.cli.request import Request, errors_name_file, file_names, open_request, print_warnings
 from cuefem.cli.scene_command import (
     Presentation,
     calibration_option,
@@ -176,13 +176,6 @@ def _list(files: Sequence[Path], options: Mapping[str, str | None], output: Path
         raise InputError(files[0].parent, "", made.problem())
 
 
-def open_request(file: Path, options: Mapping[str, str | None]) -> Request:
-    """The request of a file with the options that it leaves open."""
-    request = Request.of(file, options)
-    own = request.own_values()
-    return replace(request, given={key: text for key, text in request.given.items() if key not in own}).with_shop()
-
-
 def _write_calibration(folder: Path, output: Path, *, as_json: bool) -> None:
     """Write the calibration by a measured cue."""
     cue, assumed = load_measured(folder)
@@ -281,15 +274,6 @@ def _assumptions(asked: Mapping[str, Request]) -> list[Assumption]:
         if each.of != STROKE and each not in shared
     ]
     return [*shared, *others]
-
-
-def file_names(files: Sequence[Path]) -> list[str]:
-    """The files' names, without folder and extension if they are distinct."""
-    for i, file in enumerate(files):
-        if file.resolve() in [other.resolve() for other in files[:i]]:
-            raise InputError(file, "", "is given twice; compare different files")
-    forms = [(cue_name(file) or file.stem, file.name, str(file)) for file in files]
-    return [next(own for k, own in enumerate(form) if [each[k] for each in forms].count(own) == 1) for form in forms]
 
 
 def _with_measurements(folder: Path, output: Path | None, *, as_json: bool, estimate: bool) -> None:

@@ -15,10 +15,9 @@ import cuefem as cf
 from cuefem.analysis.reduction import PAPER_CUE_ENDS, PAPER_TONE, cue_end_quantity
 from cuefem.analysis.shop_changes import PARTS, Limits
 from cuefem.analysis.strike_table import SPEEDS, StrikeTable
-from cuefem.cli.compare_command import file_names, open_request
 from cuefem.cli.output import Command, print_json
 from cuefem.cli.progress import with_progress_bar
-from cuefem.cli.request import Request
+from cuefem.cli.request import Request, file_names, open_request
 from cuefem.cli.scene_command import (
     Presentation,
     analysis_command,

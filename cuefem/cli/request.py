@@ -284,6 +284,22 @@ class Request:
             raise InputError(self.file, "--game", problem)
 
 
+def open_request(file: Path, options: Mapping[str, str | None]) -> Request:
+    """The request of a file with the options that it leaves open."""
+    request = Request.of(file, options)
+    own = request.own_values()
+    return replace(request, given={key: text for key, text in request.given.items() if key not in own}).with_shop()
+
+
+def file_names(files: Sequence[Path]) -> list[str]:
+    """The files' names, without folder and extension if they are distinct."""
+    for i, file in enumerate(files):
+        if file.resolve() in [other.resolve() for other in files[:i]]:
+            raise InputError(file, "", "is given twice; compare different files")
+    forms = [(cue_name(file) or file.stem, file.name, str(file)) for file in files]
+    return [next(own for k, own in enumerate(form) if [each[k] for each in forms].count(own) == 1) for form in forms]
+
+
 def compute_tip(scene: Scene) -> None:
     """Compute the scene's leather tip unless it is tabulated or cached, and announce the waiting time."""
     if not scene.tip_is_cached:
