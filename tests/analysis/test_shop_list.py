@@ -9,7 +9,6 @@ import pytest
 
 import cuefem as cf
 from tests.helpers.command_line import call
-from tests.helpers.invalid_input import assert_rejects
 
 FRONTS = (0.495, 0.505, 0.470)
 
@@ -45,11 +44,3 @@ def test_list_equals_comparisons_and_names_what_it_cannot_read(tmp_path: Path) -
     assert float(rows[0][head.index("squirt, deg")]) == pytest.approx(squirt, rel=1e-5)
     assert rows[-1][0] == "broken"
     assert 'class="red"' in files[2].read_text("utf-8")
-
-
-def test_folder_without_drawings_and_list_of_one_shaft_before_and_after_are_one_line(tmp_path: Path) -> None:
-    (tmp_path / "empty").mkdir()
-    assert_rejects("must hold drawings (.toml, .csv, .stl, .ply, .obj), or", "compare", tmp_path / "empty")
-    shop = write_shop(tmp_path / "shop")
-    assert_rejects("--same-shaft and --calibration take at most 5 FILEs", "compare", shop, "--same-shaft")
-    assert_rejects("a list is written as .html, .json or .csv", "compare", shop, "-o", tmp_path / "list.toml")
