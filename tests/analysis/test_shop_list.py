@@ -44,3 +44,15 @@ def test_list_equals_comparisons_and_names_what_it_cannot_read(tmp_path: Path) -
     assert float(rows[0][head.index("squirt, deg")]) == pytest.approx(squirt, rel=1e-5)
     assert rows[-1][0] == "broken"
     assert 'class="red"' in files[2].read_text("utf-8")
+
+
+def test_mark_of_an_assumed_inside_is_of_the_named_cue_alone(tmp_path: Path) -> None:
+    """Head, first screen and list mark "carbon", and not a maker's own carbon.csv."""
+    write_shop(tmp_path / "shop")
+    own, named = cf.load(tmp_path / "shop" / "s0.csv"), cf.load("carbon")
+    for cue, mark in ((own, "carbon"), (named, "carbon†")):
+        scenes = {"carbon": cf.usual_scene(cue), "plain maple": cf.usual_scene(cf.load("plain maple"))}
+        compared = cf.compare(scenes)
+        assert compared.table().head[1:3] == (mark, "plain maple")
+        assert {row[0] for row in cf.shop_list(scenes).tables()[0].rows} == {mark, "plain maple"}
+        assert f"<span>{mark}</span>" in compared.to_html()
