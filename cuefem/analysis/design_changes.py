@@ -122,17 +122,22 @@ class DesignChanges(Rows, Analysis):
         """A row for each change."""
         return [{name: value for name, value in vars(each).items() if name != "values"} for each in self.changes]
 
+    def gaps(self) -> list[str]:
+        """A warning of the state of the contact, and those of the calibration."""
+        own = self.calibrated.warning_lines() if self.calibrated else []
+        return [*filter(None, [regime_warning(self.regime)]), *own]
+
     def tables(self) -> list[Table | str]:
         """A table with a row for each change, after the calibration of the cue itself and the best changes together."""
         return [*self.calibration_lines(), *([*self.together_lines(), ""] if self.together else []), self.table()]
 
     def calibration_lines(self) -> list[str]:
-        """The calibrated squirt of the cue itself, and warnings; empty without a calibration."""
+        """The calibrated squirt of the cue itself, and what it rests on; empty without a calibration."""
         own = self.calibrated
         if own is None:
             return []
         squirt = with_unit(abs(own.squirt), "rad", error=own.squirt_error)
-        return [f"squirt {squirt} (1σ), {own.origin()}", own.basis(), *own.warning_lines(), ""]
+        return [f"squirt {squirt} (1σ), {own.origin()}", own.basis(), ""]
 
     def together_lines(self) -> list[str]:
         """The best changes together, a line each: what, squirt before and after, stiffness and mass."""
@@ -189,11 +194,9 @@ class DesignChanges(Rows, Analysis):
 
     def _notes(self) -> list[str]:
         """Definitions of the table's columns."""
-        warning = regime_warning(self.regime)
         own = with_unit(self.unmodified["squirt"], "rad", decimals=2)
         return [
-            *([warning] if warning else []),
-            f"Each change on its own, by the coupled strike at b/R {self.offset:.4g}; this cue: {own}. "
+            f"By the coupled strike at b/R {self.offset:.4g}; this cue: {own}. "
             f"±: uncertainty of the change (1σ): model, unmeasured {shaft_word(self.scene)} and tip, and 1 %. "
             f"Worthwhile: squirt falls by more than its uncertainty and by {100 * MIN_CHANGE:g} % or more (small: by "
             "less); within uncertainty: the change is smaller than its uncertainty.",

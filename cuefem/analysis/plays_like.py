@@ -195,7 +195,8 @@ class _ShaftSearch:
             fixed = [point for point in before[BASES:] if tuple(point.change.values) == ("ferrule material",)]
             pairs = [(base, dimension) for base in [*before[:BASES], *fixed[:1]] for dimension in useful]
             more = [end for pair in progress(pairs) if (end := self.end(*pair)) is not None]
-            points = sorted([*more, *points], key=lambda point: abs(point.gap))
+            shafts = {frozenset(point.change.values.items()): point for point in [*points, *more]}  # in either order
+            points = sorted(shafts.values(), key=lambda point: abs(point.gap))
         return [point for point in points if abs(point.gap) < SAME] or points[:1]
 
     def end(self, base: _ChangedShaft | None, dimension: Dimension) -> _ChangedShaft | None:

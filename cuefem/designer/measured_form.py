@@ -32,7 +32,10 @@ READING = {
     "distance": FormField("Distance where you read it", "3 ft"),
     "speed": FormField("Speed of the cue", "3.5 m/s", "0.9 of the ball's; without it the stroke's ± 50 %"),
 }
-STANCE = {"elevation": FormField("Elevation of the cue", "2 deg", "without it 1.8 to 4.9° are assumed")}
+STANCE = {
+    "elevation": FormField("Elevation of the cue", "2 deg", "without it 1.8 to 4.9° are assumed"),
+    "elevation_error": FormField("Error of the elevation", "0.5 deg", "without it 1°"),
+}
 FORM = "I measured"  # names the form in messages
 
 

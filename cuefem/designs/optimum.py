@@ -336,7 +336,7 @@ class OptimumResult(StudyResult):
     def headline(self) -> str:
         """The objective before and after, with the uncertainty of the change, and how many limits are active."""
         problem, best, name = self.definition, self.optimum, self.definition.objective.name
-        start = best.start.responses[name] if best.start else math.nan
+        start = self.start.responses[name]
         before = "" if math.isnan(start) else f"{shown(start, problem.objective.display_key)} → "
         change = _change_text(start, best.responses[name], self.changes.get(name))
         limited = {each.name for each in best.active if each.name != name or problem.target is None}
@@ -346,13 +346,108 @@ class OptimumResult(StudyResult):
         return f"{problem.objective.label} {value}{changed}; {len(limited)} of {counted(of, 'limit')} and ranges active"
 
     def values(self) -> Record:
-        """The best design, its responses and active constraints, and the evaluations."""
-        return optimum_record(self.definition, self.optimum, self.changes)
+        """The best design, its responses and active constraints beside the unmodified design, and the evaluations."""
+        problem, best, start = self.definition, self.optimum, self.start
+        aim = "maximize" if problem.maximize else "minimize" if problem.target is None else "response"
+        target = {} if problem.target is None else {"target": problem.target}
+        return {
+            "objective": {aim: problem.objective.name} | target,
+            "value": best.responses[problem.objective.name],
+            "values": best.values,
+            "responses": best.responses,
+            "start": {"values": start.values, "responses": start.responses, "failure": start.failure},
+            "changes": self.changes,
+            "active": [constraint._asdict() for constraint in best.active],
+            "is_set_by_constraints": self.is_set_by_constraints,
+            "evaluations": self._computed(),
+            "stop_reason": best.stop_reason,
+            "choices": [choice._asdict() for choice in best.choices],
+        }
+
+    @property
+    def is_set_by_constraints(self) -> bool:
+        """Whether as many constraints are active as there are numbers to choose."""
+        reached = {constraint.name for constraint in self.optimum.active}  # a limit with both bounds counts once
+        return self.definition.target is None and len(reached) >= len(self.definition.spans) > 0
+
+    @property
+    def start(self) -> StudyDesign:
+        """The unmodified design."""
+        assert self.optimum.start is not None
+        return self.optimum.start
 
     def tables(self) -> list[Table | str]:
         """Varied parameters, the best design, its active constraints, and the best design for each choice."""
-        found = tabulate_optimum(self.definition, self.optimum, self.changes)
-        return [self.headline(), *super().tables(), *found]
+        problem, best = self.definition, self.optimum
+        aim = f"{'maximize' if problem.maximize else 'minimize'} {problem.objective.label}"
+        if problem.target is not None:
+            aim = f"smallest change to {problem.objective.label} {self._text(problem.objective.name, problem.target)}"
+        limits = [each for each in best.active if (each.name, each.bound) != (problem.objective.name, problem.target)]
+        active = [f"{self._label(name)} {sense} {self._text(name, bound)}" for name, sense, bound in limits]
+        tables: list[Table | str] = [
+            self.headline(),
+            *super().tables(),
+            f"{aim}: {counted(self._computed(), 'design')} computed",
+            self._compared(),
+            f"active constraints: {', '.join(active) or 'none'}",
+        ]
+        if self.is_set_by_constraints:
+            tables.append(
+                "The answer is your limits: as many constraints are active as there are numbers to choose. Only "
+                "another limit or a wider range gives a better design."
+            )
+        if best.stop_reason:
+            tables.append(f"not finished: {best.stop_reason}; more --iterations may find a better design")
+        return [*tables, self._choices()] if best.choices else tables
+
+    def _text(self, name: str, value: Any) -> str:
+        """A value of a variable or a response, with its unit."""
+        units = self.units | {response.name: response.display_key for response in self.study.responses}
+        if isinstance(value, str):
+            return value
+        return DASH if math.isnan(value) else with_unit(value, units[name])
+
+    def _label(self, name: str) -> str:
+        """The label of a variable or a response."""
+        labels = {response.name: response.label for response in self.study.responses}
+        return labels.get(name) or column_label(name)
+
+    def _compared(self) -> Table:
+        """The best design beside the unmodified one."""
+        start = {**self.start.responses, **self.start.values}
+        best = {**self.optimum.responses, **self.optimum.values}
+        rows = tuple(
+            (
+                self._label(name),
+                self._text(name, start[name]),
+                self._text(name, value),
+                _change_text(start[name], value, self.changes.get(name)),
+            )
+            for name, value in best.items()
+        )
+        notes = ["±: 1σ of the difference; shared errors cancel."] if self.changes else []
+        if any(not change["distinct"] for change in self.changes.values()):
+            notes.append(NOT_DISTINCT)
+        if self.start.failure:
+            notes.append(f"start: {displayed_reason(self.study, self.start.scene, self.start.failure)}")
+        return Table("Best design", ("", "start", "best", "change"), rows, tuple(notes))
+
+    def _choices(self) -> Table:
+        """The best design for each combination of listed values."""
+        score, unit = self.definition.objective.heading, self.definition.objective.display_key
+        if self.definition.target is not None:
+            score, unit = "change, part of the ranges", ""
+        choices = self.optimum.choices
+        head = (*map(column_label, choices[0].values), score, "")
+        rows = tuple(
+            (
+                *(self._text(*pair) for pair in choice.values.items()),
+                DASH if choice.reason else shown(choice.objective, unit),
+                choice.reason,
+            )
+            for choice in choices
+        )
+        return Table("Best design for each choice", head, rows, texts=(*range(len(head) - 2), len(head) - 1))
 
     @cached_property
     def changes(self) -> dict[str, Record]:
@@ -360,106 +455,17 @@ class OptimumResult(StudyResult):
 
         "difference", "error" (1 sigma) and "distinct"; without a response that one of them lacks.
         """
-        assert self.optimum.start is not None
-        (changes,) = design_differences(self.study, [self.optimum.start, self.optimum])
+        (changes,) = design_differences(self.study, [self.start, self.optimum])
         return changes
 
     def charts(self) -> list[Chart | CueDrawing]:
         """Drawings of the unmodified and of the best design."""
-        assert self.optimum.start is not None
-        designs = {"start": self.optimum.start, "best design": self.optimum}
+        designs = {"start": self.start, "best design": self.optimum}
         return [
             cue_drawing(design.scene, f"{name}, diameters {DIAMETER_SCALE:g} times enlarged")
             for name, design in designs.items()
             if design.scene.cue.segments
         ]
-
-
-def optimum_record(problem: Problem, best: Optimum, changes: Mapping[str, Record]) -> Record:
-    """The best design, its responses and active constraints beside the unmodified design, and the evaluations."""
-    assert best.start is not None
-    aim = "maximize" if problem.maximize else "minimize" if problem.target is None else "response"
-    return {
-        "objective": {aim: problem.objective.name} | ({"target": problem.target} if problem.target is not None else {}),
-        "value": best.responses[problem.objective.name],
-        "values": best.values,
-        "responses": best.responses,
-        "start": {"values": best.start.values, "responses": best.start.responses, "failure": best.start.failure},
-        "changes": changes,
-        "active": [constraint._asdict() for constraint in best.active],
-        "is_set_by_constraints": is_set_by_constraints(problem, best),
-        "evaluations": best.evaluations,
-        "stop_reason": best.stop_reason,
-        "choices": [choice._asdict() for choice in best.choices],
-    }
-
-
-def is_set_by_constraints(problem: Problem, best: Optimum) -> bool:
-    """Whether as many constraints are active as there are numbers to choose."""
-    reached = {constraint.name for constraint in best.active}  # a limit with one bound on both sides counts once
-    return problem.target is None and len(reached) >= len(problem.spans) > 0
-
-
-def tabulate_optimum(problem: Problem, best: Optimum, changes: Mapping[str, Record]) -> list[Table | str]:
-    """The best design beside the unmodified one, its active constraints, and the best design for each choice.
-
-    changes: differences of the responses, as of `design_differences`.
-    """
-    units = dict(zip(problem.study.columns, problem.study.units, strict=True))
-    units |= {response.name: response.display_key for response in problem.study.responses}
-    labels = {response.name: response.label for response in problem.study.responses}
-
-    def text(name: str, value: Any) -> str:
-        if isinstance(value, str):
-            return value
-        return DASH if math.isnan(value) else with_unit(value, units[name])
-
-    assert best.start is not None
-    start = {**best.start.responses, **best.start.values}
-    both = {**best.responses, **best.values}
-    names = {name: labels.get(name) or column_label(name) for name in both}
-    aim = f"{'maximize' if problem.maximize else 'minimize'} {problem.objective.label}"
-    if problem.target is not None:
-        aim = f"smallest change to {problem.objective.label} {text(problem.objective.name, problem.target)}"
-    compared = tuple(
-        (names[name], text(name, start[name]), text(name, value), _change_text(start[name], value, changes.get(name)))
-        for name, value in both.items()
-    )
-    marked = any(not change["distinct"] for change in changes.values())
-    shared = ("±: 1σ of the difference; shared errors cancel.",) if changes else ()
-    failure = best.start.failure and displayed_reason(problem.study, best.start.scene, best.start.failure)
-    missing = (f"start: {failure}",) if failure else ()
-    notes = (*shared, *((NOT_DISTINCT,) if marked else ()), *missing)
-    limits = [each for each in best.active if (each.name, each.bound) != (problem.objective.name, problem.target)]
-    active = [f"{names[name]} {sense} {text(name, bound)}" for name, sense, bound in limits]
-    tables: list[Table | str] = [
-        f"{aim}: {counted(best.evaluations, 'design')} computed",
-        Table("Best design", ("", "start", "best", "change"), compared, notes),
-        f"active constraints: {', '.join(active) or 'none'}",
-    ]
-    if is_set_by_constraints(problem, best):
-        tables.append(
-            "The answer is your limits: as many constraints are active as there are numbers to choose. Only another "
-            "limit or a wider range gives a better design."
-        )
-    if best.stop_reason:
-        tables.append(f"not finished: {best.stop_reason}; more --iterations may find a better design")
-    if best.choices:
-        score, unit = problem.objective.heading, problem.objective.display_key
-        if problem.target is not None:
-            score, unit = "change, part of the ranges", ""
-        head = (*map(column_label, best.choices[0].values), score, "")
-        rows = tuple(
-            (
-                *(text(name, value) for name, value in choice.values.items()),
-                DASH if choice.reason else shown(choice.objective, unit),
-                choice.reason,
-            )
-            for choice in best.choices
-        )
-        texts = (*range(len(head) - 2), len(head) - 1)
-        tables.append(Table("Best design for each choice", head, rows, texts=texts))
-    return tables
 
 
 def _change_text(start: Any, value: Any, change: Record | None) -> str:

@@ -196,14 +196,12 @@ class TradeOffResult(OptimumResult):
 
     def _limits_text(self, i: int) -> str:
         """The limits and ranges whose ends a design of the trade-off has reached; empty if there are none."""
-        labels = {response.name: response.label for response in self.study.responses}
-        active = [labels.get(name) or column_label(name) for name in self.active(self.trade_off[i])]
+        active = [*map(self._label, self.active(self.trade_off[i]))]
         return f"design {i} is at the limit of {', '.join(active)}" if active else ""
 
     def charts(self) -> list[Chart | CueDrawing]:
         """The trade-off with the unmodified design; drawings of that and of the best one."""
-        assert self.optimum.start is not None
-        designs = [*self.trade_off, self.optimum.start]
+        designs = [*self.trade_off, self.start]
         y, x = (to_display([each.responses[of.name] for each in designs], of.display_key) for of in self.two)
         front = [Dots("", x[i : i + 1], y[i : i + 1], "c1", f"design {i}") for i in range(len(self.trade_off))]
         drawn = chart(
