@@ -16,7 +16,7 @@ import pytest
 import cuefem as cf
 from cuefem.contact.strike import strike_modes
 from cuefem.scene.solved_scene import tip_modes_of
-from tests.helpers.leather_scenes import AT, LEATHER, leather_scene
+from tests.helpers.leather_scenes import AT, leather_scene
 from tests.helpers.strike_scenes import kim_scene
 
 SCENES = [
@@ -28,6 +28,7 @@ SCENES = [
     replace(leather_scene(0.2), ball=cf.Ball(mass=0.17, radius=0.028575)),
     leather_scene(0.45, cf.SecondHit(0.02)),
     leather_scene(0.4),
+    replace(kim_scene(0.3), effects=(cf.Elevation(0.1),)),
 ]
 EXCLUDED = ("phases", "history", "unknowns", "error", "energy")
 
@@ -51,42 +52,6 @@ def test_batch_strike_equals_single_strikes(scenes: list[cf.Scene], at: cf.Resol
     assert together.unknowns > 20
 
 
-EFFECTS: list[tuple[cf.Effect, ...]] = [
-    (),
-    (cf.SecondHit(),),
-    (
-        cf.PointMass(position=0.1, mass=0.01),
-        cf.Support(0.2, 5e3, 1.0, 20.0),
-        cf.StructuralDamping(0.02),
-        cf.AxialWaves(),
-    ),
-    (cf.TipShear(0.75), cf.TipDome(0.0095), cf.PowerLawTip(1.5)),
-    (cf.Elevation(0.1),),
-    (replace(LEATHER, surface_restitution=0.9),),
-]
-
-
-def strike_with(effects: tuple[cf.Effect, ...]) -> cf.Outcome:
-    scene = leather_scene(0.3) if LEATHER.__class__ in map(type, effects) else kim_scene(0.3)
-    return cf.strike(replace(scene, effects=effects), AT)
-
-
-@pytest.mark.heavy
-def test_outcome_in_another_process_is_equal() -> None:
-    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as executor:
-        for effects, received in zip(EFFECTS, executor.map(strike_with, EFFECTS), strict=True):
-            outcome = strike_with(effects)
-            times = np.linspace(0, outcome.duration, 7)
-            for copy in (received, pickle.loads(pickle.dumps(outcome)), deepcopy(outcome)):
-                assert copy == outcome
-                assert all(np.array_equal(copy.history(times)[k], v) for k, v in outcome.history(times).items())
-            history = replace(outcome.history, forces=outcome.history.forces * (1 + 1e-15))
-            changes = ({"squirt": np.nextafter(outcome.squirt, 1)}, {"history": None}, {"history": history})
-            assert all(outcome != replace(outcome, **change) for change in changes)
-            assert outcome != outcome.squirt
-            assert (outcome == strike_with(())) == (effects in ((), (cf.SecondHit(),)))
-
-
 @pytest.mark.parametrize(("offset", "window"), [(0.1, 1e-3), (0.1, 2e-2), (0.4, 0.15)])
 def test_second_hit_that_does_not_occur_changes_nothing(offset: float, window: float) -> None:
     """On a bent shaft too: its slopes belong to the contact, and the cue turns by 0.3 rad in 0.15 s of free flight."""
@@ -94,33 +59,38 @@ def test_second_hit_that_does_not_occur_changes_nothing(offset: float, window: f
     assert cf.strike(replace(scene, effects=(*scene.effects, cf.SecondHit(window))), at) == cf.strike(scene, at)
 
 
-def test_outcome_of_batch_copies_and_pickles_equal() -> None:
-    scenes = [kim_scene(offset) for offset in (0.1, 0.2, 0.3)]
-    outcome = cf.batch_strike(scenes, AT)
-    assert deepcopy(outcome) == pickle.loads(pickle.dumps(outcome)) == outcome == cf.batch_strike(scenes, AT)
-    assert outcome != cf.batch_strike(scenes[:2], AT)
-    striker = cf.Striker(mass=0.02, restitution=0.8, contact_time=1e-3)
-    side = cf.side_strike(cf.SideStrike(kim_scene().cue, striker, effects=(cf.SecondHit(),)))
-    assert deepcopy(side) == pickle.loads(pickle.dumps(side)) == side
+STRIKER = cf.Striker(mass=0.02, restitution=0.8, contact_time=1e-3)
 
 
-def test_outcome_without_any_of_its_fields_is_another() -> None:
-    outcome = cf.strike(kim_scene(), AT)
+def test_results_copy_pickle_and_compare() -> None:
+    """Results of every kind are equal after a way to another process, and another where one part is another."""
+    cue, outcome = kim_scene().cue, cf.strike(SCENES[0], AT)
+    moved = cf.motion(kim_scene(0.3), [0.0, 1e-3], AT)
+    results = (
+        *(outcome, cf.batch_strike(SCENES[:3], AT), moved, cf.modes(cue, 3), cf.modes(cue, 3, near=600.0)),
+        cf.side_strike(cf.SideStrike(cue, STRIKER, effects=(cf.SecondHit(),))),
+        cf.BallMotion(np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 30.0])),
+    )
+    for result in results:
+        assert deepcopy(result) == pickle.loads(pickle.dumps(result)) == result
     for part in fields(outcome):
         if getattr(outcome, part.name) is not None:
             assert replace(outcome, **{part.name: None}) != outcome != replace(outcome, **{part.name: (1.0,)})
-
-
-def test_results_with_arrays_copy_pickle_and_compare() -> None:
-    """Modes of a dense and of a sparse problem, a motion, a ball's motion: equal after a way to another process."""
-    cue = kim_scene().cue
-    moved = cf.motion(kim_scene(0.3), [0.0, 1e-3], AT)
-    placed = cf.BallMotion(np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 30.0]))
-    for result in (cf.modes(cue, 3), cf.modes(cue, 3, near=600.0), moved, placed):
-        assert deepcopy(result) == pickle.loads(pickle.dumps(result)) == result
+    assert outcome != replace(outcome, squirt=np.nextafter(outcome.squirt, 1)) != outcome.squirt
     assert cf.modes(cue, 3) == cf.modes(cue, 3) != cf.modes(cue, 4)
     assert moved != cf.motion(kim_scene(0.31), [0.0, 1e-3], AT)
     assert np.array_equal(pickle.loads(pickle.dumps(cf.modes(cue, 3))).shape(0.1), cf.modes(cue, 3).shape(0.1))
+
+
+def strike_few(scene: cf.Scene) -> cf.Outcome:
+    return cf.strike(scene, AT)
+
+
+@pytest.mark.heavy
+def test_strikes_in_another_process_are_equal() -> None:
+    """Their histories too."""
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as executor:
+        assert [*executor.map(strike_few, SCENES)] == [*map(strike_few, SCENES)]
 
 
 @pytest.mark.nightly

@@ -17,10 +17,9 @@ import pytest
 import cuefem as cf
 from cuefem import Outcome
 from cuefem.contact.outcome import end_of_first_slip
-from cuefem.contact.strike import strike_modes
 from tests.contact.test_independent_effects import KINDS as RANDOM_KINDS
 from tests.contact.test_independent_effects import RandomScene
-from tests.data.stored import DATA, scene_of, stored_law, strikes, tip_of
+from tests.data.stored import DATA, strike_row, strikes
 from tests.helpers.golden_numbers import assert_golden_numbers
 from tests.helpers.strike_scenes import KIM, KIM_AT, KIM_TIP, energy_residual
 
@@ -66,11 +65,6 @@ def separated_by_impact() -> Iterable[cf.Scene]:
 OTHER_KINDS: dict[str, Callable[[], Iterable[cf.Scene]]] = {
     name: lambda make=kind.make: map(make, map(RandomScene, range(4))) for name, kind in RANDOM_KINDS.items()
 } | {kind.__name__: kind for kind in (frictionless, bent_and_damped, coupled, separated_by_impact)}
-
-
-def strike_row(row: dict[str, Any], **resolution: int) -> Outcome:
-    with stored_law(row):
-        return strike_modes(scene_of(row), tip_of(row), **resolution)
 
 
 def squirt_error(outcome: Outcome, row: dict[str, Any]) -> float:

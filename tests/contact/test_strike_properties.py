@@ -183,18 +183,18 @@ VANISHING = {
 }
 
 
-def squirt(*effects: Effect, **stroke: float) -> float:
+def squirt(*effects: Effect, at: cf.Resolution = KIM_AT, **stroke: float) -> float:
     scene = replace(kim_scene(), effects=effects)
-    return float(cf.strike(replace(scene, stroke=replace(scene.stroke, **stroke)), KIM_AT).squirt)
+    return float(cf.strike(replace(scene, stroke=replace(scene.stroke, **stroke)), at).squirt)
 
 
 @pytest.mark.parametrize("name", VANISHING)
 def test_effect_near_limit_vanishes_linearly(name: str) -> None:
     make, limit = VANISHING[name]
-    bare = squirt(limit) if limit else squirt()
+    bare = squirt(limit, at=AT) if limit else squirt(at=AT)
     steps = [1.0, 1e-1, 1e-2]
-    assert_order(1.0, steps, [abs(squirt(make(x)) - bare) for x in steps], within=[0.04, 0.01])
-    assert abs(squirt(make(0.0)) / bare - 1) < 1e-14
+    assert_order(1.0, steps, [abs(squirt(make(x), at=AT) - bare) for x in steps], within=[0.04, 0.01])
+    assert abs(squirt(make(0.0), at=AT) / bare - 1) < 1e-14
 
 
 def test_strike_other_limits_are_reached() -> None:

@@ -11,54 +11,24 @@ import cuefem as cf
 from cuefem.contact.table_frame import offset_of
 from tests.helpers.examples import examples
 
-MANY = examples(60)
 BALL = cf.Ball(0.17, 0.0286)
 R = BALL.radius
-NORTH = (0.0, 1.0, 0.0)
 INSIDE = st.tuples(st.floats(0, 0.95), st.floats(0, 2 * pi)).map(
     lambda polar: (R * polar[0] * cos(polar[1]), R + R * polar[0] * sin(polar[1]))
 )
 
 
-def stroke(offset, speed=2.0, end_mass=0.004):
-    return cf.impulse(cf.Scene(cf.LumpedCue(0.54, end_mass), BALL, cf.Tip(0.75, 0.7), cf.Stroke(speed, offset)))
-
-
-def strike_and_place(point, direction=NORTH, **options):
-    outcome = stroke(offset_of(point, direction, ball=BALL), **options)
-    return outcome, cf.place(outcome, point, direction, ball=BALL)
-
-
-@pytest.mark.parametrize(
-    ("side", "spin", "squirt"),
-    [
-        ((1, 0), (0, 0, 1), (-1, 0, 0)),  # right english turns the ball anticlockwise from above; it squirts left
-        ((-1, 0), (0, 0, -1), (1, 0, 0)),  # left english
-        ((0, 1), (-1, 0, 0), (0, 0, -1)),  # follow rolls with the ball, and squirts into the table
-        ((0, -1), (1, 0, 0), (0, 0, 1)),  # draw
-    ],
-)
-def test_place_english_follow_and_draw_spin_as_expected(side, spin, squirt):
-    outcome, placed = strike_and_place((0.4 * R * side[0], R * (1 + 0.4 * side[1])))
-    assert outcome.squirt > 0.005
-    np.testing.assert_allclose(placed.spin, outcome.spin * np.array(spin), rtol=0, atol=1e-12)
-    expected = outcome.ball_speed * (cos(outcome.squirt) * np.array(NORTH) + sin(outcome.squirt) * np.array(squirt))
-    np.testing.assert_allclose(placed.velocity, expected, rtol=0, atol=1e-13)
-    # follow: a ball that rolls along +y without slip has omega = (-V/R, 0, 0)
-    rolling = np.cross([0, 0, 1 / R], placed.velocity)
-    assert np.sign(np.dot(rolling, placed.spin)) == side[1]
-
-
-@MANY
+@examples(60)
 @given(INSIDE, st.floats(0, 2 * pi), st.floats(0, 1.2), st.floats(0.1, 10))
 def test_place_any_stroke_preserves_angles_and_magnitudes(point, heading, elevation, length):
     direction = length * np.array([cos(elevation) * sin(heading), cos(elevation) * cos(heading), -sin(elevation)])
     unit = direction / length
     contact = contact_of(point, unit)
     assume(contact @ unit < -0.05 * R)
-    outcome, placed = strike_and_place(point, direction)
     b = np.linalg.norm(np.cross(contact, unit))
     offset = offset_of(point, direction, ball=BALL)
+    outcome = cf.impulse(cf.Scene(cf.LumpedCue(0.54, 0.004), BALL, cf.Tip(0.75, 0.7), cf.Stroke(2.0, offset)))
+    placed = cf.place(outcome, point, direction, ball=BALL)
     assert offset == pytest.approx(b / R, rel=1e-12, abs=1e-14)
     V, spin = placed.velocity, placed.spin
     assert np.linalg.norm(V) == pytest.approx(outcome.ball_speed, rel=1e-14)

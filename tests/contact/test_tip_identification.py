@@ -26,25 +26,15 @@ def whole_cue() -> cf.Scene:
     return cf.usual_scene(cue)
 
 
-@pytest.mark.parametrize("E", [60e6, 400e6])
-def test_identify_tip_rigid_cue_recovers_tip(E: float) -> None:
+def test_identify_tip_rigid_cue_recovers_tip() -> None:
     """In a centre-ball impact a cue without axial waves is rigid: its rebound is the tip's restitution."""
-    scene = leather_scene(leather=replace(LEATHER, E=E))
+    scene = leather_scene()
     assert cf.rebound(scene) == pytest.approx(0.73, rel=1e-4)
     soft = leather_scene(leather=replace(LEATHER, E=1e6))  # too soft for the stroke; its E has no effect
-    assert cf.identify_tip(soft, float(scene.contact_time), 0.73) == pytest.approx((E, 0.73), rel=2e-4)
+    assert cf.identify_tip(soft, float(scene.contact_time), 0.73) == pytest.approx((LEATHER.E, 0.73), rel=2e-4)
 
 
-def test_identify_tip_with_axial_waves_recovers_tip() -> None:
-    scene = leather_scene(0.3, cf.AxialWaves())
-    result = cf.identify_tip(scene, 1.1e-3, 0.8)
-    assert head_on(with_tip(scene, result)) == pytest.approx((1.1e-3, 0.8), rel=1e-5)
-    rigid = cf.identify_tip(leather_scene(), 1.1e-3, 0.8)
-    assert result.E > 1.05 * rigid.E  # the compliance of the wood adds
-    assert result.restitution < 0.95 * rigid.restitution  # axial waves dissipate less than the tip alone
-
-
-@pytest.mark.parametrize("name", LEATHERS)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[] if n == "medium" else pytest.mark.heavy) for n in LEATHERS])
 def test_identify_tip_reproduces_measured_contact_time_and_rebound(name: str) -> None:
     leather = LEATHERS[name]
     result = cf.identify_tip(whole_cue(), leather.contact_time, 0.73)

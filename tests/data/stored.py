@@ -20,6 +20,7 @@ import numpy as np
 
 import cuefem as cf
 from cuefem.beam.tip_modes import TipModes, lumped_tip_modes
+from cuefem.contact.strike import strike_modes
 from cuefem.effects.force_law import LeatherLaw
 from cuefem.effects.leather_tip import LeatherTip
 from cuefem.scene import Scene
@@ -100,3 +101,9 @@ def stored_law(row: dict[str, Any]) -> Iterator[None]:
 
     with mock.patch.object(LeatherTip, "law", law):
         yield
+
+
+def strike_row(row: dict[str, Any], **resolution: int) -> cf.Outcome:
+    """The strike of a row by the package."""
+    with stored_law(row):
+        return strike_modes(scene_of(row), tip_of(row), **resolution)

@@ -63,14 +63,6 @@ def test_bore_change_behind_a_plug_widens_it(tmp_path: Path) -> None:
     assert scene.cue.mass - wider.cue.mass == pytest.approx(annulus, rel=1e-9)
 
 
-def test_bore_change_of_a_stepped_bore_names_its_mouth(tmp_path: Path) -> None:
-    scene = drawn(tmp_path, HEAD + DRAWINGS["stepped"][0])
-    wider = next(change for change in changes_of(scene) if "wider" in change.label)
-    assert wider.label == "bore wider, 8 → 9 mm at its mouth"
-    changed = with_parameters(scene, wider.values).cue
-    assert [s.tip_bore for s in changed.segments[:3]] == pytest.approx([0, 0.009, 0.009 * 6 / 8], rel=1e-12)
-
-
 def bore_at(cue: cf.Cue, x: float) -> float:
     """The width of what is hollow at x."""
     i = int(np.searchsorted(cue.nodes, x)) - 1

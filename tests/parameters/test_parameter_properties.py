@@ -13,7 +13,6 @@ from cuefem.files.cue_names import CUES
 from cuefem.files.reference_cues import named_scene
 from cuefem.parameters.parts import outer_diameter
 from cuefem.parameters.scene_changes import with_parameters
-from cuefem.parameters.scene_paths import paths
 from cuefem.parameters.table import PARAMETERS
 from tests.helpers.examples import examples
 
@@ -33,7 +32,7 @@ def changed(key: str, value: float, part: float) -> float:
 
 
 @pytest.mark.parametrize("name", SCENES)
-@examples(3)
+@examples(2)
 @given(permille=st.integers(-10, 10))
 def test_parameter_set_reads_back(name: str, permille: int) -> None:
     scene = SCENES[name]
@@ -52,14 +51,6 @@ def test_parameters_changed_in_any_order_agree(name: str, data: Any) -> None:
     keys = data.draw(st.lists(st.sampled_from(sorted(numbers(scene))), min_size=2, max_size=5, unique=True))
     changes = {key: changed(key, numbers(scene)[key], 0.01) for key in keys}
     assert with_parameters(scene, changes) == with_parameters(scene, dict(reversed(changes.items())))
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_parameter_name_variants_agree(name: str) -> None:
-    scene = SCENES[name]
-    assert with_parameters(scene, {"butt diameter": 0.03}) == with_parameters(scene, {"butt_diameter": 0.03})
-    assert with_parameters(scene, {"speed": 3.0}) == with_parameters(scene, {"stroke.speed": 3.0})
-    assert paths(scene, "segments[0].length") == paths(scene, "cue.segments[0].length")
 
 
 @examples(30)
@@ -90,8 +81,3 @@ def test_parameter_material_and_leather_names_set_values() -> None:
     assert (result.leather_tip.E, result.leather_tip.nu, result.leather_tip.rho) == (soft.E, soft.nu, soft.rho)
     assert result.tip.restitution == soft.restitution
     assert with_parameters(FIRST, {"leather": "soft", "restitution": 0.7}).tip.restitution == 0.7
-
-
-def test_contact_time_of_spring_clears_stiffness() -> None:
-    spring = cf.Scene(FIRST.cue, tip=cf.Tip(stiffness=1e6))
-    assert with_parameters(spring, {"contact time": 1e-3}).tip == cf.Tip(contact_time=1e-3)

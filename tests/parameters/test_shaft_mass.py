@@ -108,13 +108,6 @@ def test_options_keep_the_density_of_a_weighed_shaft_at_every_door(options: dict
         assert main_material(cue).rho == pytest.approx(main_material(before).rho, rel=1e-9), door
 
 
-def test_material_option_replaces_the_material_column_of_a_profile(tmp_path: Path) -> None:
-    (csv := tmp_path / "maple.csv").write_text("x [mm],diameter [mm],material\n0,12.75,hard maple\n736.6,21.5,\n")
-    cue = cf.load(csv, material="ash")
-    assert isinstance(cue, cf.Cue)
-    assert [segment.material for segment in cue.segments] == [cf.material("ash")]
-
-
 def test_report_says_what_options_replace_and_how_a_shaft_was_weighed(tmp_path: Path) -> None:
     file, bore, ferrule = weighed(tmp_path), "8 mm wide, 127 mm deep", "15 mm abs"
 

@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 
 from cuefem.cue import Material, Segment
 from cuefem.quantity.fields import OutOfBounds, Quantity
-from cuefem.quantity.units import parse_number
 
 INTERVALS = ["(0, inf)", "[0, inf)", "[0, inf]", "[0, 1]", "(-1, 1)", "(-inf, inf)"]
 
@@ -32,10 +31,3 @@ def test_dependent_bound_error_has_si_and_file_units() -> None:
     with pytest.raises(OutOfBounds, match=message) as error:
         Segment(0.7, 0.012, 0.021, Material(12.6e9, 0.84e9, 782.0), tip_bore=0.013)
     assert error.value.file_message == "must be at least 0 and less than 12 mm, its outer diameter; got 13 mm"
-
-
-@pytest.mark.parametrize(("text", "inches"), [("5/16 in", 0.3125), ("1 1/4 in", 1.25), ('29 1/2"', 29.5)])
-def test_fraction_is_parsed(text: str, inches: float) -> None:
-    assert parse_number(text, "m") == pytest.approx(25.4e-3 * inches, rel=1e-15)
-    with pytest.raises(ValueError, match="needs a unit"):
-        Quantity("m").read(text.rstrip('in" '))

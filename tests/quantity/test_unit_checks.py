@@ -13,14 +13,9 @@ WOOD = cf.Material(12.6e9, 0.84e9, 700.0)
 SEGMENT = cf.Segment(0.7, 0.012, 0.021, WOOD)
 WARNINGS: dict[str, Callable[[], object]] = {
     "TipDome.radius is 9.5 m, which no cue has: is it 9.5 mm? Write 0.0095 (m)": lambda: cf.TipDome(9.5),
-    "Segment.length is 700 m, which no cue has: is it 700 mm?": lambda: cf.Segment(700, 0.012, 0.021, WOOD),
     "Segment.length is 29 m, which no cue has: is it 29 mm or 29 in?": lambda: cf.Segment(29, 0.012, 0.021, WOOD),
-    "Segment.tip_diameter is 0.5 m, which no cue has: is it 0.5 in?": lambda: cf.Segment(0.7, 0.5, 0.85, WOOD),
     "Cue.body_mass is 15 kg, which no cue has: is it 15 oz? Write 0.4252 (kg)": lambda: cf.Cue((SEGMENT,), 15),
-    "Ball.mass is 170 kg, which no cue has: is it 170 g? Write 0.17 (kg)": lambda: cf.Ball(170),
-    "Tip.contact_time is 1.1 s, which no cue has: is it 1.1 ms?": lambda: cf.Tip(contact_time=1.1),
     "Material.E is 12.6 Pa, which no cue has: is it 12.6 GPa or 12.6 MPa?": lambda: cf.Material(12.6, 0.84e0, 700),
-    "Material.rho is 0.7 kg/m^3, which no cue has: is it 0.7 g/cm^3?": lambda: cf.Material(12.6e9, 0.84e9, 0.7),
 }
 
 

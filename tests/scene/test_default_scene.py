@@ -25,13 +25,6 @@ def test_default_tip_has_height_of_drawn_leather() -> None:
     assert cf.usual_scene(cue, tip=replace(scene.leather_tip, height=7e-3)).leather_tip.height == 7e-3
 
 
-@pytest.mark.parametrize("game", GAMES)
-def test_default_scene_drawn_tip_has_all_effects(game: str) -> None:
-    bare = cf.usual_scene(cf.Cue((WOOD,), 0.4), game)
-    with_leather = cf.usual_scene(cf.Cue((leather(bare.leather_tip.height), WOOD), 0.4), game)
-    assert with_leather == bare
-
-
 def test_axial_waves_short_butt_is_rigid_mass() -> None:
     """A cue drawn up to 3 mm before the butt, with 100 g behind it."""
     cue = cf.Cue((WOOD, cf.Segment(0.7702, 0.021, 0.031, material("hard maple"))), body_mass=0.1)
