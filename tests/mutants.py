@@ -24,6 +24,7 @@ import os
 import random
 import re
 import resource
+import shlex
 import shutil
 import subprocess
 import sys
@@ -193,11 +194,11 @@ def c_mutants(path: Path) -> Iterator[Mutant]:
         yield Mutant(path, text.count("\n", 0, match.start()) + 1, row, ends, old, new, "C")
 
 
-def is_other(mutant: Mutant, tree: Path) -> bool:
+def is_other(mutant: Mutant) -> bool:
     """Whether a mutant compiles, to other code than what it changes: else no test can tell."""
     whole = mutant.path.read_bytes()
     if mutant.group == "C":
-        return library(tree, mutant.file, mutant.applied(whole)) not in (b"", library(tree, mutant.file, whole))
+        return assembly(mutant.path.parent, mutant.applied(whole)) not in (b"", assembly(mutant.path.parent, whole))
     try:
         with warnings.catch_warnings(action="ignore"):  # of a comparison that is always true
             other = compile(mutant.applied(whole), mutant.file, "exec")
@@ -213,17 +214,15 @@ def instructions(code: types.CodeType) -> list[Any]:
 
 
 @functools.lru_cache(maxsize=32)
-def library(tree: Path, file: str, text: bytes) -> bytes:
-    """The kernel compiled from a tree with another text of one file, without the digest; b"" if it does not compile."""
-    path = tree / file
-    whole = path.read_bytes()
-    path.write_bytes(text)
-    compiles = built(tree, CFLAGS="-O1 -Wl,--build-id=none")
-    path.write_bytes(whole)
-    return re.sub(rb"[0-9a-f]{64}", b"", next(path.parent.glob("_kernel.*")).read_bytes()) if compiles else b""
+def assembly(folder: Path, text: bytes) -> bytes:
+    """The assembler code of a C file of a folder; b"" if it does not compile."""
+    compiler = shlex.split(os.environ.get("CC", "cc"))
+    command = [*compiler, "-std=gnu11", "-O1", "-S", "-I", str(folder), "-x", "c", "-", "-o", "-"]
+    done = subprocess.run(command, input=text, capture_output=True, check=False)
+    return b"" if done.returncode else done.stdout
 
 
-def drawn(seed: int, counts: dict[str, int], tree: Path, only: str) -> list[Mutant]:
+def drawn(seed: int, counts: dict[str, int], only: str) -> list[Mutant]:
     """A random sample of each group: mutants that are not listed as equivalent and that `is_other` tells apart.
 
     only: a file and line, all mutants of which are taken instead.
@@ -246,9 +245,8 @@ def drawn(seed: int, counts: dict[str, int], tree: Path, only: str) -> list[Muta
     sample = []
     for group, count in counts.items():
         random.Random(f"{seed} {group}").shuffle(population[group])
-        others = (mutant for mutant in population[group] if is_other(mutant, tree))
+        others = (mutant for mutant in population[group] if is_other(mutant))
         sample += itertools.islice(others, count)
-    built(tree)
     return sample
 
 
@@ -374,11 +372,10 @@ def detected_by(mutant: Mutant, reach: Reach, trees: SimpleQueue[Path]) -> str:
         trees.put(tree)
 
 
-def built(tree: Path, **environment: str) -> bool:
+def built(tree: Path) -> bool:
     """Compile the kernel of a tree; whether it compiles."""
     command = [sys.executable, "hatch_build.py"]
-    done = subprocess.run(command, cwd=tree, env=os.environ | environment, capture_output=True, check=False)
-    return done.returncode == 0
+    return subprocess.run(command, cwd=tree, capture_output=True, check=False).returncode == 0
 
 
 def copied(folder: Path) -> Path:
@@ -408,24 +405,26 @@ def main() -> None:
     own = {"core": options.core, "interface": options.interface, "module level": options.module, "C": options.c}
     counts = dict.fromkeys(own, sys.maxsize) if options.only else own
     start = time.monotonic()
+    sys.stdout.reconfigure(line_buffering=True)  # of a file or a pipe, too
     total, detected = Counter[str](), Counter[str]()
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(options.workers) as pool:
         trees = SimpleQueue[Path]()
         first, *others = [copied(Path(folder).resolve() / f"tree{number}") for number in range(options.workers)]
-        sample = drawn(options.seed, counts, first, options.only)
+        sample = drawn(options.seed, counts, options.only)
+        print("first run: the everyday tests under coverage")
         reach = first_run(first, options.workers)
-        print(f"{len(reach.seconds)} tests, first run {time.monotonic() - start:.0f} s", flush=True)
+        print(f"{len(reach.seconds)} tests, first run {time.monotonic() - start:.0f} s")
         if by := first_failure(first, reach.ordered({*reach.seconds})[:FIRST], 0.0):
             raise SystemExit(f"fails without a mutant: {by}")
         for tree in (first, *others):
             trees.put(tree)
         failures = pool.map(lambda mutant: detected_by(mutant, reach, trees), sample)
-        for mutant, by in zip(sample, failures, strict=True):
+        for number, (mutant, by) in enumerate(zip(sample, failures, strict=True), 1):
             for name in (mutant.group, f"  {mutant.group}, {mutant.room}"):
                 total[name] += 1
                 detected[name] += bool(by)
             row = f"{mutant.file}:{mutant.line} {mutant.old} -> {mutant.new}"
-            print(" ".join(row.split()), "|", by or "SURVIVES", flush=True)
+            print(f"{number}/{len(sample)}", " ".join(row.split()), "|", by or "SURVIVES")
     for name, count in sorted(total.items()):
         print(f"{name}: detected {interval(detected[name], count)}")
     print(f"{len(sample)} mutants in {(time.monotonic() - start) / 60:.1f} minutes")
