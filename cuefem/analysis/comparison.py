@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, overload
+from typing import Any, NamedTuple, overload
 
 from cuefem.analysis.end_mass import SQUIRT_END_MASS
 from cuefem.analysis.measured import MeasuredComparison, compare_measured
@@ -30,11 +30,10 @@ from cuefem.results.verdict import verdict_problem
 from cuefem.scene import Scene, check_scene
 from cuefem.scene.solved_scene import SolvedScene
 from cuefem.show.analysis import DESIGN_STYLES, Analysis, Rows
+from cuefem.show.charts import Chart
+from cuefem.show.drawings import DIAMETER_SCALE, CueDrawing, cue_drawing
+from cuefem.show.offset_charts import offset_charts
 from cuefem.show.scene_summary import effect_text, listed, scene_record
-
-if TYPE_CHECKING:
-    from cuefem.show.charts import Chart
-    from cuefem.show.drawings import CueDrawing
 
 # The compared results, by their names in the registry.
 SQUIRT_RESULTS = ("squirt", "end_mass_squirt", "pivot_length")  # derived from squirt: a miscue has none
@@ -288,8 +287,6 @@ class Comparison(Rows, Analysis):
 
     def curves(self) -> tuple[Chart, Chart]:
         """Squirt and natural pivot length against the offset."""
-        from cuefem.show.offset_charts import offset_charts  # drawings and charts are not for terminals
-
         factor = self.calibrated.factor if self.calibrated else 1.0
         lines = [
             (name, style, coupled_curve(scene, CURVE_OFFSETS, SolvedScene(scene).tip, factor))
@@ -299,8 +296,6 @@ class Comparison(Rows, Analysis):
 
     def charts(self) -> list[Chart | CueDrawing]:
         """The curves, and a drawing of each cue."""
-        from cuefem.show.drawings import DIAMETER_SCALE, cue_drawing
-
         drawings = [
             cue_drawing(scene, f"{name}, diameters {DIAMETER_SCALE:g} times enlarged")
             for name, scene in self.scenes.items()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -14,9 +14,8 @@ from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import Solvable, SolvedDesign
 from cuefem.scene import Outcome
 from cuefem.show.analysis import Analysis, Rows
-
-if TYPE_CHECKING:
-    from cuefem.show.charts import Chart
+from cuefem.show.charts import Chart
+from cuefem.show.contact_charts import contact_section
 
 FRAME_TIMES = 201
 
@@ -51,14 +50,10 @@ class ContactHistory(Rows, Analysis):
 
     def charts(self) -> list[Chart]:
         """Force and velocity of the tip against time, if the strike has a history."""
-        from cuefem.show.contact_charts import contact_section
-
         return [] if self.outcome.history is None else contact_section(self.outcome)["charts"]
 
     def tables(self) -> list[Table | str]:
         """The events, and the energy balance."""
-        from cuefem.show.contact_charts import contact_section
-
         events = [] if self.outcome.history is None else contact_section(self.outcome)["events"]
         return [
             *([Table("Events", ("", "time", "event"), tuple(events), texts=(0, 2))] if events else []),

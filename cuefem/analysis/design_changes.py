@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -33,9 +33,7 @@ from cuefem.results.verdict import reject_no_verdict
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
 from cuefem.show.analysis import Analysis, Rows
-
-if TYPE_CHECKING:
-    from cuefem.show.charts import Chart
+from cuefem.show.charts import Axis, Chart, Dots, chart
 
 MIN_CHANGE = 0.02  # relative, of squirt: below it nobody turns a ferrule
 MAX_STRIKES = 30  # of single and combined changes
@@ -173,8 +171,6 @@ class DesignChanges(Rows, Analysis):
 
     def charts(self) -> list[Chart]:
         """Squirt against mass: the cue as it is, each change, and the best ones together."""
-        from cuefem.show.charts import Axis, Dots, chart  # charts are not for terminals
-
         rows = [("one change", "c5", self.changes), ("together", "c1", self.together)]
         points = [
             Dots(name if i == 0 else "", *_cost(row), style, row.change)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -22,9 +22,7 @@ from cuefem.results.progress import Progress
 from cuefem.results.quantities import DASH
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.show.analysis import Analysis, Rows
-
-if TYPE_CHECKING:
-    from cuefem.show.charts import Chart
+from cuefem.show.charts import Axis, Chart, Curve, chart
 
 LARGE_RESIDUAL = 3.0  # a larger one is a contradiction
 MIN_CHART_ROWS, MIN_AXIS = 3, 6.0  # fewer residuals are read in the table; a shorter axis has ticks between the rows
@@ -324,8 +322,6 @@ def residual_chart(rows: Sequence[Record], residual: str, label: str) -> list[Ch
 
     residual: its name in a row. label: of the axis.
     """
-    from cuefem.show.charts import Axis, Curve, chart  # for pages
-
     if len(rows) < MIN_CHART_ROWS:
         return []
     numbers = np.arange(1.0, len(rows) + 1)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, ClassVar, Literal, get_args
+from typing import ClassVar, Literal, get_args
 
 from cuefem.beam.modes import modes
 from cuefem.cue import Cue
@@ -16,10 +16,9 @@ from cuefem.results.quantities import UNITS
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.results.solved_design import Solvable, SolvedDesign
 from cuefem.show.analysis import Analysis, Rows
+from cuefem.show.charts import Chart
+from cuefem.show.drawings import modes_chart
 from cuefem.show.scene_summary import effect_name
-
-if TYPE_CHECKING:
-    from cuefem.show.charts import Chart
 
 JointName = Literal["free", "pinned", "clamped"]
 
@@ -66,8 +65,6 @@ class NaturalFrequencies(Rows, Analysis):
 
     def charts(self) -> list[Chart]:
         """The lowest mode shapes."""
-        from cuefem.show.drawings import modes_chart  # drawings are not for terminals
-
         return [modes_chart(self.scene)]
 
     def table(self) -> Table:

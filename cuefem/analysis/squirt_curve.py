@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -22,10 +22,9 @@ from cuefem.results.solved_design import OFFSETS, Solvable, SolvedDesign, at_off
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
 from cuefem.show.analysis import Analysis, MoreCharts, Rows
+from cuefem.show.charts import Chart
+from cuefem.show.offset_charts import offset_charts
 from cuefem.show.scene_summary import assumptions, scene_record
-
-if TYPE_CHECKING:
-    from cuefem.show.charts import Chart
 
 FINE_OFFSETS = tuple(i / 40 for i in range(1, 25))  # b/R of the curves of a page; a table has each 0.1
 MAX_ROWS = 20  # a table of more offsets has only each 0.1
@@ -128,8 +127,6 @@ class SquirtCurve(Rows, Analysis):
         return [MoreCharts("Other models", self._charts(lines, "{} by model", 220.0), about)]
 
     def _charts(self, lines: Sequence[tuple[str, str, Record]], title: str, height: float) -> list[Chart]:
-        from cuefem.show.offset_charts import offset_charts
-
         regimes, own = self.models[OWN]["regime"], self.scene.stroke.offset
         return [*offset_charts(lines, self.offsets, own, height=height, regimes=regimes, title=title)]
 

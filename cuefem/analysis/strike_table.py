@@ -35,11 +35,11 @@ from cuefem.results.records import Record, Table
 from cuefem.results.verdict import MISCUE_DEFINITION
 from cuefem.scene import Scene, Stroke, check_scene
 from cuefem.show.analysis import Analysis, Rows
+from cuefem.show.charts import Axis, Chart, Curve, chart
 from cuefem.show.scene_summary import assumptions, scene_record
 
 if TYPE_CHECKING:
     from cuefem.measurements.calibration import Calibration
-    from cuefem.show.charts import Chart
 
 POOLTOOL_INERTIA = 0.4  # of every ball in pooltool 0.6.0
 SPEEDS = (0.2, 10.0)  # m/s: from a soft stroke to a break at 22 mph
@@ -225,8 +225,6 @@ class StrikeTable(Rows, Analysis):
 
     def charts(self) -> list[Chart]:
         """Squirt against b/R at some cue speeds."""
-        from cuefem.show.charts import Axis, Curve, chart
-
         rows = [int(i) for i in np.linspace(0, len(self.speed) - 1, len(CHART_STYLES))]
         curves = []
         for row, style in zip(rows, CHART_STYLES, strict=True):
