@@ -31,6 +31,7 @@ from cuefem.files.lathe_profile import DRAWING_EXTENSIONS
 from cuefem.files.warnings_of_drawings import drawing_warnings
 from cuefem.measurements.calibration import Calibration
 from cuefem.measurements.measured_folder import MEASURED, load_measured, named_folder, write_template
+from cuefem.measurements.measurement_types import BallDirection
 from cuefem.quantity.display_units import displayed_system
 from cuefem.results.plausibility import plausibility_warnings
 from cuefem.show.renderers import csv_text
@@ -120,9 +121,9 @@ def compare(
         if as_json:
             print_json({"output_folder": str(folder)})
             return
-        asked = shlex.join(["cuefem", "compare", str(folder)])
         click.echo(
-            f"wrote {folder}: replace cue.toml by your drawing, fill in each ? of measured.toml, then run: {asked}"
+            f"wrote {folder}: replace cue.toml by your drawing, fill in each ? of measured.toml, then run: "
+            f"{_calibrating(folder)}"
         )
     elif folder.is_file() or cue_name(folder := named_folder(folder)):
         raise InputError(folder, "", "needs another FILE to compare with, or a FOLDER with measurements")
@@ -132,7 +133,13 @@ def compare(
         check_overwrite(output, force=force)
         _write_calibration(folder, output, as_json=as_json)
     else:
-        _with_measurements(folder, output, as_json=as_json, estimate=estimate)
+        _with_measurements(folder, output, as_json=as_json, estimate=estimate, asked=_calibrating(files[0]))
+
+
+def _calibrating(folder: Path) -> str:
+    """The command that makes a calibration of a measured cue."""
+    made = f"{folder.name.replace(' ', '_')}_calibration.toml"
+    return shlex.join(["cuefem", "compare", str(folder), "--estimate", "-o", made])
 
 
 def _listed_files(files: Sequence[Path]) -> list[Path]:
@@ -276,9 +283,11 @@ def _assumptions(asked: Mapping[str, Request]) -> list[Assumption]:
     return [*shared, *others]
 
 
-def _with_measurements(folder: Path, output: Path | None, *, as_json: bool, estimate: bool) -> None:
-    """Print or write the comparison with measurements, or the estimate from them."""
+def _with_measurements(folder: Path, output: Path | None, *, as_json: bool, estimate: bool, asked: str) -> None:
+    """Print or write the comparison with measurements, or the estimate from them; asked: what makes a calibration."""
     cue, loaded_notes = load_measured(folder)
+    is_calibrating = any(isinstance(each, BallDirection) for each in cue.measurements)
+    hints = [f"Calibration for the next shaft with this tip: {asked}"] if is_calibrating else []
     system = displayed_system()
 
     def notes() -> list[Assumption]:
@@ -289,6 +298,6 @@ def _with_measurements(folder: Path, output: Path | None, *, as_json: bool, esti
         question = cf.estimate if estimate else cf.compare
         analysis = question(cue, progress=with_progress_bar)
         shown = Presentation(
-            analysis, folder.name, {"file": str(folder)}, notes, lambda: plausibility_warnings(cue.scene)
+            analysis, folder.name, {"file": str(folder)}, notes, lambda: plausibility_warnings(cue.scene), hints
         )
         shown.show(output, as_json=as_json)

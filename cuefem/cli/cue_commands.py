@@ -28,9 +28,9 @@ from cuefem.cli.scene_command import (
 )
 from cuefem.cli.scene_options import CueFile, file_label, option, option_value, tip_options, typed_name
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.files import InputError, load_accuracy, save
+from cuefem.files import InputError, load_accuracy, save_changed
 from cuefem.files.errors import as_input_error
-from cuefem.files.shop import order_of
+from cuefem.files.shop import order_of, shop_of
 from cuefem.parameters.parts import main_material
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.quantity.fields import Quantity
@@ -100,17 +100,19 @@ def report(
 
 def _customer_sheet(request: Request, said: dict[str, str], calibration: Calibration | None) -> Analysis:
     """The sheet of a cue, with its logo and order checked before the computation."""
-    logo, order = request.shop.logo(), order_of(request.file)
+    shop, order = shop_of(request.file), order_of(request.file)
+    logo = shop.logo()
     for name, text in said.items():
         with as_input_error(request.file, option(name)):
             order = replace(order, **{name: text})
     answer = cf.report(request.scene, calibration=calibration, progress=with_progress_bar)
-    return cf.customer_sheet(answer, request.shop.shop, order, logo=logo)
+    return cf.customer_sheet(answer, shop.shop, order, logo=logo)
 
 
 def shop_limits(request: Request) -> Limits:
     """The limits of design changes of the shop.toml of a file; the usual ones without it."""
-    shop, given = request.shop, request.shop.defaults.limits
+    shop = shop_of(request.file)
+    given = shop.defaults.limits
     found: dict[str, Any] = {"keep": given.keep} if given.keep else {}
     if given.wall is not None:
         found["wall"] = option_value(shop.path, "defaults.limits.wall", given.wall, Quantity("m", "(0, 1]"))
@@ -211,7 +213,7 @@ def _save_change(request: Request, answer: DesignChanges, take: str, output: Pat
         none = "" if answer.together else " (no changes together were found)"
         raise InputError(file, "--take", f"must be a row of the table, 1 to {len(rows)}, or together{none}; got {take}")
     changed = with_parameters(request.scene, row.values)
-    save(changed, output)
+    save_changed(changed, output, file)
     if as_json:
         print_json({"file": typed_name(file), "output_file": str(output), "change": row.change})
         return

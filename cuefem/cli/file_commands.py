@@ -16,7 +16,7 @@ from cuefem.cli.scene_command import (
     shape_options,
 )
 from cuefem.cli.scene_options import CueFile
-from cuefem.files import save
+from cuefem.files import save_changed
 
 
 @command()
@@ -29,7 +29,7 @@ def convert(file: Path, output: Path, force: bool, as_json: bool, **options: str
     """Convert FILE to OUTPUT, whose extension sets the format: .toml or .vtu."""
     check_overwrite(output, force=force)
     request = Request.of(file, options)
-    save(request.drawing, output)
+    save_changed(request.drawing, output, file)
     notes = request.assumptions_of_drawing
     if as_json:
         print_json({"output_file": str(output), "assumptions": [*map(str, notes)]})

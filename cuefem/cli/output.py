@@ -13,9 +13,8 @@ import click
 from click.core import ParameterSource
 
 from cuefem.files import InputError, check_writable
-from cuefem.files.cue_names import cue_name
 from cuefem.files.defaults_report import Assumption
-from cuefem.files.shop import find_shop
+from cuefem.files.shop import shop_of
 from cuefem.quantity.display_units import SYSTEMS, displayed_in
 from cuefem.quantity.encoding import is_unicode
 from cuefem.show.renderers import json_text
@@ -82,8 +81,7 @@ def shared_option(heading: str, *names: str, **about: Any) -> Callable[[Any], An
 def _shop_units(ctx: click.Context) -> str | None:
     """The units of the shop.toml of a command's file, or of the working folder."""
     typed = ctx.params.get("file") or ctx.params.get("scene") or next(iter(ctx.params.get("files") or ()), None)
-    file = typed if isinstance(typed, Path) and not cue_name(typed) else Path()
-    return find_shop(file).defaults.units
+    return shop_of(typed if isinstance(typed, Path) else Path()).defaults.units
 
 
 command = partial(click.command, cls=Command)

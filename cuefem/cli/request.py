@@ -14,7 +14,6 @@ import click
 
 from cuefem.cli.pending_warnings import warn
 from cuefem.cli.scene_options import (
-    CUE_KEYS,
     NO_SHAFT,
     offset_value,
     option,
@@ -30,13 +29,12 @@ from cuefem.files.defaults_report import (
     Assumption,
     assumptions,
     drawing_assumptions,
-    given_keys,
     notes_on_options,
     offered_assumptions,
+    own_values,
 )
-from cuefem.files.lathe_profile import names_units
 from cuefem.files.shaft_additions import SHAFT_ADDITIONS
-from cuefem.files.shop import ShopFile, find_shop
+from cuefem.files.shop import shop_defaults
 from cuefem.parameters.field_paths import Path as Steps
 from cuefem.parameters.field_paths import with_fields
 from cuefem.parameters.parameter import Parameter
@@ -100,38 +98,13 @@ class Request:
         return cls(file, given, frozenset(options), with_impact)
 
     def own_values(self) -> set[str]:
-        """The options of cue and tip whose values the file has itself; a cue by its name and a lumped cue have all."""
-        unit, ending = self.given.get("length_unit"), self.file.suffix.lower()
-        own = {"length_unit", "front"} if ending == ".toml" else set[str]()
-        if ending == ".csv" and unit is not None and names_units(self.file):
-            own, unit = {"length_unit"}, None
-        opened = load(self.file, length_unit=None if "length_unit" in own else unit)
-        own |= given_keys(self.file, opened, unit)
-        has_no_shaft = False
-        if isinstance(opened, Scene):
-            own |= {"game"}
-            has_no_shaft = opened.lumped is not None
-        return own | {*SHAFT_ADDITIONS, *CUE_KEYS} if cue_name(self.file) or has_no_shaft else own
+        """The options of cue and tip whose values the file has itself."""
+        return own_values(self.file, self.given.get("length_unit"))
 
     def with_shop(self) -> Request:
         """The request with the defaults of a shop.toml that the file and the options leave open."""
-        shop = self.shop
-        texts = {"body_mass": shop.defaults.body_mass, "ferrule": shop.defaults.ferrule}
-        open_keys = [key for key, text in texts.items() if text and key in self.offered and key not in self.given]
-        if not open_keys:
-            return self
-        own = self.own_values()
-        added = {key: str(texts[key]) for key in open_keys if key not in own}
-        notes = [
-            Assumption("", f"{key.replace('_', ' ')} {text}, the default of {shop.path.name}", key)
-            for key, text in added.items()
-        ]
+        added, notes = shop_defaults(self.file, self.given, self.offered)
         return replace(self, given={**self.given, **added}, shop_notes=notes)
-
-    @cached_property
-    def shop(self) -> ShopFile:
-        """The shop.toml of the file; that of the working folder for a cue by its name."""
-        return find_shop(Path() if cue_name(self.file) else self.file)
 
     @contextmanager
     def errors(self) -> Iterator[None]:
@@ -144,8 +117,15 @@ class Request:
 
     @cached_property
     def opened(self) -> Any:
-        """The cue or the scene of the file, with the additions to its drawing."""
-        return self._load(load)
+        """The cue or the scene of the file, with the additions to its drawing; errors name the option."""
+        additions: Any = {name: self.given.get(name) for name in SHAFT_ADDITIONS}
+        try:
+            return load(self.file, **additions)
+        except InputError as error:
+            name, _, problem = f"{error.key}: {error.problem}".removeprefix(": ").partition(": ")
+            if name not in self.given:
+                raise
+            raise InputError(self.file, option(name), problem) from None
 
     @cached_property
     def scene(self) -> Scene:
@@ -164,7 +144,7 @@ class Request:
     @cached_property
     def drawing(self) -> Any:
         """What the file holds, as drawn, with the options."""
-        drawing = self._load(load)
+        drawing = self.opened
         if "body_mass" in self.given:
             drawing = with_body_option(drawing, self.file, self.given["body_mass"])
         if "shaft_mass" in self.given:
@@ -203,16 +183,6 @@ class Request:
     def _is_as_drawn(self) -> bool:
         sets_tip = "game" in self.given or any(map(_is_leather, self._parameters()))
         return not (self.with_impact or sets_tip or isinstance(self.opened, Scene))
-
-    def _load(self, loaded: Callable[..., Any]) -> Any:
-        """The contents of the file, with the options that supplement its drawing; errors name the option."""
-        try:
-            return loaded(self.file, **{name: self.given.get(name) for name in SHAFT_ADDITIONS})
-        except InputError as error:
-            name, _, problem = f"{error.key}: {error.problem}".removeprefix(": ").partition(": ")
-            if name not in self.given:
-                raise
-            raise InputError(self.file, option(name), problem) from None
 
     def _struck(self, cue: Cue) -> Scene:
         """The scene of a cue alone: the game's default stroke."""

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
 from cuefem.cue import Cue, LumpedCue
 from cuefem.files.cue_names import named_path
@@ -23,7 +23,7 @@ from cuefem.files.lathe_profile import (
 )
 from cuefem.files.schema import named_material
 from cuefem.files.shaft_additions import with_additions, with_shaft_material
-from cuefem.files.toml_reader import cue_as_drawn, load_accuracy, load_cue, load_toml
+from cuefem.files.toml_reader import cue_as_drawn, load_accuracy, load_cue, load_toml, other_tables
 from cuefem.files.warnings_of_drawings import drawing_warnings
 from cuefem.parameters.field_paths import with_fields
 from cuefem.quantity.fields import Quantity
@@ -49,28 +49,35 @@ __all__ = [
 MESH = ".vtu"
 
 
-def load(
-    path: str | os.PathLike[str],
-    *,
-    material: str | None = None,
-    length_unit: str | None = None,
-    front: str | None = None,
-    ferrule: str | None = None,
-    bore: str | None = None,
-    body_mass: str | float | None = None,
-) -> Cue | Scene:
+class LoadOptions(TypedDict, total=False):
+    """The options of `load`: see `cuefem.files.loaders.load`."""
+
+    material: str | None
+    length_unit: str | None
+    front: str | None
+    ferrule: str | None
+    bore: str | None
+    body_mass: str | float | None
+
+
+def load(path: str | os.PathLike[str], **options: Unpack[LoadOptions]) -> Cue | Scene:
     """The content of a file, without what it leaves open: see `cuefem.files.loaders.load`."""
+    for name in options:
+        if name not in LoadOptions.__annotations__:
+            raise TypeError(f"load has the options {', '.join(LoadOptions.__annotations__)}; got {quote(name)}")
     path = named_path(Path(path))
     shape = path.suffix.lower() in SHAPE_EXTENSIONS
-    for name, value, whose in (("length_unit", length_unit, "units of length"), ("front", front, "leather")):
+    material, body_mass = options.get("material"), options.get("body_mass")
+    for name, whose in (("length_unit", "units of length"), ("front", "leather")):
+        value = options.get(name)
         if value is not None and not shape:
             files = f"{', '.join(SHAPE_EXTENSIONS[:-1])} and {SHAPE_EXTENSIONS[-1]}"
             raise InputError(path, name, f"is only for {files} files: this one has its own {whose}; got {value!r}")
     if path.suffix.lower() == ".toml":
         loaded = load_toml(path, _load_cue)
     else:
-        loaded = _load_cue(path, material if shape else None, length_unit)
-    additions = {"front": front, "ferrule": ferrule, "bore": bore}
+        loaded = _load_cue(path, material if shape else None, options.get("length_unit"))
+    additions: Any = {key: options.get(key) for key in ("front", "ferrule", "bore")}
     changed = any(additions.values()) or material is not None
     if (changed or body_mass is not None) and isinstance(loaded, Scene) and loaded.lumped:
         raise InputError(path, "cue", "is a lumped cue, without material, ferrule, bore or body mass")
@@ -157,13 +164,22 @@ def save(obj: Cue | Scene, path: str | os.PathLike[str]) -> None:
     --------
     See `load`.
     """
+    _save(obj, Path(path), {})
+
+
+def save_changed(obj: Cue | Scene, path: Path, source: Path) -> None:
+    """Save what a file held, changed, with the order and the accuracy that stand beside it in that file."""
+    _save(obj, path, other_tables(source))
+
+
+def _save(obj: Cue | Scene, path: Path, tables: dict[str, Any]) -> None:
+    """Save a cue or a scene; tables: others of its file."""
     if not isinstance(obj, Cue | Scene):
         raise TypeError(f"save writes a Cue or a Scene; got {quote(obj)}")
-    path = Path(path)
     if path.suffix.lower() == ".toml":
         from cuefem.files.toml_writer import toml_text
 
-        content = toml_text(obj)
+        content = toml_text(obj, **tables)
         write_atomically(path, lambda temporary: temporary.write_text(content, encoding="utf-8"))
     elif path.suffix.lower() == MESH and isinstance(obj, Cue):
         from cuefem.files.line_mesh import save_line_mesh

@@ -17,9 +17,10 @@ from cuefem.files.lathe_profile import (
     DEFAULT_UNIT,
     SHAPE_EXTENSIONS,
     SURFACE_EXTENSIONS,
+    names_units,
     read_profile,
 )
-from cuefem.files.shaft_additions import EXAMPLES, TENON_RATIO, example
+from cuefem.files.shaft_additions import EXAMPLES, SHAFT_ADDITIONS, TENON_RATIO, example
 from cuefem.files.surface_sections import TOLERANCE
 from cuefem.files.toml_reader import missing_keys, read_tables
 from cuefem.files.warnings_of_drawings import drawing_warnings
@@ -76,15 +77,14 @@ def assumptions(path: Path, scene: Scene, options: Mapping[str, Any]) -> list[As
     return [*notes, *drawing, *_default_stroke(options.get("game") or DEFAULT_GAME, scene, options)]
 
 
-def loaded_cue(path: Path, cue: Cue, options: Mapping[str, Any]) -> Cue:
-    """The cue of a drawing's file with its assumptions and warnings; options: those it was loaded with."""
-    listed = [*notes_on_options(path, options), *_of_drawing(path, cue, options)]
-    return cue.assuming(listed, drawing_warnings(path))
-
-
-def loaded_scene(path: Path, scene: Scene, options: Mapping[str, Any]) -> Scene:
-    """The scene of a scene's file with its assumptions and warnings; options: those it was loaded with."""
-    return scene.assuming(listed=tuple(assumptions(path, scene, options)), warnings=tuple(drawing_warnings(path)))
+def with_assumptions(
+    path: Path, loaded: Cue | Scene, options: Mapping[str, Any], notes: Iterable[Assumption]
+) -> Cue | Scene:
+    """What a file holds with its assumptions and warnings; options: those it was loaded with; notes: on them."""
+    warnings = tuple(drawing_warnings(path))
+    if isinstance(loaded, Scene):
+        return loaded.assuming(listed=(*notes, *assumptions(path, loaded, options)), warnings=warnings)
+    return loaded.assuming([*notes, *notes_on_options(path, options), *_of_drawing(path, loaded, options)], warnings)
 
 
 def notes_on_options(path: Path, options: Mapping[str, Any]) -> list[Assumption]:
@@ -184,6 +184,20 @@ def _is_bored(cue: Cue) -> bool:
     """Whether a drawing has a bore, apart from that of a ferrule for its tenon."""
     ferrule = Layout.of(cue).ferrule
     return any(max(s.tip_bore, s.butt_bore) > 0 for i, s in enumerate(cue.segments) if i not in ferrule)
+
+
+def own_values(path: Path, length_unit: str | None = None) -> set[str]:
+    """The options of cue, tip and game whose values a file has itself; a cue by its name and a lumped cue have all."""
+    ending = path.suffix.lower()
+    own = {"length_unit", "front"} if ending == ".toml" else set[str]()
+    if ending == ".csv" and length_unit is not None and names_units(path):
+        own, length_unit = {"length_unit"}, None
+    opened = load(path, length_unit=None if "length_unit" in own else length_unit)
+    own |= given_keys(path, opened, length_unit)
+    has_no_shaft = isinstance(opened, Scene) and opened.lumped is not None
+    if isinstance(opened, Scene):
+        own.add("game")
+    return own | {*SHAFT_ADDITIONS, "body_mass", "shaft_mass"} if cue_name(path) or has_no_shaft else own
 
 
 def given_keys(path: Path, opened: Cue | Scene, length_unit: str | None = None) -> set[str]:

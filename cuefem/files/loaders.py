@@ -1,41 +1,24 @@
-"""The cue or the stroke of any file, whichever of both the file holds: `load` with one type."""
+"""The public doors of files: what a file holds, its cue, or the stroke that the commands see in it."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TypedDict, Unpack
+from typing import Any, Unpack
 
 from cuefem.cue import Cue
+from cuefem.files import LoadOptions
 from cuefem.files import load as read_file
 from cuefem.files.cue_names import named_path
-from cuefem.files.defaults_report import loaded_cue, loaded_scene
+from cuefem.files.defaults_report import Assumption, with_assumptions
 from cuefem.files.errors import InputError, as_input_error, quote
+from cuefem.files.shop import shop_defaults
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, StrokeName, stroke_name, usual_scene
 
 
-class LoadOptions(TypedDict, total=False):
-    """The options of `load`."""
-
-    material: str | None
-    length_unit: str | None
-    front: str | None
-    ferrule: str | None
-    bore: str | None
-    body_mass: str | float | None
-
-
-def load(
-    path: str | os.PathLike[str],
-    *,
-    material: str | None = None,
-    length_unit: str | None = None,
-    front: str | None = None,
-    ferrule: str | None = None,
-    bore: str | None = None,
-    body_mass: str | float | None = None,
-) -> Cue | Scene:
+def load(path: str | os.PathLike[str], **options: Unpack[LoadOptions]) -> Cue | Scene:
     """Load a cue or a scene from a file.
 
     Parameters
@@ -68,6 +51,8 @@ def load(
     ------
     InputError
         A ValueError in one line that names the file, the key, the bound with its unit, and the value in the file.
+    TypeError
+        For another option.
 
     Examples
     --------
@@ -80,17 +65,14 @@ def load(
     ...     cf.load(path) == cue, cf.load(path, body_mass="15 oz").body_mass
     (True, 0.425242...)
     """
-    options: LoadOptions = {
-        "material": material,
-        "length_unit": length_unit,
-        "front": front,
-        "ferrule": ferrule,
-        "bore": bore,
-        "body_mass": body_mass,
-    }
+    return _loaded(path, options)
+
+
+def _loaded(path: str | os.PathLike[str], options: LoadOptions, notes: Sequence[Assumption] = ()) -> Cue | Scene:
+    """What a file holds, with its assumptions and warnings; notes: assumptions on its options."""
     loaded, file = read_file(path, **options), named_path(Path(path))
     given = {name: value for name, value in options.items() if value is not None}
-    return loaded_cue(file, loaded, given) if isinstance(loaded, Cue) else loaded_scene(file, loaded, given)
+    return with_assumptions(file, loaded, given, notes)
 
 
 def load_cue(path: str | os.PathLike[str], **options: Unpack[LoadOptions]) -> Cue:
@@ -131,6 +113,9 @@ def load_scene(
 ) -> Scene:
     """Load the stroke that the commands see in a file: a scene, or a drawing with the default stroke of a game.
 
+    Body mass and ferrule that file and options leave open are those of the [defaults] in a ``shop.toml``, if there is
+    one beside the file, in a folder above it, or in the user's configuration folder; the scene's assumptions say so.
+
     Parameters
     ----------
     path : str or path
@@ -161,10 +146,13 @@ def load_scene(
     """
     with as_input_error(Path(path), ""):
         stroke = stroke_name(DEFAULT_GAME if game is None else game)
-    loaded = load(path, **options)
+    given = {name: value for name, value in options.items() if value is not None}
+    added, notes = shop_defaults(named_path(Path(path)), given)
+    completed: Any = {**options, **added}
+    loaded = _loaded(path, completed, notes)
     if isinstance(loaded, Cue):
-        given = frozenset() if game is None else frozenset(("game",))
-        return usual_scene(loaded, stroke).assuming(game=stroke, given=given)
+        set_here = frozenset() if game is None else frozenset(("game",))
+        return usual_scene(loaded, stroke).assuming(game=stroke, given=set_here)
     if game is not None:
         problem = "does not apply: the file is a scene, which has its own ball, tip and stroke"
         raise InputError(Path(path), "game", f"{problem}; got {quote(game)}")

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import platformdirs
 
+from cuefem.files.cue_names import cue_name
+from cuefem.files.defaults_report import Assumption, own_values
 from cuefem.files.errors import InputError, read_bytes
 from cuefem.files.schema import build
 from cuefem.files.toml_reader import Order, check_lines, read_tables
@@ -85,6 +89,30 @@ def find_shop(path: Path) -> ShopFile:
     places = [*(each / SHOP for each in (folder, *folder.parents)), platformdirs.user_config_path("cuefem") / SHOP]
     found = next((each for each in places if each.is_file()), None)
     return ShopFile() if found is None else load_shop(found)
+
+
+def shop_of(file: Path) -> ShopFile:
+    """The shop.toml of a cue's file; that of the working folder for a cue by its name."""
+    return find_shop(Path() if cue_name(file) else file)
+
+
+def shop_defaults(
+    file: Path, given: Mapping[str, Any], offered: Collection[str] = ("body_mass", "ferrule")
+) -> tuple[dict[str, str], list[Assumption]]:
+    """Options that the shop.toml of a file adds, and the assumptions which say so.
+
+    given: the options beside the file. offered: the options that there are.
+    """
+    shop = shop_of(file)
+    texts = {"body_mass": shop.defaults.body_mass, "ferrule": shop.defaults.ferrule}
+    left_open = {key: text for key, text in texts.items() if text and key in offered and key not in given}
+    own = own_values(file, given.get("length_unit")) if left_open else set()
+    added = {key: text for key, text in left_open.items() if key not in own}
+    notes = [
+        Assumption("", f"{key.replace('_', ' ')} {text}, the default of {shop.path.name}", key)
+        for key, text in added.items()
+    ]
+    return added, notes
 
 
 def load_shop(path: Path) -> ShopFile:

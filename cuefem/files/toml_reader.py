@@ -122,6 +122,15 @@ def _unquoted(text: str, error: str) -> str:
     return "; put a value with a unit in quotes" if re.search(r"=\s*[-+.\d]+\s*[^\W\d_]", line) else ""
 
 
+def other_tables(path: Path) -> dict[str, Any]:
+    """The tables of a cue's or a scene's file that are of neither: whom it is made for, and how finely it is computed.
+
+    Who changes the cue and writes it to another file writes them too.
+    """
+    tables = read_tables(path) if path.suffix.lower() == ".toml" else {}
+    return {name: tables[name] for name in ("accuracy", "order") if name in tables}
+
+
 def _without_order(path: Path) -> dict[str, Any]:
     """The tables of a cue or a scene; its [order], which is for a customer's sheet, is checked."""
     tables = read_tables(path)

@@ -22,7 +22,7 @@ from cuefem.files import InputError, write_atomically
 from cuefem.files.errors import as_input_error
 from cuefem.files.toml_reader import load_cue, read_tables, scene_from_tables
 from cuefem.measurements.estimate import Estimate
-from cuefem.measurements.measurement_types import BallDirection
+from cuefem.measurements.measurement_types import UNKNOWN_SPEED_SPREAD, BallDirection
 from cuefem.measurements.uncertain_parameters import SQUIRT_MODEL
 from cuefem.parameters.scene_changes import with_values_at
 from cuefem.parameters.table import PARAMETERS
@@ -141,6 +141,8 @@ class Calibration:
         Measurements that no other checks.
     without_distance : tuple of str
         Measurements of the ball's direction that count as its initial one, since they have no distance.
+    without_speed : tuple of str
+        Those at a distance without a speed, which count as strokes at that of the scene.
 
     Raises
     ------
@@ -155,6 +157,7 @@ class Calibration:
     covariance: tuple[tuple[float, ...], ...]
     unchecked: tuple[str, ...] = ()
     without_distance: tuple[str, ...] = ()
+    without_speed: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         C, count = self.matrix, len(self.drawn) + 1
@@ -186,6 +189,7 @@ class Calibration:
         chosen = [*shared.values(), rows[SQUIRT_MODEL]]
         spreads = np.array([cue.parameters[i].spread for i in chosen])
         covariance = found.covariance[np.ix_(chosen, chosen)] * np.outer(spreads, spreads)
+        directions = [each for each in cue.measurements if isinstance(each, BallDirection)]
         return cls(
             cue.name,
             cue.setup(found.z).scene,
@@ -193,7 +197,8 @@ class Calibration:
             float(found.z[chosen[-1]] * spreads[-1]),
             tuple(map(tuple, covariance.tolist())),
             tuple(each.measurement.label for each in found.unchecked_measurements),
-            tuple(each.label for each in cue.measurements if isinstance(each, BallDirection) and each.distance is None),
+            tuple(each.label for each in directions if each.distance is None),
+            tuple(each.label for each in directions if each.distance is not None and each.speed is None),
         )
 
     @property
@@ -226,6 +231,12 @@ class Calibration:
             f"{label} of {self.name} has no distance and counts as the ball's initial direction: read after 1 m, a "
             "ball of 2.5 m/s from a cue raised by 3° shows a quarter less"
             for label in self.without_distance
+        ]
+        speed = with_unit(self.scene.stroke.speed, "m/s", 6)
+        lines += [
+            f"{label} of {self.name} has no speed and counts as a stroke at {speed} ± {100 * UNKNOWN_SPEED_SPREAD:.0f} "
+            "%: after hard shots (ball over 4 m/s) such a calibration is worse than none, so give the cue's speed"
+            for label in self.without_speed
         ]
         return tuple(lines)
 
@@ -272,6 +283,7 @@ class Calibration:
             "covariance": [list(row) for row in self.covariance],
             "unchecked": list(self.unchecked),
             "without_distance": list(self.without_distance),
+            "without_speed": list(self.without_speed),
             "drawn": dict(self.drawn),
         }
         from cuefem.files.toml_writer import toml_text  # loaded when used: it loads tomlkit
@@ -319,7 +331,7 @@ def _squirt_by(calibration: Calibration, scene: Scene) -> CalibratedSquirt:
     )
 
 
-KEYS = ("name", "drawn", "log_factor", "covariance", "unchecked", "without_distance")
+KEYS = ("name", "drawn", "log_factor", "covariance", "unchecked", "without_distance", "without_speed")
 
 
 def load_calibration(path: str | Path) -> Calibration:
@@ -346,4 +358,5 @@ def load_calibration(path: str | Path) -> Calibration:
             tuple(tuple(map(float, row)) for row in own["covariance"]),
             tuple(map(str, own["unchecked"])),
             tuple(map(str, own["without_distance"])),
+            tuple(map(str, own["without_speed"])),
         )

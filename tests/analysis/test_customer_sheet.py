@@ -5,10 +5,12 @@ import json
 import re
 import shutil
 import subprocess
+import tomllib
 from pathlib import Path
 
 import pytest
 
+import cuefem as cf
 from tests.helpers.command_line import call, stdout_of
 from tests.helpers.invalid_input import assert_rejects
 
@@ -69,6 +71,19 @@ def test_order_of_a_cue_is_on_its_sheet_and_in_no_record(drawing: Path) -> None:
     said = texts_of(page)
     assert ("B. Player" in said, "2026-03-01" in said) == (True, True)
     assert "Player" not in stdout_of("report", cue, "--json")
+    copied = drawing.with_name("copied.toml")
+    assert call("convert", cue, copied, "--body-mass", "16 oz")[0] == 0
+    assert copied.read_text().endswith(cue.read_text().partition("[order]")[2])
+
+
+@pytest.mark.heavy
+def test_taken_change_keeps_order_and_accuracy(drawing: Path) -> None:
+    scene, taken = drawing.with_suffix(".toml"), drawing.with_name("taken.toml")
+    kept = {"accuracy": {"rtol": 0.01}, "order": {"customer": "B. Player"}}
+    scene.write_text('cue = "pro.csv"\n[accuracy]\nrtol = 0.01\n[order]\ncustomer = "B. Player"\n')
+    assert call("improve", scene, "--take", "1", "-o", taken)[0] == 0
+    read = tomllib.loads(taken.read_text())
+    assert {name: read[name] for name in kept} == kept
 
 
 def test_defaults_of_a_shop_fill_what_a_file_leaves_open(drawing: Path) -> None:
@@ -81,6 +96,10 @@ def test_defaults_of_a_shop_fill_what_a_file_leaves_open(drawing: Path) -> None:
     (drawing.parents[1] / "shop.toml").write_text(SHOP)
     shown = stdout_of("strike", drawing)
     assert "body mass 15 oz, the default of shop.toml (--body-mass)" in shown
+    answer = cf.strike_models(cf.load_scene(drawing))
+    assert answer.to_dict()["end_mass"] == pytest.approx(filled["end_mass"], rel=1e-10)
+    assert "body mass 15 oz, the default of shop.toml" in [each.text for each in answer.assumptions]
+    assert cf.load_scene(drawing, body_mass="16 oz").shaft.body_mass == pytest.approx(0.4536, rel=1e-4)
     assert "2.25 in" in shown
     assert "57.15 mm" in stdout_of("strike", drawing, "--units", "metric", "--body-mass", "16 oz")
     assert "Limits: wall .096 in or more" in stdout_of("improve", drawing, "--wall", ".096 in", "--keep", "wood")

@@ -49,6 +49,11 @@ def test_load_invalid_content_is_rejected(tmp_path: Path, request: pytest.Fixtur
     assert_refused("files", messages, request)
 
 
+def test_load_refuses_an_option_that_it_does_not_have() -> None:
+    with pytest.raises(TypeError, match="load has the options material, length_unit, front"):
+        cf.load("plain maple", wood="ash")  # type: ignore[call-arg]
+
+
 BAR = revolve([(0, 0), *((x, 0.006) for x in np.linspace(0, 0.7, 30)), (0.7, 0)], 16)
 CONE_AT_BUTT = revolve([(0, 0), (0, 0.006), (0.3, 0.006), (0.303, 0)], 16)
 CONE_AT_TIP = revolve([(0.3035, 0), (0.306, 0.006), (0.7, 0.007), (0.7, 0)], 16)

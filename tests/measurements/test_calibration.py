@@ -117,6 +117,15 @@ def test_impossible_calibrations_are_rejected(change: dict[str, object], message
         replace(calibration(), **change)
 
 
+def test_shots_without_speed_warn_wherever_the_calibration_leads(tmp_path: Path) -> None:
+    """Who strikes hard and gives no speed is off by 23 % with a calibration, 19 % without (studies/measured)."""
+    made = replace(calibration(), without_speed=("squirt at b/R 0.4",))
+    made.save(tmp_path / "old.toml")
+    assert cf.load_calibration(tmp_path / "old.toml") == made
+    (line,) = (line for line in made.squirt(NEW).warnings if "has no speed" in line)
+    assert line.startswith("squirt at b/R 0.4 of old has no speed and counts as a stroke at 2 m/s ± 50 %")
+
+
 def test_files_of_no_calibration_are_rejected_in_one_line(file: Path, tmp_path: Path) -> None:
     text = file.read_text("utf-8")
     for name, content, message in (

@@ -169,7 +169,8 @@ def test_estimate_finds_squirt_and_elevation_from_two_speeds() -> None:
 
 def test_untouched_template_is_refused_by_name(tmp_path: Path) -> None:
     folder = tmp_path / "mine"
-    assert call("compare", folder, "--template")[0] == 0
+    status, out, _ = call("compare", folder, "--template")
+    assert (status, out.endswith(f"cuefem compare {folder} --estimate -o mine_calibration.toml\n")) == (0, True)
     assert "cue.toml: must be replaced by your drawing" in call("compare", folder)[2]
     (folder / "cue.toml").write_text((folder / "cue.toml").read_text("utf-8").replace("467 g", "450 g"), "utf-8")
     text = (folder / "measured.toml").read_text("utf-8")
