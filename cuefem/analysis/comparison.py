@@ -12,7 +12,9 @@ from cuefem.analysis.end_mass import SQUIRT_END_MASS
 from cuefem.analysis.measured import MeasuredComparison, compare_measured
 from cuefem.analysis.strike_models import regime_warning
 from cuefem.analysis.verdict import squirt_difference, verdict_by
+from cuefem.files.cue_names import INSIDE_ASSUMED
 from cuefem.files.defaults_report import Assumption
+from cuefem.files.reference_cues import inside_mark
 from cuefem.measurements.calibration import CalibratedSquirt, Calibration
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measured_folder import load_measured
@@ -220,9 +222,10 @@ class Comparison(Rows, Analysis):
     def _headlines(self) -> list[list[tuple[str, str]]]:
         """What the first screen says of the other cues: texts, each with the style of its cue or ""."""
         styles = dict(zip(self.scenes, DESIGN_STYLES, strict=False))
+        titles = self._titles()
         squirts = {name: each["squirt"] for name, each in self.differences.items() if "squirt" in each}
         lines = [
-            [(name, styles[name]), (f": {squirt_difference(**each).removesuffix(' than')}", "")]
+            [(titles[name], styles[name]), (f": {squirt_difference(**each).removesuffix(' than')}", "")]
             for name, each in squirts.items()
         ]
         if self.calibrated:
@@ -251,7 +254,8 @@ class Comparison(Rows, Analysis):
                         *(cell for each in lateral[1:] for cell in (each, "")),
                     )
                 )
-        head = ("", first, *(cell for other in others for cell in (other, "difference")))
+        titles = self._titles()
+        head = ("", titles[first], *(cell for other in others for cell in (titles[other], "difference")))
         shaft = "one shaft, before and after a change" if self.same_shaft else self._pieces()
         speed = with_unit(self.speed, "m/s", 6)
         notes = (
@@ -261,8 +265,13 @@ class Comparison(Rows, Analysis):
             *(self._modulus_note(name) for name in self.unmeasured_moduli),
             *(f"{name}: {miscue_note(inputs)}" for name, inputs in self.miscues.items()),
             "* smaller than its uncertainty: the cues are not distinct in this quantity.",
+            *([INSIDE_ASSUMED] if [*titles.values()] != [*titles] else []),
         )
         return Table("Side by side", head, tuple(rows), notes)
+
+    def _titles(self) -> dict[str, str]:
+        """The names of the cues, with a dagger where the inside is assumed."""
+        return {name: f"{name}{inside_mark(name, scene)}" for name, scene in self.scenes.items()}
 
     def _regime_warnings(self) -> dict[str, str]:
         """Warnings about the contact of the cues whose squirt is given; of the others the sentences say why not."""

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from cuefem.analysis.verdict import Verdict, squirt_difference
 from cuefem.files.cue_names import INSIDE_ASSUMED
+from cuefem.files.reference_cues import inside_mark
 from cuefem.parameters.parts import shaft_word
 from cuefem.quantity.display_units import (
     DISTANCE,
@@ -25,7 +26,7 @@ from cuefem.quantity.display_units import (
     unit_suffix,
     with_unit,
 )
-from cuefem.results.quantities import DASH, drawn_mass
+from cuefem.results.quantities import DASH, balance_point, drawn_mass
 from cuefem.results.records import Record
 from cuefem.scene import Scene
 from cuefem.show.analysis import DESIGN_STYLES
@@ -102,6 +103,9 @@ TILES = {
         _offset,
     ),
 }
+
+
+DRAWN = {"drawn_mass": drawn_mass, "balance_point": balance_point}  # of the drawing alone
 
 
 class Tile(NamedTuple):
@@ -221,8 +225,8 @@ def _difference(value: float, other: float, unit: str, decimals: int) -> str:
 
 
 def _value(design: HeadlineCue, key: str) -> float | None:
-    if key == "drawn_mass":
-        value = drawn_mass(design.scene) if design.scene.cue.segments else None
+    if key in DRAWN:
+        value = DRAWN[key](design.scene) if design.scene.cue.segments else None
     else:
         value = design.numbers.get(key)
     return value if value is not None and math.isfinite(value) else None
@@ -232,7 +236,10 @@ def scale_markup(own: HeadlineCue, others: Sequence[HeadlineCue] = ()) -> str:
     """The reference cues, this design with its uncertainty, and the other ones, sorted by squirt."""
     squirts = {other.name: other.numbers["squirt"] for other in others}
     styled = {other.name: (style, squirts[other.name]) for style, other in zip(DESIGN_STYLES[1:], others, strict=False)}
-    return _macro("scale", own.verdict.scale(own.name, squirts) if own.verdict else [], styled, INSIDE_ASSUMED)
+    rows = own.verdict.scale(own.name, squirts) if own.verdict else []
+    marks = {each.name: inside_mark(each.name, each.scene) for each in (own, *others)}
+    marked = [row._replace(mark=marks.get(row.name, row.mark)) for row in rows]
+    return _macro("scale", marked, styled, INSIDE_ASSUMED)
 
 
 def tiles_markup(own: HeadlineCue, others: Sequence[HeadlineCue] = (), *, with_values: bool = False) -> str:

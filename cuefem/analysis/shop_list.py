@@ -9,6 +9,8 @@ from typing import Any
 
 from cuefem.analysis.comparison import with_same_stroke
 from cuefem.analysis.verdict import verdict
+from cuefem.files.cue_names import INSIDE_ASSUMED
+from cuefem.files.reference_cues import inside_mark
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.progress import Progress
 from cuefem.results.quantities import DASH, drawn_mass, format_value
@@ -49,6 +51,8 @@ class ShopList(Answer):
         "pivot_length" and "tip_diameter", m. Lowest squirt first.
     unread : dict of str to str
         Files that have no answer, and why.
+    marks : dict of str to str
+        Daggers of the shafts whose inside is assumed.
     """
 
     first: str
@@ -57,6 +61,7 @@ class ShopList(Answer):
     uncertainty: float
     shafts: list[Record]
     unread: dict[str, str] = field(default_factory=dict)
+    marks: dict[str, str] = field(default_factory=dict, repr=False)
 
     def problem(self) -> str:
         """How many files have no answer."""
@@ -71,7 +76,7 @@ class ShopList(Answer):
     def tables(self) -> list[Table | str]:
         """A row for each shaft; grey where it is not distinct from the first."""
         columns: Any = {
-            "shaft": "{name}",
+            "shaft": lambda row: f"{row['name']}{self.marks[row['name']]}",
             "squirt": "squirt",
             f"difference from {self.first}": _difference,
             "weight with tip": "shaft_mass",
@@ -89,6 +94,7 @@ class ShopList(Answer):
             f"Squirt of one shaft: ± {100 * self.uncertainty:.0f} % (1σ), of which most is common to all.",
             "Stiffness: static, at the tip, joint end clamped. Tap tone: first natural frequency, joint end free. "
             "Pivot length: at this offset.",
+            *([INSIDE_ASSUMED] if any(self.marks.values()) else []),
         )
         styles = {i: "dim" for i, row in enumerate(self.shafts) if row["name"] != self.first and not row["distinct"]}
         red = {i: "red" for i in range(len(self.unread))}
@@ -163,7 +169,8 @@ def shop_list(
     compared = [row | _compared(solved[row["name"]], solved[first]) for row in rows]
     compared.sort(key=lambda row: row["squirt"])
     stroke = struck[first].stroke
-    return ShopList(first, float(stroke.offset), float(stroke.speed), max(uncertainties), compared, missing)
+    marks = {name: inside_mark(name, scene) for name, (scene, _, _) in solved.items()}
+    return ShopList(first, float(stroke.offset), float(stroke.speed), max(uncertainties), compared, missing, marks)
 
 
 def _numbers(design: SolvedDesign) -> Record:

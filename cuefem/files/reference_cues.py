@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from cuefem.cue import Cue
+from cuefem.cue import Cue, LumpedCue
 from cuefem.files import load
 from cuefem.files.cue_names import CUES, REFERENCES
 from cuefem.files.parts_catalogue import data_folder
@@ -18,6 +18,17 @@ def named_scene(name: str) -> Scene:
     """The scene of a name, or the usual one of its cue and game."""
     scene: Any = load(data_folder() / CUES[name].file)
     return usual_scene(scene, stroke_name(CUES[name].game)) if isinstance(scene, Cue) else scene
+
+
+def inside_mark(name: str, scene: Scene) -> str:
+    """A dagger for the cue of a name whose inside is assumed; "" for others, as for a maker's own file of that name."""
+    mark = CUES[name].mark if name in CUES else ""
+    return mark if mark and _outlines(scene.cue) <= _outlines(named_scene(name).cue) else ""
+
+
+def _outlines(cue: Cue | LumpedCue) -> set[tuple[float, ...]]:
+    """Length, diameters and bores of each segment."""
+    return {(s.length, s.tip_diameter, s.butt_diameter, s.tip_bore, s.butt_bore) for s in cue.segments}
 
 
 @cache

@@ -9,7 +9,6 @@ import pytest
 
 import cuefem as cf
 from tests.helpers.command_line import call
-from tests.helpers.invalid_input import assert_rejects
 
 FRONTS = (0.495, 0.505, 0.470)
 
@@ -47,9 +46,13 @@ def test_list_equals_comparisons_and_names_what_it_cannot_read(tmp_path: Path) -
     assert 'class="red"' in files[2].read_text("utf-8")
 
 
-def test_folder_without_drawings_and_list_of_one_shaft_before_and_after_are_one_line(tmp_path: Path) -> None:
-    (tmp_path / "empty").mkdir()
-    assert_rejects("must hold drawings (.toml, .csv, .stl, .ply, .obj), or", "compare", tmp_path / "empty")
-    shop = write_shop(tmp_path / "shop")
-    assert_rejects("--same-shaft and --calibration take at most 5 FILEs", "compare", shop, "--same-shaft")
-    assert_rejects("a list is written as .html, .json or .csv", "compare", shop, "-o", tmp_path / "list.toml")
+def test_mark_of_an_assumed_inside_is_of_the_named_cue_alone(tmp_path: Path) -> None:
+    """Head, first screen and list mark "carbon", and not a maker's own carbon.csv."""
+    write_shop(tmp_path / "shop")
+    own, named = cf.load(tmp_path / "shop" / "s0.csv"), cf.load("carbon")
+    for cue, mark in ((own, "carbon"), (named, "carbon†")):
+        scenes = {"carbon": cf.usual_scene(cue), "plain maple": cf.usual_scene(cf.load("plain maple"))}
+        compared = cf.compare(scenes)
+        assert compared.table().head[1:3] == (mark, "plain maple")
+        assert {row[0] for row in cf.shop_list(scenes).tables()[0].rows} == {mark, "plain maple"}
+        assert f"<span>{mark}</span>" in compared.to_html()

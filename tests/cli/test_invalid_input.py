@@ -13,6 +13,7 @@ import cuefem as cf
 from cuefem.cue.materials import material
 from tests.helpers.command_line import call
 from tests.helpers.invalid_input import assert_refused, rejected, stored_rows
+from tests.measurements.test_calibration import calibration
 
 GOOD = """
 [[segments]]
@@ -34,6 +35,15 @@ FILES = {
     "bare.csv": CSV + "0,12\n700,21\n",
     "bored.csv": "x [mm],diameter [mm],bore [mm]\n0,12,6\n152,14,\n700,21,\n",
     "own.toml": "somebody's work",
+    "shop/one.csv": CSV + "0,12\n700,21\n",
+    "empty/notes.txt": "no drawing",
+}
+DAMAGED = {  # what replaces what in a calibration
+    "blank": (".*", ""),
+    "scene": (r"\[calibration\].*", ""),
+    "far": ("log_factor = [^\n]*", "log_factor = 0.6"),
+    "older": ("without_distance = [^\n]*\n", ""),
+    "feather": ("leather =", "feather ="),
 }
 SAVED = {"shaft.toml": SHAFT, "spring.toml": cf.Scene(SHAFT, stroke=cf.Stroke(offset=0.3))}
 SAVED["ash.toml"] = cf.Cue((cf.Segment(0.7, 0.0118, 0.021, material("ash")),), 0.42)
@@ -43,7 +53,11 @@ def test_command_invalid_input_prints_one_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ) -> None:
     """Commands on these files: the rows of tests/golden/refused_cli.txt."""
-    for name, content in FILES.items():
+    calibration().save(tmp_path / "old.toml")
+    text = (tmp_path / "old.toml").read_text(encoding="utf-8")
+    damaged = {f"{name}.toml": re.sub(old, new, text, flags=re.DOTALL) for name, (old, new) in DAMAGED.items()}
+    for name, content in (FILES | damaged).items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(content)
     for name, item in SAVED.items():
         cf.save(item, tmp_path / name)

@@ -13,14 +13,10 @@ from cuefem.designer.session import OF_TAB, OPENED, Results, Session
 from cuefem.designer.state import read_file, reference_design
 from cuefem.quantity.display_units import displayed_in
 from tests.cli.test_units import METRIC_LEFT
-from tests.helpers.command_line import call
 from tests.measurements.test_calibration import calibration
 from tests.test_golden_files import last_place
 
 FIRST = reference_design("plain maple")
-
-
-SNOOKER = Path(__file__).parents[2] / "studies/scenes/snooker.toml"
 
 
 def test_plan_ends_at_a_failed_strike() -> None:
@@ -99,11 +95,3 @@ def test_opened_calibration_calibrates_and_another_is_rejected(tmp_path: Path) -
         session.compare_with_file(read)
     with pytest.raises(ValueError, match=r"^broken.toml: calibration: must be a table of name, "):
         read_file("broken.toml", b"[calibration]\nname = 'x'\n")
-
-
-def test_designer_rejects_calibration_of_another_game_in_one_line(tmp_path: Path) -> None:
-    path = tmp_path / "old.toml"
-    calibration().save(path)
-    status, out, err = call("designer", SNOOKER, "--no-open", "--calibration", path)
-    assert (status, out, err.count("\n")) == (2, "", 1)
-    assert err.startswith(f"cuefem: {SNOOKER}: the calibration is of another game: ")

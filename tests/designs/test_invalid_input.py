@@ -113,67 +113,18 @@ def test_study_without_answer_raises(request: pytest.FixtureRequest) -> None:
     assert_refused("study_runs", messages_of(RUNS), request)
 
 
-# The study, the text replaced in it, its replacement.
-RANGE, BETWEEN, LEAST = 'low = "0 mm"\nhigh = "13 mm"', 'low = "1 mm"\nhigh = "9 mm"', 'low = "300 N/m"'
-TIMES = '"tip.contact_time"\nvalues = ["0.8 ms", "1.2 ms"]'
-FILES = [
-    (STUDY, "segments[0].material", "segments[3].material"),
-    (STUDY, '["0.8 ms", "1.2 ms"]', "[]"),
-    (STUDY, 'low = "0 mm"', 'low = "15 mm"'),
-    (STUDY, "count = 8", "count = 0"),
-    (STUDY, '"cue.segments[0].butt_bore"', '"ball.mass"'),
-    (STUDY, '"ash"]', '"ahs"]'),
-    (STUDY, '"ash"]', "5]"),
-    (STUDY, 'values = ["hard maple", "ash"]', 'low = "ash"'),
-    (STUDY, "count = 8", 'count = 8\nvalues = ["1 mm"]'),
-    (STUDY, 'values = ["0.8 ms", "1.2 ms"]', ""),
-    (STUDY, "count = 8", 'count = 8\nspacing = "log"'),
-    (STUDY, '"tip_stiffness"', '"end_mass"'),
-    (STUDY, '"scene.toml"', '"other.toml"'),
-    (STUDY, TIMES, '"tip.stiffness"\nfactor = true\nvalues = [1.1]'),
-    (STUDY, '"ash"]', '"ash"]\nshift = true'),
-    (STUDY, '"0 mm"\nhigh = "15 mm"', "1\nhigh = 2\nfactor = true\nshift = true"),
-    (STUDY, '"0 mm"\nhigh', "0\nshift = true\nhigh"),
-    (STUDY, "count = 8", 'count = 8\ncompensating_path = "cue.lenght"'),
-    (STUDY, "count = 8", 'count = 8\ncompensating_path = "ball.mass"'),
-    (STUDY, "count = 8", "count = 8\ncompensating_path = 5"),
-    (STUDY, 'low = "0 mm"\nhigh = "15 mm"\ncount = 8', 'median = "9 mm"'),
-    (STRIKES, RANGE, 'median = "0 mm"\nsd = 0.1\nspacing = "logarithmic"'),
-    (STRIKES, RANGE, 'median = "9 mm"\nsd = "1 mm"\nspacing = "logarithmic"'),
-    (SCATTER, '[["E", "density", 0.4]]', "0.4"),
-    (SCATTER, "0.4]]", '"high"]]'),
-    (SCATTER, "0.4]]", '0.4], ["E", "density", 0.3]]'),
-    (SCATTER, 'wood = ["E", "density"]', 'wood = "E"'),
-    (SCATTER, '{ wood = ["E", "density"] }', "5"),
-    (SCATTER, "[tolerances]", '[objective]\nminimize = "mass"\n[tolerances]'),
-    (OPTIMUM, 'minimize = "squirt_slope"', 'minimise = "squirt_slope"'),
-    (OPTIMUM, '"squirt_slope"', '"squirt_slope"\nagainst = "squirt_slope"'),
-    (OPTIMUM, '"squirt_slope"', '"squirt_slope"\nagainst = "tip_stiffness"\ncount = 2'),
-    (OPTIMUM, '"squirt_slope"', '"squirt_slope"\nagainst = "balance_point"'),
-    (OPTIMUM, '"squirt_slope"', '"squirt_slope"\nresponse = "mass"'),
-    (OPTIMUM, "minimize", "response"),
-    (OPTIMUM, 'minimize = "squirt_slope"', 'response = "squirt_slope"\ntarget = "1 mm"'),
-    (OPTIMUM, 'minimize = "squirt_slope"', 'response = "squirt_slope"\ntarget = 0.05\nagainst = "mass"'),
-    (OPTIMUM, '"tip_stiffness"', '"stiffness"'),
-    (OPTIMUM, LEAST, ""),
-    (OPTIMUM, BETWEEN, 'median = "5 mm"\nsd = "1 mm"'),
-    (OPTIMUM, '"cue.segments[0].tip_bore"', '"cue.segments[0].material"'),
-    (OPTIMUM, OPTIMUM[OPTIMUM.index("[[vary]]") :], ""),
-]
-
-
-def rejected_study(folder: Path, good: str, old: str, new: str) -> str:
-    """The message on a study in whose file a text is replaced."""
-    assert old in good
-    folder.mkdir()
-    return rejected(folder, "study", write_study(folder, good.replace(old, new, 1)))
+STUDIES = {"study": STUDY, "strikes": STRIKES, "scatter": SCATTER, "optimum": OPTIMUM}
 
 
 def test_study_invalid_file_raises(tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    """Each row: a study, the text replaced in it, its replacement."""
     messages = {}
-    for i, (good, old, new) in enumerate(FILES):
-        row = f"{old} -> {new}".replace("\n", ", ")
-        messages[row] = rejected_study(tmp_path / str(i), good, old, new)
+    for row in stored_rows("study_files"):
+        name, change = row.replace("\\n", "\n").split(" | ")
+        old, new = change.split(" -> ")
+        assert old in STUDIES[name]
+        study = write_study(tmp_path, STUDIES[name].replace(old, new, 1))
+        messages[row] = rejected(tmp_path, "study", study)
     assert_refused("study_files", messages, request)
 
 

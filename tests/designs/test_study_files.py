@@ -9,8 +9,8 @@ from cuefem.designs import Normal, Span
 from cuefem.designs.study_file import load_study
 from cuefem.files import InputError
 from tests.helpers.command_line import as_json, stdout_of
-from tests.helpers.invalid_input import assert_refused, assert_rejects, rejected, stored_rows
-from tests.helpers.sweeps import GRID, SCATTER, SCENE, STRIKES, STUDY, write_study
+from tests.helpers.invalid_input import assert_refused, rejected, stored_rows
+from tests.helpers.sweeps import GRID, SCATTER, SCENE, STRIKES, write_study
 
 LEATHER = ("6 mm", "12.75 mm", "12.75 mm", 'material = "leather"')
 TENON = 'tip_bore = "8 mm"\nbutt_bore = "8 mm"\ncore = "ash"\nmaterial = "melamine"'
@@ -68,10 +68,6 @@ def test_study_of_cue_has_default_stroke_of_game(tmp_path: Path) -> None:
         file.write_text((f'game = "{game}"\n' if game else "") + file.read_text(encoding="utf-8"), encoding="utf-8")
         assert load_study(file).base == usual(cf.load(tmp_path / "cue.toml"))
         assert f"cue speed {1 if game else 2} m/s" in as_json("study", file)["assumptions"]
-    file.write_text('game = "chess"\n' + file.read_text(encoding="utf-8"), encoding="utf-8")
-    assert_rejects("study.toml: game: must be one of pool, carom, snooker, kim", "study", file)
-    of_scene = write_study(tmp_path, f'game = "pool"\n{STUDY}')
-    assert_rejects("study.toml: game: must be omitted: scene.toml is a scene", "study", of_scene)
 
 
 PROFILE = "position [mm],diameter [mm]\n0,12.5\n330,13\n430,14\n740,21\n"

@@ -1,19 +1,23 @@
 """Invalid measurements, files and folders; one for each `raise` (bad input)."""
 
 import errno
+import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import cuefem as cf
 from cuefem.measurements.estimate import estimate
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measurement_types import AddedMass, PivotLength, Setup, Squirt, Stiffness, Tone
 from cuefem.measurements.shot import Shot
 from cuefem.measurements.swerve import reading_angle
 from cuefem.measurements.uncertain_parameters import Prior
+from cuefem.results.uncertainty import MODEL_ERROR
 from tests.helpers.command_line import call
 from tests.helpers.invalid_input import (
     assert_refused,
@@ -25,10 +29,16 @@ from tests.helpers.invalid_input import (
 )
 from tests.helpers.measured_cues import CUE_TOML, MEASURED_TOML, SCENE, measured_cue, measured_folder
 from tests.helpers.recordings import save_wav
+from tests.measurements.test_calibration import OLD, calibration
 
 SHOT = Shot(cue_offset=0.0143, left=0.04, right=0.038, distance=1.2)
 FAR = AddedMass(mass=0.01, position=0.8, value=0.1, baseline=0.1, error=0.01, offset=0.3)
 PIVOT = PivotLength(offset=0.3, value=0.3, error=0.01)
+FOREIGN = {
+    "another game": cf.usual_scene(cf.load("kim"), "carom"),
+    "another leather": cf.with_parameters(OLD, {"leather": 1e8}),
+    "a spring tip": replace(OLD, tip=cf.Tip(0.73, 0.7, 1e-3), effects=()),
+}
 CALLS: dict[str, Callable[[], object]] = {
     "left alone": lambda: Squirt(offset=0.3, left=0.03, error=1e-3),
     "no squirt": lambda: Squirt(offset=0.3, error=1e-3),
@@ -57,6 +67,10 @@ CALLS: dict[str, Callable[[], object]] = {
     "shot with both offsets": lambda: replace(SHOT, chalk_mark=0.01),
     "shot of opposite sides": lambda: replace(SHOT, right=-0.038),
     "shot beyond the miscue limit": lambda: replace(SHOT, cue_offset=0.03).squirt(SCENE),
+    **{f"calibration for {kind}": partial(calibration().squirt, scene) for kind, scene in FOREIGN.items()},
+    "calibration without squirt": lambda: replace(calibration(), drawn={}, covariance=((MODEL_ERROR**2,),)),
+    "covariance of two values": lambda: replace(calibration(), covariance=((1.0, 2.0), (2.0, 1.0))),
+    **{f"factor {x}": partial(replace, calibration(), log_factor=math.log(x)) for x in (0.5, 2.0)},
     "slow ball": lambda: reading_angle(0.03, 0.3, elevation=0.05, speed=0.3, distance=1.2, friction=0.2),
 }
 
@@ -118,14 +132,7 @@ def test_template_write_failure_leaves_nothing(tmp_path: Path, monkeypatch: pyte
     assert_unchanged(tmp_path, "must be a new folder", *template)
 
 
-def test_invalid_folders_are_rejected(tmp_path: Path) -> None:
-    assert_rejects("got no folder", "compare", tmp_path / "none")
-    (empty := tmp_path / "empty").mkdir()
-    assert_rejects("must hold drawings (.toml, .csv, .stl, .ply, .obj), or", "compare", empty)
-    assert_unchanged(tmp_path, "cannot be written: No such file", "compare", tmp_path / "no" / "folder", "--template")
+def test_drawing_of_a_measured_cue_is_no_scene(tmp_path: Path) -> None:
     scene = f"game = 'kim'\n[cue]\n{CUE_TOML.replace('[[segments]]', '[[cue.segments]]')}"
     of_scene = measured_folder(tmp_path / "scene", MEASURED_TOML, scene)
     assert_rejects("this file is the drawing; ball and tip belong in measured.toml", "compare", of_scene)
-    assert_unchanged(
-        tmp_path, "cannot be written", "compare", measured_folder(tmp_path / "cue"), "-o", tmp_path / "no" / "page.html"
-    )
