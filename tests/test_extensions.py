@@ -4,11 +4,10 @@ import gc
 import html
 import sys
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-import numpy as np
 import pytest
 
 import cuefem as cf
@@ -18,12 +17,13 @@ from cuefem.designer.panels import sections_markup
 from cuefem.designer.session import Session
 from cuefem.designer.state import Design
 from cuefem.designs import Levels, Response, Study, Vary
-from cuefem.effects.effect import effect_kinds
+from cuefem.effects.contact_terms import ContactTerms
+from cuefem.effects.effect import Effect, TipEffect, effect_kinds
 from cuefem.parameters.scene_changes import with_parameters
-from tests.helpers.cap_effect import cap_effect
+from cuefem.quantity.fields import Quantity
 from tests.helpers.command_line import as_json, stdout_of
 from tests.helpers.contributors_guide import module_of
-from tests.helpers.strike_scenes import energy_residual, kim_scene
+from tests.helpers.strike_scenes import kim_scene
 
 AT = cf.Resolution(2, 8, 12)
 
@@ -82,20 +82,22 @@ def test_added_cue_effect_is_displayed_saved_and_varied(tmp_path: Path, monkeypa
 
 @pytest.mark.usefixtures("_effects_deleted")
 def test_added_tip_effect_acts_in_contact() -> None:
-    cap: Any = cap_effect()
+    """One that adds what `TipDome` adds strikes as it does; a raised cue takes no compliance of its own."""
 
-    def scene_with(*effects: Any) -> cf.Scene:
-        return replace(kim_scene(0.4), effects=effects)
+    @dataclass(frozen=True)
+    class Cap(TipEffect):
+        """A round cap of a radius, m, on the tip."""
 
-    others = (cf.PowerLawTip(1.5), cf.RollingContact())
-    lateral, back = 0.009 * 0.4, 0.009 * (1 - np.sqrt(1 - 0.4**2))
-    terms = scene_with(cf.TipDome(0.007), cap(0.002)).contact_terms
-    assert terms.moment_arm(float(np.arcsin(0.4))) == pytest.approx((-lateral, back), rel=1e-12)
-    whole = cf.strike(scene_with(cap(0.002), *others, cf.TipDome(0.007)), AT)
-    split = cf.strike(scene_with(*others, cap(0.0005), cf.TipDome(0.007), cap(0.0015)), AT)
-    assert energy_residual(whole) < 1e-6
-    assert split.squirt == pytest.approx(whole.squirt, rel=1e-9)
-    assert whole.squirt != cf.strike(scene_with(*others, cf.TipDome(0.007)), AT).squirt
-    assert scene_with(cap(0.002)).without_tip_effects == scene_with()
+        radius: Annotated[float, Quantity("m")]
+        compliance: float = 0.0
+
+        def add_to_contact(self, terms: ContactTerms) -> None:
+            terms.add_dome(self.radius)
+            terms.add_compliance(self.compliance)
+
+    def struck(*effects: Effect) -> cf.Outcome:
+        return cf.strike(replace(kim_scene(0.4), effects=effects), AT)
+
+    assert struck(Cap(0.007)).squirt == struck(cf.TipDome(0.007)).squirt != struck().squirt
     with pytest.raises(ValueError, match="takes a tip without tangential compliance, a fixed normal"):
-        cf.strike(scene_with(cap(0.0, compliance=1.0), cf.Elevation(0.1)), AT)
+        struck(Cap(0.0, compliance=1.0), cf.Elevation(0.1))

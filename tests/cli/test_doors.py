@@ -1,7 +1,6 @@
 """One shaft, one answer: the same squirt and verdict, or the same refusal, from every door."""
 
 import json
-import math
 import re
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ from cuefem.designs.study_file import load_study
 from cuefem.results.verdict import verdict_problem
 from tests.helpers.command_line import call
 from tests.helpers.random_shafts import RandomShaft, random_shaft
+from tests.test_golden_files import assert_same_json
 
 HEAVY, NIGHTLY = 4, 108
 SIGNS = {"bore": -1, "bore wider": -1, "bore deeper": -1, "0.5 mm thinner": -1, "tip height": -1}  # of a change of mass
@@ -77,7 +77,7 @@ def test_every_door_has_the_same_squirt_and_verdict(seed: int, tmp_path: Path) -
     report = record_of("report", file, *shaft.options)
     compared = record_of("compare", file, twin, *shaft.options)
     in_python = cf.compare({"shaft": scene, "twin": cf.with_parameters(scene, {})}).values()
-    assert in_python == approximately({key: compared[key] for key in in_python})
+    assert_same_json({key: compared[key] for key in in_python}, in_python)
     problem = verdict_problem(scene, own.outcome)
     if problem:
         with pytest.raises(ValueError, match=re.escape(problem)):
@@ -86,7 +86,7 @@ def test_every_door_has_the_same_squirt_and_verdict(seed: int, tmp_path: Path) -
         assert call("improve", file, *shaft.options)[::2] == (2, f"cuefem: {file}: {problem}\n")
         return
     for answer in (verdict(scene), cf.verdict(scene)):
-        assert_verdicts_agree(report["verdict"], answer.values())
+        assert_same_json(report["verdict"], answer.values())
     assert report["verdict"]["squirt"] == pytest.approx(squirt, rel=1e-12)
     assert [*report["verdict"]["references"]] == ["plain maple", "low deflection", "carbon"]
     assert compared["cues"]["shaft"]["squirt"] == pytest.approx(squirt, rel=1e-12)
@@ -111,22 +111,3 @@ def assert_doors_refuse(shaft: RandomShaft, file: Path, twin: Path, refusal: str
     for question in (cf.strike, cf.verdict, cf.design_changes):
         with pytest.raises(ValueError, match=re.escape(reason)):
             question(of_python(shaft, file))
-
-
-def approximately(values: Any) -> Any:
-    """The same numbers of a nested record to 1e-12."""
-    if isinstance(values, dict):
-        return {key: approximately(value) for key, value in values.items()}
-    if isinstance(values, list):
-        return [approximately(value) for value in values]
-    return pytest.approx(values, rel=1e-12) if isinstance(values, float) else values
-
-
-def assert_verdicts_agree(first: Any, other: Any) -> None:
-    """The numbers and the comparisons of two verdicts are the same."""
-    for key in ("squirt", "squirt_error", "offset", "head_on"):
-        assert other[key] == pytest.approx(first[key], rel=1e-12)
-    distinct = [{name: row["distinct"] for name, row in each["references"].items()} for each in (first, other)]
-    assert distinct[0] == distinct[1]
-    assert other["inputs"] == pytest.approx(first["inputs"], rel=1e-9)
-    assert not math.isnan(other["uncertainty"]["total"])

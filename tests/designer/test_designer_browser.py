@@ -110,22 +110,39 @@ def test_saved_design_strikes_as_displayed(browser: Any, address: str, tmp_path:
         )  # the report has another numerical error
 
 
-def test_switch_of_units_is_kept_with_the_design(browser: Any, tmp_path: Path) -> None:
-    """A typed bare number is in the unit displayed; a new page of the browser has the units of the last switch."""
-    with run_designer(tmp_path) as own, designer_page(browser, own) as page:
-        type_value(page, "Tip diameter", "12")
-        squirt = displayed_number(page, "squirt")
-        page.get_by_role("button", name="Inches").click()
-        page.get_by_role("button", name="Metric").wait_for()
-        wait_until_idle(page)
-        assert displayed_number(page, "squirt") == squirt
-        assert "after 4 ft" in page.locator(".top").inner_text()
-        type_value(page, "Taper, end", "0.9")
-        assert page.get_by_label("Taper, end", exact=True).first.input_value() == "0.9 in"
-        assert page.get_by_label("Tip diameter", exact=True).first.input_value() == "12 mm"  # as it was typed
-        another = page.context.new_page()
-        another.goto(own)
-        another.get_by_role("button", name="Metric").wait_for(timeout=60_000)
+def test_switch_of_units_is_kept_and_the_end_of_the_server_is_said(browser: Any, tmp_path: Path) -> None:
+    """A typed bare number is in the unit displayed; a new page of the browser has the units of the last switch.
+
+    Where the server ends it is a page of its own: a lost connection fills the console.
+    """
+    with designer_process(tmp_path) as (own, process):
+        last = browser.new_page()
+        last.goto(own)
+        wait_until_idle(last)
+        assert not last.locator("#loading").is_visible()
+        assert "cuefem designer is loading" in last.request.get(own).text()
+        with designer_page(browser, own) as page:
+            switch_units(page, own)
+        os.kill(process, signal.SIGTERM)
+        last.locator("#popup").filter(has_text="cuefem designer has ended: start it again").wait_for()
+        last.close()
+
+
+def switch_units(page: Any, own: str) -> None:
+    """To inches, and to a second page of the browser."""
+    type_value(page, "Tip diameter", "12")
+    squirt = displayed_number(page, "squirt")
+    page.get_by_role("button", name="Inches").click()
+    page.get_by_role("button", name="Metric").wait_for()
+    wait_until_idle(page)
+    assert displayed_number(page, "squirt") == squirt
+    assert "after 4 ft" in page.locator(".top").inner_text()
+    type_value(page, "Taper, end", "0.9")
+    assert page.get_by_label("Taper, end", exact=True).first.input_value() == "0.9 in"
+    assert page.get_by_label("Tip diameter", exact=True).first.input_value() == "12 mm"  # as it was typed
+    another = page.context.new_page()
+    another.goto(own)
+    another.get_by_role("button", name="Metric").wait_for(timeout=60_000)
 
 
 LAYOUT = """() => {
@@ -195,16 +212,3 @@ def test_measured_shots_calibrate_the_page_and_its_saved_file(browser: Any, addr
         made = cf.load_calibration(download(page, "Save calibration", tmp_path))
         squirt = displayed_number(page, "squirt")
         assert squirt / plain == pytest.approx(made.squirt(cf.usual_scene(cf.load("plain maple"))).factor, rel=2e-3)
-
-
-def test_page_says_that_it_loads_and_that_its_server_has_ended(browser: Any, tmp_path: Path) -> None:
-    """A page of its own: a lost connection fills the console."""
-    with designer_process(tmp_path) as (address, process):
-        page = browser.new_page()
-        page.goto(address)
-        wait_until_idle(page)
-        assert not page.locator("#loading").is_visible()
-        assert "cuefem designer is loading" in page.request.get(address).text()
-        os.kill(process, signal.SIGTERM)
-        page.locator("#popup").filter(has_text="cuefem designer has ended: start it again").wait_for()
-        page.close()

@@ -8,13 +8,9 @@ import pytest
 
 import cuefem as cf
 from cuefem.analysis.first_screen import comparison_lines, headline_markup
-from cuefem.designer.controls import KNOBS, label, parse, range_of, value, value_text
 from cuefem.designer.session import OF_TAB, OPENED, Results, Session
 from cuefem.designer.state import read_file, reference_design
-from cuefem.quantity.display_units import displayed_in
-from tests.cli.test_units import METRIC_LEFT
 from tests.measurements.test_calibration import calibration
-from tests.test_golden_files import last_place
 
 FIRST = reference_design("plain maple")
 
@@ -36,24 +32,6 @@ def test_miscue_has_numbers_and_no_verdict() -> None:
     assert "miscue" in session.warning()
     assert not {"verdict", "changes"} & session.results.own.keys()
     assert {*OF_TAB} == {"Curves", "Changes", "Report"}
-
-
-@pytest.mark.parametrize("key", [key for key, knob in KNOBS.items() if knob.range])
-def test_controls_read_what_they_show_in_us_units(key: str) -> None:
-    """With the unit and without, to the digits shown; the slider's range is the metric one."""
-    scene = FIRST.scene
-    if (own := value(key, scene)) is None:
-        own = range_of(key).least / range_of(key).scale
-    metric = range_of(key)
-    with displayed_in("us"):
-        known, text = range_of(key), value_text(key, own)
-        bare, _, unit = text.partition(" ")
-        assert unit == known.unit == {"mm": "in", "g": "oz", "m/s": "mph"}.get(metric.unit, metric.unit)
-        for name in ("low", "high", "least", "most"):
-            assert getattr(known, name) / known.scale == pytest.approx(getattr(metric, name) / metric.scale)
-        for typed in (text, bare):
-            assert parse(key, typed, scene) == pytest.approx(own, abs=0.51 * last_place(bare) / known.scale)
-        assert not METRIC_LEFT.search(label(key, scene))
 
 
 @pytest.mark.heavy

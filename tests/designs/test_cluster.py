@@ -6,7 +6,6 @@ import socket
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import psutil
@@ -46,9 +45,10 @@ def end(process: subprocess.Popen[bytes]) -> None:
     process.wait()
 
 
-@contextmanager
-def running_cluster(folder: Path, *roots: Path) -> Iterator[tuple[str, Processes]]:
-    """The address of a scheduler, and the processes: "scheduler", and workers of one process, each of a source tree."""
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Processes]]:
+    """The address of a scheduler, and the processes: "scheduler", and two workers of one process."""
+    folder = tmp_path_factory.mktemp("dask")
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
@@ -56,30 +56,23 @@ def running_cluster(folder: Path, *roots: Path) -> Iterator[tuple[str, Processes
     local = ("--host", "127.0.0.1", "--port", str(port), "--dashboard-address", ":0", "--no-dashboard")
     quick = {"DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "0"}  # workers that one task may end
 
-    def start(name: str, root: Path, *arguments: str) -> None:
+    def start(name: str, *arguments: str) -> None:
         with (folder / f"{name}.log").open("wb") as log:
             command = [sys.executable, "-m", f"distributed.cli.dask_{name.partition(' ')[0]}", *arguments]
-            environment = os.environ | quick | {"PYTHONPATH": str(root)}
+            environment = os.environ | quick | {"PYTHONPATH": str(ROOT)}
             processes[name] = subprocess.Popen(command, env=environment, cwd=folder, stdout=log, stderr=log)
 
     try:
-        start("scheduler", ROOT, *local)
-        for i, root in enumerate(roots, 1):
-            start(f"worker {i}", root, address, "--nthreads", "1", "--no-dashboard", "--local-directory", str(folder))
+        start("scheduler", *local)
+        for name in ("worker 1", "worker 2"):
+            start(name, address, "--nthreads", "1", "--no-dashboard", "--local-directory", str(folder))
         with distributed.Client(address, timeout=60, set_as_default=False) as client:
-            client.wait_for_workers(len(roots), timeout=120)
+            client.wait_for_workers(2, timeout=120)
         yield address, processes
     finally:
         for process in processes.values():
             if process.poll() is None:
                 end(process)
-
-
-@pytest.fixture
-def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Processes]]:
-    """A scheduler and two workers."""
-    with running_cluster(tmp_path_factory.mktemp("dask"), ROOT, ROOT) as running:
-        yield running
 
 
 @pytest.mark.heavy
@@ -108,6 +101,12 @@ def test_study_on_cluster_with_killed_worker_and_client_has_serial_table(
 
 
 @pytest.mark.heavy
+def test_design_that_ends_its_dask_worker_fails_alone(tmp_path: Path, cluster: tuple[str, Processes]) -> None:
+    with distributed.Client(cluster[0], set_as_default=False) as client:
+        assert_deadly_design_fails_alone(tmp_path, client.get_executor(pure=False))
+
+
+@pytest.mark.heavy
 def test_study_lost_scheduler_prints_one_line_and_resumes(tmp_path: Path, cluster: tuple[str, Processes]) -> None:
     address, processes = cluster
     study, store = write_study(tmp_path, STUDY), tmp_path / "study.sqlite"
@@ -125,12 +124,6 @@ def test_study_lost_scheduler_prints_one_line_and_resumes(tmp_path: Path, cluste
     stdout_of("study", study, "-o", table)
     stdout_of("study", study, "--store", tmp_path / "whole.sqlite", "-o", whole)
     assert table.read_bytes() == whole.read_bytes()
-
-
-@pytest.mark.heavy
-def test_design_that_ends_its_dask_worker_fails_alone(tmp_path: Path, cluster: tuple[str, Processes]) -> None:
-    with distributed.Client(cluster[0], set_as_default=False) as client:
-        assert_deadly_design_fails_alone(tmp_path, client.get_executor(pure=False))
 
 
 @pytest.mark.heavy

@@ -117,19 +117,6 @@ def test_scatter_samples_have_stated_correlations(one: float, other: float, thir
         assert [E.std(), rho.std(), G.std()] == pytest.approx([0.22, 0.1, 0.15], rel=0.02)
 
 
-def test_correlated_parameters_are_one_cause() -> None:
-    assert Scatter(STUDY).factors == ("E", "rho", "G", "time")
-    assert Scatter(STUDY, {("G", "E"): 0.5}).factors == ("E + G", "rho", "time")
-    assert Scatter(STUDY, {("G", "E"): 0.5, ("time", "G"): 0.1}).factors == ("E + G + time", "rho")
-    assert Scatter(STUDY, {("G", "E"): 0.5}, {"wood": ("E", "rho", "G")}).factors == ("wood", "time")
-
-
-def test_single_factor_explains_single_response() -> None:
-    result = cf.study(Scatter(replace(STUDY, vary=VARY[1:2], responses=STUDY.responses[:1]), count=16, seed=1))
-    assert result.sobol_indices.total == pytest.approx(np.ones((1, 1)), abs=0.1)
-    assert result.sobol_indices.first_interval.shape == (2, 1, 1)
-
-
 @pytest.mark.heavy
 def test_designs_without_a_response_leave_the_others_answered(tmp_path: Path) -> None:
     """The share of miscues is an answer; only responses that every design has have indices, a constant one has none."""

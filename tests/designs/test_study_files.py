@@ -49,13 +49,6 @@ def test_study_segments_are_numbered_as_in_file(path: str, of: str, tmp_path: Pa
     assert as_json("study", file)["varied_fields"] == {path: [piece]}
 
 
-def test_study_compensated_length_of_segment_in_file(tmp_path: Path) -> None:
-    more = 'compensating_path = "cue.segments[2].length"\n'
-    expected = load_study(varying(tmp_path, "cue.segments[1].length", more=more))
-    lengths = [segment.length for segment in expected.scene((0.005,)).cue.segments]
-    assert lengths == pytest.approx([0.005, 0.141, 0.55])
-
-
 @pytest.mark.parametrize(("segment", "problem"), [(0, "must not name the drawn leather"), (4, "cue's file, 0 to 3")])
 def test_study_segment_off_the_modelled_cue_raises(segment: int, problem: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=problem):

@@ -11,8 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import cuefem as cf
-from cuefem.cue.materials import material
-from cuefem.designs import Levels, Normal, Response, Sample, Span, Study, Vary, evaluate
+from cuefem.designs import Levels, Normal, Response, Span, Study, Vary, evaluate
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.quantity.display_units import displayed_in
 from cuefem.results.computable_results import computable_results
@@ -34,10 +33,6 @@ def study(*vary: Vary, responses: tuple[str, ...] = ("end_mass",), **more: objec
     return Study(BASE, vary, tuple(map(Response.of, responses)), at=AT, **more)
 
 
-def varied(path: str, *values: float | str, factor: bool = False, name: str = "") -> Vary:
-    return Vary((path,), Levels(values), name, factor)
-
-
 @given(low=st.floats(1e-6, 1e3), ratio=st.floats(1.01, 100), count=st.integers(2, 50), log=st.booleans())
 def test_span_levels_are_evenly_spaced(low: float, ratio: float, count: int, log: bool) -> None:
     span = Span(low, low * ratio, count, log)
@@ -49,26 +44,6 @@ def test_span_levels_are_evenly_spaced(low: float, ratio: float, count: int, log
     assert [span.share(level) for level in levels] == pytest.approx(np.linspace(0, 1, count), abs=1e-9)
     middle = low * np.sqrt(ratio) if log else low * (1 + ratio) / 2
     assert Span(low, low * ratio, 1, log).levels == pytest.approx([middle], rel=1e-9)
-
-
-def test_sample_is_uniform_and_depends_on_seed() -> None:
-    points, others = (np.array([*Sample(300, seed).points(3)]) for seed in (7, 8))
-    assert points.shape == (300, 3)
-    assert np.all((points >= 0) & (points < 1))
-    np.testing.assert_allclose(points.mean(axis=0), 0.5, atol=0.01)
-    assert not np.array_equal(points, others)
-
-
-def test_study_scene_applies_materials_numbers_and_factors() -> None:
-    result = study(
-        varied("cue.segments[3].material", "ash"),
-        varied("cue.segments[*].material.E", 0.5, factor=True, name="factor"),
-        varied("cue.segments[3].material.rho", 500.0),
-    )
-    segments = result.scene(("ash", 0.5, 500.0)).cue.segments
-    assert segments[3].material == replace(material("ash"), E=material("ash").E * 0.5, rho=500.0)
-    for i in (0, 1, 2, 4):
-        assert segments[i].material == replace(BASE.cue.segments[i].material, E=BASE.cue.segments[i].material.E * 0.5)
 
 
 def singly(scene: cf.Scene, at: cf.Resolution | None) -> dict[str, float]:
@@ -222,15 +197,6 @@ def test_best_designs_are_of_the_designs_that_have_the_response() -> None:
 DEPTH = Vary(("cue.segments[2].length",), Span(0.05, 0.25), "bore depth", compensating_path=("cue.segments[3].length",))
 
 
-@given(st.floats(0.05, 0.25))
-def test_study_compensated_length_preserves_cue_length(depth: float) -> None:
-    changed = study(DEPTH).scene((depth,)).cue
-    assert changed.segments[2].length == depth
-    assert changed.length == pytest.approx(BASE.cue.length, rel=1e-15)
-    rest = BASE.cue.segments[:2] + BASE.cue.segments[4:]
-    assert changed.segments[:2] + changed.segments[4:] == rest
-
-
 def test_study_compensated_lengths_in_any_order_agree() -> None:
     """A longer ferrule shortens the bored segment, a longer bored segment the solid one."""
     ferrule = Vary(("cue.segments[1].length",), Span(-0.005, 0.01), "ferrule", False, True, ("cue.segments[2].length",))
@@ -239,14 +205,6 @@ def test_study_compensated_lengths_in_any_order_agree() -> None:
         changed = study(*(ferrule, DEPTH)[::order]).scene(values).cue
         lengths = [segment.length for segment in changed.segments[1:4]]
         assert lengths == pytest.approx([0.016, 0.096, 0.2], rel=1e-14)
-
-
-def test_study_applies_factor_and_shift_after_value() -> None:
-    path = ("tip.contact_time",)
-    numbers = (Levels((1e-3, 2e-3)), Levels((1.5,)), Levels((1e-4,)))
-    set_, factor, shift = (replace(Vary(path, range), name=name) for name, range in zip("abc", numbers, strict=True))
-    combined = study(replace(shift, shift=True), replace(factor, factor=True), set_)
-    assert combined.scene((1e-4, 1.5, 2e-3)).tip.contact_time == pytest.approx(3.1e-3, rel=1e-15)
 
 
 def test_quantiles_of_a_list_are_its_values_in_equal_shares() -> None:

@@ -12,14 +12,14 @@ from cuefem.files.parts_catalogue import data_folder
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.mark.parametrize("name", CUES)
-def test_every_name_loads_its_drawing_and_comes_with_the_wheel(name: str) -> None:
-    path = data_folder() / CUES[name].file
-    assert cf.load(name) == cf.load(name.upper().replace(" ", "_")) == cf.load(path)
-    assert cue_name(named_path(Path(name))) == name
+def test_every_name_loads_its_drawing_and_comes_with_the_wheel() -> None:
     build = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["hatch"]["build"]
-    folder = Path(CUES[name].file).parent.as_posix()
-    assert build["targets"]["wheel"]["force-include"][folder] == f"cuefem/ready/{folder}"
+    included = build["targets"]["wheel"]["force-include"]
+    for name, cue in CUES.items():
+        assert cf.load(name) == cf.load(name.upper().replace(" ", "_")) == cf.load(data_folder() / cue.file)
+        assert cue_name(named_path(Path(name))) == name
+        folder = Path(cue.file).parent.as_posix()
+        assert included[folder] == f"cuefem/ready/{folder}"
 
 
 def test_words_of_one_name_are_enough_and_files_come_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.analysis.cue_report import CueReport
 from cuefem.analysis.squirt_curve import FINE_OFFSETS, squirt_curve
 from cuefem.designs import Response
 from cuefem.designs.sweep import SweepStatistics, sweep_charts, tabulate_sweep
@@ -36,8 +37,13 @@ OUTSIDE = """[...document.querySelectorAll("section, figure, header, svg:not(.la
   .map(e => e.getBoundingClientRect()).filter(r => r.right > innerWidth + 1 || r.left < 0).length"""
 
 
+@cache
+def report() -> CueReport:
+    return cf.report(SCENE, details=True)
+
+
 def report_page() -> str:
-    return cf.report(SCENE, details=True).to_html("pool_maple.toml")
+    return report().to_html("pool_maple.toml")
 
 
 @cache
@@ -104,7 +110,7 @@ def test_design_changes_on_a_phone_show_three_columns_and_all_on_demand(opened: 
 
 def test_report_on_paper_names_no_options(opened: Any) -> None:
     note = Assumption("ferrule", "ferrule of melamine", "ferrule")
-    opened.set_content(cf.report(SCENE, details=True).to_html("pool_maple.toml", [note]))
+    opened.set_content(report().to_html("pool_maple.toml", [note]))
     opened.emulate_media(media="print")
     text = opened.locator("body").inner_text()
     assert "ferrule of melamine" in text
