@@ -31,7 +31,7 @@ from cuefem.results.uncertainty import changes_by_input, miscue_note
 from cuefem.results.verdict import verdict_problem
 from cuefem.scene import Scene, check_scene
 from cuefem.scene.solved_scene import SolvedScene
-from cuefem.show.analysis import DESIGN_STYLES, Analysis, Rows
+from cuefem.show.analysis import DESIGN_STYLES, Analysis, PageFrame, Rows
 from cuefem.show.charts import Chart
 from cuefem.show.drawings import DIAMETER_SCALE, CueDrawing, cue_drawing
 from cuefem.show.offset_charts import offset_charts
@@ -180,15 +180,7 @@ class Comparison(Rows, Analysis):
             *own.warning_lines(),
         ]
 
-    def _markup(
-        self,
-        name: str = "",
-        assumptions: Sequence[Assumption] | None = None,
-        warnings: Sequence[str] | None = None,
-        made: str = "",
-        *,
-        inline: bool = False,
-    ) -> str:
+    def _markup(self, frame: PageFrame) -> str:
         """The page with the first screen of the first cue; a plain page if that has no verdict."""
         # templates take 0.1 s to load
         from cuefem.analysis.first_screen import HeadlineCue, cue_names, screen_markup
@@ -196,8 +188,7 @@ class Comparison(Rows, Analysis):
 
         title = f"{self.heading()}: compared"
         if self.reference in self.problems:
-            return super()._markup(title, assumptions, warnings, made, inline=inline)
-        assumptions, warnings = self._noted(assumptions), self._warned(warnings)
+            return super()._markup(frame._replace(name=title))
         answer = verdict_by(SolvedDesign.of(self.scene), None, lambda _: self.calibrated)
         first, *others = [HeadlineCue(name, scene, self.cues[name]) for name, scene in self.scenes.items()]
         own = replace(first, verdict=answer)
@@ -206,13 +197,13 @@ class Comparison(Rows, Analysis):
         apart = [f"{name}: {fact}" for name, each in facts_of.items() for fact in each if fact not in shared]
         return page(
             cue_names(own, others),
-            inline=inline,
+            inline=frame.inline,
             kind="compare",
             name=self.heading(),
             title=title,
-            made=made,
-            notes=[*map(str, assumptions)],
-            warnings=[*self.gaps(), *warnings, *(self.calibrated.warning_lines() if self.calibrated else ())],
+            made=frame.made,
+            notes=[*map(str, frame.assumptions)],
+            warnings=[*self.gaps(), *frame.warnings, *(self.calibrated.warning_lines() if self.calibrated else ())],
             facts=[*apart, *shared],
             uncertainty=[f"{own.name}, {answer.uncertainty_line()}"],
             screen=screen_markup(own, others, self._headlines(), with_values=True),

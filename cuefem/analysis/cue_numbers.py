@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 from cuefem.analysis.end_mass import SQUIRT_END_MASS
 from cuefem.results.computable_results import listed_results
-from cuefem.results.quantities import UNITS, format_value
-from cuefem.results.records import Record, Table, tabulate_values, value_rows
+from cuefem.results.quantities import RESULTS, UNITS, format_value
+from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import Solvable, SolvedDesign
 from cuefem.show.analysis import Analysis, Rows
-from cuefem.show.scene_summary import assumptions, scene_record
+from cuefem.show.scene_summary import stroke_line
 
 
 @dataclass(frozen=True)
@@ -40,10 +40,10 @@ class CueNumbers(Rows, Analysis):
 
     def tables(self) -> list[Table | str]:
         """A row for each result."""
-        about = scene_record(self.scene)
         title = f"Cue, and stroke at offset b/R {self.scene.stroke.offset:.4g}"
         end_mass = (SQUIRT_END_MASS, format_value("end_mass", self.squirt_end_mass))
-        return [tabulate_values(title, [end_mass, *value_rows(self.numbers)], assumptions(about))]
+        rows = [(RESULTS[name].label, format_value(name, value)) for name, value in self.numbers.items()]
+        return [Table(title, ("", "value"), (end_mass, *rows), (stroke_line(self.scene),))]
 
 
 def cue_numbers(scene: Solvable) -> CueNumbers:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from cuefem.analysis import has_segments, report_sections
@@ -21,7 +21,7 @@ from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import SolvedDesign
 from cuefem.results.verdict import NoVerdict
 from cuefem.scene import Scene, check_scene
-from cuefem.show.analysis import Analysis
+from cuefem.show.analysis import Analysis, PageFrame
 
 if TYPE_CHECKING:
     from cuefem.analysis.report_page import Beside
@@ -41,12 +41,15 @@ class CueReport(Analysis):
         State of the contact, as `Outcome.regime`; "" without a contact.
     no_contact, no_squirt : str
         Why only the natural frequencies are known; why there is no verdict.
+    other : tuple of str and Scene, optional
+        Name and scene of a cue that its page shows beside this one.
     """
 
     sections: dict[str, Analysis]
     regime: str = ""
     no_contact: str = ""
     no_squirt: str = ""
+    other: tuple[str, Scene] | None = field(default=None, repr=False)
 
     def headline(self) -> str:
         """Squirt with its uncertainty."""
@@ -83,38 +86,18 @@ class CueReport(Analysis):
         """The name of the file alone: the page says that it is a report."""
         return name
 
-    def to_html(
-        self,
-        name: str = "",
-        assumptions: Sequence[Assumption] | None = None,
-        warnings: Sequence[str] | None = None,
-        made: str = "",
-        other: tuple[str, Scene] | None = None,
-    ) -> str:
-        """The page with the first screen, beside that of another cue; ValueError for a miscue, which has none."""
-        return self._markup(name, assumptions, warnings, made, other=other)
-
-    def _markup(
-        self,
-        name: str = "",
-        assumptions: Sequence[Assumption] | None = None,
-        warnings: Sequence[str] | None = None,
-        made: str = "",
-        *,
-        inline: bool = False,
-        other: tuple[str, Scene] | None = None,
-    ) -> str:
+    def _markup(self, frame: PageFrame) -> str:
+        """The page with the first screen; ValueError for a miscue, which has none."""
         from cuefem.analysis.report_page import page_of  # templates take 0.1 s to load
 
-        if self.no_squirt or self.no_contact:
-            if inline:
-                return super()._markup(name, assumptions, warnings, made, inline=True)
-            raise ValueError(self.no_squirt or self.no_contact)
-        assumptions, warnings = self._noted(assumptions), self._warned(warnings)
-        name = name or "cue"
-        beside = None if other is None else self._beside(name, *other)
-        about = (self.scene, self.sections, self.regime, name, assumptions, warnings, made)
-        return page_of(*about, inline=inline, beside=beside)
+        problem = self.no_squirt or self.no_contact
+        if problem and frame.inline:
+            return super()._markup(frame)
+        if problem:
+            raise ValueError(problem)
+        named = frame._replace(name=frame.name or "cue")
+        beside = None if self.other is None else self._beside(named.name, *self.other)
+        return page_of(self.scene, self.sections, self.regime, named, beside)
 
     def _beside(self, name: str, other: str, other_scene: Scene) -> Beside:
         """Another cue beside this one, of this name."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -12,7 +11,6 @@ from cuefem.analysis.first_screen import UNIT_WORDS, tiles_markup
 from cuefem.analysis.report_page import headline_cue
 from cuefem.analysis.verdict import Verdict, offset_text
 from cuefem.cue.materials import table_name
-from cuefem.files.defaults_report import Assumption
 from cuefem.files.shop import Shop
 from cuefem.files.toml_reader import Order
 from cuefem.measurements.measurement_types import CLOTH_FRICTION, ELEVATION
@@ -22,7 +20,7 @@ from cuefem.quantity.display_units import OFF_LINE, display_unit, displayed_syst
 from cuefem.results.quantities import format_value
 from cuefem.results.records import Record, Table
 from cuefem.scene import Scene
-from cuefem.show.analysis import Analysis
+from cuefem.show.analysis import Analysis, PageFrame
 from cuefem.show.drawings import DIAMETER_SCALE, lathe_drawing, legend
 from cuefem.show.templates import SHEET_STYLES, framed
 
@@ -75,22 +73,14 @@ class CustomerSheet(Analysis):
         """The tables of the report."""
         return self.report.tables()
 
-    def _markup(
-        self,
-        name: str = "",
-        assumptions: Sequence[Assumption] | None = None,
-        warnings: Sequence[str] | None = None,
-        made: str = "",
-        *,
-        inline: bool = False,
-    ) -> str:
+    def _markup(self, frame: PageFrame) -> str:
         """The page. made: the date, where the order has none; assumptions and warnings are on the report's page."""
         verdict: Any = self.report.sections["verdict"]
         numbers: Any = self.report.sections["numbers"]
         speed, title = float(numbers.numbers["ball_speed"]), shaft_title(self.scene)
         return framed(
             "sheet.html.j2",
-            inline=inline,
+            inline=frame.inline,
             styles=SHEET_STYLES,
             title=" ".join(filter(None, (self.order.serial, title))),
             name=title,
@@ -98,7 +88,7 @@ class CustomerSheet(Analysis):
             shop=self.shop,
             logo=self.logo,
             order=self.order,
-            made=str(self.order.date or made),
+            made=str(self.order.date or frame.made),
             drawn=lathe_drawing(self.scene, title),
             legend=legend([self.scene]),
             scale=DIAMETER_SCALE,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import MISSING, asdict, dataclass, fields, replace
-from typing import Any
 
 from cuefem.analysis.strike_models import regime_warning
 from cuefem.contact.refinement import RTOL, refinement_levels
@@ -18,7 +17,7 @@ from cuefem.results.records import Record, Table
 from cuefem.scene import Outcome, Scene, check_scene
 from cuefem.scene.solved_scene import corrected_tip_modes
 from cuefem.show.analysis import Analysis, Rows
-from cuefem.show.scene_summary import assumptions, effect_text, scene_record
+from cuefem.show.scene_summary import effect_text, stroke_line
 
 DEFAULT_RTOL = 1e-2
 # The numerical error of the strikes is the tolerance over this.
@@ -85,7 +84,7 @@ class EffectSensitivity(Rows, Analysis):
                 "spin",
                 *filter(None, [regime_warning(base["regime"])]),
                 *_not_tried(self.effects),
-                assumptions(scene_record(self.scene)),
+                stroke_line(self.scene),
                 "",
                 *self.recommendation_text(),
             ),
@@ -189,13 +188,14 @@ def _row(variant: Variant, scene: Scene, base: Outcome, *, rtol: float, modes: i
         outcome = _strike_at(variant.scene, modes)
     except (ValueError, RuntimeError) as error:
         return about | _failed(str(error))
-    changed = outcome_change(outcome, base, offset=scene.stroke.offset)
+    changes = _changes(outcome, base, scene.stroke.offset)
+    largest = max(abs(each["relative"]) for each in changes.values() if each["relative"] is not None)
     return about | {
         "failure": None,
         **_results(outcome, variant.scene),
-        "change": _changes(changed),
-        "largest_change": changed.max_relative,
-        "significant": changed.max_relative >= rtol,
+        "change": changes,
+        "largest_change": largest,
+        "significant": largest >= rtol,
     }
 
 
@@ -203,12 +203,18 @@ def _failed(reason: str) -> Record:
     return {"failure": reason, "largest_change": None, "significant": None}
 
 
-def _changes(changed: OutcomeChange) -> Record:
-    absolute = asdict(changed)
-    relative = absolute.pop("relative")
-    return {
-        name: {"absolute": outcome_change, "relative": relative.get(name)} for name, outcome_change in absolute.items()
-    }
+def _changes(outcome: Outcome, base: Outcome, offset: float) -> dict[str, Record]:
+    """Changes from the outcome of a scene to that of a variant: absolute, and relative, positive where a size grows.
+
+    At the centre, squirt and spin are zero by symmetry and have no relative change.
+    """
+    changes = {}
+    for name in ("squirt", "ball_speed", "spin"):
+        has_value = bool(offset) or name == "ball_speed"
+        own = float(getattr(base, name))
+        change = float(getattr(outcome, name)) - own if has_value else 0.0
+        changes[name] = {"absolute": change, "relative": _relative(change, own) if has_value else None}
+    return changes
 
 
 def recommendation(rows: Sequence[Record]) -> Record:
@@ -298,31 +304,6 @@ def _reason(scene: Scene, effect: Effect, error: ValueError) -> str:
     if others:
         return f"is incompatible with {', '.join(type(other).__name__ for other in others)}"
     return str(error).replace(f"Scene.effects[{len(scene.effects)}]", name)
-
-
-@dataclass(frozen=True)
-class OutcomeChange:
-    """Change of a strike, variant minus scene: squirt, rad; ball_speed, m/s; spin, rad/s; and relative to the scene's
-    own, by the same names, positive where its size increases. At the centre, squirt and spin are zero by symmetry and
-    omitted."""
-
-    squirt: float
-    ball_speed: float
-    spin: float
-    relative: dict[str, float]
-
-    @property
-    def max_relative(self) -> float:
-        """The largest of the relative changes."""
-        return max(map(abs, self.relative.values()))
-
-
-def outcome_change(outcome: Outcome, base: Outcome, *, offset: Any) -> OutcomeChange:
-    """The change from the outcome ``base`` of a scene to that of a variant, at ``offset`` b/R."""
-    names = ("squirt", "ball_speed", "spin") if offset else ("ball_speed",)
-    changes = dict.fromkeys(("squirt", "ball_speed", "spin"), 0.0)
-    changes |= {name: float(getattr(outcome, name) - getattr(base, name)) for name in names}
-    return OutcomeChange(**changes, relative={n: _relative(changes[n], float(getattr(base, n))) for n in names})
 
 
 def _relative(change: float, value: float) -> float:

@@ -13,7 +13,7 @@ from cuefem.results.records import Record, Table, tabulate
 from cuefem.results.solved_design import Solvable, SolvedDesign
 from cuefem.show.analysis import Analysis, Rows
 from cuefem.show.charts import Chart
-from cuefem.show.scene_summary import assumptions, listed, scene_record, tip_effect_notes
+from cuefem.show.scene_summary import listed, stroke_line, tip_effect_notes
 
 SQUIRT_END_MASS = "squirt-equivalent end mass"  # the one that pages and tables for people show
 
@@ -65,10 +65,11 @@ class EndMasses(Rows, Analysis):
 
     def values(self) -> Record:
         """The numbers in SI units; "reason" only where there is no value."""
-        record = super().values()
-        for row in record["definitions"].values():
+        rows = {name: {**vars(mass)} for name, mass in self.definitions.items()}
+        for row in rows.values():
             if not row["reason"]:
                 del row["reason"]
+        record = super().values() | {"definitions": rows}
         return record if self.reduction is None else record | {"reduction": self.reduction.values()}
 
     def frame_rows(self) -> list[Record]:
@@ -85,17 +86,16 @@ class EndMasses(Rows, Analysis):
 
     def table(self) -> Table:
         """A row for each definition."""
-        about = scene_record(self.scene)
         rows = [{"name": name, **vars(mass)} for name, mass in self.definitions.items()]
         return tabulate(
             "Effective end mass",
             {"definition": lambda row: self._label(row["name"]), "m_e": "end_mass"},
             rows,
-            assumptions(about),
+            stroke_line(self.scene),
             *(f"{row['name']}: {row['reason']}" for row in rows if row["reason"]),
             "m_e: effective end mass, the transverse inertia of the cue at its tip; `report` and `compare` use squirt; "
             "two-part cue: offset; published end masses and pooltool: [A.31]",
-            *tip_effect_notes(about, _tip_effects_note()),
+            *tip_effect_notes(self.scene, _tip_effects_note()),
         )
 
     def _label(self, name: str) -> str:

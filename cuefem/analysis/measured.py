@@ -322,6 +322,7 @@ def residual_chart(rows: Sequence[Record], residual: str, label: str) -> list[Ch
 
     residual: its name in a row. label: of the axis.
     """
+
     if len(rows) < MIN_CHART_ROWS:
         return []
     numbers = np.arange(1.0, len(rows) + 1)

@@ -12,7 +12,7 @@ from cuefem.files.parts_catalogue import CATALOGUE_SHAFTS
 from cuefem.files.shaft_additions import example
 from cuefem.parameters.table import FERRULES
 from cuefem.quantity.display_units import modulus_text, short_number, with_heading
-from cuefem.results.quantities import RESULTS, units_of
+from cuefem.results.quantities import RESULTS, UNITS
 from cuefem.results.records import ColumnEntry, Record, Table, tabulate
 from cuefem.show.analysis import Answer, Rows
 
@@ -41,7 +41,7 @@ class Parts(Rows, Answer):
 
     def to_dict(self) -> Record:
         """The record, with the units of its numbers."""
-        return {**self.values(), "units": units_of("E", "G", "rho")}
+        return {**self.values(), "units": {name: UNITS[name] for name in ("E", "G", "rho")}}
 
     def frame_rows(self) -> list[Record]:
         """A row for each part: what it is, its name, and what is known of it."""

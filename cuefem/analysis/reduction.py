@@ -30,7 +30,7 @@ from cuefem.scene import Scene, Stroke
 from cuefem.scene.scene import DEFAULT_CONTACT_TIME
 from cuefem.show.analysis import Analysis, Rows
 from cuefem.show.charts import Axis, Chart, Curve, Tick, chart
-from cuefem.show.scene_summary import assumptions, scene_record, tip_effect_notes
+from cuefem.show.scene_summary import stroke_line, tip_effect_notes
 
 # [Kim] sec. 4
 NU_C = 1 / 3  # inertia factor of the cue end, that of a uniform rod
@@ -399,18 +399,17 @@ def _squirt_column(index: int) -> ColumnEntry:
 
 
 def _model_notes(own: Reduction) -> list[str]:
-    about = scene_record(own.scene)
     front = "" if own.front_ratio is None else f"; the first 12 cm of this shaft: {own.front_ratio:.2f}"
     has_lengths = any(model["rigid_length"] for model in own.models.values())
     return [
-        assumptions(about),
+        stroke_line(own.scene),
         "m_e: effective end mass, at the tip; m_c = 4 m_e: end mass of Kim's two-part cue (ν_c = 1/3, a uniform rod"
         f"{front}); ε = m_c/M, over the mass of the ball",
         *(["rigid length: of the shaft's front that has this m_e as a rigid body"] if has_lengths else []),
         "squirt: of a two-part cue by the impulse solver; of the vibrating shaft by the coupled strike, in time",
         *(f"{name}: {reason}" for name, reason in own.missing.items()),
         *tip_effect_notes(
-            about,
+            own.scene,
             "m_e includes the effects at the tip: it is for the impulse solver, and for programs that take an end mass",
         ),
     ]

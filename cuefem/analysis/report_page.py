@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from cuefem.analysis import report_sections
 from cuefem.analysis.first_screen import HeadlineCue, comparison_lines, cue_names, screen_markup
 from cuefem.analysis.page_notes import page_notes
-from cuefem.analysis.squirt_curve import FINE_OFFSETS
+from cuefem.analysis.squirt_curve import FINE_OFFSETS, OWN
 from cuefem.analysis.strike_models import regime_warning
 from cuefem.files.defaults_report import STROKE, TIP, Assumption
 from cuefem.results.closed_forms import pivot_length
@@ -17,11 +17,11 @@ from cuefem.results.records import Record, Table
 from cuefem.results.solved_design import coupled_curve
 from cuefem.scene import Scene
 from cuefem.scene.solved_scene import SolvedScene
-from cuefem.show.analysis import Analysis
+from cuefem.show.analysis import Analysis, PageFrame
 from cuefem.show.charts import Chart
 from cuefem.show.glossary import with_glossary
 from cuefem.show.offset_charts import offset_charts
-from cuefem.show.scene_summary import assumptions, plain_cue_line, plain_effect_line, scene_record
+from cuefem.show.scene_summary import cue_line, plain_effect_line, stroke_line
 from cuefem.show.templates import framed
 
 Answers = Mapping[str, Analysis]
@@ -35,23 +35,13 @@ class Beside(NamedTuple):
     table: Table
 
 
-def page_of(
-    scene: Scene,
-    answers: Answers,
-    regime: str,
-    name: str,
-    notes: Sequence[Assumption],
-    warnings: Sequence[str],
-    made: str = "",
-    *,
-    inline: bool = False,
-    beside: Beside | None = None,
-) -> str:
-    """The computed answers of a report as HTML; inline: for a notebook.
+def page_of(scene: Scene, answers: Answers, regime: str, frame: PageFrame, beside: Beside | None = None) -> str:
+    """The computed answers of a report as HTML.
 
-    answers: by the keys of `QUESTIONS`, a verdict among them. regime: of the contact. made: the date at the page's end.
-    beside: a cue to compare with, with the same ball and stroke.
+    answers: by the keys of `QUESTIONS`, a verdict among them. regime: of the contact. beside: a cue to compare with,
+    with the same ball and stroke.
     """
+    name = frame.name
     verdict: Any = answers["verdict"]
     calibrated = verdict.calibrated
     own = headline_cue(scene, answers, name)
@@ -65,14 +55,14 @@ def page_of(
         lines = [*lines, [(advice.together_lines()[0], "")]]
     return page(
         cue_names(own, others),
-        inline=inline,
+        inline=frame.inline,
         kind="report",
         name=name,
         title=f"{name}: squirt {format_value('squirt', verdict.squirt)}",
-        made=made,
-        notes=[*map(str, verdict.by_part(notes))],
+        made=frame.made,
+        notes=[*map(str, verdict.by_part(frame.assumptions))],
         warnings=[
-            *warnings,
+            *frame.warnings,
             *filter(None, [regime_warning(regime)]),
             *(calibrated.warning_lines() if calibrated else ()),
         ],
@@ -81,7 +71,7 @@ def page_of(
         screen=screen_markup(own, others, lines),
         sections=[part for part in sections if not part["engineer"]],
         engineers=[part for part in sections if part["engineer"]],
-        engineers_open=_is_for_engineers(scene, name, notes),
+        engineers_open=_is_for_engineers(scene, name, frame.assumptions),
     )
 
 
@@ -139,8 +129,8 @@ def page(
 def facts(scene: Scene) -> list[str]:
     """Cue, ball, tip, stroke and effects of a scene, each as a line."""
     return [
-        plain_cue_line(scene.cue),
-        f"{assumptions(scene_record(scene))}, offset b/R {scene.stroke.offset:.4g}",
+        cue_line(scene.cue),
+        f"{stroke_line(scene)}, offset b/R {scene.stroke.offset:.4g}",
         *map(plain_effect_line, scene.effects),
     ]
 
@@ -149,7 +139,7 @@ def _beside(scene: Scene, answers: Answers, name: str, beside: Beside, squirt_fa
     """The section that compares with another cue, which carries the same squirt factor."""
     other = beside.cue
     curve = coupled_curve(other.scene, FINE_OFFSETS, SolvedScene(other.scene).tip, squirt_factor)
-    curves = [(name, "c1", answers["squirt"].values()["models"]["coupled, this cue"]), (other.name, "c2", curve)]
+    curves = [(name, "c1", answers["squirt"].values()["models"][OWN]), (other.name, "c2", curve)]
     return section_of(beside.table, offset_charts(curves, FINE_OFFSETS, scene.stroke.offset, height=300))
 
 

@@ -24,7 +24,7 @@ from cuefem.scene.solved_scene import SolvedScene
 from cuefem.show.analysis import Analysis, MoreCharts, Rows
 from cuefem.show.charts import Chart
 from cuefem.show.offset_charts import offset_charts
-from cuefem.show.scene_summary import assumptions, scene_record
+from cuefem.show.scene_summary import stroke_line
 
 FINE_OFFSETS = tuple(i / 40 for i in range(1, 25))  # b/R of the curves of a page; a table has each 0.1
 MAX_ROWS = 20  # a table of more offsets has only each 0.1
@@ -98,7 +98,7 @@ class SquirtCurve(Rows, Analysis):
         head = ("b/R", "squirt", "natural pivot length", "contact")
         left_out = f"{len(rows)} of {len(self.offsets)} offsets, each 0.1."
         notes = (
-            assumptions(scene_record(self.scene)),
+            stroke_line(self.scene),
             PIVOT_NOTE,
             *([left_out] if len(rows) < len(self.offsets) else []),
         )

@@ -20,7 +20,7 @@ from cuefem.results.solved_design import Solvable, SolvedDesign
 from cuefem.results.verdict import MISCUE_DEFINITION
 from cuefem.scene import Outcome, Scene
 from cuefem.show.analysis import Analysis, Rows
-from cuefem.show.scene_summary import assumptions, scene_record, tip_effect_notes
+from cuefem.show.scene_summary import stroke_line, tip_effect_notes
 
 # Rows of the table: quantity, component of a vector (0 tangential, 1 normal), and the end of the label.
 ROWS: tuple[tuple[str, int | None, str], ...] = (
@@ -104,7 +104,7 @@ class StrikeModels(Rows, Analysis):
         miscue = [MISCUE_NOTE] if coupled["regime"] == "miscue" else []
         notes = (
             *miscue,
-            assumptions(scene_record(self.scene)),
+            stroke_line(self.scene),
             *self._model_notes(),
             *([PIVOT_NOTE] if any(row[0] == RESULTS["pivot_length"].label for row in rows) else []),
             *([] if miscue else [f"contact: {REGIMES[coupled['regime']]}"]),
@@ -118,7 +118,7 @@ class StrikeModels(Rows, Analysis):
         use = "use the coupled column; the others are simpler published models, for comparison"
         if self.scene.lumped is not None:
             models = "coupled: contact integrated in time; two-part and A.31: two masses, with the cue's end mass"
-            tip = tip_effect_notes(scene_record(self.scene), "only coupled includes the effects at the tip")
+            tip = tip_effect_notes(self.scene, "only coupled includes the effects at the tip")
             return [use, models, *tip]
         is_default = self.models["coupled"]["error"] is None
         accuracy = ", numerical error of squirt at most 0.1 % for 95 % of default strikes" if is_default else ""

@@ -36,7 +36,7 @@ from cuefem.results.verdict import MISCUE_DEFINITION
 from cuefem.scene import Scene, Stroke, check_scene
 from cuefem.show.analysis import Analysis, Rows
 from cuefem.show.charts import Axis, Chart, Curve, chart
-from cuefem.show.scene_summary import assumptions, scene_record
+from cuefem.show.scene_summary import scene_record, stroke_line
 
 if TYPE_CHECKING:
     from cuefem.measurements.calibration import Calibration
@@ -197,7 +197,7 @@ class StrikeTable(Rows, Analysis):
         head = ("cue speed", "miscue limit b/R", *(f"{RESULTS[name].label}, b/R {self._shown:g}" for name in _SHOWN))
         notes = (
             f"{len(self.share)} shares of the miscue limit by {len(self.speed)} cue speeds",
-            assumptions(scene_record(self.scene)),
+            stroke_line(self.scene),
             f"miscue: {MISCUE_DEFINITION}",
             *([self.calibration] if self.calibration else []),
         )

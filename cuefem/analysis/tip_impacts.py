@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from cuefem.quantity.display_units import displayed_system, modulus_text, significant, with_unit
-from cuefem.results.quantities import DASH, format_value
-from cuefem.results.records import Record, Table, by_label, tabulate
+from cuefem.results.quantities import DASH, RESULTS, format_value
+from cuefem.results.records import Record, Table, tabulate
 from cuefem.results.solved_design import Solvable, SolvedDesign
 from cuefem.show.analysis import Analysis, Rows
 
@@ -48,7 +48,7 @@ class TipImpacts(Rows, Analysis):
 
     def table(self) -> Table:
         """A row for each speed."""
-        columns = by_label("contact_time", "force", "indentation", "patch")
+        columns = {RESULTS[name].label: name for name in ("contact_time", "force", "indentation", "patch")}
         outside = any(impact["force"] is None for impact in self.impacts)
         return tabulate(
             "Leather tip, head-on impact",

@@ -261,7 +261,7 @@ class Session:
         beside = None if other is None else ([*self.designs()][1], other)
         calibration = self.calibration_of_tip()
         answers = partial(computation.answers, design.scene, calibration)
-        return lambda: answers().to_html(design.name, notes, made=today(), other=beside)
+        return lambda: replace(answers(), other=beside).to_html(design.name, notes, made=today())
 
     # --- results -----------------------------------------------------------------------------------
 

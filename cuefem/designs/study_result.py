@@ -23,9 +23,9 @@ from cuefem.parameters.scene_paths import value_at
 from cuefem.quantity.display import counted
 from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.frames import frame_of
-from cuefem.results.records import Record, Table
+from cuefem.results.records import Record, Table, json_value
 from cuefem.scene import Scene
-from cuefem.show.analysis import Analysis, as_json
+from cuefem.show.analysis import Analysis
 from cuefem.show.scene_summary import scene_record
 
 if TYPE_CHECKING:
@@ -139,7 +139,7 @@ class StudyResult(Analysis):
             **self.values(),
             "units": self.units,
         }
-        return as_json(record)
+        return json_value(record)
 
     def tables(self) -> list[Table | str]:
         """The squirt factor of a calibration and the varied parameters; then, by kind, the results."""

@@ -21,7 +21,7 @@ from cuefem.parameters.scene_paths import SCENE_FIELDS
 from cuefem.quantity.display_units import display_unit, displayed_system, number_text, short_number, span_text
 from cuefem.results.records import Table
 from cuefem.scene import Scene
-from cuefem.show.scene_summary import assumptions, scene_record
+from cuefem.show.scene_summary import stroke_line
 
 _FIELD = re.compile(rf"({'|'.join(SCENE_FIELDS)})(\[[\d*]+\])?(\.\w+(\[[\d*]+\])?)+")
 _ITEM = re.compile(r"(\w+)s\[(\d+|\*)\]")
@@ -65,7 +65,7 @@ def tabulate_parameters(study: Study) -> Table:
     about = {each.result.column_heading: each.result.about for each in study.responses if each.result.about}
     notes = (
         *(("positions from the front of the modelled cue",) if pieces else ()),
-        f"unless varied: {assumptions(scene_record(study.base))}, offset b/R {study.base.stroke.offset:.4g}",
+        f"unless varied: {stroke_line(study.base)}, offset b/R {study.base.stroke.offset:.4g}",
         *(f"{name}: {text}" for name, text in about.items()),
     )
     head = ("parameter", "range", "segments")

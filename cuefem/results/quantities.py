@@ -297,11 +297,6 @@ REGIMES = {
 }
 
 
-def units_of(*names: str) -> dict[str, str]:
-    """The SI units of some quantities."""
-    return {name: UNITS[name] for name in names}
-
-
 def format_value(name: str, value: Any) -> str:
     """A value of the quantity of that name, with its unit."""
     return RESULTS[name].format(value)

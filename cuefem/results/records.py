@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from string import Formatter
 from typing import Any
 
@@ -70,11 +70,6 @@ def tabulate(
     return Table(title, tuple(columns), cells, notes, texts)
 
 
-def by_label(*names: str) -> dict[str, ColumnEntry]:
-    """Columns of quantities, each under its name in full."""
-    return {RESULTS[name].label: name for name in names}
-
-
 def _cell(entry: ColumnEntry, row: Mapping[str, Any]) -> str:
     if callable(entry):
         return entry(row)
@@ -110,20 +105,10 @@ class _Templates(Formatter):
 _TEMPLATES = _Templates()
 
 
-def tabulate_values(title: str, rows: Iterable[tuple[str, str]], *notes: str) -> Table:
-    """A table of one record: a name and a value in each row."""
-    return Table(title, ("", "value"), tuple(rows), notes)
-
-
-def value_rows(record: Mapping[str, Any], names: Iterable[str] | None = None) -> list[tuple[str, str]]:
-    """Name in full and value with its unit of a record's quantities, or of those of the names that have a value."""
-    if names is not None:
-        record = {name: record[name] for name in names if record[name] is not None}
-    return [(RESULTS[name].label, format_value(name, value)) for name, value in record.items()]
-
-
 def json_value(value: Any) -> Any:
-    """A value for JSON: arrays become lists, infinite and undefined numbers become null."""
+    """A value for JSON: dataclasses become dicts, arrays lists, infinite and undefined numbers null."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return {field.name: json_value(getattr(value, field.name)) for field in fields(value)}
     if isinstance(value, dict):
         return {str(key): json_value(inner) for key, inner in value.items()}
     if isinstance(value, np.ndarray | np.generic):

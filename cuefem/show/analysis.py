@@ -17,13 +17,13 @@ from cuefem.results.plausibility import plausibility_warnings
 from cuefem.results.quantities import UNITS
 from cuefem.results.records import Record, Table, json_value
 from cuefem.scene import Scene
+from cuefem.show.charts import Chart
+from cuefem.show.drawings import CueDrawing
 from cuefem.show.scene_summary import cue_line, effect_name, effect_text, scene_record
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from cuefem.show.charts import Chart
-    from cuefem.show.drawings import CueDrawing
 
 MAX_SHOWN, MAX_REPR = 12, 320  # of `__repr__`: entries of a container, characters
 DESIGN_STYLES = ("c1", "c2", "c3", "c4", "c5")  # CSS classes of designs side by side
@@ -35,6 +35,19 @@ class MoreCharts(NamedTuple):
     title: str
     charts: Sequence[Chart]
     about: str = ""
+
+
+class PageFrame(NamedTuple):
+    """What a page says around an answer: name of the file, assumptions, warnings, and the date at its end.
+
+    inline: whether it is a part of a notebook, in its colours, at full height.
+    """
+
+    name: str
+    assumptions: Sequence[Assumption]
+    warnings: Sequence[str]
+    made: str
+    inline: bool
 
 
 @dataclass(frozen=True)
@@ -100,7 +113,7 @@ class Answer:
 
     def values(self) -> Record:
         """The numbers alone, in SI units."""
-        return {each.name: _plain(getattr(self, each.name)) for each in fields(self) if each.repr}
+        return {each.name: getattr(self, each.name) for each in fields(self) if each.repr}
 
     def said(self) -> Record:
         """Assumptions and warnings as texts."""
@@ -108,7 +121,7 @@ class Answer:
 
     def to_dict(self) -> Record:
         """The record: numbers in SI units, and the unit of each, as JSON has them: lists, and None for nan."""
-        return as_json({**self.values(), "units": {**UNITS, **self.own_units}})
+        return json_value({**self.values(), "units": {**UNITS, **self.own_units}})
 
     def page_title(self, name: str, question: str) -> str:
         """The title of a page on a file."""
@@ -138,41 +151,29 @@ class Answer:
         assumptions: Sequence[Assumption] | None = None,
         warnings: Sequence[str] | None = None,
         made: str = "",
-    ) -> str:
-        """A self-contained page with tables and charts.
-
-        assumptions, warnings: instead of the answer's own. made: the date at its end.
-        """
-        return self._markup(name, assumptions, warnings, made)
-
-    def _markup(
-        self,
-        name: str = "",
-        assumptions: Sequence[Assumption] | None = None,
-        warnings: Sequence[str] | None = None,
-        made: str = "",
         *,
         inline: bool = False,
     ) -> str:
-        """The page; inline: as a part of a notebook, in its colours, at full height."""
+        """A self-contained page with tables and charts.
+
+        assumptions, warnings: instead of the answer's own. made: the date at its end. inline: as a part of a notebook.
+        """
+        noted = self.assumptions if assumptions is None else assumptions
+        warned = [f"warning: {line}" for line in self.warnings] if warnings is None else warnings
+        return self._markup(PageFrame(name, noted, warned, made, inline))
+
+    def _markup(self, frame: PageFrame) -> str:
+        """The page."""
         from cuefem.show.templates import plain_page  # templates take 0.1 s to load
 
-        title = name or effect_name(type(self).__name__).capitalize()
-        heading = "" if self.heading() in title else ": ".join(filter(None, (name.partition(":")[0], self.heading())))
+        title = frame.name or effect_name(type(self).__name__).capitalize()
+        file = frame.name.partition(":")[0]
+        heading = "" if self.heading() in title else ": ".join(filter(None, (file, self.heading())))
         more = (chart for folded in self.more_charts() for chart in folded.charts)
-        noted = self._noted(assumptions)
-        folded = [*map(str, noted)] if self.folds_assumptions else []
-        things = [heading, *self.charts(), *more, *self._body(() if folded else noted)]
-        said = [*self.gaps(), *self._warned(warnings)]
-        return plain_page(title, things, made, said, notes=folded, inline=inline)
-
-    def _noted(self, assumptions: Sequence[Assumption] | None) -> Sequence[Assumption]:
-        """Given assumptions, or the answer's own."""
-        return self.assumptions if assumptions is None else assumptions
-
-    def _warned(self, warnings: Sequence[str] | None) -> Sequence[str]:
-        """Given lines of warning, or those of the answer."""
-        return [f"warning: {line}" for line in self.warnings] if warnings is None else warnings
+        folded = [*map(str, frame.assumptions)] if self.folds_assumptions else []
+        things = [heading, *self.charts(), *more, *self._body(() if folded else frame.assumptions)]
+        said = [*self.gaps(), *frame.warnings]
+        return plain_page(title, things, frame.made, said, notes=folded, inline=frame.inline)
 
     def save(self, path: str | Path) -> None:
         """Write the record (.json) or a page (.html); the extension sets the format."""
@@ -200,7 +201,7 @@ class Answer:
 
     def _repr_html_(self) -> str:
         """The page's content as a part of the notebook, in its colours, at full height."""
-        return self._markup(inline=True)
+        return self.to_html(inline=True)
 
 
 @dataclass(frozen=True)
@@ -217,7 +218,7 @@ class Analysis(Answer):
 
     def heading(self) -> str:
         """The first line: the analysed cue."""
-        return cue_line(json_value(scene_record(self.scene)["cue"]))
+        return cue_line(self.scene.cue)
 
     def effects_line(self) -> str:
         """The effects of the scene as one line, or an empty line."""
@@ -238,7 +239,7 @@ class Analysis(Answer):
         about = scene_record(self.scene)
         if not self.has_stroke:
             about = {name: about[name] for name in ("cue", "effects")}
-        return {**as_json({**self.said(), "scene": about}), **super().to_dict()}
+        return {**json_value({**self.said(), "scene": about}), **super().to_dict()}
 
 
 class Rows:
@@ -278,12 +279,6 @@ def write(path: Path, record: Callable[[], Record], html: Callable[[], str]) -> 
     write_atomically(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
 
 
-def as_json(record: Record) -> Record:
-    """A record of lists, texts and finite numbers; nan becomes None."""
-    made: Record = json_value(record)
-    return made
-
-
 def _is_empty(value: Any) -> bool:
     """Whether a field says nothing: None, or a text or container without content."""
     return value is None or (isinstance(value, str | Mapping | list | tuple) and not value)
@@ -297,14 +292,3 @@ def _brief(value: Any) -> str:
     if isinstance(value, Mapping):
         return f"{{{', '.join(map(str, value))}}}" if len(value) <= MAX_SHOWN else f"{{{len(value)}}}"
     return type(value).__name__ if is_dataclass(value) else brief(value)
-
-
-def _plain(value: Any) -> Any:
-    """A value of a record: dataclasses become dicts."""
-    if is_dataclass(value) and not isinstance(value, type):
-        return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
-    if isinstance(value, dict):
-        return {key: _plain(inner) for key, inner in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(inner) for inner in value]
-    return value

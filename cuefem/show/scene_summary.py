@@ -38,36 +38,28 @@ def scene_record(scene: Scene) -> Record:
     }
 
 
-def assumptions(scene: Record) -> str:
+def stroke_line(scene: Scene) -> str:
     """Ball, tip and stroke as one line of text."""
-    ball, tip, stroke = scene["ball"], scene["tip"], scene["stroke"]
+    ball, tip, time = scene.ball, scene.tip, scene.valid_contact_time
     return ", ".join(
         [
-            f"ball {format_value('mass', ball['mass'])}, {with_unit(2 * ball['radius'], 'm')}",
-            f"contact time {_milliseconds(tip['contact_time'])} (rigid cue head-on)",
-            f"tip restitution {tip['restitution']:g}",
-            f"friction {tip['friction']:g}".replace("inf", "∞"),
-            f"speed {with_unit(stroke['speed'], 'm/s', 6)}",
+            f"ball {format_value('mass', ball.mass)}, {with_unit(2 * ball.radius, 'm')}",
+            f"contact time {'unknown' if time is None else with_unit(time, 's')} (rigid cue head-on)",
+            f"tip restitution {tip.restitution:g}",
+            f"friction {tip.friction:g}".replace("inf", "∞"),
+            f"speed {with_unit(scene.stroke.speed, 'm/s', 6)}",
         ]
     )
 
 
-def _milliseconds(time: float | None) -> str:
-    return "unknown" if time is None else with_unit(time, "s")
-
-
-def cue_line(cue: Record) -> str:
-    """The record of a cue as one line of text."""
-    if "length" not in cue:
-        return f"lumped cue, {format_value('mass', cue['mass'])}, end mass {format_value('end_mass', cue['end_mass'])}"
-    pieces = f"{cue['segments']} segment" + ("s" if cue["segments"] > 1 else "")
-    masses = f"as drawn {format_value('mass', cue['shaft_mass'])}, butt {format_value('mass', cue['body_mass'])}"
-    return f"{with_unit(cue['length'], 'm')} in {pieces}, cue {format_value('mass', cue['mass'])} ({masses})"
-
-
-def plain_cue_line(cue: Cue | LumpedCue) -> str:
+def cue_line(cue: Cue | LumpedCue) -> str:
     """A cue as one line of text."""
-    return cue_line(cue_record(cue))
+    whole = format_value("mass", cue.mass)
+    if isinstance(cue, LumpedCue):
+        return f"lumped cue, {whole}, end mass {format_value('end_mass', cue.end_mass)}"
+    count = len(cue.segments)
+    masses = f"as drawn {format_value('mass', cue.shaft_mass)}, butt {format_value('mass', cue.body_mass)}"
+    return f"{with_unit(cue.length, 'm')} in {count} segment{'s' * (count > 1)}, cue {whole} ({masses})"
 
 
 def effect_text(effect: Effect) -> str:
@@ -118,6 +110,6 @@ def listed(names: Sequence[str]) -> str:
     return f"{', '.join(others)} and {last}" if others else last
 
 
-def tip_effect_notes(scene: Record, note: str) -> list[str]:
+def tip_effect_notes(scene: Scene, note: str) -> list[str]:
     """The note, if the scene has effects at the tip."""
-    return [note] if scene["effects_at_tip"] else []
+    return [note] if scene.at_tip else []
