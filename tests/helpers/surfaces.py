@@ -48,7 +48,7 @@ def write_surface(
 ) -> Path:
     """Write a surface, with coordinates in ``unit``, m; the path."""
     mesh = meshio.Mesh(points / unit, [("triangle", faces)])
-    mesh.write(path) if path.suffix == ".obj" else mesh.write(path, binary=binary)
+    mesh.write(path, **({"binary": binary} if path.suffix in (".stl", ".ply") else {}))
     return path
 
 
