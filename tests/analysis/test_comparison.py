@@ -6,7 +6,6 @@ from dataclasses import replace
 import pytest
 
 import cuefem as cf
-from cuefem.analysis.comparison import Comparison
 from cuefem.parameters.parts import main_material
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.results.differences import SHAPE_FLOOR
@@ -15,29 +14,6 @@ from tests.helpers.cues import kim
 
 SCENE = cf.Scene(kim(), tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(2.0, 0.3))
 BORED = with_parameters(SCENE, {"bore depth": 0.1, "bore width": 0.006})
-
-
-@pytest.fixture(scope="module")
-def both() -> Comparison:
-    return cf.compare({"plain": SCENE, "bored": BORED})
-
-
-@pytest.mark.heavy
-def test_comparison_differences_agree_with_single_cues(both: Comparison) -> None:
-    squirts = [float(cf.strike(scene).squirt) for scene in (SCENE, BORED)]
-    assert [both.cues[name]["squirt"] for name in ("plain", "bored")] == pytest.approx(squirts, rel=1e-9)
-    assert both.cues["plain"]["end_mass_squirt"] == pytest.approx(cf.end_mass(SCENE, "squirt"), rel=1e-9)
-    squirt = both.differences["bored"]["squirt"]
-    assert squirt["difference"] == pytest.approx(squirts[1] / squirts[0] - 1, rel=1e-9)
-    assert squirt["error"] > abs(squirt["difference"]) * SHAFT_ERROR / 1.1
-
-
-@pytest.mark.heavy
-def test_comparison_reversed_order_has_same_significance(both: Comparison) -> None:
-    other = cf.compare({"bored": BORED, "plain": SCENE}).differences["plain"]
-    for name, each in both.differences["bored"].items():
-        sizes = [one["difference"] / (one["error"] or math.inf) for one in (each, other[name])]
-        assert sizes[0] == pytest.approx(-sizes[1], rel=1e-6, abs=1e-9)
 
 
 TWIN = {"a": SCENE, "b": replace(SCENE)}

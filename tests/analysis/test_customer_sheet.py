@@ -87,7 +87,7 @@ def test_taken_change_keeps_order_and_accuracy(drawing: Path) -> None:
 
 
 def test_defaults_of_a_shop_fill_what_a_file_leaves_open(drawing: Path) -> None:
-    """As options do, and below them; each is said among the assumptions; limits are those of improve."""
+    """As options do, and below them; each is said among the assumptions."""
     filled = json.loads(stdout_of("strike", drawing, "--json"))
     (drawing.parents[1] / "shop.toml").unlink()
     typed = json.loads(stdout_of("strike", drawing, "--json", "--body-mass", "15 oz", "--ferrule", "1 in melamine"))
@@ -102,6 +102,10 @@ def test_defaults_of_a_shop_fill_what_a_file_leaves_open(drawing: Path) -> None:
     assert cf.load_scene(drawing, body_mass="16 oz").shaft.body_mass == pytest.approx(0.4536, rel=1e-4)
     assert "2.25 in" in shown
     assert "57.15 mm" in stdout_of("strike", drawing, "--units", "metric", "--body-mass", "16 oz")
+
+
+@pytest.mark.heavy
+def test_limits_of_a_shop_are_those_of_improve(drawing: Path) -> None:
     assert "Limits: wall .096 in or more" in stdout_of("improve", drawing, "--wall", ".096 in", "--keep", "wood")
 
 

@@ -17,7 +17,7 @@ from tests.helpers.command_line import call
 from tests.helpers.random_shafts import RandomShaft, random_shaft
 from tests.test_golden_files import assert_same_json
 
-HEAVY, NIGHTLY = 4, 108
+HEAVY, NIGHTLY = 2, 108
 SIGNS = {"bore": -1, "bore wider": -1, "bore deeper": -1, "0.5 mm thinner": -1, "tip height": -1}  # of a change of mass
 SEEDS = [
     *(pytest.param(seed, marks=pytest.mark.heavy) for seed in range(HEAVY)),

@@ -7,9 +7,8 @@ from typing import NamedTuple
 
 import pytest
 
-import cuefem as cf
 from cuefem.cli import scene_command
-from cuefem.quantity.display_units import displayed_in, displayed_system
+from cuefem.quantity.display_units import displayed_system
 from cuefem.results.records import Table
 from tests.helpers.command_line import call, stdout_of
 from tests.helpers.invalid_input import assert_rejects
@@ -49,6 +48,8 @@ PAGES = [
     ["report", "plain maple"],
     ["compare", HOLLOW, "plain maple"],
     ["study", ROOT / "studies/design/optimum.toml"],
+    ["study", "sweep.toml"],
+    ["study", "scatter.toml"],
 ]
 
 
@@ -148,21 +149,12 @@ def test_unknown_units_of_the_environment_are_one_line(monkeypatch: pytest.Monke
 @pytest.mark.heavy
 @pytest.mark.parametrize("command", PAGES, ids=str)
 def test_page_in_us_units_has_no_metric_one(command: list[object], tmp_path: Path) -> None:
+    """Neither texts nor axes; the glossary is the handbook's."""
+    for name, study in (("sweep", STUDY), ("scatter", SCATTER)):
+        write_study(tmp_path, study, name=f"{name}.toml")
     page = tmp_path / "page.html"
-    assert call(*command, "-o", page, "--units", "us")[0] == 0
-    assert_in_us_units(page.read_text(encoding="utf-8"))
-
-
-@pytest.mark.heavy
-@pytest.mark.parametrize("text", [STUDY, SCATTER], ids=["sweep", "scatter"])
-def test_study_page_in_us_units_has_no_metric_one(text: str, tmp_path: Path) -> None:
-    result = cf.study(write_study(tmp_path, text))
-    with displayed_in("us"):
-        assert_in_us_units(result.to_html())
-
-
-def assert_in_us_units(page: str) -> None:
-    """Neither texts nor axes are metric; the glossary is the handbook's."""
-    text = re.sub(r"<(style|script|aside).*?</\1>", "", page, flags=re.DOTALL)
+    arguments = [tmp_path / each if each in ("sweep.toml", "scatter.toml") else each for each in command]
+    assert call(*arguments, "-o", page, "--units", "us")[0] == 0
+    text = re.sub(r"<(style|script|aside).*?</\1>", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
     assert METRIC_LEFT.findall(re.sub(r"<[^>]*>", "\n", text)) == []
     assert re.search(r"\d\u00a0in\b|, in<", text)

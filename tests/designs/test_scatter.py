@@ -94,7 +94,7 @@ def test_scatter_spread_equals_monte_carlo() -> None:
     vary = (replace(VARY[0], range=Normal(1.0, 0.2, logarithmic=True)), VARY[1], VARY[3])
     study = Study(BASE, vary, (Response.of("end_mass"), Response.of("squirt_slope")), at=COARSE)
     computed = cf.study(Scatter(study, {("E", "rho"): 0.6}, count=256, seed=1)).spread
-    random, count = np.random.default_rng(9), 1024
+    random, count = np.random.default_rng(9), 512
     logs = random.multivariate_normal([0, 0], [[0.04, 0.012], [0.012, 0.01]], count)
     values = zip(*np.exp(logs).T.tolist(), random.uniform(0.8e-3, 1.5e-3, count).tolist(), strict=True)
     plain = evaluate([study.scene(each) for each in values], study.responses, at=COARSE).values

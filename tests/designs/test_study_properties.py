@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import cuefem as cf
-from cuefem.designs import Levels, Normal, Response, Span, Study, Vary, evaluate
+from cuefem.designs import Levels, Normal, Response, Sample, Span, Study, Vary, evaluate
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.quantity.display_units import displayed_in
 from cuefem.results.computable_results import computable_results
@@ -44,6 +44,14 @@ def test_span_levels_are_evenly_spaced(low: float, ratio: float, count: int, log
     assert [span.share(level) for level in levels] == pytest.approx(np.linspace(0, 1, count), abs=1e-9)
     middle = low * np.sqrt(ratio) if log else low * (1 + ratio) / 2
     assert Span(low, low * ratio, 1, log).levels == pytest.approx([middle], rel=1e-9)
+
+
+def test_sample_is_uniform_and_depends_on_seed() -> None:
+    points, others = (np.array([*Sample(300, seed).points(3)]) for seed in (7, 8))
+    assert points.shape == (300, 3)
+    assert np.all((points >= 0) & (points < 1))
+    np.testing.assert_allclose(points.mean(axis=0), 0.5, atol=0.01)
+    assert not np.array_equal(points, others)
 
 
 def singly(scene: cf.Scene, at: cf.Resolution | None) -> dict[str, float]:

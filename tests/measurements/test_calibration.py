@@ -171,11 +171,3 @@ def test_contradictions_are_printed_with_the_file_of_a_calibration(tmp_path: Pat
     status, _, err = call("compare", folder, "--estimate", "-o", tmp_path / "c.toml")
     assert status == 0
     assert "balance point of the shaft contradicts the drawing: measured 480.0 ± 2.0 mm, computed 452.8" in err
-
-
-@pytest.mark.heavy
-def test_unmeasured_squirt_makes_no_calibration(tmp_path: Path) -> None:
-    status, out, err = call("compare", "predator z2", "--estimate", "-o", tmp_path / "z2.toml")
-    assert (status, out) == (2, "")
-    assert "Calibration needs [[shot]], [[squirt]] or [[pivot_length]] among the measurements" in err
-    assert not (tmp_path / "z2.toml").exists()
