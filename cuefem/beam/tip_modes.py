@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -16,42 +16,44 @@ if TYPE_CHECKING:
     from cuefem.beam.modes import Modes
 
 
+def _none() -> Array:
+    return np.zeros((0, 0))
+
+
 @dataclass(frozen=True, eq=False)
 class TipModes:
     """Modes of a cue at the contact: the inverse mass there is B(t) = sum of a_k a_k' cos(omega_k t).
 
     omega: (n,) rad/s, rigid-body modes (zero) first. amplitude: (n, 2), mass-normalised axial and transverse
     displacement (u, w) of the contact, 1/sqrt(kg). approach: (n,), modal velocities of a cue that moves axially at 1
-    m/s, sqrt(kg). rotation: (n,) of the tip's section, 1/(m sqrt(kg)). The others are None where the cue has none.
-    geometric: (n, n), 1/(m kg), the decrease of the modal stiffness per newton of axial force. A lumped cue has omega =
-    0 throughout.
+    m/s, sqrt(kg). rotation: (n,) of the tip's section, 1/(m sqrt(kg)). geometric: (n, n), 1/(m kg), the decrease of the
+    modal stiffness per newton of axial force; None without it. A lumped cue has omega = 0 throughout.
 
     The modal equations are q'' + damping q' + omega^2 q = f. Their damping, (n, n), 1/s, has three parts. loss: (n,),
     in [0, 1), the loss factor of each mode, which damps it at the rate loss omega. dashpots: (d, n), 1/sqrt(s), a row r
     for each dashpot, which dissipates the power (r v)^2 at the modal velocities v. radiation: (n, n), 1/s, whose energy
-    is not dissipated: waves carry it into the truncated modes.
+    is not dissipated: waves carry it into the truncated modes. By default there is no damping.
     """
 
     omega: Array
     amplitude: Array
     approach: Array
     rotation: Array
-    loss: Array | None = None
-    dashpots: Array | None = None
-    radiation: Array | None = None
+    loss: Array = field(default_factory=_none)
+    dashpots: Array = field(default_factory=_none)
+    radiation: Array = field(default_factory=_none)
     geometric: Array | None = None
+
+    def __post_init__(self) -> None:
+        n = len(self.omega)
+        for name, shape in (("loss", (n,)), ("dashpots", (0, n)), ("radiation", (n, n))):
+            if getattr(self, name).size == 0:
+                object.__setattr__(self, name, np.zeros(shape))
 
     @property
     def damping(self) -> Array:
         """Damping matrix of the modal equations, all parts together, (n, n), 1/s."""
-        matrix = np.zeros((len(self.omega), len(self.omega)))
-        if self.loss is not None:
-            matrix += np.diag(self.loss * self.omega)
-        if self.dashpots is not None:
-            matrix += self.dashpots.T @ self.dashpots
-        if self.radiation is not None:
-            matrix += self.radiation
-        return matrix
+        return np.asarray(np.diag(self.loss * self.omega) + self.dashpots.T @ self.dashpots + self.radiation)
 
     @cached_property
     def without_geometric_stiffness(self) -> TipModes:
@@ -71,9 +73,9 @@ class TipModes:
             amplitude=self.amplitude[index],
             approach=self.approach[index],
             rotation=self.rotation[index],
-            loss=None if self.loss is None else self.loss[index],
-            dashpots=None if self.dashpots is None else self.dashpots[:, index],
-            radiation=None if self.radiation is None else self.radiation[square],
+            loss=self.loss[index],
+            dashpots=self.dashpots[:, index],
+            radiation=self.radiation[square],
             geometric=None if self.geometric is None else self.geometric[square],
         )
 
@@ -82,24 +84,16 @@ class TipModes:
 
         radiation: of the last of them, if they have a truncation correction.
         """
-        n_before, total, none = len(self.omega), len(self.omega) + len(omega), np.zeros(len(omega))
-        if radiation is not None:
-            radiation = embedded(radiation, total, total - len(radiation))
-        if self.radiation is not None:
-            of_bending = embedded(self.radiation, total)
-            radiation = of_bending if radiation is None else of_bending + radiation
-        amplitude = np.zeros((total, 2))
-        amplitude[:n_before], amplitude[n_before:, 0] = self.amplitude, axial
+        total, none = len(self.omega) + len(omega), np.zeros(len(omega))
+        of_bending = embedded(self.radiation, total)
         return TipModes(
-            omega=np.concatenate([self.omega, omega]),
-            amplitude=amplitude,
+            omega=np.append(self.omega, omega),
+            amplitude=np.concatenate([self.amplitude, np.column_stack([axial, none])]),
             approach=np.append(self.approach, none),
             rotation=np.append(self.rotation, none),
-            loss=None if self.loss is None else np.append(self.loss, none),
-            dashpots=None
-            if self.dashpots is None
-            else np.hstack([self.dashpots, np.zeros((len(self.dashpots), len(omega)))]),
-            radiation=radiation,
+            loss=np.append(self.loss, none),
+            dashpots=np.pad(self.dashpots, ((0, 0), (0, len(omega)))),
+            radiation=of_bending if radiation is None else of_bending + embedded(radiation, total, -len(radiation)),
             geometric=None if self.geometric is None else embedded(self.geometric, total),
         )
 
@@ -117,10 +111,9 @@ class TipModes:
 
 
 def embedded(block: Array, size: int, first: int = 0) -> Array:
-    """A square matrix of zeros, (size, size), with a square ``block`` from the index ``first`` on."""
-    matrix, span = np.zeros((size, size)), slice(first, first + len(block))
-    matrix[span, span] = block
-    return matrix
+    """A square matrix of zeros, (size, size), with a square ``block`` from the index ``first`` on, < 0 from the end."""
+    before = first % size
+    return np.pad(block, (before, size - before - len(block)))
 
 
 def lumped_tip_modes(cue: LumpedCue) -> TipModes:
@@ -160,14 +153,14 @@ def side_modes(bending: Modes) -> TipModes:
     return TipModes(omega, amplitude, np.zeros(len(omega)), rotation, dashpots=dashpots, radiation=radiation)
 
 
-def _dampers(bending: Modes, count: int) -> tuple[Array | None, Array | None]:
+def _dampers(bending: Modes, count: int) -> tuple[Array, Array]:
     """Dashpots and radiation of ``count`` modes, the last of which are ``bending``, as in `TipModes`."""
-    dashpots, radiation = None, None
+    dashpots, radiation = _none(), _none()
     if bending.system.dashpots is not None:
         vectors = np.concatenate([bending.rigid_vectors, bending.vectors], axis=1)
         at = np.flatnonzero(bending.system.dashpots)
         rows = np.sqrt(bending.system.dashpots[at])[:, None] * vectors[at]
         dashpots = np.pad(rows, ((0, 0), (count - rows.shape[1], 0)))
     if bending.radiation is not None:
-        radiation = embedded(bending.radiation, count, count - len(bending.radiation))
+        radiation = embedded(bending.radiation, count, -len(bending.radiation))
     return dashpots, radiation

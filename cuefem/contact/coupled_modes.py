@@ -21,12 +21,12 @@ class CoupledModes(NamedTuple):
 
     @property
     def system(self) -> Array:
-        """Matrix of x' = system x of x and the integral of v, (4 m, 4 m)."""
+        """Matrix of x' = system x, (3 m, 3 m)."""
         m = len(self.omega)
-        matrix = np.zeros((4 * m, 4 * m))
-        v, a, f, integral = (slice(k * m, (k + 1) * m) for k in range(4))
+        matrix = np.zeros((3 * m, 3 * m))
+        v, a, f = (slice(k * m, (k + 1) * m) for k in range(3))
         matrix[v, v], matrix[v, a], matrix[v, f] = -self.damping, -np.diag(self.omega), np.eye(m)
-        matrix[a, v], matrix[integral, v] = np.diag(self.omega), np.eye(m)
+        matrix[a, v] = np.diag(self.omega)
         return matrix
 
     def after(self, t: float) -> tuple[Array, Array]:
@@ -35,11 +35,6 @@ class CoupledModes(NamedTuple):
         omega must not be 0: the mean of v is the increase of a, over omega t.
         """
         m = len(self.omega)
-        state = self.state_after(t)
+        state = np.asarray(expm(self.system * t)[: 2 * m])
         increase = state[m:] - np.eye(m, 3 * m, m)
         return state, increase / (self.omega * t)[:, None]
-
-    def state_after(self, t: float) -> Array:
-        """The state (v, a) after a time t, s, (2 m, 3 m), from x."""
-        n = 3 * len(self.omega)
-        return np.asarray(expm(self.system[:n, :n] * t)[: 2 * len(self.omega)])

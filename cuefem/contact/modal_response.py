@@ -85,13 +85,9 @@ class ModalPropagator:
     """
 
     def __init__(self, tip: TipModes, ports: Array, slopes: Array) -> None:
-        n = len(tip.omega)
         self.tip, self.ports, self.slopes = tip, ports, slopes
-        self.loss = np.zeros(n) if tip.loss is None else tip.loss
-        self.dashpots = np.zeros((0, n)) if tip.dashpots is None else tip.dashpots
-        radiation = np.zeros((n, n)) if tip.radiation is None else tip.radiation
-        self.radiating = np.flatnonzero(radiation.any(axis=1))
-        self._radiation = radiation[np.ix_(self.radiating, self.radiating)]
+        self.loss, self.dashpots = tip.loss, tip.dashpots
+        self.radiating = np.flatnonzero(tip.radiation.any(axis=1))
 
     @cached_property
     def _group(self) -> CoupledModes:
@@ -99,7 +95,8 @@ class ModalPropagator:
         from cuefem.contact.coupled_modes import CoupledModes  # loaded when used: a lumped cue needs no SciPy
 
         omega = self.tip.omega[self.radiating]
-        return CoupledModes(omega, self._radiation + np.diag(self.loss[self.radiating] * omega))
+        radiation = self.tip.radiation[np.ix_(self.radiating, self.radiating)]
+        return CoupledModes(omega, radiation + np.diag(self.loss[self.radiating] * omega))
 
     @cached_property
     def _by_itself(self) -> Array:
@@ -219,15 +216,10 @@ def repeated_tables(propagator: ModalPropagator, h: float) -> StepTables:
 
 
 @lru_cache(maxsize=CACHED_CUES)
-def straight_propagator(tip: TipModes) -> ModalPropagator:
-    """The propagator of tip modes at the ports (u, w)."""
-    return ModalPropagator(tip, tip.amplitude.T, slope_rows(tip))
-
-
-@lru_cache(maxsize=CACHED_CUES)
-def turning_propagator(tip: TipModes) -> ModalPropagator:
-    """The propagator of tip modes at the ports (u, w, rotation of the end section)."""
-    return ModalPropagator(tip, np.concatenate([tip.amplitude.T, tip.rotation[None]]), slope_rows(tip))
+def level_propagator(tip: TipModes, *, turns: bool = False) -> ModalPropagator:
+    """The propagator of tip modes at the ports (u, w), and, if it turns the contact, the end section's rotation."""
+    ports = [*tip.amplitude.T, tip.rotation] if turns else tip.amplitude.T
+    return ModalPropagator(tip, np.array(ports), slope_rows(tip))
 
 
 @lru_cache(maxsize=CACHED_CUES)
@@ -254,8 +246,8 @@ def _in_two_planes(tip: TipModes, slopes: Array) -> tuple[TipModes, Array, Array
         amplitude=amplitude,
         approach=np.where(is_second, 0.0, both.approach),
         rotation=np.where(is_second, 0.0, both.rotation),
-        dashpots=None if both.dashpots is None else in_each_plane(both.dashpots),
-        radiation=None if both.radiation is None else both.radiation * np.equal.outer(is_second, is_second),
+        dashpots=in_each_plane(both.dashpots),
+        radiation=both.radiation * np.equal.outer(is_second, is_second),
         geometric=None,
     )
     return two_planes, np.concatenate([amplitude.T, out_of_plane[None]]), in_each_plane(slopes[:, modes])

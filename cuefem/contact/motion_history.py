@@ -200,8 +200,8 @@ def _path(contact: SolvedContact, times: Array) -> tuple[Array, Array]:
 def _free_flight(tip: TipModes, state: Array, times: Array) -> tuple[Array, Array]:
     """States of free modes after ascending times, s, (k, 2, n), and their integrals of v, (k, n)."""
     n = len(tip.omega)
-    loads = slice(2 * n, 3 * n)
-    system = np.delete(np.delete(CoupledModes(tip.omega, tip.damping).system, loads, axis=0), loads, axis=1)
+    system = np.pad(CoupledModes(tip.omega, tip.damping).system[: 2 * n, : 2 * n], (0, n))
+    system[2 * n :, :n] = np.eye(n)
     x = np.append(state, np.zeros(n))
     path = []
     for interval in np.diff(times, prepend=0.0):

@@ -33,7 +33,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from cuefem.beam.tip_modes import TipModes
-from cuefem.contact.modal_response import ModalPropagator, raised_propagator, straight_propagator, turning_propagator
+from cuefem.contact.modal_response import ModalPropagator, level_propagator, raised_propagator
 from cuefem.cue import Array
 from cuefem.scene import Scene
 
@@ -68,8 +68,8 @@ def _from_tip(phi: float) -> Array:
 
 
 @dataclass(frozen=True)
-class Straight:
-    """Ports (u, w) of a level cue whose contact lies on the axis of its end section.
+class LevelPorts:
+    """Ports (u, w) of a level cue, and the rotation rate of its end section if the contact has a moment arm about it.
 
     The ball's velocities are (t, n) of its centre and R times its spin. rolls: whether the contact rolls over ball and
     dome, which turns t and n.
@@ -79,15 +79,22 @@ class Straight:
     rolls: bool = False
     planes: ClassVar[int] = 1
 
+    @property
+    def has_arm(self) -> bool:
+        """Whether the contact has a moment arm, now or when it has rolled."""
+        return any(self.touch.arm) or (self.rolls and self.touch.dome > 0)
+
     @cached_property
     def kinematics(self) -> Array:
-        """C at the first touch, (2, 5)."""
-        return np.hstack([_from_tip(self.touch.phi), _FROM_LEVEL_BALL])
+        """C at the first touch, (2, 5), or (2, 6) with a moment arm."""
+        from_rotation = -np.array([self.arms]).T[:, : int(self.has_arm)]
+        return np.hstack([_from_tip(self.touch.phi), from_rotation, _FROM_LEVEL_BALL])
 
     @property
     def arms(self) -> tuple[float, float]:
         """Moment arms of (t, n) about the end section, m."""
-        return 0.0, 0.0
+        s, c, (u, w) = math.sin(self.touch.phi), math.cos(self.touch.phi), self.touch.arm
+        return s * u + c * w, c * u - s * w
 
     @property
     def unknowns(self) -> int:
@@ -96,7 +103,7 @@ class Straight:
 
     def propagator(self, tip: TipModes) -> ModalPropagator:
         """The cue's modes with these ports."""
-        return straight_propagator(tip)
+        return level_propagator(tip, turns=self.has_arm)
 
     def inverse_masses(self, mass: float, inertia: float) -> Array:
         """Of the ball's velocities, 1/kg."""
@@ -104,9 +111,9 @@ class Straight:
 
     @property
     def fields(self) -> dict[str, Any]:
-        """C and its rolling over ball and dome in the kernel's input."""
+        """Rolling over ball and dome in the kernel's input."""
         arm_t, arm_n = self.arms
-        return _kinematics(self) | dict(
+        return dict(
             rolling=self.rolls,
             dome=self.touch.dome,
             rim=min(self.touch.rim, math.pi),
@@ -121,27 +128,6 @@ class Straight:
     def vertical_spin(self, ball: Array) -> float:
         """R times the ball's spin about the vertical, m/s."""
         return float(ball[2])
-
-
-@dataclass(frozen=True)
-class Turning(Straight):
-    """Ports (u, w, rotation rate of the end section) of a level cue whose contact has a moment arm."""
-
-    @cached_property
-    def kinematics(self) -> Array:
-        """C at the first touch, (2, 6)."""
-        from_rotation = -np.array([self.arms]).T
-        return np.hstack([_from_tip(self.touch.phi), from_rotation, _FROM_LEVEL_BALL])
-
-    @property
-    def arms(self) -> tuple[float, float]:
-        """Moment arms of (t, n) about the end section, m."""
-        s, c, (u, w) = math.sin(self.touch.phi), math.cos(self.touch.phi), self.touch.arm
-        return s * u + c * w, c * u - s * w
-
-    def propagator(self, tip: TipModes) -> ModalPropagator:
-        """The cue's modes with these ports."""
-        return turning_propagator(tip)
 
 
 @dataclass(frozen=True)
@@ -193,8 +179,8 @@ class Raised:
 
     @property
     def fields(self) -> dict[str, Any]:
-        """C and the table in the kernel's input; the contact does not roll."""
-        return _kinematics(self) | dict(table_friction=self.table_friction)
+        """The table in the kernel's input; the contact does not roll."""
+        return dict(table_friction=self.table_friction)
 
     def horizontal(self, ball: Array) -> Array:
         """(t, n) of the horizontal velocity of the ball's centre, m/s, (..., 2), from its velocities, (..., 6)."""
@@ -210,17 +196,7 @@ class Raised:
         return float(self.axes[2] @ ball[3:])
 
 
-Ports = Straight | Turning | Raised
-
-
-def _kinematics(ports: Ports) -> dict[str, Any]:
-    """What all ports have in the kernel's input."""
-    return dict(
-        forces=len(ports.kinematics),
-        kinematics=ports.kinematics,
-        phi=ports.touch.phi,
-        planes=ports.planes,
-    )
+Ports = LevelPorts | Raised
 
 
 def ports_of(scene: Scene) -> Ports:
@@ -234,6 +210,4 @@ def ports_of(scene: Scene) -> Ports:
         if terms.compliance or terms.turns or terms.window is not None or terms.tip is not None:
             raise ValueError("Elevation takes a tip without tangential compliance, a fixed normal and a single hit")
         return Raised(touch, angle=terms.table.angle, table_friction=terms.table.friction)
-    rolls = terms.turns
-    has_arm = any(touch.arm) or (rolls and touch.dome > 0)
-    return Turning(touch, rolls) if has_arm else Straight(touch, rolls)
+    return LevelPorts(touch, rolls=terms.turns)

@@ -17,7 +17,7 @@ from cuefem.beam.modes import solve
 from cuefem.beam.tip_modes import TipModes, side_modes
 from cuefem.contact.contact_model import ContactModel
 from cuefem.contact.outcome import Phase
-from cuefem.contact.ports import FirstTouch, Straight
+from cuefem.contact.ports import FirstTouch, LevelPorts
 from cuefem.contact.step_records import SolvedContact, solve_contact
 from cuefem.contact.tips import STEPS, check_restitution
 from cuefem.cue import POSITION_TOLERANCE, Cue
@@ -313,7 +313,7 @@ def solve_side_contact(scene: SideStrike, at: Resolution | None = None) -> Solve
     if not CONTACT_TIME.contains(time):
         raise ValueError(f"SideStrike must make a contact time in {CONTACT_TIME.bounds}; got {time:.3g} s")
     check_restitution("Striker.restitution", striker.restitution)
-    ports = Straight(FirstTouch(phi=0.0))
+    ports = LevelPorts(FirstTouch(phi=0.0))
     model = ContactModel(
         propagator=ports.propagator(_position_modes(scene, at)),
         ports=ports,

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from cuefem.contact.contact_model import ContactModel
 from cuefem.contact.geometric_stiffness import SlopeOutOfRange
 from cuefem.contact.kernel.declarations import CONSTANTS, STEP, KernelState, StepTables
-from cuefem.contact.kernel.library import library
+from cuefem.contact.kernel.library import library, new_contact
 from cuefem.contact.modal_response import ModalPropagator, repeated_tables
 from cuefem.contact.outcome import IMPACT, SEPARATION, History, Phase, contact_state
 from cuefem.contact.ports import Raised
@@ -205,7 +205,7 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
     every step. RuntimeError if the ball does not separate; ValueError if the indentation or the slope of the shaft
     leaves its theory's range.
     """
-    kernel, propagator = library(), model.propagator
+    propagator = model.propagator
     start = np.array([model.speed * propagator.tip.approach, np.zeros_like(propagator.tip.approach)])
     fields = model.kernel_input(step=model.time / (steps or model.steps))
     state = KernelState(modes=start.copy(), separated_modes=start.copy())
@@ -213,10 +213,7 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
     port_velocities = propagator.port_velocities(start[0])
     state.mean_velocities[: len(port_velocities)] = port_velocities.tolist()
     records, states = [], [start[None]]
-    contact = kernel.contact_new(fields, state)
-    if not contact:
-        raise MemoryError("no memory for the steps of a contact")
-    try:
+    with new_contact(fields, state) as contact:
         while state.status == CONSTANTS["RUNNING"]:
             if state.steps >= MAX_RECORDED_STEPS:
                 raise RuntimeError(
@@ -227,11 +224,9 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, store_states
             after = np.empty((STEPS_PER_CALL if store_states else 0, *start.shape))
             tables = _next_tables(propagator, state)
             after_steps = after.ctypes.data if store_states else None
-            count = kernel.contact_steps(contact, tables, STEPS_PER_CALL, rows.ctypes.data, after_steps)
+            count = library().contact_steps(contact, tables, STEPS_PER_CALL, rows.ctypes.data, after_steps)
             records.append(rows[:count])
             states.append(after[:count])
-    finally:
-        kernel.contact_free(contact)
     if state.status != CONSTANTS["ENDED"]:
         raise _failure(model, state)
     taken = np.concatenate(records)[: state.steps_to_last_separation]

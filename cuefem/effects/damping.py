@@ -23,7 +23,7 @@ def damp_tip_modes(tip: TipModes, families: Sequence[tuple[Cue, Modes | RodModes
     """
     factors = np.concatenate([family.loss_factors(section_loss(cue, family.points, loss)) for cue, family in families])
     of_modes = np.pad(factors, (len(tip.omega) - len(factors), 0))  # rigid-body modes come first and have no loss
-    together = of_modes if tip.loss is None else tip.loss + of_modes
+    together = tip.loss + of_modes
     if together.max(initial=0.0) >= 1:
         raise ValueError(
             "StructuralDamping: the loss factors of all such effects must add up to less than 1; got "

@@ -9,8 +9,8 @@ from scipy.linalg import expm
 from cuefem.beam.tip_modes import TipModes
 from cuefem.contact.coupled_modes import CoupledModes
 from cuefem.contact.kernel.declarations import KernelInput, KernelState
-from cuefem.contact.kernel.library import library
-from cuefem.contact.modal_response import repeated_tables, straight_propagator
+from cuefem.contact.kernel.library import library, new_contact
+from cuefem.contact.modal_response import level_propagator, repeated_tables
 from cuefem.cue import Array
 
 # Steps of a contact. Against closed forms at the same 120 modes (100 random cues, 0.5 to 3 ms, free and damped, "stick"
@@ -21,9 +21,7 @@ PULSE_STEPS = 2048
 def half_sine_velocity(tip: TipModes, T: float) -> float:
     """Velocity of the tip at the end of a half-sine force of amplitude 1 N and duration T, s, m/s per N; exact."""
     check_moves(tip)
-    is_coupled = np.full(len(tip.omega), tip.dashpots is not None)
-    if tip.radiation is not None:
-        is_coupled |= tip.radiation.any(axis=1)
+    is_coupled = tip.dashpots.any(axis=0) | tip.radiation.any(axis=1)
     velocity = _half_sine_response(tip, T)[~is_coupled].sum()
     return float(velocity + _coupled_half_sine_velocity(tip.subset(np.flatnonzero(is_coupled)), T))
 
@@ -40,7 +38,7 @@ def _half_sine_response(tip: TipModes, T: float) -> Array:
     The tip's impulse response in a mode is the real part of weight exp(rate t), with the rate omega (i root - loss/2);
     it is integrated over the half-sine.
     """
-    ratio = np.zeros(len(tip.omega)) if tip.loss is None else tip.loss / 2
+    ratio = tip.loss / 2
     root = np.sqrt(1 - ratio**2)
     rate, weight = tip.omega * (1j * root - ratio), tip.amplitude[:, 1] ** 2 * (1 + 1j * ratio / root)
     upper, lower = (_mean_of_exponential(rate * T + side * 1j * np.pi) for side in (1, -1))
@@ -69,21 +67,13 @@ def imposed_velocity_impulse(tip: TipModes, T: float, velocity: Array, ball_inve
     """
     check_moves(tip)
     tip = tip.lateral
-    propagator, kernel = straight_propagator(tip), library()
+    propagator = level_propagator(tip)
     tables, means = repeated_tables(propagator, T / PULSE_STEPS), (velocity[1:] + velocity[:-1]) / 2
     first_impulse = velocity[0] / (float(propagator.mobility[1, 1]) + ball_inverse_mass)
     velocities = first_impulse * propagator.ports[1]
-    fields, state = (
-        KernelInput(**propagator.fields),
-        KernelState(modes=np.array([velocities, np.zeros_like(velocities)])),
-    )
-    contact = kernel.contact_new(fields, state)
-    if not contact:
-        raise MemoryError("no memory for the steps of a contact")
-    try:
-        impulse = kernel.imposed_velocity_impulse(
+    state = KernelState(modes=np.array([velocities, np.zeros_like(velocities)]))
+    with new_contact(KernelInput(**propagator.fields), state) as contact:
+        impulse = library().imposed_velocity_impulse(
             contact, tables, PULSE_STEPS, means.ctypes.data, ball_inverse_mass, first_impulse
         )
-        return float(impulse)
-    finally:
-        kernel.contact_free(contact)
+    return float(impulse)

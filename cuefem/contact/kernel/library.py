@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 
 from cuefem.contact.kernel import BINARY, BUILD, KernelError, check
@@ -28,3 +30,15 @@ def library() -> ctypes.CDLL:
     ]
     kernel.contact_free.restype, kernel.contact_free.argtypes = None, [ctypes.c_void_p]
     return kernel
+
+
+@contextmanager
+def new_contact(fields: KernelInput, state: KernelState) -> Iterator[int]:
+    """A contact of the kernel at its first touch; MemoryError without memory for it."""
+    contact = library().contact_new(fields, state)
+    if not contact:
+        raise MemoryError("no memory for the steps of a contact")
+    try:
+        yield contact
+    finally:
+        library().contact_free(contact)
