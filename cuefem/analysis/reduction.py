@@ -281,7 +281,7 @@ def _strokes(design: SolvedDesign, cue: LumpedCue | None, offsets: Sequence[floa
         outcomes = [design.strike(offset) for offset in offsets]
         squirts, regimes = [float(each.squirt) for each in outcomes], [str(each.regime) for each in outcomes]
     else:
-        many = impacts(impulse_inputs(design.scene, cue) | {"offset": np.array(offsets)})
+        many = impacts(impulse_inputs(design.scene, cue)._replace(offset=np.array(offsets)))
         squirts, regimes = many.squirt.tolist(), many.regime.tolist()
     valid = [None if regime == "miscue" else squirt for squirt, regime in zip(squirts, regimes, strict=True)]
     return {"squirt": valid, "regime": regimes}

@@ -29,9 +29,6 @@ def mesh_cue(
     for effect in effects:
         effect.check_on(cue, type(effect).__name__)
     required = np.unique([cue.leather_height, *positions, *(x for effect in effects for x in effect.positions)])
-    for x in required:
-        if not 0 <= x <= cue.length * (1 + POSITION_TOLERANCE):
-            raise ValueError(f"an effect's position must be in [0, {cue.length}] m, on the cue; got {x}")
     if isinstance(at, int):
         phases = mode_phases(cue, at)
         nodes, orders = _equal_phases(cue, phases, _required_nodes(cue, phases, _snap(cue, required)))

@@ -15,7 +15,6 @@ so that squirt has no round-off error at small end masses.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -26,13 +25,23 @@ from cuefem.cue import Array, LumpedCue
 from cuefem.quantity.fields import sine_cosine
 from cuefem.scene import Outcome, Outcomes, Scene
 
-INPUTS = (
-    *("mass", "end_mass", "coupling"),
-    *("ball_mass", "inertia", "radius"),
-    *("restitution", "friction", "speed", "offset"),
-)
 REGIMES = np.array(["stick", "late stick", "miscue", "slip reversal"])
 SLIPPING = 2  # from this index on, the tip slips at separation
+
+
+class ImpulseInputs(NamedTuple):
+    """Numbers of strokes of lumped cues on balls, SI; each a number or an array, (n,)."""
+
+    mass: Any
+    end_mass: Any
+    coupling: Any
+    ball_mass: Any
+    inertia: Any
+    radius: Any
+    restitution: Any
+    friction: Any
+    speed: Any
+    offset: Any
 
 
 class InverseMass(NamedTuple):
@@ -196,29 +205,36 @@ def _impact(contact: _Contact) -> tuple[_Impact, NDArray[np.intp]]:
     return impact, np.where(slips, SLIPPING, np.where(reverses, 3, late.astype(int)))
 
 
-def impulse_inputs(scene: Scene, cue: LumpedCue) -> dict[str, float]:
-    """Arguments of `impact` for a scene, struck with a lumped cue."""
-    ball, tip, stroke = scene.ball, scene.tip, scene.stroke
-    of_cue, of_ball = (cue.mass, cue.end_mass, cue.coupling), (ball.mass, ball.inertia, ball.radius)
-    values = (*of_cue, *of_ball, tip.restitution, tip.friction, stroke.speed, stroke.offset)
-    return dict(zip(INPUTS, values, strict=True))
+def impulse_inputs(scene: Scene, cue: LumpedCue) -> ImpulseInputs:
+    """Those of a scene, struck with a lumped cue."""
+    return ImpulseInputs(
+        mass=cue.mass,
+        end_mass=cue.end_mass,
+        coupling=cue.coupling,
+        ball_mass=scene.ball.mass,
+        inertia=scene.ball.inertia,
+        radius=scene.ball.radius,
+        restitution=scene.tip.restitution,
+        friction=scene.tip.friction,
+        speed=scene.stroke.speed,
+        offset=scene.stroke.offset,
+    )
 
 
-def impact(inputs: Mapping[str, float]) -> Outcome:
+def impact(inputs: ImpulseInputs) -> Outcome:
     """Outcome of a lumped cue's stroke by `impulse_inputs`, in every regime, as in `impacts`."""
     one = impacts(inputs)
     return replace(one[0], phases=tuple(Event(event.name, event.impulse.item()) for event in one.phases))
 
 
-def impacts(inputs: Mapping[str, Any]) -> Outcomes:
-    """Outcomes of strokes of lumped cues by `impulse_inputs`, some of which are arrays, (n,).
+def impacts(inputs: ImpulseInputs) -> Outcomes:
+    """Outcomes of strokes of lumped cues.
 
     phases: the events "slip ends", "greatest compression", "separation" with the normal impulse until then. energy:
     "ball translation", "ball rotation", "cue", "tip loss", "friction loss", which add up to "initial". The coupling of
     a LumpedCue is meant for positive offsets and changes sign with them, so that all is odd in the offset.
     """
-    rows = np.broadcast_arrays(*(np.atleast_1d(np.asarray(inputs[name], float)) for name in INPUTS))
-    m, m_e, coupling, M, nu, R, e, mu, U, offset = rows
+    m, m_e, coupling, M, nu, R, e, mu, U, offset = np.broadcast_arrays(*(np.atleast_1d(value) for value in inputs))
     side, distance = np.sign(offset), np.abs(offset)
     coupling = np.where(side == 0, 0.0, coupling)
     B = inverse_mass(distance, mass=m, end_mass=m_e, coupling=coupling, ball_mass=M, inertia=nu)

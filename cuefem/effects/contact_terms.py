@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple, Protocol
 
-from cuefem.effects.force_law import LeatherLaw
-
 
 class WholeTip(Protocol):
     """An effect that models the whole tip, such as `LeatherTip`; diameter: of the tip, m. phi: contact's angle, rad."""
@@ -20,9 +18,6 @@ class WholeTip(Protocol):
 
     def moment_arm(self, phi: float, diameter: float) -> tuple[float, float]:
         """Displacement (u, w) of the contact per unit rotation of the tip's end section, m."""
-
-    def law(self, diameter: float, ball_radius: float, offset: float, restitution: float) -> LeatherLaw:
-        """The forces on a ball at an offset b/R >= 0."""
 
 
 class PowerLaw(NamedTuple):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, is_dataclass
+from functools import lru_cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
@@ -126,8 +127,9 @@ def acting_on_cue(effects: Iterable[Effect]) -> tuple[CueEffect, ...]:
     return tuple(sorted((effect for effect in effects if isinstance(effect, CueEffect)), key=repr))
 
 
-def terms_at_contact(effects: Iterable[Effect], tip_diameter: float | None = None) -> ContactTerms:
-    """The terms of all these effects together at the contact; tip_diameter: see `ContactTerms`.
+@lru_cache(maxsize=256)
+def terms_at_contact(effects: tuple[Effect, ...], tip_diameter: float | None) -> ContactTerms:
+    """The terms of all these effects together at the contact, shared by all scenes; tip_diameter: see `ContactTerms`.
 
     ValueError if two of them set what a contact has once.
     """

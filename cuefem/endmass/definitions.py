@@ -279,7 +279,7 @@ def lumped_number(name: str, values: Array, squirt: float, *, scene: Scene, cue:
     side, inputs = np.sign(scene.stroke.offset), impulse_inputs(scene, cue)
 
     def excess(values: Array) -> Array:
-        return np.asarray(side * impacts(inputs | {name: values}).squirt - squirt)
+        return np.asarray(side * impacts(inputs._replace(**{name: values})).squirt - squirt)
 
     excesses = excess(values)
     if not excesses[0] < -SQUIRT_TOLERANCE < SQUIRT_TOLERANCE < excesses[-1]:

@@ -10,7 +10,7 @@ from typing import overload
 import numpy as np
 
 from cuefem.beam.tip_modes import TipModes
-from cuefem.contact.impulse_solver import impact, impacts, impulse_inputs
+from cuefem.contact.impulse_solver import ImpulseInputs, impact, impacts, impulse_inputs
 from cuefem.cue import LumpedCue
 from cuefem.endmass.definitions import (
     SEARCH_POINTS,
@@ -115,10 +115,10 @@ def impulse(scene: Scene | Sequence[Scene]) -> Outcome | Outcomes:
     if isinstance(scene, Scene):
         return impact(_lumped_numbers(scene))
     inputs = [_lumped_numbers(item) for item in as_scenes("impulse scene", scene)]
-    return impacts({name: np.array([numbers[name] for numbers in inputs]) for name in inputs[0]})
+    return impacts(ImpulseInputs(*np.transpose(inputs)))
 
 
-def _lumped_numbers(scene: Scene) -> dict[str, float]:
+def _lumped_numbers(scene: Scene) -> ImpulseInputs:
     if scene.effects and scene.lumped is not None:
         names = ", ".join(type(effect).__name__ for effect in scene.effects)
         raise ValueError(f"impulse scene must have no effects on a LumpedCue (use strike for them); got {names}")

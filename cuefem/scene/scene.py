@@ -266,7 +266,7 @@ class Scene:
     @property
     def contact_terms(self) -> ContactTerms:
         """Terms that the effects add to the contact."""
-        return _contact_terms(self.effects, self._end_diameter)
+        return terms_at_contact(self.effects, self._end_diameter)
 
     @property
     def tip_diameter(self) -> float:
@@ -374,12 +374,6 @@ def as_scenes(name: str, scenes: Any) -> tuple[Scene, ...]:
 
 
 @lru_cache(maxsize=256)
-def _contact_terms(effects: tuple[Effect, ...], end_diameter: float | None) -> ContactTerms:
-    """Terms of effects at the contact, shared by all scenes that have them."""
-    return terms_at_contact(effects, end_diameter)
-
-
-@lru_cache(maxsize=256)
 def _loading_phase(law: LeatherLaw, mass: float, speed: float) -> tuple[float, float]:
     """Maximum indentation, m, and the time to it, s; cached for all strokes of a sweep at one speed."""
     return law.central_impact(mass, speed)
@@ -450,17 +444,16 @@ class Outcome:
         return brief_repr("Outcome", ((name, getattr(self, name)) for name in names if getattr(self, name) is not None))
 
 
-OUTCOME_COLUMNS = (
-    "squirt",
-    "ball_velocity",
-    "ball_speed",
-    "spin",
-    "cue_speed",
-    "impulse",
-    "duration",
-    "regime",
-    "jam",
-)
+OUTCOME_UNITS = {
+    "squirt": "rad",
+    "ball_velocity": "m/s",
+    "ball_speed": "m/s",
+    "spin": "rad/s",
+    "cue_speed": "m/s",
+    "impulse": "N s",
+    "duration": "s",
+}
+OUTCOME_COLUMNS = (*OUTCOME_UNITS, "regime", "jam")
 
 
 @dataclass(frozen=True, eq=False)
@@ -542,18 +535,11 @@ class Outcomes:
 
     def to_frame(self) -> pd.DataFrame:
         """A row for each strike, SI units; ``attrs["units"]`` has them by column. RuntimeError without pandas."""
-        units = {
-            "squirt": "rad",
-            "ball_velocity_t": "m/s",
-            "ball_velocity_n": "m/s",
-            "ball_speed": "m/s",
-            "spin": "rad/s",
-            "cue_speed": "m/s",
-            "impulse_t": "N s",
-            "impulse_n": "N s",
-            "duration": "s",
-        }
-        columns = {name: getattr(self, name) for name in OUTCOME_COLUMNS if getattr(self, name) is not None}
+        columns, units = {name: getattr(self, name) for name in OUTCOME_COLUMNS}, dict(OUTCOME_UNITS)
+        if self.duration is None:
+            del columns["duration"]
         for name in ("ball_velocity", "impulse"):
-            columns[f"{name}_t"], columns[f"{name}_n"] = columns.pop(name).T
+            components = dict(zip((f"{name}_t", f"{name}_n"), columns.pop(name).T, strict=True))
+            columns |= components
+            units |= dict.fromkeys(components, OUTCOME_UNITS[name])
         return frame_of(columns, units)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from cuefem import Ball, LumpedCue, Outcome, Scene, Stroke, Tip, impulse
-from cuefem.contact.impulse_solver import impulse_inputs
+from cuefem.contact.impulse_solver import ImpulseInputs, impulse_inputs
 from studies.paper import closed_forms as squirt
 from tests.oracle.decimal_impulse import exact_impulse, regime_of
 
@@ -58,7 +58,7 @@ def numbers_of(outcome: Outcome) -> dict[str, object]:
 def columns(singles: list[Scene]) -> dict[str, np.ndarray]:
     """The numbers that the solver takes."""
     rows = [impulse_inputs(scene, scene.cue) for scene in singles]
-    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    return dict(zip(ImpulseInputs._fields, np.transpose(rows), strict=True))
 
 
 def assert_energy_balance(singles: list[Scene], out: Outcome) -> None:
