@@ -1,8 +1,12 @@
 """The slopes that carry a cue's geometric stiffness during the contact.
 
 With G the geometric stiffness of all modes (`TipModes.geometric`), the contact needs rows g_a over the modes with
-q'Gq = sum of (g_a q)^2 for every modal displacement q. They are the buckling modes: the eigenvectors of G relative to
-the stiffness omega^2. The rows of the lowest axial loads come first; all of them are the whole of G.
+q'Gq = sum of (g_a q)^2 for every modal displacement q: the eigenvectors of G relative to omega^3. All of them are the
+whole of G; where they are too many, those of the largest part are retained.
+
+Under the contact's forces the modal displacements fall like 1/omega, after a velocity step, to 1/omega^2, under slow
+forces; omega^3 stands for the squares of displacements in between. Relative to omega^2, the buckling modes, the rows of
+high modes would not end: their axial loads tend to the least kGA of the cue, as waves of shear in a soft ferrule.
 """
 
 from __future__ import annotations
@@ -32,7 +36,7 @@ def slope_rows(tip: TipModes, planes: int = 1) -> Array:
     if tip.geometric is None:
         return np.zeros((0, len(tip.omega)))
     # rigid-body modes, one axial and two of bending, have the stiffness of the lowest flexible mode of a free cue
-    roots = np.hypot(tip.omega, np.sort(tip.omega)[N_RIGID])
+    roots = np.hypot(tip.omega, np.sort(tip.omega)[N_RIGID]) ** 1.5
     bending = np.flatnonzero(tip.geometric.any(axis=1))  # a head-on stroke bends nothing: axial modes have exact zeros
     roots = roots[bending]
     shares, directions = np.linalg.eigh(tip.geometric[np.ix_(bending, bending)] / np.outer(roots, roots))

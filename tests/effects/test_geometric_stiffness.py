@@ -12,8 +12,9 @@ import scipy.linalg
 
 import cuefem as cf
 from cuefem.beam.tip_modes import TipModes
+from cuefem.contact.geometric_stiffness import slope_rows
 from cuefem.contact.strike import strike_modes
-from cuefem.scene.solved_scene import tip_modes_of
+from cuefem.scene.solved_scene import corrected_tip_modes, tip_modes_of
 from tests.oracle.chain import Chain, chain_squirt
 
 THRUST = cf.GeometricStiffness()
@@ -44,6 +45,16 @@ def test_geometric_stiffness_cantilever_deflection_equals_tangent_formula(G: flo
         errors.append(abs(deflection @ np.linalg.solve(matrix, deflection) / exact - 1))
     assert errors[0] > errors[1] > errors[2]
     assert errors[2] < (1e-5 if G > 1e10 else 3e-3)  # shear under a point load: like 1/count
+
+
+def test_retained_slopes_hold_the_deflection_under_a_force_at_any_number_of_modes() -> None:
+    """Shear waves in the soft ferrule of a carbon shaft do not displace the slopes of the whole shaft."""
+    scene = cf.Scene(cf.load("meshes/carbon.toml"), effects=(THRUST,))
+    for tip in corrected_tip_modes(scene, 60, 200):
+        omega = np.where(tip.omega > 0, tip.omega, math.inf)
+        deflection = tip.amplitude[:, 1] / omega**2
+        retained = slope_rows(tip, planes=2)[:-1] @ deflection
+        assert retained @ retained == pytest.approx(deflection @ tip.geometric @ deflection, rel=1e-3)
 
 
 STIFFNESS, SHEAR = 6e5, 2e5  # of the tip, N/m
