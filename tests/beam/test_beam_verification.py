@@ -194,24 +194,3 @@ def test_mesh_sliced_cone_equals_whole_cone() -> None:
     slices = sliced(COMPOSITE, 300)
     np.testing.assert_allclose(mesh_cue(slices, 12).nodes, expected.nodes, rtol=1e-12)
     np.testing.assert_allclose(modes(slices, 12).frequencies, modes(COMPOSITE, 12).frequencies, rtol=1e-6)
-
-
-@pytest.mark.parametrize("n", [100, pytest.param(1000, marks=pytest.mark.heavy)])
-def test_frequencies_alternating_slices_converge_to_mean_material(n: int) -> None:
-    """With n pairs of thin slices the error falls like 1/n: compliance and mass per length are the mean of both."""
-    d, light, heavy = 0.014, Material(12e9, 0.8e9, 700.0), Material(16e9, 1.2e9, 1000.0)
-
-    def mean(a: float, b: float) -> float:
-        return 2 / (1 / a + 1 / b)
-
-    mean_material = Material(mean(light.E, heavy.E), mean(light.G, heavy.G), (light.rho + heavy.rho) / 2)
-    exact = modes(Cue((Segment(0.7, d, d, mean_material, kappa=0.9),)), 3).frequencies
-    slices = tuple(Segment(0.35 / n, d, d, material, kappa=0.9) for _ in range(n) for material in (light, heavy))
-    assert abs(modes(Cue(slices), 3).frequencies / exact - 1).max() < 0.3 / n
-
-
-def test_joint_negligible_compliance_changes_no_frequency() -> None:
-    expected = modes(kim(), 3).frequencies
-    for compliance in (3.5e-202, 1e-15):
-        result = modes(kim(), 3, effects=(Joint(0.5, 0.0, compliance), Joint(0.5, compliance))).frequencies
-        np.testing.assert_allclose(result, expected, rtol=1e-6)

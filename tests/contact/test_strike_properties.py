@@ -106,7 +106,7 @@ def strike(scene: cf.Scene, at: cf.Resolution = AT) -> cf.Outcome | None:
 
 
 @pytest.mark.hypothesis
-@pytest.mark.parametrize("count", [5, pytest.param(250, marks=pytest.mark.heavy)])
+@pytest.mark.parametrize("count", [5, pytest.param(100, marks=pytest.mark.heavy)])
 def test_strike_conserves_energy_mirrors_and_ignores_effect_order(count: int) -> None:
     @examples(count)
     @given(strikes(), st.integers(0, 5))

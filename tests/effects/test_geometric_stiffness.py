@@ -66,7 +66,7 @@ def wood(x: Any) -> Any:
 
 def chain_of(factor: float) -> Chain:
     """A shaft of wood with 430 g at its butt; factor: factor of the axial stiffness."""
-    chain = Chain(LENGTH, wood, 700.0, 12.6e9, 0.43, 60)
+    chain = Chain(LENGTH, wood, 700.0, 12.6e9, 0.43, 40)
     chain.stretch = chain.stretch * factor
     return chain
 

@@ -11,7 +11,7 @@ import pytest
 
 import cuefem as cf
 from tests.helpers.cues import pool
-from tests.helpers.invalid_input import assert_refused, messages_of, raised
+from tests.helpers.invalid_input import assert_refused, messages_of, raised, stored_rows
 from tests.helpers.strike_scenes import KIM, energy_residual, kim_scene
 
 
@@ -92,10 +92,7 @@ def test_effect_input_at_bound_is_accepted() -> None:
 
 SCENE = """
 game = "kim"
-[[effects]]
-type = "AxialWaves"
-[[effects]]
-{effect}
+effects = [{{ type = "AxialWaves" }}, {{ {effect} }}]
 [cue]
 body_mass = "0.42 kg"
 [[cue.segments]]
@@ -104,51 +101,15 @@ tip_diameter = "12 mm"
 butt_diameter = "21 mm"
 material = {{ E = "12.6 GPa", G = "0.84 GPa", rho = "700 kg/m^3" }}
 """
-FILES = {
-    "joint": 'type = "Joint"\nposition = "0.71 m"',
-    "mass": 'type = "PointMass"\nposition = "71 cm"\nmass = "5 g"',
-}
-TIP = {"height": '"6 mm"', "dome_radius": '"9.5 mm"', "leather": '"medium"'}
-# Entries that a leather tip refuses; "" leaves one out.
-TIPS: list[dict[str, str]] = [
-    {"leather": ""},
-    {"leather": '"sofd"'},
-    {"E": '"1 MPa"'},
-    {"leather": "", "lether": '"soft"'},
-    {"dome_radius": '"penny"'},
-    {"dome_radius": "9.5"},
-    {"height": "inf"},
-    {"height": '"60 mm"'},
-    {"rolling": '"no"'},
-    {"nu": "0.5"},
-    {"diameter": '"14 mm"'},
-    *(
-        {"layers": f"[{{ {layer} }}]"}
-        for layer in (
-            'height = "0 mm", E = "2 GPa"',
-            'height = "1 mm"',
-            'height = "1 mm", E = "2 GPa", nu = 0.5',
-            'height = "1 mm", E = "2e6 GPa"',
-            'height = "5 mm", E = "2 GPa"',
-            'thickness = "1 mm", E = "2 GPa"',
-        )
-    ),
-]
-
-
-def leather_tip(entries: dict[str, str]) -> str:
-    """The table of a leather tip."""
-    return "\n".join(['type = "LeatherTip"', *(f"{key} = {text}" for key, text in (TIP | entries).items() if text)])
 
 
 def test_effect_in_file_invalid_raises(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ) -> None:
-    """Before any computation."""
+    """Before any computation; one effect a line of tests/golden/refused_effect_files.txt."""
     monkeypatch.chdir(tmp_path)
-    files = FILES | {str(entries): leather_tip(entries) for entries in TIPS}
     messages = {}
-    for name, effect in files.items():
+    for effect in stored_rows("effect_files"):
         Path("scene.toml").write_text(SCENE.format(effect=effect), encoding="utf-8")
-        messages[name] = raised(lambda: cf.load("scene.toml"))
+        messages[effect] = raised(lambda: cf.load("scene.toml"))
     assert_refused("effect_files", messages, request)

@@ -69,16 +69,6 @@ def error_line(*arguments: object) -> str:
     return err
 
 
-def assert_raises(action: Callable[[], object], message: str) -> None:
-    """The call raises ValueError, or TypeError if ``message`` begins with it, in one line that contains ``message``."""
-    start = message.removeprefix("TypeError: ")
-    with pytest.raises(ValueError if start == message else TypeError) as error:
-        action()
-    text = str(error.value)
-    assert start in text
-    assert len(text.splitlines()) == 1
-
-
 def assert_rejects(message: str, *arguments: object) -> None:
     """The command exits with status 2, an empty stdout and one line on stderr that contains ``message``."""
     assert message in error_line(*arguments)

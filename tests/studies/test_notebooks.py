@@ -16,6 +16,7 @@ from cuefem.effects.effect import effect_kinds
 
 FOLDER = Path(__file__).parents[2] / "studies" / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
+NIGHTLY = ("every_question",)  # more than 10 s of processor time
 
 
 def run_cell(source: str, names: dict[str, Any]) -> Any:
@@ -33,7 +34,11 @@ def words(markup: str) -> list[str]:
 
 
 @pytest.mark.heavy
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(path, marks=[pytest.mark.nightly] if path.stem in NIGHTLY else []) for path in NOTEBOOKS],
+    ids=lambda path: path.stem,
+)
 def test_notebook_prints_and_shows_stored_output(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     plt.switch_backend("agg")
     monkeypatch.chdir(FOLDER)

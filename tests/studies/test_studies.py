@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from studies.measured import calibration, two_balls
+from cuefem.results.uncertainty import MASS_ERROR, MODEL_ERROR, SHAFT_ERROR, SPRING_ERROR
+from studies.measured import calibration, two_balls, uncertainty
 from studies.pages import IN_PYTHON, STUDIES, Study, disagreements
 from studies.strokes import cue, full_model, pool_stroke
 
@@ -95,3 +96,23 @@ def test_two_measured_balls_are_compared_with_both_predictions(tmp_path: Path) -
     assert two_balls.result(str(light), str(heavy)).endswith("nearer to an end mass")
     with pytest.raises(ValueError, match="at least 5 % more"):
         two_balls.result(str(light), str(light))
+
+
+@pytest.mark.heavy
+def test_model_errors_agree_with_published_series() -> None:
+    """The constants are the upper ends of the study's intervals."""
+    errors = [uncertainty.model_error(model).high for model in ("full model", "bare tip")]
+    constants = [MODEL_ERROR, SPRING_ERROR, SHAFT_ERROR, MASS_ERROR]
+    assert [*errors, *uncertainty.ratio_errors()] == pytest.approx(constants, abs=5.1e-3)
+
+
+@pytest.mark.heavy
+def test_uncertainty_covers_published_rows() -> None:
+    """At least 68 % of published squirts and of two shafts; the series of 3 g has fewer, as the page states."""
+    within = {name: (inside, rows) for name, rows, inside, _ in uncertainty.coverage()}
+    cues = [pair for name, pair in within.items() if " g on a shaft" not in name]
+    inside, rows = map(sum, zip(*cues, strict=True))
+    assert rows == 13
+    assert inside / rows > 0.68
+    assert within["11 g on a shaft"][0] / within["11 g on a shaft"][1] > 0.68
+    assert f"| all | {sum(n for n, _ in within.values())} of 44 |" in uncertainty.STUDY.committed
