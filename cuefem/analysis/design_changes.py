@@ -334,9 +334,20 @@ class Trial:
             residual = (_residual(x, after.get(key, 0.0), key in change.resets) for key, x in self.before.items())
             ratio = numbers["squirt"] / self.base["squirt"]
             error = ratio_error(ratio, model_share(self.struck, solved.scene), *residual)
-            return _changed_design(change, self.base, numbers, error)
         except (ValueError, RuntimeError):
             return None
+        stiffness = numbers["tip_stiffness"] / self.base["tip_stiffness"] - 1
+        return ChangedDesign(
+            change.label,
+            change.values,
+            **numbers,
+            squirt_change=ratio - 1,
+            tip_stiffness_change=stiffness,
+            shaft_mass_change=numbers["shaft_mass"] - self.base["shaft_mass"],
+            frequency_change=numbers["frequency"] - self.base["frequency"],
+            squirt_change_error=error,
+            verdict=_verdict(ratio - 1, stiffness, error),
+        )
 
 
 def _together(trial: Trial, singles: Sequence[tuple[DesignChange, ChangedDesign]], strikes: int) -> list[ChangedDesign]:
@@ -406,22 +417,6 @@ def _residual(before: float, after: float, independent: bool) -> float:
     A parameter of the changed cue alone, such as the width of a drilled bore, is known.
     """
     return math.hypot(before, after) if independent else after - before
-
-
-def _changed_design(change: DesignChange, base: Record, numbers: Record, error: float) -> ChangedDesign:
-    squirt = numbers["squirt"] / base["squirt"] - 1
-    stiffness = numbers["tip_stiffness"] / base["tip_stiffness"] - 1
-    return ChangedDesign(
-        change.label,
-        change.values,
-        **numbers,
-        squirt_change=squirt,
-        tip_stiffness_change=stiffness,
-        shaft_mass_change=numbers["shaft_mass"] - base["shaft_mass"],
-        frequency_change=numbers["frequency"] - base["frequency"],
-        squirt_change_error=error,
-        verdict=_verdict(squirt, stiffness, error),
-    )
 
 
 def _verdict(squirt: float, stiffness: float, error: float) -> str:

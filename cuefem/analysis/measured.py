@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar
@@ -74,11 +74,14 @@ class MeasuredComparison(Rows, Analysis):
 
     def tables(self) -> list[Table | str]:
         """Measured and computed values, contradictions, the zero error of the offset, and missing measurements."""
-        sourced = ["source"] if any(row["source"] for row in self.rows) else []
+        more: dict[str, ColumnEntry] = {
+            "normalized residual": lambda row: format_change(row["normalized_residual"], 1),
+        }
+        if any(row["source"] for row in self.rows):
+            more["source"] = "{source}"
         blocks: list[Table | str] = []
         if self.rows:
-            title, optional = "Measured and computed", ["normalized residual", *sourced]
-            blocks.append(_tabulate_fit(title, self.rows, optional, self.captions()))
+            blocks.append(_tabulate_fit("Measured and computed", self.rows, more, *self.captions()))
         blocks += [*contradictions(self.rows), *self.zero_lines()]
         if self.missing:
             blocks += ["Missing measurements and their consequences:", *(f"  {line}" for line in self.missing)]
@@ -181,7 +184,7 @@ class MeasuredEstimate(Rows, Analysis):
                 self.parameters,
                 *self.notes(),
             ),
-            _tabulate_fit("Measured and computed with the estimate", self.rows, [], [FITTED]),
+            _tabulate_fit("Measured and computed with the estimate", self.rows, {}, FITTED),
             "",
             self.squirt_line(),
             "",
@@ -322,7 +325,6 @@ def residual_chart(rows: Sequence[Record], residual: str, label: str) -> list[Ch
 
     residual: its name in a row. label: of the axis.
     """
-
     if len(rows) < MIN_CHART_ROWS:
         return []
     numbers = np.arange(1.0, len(rows) + 1)
@@ -374,39 +376,33 @@ RESIDUAL = "Residual: measured minus computed, over the measurement's 1σ"
 FITTED = f"±: 1σ; that of a computed value comes from the estimated parameters. {RESIDUAL}."
 
 
-def _tabulate_fit(title: str, rows: Sequence[Record], optional: Sequence[str], notes: Sequence[str]) -> Table:
-    """A row for each measurement with its computed value. optional: names of `OPTIONAL_COLUMNS`."""
-    columns: dict[str, ColumnEntry] = {"measurement": "{label}"}
-    columns |= {heading: _with_error(*names) for heading, names in VALUES_WITH_ERRORS.items()}
-    columns["residual"] = lambda row: format_change(row["residual"], 1)
-    columns |= {heading: entry for heading, entry in OPTIONAL_COLUMNS.items() if heading in optional}
-    return tabulate(title, columns, rows, *notes, texts=(0, 5))
+def _tabulate_fit(title: str, rows: Sequence[Record], more: Mapping[str, ColumnEntry], *notes: str) -> Table:
+    """A row for each measurement with its computed value. more: further columns."""
+    columns: dict[str, ColumnEntry] = {
+        "measurement": "{label}",
+        "measured": _measured,
+        "computed": _computed,
+        "residual": lambda row: format_change(row["residual"], 1),
+    }
+    return tabulate(title, columns | dict(more), rows, *notes, texts=(0, 5))
 
 
-def _with_error(value: str, error: str) -> Callable[[Mapping[str, Any]], str]:
-    return lambda row: with_unit(row[value], str(row["unit"]), error=row[error])
+def _measured(row: Mapping[str, Any]) -> str:
+    return with_unit(row["measured_value"], row["unit"], error=row["error"])
 
 
-OPTIONAL_COLUMNS: Mapping[str, ColumnEntry] = {
-    "normalized residual": lambda row: format_change(row["normalized_residual"], 1),
-    "source": "{source}",
-}
-VALUES_WITH_ERRORS = {"measured": ("measured_value", "error"), "computed": ("computed_value", "spread")}
+def _computed(row: Mapping[str, Any]) -> str:
+    return with_unit(row["computed_value"], row["unit"], error=row["spread"])
 
 
 def contradictions(rows: Sequence[Record]) -> list[str]:
     """The measurements with a large normalized residual, as text."""
-    lines = []
-    for row in rows:
-        sigmas = abs(row["normalized_residual"])
-        if sigmas > LARGE_RESIDUAL:
-            measured, computed = (
-                with_unit(row[value], str(row["unit"]), error=row[error])
-                for value, error in VALUES_WITH_ERRORS.values()
-            )
-            difference = f"measured {measured}, computed {computed}, a difference of {sigmas:.1f} combined σ"
-            lines.append(f"{row['label']} contradicts the drawing: {difference}")
-    return lines
+    return [
+        f"{row['label']} contradicts the drawing: measured {_measured(row)}, computed {_computed(row)}, a difference "
+        f"of {abs(row['normalized_residual']):.1f} combined σ"
+        for row in rows
+        if abs(row["normalized_residual"]) > LARGE_RESIDUAL
+    ]
 
 
 def _value(name: str) -> ColumnEntry:

@@ -60,20 +60,9 @@ class NaturalFrequencies(Rows, Analysis):
         return [{"frequency": frequency, "tip_amplitude": amplitude} for frequency, amplitude in pairs]
 
     def tables(self) -> list[Table | str]:
-        """A table with a row for each mode."""
-        return [self.table()]
-
-    def charts(self) -> list[Chart]:
-        """The lowest mode shapes."""
-        return [modes_chart(self.scene)]
-
-    def table(self) -> Table:
         """A row for each mode of the cue, with the scene's effects on the cue."""
         near, nearest = self.requested_frequency, self.nearest_frequency
-        rows = [
-            {"frequency": frequency, "period": 1 / frequency, "tip_amplitude": amplitude}
-            for frequency, amplitude in zip(self.frequencies, self.tip_amplitudes, strict=True)
-        ]
+        rows = [row | {"period": 1 / row["frequency"]} for row in self.frame_rows()]
         columns: dict[str, ColumnEntry] = {
             "frequency": "{frequency:frequencies}",
             "period": "{period:s}",  # in the display unit of s
@@ -86,7 +75,11 @@ class NaturalFrequencies(Rows, Analysis):
         if self.rigid:
             notes.insert(0, f"{self.rigid} rigid-body mode{'s' * (self.rigid > 1)} at 0 Hz not listed")
         title = "Natural frequencies" if near is None else f"Natural frequencies nearest {near:g} Hz"
-        return tabulate(title, columns, rows, "; ".join(notes), texts=())
+        return [tabulate(title, columns, rows, "; ".join(notes), texts=())]
+
+    def charts(self) -> list[Chart]:
+        """The lowest mode shapes."""
+        return [modes_chart(self.scene)]
 
 
 def joint_supports(cue: Cue, joint: JointName) -> tuple[Support, ...]:

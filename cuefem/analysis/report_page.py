@@ -78,8 +78,9 @@ def page_of(scene: Scene, answers: Answers, regime: str, frame: PageFrame, besid
 def report_parts(scene: Scene, answers: Answers) -> list[Record]:
     """The sections of a page: each answer in the order of the report, then the notes on a stroke."""
     sections = [
-        _section(key, part.title, answers[key].tables(), folded=part.folded, engineer=part.engineer)
-        | {"about": answers[key].about, "charts": answers[key].charts(), "more": answers[key].more_charts()}
+        _section(key, part.title, answers[key].tables(), answers[key].charts())
+        | {"folded": part.folded, "engineer": part.engineer}
+        | {"about": answers[key].about, "more": answers[key].more_charts()}
         for key, part in report_sections().items()
         if key in answers
     ]
@@ -95,12 +96,10 @@ def report_parts(scene: Scene, answers: Answers) -> list[Record]:
     ]
 
 
-def _section(
-    key: str, title: str, tables: Sequence[Table | str], *, folded: bool = False, engineer: bool = False
-) -> Record:
-    """A section of a page, without charts."""
-    made: Record = {"key": key, "title": title, "folded": folded, "engineer": engineer}
-    return made | {"tables": tables, "charts": [], "about": "", "more": []}
+def _section(key: str, title: str, tables: Sequence[Any], charts: Sequence[Any] = (), **folds: bool) -> Record:
+    """A section of a page; folds: whether it is ``folded``, and a part for an ``engineer``."""
+    made: Record = {"key": key, "title": title, "tables": tables, "charts": charts, "about": "", "more": []}
+    return made | {"folded": False, "engineer": False} | folds
 
 
 def _is_for_engineers(scene: Scene, name: str, notes: Sequence[Assumption]) -> bool:
@@ -145,7 +144,7 @@ def _beside(scene: Scene, answers: Answers, name: str, beside: Beside, squirt_fa
 
 def section_of(table: Table, charts: Sequence[Chart]) -> Record:
     """The section of compared cues."""
-    return _section("other", table.title, [table]) | {"charts": charts}
+    return _section("other", table.title, [table], charts)
 
 
 def headline_cue(scene: Scene, answers: Answers, name: str) -> HeadlineCue:

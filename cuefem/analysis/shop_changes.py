@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple
@@ -143,53 +143,34 @@ class Dimension(NamedTuple):
 
 def dimensions_of(scene: Scene) -> list[Dimension]:
     """The dimensions of this cue that a shop can choose, each in both directions; walls and stiffness bound them."""
-    values = {key: parameter.value(scene) for key, parameter in PARAMETERS.items()}
-    if is_tube(scene.shaft):
-        return [*_wall_sizes(values), *_insert_sizes(values), *_ferrule_sizes(values)]
-    bores, ferrules = _bore_sizes(scene.shaft, values), _ferrule_sizes(values)
-    return [*bores, *ferrules, *(_front_sizes(scene.shaft, values) if is_wooden(scene.shaft) else ())]
+    cue, values = scene.shaft, {key: parameter.value(scene) for key, parameter in PARAMETERS.items()}
+    wall, insert, ferrule = (values[key] for key in ("front_wall", "insert_depth", "ferrule_length"))
+    ferrules = _sizes(partial(_ferrule_length, ferrule), ferrule, (MIN_FERRULE, LONGEST_FERRULE), 0.1 * MM)
+    if is_tube(cue):
+        walls = _sizes(partial(_wall, wall), wall, (MIN_TUBE_WALL, THICKEST_WALL), 0.01 * MM)
+        return [*walls, *_sizes(_insert, insert, (EMPTY_FRONT, 0.0), MM), *ferrules]
+    fronts = _sizes(partial(_cut, cue, values), 0.0, (MOST_CUT, -MOST_CUT), 0.01 * MM) if is_wooden(cue) else []
+    return [*_bore_sizes(cue, values), *ferrules, *fronts]
 
 
-def _bore_sizes(cue: Cue, values: Record) -> Iterator[Dimension]:
+def _sizes(
+    change: Callable[[float], DesignChange], first: float | None, farthest: Iterable[float], step: float
+) -> list[Dimension]:
+    """A dimension from its size in both directions; none of a part that the shaft does not have."""
+    return [] if first is None else [Dimension(change, first, last, step) for last in farthest]
+
+
+def _bore_sizes(cue: Cue, values: Record) -> list[Dimension]:
     """The depth of a bore of the shaft's own width, and of some wider drills."""
     depth, shop = values["bore_depth"], SHOP[displayed_system()]
     if depth is None:
-        return
-    own = values["bore_width"] if depth > 0 else shop.new_bore
+        return []
+    is_bored = depth > 0
+    own = values["bore_width"] if is_bored else shop.new_bore
     deepest = min(DEEPEST, max_bore_depth(cue))
-    if depth > 0:
-        for last in (max(depth, deepest), 0.0):
-            yield Dimension(lambda new: _bore_depth(depth, new), depth, last, MM)
-    first = 1 if depth > 0 else 0
-    for k in range(first, first + DRILLS):
-        width = shop.drill_step * round(own / shop.drill_step + k)
-        yield Dimension(partial(_bore, width), max(depth, MM), deepest, MM)
-
-
-def _ferrule_sizes(values: Record) -> Iterator[Dimension]:
-    length = values["ferrule_length"]
-    if length is not None:
-        for last in (MIN_FERRULE, LONGEST_FERRULE):
-            yield Dimension(lambda new: _ferrule_length(length, new), length, last, 0.1 * MM)
-
-
-def _front_sizes(cue: Cue, values: Record) -> Iterator[Dimension]:
-    for last in (MOST_CUT, -MOST_CUT):
-        yield Dimension(lambda cut: _cut(cue, values, cut), 0.0, last, 0.01 * MM)
-
-
-def _wall_sizes(values: Record) -> Iterator[Dimension]:
-    wall = values["front_wall"]
-    if wall is not None:
-        for last in (MIN_TUBE_WALL, THICKEST_WALL):
-            yield Dimension(lambda new: _wall(wall, new), wall, last, 0.01 * MM)
-
-
-def _insert_sizes(values: Record) -> Iterator[Dimension]:
-    insert = values["insert_depth"]
-    if insert is not None:
-        for last in (EMPTY_FRONT, 0.0):
-            yield Dimension(_insert, insert, last, MM)
+    depths = _sizes(partial(_bore_depth, depth), depth, (max(depth, deepest), 0.0), MM) if is_bored else []
+    widths = [shop.drill_step * round(own / shop.drill_step + k + is_bored) for k in range(DRILLS)]
+    return [*depths, *(Dimension(partial(_bore, width), max(depth, MM), deepest, MM) for width in widths)]
 
 
 def changes_of(scene: Scene) -> list[DesignChange]:

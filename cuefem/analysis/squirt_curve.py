@@ -184,12 +184,9 @@ def squirt_curve(scene: Solvable, offsets: Sequence[float] = OFFSETS) -> SquirtC
     models: Record = {"coupled, this cue": coupled_curve(scene, offsets, solved.tip, design.squirt_factor)}
     for name, each in cues.items():
         squirt = a31_squirt if name.startswith("A.31") else lambda at, cue: lumped_strike(at, cue).squirt
-        pairs = [*zip(struck, each, strict=True)]
-        angles = [np.nan if cue is None else float(squirt(at, cue)) for at, cue in pairs]
-        pivots = [
-            np.nan if np.isnan(angle) else pivot_length(at, angle) for at, angle in zip(struck, angles, strict=True)
-        ]
-        models[name] = {"squirt": np.array(angles), "pivot_length": np.array(pivots, float)}
+        pairs = zip(struck, each, strict=True)
+        angles = np.array([np.nan if cue is None else float(squirt(at, cue)) for at, cue in pairs])
+        models[name] = {"squirt": angles, "pivot_length": pivot_length(scene, angles, np.array(offsets))}
     return SquirtCurve(
         scene,
         list(offsets),

@@ -43,14 +43,10 @@ class TipImpacts(Rows, Analysis):
         return self.impacts
 
     def tables(self) -> list[Table | str]:
-        """A table with a row for each speed."""
-        return [self.table()]
-
-    def table(self) -> Table:
         """A row for each speed."""
         columns = {RESULTS[name].label: name for name in ("contact_time", "force", "indentation", "patch")}
         outside = any(impact["force"] is None for impact in self.impacts)
-        return tabulate(
+        made = tabulate(
             "Leather tip, head-on impact",
             {"speed": "{speed:m/s}", **columns, "stiffness": _stiffness},
             self.impacts,
@@ -61,6 +57,7 @@ class TipImpacts(Rows, Analysis):
             *([f"{DASH}: indentation beyond the valid range of the force law"] if outside else []),
             texts=(),
         )
+        return [made]
 
 
 def tip_impacts(scene: Solvable) -> TipImpacts:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from cuefem.cue import Cue, LumpedCue, Material
+from cuefem.cue import Cue, Material
 from cuefem.cue.materials import MATERIALS, material, table_name
 from cuefem.files import load
 from cuefem.files.cue_names import CUES, cue_name, named_path
@@ -330,11 +330,11 @@ def held_assumptions(scene: Scene) -> list[Assumption]:
     if made is not None and not made.game:  # of a scene's file, which lists its cue, too
         return _held(made.listed, scene, made.scene)
     stroke = [] if made is None else _held(_default_stroke(made.game, made.scene, made.given), scene, made.scene)
-    if isinstance(scene.cue, LumpedCue):
+    if scene.lumped is not None:
         return stroke
-    drawn = scene.cue.assumed
-    drawing = [each for each in drawn.listed if _is_of_drawing(each, scene.cue, drawn.cue)] if drawn else []
-    return [*_with_rest(scene.cue, drawing), *stroke]
+    cue, drawn = scene.shaft, scene.shaft.assumed
+    drawing = [each for each in drawn.listed if _is_of_drawing(each, cue, drawn.cue)] if drawn else []
+    return [*_with_rest(cue, drawing), *stroke]
 
 
 def _held(listed: Iterable[Assumption], scene: Scene, made: Scene) -> list[Assumption]:
