@@ -7,16 +7,13 @@ eight responses. Run it with OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1; it needs 
 
 from __future__ import annotations
 
-import json
 import os
 import re
-import socket
-import subprocess
-import sys
 import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
 from functools import partial
+from multiprocessing import get_context
 from pathlib import Path
 from statistics import median
 from time import perf_counter, process_time
@@ -25,7 +22,6 @@ from typing import Any
 import numpy as np
 
 import cuefem as cf
-from cuefem.cli.cluster import dask_executor
 from cuefem.designs import Response, Study, Vary
 from cuefem.designs.blocks import Block, BlockResult, Blocks, lost_block
 from cuefem.designs.design_key import KEY_BYTES, code_digest
@@ -86,51 +82,24 @@ def parents() -> list[list[str]]:
     """A row a size, each in a process of its own."""
     rows = []
     for count in SIZES:
-        command = [sys.executable, "-m", "studies.accuracy.many_designs", str(count)]
-        found = json.loads(subprocess.run(command, capture_output=True, check=True, text=True).stdout)
+        with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as fresh:
+            found = fresh.submit(parent, count).result()
         rows.append([f"1e{len(str(count)) - 1}", f"{found['ms']:.4f}", f"{found['MB']:.0f}", f"{found['bytes']:.0f}"])
     return rows
 
 
-@contextmanager
-def cluster() -> Iterator[str]:
-    """The address of a Dask scheduler with two worker processes on this machine."""
-    with closing(socket.socket()) as free:
-        free.bind(("127.0.0.1", 0))
-        port = str(free.getsockname()[1])
-    address, quiet = f"tcp://127.0.0.1:{port}", subprocess.DEVNULL
-    parts = [
-        ["scheduler", "--host", "127.0.0.1", "--port", port, "--no-dashboard"],
-        ["worker", address, "--nworkers", "2", "--nthreads", "1", "--no-dashboard"],
-    ]
-    with tempfile.TemporaryDirectory() as folder:
-        environment = os.environ | {"PYTHONPATH": str(pages.STUDIES.parent)}
-        running = [
-            subprocess.Popen(
-                [sys.executable, "-m", f"distributed.cli.dask_{part[0]}", *part[1:]],
-                cwd=folder,
-                env=environment,
-                stdout=quiet,
-                stderr=quiet,
-            )
-            for part in parts
-        ]
-        try:
-            yield address
-        finally:
-            for process in reversed(running):
-                process.terminate()
-                process.wait()
-
-
 def executor_rows() -> list[list[str]]:
     """Designs a second and the parent's processor time: one process, two, and a cluster of two workers."""
+    from distributed import LocalCluster  # loaded when used: a second
+
     designs = study(STROKES, "squirt")
     spent: dict[str, list[tuple[float, float]]] = {"one process": [], "2 processes": [], "Dask, 2 workers": []}
-    with cluster() as address, dask_executor(address) as dask:
-        dask.submit(int).result()
-        dask._client.wait_for_workers(2)  # type: ignore[attr-defined]
-        places: dict[str, Any] = {"one process": None, "2 processes": 2, "Dask, 2 workers": dask}
+    with (
+        LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
+        cluster.get_client() as dask,
+    ):
+        on_cluster = dask.get_executor(pure=False)
+        places: dict[str, Any] = {"one process": None, "2 processes": 2, "Dask, 2 workers": on_cluster}
         for turn in range(ROUNDS + 1):  # the first warms up
             for name, workers in places.items():
                 begun = perf_counter(), process_time()
@@ -203,7 +172,4 @@ print(f"{result.count / (perf_counter() - start):.0f} designs a second")
 STUDY = pages.Study(__file__, text, seconds=True, example=EXAMPLE)
 
 if __name__ == "__main__":
-    if len(sys.argv) > 1:
-        print(json.dumps(parent(int(sys.argv[1]))))
-    else:
-        STUDY.write()
+    STUDY.write()

@@ -3,12 +3,10 @@
 Simulated makers shoot with an old maple shaft, read where the ball goes on either side, and predict the squirt of a new
 bored shaft with the same tip. Wood, tip, and the squirt factors of both shafts are drawn from the law that a
 calibration assumes, the strokes from the ranges of a row. Every maker enters a `Shot`; the package's estimate and its
-calibration follow. Truth and prediction are coupled strikes. Within the search of the estimate alone the strikes of the
-drawing are tabulated over offset and speed, and squirt and ball speed are linear in the logarithms of wood and tip,
-with the package's own slopes.
+calibration follow. Truth and prediction are coupled strikes.
 
-`python -m studies.measured.calibration simulate` adds the makers that data/makers.csv lacks, 0.4 s of processor time
-each. Further laws, in which each shaft has an error of its own, are computed by the formula alone.
+`python -m studies.measured.calibration simulate` adds the makers that data/makers.csv lacks, a second or two of
+processor time each. Further laws, in which each shaft has an error of its own, are computed by the formula alone.
 """
 
 from __future__ import annotations
@@ -17,33 +15,28 @@ import csv
 import math
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.interpolate import RectBivariateSpline
 
-from cuefem.cue import Array
 from cuefem.measurements.calibration import PLAUSIBLE, Calibration
 from cuefem.measurements.estimate import estimate
-from cuefem.measurements.measured_cue import STEP, MeasuredCue
+from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measurement_types import Measurement, Setup, Squirt
-from cuefem.measurements.predictions import predictions_of
 from cuefem.measurements.shot import Shot
 from cuefem.measurements.swerve import reading_angle
 from cuefem.measurements.uncertain_parameters import SQUIRT_MODEL
 from cuefem.parameters.table import PARAMETERS
 from cuefem.results.uncertainty import MODEL_ERROR, RATIO_FLOOR, SHAFT_ERROR, squirt_of
-from studies.pages import STUDIES, Figure, Study, page, rms, table
+from studies.pages import STUDIES, Figure, Study, page, rms, span, table
 from studies.strokes import cue, full_model
 
 MAKERS, BATCH, SAMPLES = 200, 20, 200_000
 OFFSET, CONTACT = 0.3, 0.375  # b/R of the predicted squirt, and of the shots
 READING, BESIDE = 2e-3, 1e-3  # m, errors of a side: of the miss, and of the cue's offset
 CLOTH = (0.15, 0.25)
-OFFSETS, SPEEDS = np.linspace(0.2, 0.65, 8), np.geomspace(0.5, 14.0, 8)  # of the table of strikes
-OF_THE_CUE = frozenset(entry.name for entry in PARAMETERS.values())
 OF_THE_TIP = frozenset(entry.name for entry in PARAMETERS.values() if entry.is_shareable)
 PIVOT = 0.05  # of the formula alone: relative error of a measured pivot length
 INPUTS = 0.065  # of the formula alone: relative error of squirt by unmeasured inputs
@@ -103,70 +96,6 @@ class Maker(NamedTuple):
 REFUSED = Maker(math.nan, math.nan, math.nan, math.nan)
 
 
-@dataclass(frozen=True)
-class Strikes:
-    """Squirt and ball speed of a drawing's coupled strike, interpolated in a table over offset and cue speed."""
-
-    squirts: RectBivariateSpline
-    speeds: RectBivariateSpline
-    default: float
-
-    def squirt(self, offset: float, speed: float | None = None) -> float:
-        """Squirt, rad."""
-        return float(self.squirts.ev(offset, speed or self.default))
-
-    def ball_speed(self, offset: float, speed: float | None = None) -> float:
-        """Speed of the ball, m/s."""
-        return float(self.speeds.ev(offset, speed or self.default))
-
-
-@cache
-def strikes() -> Strikes:
-    """The table of the old shaft."""
-    exact = predictions_of(old().scene)
-    squirts = [[exact.squirt(offset, speed) for speed in SPEEDS] for offset in OFFSETS]
-    speeds = [[exact.ball_speed(offset, speed) for speed in SPEEDS] for offset in OFFSETS]
-    tables = (RectBivariateSpline(OFFSETS, SPEEDS, values) for values in (squirts, speeds))
-    return Strikes(*tables, float(old().scene.stroke.speed))
-
-
-class TabulatedSetup(Setup):
-    """A setup of the old shaft whose strikes are tabulated."""
-
-    @property
-    def predictions(self) -> Any:
-        """The table."""
-        return strikes()
-
-
-class TabulatedCue(MeasuredCue):
-    """The old shaft; its squirt and ball speed are linear in the logarithms of wood and tip."""
-
-    def setup(self, z: Array | None = None) -> Setup:
-        """The drawing with squirt and ball speed of the changed wood and tip."""
-        assert z is not None
-        setup: Setup = TabulatedSetup(self.scene)
-        logs = np.zeros(2)
-        for parameter, each in zip(self.parameters, z, strict=True):
-            if parameter.name in OF_THE_CUE:
-                logs += float(each) * slopes()[parameter.name]
-            else:
-                setup = parameter.setup(setup, float(each))
-        squirt, speed = np.exp(logs).tolist()
-        return setup._replace(squirt_factor=setup.squirt_factor * squirt, speed_factor=setup.speed_factor * speed)
-
-
-@cache
-def slopes() -> dict[str, Array]:
-    """Of the logarithms of squirt and ball speed of the old shaft, by a standard deviation of each parameter."""
-    found = {}
-    for parameter in old().parameters:
-        sides = [parameter.setup(Setup(old().scene), sign * STEP).predictions for sign in (1, -1)]
-        up, down = (np.log([side.squirt(CONTACT), side.ball_speed(CONTACT)]) for side in sides)
-        found[parameter.name] = (up - down) / (2 * STEP)
-    return found
-
-
 @cache
 def old() -> MeasuredCue:
     """The shaft that is measured."""
@@ -179,8 +108,8 @@ def new() -> MeasuredCue:
     return MeasuredCue("pool_hollow", full_model(cue("pool_hollow"), OFFSET), ())
 
 
-def maker(row: Row, number: int, *, is_tabulated: bool = True) -> Maker:
-    """One maker. is_tabulated: whether the search of the estimate takes tabulated strikes."""
+def maker(row: Row, number: int) -> Maker:
+    """One maker."""
     draw = np.random.default_rng([ROWS.index(row), number])
     computed = squirt_of(new().scene)
     while True:
@@ -192,9 +121,7 @@ def maker(row: Row, number: int, *, is_tabulated: bool = True) -> Maker:
             continue
     try:
         shots = _shots(row, shaft, draw)
-        measured = (TabulatedCue if is_tabulated else MeasuredCue)(old().name, old().scene, shots)
-        found = replace(estimate(measured), cue=replace(old(), measurements=shots))
-        made = Calibration.of(found)
+        made = Calibration.of(estimate(replace(old(), measurements=shots)))
         predicted = made.squirt(new().scene)
     except ValueError:
         return REFUSED
@@ -327,8 +254,10 @@ def rows_of(*, is_assumed: bool) -> list[list[str]]:
 
 def text() -> str:
     """The page."""
-    inside = [summary(row) for row in ROWS if row.is_assumed]
-    outside = [summary(row) for row in ROWS if not row.is_assumed]
+
+    def span_of(name: str, *, is_assumed: bool = True) -> str:
+        return span((getattr(summary(row), name) for row in ROWS if row.is_assumed == is_assumed), 0)
+
     failed = [row.name for row in ROWS if row.is_assumed and not summary(row).passes]
     laws = [
         [label, *(f"{100 * value:.1f}" for value in formula(own))]
@@ -338,9 +267,9 @@ def text() -> str:
         "Calibration on one shaft",
         "Does a squirt that a maker measures at home calibrate the next shaft as well as it states?",
         f"Within the assumptions nearly: of {MAKERS} simulated makers a row "
-        f"{span_of(inside, 'within')} % are within 1σ and {span_of(inside, 'within_2')} % within 2σ, at "
-        f"{span_of(inside, 'error')} % RMS for {span_of(inside, 'stated')} % stated; without calibration "
-        f"{span_of(inside, 'alone')} %. Outside them {span_of(outside, 'within')} % are within 1σ: fewest without a "
+        f"{span_of('within')} % are within 1σ and {span_of('within_2')} % within 2σ, at "
+        f"{span_of('error')} % RMS for {span_of('stated')} % stated; without calibration "
+        f"{span_of('alone')} %. Outside them {span_of('within', is_assumed=False)} % are within 1σ: fewest without a "
         "distance, with a level cue, and with hard shots of which no speed is given, where the calibration does harm.",
         "An old maple shaft is shot on both sides and read at 0.7 to 2 m (offset to 1 mm, miss to 2 mm, cloth 0.15 to "
         "0.25); the squirt of a new bored shaft with the same tip is predicted. The cue is raised by 1 to 5° and "
@@ -365,12 +294,6 @@ def text() -> str:
         "The claim is no more than this: about 12 % where published shafts agree; one published series in two "
         "disagrees by 35 to 40 % (uncertainty.md).",
     )
-
-
-def span_of(rows: Sequence[Summary], name: str) -> str:
-    """Least and largest of a statistic."""
-    values = [getattr(row, name) for row in rows]
-    return f"{min(values):.0f} to {max(values):.0f}"
 
 
 def _verdict(failed: Sequence[str]) -> str:

