@@ -6,15 +6,16 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cuefem.cue import Array
-from cuefem.designs.blocks import BlockResult, Blocks, block_keys, compute_block, lost_block
+from cuefem.designs.blocks import Blocks, block_keys, compute_block, lost_block
 from cuefem.designs.executors import in_parallel
 from cuefem.designs.sampling import Value
+from cuefem.designs.store import SqliteStore
 from cuefem.designs.study import Study
 from cuefem.quantity.equality import equal_fields
 from cuefem.quantity.fields import check_count
@@ -56,31 +57,9 @@ class Columns:
         self.failures.update({numbers[i]: reason for i, reason in failures.items()})
 
 
-class Stored(NamedTuple):
-    """Stored designs of a block: their places in it, responses (places, responses), and failures by place in those."""
-
-    places: list[int]
-    values: Array
-    failures: dict[int, str]
-
-
-class Store(Protocol):
-    """Stored designs, of any number of studies."""
-
-    @property
-    def is_empty(self) -> bool:
-        """Whether it holds no design."""
-
-    def read(self, keys: bytes) -> Stored:
-        """The stored designs among those with these keys."""
-
-    def write(self, result: BlockResult) -> None:
-        """Store a computed block, all or none of it."""
-
-
 def compute_designs(
     study: Study,
-    store: Store | None = None,
+    store: SqliteStore | None = None,
     *,
     workers: int | Executor | None = None,
     progress: Callable[[int], object] = lambda count: None,
@@ -92,7 +71,7 @@ def compute_designs(
     ----------
     study : Study
         The study.
-    store : Store, optional
+    store : SqliteStore, optional
         The store, by default none. Blocks are written in any order.
     workers : int or Executor, optional
         Number of worker processes, or the executor of a cluster, such as Dask's ``Client.get_executor()`` or MPI's
@@ -141,7 +120,7 @@ def compute_designs(
 
 def _add_stored(
     study: Study,
-    store: Store,
+    store: SqliteStore,
     columns: Columns,
     missing: NDArray[np.bool_],
     workers: int | Executor | None,

@@ -15,13 +15,13 @@ from contextlib import ExitStack, closing, contextmanager
 from functools import lru_cache
 from os import PathLike
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
+from cuefem.cue import Array
 from cuefem.designs.blocks import BlockResult
 from cuefem.designs.design_key import KEY_BYTES, digest
-from cuefem.designs.many_designs import Stored
 from cuefem.designs.study import Study
 from cuefem.files.errors import InputError, check_path, file_state
 from cuefem.quantity.display import full_repr
@@ -56,8 +56,16 @@ def _opened(path: Path, mode: str = "rwc") -> Iterator[sqlite3.Connection]:
         raise InputError(path, "", f"cannot be read or written as a database: {error}") from None
 
 
+class Stored(NamedTuple):
+    """Stored designs of a block: their places in it, responses (places, responses), and failures by place in those."""
+
+    places: list[int]
+    values: Array
+    failures: dict[int, str]
+
+
 class SqliteStore:
-    """The designs of a study in a file of any number of studies; a `many_designs.Store` and a context manager.
+    """The designs of a study in a file of any number of studies; a context manager.
 
     others: further stores, such as those of a study's parts, whose designs are read only.
     InputError if the file is not a store or is damaged. done: number of designs of the study that are stored, so far as

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from os import PathLike
-from typing import Any, overload
+from typing import Any, TypedDict, Unpack, overload
 
 import numpy as np
 
@@ -22,41 +22,24 @@ from cuefem.designs.trade_off import TradeOffResult, trade_off
 from cuefem.quantity.fields import check_kind
 
 
+class StudyOptions(TypedDict, total=False):
+    """The options of `study`."""
+
+    store: str | PathLike[str] | SqliteStore | None
+    workers: int | Executor | None
+    progress: Callable[[Any], object]
+    rounds: int
+
+
+@overload
+def study(what: Study, **options: Unpack[StudyOptions]) -> SweepResult: ...
+@overload
+def study(what: Scatter, **options: Unpack[StudyOptions]) -> ScatterResult: ...
+@overload
+def study(what: Problem, **options: Unpack[StudyOptions]) -> OptimumResult: ...
 @overload
 def study(
-    what: Study,
-    *,
-    store: str | PathLike[str] | SqliteStore | None = ...,
-    workers: int | Executor | None = ...,
-    progress: Callable[[Any], object] = ...,
-    rounds: int = ...,
-) -> SweepResult: ...
-@overload
-def study(
-    what: Scatter,
-    *,
-    store: str | PathLike[str] | SqliteStore | None = ...,
-    workers: int | Executor | None = ...,
-    progress: Callable[[Any], object] = ...,
-    rounds: int = ...,
-) -> ScatterResult: ...
-@overload
-def study(
-    what: Problem,
-    *,
-    store: str | PathLike[str] | SqliteStore | None = ...,
-    workers: int | Executor | None = ...,
-    progress: Callable[[Any], object] = ...,
-    rounds: int = ...,
-) -> OptimumResult: ...
-@overload
-def study(
-    what: str | PathLike[str] | Study | Scatter | Problem,
-    *,
-    store: str | PathLike[str] | SqliteStore | None = ...,
-    workers: int | Executor | None = ...,
-    progress: Callable[[Any], object] = ...,
-    rounds: int = ...,
+    what: str | PathLike[str] | Study | Scatter | Problem, **options: Unpack[StudyOptions]
 ) -> SweepResult | ScatterResult | OptimumResult: ...
 def study(
     what: str | PathLike[str] | Study | Scatter | Problem,
