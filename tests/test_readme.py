@@ -84,8 +84,9 @@ def test_own_shaft_example_writes_report(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 def weighed(block: str) -> Any:
-    """The block as a case; heavy where it strikes with tips whose solids no table has."""
-    return pytest.param(block, id=" ".join(block.split()[:3]), marks=pytest.mark.heavy if "table.json" in block else ())
+    """The block as a case; nightly where it computes three tables of strokes."""
+    marks = pytest.mark.nightly if "table.json" in block else ()
+    return pytest.param(block, id=" ".join(block.split()[:3]), marks=marks)
 
 
 @pytest.mark.parametrize("block", [weighed(block) for block in COMMANDS])
