@@ -12,7 +12,7 @@ from cuefem.designs.optimum import Limit, Problem
 from cuefem.designs.scatter import Scatter
 from cuefem.designs.search import optimum
 from tests.helpers.cues import low_deflection, scene
-from tests.helpers.invalid_input import assert_refused, messages_of, rejected, stored_rows
+from tests.helpers.invalid_input import assert_calls_refused, assert_refused, messages_of, rejected, stored_rows
 from tests.helpers.sweeps import OPTIMUM, SCATTER, STRIKES, STUDY, write_study
 
 AT = cf.Resolution(1, 4, 2)
@@ -45,58 +45,6 @@ def varying(path: str, *values: object, response: str = "mass", base: cf.Scene =
 
 PAIR = {("E", "rho"): 0.5}
 CONTRADICTING = {("E", "rho"): 0.9, ("rho", "time"): 0.9, ("E", "time"): -0.9}
-CALLS: dict[str, Callable[[], object]] = {
-    "empty range": lambda: Span(2.0, 2.0, 3),
-    "infinite range": lambda: Span(2.0, float("inf"), 3),
-    "logarithm of 0": lambda: Span(0.0, 1.0, 3, logarithmic=True),
-    "no values": lambda: Levels(()),
-    "no path": lambda: Vary((), Levels((1.0,))),
-    "no samples": lambda: Sample(0, 1),
-    "negative seed": lambda: Sample(4, -1),
-    "number for a material": lambda: varying("cue.segments[0].material", 1.0),
-    "name for a mass": lambda: varying("ball.mass", "ash"),
-    "factor of a constant": lambda: varying("cue.segments[0].kappa", 1.1, factor=True),
-    "name of a formula": lambda: varying("ball.mass", 0.2, name="=cmd|' /C calc'!A0"),
-    "name of two lines": lambda: varying("ball.mass", 0.2, name="bore\nwidth"),
-    "field varied twice": lambda: Study(
-        MAPLE, tuple(Vary(("ball.mass",), Levels((0.2,)), name) for name in "ab"), (Response("mass"),)
-    ),
-    "frequency of a lumped cue": lambda: varying("ball.mass", 0.2, response="frequency(1)", base=LUMPED),
-    "misspelt response": lambda: Response.of("squrit(0.3)"),
-    "misspelt name": lambda: Response("squrit"),
-    "squirt at 2": lambda: Response("squirt", 2.0),
-    "frequency 1.5": lambda: Response("frequency", 1.5),
-    "squirt at a text": lambda: Response("squirt", "x"),
-    "mass with brackets": lambda: Response.of("mass(3)"),
-    "infinite frequency": lambda: Response.of("frequency(inf)"),
-    "ball speed at a text": lambda: Response.of("ball_speed(fast)"),
-    "squirt at the edge": lambda: Response.of("squirt(1)"),
-    "pivot length at 0": lambda: Response.of("pivot_length(0)"),
-    "correlation of an unknown name": lambda: scattered({("E", "density"): 0.3}),
-    "correlation of 1": lambda: scattered({("E", "rho"): 1.0}),
-    "correlation without a number": lambda: scattered({("E", "rho"): float("nan")}),
-    "correlation with itself": lambda: scattered({("E", "E"): 0.5}),
-    "correlation twice": lambda: scattered(PAIR | {("rho", "E"): 0.5}),
-    "correlation of names": lambda: scattered({("E", "wood"): 0.5}),
-    "contradicting correlations": lambda: scattered(CONTRADICTING),
-    "two groups": lambda: scattered(groups={"a": ("E", "rho"), "b": ("rho",)}),
-    "group without its correlate": lambda: scattered(PAIR, groups={"a": ("E", "time")}),
-    "group of a parameter's name": lambda: scattered(groups={"time": ("E", "rho")}),
-    "count of 100": lambda: scattered(count=100),
-    "count of 1": lambda: scattered(count=1),
-    "count with a fraction": lambda: scattered(count=64.0),
-    "limit below 0 on a size": lambda: Limit(Response("squirt", -0.3), -0.02),
-    "unprintable group": lambda: scattered(groups={"wood\x1b": ("E", "rho")}),
-    "limits crossed": lambda: Limit(Response("mass"), 2.0, 1.0),
-    "no parameters": lambda: replace(PROBLEM, vary=()),
-    "optimum of a distribution": lambda: replace(PROBLEM, vary=(E,)),
-    "target below 0 of a size": lambda: replace(PROBLEM, objective=Response("squirt", 0.3), target=-0.02),
-    "target that is maximized": lambda: replace(PROBLEM, target=0.05, maximize=True),
-    "optimum with workers": lambda: cf.study(PROBLEM, workers=2),
-    "no rounds": lambda: cf.study(PROBLEM, rounds=0),
-    "no workers": lambda: cf.study(varying("ball.mass", 0.2), workers=0),
-    "workers of a text": lambda: cf.study(varying("ball.mass", 0.2), workers="two"),
-}
 RUNS: dict[str, Callable[[], object]] = {
     "scatter of miscues": lambda: cf.study(scattered(vary=(TIME,), count=2, response="squirt(0.9)")),
     "unreachable limit": lambda: optimum(STIFF, rounds=1),
@@ -106,7 +54,7 @@ RUNS: dict[str, Callable[[], object]] = {
 
 
 def test_study_invalid_call_raises(request: pytest.FixtureRequest) -> None:
-    assert_refused("designs", messages_of(CALLS), request)
+    assert_calls_refused("designs", globals() | {"Sample": Sample}, request)
 
 
 def test_study_without_answer_raises(request: pytest.FixtureRequest) -> None:

@@ -6,20 +6,17 @@ Every declared field of every table: tests/quantity/test_declared_fields.py.
 import struct
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
-from math import nan
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.contact.motion_history import motion
 from cuefem.designs import Levels, Response, Study, Vary
 from cuefem.designs.store import SqliteStore
 from cuefem.files import InputError
 from tests.helpers.command_line import call
-from tests.helpers.invalid_input import assert_refused, messages_of, stored_rows
+from tests.helpers.invalid_input import assert_calls_refused, assert_refused, stored_rows
 from tests.helpers.surfaces import revolve, two_bodies, write_surface
 
 
@@ -161,33 +158,6 @@ LUMPED = cf.Scene(cf.LumpedCue(0.54, 0.01))
 ASH = cf.Material(12e9, 8e8, 680.0)
 BAR = cf.Cue((cf.Segment(0.7, 0.012, 0.021, ASH),))
 STRUCK = cf.Scene(KIM, tip=cf.Tip(0.75, 0.7, 1e-3), stroke=cf.Stroke(2.0, 0.3))
-CALLS: dict[str, Callable[[], object]] = {
-    "stroke of a study": lambda: cf.load_scene("studies/sweeps/bore.toml"),
-    "stroke of a measured folder": lambda: cf.load_scene("studies/measured/stinger"),
-    "stroke of a misspelt name": lambda: cf.load_scene("plane maple"),
-    "scene for another game": lambda: cf.load_scene("studies/scenes/snooker.toml", game="pool"),
-    "unknown game": lambda: cf.load_scene("plain maple", game="polo"),
-    "unknown game of a cue": lambda: cf.usual_scene(cf.load_cue("plain maple"), "polo"),
-    "cue of a lumped cue": lambda: cf.load_cue("lumped.toml"),
-    "mesh of a cue": lambda: cf.save(KIM, "cue.msh"),
-    "mesh of a scene": lambda: cf.save(cf.Scene(KIM), "scene.vtu"),
-    "cue in no folder": lambda: cf.save(KIM, "nowhere/cue.toml"),
-    "mesh in no folder": lambda: cf.save(KIM, "nowhere/cue.vtu"),
-    **{f"motion at {times}": partial(motion, STRUCK, times) for times in ((-1e-3,), (1e-3, 0.0), (nan,), ())},
-    "motion of a lumped cue": lambda: motion(LUMPED, [0.0]),
-    "one frame": lambda: cf.save_motion(STRUCK, "seen", frames=1),
-    "motion until 0": lambda: cf.save_motion(STRUCK, "seen", until=0.0),
-    "scale without a number": lambda: cf.save_motion(STRUCK, "seen", scale=nan),
-    "motion of a raised cue": lambda: cf.save_motion(replace(STRUCK, effects=(cf.Elevation(0.1),)), "seen"),
-    "motion into a file": lambda: cf.save_motion(STRUCK, "lumped.toml"),
-    "motion in no folder": lambda: cf.save_motion(STRUCK, "none/seen", frames=2),
-    "segment of 1e9 m": lambda: cf.Segment(1e9, 0.012, 0.021, ASH),
-    "contact of 1e-12 s": lambda: cf.Tip(contact_time=1e-12),
-    "2,002 segments": lambda: cf.Cue((cf.Segment(1e-3, 0.012, 0.012, ASH),) * 2002),
-    "stiff tip": lambda: cf.end_mass(cf.Scene(BAR, tip=cf.Tip(stiffness=1e30))),
-    "fine mesh": lambda: cf.end_mass(cf.Scene(BAR, tip=cf.Tip(stiffness=1e6)), at=cf.Resolution(4000, 8, 4)),
-    "many modes": lambda: cf.modes(BAR, 10**9),
-}
 
 
 @pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
@@ -197,4 +167,4 @@ def test_call_on_another_kind_or_size_is_rejected(
     (tmp_path / "studies").symlink_to(Path(__file__).parents[2] / "studies")
     cf.save(LUMPED, tmp_path / "lumped.toml")
     monkeypatch.chdir(tmp_path)
-    assert_refused("file_calls", messages_of(CALLS), request)
+    assert_calls_refused("file_calls", globals() | {"replace": replace}, request)

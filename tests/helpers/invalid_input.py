@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -35,6 +36,11 @@ def stored_rows(table: str) -> list[str]:
 def messages_of(calls: Mapping[str, Callable[[], object]]) -> dict[str, str]:
     """What each call raises."""
     return {row: raised(action) for row, action in calls.items()}
+
+
+def assert_calls_refused(table: str, names: dict[str, Any], request: pytest.FixtureRequest) -> None:
+    """As `assert_refused`, of a table whose rows are calls in Python, with the names of a test file."""
+    assert_refused(table, {row: raised(lambda row=row: eval(row, names)) for row in stored_rows(table)}, request)
 
 
 def raised(action: Callable[[], object]) -> str:

@@ -1,10 +1,7 @@
 """Invalid measurements, files and folders; one for each `raise` (bad input)."""
 
 import errno
-import math
-from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -17,66 +14,29 @@ from cuefem.measurements.measurement_types import AddedMass, PivotLength, Setup,
 from cuefem.measurements.shot import Shot
 from cuefem.measurements.swerve import reading_angle
 from cuefem.measurements.uncertain_parameters import Prior
-from cuefem.results.uncertainty import MODEL_ERROR
 from tests.helpers.command_line import call
 from tests.helpers.invalid_input import (
+    assert_calls_refused,
     assert_refused,
     assert_rejects,
     assert_unchanged,
-    messages_of,
     rejected,
     stored_rows,
 )
-from tests.helpers.measured_cues import CUE_TOML, MEASURED_TOML, SCENE, measured_cue, measured_folder
+from tests.helpers.measured_cues import CUE_TOML, MEASURED_TOML, measured_cue, measured_folder
 from tests.helpers.recordings import save_wav
-from tests.measurements.test_calibration import OLD, calibration
+from tests.measurements.test_calibration import calibration
 
 SHOT = Shot(cue_offset=0.0143, left=0.04, right=0.038, distance=1.2)
 FAR = AddedMass(mass=0.01, position=0.8, value=0.1, baseline=0.1, error=0.01, offset=0.3)
 PIVOT = PivotLength(offset=0.3, value=0.3, error=0.01)
-FOREIGN = {
-    "another game": cf.usual_scene(cf.load("kim"), "carom"),
-    "another leather": cf.with_parameters(OLD, {"leather": 1e8}),
-    "a spring tip": replace(OLD, tip=cf.Tip(0.73, 0.7, 1e-3), effects=()),
-}
-CALLS: dict[str, Callable[[], object]] = {
-    "left alone": lambda: Squirt(offset=0.3, left=0.03, error=1e-3),
-    "no squirt": lambda: Squirt(offset=0.3, error=1e-3),
-    "zero error of two sides": lambda: Squirt(offset=0.3, left=0.03, right=0.03, error=1e-3, zero_error=1e-3),
-    "pivot length without squirt": lambda: PIVOT.compute(Setup(SCENE, squirt_factor=0.0)),
-    "unknown prior": lambda: Prior("colour", 0.1),
-    "prior of a material": lambda: Prior("shaft material", 0.1),
-    "prior of a number": lambda: Prior(3, 0.1),
-    "prior without a number": lambda: Prior("E", low=float("nan"), high=2e9),
-    "prior twice": lambda: measured_cue(priors=(Prior("E", 0.1), Prior("E", 0.2))),
-    "mode 1.5": lambda: Tone(mode=1.5, value=1.0, error=1.0),
-    "baseline of 0": lambda: replace(FAR, baseline=0.0),
-    "spread and bounds": lambda: Prior("E", 0.1, 1e9, 2e9),
-    "bounds crossed": lambda: Prior("E", low=2e9, high=1e9),
-    "prior of no dome": lambda: measured_cue(priors=(Prior("dome", 0.1),)),
-    "measured text": lambda: MeasuredCue("a", "cue", ()),
-    "measurement of a text": lambda: measured_cue("a tone"),
-    "long free length": lambda: Stiffness(free_length=0.8, value=1.0, error=1.0).compute(Setup(SCENE)),
-    "added mass off the cue": lambda: FAR.compute(Setup(SCENE)),
-    "estimate of nothing": lambda: estimate(measured_cue()),
-    "squirt of a left-hand stroke": lambda: Squirt(offset=0.3, value=-0.03, error=1e-3),
-    "sides of opposite sense": lambda: Squirt(offset=0.3, left=0.03, right=-0.03, error=1e-3),
-    "elevation without distance": lambda: replace(PIVOT, elevation=0.05),
-    "error of no elevation": lambda: replace(PIVOT, distance=1.0, elevation_error=0.05),
-    "shot without offset": lambda: replace(SHOT, cue_offset=None),
-    "shot with both offsets": lambda: replace(SHOT, chalk_mark=0.01),
-    "shot of opposite sides": lambda: replace(SHOT, right=-0.038),
-    "shot beyond the miscue limit": lambda: replace(SHOT, cue_offset=0.03).squirt(SCENE),
-    **{f"calibration for {kind}": partial(calibration().squirt, scene) for kind, scene in FOREIGN.items()},
-    "calibration without squirt": lambda: replace(calibration(), drawn={}, covariance=((MODEL_ERROR**2,),)),
-    "covariance of two values": lambda: replace(calibration(), covariance=((1.0, 2.0), (2.0, 1.0))),
-    **{f"factor {x}": partial(replace, calibration(), log_factor=math.log(x)) for x in (0.5, 2.0)},
-    "slow ball": lambda: reading_angle(0.03, 0.3, elevation=0.05, speed=0.3, distance=1.2, friction=0.2),
-}
+# What rows of tests/golden/refused_measurements.txt name beside the names here.
+KINDS = {kind.__name__: kind for kind in (MeasuredCue, Prior, Setup, Squirt, Stiffness, Tone)}
+NAMED = KINDS | {each.__name__: each for each in (calibration, estimate, measured_cue, reading_angle, replace)}
 
 
 def test_invalid_arguments_are_rejected(request: pytest.FixtureRequest) -> None:
-    assert_refused("measurements", messages_of(CALLS), request)
+    assert_calls_refused("measurements", globals() | NAMED | {"cf": cf}, request)
 
 
 SHOTS = r"""[[shot]]\nleft = "40 mm"\nright = "38 mm"\n"""
