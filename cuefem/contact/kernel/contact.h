@@ -11,8 +11,8 @@
    A mode of angular frequency omega is its velocity v and a = omega q, its displacement in the same unit. The
    cue has ports (axial and lateral velocity of its tip, rotation rate) and the slopes of the bent shaft; the
    ball has its velocities. With y all these velocities, the contact's velocities are v = C y and its forces F
-   load them by C' F, so that energy is conserved. v stands for velocities at the end of a step, u for their
-   means over it; they are those of the ball against the tip, so that v_n > 0 while the two part. A dashpot is
+   load them by C' F, so that energy is conserved. There are two velocities: v is that at the end of a step, u
+   its mean over the step. Both are of the ball against the tip, so that v_n > 0 while the two part. A dashpot is
    one more port of the cue, whose force opposes its mean velocity over the step.
 
    An impact of infinite friction is a step of zero length, whose forces and loads are impulses, N s.
@@ -58,7 +58,7 @@ enum {
 };
 /* Ports of the cue: axial and lateral velocity of the tip; the third is the rotation rate of its section or,
    of a raised cue, the velocity out of the plane of the first two. */
-enum { U_PORT, W_PORT, THIRD_PORT };
+enum { AXIAL_PORT, LATERAL_PORT, THIRD_PORT };
 /* Of the velocities of the ball, (t, n) of its centre come first; then, of a level cue, R times its spin. */
 enum { BALL_SPIN = 2 };
 /* Components of the contact's forces F and velocities v. At the tip: tangential, normal, out of the plane; at
@@ -153,8 +153,8 @@ typedef struct {
     const double *radiating;                    /* modes that radiate, from their state and loads */
 } StepTables;
 
-/* Normal force of the tip at an indentation: force, N, and slope, N/m. virtual: where the loading curve has
-   this force, m; scale: indentation per virtual indentation. */
+/* Normal force of the tip at an indentation: force, N, and slope, N/m. An unloading tip has the force of the
+   loading curve at a smaller, virtual indentation, m; scale: change of the indentation per change of that. */
 typedef struct {
     double force, slope, virtual, scale;
 } NormalForce;
@@ -179,10 +179,10 @@ typedef struct {
     double mean_per_force[FORCES][CUE_VELOCITIES];
     double v_free[FORCES], u_free[FORCES];       /* v and u without forces */
     double u_stick[FORCES];                      /* u of a point that sticks */
-    double V[FORCES][FORCES], W[FORCES][FORCES]; /* v = v_free + V F, u = u_free + W F */
+    double V[FORCES][FORCES], W[FORCES][FORCES]; /* matrices of v = v_free + V F and u = u_free + W F */
     double F[FORCES], v[FORCES], u[FORCES];      /* the step's forces, N, and velocities */
     bool on_table, table_stuck;                  /* of a raised cue, as in State */
-    int slip;                     /* its direction, or STICK; a patch that slips in parts keeps STICK */
+    int slip;                     /* direction of a patch that slips as a whole; STICK of annuli, too */
     NormalForce normal;           /* of a level cue, at mid-step */
     const Edge *edges;            /* of the annuli, (ANNULI + 1,): the same for all steps */
     double annulus_force[ANNULI]; /* at mid-step, N; State has that of the last step */
@@ -206,6 +206,13 @@ typedef struct {
 } Patch;
 
 extern const Patch rigid_patch, spring_patch, partial_slip;
+
+static inline const Patch *patch_of(const Input *in)
+{
+    static const Patch *const patches[] = {
+        [RIGID_PATCH] = &rigid_patch, [SPRING_PATCH] = &spring_patch, [PARTIAL_SLIP] = &partial_slip};
+    return patches[in->patch];
+}
 
 enum { MAX_ITERATIONS = 40 };
 /* Relative change of the forces per iteration at convergence, and the largest accepted after the last one. */
@@ -239,8 +246,7 @@ bool level_impulses(const Input *in, const State *s, Work *w);
 bool raised_forces(const Input *in, double h, const State *s, Work *w);
 bool raised_impulses(const Input *in, const State *s, Work *w);
 
-/* run.c, patch_partial_slip.c */
-const Patch *patch_of(const Input *in);
+/* patch_partial_slip.c */
 void find_edges(const Input *in, Edge edges[ANNULI + 1]);
 
 /* phases.c */

@@ -10,10 +10,10 @@ static void rolled_kinematics(const Input *in, double angle, double C[FORCES][VE
     double first = fmin(in->phi, in->rim), now = copysign(fmin(fabs(at), in->rim), at);
     /* change of the contact's displacement (u, w) per unit rotation of the end section, m */
     double du = in->dome * (sin(first) - sin(now)), dw = in->dome * (cos(first) - cos(now));
-    C[T][U_PORT] = -s;
-    C[T][W_PORT] = -cs;
-    C[N][U_PORT] = -cs;
-    C[N][W_PORT] = s;
+    C[T][AXIAL_PORT] = -s;
+    C[T][LATERAL_PORT] = -cs;
+    C[N][AXIAL_PORT] = -cs;
+    C[N][LATERAL_PORT] = s;
     if (in->ports > THIRD_PORT) {
         C[T][THIRD_PORT] = -(ca * in->arm_t + sa * in->arm_n + s * du + cs * dw);
         C[N][THIRD_PORT] = -(ca * in->arm_n - sa * in->arm_t + cs * du - s * dw);
@@ -40,7 +40,7 @@ static void kinematics_at_middle(const Input *in, double h, const State *s, Work
     }
     if (in->rolling) rolled_kinematics(in, s->angle + half * s->rolling_rate, w->C);
     for (int f = 0; f < in->forces; f++)
-        for (int a = 0; a < in->slopes; a++) w->C[f][ports + a] = -w->C[f][U_PORT] * w->shortening[a];
+        for (int a = 0; a < in->slopes; a++) w->C[f][ports + a] = -w->C[f][AXIAL_PORT] * w->shortening[a];
 }
 
 /* Whether the point of a force stuck in the last step. */
@@ -92,7 +92,7 @@ FAST static void per_force(const Input *in, const Work *w, const double *table,
         double per_shortening = 0;
         for (int q = ports; q < n_cue; q++) per_shortening += per_load[q] * w->shortening[q - ports];
         for (int f = 0; f < in->forces; f++) {
-            double sum = -w->C[f][U_PORT] * per_shortening;
+            double sum = -w->C[f][AXIAL_PORT] * per_shortening;
             for (int q = 0; q < ports; q++) sum += per_load[q] * w->C[f][q];
             result[f][p] = sum;
         }

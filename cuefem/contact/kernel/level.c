@@ -5,7 +5,8 @@
    equations are smooth; where an annulus begins to slip in this iteration, one of its own size. */
 static const double NEWTON_REL_TOL = 1e-9;
 
-/* Row N: F_n = law(indentation at mid-step). Handbook: The contact. */
+/* Row N: F_n = law(indentation d at mid-step). Handbook: The contact. With d = d_begin - h/2 u_n and u = u_free
+   + W F, a force F changes d by -h/2 W_n F: hence the factors of the law's slope in J. */
 static void normal_equation(const Input *in, double h, const State *s, Work *w, Equations *e)
 {
     const double half = h / 2;

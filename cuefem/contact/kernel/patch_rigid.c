@@ -19,8 +19,7 @@ static int friction_state(const Input *in, const State *s, const Work *w)
 
 static void nothing(const Input *in, State *s, const Work *w) {}
 
-const Patch rigid_patch = {.slips_in_parts = false,
-                           .stick = stick,
+const Patch rigid_patch = {.stick = stick,
                            .update = nothing,
                            .release = nothing,
                            .friction_state = friction_state};

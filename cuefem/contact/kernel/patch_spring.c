@@ -26,8 +26,7 @@ static void release(const Input *in, State *s, const Work *w)
 
 static int friction_state(const Input *in, const State *s, const Work *w) { return w->slip; }
 
-const Patch spring_patch = {.slips_in_parts = false,
-                            .stick = stick,
+const Patch spring_patch = {.stick = stick,
                             .update = update,
                             .release = release,
                             .friction_state = friction_state};

@@ -19,13 +19,6 @@ typedef struct {
     double arrays[]; /* of Work */
 } Contact;
 
-const Patch *patch_of(const Input *in)
-{
-    static const Patch *const patches[] = {
-        [RIGID_PATCH] = &rigid_patch, [SPRING_PATCH] = &spring_patch, [PARTIAL_SLIP] = &partial_slip};
-    return patches[in->patch];
-}
-
 /* A contact at its first touch; NULL if memory runs out. Input and state must outlive it. */
 EXPORTED Contact *contact_new(const Input *in, State *s)
 {
@@ -128,16 +121,16 @@ EXPORTED double imposed_velocity_impulse(Contact *c, const StepTables *tables, i
                                          double ball_inverse_mass, double first_impulse)
 {
     const int n_cue = c->in->ports + c->in->slopes, n_state = 2 * c->in->modes;
-    const double *mean_velocity = tables->means + W_PORT * n_state;
+    const double *mean_velocity = tables->means + LATERAL_PORT * n_state;
     const double per_force =
-        tables->mean_per_load[W_PORT * n_cue + W_PORT] + ball_inverse_mass * tables->h / 2;
+        tables->mean_per_load[LATERAL_PORT * n_cue + LATERAL_PORT] + ball_inverse_mass * tables->h / 2;
     double impulse = first_impulse;
     for (int n = 0; n < steps; n++) {
         double without_force = product(mean_velocity, c->s->modes, n_state) + ball_inverse_mass * impulse;
-        c->w.loads[W_PORT] = (means[n] - without_force) / per_force;
+        c->w.loads[LATERAL_PORT] = (means[n] - without_force) / per_force;
         load_modes(c->in, tables, c->s, &c->w);
         advance_modes(c->in, tables, c->s, &c->w);
-        impulse += tables->h * c->w.loads[W_PORT];
+        impulse += tables->h * c->w.loads[LATERAL_PORT];
     }
     return impulse;
 }

@@ -61,7 +61,7 @@ static void find_loads(const Input *in, Work *w)
         for (int p = 0; p < n_cue; p++) w->loads[p] += w->C[f][p] * w->F[f];
         for (int b = 0; b < in->speeds; b++) w->ball_loads[b] += w->C[f][n_cue + b] * w->F[f];
     }
-    w->axial_force = -w->loads[U_PORT];
+    w->axial_force = -w->loads[AXIAL_PORT];
 }
 
 static void advance_cue(const Input *in, const StepTables *t, State *s, Work *w)
@@ -118,8 +118,9 @@ static void record(double h, const State *s, const Work *w, Step *row)
     memcpy(row->ball, s->ball, sizeof row->ball);
 }
 
-/* Take one step and return true; false if it must be repeated with the length s->next_step. The phase of the
-   next step follows in run.c, from phases.c. */
+/* Take one step and return true; false if it must be repeated with the length s->next_step: half of this one,
+   as no forces were found, or up to the separation or touch within it. The phase of the next step follows in
+   run.c, from phases.c. */
 bool take_step(const Input *in, const StepTables *t, State *s, Work *w, Step *row)
 {
     free_motion(in, t, s, w);
