@@ -173,7 +173,7 @@ def squirt_curve(scene: Solvable, offsets: Sequence[float] = OFFSETS) -> SquirtC
         raise ValueError("squirt_curve offsets must be at least one b/R between -1 and 1; got none")
     design = SolvedDesign.of(scene)
     scene, solved = design.scene, design.solved
-    own, published = two_part_cue(design), a31_cues(design, offsets)
+    (own, _), published = two_part_cue(design), a31_cues(design, offsets)
     guess = LumpedCue.two_part(scene.axial_mass, PAPER_CUE_ENDS["Kim's guess"])
     cues: dict[str, list[LumpedCue | None]] = {
         "two-part, this cue": [own] * len(offsets),

@@ -74,11 +74,14 @@ class StrikeModels(Rows, Analysis):
         Squirt (rad), natural pivot length (m), speeds (m/s), spin (rad/s) and other values by the model's name.
         "coupled": integrated in time. "two-part": the impulse solver for axial mass and end mass, as in
         `cuefem.reduction`. "A.31": Alciatore's formula, squirt and pivot length only.
+    missing : str
+        Why the two-part cue has no end mass; "" if it has one.
     """
 
     end_mass: float | None
     a31_end_mass: float | None
     models: dict[str, Record]
+    missing: str = ""
 
     def frame_rows(self) -> list[Record]:
         """A row for each model; of vectors a column for each component."""
@@ -125,7 +128,7 @@ class StrikeModels(Rows, Analysis):
         beam = f"coupled: vibrating shaft in time{accuracy}"
         where = f"stick at b/R {self.scene.stroke.offset:.4g}"
         if self.end_mass is None and self.a31_end_mass is None:
-            return [use, beam, f"two-part and A.31: {NO_END_MASS}"]
+            return [use, beam, f"two-part and A.31: left out; {self.missing}"]
         two_part = f"two-part: {_mass_text(self.end_mass, where, beside='one axial mass and ')}"
         if self.end_mass == self.a31_end_mass:
             return [use, beam, f"{two_part}; A.31: the same end mass"]
@@ -166,7 +169,7 @@ def strike_models(scene: Solvable, rtol: float | None = None) -> StrikeModels:
     design = SolvedDesign.of(scene, rtol)
     scene = design.scene
     models = {"coupled": outcome_record(design.strike(), scene)}
-    cue = two_part_cue(design)
+    cue, missing = two_part_cue(design)
     if cue is not None:
         models["two-part"] = outcome_record(lumped_strike(scene, cue), scene)
     (a31_cue,) = a31_cues(design, [scene.stroke.offset])
@@ -174,25 +177,25 @@ def strike_models(scene: Solvable, rtol: float | None = None) -> StrikeModels:
         squirt = a31_squirt(scene, a31_cue)
         models["A.31"] = {"squirt": squirt, "pivot_length": pivot_length(scene, squirt)}
     end_mass, a31_end_mass = (None if each is None else each.end_mass for each in (cue, a31_cue))
-    return StrikeModels(scene, end_mass, a31_end_mass, models)
+    return StrikeModels(scene, end_mass, a31_end_mass, models, missing)
 
 
 def _mass_text(end_mass: float | None, where: str, beside: str = "") -> str:
     return NO_END_MASS if end_mass is None else f"{beside}an end mass of {with_unit(end_mass, END_MASS)}, {where}"
 
 
-def two_part_cue(design: SolvedDesign) -> LumpedCue | None:
+def two_part_cue(design: SolvedDesign) -> tuple[LumpedCue | None, str]:
     """The two-part cue of a scene, of its axial mass and its end mass at the stroke's offset; a lumped cue itself.
 
-    None if no end mass with the squirt is found.
+    None if no end mass with the squirt is found; then with the reason.
     """
     scene = design.scene
     if scene.lumped is not None:
-        return scene.lumped
+        return scene.lumped, ""
     try:
-        return LumpedCue(scene.axial_mass, design.end_mass("offset", None))
-    except (ValueError, RuntimeError):
-        return None
+        return LumpedCue(scene.axial_mass, design.end_mass("offset", None)), ""
+    except (ValueError, RuntimeError) as error:
+        return None, str(error)
 
 
 def a31_cues(design: SolvedDesign, offsets: Sequence[float]) -> list[LumpedCue | None]:
