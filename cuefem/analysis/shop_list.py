@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
 from cuefem.analysis.comparison import with_same_stroke
 from cuefem.analysis.verdict import verdict
+from cuefem.files import write_atomically
 from cuefem.files.cue_names import INSIDE_ASSUMED
 from cuefem.files.reference_cues import inside_mark
 from cuefem.results.closed_forms import pivot_length
@@ -19,6 +21,7 @@ from cuefem.results.solved_design import SolvedDesign
 from cuefem.results.uncertainty import difference_record, model_share, shaft_uncertainty
 from cuefem.scene import Scene
 from cuefem.show.analysis import Answer
+from cuefem.show.renderers import csv_text
 
 # Of a .csv: heading, name, and factor from SI.
 CSV_COLUMNS = (
@@ -100,6 +103,16 @@ class ShopList(Answer):
         red = {i: "red" for i in range(len(self.unread))}
         unread = Table("No answer", ("file", "why"), tuple(self.unread.items()), texts=(0, 1), styles=red)
         return [replace(table, styles=styles, more=(3, 6, 7)), *([unread] if self.unread else [])]
+
+    def save(self, path: str | Path) -> None:
+        """Write the record (.json), a page (.html) or the numbers (.csv)."""
+        path = Path(path)
+        if path.suffix.lower() != ".csv":
+            super().save(path)
+            return
+        head, *rows = self.plain_rows()
+        text = "\ufeff" + csv_text(head, rows)
+        write_atomically(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
 
     def plain_rows(self) -> list[tuple[str, ...]]:
         """Head and rows of a .csv: numbers alone, in the units of its head; a reason where there are none."""

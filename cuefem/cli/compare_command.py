@@ -24,7 +24,7 @@ from cuefem.cli.scene_command import (
     force_option,
 )
 from cuefem.cli.scene_options import impact_options, offset_option, option, typed_name
-from cuefem.files import InputError, write_atomically
+from cuefem.files import InputError
 from cuefem.files.cue_names import cue_name, named_path
 from cuefem.files.defaults_report import STROKE, Assumption
 from cuefem.files.lathe_profile import DRAWING_EXTENSIONS
@@ -34,7 +34,6 @@ from cuefem.measurements.measured_folder import MEASURED, load_measured, named_f
 from cuefem.measurements.measurement_types import BallDirection
 from cuefem.quantity.display_units import displayed_system
 from cuefem.results.plausibility import plausibility_warnings
-from cuefem.show.renderers import csv_text
 from cuefem.show.scene_summary import listed
 
 MEASURED_FILES = (MEASURED, "cue.toml", "cue.csv")  # one of them makes a folder a measured cue
@@ -173,9 +172,7 @@ def _list(files: Sequence[Path], options: Mapping[str, str | None], output: Path
     with errors_name_file(files[0].parent):
         made = cf.shop_list(scenes, unread=unread, progress=with_progress_bar)
     if output is not None and output.suffix.lower() == ".csv":
-        head, *rows = made.plain_rows()
-        text = "\ufeff" + csv_text(head, rows)
-        write_atomically(output, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+        made.save(output)
         click.echo(f"{made.headline()}\nwrote {output}")
     else:
         Presentation(made, files={"files": [typed_name(file) for file in files]}).show(output, as_json=as_json)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -30,7 +30,7 @@ from cuefem.cli.scene_options import CueFile, file_label, option, option_value, 
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.files import InputError, load_accuracy, save_changed
 from cuefem.files.errors import as_input_error
-from cuefem.files.shop import order_of, shop_of
+from cuefem.files.shop import ShopLimits, order_of, shop_of
 from cuefem.parameters.parts import main_material
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.quantity.fields import Quantity
@@ -112,14 +112,20 @@ def _customer_sheet(request: Request, said: dict[str, str], calibration: Calibra
 def shop_limits(request: Request) -> Limits:
     """The limits of design changes of the shop.toml of a file; the usual ones without it."""
     shop = shop_of(request.file)
-    given = shop.defaults.limits
-    found: dict[str, Any] = {"keep": given.keep} if given.keep else {}
-    if given.wall is not None:
-        found["wall"] = option_value(shop.path, "defaults.limits.wall", given.wall, Quantity("m", "(0, 1]"))
-    if given.stiffness_loss is not None:
-        found["stiffness_loss"] = _share(shop.path, "defaults.limits.stiffness_loss", given.stiffness_loss)
-    with as_input_error(shop.path, "defaults.limits"):
-        return Limits(**found)
+    return _with_limits(Limits(), shop.defaults.limits, shop.path, "defaults.limits.{}".format)
+
+
+def _with_limits(usual: Limits, texts: ShopLimits, file: Path, key: Callable[[str], str]) -> Limits:
+    """The usual limits with those of some texts, each checked in its own name: key of a name in the file."""
+    given: dict[str, Any] = {"keep": texts.keep} if texts.keep else {}
+    if texts.wall is not None:
+        given["wall"] = option_value(file, key("wall"), texts.wall, Quantity("m", "(0, 1]"))
+    if texts.stiffness_loss is not None:
+        given["stiffness_loss"] = _share(file, key("stiffness_loss"), texts.stiffness_loss)
+    for name, value in given.items():
+        with as_input_error(file, key(name)):
+            Limits(**{name: value})
+    return replace(usual, **given)
 
 
 @analysis_command(formats=(".html", ".json", ".toml"))
@@ -158,7 +164,8 @@ def improve(
     Each change is applied on its own and computed by the coupled strike. Rows are sorted by squirt, lowest first. Above
     them: the best two changes together, within the limits; sizes are those of a shop.
     """
-    limits = _limits(request, wall, keep, stiffness_loss)
+    parts = () if keep is None else tuple(part.strip().casefold() for part in keep.split(","))
+    limits = _with_limits(shop_limits(request), ShopLimits(wall, parts, stiffness_loss), request.file, option)
     drawing = output if output is not None and output.suffix.lower() == ".toml" else None
     if take is None and drawing is not None:
         raise InputError(drawing, "--output", "a drawing (.toml) needs the row to save, such as --take 1")
@@ -176,21 +183,6 @@ def improve(
         return answer
     _save_change(request, answer, take, drawing, as_json=as_json)
     return None
-
-
-def _limits(request: Request, wall: str | None, keep: str | None, stiffness_loss: str | None) -> Limits:
-    """The limits of the options, each checked in its own name."""
-    given: dict[str, Any] = {}
-    if wall is not None:
-        given["wall"] = option_value(request.file, "--wall", wall, Quantity("m", "(0, 1]"))
-    if keep is not None:
-        given["keep"] = tuple(part.strip().casefold() for part in keep.split(","))
-    if stiffness_loss is not None:
-        given["stiffness_loss"] = _share(request.file, "--stiffness-loss", stiffness_loss)
-    for name, value in given.items():
-        with as_input_error(request.file, option(name)):
-            Limits(**{name: value})
-    return replace(shop_limits(request), **given)
 
 
 def _share(file: Path, name: str, text: str) -> float:

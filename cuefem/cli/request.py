@@ -18,12 +18,10 @@ from cuefem.cli.scene_options import (
     offset_value,
     option,
     option_value,
-    with_body_option,
-    with_shaft_mass_option,
 )
 from cuefem.cue import Cue
 from cuefem.effects.force_law import IndentationOutOfRange
-from cuefem.files import InputError, load
+from cuefem.files import InputError, load, with_body_mass
 from cuefem.files.cue_names import cue_name
 from cuefem.files.defaults_report import (
     Assumption,
@@ -33,19 +31,23 @@ from cuefem.files.defaults_report import (
     offered_assumptions,
     own_values,
 )
+from cuefem.files.errors import as_input_error
 from cuefem.files.shaft_additions import SHAFT_ADDITIONS
 from cuefem.files.shop import shop_defaults
 from cuefem.parameters.field_paths import Path as Steps
 from cuefem.parameters.field_paths import with_fields
 from cuefem.parameters.parameter import Parameter
-from cuefem.parameters.scene_changes import with_values_at
+from cuefem.parameters.parts import main_material, with_material
+from cuefem.parameters.scene_changes import with_parameters, with_values_at
 from cuefem.parameters.table import PARAMETERS
-from cuefem.quantity.fields import OutOfBounds
+from cuefem.quantity.fields import OutOfBounds, Quantity
 from cuefem.results.plausibility import drawing_warnings_of, plausibility_warnings
 from cuefem.results.records import Table
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, default_tip, stroke_name, usual_scene
 from cuefem.solid.tip_cache import computing_message
+
+WEIGHT = Quantity("kg", "(0, 100]")  # of a shaft
 
 
 @contextmanager
@@ -144,12 +146,19 @@ class Request:
     @cached_property
     def drawing(self) -> Any:
         """What the file holds, as drawn, with the options."""
-        drawing = self.opened
+        if isinstance(self.opened, Scene):
+            return self._with_given(self.opened)
+        cue = self.opened
         if "body_mass" in self.given:
-            drawing = with_body_option(drawing, self.file, self.given["body_mass"])
-        if "shaft_mass" in self.given:
-            drawing = with_shaft_mass_option(drawing, self.file, self.given["shaft_mass"])
-        return drawing
+            cue = with_body_mass(cue, self.file, "--body-mass", self.given["body_mass"])
+        return self._weighed(cue) if "shaft_mass" in self.given else cue
+
+    def _weighed(self, cue: Cue) -> Cue:
+        """The cue with the density of its wood by --shaft-mass; a scale weighs it with its usual tip."""
+        mass = option_value(self.file, "--shaft-mass", self.given["shaft_mass"], WEIGHT)
+        with as_input_error(self.file, "--shaft-mass"):
+            weighed = with_parameters(usual_scene(cue), {"shaft mass": mass}).shaft
+        return replace(with_material(cue, *map(main_material, (cue, weighed))), shaft_mass_measured=True)
 
     @property
     def assumed(self) -> list[Assumption]:
@@ -204,8 +213,7 @@ class Request:
         """The scene of a cue without a tip; --shaft-mass weighs it with its usual tip, as in `cuefem convert`."""
         if "shaft_mass" not in self.given:
             return self._with_given(Scene(cue))
-        weighed = with_shaft_mass_option(cue, self.file, self.given["shaft_mass"])
-        return self._with_given(Scene(weighed), lambda known: known.key != "shaft_mass")
+        return self._with_given(Scene(self._weighed(cue)), lambda known: known.key != "shaft_mass")
 
     def _with_given(self, scene: Scene, which: Callable[[Parameter], bool] = lambda known: True) -> Scene:
         """The scene with the values of the given options."""

@@ -6,25 +6,19 @@ import math
 import os
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import click
 
 from cuefem.cli.output import shared_option
-from cuefem.cue import Cue, LumpedCue
-from cuefem.files import InputError, with_body_mass
+from cuefem.files import InputError
 from cuefem.files.cue_names import cue_name, named_path
-from cuefem.files.errors import as_input_error
-from cuefem.parameters.parts import main_material, with_material
-from cuefem.parameters.scene_changes import with_parameters
 from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.display_units import with_unit
 from cuefem.quantity.fields import Quantity, comma_hint
 from cuefem.quantity.units import parse_number
-from cuefem.scene import Scene
-from cuefem.scene.default_scene import GAMES, usual_scene
+from cuefem.scene.default_scene import GAMES
 
 Command = Callable[..., Any]
 
@@ -115,24 +109,3 @@ def offset_value(file: Path, text: str, radius: float) -> float:
         within = f'b/R between -1 and 1, or a length below {below} with its unit, such as "8 mm"'
         raise InputError(file, "--offset", f"must be {within}; got {text!r}{comma_hint(text)}")
     return offset
-
-
-def with_body_option(thing: Cue | Scene, file: Path, text: str) -> Any:
-    """The cue or scene of a file with the mass behind its segments by --body-mass."""
-    if not isinstance(thing, Cue) and isinstance(thing.cue, LumpedCue):
-        raise InputError(file, "--body-mass", NO_SHAFT)
-    return with_body_mass(thing, file, "--body-mass", text)
-
-
-def with_shaft_mass_option(thing: Cue | Scene, file: Path, text: str) -> Any:
-    """The cue or scene of a file with the density of its wood by --shaft-mass."""
-    mass = option_value(file, "--shaft-mass", text, Quantity("kg", "(0, 100]"))
-    if isinstance(thing, Scene) and thing.lumped:
-        raise InputError(file, "--shaft-mass", "does not apply: FILE has no shaft")
-    with as_input_error(file, "--shaft-mass"):
-        if not isinstance(thing, Cue):
-            return with_parameters(thing, {"shaft mass": mass})
-        weighed = with_parameters(
-            usual_scene(thing), {"shaft mass": mass}
-        )  # whose weight counts the tip, as a scale does
-        return replace(with_material(thing, *map(main_material, (thing, weighed.shaft))), shaft_mass_measured=True)

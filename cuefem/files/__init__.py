@@ -22,7 +22,7 @@ from cuefem.files.lathe_profile import (
     read_profile,
 )
 from cuefem.files.schema import named_material
-from cuefem.files.shaft_additions import with_additions, with_shaft_material
+from cuefem.files.shaft_additions import with_additions
 from cuefem.files.toml_reader import cue_as_drawn, load_accuracy, load_cue, load_toml, other_tables
 from cuefem.files.warnings_of_drawings import drawing_warnings
 from cuefem.parameters.field_paths import with_fields
@@ -77,7 +77,7 @@ def load(path: str | os.PathLike[str], **options: Unpack[LoadOptions]) -> Cue | 
         loaded = load_toml(path, _load_cue)
     else:
         loaded = _load_cue(path, material if shape else None, options.get("length_unit"))
-    additions: Any = {key: options.get(key) for key in ("front", "ferrule", "bore")}
+    additions: Any = {key: options.get(key) for key in ("material", "front", "ferrule", "bore")}
     changed = any(additions.values()) or material is not None
     if (changed or body_mass is not None) and isinstance(loaded, Scene) and loaded.lumped:
         raise InputError(path, "cue", "is a lumped cue, without material, ferrule, bore or body mass")
@@ -86,7 +86,6 @@ def load(path: str | os.PathLike[str], **options: Unpack[LoadOptions]) -> Cue | 
             cue: Any = loaded if isinstance(loaded, Cue) else loaded.cue
             if material is not None:
                 named_material(material, path, "material")
-                cue = with_shaft_material(cue, material)
             cue = with_additions(cue, **additions)
             loaded = cue if isinstance(loaded, Cue) else replace(loaded, cue=cue)
     drawn = loaded if isinstance(loaded, Cue) else loaded.cue

@@ -5,30 +5,18 @@ from __future__ import annotations
 import difflib
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from cuefem.files.csv_reader import Row, is_number, split_unit
 from cuefem.files.errors import InputError, quote
-from cuefem.files.heading_words import (
-    BORE_COLUMN,
-    BUTT,
-    CORE_COLUMN,
-    DIAMETER_COLUMN,
-    FERRULE_COLUMN,
-    MATERIAL_COLUMN,
-    POSITION_COLUMN,
-    RADIUS_COLUMN,
-    TIP,
-    WORDS,
-    has_word,
-)
+from cuefem.files.heading_words import BUTT, TIP, WORDS, Column, has_word
 from cuefem.quantity.units import conversion_factor, preferred_name
 
 EXAMPLE = '"x [mm],diameter [mm]"'
 MAX_HEADER_ROWS = 20  # rows searched for the header: without blank lines and comments, at most 19 above it
 
-MATERIAL_COLUMNS = (MATERIAL_COLUMN, CORE_COLUMN, FERRULE_COLUMN)
+MATERIAL_COLUMNS = (Column.MATERIAL, Column.CORE, Column.FERRULE)
 _OTHER_UNITS = ("kg", "g", "oz", "lb", "s", "ms", "n", "deg", "°", "%")  # units that are not lengths
 _BRACKETS = re.compile(r"[\[({<]([^])}>]*)[\])}>]")
 _TOKENS = re.compile(r"[^\W\d_]+")
@@ -93,7 +81,7 @@ def read_header(path: Path, rows: Sequence[Row]) -> CsvHeader:
         lengths = tuple(column for column in columns if column.kind and column.kind not in MATERIAL_COLUMNS)
         materials = tuple(column for column in columns if column.kind in MATERIAL_COLUMNS)
         kinds = {column.kind for column in lengths}
-        if POSITION_COLUMN in kinds and kinds & {DIAMETER_COLUMN, RADIUS_COLUMN}:
+        if Column.POSITION in kinds and kinds & {Column.DIAMETER, Column.RADIUS}:
             below = rows[i + 1 :]
             units = [length_unit_of(cell) for cell in below[0][1]] if below else []
             if units and all(unit or not cell for unit, cell in zip(units, below[0][1], strict=True)):
@@ -131,7 +119,7 @@ def _has_data(cells: Sequence[str], lengths: Sequence[ProfileColumn], materials:
 
 def _without_closing_text(rows: tuple[Row, ...], lengths: Sequence[ProfileColumn]) -> tuple[Row, ...]:
     """The rows up to the last one that has no text without digits for its position, such as a line of weights."""
-    at = next(column.index for column in lengths if column.kind == POSITION_COLUMN)
+    at = next(column.index for column in lengths if column.kind == Column.POSITION)
     count = len(rows)
     while count and _is_text(rows[count - 1][1][at : at + 1]):
         count -= 1
@@ -151,7 +139,7 @@ def _misspelt(name: str) -> str:
         return ""
     others = {word for kind in WORDS.values() for word in kind if len(word) >= _SHORTEST}
     for word in words:
-        same_start = [known for known in sorted({*WORDS} | others) if known[0] == word[0]]  # core is no score
+        same_start = [known for known in sorted({*map(str, WORDS)} | others) if known[0] == word[0]]  # core is no score
         if near := difflib.get_close_matches(word, same_start, n=1, cutoff=_NEAR):
             return near[0]
     return ""
@@ -160,7 +148,7 @@ def _misspelt(name: str) -> str:
 def _with_unit(column: ProfileColumn, units: Sequence[str]) -> ProfileColumn:
     """The column with the unit of a row of units, if its header names none."""
     unit = units[column.index] if column.index < len(units) else ""
-    return ProfileColumn(column.kind, column.index, column.name, column.unit or unit)
+    return replace(column, unit=column.unit or unit)
 
 
 def _column(path: Path, line: int, index: int, cell: str) -> ProfileColumn:
@@ -177,7 +165,7 @@ def _column(path: Path, line: int, index: int, cell: str) -> ProfileColumn:
     kind = _kind(words)
     if words == ["id"] and not unit:  # a row number, not an inner diameter
         kind = ""
-    if kind == BORE_COLUMN and any(has_word(word, WORDS[RADIUS_COLUMN]) for word in words):
+    if kind == Column.BORE and any(has_word(word, WORDS[Column.RADIUS]) for word in words):
         raise InputError(path, f"line {line}, {kind}", f"must be a column of diameters; got {quote(cell)}")
     if kind and bracketed and not unit and bracketed[0].strip() in _OTHER_UNITS:
         problem = f"must be in a unit of length, such as mm; got {quote(bracketed[0])}"
@@ -189,12 +177,12 @@ def _kind(words: Sequence[str]) -> str:
     """The kind of a column by the words of its name; "" if unused."""
     kinds = [{kind for kind, known in WORDS.items() if has_word(word, known)} for word in words]
     found = set[str]().union(*kinds)
-    if FERRULE_COLUMN in found and all(own and own <= {FERRULE_COLUMN, MATERIAL_COLUMN} for own in kinds):
+    if Column.FERRULE in found and all(own and own <= {Column.FERRULE, Column.MATERIAL} for own in kinds):
         # but "distance from ferrule" is a position
-        return FERRULE_COLUMN
+        return Column.FERRULE
     if any(map(_WALL.match, words)):
         return ""
-    return next((kind for kind in WORDS if kind in found - {FERRULE_COLUMN}), "")
+    return next((kind for kind in WORDS if kind in found - {Column.FERRULE}), "")
 
 
 def measured_from_butt(column: ProfileColumn) -> bool:

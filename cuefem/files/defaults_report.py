@@ -152,11 +152,9 @@ def drawing_assumptions(path: Path, cue: Cue, options: Mapping[str, Any]) -> lis
     if ending in SURFACE_EXTENSIONS:
         unit = Assumption("", f"lengths in {DEFAULT_UNIT}", "length_unit")
         notes = [*([] if "length_unit" in options else [unit]), *(Assumption("", note) for note in _surface(path))]
-        given |= _given_in_drawing(path, cue, None)
     else:
-        drawn, read = read_profile(path, _UNNAMED, options.get("length_unit"))
-        notes = [Assumption("", note) for note in read]
-        given |= _given_in_profile(drawn)
+        notes = [Assumption("", note) for note in read_profile(path, _UNNAMED, options.get("length_unit"))[1]]
+    given |= _given_in_drawing(path, cue, options.get("length_unit"))
     if any(cue.segments[i].tip_bore and cue.segments[i].core is None for i in Layout.of(cue).ferrule):
         notes = [*notes, Assumption("", "the ferrule has the bore of the shaft, without a tenon")]
     lacking = parts if "material" in given else wood | parts
@@ -166,18 +164,6 @@ def drawing_assumptions(path: Path, cue: Cue, options: Mapping[str, Any]) -> lis
         *ferrule_assumption(cue),
         *tenon_assumption(cue),
     ]
-
-
-def _given_in_profile(drawn: Cue) -> set[str]:
-    """The options whose values a lathe profile has itself; drawn: with `_UNNAMED` where it names no material."""
-    woods = [segment.material for segment in drawn.segments]
-    given = {
-        "material": _UNNAMED not in woods,
-        "ferrule": any(wood != _UNNAMED for wood in woods),
-        "bore": _is_bored(drawn),
-        "front": bool(drawn.leather_height),
-    }
-    return {key for key, is_given in given.items() if is_given}
 
 
 def _is_bored(cue: Cue) -> bool:
@@ -212,15 +198,18 @@ def given_keys(path: Path, opened: Cue | Scene, length_unit: str | None = None) 
 
 
 def _given_in_drawing(path: Path, cue: Cue, length_unit: str | None) -> set[str]:
+    """The options whose values a drawing has itself; a profile is read with `_UNNAMED` where it names no material."""
     ending = path.suffix.lower()
     if ending in SURFACE_EXTENSIONS:
         return {"bore"} if _is_bored(cue) else set()
-    if ending in SHAPE_EXTENSIONS:
-        return _given_in_profile(read_profile(path, _UNNAMED, length_unit)[0])
+    is_profile = ending in SHAPE_EXTENSIONS
+    cue = read_profile(path, _UNNAMED, length_unit)[0] if is_profile else cue
+    woods = [segment.material for segment in cue.segments]
     given = {
-        "material": True,
-        "ferrule": bool(Layout.of(cue).ferrule),
+        "material": _UNNAMED not in woods,
+        "ferrule": any(wood != _UNNAMED for wood in woods) if is_profile else bool(Layout.of(cue).ferrule),
         "bore": _is_bored(cue),
+        "front": bool(cue.leather_height),
         "body_mass": cue.body_mass > 0 and not cue.is_body_mass_assumed,
         "shaft_mass": cue.shaft_mass_measured,
     }

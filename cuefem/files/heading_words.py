@@ -2,34 +2,36 @@
 
 from __future__ import annotations
 
-# Kinds of columns: of lengths, and of material names.
-POSITION_COLUMN, DIAMETER_COLUMN, RADIUS_COLUMN, BORE_COLUMN = "x", "diameter", "radius", "bore"
-MATERIAL_COLUMN, CORE_COLUMN, FERRULE_COLUMN = "material", "core", "ferrule"
-COLUMNS = (
-    POSITION_COLUMN,
-    DIAMETER_COLUMN,
-    RADIUS_COLUMN,
-    BORE_COLUMN,
-    MATERIAL_COLUMN,
-    CORE_COLUMN,
-    FERRULE_COLUMN,
-)
+from enum import StrEnum
+
+
+class Column(StrEnum):
+    """Kinds of columns: of lengths, and of material names."""
+
+    POSITION = "x"
+    DIAMETER = "diameter"
+    RADIUS = "radius"
+    BORE = "bore"
+    MATERIAL = "material"
+    CORE = "core"
+    FERRULE = "ferrule"
+
 
 # In order of precedence: "bore diameter" is a bore, "diameter at x" a diameter.
 _TABLE = {
-    CORE_COLUMN: "core kern noyau âme núcleo nucleo anima сердечник 芯 심재 코어",
-    MATERIAL_COLUMN: """material materials wood holz werkstoff matériau materiau matière madera legno materiale madeira
+    Column.CORE: "core kern noyau âme núcleo nucleo anima сердечник 芯 심재 코어",
+    Column.MATERIAL: """material materials wood holz werkstoff matériau materiau matière madera legno materiale madeira
         materiaal материал дерево древесина 材料 材质 材質 素材 木材 재질 재료 소재 목재""",
-    BORE_COLUMN: """bore bored inner inside id hole hollow bohrung innendurchmesser perçage alésage alesage agujero
+    Column.BORE: """bore bored inner inside id hole hollow bohrung innendurchmesser perçage alésage alesage agujero
         taladro foro furo отверстие отверстия 内径 內徑 孔 穴 中空 내경 구멍 보어""",
-    RADIUS_COLUMN: """radius radii rad r halbmesser rayon radio raggio raio straal радиус 半径 半徑 반지름 반경""",
-    DIAMETER_COLUMN: """diameter diameters dia diam d ø od width thickness thick dicke durchmesser diamètre diametre
+    Column.RADIUS: """radius radii rad r halbmesser rayon radio raggio raio straal радиус 半径 半徑 반지름 반경""",
+    Column.DIAMETER: """diameter diameters dia diam d ø od width thickness thick dicke durchmesser diamètre diametre
         diámetro diametro diâmetro średnica диаметр толщина 直径 直徑 外径 外徑 太さ 직경 지름 외경""",
-    POSITION_COLUMN: """x z position pos place location station distance dist length along from von abstand länge
+    Column.POSITION: """x z position pos place location station distance dist length along from von abstand länge
         laenge distancia posición posicion posizione distanza distância posição longueur longitud lunghezza
         comprimento afstand lengte avstånd расстояние положение позиция длина координата
         位置 距離 距离 座標 坐标 長さ 长度 長度 위치 거리 길이 좌표""",
-    FERRULE_COLUMN: """ferrule zwinge hülse huelse virola virole ghiera ферула феррула 先角 フェルール 铜箍 페룰
+    Column.FERRULE: """ferrule zwinge hülse huelse virola virole ghiera ферула феррула 先角 フェルール 铜箍 페룰
         선골""",
 }
 WORDS = {kind: frozenset(words.split()) for kind, words in _TABLE.items()}

@@ -22,15 +22,7 @@ from cuefem.files.csv_header import (
 )
 from cuefem.files.csv_reader import Row, decimal_mark, python_number, read_rows, split_unit
 from cuefem.files.errors import InputError, as_input_error, quote
-from cuefem.files.heading_words import (
-    BORE_COLUMN,
-    CORE_COLUMN,
-    DIAMETER_COLUMN,
-    FERRULE_COLUMN,
-    MATERIAL_COLUMN,
-    POSITION_COLUMN,
-    RADIUS_COLUMN,
-)
+from cuefem.files.heading_words import Column
 from cuefem.files.misplaced_diameters import misplaced_rows
 from cuefem.files.schema import named_material
 from cuefem.files.shaft_additions import ferrule_on_tenon, has_length, with_additions
@@ -49,15 +41,6 @@ DRAWING_EXTENSIONS = (".toml", *SHAPE_EXTENSIONS)
 SPREADSHEET_EXTENSIONS = (".xlsx", ".xls", ".ods", ".numbers", ".txt", ".tsv", ".dat")
 # Points closer than this to a straight taper lie on it, m: the rounding of a file, far below the error of a lathe.
 _STRAIGHTNESS = 1e-9
-# Kinds of columns of which a table has one at most.
-_COLUMNS = (
-    (POSITION_COLUMN,),
-    (DIAMETER_COLUMN, RADIUS_COLUMN),
-    (BORE_COLUMN,),
-    (MATERIAL_COLUMN,),
-    (CORE_COLUMN,),
-    (FERRULE_COLUMN,),
-)
 _EMPTY = ("none", "no", "-", "–", "—")  # cells for "no bore" or "no material"
 
 _POSITION, _BORE = Quantity("m"), Quantity("m", "[0, 10]")
@@ -95,10 +78,9 @@ def read_profile(path: Path, material: Material, length_unit: str | None = None)
     numbers = [split_unit(cell)[0] for column in header.length_columns for cell in _cells(header.rows, column)]
     mark = decimal_mark(numbers)
     columns = _with_units(path, header, length_unit)
-    for kinds in _COLUMNS:
-        _check_single(path, header, kinds)
-    position = next(column for column in columns if column.kind == POSITION_COLUMN)
-    diameter = next(column for column in columns if column.kind in (DIAMETER_COLUMN, RADIUS_COLUMN))
+    _check_single(path, header)
+    by_kind = {column.kind: column for column in columns}
+    position, diameter = by_kind[Column.POSITION], by_kind.get(Column.DIAMETER) or by_kind[Column.RADIUS]
     x = [_number(path, row, position, mark) for row in header.rows]
     d = [_number(path, row, diameter, mark) for row in header.rows]
     is_lathe = max(x, default=0.0) <= 0 > min(x, default=0.0)  # Z of a lathe, 0 at the front and negative behind it
@@ -131,7 +113,7 @@ def _check_decimal_points(
     if not misplaced:
         return
     found = misplaced[0]
-    unit_size = parse_number(f"1 {column.unit}", "m") * (2 if column.kind == RADIUS_COLUMN else 1)
+    unit_size = parse_number(f"1 {column.unit}", "m") * (2 if column.kind == Column.RADIUS else 1)
     row, *neighbours = (order[i] for i in (found.row, *found.neighbours))
     own, *nearby = (diameters[i] / unit_size for i in (row, *neighbours))
     beside = f"{'between' if len(nearby) == 2 else 'beside'} {' and '.join(f'{each:.6g}' for each in nearby)}"
@@ -191,35 +173,35 @@ def _inside(
     path: Path, header: CsvHeader, columns: Sequence[ProfileColumn], mark: str, diameters: Sequence[float]
 ) -> list[Interior]:
     """The bore and the materials of every row: an empty cell repeats the material above only."""
-    bore = next((column for column in columns if column.kind == BORE_COLUMN), None)
+    bore = next((column for column in columns if column.kind == Column.BORE), None)
     named = {column.kind: column for column in header.material_columns}
     rows, material = list[Interior](), None
     for row, outer in zip(header.rows, diameters, strict=True):
         line, cells = row
         found = {
             kind: named_material(
-                text.casefold(), path, f"line {line}, {kind}", "ferrule" if kind == FERRULE_COLUMN else ""
+                text.casefold(), path, f"line {line}, {kind}", "ferrule" if kind == Column.FERRULE else ""
             )
             for kind, column in named.items()
-            if (text := _entry(cells, column)) and not (kind == FERRULE_COLUMN and has_length(text))
+            if (text := _entry(cells, column)) and not (kind == Column.FERRULE and has_length(text))
         }
-        material = found.get(MATERIAL_COLUMN, material)
+        material = found.get(Column.MATERIAL, material)
         width = 0.0 if bore is None or not _entry(cells, bore) else _number(path, row, bore, mark)
         if width >= outer:
             problem = (
                 f"must be less than {with_unit(outer, 'm', 6)}, the diameter there; got {with_unit(width, 'm', 6)}"
             )
             raise InputError(path, f"line {line}, bore", problem)
-        if CORE_COLUMN in found and not width and row is not header.rows[-1]:
-            problem = f"needs a bore in its row, which it fills; got {quote(_entry(cells, named[CORE_COLUMN]))}"
+        if Column.CORE in found and not width and row is not header.rows[-1]:
+            problem = f"needs a bore in its row, which it fills; got {quote(_entry(cells, named[Column.CORE]))}"
             raise InputError(path, f"line {line}, core", problem)
-        rows.append(Interior(width, material, found.get(CORE_COLUMN), found.get(FERRULE_COLUMN)))
+        rows.append(Interior(width, material, found.get(Column.CORE), found.get(Column.FERRULE)))
     return rows
 
 
 def _ferrule_with_length(path: Path, header: CsvHeader, inside: Sequence[Interior]) -> str:
     """The ferrule of a cell such as "25 mm melamine", which begins at its row; "" if no cell has a length."""
-    column = next((column for column in header.material_columns if column.kind == FERRULE_COLUMN), None)
+    column = next((column for column in header.material_columns if column.kind == Column.FERRULE), None)
     entries = [_entry(cells, column) if column else "" for _, cells in header.rows]
     ferrules = [(i, text) for i, text in enumerate(entries) if has_length(text)]
     front = next(
@@ -249,7 +231,7 @@ def _notes(header: CsvHeader, position: ProfileColumn, diameter: ProfileColumn, 
         f"line{'s' * (len(skipped) > 1)} {lines} skipped: without data": bool(skipped),
         f"column{'s' if len(names) > 1 else ''} {', '.join(map(quote, names))} {'are' if len(names) > 1 else 'is'} not "
         "used": bool(names),
-        f"diameters are twice the column {quote(diameter.name)}": diameter.kind == RADIUS_COLUMN,
+        f"diameters are twice the column {quote(diameter.name)}": diameter.kind == Column.RADIUS,
         f"x is measured from the butt ({quote(position.name)})": butt,
         f"the shaft begins at its first point, x = {start}": first > 0 and not butt,
     }
@@ -271,7 +253,7 @@ def _length_columns(header: CsvHeader) -> list[ProfileColumn]:
     for column in header.length_columns:
         in_cells = {length_unit_of(rest) for _, rest in map(split_unit, _cells(header.rows, column)) if rest}
         unit = column.unit or ("".join(in_cells) if len(in_cells) == 1 else "")
-        columns.append(ProfileColumn(column.kind, column.index, column.name, unit))
+        columns.append(replace(column, unit=unit))
     return columns
 
 
@@ -292,16 +274,19 @@ def _with_units(path: Path, header: CsvHeader, length_unit: str | None) -> list[
         )
         raise InputError(path, f"line {header.line}", problem)
     unit = length_unit_of(length_unit) if length_unit is not None else ""
-    return [ProfileColumn(c.kind, c.index, c.name, c.unit or unit) for c in columns]
+    return [replace(column, unit=column.unit or unit) for column in columns]
 
 
-def _check_single(path: Path, header: CsvHeader, kinds: Sequence[str]) -> None:
-    """InputError for two columns of these kinds."""
-    columns = (*header.length_columns, *header.material_columns)
-    names = [quote(column.name) for column in columns if column.kind in kinds]
-    if len(names) > 1:
-        both = f"{names[0]} and {names[1]}"
-        raise InputError(path, f"line {header.line}", f"two columns may be the {kinds[0]}, {both}: delete one")
+def _check_single(path: Path, header: CsvHeader) -> None:
+    """InputError for two columns of one kind; a radius is a diameter."""
+    names: dict[str, list[str]] = {kind: [] for kind in Column}
+    for column in (*header.length_columns, *header.material_columns):
+        kind = Column.DIAMETER if column.kind == Column.RADIUS else column.kind
+        names[kind].append(quote(column.name))
+    for kind, own in names.items():
+        if len(own) > 1:
+            problem = f"two columns may be the {kind}, {own[0]} and {own[1]}: delete one"
+            raise InputError(path, f"line {header.line}", problem)
 
 
 def _number(path: Path, row: Row, column: ProfileColumn, mark: str) -> float:
@@ -314,9 +299,9 @@ def _number(path: Path, row: Row, column: ProfileColumn, mark: str) -> float:
     if not text or not unit:
         raise InputError(path, key, f"must be a number; got {quote(cell) if cell else 'nothing'}")
     with as_input_error(path, key):
-        bounds = _POSITION if kind == POSITION_COLUMN else _BORE if kind == BORE_COLUMN else DIAMETER
+        bounds = _POSITION if kind == Column.POSITION else _BORE if kind == Column.BORE else DIAMETER
         value = bounds.read(f"{python_number(text, mark)} {unit}")
-    return 2 * value if kind == RADIUS_COLUMN else value
+    return 2 * value if kind == Column.RADIUS else value
 
 
 def _ordered(path: Path, header: CsvHeader, position: ProfileColumn, points: list[Point]) -> tuple[Point, ...]:

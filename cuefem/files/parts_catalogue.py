@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 from cuefem.cue import MAX_LEATHER_MODULUS, Cue, Segment
 from cuefem.cue.materials import MATERIALS
-from cuefem.files.shaft_additions import with_additions, with_shaft_material
 from cuefem.quantity.fields import suggestion
 
 _USUAL = "29 in, 12.75 mm and a joint of 21.5 mm: usual (meshes/README.md)"
@@ -68,13 +67,3 @@ def catalogue_shaft(name: str, drawn: Callable[[Path], Cue]) -> Cue:
         return Cue(tuple(s for s in drawn(data_folder() / known.file).segments if s.material.E >= MAX_LEATHER_MODULUS))
     maple = MATERIALS["hard maple"].material
     return Cue(tuple(Segment(x1 - x0, d0, d1, maple) for (x0, d0), (x1, d1) in pairwise(known.corners)))
-
-
-def assemble_shaft(
-    name: str, drawn: Callable[[Path], Cue], *, material: str | None, ferrule: str | None, bore: str | None
-) -> Cue:
-    """A shaft of the catalogue in another wood, with a ferrule and a bore; ValueError for invalid additions."""
-    cue = catalogue_shaft(name, drawn)
-    if material is not None:
-        cue = with_shaft_material(cue, material)
-    return with_additions(cue, ferrule=ferrule, bore=bore)

@@ -141,7 +141,7 @@ def _expected(hint: Any) -> str:
         return "a table"
     if len(member_types(hint)) > 1 and first is str:
         return "text, or an array of texts"
-    return {bool: "true or false", int: "a whole number", str: "text"}.get(first, f"a {first}")
+    return {bool: "true or false", int: "a whole number", float: "a number", str: "text"}.get(first, f"a {first}")
 
 
 def table(instance: Any) -> dict[str, Any]:

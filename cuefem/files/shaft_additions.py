@@ -75,8 +75,12 @@ SHAFT_ADDITIONS = {
 
 
 def with_additions(cue: Cue, **texts: str | None) -> Cue:
-    """The cue with a leather front, a ferrule and a bore given as texts; ValueError with the name of an invalid one."""
-    for name, add in (("front", _with_leather), ("ferrule", _with_ferrule), ("bore", _bored)):
+    """The cue with another material of its shaft, a leather front, a ferrule and a bore given as texts.
+
+    ValueError with the name of an invalid one.
+    """
+    adding = {"material": _with_shaft_material, "front": _with_leather, "ferrule": _with_ferrule, "bore": _bored}
+    for name, add in adding.items():
         if (text := texts.get(name)) is not None:
             try:
                 cue = add(cue, text)
@@ -85,7 +89,7 @@ def with_additions(cue: Cue, **texts: str | None) -> Cue:
     return cue
 
 
-def with_shaft_material(cue: Cue, name: str) -> Cue:
+def _with_shaft_material(cue: Cue, name: str) -> Cue:
     """The cue with shaft and tenon of another material."""
     return _with_parameters(cue, {"shaft material": name})
 

@@ -17,8 +17,9 @@ from cuefem.cue import Cue, LumpedCue
 from cuefem.effects.effect import Effect, effect_kinds
 from cuefem.files.csv_reader import read_text
 from cuefem.files.errors import InputError, as_input_error, errors_name_key, quote, suggestion
-from cuefem.files.parts_catalogue import assemble_shaft
+from cuefem.files.parts_catalogue import catalogue_shaft
 from cuefem.files.schema import build, key_path, keys_of, table, unknown_key
+from cuefem.files.shaft_additions import with_additions
 from cuefem.parameters.parts import with_shaft_mass
 from cuefem.quantity.fields import MAX_SEGMENTS, Quantity, check_fields, quantity_fields
 from cuefem.scene import Scene, Stroke
@@ -195,7 +196,8 @@ def _assembled(cue_table: dict[str, Any], path: Path, key: str) -> dict[str, Any
     if "segments" in cue_table:
         raise InputError(path, key_path(key, "segments"), "must be omitted with shaft, which defines them")
     with as_input_error(path, key_path(key, "shaft")):
-        cue = assemble_shaft(parts.shaft, load_cue, material=parts.material, ferrule=parts.ferrule, bore=parts.bore)
+        cue = catalogue_shaft(parts.shaft, load_cue)
+        cue = with_additions(cue, material=parts.material, ferrule=parts.ferrule, bore=parts.bore)
     rest = {name: value for name, value in cue_table.items() if name not in named}
     return rest | {"segments": [*cue.segments]}
 

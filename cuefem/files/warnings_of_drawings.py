@@ -8,7 +8,7 @@ from cuefem.files.csv_header import read_header
 from cuefem.files.csv_reader import read_rows
 from cuefem.files.cue_names import named_path
 from cuefem.files.errors import quote
-from cuefem.files.heading_words import COLUMNS
+from cuefem.files.heading_words import Column
 from cuefem.files.lathe_profile import SURFACE_EXTENSIONS
 from cuefem.files.toml_reader import read_tables
 
@@ -32,7 +32,7 @@ def _of_columns(path: Path) -> list[str]:
     if not names:
         return []
     what = f"columns {', '.join(map(quote, names))} are" if len(names) > 1 else f"column {quote(names[0])} is"
-    return [f"{what} not used; a profile may have columns {', '.join(COLUMNS)}"]
+    return [f"{what} not used; a profile may have columns {', '.join(Column)}"]
 
 
 def _of_surface(path: Path) -> list[str]:

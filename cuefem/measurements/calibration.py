@@ -10,7 +10,6 @@ Values of the tip, which both shafts share, have the mean and the covariance of 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
@@ -19,7 +18,7 @@ import numpy as np
 
 from cuefem.cue import Array
 from cuefem.files import InputError, write_atomically
-from cuefem.files.errors import as_input_error
+from cuefem.files.schema import build, keys_of
 from cuefem.files.toml_reader import load_cue, read_tables, scene_from_tables
 from cuefem.measurements.estimate import Estimate
 from cuefem.measurements.measurement_types import UNKNOWN_SPEED_SPREAD, BallDirection
@@ -27,7 +26,6 @@ from cuefem.measurements.uncertain_parameters import SQUIRT_MODEL
 from cuefem.parameters.scene_changes import with_values_at
 from cuefem.parameters.table import PARAMETERS
 from cuefem.quantity.display_units import with_unit
-from cuefem.quantity.fields import check_kind
 from cuefem.results.quantities import DASH
 from cuefem.results.solved_design import off_centre
 from cuefem.results.uncertainty import (
@@ -152,7 +150,7 @@ class Calibration:
 
     name: str
     scene: Scene
-    drawn: Mapping[str, float] = field(hash=False)
+    drawn: dict[str, float] = field(hash=False)
     log_factor: float
     covariance: tuple[tuple[float, ...], ...]
     unchecked: tuple[str, ...] = ()
@@ -160,6 +158,9 @@ class Calibration:
     without_speed: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        unknown = [key for key in self.drawn if key not in PARAMETERS]
+        if unknown:
+            raise ValueError(f"Calibration.drawn must hold parameters of the tip; got {unknown[0]!r}")
         C, count = self.matrix, len(self.drawn) + 1
         if C.shape != (count, count) or not np.isfinite(C).all() or np.linalg.eigvalsh(C).min() < -1e-9:
             raise ValueError(
@@ -277,15 +278,7 @@ class Calibration:
 
     def text(self) -> str:
         """The text of its file: the scene with the estimated parameters, and a table [calibration]."""
-        own = {
-            "name": self.name,
-            "log_factor": self.log_factor,
-            "covariance": [list(row) for row in self.covariance],
-            "unchecked": list(self.unchecked),
-            "without_distance": list(self.without_distance),
-            "without_speed": list(self.without_speed),
-            "drawn": dict(self.drawn),
-        }
+        own = {key: getattr(self, key) for key in KEYS}
         from cuefem.files.toml_writer import toml_text  # loaded when used: it loads tomlkit
 
         return toml_text(self.scene, **{TABLE: own})
@@ -331,7 +324,7 @@ def _squirt_by(calibration: Calibration, scene: Scene) -> CalibratedSquirt:
     )
 
 
-KEYS = ("name", "drawn", "log_factor", "covariance", "unchecked", "without_distance", "without_speed")
+KEYS = [key for key in keys_of(Calibration) if key != "scene"]
 
 
 def load_calibration(path: str | Path) -> Calibration:
@@ -345,18 +338,4 @@ def load_calibration(path: str | Path) -> Calibration:
             written += ", for a file of an older version again"
         raise InputError(path, TABLE, f"must be a table of {', '.join(KEYS)}: {written}")
     scene = scene_from_tables(tables, path, load_cue)
-    with as_input_error(path, TABLE):
-        check_kind("log_factor", own["log_factor"], float)
-        unknown = [key for key in own["drawn"] if key not in PARAMETERS]
-        if unknown:
-            raise ValueError(f"drawn must hold parameters of the tip; got {unknown[0]!r}")
-        return Calibration(
-            str(own["name"]),
-            scene,
-            {key: float(value) for key, value in own["drawn"].items()},
-            own["log_factor"],
-            tuple(tuple(map(float, row)) for row in own["covariance"]),
-            tuple(map(str, own["unchecked"])),
-            tuple(map(str, own["without_distance"])),
-            tuple(map(str, own["without_speed"])),
-        )
+    return build(Calibration, own | {"scene": scene}, file=str(path), key=TABLE)

@@ -126,8 +126,8 @@ def parameters_of(
         parameters.append(UncertainParameter(entry.name, entry.label, unit, median, spread, _on_scene(entry.steps())))
     squirts = [measurement for measurement in measurements if isinstance(measurement, Squirt)]
     _, spread = _prior(by_key.get(SQUIRT_MODEL), 1.0, model_error(scene))
-    factor: Any = lambda setup, value: setup._replace(squirt_factor=value)  # noqa: E731
-    parameters.append(UncertainParameter(SQUIRT_MODEL, "true squirt over the model's", "", 1.0, spread, factor))
+    label = "true squirt over the model's"
+    parameters.append(UncertainParameter(SQUIRT_MODEL, label, "", 1.0, spread, _on("squirt_factor")))
     parameters += _of_strokes(measurements)
     series: dict[str, float] = {}
     for measurement in squirts:
@@ -144,24 +144,26 @@ def parameters_of(
 def _of_strokes(measurements: Sequence[Measurement]) -> list[UncertainParameter]:
     """Uncertain parameters of strokes: the contact's offset; of readings at a distance elevation, speed and cloth."""
     directions = [each for each in measurements if isinstance(each, BallDirection)]
-    shift: Any = lambda setup, value: setup._replace(contact_shift=value)  # noqa: E731
     error = max((each.offset_error or 0.0 for each in directions), default=0.0)
     contact = UncertainParameter(
-        "contact", "true less stated offset of the contact", "m", 0.0, error, shift, normal=True
+        "contact", "true less stated offset of the contact", "m", 0.0, error, _on("contact_shift"), normal=True
     )
     read = [each for each in directions if each.distance is not None]
     if not read:
         return [contact]
-    speed: Any = lambda setup, value: setup._replace(speed_factor=value)  # noqa: E731
-    cloth: Any = lambda setup, value: setup._replace(cloth_friction=value)  # noqa: E731
     spread = SPEED_SPREAD if all(each.speed is not None for each in read) else UNKNOWN_SPEED_SPREAD
     elevations = dict.fromkeys(each.stated_elevation for each in read)
     return [
         contact,
         *(_elevation(stated, number) for number, stated in enumerate(elevations, start=1)),
-        UncertainParameter("ball speed", "true ball speed over the computed", "", 1.0, spread, speed),
+        UncertainParameter("ball speed", "true ball speed over the computed", "", 1.0, spread, _on("speed_factor")),
         UncertainParameter(
-            "cloth", "friction of the sliding ball on the cloth", "", CLOTH_FRICTION, CLOTH_SPREAD, cloth
+            "cloth",
+            "friction of the sliding ball on the cloth",
+            "",
+            CLOTH_FRICTION,
+            CLOTH_SPREAD,
+            _on("cloth_friction"),
         ),
     ]
 
@@ -188,6 +190,16 @@ def _prior(prior: Prior | None, median: float, spread: float | None) -> tuple[fl
         return math.sqrt(prior.low * prior.high), math.log(prior.high / prior.low) / 2
     assert prior.spread is not None
     return median, prior.spread
+
+
+def _on(name: str) -> Callable[[Setup, float], Setup]:
+    """What changes the field of a setup."""
+
+    def apply(setup: Setup, value: float) -> Setup:
+        field: Any = {name: value}
+        return setup._replace(**field)
+
+    return apply
 
 
 def _on_scene(path: Path) -> Callable[[Setup, float], Setup]:

@@ -130,7 +130,7 @@ def test_shop_file_or_logo_of_another_kind_is_one_line(change: tuple[str, str], 
 
 def test_limits_and_order_of_another_kind_are_one_line(drawing: Path) -> None:
     (drawing.parents[1] / "shop.toml").write_text(SHOP.replace(".120 in", ".001 in"))
-    assert_rejects("shop.toml: defaults.limits: wall must be at least .008 in; got .001 in", "improve", drawing)
+    assert_rejects("shop.toml: defaults.limits.wall: wall must be at least .008 in; got .001 in", "improve", drawing)
     cue = drawing.with_name("cue.toml")
     cue.write_text('shaft = "conical taper"\n[order]\ncostumer = "A"\n')
     assert_rejects("cue.toml: order.costumer: unknown key; did you mean 'customer'?", "modes", cue)

@@ -48,7 +48,7 @@ def test_load_invalid_content_is_rejected(tmp_path: Path, request: pytest.Fixtur
 
 def test_load_refuses_an_option_that_it_does_not_have() -> None:
     with pytest.raises(TypeError, match="load has the options material, length_unit, front"):
-        cf.load("plain maple", wood="ash")  # type: ignore[call-arg]
+        cf.load("plain maple", wood="ash")
 
 
 BAR = revolve([(0, 0), *((x, 0.006) for x in np.linspace(0, 0.7, 30)), (0.7, 0)], 16)
