@@ -86,12 +86,6 @@ def test_sticking_leather_that_hardly_touches_has_forces(
     assert coarse == pytest.approx(fine, rel=within)
 
 
-@pytest.mark.parametrize("offset", [0.3, 0.4, 0.55])
-def test_leather_that_shrinks_slips_once(offset: float) -> None:
-    names = [phase[:2] for phase in strike(maple_scene(offset)).phases]
-    assert names == [("stick", "load"), ("stick", "unload"), ("slip", "unload")]
-
-
 @pytest.mark.nightly
 def test_leather_strike_random_scenes_agree_with_small_steps() -> None:
     errors = np.array([squirt_error(random_scene(seed)) for seed in range(100)])

@@ -1,4 +1,4 @@
-"""Solid cues: strike, mass on the tip, modes, invalid input, model error (properties)."""
+"""Solid cues: strike, mass on the tip, modes, invalid input (properties)."""
 
 from __future__ import annotations
 
@@ -54,26 +54,3 @@ def test_solid_invalid_input_raises_before_assembly(
     """Input is checked before assembly, which takes seconds."""
     monkeypatch.setattr(SolidBody, "matrices", property(lambda body: pytest.fail("a solid was assembled")))
     assert_refused("solid", messages_of(INVALID), request)
-
-
-@pytest.mark.heavy
-def test_model_error_short_cone_lists_quantities_and_exclusions() -> None:
-    """Rows, summary, and effects that a solid excludes; a short cone is fast."""
-    short = cf.Cue((cf.Segment(0.12, 0.012, 0.014, WOOD),), body_mass=0.42)
-    scene = replace(SCENE, cue=short, effects=(cf.AxialWaves(), cf.PointMass(position=0.0, mass=1e-3)))
-    found = cf.model_error(scene)
-    rows = {row["quantity"]: row for row in found.rows}
-    assert list(rows)[:6] == [f"natural frequency {k}" for k in range(1, 7)]
-    for row in rows.values():
-        assert row["discretisation_error"] < 1e-2
-        assert row["difference"] == pytest.approx(row["beam"] / row["solid"] - 1, abs=1e-15)
-    frequency = cf.modes(short, 1, effects=scene.effects).frequencies[0]
-    assert rows["natural frequency 1"]["beam"] == pytest.approx(frequency, rel=1e-6)
-    assert 0 < abs(rows["natural frequency 1"]["solid"] / frequency - 1) < 0.1
-    assert found.summary.startswith("Error of the beam model for this shaft: ")
-    assert found.excluded_effects == ["AxialWaves"]
-    table = found.table()
-    assert [row[0].removesuffix(" *") for row in table.rows[:-1]] == list(rows)
-    assert abs(found.scikit_fem["difference"]) < 1e-9
-    assert table.rows[-1][0] == "natural frequency 1, same beam by scikit-fem"
-    assert "axial waves" in table.notes[-1]
