@@ -31,6 +31,12 @@ def cue(name: str) -> cf.Cue:
     return result
 
 
+def plain_maple() -> cf.Cue:
+    """The maple shaft with the shear coefficient 0.9, which the independent oracle takes."""
+    maple = cue("pool_maple")
+    return replace(maple, segments=tuple(replace(segment, kappa=0.9) for segment in maple.segments))
+
+
 @cache
 def hollow(bore: float) -> cf.Cue:
     """The hollow shaft of meshes/ with another bore in front, m."""

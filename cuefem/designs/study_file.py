@@ -69,8 +69,7 @@ class LimitTable:
 
 @dataclass(frozen=True)
 class ObjectiveTable:
-    """[objective] of a file: the response to minimize or maximize, and the one that it is traded against; or the
-    response that reaches a target."""
+    """[objective] of a file: a response to minimize, maximize or bring to a target; another to trade it against."""
 
     minimize: str | None = None
     maximize: str | None = None

@@ -147,11 +147,9 @@ def share(struck: cf.Scene, squirt: float) -> float:
 @cache
 def check() -> list[tuple[float, float, float]]:
     """b/R, and the share of the coupled strike and of the oracle in small steps."""
-    maple = cue("pool_maple")
-    shaft = replace(maple, segments=tuple(replace(segment, kappa=0.9) for segment in maple.segments))
     rows = []
     for offset in (0.5, 0.56, 0.6, 0.64):
-        struck = pool_scene(shaft, 1.2e-3, offset, (strokes.DOME, strokes.SHEAR))
+        struck = pool_scene(strokes.plain_maple(), 1.2e-3, offset, (strokes.DOME, strokes.SHEAR))
         stepped = solve_small_steps(struck, 60, 1000).squirt
         rows.append((offset, share(struck, cf.strike(struck).squirt), share(struck, stepped)))
     return rows

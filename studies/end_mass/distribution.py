@@ -200,9 +200,7 @@ def check_table() -> str:
 @cache
 def oracle_changes() -> list[tuple[float, float, float]]:
     """xi, and the change of squirt by clay, %, of the coupled strike and of the oracle in small steps."""
-    maple = cue("pool_maple")
-    plain_shear = replace(maple, segments=tuple(replace(segment, kappa=0.9) for segment in maple.segments))
-    base = pool_scene(plain_shear, TIME, 0.3, (strokes.DOME, strokes.SHEAR))
+    base = pool_scene(strokes.plain_maple(), TIME, 0.3, (strokes.DOME, strokes.SHEAR))
     plain, stepped = cf.strike(base).squirt, solve_small_steps(base, 60, 1000).squirt
     rows = []
     for xi in (0.5, 1.0, 1.3):

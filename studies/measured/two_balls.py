@@ -101,13 +101,10 @@ def variants() -> dict[str, list[float]]:
 
 @cache
 def check() -> tuple[float, float]:
-    """ln of the ratio on maple with a spring tip of one stiffness: the coupled strike, and the oracle in small "
-    "steps."""
-    maple = cue("pool_maple")
-    shaft = replace(maple, segments=tuple(replace(segment, kappa=0.9) for segment in maple.segments))
+    """ln of the ratio on maple with a spring tip of one stiffness: coupled strike, and oracle in small steps."""
     results = []
     for mass in (LIGHT, HEAVY):
-        base = pool_scene(shaft, TIME, 0.3, (strokes.DOME, strokes.SHEAR))
+        base = pool_scene(strokes.plain_maple(), TIME, 0.3, (strokes.DOME, strokes.SHEAR))
         heavier = on_ball(base, mass)
         time = TIME * math.sqrt(heavier.reduced_mass / base.reduced_mass)
         scene = replace(heavier, tip=replace(heavier.tip, contact_time=time))

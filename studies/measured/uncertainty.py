@@ -117,8 +117,7 @@ def coverage() -> Iterator[tuple[str, int, int, float]]:
 
 
 def within(share: float, pair: tuple[float, ...]) -> bool:
-    """Whether a measured logarithm lies within the uncertainty of the computed one; pair: both, and what inputs "
-    "do."""
+    """Whether a measured logarithm lies within the uncertainty of the computed one; pair: both, and what inputs do."""
     measured, computed, *inputs = pair
     return abs(measured - computed) <= math.hypot(max(share * abs(computed), math.hypot(*inputs)), RATIO_FLOOR)
 
