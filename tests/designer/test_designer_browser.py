@@ -96,6 +96,7 @@ def test_saved_design_strikes_as_displayed(browser: Any, address: str, tmp_path:
             "before => Number(document.querySelector('[data-number=squirt][data-of=own]').dataset.value) < before",
             arg=before,
         )
+        wait_until_idle(page)
         new = displayed_number(page, "squirt")
 
         saved = download(page, "Save", tmp_path)

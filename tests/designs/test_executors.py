@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import cuefem as cf
-from cuefem.designs.blocks import Block, BlockResult
+from cuefem.designs.blocks import Block, BlockResult, Blocks
 from cuefem.designs.design_key import code_digest
 from cuefem.designs.executors import in_parallel
 from cuefem.designs.study import Study
@@ -56,6 +56,15 @@ def test_study_on_worker_without_this_cuefem_is_rejected(
     study = write_study(tmp_path, GRID)
     monkeypatch.setattr("cuefem.cli.study_command.dask_executor", lambda address: nullcontext(Elsewhere(result)))
     assert_rejects(message, "study", study, "--scheduler", "tcp://elsewhere:8786")
+
+
+def test_blocks_grow_while_they_are_short() -> None:
+    blocks = Blocks((i, (float(i),)) for i in range(112))
+    sizes = []
+    for block in blocks:
+        sizes.append(len(block.numbers))
+        blocks.adapt(BlockResult(block, "", b"", None, {}, seconds=0.01 if len(sizes) < 3 else 1.0))
+    assert sizes == [16, 32, 64]
 
 
 class Killed(BrokenExecutor):
