@@ -55,20 +55,15 @@ class ContactHistory(Rows, Analysis):
     def tables(self) -> list[Table | str]:
         """The events, and the energy balance."""
         events = [] if self.outcome.history is None else contact_section(self.outcome)["events"]
-        return [
-            *([Table("Events", ("", "time", "event"), tuple(events), texts=(0, 2))] if events else []),
-            self.table(),
-        ]
-
-    def table(self) -> Table:
-        """A row for each place of energy after the strike."""
         whole = self.energy["initial"]
         rows = (
             (name, f"{100 * value / whole:.2f} %", format_value("energy", value) if abs(value) > 1e-9 * whole else "0")
             for name, value in self.energy.items()
             if name != "initial"
         )
-        return Table("Energy balance", ("", "share", "energy"), tuple(rows))
+        balance = Table("Energy balance", ("", "share", "energy"), tuple(rows))
+        timed = [Table("Events", ("", "time", "event"), tuple(events), texts=(0, 2))] if events else []
+        return [*timed, balance]
 
 
 def contact_history(scene: Solvable) -> ContactHistory:

@@ -77,17 +77,9 @@ class EndMasses(Rows, Analysis):
         return [{"definition": name, **vars(mass)} for name, mass in self.definitions.items()]
 
     def tables(self) -> list[Table | str]:
-        """A table with a row for each definition, and those of the reduction."""
-        return [self.table(), *([] if self.reduction is None else self.reduction.tables())]
-
-    def charts(self) -> list[Chart]:
-        """The charts of the reduction."""
-        return [] if self.reduction is None else self.reduction.charts()
-
-    def table(self) -> Table:
-        """A row for each definition."""
+        """A row for each definition, and the tables of the reduction."""
         rows = [{"name": name, **vars(mass)} for name, mass in self.definitions.items()]
-        return tabulate(
+        own = tabulate(
             "Effective end mass",
             {"definition": lambda row: self._label(row["name"]), "m_e": "end_mass"},
             rows,
@@ -97,6 +89,11 @@ class EndMasses(Rows, Analysis):
             "two-part cue: offset; published end masses and pooltool: [A.31]",
             *tip_effect_notes(self.scene, _tip_effects_note()),
         )
+        return [own, *([] if self.reduction is None else self.reduction.tables())]
+
+    def charts(self) -> list[Chart]:
+        """The charts of the reduction."""
+        return [] if self.reduction is None else self.reduction.charts()
 
     def _label(self, name: str) -> str:
         """The name of a definition, and its label where that says more."""

@@ -109,8 +109,8 @@ def plays_like(
     Notes
     -----
     A dimension (bore with a drill of the shop, ferrule, front, wall of a tube) goes from its size to the nearest one
-    that reaches the squirt; if no dimension does, the two nearest changes are combined with another one, and
-    so again. The change that alters stiffness, mass and first natural frequency least is the first.
+    that reaches the squirt. If none does, each of the two nearest changes is combined with another dimension,
+    three together at most. The change that alters stiffness, mass and first natural frequency least is the first.
 
     Examples
     --------

@@ -181,7 +181,7 @@ def squirt_curve(scene: Solvable, offsets: Sequence[float] = OFFSETS) -> SquirtC
         "A.31, this cue": published,
     }
     struck = [at_offset(scene, offset) for offset in offsets]
-    models: Record = {"coupled, this cue": coupled_curve(scene, offsets, solved.tip, design.squirt_factor)}
+    models: Record = {OWN: coupled_curve(scene, offsets, solved.tip, design.squirt_factor)}
     for name, each in cues.items():
         squirt = a31_squirt if name.startswith("A.31") else lambda at, cue: lumped_strike(at, cue).squirt
         pairs = zip(struck, each, strict=True)

@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,6 +26,7 @@ from cuefem.analysis.strike_grid import (
 )
 from cuefem.cue import Array
 from cuefem.effects.force_law import IndentationOutOfRange
+from cuefem.measurements.calibration import Calibration
 from cuefem.quantity.display_units import with_unit
 from cuefem.results.closed_forms import alciatore_a31_mass_ratio
 from cuefem.results.progress import Progress
@@ -37,9 +37,6 @@ from cuefem.scene import Scene, Stroke, check_scene
 from cuefem.show.analysis import Analysis, Rows
 from cuefem.show.charts import Axis, Chart, Curve, chart
 from cuefem.show.scene_summary import scene_record, stroke_line
-
-if TYPE_CHECKING:
-    from cuefem.measurements.calibration import Calibration
 
 POOLTOOL_INERTIA = 0.4  # of every ball in pooltool 0.6.0
 SPEEDS = (0.2, 10.0)  # m/s: from a soft stroke to a break at 22 mph
@@ -209,7 +206,7 @@ class StrikeTable(Rows, Analysis):
         return min(0.3, math.floor(50 * min(self.limit)) / 100)
 
     def _row(self, speed: float) -> tuple[str, ...]:
-        limit = np.interp(math.log(speed), np.log(self.speed), self.limit)
+        limit = self.grid().limit_at(speed)
         read = self.at(speed, self._shown)._asdict()
         return (format_value("speed", speed), f"{limit:.3f}", *(format_value(name, read[name]) for name in _SHOWN))
 
