@@ -50,7 +50,7 @@ def test_added_question_is_command_section_and_call(monkeypatch: pytest.MonkeyPa
     assert "\n  Weigh a cue.\n\n" in stdout_of("weight", "--help")
     assert as_json("weight", tmp_path / "scene.toml")["weight"] == pytest.approx(newtons, rel=1e-12)
     answer: Any = cf.weight  # type: ignore[attr-defined]
-    assert f"<td>{newtons:.3f}</td>" in html.unescape(answer(scene)._repr_html_())
+    assert f"<td>{newtons:.3f}\xa0N</td>" in html.unescape(answer(scene)._repr_html_())
     report = cf.report(scene, details=True)
     assert report.to_dict()["weight"] == {"weight": newtons}
     assert "Weight of the cue" in str(report)
@@ -58,7 +58,7 @@ def test_added_question_is_command_section_and_call(monkeypatch: pytest.MonkeyPa
     session.results.own["answers"] = report
     for page in (report.to_html(), sections_markup(session)):
         assert "<h2>Weight</h2>" in page
-        assert f"<td>{newtons:.3f}</td>" in page
+        assert f"<td>{newtons:.3f}\xa0N</td>" in page
 
 
 @pytest.mark.usefixtures("_effects_deleted")

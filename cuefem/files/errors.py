@@ -44,12 +44,12 @@ class InputError(ValueError):
     --------
     >>> import cuefem as cf
     >>> try:
-    ...     cf.load("cue.docx")
+    ...     cf.load("missing.toml")
     ... except cf.InputError as error:
     ...     print(error)
     ...     print(error.file, "|", error.problem)
-    cue.docx: must end in .toml, .csv, .stl, .ply or .obj; got '.docx'
-    cue.docx | must end in .toml, .csv, .stl, .ply or .obj; got '.docx'
+    missing.toml: cannot be read: No such file or directory
+    missing.toml | cannot be read: No such file or directory
     """
 
     def __init__(self, file: str | PathLike[str], key: str, problem: str) -> None:

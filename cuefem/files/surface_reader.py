@@ -1,4 +1,4 @@
-"""Reader of shafts as closed CAD surfaces (.stl, .ply, .obj); `slices` converts them to segments."""
+"""Reader of shafts as closed CAD surfaces; `slices` converts them to segments."""
 
 from __future__ import annotations
 

@@ -156,7 +156,21 @@ class Answer:
     ) -> str:
         """A self-contained page with tables and charts.
 
-        assumptions, warnings: instead of the answer's own. made: the date at its end. inline: as a part of a notebook.
+        Parameters
+        ----------
+        name : str
+            Of the file, in the page's title.
+        assumptions, warnings : sequence, optional
+            Instead of the answer's own.
+        made : str
+            The date at the page's end.
+        inline : bool, default False
+            Whether the page is a part of a notebook.
+
+        Returns
+        -------
+        str
+            HTML.
         """
         noted = self.assumptions if assumptions is None else assumptions
         warned = [f"warning: {line}" for line in self.warnings] if warnings is None else warnings

@@ -46,6 +46,7 @@ def test_list_equals_comparisons_and_names_what_it_cannot_read(tmp_path: Path) -
     assert 'class="red"' in files[2].read_text("utf-8")
 
 
+@pytest.mark.heavy
 def test_mark_of_an_assumed_inside_is_of_the_named_cue_alone(tmp_path: Path) -> None:
     """Head, first screen and list mark "carbon", and not a maker's own carbon.csv."""
     write_shop(tmp_path / "shop")

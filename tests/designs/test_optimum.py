@@ -219,6 +219,7 @@ def of(cue: cf.Cue, name: str) -> cf.Segment:
     return replace(cue.segments[0], material=material(name))
 
 
+@pytest.mark.heavy
 def test_trade_off_is_never_worse_than_a_grid_and_evenly_spread(tmp_path: Path) -> None:
     """Of 9 x 9 designs none is better in both responses than a design of the curve."""
     text = OPTIMUM.partition("[[limit]]")[0] + OPTIMUM[OPTIMUM.index("\n[[vary]]") :]
