@@ -1,5 +1,6 @@
-"""The public names under the type checker of a careful user: no error, and mistakes found."""
+"""Python of README and handbook under the type checker of a careful user: no error, and misspelt names found."""
 
+import json
 import re
 import subprocess
 import sys
@@ -11,6 +12,9 @@ pytest.importorskip("mypy")
 pytestmark = [pytest.mark.heavy, pytest.mark.nightly]
 
 ROOT = Path(__file__).parents[1]
+CHAPTERS = sorted((ROOT / "cuefem" / "handbook").glob("*.md"))
+PAGES = sorted((ROOT / "studies").rglob("*.md"))
+NOTEBOOKS = sorted((ROOT / "studies" / "notebooks").glob("*.ipynb"))
 USER = """
 import cuefem as cf
 
@@ -31,15 +35,38 @@ curve.sqirt
 MISTAKES = {13: "arg-type", 14: "arg-type", 15: "arg-type", 16: "attr-defined"}
 
 
-def test_a_users_program_passes_strict_types_and_its_mistakes_are_found(tmp_path: Path) -> None:
-    (tmp_path / "user.py").write_text(USER, encoding="utf-8")
+def python_of(path: Path) -> list[str]:
+    """The Python of a page in blocks, or that of a notebook."""
+    text = path.read_text(encoding="utf-8")
+    if path.suffix != ".ipynb":
+        return re.findall(r"^```python\n(.*?)^```", text, flags=re.MULTILINE | re.DOTALL)
+    cells = ["".join(cell["source"]) for cell in json.loads(text)["cells"] if cell["cell_type"] == "code"]
+    return ["\n".join(re.sub(r"^%.*$", "", cell, flags=re.MULTILINE) for cell in cells)]
+
+
+def test_python_of_pages_passes_strict_types_and_mistakes_are_found(tmp_path: Path) -> None:
+    programs = {
+        f"{path.parent.name}_{path.stem.lower()}_{i}.py": block
+        for path in (ROOT / "README.md", *CHAPTERS, *PAGES, *NOTEBOOKS)
+        for i, block in enumerate(python_of(path))
+    }
+    assert {
+        f"{ROOT.name}_readme_0.py",
+        "handbook_working_0.py",
+        "notebooks_kims_chain_0.py",
+        "contact_energy_0.py",
+    } <= {*programs}
+    for name, block in {**programs, "user.py": USER}.items():
+        (tmp_path / name).write_text(block, encoding="utf-8")
     command = [sys.executable, "-m", "mypy", "--strict", "--config-file=", "--follow-imports=silent", "--no-pretty"]
     checked = subprocess.run(
-        [*command, "--cache-dir", str(tmp_path / "cache"), "user.py"],
+        [*command, "--scripts-are-modules", "--cache-dir", str(tmp_path / "cache"), *programs, "user.py"],
         cwd=tmp_path,
         env={"MYPYPATH": str(ROOT), "PATH": ""},
         capture_output=True,
         text=True,
     )
-    errors = re.findall(r"^user\.py:(\d+): error: .*\[([a-z-]+)\]$", checked.stdout, re.MULTILINE)
-    assert {int(line): kind for line, kind in errors} == MISTAKES, checked.stdout
+    errors = [line for line in checked.stdout.splitlines() if ": error:" in line]
+    found = {int(line.split(":")[1]): line.rpartition("[")[2].rstrip("]") for line in errors if line.startswith("user")}
+    assert [line for line in errors if not line.startswith("user.py")] == []
+    assert found == MISTAKES
