@@ -42,7 +42,7 @@ class CueReport(Analysis):
     no_contact, no_squirt : str
         Why only the natural frequencies are known; why there is no verdict.
     other : tuple of str and Scene, optional
-        Name and scene of a cue that its page shows beside this one.
+        Name and scene of a cue that its page shows beside this one: ``replace(report, other=(name, scene))``.
     """
 
     sections: dict[str, Analysis]

@@ -96,10 +96,18 @@ def report_parts(scene: Scene, answers: Answers) -> list[Record]:
     ]
 
 
-def _section(key: str, title: str, tables: Sequence[Any], charts: Sequence[Any] = (), **folds: bool) -> Record:
-    """A section of a page; folds: whether it is ``folded``, and a part for an ``engineer``."""
-    made: Record = {"key": key, "title": title, "tables": tables, "charts": charts, "about": "", "more": []}
-    return made | {"folded": False, "engineer": False} | folds
+def _section(
+    key: str,
+    title: str,
+    tables: Sequence[Any],
+    charts: Sequence[Any] = (),
+    *,
+    folded: bool = False,
+    engineer: bool = False,
+) -> Record:
+    """A section of a page; folded: closed at first. engineer: a part for engineers."""
+    shown = {"key": key, "title": title, "tables": tables, "charts": charts, "about": "", "more": []}
+    return {**shown, "folded": folded, "engineer": engineer}
 
 
 def _is_for_engineers(scene: Scene, name: str, notes: Sequence[Assumption]) -> bool:

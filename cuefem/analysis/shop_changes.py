@@ -154,10 +154,10 @@ def dimensions_of(scene: Scene) -> list[Dimension]:
 
 
 def _sizes(
-    change: Callable[[float], DesignChange], first: float | None, farthest: Iterable[float], step: float
+    change: Callable[[float], DesignChange], first: float | None, lasts: Iterable[float], step: float
 ) -> list[Dimension]:
     """A dimension from its size in both directions; none of a part that the shaft does not have."""
-    return [] if first is None else [Dimension(change, first, last, step) for last in farthest]
+    return [] if first is None else [Dimension(change, first, last, step) for last in lasts]
 
 
 def _bore_sizes(cue: Cue, values: Record) -> list[Dimension]:
@@ -169,7 +169,8 @@ def _bore_sizes(cue: Cue, values: Record) -> list[Dimension]:
     own = values["bore_width"] if is_bored else shop.new_bore
     deepest = min(DEEPEST, max_bore_depth(cue))
     depths = _sizes(partial(_bore_depth, depth), depth, (max(depth, deepest), 0.0), MM) if is_bored else []
-    widths = [shop.drill_step * round(own / shop.drill_step + k + is_bored) for k in range(DRILLS)]
+    next_drill = 1 if is_bored else 0
+    widths = [shop.drill_step * round(own / shop.drill_step + next_drill + k) for k in range(DRILLS)]
     return [*depths, *(Dimension(partial(_bore, width), max(depth, MM), deepest, MM) for width in widths)]
 
 

@@ -79,7 +79,7 @@ class ShopList(Answer):
     def tables(self) -> list[Table | str]:
         """A row for each shaft; grey where it is not distinct from the first."""
         columns: Any = {
-            "shaft": lambda row: f"{row['name']}{self.marks[row['name']]}",
+            "shaft": lambda row: f"{row['name']}{self.marks.get(row['name'], '')}",
             "squirt": "squirt",
             f"difference from {self.first}": _difference,
             "weight with tip": "shaft_mass",

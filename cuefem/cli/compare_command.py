@@ -137,7 +137,7 @@ def compare(
 
 def _calibrating(folder: Path) -> str:
     """The command that makes a calibration of a measured cue."""
-    made = f"{folder.name.replace(' ', '_')}_calibration.toml"
+    made = f"{folder.resolve().name.replace(' ', '_')}_calibration.toml"
     return shlex.join(["cuefem", "compare", str(folder), "--estimate", "-o", made])
 
 

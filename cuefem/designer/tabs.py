@@ -152,7 +152,7 @@ def changes_panel(session: Session, attempt: Callable[[Mapping[str, Any]], None]
                     with ui.element("td"):
                         button = ui.button("Try", on_click=lambda places=row.values: attempt(places))
                         button.props(f'outline dense no-caps aria-label="Try {row.change}"')
-    for note in made.notes:
+    for note in (*record.gaps(), *made.notes):
         ui.label(note).classes("soft")
 
 

@@ -64,7 +64,7 @@ def load(path: str | os.PathLike[str], **options: Unpack[LoadOptions]) -> Cue | 
     """The content of a file, without what it leaves open: see `cuefem.files.loaders.load`."""
     for name in options:
         if name not in LoadOptions.__annotations__:
-            raise TypeError(f"load has the options {', '.join(LoadOptions.__annotations__)}; got {quote(name)}")
+            raise TypeError(f"a file is loaded with {', '.join(LoadOptions.__annotations__)}; got {quote(name)}")
     path = named_path(Path(path))
     shape = path.suffix.lower() in SHAPE_EXTENSIONS
     material, body_mass = options.get("material"), options.get("body_mass")

@@ -24,7 +24,7 @@ def load(path: str | os.PathLike[str], **options: Unpack[LoadOptions]) -> Cue | 
     Parameters
     ----------
     path : str or path
-        A drawing or a scene (.toml), a lathe profile (.csv), or a closed CAD surface; or the name of
+        A drawing or a scene (.toml), a lathe profile (.csv), or a closed CAD surface (.stl, .ply, .obj); or the name of
         a cue, such as "plain maple", "carbon" or "predator z2" (`cuefem parts` lists them).
     material : str, optional
         Name of the material of the shaft, instead of the one in the file; for a lathe profile or a surface that names

@@ -21,9 +21,12 @@ def named_scene(name: str) -> Scene:
 
 
 def inside_mark(name: str, scene: Scene) -> str:
-    """A dagger for the cue of a name whose inside is assumed; "" for others, as for a maker's own file of that name."""
+    """A dagger for the cue of a name whose inside is assumed, also with another ferrule, bore or tip.
+
+    "" for others, as for a maker's own file of that name, which has no segment of the cue.
+    """
     mark = CUES[name].mark if name in CUES else ""
-    return mark if mark and _outlines(scene.cue) <= _outlines(named_scene(name).cue) else ""
+    return mark if mark and _outlines(scene.cue) & _outlines(named_scene(name).cue) else ""
 
 
 def _outlines(cue: Cue | LumpedCue) -> set[tuple[float, ...]]:

@@ -108,11 +108,11 @@ class Answer:
         return ""
 
     def gaps(self) -> list[str]:
-        """What parts of the answer lack and why, a line each: warnings of a page, and first in a terminal."""
+        """Warnings of the answer itself, such as what parts lack, a line each: on a page, and first in a terminal."""
         return []
 
     def values(self) -> Record:
-        """The numbers alone, in SI units."""
+        """The numbers alone, in SI units: the answer's own objects; `to_dict` has plain copies."""
         return {each.name: getattr(self, each.name) for each in fields(self) if each.repr}
 
     def said(self) -> Record:

@@ -48,10 +48,11 @@ def test_list_equals_comparisons_and_names_what_it_cannot_read(tmp_path: Path) -
 
 @pytest.mark.heavy
 def test_mark_of_an_assumed_inside_is_of_the_named_cue_alone(tmp_path: Path) -> None:
-    """Head, first screen and list mark "carbon", and not a maker's own carbon.csv."""
+    """Head, first screen and list mark "carbon", with another ferrule too, and not a maker's own carbon.csv."""
     write_shop(tmp_path / "shop")
     own, named = cf.load(tmp_path / "shop" / "s0.csv"), cf.load("carbon")
-    for cue, mark in ((own, "carbon"), (named, "carbon†")):
+    changed = cf.load("carbon", ferrule="10 mm melamine")
+    for cue, mark in ((own, "carbon"), (named, "carbon†"), (changed, "carbon†")):
         scenes = {"carbon": cf.usual_scene(cue), "plain maple": cf.usual_scene(cf.load("plain maple"))}
         compared = cf.compare(scenes)
         assert compared.table().head[1:3] == (mark, "plain maple")

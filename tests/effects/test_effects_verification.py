@@ -104,6 +104,15 @@ def test_structural_damping_equals_strain_energy_loss(effects: tuple[Effect, ...
     assert np.count_nonzero(lossy.loss[~vibrating]) == 0
 
 
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
+def test_joint_strain_energy_is_not_dissipated() -> None:
+    scene = cf.Scene(lossy_cue(), effects=(cf.StructuralDamping(0.05), cf.Joint(0.3, 1e-3)))
+    tip = tip_modes_of(scene, cf.Resolution(3, 16, 12))
+    loss = tip.loss[tip.omega > 0]
+    assert loss.min() < 0.0495
+    assert loss.max() < 0.05
+
+
 RADIUS = 0.012
 
 

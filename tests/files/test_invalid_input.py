@@ -47,7 +47,7 @@ def test_load_invalid_content_is_rejected(tmp_path: Path, request: pytest.Fixtur
 
 
 def test_load_refuses_an_option_that_it_does_not_have() -> None:
-    with pytest.raises(TypeError, match="load has the options material, length_unit, front"):
+    with pytest.raises(TypeError, match="a file is loaded with material, length_unit, front"):
         cf.load("plain maple", wood="ash")
 
 
