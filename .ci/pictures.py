@@ -16,7 +16,7 @@ from playwright.sync_api import sync_playwright
 from studies.paper import chain
 
 STUDIES = Path(chain.__file__).parents[1]
-SIZE = {"width": 900, "height": 760}
+SIZE = {"width": 900, "height": 820}
 
 
 def draw_report(cue: Path, picture: Path) -> None:
