@@ -377,7 +377,7 @@ class Cue:
     @cached_property
     def shaft_mass(self) -> float:
         """Mass of the segments, kg."""
-        return math.fsum(s.mass for s in self.segments)
+        return sum(s.mass for s in self.segments)
 
     @property
     def is_body_mass_assumed(self) -> bool:
