@@ -130,7 +130,7 @@ class DesignChanges(Rows, Analysis):
         return [*self.calibration_lines(), *([*self.together_lines(), ""] if self.together else []), self.table()]
 
     def calibration_lines(self) -> list[str]:
-        """The calibrated squirt of the cue itself, and what it rests on; empty without a calibration."""
+        """The calibrated squirt of the cue and the source of the calibration; empty without one."""
         own = self.calibrated
         if own is None:
             return []

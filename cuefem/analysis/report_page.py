@@ -78,8 +78,14 @@ def page_of(scene: Scene, answers: Answers, regime: str, frame: PageFrame, besid
 def report_parts(scene: Scene, answers: Answers) -> list[Record]:
     """The sections of a page: each answer in the order of the report, then the notes on a stroke."""
     sections = [
-        _section(key, part.title, answers[key].tables(), answers[key].charts())
-        | {"folded": part.folded, "engineer": part.engineer}
+        _section(
+            key,
+            part.title,
+            answers[key].tables(),
+            answers[key].charts(),
+            folded=part.folded,
+            engineer=part.engineer,
+        )
         | {"about": answers[key].about, "more": answers[key].more_charts()}
         for key, part in report_sections().items()
         if key in answers

@@ -216,7 +216,7 @@ def repeated_tables(propagator: ModalPropagator, h: float) -> StepTables:
 
 
 @lru_cache(maxsize=CACHED_CUES)
-def level_propagator(tip: TipModes, *, turns: bool = False) -> ModalPropagator:
+def level_propagator(tip: TipModes, *, turns: bool) -> ModalPropagator:
     """The propagator of tip modes at the ports (u, w), and, if it turns the contact, the end section's rotation."""
     ports = [*tip.amplitude.T, tip.rotation] if turns else tip.amplitude.T
     return ModalPropagator(tip, np.array(ports), slope_rows(tip))

@@ -67,7 +67,7 @@ def imposed_velocity_impulse(tip: TipModes, T: float, velocity: Array, ball_inve
     """
     check_moves(tip)
     tip = tip.lateral
-    propagator = level_propagator(tip)
+    propagator = level_propagator(tip, turns=False)
     tables, means = repeated_tables(propagator, T / PULSE_STEPS), (velocity[1:] + velocity[:-1]) / 2
     first_impulse = velocity[0] / (float(propagator.mobility[1, 1]) + ball_inverse_mass)
     velocities = first_impulse * propagator.ports[1]

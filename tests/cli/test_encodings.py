@@ -10,7 +10,7 @@ import pytest
 from cuefem.cli import main
 from tests.helpers.command_line import as_json, stdout_of
 
-ENCODINGS = ("cp1252", "cp932", "ascii")  # of Windows, of Japan; and the one that lacks most characters
+ENCODINGS = ("cp1252", "cp932", "ascii")  # Windows in the West, Windows in Japan, and the smallest set
 
 
 def printed(encoding: str, *arguments: str) -> str:

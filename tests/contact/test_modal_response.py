@@ -42,7 +42,7 @@ def whole_system(tip: TipModes) -> np.ndarray:
 @pytest.mark.parametrize("radiation", [0.0, 1e5])
 def test_step_of_modes_equals_exponential_of_whole_system(loss: float, radiation: float) -> None:
     tip = damped_modes(loss=loss, radiation=radiation)
-    propagator, n, rng = level_propagator(tip), len(tip.omega), np.random.default_rng(1)
+    propagator, n, rng = level_propagator(tip, turns=False), len(tip.omega), np.random.default_rng(1)
     state, load = rng.normal(size=(2, n)), rng.normal(size=2)
     exact = la.expm(whole_system(tip) * H) @ np.concatenate([*state, load @ propagator.ports * 1e5, np.zeros(n)])
     tables = propagator.tables(H)
@@ -58,7 +58,7 @@ def test_cues_struck_earlier_leave_no_tables_behind() -> None:
     gc.disable()
     try:
         tips = [custom_tip_modes(OMEGA, [5.0 + i, 6.0, -7.0, 8.0, -3.0, 2.0]) for i in range(20)]
-        propagators = [weakref.ref(level_propagator(tip)) for tip in tips if strike_modes(scene, tip)]
+        propagators = [weakref.ref(level_propagator(tip, turns=False)) for tip in tips if strike_modes(scene, tip)]
         assert propagators[0]() is propagators[3]() is None
     finally:
         gc.enable()
@@ -66,7 +66,7 @@ def test_cues_struck_earlier_leave_no_tables_behind() -> None:
 
 def test_impact_is_the_limit_of_short_steps_under_the_same_impulse() -> None:
     tip = replace(damped_modes(loss=0.5, radiation=1e5), dashpots=np.linspace(-1.0, 2.0, len(OMEGA) + 2)[None])
-    propagator, h = level_propagator(tip), 1e-9
+    propagator, h = level_propagator(tip, turns=False), 1e-9
     impact, short = propagator.tables(0.0), propagator.tables(h)
     assert (impact.h, impact.load_time, impact.dashpots.any()) == (0.0, 1.0, False)
     radiating, per_impulse = short.radiating.copy(), 1 / h
@@ -92,7 +92,7 @@ def test_losses_of_a_strike_equal_integrals_of_power() -> None:
 def test_dashpot_is_second_order_and_takes_the_energy_that_the_modes_lose() -> None:
     """Free decay of two modes with a dashpot of rate 2e4 1/s, against an exponential of the whole system."""
     tip = replace(custom_tip_modes([3e3, 2e4], [5.0, 6.0]), dashpots=np.array([[0.0, 0.0, 100.0, 100.0]]))
-    propagator, state = level_propagator(tip), np.array([0.0, 0.0, 1.0, -0.5, 0.0, 0.0, 0.3, 0.8])
+    propagator, state = level_propagator(tip, turns=False), np.array([0.0, 0.0, 1.0, -0.5, 0.0, 0.0, 0.3, 0.8])
     exact = la.expm(whole_system(tip)[:8, :8] * 1e-3) @ state
     errors = []
     for steps in (100, 400):
