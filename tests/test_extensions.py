@@ -51,6 +51,9 @@ def test_added_question_is_command_section_and_call(monkeypatch: pytest.MonkeyPa
     assert as_json("weight", tmp_path / "scene.toml")["weight"] == pytest.approx(newtons, rel=1e-12)
     answer: Any = cf.weight  # type: ignore[attr-defined]
     assert f"<td>{newtons:.3f}\xa0N</td>" in html.unescape(answer(scene)._repr_html_())
+    (tmp_path / "cue.csv").write_text("position (mm);diameter (mm)\n0;12\n700;20\n", encoding="utf-8")
+    weighed, modes = (as_json(name, tmp_path / "cue.csv") for name in ("weight", "modes"))
+    assert weighed["assumptions"] == modes["assumptions"]  # none of a stroke, which matters to neither
     report = cf.report(scene, details=True)
     assert report.to_dict()["weight"] == {"weight": newtons}
     assert "Weight of the cue" in str(report)

@@ -18,6 +18,7 @@ from cuefem.analysis import strike_grid
 from cuefem.results.uncertainty import MODEL_ERROR, SHAFT_ERROR, SPRING_ERROR
 from studies.paper import chain
 from tests.helpers.command_line import call
+from tests.helpers.contributors_guide import GUIDE
 from tests.helpers.surfaces import outline_of, revolve, write_surface
 
 ROOT = Path(__file__).parents[1]
@@ -71,6 +72,7 @@ def test_trust_list_states_uncertainties_of_the_model() -> None:
 def test_readme_is_short_and_begins_with_two_commands() -> None:
     assert len(README.splitlines()) <= 110
     assert len(FIRST.splitlines()) == 2
+    assert FIRST.splitlines()[1] in GUIDE  # contributors install and test by the same line
 
 
 @pytest.mark.heavy

@@ -62,6 +62,12 @@ class Question(NamedTuple):
         function: Callable[..., Analysis] = getattr(import_module(module), name)
         return function
 
+    def answer(self) -> type[Analysis]:
+        """The class of its answers: the one that its function says it returns."""
+        function = self.function()
+        kind: type[Analysis] = function.__globals__[function.__annotations__["return"]]
+        return kind
+
 
 # By the key of its JSON, of its section on a page, and the name of its command; in the order of the report.
 QUESTIONS: dict[str, Question] = {

@@ -23,10 +23,9 @@ from cuefem.cli.scene_command import (
     analysis_command,
     calibration_option,
     check_overwrite,
-    file_options,
     force_option,
 )
-from cuefem.cli.scene_options import CueFile, file_label, option, option_value, tip_options, typed_name
+from cuefem.cli.scene_options import CueFile, file_label, option, option_value, typed_name
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.files import InputError, load_accuracy, save_changed
 from cuefem.files.errors import as_input_error
@@ -218,7 +217,7 @@ def _save_change(request: Request, answer: DesignChanges, take: str, output: Pat
     click.echo("\n".join(lines))
 
 
-@analysis_command(shared=lambda run: file_options(tip_options(run)), has_stroke=False)
+@analysis_command(has_stroke=False)
 @click.option(
     "--near", metavar="HERTZ", type=float, help="Show the modes nearest this frequency instead of the lowest."
 )

@@ -27,6 +27,7 @@ from cuefem.cli.scene_options import (
     offset_option,
     option,
     parameter_options,
+    tip_options,
     typed_name,
 )
 from cuefem.files import InputError, check_writable, load_accuracy, today
@@ -57,6 +58,11 @@ def stroke_options(command: Callable[..., Any]) -> Callable[..., Any]:
 def cue_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options for values that a cue's file may omit, and --json."""
     return json_option(shape_options(command))
+
+
+def drawing_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The file argument, and the options of a command to which no stroke matters."""
+    return file_options(tip_options(command))
 
 
 def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -100,7 +106,6 @@ def check_overwrite(drawing: Path, *, force: bool) -> None:
 def analysis_command(
     name: str | None = None,
     *,
-    shared: Callable[[Any], Any] = stroke_options,
     formats: tuple[str, ...] = (".html", ".json"),
     has_stroke: bool = True,
     **about: Any,
@@ -110,6 +115,7 @@ def analysis_command(
     The command prints the analysis, as tables or JSON, or writes it into the file of -o. has_stroke:
     whether ball, tip and stroke matter to the command.
     """
+    shared = stroke_options if has_stroke else drawing_options
 
     def decorated(analyse: Callable[..., Analysis | None]) -> click.Command:
         _, *own = signature(analyse).parameters
@@ -144,7 +150,7 @@ def question_command(name: str, question: Question) -> click.Command:
             arguments["progress"] = with_progress_bar
         return function(request.scene, **arguments)
 
-    return analysis_command(name, help=text)(ask)
+    return analysis_command(name, has_stroke=question.answer().has_stroke, help=text)(ask)
 
 
 def _show(request: Request, analysis: Analysis, output: Path | None, *, as_json: bool) -> None:
