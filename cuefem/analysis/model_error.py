@@ -189,8 +189,8 @@ def _by_scikit_fem(scene: Scene, bending: Modes) -> Record:
     ends, shift = scene.shaft.nodes, bending.system.shift
     pieces = [np.linspace(a, b, int(np.ceil((b - a) / MAX_ELEMENT)), endpoint=False) for a, b in pairwise(ends)]
     nodes = np.concatenate([*pieces, ends[-1:]])
-    K, M = weak_forms.assemble(scene.shaft, nodes, order=SCIKIT_FEM_ORDER, effects=scene.cue_effects)
-    ours, theirs = bending.frequencies[0], weak_forms.frequencies(K, M, shift=shift)[bending.rigid]
+    beam = weak_forms.assemble(scene.shaft, nodes, order=SCIKIT_FEM_ORDER, effects=scene.cue_effects)
+    ours, theirs = bending.frequencies[0], weak_forms.frequencies(beam, shift=shift)[bending.rigid]
     return {"beam": float(ours), "scikit_fem": float(theirs), "difference": float(ours / theirs - 1)}
 
 

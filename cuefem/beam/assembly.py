@@ -121,7 +121,7 @@ class System:
 
     def all_dofs(self, vectors: Array) -> Array:
         """All degrees of freedom of the mesh, (n_dof, k), from the free ones ``vectors`` (free, k)."""
-        return np.asarray(np.concatenate([vectors, np.zeros((1, vectors.shape[1]))])[self.index])
+        return np.where(self.index[:, None] < 0, 0.0, vectors[self.index])
 
     def unit_loads_at(self, x: float) -> Array:
         """Loads (free, 2) at the node ``x``, m: force 1 N, and couple 1 N times the cue's length; 0 if clamped."""
@@ -317,6 +317,4 @@ def _rigid_basis(mesh: Mesh, length: float, index: NDArray[np.intp], has_spring:
     resisted_motions = np.concatenate([motions[index < 0], basis[:-1][has_spring]])
     if not len(resisted_motions):
         return basis[:-1]
-    _, singular_values, directions = np.linalg.svd(resisted_motions)
-    rank = int(np.sum(singular_values > 1e-12 * singular_values[0]))
-    return basis[:-1] @ directions[rank:].T
+    return np.asarray(basis[:-1] @ scipy.linalg.null_space(resisted_motions, rcond=1e-12))

@@ -6,7 +6,7 @@ for `cuefem check` and the tests; only this file loads scikit-fem, which takes l
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.linalg as la
@@ -67,15 +67,23 @@ class _PointTerms:
         stiffness = (section.kGA, section.EI)
         for (before, after), compliance, rigidity in zip(self.dofs_at(x).T, compliances, stiffness, strict=True):
             if compliance * rigidity > MIN_COMPLIANCE * self.cue.length:
-                self.stiffness[np.ix_([before, after], [before, after])] += np.array([[1, -1], [-1, 1]]) / compliance
+                jump = np.array([1.0, -1.0])
+                self.stiffness[np.ix_([before, after], [before, after])] += np.outer(jump, jump) / compliance
             else:
                 self.source[before] = after
 
 
-def assemble(
-    cue: Cue, nodes: ArrayLike, *, order: int, effects: tuple[BeamEffect, ...] = ()
-) -> tuple[sp.csc_matrix, sp.csc_matrix]:
-    """K and M of the free degrees of freedom (w in m, theta in rad) of a cue on elements between ``nodes``, m.
+class Matrices(NamedTuple):
+    """Stiffness, mass and damping of the free degrees of freedom, (free, free), and the tip's rows, (2, free)."""
+
+    K: sp.csc_matrix
+    M: sp.csc_matrix
+    C: sp.csc_matrix
+    tip: sp.csc_matrix
+
+
+def assemble(cue: Cue, nodes: ArrayLike, *, order: int, effects: tuple[BeamEffect, ...] = ()) -> Matrices:
+    """The matrices of the free degrees of freedom (w in m, theta in rad) of a cue on elements between ``nodes``, m.
 
     w has the polynomial degree order + 1, theta order. Nodes must lie at the ends of segments and at effects.
     """
@@ -92,14 +100,13 @@ def assemble(
     free, column = np.unique(points.source[~clamped], return_inverse=True)
     expansion = sp.csc_matrix((np.ones(len(column)), (np.flatnonzero(~clamped), column)), (basis.N, len(free)))
     coefficients = {name: fields[name] for name in ("EI", "kGA", "rhoA", "rhoI")}
-    K, M = (
-        stiffness.assemble(basis, **coefficients) + points.stiffness,
-        inertia.assemble(basis, **coefficients) + points.mass,
-    )
-    return sp.csc_matrix(expansion.T @ K @ expansion), sp.csc_matrix(expansion.T @ M @ expansion)
+    K = stiffness.assemble(basis, **coefficients) + points.stiffness
+    M = inertia.assemble(basis, **coefficients) + points.mass
+    free_K, free_M, C = (sp.csc_matrix(expansion.T @ matrix @ expansion) for matrix in (K, M, points.dashpot))
+    return Matrices(free_K, free_M, C, tip=expansion[basis.nodal_dofs[:, 0]])
 
 
-def frequencies(K: sp.csc_matrix, M: sp.csc_matrix, *, shift: float) -> Array:
+def frequencies(beam: Matrices, *, shift: float) -> Array:
     """All natural frequencies, Hz, ascending, rigid-body modes near zero; shift: that of `System`, rad2/s2."""
-    inverse = la.eigh(M.toarray(), (K + shift * M).toarray(), eigvals_only=True)[::-1]
+    inverse = la.eigh(beam.M.toarray(), (beam.K + shift * beam.M).toarray(), eigvals_only=True)[::-1]
     return np.sqrt(np.maximum(1 / inverse - shift, 0)) / (2 * np.pi)

@@ -163,8 +163,8 @@ class StrikeGrid:
 
 def relative_error(outcome: Outcome, best: Outcome, scene: Scene) -> float:
     """Largest relative difference of squirt, ball speed and spin from those of ``best``."""
-    min_scale = np.array([MIN_SQUIRT * abs(float(scene.stroke.offset)), 0.0, 0.0])
-    scale = np.maximum(np.abs(_compared_numbers(best)), min_scale)
+    scale = np.abs(_compared_numbers(best))
+    scale[0] = max(scale[0], MIN_SQUIRT * abs(float(scene.stroke.offset)))
     scale = np.where(scale > 0, scale, 1.0)  # head-on: squirt and spin are zero at every level
     return float((np.abs(_compared_numbers(outcome) - _compared_numbers(best)) / scale).max())
 

@@ -1,4 +1,4 @@
-"""The beam: closed forms, spectral elements, orders of convergence, round-off error, slices (verification)."""
+"""The beam: closed forms, scikit-fem, orders of convergence, round-off error, slices (verification)."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ import scipy.linalg as la
 from scipy.optimize import brentq
 
 from cuefem import Cue, Joint, Material, PointMass, Resolution, Segment, Support, modes
-from cuefem.beam import assembly, eigensolver
+from cuefem.beam import assembly, eigensolver, weak_forms
 from cuefem.beam.meshing import mesh_cue
 from cuefem.beam.modes import solve
+from studies.strokes import NAMES
+from studies.strokes import cue as reference_cue
 from tests.helpers.cues import CARBON, FOAM, MAPLE, isotropic_kim, kim, rod, soft_tip, stiff_ferrule
 from tests.helpers.orders import assert_order
-from tests.oracle.spectral_beam import bending
 
 KIM_FREE = np.array([121.4816650127, 328.8249787923, 637.9759377717])  # Hz
 
@@ -41,10 +42,25 @@ COMPOSITE = Cue(
 )
 
 
-@pytest.mark.parametrize("cue", [COMPOSITE, isotropic_kim()], ids=["composite", "kim"])
-def test_frequencies_tapered_bored_cored_cue_equal_spectral_elements(cue: Cue) -> None:
-    oracle = bending(cue, (), 8).omega[2:] / (2 * np.pi)
-    np.testing.assert_allclose(frequencies(cue, 2, 20, 6), oracle, rtol=1e-9)
+EFFECTS = {
+    "free": (),
+    "mass, springs": (PointMass(position=0.0, mass=2e-3), Support(0.2, stiffness=5e3, rotational_stiffness=3.0)),
+    "clamp, joint": (Support(0.55, stiffness=np.inf), Joint(0.31, rotational_compliance=1e-3)),
+    "fixed": (Support(0.6, np.inf, np.inf), Joint(0.25, rotational_compliance=2e-3, shear_compliance=1e-6)),
+    "stiff joint": (Joint(0.5, 0.0, 3.5e-202),),
+}
+FREE = [*((reference_cue(name), "free") for name in NAMES), (COMPOSITE, "free")]
+
+
+@pytest.mark.parametrize(("shaft", "support"), [*FREE, *((kim(), key) for key in EFFECTS if key != "free")], ids=str)
+def test_frequencies_equal_scikit_fem_of_same_weak_forms(shaft: Cue, support: str) -> None:
+    """Twelve flexible modes on one mesh, to 1e-9: the bases differ, the spaces are the same."""
+    order, effects = 8, EFFECTS[support]
+    system = assembly.assemble(shaft, Resolution(2, order, 12), effects)
+    solution = solve(system, 12)
+    beam = weak_forms.assemble(shaft, system.mesh.nodes, order=order, effects=effects)
+    frequencies = weak_forms.frequencies(beam, shift=system.shift)[solution.rigid : solution.rigid + 12]
+    np.testing.assert_allclose(frequencies, solution.frequencies, rtol=1e-9)
 
 
 def roots(function: Callable[[float], float], grid: np.ndarray) -> list[float]:

@@ -1,9 +1,9 @@
 """Strikes with effects on the cue, elevation or a second hit, against independent small steps (verification).
 
-The beam (`tests.oracle.spectral_beam`) has spectral elements with lumped masses, the contact
-(`tests.oracle.small_steps`) has neither phases nor events: slip, stick, separation and repeated contact follow from an
-impulse in each of some thousand equal steps. Both have the same number of modes, so that they differ by the steps
-alone. Scenes are random: cue, ball, tip, stroke and effect, with slips, sticks and miscues on both sides.
+The beam (`tests.oracle.bending`) is scikit-fem's, the contact (`tests.oracle.small_steps`) has neither phases nor
+events: slip, stick, separation and repeated contact follow from an impulse in each of some thousand equal steps. Both
+have the same number of modes, so that they differ by the steps alone. Scenes are random: cue, ball, tip, stroke and
+effect, with slips, sticks and miscues on both sides.
 
 With 1,600 steps a contact time the maximum difference of 40 scenes a kind is 2e-5 (on the cue), 9e-5 (elevation) and
 3e-4 (second hit), over a typical size (`differences`): the error of the small steps, which falls with the step. 23 of

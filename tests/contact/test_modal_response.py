@@ -12,9 +12,7 @@ import scipy.linalg as la
 
 import cuefem as cf
 from cuefem.beam.tip_modes import TipModes
-from cuefem.contact.contact_model import model_of
-from cuefem.contact.modal_response import ModalPropagator, level_propagator
-from cuefem.contact.step_records import solve_contact
+from cuefem.contact.modal_response import level_propagator
 from cuefem.contact.strike import strike_modes
 from tests.helpers.strike_scenes import custom_tip_modes
 
@@ -76,42 +74,6 @@ def test_impact_is_the_limit_of_short_steps_under_the_same_impulse() -> None:
         limits.append((getattr(impact, name), getattr(short, name) * per_impulse))
     for limit, table in [*limits, (impact.radiating, radiating)]:
         np.testing.assert_allclose(table, limit, atol=0.01 * np.abs(limit).max() + 1e-4)
-
-
-def test_losses_of_a_strike_equal_integrals_of_power() -> None:
-    """The trapezoidal rule over the steps; no mode swings through more than 1 rad in a step."""
-    tip = damped_modes(loss=0.3, radiation=0.0)
-    scene = cf.Scene(cf.LumpedCue(0.54, 0.01), tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(offset=0.3))
-    contact = solve_contact(model_of(scene, tip), steps=6400, store_states=True)
-    assert contact.states is not None
-    power = contact.states[:, 0] ** 2 @ (tip.loss * tip.omega)
-    dissipated = contact.steps["length"] @ (power[1:] + power[:-1]) / 2
-    assert contact.losses.damping == pytest.approx(dissipated, rel=1e-2)
-
-
-def test_dashpot_is_second_order_and_takes_the_energy_that_the_modes_lose() -> None:
-    """Free decay of two modes with a dashpot of rate 2e4 1/s, against an exponential of the whole system."""
-    tip = replace(custom_tip_modes([3e3, 2e4], [5.0, 6.0]), dashpots=np.array([[0.0, 0.0, 100.0, 100.0]]))
-    propagator, state = level_propagator(tip, turns=False), np.array([0.0, 0.0, 1.0, -0.5, 0.0, 0.0, 0.3, 0.8])
-    exact = la.expm(whole_system(tip)[:8, :8] * 1e-3) @ state
-    errors = []
-    for steps in (100, 400):
-        moved, lost = free_decay(propagator, state, 1e-3 / steps, steps)
-        assert lost == pytest.approx((state @ state - moved @ moved) / 2, rel=1e-12)
-        errors.append(np.abs(moved - exact).max())
-    assert errors[0] / errors[1] == pytest.approx(16, rel=0.05)
-
-
-def free_decay(propagator: ModalPropagator, state: np.ndarray, h: float, steps: int) -> tuple[np.ndarray, float]:
-    """The state after steps without loads, and the energy that the dashpots dissipate."""
-    tables, n, lost = propagator.tables(h), len(propagator.tip.omega), 0.0
-    v_v, sine, a_a = tables.own
-    for _ in range(steps):
-        forces = tables.dashpots[:, : 2 * n] @ state
-        lost += h * float(forces @ forces)
-        v, a = state[:n], state[n:]
-        state = np.concatenate([v_v * v - sine * a, sine * v + a_a * a]) + forces @ tables.response[2:]
-    return state, lost
 
 
 @pytest.mark.parametrize("bent", [(), (cf.GeometricStiffness(),)], ids=["straight", "bent"])

@@ -1,4 +1,4 @@
-"""End masses with a dashpot on the cue, against small steps of a spectral beam (verification)."""
+"""End masses with a dashpot on the cue, against small steps of scikit-fem's beam (verification)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 import scipy.linalg as la
 
 from cuefem import Cue, Material, Resolution, Scene, Segment, Stroke, Support, Tip, end_mass
-from tests.oracle.spectral_beam import bending
+from tests.oracle.bending import bending
 
 WOOD = Material(12.6e9, 0.84e9, 700.0)
 SHAFT = Cue((Segment(0.7, 0.0125, 0.021, WOOD, kappa=0.9),), body_mass=0.42)

@@ -1,1 +1,1 @@
-"""Independent methods: a spectral beam, small steps, partial slip, an exact chain, decimal impulses; no tests."""
+"""Independent methods: a beam by scikit-fem, small steps, partial slip, an exact chain, decimal impulses; no tests."""

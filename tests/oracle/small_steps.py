@@ -17,7 +17,7 @@ import scipy.linalg as la
 from numpy.typing import NDArray
 
 import cuefem as cf
-from tests.oracle.spectral_beam import Bending, bending
+from tests.oracle.bending import Bending, bending
 
 Array = NDArray[np.float64]
 SWEEPS, FRICTION_TOLERANCE = 200, 1e-13  # iterations of the friction of a raised cue, and their tolerance

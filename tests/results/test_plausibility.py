@@ -5,6 +5,7 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import cuefem as cf
@@ -30,30 +31,40 @@ def test_plausibility_of_shipped_cues_has_no_warning(path: Path) -> None:
     assert warnings_of(path) == []
 
 
-BUTTS = {"chamfer": "1460,30\n1470,5\n", "bumper": "1440,30\n1440.1,12\n1470,12\n"}
-
-
-@pytest.mark.parametrize("name", BUTTS)
-def test_chamfer_or_bumper_at_the_butt_causes_no_warning(name: str, tmp_path: Path) -> None:
-    (tmp_path / "cue.csv").write_text("x [mm],diameter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n" + BUTTS[name])
-    assert plausibility_warnings(cf.Scene(cf.load(tmp_path / "cue.csv"))) == []
-
-
-WOOD, PLASTIC = cf.material("hard maple"), cf.material("melamine")
+WOOD, PLASTIC, FIBRE = cf.material("hard maple"), cf.material("melamine"), cf.Material(1e11, 5e9, 1500.0)
 CONE = cf.Segment(0.7, 0.01275, 0.0215, WOOD)
-SLIPPED = {
-    "a ferrule of 25 in": (cf.Segment(0.635, 0.01275, 0.02, PLASTIC, 0.008, 0.008, core=WOOD), CONE),
-    "a ferrule of 0.25 mm": (cf.Segment(2.5e-4, 0.01275, 0.01275, PLASTIC, 0.008, 0.008, core=WOOD), CONE),
-    "a bore of 12.7 mm in 12.75 mm": (cf.Segment(0.127, 0.01275, 0.01275, WOOD, 0.0127, 0.0127), CONE),
-    "a bore of 0.6 mm": (cf.Segment(0.127, 0.01275, 0.01275, WOOD, 6e-4, 6e-4), CONE),
+
+
+def piece(length: float, diameter: float = 0.01275, made: cf.Material = WOOD, bore: float = 0.0) -> cf.Segment:
+    return cf.Segment(length, diameter, diameter, made, bore, bore)
+
+
+def ferruled(length: float) -> tuple[cf.Segment, ...]:
+    return replace(piece(length, made=PLASTIC, bore=0.008), core=WOOD), CONE
+
+
+LIMITS = {  # of what is warned, where, and a drawing with such a value
+    "ferrule length": (5e-4, ferruled),
+    "a ferrule on its tenon": (0.06, ferruled),
+    "wall of": (2e-4, lambda x: (piece(0.1, bore=0.01275 - 2 * x), CONE)),
+    "bore of": (1e-3, lambda x: (piece(0.1, bore=x), CONE)),
+    "drawn mass": (0.02, lambda x: (piece(0.5, made=replace(WOOD, rho=x / (np.pi / 4 * 0.01275**2 * 0.5))),)),
+    "diameter jumps": (1.5, lambda x: (CONE, piece(0.3, 0.0215 * x))),
+    # a bumper behind the butt with this share of the volume is no jump
+    "jumps from": (0.01, lambda x: (CONE, piece(0.7, 0.03), piece(2.41 * x, 0.03 / 1.6))),
+    "solid rod": (0.3, lambda x: (piece(x, made=FIBRE), CONE)),
+    "as stiff as carbon": (3e10, lambda x: (piece(0.4, made=replace(FIBRE, E=x)), CONE)),
+    "carbon shafts are tubes": (2500.0, lambda x: (piece(0.4, made=replace(FIBRE, rho=x)), CONE)),
 }
 
 
-@pytest.mark.parametrize("slip", SLIPPED)
-def test_slipped_size_of_a_part_is_warned(slip: str) -> None:
-    part = "bore" if "0.6" in slip else "wall" if "bore" in slip else "ferrule"
-    warnings = plausibility_warnings(cf.Scene(cf.Cue(SLIPPED[slip], 0.43)))
-    assert any(part in line.partition(";")[0] for line in warnings)
+@pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")
+@pytest.mark.parametrize("words", LIMITS)
+def test_value_beyond_its_limit_alone_is_warned_of(words: str) -> None:
+    limit, drawn = LIMITS[words]
+    scenes = (cf.Scene(cf.Cue(drawn(limit * factor), 0.43)) for factor in (0.97, 1.03))
+    below, above = (any(words in line for line in plausibility_warnings(scene)) for scene in scenes)
+    assert below != above
 
 
 @pytest.mark.filterwarnings("ignore::cuefem.PlausibilityWarning")

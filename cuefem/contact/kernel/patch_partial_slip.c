@@ -84,7 +84,7 @@ static inline double trial_force(double old, double change, double k, double e2,
 static inline double strain_loss(double old, double f, double k, double e2)
 {
     double growth = f * f - (old * f > 0 ? old * old : 0);
-    return e2 < 1 && growth > 0 && k > 0 ? growth * (1 - e2) / (2 * k) : 0;
+    return growth > 0 && k > 0 ? growth * (1 - e2) / (2 * k) : 0;
 }
 
 /* Forces of the annuli, N, at the virtual indentation of the step, m, after a shift, m, since the middle of
