@@ -17,6 +17,7 @@ from tests.helpers.surfaces import revolve, write_surface
 from tests.helpers.sweeps import OPTIMUM, SCATTER, STUDY, vary, write_study
 from tests.test_golden_files import assert_golden, drawing_text, page_text, rounded
 
+SPRING = cf.Scene(kim(), tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(2.0, 0.3))
 BESIDE = ("cue.toml", "old/cue.toml", "slippery.toml", "cue.toml")
 # Millimetres: a ferrule on a bored front with a step, and a cone behind it.
 BORED = ((0, 0), (0, 2), (120, 2.5), (120, 0)), ((0, 6), (25, 6), (25, 6.2), (300, 6.5), (700, 10.5))
@@ -52,6 +53,17 @@ def optimum_of_woods(folder: Path) -> list[list[object]]:
     return [["study", "study.toml", "-o", "page.html"]]
 
 
+def trade_off(folder: Path) -> list[list[object]]:
+    """A lighter shaft against a stiffer one; the smallest change that makes it 95 g."""
+    text = OPTIMUM.replace('minimize = "squirt_slope"', 'minimize = "shaft_mass"\nagainst = "tip_stiffness"\ncount = 5')
+    write_study(folder, text)
+    target = OPTIMUM.replace('minimize = "squirt_slope"', 'response = "shaft_mass"\ntarget = "95 g"')
+    write_study(folder, target, name="target.toml")
+    return [
+        ["study", name, "-o", output] for name, output in (("study.toml", "page.html"), ("target.toml", "best.toml"))
+    ]
+
+
 def comparison(folder: Path) -> list[list[object]]:
     """A measured cue, compared; one whose weight contradicts its drawing; one with every kind of measurement."""
     measured_folder(folder / "cue")
@@ -62,12 +74,29 @@ def comparison(folder: Path) -> list[list[object]]:
 
 def beside(folder: Path) -> list[list[object]]:
     """A cue beside another of its name, which takes its ball and stroke, and beside one that miscues."""
-    spring = cf.Scene(kim(), tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(2.0, 0.3))
     (folder / "old").mkdir()
-    cf.save(spring, folder / "cue.toml")
-    cf.save(replace(spring, cue=low_deflection(), stroke=cf.Stroke(3.0, 0.4)), folder / "old" / "cue.toml")
-    cf.save(replace(spring, tip=replace(spring.tip, friction=0.2)), folder / "slippery.toml")
+    cf.save(SPRING, folder / "cue.toml")
+    cf.save(replace(SPRING, cue=low_deflection(), stroke=cf.Stroke(3.0, 0.4)), folder / "old" / "cue.toml")
+    cf.save(replace(SPRING, tip=replace(SPRING.tip, friction=0.2)), folder / "slippery.toml")
     return [["compare", first, other, "-o", "page.html"] for first, other in pairwise(BESIDE)]
+
+
+def shop(folder: Path) -> list[list[object]]:
+    """A folder of three shafts, and a drawing that cannot be read."""
+    shafts = folder / "shop"
+    shafts.mkdir()
+    for name, values in (("own", {}), ("slim", {"tip diameter": 0.0115}), ("alike", {"tip diameter": 0.01202})):
+        cf.save(cf.with_parameters(SPRING, values), shafts / f"{name}.toml")
+    (shafts / "broken.csv").write_text("x (in),d (in)\n0,.5\n14,abc\n", encoding="utf-8")
+    (shafts / "notes.txt").write_text("no drawing", encoding="utf-8")
+    return [["compare", "shop", "-o", f"list.{kind}"] for kind in ("html", "csv", "json")]
+
+
+def like(folder: Path) -> list[list[object]]:
+    """The bore that gives a shaft the squirt of a slimmer one."""
+    cf.save(SPRING, folder / "cue.toml")
+    cf.save(cf.with_parameters(SPRING, {"tip diameter": 0.0118}), folder / "slim.toml")
+    return [["improve", "cue.toml", "--like", "slim.toml", "--keep", "taper,ferrule,wood"]]
 
 
 def estimate(folder: Path) -> list[list[object]]:
@@ -124,7 +153,8 @@ HEAVY = [pytest.param(each, marks=pytest.mark.heavy) for each in (beside, surfac
 
 
 @pytest.mark.parametrize(
-    "prepare", [sweep, scatter, optimum, optimum_of_woods, comparison, estimate, parts, clamped, *HEAVY]
+    "prepare",
+    [sweep, scatter, optimum, optimum_of_woods, trade_off, comparison, shop, like, estimate, parts, clamped, *HEAVY],
 )
 def test_written_files_equal_golden_file(
     prepare: Callable[[Path], list[list[object]]],

@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable
 from dataclasses import MISSING, fields, replace
 from functools import partial
+from inspect import Parameter, Signature, signature
 from pathlib import Path
 
 import numpy as np
@@ -17,8 +18,9 @@ from cuefem.designer.controls import KNOBS, parse, range_of
 from cuefem.designs.evaluation import Response
 from cuefem.effects.effect import effect_kinds
 from cuefem.files.parts_catalogue import CATALOGUE_SHAFTS, catalogue_shaft
-from cuefem.measurements.measurement_types import MEASUREMENT_TYPES
+from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, PivotLength, Squirt
 from cuefem.measurements.recording import spectral_peaks
+from cuefem.measurements.shot import Shot
 from cuefem.parameters.scene_changes import with_parameters
 from cuefem.quantity.display_units import displayed_in
 from cuefem.quantity.fields import quantity_fields
@@ -31,6 +33,7 @@ from cuefem.scene.default_scene import GAMES
 from cuefem.scene.solved_scene import SolvedScene
 from tests.helpers.command_line import call
 from tests.helpers.cues import any_size
+from tests.helpers.measured_cues import SCENE, measured_cue
 from tests.quantity.test_declared_fields import INSTANCES
 from tests.test_golden_files import assert_golden
 
@@ -113,9 +116,13 @@ def effects(folder: Path) -> list[object]:
 
 
 def changes(folder: Path) -> list[object]:
-    """Every change that `cuefem improve` tries on solid, bored and tubular shafts."""
+    """Every change that `cuefem improve` tries on solid, bored and tubular shafts, in both units."""
     scenes = [cf.usual_scene(cf.load(f"meshes/{name}.toml")) for name in ("pool_maple", "pool_hollow", "carbon")]
-    return [change for scene in scenes for change in changes_of(scene)]
+    rows: list[object] = []
+    for system in ("metric", "us"):
+        with displayed_in(system):
+            rows += [change for scene in scenes for change in changes_of(scene)]
+    return rows
 
 
 @any_size()
@@ -163,9 +170,16 @@ def raised(made: Callable[[], object]) -> str:
 
 
 def measurements(folder: Path) -> list[object]:
-    """The measurements that an estimate may ask for next, with the errors of simple instruments."""
+    """The kinds of measurements, those that an estimate may ask for next, and what readings of a ball assume."""
     scene = cf.load("studies/scenes/kim.toml")
-    return [row for kind in MEASUREMENT_TYPES.values() for row in kind.candidates(scene)]
+    rows: list[object] = []
+    for name, kind in MEASUREMENT_TYPES.items():
+        arguments = [each.replace(annotation=Parameter.empty) for each in signature(kind).parameters.values()]
+        rows.append(f"{name}{Signature(arguments)}")
+    rows += [row for kind in MEASUREMENT_TYPES.values() for row in kind.candidates(scene)]
+    shot = Shot(cue_offset=0.0143, left=0.04, right=0.038, distance=1.2).squirt(SCENE)
+    parameters = measured_cue(shot, *(row for row in rows if isinstance(row, Squirt | PivotLength))).parameters
+    return rows + [(each.name, each.label, *map(each.value, (-1.0, 0.0, 1.0))) for each in parameters]
 
 
 @pytest.mark.parametrize(

@@ -1,56 +1,40 @@
-"""The list of a shop's shafts: against single comparisons, its files, and what it cannot read (properties)."""
-
-import csv
-import json
-import math
-from pathlib import Path
+"""The list of a shop's shafts: against single comparisons, and marks (properties); its files are golden ones."""
 
 import pytest
 
 import cuefem as cf
-from tests.helpers.command_line import call
+from cuefem.results.closed_forms import pivot_length
 
-FRONTS = (0.495, 0.505, 0.470)
+FRONTS = {"s0": 0.495, "s1": 0.505, "s2": 0.470}  # in
 
 
-def write_shop(folder: Path) -> Path:
-    """Three shafts, and a file without a diameter."""
-    folder.mkdir()
-    for i, front in enumerate(FRONTS):
-        rows = f"x (in),d (in)\n0,{front}\n14,{front + 0.015}\n29,.845\n"
-        (folder / f"s{i}.csv").write_text(rows, encoding="utf-8")
-    (folder / "broken.csv").write_text("x (in),d (in)\n0,.5\n14,abc\n", encoding="utf-8")
-    (folder / "notes.txt").write_text("no drawing", encoding="utf-8")
-    return folder
+def scene_of(front: float) -> cf.Scene:
+    """A shaft of a shop."""
+    tip, taper, end = (0.0254 * width for width in (front, front + 0.015, 0.845))
+    maple = cf.material("hard maple")
+    cone = cf.Segment(0.3556, tip, taper, maple), cf.Segment(0.381, taper, end, maple)
+    return cf.usual_scene(cf.Cue(cone, body_mass=0.425))
 
 
 @pytest.mark.heavy
-def test_list_equals_comparisons_and_names_what_it_cannot_read(tmp_path: Path) -> None:
-    """JSON, CSV and page of a folder; the reference is its first file, and each difference that of `compare`."""
-    shop = write_shop(tmp_path / "shop")
-    files = [tmp_path / f"list.{kind}" for kind in ("json", "csv", "html")]
-    for file in files:
-        status, _, err = call("compare", shop, "--body-mass", "425 g", "-o", file)
-        assert (status, err) == (2, f"cuefem: {shop}: 1 of 4 files have no answer\n")
-    made = json.loads(files[0].read_text("utf-8"))
-    assert made["unread"] == {"broken": "line 3, diameter: must be a number; got 'abc'"}
-    assert [row["name"] for row in made["shafts"]] == ["s2", "s0", "s1"]
-    scenes = {name: cf.usual_scene(cf.load(shop / f"{name}.csv", body_mass="425 g")) for name in ("s0", "s2")}
-    single = cf.compare(scenes).differences["s2"]["squirt"]
-    assert made["shafts"][0]["difference"] == pytest.approx(single["difference"], rel=1e-9)
-    assert made["shafts"][0]["error"] == pytest.approx(single["error"], rel=0.05)
-    head, *rows = csv.reader(files[1].read_text("utf-8-sig").splitlines())
-    squirt = math.degrees(made["shafts"][0]["squirt"])
-    assert float(rows[0][head.index("squirt, deg")]) == pytest.approx(squirt, rel=1e-5)
-    assert rows[-1][0] == "broken"
-    assert 'class="red"' in files[2].read_text("utf-8")
+def test_list_equals_comparisons() -> None:
+    """The reference is the first shaft, and each difference that of `compare`."""
+    scenes = {name: scene_of(front) for name, front in FRONTS.items()}
+    rows = cf.shop_list(scenes).shafts
+    assert [row["name"] for row in rows] == ["s2", "s0", "s1"]
+    for row in rows:
+        squirt = cf.strike(scenes[row["name"]]).squirt
+        assert row["squirt"] == pytest.approx(squirt, rel=1e-9)
+        assert row["pivot_length"] == pytest.approx(pivot_length(scenes[row["name"]], squirt), rel=1e-9)
+    single = cf.compare({name: scenes[name] for name in ("s0", "s2")}).differences["s2"]["squirt"]
+    assert rows[0]["difference"] == pytest.approx(single["difference"], rel=1e-9)
+    assert rows[0]["error"] == pytest.approx(single["error"], rel=0.05)
 
 
 @pytest.mark.heavy
-def test_mark_of_an_assumed_inside_is_of_the_named_cue_alone(tmp_path: Path) -> None:
+def test_mark_of_an_assumed_inside_is_of_the_named_cue_alone() -> None:
     """Head, first screen and list mark "carbon", with another ferrule too, and not a maker's own carbon.csv."""
-    write_shop(tmp_path / "shop")
-    own, named = cf.load(tmp_path / "shop" / "s0.csv"), cf.load("carbon")
+    own, named = scene_of(0.495).cue, cf.load("carbon")
     changed = cf.load("carbon", ferrule="10 mm melamine")
     for cue, mark in ((own, "carbon"), (named, "carbon†"), (changed, "carbon†")):
         scenes = {"carbon": cf.usual_scene(cue), "plain maple": cf.usual_scene(cf.load("plain maple"))}

@@ -12,11 +12,10 @@ import cuefem as cf
 from cuefem.analysis.comparison import compare_cues
 from cuefem.cue.materials import material
 from cuefem.designs import Response, Span, Vary, evaluate
-from cuefem.designs.optimum import NOT_DISTINCT, Constraint, Limit, Optimum, OptimumResult, Problem, Round
+from cuefem.designs.optimum import NOT_DISTINCT, Limit, Optimum, OptimumResult, Problem, Round
 from cuefem.designs.search import optimum
 from cuefem.designs.study_file import load_study
 from cuefem.designs.trade_off import TradeOffResult
-from cuefem.results.differences import difference_text
 from cuefem.results.uncertainty import RATIO_FLOOR
 from studies.pages import STUDIES
 from tests.helpers.command_line import stdout_of
@@ -112,21 +111,13 @@ def test_active_limits_constrain_the_optimum() -> None:
 
 @pytest.mark.heavy
 def test_optimum_of_left_hand_offset_is_that_of_right_hand() -> None:
-    """Objective, maximum and limits compare the size of squirt; the result has its sign."""
+    """Objective and maximum compare the size of squirt; the result has its sign."""
     right, left = Response("squirt", 0.3), Response("squirt", -0.3)
     bores = replace(PROBLEM, vary=(BORE,), limits=(), at=cf.Resolution(1, 6, 6))
     results = [optimum(replace(bores, objective=each)) for each in (right, left)]
     assert [result.values["bore"] for result in results] == pytest.approx([0.01, 0.01], rel=1e-9)
     assert results[1].responses[left.name] == pytest.approx(-results[0].responses[right.name], rel=1e-9)
     assert optimum(replace(bores, objective=left, maximize=True)).values["bore"] == pytest.approx(0.002, rel=1e-9)
-    most = 1.05 * results[0].responses[right.name]
-    limited = [
-        optimum(replace(bores, objective=STIFFNESS, maximize=True, limits=(Limit(each, high=most),)))
-        for each in (right, left)
-    ]
-    assert limited[1].values == pytest.approx(limited[0].values, rel=1e-5)
-    assert limited[0].values["bore"] < 0.0099
-    assert limited[1].active == (Constraint("squirt(-0.3)", "<=", most),)
 
 
 @pytest.mark.heavy
@@ -159,7 +150,7 @@ def test_listed_values_are_searched_one_by_one(tmp_path: Path) -> None:
 
 @pytest.mark.heavy
 def test_best_design_stands_beside_the_unmodified_one() -> None:
-    """Its responses are those of the base alone; changes are as those of `compare`, in every output."""
+    """Its responses are those of the base alone; changes are as those of `compare`."""
     base, tip = cf.Scene(kim()), Vary("tip diameter", Span(0.011, 0.0125))
     limits = (Limit(STIFFNESS, low=100.0), Limit(Response("ball_speed", 0.3), low=0.0))
     result = cf.study(Problem(base, (tip,), Response("end_mass"), limits, PROBLEM.at))
@@ -175,13 +166,6 @@ def test_best_design_stands_beside_the_unmodified_one() -> None:
     assert change["difference"] == best.responses["tip_stiffness"] / start.responses["tip_stiffness"] - 1
     assert change == pytest.approx(compared["tip_stiffness"], rel=1e-2)
     assert result.changes["ball_speed(0.3)"]["error"] < RATIO_FLOOR < result.changes["end_mass"]["error"]  # of squirt
-    record = result.to_dict()
-    assert record["start"]["responses"] == start.responses
-    assert record["changes"] == result.changes
-    shown = difference_text(change["difference"], change["error"]).split()
-    for text in (str(result), result.to_html()):
-        assert " ".join(shown) in " ".join(text.split())
-    assert result.to_html().count('class="cue"') == 2
 
 
 def test_designs_that_are_not_distinct_are_marked() -> None:
@@ -193,16 +177,6 @@ def test_designs_that_are_not_distinct_are_marked() -> None:
     assert not result.changes["end_mass"]["distinct"]
     assert "% *" in str(result)
     assert NOT_DISTINCT in " ".join(str(result).split())
-
-
-@pytest.mark.heavy
-def test_unmodified_design_that_miscues_has_no_squirt_and_says_why() -> None:
-    base, offset = replace(SCENE, stroke=cf.Stroke(offset=0.8)), Vary("stroke.offset", Span(0.3, 0.85))
-    limit = Limit(Response("squirt"), high=0.04)
-    result = cf.study(Problem(base, (offset,), Response("ball_speed"), (limit,), cf.Resolution(1, 6, 6)))
-    assert isinstance(result, OptimumResult)
-    assert [*result.changes] == ["ball_speed"]
-    assert str(result).count("miscue at b/R 0.8") == 1
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.3])
@@ -234,12 +208,6 @@ def test_trade_off_is_never_worse_than_a_grid_and_evenly_spread(tmp_path: Path) 
     others = cf.study(replace(found.study, vary=grid)).responses
     for low, least in zip(stiffness, slope, strict=True):
         assert least <= others["squirt_slope"][others["tip_stiffness"] >= low * (1 - 1e-6)].min() * (1 + 1e-6)
-    found.save(tmp_path / "front.csv")
-    assert len((tmp_path / "front.csv").read_text(encoding="utf-8").splitlines()) == 6
-    assert [each["values"] for each in found.to_dict()["trade_off"]["designs"]] == [
-        each.values for each in found.trade_off
-    ]
-    assert found.headline().startswith("squirt slope 0.07521 → ")
 
 
 @pytest.mark.heavy

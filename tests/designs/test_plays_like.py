@@ -1,7 +1,6 @@
 """The smallest change to the squirt of another cue: found rows are strikes within the limits, on random shafts."""
 
 import random
-from pathlib import Path
 
 import pytest
 
@@ -10,8 +9,6 @@ from cuefem.analysis.design_changes import Trial
 from cuefem.analysis.plays_like import SAME, PlaysLike
 from cuefem.analysis.shop_changes import Limits, dimensions_of
 from tests.designs.test_changes_together import LIMITS, assert_within, random_scene
-from tests.helpers.command_line import call
-from tests.test_golden_files import assert_golden
 
 MAPLE = cf.Cue((cf.Segment(0.7, 0.01275, 0.021, cf.material("hard maple")),), body_mass=0.43)
 SCENE = cf.Scene(MAPLE, cf.Ball(0.17, 0.028575), cf.Tip(0.75, 0.6, 1e-3), cf.Stroke(2.0, 0.3))
@@ -71,15 +68,3 @@ def test_changes_to_a_squirt_are_strikes_within_the_limits(seed: int) -> None:
                 variant = trial.variant(change) if change.part not in limits.keep else None
                 if variant is not None and trial.is_stiff(variant[1]):
                     assert abs(variant[1]["squirt"] - found.target) > 0.99 * nearest
-
-
-@pytest.mark.heavy
-def test_improve_like_prints_saves_and_refuses(tmp_path: Path, request: pytest.FixtureRequest) -> None:
-    asked = ("improve", "plain maple", "--like", "predator z2")
-    cf.save(SCENE, tmp_path / "cue.toml")
-    status, out, err = call(*asked)
-    assert (status, err) == (0, "")
-    assert_golden("plays_like.txt", out, request)
-    target = tmp_path / "new.toml"
-    status, out, _ = call("improve", "plain maple", "--like", tmp_path / "cue.toml", "--take", "1", "-o", target)
-    assert (status, target.exists()) == (0, True)

@@ -12,7 +12,7 @@ from hypothesis.extra.numpy import arrays
 
 import cuefem as cf
 from cuefem.designs import Response
-from cuefem.designs.sweep import SweepResult, SweepStatistics
+from cuefem.designs.sweep import MAX_POINTS, SweepResult, SweepStatistics, sweep_charts
 from cuefem.files.defaults_report import Assumption
 from cuefem.results.uncertainty import RATIO_FLOOR, SHAFT_ERROR
 from tests.helpers.examples import examples
@@ -100,3 +100,10 @@ def test_best_squirt_has_the_uncertainty_of_a_verdict() -> None:
     assert relative == pytest.approx(math.hypot(own.uncertainty["model"], own.uncertainty["inputs"]), rel=1e-3)
     assert f"{math.degrees(own.squirt):.2f} ± {math.degrees(result.errors['squirt']):.2f}" in str(result)
     assert "<summary>1 assumption</summary>" in result.to_html(assumptions=[Assumption("", "ball 170 g")])
+
+
+def test_chart_of_many_designs_shows_an_even_part() -> None:
+    for count, said in ((MAX_POINTS, "designs"), (5 * MAX_POINTS, "2000 of 10000 designs, evenly spaced")):
+        bore = np.random.default_rng(1).random(count)
+        drawn = sweep_charts(table({"bore": bore}, np.stack([bore, 900 - bore], axis=1)))[0].points[0]
+        assert (drawn[0], drawn[2].count("M")) == (said, MAX_POINTS)
